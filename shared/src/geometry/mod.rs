@@ -1,0 +1,5 @@
+//! Curves, frames and attitude in the work frame.
+
+mod pose;
+
+pub use pose::{Pose, PoseError};

@@ -1,0 +1,75 @@
+//! The pose of the tool in the world frame.
+
+use nalgebra::Vector3;
+use thiserror::Error;
+
+/// Position and attitude of the tool centre point in the world frame (SPEC 0.2).
+///
+/// `tangent` (T) is the direction of travel, `normal` (N) the tool axis, pointing from the tip to the machine,
+/// away from the work. Both have unit length and are perpendicular: [`Pose::new`] sees to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Tool centre point D \[mm\].
+    pub position: Vector3<f64>,
+    /// Direction of travel T.
+    pub tangent: Vector3<f64>,
+    /// Tool axis N.
+    pub normal: Vector3<f64>,
+}
+
+/// Why three vectors are not a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum PoseError {
+    /// A vector is shorter than 1e-12.
+    #[error("zero vector")]
+    ZeroVector,
+    /// N is shorter than 1e-12.
+    #[error("zero N")]
+    ZeroNormal,
+    /// N and T do not span a plane.
+    #[error("N parallel T")]
+    NormalParallelTangent,
+    /// A component is infinite or not a number.
+    #[error("not finite")]
+    NotFinite,
+}
+
+impl Pose {
+    /// Makes a pose of a position and two directions of any length: T keeps its direction, N is turned into
+    /// the plane perpendicular to it (Gram–Schmidt, SPEC 0.2 step 1).
+    pub fn new(
+        position: Vector3<f64>,
+        tangent: Vector3<f64>,
+        normal: Vector3<f64>,
+    ) -> Result<Self, PoseError> {
+        let all = [position, tangent, normal];
+        if all.iter().any(|v| !v.iter().all(|x| x.is_finite())) {
+            return Err(PoseError::NotFinite);
+        }
+        let tangent = unit(tangent).ok_or(PoseError::ZeroVector)?;
+        let length = normal.norm();
+        if length <= 1e-12 {
+            return Err(PoseError::ZeroNormal);
+        }
+        let across = normal - tangent * normal.dot(&tangent);
+        if across.norm() < 1e-6 * length {
+            return Err(PoseError::NormalParallelTangent);
+        }
+        Ok(Self {
+            position,
+            tangent,
+            normal: across / across.norm(),
+        })
+    }
+
+    /// Left of travel: M = N × T.
+    pub fn lateral(&self) -> Vector3<f64> {
+        self.normal.cross(&self.tangent)
+    }
+}
+
+/// `v` with length 1, or `None` if it is shorter than 1e-12.
+pub(crate) fn unit(v: Vector3<f64>) -> Option<Vector3<f64>> {
+    let length = v.norm();
+    (length > 1e-12).then(|| v / length)
+}

@@ -1,0 +1,149 @@
+//! What passes between the control laws and a board once per tick: the axis facade in plain values.
+//!
+//! A board crate turns these into registers; the emulated board turns them into a step of its plant. The
+//! control laws know nothing else of the machine.
+
+use serde::{Deserialize, Serialize};
+
+/// Servo drives of the motion board, in this order everywhere: X1, X2, Y, Z, A, B, C.
+pub const MOTORS: usize = 7;
+/// Linked axes, in this order everywhere: X, Y, Z, A, B, C.
+pub const AXES: usize = 6;
+/// Slide drives of the tracker board, in this order everywhere: U1, V1, U2, V2.
+pub const SLIDES: usize = 4;
+/// Sides of the seam, each with a beam, a camera and a pair of slides.
+pub const SIDES: usize = 2;
+
+/// Names of the motors, in the order of [`MOTORS`].
+pub const MOTOR_NAMES: [&str; MOTORS] = ["X1", "X2", "Y", "Z", "A", "B", "C"];
+/// Names of the axes, in the order of [`AXES`].
+pub const AXIS_NAMES: [&str; AXES] = ["X", "Y", "Z", "A", "B", "C"];
+/// Names of the slides, in the order of [`SLIDES`].
+pub const SLIDE_NAMES: [&str; SLIDES] = ["U1", "V1", "U2", "V2"];
+
+/// A signed 16-bit converter code, −32767…32767 for −10…+10 V; −32768 is never sent (SPEC 0.8.4).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DacCode(pub i16);
+
+impl DacCode {
+    /// Zero volts.
+    pub const ZERO: Self = Self(0);
+
+    /// The code for `value` when `full_scale` (same unit, may be negative for a reversed drive) is +10 V;
+    /// saturates at ±10 V, and is zero for a value that is not a number.
+    pub fn from_ratio(value: f64, full_scale: f64) -> Self {
+        let code = crate::units::round_half_away(value / full_scale * 32767.0);
+        Self(code.clamp(-32767.0, 32767.0) as i16)
+    }
+
+    /// Part of the full scale, −1…1.
+    pub fn ratio(self) -> f64 {
+        f64::from(self.0) / 32767.0
+    }
+}
+
+/// One bit a motor or slide, bit 0 the first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Bits(pub u8);
+
+impl Bits {
+    /// No bit set.
+    pub const NONE: Self = Self(0);
+
+    /// Whether bit `index` is set.
+    pub fn get(self, index: usize) -> bool {
+        self.0 & (1 << index) != 0
+    }
+
+    /// Sets or clears bit `index`.
+    pub fn set(&mut self, index: usize, on: bool) {
+        if on {
+            self.0 |= 1 << index;
+        } else {
+            self.0 &= !(1 << index);
+        }
+    }
+
+    /// Whether any bit is set.
+    pub fn any(self) -> bool {
+        self.0 != 0
+    }
+}
+
+/// Inputs of `N` drives, latched together at one tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Feedback<const N: usize> {
+    /// Grating or encoder counts since power-up, extended to 64 bits by the board.
+    pub counts: [i64; N],
+    /// Counts that the hardware latched at a reference mark since the last tick.
+    pub mark: [Option<i64>; N],
+    /// Limit switch in the positive counting direction is pressed.
+    pub limit_plus: Bits,
+    /// Limit switch in the negative counting direction is pressed.
+    pub limit_minus: Bits,
+    /// Drive reports a fault.
+    pub drive_fault: Bits,
+    /// Emergency stop is pressed (either channel open).
+    pub estop: bool,
+    /// Laser source reports a fault, per side (motion board).
+    pub laser_fault: [bool; SIDES],
+}
+
+impl<const N: usize> Default for Feedback<N> {
+    fn default() -> Self {
+        Self {
+            counts: [0; N],
+            mark: [None; N],
+            limit_plus: Bits::NONE,
+            limit_minus: Bits::NONE,
+            drive_fault: Bits::NONE,
+            estop: false,
+            laser_fault: [false; SIDES],
+        }
+    }
+}
+
+/// Outputs to `N` drives and, on the motion board, to the beams.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Command<const N: usize> {
+    /// Drives are enabled. All of a board's drives are switched together.
+    pub enable: bool,
+    /// Velocity command to each drive.
+    pub dac: [DacCode; N],
+    /// Beam gate open, per side (motion board).
+    pub beam_gate: [bool; SIDES],
+    /// Beam power, per side (motion board); only 0…32767.
+    pub beam_power: [DacCode; SIDES],
+}
+
+impl<const N: usize> Command<N> {
+    /// Drives off, zero volts, beams off.
+    pub const SAFE: Self = Self {
+        enable: false,
+        dac: [DacCode::ZERO; N],
+        beam_gate: [false; SIDES],
+        beam_power: [DacCode::ZERO; SIDES],
+    };
+}
+
+/// Inputs of the motion board at a servo tick.
+pub type MotionFeedback = Feedback<MOTORS>;
+/// Outputs of the motion board at a servo tick.
+pub type MotionCommand = Command<MOTORS>;
+/// Inputs of the tracker board at a control tick.
+pub type SlideFeedback = Feedback<SLIDES>;
+/// Outputs of the tracker board at a control tick.
+pub type SlideCommand = Command<SLIDES>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_saturate_round_away_and_survive_nan() {
+        assert_eq!(DacCode::from_ratio(50.0, 100.0), DacCode(16384));
+        assert_eq!(DacCode::from_ratio(-500.0, 100.0), DacCode(-32767));
+        assert_eq!(DacCode::from_ratio(1.0, -100.0), DacCode(-328));
+        assert_eq!(DacCode::from_ratio(f64::NAN, 100.0), DacCode::ZERO);
+    }
+}

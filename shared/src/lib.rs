@@ -1,0 +1,21 @@
+//! Everything of Seamwright that is the same wherever it runs: on the boards, in the dry run, in tests.
+//!
+//! Rules of this crate: values in, values out; it never reads a clock, a register or a socket, never
+//! allocates and never logs. Time is a field of the inputs. All mathematics goes through `libm`, so that a
+//! run on the board and on the PC is equal to the bit.
+//!
+//! Inside, lengths are mm, angles rad, times s and speeds mm/s or rad/s; what people read and write
+//! (configuration, NC text, reports) is mm, degrees and mm/min. Names of fields carry the unit wherever it
+//! is not one of the first kind.
+#![no_std]
+
+pub mod control;
+pub mod geometry;
+pub mod io;
+pub mod kinematics;
+pub mod motion;
+pub mod parameter;
+pub mod protocol;
+pub mod tracking;
+pub mod trajectory;
+pub mod units;

@@ -1,0 +1,117 @@
+//! What a machine file says about the motion board, in human units (mm, degrees, seconds).
+//!
+//! Rotary axes and motors take degrees wherever linear ones take mm; the built forms hold radians.
+
+use crate::io::{AXES, MOTORS, SIDES};
+use crate::kinematics::DualBeamConfig;
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// Everything the motion board needs to know of its machine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct MotionConfig {
+    /// Geometry of the machine.
+    pub kinematics: DualBeamConfig,
+    /// X, Y, Z, A, B, C.
+    pub axes: [AxisConfig; AXES],
+    /// X1, X2, Y, Z, A, B, C.
+    pub motors: [MotorConfig; MOTORS],
+    /// Coupling of X1 and X2.
+    pub gantry: GantryConfig,
+    /// Beam 1 and 2.
+    pub beams: [BeamConfig; SIDES],
+    /// A running path stops when the PC has not been heard for this long \[ms\].
+    pub link_timeout_ms: u32,
+}
+
+/// Limits of one axis (mm or degrees).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct AxisConfig {
+    /// Lowest position.
+    pub travel_min: f64,
+    /// Highest position.
+    pub travel_max: f64,
+    /// Highest speed \[1/s\].
+    pub max_velocity: f64,
+    /// Highest acceleration \[1/s²\].
+    pub max_acceleration: f64,
+    /// Highest jerk \[1/s³\].
+    pub max_jerk: f64,
+}
+
+/// One servo drive with its grating and its position loop (mm or degrees).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct MotorConfig {
+    /// Grating counts in one mm or degree; negative if the grating counts down in the positive direction.
+    pub counts_per_unit: f64,
+    /// Speed at +10 V \[1/s\]; negative if the drive turns backwards.
+    pub velocity_at_10v: f64,
+    /// Position gain kp \[1/s\].
+    pub kp: f64,
+    /// Integral gain ki \[1/s²\].
+    pub ki: f64,
+    /// Largest contribution of the integral part \[1/s\] (unit per second).
+    pub integral_limit: f64,
+    /// Anti-windup tracking time tt \[s\]; 0 switches it off.
+    pub anti_windup_time_s: f64,
+    /// Derivative gain kd; 0 is normally best with a velocity drive.
+    pub kd: f64,
+    /// Time constant of the derivative filter td \[s\].
+    pub derivative_filter_s: f64,
+    /// Velocity feed-forward kv, 1 for a calibrated drive.
+    pub velocity_feed_forward: f64,
+    /// Acceleration feed-forward ka \[s\]: the delay of the velocity loop.
+    pub acceleration_feed_forward_s: f64,
+    /// Largest velocity command \[1/s\].
+    pub max_command: f64,
+    /// Following-error trip at standstill.
+    pub following_error_base: f64,
+    /// Following-error trip grows by this time × speed \[s\].
+    pub following_error_time_s: f64,
+    /// How the motor finds its reference mark.
+    pub home: HomeConfig,
+}
+
+/// Search for one reference mark (mm or degrees).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct HomeConfig {
+    /// Speed and first direction of the search \[1/s\]; turns round at a limit switch.
+    pub velocity: f64,
+    /// Axis position of the mark.
+    pub mark_position: f64,
+    /// The search fails after this much travel.
+    pub max_travel: f64,
+}
+
+/// Gantry X1/X2 (SPEC 0.10).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct GantryConfig {
+    /// Cross-coupling gain kc \[1/s\].
+    pub coupling: f64,
+    /// Cross-coupling derivative gain kcd.
+    pub coupling_derivative: f64,
+    /// Time constant of the derivative filter \[s\].
+    pub derivative_filter_s: f64,
+    /// X1 − X2 at which the beam is square, after both marks are found \[mm\].
+    pub square_offset_mm: f64,
+    /// Skew at which both drives are switched off \[mm\].
+    pub skew_trip_mm: f64,
+    /// Cross position of motor X1 \[mm\].
+    pub y1_mm: f64,
+    /// Cross position of motor X2 \[mm\].
+    pub y2_mm: f64,
+}
+
+/// One beam.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct BeamConfig {
+    /// Power at +10 V \[W\].
+    pub power_at_10v_w: f64,
+    /// The gate stays closed below this path speed \[mm/s\].
+    pub min_speed_mm_s: f64,
+}

@@ -1,0 +1,96 @@
+//! Why the motion board stopped, with the evidence.
+
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::io::{AXIS_NAMES, MOTOR_NAMES};
+
+/// A reason to stop; the first one since the last reset is kept. Small and `Copy`; reads as a sentence.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema, Error)]
+pub enum Fault {
+    /// The emergency stop is pressed.
+    #[error("emergency stop is pressed; release it, then reset")]
+    EmergencyStop,
+    /// A drive reports a fault.
+    #[error("the drive of {} reports a fault; look at the drive's own display", MOTOR_NAMES[*motor as usize])]
+    Drive {
+        /// Index of the motor.
+        motor: u8,
+    },
+    /// A laser source reports a fault.
+    #[error("laser {} reports a fault; look at the source's own display", side + 1)]
+    Laser {
+        /// 0 or 1.
+        side: u8,
+    },
+    /// |reference − position| above the trip (µm or millidegrees).
+    #[error("following error of {} is {seen_um:.0} µm (or m°), the limit there {limit_um:.0}: check for a blocked axis, gains and drive scaling", MOTOR_NAMES[*motor as usize])]
+    FollowingError {
+        /// Index of the motor.
+        motor: u8,
+        /// What was seen.
+        seen_um: f32,
+        /// The trip at that speed.
+        limit_um: f32,
+    },
+    /// A grating moved further in one tick than the axis can.
+    #[error("the grating of {} jumped by {seen} counts in one tick, at most {limit} are possible: check its cable and reading head", MOTOR_NAMES[*motor as usize])]
+    EncoderStep {
+        /// Index of the motor.
+        motor: u8,
+        /// Counts in the tick.
+        seen: i32,
+        /// Largest believable step.
+        limit: i32,
+    },
+    /// X1 − X2 left its square position.
+    #[error(
+        "the gantry is out of square by {seen_um:.0} µm, the limit is {limit_um:.0}: both X drives are off; square it before going on"
+    )]
+    GantrySkew {
+        /// What was seen.
+        seen_um: f32,
+        /// The trip.
+        limit_um: f32,
+    },
+    /// A limit switch was pressed outside homing.
+    #[error("limit switch {} of {} is pressed; jog away from it", if *positive { "+" } else { "−" }, MOTOR_NAMES[*motor as usize])]
+    LimitSwitch {
+        /// Index of the motor.
+        motor: u8,
+        /// Which end.
+        positive: bool,
+    },
+    /// The search for a reference mark ended without one.
+    #[error("no reference mark of {} was found; check the reading head and the search distance", MOTOR_NAMES[*motor as usize])]
+    MarkNotFound {
+        /// Index of the motor.
+        motor: u8,
+    },
+    /// The path asks an axis for a place beyond its travel.
+    #[error("the path leaves the travel of {} ({position:.3})", AXIS_NAMES[*axis as usize])]
+    SoftLimit {
+        /// Index of the axis.
+        axis: u8,
+        /// Where it would have gone (mm or degrees).
+        position: f32,
+    },
+    /// The path has no inverse kinematics or is not finite there.
+    #[error("the path cannot be followed at s = {s_mm:.3} mm: no solution of the kinematics")]
+    NoSolution {
+        /// Path position.
+        s_mm: f32,
+    },
+    /// The PC was not heard while a path was running.
+    #[error(
+        "the PC was silent for {silent_ms} ms while the path was running; the machine stopped on the path"
+    )]
+    LinkLost {
+        /// How long.
+        silent_ms: u32,
+    },
+    /// The path task did not deliver references in time, twice in a row.
+    #[error("the path task was late twice in a row; the references ran dry")]
+    ReferencesLate,
+}

@@ -1,0 +1,145 @@
+//! Validation of machine parameters: every `build` names the field it refuses.
+
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// A parameter that makes no sense, by the name it has in the machine file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema, Error)]
+#[error("{} of {} is {value}", FIELDS.get(*.field as usize).unwrap_or(&"a field"), OWNERS.get(*.owner as usize).unwrap_or(&"the machine"))]
+pub struct ParameterError {
+    /// Index into the names of owners.
+    owner: u8,
+    /// Index into the names of fields.
+    field: u8,
+    /// What was given.
+    value: f32,
+}
+
+const OWNERS: &[&str] = &[
+    "X1",
+    "X2",
+    "Y",
+    "Z",
+    "A",
+    "B",
+    "C",
+    "U1",
+    "V1",
+    "U2",
+    "V2",
+    "axis X",
+    "axis Y",
+    "axis Z",
+    "axis A",
+    "axis B",
+    "axis C",
+    "gantry",
+    "kinematics",
+    "beam 1",
+    "beam 2",
+    "head",
+    "tracking",
+    "link",
+];
+
+const FIELDS: &[&str] = &[
+    "counts_per_unit",
+    "velocity_at_10v",
+    "kp",
+    "ki",
+    "integral_limit",
+    "anti_windup_time_s",
+    "kd",
+    "derivative_filter_s",
+    "velocity_feed_forward",
+    "acceleration_feed_forward_s",
+    "max_command",
+    "following_error_base",
+    "following_error_time_s",
+    "home.velocity",
+    "home.mark_position",
+    "home.max_travel",
+    "travel_min",
+    "travel_max",
+    "max_velocity",
+    "max_acceleration",
+    "max_jerk",
+    "coupling",
+    "coupling_derivative",
+    "square_offset_mm",
+    "skew_trip_mm",
+    "y1_mm",
+    "y2_mm",
+    "power_at_10v_w",
+    "min_speed_mm_s",
+    "o1_mm",
+    "o2_mm",
+    "o3_mm",
+    "included_angle_deg",
+    "working_distance_mm",
+    "camera_lead_mm",
+    "counts_per_mm",
+    "velocity_at_10v_mm_s",
+    "travel_min_mm",
+    "travel_max_mm",
+    "max_velocity_mm_s",
+    "max_acceleration_mm_s2",
+    "window_mm",
+    "hold_mm",
+    "gate_mm",
+    "preview_s",
+    "frame_period_ms",
+    "dead_band_mm",
+    "stale_path_ms",
+    "saturation_trip_ms",
+    "link_timeout_ms",
+];
+
+impl ParameterError {
+    /// The error for `field` of `owner`; both must be in the tables of this file, or they are reported as
+    /// "a field" of "the machine".
+    pub fn new(owner: &str, field: &str, value: f64) -> Self {
+        let place =
+            |names: &[&str], name: &str| names.iter().position(|n| *n == name).map_or(u8::MAX, |i| i as u8);
+        Self {
+            owner: place(OWNERS, owner),
+            field: place(FIELDS, field),
+            value: value as f32,
+        }
+    }
+}
+
+/// `value` if it is finite and `ok`, the error otherwise.
+pub fn check(owner: &str, field: &str, value: f64, ok: impl Fn(f64) -> bool) -> Result<f64, ParameterError> {
+    if value.is_finite() && ok(value) {
+        Ok(value)
+    } else {
+        Err(ParameterError::new(owner, field, value))
+    }
+}
+
+/// As [`check`], for a value that must be above zero.
+pub fn positive(owner: &str, field: &str, value: f64) -> Result<f64, ParameterError> {
+    check(owner, field, value, |x| x > 0.0)
+}
+
+/// As [`check`], for a value that must not be below zero.
+pub fn not_negative(owner: &str, field: &str, value: f64) -> Result<f64, ParameterError> {
+    check(owner, field, value, |x| x >= 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::string::ToString;
+
+    #[test]
+    fn a_bad_value_is_named_as_in_the_machine_file() {
+        let error = positive("Y", "kp", -3.0).unwrap_err();
+        assert_eq!(error.to_string(), "kp of Y is -3");
+        assert!(positive("Y", "kp", f64::NAN).is_err());
+        assert_eq!(not_negative("Y", "ki", 0.0), Ok(0.0));
+    }
+}

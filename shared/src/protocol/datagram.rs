@@ -1,0 +1,167 @@
+//! Cyclic data: small, self-contained, the newest wins.
+
+use crate::io::{AXES, MOTORS, SIDES, SLIDES};
+use crate::motion::State;
+use crate::tracking::TrackerState;
+use heapless::Vec;
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// Most ticks in one telemetry datagram.
+pub const TELEMETRY_BATCH: usize = 5;
+
+/// All datagrams.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[expect(clippy::large_enum_variant, reason = "a datagram lives in one buffer, once")]
+pub enum Datagram {
+    /// Motion → tracker, every ms.
+    PathState(PathState),
+    /// Tracker → PC, at every strobe.
+    Capture(Capture),
+    /// PC → tracker, the answer to a capture.
+    Measurement(Measurement),
+    /// Motion → PC.
+    MotionTelemetry(MotionTelemetry),
+    /// Tracker → PC.
+    TrackerTelemetry(TrackerTelemetry),
+    /// Anyone → a board: what time is it there?
+    ClockRequest(ClockRequest),
+    /// The board's answer.
+    ClockReply(ClockReply),
+}
+
+/// Where the motion board is on its path.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct PathState {
+    /// Counts path ticks; a gap is a lost datagram.
+    pub tick: u32,
+    /// Motion clock at the tick the values belong to \[µs\].
+    pub time_us: u64,
+    /// Motion clock when the datagram left \[µs\].
+    pub sent_us: u64,
+    /// Number of the path.
+    pub path_id: u32,
+    /// Path position at the tick \[mm\].
+    pub s_mm: f64,
+    /// Path speed \[mm/s\].
+    pub speed_mm_s: f64,
+    /// Measured pose at the tick: position \[mm\], T, N.
+    pub pose: [f64; 9],
+    /// The path asks for tracking.
+    pub tracking: bool,
+}
+
+/// A strobe: both cameras were triggered, the slides latched.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct Capture {
+    /// Counts strobes.
+    pub number: u32,
+    /// Tracker clock at the strobe \[µs\].
+    pub time_us: u64,
+    /// The same on the motion board's clock, as the tracker relates them \[µs\].
+    pub motion_time_us: u64,
+    /// Path position at the strobe \[mm\].
+    pub s_mm: f64,
+    /// Number of the path.
+    pub path_id: u32,
+    /// Slides at the strobe, from the encoders \[mm\].
+    pub slides_mm: [f64; SLIDES],
+    /// Slides at the strobe, as only a simulated machine can know \[mm\].
+    pub truth_mm: Option<[f64; SLIDES]>,
+}
+
+/// What the PC saw in a capture's images.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct Measurement {
+    /// Number of the capture.
+    pub capture: u32,
+    /// Side 1 and 2; `None` where no seam was seen.
+    pub sides: [Option<SideMeasurement>; SIDES],
+}
+
+/// Where one camera saw the seam, relative to its head's working point moved ahead by the lead.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct SideMeasurement {
+    /// Along U \[mm\].
+    pub delta_u_mm: f64,
+    /// Along V \[mm\].
+    pub delta_v_mm: f64,
+}
+
+/// A few path ticks of the motion board.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct MotionTelemetry {
+    /// Consecutive ticks, oldest first.
+    pub samples: Vec<MotionSample, TELEMETRY_BATCH>,
+}
+
+/// One path tick of the motion board.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct MotionSample {
+    /// Path tick.
+    pub tick: u32,
+    /// Motion clock at the tick \[µs\].
+    pub time_us: u64,
+    /// State of the board.
+    pub state: State,
+    /// Number of the path.
+    pub path_id: u32,
+    /// Path position at the tick \[mm\].
+    pub s_mm: f64,
+    /// Path speed \[mm/s\].
+    pub speed_mm_s: f64,
+    /// Gates that are open.
+    pub beams: [bool; SIDES],
+    /// Measured axis positions at the tick (mm, rad).
+    pub axes: [f64; AXES],
+    /// Motor positions as only a simulated machine can know (mm, rad).
+    pub truth: Option<[f64; MOTORS]>,
+    /// Largest |following error| of each motor since the last sample (mm, rad).
+    pub following_error: [f32; MOTORS],
+    /// Largest |X1 − X2 − square offset| since the last sample \[mm\].
+    pub skew_mm: f32,
+}
+
+/// A few control ticks of the tracker board.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct TrackerTelemetry {
+    /// Consecutive ticks, oldest first.
+    pub samples: Vec<TrackerSample, TELEMETRY_BATCH>,
+}
+
+/// One control tick of the tracker board.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct TrackerSample {
+    /// Control tick.
+    pub tick: u32,
+    /// Tracker clock at the tick \[µs\].
+    pub time_us: u64,
+    /// State of the board.
+    pub state: TrackerState,
+    /// Slides, from the encoders \[mm\].
+    pub slides_mm: [f64; SLIDES],
+    /// Slides, as only a simulated machine can know \[mm\].
+    pub truth_mm: Option<[f64; SLIDES]>,
+    /// Where the control law wants the slides \[mm\].
+    pub target_mm: [f64; SLIDES],
+    /// Commands as sent to the converter.
+    pub dac: [i16; SLIDES],
+}
+
+/// Asks a board for its clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct ClockRequest {
+    /// The asker's clock when it asked \[µs\].
+    pub asked_us: u64,
+}
+
+/// A board's clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct ClockReply {
+    /// From the request.
+    pub asked_us: u64,
+    /// The board's clock when the request arrived \[µs\].
+    pub received_us: u64,
+    /// The board's clock when the reply left \[µs\].
+    pub replied_us: u64,
+}

@@ -1,0 +1,77 @@
+//! What a machine file says about the tracker board (mm, degrees, seconds).
+
+use crate::io::{SIDES, SLIDES};
+use crate::motion::HomeConfig;
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// Everything the tracker board needs to know of its machine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct TrackerConfig {
+    /// Where the two heads sit on the arc plate.
+    pub head: HeadConfig,
+    /// U1, V1, U2, V2.
+    pub slides: [SlideConfig; SLIDES],
+    /// Map and control law.
+    pub tracking: TrackingConfig,
+}
+
+/// The two heads on the arc plate (SPEC 0.5–0.7).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct HeadConfig {
+    /// Angle θ2 from beam 1 to beam 2 about the tangent T \[deg\], a constant of the machine:
+    /// N1 = Rot(T, −θ2/2)·N, N2 = Rot(T, +θ2/2)·N. Negative if seam 1 is on the right of travel.
+    pub included_angle_deg: f64,
+    /// Distance from D to each beam's working point along N_k with its V slide at zero \[mm\]: ℓ − f − z of
+    /// SPEC 0.6, so that the slide extension that keeps the defocus is this minus the distance of the seam.
+    pub working_distance_mm: [f64; SIDES],
+    /// Lead of the cameras before the beams, along T \[mm\].
+    pub camera_lead_mm: f64,
+}
+
+/// One slide with its drive and encoder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct SlideConfig {
+    /// Encoder counts in one mm; negative if it counts down in the positive direction.
+    pub counts_per_mm: f64,
+    /// Speed at +10 V \[mm/s\]; negative if the drive turns backwards.
+    pub velocity_at_10v_mm_s: f64,
+    /// Soft limit.
+    pub travel_min_mm: f64,
+    /// Soft limit.
+    pub travel_max_mm: f64,
+    /// Largest command \[mm/s\].
+    pub max_velocity_mm_s: f64,
+    /// Largest change of the command \[mm/s²\].
+    pub max_acceleration_mm_s2: f64,
+    /// How the slide finds its reference mark.
+    pub home: HomeConfig,
+}
+
+/// Map of the seam and control law (SPEC 0.8).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackingConfig {
+    /// Position gain kp \[1/s\].
+    pub kp: f64,
+    /// Integral gain ki \[1/s²\].
+    pub ki: f64,
+    /// Half width w of the estimator's window \[mm\].
+    pub window_mm: f64,
+    /// How far beyond the window the map may be used \[mm\].
+    pub hold_mm: f64,
+    /// A sample further than this from the estimate is an outlier \[mm\].
+    pub gate_mm: f64,
+    /// Preview time t_pre: lag and dead time of the slide drives \[s\].
+    pub preview_s: f64,
+    /// Time between two strobes \[ms\].
+    pub frame_period_ms: u32,
+    /// Deviation below which a slide is left alone \[mm\]; 0 for none.
+    pub dead_band_mm: f64,
+    /// Path states older than this stop the slides \[ms\].
+    pub stale_path_ms: u32,
+    /// Time in saturation that is reported as a fault \[ms\].
+    pub saturation_trip_ms: u32,
+}

@@ -1,0 +1,80 @@
+//! States and faults of the tracker board.
+
+use crate::io::SLIDE_NAMES;
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// What the tracker board is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum TrackerState {
+    /// Drives off.
+    #[default]
+    Off,
+    /// Drives on, looking for reference marks.
+    Homing,
+    /// Drives on, slides at rest or following the plan.
+    Ready,
+    /// The path asks for tracking: slides follow the seam.
+    Tracking,
+    /// Drives off after a fault, until it is reset.
+    Fault,
+}
+
+/// Why the tracker stopped, or wants the beams off; the first one since the last reset is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema, Error)]
+pub enum TrackerFault {
+    /// The emergency stop is pressed.
+    #[error("emergency stop is pressed; release it, then reset")]
+    EmergencyStop,
+    /// A drive reports a fault.
+    #[error("the drive of slide {} reports a fault; look at the drive's own display", SLIDE_NAMES[*slide as usize])]
+    Drive {
+        /// Index of the slide.
+        slide: u8,
+    },
+    /// A limit switch was pressed outside homing.
+    #[error("limit switch {} of slide {} is pressed", if *positive { "+" } else { "−" }, SLIDE_NAMES[*slide as usize])]
+    LimitSwitch {
+        /// Index of the slide.
+        slide: u8,
+        /// Which end.
+        positive: bool,
+    },
+    /// The search for a reference mark ended without one.
+    #[error("no reference mark of slide {} was found", SLIDE_NAMES[*slide as usize])]
+    MarkNotFound {
+        /// Index of the slide.
+        slide: u8,
+    },
+    /// No seam was seen for longer than the map reaches.
+    #[error("side {} lost the seam at s = {s_mm:.1} mm", side + 1)]
+    LostSeam {
+        /// 0 or 1.
+        side: u8,
+        /// Path position.
+        s_mm: f32,
+    },
+    /// A slide could not keep up.
+    #[error("slide {} was at its speed limit for {ms} ms", SLIDE_NAMES[*slide as usize])]
+    Saturated {
+        /// Index of the slide.
+        slide: u8,
+        /// How long.
+        ms: u32,
+    },
+    /// A slide reached its soft limit while tracking.
+    #[error("slide {} is at its soft limit ({position_mm:.2} mm) while tracking", SLIDE_NAMES[*slide as usize])]
+    SoftLimit {
+        /// Index of the slide.
+        slide: u8,
+        /// Where it stands.
+        position_mm: f32,
+    },
+    /// The motion board was not heard while tracking.
+    #[error("the motion board was silent for {silent_ms} ms while tracking")]
+    PathStale {
+        /// How long.
+        silent_ms: u32,
+    },
+}

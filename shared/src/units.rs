@@ -1,0 +1,38 @@
+//! Conversions at the edge, and the few scalar functions every part needs.
+
+use core::f64::consts::PI;
+
+/// Degrees in one radian.
+pub const DEG_PER_RAD: f64 = 180.0 / PI;
+/// mm/s in one m/min.
+pub const MM_S_PER_M_MIN: f64 = 1000.0 / 60.0;
+
+/// Reduces an angle to (−π, π]. `angle` in rad.
+pub fn wrap(angle: f64) -> f64 {
+    let turns = libm::ceil((angle - PI) / (2.0 * PI));
+    angle - turns * 2.0 * PI
+}
+
+/// Rounds to the nearest integer, halves away from zero (SPEC section C).
+pub fn round_half_away(x: f64) -> f64 {
+    libm::copysign(libm::floor(libm::fabs(x) + 0.5), x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrap_keeps_plus_pi_and_folds_minus_pi() {
+        assert_eq!(wrap(PI), PI);
+        assert_eq!(wrap(-PI), PI);
+        assert!((wrap(7.0) - (7.0 - 2.0 * PI)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn halves_round_away_from_zero() {
+        assert_eq!(round_half_away(2.5), 3.0);
+        assert_eq!(round_half_away(-2.5), -3.0);
+        assert_eq!(round_half_away(0.49), 0.0);
+    }
+}
