@@ -1,1 +1,3 @@
-//! Placeholder.
+//! The PC's part of Seamwright: programs, planning, sessions with the boards, reports.
+
+pub mod boards;
