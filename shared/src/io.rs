@@ -77,9 +77,9 @@ pub struct Feedback<const N: usize> {
     pub counts: [i64; N],
     /// Counts that the hardware latched at a reference mark since the last tick.
     pub mark: [Option<i64>; N],
-    /// Limit switch in the positive counting direction is pressed.
+    /// Limit switch at the positive end of the axis is pressed.
     pub limit_plus: Bits,
-    /// Limit switch in the negative counting direction is pressed.
+    /// Limit switch at the negative end of the axis is pressed.
     pub limit_minus: Bits,
     /// Drive reports a fault.
     pub drive_fault: Bits,

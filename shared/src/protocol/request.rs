@@ -233,6 +233,8 @@ pub struct MotionStatus {
     pub homed: bool,
     /// Measured axis positions (mm, degrees).
     pub axes: [f64; AXES],
+    /// Commanded axis positions (mm, degrees); as measured while the drives are off. A path starts here.
+    pub reference: [f64; AXES],
     /// Number of the loaded path.
     pub path_id: u32,
     /// Position on it \[mm\].
