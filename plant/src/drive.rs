@@ -1,0 +1,265 @@
+//! Velocity-mode servo drive with the mechanics behind it (SPEC 0.11).
+
+/// One drive in its unit (mm or rad).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveConfig {
+    /// Bandwidth fv of the velocity loop \[Hz\].
+    pub bandwidth_hz: f64,
+    /// Largest acceleration amax \[1/s²\].
+    pub max_acceleration: f64,
+    /// Coulomb friction fc as the acceleration it takes \[1/s²\].
+    pub friction: f64,
+    /// Speed-proportional friction as the acceleration it takes for each unit of speed \[1/s\].
+    pub damping_per_s: f64,
+    /// Backlash bl between motor and load.
+    pub backlash: f64,
+    /// Deceleration of the brake that closes when the drive is disabled \[1/s²\].
+    pub brake: f64,
+}
+
+/// A drive, its motor and its load. A command takes effect `FIFO` steps after it was given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive<const FIFO: usize> {
+    proportional: f64,
+    integral_step: f64,
+    max_acceleration: f64,
+    friction: f64,
+    damping: f64,
+    half_backlash: f64,
+    brake_step: f64,
+    step: f64,
+
+    delayed: [f64; FIFO],
+    oldest: usize,
+    integral: f64,
+    velocity: f64,
+    motor: f64,
+    load: f64,
+}
+
+impl<const FIFO: usize> Drive<FIFO> {
+    /// A drive at rest at `position`, to be advanced in steps of `step_s` \[s\].
+    pub fn new(config: &DriveConfig, step_s: f64, position: f64) -> Self {
+        let omega = 2.0 * core::f64::consts::PI * config.bandwidth_hz;
+        Self {
+            proportional: omega,
+            integral_step: omega * omega / 4.0 * step_s,
+            max_acceleration: config.max_acceleration,
+            friction: config.friction,
+            damping: config.damping_per_s,
+            half_backlash: config.backlash / 2.0,
+            brake_step: config.brake * step_s,
+            step: step_s,
+            delayed: [0.0; FIFO],
+            oldest: 0,
+            integral: 0.0,
+            velocity: 0.0,
+            motor: position,
+            load: position,
+        }
+    }
+
+    /// `steps` steps with the velocity `command` \[1/s\].
+    pub fn run(&mut self, command: f64, steps: u32) {
+        for _ in 0..steps {
+            let delayed = core::mem::replace(&mut self.delayed[self.oldest], command);
+            self.oldest += 1;
+            if self.oldest == FIFO {
+                self.oldest = 0;
+            }
+
+            let error = delayed - self.velocity;
+            self.integral = limit(self.integral + self.integral_step * error, self.max_acceleration);
+            let acceleration = limit(self.proportional * error + self.integral, self.max_acceleration);
+            let force = acceleration - self.damping * self.velocity;
+
+            // Friction acts against the motion, at rest against the force. Where it is the larger of the two
+            // it stops the motion but never turns it round.
+            let forward = if self.velocity != 0.0 {
+                self.velocity > 0.0
+            } else {
+                force > 0.0
+            };
+            let friction = if forward { self.friction } else { -self.friction };
+            let velocity = self.velocity + (force - friction) * self.step;
+            let holds = force <= self.friction && force >= -self.friction;
+            let passed = if forward { velocity <= 0.0 } else { velocity >= 0.0 };
+            self.velocity = if holds && passed { 0.0 } else { velocity };
+            self.follow();
+        }
+    }
+
+    /// `steps` steps with the drive disabled and the brake closed; commands on their way are lost.
+    pub fn brake(&mut self, steps: u32) {
+        self.delayed = [0.0; FIFO];
+        self.integral = 0.0;
+        for _ in 0..steps {
+            self.velocity -= limit(self.velocity, self.brake_step);
+            self.follow();
+        }
+    }
+
+    /// Position of the load, which the grating reads.
+    pub fn position(&self) -> f64 {
+        self.load
+    }
+
+    /// Velocity of the motor \[1/s\].
+    pub fn velocity(&self) -> f64 {
+        self.velocity
+    }
+
+    /// Moves the motor on; the load follows within the backlash.
+    fn follow(&mut self) {
+        self.motor += self.velocity * self.step;
+        self.load = self.motor - limit(self.motor - self.load, self.half_backlash);
+    }
+}
+
+/// `x` within ±`bound`.
+fn limit(x: f64, bound: f64) -> f64 {
+    if x > bound {
+        bound
+    } else if x < -bound {
+        -bound
+    } else {
+        x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP: f64 = 50e-6;
+    const IDEAL: DriveConfig = DriveConfig {
+        bandwidth_hz: 80.0,
+        max_acceleration: 4000.0,
+        friction: 0.0,
+        damping_per_s: 0.0,
+        backlash: 0.0,
+        brake: 4000.0,
+    };
+
+    #[test]
+    fn without_friction_the_step_response_is_that_of_a_pi_velocity_loop() {
+        // v'' + ω v' + ω²/4 v = ω c' + ω²/4 c has the double pole −ω/2, hence
+        // v = c (1 − (1 − ω t/2) e^{−ω t/2}) for a step c.
+        let omega = 2.0 * core::f64::consts::PI * IDEAL.bandwidth_hz;
+        let mut drive = Drive::<1>::new(&IDEAL, STEP, 0.0);
+        drive.run(1.0, 1);
+        for k in 1..400 {
+            drive.run(1.0, 1);
+            let half = omega * f64::from(k) * STEP / 2.0;
+            let expected = 1.0 - (1.0 - half) * libm::exp(-half);
+            assert!(
+                (drive.velocity() - expected).abs() < 0.02,
+                "step {k}: {} {expected}",
+                drive.velocity()
+            );
+        }
+    }
+
+    #[test]
+    fn follows_a_sine_at_its_bandwidth_at_about_unity_and_a_fast_one_not() {
+        let amplitude = |hz: f64| {
+            let mut drive = Drive::<1>::new(&IDEAL, STEP, 0.0);
+            let mut peak = 0.0_f64;
+            for k in 0..20_000 {
+                let t = f64::from(k) * STEP;
+                drive.run(libm::sin(2.0 * core::f64::consts::PI * hz * t), 1);
+                if t > 0.5 {
+                    peak = peak.max(drive.velocity());
+                }
+            }
+            peak
+        };
+        // |H| of (ω s + ω²/4)/(s + ω/2)², ω = 2π 80 Hz.
+        for (hz, expected) in [(8.0, 1.0374), (80.0, 0.8246), (800.0, 0.0999)] {
+            assert!(
+                (amplitude(hz) - expected).abs() < 0.03 * expected,
+                "{hz} Hz: {}",
+                amplitude(hz)
+            );
+        }
+    }
+
+    #[test]
+    fn a_command_acts_after_its_dead_time() {
+        let mut drive = Drive::<6>::new(&IDEAL, STEP, 0.0);
+        drive.run(100.0, 6);
+        assert_eq!(drive.velocity(), 0.0);
+        drive.run(100.0, 1);
+        assert!(drive.velocity() > 0.0);
+    }
+
+    #[test]
+    fn acceleration_is_limited() {
+        let mut drive = Drive::<1>::new(&IDEAL, STEP, 0.0);
+        drive.run(400.0, 21);
+        assert!((drive.velocity() - 4000.0 * 20.0 * STEP).abs() < 1e-9);
+    }
+
+    #[test]
+    fn friction_holds_the_motor_until_the_integral_overcomes_it() {
+        let sticky = DriveConfig {
+            friction: 150.0,
+            ..IDEAL
+        };
+        let mut drive = Drive::<1>::new(&sticky, STEP, 0.0);
+        // ω·0.1 = 50 < 150: at rest at first, the integral of ω²/4·0.1 passes 100 after about 16 ms.
+        drive.run(0.1, 200);
+        assert_eq!(drive.position(), 0.0);
+        drive.run(0.1, 400);
+        assert!(drive.velocity() > 0.0);
+    }
+
+    #[test]
+    fn friction_stops_the_motion_and_never_turns_it_round() {
+        let weak = DriveConfig {
+            bandwidth_hz: 1.0,
+            friction: 150.0,
+            ..IDEAL
+        };
+        let mut drive = Drive::<1>::new(&weak, STEP, 0.0);
+        drive.velocity = 10.0;
+        // At least friction alone decelerates: at rest within 10/150 s.
+        for _ in 0..1334 {
+            drive.run(0.0, 1);
+            assert!(drive.velocity() >= 0.0);
+        }
+        assert_eq!(drive.velocity(), 0.0);
+        let rest = drive.position();
+        drive.run(0.0, 1000);
+        assert_eq!(drive.position(), rest);
+    }
+
+    #[test]
+    fn the_load_lags_the_motor_by_the_backlash_after_a_reversal() {
+        let loose = DriveConfig {
+            backlash: 0.005,
+            ..IDEAL
+        };
+        let mut drive = Drive::<1>::new(&loose, STEP, 0.0);
+        drive.run(10.0, 4000);
+        assert!((drive.motor - drive.load - 0.0025).abs() < 1e-9);
+        let (motor, load) = (drive.motor, drive.load);
+        drive.run(-10.0, 4000);
+        assert!((drive.motor - drive.load + 0.0025).abs() < 1e-9);
+        assert!(((load - drive.load) - (motor - drive.motor) + 0.005).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_brake_stops_the_motor_and_drops_what_was_commanded() {
+        let mut drive = Drive::<6>::new(&IDEAL, STEP, 0.0);
+        drive.run(100.0, 4000);
+        let moving = drive.position();
+        drive.brake(600);
+        assert_eq!(drive.velocity(), 0.0);
+        // v²/2a = 1.25 mm
+        assert!((drive.position() - moving - 1.25).abs() < 0.01);
+        let rest = drive.position();
+        drive.run(0.0, 1000);
+        assert_eq!(drive.position(), rest);
+    }
+}
