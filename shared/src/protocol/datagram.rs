@@ -2,7 +2,7 @@
 
 use crate::io::{AXES, MOTORS, SIDES, SLIDES};
 use crate::motion::State;
-use crate::tracking::TrackerState;
+use crate::tracking::{TrackerFault, TrackerState};
 use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -138,6 +138,8 @@ pub struct TrackerSample {
     pub time_us: u64,
     /// State of the board.
     pub state: TrackerState,
+    /// First fault since the last reset; if it is there while the state is tracking, the beams should go off.
+    pub fault: Option<TrackerFault>,
     /// Slides, from the encoders \[mm\].
     pub slides_mm: [f64; SLIDES],
     /// Slides, as only a simulated machine can know \[mm\].
