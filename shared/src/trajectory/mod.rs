@@ -1,4 +1,12 @@
 //! The path (where) and the speed along it (when), kept apart.
 
+mod path;
+mod reference;
+mod speed;
+
+pub use path::{Path, PathError, PathPoint};
+pub use reference::{AxisReference, ReferenceError, reference};
+pub use speed::{SpeedError, SpeedLimits, SpeedProfile, SpeedState};
+
 /// Channels of a path: position (3), T (3), N (3), V slide extensions (2).
 pub const CHANNELS: usize = 11;

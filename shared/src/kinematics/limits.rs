@@ -1,0 +1,90 @@
+//! Travel and speed of the linked axes.
+
+use crate::io::{AXES, Bits};
+use crate::motion::AxisConfig;
+use crate::parameter::{ParameterError, check, positive};
+use crate::units::DEG_PER_RAD;
+
+/// Internal units (mm, rad) in one unit of the machine file (mm, degrees), for X Y Z A B C.
+pub const AXIS_UNIT: [f64; AXES] = [
+    1.0,
+    1.0,
+    1.0,
+    1.0 / DEG_PER_RAD,
+    1.0 / DEG_PER_RAD,
+    1.0 / DEG_PER_RAD,
+];
+
+/// How far outside its travel an axis may be by rounding alone, in units of the machine file (SPEC 0.2).
+const TOLERANCE: f64 = 1e-9;
+
+/// Limits of one axis (mm, rad, s).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisLimits {
+    /// Lowest position.
+    pub min: f64,
+    /// Highest position.
+    pub max: f64,
+    /// Highest speed.
+    pub velocity: f64,
+    /// Highest acceleration.
+    pub acceleration: f64,
+    /// Highest jerk.
+    pub jerk: f64,
+    /// By how much `min` and `max` may be passed.
+    tolerance: f64,
+}
+
+impl AxisLimits {
+    /// Limits of axis number `axis` of X Y Z A B C; refuses a travel that is empty and limits that are not
+    /// positive.
+    pub fn build(axis: usize, config: &AxisConfig) -> Result<Self, ParameterError> {
+        const OWNERS: [&str; AXES] = ["axis X", "axis Y", "axis Z", "axis A", "axis B", "axis C"];
+        let (owner, unit) = (OWNERS[axis], AXIS_UNIT[axis]);
+        let min = check(owner, "travel_min", config.travel_min, |_| true)?;
+        Ok(Self {
+            min: min * unit,
+            max: check(owner, "travel_max", config.travel_max, |max| max > min)? * unit,
+            velocity: positive(owner, "max_velocity", config.max_velocity)? * unit,
+            acceleration: positive(owner, "max_acceleration", config.max_acceleration)? * unit,
+            jerk: positive(owner, "max_jerk", config.max_jerk)? * unit,
+            tolerance: TOLERANCE * unit,
+        })
+    }
+
+    /// Limits of all axes, X Y Z A B C.
+    pub fn build_all(configs: &[AxisConfig; AXES]) -> Result<[Self; AXES], ParameterError> {
+        let [x, y, z, a, b, c] = configs;
+        Ok([
+            Self::build(0, x)?,
+            Self::build(1, y)?,
+            Self::build(2, z)?,
+            Self::build(3, a)?,
+            Self::build(4, b)?,
+            Self::build(5, c)?,
+        ])
+    }
+}
+
+/// The axes of `q` outside their travel; a value that is not a number is outside.
+pub fn violations(q: &[f64; AXES], limits: &[AxisLimits; AXES]) -> Bits {
+    let mut outside = Bits::NONE;
+    for (i, (&x, limit)) in q.iter().zip(limits).enumerate() {
+        let inside = x >= limit.min - limit.tolerance && x <= limit.max + limit.tolerance;
+        outside.set(i, !inside);
+    }
+    outside
+}
+
+/// The highest path speed \[mm/s\] that the speeds of the axes allow where they move by `q_prime` = dq/ds,
+/// and the axis that sets it (SPEC 0.3). Infinite where no axis moves.
+pub fn feed_limit(q_prime: &[f64; AXES], limits: &[AxisLimits; AXES]) -> (f64, usize) {
+    let mut lowest = (f64::INFINITY, 0);
+    for (i, (rate, limit)) in q_prime.iter().zip(limits).enumerate() {
+        let feed = limit.velocity / libm::fabs(*rate);
+        if feed < lowest.0 {
+            lowest = (feed, i);
+        }
+    }
+    lowest
+}
