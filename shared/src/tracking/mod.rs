@@ -2,6 +2,10 @@
 
 mod config;
 mod fault;
+pub mod frames;
+pub mod gain;
+pub mod law;
+pub mod map;
 
 pub use config::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
 pub use fault::{TrackerFault, TrackerState};

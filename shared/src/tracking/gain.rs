@@ -1,0 +1,51 @@
+//! How much gain a loop with dead time allows (SPEC 0.8.5).
+
+use core::f64::consts::{FRAC_PI_2, PI};
+
+/// The crossover where the open loop K·e^(−sT)/(s(τs+1)) has a phase margin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossover {
+    /// Gain K \[1/s\].
+    pub gain: f64,
+    /// Angular frequency ω \[rad/s\].
+    pub omega: f64,
+}
+
+/// Gain of an integrating loop with dead time `delay` T > 0 \[s\] and lag `lag` τ ≥ 0 \[s\] that leaves the phase
+/// margin `margin` \[rad\] in 0…π/2: ωT + atan(ωτ) = π/2 − margin, K = ω√(1+ω²τ²). With margin 0 this is the
+/// stability limit.
+pub fn crossover(delay: f64, lag: f64, margin: f64) -> Crossover {
+    let phase = FRAC_PI_2 - margin;
+    // The phase grows with ω; it is above `phase` at the upper end, which a lag of zero would reach.
+    let (mut low, mut high) = (0.0, phase / delay);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if middle * delay + libm::atan(middle * lag) < phase {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let omega = high;
+    Crossover {
+        gain: omega * libm::sqrt(1.0 + omega * omega * lag * lag),
+        omega,
+    }
+}
+
+/// Largest stable gain of a discrete integrator whose input is `delay` samples old: 2 sin(π/(2(2d+1))).
+pub fn discrete_limit(delay: u32) -> f64 {
+    2.0 * libm::sin(PI / (2.0 * (2.0 * f64::from(delay) + 1.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pure_delay_has_its_limit_at_a_quarter_period() {
+        let limit = crossover(0.01, 0.0, 0.0);
+        assert!((limit.gain - 50.0 * PI).abs() < 1e-9);
+        assert!((discrete_limit(1) - 1.0).abs() < 1e-15);
+    }
+}

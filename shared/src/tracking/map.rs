@@ -1,0 +1,241 @@
+//! Map of the seam ahead: what the camera saw, over path position (SPEC 0.8.3).
+
+use heapless::Vec;
+
+/// Samples a map can hold.
+pub const MAP_CAPACITY: usize = 128;
+
+/// Consecutive outliers after which the seam is believed to have jumped.
+const OUTLIERS_TO_RELOCK: u8 = 3;
+/// Fewest samples the window should hold before the nearest ones around it are taken instead.
+const FEW: usize = 4;
+
+/// How a map takes and reads its samples, ready for use.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapLaw {
+    /// Half width w of the window \[mm\].
+    pub window: f64,
+    /// How far beyond the window samples may still be used \[mm\].
+    pub hold: f64,
+    /// A sample further than this from the estimate is an outlier \[mm\].
+    pub gate: f64,
+    /// Samples closer together than this are not stored \[mm\].
+    pub spacing: f64,
+    /// Samples kept, at most [`MAP_CAPACITY`].
+    pub keep: usize,
+}
+
+impl MapLaw {
+    /// Closest spacing of the golden sequences \[mm\].
+    pub const MIN_SPACING: f64 = 1e-6;
+}
+
+/// What became of a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Added {
+    /// Stored.
+    Accepted,
+    /// Stored; the samples before it were given up because the seam jumped.
+    Relocked,
+    /// Not stored: not far enough ahead of the last one.
+    TooClose,
+    /// Not stored: further from the estimate than the gate, or not finite.
+    Outlier,
+}
+
+/// The seam near a path position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Slide position that meets the seam \[mm\].
+    pub value: f64,
+    /// Its derivative over path position.
+    pub slope: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    sigma: f64,
+    y: f64,
+}
+
+/// Map of one slide's channel: slide position that meets the seam, over path position.
+#[derive(Clone, Debug, Default)]
+pub struct SeamMap {
+    /// σ strictly increasing.
+    samples: Vec<Sample, MAP_CAPACITY>,
+    consecutive_outliers: u8,
+}
+
+impl SeamMap {
+    /// A map without samples.
+    pub const fn new() -> Self {
+        Self {
+            samples: Vec::new(),
+            consecutive_outliers: 0,
+        }
+    }
+
+    /// Forgets all samples.
+    pub fn clear(&mut self) {
+        self.samples.clear();
+        self.consecutive_outliers = 0;
+    }
+
+    /// Stores that slide position `y` \[mm\] meets the seam at path position `sigma` \[mm\].
+    pub fn add(&mut self, law: &MapLaw, sigma: f64, y: f64) -> Added {
+        if !sigma.is_finite() || !y.is_finite() {
+            return Added::Outlier;
+        }
+        if self
+            .samples
+            .last()
+            .is_some_and(|last| sigma <= last.sigma + law.spacing)
+        {
+            return Added::TooClose;
+        }
+        let relock = self.consecutive_outliers >= OUTLIERS_TO_RELOCK;
+        if relock {
+            self.samples.clear();
+        } else if self
+            .estimate(law, sigma)
+            .is_some_and(|seam| libm::fabs(y - seam.value) > law.gate)
+        {
+            self.consecutive_outliers += 1;
+            return Added::Outlier;
+        }
+        self.consecutive_outliers = 0;
+        if self.samples.len() >= law.keep.clamp(1, MAP_CAPACITY) {
+            self.samples.remove(0);
+        }
+        // There is room: one was just removed if there was none.
+        let stored = self.samples.push(Sample { sigma, y }).is_ok();
+        debug_assert!(stored);
+        if relock { Added::Relocked } else { Added::Accepted }
+    }
+
+    /// The seam at path position `sigma` \[mm\]: a straight line fitted to the samples within the window, or to
+    /// the nearest few around it; `None` if there is none within window and hold.
+    pub fn estimate(&self, law: &MapLaw, sigma: f64) -> Option<Estimate> {
+        let from = self.samples.partition_point(|s| s.sigma < sigma - law.window);
+        let to = self.samples.partition_point(|s| s.sigma <= sigma + law.window);
+        let samples = self.samples.get(from..to).unwrap_or(&[]);
+        if samples.len() >= FEW {
+            fit(samples, sigma, law.window)
+        } else {
+            fit(self.nearest(sigma, law.window + law.hold), sigma, law.window)
+        }
+    }
+
+    /// The up to four samples nearest to `sigma` within `reach`, of two equally near ones the older. They are
+    /// neighbours, because σ increases.
+    fn nearest(&self, sigma: f64, reach: f64) -> &[Sample] {
+        let distance = |i: usize| self.samples.get(i).map(|s| libm::fabs(s.sigma - sigma));
+        let mut from = self.samples.partition_point(|s| s.sigma < sigma);
+        let mut to = from;
+        while to - from < FEW {
+            let before = from.checked_sub(1).and_then(distance).filter(|d| *d <= reach);
+            let after = distance(to).filter(|d| *d <= reach);
+            match (before, after) {
+                (Some(b), Some(a)) if b <= a => from -= 1,
+                (Some(_), None) => from -= 1,
+                (_, Some(_)) => to += 1,
+                (None, None) => break,
+            }
+        }
+        self.samples.get(from..to).unwrap_or(&[])
+    }
+}
+
+/// Straight line through `samples`, read at `sigma`; level if they lie too close together for a slope.
+fn fit(samples: &[Sample], sigma: f64, window: f64) -> Option<Estimate> {
+    if samples.is_empty() {
+        return None;
+    }
+    let n = samples.len() as f64;
+    let mean_sigma = samples.iter().map(|s| s.sigma).sum::<f64>() / n;
+    let mean_y = samples.iter().map(|s| s.y).sum::<f64>() / n;
+    let mut sxx = 0.0;
+    let mut sxy = 0.0;
+    for sample in samples {
+        let d = sample.sigma - mean_sigma;
+        sxx += d * d;
+        sxy += d * (sample.y - mean_y);
+    }
+    let spread = window / 8.0;
+    if samples.len() < 2 || sxx < n * spread * spread {
+        return Some(Estimate {
+            value: mean_y,
+            slope: 0.0,
+        });
+    }
+    let slope = sxy / sxx;
+    Some(Estimate {
+        value: mean_y + slope * (sigma - mean_sigma),
+        slope,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: MapLaw = MapLaw {
+        window: 3.0,
+        hold: 2.0,
+        gate: 0.5,
+        spacing: MapLaw::MIN_SPACING,
+        keep: 24,
+    };
+
+    fn line(map: &mut SeamMap, from: usize, to: usize) {
+        for i in from..to {
+            let sigma = 0.5 * i as f64;
+            assert_eq!(map.add(&LAW, sigma, 1.0 + 0.02 * sigma), Added::Accepted);
+        }
+    }
+
+    #[test]
+    fn a_straight_seam_is_reproduced_with_its_slope() {
+        let mut map = SeamMap::new();
+        line(&mut map, 0, 40);
+        let seam = map.estimate(&LAW, 15.2).unwrap();
+        assert!((seam.value - 1.304).abs() < 1e-12 && (seam.slope - 0.02).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_map_reaches_window_and_hold_beyond_its_last_sample_and_no_further() {
+        let mut map = SeamMap::new();
+        line(&mut map, 0, 21);
+        assert!(map.estimate(&LAW, 14.99).is_some());
+        assert_eq!(map.estimate(&LAW, 15.01), None);
+        assert_eq!(SeamMap::new().estimate(&LAW, 0.0), None);
+    }
+
+    #[test]
+    fn outliers_are_refused_and_the_fourth_in_a_row_relocks() {
+        let mut map = SeamMap::new();
+        line(&mut map, 0, 21);
+        for i in 0..3 {
+            assert_eq!(map.add(&LAW, 10.5 + 0.1 * f64::from(i), 3.0), Added::Outlier);
+        }
+        assert_eq!(map.add(&LAW, 10.8, 3.0), Added::Relocked);
+        assert_eq!(map.estimate(&LAW, 10.8).unwrap().value, 3.0);
+        assert_eq!(map.add(&LAW, 10.8, 3.0), Added::TooClose);
+        assert_eq!(map.add(&LAW, 11.0, f64::NAN), Added::Outlier);
+    }
+
+    #[test]
+    fn with_spacing_the_map_covers_the_lead_however_slow_the_path_is() {
+        let law = MapLaw {
+            spacing: 0.2,
+            keep: MAP_CAPACITY,
+            ..LAW
+        };
+        let mut map = SeamMap::new();
+        for i in 0..10_000 {
+            map.add(&law, 0.01 * f64::from(i), 0.0);
+        }
+        // The newest sample lies near 100 mm; 20 mm behind it the seam is still known.
+        assert!(map.estimate(&law, 80.0).is_some());
+    }
+}
