@@ -94,6 +94,7 @@ const FIELDS: &[&str] = &[
     "stale_path_ms",
     "saturation_trip_ms",
     "link_timeout_ms",
+    "period_s",
 ];
 
 impl ParameterError {

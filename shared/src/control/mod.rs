@@ -1,1 +1,22 @@
-//! Placeholder until its parts land.
+//! Servo laws: position loops, gantry, trips, and the search for reference marks.
+//!
+//! Each law has the human numbers of the machine file (`crate::motion`), coefficients made from them by a
+//! fallible `build`, and a state. Inside everything is mm or rad and seconds.
+
+mod derivative;
+mod gantry;
+mod pid;
+mod reference_search;
+mod trip;
+
+pub use gantry::{Gantry, GantryOutput, GantryState, Ram};
+pub use pid::{Pid, PidState, Setpoint};
+pub use reference_search::{ReferenceSearch, SearchInput, SearchProgress, SearchState};
+pub use trip::{EncoderCheck, FollowingTrip};
+
+use thiserror::Error;
+
+/// An input of a control law is infinite or not a number; the state is as before, hold the last output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("an input of the control law is not finite")]
+pub struct NotFinite;

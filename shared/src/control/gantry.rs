@@ -1,0 +1,120 @@
+//! The two motors of the X axis: cross-coupling, skew, and where the ram is (SPEC 0.10).
+
+use super::derivative::{Derivative, DerivativeState};
+use super::{NotFinite, Pid, PidState, Setpoint};
+use crate::motion::{Fault, GantryConfig};
+use crate::parameter::{ParameterError, check, not_negative, positive};
+
+/// Position loops of X1 and X2 and the coupling between them, ready for the tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gantry {
+    pids: [Pid; 2],
+    coupling: f64,
+    coupling_derivative: f64,
+    derivative: Derivative,
+    square_offset: f64,
+    skew_trip: f64,
+    y1: f64,
+    per_width: f64,
+}
+
+/// Memory of a [`Gantry`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GantryState {
+    pids: [PidState; 2],
+    derivative: DerivativeState,
+}
+
+/// What a tick of the gantry gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GantryOutput {
+    /// Velocity commands of X1 and X2 \[mm/s\].
+    pub command: [f64; 2],
+    /// X1 − X2 less the square offset \[mm\].
+    pub skew: f64,
+}
+
+/// Where the beam of the gantry carries the ram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ram {
+    /// X of the ram \[mm\].
+    pub x: f64,
+    /// dX/dY along the beam: the yaw for small angles \[rad\], 0 when square. It is negative for a beam
+    /// turned by a positive angle about Z.
+    pub yaw: f64,
+}
+
+impl Gantry {
+    /// Checks the parameters; `pids` are the loops of X1 and X2, called every `period_s` \[s\].
+    pub fn build(config: &GantryConfig, pids: [Pid; 2], period_s: f64) -> Result<Self, ParameterError> {
+        let owner = "gantry";
+        let y1 = check(owner, "y1_mm", config.y1_mm, |_| true)?;
+        let y2 = check(owner, "y2_mm", config.y2_mm, |y| y != y1)?;
+        Ok(Self {
+            pids,
+            coupling: not_negative(owner, "coupling", config.coupling)?,
+            coupling_derivative: not_negative(owner, "coupling_derivative", config.coupling_derivative)?,
+            derivative: Derivative::build(owner, config.derivative_filter_s, period_s)?,
+            square_offset: check(owner, "square_offset_mm", config.square_offset_mm, |_| true)?,
+            skew_trip: positive(owner, "skew_trip_mm", config.skew_trip_mm)?,
+            y1,
+            per_width: 1.0 / (y2 - y1),
+        })
+    }
+
+    /// X1 − X2 less the square offset \[mm\].
+    pub fn skew(&self, position: [f64; 2]) -> f64 {
+        position[0] - position[1] - self.square_offset
+    }
+
+    /// Where X1 and X2 each belong when the axis is at `x` and the beam square \[mm\].
+    pub fn motors(&self, x: f64) -> [f64; 2] {
+        [x + self.square_offset / 2.0, x - self.square_offset / 2.0]
+    }
+
+    /// One tick of both loops towards `setpoint` of the axis, the motors being at `position` \[mm\].
+    pub fn step(
+        &self,
+        state: &mut GantryState,
+        setpoint: &Setpoint,
+        position: [f64; 2],
+    ) -> Result<GantryOutput, NotFinite> {
+        let skew = self.skew(position);
+        if !skew.is_finite() {
+            return Err(NotFinite);
+        }
+        let rate = self.derivative.step(&mut state.derivative, skew);
+        let correction = self.coupling * skew + self.coupling_derivative * rate;
+        let target = self.motors(setpoint.position);
+        let mut command = [0.0; 2];
+        for (i, extra) in [-correction, correction].into_iter().enumerate() {
+            let setpoint = Setpoint {
+                position: target[i],
+                ..*setpoint
+            };
+            command[i] = self.pids[i].step(&mut state.pids[i], &setpoint, position[i], extra)?;
+        }
+        Ok(GantryOutput { command, skew })
+    }
+
+    /// The fault for a `skew` beyond the trip: both drives must go off together.
+    pub fn check_skew(&self, skew: f64) -> Result<(), Fault> {
+        if libm::fabs(skew) > self.skew_trip {
+            return Err(Fault::GantrySkew {
+                seen_um: (libm::fabs(skew) * 1e3) as f32,
+                limit_um: (self.skew_trip * 1e3) as f32,
+            });
+        }
+        Ok(())
+    }
+
+    /// Where the ram is with the motors at `position` and the cross axis at `y` \[mm\]; with the square
+    /// offset taken out, so that a square beam has no yaw.
+    pub fn ram(&self, position: [f64; 2], y: f64) -> Ram {
+        let yaw = -self.skew(position) * self.per_width;
+        Ram {
+            x: position[0] - self.square_offset / 2.0 + yaw * (y - self.y1),
+            yaw,
+        }
+    }
+}
