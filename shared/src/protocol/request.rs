@@ -15,7 +15,6 @@ pub const LOAD_BATCH: usize = 6;
 
 /// What the PC may ask. A board answers [`Refusal::NotMine`] to what belongs to the other one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
-#[expect(clippy::large_enum_variant, reason = "a request lives in one buffer, once")]
 pub enum Request {
     /// First request of every session; answered by [`Response::Identity`] even if the hash differs, after
     /// which a board refuses everything else.
@@ -76,7 +75,6 @@ pub enum Request {
 
 /// A board's answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
-#[expect(clippy::large_enum_variant, reason = "a response lives in one buffer, once")]
 pub enum Response {
     /// Accepted.
     Done,
