@@ -1,0 +1,285 @@
+//! What was a moment ago: path states of the motion board, and captures.
+
+use crate::geometry::Pose;
+use crate::io::SLIDES;
+use crate::protocol::PathState;
+use heapless::Deque;
+use nalgebra::Vector3;
+
+/// Path states kept: 64 ms.
+const PATH_STATES: usize = 64;
+/// Captures kept.
+pub const CAPTURES: usize = 256;
+/// A path state this much older than the newest is not late: the motion board was restarted \[µs\].
+const RESTARTED: u64 = 1_000_000;
+
+/// Where the machine is or was on its path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Number of the path.
+    pub path_id: u32,
+    /// Path position \[mm\].
+    pub s: f64,
+    /// Path speed \[mm/s\].
+    pub speed: f64,
+    /// Measured pose.
+    pub pose: Pose,
+    /// The path asks for tracking.
+    pub tracking: bool,
+}
+
+/// The last path states, in order of their time.
+#[derive(Clone, Debug, Default)]
+pub struct PathHistory {
+    states: Deque<PathState, PATH_STATES>,
+    received: u32,
+    missing: u32,
+}
+
+/// What became of a path state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pushed {
+    /// It is the newest.
+    Newest,
+    /// It is the newest and the path began anew: another number, or s went back.
+    Restarted,
+    /// It came too late or is not finite; ignored.
+    Ignored,
+}
+
+/// s going back by more than this is a new run of the path \[mm\].
+const NEW_RUN: f64 = 1.0;
+
+impl PathHistory {
+    /// An empty history.
+    pub const fn new() -> Self {
+        Self {
+            states: Deque::new(),
+            received: 0,
+            missing: 0,
+        }
+    }
+
+    /// Takes a path state.
+    pub fn push(&mut self, state: &PathState) -> Pushed {
+        self.received = self.received.wrapping_add(1);
+        let Some(place) = place(state) else {
+            return Pushed::Ignored;
+        };
+        let mut pushed = Pushed::Newest;
+        if let Some(last) = self.states.back() {
+            let board_restarted = last.time_us.saturating_sub(state.time_us) > RESTARTED;
+            if state.time_us <= last.time_us && !board_restarted {
+                return Pushed::Ignored;
+            }
+            if !board_restarted {
+                let gap = state.tick.wrapping_sub(last.tick);
+                self.missing = self.missing.wrapping_add(gap.saturating_sub(1));
+            }
+            if board_restarted || place.path_id != last.path_id || place.s < last.s_mm - NEW_RUN {
+                self.states.clear();
+                pushed = Pushed::Restarted;
+            }
+        }
+        if self.states.is_full() {
+            self.states.pop_front();
+        }
+        // There is room: the oldest was just removed if there was none.
+        let stored = self.states.push_back(*state).is_ok();
+        debug_assert!(stored);
+        pushed
+    }
+
+    /// The newest place, and the motion board's time it belongs to \[µs\].
+    pub fn newest(&self) -> Option<(Place, u64)> {
+        let last = self.states.back()?;
+        Some((place(last)?, last.time_us))
+    }
+
+    /// The place at the motion board's time `time_us`: between two states interpolated, after the newest one
+    /// moved on with its speed. `None` before the oldest.
+    pub fn at(&self, time_us: u64) -> Option<Place> {
+        let last = self.states.back()?;
+        if time_us >= last.time_us {
+            let mut ahead = place(last)?;
+            let distance = ahead.speed * (time_us - last.time_us) as f64 * 1e-6;
+            ahead.s += distance;
+            ahead.pose.position += ahead.pose.tangent * distance;
+            return Some(ahead);
+        }
+        self.between(time_us)
+    }
+
+    /// As [`Self::at`], but only between two states.
+    pub fn between(&self, time_us: u64) -> Option<Place> {
+        let mut newer: Option<&PathState> = None;
+        for older in self.states.iter().rev() {
+            if older.time_us <= time_us {
+                return interpolate(older, newer?, time_us);
+            }
+            newer = Some(older);
+        }
+        None
+    }
+
+    /// Path states received, and how many never came (mod 2³²).
+    pub fn counters(&self) -> (u32, u32) {
+        (self.received, self.missing)
+    }
+}
+
+fn place(state: &PathState) -> Option<Place> {
+    let p = &state.pose;
+    let pose = Pose::new(
+        Vector3::new(p[0], p[1], p[2]),
+        Vector3::new(p[3], p[4], p[5]),
+        Vector3::new(p[6], p[7], p[8]),
+    );
+    let finite = state.s_mm.is_finite() && state.speed_mm_s.is_finite();
+    Some(Place {
+        path_id: state.path_id,
+        s: state.s_mm,
+        speed: state.speed_mm_s,
+        pose: pose.ok().filter(|_| finite)?,
+        tracking: state.tracking,
+    })
+}
+
+/// Linear in every number: a millisecond apart, the bend of the path between them is nanometres.
+fn interpolate(older: &PathState, newer: &PathState, time_us: u64) -> Option<Place> {
+    let span = newer.time_us.wrapping_sub(older.time_us) as f64;
+    let part = time_us.wrapping_sub(older.time_us) as f64 / span;
+    let mix = |a: f64, b: f64| a + (b - a) * part;
+    let mut state = *older;
+    state.s_mm = mix(older.s_mm, newer.s_mm);
+    state.speed_mm_s = mix(older.speed_mm_s, newer.speed_mm_s);
+    for (i, channel) in state.pose.iter_mut().enumerate() {
+        *channel = mix(older.pose[i], newer.pose[i]);
+    }
+    place(&state)
+}
+
+/// What was latched at a strobe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CaptureRecord {
+    /// Number of the capture.
+    pub number: u32,
+    /// Motion board's time \[µs\].
+    pub motion_time_us: u64,
+    /// Place as known at the strobe; a little extrapolated.
+    pub place: Place,
+    /// Slide positions \[mm\].
+    pub slides: [f64; SLIDES],
+}
+
+/// The last captures by number.
+#[derive(Clone, Debug)]
+pub struct CaptureHistory {
+    records: [Option<CaptureRecord>; CAPTURES],
+}
+
+impl Default for CaptureHistory {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl CaptureHistory {
+    /// An empty history.
+    pub const fn new() -> Self {
+        Self {
+            records: [None; CAPTURES],
+        }
+    }
+
+    /// Remembers a capture in place of the one 256 strobes ago.
+    pub fn push(&mut self, record: CaptureRecord) {
+        self.records[record.number as usize % CAPTURES] = Some(record);
+    }
+
+    /// The capture of that number; `None` if it is older than the history or never was.
+    pub fn get(&self, number: u32) -> Option<&CaptureRecord> {
+        self.records[number as usize % CAPTURES]
+            .as_ref()
+            .filter(|record| record.number == number)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state(tick: u32, path_id: u32, s_mm: f64) -> PathState {
+        PathState {
+            tick,
+            time_us: u64::from(tick) * 1000 + 5_000_000,
+            sent_us: u64::from(tick) * 1000 + 5_000_100,
+            path_id,
+            s_mm,
+            speed_mm_s: 100.0,
+            pose: [s_mm, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+            tracking: true,
+        }
+    }
+
+    #[test]
+    fn between_states_it_interpolates_and_after_the_newest_it_moves_on() {
+        let mut history = PathHistory::new();
+        assert_eq!(history.at(5_000_000), None);
+        for tick in 0..10 {
+            assert_eq!(
+                history.push(&state(tick, 1, 0.1 * f64::from(tick))),
+                Pushed::Newest
+            );
+        }
+        let middle = history.at(5_004_250).unwrap();
+        assert!((middle.s - 0.425).abs() < 1e-12 && (middle.pose.position.x - 0.425).abs() < 1e-12);
+        let ahead = history.at(5_012_000).unwrap();
+        assert!((ahead.s - 1.2).abs() < 1e-12 && (ahead.pose.position.x - 1.2).abs() < 1e-12);
+        assert_eq!(history.between(5_012_000), None);
+        assert_eq!(history.at(4_999_999), None);
+    }
+
+    #[test]
+    fn late_states_are_ignored_and_gaps_are_counted() {
+        let mut history = PathHistory::new();
+        history.push(&state(1, 1, 0.0));
+        history.push(&state(4, 1, 0.3));
+        assert_eq!(history.push(&state(3, 1, 0.2)), Pushed::Ignored);
+        let mut broken = state(5, 1, 0.4);
+        broken.pose[3] = f64::NAN;
+        assert_eq!(history.push(&broken), Pushed::Ignored);
+        assert_eq!(history.counters(), (4, 2));
+    }
+
+    #[test]
+    fn another_path_a_new_run_or_a_restarted_board_forgets_the_past() {
+        let mut history = PathHistory::new();
+        history.push(&state(2000, 1, 50.0));
+        assert_eq!(history.push(&state(2001, 2, 50.1)), Pushed::Restarted);
+        assert_eq!(history.push(&state(2002, 2, 0.0)), Pushed::Restarted);
+        assert_eq!(history.push(&state(1, 2, 0.0)), Pushed::Restarted);
+        assert_eq!(history.at(5_000_999), None);
+        assert_eq!(history.newest().unwrap().1, 5_001_000);
+        assert_eq!(history.counters().1, 0);
+    }
+
+    #[test]
+    fn only_the_last_256_captures_are_known() {
+        let mut captures = CaptureHistory::new();
+        let mut path = PathHistory::new();
+        path.push(&state(0, 1, 0.0));
+        let place = path.newest().unwrap().0;
+        for number in 0..300 {
+            captures.push(CaptureRecord {
+                number,
+                motion_time_us: 0,
+                place,
+                slides: [0.0; SLIDES],
+            });
+        }
+        assert!(captures.get(43).is_none() && captures.get(300).is_none());
+        assert_eq!(captures.get(44).unwrap().number, 44);
+        assert_eq!(captures.get(299).unwrap().number, 299);
+    }
+}
