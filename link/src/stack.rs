@@ -1,0 +1,360 @@
+//! The sockets of a board and their service.
+
+use crate::announce::announce;
+use crate::session::{Node, Session};
+use crate::storage::{FRAME, Storage};
+use shared::protocol::framing::{self, FrameError, MAX_MESSAGE};
+use shared::protocol::{
+    ClockReply, DATAGRAM_PORT, Datagram, Identity, REQUEST_PORT, Refusal, Request, Response,
+};
+use smoltcp::iface::{Config, Interface, PollIngressSingleResult, PollResult, SocketHandle, SocketSet};
+use smoltcp::phy::Device;
+use smoltcp::socket::{tcp, udp};
+use smoltcp::time::{Duration, Instant};
+use smoltcp::wire::{EthernetAddress, IpAddress, IpCidr, IpEndpoint, Ipv4Address};
+
+/// A session whose PC has not acknowledged anything for this long is given up.
+const TIMEOUT: Duration = Duration::from_secs(5);
+/// A silent PC is probed this often.
+const KEEP_ALIVE: Duration = Duration::from_millis(500);
+/// The board announces itself this often until the first session \[µs\].
+const ANNOUNCE_US: u64 = 1_000_000;
+/// Most frames taken, and most sent, in one call.
+const BURST: usize = 32;
+
+/// Addresses of a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Address {
+    /// Ethernet address.
+    pub mac: [u8; 6],
+    /// IPv4 address.
+    pub ip: [u8; 4],
+    /// Length of the network part in bits, at most 32.
+    pub prefix: u8,
+    /// IPv4 address of the gateway.
+    pub gateway: [u8; 4],
+}
+
+/// IPv4 address and UDP port from which a datagram came, or to which it goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// IPv4 address.
+    pub address: [u8; 4],
+    /// UDP port.
+    pub port: u16,
+}
+
+/// What has happened since boot; all counters wrap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Connections accepted.
+    pub sessions: u32,
+    /// Requests answered, the malformed ones too.
+    pub requests: u32,
+    /// Requests that could not be decoded.
+    pub malformed_requests: u32,
+    /// Sessions ended because the stream announced an impossible message.
+    pub broken_streams: u32,
+    /// Datagrams received and understood.
+    pub datagrams: u32,
+    /// Datagrams of another version of the protocol.
+    pub foreign_datagrams: u32,
+    /// Datagrams that could not be decoded.
+    pub malformed_datagrams: u32,
+    /// Datagrams for which there was no room.
+    pub unsent: u32,
+}
+
+fn count(counter: &mut u32) {
+    *counter = counter.wrapping_add(1);
+}
+
+/// The network of one board.
+pub struct Link<'a> {
+    interface: Interface,
+    sockets: SocketSet<'a>,
+    stream: SocketHandle,
+    /// Receives everything, sends to the subscriber.
+    datagrams: SocketHandle,
+    /// Sends to everyone else: a host that does not answer ARP must not hold up the telemetry.
+    others: SocketHandle,
+    frame: &'a mut [u8; FRAME],
+    address: Address,
+    identity: Identity,
+    session: Option<Session>,
+    announce_at_us: Option<u64>,
+    counters: Counters,
+}
+
+impl<'a> Link<'a> {
+    /// A link that listens at `address` and introduces itself as `identity`. `now_us` also seeds the sequence
+    /// numbers.
+    ///
+    /// # Panics
+    /// If `address.prefix` is above 32.
+    pub fn new(
+        device: &mut (impl Device + ?Sized),
+        storage: &'a mut Storage<'a>,
+        address: Address,
+        identity: Identity,
+        now_us: u64,
+    ) -> Self {
+        let mut config = Config::new(EthernetAddress(address.mac).into());
+        config.random_seed = now_us;
+        let mut interface = Interface::new(config, device, instant(now_us));
+        let ip = IpAddress::Ipv4(Ipv4Address::from(address.ip));
+        // Neither can fail: smoltcp has room for at least one address and one route.
+        interface.update_ip_addrs(|addresses| {
+            let _ = addresses.push(IpCidr::new(ip, address.prefix));
+        });
+        let _ = interface
+            .routes_mut()
+            .add_default_ipv4_route(Ipv4Address::from(address.gateway));
+
+        let Storage {
+            sockets,
+            requests,
+            responses,
+            incoming,
+            to_subscriber,
+            to_others,
+            nothing,
+            frame,
+        } = storage;
+        let mut stream = tcp::Socket::new(
+            tcp::SocketBuffer::new(&mut requests[..]),
+            tcp::SocketBuffer::new(&mut responses[..]),
+        );
+        stream.set_nagle_enabled(false);
+        stream.set_timeout(Some(TIMEOUT));
+        stream.set_keep_alive(Some(KEEP_ALIVE));
+        let datagrams = udp_socket(
+            packets(&mut incoming.0, &mut incoming.1),
+            packets(&mut to_subscriber.0, &mut to_subscriber.1),
+        );
+        let others = udp_socket(
+            packets(&mut nothing.0, &mut nothing.1),
+            packets(&mut to_others.0, &mut to_others.1),
+        );
+
+        let mut sockets = SocketSet::new(&mut sockets[..]);
+        // The first of the two UDP sockets gets what arrives.
+        let datagrams = sockets.add(datagrams);
+        let others = sockets.add(others);
+        let stream = sockets.add(stream);
+        let mut link = Self {
+            interface,
+            sockets,
+            stream,
+            datagrams,
+            others,
+            frame,
+            address,
+            identity,
+            session: None,
+            announce_at_us: Some(now_us),
+            counters: Counters::default(),
+        };
+        link.listen();
+        link
+    }
+
+    /// Takes the frames that wait in `device`, answers what there is to answer, sends what there is to send.
+    ///
+    /// `arrived` tells when the device received the frame it handed out last \[µs\], `clock` the time now
+    /// \[µs\], both on the board's one timebase. True if frames may be left in the device: call again soon.
+    pub fn poll<D: Device + ?Sized>(
+        &mut self,
+        device: &mut D,
+        arrived: impl Fn(&D) -> u64,
+        clock: impl Fn() -> u64,
+        node: &mut impl Node,
+    ) -> bool {
+        let mut more = true;
+        for _ in 0..BURST {
+            let now = instant(clock());
+            let taken = self.interface.poll_ingress_single(now, device, &mut self.sockets);
+            // Datagrams at once, while the device still knows when this frame arrived.
+            self.take_datagrams(device, arrived(device), &clock, node);
+            self.serve(device, &clock, node);
+            if taken == PollIngressSingleResult::None {
+                more = false;
+                break;
+            }
+        }
+        self.announce(device, clock());
+        self.flush(device, clock());
+        more
+    }
+
+    /// Queues a datagram; [`Link::flush`] or the next [`Link::poll`] sends it. False, and counted, if there is
+    /// no room.
+    pub fn send(&mut self, datagram: &Datagram, to: Source) -> bool {
+        let subscribed = self.session.is_some_and(|session| session.peer == to.address);
+        let socket = if subscribed { self.datagrams } else { self.others };
+        let endpoint = IpEndpoint::new(IpAddress::Ipv4(Ipv4Address::from(to.address)), to.port);
+        let socket = self.sockets.get_mut::<udp::Socket>(socket);
+        let queued = framing::encode_datagram(datagram, &mut self.frame[..])
+            .is_ok_and(|bytes| socket.send_slice(bytes, endpoint).is_ok());
+        if !queued {
+            count(&mut self.counters.unsent);
+        }
+        queued
+    }
+
+    /// Sends what is queued, as far as `device` has room.
+    pub fn flush(&mut self, device: &mut (impl Device + ?Sized), now_us: u64) {
+        for _ in 0..BURST {
+            let sent = self
+                .interface
+                .poll_egress(instant(now_us), device, &mut self.sockets);
+            if sent == PollResult::None {
+                break;
+            }
+        }
+    }
+
+    /// Where the PC of this session wants telemetry and captures, once it has subscribed.
+    pub fn subscriber(&self) -> Option<Source> {
+        self.session.and_then(|session| session.subscriber)
+    }
+
+    /// IPv4 address of the PC of this session.
+    pub fn session(&self) -> Option<[u8; 4]> {
+        self.session.map(|session| session.peer)
+    }
+
+    /// What has happened since boot.
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    fn announce(&mut self, device: &mut (impl Device + ?Sized), now_us: u64) {
+        if self.session.is_some() {
+            self.announce_at_us = None;
+        }
+        if self.announce_at_us.is_some_and(|due| now_us >= due) {
+            self.announce_at_us = Some(now_us + ANNOUNCE_US);
+            let ip = Ipv4Address::from(self.address.ip);
+            announce(device, EthernetAddress(self.address.mac), ip, instant(now_us));
+        }
+    }
+
+    fn take_datagrams(
+        &mut self,
+        device: &mut (impl Device + ?Sized),
+        arrived_us: u64,
+        clock: &impl Fn() -> u64,
+        node: &mut impl Node,
+    ) {
+        while let Ok((bytes, metadata)) = self.sockets.get_mut::<udp::Socket>(self.datagrams).recv() {
+            let IpAddress::Ipv4(address) = metadata.endpoint.addr;
+            let from = Source {
+                address: address.octets(),
+                port: metadata.endpoint.port,
+            };
+            match framing::decode_datagram(bytes) {
+                Ok(Datagram::ClockRequest(request)) => {
+                    count(&mut self.counters.datagrams);
+                    let now_us = clock();
+                    let reply = ClockReply {
+                        asked_us: request.asked_us,
+                        received_us: arrived_us,
+                        replied_us: now_us,
+                    };
+                    self.send(&Datagram::ClockReply(reply), from);
+                    self.flush(device, now_us);
+                }
+                Ok(datagram) => {
+                    count(&mut self.counters.datagrams);
+                    node.datagram(&datagram, from, arrived_us);
+                }
+                Err(FrameError::WrongSchema) => count(&mut self.counters.foreign_datagrams),
+                Err(FrameError::Malformed | FrameError::TooLong) => {
+                    count(&mut self.counters.malformed_datagrams);
+                }
+            }
+        }
+    }
+
+    /// Begins and ends sessions and answers the requests that are complete, as long as an answer of any
+    /// length fits.
+    fn serve(&mut self, device: &mut (impl Device + ?Sized), clock: &impl Fn() -> u64, node: &mut impl Node) {
+        if !self.sockets.get::<tcp::Socket>(self.stream).is_open() {
+            // A reset that is still to be sent would be forgotten.
+            self.flush(device, clock());
+            self.listen();
+            return;
+        }
+        let stream = self.sockets.get_mut::<tcp::Socket>(self.stream);
+        if self.session.is_none()
+            && stream.may_recv()
+            && let Some(IpAddress::Ipv4(peer)) = stream.remote_endpoint().map(|peer| peer.addr)
+        {
+            count(&mut self.counters.sessions);
+            self.session = Some(Session::new(peer.octets()));
+        }
+        let Some(session) = &mut self.session else { return };
+
+        while stream.send_capacity() - stream.send_queue() >= FRAME {
+            let mut prefix = [0; 2];
+            let peeked = stream.peek_slice(&mut prefix).unwrap_or(0);
+            let Some(length) = framing::message_length(&prefix[..peeked]) else {
+                break;
+            };
+            if length == 0 || length > MAX_MESSAGE {
+                // Nothing that follows could be told from the rest of this message.
+                count(&mut self.counters.broken_streams);
+                stream.abort();
+                break;
+            }
+            let message = 2..2 + length;
+            if stream.recv_queue() < message.end {
+                break;
+            }
+            // The whole message is there, hence neither this nor the response below can fail.
+            let _ = stream.recv_slice(&mut self.frame[..message.end]);
+            count(&mut self.counters.requests);
+            let response = match framing::decode_message::<Request>(&self.frame[message]) {
+                Ok(request) => session.answer(&request, &self.identity, &self.counters, node),
+                Err(_) => {
+                    count(&mut self.counters.malformed_requests);
+                    Response::Refused(Refusal::Malformed)
+                }
+            };
+            match framing::encode_message(&response, &mut self.frame[..]) {
+                Ok(bytes) => {
+                    let _ = stream.send_slice(bytes);
+                }
+                Err(_) => stream.abort(),
+            }
+        }
+        if !stream.may_recv() {
+            // The PC has finished, or the stream is broken.
+            stream.close();
+            self.session = None;
+        }
+    }
+
+    fn listen(&mut self) {
+        self.session = None;
+        let stream = self.sockets.get_mut::<tcp::Socket>(self.stream);
+        // Fails only for port 0 or an open socket.
+        let _ = stream.listen(REQUEST_PORT);
+    }
+}
+
+fn packets<'a>(metadata: &'a mut [udp::PacketMetadata], payload: &'a mut [u8]) -> udp::PacketBuffer<'a> {
+    udp::PacketBuffer::new(metadata, payload)
+}
+
+fn udp_socket<'a>(incoming: udp::PacketBuffer<'a>, outgoing: udp::PacketBuffer<'a>) -> udp::Socket<'a> {
+    let mut socket = udp::Socket::new(incoming, outgoing);
+    // Fails only for port 0 or an open socket.
+    let _ = socket.bind(DATAGRAM_PORT);
+    socket
+}
+
+fn instant(us: u64) -> Instant {
+    Instant::from_micros_const(us.cast_signed())
+}

@@ -1,0 +1,48 @@
+//! Memory of a [`Link`](crate::Link).
+
+use shared::protocol::framing::{MAX_DATAGRAM, MAX_MESSAGE};
+use smoltcp::iface::SocketStorage;
+use smoltcp::socket::udp::PacketMetadata;
+
+/// A message with its length.
+pub(crate) const FRAME: usize = MAX_MESSAGE + 2;
+/// Longest UDP payload of an Ethernet frame: what is too long for a datagram is still seen and counted.
+const LONGEST_PAYLOAD: usize = 1472;
+/// Datagrams that wait for the subscriber.
+const OUTGOING: usize = 8;
+/// Short datagrams that wait for others: path states and clock requests, of at most 256 bytes.
+const OUTGOING_SHORT: usize = 8;
+
+/// Buffers of a [`Link`](crate::Link), 29 kB, best in a static.
+pub struct Storage<'a> {
+    pub(crate) sockets: [SocketStorage<'a>; 3],
+    pub(crate) requests: [u8; 2 * FRAME],
+    pub(crate) responses: [u8; 2 * FRAME],
+    pub(crate) incoming: ([PacketMetadata; 2], [u8; 2 * LONGEST_PAYLOAD]),
+    pub(crate) to_subscriber: ([PacketMetadata; OUTGOING], [u8; OUTGOING * MAX_DATAGRAM]),
+    pub(crate) to_others: ([PacketMetadata; OUTGOING_SHORT], [u8; OUTGOING_SHORT * 256]),
+    pub(crate) nothing: ([PacketMetadata; 1], [u8; 1]),
+    pub(crate) frame: [u8; FRAME],
+}
+
+impl Storage<'_> {
+    /// Empty buffers.
+    pub const fn new() -> Self {
+        Self {
+            sockets: [SocketStorage::EMPTY; 3],
+            requests: [0; 2 * FRAME],
+            responses: [0; 2 * FRAME],
+            incoming: ([PacketMetadata::EMPTY; 2], [0; 2 * LONGEST_PAYLOAD]),
+            to_subscriber: ([PacketMetadata::EMPTY; OUTGOING], [0; OUTGOING * MAX_DATAGRAM]),
+            to_others: ([PacketMetadata::EMPTY; OUTGOING_SHORT], [0; OUTGOING_SHORT * 256]),
+            nothing: ([PacketMetadata::EMPTY; 1], [0; 1]),
+            frame: [0; FRAME],
+        }
+    }
+}
+
+impl Default for Storage<'_> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
