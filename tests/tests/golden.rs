@@ -4,5 +4,13 @@
 
 #[path = "golden/file.rs"]
 mod file;
+#[path = "golden/kinematics.rs"]
+mod kinematics;
+#[path = "golden/servo.rs"]
+mod servo;
+#[path = "golden/servo_circle.rs"]
+mod servo_circle;
+#[path = "golden/spline.rs"]
+mod spline;
 #[path = "golden/tracking.rs"]
 mod tracking;

@@ -33,7 +33,10 @@ impl<'a> NaturalSpline<'a> {
         scratch: &mut [f64],
     ) -> Result<Self, SplineError> {
         let n = x.len();
-        assert!(y.len() == n && second.len() == n && scratch.len() == n, "slices of one length");
+        assert!(
+            y.len() == n && second.len() == n && scratch.len() == n,
+            "slices of one length"
+        );
         let finite = x.iter().chain(y).all(|value| value.is_finite());
         if n < 2 || !finite || x.windows(2).any(|pair| pair[1] <= pair[0]) {
             return Err(SplineError::Knots);

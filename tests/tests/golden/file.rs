@@ -1,12 +1,20 @@
 //! Reading of golden files: `{"about", "tol", "cases": [{"id", "in", …, "out" | "err"}]}`.
 
+use nalgebra::Vector3;
 use serde_json::Value;
+use std::io::Write;
 use std::path::PathBuf;
+use std::sync::Mutex;
+
+/// Files and cases read so far.
+static TOTAL: Mutex<(usize, usize)> = Mutex::new((0, 0));
 
 /// One golden file.
 pub struct Golden {
-    /// Absolute tolerance, unless a case says otherwise.
+    /// Absolute tolerance, unless a case says otherwise; the largest if the file names several.
     pub tolerance: f64,
+    /// All of the file.
+    pub file: Value,
     /// Cases, never empty.
     pub cases: Vec<Value>,
 }
@@ -22,9 +30,43 @@ pub fn golden(name: &str) -> Golden {
     let file: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let cases = file["cases"].as_array().expect("cases").clone();
     assert!(!cases.is_empty(), "{} has no cases", path.display());
+    let tolerance = match &file["tol"] {
+        Value::Object(several) => several.values().filter_map(Value::as_f64).fold(0.0, f64::max),
+        one => one.as_f64().expect("tol"),
+    };
+    count(name, cases.len());
     Golden {
-        tolerance: file["tol"].as_f64().expect("tol"),
+        tolerance,
+        file,
         cases,
+    }
+}
+
+/// Says what is checked, past the test harness, which would hide it.
+fn count(name: &str, cases: usize) {
+    let mut total = TOTAL.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    total.0 += 1;
+    total.1 += cases;
+    let (files, all) = *total;
+    writeln!(
+        std::io::stderr(),
+        "golden {name}: {cases} cases (file {files}, {all} cases so far)"
+    )
+    .expect("stderr");
+}
+
+/// The vector `value`.
+pub fn vector(value: &Value) -> Vector3<f64> {
+    Vector3::from_column_slice(&numbers(value))
+}
+
+/// Asserts that every number is [`near`] its golden one.
+#[track_caller]
+pub fn near_all(case: &Value, what: &str, seen: &[f64], wanted: &Value, tolerance: f64) {
+    let wanted = numbers(wanted);
+    assert_eq!(seen.len(), wanted.len(), "case {}: {what}", case["id"]);
+    for (seen, wanted) in seen.iter().zip(wanted) {
+        near(case, what, *seen, wanted, tolerance);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Map, control law, frames of the heads (SPEC 0.7–0.9).
 
-use crate::file::{golden, near, number, numbers};
+use crate::file::{golden, near, near_all, number, numbers, vector};
 use nalgebra::Vector3;
 use serde_json::Value;
 use shared::io::DacCode;
@@ -9,19 +9,6 @@ use shared::tracking::gain::{crossover, discrete_limit};
 use shared::tracking::law::{LawFlag, LawOutput, LawState, SlideLaw, SlideTarget};
 use shared::tracking::map::{Added, MapLaw, SeamMap};
 use std::collections::VecDeque;
-
-fn vector(value: &Value) -> Vector3<f64> {
-    Vector3::from_column_slice(&numbers(value))
-}
-
-#[track_caller]
-fn near_all(case: &Value, what: &str, seen: &[f64], wanted: &Value, tolerance: f64) {
-    let wanted = numbers(wanted);
-    assert_eq!(seen.len(), wanted.len(), "case {}: {what}", case["id"]);
-    for (seen, wanted) in seen.iter().zip(wanted) {
-        near(case, what, *seen, wanted, tolerance);
-    }
-}
 
 /// Map and law of one channel, as the golden files use them.
 struct Tracker {
