@@ -1,0 +1,258 @@
+//! From the words of a line to a block: codes by modal group, and words by their letter.
+
+use super::error::{NcError, Place, Problem};
+use super::lexer::{self, Word};
+
+/// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
+/// cannot stand in one block.
+const CODES: [(char, u32, Code, &str, Group); 17] = [
+    ('G', 0, Code::Rapid, "G0", Group::Motion),
+    ('G', 10, Code::Feed, "G1", Group::Motion),
+    ('G', 170, Code::PlaneXy, "G17", Group::Plane),
+    ('G', 210, Code::Millimetres, "G21", Group::Units),
+    ('G', 400, Code::CompensationOff, "G40", Group::Compensation),
+    ('G', 434, Code::TipOn, "G43.4", Group::ToolLength),
+    ('G', 490, Code::TipOff, "G49", Group::ToolLength),
+    ('G', 540, Code::WorldOffset, "G54", Group::Offset),
+    ('G', 611, Code::ExactStop, "G61.1", Group::PathControl),
+    ('G', 640, Code::Continuous, "G64", Group::PathControl),
+    ('G', 900, Code::Absolute, "G90", Group::Distance),
+    ('G', 940, Code::PerMinute, "G94", Group::FeedMode),
+    ('M', 20, Code::End, "M2", Group::Stop),
+    ('M', 300, Code::End, "M30", Group::Stop),
+    ('M', 620, Code::OutputOn, "M62", Group::Outputs),
+    ('M', 630, Code::OutputOff, "M63", Group::Outputs),
+    ('M', 670, Code::Analog, "M67", Group::Outputs),
+];
+
+/// Meaning of a G or M code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Code {
+    /// G0.
+    Rapid,
+    /// G1.
+    Feed,
+    /// G17.
+    PlaneXy,
+    /// G21.
+    Millimetres,
+    /// G40.
+    CompensationOff,
+    /// G43.4.
+    TipOn,
+    /// G49.
+    TipOff,
+    /// G54.
+    WorldOffset,
+    /// G61.1.
+    ExactStop,
+    /// G64.
+    Continuous,
+    /// G90.
+    Absolute,
+    /// G94.
+    PerMinute,
+    /// M2, M30.
+    End,
+    /// M62.
+    OutputOn,
+    /// M63.
+    OutputOff,
+    /// M67.
+    Analog,
+}
+
+/// Modal groups.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// G0 G1.
+    Motion,
+    /// G17.
+    Plane,
+    /// G21.
+    Units,
+    /// G40.
+    Compensation,
+    /// G43.4 G49.
+    ToolLength,
+    /// G54.
+    Offset,
+    /// G61.1 G64.
+    PathControl,
+    /// G90.
+    Distance,
+    /// G94.
+    FeedMode,
+    /// M2 M30.
+    Stop,
+    /// M62 M63 M67.
+    Outputs,
+}
+
+/// A code in a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CodeWord {
+    /// What it means.
+    pub code: Code,
+    /// As people write it.
+    pub name: &'static str,
+    /// Where.
+    pub place: Place,
+    group: Group,
+}
+
+/// One line of a program that is to be carried out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Line of the file.
+    pub line: u32,
+    /// Starts with `/`.
+    pub delete: bool,
+    /// G and M codes, at most one of each modal group.
+    pub codes: Vec<CodeWord>,
+    /// All other words, each at most once, without N.
+    pub words: Vec<Word>,
+}
+
+impl Block {
+    /// The code of `group` in this block.
+    pub fn code(&self, group: Group) -> Option<&CodeWord> {
+        self.codes.iter().find(|c| c.group == group)
+    }
+
+    /// The word with this letter or name.
+    pub fn word(&self, address: &str) -> Option<&Word> {
+        self.words.iter().find(|w| w.address == address)
+    }
+}
+
+/// What a line of text is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Parsed {
+    /// Nothing but blanks and comments.
+    Blank,
+    /// `%`.
+    Percent(Place),
+    /// Something to carry out.
+    Block(Block),
+}
+
+/// Letters and names that are words of the dialect, besides G, M and N.
+const WORDS: [&str; 10] = ["X", "Y", "Z", "A", "B", "C", "F", "P", "E", "Q"];
+/// The same, written with `=`.
+const NAMED_WORDS: [&str; 2] = ["V1", "V2"];
+
+/// Reads line number `line`.
+pub fn parse(text: &str, line: u32) -> Result<Parsed, NcError> {
+    let parts = lexer::split(text, line)?;
+    if let Some(place) = parts.percent {
+        return if parts.words.is_empty() && !parts.delete {
+            Ok(Parsed::Percent(place))
+        } else {
+            Err(Problem::Percent.at(place))
+        };
+    }
+    if parts.words.is_empty() {
+        return Ok(Parsed::Blank);
+    }
+    let mut block = Block {
+        line,
+        delete: parts.delete,
+        codes: Vec::new(),
+        words: Vec::new(),
+    };
+    for (index, word) in parts.words.into_iter().enumerate() {
+        match (word.address.as_str(), word.named) {
+            ("N", false) => {
+                if index > 0 || word.value < 0.0 || word.value.fract() != 0.0 {
+                    return Err(Problem::BlockNumber.at(word.place));
+                }
+            }
+            ("G" | "M", false) => {
+                let code = code(&word)?;
+                if let Some(other) = block.code(code.group) {
+                    let (first, second) = (other.name, code.name);
+                    return Err(Problem::ModalGroup { first, second }.at(word.place));
+                }
+                block.codes.push(code);
+            }
+            (address, named) => {
+                let known: &[&str] = if named { &NAMED_WORDS } else { &WORDS };
+                if !known.contains(&address) {
+                    return Err(Problem::UnknownWord(word.label()).at(word.place));
+                }
+                if block.word(address).is_some() {
+                    return Err(Problem::Twice(word.label()).at(word.place));
+                }
+                block.words.push(word);
+            }
+        }
+    }
+    Ok(Parsed::Block(block))
+}
+
+fn code(word: &Word) -> Result<CodeWord, NcError> {
+    let tenths = word.value * 10.0;
+    CODES
+        .iter()
+        .find(|(letter, number, ..)| {
+            word.address.starts_with(*letter) && (tenths - f64::from(*number)).abs() < 1e-6
+        })
+        .map(|&(_, _, code, name, group)| CodeWord {
+            code,
+            name,
+            place: word.place,
+            group,
+        })
+        .ok_or_else(|| {
+            Problem::UnknownCode {
+                letter: if word.address == "G" { 'G' } else { 'M' },
+                number: word.value,
+            }
+            .at(word.place)
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problem(text: &str) -> Problem {
+        parse(text, 1).unwrap_err().problem
+    }
+
+    #[test]
+    fn codes_are_found_by_number_and_group() {
+        let Parsed::Block(block) = parse("n20 G01 g43.4 G090 X1", 3).unwrap() else {
+            panic!("a block")
+        };
+        assert_eq!(block.line, 3);
+        assert_eq!(block.code(Group::Motion).unwrap().code, Code::Feed);
+        assert_eq!(block.code(Group::ToolLength).unwrap().code, Code::TipOn);
+        assert_eq!(block.word("X").unwrap().value, 1.0);
+        assert_eq!(block.words.len(), 1);
+    }
+
+    #[test]
+    fn two_codes_of_one_group_exclude_each_other() {
+        let (first, second) = ("G0", "G1");
+        assert_eq!(problem("G0 G1 X1"), Problem::ModalGroup { first, second });
+        let (first, second) = ("M62", "M67");
+        assert_eq!(problem("M62 P0 M67 E0 Q1"), Problem::ModalGroup { first, second });
+    }
+
+    #[test]
+    fn foreign_words_and_codes_are_refused() {
+        let letter = 'G';
+        assert_eq!(problem("G2 X1"), Problem::UnknownCode { letter, number: 2.0 });
+        assert_eq!(problem("G43 H1"), Problem::UnknownCode { letter, number: 43.0 });
+        assert_eq!(problem("S100"), Problem::UnknownWord("S".into()));
+        assert_eq!(problem("A3=1"), Problem::UnknownWord("A3=".into()));
+        assert_eq!(problem("V1"), Problem::UnknownWord("V".into()));
+        assert_eq!(problem("X1 x2"), Problem::Twice("X".into()));
+        assert_eq!(problem("G1 N5"), Problem::BlockNumber);
+        assert_eq!(problem("N-5 G1"), Problem::BlockNumber);
+        assert_eq!(problem("% G1"), Problem::Percent);
+        assert_eq!(parse("  (nothing) ; here", 1), Ok(Parsed::Blank));
+    }
+}
