@@ -1,5 +1,8 @@
 //! The PC's part of Seamwright: programs, planning, sessions with the boards, reports.
 
 pub mod boards;
+pub mod evaluate;
 pub mod machine;
 pub mod nc;
+pub mod record;
+pub mod world;

@@ -1,0 +1,15 @@
+//! The world around a simulated machine: where its seam and its spots really are, and what its cameras see.
+//!
+//! Everything is looked up by the motion board's time, in what the boards told about that time; never by the
+//! wall clock, never in the latest state. So the world is the same for emulated boards, which run in real
+//! time, and for simulated ones, which do not.
+
+mod camera;
+mod clock;
+mod noise;
+pub(crate) mod truth;
+
+pub use camera::{Cameras, Sight};
+pub use clock::ClockRelation;
+pub use noise::SplitMix64;
+pub use truth::{Crossing, Machine, PATH_KNOTS, PlannedPath, TrueSeam};

@@ -1,0 +1,294 @@
+//! Where the seam, the tool and the spots really are.
+
+use crate::record::MachinePosition;
+use nalgebra::Vector3;
+use shared::geometry::Pose;
+use shared::io::{SIDES, SLIDES};
+use shared::kinematics::DualBeam;
+use shared::motion::MotionConfig;
+use shared::parameter::ParameterError;
+use shared::protocol::Knot;
+use shared::tracking::HeadConfig;
+use shared::tracking::frames::{Heads, SpotFrame};
+use shared::trajectory::{Path, PathError};
+
+/// Most knots of a path in the world.
+pub const PATH_KNOTS: usize = 2048;
+/// Distance along T at which two points face each other \[mm\].
+const FACING: f64 = 1e-9;
+/// Steps of the search for it.
+const STEPS: usize = 50;
+
+/// Geometry of the machine as it really is.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    kinematics: DualBeam,
+    y1_mm: f64,
+    y2_mm: f64,
+    heads: Heads,
+}
+
+impl Machine {
+    /// Builds the geometry; errors name the parameter.
+    pub fn build(motion: &MotionConfig, head: &HeadConfig) -> Result<Self, ParameterError> {
+        Ok(Self {
+            kinematics: motion.kinematics.build()?,
+            y1_mm: motion.gantry.y1_mm,
+            y2_mm: motion.gantry.y2_mm,
+            heads: head.build()?,
+        })
+    }
+
+    /// Pose of the plate. The ram hangs on the beam between X1 and X2 (SPEC 0.10).
+    pub fn pose(&self, position: &MachinePosition) -> Pose {
+        let axes = match *position {
+            MachinePosition::Axes(axes) => axes,
+            MachinePosition::Motors([x1, x2, y, z, a, b, c]) => {
+                let across = (y - self.y1_mm) / (self.y2_mm - self.y1_mm);
+                [x1 + (x2 - x1) * across, y, z, a, b, c]
+            }
+        };
+        self.kinematics.forward(&axes)
+    }
+
+    /// Frame of the working point of `side` (0 or 1), its slides at zero.
+    pub fn spot(&self, pose: &Pose, side: usize) -> SpotFrame {
+        self.heads.spot(pose, side)
+    }
+
+    /// How far the cameras look ahead of the beams, along T \[mm\].
+    pub fn camera_lead(&self) -> f64 {
+        self.heads.camera_lead()
+    }
+}
+
+/// A path as it was programmed.
+#[derive(Clone, Debug)]
+pub struct PlannedPath(Box<Path<PATH_KNOTS>>);
+
+impl PlannedPath {
+    /// Takes the knots that the boards got.
+    pub fn new(id: u32, knots: &[Knot]) -> Result<Self, PathError> {
+        let mut path = Box::new(Path::new());
+        path.clear(id);
+        for knot in knots {
+            path.push(*knot)?;
+        }
+        Ok(Self(path))
+    }
+
+    /// Pose and V extensions at path position `s` \[mm\].
+    pub(crate) fn at(&self, s: f64) -> Option<(Pose, [f64; SIDES])> {
+        let point = self.0.at(s)?;
+        Some((point.pose().ok()?, point.v_follow()))
+    }
+
+    /// Distance of `tip` from the path, searched from path position `s` on \[mm\].
+    pub fn contour_error(&self, tip: &Vector3<f64>, mut s: f64) -> Option<f64> {
+        for _ in 0..STEPS {
+            let (pose, _) = self.at(s)?;
+            let apart = tip - pose.position;
+            let along = apart.dot(&pose.tangent);
+            if along.abs() < FACING {
+                return Some(apart.norm());
+            }
+            s += along;
+        }
+        None
+    }
+}
+
+/// The two seams of a path as they really are: beside the programmed ones, in the planned frame of each head.
+pub struct TrueSeam {
+    path: PlannedPath,
+    start_s: f64,
+    range: (f64, f64),
+    deviation: Box<dyn Fn(f64) -> [f64; SLIDES]>,
+}
+
+/// Where a seam passes through a plane perpendicular to T.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Path position to which that point of the seam belongs \[mm\].
+    pub s: f64,
+    /// Along U of the frame \[mm\].
+    pub u: f64,
+    /// Along V of the frame \[mm\].
+    pub v: f64,
+}
+
+impl TrueSeam {
+    /// `deviation` gives u1, v1, u2, v2 \[mm\] at a distance from `start_s`, the path position where the first
+    /// beam goes on; there is a seam from `range.0` to `range.1` of that distance.
+    pub fn new(
+        path: PlannedPath,
+        start_s: f64,
+        range: (f64, f64),
+        deviation: Box<dyn Fn(f64) -> [f64; SLIDES]>,
+    ) -> Self {
+        Self {
+            path,
+            start_s,
+            range,
+            deviation,
+        }
+    }
+
+    /// The path beside which the seams lie.
+    pub fn path(&self) -> &PlannedPath {
+        &self.path
+    }
+
+    /// Path position where the first beam goes on \[mm\].
+    pub fn start_s(&self) -> f64 {
+        self.start_s
+    }
+
+    /// Whether there is a seam at path position `s` or within `margin` of it \[mm\].
+    pub fn exists_at(&self, s: f64, margin: f64) -> bool {
+        let along = s - self.start_s;
+        self.range.0 - margin <= along && along <= self.range.1 + margin
+    }
+
+    /// The seam of `side` at path position `s` \[mm\].
+    pub fn point(&self, machine: &Machine, side: usize, s: f64) -> Option<Vector3<f64>> {
+        let (pose, v_follow) = self.path.at(s)?;
+        let deviation = (self.deviation)(s - self.start_s);
+        let (du, dv) = (deviation[2 * side], deviation[2 * side + 1]);
+        Some(machine.spot(&pose, side).point(0.0, du, v_follow[side] + dv))
+    }
+
+    /// Where the seam of `side` passes through the plane `along` \[mm\] ahead of `frame`, searched from path
+    /// position `s` on.
+    pub fn crossing(
+        &self,
+        machine: &Machine,
+        side: usize,
+        frame: &SpotFrame,
+        along: f64,
+        mut s: f64,
+    ) -> Option<Crossing> {
+        for _ in 0..STEPS {
+            let (ahead, u, v) = frame.coordinates(&self.point(machine, side, s)?);
+            if (ahead - along).abs() < FACING {
+                return Some(Crossing { s, u, v });
+            }
+            s -= ahead - along;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use shared::trajectory::CHANNELS;
+
+    impl Machine {
+        /// Axes that realise a pose.
+        pub(crate) fn inverse(&self, pose: &Pose) -> [f64; shared::io::AXES] {
+            self.kinematics.inverse(pose).unwrap()
+        }
+    }
+
+    pub(crate) const DISTANCE: [f64; SIDES] = [5.0, 5.2];
+
+    pub(crate) fn machine() -> Machine {
+        Machine {
+            kinematics: shared::kinematics::DualBeamConfig {
+                o1_mm: [0.0, 0.0, -120.0],
+                o2_mm: [0.0, 0.0, -80.0],
+                o3_mm: [0.0, 0.0, -450.0],
+            }
+            .build()
+            .unwrap(),
+            y1_mm: -250.0,
+            y2_mm: 3250.0,
+            heads: HeadConfig {
+                included_angle_deg: -60.0,
+                working_distance_mm: DISTANCE,
+                camera_lead_mm: 10.0,
+            }
+            .build()
+            .unwrap(),
+        }
+    }
+
+    /// A quarter of a circle of 500 mm radius, rising, the tool leaning.
+    pub(crate) fn bent_path() -> PlannedPath {
+        let value = |s: f64| -> [f64; CHANNELS] {
+            let a = s / 500.0;
+            let (x, y, z) = (
+                1000.0 + 500.0 * a.sin(),
+                1000.0 - 500.0 * a.cos(),
+                200.0 + 0.1 * s,
+            );
+            [x, y, z, a.cos(), a.sin(), 0.1, 0.1, 0.05, 1.0, 0.3, -0.2]
+        };
+        let knots: Vec<Knot> = (0..=100)
+            .map(|k| {
+                let s = 5.0 * f64::from(k);
+                let (before, after) = (value(s - 1e-3), value(s + 1e-3));
+                Knot {
+                    s_mm: s,
+                    value: value(s),
+                    slope: std::array::from_fn(|i| (after[i] - before[i]) / 2e-3),
+                }
+            })
+            .collect();
+        PlannedPath::new(7, &knots).unwrap()
+    }
+
+    pub(crate) fn wavy_seam() -> TrueSeam {
+        let wave = |s: f64| {
+            [
+                0.5 * (s / 16.0).sin(),
+                0.02 * s,
+                -0.3 * (s / 20.0).cos(),
+                0.1 - 0.01 * s,
+            ]
+        };
+        TrueSeam::new(bent_path(), 100.0, (-10.0, 300.0), Box::new(wave))
+    }
+
+    #[test]
+    fn a_spot_moved_by_plan_and_deviation_sits_on_the_seam() {
+        let (machine, seam) = (machine(), wavy_seam());
+        let (pose, follow) = seam.path().at(223.4).unwrap();
+        for side in 0..SIDES {
+            let frame = machine.spot(&pose, side);
+            let crossing = seam.crossing(&machine, side, &frame, 0.0, 220.0).unwrap();
+            let deviation = (seam.deviation)(123.4);
+            assert!((crossing.s - 223.4).abs() < 1e-6);
+            assert!((crossing.u - deviation[2 * side]).abs() < 1e-8);
+            assert!((crossing.v - follow[side] - deviation[2 * side + 1]).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn a_crooked_gantry_moves_the_ram_by_its_share() {
+        let machine = machine();
+        let square = MachinePosition::Motors([500.0, 500.0, 1500.0, 800.0, 0.1, 0.05, -0.2]);
+        let crooked = MachinePosition::Motors([500.0, 500.7, 1500.0, 800.0, 0.1, 0.05, -0.2]);
+        let moved = machine.pose(&crooked).position - machine.pose(&square).position;
+        assert!((moved - Vector3::new(0.35, 0.0, 0.0)).norm() < 1e-12);
+        let axes = MachinePosition::Axes([500.0, 1500.0, 800.0, 0.1, 0.05, -0.2]);
+        assert_eq!(machine.pose(&axes), machine.pose(&square));
+    }
+
+    #[test]
+    fn contour_error_is_the_distance_across_the_path() {
+        let path = bent_path();
+        let (pose, _) = path.at(200.0).unwrap();
+        let tip = pose.position + pose.normal * 0.03 + pose.lateral() * 0.04;
+        let error = path.contour_error(&tip, 203.0).unwrap();
+        assert!((error - 0.05).abs() < 1e-6, "{error}");
+    }
+
+    #[test]
+    fn there_is_no_seam_beyond_its_ends() {
+        let seam = wavy_seam();
+        assert!(seam.exists_at(90.0, 0.0) && seam.exists_at(400.0, 0.0));
+        assert!(!seam.exists_at(89.0, 0.5) && !seam.exists_at(401.0, 0.5));
+    }
+}
