@@ -1,0 +1,74 @@
+//! What a motion board has: seven axes on a simulated machine, two ticks, a network, a watchdog.
+
+use crate::registers::Block;
+use crate::{Network, Tick, Watchdog, logger, time};
+use plant::MotionPlant;
+use shared::io::{MOTORS, MotionCommand, MotionFeedback};
+
+/// IPv4 address of the board.
+pub const ADDRESS: [u8; 4] = [10, 0, 2, 15];
+/// Length of the net's prefix.
+pub const PREFIX: u8 = 24;
+/// Gateway; behind it stands the PC.
+pub const GATEWAY: [u8; 4] = [10, 0, 2, 2];
+
+/// Period of the servo tick \[µs\].
+const SERVO_PERIOD_US: u32 = 250;
+/// Period of the path tick \[µs\].
+const PATH_PERIOD_US: u32 = 1000;
+
+/// The board's parts.
+pub struct Board {
+    /// Servo tick, 4 kHz.
+    pub servo_tick: Tick,
+    /// Path tick, 1 kHz, in phase with every fourth servo tick.
+    pub path_tick: Tick,
+    /// Drives, gratings and beams.
+    pub axes: Axes,
+    /// Ethernet port.
+    pub network: Network,
+    /// Watchdog.
+    pub watchdog: Watchdog,
+}
+
+/// Sets the board up. Both timers run when it returns.
+pub fn init(mut core: cortex_m::Peripherals) -> Board {
+    time::start();
+    logger::start();
+    let axes = Axes {
+        plant: MotionPlant::dual_beam_gantry(),
+        command: MotionCommand::SAFE,
+    };
+    let network = Network::start(ADDRESS);
+    let watchdog = Watchdog::new(&mut core.NVIC);
+    Board {
+        servo_tick: Tick::start(Block::TIMER0, SERVO_PERIOD_US),
+        path_tick: Tick::start(Block::TIMER1, PATH_PERIOD_US),
+        axes,
+        network,
+        watchdog,
+    }
+}
+
+/// The axes, on a simulated machine.
+pub struct Axes {
+    plant: MotionPlant,
+    command: MotionCommand,
+}
+
+impl Axes {
+    /// Latches the inputs of a servo tick; the machine advances by that tick under the last command.
+    pub fn read(&mut self) -> MotionFeedback {
+        self.plant.advance(&self.command)
+    }
+
+    /// Sets the outputs.
+    pub fn write(&mut self, command: &MotionCommand) {
+        self.command = *command;
+    }
+
+    /// True position of each motor's axis \[mm, rotary deg\], which a real machine does not know.
+    pub fn truth(&self) -> Option<[f64; MOTORS]> {
+        Some(self.plant.truth())
+    }
+}
