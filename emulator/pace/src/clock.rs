@@ -1,0 +1,112 @@
+//! When a board may run on.
+//!
+//! Each board has come to a point of one common time, its own time plus a constant. It waits until the wall
+//! clock has come there, and until its peer is at most [`LEAD_NS`] behind. Who comes late by more than
+//! [`LATE_NS`] moves the common epoch, for both: the delay of one is a delay of the pair, and neither races
+//! to catch up. A peer not heard of for [`PATIENCE_NS`] (stopped, ended) is not waited for; when it comes
+//! back it joins where the other is by then.
+
+use crate::shared::Shared;
+
+/// Board time between two looks at the clock \[ns\].
+pub const QUANTUM_NS: u64 = 250_000;
+/// Common time a board may be ahead of its peer \[ns\].
+const LEAD_NS: i64 = 500_000;
+/// Delay against the wall clock that is caught up; more is forgiven \[ns\].
+const LATE_NS: i64 = 3_000_000;
+/// Common time behind the peer that only a stopped board shows \[ns\].
+const REJOIN_NS: i64 = 10_000_000;
+/// Wall time after which a silent peer is not waited for \[ns\].
+const PATIENCE_NS: i64 = 1_000_000_000;
+/// Longest sleep between two looks at the peer \[ns\].
+const STEP_NS: i64 = 50_000;
+
+/// A board's place in common time.
+pub struct Clock {
+    shared: Shared,
+    /// Wall time per board time.
+    stretch: f64,
+    /// Common time minus the board's own \[ns\]; known from its first wait on.
+    offset: Option<i64>,
+}
+
+impl Clock {
+    /// `rate` is board time per wall time.
+    pub fn start(shared: Shared, rate: f64) -> Self {
+        Self {
+            shared,
+            stretch: 1.0 / rate,
+            offset: None,
+        }
+    }
+
+    /// Returns when a board that has come to `own` ns may run on.
+    pub fn wait(&mut self, own: u64) {
+        let own = own as i64;
+        let mut now = wall();
+        let offset = match self.offset {
+            Some(offset) => offset,
+            None => self.join(own, now),
+        };
+        let mut reached = own + offset;
+        if let Some(peer) = self.shared.peer(now, PATIENCE_NS)
+            && peer - reached > REJOIN_NS
+        {
+            reached = peer;
+        }
+        self.offset = Some(reached - own);
+        self.shared.publish(reached, now);
+
+        let since_epoch = (reached as f64 * self.stretch) as i64;
+        if now - self.shared.epoch(now) > since_epoch + LATE_NS {
+            self.shared.delay_epoch(now - since_epoch);
+        }
+        loop {
+            let due = self.shared.epoch(now) + since_epoch;
+            let ahead = self
+                .shared
+                .peer(now, PATIENCE_NS)
+                .is_some_and(|peer| reached - peer > LEAD_NS);
+            if now < due {
+                sleep(due - now);
+            } else if ahead {
+                sleep(STEP_NS);
+            } else {
+                return;
+            }
+            now = wall();
+        }
+    }
+
+    /// The board starts: where its peer is, or where the wall clock is.
+    fn join(&self, own: i64, now: i64) -> i64 {
+        timer_slack();
+        let epoch = self.shared.epoch(now);
+        let common = self
+            .shared
+            .peer(now, PATIENCE_NS)
+            .unwrap_or(((now - epoch) as f64 / self.stretch) as i64);
+        common - own
+    }
+}
+
+/// Time of the monotonic clock \[ns\], the same in every process.
+fn wall() -> i64 {
+    let mut time = libc::timespec {
+        tv_sec: 0,
+        tv_nsec: 0,
+    };
+    // SAFETY: writes the struct it is given.
+    unsafe { libc::clock_gettime(libc::CLOCK_MONOTONIC, &mut time) };
+    time.tv_sec * 1_000_000_000 + time.tv_nsec
+}
+
+fn sleep(ns: i64) {
+    std::thread::sleep(std::time::Duration::from_nanos(ns.unsigned_abs()));
+}
+
+/// Lets this thread wake within a nanosecond of the time it asked for instead of 50 µs.
+fn timer_slack() {
+    // SAFETY: sets an attribute of the calling thread, with no pointer.
+    unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 1_u64, 0_u64, 0_u64, 0_u64) };
+}
