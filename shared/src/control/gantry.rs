@@ -80,7 +80,7 @@ impl Gantry {
         position: [f64; 2],
     ) -> Result<GantryOutput, NotFinite> {
         let skew = self.skew(position);
-        if !skew.is_finite() {
+        if !(skew.is_finite() && setpoint.is_finite()) {
             return Err(NotFinite);
         }
         let rate = self.derivative.step(&mut state.derivative, skew);
@@ -116,5 +116,111 @@ impl Gantry {
             x: position[0] - self.square_offset / 2.0 + yaw * (y - self.y1),
             yaw,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::{HomeConfig, MotorConfig};
+
+    fn gantry() -> Gantry {
+        let motor = MotorConfig {
+            counts_per_unit: 10_000.0,
+            velocity_at_10v: 400.0,
+            kp: 100.0,
+            ki: 0.0,
+            integral_limit: 0.0,
+            anti_windup_time_s: 0.0,
+            kd: 0.0,
+            derivative_filter_s: 0.0,
+            velocity_feed_forward: 1.0,
+            acceleration_feed_forward_s: 0.0,
+            max_command: 400.0,
+            following_error_base: 1.0,
+            following_error_time_s: 0.05,
+            home: HomeConfig {
+                velocity: 1.0,
+                mark_position: 0.0,
+                max_travel: 1.0,
+            },
+        };
+        let config = GantryConfig {
+            coupling: 20.0,
+            coupling_derivative: 0.0,
+            derivative_filter_s: 0.0,
+            square_offset_mm: 0.037,
+            skew_trip_mm: 0.1,
+            y1_mm: -250.0,
+            y2_mm: 3250.0,
+        };
+        let pids = ["X1", "X2"].map(|name| Pid::build(name, &motor, 1.0, 0.001).unwrap());
+        Gantry::build(&config, pids, 0.001).unwrap()
+    }
+
+    #[test]
+    fn a_square_beam_carries_the_ram_where_the_axis_is_without_yaw_or_commands() {
+        let gantry = gantry();
+        let square = gantry.motors(1234.5);
+        assert!(gantry.skew(square).abs() < 1e-12);
+        for y in [0.0, 1500.0, 3000.0] {
+            let ram = gantry.ram(square, y);
+            assert!((ram.x - 1234.5).abs() < 1e-9 && ram.yaw.abs() < 1e-15);
+        }
+        let setpoint = Setpoint {
+            position: 1234.5,
+            ..Setpoint::default()
+        };
+        let output = gantry
+            .step(&mut GantryState::default(), &setpoint, square)
+            .unwrap();
+        assert!(output.command.iter().all(|u| u.abs() < 1e-9));
+    }
+
+    #[test]
+    fn a_skewed_beam_turns_the_ram_and_trips_beyond_the_limit() {
+        let gantry = gantry();
+        let [x1, x2] = gantry.motors(1000.0);
+        // X2 leads by 0.07 mm over 3500 mm: 20 µrad.
+        let skewed = [x1, x2 + 0.07];
+        let ram = gantry.ram(skewed, 1500.0);
+        assert!(
+            (ram.x - 1000.035).abs() < 1e-9 && (ram.yaw - 20e-6).abs() < 1e-12,
+            "{ram:?}"
+        );
+        assert_eq!(gantry.check_skew(gantry.skew(skewed)), Ok(()));
+        assert_eq!(
+            gantry.check_skew(gantry.skew([x1, x2 + 0.1001])).map_err(|_| ()),
+            Err(())
+        );
+        // The leading motor is held back, the other one pushed: P loop and coupling together.
+        let setpoint = Setpoint {
+            position: 1000.0,
+            ..Setpoint::default()
+        };
+        let output = gantry
+            .step(&mut GantryState::default(), &setpoint, skewed)
+            .unwrap();
+        assert!((output.command[0] - 20.0 * 0.07).abs() < 1e-9, "{output:?}");
+        assert!((output.command[1] + 120.0 * 0.07).abs() < 1e-9, "{output:?}");
+    }
+
+    #[test]
+    fn what_is_not_finite_changes_nothing() {
+        let gantry = gantry();
+        let mut state = GantryState::default();
+        let square = gantry.motors(0.0);
+        gantry.step(&mut state, &Setpoint::default(), square).unwrap();
+        let before = state;
+        let lost = Setpoint {
+            position: f64::NAN,
+            ..Setpoint::default()
+        };
+        assert_eq!(gantry.step(&mut state, &lost, [1.0, 0.0]), Err(NotFinite));
+        assert_eq!(
+            gantry.step(&mut state, &Setpoint::default(), [f64::NAN, 0.0]),
+            Err(NotFinite)
+        );
+        assert_eq!(state, before);
     }
 }

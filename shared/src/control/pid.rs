@@ -41,6 +41,12 @@ pub struct Setpoint {
     pub acceleration: f64,
 }
 
+impl Setpoint {
+    pub(super) fn is_finite(&self) -> bool {
+        self.position.is_finite() && self.velocity.is_finite() && self.acceleration.is_finite()
+    }
+}
+
 impl Pid {
     /// Checks the gains of motor `owner`, whose unit (mm or degree) is `unit` internal ones (1, or the
     /// radians of a degree); called every `period_s` \[s\].
@@ -75,25 +81,15 @@ impl Pid {
         position: f64,
         extra: f64,
     ) -> Result<f64, NotFinite> {
-        let Setpoint {
-            position: r,
-            velocity,
-            acceleration,
-        } = *setpoint;
-        if !(r.is_finite()
-            && velocity.is_finite()
-            && acceleration.is_finite()
-            && position.is_finite()
-            && extra.is_finite())
-        {
+        if !(setpoint.is_finite() && position.is_finite() && extra.is_finite()) {
             return Err(NotFinite);
         }
-        let e = r - position;
+        let e = setpoint.position - position;
         let d = self.derivative.step(&mut state.derivative, e);
         let integral = state.integral + self.period * (self.ki * e + state.excess * self.unwind);
         state.integral = integral.clamp(-self.integral_limit, self.integral_limit);
-        let command =
-            self.kp * e + state.integral + self.kd * d + self.kv * velocity + self.ka * acceleration + extra;
+        let forward = self.kv * setpoint.velocity + self.ka * setpoint.acceleration;
+        let command = self.kp * e + state.integral + self.kd * d + forward + extra;
         let limited = command.clamp(-self.max_command, self.max_command);
         state.excess = limited - command;
         Ok(limited)

@@ -183,3 +183,80 @@ impl PathPoint {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn knot(s_mm: f64, value: f64, slope: f64) -> Knot {
+        Knot {
+            s_mm,
+            value: [value; CHANNELS],
+            slope: [slope; CHANNELS],
+        }
+    }
+
+    fn cubic(s: f64) -> [f64; 3] {
+        [s * s * s - 2.0 * s, 3.0 * s * s - 2.0, 6.0 * s]
+    }
+
+    /// Knots cut from one cubic give that cubic back, in and between all spans, and its tangents outside.
+    #[test]
+    fn a_cubic_is_reproduced_with_its_derivatives() {
+        let mut path = Path::<8>::new();
+        for s in [-1.0, 0.5, 0.75, 3.0] {
+            let [value, slope, _] = cubic(s);
+            path.push(knot(s, value, slope)).unwrap();
+        }
+        for k in 0..=400 {
+            let s = -1.0 + f64::from(k) * 0.01;
+            let point = path.at(s).unwrap();
+            let [value, first, second] = cubic(s);
+            for i in 0..CHANNELS {
+                assert!((point.value[i] - value).abs() < 1e-12, "value at {s}");
+                assert!((point.first[i] - first).abs() < 1e-12, "first at {s}");
+                // Beyond the last knot, to which the last s belongs, the line has no curvature.
+                assert!(
+                    k == 400 || (point.second[i] - second).abs() < 1e-11,
+                    "second at {s}"
+                );
+            }
+        }
+        for (s, end) in [(-3.0, -1.0), (5.0, 3.0)] {
+            let point = path.at(s).unwrap();
+            let [value, first, _] = cubic(end);
+            assert!((point.value[0] - (value + first * (s - end))).abs() < 1e-12);
+            assert_eq!((point.first[0], point.second[0]), (first, 0.0));
+        }
+    }
+
+    #[test]
+    fn a_knot_out_of_order_not_finite_or_too_many_is_refused() {
+        let mut path = Path::<2>::new();
+        assert_eq!((path.at(0.0), path.start_s(), path.end_s()), (None, None, None));
+        path.push(knot(0.0, 1.0, 0.0)).unwrap();
+        assert_eq!(
+            path.push(knot(0.0, 1.0, 0.0)),
+            Err(PathError::BadKnot { index: 1 })
+        );
+        assert_eq!(
+            path.push(knot(1.0, f64::NAN, 0.0)),
+            Err(PathError::BadKnot { index: 1 })
+        );
+        assert_eq!(
+            path.push(knot(f64::INFINITY, 0.0, 0.0)),
+            Err(PathError::BadKnot { index: 1 })
+        );
+        path.push(knot(1.0, 1.0, 0.0)).unwrap();
+        assert_eq!(
+            path.push(knot(2.0, 1.0, 0.0)),
+            Err(PathError::Full { capacity: 2 })
+        );
+        assert_eq!(
+            (path.len(), path.start_s(), path.end_s()),
+            (2, Some(0.0), Some(1.0))
+        );
+        path.clear(7);
+        assert!(path.is_empty() && path.id() == 7);
+    }
+}
