@@ -1,2 +1,96 @@
-//! Placeholder.
+//! Firmware of the motion board. This file is the timetable: who runs when, and what is shared with whom.
+//!
+//! | task | runs at | priority | body |
+//! |---|---|---|---|
+//! | `servo_tick` | 4 kHz | 4 | [`tasks::servo`]: gratings → PID → drives, trips, beams |
+//! | `path_tick` | 1 kHz | 3 | [`tasks::path`]: pose along the path → kinematics → references |
+//! | `network` | frames, and every ms | 1 | [`tasks::network`]: requests, path states, telemetry |
+//! | `idle` | else | 0 | waits |
+//!
+//! The firmware is the same on every board: a feature selects the board crate and nothing else. On the host
+//! it compiles to an empty program.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(all(target_os = "none", feature = "mps2-an500"))]
+use board_mps2_an500 as board;
+#[cfg(all(target_os = "none", feature = "nucleo-h723zg"))]
+use board_nucleo_h723zg as board;
+#[cfg(all(target_os = "none", not(any(feature = "mps2-an500", feature = "nucleo-h723zg"))))]
+compile_error!("select a board: --features mps2-an500 or --features nucleo-h723zg");
+
+#[cfg(target_os = "none")]
+mod tasks;
+
+#[cfg(not(target_os = "none"))]
 fn main() {}
+
+// RTIC's expansion declares its interrupt handlers with unsafe code; the bodies are safe.
+#[cfg(target_os = "none")]
+#[allow(unsafe_code)]
+#[rtic::app(device = crate::board::device, peripherals = false)]
+mod app {
+    use crate::board::{self, Tick, motion::Axes};
+    use crate::tasks::{self, Controller, Network, Outbox, OutboxReader, Published, RollCall, Servo};
+    use heapless::spsc::Queue;
+
+    #[shared]
+    struct Shared {
+        /// Servo loops, and who is alive; the servo tick has the last word.
+        servo: Servo,
+        /// State machine, path, homing; a request locks it for one step.
+        controller: &'static mut Controller,
+    }
+
+    #[local]
+    struct Local {
+        axes: Axes,
+        servo_tick: Tick,
+        path_tick: Tick,
+        outbox: Outbox,
+        network: Network,
+    }
+
+    #[init(local = [
+        controller: Controller = Controller::new(),
+        storage: link::Storage = link::Storage::new(),
+        queue: Queue<Published, 16> = Queue::new(),
+    ])]
+    fn init(cx: init::Context) -> (Shared, Local) {
+        let board = board::motion::init(cx.core);
+        let (outbox, reader): (Outbox, OutboxReader) = cx.local.queue.split();
+        let network = Network::new(board.network, cx.local.storage, reader);
+        defmt::info!("motion board {} with firmware {}", board::NAME, env!("CARGO_PKG_VERSION"));
+        let shared = Shared { servo: Servo::new(RollCall::new(board.watchdog)), controller: cx.local.controller };
+        let local =
+            Local { axes: board.axes, servo_tick: board.servo_tick, path_tick: board.path_tick, outbox, network };
+        (shared, local)
+    }
+
+    #[task(binds = SERVO_TICK, priority = 4, shared = [servo], local = [axes, servo_tick])]
+    fn servo_tick(mut cx: servo_tick::Context) {
+        let elapsed = cx.local.servo_tick.acknowledge();
+        cx.shared.servo.lock(|servo| tasks::servo::tick(servo, cx.local.axes, elapsed));
+    }
+
+    #[task(binds = PATH_TICK, priority = 3, shared = [servo, controller], local = [path_tick, outbox])]
+    fn path_tick(cx: path_tick::Context) {
+        let elapsed = cx.local.path_tick.acknowledge();
+        (cx.shared.servo, cx.shared.controller)
+            .lock_each(|servo, controller| tasks::path::tick(servo, controller, cx.local.outbox, elapsed));
+        rtic::pend(board::device::Interrupt::ETHERNET);
+    }
+
+    #[task(binds = ETHERNET, priority = 1, shared = [servo, controller], local = [network])]
+    fn network(mut cx: network::Context) {
+        let network = cx.local.network;
+        network.run(|request| cx.shared.controller.lock(|controller| controller.handle(request)));
+        cx.shared.servo.lock(|servo| servo.alive.network());
+    }
+
+    #[idle]
+    fn idle(_: idle::Context) -> ! {
+        loop {
+            board::idle();
+        }
+    }
+}

@@ -72,27 +72,30 @@ impl Gantry {
         [x + self.square_offset / 2.0, x - self.square_offset / 2.0]
     }
 
-    /// One tick of both loops towards `setpoint` of the axis, the motors being at `position` \[mm\].
+    /// One tick of both loops towards the `setpoints` of X1 and X2 (see [`Gantry::motors`]), the motors being
+    /// at `position` \[mm\]. Without `coupled` each goes its own way: before the reference marks are known the
+    /// skew means nothing.
     pub fn step(
         &self,
         state: &mut GantryState,
-        setpoint: &Setpoint,
+        setpoints: &[Setpoint; 2],
         position: [f64; 2],
+        coupled: bool,
     ) -> Result<GantryOutput, NotFinite> {
         let skew = self.skew(position);
         if !(skew.is_finite() && setpoint.is_finite()) {
             return Err(NotFinite);
         }
-        let rate = self.derivative.step(&mut state.derivative, skew);
-        let correction = self.coupling * skew + self.coupling_derivative * rate;
-        let target = self.motors(setpoint.position);
+        let correction = if coupled {
+            let rate = self.derivative.step(&mut state.derivative, skew);
+            self.coupling * skew + self.coupling_derivative * rate
+        } else {
+            state.derivative = DerivativeState::default();
+            0.0
+        };
         let mut command = [0.0; 2];
         for (i, extra) in [-correction, correction].into_iter().enumerate() {
-            let setpoint = Setpoint {
-                position: target[i],
-                ..*setpoint
-            };
-            command[i] = self.pids[i].step(&mut state.pids[i], &setpoint, position[i], extra)?;
+            command[i] = self.pids[i].step(&mut state.pids[i], &setpoints[i], position[i], extra)?;
         }
         Ok(GantryOutput { command, skew })
     }

@@ -90,6 +90,9 @@ pub enum Fault {
         /// How long.
         silent_ms: u32,
     },
+    /// A control law got a value that is not a number.
+    #[error("a control law got a value that is not a number; check the machine parameters")]
+    NotANumber,
     /// The path task did not deliver references in time, twice in a row.
     #[error("the path task was late twice in a row; the references ran dry")]
     ReferencesLate,

@@ -1,0 +1,629 @@
+//! The path tick: where the machine shall be two milliseconds from now, and everything that may change that.
+//!
+//! Time runs in milliseconds k. Path tick k computes the reference of k + 2; together with that of k + 1 it
+//! makes the [`Segment`] which the servo ticks follow from k + 1 on, so the path tick has a whole
+//! millisecond. What is published at tick k belongs to k.
+
+use super::beams::{Beams, MAX_EVENTS};
+use super::homing::{Homing, HomingStep};
+use super::machine::Machine;
+use super::segment::{BeamOutput, MotorReference, PATH_PERIOD_S, Segment};
+use super::servo::{ServoLoops, ServoOrder, ServoReport};
+use super::state::Event;
+use super::{Fault, MotionConfig, State, Vibration};
+use crate::io::{AXES, MOTORS};
+use crate::kinematics::AXIS_UNIT;
+use crate::protocol::{
+    Knot, MotionSample, MotionStatus, PathAction, PathEvent, PathState, Refusal, Request, Response,
+};
+use crate::trajectory::{Path, PathError, SpeedLimits, SpeedProfile, SpeedState, reference};
+use heapless::Vec;
+
+/// A path begins where the axes stand, to this much (mm or rad).
+const START_TOLERANCE: f64 = 2e-6;
+/// Lost path ticks that are made up for at once; more are too late anyway.
+const MAX_CATCH_UP: u32 = 4;
+
+/// What the path tick is given.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PathTickInput {
+    /// The board's clock at the tick \[µs\].
+    pub now_us: u64,
+    /// Path tick periods since the last call, 1 when none was lost.
+    pub elapsed: u32,
+    /// What the servo ticks reported.
+    pub report: ServoReport,
+}
+
+/// What the path tick gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathTickOutput {
+    /// For the servo ticks.
+    pub order: ServoOrder,
+    /// For the tracker board.
+    pub path_state: PathState,
+    /// For the PC.
+    pub sample: MotionSample,
+}
+
+/// Speed along the path, under way.
+#[derive(Clone, Debug)]
+struct Travel {
+    profile: SpeedProfile,
+    time: f64,
+    limits: SpeedLimits,
+}
+
+/// The motion board's controller above the servo loops.
+#[derive(Clone, Debug)]
+pub struct MotionController<const KNOTS: usize> {
+    state: State,
+    fault: Option<Fault>,
+    /// Fault that becomes one when the machine has come to rest.
+    pending: Option<Fault>,
+    machine: Option<Machine>,
+    servo_setup: Option<ServoLoops>,
+    homing: Option<Homing>,
+    homed: bool,
+    path: Path<KNOTS>,
+    events: Vec<PathEvent, MAX_EVENTS>,
+    beams: Beams,
+    travel: Option<Travel>,
+    resume_wanted: bool,
+    /// Along the path at k, k + 1, k + 2.
+    along: [SpeedState; 3],
+    /// Gates given to the servo ticks for the millisecond from k, and from k + 1.
+    gates: [BeamOutput; 2],
+    /// Of the motors at k + 2.
+    reference: MotorReference,
+    /// Of the axes at k + 2, where a path begins.
+    axes: [f64; AXES],
+    measured: [f64; AXES],
+    tick: u32,
+    ticks_lost: u32,
+    first_tick_us: Option<u64>,
+    heard: bool,
+    heard_us: u64,
+    servo_ticks: (u32, u32, u32),
+    vibration: [Vibration; MOTORS],
+}
+
+impl<const KNOTS: usize> Default for MotionController<KNOTS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const KNOTS: usize> MotionController<KNOTS> {
+    /// Without parameters, drives off.
+    pub const fn new() -> Self {
+        const REST: SpeedState = SpeedState {
+            s: 0.0,
+            v: 0.0,
+            a: 0.0,
+        };
+        Self {
+            state: State::Off,
+            fault: None,
+            pending: None,
+            machine: None,
+            servo_setup: None,
+            homing: None,
+            homed: false,
+            path: Path::new(),
+            events: Vec::new(),
+            beams: Beams::NONE,
+            travel: None,
+            resume_wanted: false,
+            along: [REST; 3],
+            gates: [BeamOutput::OFF; 2],
+            reference: MotorReference::ZERO,
+            axes: [0.0; AXES],
+            measured: [0.0; AXES],
+            tick: 0,
+            ticks_lost: 0,
+            first_tick_us: None,
+            heard: false,
+            heard_us: 0,
+            servo_ticks: (0, 0, 0),
+            vibration: [Vibration::NONE; MOTORS],
+        }
+    }
+
+    /// Servo loops of newly accepted parameters, once; they replace the running ones while the drives are off.
+    pub fn take_servo_setup(&mut self) -> Option<ServoLoops> {
+        self.servo_setup.take()
+    }
+
+    /// State of the board.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// One path tick.
+    pub fn tick(&mut self, input: &PathTickInput) -> PathTickOutput {
+        let report = &input.report;
+        let time_us = self.count(input);
+        self.servo_ticks = (report.ticks, report.lost, report.late);
+        for (vibration, error) in self.vibration.iter_mut().zip(report.peak_error) {
+            vibration.add(error);
+        }
+        self.watch(input);
+        let mut from = self.reference;
+        let mut step = HomingStep::default();
+        match self.state {
+            State::Off | State::Fault => self.stand_where(report),
+            State::Homing => step = self.home(report),
+            State::Idle => {}
+            State::Running | State::Holding | State::Stopping => {
+                // After a lost tick the references catch up, as the servo ticks went on without them.
+                for _ in 0..input.elapsed.clamp(1, MAX_CATCH_UP) {
+                    from = self.reference;
+                    self.travel();
+                }
+            }
+        }
+        let on_path = self.state.on_path();
+        let beams = self.beam_output(report.laser_fault);
+        self.gates = [self.gates[1], beams];
+        if !self.state.drives_on() {
+            from = self.reference;
+        }
+        self.move_frame(report, &step, &mut from);
+        if let Some(machine) = &self.machine {
+            self.measured = machine.axes(&report.position);
+            if self.state == State::Homing {
+                self.axes = machine.axes(&self.reference.position);
+            }
+        }
+        let order = ServoOrder {
+            enable: self.state.drives_on(),
+            coupled: self.homed && self.state.drives_on() && self.homing.is_none(),
+            homing: self.homing.is_some(),
+            segment: Segment::between(&from, &self.reference, beams),
+            offset: step.offset,
+        };
+        let now = self.along[0];
+        PathTickOutput {
+            order,
+            path_state: PathState {
+                tick: self.tick,
+                time_us,
+                sent_us: time_us,
+                path_id: if on_path { self.path.id() } else { 0 },
+                s_mm: now.s,
+                speed_mm_s: now.v,
+                pose: self.measured_pose(),
+                tracking: on_path && self.beams.tracking(),
+            },
+            sample: MotionSample {
+                tick: self.tick,
+                time_us,
+                state: self.state,
+                path_id: if on_path { self.path.id() } else { 0 },
+                s_mm: now.s,
+                speed_mm_s: now.v,
+                beams: self.gates[0].gate,
+                axes: self.measured,
+                truth: report.truth,
+                following_error: report.peak_error.map(|error| error as f32),
+                skew_mm: report.peak_skew as f32,
+            },
+        }
+    }
+
+    /// One request of the PC. The answer says what was done or why not; nothing changes on a refusal.
+    pub fn handle(&mut self, request: &Request) -> Response {
+        self.heard = true;
+        let done = match request {
+            Request::Status => return Response::MotionStatus(self.status()),
+            Request::ConfigureMotion(config) => self.configure(config),
+            Request::Home => self.start_homing(),
+            Request::Disable => self.disable(),
+            Request::Reset => self.reset(),
+            Request::ClearPath { id } => self.clear_path(*id),
+            Request::LoadKnots(knots) => self.load_knots(knots),
+            Request::LoadEvent(event) => self.load_event(event),
+            Request::Run {
+                speed_mm_s,
+                acceleration_mm_s2,
+                jerk_mm_s3,
+            } => self.run(SpeedLimits {
+                velocity: *speed_mm_s,
+                acceleration: *acceleration_mm_s2,
+                jerk: *jerk_mm_s3,
+            }),
+            Request::Hold => self.hold(),
+            Request::Resume => self.resume(),
+            Request::Stop => self.stop(),
+            _ => Err(Refusal::NotMine),
+        };
+        match done {
+            Ok(()) => Response::Done,
+            Err(refusal) => Response::Refused(refusal),
+        }
+    }
+
+    // ---- requests ----
+
+    /// The state after `event`, or a refusal that names the present one.
+    fn allowed(&self, event: Event) -> Result<State, Refusal> {
+        self.state
+            .after(event)
+            .ok_or(Refusal::WrongState { state: self.state })
+    }
+
+    fn configure(&mut self, config: &MotionConfig) -> Result<(), Refusal> {
+        if self.state != State::Off {
+            return Err(Refusal::WrongState { state: self.state });
+        }
+        let (machine, servo) = Machine::build(config).map_err(Refusal::Parameter)?;
+        self.machine = Some(machine);
+        self.servo_setup = Some(servo);
+        self.homed = false;
+        Ok(())
+    }
+
+    fn start_homing(&mut self) -> Result<(), Refusal> {
+        let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
+        let state = self.allowed(Event::Home)?;
+        self.homing = Some(Homing::start(machine.homing.clone()));
+        self.homed = false;
+        self.state = state;
+        Ok(())
+    }
+
+    fn disable(&mut self) -> Result<(), Refusal> {
+        // Always possible; a fault stays until it is reset.
+        self.state = self.state.after(Event::Disable).unwrap_or(self.state);
+        self.leave_path();
+        Ok(())
+    }
+
+    fn reset(&mut self) -> Result<(), Refusal> {
+        self.state = self.allowed(Event::Reset)?;
+        self.fault = None;
+        Ok(())
+    }
+
+    fn clear_path(&mut self, id: u32) -> Result<(), Refusal> {
+        if self.state.on_path() {
+            return Err(Refusal::WrongState { state: self.state });
+        }
+        self.path.clear(id);
+        self.events.clear();
+        Ok(())
+    }
+
+    fn load_knots(&mut self, knots: &[Knot]) -> Result<(), Refusal> {
+        if self.state.on_path() {
+            return Err(Refusal::WrongState { state: self.state });
+        }
+        for knot in knots {
+            self.path.push(*knot).map_err(|error| match error {
+                PathError::Full { capacity } => Refusal::PathFull { capacity },
+                PathError::BadKnot { index } => Refusal::BadKnot { index },
+            })?;
+        }
+        Ok(())
+    }
+
+    fn load_event(&mut self, event: &PathEvent) -> Result<(), Refusal> {
+        let refusal = Refusal::BadEvent {
+            index: self.events.len() as u16,
+        };
+        let sound = match event.action {
+            PathAction::Beam { side, .. } => usize::from(side) < crate::io::SIDES,
+            PathAction::Power { side, watt } => {
+                usize::from(side) < crate::io::SIDES && watt.is_finite() && watt >= 0.0
+            }
+            PathAction::Tracking { .. } => true,
+        };
+        let in_order = self.events.last().is_none_or(|last| last.s_mm <= event.s_mm);
+        if self.state.on_path() || !sound || !in_order || !event.s_mm.is_finite() {
+            return Err(refusal);
+        }
+        self.events.push(*event).map_err(|_| refusal)
+    }
+
+    fn run(&mut self, limits: SpeedLimits) -> Result<(), Refusal> {
+        let state = self.allowed(Event::Run)?;
+        let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
+        if !self.homed {
+            return Err(Refusal::NotHomed);
+        }
+        let (start, end) = self
+            .path
+            .start_s()
+            .zip(self.path.end_s())
+            .ok_or(Refusal::NoPath)?;
+        if start >= end {
+            return Err(Refusal::NoPath);
+        }
+        let profile = SpeedProfile::rest_to_rest(start, end, &limits).map_err(|_| Refusal::NoPath)?;
+        let rest = SpeedState {
+            s: start,
+            v: 0.0,
+            a: 0.0,
+        };
+        let first = reference(&machine.kinematics, &self.path, rest).map_err(|_| Refusal::NoPath)?;
+        for axis in 0..AXES {
+            let distance = first.position[axis] - self.axes[axis];
+            let close = libm::fabs(distance) <= START_TOLERANCE;
+            if !close {
+                return Err(Refusal::NotAtStart {
+                    axis: axis as u8,
+                    distance: (distance / AXIS_UNIT[axis]) as f32,
+                });
+            }
+        }
+        self.state = state;
+        self.beams = Beams::NONE;
+        self.resume_wanted = false;
+        self.along = [rest; 3];
+        self.travel = Some(Travel {
+            profile,
+            time: 0.0,
+            limits,
+        });
+        Ok(())
+    }
+
+    fn hold(&mut self) -> Result<(), Refusal> {
+        self.state = self.allowed(Event::Hold)?;
+        self.resume_wanted = false;
+        self.slow_down();
+        Ok(())
+    }
+
+    fn resume(&mut self) -> Result<(), Refusal> {
+        self.allowed(Event::Resume)?;
+        self.resume_wanted = true;
+        Ok(())
+    }
+
+    fn stop(&mut self) -> Result<(), Refusal> {
+        let state = self.allowed(Event::Stop)?;
+        if self.state == State::Running {
+            self.slow_down();
+        }
+        self.state = state;
+        Ok(())
+    }
+
+    fn status(&self) -> MotionStatus {
+        let (servo_ticks, servo_lost, servo_late) = self.servo_ticks;
+        let people = |axes: &[f64; AXES]| core::array::from_fn(|axis| axes[axis] / AXIS_UNIT[axis]);
+        MotionStatus {
+            state: self.state,
+            fault: self.fault.or(self.pending),
+            homed: self.homed,
+            axes: people(&self.measured),
+            reference: people(&self.axes),
+            path_id: self.path.id(),
+            s_mm: self.along[0].s,
+            knots: self.path.len() as u16,
+            servo_ticks,
+            servo_lost,
+            path_ticks: self.tick,
+            path_lost: self.ticks_lost + servo_late,
+            unsent: 0,
+            vibration_level: self.vibration.map(|vibration| vibration.level()),
+        }
+    }
+
+    // ---- one tick ----
+
+    /// Counts the tick; returns its time. Ticks are hardware periods, so their times are exact multiples.
+    fn count(&mut self, input: &PathTickInput) -> u64 {
+        self.ticks_lost += input.elapsed.saturating_sub(1);
+        self.tick = self.tick.wrapping_add(input.elapsed);
+        let period_us = (PATH_PERIOD_S * 1e6) as u64;
+        let first = *self
+            .first_tick_us
+            .get_or_insert(input.now_us.saturating_sub(u64::from(self.tick) * period_us));
+        first + u64::from(self.tick) * period_us
+    }
+
+    /// Faults that the servo ticks found, and those that leave time for a stop on the path.
+    fn watch(&mut self, input: &PathTickInput) {
+        if core::mem::take(&mut self.heard) || !self.state.on_path() {
+            self.heard_us = input.now_us;
+        }
+        if let (true, Some(fault)) = (self.state.drives_on(), input.report.trip) {
+            self.trip(fault);
+        }
+        let Some(machine) = &self.machine else { return };
+        let silent_us = input.now_us - self.heard_us;
+        if self.state.on_path() && silent_us > machine.link_timeout_us {
+            self.stop_for(Fault::LinkLost {
+                silent_ms: (silent_us / 1000) as u32,
+            });
+        }
+        let faulty = input.report.laser_fault.iter().position(|fault| *fault);
+        if let (State::Running, Some(side)) = (self.state, faulty) {
+            self.stop_for(Fault::Laser { side: side as u8 });
+        }
+    }
+
+    /// Drives off at once.
+    fn trip(&mut self, fault: Fault) {
+        self.fault.get_or_insert(fault);
+        if let Some(state) = self.state.after(Event::Trip) {
+            self.state = state;
+        }
+        self.leave_path();
+    }
+
+    /// Beams off and a controlled stop; then the fault.
+    fn stop_for(&mut self, fault: Fault) {
+        self.pending.get_or_insert(fault);
+        if self.state != State::Stopping && self.stop().is_err() {
+            self.trip(fault);
+        }
+    }
+
+    fn leave_path(&mut self) {
+        self.travel = None;
+        self.homing = None;
+        self.pending = None;
+    }
+
+    /// References follow the position while the drives are off.
+    fn stand_where(&mut self, report: &ServoReport) {
+        self.reference = MotorReference::at_rest(report.position);
+        if let Some(machine) = &self.machine {
+            self.axes = machine.axes(&report.position);
+        }
+    }
+
+    fn home(&mut self, report: &ServoReport) -> HomingStep {
+        let step = match &mut self.homing {
+            Some(homing) => homing.tick(report, &mut self.reference),
+            None => Ok(HomingStep {
+                done: true,
+                ..HomingStep::default()
+            }),
+        };
+        match step {
+            Ok(step) => {
+                if step.done {
+                    self.homing = None;
+                    self.homed = true;
+                    self.state = self.state.after(Event::Homed).unwrap_or(self.state);
+                }
+                step
+            }
+            Err(fault) => {
+                self.trip(fault);
+                HomingStep::default()
+            }
+        }
+    }
+
+    /// Takes the references into the frame of the motors whose mark was just found.
+    fn move_frame(&mut self, report: &ServoReport, step: &HomingStep, from: &mut MotorReference) {
+        for (motor, offset) in step.offset.into_iter().enumerate() {
+            if let Some(offset) = offset {
+                let shift = offset - report.offset[motor];
+                from.position[motor] += shift;
+                self.reference.position[motor] += shift;
+            }
+        }
+    }
+
+    /// Replaces the speed profile by one that stops as soon as the limits allow.
+    fn slow_down(&mut self) {
+        let from = self.along[2];
+        let Some(travel) = &mut self.travel else { return };
+        // On an error, which checked limits and a finite state rule out, the profile from rest to rest goes
+        // on: it ends at rest as well.
+        if let Ok(profile) = SpeedProfile::stop(from, &travel.limits) {
+            travel.profile = profile;
+            travel.time = 0.0;
+        }
+    }
+
+    /// Moves the references on along the path.
+    fn travel(&mut self) {
+        let Some(travel) = &mut self.travel else { return };
+        travel.time += PATH_PERIOD_S;
+        let at_rest = travel.time >= travel.profile.duration() + 2.0 * PATH_PERIOD_S;
+        let state = travel.profile.at(travel.time);
+        self.along = [self.along[1], self.along[2], state];
+        let Some(machine) = &self.machine else { return };
+        match reference(&machine.kinematics, &self.path, state) {
+            Ok(next) => {
+                if let Some(axis) = machine.beyond_travel(&next.position) {
+                    let position = (next.position[axis] / AXIS_UNIT[axis]) as f32;
+                    self.stop_for(Fault::SoftLimit {
+                        axis: axis as u8,
+                        position,
+                    });
+                }
+                self.follow(&next.position, &next.velocity, &next.acceleration);
+            }
+            Err(_) => self.trip(Fault::NoSolution { s_mm: state.s as f32 }),
+        }
+        if at_rest {
+            self.come_to_rest();
+        }
+    }
+
+    fn follow(&mut self, position: &[f64; AXES], velocity: &[f64; AXES], acceleration: &[f64; AXES]) {
+        let Some(machine) = &self.machine else { return };
+        let twice = |x: &[f64; AXES]| [x[0], x[0], x[1], x[2], x[3], x[4], x[5]];
+        self.axes = *position;
+        self.reference = MotorReference {
+            position: machine.motors(position),
+            velocity: twice(velocity),
+            acceleration: twice(acceleration),
+        };
+    }
+
+    /// The profile has ended, and what was published has caught up with it.
+    fn come_to_rest(&mut self) {
+        match self.state {
+            State::Running => {
+                self.travel = None;
+                self.state = self.state.after(Event::PathEnd).unwrap_or(self.state);
+            }
+            State::Stopping => {
+                self.travel = None;
+                match self.pending.take() {
+                    Some(fault) => self.trip(fault),
+                    None => self.state = self.state.after(Event::AtRest).unwrap_or(self.state),
+                }
+            }
+            State::Holding if self.resume_wanted => {
+                self.resume_wanted = false;
+                let from = self.along[2].s;
+                let (Some(travel), Some(end)) = (&mut self.travel, self.path.end_s()) else {
+                    return;
+                };
+                // Held at the very end, nothing is left to run: that is a stop.
+                let event = match SpeedProfile::rest_to_rest(from, end, &travel.limits) {
+                    Ok(profile) if profile.duration() > 0.0 => {
+                        *travel = Travel {
+                            profile,
+                            time: 0.0,
+                            limits: travel.limits,
+                        };
+                        Event::Resume
+                    }
+                    _ => Event::Stop,
+                };
+                self.state = self.state.after(event).unwrap_or(self.state);
+            }
+            _ => {}
+        }
+    }
+
+    /// Beams of the millisecond from k + 1; events count where the path position is then.
+    fn beam_output(&mut self, laser_fault: [bool; crate::io::SIDES]) -> BeamOutput {
+        let then = self.along[1];
+        let armed = self.state == State::Running;
+        if armed {
+            self.beams.pass(&self.events, then.s);
+        }
+        match &self.machine {
+            Some(machine) => self.beams.output(&machine.beams, armed, then.v, laser_fault),
+            None => BeamOutput::OFF,
+        }
+    }
+
+    fn measured_pose(&self) -> [f64; 9] {
+        let Some(machine) = &self.machine else {
+            return [0.0; 9];
+        };
+        let pose = machine.kinematics.forward(&self.measured);
+        let mut values = [0.0; 9];
+        for (place, vector) in values
+            .chunks_exact_mut(3)
+            .zip([pose.position, pose.tangent, pose.normal])
+        {
+            place.copy_from_slice(vector.as_slice());
+        }
+        values
+    }
+}

@@ -1,0 +1,353 @@
+//! The servo tick: gratings in, velocity commands out, for seven motors, with the trips that must not wait.
+
+use super::segment::{SERVO_TICKS_PER_PATH_TICK, Segment};
+use super::{Fault, MotorConfig, SERVO_PERIOD_S};
+use crate::control::{EncoderCheck, FollowingTrip, Gantry, GantryState, Pid, PidState, Setpoint};
+use crate::io::{Bits, DacCode, MOTOR_NAMES, MOTORS, MotionCommand, MotionFeedback, SIDES};
+use crate::parameter::{ParameterError, check};
+use crate::units::DEG_PER_RAD;
+
+/// Internal units (mm or rad) in one unit of the machine file (mm or degree).
+pub const UNIT: [f64; MOTORS] = [
+    1.0,
+    1.0,
+    1.0,
+    1.0,
+    1.0 / DEG_PER_RAD,
+    1.0 / DEG_PER_RAD,
+    1.0 / DEG_PER_RAD,
+];
+
+/// Motors that are coupled as a gantry; the others have loops of their own.
+const GANTRY: usize = 2;
+
+/// Scaling and trips of one motor.
+#[derive(Clone, Debug, PartialEq)]
+struct Motor {
+    /// Position of one count (mm or rad), signed.
+    pitch: f64,
+    /// Position at count 0.
+    offset: f64,
+    /// Velocity at +10 V, signed.
+    velocity_at_10v: f64,
+    following: FollowingTrip,
+    encoder: EncoderCheck,
+}
+
+impl Motor {
+    fn build(index: usize, config: &MotorConfig) -> Result<Self, ParameterError> {
+        let (owner, unit) = (MOTOR_NAMES[index], UNIT[index]);
+        let counts = check(owner, "counts_per_unit", config.counts_per_unit, |x| x != 0.0)?;
+        let full_scale = check(owner, "velocity_at_10v", config.velocity_at_10v, |x| x != 0.0)?;
+        Ok(Self {
+            pitch: unit / counts,
+            offset: 0.0,
+            velocity_at_10v: full_scale * unit,
+            following: FollowingTrip::build(index as u8, owner, config, unit)?,
+            encoder: EncoderCheck::build(index as u8, owner, config, SERVO_PERIOD_S)?,
+        })
+    }
+
+    fn position(&self, counts: i64) -> f64 {
+        counts as f64 * self.pitch + self.offset
+    }
+}
+
+/// One position loop.
+#[derive(Clone, Debug, PartialEq)]
+struct Loop {
+    pid: Pid,
+    state: PidState,
+}
+
+/// What the path tick tells the servo ticks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ServoOrder {
+    /// Drives on.
+    pub enable: bool,
+    /// The gantry is square: couple X1 and X2, and watch the skew.
+    pub coupled: bool,
+    /// Limit switches are part of the search, not a fault.
+    pub homing: bool,
+    /// References of the next millisecond.
+    pub segment: Segment,
+    /// Position at count 0 of the motors whose reference was just found; the segment is in the new frame.
+    pub offset: [Option<f64>; MOTORS],
+}
+
+/// What the servo ticks tell the path tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ServoReport {
+    /// Positions at the last millisecond (mm or rad).
+    pub position: [f64; MOTORS],
+    /// The same, as only a simulated machine can know.
+    pub truth: Option<[f64; MOTORS]>,
+    /// Counts at the last millisecond.
+    pub counts: [i64; MOTORS],
+    /// Position at count 0.
+    pub offset: [f64; MOTORS],
+    /// Counts at a reference mark that was passed since the last report.
+    pub mark: [Option<i64>; MOTORS],
+    /// Limit switches at the positive ends.
+    pub limit_plus: Bits,
+    /// Limit switches at the negative ends.
+    pub limit_minus: Bits,
+    /// Largest |following error| since the last report.
+    pub peak_error: [f64; MOTORS],
+    /// Largest |skew| since the last report \[mm\].
+    pub peak_skew: f64,
+    /// First trip since the drives were enabled.
+    pub trip: Option<Fault>,
+    /// Laser sources that report a fault.
+    pub laser_fault: [bool; SIDES],
+    /// Emergency stop is pressed now.
+    pub estop: bool,
+    /// Servo ticks since boot.
+    pub ticks: u32,
+    /// Servo ticks that were never served.
+    pub lost: u32,
+    /// Milliseconds that began without references.
+    pub late: u32,
+}
+
+/// The servo loops of the motion board.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ServoLoops {
+    motors: [Motor; MOTORS],
+    gantry: Gantry,
+    gantry_state: GantryState,
+    loops: [Loop; MOTORS - GANTRY],
+    enabled: bool,
+    coupled: bool,
+    homing: bool,
+    current: Segment,
+    next: Option<Segment>,
+    last_counts: Option<[i64; MOTORS]>,
+    late_in_a_row: u32,
+    report: ServoReport,
+}
+
+impl ServoLoops {
+    /// Builds the loops of a machine.
+    pub fn build(motors: &[MotorConfig; MOTORS], gantry: Gantry) -> Result<Self, ParameterError> {
+        let motor = |index: usize| Motor::build(index, &motors[index]);
+        let position_loop = |index: usize| {
+            let pid = Pid::build(MOTOR_NAMES[index], &motors[index], UNIT[index], SERVO_PERIOD_S)?;
+            Ok(Loop {
+                pid,
+                state: PidState::default(),
+            })
+        };
+        Ok(Self {
+            motors: [
+                motor(0)?,
+                motor(1)?,
+                motor(2)?,
+                motor(3)?,
+                motor(4)?,
+                motor(5)?,
+                motor(6)?,
+            ],
+            gantry,
+            gantry_state: GantryState::default(),
+            loops: [
+                position_loop(2)?,
+                position_loop(3)?,
+                position_loop(4)?,
+                position_loop(5)?,
+                position_loop(6)?,
+            ],
+            enabled: false,
+            coupled: false,
+            homing: false,
+            current: Segment::default(),
+            next: None,
+            last_counts: None,
+            late_in_a_row: 0,
+            report: ServoReport::default(),
+        })
+    }
+
+    /// One servo tick. `elapsed` is the number of tick periods since the last call (1 when none was lost);
+    /// `truth` what only a simulated machine can know, at the same instant as `feedback`.
+    pub fn tick(
+        &mut self,
+        feedback: &MotionFeedback,
+        truth: Option<[f64; MOTORS]>,
+        elapsed: u32,
+    ) -> MotionCommand {
+        let before = self.report.ticks / SERVO_TICKS_PER_PATH_TICK;
+        self.report.ticks = self.report.ticks.wrapping_add(elapsed);
+        self.report.lost += elapsed.saturating_sub(1);
+        let position: [f64; MOTORS] = core::array::from_fn(|m| self.motors[m].position(feedback.counts[m]));
+        self.observe(feedback);
+        if let Err(fault) = self.watch(feedback, elapsed) {
+            self.trip(fault);
+        }
+        if self.report.ticks / SERVO_TICKS_PER_PATH_TICK != before {
+            self.report.position = position;
+            self.report.counts = feedback.counts;
+            self.report.truth = truth;
+            self.take_next();
+        }
+        if !self.enabled {
+            return MotionCommand::SAFE;
+        }
+        self.control(&position).unwrap_or_else(|fault| {
+            self.trip(fault);
+            MotionCommand::SAFE
+        })
+    }
+
+    /// What happened since the last call.
+    pub fn take_report(&mut self) -> ServoReport {
+        let report = self.report;
+        self.report.mark = [None; MOTORS];
+        self.report.peak_error = [0.0; MOTORS];
+        self.report.peak_skew = 0.0;
+        report
+    }
+
+    /// Takes the next millisecond; a few copies, nothing else.
+    pub fn give(&mut self, order: &ServoOrder) {
+        if !order.enable {
+            self.report.trip = None;
+        } else if !self.enabled && self.report.trip.is_none() {
+            for position_loop in &mut self.loops {
+                position_loop.state = PidState::default();
+            }
+            self.gantry_state = GantryState::default();
+            self.current = order.segment;
+            self.late_in_a_row = 0;
+        }
+        self.enabled = order.enable && self.report.trip.is_none();
+        self.coupled = order.coupled;
+        self.homing = order.homing;
+        for (index, offset) in order.offset.into_iter().enumerate() {
+            if let Some(offset) = offset {
+                self.current.shift(index, offset - self.motors[index].offset);
+                self.motors[index].offset = offset;
+                self.report.offset[index] = offset;
+            }
+        }
+        self.next = Some(order.segment);
+    }
+
+    /// Marks and switches.
+    fn observe(&mut self, feedback: &MotionFeedback) {
+        self.report.estop = feedback.estop;
+        self.report.laser_fault = feedback.laser_fault;
+        self.report.limit_plus = feedback.limit_plus;
+        self.report.limit_minus = feedback.limit_minus;
+        for (seen, mark) in self.report.mark.iter_mut().zip(feedback.mark) {
+            *seen = mark.or(*seen);
+        }
+    }
+
+    /// Everything that switches the drives off at once.
+    fn watch(&mut self, feedback: &MotionFeedback, elapsed: u32) -> Result<(), Fault> {
+        let last = self
+            .last_counts
+            .replace(feedback.counts)
+            .unwrap_or(feedback.counts);
+        if feedback.estop {
+            return Err(Fault::EmergencyStop);
+        }
+        for (index, motor) in self.motors.iter().enumerate() {
+            let number = index as u8;
+            if feedback.drive_fault.get(index) {
+                return Err(Fault::Drive { motor: number });
+            }
+            let (plus, minus) = (feedback.limit_plus.get(index), feedback.limit_minus.get(index));
+            if !self.homing && (plus || minus) {
+                return Err(Fault::LimitSwitch {
+                    motor: number,
+                    positive: plus,
+                });
+            }
+            // A step over a lost tick may be longer and says nothing.
+            if elapsed <= 1 {
+                motor.encoder.check(last[index], feedback.counts[index])?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Starts the next millisecond; without references it goes on at constant speed, once.
+    fn take_next(&mut self) {
+        match self.next.take() {
+            Some(segment) => {
+                self.current = segment;
+                self.late_in_a_row = 0;
+            }
+            None if self.enabled => {
+                self.current = self.current.continued();
+                self.late_in_a_row += 1;
+                self.report.late += 1;
+                if self.late_in_a_row > 1 {
+                    self.trip(Fault::ReferencesLate);
+                }
+            }
+            None => {}
+        }
+    }
+
+    fn control(&mut self, position: &[f64; MOTORS]) -> Result<MotionCommand, Fault> {
+        let phase = self.report.ticks % SERVO_TICKS_PER_PATH_TICK;
+        let mut setpoints = [Setpoint::default(); MOTORS];
+        for (index, setpoint) in setpoints.iter_mut().enumerate() {
+            let (position_now, velocity, acceleration) = self.current.at(index, phase);
+            *setpoint = Setpoint {
+                position: position_now,
+                velocity,
+                acceleration,
+            };
+            let error = position_now - position[index];
+            self.report.peak_error[index] = self.report.peak_error[index].max(libm::fabs(error));
+            self.motors[index].following.check(error, velocity)?;
+        }
+        let mut output = [0.0; MOTORS];
+        let x = [position[0], position[1]];
+        let gantry = self.gantry.step(
+            &mut self.gantry_state,
+            &[setpoints[0], setpoints[1]],
+            x,
+            self.coupled,
+        );
+        let gantry = gantry.map_err(|_| Fault::NotANumber)?;
+        output[..GANTRY].copy_from_slice(&gantry.command);
+        if self.coupled {
+            self.report.peak_skew = self.report.peak_skew.max(libm::fabs(gantry.skew));
+            self.gantry.check_skew(gantry.skew)?;
+        }
+        for (place, position_loop) in self.loops.iter_mut().enumerate() {
+            let index = GANTRY + place;
+            let Loop { pid, state } = position_loop;
+            output[index] = pid
+                .step(state, &setpoints[index], position[index], 0.0)
+                .map_err(|_| Fault::NotANumber)?;
+        }
+        let mut command = MotionCommand {
+            enable: true,
+            ..MotionCommand::SAFE
+        };
+        for (index, output) in output.into_iter().enumerate() {
+            command.dac[index] = DacCode::from_ratio(output, self.motors[index].velocity_at_10v);
+        }
+        let beams = self.current.beams;
+        for side in 0..SIDES {
+            if beams.gate[side] && !self.report.laser_fault[side] {
+                command.beam_gate[side] = true;
+                command.beam_power[side] = beams.power[side];
+            }
+        }
+        Ok(command)
+    }
+
+    fn trip(&mut self, fault: Fault) {
+        if self.enabled {
+            self.report.trip.get_or_insert(fault);
+        }
+        self.enabled = false;
+    }
+}
