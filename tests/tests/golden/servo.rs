@@ -70,13 +70,13 @@ fn servo_gantry() {
         for tick in case["ticks"].as_array().expect("ticks") {
             let [r, y1, y2, velocity, acceleration, u1, u2, trip] =
                 numbers(tick).try_into().expect("eight numbers");
-            let setpoint = Setpoint {
-                position: r,
+            let setpoints = gantry.motors(r).map(|position| Setpoint {
+                position,
                 velocity,
                 acceleration,
-            };
+            });
             let seen = gantry
-                .step(&mut state, &setpoint, [y1, y2])
+                .step(&mut state, &setpoints, [y1, y2], true)
                 .expect("finite inputs");
             near(case, "u1", seen.command[0], u1, golden.tolerance);
             near(case, "u2", seen.command[1], u2, golden.tolerance);
