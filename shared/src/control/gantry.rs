@@ -83,7 +83,7 @@ impl Gantry {
         coupled: bool,
     ) -> Result<GantryOutput, NotFinite> {
         let skew = self.skew(position);
-        if !(skew.is_finite() && setpoint.is_finite()) {
+        if !(skew.is_finite() && setpoints.iter().all(Setpoint::is_finite)) {
             return Err(NotFinite);
         }
         let correction = if coupled {
@@ -170,12 +170,12 @@ mod tests {
             let ram = gantry.ram(square, y);
             assert!((ram.x - 1234.5).abs() < 1e-9 && ram.yaw.abs() < 1e-15);
         }
-        let setpoint = Setpoint {
-            position: 1234.5,
+        let setpoints = gantry.motors(1234.5).map(|position| Setpoint {
+            position,
             ..Setpoint::default()
-        };
+        });
         let output = gantry
-            .step(&mut GantryState::default(), &setpoint, square)
+            .step(&mut GantryState::default(), &setpoints, square, true)
             .unwrap();
         assert!(output.command.iter().all(|u| u.abs() < 1e-9));
     }
@@ -197,12 +197,12 @@ mod tests {
             Err(())
         );
         // The leading motor is held back, the other one pushed: P loop and coupling together.
-        let setpoint = Setpoint {
-            position: 1000.0,
+        let setpoints = gantry.motors(1000.0).map(|position| Setpoint {
+            position,
             ..Setpoint::default()
-        };
+        });
         let output = gantry
-            .step(&mut GantryState::default(), &setpoint, skewed)
+            .step(&mut GantryState::default(), &setpoints, skewed, true)
             .unwrap();
         assert!((output.command[0] - 20.0 * 0.07).abs() < 1e-9, "{output:?}");
         assert!((output.command[1] + 120.0 * 0.07).abs() < 1e-9, "{output:?}");
@@ -213,15 +213,20 @@ mod tests {
         let gantry = gantry();
         let mut state = GantryState::default();
         let square = gantry.motors(0.0);
-        gantry.step(&mut state, &Setpoint::default(), square).unwrap();
+        gantry
+            .step(&mut state, &[Setpoint::default(); 2], square, true)
+            .unwrap();
         let before = state;
         let lost = Setpoint {
             position: f64::NAN,
             ..Setpoint::default()
         };
-        assert_eq!(gantry.step(&mut state, &lost, [1.0, 0.0]), Err(NotFinite));
         assert_eq!(
-            gantry.step(&mut state, &Setpoint::default(), [f64::NAN, 0.0]),
+            gantry.step(&mut state, &[lost; 2], [1.0, 0.0], true),
+            Err(NotFinite)
+        );
+        assert_eq!(
+            gantry.step(&mut state, &[Setpoint::default(); 2], [f64::NAN, 0.0], true),
             Err(NotFinite)
         );
         assert_eq!(state, before);
