@@ -5,4 +5,5 @@ pub mod evaluate;
 pub mod machine;
 pub mod nc;
 pub mod record;
+pub mod report;
 pub mod world;
