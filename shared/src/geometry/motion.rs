@@ -107,3 +107,48 @@ pub fn pose_in_motion(
         },
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A vector of changing length and direction.
+    fn along(t: f64, phase: f64) -> Vector3<f64> {
+        Vector3::new(
+            1.0 + t * t,
+            libm::sin(2.0 * t + phase),
+            0.5 - 0.3 * t * t * t + phase,
+        )
+    }
+
+    fn moving(t: f64, phase: f64) -> Moving {
+        Moving {
+            value: along(t, phase),
+            first: Vector3::new(2.0 * t, 2.0 * libm::cos(2.0 * t + phase), -0.9 * t * t),
+            second: Vector3::new(2.0, -4.0 * libm::sin(2.0 * t + phase), -1.8 * t),
+        }
+    }
+
+    /// Derivatives of the frame agree with differences of the frame.
+    #[test]
+    fn normalised_and_perpendicular_vectors_have_exact_derivatives() {
+        let frame = |t: f64| {
+            let tangent = moving(t, 0.0);
+            let tangent = tangent.normalised(tangent.value.norm());
+            let across = moving(t, 2.0).across(&tangent);
+            (tangent, across.normalised(across.value.norm()))
+        };
+        let h = 1e-5;
+        for k in 0..20 {
+            let t = f64::from(k) * 0.1 - 1.0;
+            let (before, now, after) = (frame(t - h), frame(t), frame(t + h));
+            assert!(now.0.value.dot(&now.1.value).abs() < 1e-15);
+            for (before, now, after) in [(before.0, now.0, after.0), (before.1, now.1, after.1)] {
+                let first = (after.value - before.value) / (2.0 * h);
+                let second = (after.first - before.first) / (2.0 * h);
+                assert!((first - now.first).norm() < 1e-7, "first at {t}");
+                assert!((second - now.second).norm() < 1e-7, "second at {t}");
+            }
+        }
+    }
+}
