@@ -8,6 +8,8 @@
 //! 3. *approach*: over the marks again at a quarter of the velocity. These are the readings that count: they
 //!    were all taken in one direction and slowly, whichever way the seek went;
 //! 4. *brake* to standstill.
+//!
+//! The largest travel counts the ways there and back together.
 
 use crate::motion::HomeConfig;
 use crate::parameter::{ParameterError, check, positive};
