@@ -1,5 +1,9 @@
 //! The two boards as the PC sees them, whether they are real, emulated or simulated.
 
+mod network;
+
+pub use network::{Endpoint, NetworkBoards, Patience};
+
 use shared::protocol::framing::FrameError;
 use shared::protocol::{Datagram, Identity, Refusal, Request, Response, Role};
 use std::time::Duration;
