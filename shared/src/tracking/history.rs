@@ -3,7 +3,7 @@
 use crate::geometry::Pose;
 use crate::io::SLIDES;
 use crate::protocol::PathState;
-use heapless::Deque;
+use heapless::{Deque, Vec};
 use nalgebra::Vector3;
 
 /// Path states kept: 64 ms.
@@ -162,8 +162,6 @@ fn interpolate(older: &PathState, newer: &PathState, time_us: u64) -> Option<Pla
 /// What was latched at a strobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CaptureRecord {
-    /// Number of the capture.
-    pub number: u32,
     /// Motion board's time \[µs\].
     pub motion_time_us: u64,
     /// Place as known at the strobe; a little extrapolated.
@@ -173,35 +171,47 @@ pub struct CaptureRecord {
 }
 
 /// The last captures by number.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct CaptureHistory {
-    records: [Option<CaptureRecord>; CAPTURES],
-}
-
-impl Default for CaptureHistory {
-    fn default() -> Self {
-        Self::new()
-    }
+    /// Capture `n` lies at `n` mod 256.
+    records: Vec<CaptureRecord, CAPTURES>,
+    next: u32,
+    /// Captures before this one are forgotten.
+    first: u32,
 }
 
 impl CaptureHistory {
     /// An empty history.
     pub const fn new() -> Self {
         Self {
-            records: [None; CAPTURES],
+            records: Vec::new(),
+            next: 0,
+            first: 0,
         }
     }
 
-    /// Remembers a capture in place of the one 256 strobes ago.
-    pub fn push(&mut self, record: CaptureRecord) {
-        self.records[record.number as usize % CAPTURES] = Some(record);
+    /// Remembers a capture in place of the one 256 strobes ago; returns its number.
+    pub fn push(&mut self, record: CaptureRecord) -> u32 {
+        let number = self.next;
+        if let Err(record) = self.records.push(record) {
+            self.records[number as usize % CAPTURES] = record;
+        }
+        self.next = number.wrapping_add(1);
+        if self.next.wrapping_sub(self.first) > CAPTURES as u32 {
+            self.first = self.next.wrapping_sub(CAPTURES as u32);
+        }
+        number
     }
 
-    /// The capture of that number; `None` if it is older than the history or never was.
+    /// Forgets all captures; their numbers are not given again.
+    pub fn forget(&mut self) {
+        self.first = self.next;
+    }
+
+    /// The capture of that number; `None` if it is older than the history, was forgotten, or never was.
     pub fn get(&self, number: u32) -> Option<&CaptureRecord> {
-        self.records[number as usize % CAPTURES]
-            .as_ref()
-            .filter(|record| record.number == number)
+        let known = number.wrapping_sub(self.first) < self.next.wrapping_sub(self.first);
+        self.records.get(number as usize % CAPTURES).filter(|_| known)
     }
 }
 
@@ -271,15 +281,17 @@ mod tests {
         path.push(&state(0, 1, 0.0));
         let place = path.newest().unwrap().0;
         for number in 0..300 {
-            captures.push(CaptureRecord {
-                number,
-                motion_time_us: 0,
+            let record = CaptureRecord {
+                motion_time_us: u64::from(number),
                 place,
                 slides: [0.0; SLIDES],
-            });
+            };
+            assert_eq!(captures.push(record), number);
         }
         assert!(captures.get(43).is_none() && captures.get(300).is_none());
-        assert_eq!(captures.get(44).unwrap().number, 44);
-        assert_eq!(captures.get(299).unwrap().number, 299);
+        assert_eq!(captures.get(44).unwrap().motion_time_us, 44);
+        assert_eq!(captures.get(299).unwrap().motion_time_us, 299);
+        captures.forget();
+        assert!(captures.get(299).is_none());
     }
 }

@@ -84,6 +84,14 @@ pub struct LawState {
 }
 
 impl LawState {
+    /// At rest.
+    pub const fn new() -> Self {
+        Self {
+            integral: 0.0,
+            last_velocity: 0.0,
+        }
+    }
+
     /// One tick: the command that brings the slide, now at `position` \[mm\], to its target.
     pub fn step(&mut self, law: &SlideLaw, target: Option<SlideTarget>, position: f64) -> LawOutput {
         let finite = target.filter(|t| (t.position + t.velocity + position).is_finite());

@@ -2,12 +2,16 @@
 
 pub mod clock;
 mod config;
+mod controller;
 mod fault;
 pub mod frames;
 pub mod gain;
 pub mod history;
 pub mod law;
 pub mod map;
+pub mod parameters;
+mod seam;
 
 pub use config::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
+pub use controller::{TickInput, TickOutput, TrackerController};
 pub use fault::{TrackerFault, TrackerState};

@@ -174,6 +174,11 @@ impl PathPoint {
         [self.value[9], self.value[10]]
     }
 
+    /// Derivative of [`Self::v_follow`] over s.
+    pub fn v_follow_slope(&self) -> [f64; SIDES] {
+        [self.first[9], self.first[10]]
+    }
+
     fn moving(&self, channel: usize) -> Moving {
         let vector = |c: &[f64; CHANNELS]| Vector3::new(c[channel], c[channel + 1], c[channel + 2]);
         Moving {

@@ -1,0 +1,604 @@
+//! The tracker board: feedback, datagrams and requests in; commands, strobes, captures and telemetry out.
+//!
+//! States: *off* → home → *homing* → *ready* ⇄ *tracking*; any of the last three → *fault* (drives off) → reset →
+//! *off*. *Ready* follows the plan as soon as the motion board stands or moves on the path that is loaded here,
+//! and holds the slides where they are otherwise. *Tracking* begins and ends with the path's own tracking flag.
+//!
+//! Lost seam, saturation, a soft limit and a silent motion board do not switch the drives off: they are kept as
+//! the fault for status and telemetry, the PC stops the beams, and the slides go on as well as they can.
+
+use super::clock::ClockRelation;
+use super::history::{CaptureHistory, CaptureRecord, PathHistory, Place, Pushed};
+use super::law::{LawFlag, LawState, SlideTarget};
+use super::parameters::TrackerParameters;
+use super::seam::{Seam, Sight, deviation, plan};
+use super::{TrackerFault, TrackerState};
+use crate::control::{SearchInput, SearchProgress, SearchState};
+use crate::io::{Bits, Command, DacCode, SIDES, SLIDES, SlideCommand, SlideFeedback};
+use crate::protocol::{
+    Capture, ClockRequest, Datagram, Measurement, Refusal, Request, Response, TrackerSample, TrackerStatus,
+};
+use crate::trajectory::{Path, PathError};
+
+/// Control ticks between two clock requests: 10 Hz.
+const CLOCK_REQUEST_TICKS: u32 = 100;
+
+/// What one control tick reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TickInput {
+    /// This board's clock at the tick \[µs\].
+    pub now_us: u64,
+    /// Ticks since the last call, 1 when on time.
+    pub periods: u32,
+    /// Slides.
+    pub feedback: SlideFeedback,
+    /// Slides as only a simulated machine can know \[mm\].
+    pub truth: Option<[f64; SLIDES]>,
+}
+
+/// What one control tick gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TickOutput {
+    /// For the slide drives.
+    pub command: SlideCommand,
+    /// Trigger both cameras now, and offer this capture to the PC.
+    pub capture: Option<Capture>,
+    /// For telemetry.
+    pub sample: TrackerSample,
+    /// Ask the motion board for its clock; set the time anew when it is really sent.
+    pub clock_request: Option<ClockRequest>,
+}
+
+/// The tracker board's controller, for paths of up to `KNOTS` knots.
+#[derive(Clone, Debug)]
+pub struct TrackerController<const KNOTS: usize> {
+    parameters: Option<TrackerParameters>,
+    state: TrackerState,
+    fault: Option<TrackerFault>,
+    path: Path<KNOTS>,
+    history: PathHistory,
+    captures: CaptureHistory,
+    clock: ClockRelation,
+    seam: Seam,
+    slides: [Slide; SLIDES],
+    /// Of the last tick.
+    feedback: SlideFeedback,
+    ticks: u32,
+    lost: u32,
+    ticks_to_strobe: u32,
+    ticks_to_clock_request: u32,
+    too_old: u32,
+}
+
+/// State of one slide.
+#[derive(Clone, Copy, Debug, Default)]
+struct Slide {
+    /// Position at zero counts \[mm\], once the mark was found.
+    offset: Option<f64>,
+    search: Option<SearchState<1>>,
+    law: LawState,
+    position: f64,
+    target: f64,
+    saturated_ticks: u32,
+}
+
+impl<const KNOTS: usize> Default for TrackerController<KNOTS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const KNOTS: usize> TrackerController<KNOTS> {
+    /// A board just booted: no parameters, drives off.
+    pub const fn new() -> Self {
+        const SLIDE: Slide = Slide {
+            offset: None,
+            search: None,
+            law: LawState::new(),
+            position: 0.0,
+            target: 0.0,
+            saturated_ticks: 0,
+        };
+        Self {
+            parameters: None,
+            state: TrackerState::Off,
+            fault: None,
+            path: Path::new(),
+            history: PathHistory::new(),
+            captures: CaptureHistory::new(),
+            clock: ClockRelation::new(),
+            seam: Seam::new(),
+            slides: [SLIDE; SLIDES],
+            feedback: SlideFeedback {
+                counts: [0; SLIDES],
+                mark: [None; SLIDES],
+                limit_plus: Bits::NONE,
+                limit_minus: Bits::NONE,
+                drive_fault: Bits::NONE,
+                estop: false,
+                laser_fault: [false; SIDES],
+            },
+            ticks: 0,
+            lost: 0,
+            ticks_to_strobe: 0,
+            ticks_to_clock_request: 0,
+            too_old: 0,
+        }
+    }
+
+    /// What the board is doing.
+    pub fn state(&self) -> TrackerState {
+        self.state
+    }
+
+    /// One control tick.
+    pub fn tick(&mut self, input: &TickInput) -> TickOutput {
+        self.ticks = self.ticks.wrapping_add(input.periods);
+        self.lost = self.lost.wrapping_add(input.periods.saturating_sub(1));
+        self.feedback = input.feedback;
+        let motion_now = self.clock.to_remote(input.now_us);
+        let place = motion_now.and_then(|now| self.place(now));
+        // Taken out for the tick, so that it can be read while the rest changes.
+        let parameters = self.parameters.take();
+        let mut command = Command::SAFE;
+        let mut capture = None;
+        if let Some(parameters) = &parameters {
+            self.read_slides(parameters);
+            command = self.control(parameters, motion_now, place.as_ref());
+            if due(&mut self.ticks_to_strobe, input.periods, parameters.frame_ticks) {
+                // A capture needs to know where the slides are, and where on the path the machine is.
+                capture = place
+                    .zip(motion_now)
+                    .filter(|_| self.homed())
+                    .map(|(place, motion_now)| self.strobe(input, motion_now, place));
+            }
+        }
+        self.parameters = parameters;
+        let request = due(
+            &mut self.ticks_to_clock_request,
+            input.periods,
+            CLOCK_REQUEST_TICKS,
+        );
+        TickOutput {
+            sample: self.sample(input, &command),
+            command,
+            capture,
+            clock_request: request.then_some(ClockRequest {
+                asked_us: input.now_us,
+            }),
+        }
+    }
+
+    /// Takes a datagram that arrived at `arrived_us` of this board's clock.
+    pub fn datagram(&mut self, datagram: &Datagram, arrived_us: u64) {
+        match datagram {
+            Datagram::PathState(state) => {
+                self.clock.add(state.sent_us, arrived_us);
+                if self.history.push(state) == Pushed::Restarted {
+                    self.forget_seam();
+                }
+            }
+            Datagram::Measurement(measurement) => self.measure(measurement),
+            Datagram::ClockReply(reply) => {
+                self.clock
+                    .add_round_trip(reply.asked_us, reply.received_us, reply.replied_us, arrived_us)
+            }
+            // What only this board or the motion board sends to the PC; clock requests are answered below.
+            Datagram::Capture(_)
+            | Datagram::MotionTelemetry(_)
+            | Datagram::TrackerTelemetry(_)
+            | Datagram::ClockRequest(_) => {}
+        }
+    }
+
+    /// Answers a request of the PC; `unsent` datagrams could not be sent so far.
+    pub fn handle(&mut self, request: &Request, unsent: u32) -> Response {
+        let result = match request {
+            Request::Status => return Response::TrackerStatus(self.status(unsent)),
+            Request::ConfigureTracker(config) => self.allow(&[TrackerState::Off]).and_then(|()| {
+                self.parameters = Some(config.build().map_err(Refusal::Parameter)?);
+                self.slides = Default::default();
+                self.forget_seam();
+                Ok(())
+            }),
+            Request::Home => self.home(),
+            Request::Disable => {
+                if self.state != TrackerState::Fault {
+                    self.state = TrackerState::Off;
+                }
+                Ok(())
+            }
+            Request::Reset => self.reset(),
+            Request::ClearPath { id } => self.allow_all_but_tracking().map(|()| {
+                self.path.clear(*id);
+                self.forget_seam();
+            }),
+            Request::LoadKnots(knots) => self.allow_all_but_tracking().and_then(|()| {
+                for knot in knots {
+                    self.path.push(*knot).map_err(|e| match e {
+                        PathError::Full { capacity } => Refusal::PathFull { capacity },
+                        PathError::BadKnot { index } => Refusal::BadKnot { index },
+                    })?;
+                }
+                Ok(())
+            }),
+            // Of the session, or of the motion board.
+            Request::Hello { .. }
+            | Request::Subscribe { .. }
+            | Request::ConfigureMotion(_)
+            | Request::PathStatesTo { .. }
+            | Request::LoadEvent(_)
+            | Request::Run { .. }
+            | Request::Hold
+            | Request::Resume
+            | Request::Stop => Err(Refusal::NotMine),
+        };
+        match result {
+            Ok(()) => Response::Done,
+            Err(refusal) => Response::Refused(refusal),
+        }
+    }
+
+    /// Forgets what was seen, and what was photographed but not yet answered.
+    fn forget_seam(&mut self) {
+        self.seam.forget();
+        self.captures.forget();
+    }
+
+    fn home(&mut self) -> Result<(), Refusal> {
+        let parameters = self.parameters.as_ref().ok_or(Refusal::NotConfigured)?;
+        self.allow(&[TrackerState::Off, TrackerState::Ready])?;
+        for ((slide, parameters), counts) in self
+            .slides
+            .iter_mut()
+            .zip(&parameters.slides)
+            .zip(self.feedback.counts)
+        {
+            slide.offset = None;
+            slide.search = Some(parameters.search.start(counts));
+        }
+        self.state = TrackerState::Homing;
+        self.forget_seam();
+        Ok(())
+    }
+
+    /// Forgets the fault; a board in fault goes off if the cause is gone.
+    fn reset(&mut self) -> Result<(), Refusal> {
+        if self.state == TrackerState::Fault {
+            if self.feedback.estop || self.feedback.drive_fault.any() {
+                return Err(Refusal::WrongTrackerState { state: self.state });
+            }
+            self.state = TrackerState::Off;
+        }
+        self.fault = None;
+        Ok(())
+    }
+
+    fn allow(&self, states: &[TrackerState]) -> Result<(), Refusal> {
+        if states.contains(&self.state) {
+            Ok(())
+        } else {
+            Err(Refusal::WrongTrackerState { state: self.state })
+        }
+    }
+
+    fn allow_all_but_tracking(&self) -> Result<(), Refusal> {
+        self.allow(&[
+            TrackerState::Off,
+            TrackerState::Homing,
+            TrackerState::Ready,
+            TrackerState::Fault,
+        ])
+    }
+
+    /// Where the machine is on its path at the motion board's time `motion_now_us`; `None` if the newest path
+    /// state is stale.
+    fn place(&self, motion_now_us: u64) -> Option<Place> {
+        let stale = self.parameters.as_ref()?.stale_path_us;
+        (self.silent_us(motion_now_us) <= stale)
+            .then(|| self.history.at(motion_now_us))
+            .flatten()
+    }
+
+    /// How old the newest path state is \[µs\].
+    fn silent_us(&self, motion_now_us: u64) -> u64 {
+        self.history
+            .newest()
+            .map_or(u64::MAX, |(_, time_us)| motion_now_us.saturating_sub(time_us))
+    }
+
+    fn read_slides(&mut self, parameters: &TrackerParameters) {
+        for (i, slide) in self.slides.iter_mut().enumerate() {
+            let measured = self.feedback.counts[i] as f64 / parameters.slides[i].counts_per_mm;
+            slide.position = measured + slide.offset.unwrap_or(0.0);
+        }
+    }
+
+    fn control(
+        &mut self,
+        parameters: &TrackerParameters,
+        motion_now: Option<u64>,
+        place: Option<&Place>,
+    ) -> SlideCommand {
+        let on = !matches!(self.state, TrackerState::Off | TrackerState::Fault);
+        if on && let Some(fault) = self.trip() {
+            self.report(fault);
+            self.state = TrackerState::Fault;
+        }
+        match self.state {
+            TrackerState::Off | TrackerState::Fault => self.rest(),
+            TrackerState::Homing => self.search(parameters),
+            TrackerState::Ready | TrackerState::Tracking => self.follow(parameters, motion_now, place),
+        }
+    }
+
+    /// A reason to switch the drives off. A limit switch is none while homing, where it turns the search round.
+    fn trip(&self) -> Option<TrackerFault> {
+        let feedback = &self.feedback;
+        if feedback.estop {
+            return Some(TrackerFault::EmergencyStop);
+        }
+        (0..SLIDES).find_map(|i| {
+            let slide = i as u8;
+            if feedback.drive_fault.get(i) {
+                return Some(TrackerFault::Drive { slide });
+            }
+            let limit = |positive| TrackerFault::LimitSwitch { slide, positive };
+            match self.state {
+                TrackerState::Homing => None,
+                _ if feedback.limit_plus.get(i) => Some(limit(true)),
+                _ if feedback.limit_minus.get(i) => Some(limit(false)),
+                _ => None,
+            }
+        })
+    }
+
+    /// Keeps the first fault since the last reset.
+    fn report(&mut self, fault: TrackerFault) {
+        self.fault.get_or_insert(fault);
+    }
+
+    /// Drives off.
+    fn rest(&mut self) -> SlideCommand {
+        for slide in &mut self.slides {
+            slide.law.reset();
+            slide.target = slide.position;
+        }
+        Command::SAFE
+    }
+
+    /// Homing: all slides search at once.
+    fn search(&mut self, parameters: &TrackerParameters) -> SlideCommand {
+        let mut command = Command::SAFE;
+        command.enable = true;
+        for i in 0..SLIDES {
+            let slide = &mut self.slides[i];
+            let of = &parameters.slides[i];
+            slide.target = slide.position;
+            let Some(search) = &mut slide.search else {
+                continue;
+            };
+            let input = SearchInput {
+                counts: self.feedback.counts[i],
+                mark: self.feedback.mark[i],
+                limit_plus: self.feedback.limit_plus.get(i),
+                limit_minus: self.feedback.limit_minus.get(i),
+            };
+            match of.search.step(search, &[input]) {
+                SearchProgress::Moving => {
+                    command.dac[i] = DacCode::from_ratio(search.velocity(), of.law.full_scale);
+                }
+                SearchProgress::Done { offset } => {
+                    slide.offset = Some(offset[0]);
+                    slide.search = None;
+                }
+                SearchProgress::Failed => {
+                    self.report(TrackerFault::MarkNotFound { slide: i as u8 });
+                    self.state = TrackerState::Fault;
+                    return self.rest();
+                }
+            }
+        }
+        if self.homed() {
+            self.read_slides(parameters);
+            for slide in &mut self.slides {
+                slide.law.reset();
+                slide.target = slide.position;
+            }
+            self.state = TrackerState::Ready;
+        }
+        command
+    }
+
+    fn homed(&self) -> bool {
+        self.slides.iter().all(|slide| slide.offset.is_some())
+    }
+
+    /// Ready and tracking: one tick of the control law toward seam, plan or rest.
+    fn follow(
+        &mut self,
+        parameters: &TrackerParameters,
+        motion_now: Option<u64>,
+        place: Option<&Place>,
+    ) -> SlideCommand {
+        let on_path = place.filter(|p| p.path_id == self.path.id());
+        let tracking = on_path.is_some_and(|p| p.tracking) && self.path.len() >= 2;
+        if self.state == TrackerState::Tracking && place.is_none() {
+            let silent_ms = motion_now.map_or(u64::MAX, |now| self.silent_us(now)) / 1000;
+            self.report(TrackerFault::PathStale {
+                silent_ms: u32::try_from(silent_ms).unwrap_or(u32::MAX),
+            });
+        }
+        if tracking && self.state == TrackerState::Ready {
+            self.seam.begin();
+        }
+        if !tracking && self.state == TrackerState::Tracking {
+            // Should there be no plan to follow, stay here.
+            for slide in &mut self.slides {
+                slide.target = slide.position;
+            }
+        }
+        self.state = if tracking {
+            TrackerState::Tracking
+        } else {
+            TrackerState::Ready
+        };
+        let plan = on_path.and_then(|p| plan(parameters, &self.path, p.s, p.speed));
+        let targets = match (plan, on_path) {
+            (Some(plan), Some(place)) if tracking => self.seam_targets(parameters, place, &plan),
+            (Some(plan), _) => plan.map(Some),
+            (None, _) => self.slides.map(|slide| Some(SlideTarget::rest(slide.target))),
+        };
+        let mut command = Command::SAFE;
+        command.enable = true;
+        for (i, target) in targets.into_iter().enumerate() {
+            command.dac[i] = self.drive(parameters, i, target);
+        }
+        command
+    }
+
+    /// Targets while tracking: the seam where it is known, the plan where it was not seen yet, none where it
+    /// was lost; all relative to where the heads really are.
+    fn seam_targets(
+        &mut self,
+        parameters: &TrackerParameters,
+        place: &Place,
+        plan: &[SlideTarget; SLIDES],
+    ) -> [Option<SlideTarget>; SLIDES] {
+        // Of the newest state as it was: an extrapolated pose would show a bend of the path as a deviation.
+        let off = self
+            .history
+            .newest()
+            .and_then(|(newest, _)| deviation(&parameters.heads, &self.path, &newest))
+            .unwrap_or([0.0; SLIDES]);
+        let mut targets = [None; SLIDES];
+        for (i, target) in targets.iter_mut().enumerate() {
+            let in_plan = match self.seam.sight(parameters, i, place.s, place.speed) {
+                Sight::Seam(target) => target,
+                Sight::NotYet => plan[i],
+                Sight::Lost => {
+                    self.report(TrackerFault::LostSeam {
+                        side: i as u8 / 2,
+                        s_mm: place.s as f32,
+                    });
+                    continue;
+                }
+            };
+            *target = Some(SlideTarget {
+                position: in_plan.position - off[i],
+                ..in_plan
+            });
+        }
+        targets
+    }
+
+    /// One tick of the control law of slide `i`.
+    fn drive(&mut self, parameters: &TrackerParameters, i: usize, target: Option<SlideTarget>) -> DacCode {
+        let slide = &mut self.slides[i];
+        slide.target = target.map_or(slide.position, |t| t.position);
+        let output = slide.law.step(&parameters.slides[i].law, target, slide.position);
+        slide.saturated_ticks = match output.flag {
+            LawFlag::Saturated => slide.saturated_ticks.saturating_add(1),
+            LawFlag::Free | LawFlag::NoTarget | LawFlag::SoftLimit => 0,
+        };
+        if self.state == TrackerState::Tracking {
+            let (ms, position_mm) = (slide.saturated_ticks, slide.position as f32);
+            let slide = i as u8;
+            if ms > parameters.saturation_ticks {
+                self.report(TrackerFault::Saturated { slide, ms });
+            }
+            if output.flag == LawFlag::SoftLimit {
+                self.report(TrackerFault::SoftLimit { slide, position_mm });
+            }
+        }
+        output.dac
+    }
+
+    /// Latches a capture.
+    fn strobe(&mut self, input: &TickInput, motion_time_us: u64, place: Place) -> Capture {
+        let slides = self.slides.map(|slide| slide.position);
+        let number = self.captures.push(CaptureRecord {
+            motion_time_us,
+            place,
+            slides,
+        });
+        Capture {
+            number,
+            time_us: input.now_us,
+            motion_time_us,
+            s_mm: place.s,
+            path_id: place.path_id,
+            slides_mm: slides,
+            truth_mm: input.truth,
+        }
+    }
+
+    /// Enters a measurement into the map; refuses one whose capture, or its path, is gone.
+    fn measure(&mut self, measurement: &Measurement) {
+        let capture = self
+            .captures
+            .get(measurement.capture)
+            .filter(|capture| capture.place.path_id == self.path.id());
+        let Some((parameters, capture)) = self.parameters.as_ref().zip(capture) else {
+            self.too_old = self.too_old.saturating_add(1);
+            return;
+        };
+        // By now the path states around the strobe are there.
+        let place = self
+            .history
+            .between(capture.motion_time_us)
+            .unwrap_or(capture.place);
+        for (side, seen) in measurement.sides.iter().enumerate() {
+            if let Some(seen) = seen {
+                self.seam
+                    .add(parameters, &self.path, side, &place, &capture.slides, seen);
+            }
+        }
+    }
+
+    fn sample(&self, input: &TickInput, command: &SlideCommand) -> TrackerSample {
+        TrackerSample {
+            tick: self.ticks,
+            time_us: input.now_us,
+            state: self.state,
+            fault: self.fault,
+            slides_mm: self.slides.map(|slide| slide.position),
+            truth_mm: input.truth,
+            target_mm: self.slides.map(|slide| slide.target),
+            dac: command.dac.map(|code| code.0),
+        }
+    }
+
+    fn status(&self, unsent: u32) -> TrackerStatus {
+        let (path_states, path_states_missing) = self.history.counters();
+        let (accepted, rejected) = self.seam.counters();
+        TrackerStatus {
+            state: self.state,
+            fault: self.fault,
+            homed: self.homed(),
+            slides_mm: self.slides.map(|slide| slide.position),
+            path_id: self.path.id(),
+            knots: self.path.len() as u16,
+            ticks: self.ticks,
+            lost: self.lost,
+            path_states,
+            path_states_missing,
+            clock_residual_us: self.clock.residual_us() as f32,
+            clock_settled: self.clock.settled(),
+            accepted,
+            rejected,
+            too_old: self.too_old,
+            unsent,
+        }
+    }
+}
+
+/// Counts `ticks_left` down by the ticks since the last call; true every `period` ticks, from the first on.
+fn due(ticks_left: &mut u32, periods: u32, period: u32) -> bool {
+    *ticks_left = ticks_left.saturating_sub(periods);
+    let due = *ticks_left == 0;
+    if due {
+        *ticks_left = period;
+    }
+    due
+}

@@ -1,0 +1,111 @@
+//! The machine file's numbers, checked and ready for the tick.
+
+use super::frames::Heads;
+use super::gain::crossover;
+use super::law::SlideLaw;
+use super::map::{MAP_CAPACITY, MapLaw};
+use super::{SlideConfig, TrackerConfig, TrackingConfig};
+use crate::control::ReferenceSearch;
+use crate::io::{SLIDE_NAMES, SLIDES};
+use crate::parameter::{ParameterError, check, not_negative, positive};
+
+/// Period of the control tick \[s\].
+pub const TICK_S: f64 = 1e-3;
+
+/// Everything the tracker's tick needs to know of its machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackerParameters {
+    /// Where the heads sit.
+    pub heads: Heads,
+    /// U1, V1, U2, V2.
+    pub slides: [SlideParameters; SLIDES],
+    /// How the maps take and read samples.
+    pub map: MapLaw,
+    /// Preview time \[s\].
+    pub preview: f64,
+    /// Control ticks between two strobes.
+    pub frame_ticks: u32,
+    /// Path states older than this stop the slides \[µs\].
+    pub stale_path_us: u64,
+    /// Control ticks in saturation that are reported.
+    pub saturation_ticks: u32,
+}
+
+/// One slide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlideParameters {
+    /// Control law.
+    pub law: SlideLaw,
+    /// Encoder counts in one mm, signed.
+    pub counts_per_mm: f64,
+    /// Search for its reference mark.
+    pub search: ReferenceSearch<1>,
+}
+
+impl TrackerConfig {
+    /// Checks and builds; errors name the field as in the machine file.
+    pub fn build(&self) -> Result<TrackerParameters, ParameterError> {
+        let tracking = &self.tracking;
+        let heads = self.head.build()?;
+        let window = positive("tracking", "window_mm", tracking.window_mm)?;
+        let hold = not_negative("tracking", "hold_mm", tracking.hold_mm)?;
+        let at_least_one = |field, value: u32| check("tracking", field, f64::from(value), |v| v >= 1.0);
+        at_least_one("frame_period_ms", tracking.frame_period_ms)?;
+        at_least_one("stale_path_ms", tracking.stale_path_ms)?;
+        at_least_one("saturation_trip_ms", tracking.saturation_trip_ms)?;
+        let mut slides = [self.slides[0].build(SLIDE_NAMES[0], tracking)?; SLIDES];
+        for (i, slide) in slides.iter_mut().enumerate().skip(1) {
+            *slide = self.slides[i].build(SLIDE_NAMES[i], tracking)?;
+        }
+        // Spaced so that the map reaches from behind the beam to the camera at any path speed.
+        let reach = heads.camera_lead() + 2.0 * window + hold;
+        Ok(TrackerParameters {
+            heads,
+            slides,
+            map: MapLaw {
+                window,
+                hold,
+                gate: positive("tracking", "gate_mm", tracking.gate_mm)?,
+                spacing: reach / MAP_CAPACITY as f64,
+                keep: MAP_CAPACITY,
+            },
+            preview: positive("tracking", "preview_s", tracking.preview_s)?,
+            frame_ticks: tracking.frame_period_ms,
+            stale_path_us: u64::from(tracking.stale_path_ms) * 1000,
+            saturation_ticks: tracking.saturation_trip_ms,
+        })
+    }
+}
+
+impl SlideConfig {
+    fn build(&self, name: &str, tracking: &TrackingConfig) -> Result<SlideParameters, ParameterError> {
+        let not_zero = |field, value| check(name, field, value, |v| v != 0.0);
+        let min = check(name, "travel_min_mm", self.travel_min_mm, |_| true)?;
+        let max = check(name, "travel_max_mm", self.travel_max_mm, |v| v > min)?;
+        let preview = positive("tracking", "preview_s", tracking.preview_s)?;
+        // Preview is lag and dead time together; were it all dead time, this gain would be the stability limit.
+        let limit = crossover(preview, 0.0, 0.0).gain;
+        let max_acceleration = positive(name, "max_acceleration_mm_s2", self.max_acceleration_mm_s2)?;
+        Ok(SlideParameters {
+            law: SlideLaw {
+                kp: check("tracking", "kp", tracking.kp, |v| v > 0.0 && v < limit)?,
+                ki: not_negative("tracking", "ki", tracking.ki)?,
+                dt: TICK_S,
+                max_velocity: positive(name, "max_velocity_mm_s", self.max_velocity_mm_s)?,
+                max_acceleration,
+                travel: (min, max),
+                dead_band: not_negative("tracking", "dead_band_mm", tracking.dead_band_mm)?,
+                full_scale: not_zero("velocity_at_10v_mm_s", self.velocity_at_10v_mm_s)?,
+            },
+            counts_per_mm: not_zero("counts_per_mm", self.counts_per_mm)?,
+            search: ReferenceSearch::build(
+                [name],
+                [&self.home],
+                [self.counts_per_mm],
+                1.0,
+                max_acceleration,
+                TICK_S,
+            )?,
+        })
+    }
+}

@@ -1,0 +1,147 @@
+//! The seam of both sides: from measurements to where the slides should be.
+
+use super::frames::{Heads, SpotFrame, meet};
+use super::history::Place;
+use super::law::SlideTarget;
+use super::map::{Added, SeamMap};
+use super::parameters::TrackerParameters;
+use crate::io::{SIDES, SLIDES};
+use crate::protocol::SideMeasurement;
+use crate::trajectory::Path;
+
+/// Index of the U slide of a side; its V slide is the next.
+const fn u_slide(side: usize) -> usize {
+    2 * side
+}
+
+/// Maps of the four channels, and what became of the measurements.
+#[derive(Clone, Debug, Default)]
+pub struct Seam {
+    maps: [SeamMap; SLIDES],
+    /// The channel had an estimate since tracking began.
+    seen: [bool; SLIDES],
+    accepted: [u32; SIDES],
+    rejected: [u32; SIDES],
+}
+
+/// Where a slide should be, as far as the seam tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sight {
+    /// The seam, in the frame of the planned path.
+    Seam(SlideTarget),
+    /// The seam was not seen yet: follow the plan.
+    NotYet,
+    /// The seam was seen, but for longer than the map reaches not any more.
+    Lost,
+}
+
+impl Seam {
+    /// Knows nothing.
+    pub const fn new() -> Self {
+        Self {
+            maps: [const { SeamMap::new() }; SLIDES],
+            seen: [false; SLIDES],
+            accepted: [0; SIDES],
+            rejected: [0; SIDES],
+        }
+    }
+
+    /// Forgets the seam, for another path or a new run of the same.
+    pub fn forget(&mut self) {
+        self.maps.iter_mut().for_each(SeamMap::clear);
+        self.begin();
+    }
+
+    /// Tracking begins: until the seam comes into sight the plan is followed.
+    pub fn begin(&mut self) {
+        self.seen = [false; SLIDES];
+    }
+
+    /// Measurements used and refused as outliers, per side.
+    pub fn counters(&self) -> ([u32; SIDES], [u32; SIDES]) {
+        (self.accepted, self.rejected)
+    }
+
+    /// Enters what the camera of `side` saw when the machine was at `place` and the slides at `slides` \[mm\].
+    pub fn add<const N: usize>(
+        &mut self,
+        parameters: &TrackerParameters,
+        path: &Path<N>,
+        side: usize,
+        place: &Place,
+        slides: &[f64; SLIDES],
+        seen: &SideMeasurement,
+    ) {
+        let heads = &parameters.heads;
+        let (u, v) = (u_slide(side), u_slide(side) + 1);
+        let spot = heads.spot(&place.pose, side);
+        let point = heads.seam_point(&spot, slides[u], slides[v], seen.delta_u_mm, seen.delta_v_mm);
+        let start = place.s + heads.camera_lead();
+        let Some(meeting) = meet(&point, start, |s| planned_spot(heads, path, side, s)) else {
+            self.rejected[side] = self.rejected[side].saturating_add(1);
+            return;
+        };
+        let added = [(u, meeting.u), (v, meeting.v)]
+            .map(|(slide, y)| self.maps[slide].add(&parameters.map, meeting.sigma, y));
+        if added.contains(&Added::Outlier) {
+            self.rejected[side] = self.rejected[side].saturating_add(1);
+        } else if added != [Added::TooClose; 2] {
+            self.accepted[side] = self.accepted[side].saturating_add(1);
+        }
+    }
+
+    /// Where `slide` should be at path position `s` \[mm\] and path speed `speed` \[mm/s\].
+    pub fn sight(&mut self, parameters: &TrackerParameters, slide: usize, s: f64, speed: f64) -> Sight {
+        let map = &self.maps[slide];
+        match map.estimate(&parameters.map, s) {
+            Some(now) => {
+                self.seen[slide] = true;
+                let ahead = map.estimate(&parameters.map, s + speed * parameters.preview);
+                Sight::Seam(SlideTarget::seam(now, ahead, speed))
+            }
+            None if self.seen[slide] => Sight::Lost,
+            None => Sight::NotYet,
+        }
+    }
+}
+
+/// Frame of the head of `side` on the planned path.
+fn planned_spot<const N: usize>(heads: &Heads, path: &Path<N>, side: usize, s: f64) -> Option<SpotFrame> {
+    let pose = path.at(s)?.pose().ok()?;
+    Some(heads.spot(&pose, side))
+}
+
+/// Where the plan puts the slides at path position `s` \[mm\], moving at `speed` \[mm/s\]: U at zero, V where it
+/// keeps the defocus (SPEC 0.6). Beyond its ends the path stands still.
+pub fn plan<const N: usize>(
+    parameters: &TrackerParameters,
+    path: &Path<N>,
+    s: f64,
+    speed: f64,
+) -> Option<[SlideTarget; SLIDES]> {
+    let (start, end) = (path.start_s()?, path.end_s()?);
+    let now = path.at(s.clamp(start, end))?.v_follow();
+    let ahead = path.at((s + speed * parameters.preview).clamp(start, end))?;
+    let slope = ahead.v_follow_slope();
+    let mut targets = [SlideTarget::rest(0.0); SLIDES];
+    for side in 0..SIDES {
+        targets[u_slide(side) + 1] = SlideTarget {
+            position: now[side],
+            velocity: speed * slope[side],
+        };
+    }
+    Some(targets)
+}
+
+/// How far each slide's spot is off its planned place because the six axes are: to be subtracted from targets
+/// in the frame of the plan (SPEC 0.7: every six-axis deviation is fed forward to both trackers).
+pub fn deviation<const N: usize>(heads: &Heads, path: &Path<N>, place: &Place) -> Option<[f64; SLIDES]> {
+    let mut off = [0.0; SLIDES];
+    for side in 0..SIDES {
+        let planned = planned_spot(heads, path, side, place.s)?;
+        let (_, u, v) = planned.coordinates(&heads.spot(&place.pose, side).origin);
+        off[u_slide(side)] = u;
+        off[u_slide(side) + 1] = v;
+    }
+    Some(off)
+}

@@ -1,0 +1,5 @@
+//! The tracker board's controller against the slides' model, a path and a seam.
+
+mod bench;
+mod following;
+mod states;

@@ -1,0 +1,404 @@
+//! Every transition of the state machine, every refusal, every fault.
+
+use crate::bench::{Bench, PATH_ID, Shape, config};
+use shared::io::SlideCommand;
+use shared::parameter::ParameterError;
+use shared::protocol::{Datagram, Measurement, Refusal, Request, Response};
+use shared::tracking::{TickInput, TrackerController, TrackerFault, TrackerState};
+
+fn bench() -> Bench {
+    Bench::new(Shape::Straight, |_, _| (0.2, 0.1))
+}
+
+/// A bench in state ready, the path loaded.
+fn ready() -> Bench {
+    let mut bench = bench();
+    bench.prepare();
+    assert_eq!(bench.controller.state(), TrackerState::Ready);
+    bench
+}
+
+/// A bench that tracks at 100 mm/s and sees the seam.
+fn tracking() -> Bench {
+    let mut bench = ready();
+    bench.tracking = true;
+    bench.speed = 100.0;
+    bench.run_ms(400);
+    assert_eq!(bench.controller.state(), TrackerState::Tracking);
+    assert_eq!(bench.last.sample.fault, None);
+    bench
+}
+
+fn wrong_state(state: TrackerState) -> Response {
+    Response::Refused(Refusal::WrongTrackerState { state })
+}
+
+#[test]
+fn without_parameters_it_is_off_and_cannot_home() {
+    let mut bench = bench();
+    bench.run_ms(10);
+    assert_eq!(bench.controller.state(), TrackerState::Off);
+    assert_eq!(bench.last.command, SlideCommand::SAFE);
+    assert_eq!(
+        bench.ask(Request::Home),
+        Response::Refused(Refusal::NotConfigured)
+    );
+}
+
+#[test]
+fn bad_parameters_are_named_and_change_nothing() {
+    let mut bench = bench();
+    let mut bad = config();
+    bad.slides[2].counts_per_mm = 0.0;
+    let refusal = Refusal::Parameter(ParameterError::new("U2", "counts_per_mm", 0.0));
+    assert_eq!(
+        bench.ask(Request::ConfigureTracker(bad)),
+        Response::Refused(refusal)
+    );
+    // More gain than a loop with that much dead time could stand: π/2 / 10 ms = 157/s.
+    let mut bad = config();
+    bad.tracking.kp = 160.0;
+    let refusal = Refusal::Parameter(ParameterError::new("tracking", "kp", 160.0));
+    assert_eq!(
+        bench.ask(Request::ConfigureTracker(bad)),
+        Response::Refused(refusal)
+    );
+    assert_eq!(
+        bench.ask(Request::Home),
+        Response::Refused(Refusal::NotConfigured)
+    );
+}
+
+#[test]
+fn homing_finds_all_marks_within_a_count_and_takes_the_plan() {
+    let mut bench = bench();
+    bench.path_id = 99;
+    bench.accept(Request::ConfigureTracker(config()));
+    bench.accept(Request::Home);
+    assert_eq!(bench.controller.state(), TrackerState::Homing);
+    bench.run_ms(1);
+    assert!(bench.last.command.enable);
+    assert!(!bench.status().homed);
+    bench.run_ms(3000);
+    assert_eq!(bench.controller.state(), TrackerState::Ready);
+    let status = bench.status();
+    assert!(status.homed && status.fault.is_none());
+    for (seen, truth) in status.slides_mm.iter().zip(bench.plant.truth()) {
+        assert!((seen - truth).abs() <= 0.0005, "{seen} {truth}");
+    }
+    // No path: the slides stand still.
+    let before = bench.plant.truth();
+    bench.run_ms(500);
+    for (before, after) in before.iter().zip(bench.plant.truth()) {
+        assert!((before - after).abs() < 0.001);
+    }
+}
+
+#[test]
+fn on_the_loaded_path_without_tracking_the_slides_take_the_plan() {
+    let mut bench = ready();
+    bench.s = 80.0;
+    bench.run_ms(1000);
+    let v = 0.3 * 1.0f64.sin();
+    for (slide, plan) in bench.plant.truth().iter().zip([0.0, v, 0.0, v]) {
+        assert!((slide - plan).abs() < 0.001, "{slide} {plan}");
+    }
+    // On another path they stay where they are.
+    bench.path_id = 99;
+    bench.s = 0.0;
+    bench.run_ms(500);
+    assert!((bench.plant.truth()[1] - v).abs() < 0.001);
+    assert_eq!(bench.controller.state(), TrackerState::Ready);
+}
+
+#[test]
+fn tracking_begins_and_ends_with_the_flag_of_the_path() {
+    let mut bench = tracking();
+    bench.tracking = false;
+    bench.run_ms(2);
+    assert_eq!(bench.controller.state(), TrackerState::Ready);
+    bench.tracking = true;
+    bench.run_ms(2);
+    assert_eq!(bench.controller.state(), TrackerState::Tracking);
+    // Another path than the loaded one is not tracked.
+    bench.path_id = 99;
+    bench.run_ms(2);
+    assert_eq!(bench.controller.state(), TrackerState::Ready);
+    assert_eq!(bench.last.sample.fault, None);
+}
+
+#[test]
+fn a_seam_not_yet_seen_leaves_the_slides_at_the_plan_quietly() {
+    let mut bench = bench();
+    bench.visible = |_, s| s > 100.0;
+    bench.prepare();
+    bench.tracking = true;
+    bench.speed = 100.0;
+    while bench.s < 90.0 {
+        bench.tick();
+    }
+    assert!(bench.plant.truth()[0].abs() < 0.005);
+    assert_eq!(bench.last.sample.fault, None);
+    while bench.s < 120.0 {
+        bench.tick();
+    }
+    assert!((bench.plant.truth()[0] - 0.2).abs() < 0.005);
+    assert_eq!(bench.last.sample.fault, None);
+}
+
+#[test]
+fn a_lost_seam_is_reported_where_the_map_ends_and_only_that_side_stops() {
+    let mut bench = ready();
+    bench.visible = |side, s| side == 0 || s < 100.0;
+    bench.tracking = true;
+    bench.speed = 100.0;
+    while bench.s < 103.0 {
+        bench.tick();
+        assert_eq!(bench.last.sample.fault, None, "s = {}", bench.s);
+    }
+    while bench.s < 110.0 {
+        bench.tick();
+    }
+    let Some(TrackerFault::LostSeam { side: 1, s_mm }) = bench.last.sample.fault else {
+        panic!("{:?}", bench.last.sample.fault);
+    };
+    // Window and hold of 5 mm beyond the last sample before 100 mm.
+    assert!((103.5..=105.5).contains(&s_mm), "{s_mm}");
+    assert_eq!(bench.controller.state(), TrackerState::Tracking);
+    assert_eq!(bench.last.sample.dac[2..], [0, 0]);
+    assert!((bench.plant.truth()[0] - 0.2).abs() < 0.005);
+    // The fault is kept until it is reset.
+    bench.visible = |_, _| true;
+    bench.run_ms(300);
+    assert!(bench.last.sample.fault.is_some());
+    bench.accept(Request::Reset);
+    bench.run_ms(10);
+    assert_eq!(bench.last.sample.fault, None);
+    assert_eq!(bench.controller.state(), TrackerState::Tracking);
+}
+
+#[test]
+fn a_silent_motion_board_ends_tracking_and_the_slides_stop() {
+    let mut bench = tracking();
+    bench.linked = false;
+    bench.run_ms(19);
+    assert_eq!(bench.controller.state(), TrackerState::Tracking);
+    bench.run_ms(3);
+    assert!(matches!(
+        bench.last.sample.fault,
+        Some(TrackerFault::PathStale { silent_ms: 20..=22 })
+    ));
+    assert_eq!(bench.controller.state(), TrackerState::Ready);
+    bench.run_ms(100);
+    let before = bench.plant.truth();
+    let captures = bench.captures;
+    bench.run_ms(200);
+    for (before, after) in before.iter().zip(bench.plant.truth()) {
+        assert!((before - after).abs() < 0.001);
+    }
+    assert_eq!(bench.captures, captures, "no captures without a path position");
+}
+
+#[test]
+fn a_seam_too_steep_for_the_slides_is_reported_as_saturation() {
+    let mut bench = Bench::new(Shape::Straight, |_, s| (0.7 * (s - 100.0).max(0.0), 0.0));
+    bench.prepare();
+    bench.tracking = true;
+    bench.speed = 100.0;
+    while bench.s < 112.0 {
+        bench.tick();
+    }
+    assert!(matches!(
+        bench.last.sample.fault,
+        Some(TrackerFault::Saturated { slide: 0, ms: 51 })
+    ));
+    assert_eq!(bench.controller.state(), TrackerState::Tracking);
+}
+
+#[test]
+fn a_seam_beyond_the_soft_limit_is_reported_and_the_slide_stops_there() {
+    let mut bench = Bench::new(Shape::Straight, |_, s| (0.1 * (s - 40.0).max(0.0), 0.0));
+    bench.prepare();
+    bench.tracking = true;
+    bench.speed = 100.0;
+    while bench.s < 190.0 {
+        bench.tick();
+    }
+    assert!(matches!(
+        bench.last.sample.fault,
+        Some(TrackerFault::SoftLimit { .. })
+    ));
+    assert_eq!(bench.controller.state(), TrackerState::Tracking);
+    assert!((bench.plant.truth()[0] - 12.0).abs() < 0.2);
+}
+
+#[test]
+fn disable_switches_off_from_every_state() {
+    let mut homing = bench();
+    homing.accept(Request::ConfigureTracker(config()));
+    homing.accept(Request::Home);
+    for mut bench in [homing, ready(), tracking()] {
+        bench.accept(Request::Disable);
+        bench.run_ms(1);
+        assert_eq!(bench.controller.state(), TrackerState::Off);
+        assert_eq!(bench.last.command, SlideCommand::SAFE);
+    }
+}
+
+#[test]
+fn estop_drive_and_limit_switch_lead_to_fault_and_reset_leads_out() {
+    type Meddle = fn(&mut shared::io::SlideFeedback);
+    let causes: [(Meddle, TrackerFault); 3] = [
+        (|f| f.estop = true, TrackerFault::EmergencyStop),
+        (|f| f.drive_fault.set(3, true), TrackerFault::Drive { slide: 3 }),
+        (
+            |f| f.limit_minus.set(1, true),
+            TrackerFault::LimitSwitch {
+                slide: 1,
+                positive: false,
+            },
+        ),
+    ];
+    for (cause, fault) in causes {
+        for mut bench in [ready(), tracking()] {
+            bench.meddle = cause;
+            bench.run_ms(1);
+            assert_eq!(bench.controller.state(), TrackerState::Fault);
+            assert_eq!(bench.last.sample.fault, Some(fault));
+            assert_eq!(bench.last.command, SlideCommand::SAFE);
+            assert_eq!(bench.ask(Request::Home), wrong_state(TrackerState::Fault));
+            bench.accept(Request::Disable);
+            assert_eq!(bench.controller.state(), TrackerState::Fault);
+            if !matches!(fault, TrackerFault::LimitSwitch { .. }) {
+                assert_eq!(bench.ask(Request::Reset), wrong_state(TrackerState::Fault));
+            }
+            bench.meddle = |_| {};
+            bench.run_ms(1);
+            bench.accept(Request::Reset);
+            assert_eq!(bench.controller.state(), TrackerState::Off);
+            assert_eq!(bench.status().fault, None);
+        }
+    }
+}
+
+#[test]
+fn homing_ends_in_fault_by_estop_or_without_a_mark() {
+    let mut stopped = bench();
+    stopped.accept(Request::ConfigureTracker(config()));
+    stopped.accept(Request::Home);
+    stopped.run_ms(10);
+    stopped.meddle = |f| f.estop = true;
+    stopped.run_ms(1);
+    assert_eq!(stopped.last.sample.fault, Some(TrackerFault::EmergencyStop));
+    assert_eq!(stopped.controller.state(), TrackerState::Fault);
+
+    let mut blind = bench();
+    blind.meddle = |f| f.mark[2] = None;
+    blind.accept(Request::ConfigureTracker(config()));
+    blind.accept(Request::Home);
+    blind.run_ms(20_000);
+    assert_eq!(
+        blind.last.sample.fault,
+        Some(TrackerFault::MarkNotFound { slide: 2 })
+    );
+    assert_eq!(blind.controller.state(), TrackerState::Fault);
+    assert!(!blind.status().homed);
+}
+
+#[test]
+fn what_would_disturb_the_weld_is_refused_while_tracking() {
+    let mut bench = tracking();
+    for request in [
+        Request::ConfigureTracker(config()),
+        Request::Home,
+        Request::ClearPath { id: 1 },
+        Request::LoadKnots([Shape::Straight.knot(1000.0)].into_iter().collect()),
+    ] {
+        assert_eq!(bench.ask(request), wrong_state(TrackerState::Tracking));
+    }
+    assert_eq!(bench.ask(Request::Hold), Response::Refused(Refusal::NotMine));
+    let mut ready = ready();
+    assert_eq!(
+        ready.ask(Request::ConfigureTracker(config())),
+        wrong_state(TrackerState::Ready)
+    );
+    ready.accept(Request::Home);
+    assert_eq!(ready.controller.state(), TrackerState::Homing);
+}
+
+#[test]
+fn knots_out_of_order_or_one_too_many_are_refused() {
+    let mut controller = TrackerController::<2>::new();
+    let mut load = |s: f64| {
+        let knots = [Shape::Straight.knot(s)].into_iter().collect();
+        controller.handle(&Request::LoadKnots(knots), 0)
+    };
+    assert_eq!(load(0.0), Response::Done);
+    assert_eq!(load(0.0), Response::Refused(Refusal::BadKnot { index: 1 }));
+    assert_eq!(load(1.0), Response::Done);
+    assert_eq!(load(2.0), Response::Refused(Refusal::PathFull { capacity: 2 }));
+}
+
+#[test]
+fn a_second_run_of_the_same_path_sees_the_seam_anew() {
+    let mut bench = tracking();
+    bench.tracking = false;
+    bench.speed = 0.0;
+    bench.s = 0.0;
+    bench.seam = |_, _| (-0.3, 0.0);
+    bench.run_ms(500);
+    bench.tracking = true;
+    bench.speed = 100.0;
+    bench.run_ms(400);
+    assert!((bench.plant.truth()[0] + 0.3).abs() < 0.005);
+    assert_eq!(bench.last.sample.fault, None);
+}
+
+#[test]
+fn measurements_of_forgotten_captures_are_refused_and_counted() {
+    let mut bench = tracking();
+    let answer = |capture| {
+        Datagram::Measurement(Measurement {
+            capture,
+            sides: [None; 2],
+        })
+    };
+    bench.run_ms(1500);
+    let newest = bench.captures - 1;
+    bench.controller.datagram(&answer(newest - 255), 0);
+    assert_eq!(bench.status().too_old, 0);
+    bench.controller.datagram(&answer(newest - 256), 0);
+    bench.controller.datagram(&answer(newest + 1), 0);
+    assert_eq!(bench.status().too_old, 2);
+}
+
+#[test]
+fn lost_ticks_are_counted_and_status_answers_for_the_session() {
+    let mut bench = ready();
+    let before = bench.status();
+    bench.controller.tick(&TickInput {
+        now_us: 0,
+        periods: 3,
+        feedback: Default::default(),
+        truth: None,
+    });
+    let status = bench.status();
+    assert_eq!((status.ticks - before.ticks, status.lost - before.lost), (3, 2));
+    assert_eq!((status.path_id, status.knots), (PATH_ID, 498));
+    assert!(status.clock_settled && status.path_states == 3000 && status.path_states_missing == 0);
+}
+
+#[test]
+fn every_fifth_tick_is_a_capture_of_that_moment() {
+    let mut bench = tracking();
+    let before = bench.captures;
+    bench.run_ms(500);
+    assert_eq!(bench.captures - before, 100);
+    while bench.last.capture.is_none() {
+        bench.tick();
+    }
+    let capture = bench.last.capture.unwrap();
+    // 30 µs of clock error at 100 mm/s are 3 µm.
+    assert!((capture.s_mm - bench.s_now()).abs() < 0.003, "{}", capture.s_mm);
+    assert_eq!(capture.truth_mm, Some(bench.plant.truth()));
+}
