@@ -1,9 +1,11 @@
 //! The PC's part of Seamwright: programs, planning, sessions with the boards, reports.
 
 pub mod boards;
+pub mod curve;
 pub mod evaluate;
 pub mod machine;
 pub mod nc;
+pub mod path;
 pub mod record;
 pub mod report;
 pub mod world;

@@ -57,6 +57,16 @@ impl<'a> NaturalSpline<'a> {
         Ok(Self { x, y, second })
     }
 
+    /// A spline solved before, whose `second` derivatives were kept. All three slices have the same length.
+    ///
+    /// # Panics
+    /// If the lengths differ.
+    pub fn of_solved(x: &'a [f64], y: &'a [f64], second: &'a [f64]) -> Self {
+        let n = x.len();
+        assert!(n >= 2 && y.len() == n && second.len() == n, "slices of one length");
+        Self { x, y, second }
+    }
+
     /// Second derivatives at the knots.
     pub fn second(&self) -> &'a [f64] {
         self.second
