@@ -1,1 +1,59 @@
-//! Placeholder.
+//! The real board: NUCLEO-H723ZG (STM32H723ZG), wired as `docs/wiring.md` says, one for each firmware.
+//!
+//! Its public names are those of every board crate, so the firmware does not know which it runs on. All
+//! registers, and all `unsafe`, are here. **Compiled for, never yet flashed.**
+//!
+//! What is wired where stands in [`pins`] as data: the same tables set the pins up here and are checked on the
+//! host against the manufacturer's own description of the chip. On a host nothing else of this crate exists but
+//! [`counting`].
+#![cfg_attr(target_os = "none", no_std)]
+// Registers, vectors and fault handlers are reached here and nowhere else.
+#![cfg_attr(target_os = "none", allow(unsafe_code))]
+
+pub mod counting;
+pub mod pins;
+
+#[cfg(target_os = "none")]
+mod bring_up;
+#[cfg(target_os = "none")]
+mod clocks;
+#[cfg(target_os = "none")]
+pub mod device;
+#[cfg(target_os = "none")]
+mod encoders;
+#[cfg(target_os = "none")]
+mod ethernet;
+#[cfg(target_os = "none")]
+mod gpio;
+#[cfg(target_os = "none")]
+mod handlers;
+#[cfg(target_os = "none")]
+mod inputs;
+#[cfg(target_os = "none")]
+pub mod motion;
+#[cfg(target_os = "none")]
+mod outputs;
+#[cfg(target_os = "none")]
+mod phy;
+#[cfg(target_os = "none")]
+mod ticks;
+#[cfg(target_os = "none")]
+mod timebase;
+#[cfg(target_os = "none")]
+pub mod tracker;
+#[cfg(target_os = "none")]
+mod watchdog;
+
+#[cfg(target_os = "none")]
+pub use {ethernet::Network, ticks::Tick, timebase::now_us, watchdog::Watchdog};
+
+/// Name of the board, as it tells the PC.
+pub const NAME: &str = "nucleo-h723zg";
+/// A real machine hangs on the axes.
+pub const SIMULATED_MACHINE: bool = false;
+
+/// One turn of the idle loop: sleeps until the next interrupt.
+#[cfg(target_os = "none")]
+pub fn idle() {
+    cortex_m::asm::wfi();
+}

@@ -1,0 +1,102 @@
+//! Converters, enables, gates and heartbeat.
+
+use crate::clocks::{SPI_HZ, Wait};
+use crate::gpio::{self, Output as Line};
+use crate::pins::{DAC_CLEAR, DAC_LOAD, DAC_SYNC, HEARTBEAT, OUTPUT_MASK, OUTPUT_PORT, Pin, mask};
+use ad5764r::{Bank, Channel, Output};
+use embassy_stm32::mode::Blocking;
+use embassy_stm32::pac::gpio::regs::Bsrr;
+use embassy_stm32::spi::{self, Spi, mode::Master};
+use embassy_stm32::time::Hertz;
+
+/// The bus of the converters.
+pub(crate) type Bus = Spi<'static, Blocking, Master>;
+
+/// How the bus is set.
+pub(crate) fn bus_config() -> spi::Config {
+    let mut config = spi::Config::default();
+    // ad5764r::MODE in the HAL's own type.
+    config.mode = spi::MODE_1;
+    config.frequency = Hertz(SPI_HZ);
+    config
+}
+
+/// Enables, gates, triggers and heartbeat low with one store, then all converters to 0 V.
+pub(crate) fn kill() {
+    gpio::port(OUTPUT_PORT)
+        .bsrr()
+        .write_value(Bsrr(u32::from(OUTPUT_MASK) << 16));
+    gpio::port(DAC_CLEAR.port)
+        .bsrr()
+        .write_value(Bsrr(1 << (DAC_CLEAR.number + 16)));
+}
+
+/// Output `index` of a row of chips with four channels each.
+pub(crate) const fn output(index: usize) -> Output {
+    let channel = match index % 4 {
+        0 => Channel::A,
+        1 => Channel::B,
+        2 => Channel::C,
+        _ => Channel::D,
+    };
+    Output {
+        chip: index / 4,
+        channel,
+    }
+}
+
+/// All outputs of a board with `CHIPS` converters.
+pub(crate) struct Outputs<const CHIPS: usize> {
+    /// `None` once a converter has failed: then everything stays off until the next reset.
+    bank: Option<Bank<Bus, Line, Wait, CHIPS>>,
+    beat: bool,
+}
+
+impl<const CHIPS: usize> Outputs<CHIPS> {
+    /// Sets up the lines of `switched` and the heartbeat, all low, and the converters, all at 0 V.
+    pub(crate) fn start(bus: Bus, switched: &[Pin]) -> Self {
+        for &pin in switched.iter().chain(&[HEARTBEAT]) {
+            Line::new(pin, false);
+        }
+        let sync = core::array::from_fn(|chip| Line::new(DAC_SYNC[chip], true));
+        let clear = Line::new(DAC_CLEAR, false);
+        let bank = Bank::new(bus, sync, Line::new(DAC_LOAD, true), clear, Wait);
+        let mut bank = bank.ok();
+        if let Some(Err(_)) = bank.as_mut().map(Bank::self_test) {
+            defmt::error!("the converters do not answer: check their wiring and supply; outputs stay off");
+            kill();
+            bank = None;
+        }
+        Self { bank, beat: false }
+    }
+
+    /// Whether a converter has failed since reset.
+    pub(crate) fn failed(&self) -> bool {
+        self.bank.is_none()
+    }
+
+    /// Sets the lines of `all` to their bits in `on`, and the converters: off before the converters move, on
+    /// after. The heartbeat alternates.
+    pub(crate) fn apply(&mut self, all: u16, on: u16, codes: &[(Output, i16)]) {
+        let Some(bank) = &mut self.bank else { return };
+        let port = gpio::port(OUTPUT_PORT);
+        port.bsrr().write_value(Bsrr(u32::from(all & !on) << 16));
+        if bank.update(codes).is_err() {
+            defmt::error!("a converter failed: outputs off until the board is reset");
+            self.bank = None;
+            kill();
+            return;
+        }
+        self.beat = !self.beat;
+        let beat = u32::from(mask(&[HEARTBEAT]));
+        let beat = if self.beat { beat } else { beat << 16 };
+        port.bsrr().write_value(Bsrr(u32::from(on) | beat));
+    }
+}
+
+/// Sets or clears `lines` of the output port.
+pub(crate) fn switch(lines: u16, on: bool) {
+    let lines = u32::from(lines);
+    let store = if on { lines } else { lines << 16 };
+    gpio::port(OUTPUT_PORT).bsrr().write_value(Bsrr(store));
+}
