@@ -39,7 +39,7 @@ pub fn init(mut core: cortex_m::Peripherals) -> Board {
         plant: MotionPlant::dual_beam_gantry(),
         command: MotionCommand::SAFE,
     };
-    let network = Network::start(ADDRESS);
+    let network = Network::start();
     let watchdog = Watchdog::new(&mut core.NVIC);
     Board {
         servo_tick: Tick::start(Block::TIMER0, SERVO_PERIOD_US),

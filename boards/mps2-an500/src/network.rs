@@ -5,10 +5,6 @@ use crate::time::now_us;
 use lan9118::{Lan9118, MAX_FRAME};
 use smoltcp::phy::{self, Device, DeviceCapabilities, Medium};
 use smoltcp::time::Instant;
-use smoltcp::wire::{
-    ArpOperation, ArpPacket, ArpRepr, EthernetAddress, EthernetFrame, EthernetProtocol, EthernetRepr,
-    Ipv4Address,
-};
 
 /// The Ethernet port.
 pub struct Network {
@@ -19,21 +15,18 @@ pub struct Network {
 }
 
 impl Network {
-    /// Starts the port and tells the net who has `address`, so that a first datagram to the board need not
-    /// wait for a question to be repeated. Panics if the chip does not answer: the board is then no board.
-    pub(crate) fn start(address: [u8; 4]) -> Self {
+    /// Starts the port. Panics if the chip does not answer: the board is then no board.
+    pub(crate) fn start() -> Self {
         let chip = match Lan9118::start(Block::LAN9118) {
             Ok(chip) => chip,
             Err(error) => panic!("{error}"),
         };
-        let mut network = Self {
+        Self {
             chip,
             received: [0; MAX_FRAME],
             sending: [0; MAX_FRAME],
             last_arrival_us: 0,
-        };
-        network.announce(Ipv4Address::from(address));
-        network
+        }
     }
 
     /// Clears the interrupt; afterwards the received frames are to be taken.
@@ -49,27 +42,6 @@ impl Network {
     /// Time at which the last received frame was taken from the chip \[µs\].
     pub fn last_arrival_us(&self) -> u64 {
         self.last_arrival_us
-    }
-
-    fn announce(&mut self, address: Ipv4Address) {
-        let mac = EthernetAddress(self.chip.mac());
-        let arp = ArpRepr::EthernetIpv4 {
-            operation: ArpOperation::Request,
-            source_hardware_addr: mac,
-            source_protocol_addr: address,
-            target_hardware_addr: EthernetAddress([0; 6]),
-            target_protocol_addr: address,
-        };
-        let ethernet = EthernetRepr {
-            src_addr: mac,
-            dst_addr: EthernetAddress::BROADCAST,
-            ethertype: EthernetProtocol::Arp,
-        };
-        let mut bytes = [0; 60];
-        let mut frame = EthernetFrame::new_unchecked(&mut bytes[..]);
-        ethernet.emit(&mut frame);
-        arp.emit(&mut ArpPacket::new_unchecked(frame.payload_mut()));
-        self.chip.send(&bytes);
     }
 }
 

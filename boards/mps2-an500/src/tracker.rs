@@ -35,7 +35,7 @@ pub fn init(mut core: cortex_m::Peripherals) -> Board {
         plant: SlidePlant::dual_beam_tracker(),
         command: SlideCommand::SAFE,
     };
-    let network = Network::start(ADDRESS);
+    let network = Network::start();
     let watchdog = Watchdog::new(&mut core.NVIC);
     Board {
         tick: Tick::start(Block::TIMER0, CONTROL_PERIOD_US),

@@ -1,0 +1,291 @@
+//! A pair of boards, from boot to end.
+
+use crate::hello;
+use crate::qemu::{Board, PROGRAM, Setup};
+use crate::session::{Endpoint, PathStatesTo, Session};
+use shared::protocol::{Role, SCHEMA_HASH};
+use std::fs::{self, File};
+use std::net::{Ipv4Addr, TcpListener, UdpSocket};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+use std::{io, thread};
+use thiserror::Error;
+
+/// Where a board's net ends and this host begins, as the board sees it.
+const HOST_SEEN_BY_BOARD: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 2);
+/// The page the two pace plugins share.
+const PEERS: &str = "peers";
+const PEERS_LENGTH: u64 = 4096;
+/// Wall time for both boards to answer.
+const PATIENCE: Duration = Duration::from_secs(30);
+const BETWEEN_TRIES: Duration = Duration::from_millis(50);
+
+/// What to boot.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Firmware of the motion board.
+    pub motion: PathBuf,
+    /// Firmware of the tracker board.
+    pub tracker: PathBuf,
+    /// The pace plugin, a shared library.
+    pub plugin: PathBuf,
+    /// Directory for the boards' logs; made if it is missing. One pair of boards at a time.
+    pub log_directory: PathBuf,
+    /// The boards' time per wall time; 1 is real time, less suits a loaded host.
+    pub rate: f64,
+}
+
+/// Why the boards do not run.
+#[derive(Debug, Error)]
+pub enum BootError {
+    /// A file to boot from is not there.
+    #[error("{what} {} cannot be read ({source}); build it first", path.display())]
+    Missing {
+        /// What it should be.
+        what: &'static str,
+        /// Where it was looked for.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// QEMU cannot be run.
+    #[error("{program} cannot be started ({source}); install it: Debian package {package}")]
+    NoProgram {
+        /// The program.
+        program: &'static str,
+        /// The package that has it.
+        package: &'static str,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The directory of the logs, or the network, cannot be used.
+    #[error("the emulated boards cannot be set up in {}: {source}", directory.display())]
+    Setup {
+        /// Directory for the logs.
+        directory: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A board's process has ended.
+    #[error("the emulated {board} board has ended ({status}): {said}; its log is in {}", directory.display())]
+    Ended {
+        /// Which board.
+        board: &'static str,
+        /// Exit code 101 is a panic or a fault of the firmware.
+        status: ExitStatus,
+        /// What QEMU said.
+        said: String,
+        /// Directory of its log.
+        directory: PathBuf,
+    },
+    /// A board runs, but does not answer.
+    #[error("the emulated {board} board does not answer within {} s ({source}); its log is in {}", PATIENCE.as_secs(), directory.display())]
+    Silent {
+        /// Which board.
+        board: &'static str,
+        /// What the last try gave.
+        source: io::Error,
+        /// Directory of its log.
+        directory: PathBuf,
+    },
+    /// Another firmware than this program belongs to.
+    #[error(
+        "the emulated {board} board runs another firmware ({found:?}, schema {schema:016x}); build all from one source"
+    )]
+    WrongFirmware {
+        /// Which board it should be.
+        board: &'static str,
+        /// Which one it is.
+        found: Role,
+        /// Its schema hash.
+        schema: u64,
+    },
+}
+
+/// Two boards that run and answer; they are ended when this is dropped. The thread that boots them must live
+/// as long as they shall.
+pub struct Boards {
+    motion: Board,
+    tracker: Board,
+    session: Session,
+    directory: PathBuf,
+}
+
+impl Boards {
+    /// Boots both boards and waits until both answer.
+    pub fn boot(options: &Options) -> Result<Self, BootError> {
+        find_program(PROGRAM, "qemu-system-arm")?;
+        find_program("setpriv", "util-linux")?;
+        let motion = existing("the motion firmware", &options.motion)?;
+        let tracker = existing("the tracker firmware", &options.tracker)?;
+        let plugin = existing("the pace plugin", &options.plugin)?;
+        let setup = |source| BootError::Setup {
+            directory: options.log_directory.clone(),
+            source,
+        };
+        fs::create_dir_all(&options.log_directory).map_err(setup)?;
+        let directory = options.log_directory.canonicalize().map_err(setup)?;
+        let session = free_ports().map_err(setup)?;
+        File::create(directory.join(PEERS))
+            .and_then(|page| page.set_len(PEERS_LENGTH))
+            .map_err(setup)?;
+
+        let start = |name, mac, slot, firmware, endpoint| {
+            Board::start(&Setup {
+                name,
+                mac,
+                slot,
+                firmware,
+                plugin: &plugin,
+                rate: options.rate,
+                directory: &directory,
+                peers: PEERS,
+                endpoint,
+            })
+            .map_err(setup)
+        };
+        let motion = start("motion", "52:54:00:12:34:51", 0, &motion, session.motion)?;
+        let tracker = start("tracker", "52:54:00:12:34:52", 1, &tracker, session.tracker)?;
+        let mut boards = Self {
+            motion,
+            tracker,
+            session,
+            directory,
+        };
+        let deadline = Instant::now() + PATIENCE;
+        boards.wait_for(Role::Motion, deadline)?;
+        boards.wait_for(Role::Tracker, deadline)?;
+        Ok(boards)
+    }
+
+    /// Where the boards are.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// Whether both boards still run; an error tells how one ended.
+    pub fn check(&mut self) -> Result<(), BootError> {
+        for board in [&mut self.motion, &mut self.tracker] {
+            let ended = board.ended().map_err(|source| BootError::Setup {
+                directory: self.directory.clone(),
+                source,
+            })?;
+            if let Some(status) = ended {
+                let said = board.said();
+                let directory = self.directory.clone();
+                return Err(BootError::Ended {
+                    board: board.name,
+                    status,
+                    said,
+                    directory,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn wait_for(&mut self, role: Role, deadline: Instant) -> Result<(), BootError> {
+        let (board, endpoint) = match role {
+            Role::Motion => (self.motion.name, self.session.motion),
+            Role::Tracker => (self.tracker.name, self.session.tracker),
+        };
+        loop {
+            self.check()?;
+            match hello::ask(&endpoint) {
+                Ok(who) if who.role == role && who.schema_hash == SCHEMA_HASH => return Ok(()),
+                Ok(who) => {
+                    return Err(BootError::WrongFirmware {
+                        board,
+                        found: who.role,
+                        schema: who.schema_hash,
+                    });
+                }
+                Err(source) if Instant::now() >= deadline => {
+                    return Err(BootError::Silent {
+                        board,
+                        source,
+                        directory: self.directory.clone(),
+                    });
+                }
+                Err(_) => thread::sleep(BETWEEN_TRIES),
+            }
+        }
+    }
+}
+
+fn find_program(program: &'static str, package: &'static str) -> Result<(), BootError> {
+    Command::new(program)
+        .arg("--version")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .map(|_| ())
+        .map_err(|source| BootError::NoProgram {
+            program,
+            package,
+            source,
+        })
+}
+
+fn existing(what: &'static str, path: &Path) -> Result<PathBuf, BootError> {
+    path.canonicalize().map_err(|source| BootError::Missing {
+        what,
+        path: path.to_owned(),
+        source,
+    })
+}
+
+/// Four ports that nobody uses, found by taking all at once and giving them back.
+fn free_ports() -> io::Result<Session> {
+    let host = Ipv4Addr::LOCALHOST;
+    let tcp = [TcpListener::bind((host, 0))?, TcpListener::bind((host, 0))?];
+    let udp = [UdpSocket::bind((host, 0))?, UdpSocket::bind((host, 0))?];
+    let endpoint = |i: usize| -> io::Result<Endpoint> {
+        Ok(Endpoint {
+            host,
+            tcp: tcp[i].local_addr()?.port(),
+            udp: udp[i].local_addr()?.port(),
+        })
+    };
+    let (motion, tracker) = (endpoint(0)?, endpoint(1)?);
+    Ok(Session {
+        motion,
+        tracker,
+        path_states_to: PathStatesTo {
+            host: HOST_SEEN_BY_BOARD,
+            udp: tracker.udp,
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_firmware_is_named() {
+        let error = existing("the motion firmware", Path::new("no/such/firmware")).expect_err("is missing");
+        let text = error.to_string();
+        assert!(text.contains("the motion firmware no/such/firmware"), "{text}");
+    }
+
+    #[test]
+    fn a_missing_program_is_named_with_its_package() {
+        let error = find_program("seamwright-no-such-program", "qemu-system-arm").expect_err("is missing");
+        let text = error.to_string();
+        assert!(
+            text.contains("seamwright-no-such-program") && text.contains("package qemu-system-arm"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn ports_differ_and_path_states_go_to_the_tracker() {
+        let session = free_ports().expect("the loopback has ports");
+        assert_ne!(session.motion.tcp, session.tracker.tcp);
+        assert_ne!(session.motion.udp, session.tracker.udp);
+        assert_eq!(session.path_states_to.udp, session.tracker.udp);
+    }
+}
