@@ -63,7 +63,10 @@ impl<'a> NaturalSpline<'a> {
     /// If the lengths differ.
     pub fn of_solved(x: &'a [f64], y: &'a [f64], second: &'a [f64]) -> Self {
         let n = x.len();
-        assert!(n >= 2 && y.len() == n && second.len() == n, "slices of one length");
+        assert!(
+            n >= 2 && y.len() == n && second.len() == n,
+            "slices of one length"
+        );
         Self { x, y, second }
     }
 

@@ -19,6 +19,7 @@ use crate::protocol::{
     Capture, ClockRequest, Datagram, Measurement, Refusal, Request, Response, TrackerSample, TrackerStatus,
 };
 use crate::trajectory::{Path, PathError};
+use heapless::Vec;
 
 /// Control ticks between two clock requests: 10 Hz.
 const CLOCK_REQUEST_TICKS: u32 = 100;
@@ -50,17 +51,22 @@ pub struct TickOutput {
 }
 
 /// The tracker board's controller, for paths of up to `KNOTS` knots.
+///
+/// [`Self::new`] is all zeros in memory, so a static one takes no room in flash.
 #[derive(Clone, Debug)]
 pub struct TrackerController<const KNOTS: usize> {
     parameters: Option<TrackerParameters>,
     state: TrackerState,
-    fault: Option<TrackerFault>,
+    /// At most one: the first since the last reset.
+    faults: Vec<TrackerFault, 1>,
     path: Path<KNOTS>,
     history: PathHistory,
     captures: CaptureHistory,
     clock: ClockRelation,
     seam: Seam,
     slides: [Slide; SLIDES],
+    /// One a slide, once homing has begun.
+    searches: Vec<SearchState<1>, SLIDES>,
     /// Of the last tick.
     feedback: SlideFeedback,
     ticks: u32,
@@ -75,7 +81,6 @@ pub struct TrackerController<const KNOTS: usize> {
 struct Slide {
     /// Position at zero counts \[mm\], once the mark was found.
     offset: Option<f64>,
-    search: Option<SearchState<1>>,
     law: LawState,
     position: f64,
     target: f64,
@@ -93,7 +98,6 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     pub const fn new() -> Self {
         const SLIDE: Slide = Slide {
             offset: None,
-            search: None,
             law: LawState::new(),
             position: 0.0,
             target: 0.0,
@@ -102,13 +106,14 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         Self {
             parameters: None,
             state: TrackerState::Off,
-            fault: None,
+            faults: Vec::new(),
             path: Path::new(),
             history: PathHistory::new(),
             captures: CaptureHistory::new(),
             clock: ClockRelation::new(),
             seam: Seam::new(),
             slides: [SLIDE; SLIDES],
+            searches: Vec::new(),
             feedback: SlideFeedback {
                 counts: [0; SLIDES],
                 mark: [None; SLIDES],
@@ -248,14 +253,14 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     fn home(&mut self) -> Result<(), Refusal> {
         let parameters = self.parameters.as_ref().ok_or(Refusal::NotConfigured)?;
         self.allow(&[TrackerState::Off, TrackerState::Ready])?;
-        for ((slide, parameters), counts) in self
+        self.searches = parameters
             .slides
-            .iter_mut()
-            .zip(&parameters.slides)
+            .iter()
             .zip(self.feedback.counts)
-        {
+            .map(|(slide, counts)| slide.search.start(counts))
+            .collect();
+        for slide in &mut self.slides {
             slide.offset = None;
-            slide.search = Some(parameters.search.start(counts));
         }
         self.state = TrackerState::Homing;
         self.forget_seam();
@@ -270,7 +275,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             }
             self.state = TrackerState::Off;
         }
-        self.fault = None;
+        self.faults.clear();
         Ok(())
     }
 
@@ -355,7 +360,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
 
     /// Keeps the first fault since the last reset.
     fn report(&mut self, fault: TrackerFault) {
-        self.fault.get_or_insert(fault);
+        if self.faults.is_empty() {
+            self.faults.extend([fault]);
+        }
     }
 
     /// Drives off.
@@ -371,13 +378,13 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     fn search(&mut self, parameters: &TrackerParameters) -> SlideCommand {
         let mut command = Command::SAFE;
         command.enable = true;
-        for i in 0..SLIDES {
+        for (i, search) in self.searches.iter_mut().enumerate() {
             let slide = &mut self.slides[i];
             let of = &parameters.slides[i];
             slide.target = slide.position;
-            let Some(search) = &mut slide.search else {
+            if slide.offset.is_some() {
                 continue;
-            };
+            }
             let input = SearchInput {
                 counts: self.feedback.counts[i],
                 mark: self.feedback.mark[i],
@@ -388,10 +395,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 SearchProgress::Moving => {
                     command.dac[i] = DacCode::from_ratio(search.velocity(), of.law.full_scale);
                 }
-                SearchProgress::Done { offset } => {
-                    slide.offset = Some(offset[0]);
-                    slide.search = None;
-                }
+                SearchProgress::Done { offset } => slide.offset = Some(offset[0]),
                 SearchProgress::Failed => {
                     self.report(TrackerFault::MarkNotFound { slide: i as u8 });
                     self.state = TrackerState::Fault;
@@ -561,7 +565,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             tick: self.ticks,
             time_us: input.now_us,
             state: self.state,
-            fault: self.fault,
+            fault: self.faults.first().copied(),
             slides_mm: self.slides.map(|slide| slide.position),
             truth_mm: input.truth,
             target_mm: self.slides.map(|slide| slide.target),
@@ -574,7 +578,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         let (accepted, rejected) = self.seam.counters();
         TrackerStatus {
             state: self.state,
-            fault: self.fault,
+            fault: self.faults.first().copied(),
             homed: self.homed(),
             slides_mm: self.slides.map(|slide| slide.position),
             path_id: self.path.id(),

@@ -1,0 +1,113 @@
+//! The network task: requests of the PC, path states of the motion board, captures and measurements, telemetry.
+
+use super::{Controller, OutboxReader};
+use crate::board;
+use heapless::Vec;
+use link::{Address, Counters, Link, Node, Source, Storage};
+use rtic::Mutex;
+use shared::protocol::{
+    ClockRequest, Datagram, Identity, Request, Response, Role, SCHEMA_HASH, TrackerTelemetry,
+};
+
+/// Everything the network task owns.
+pub struct Network {
+    link: Link<'static>,
+    device: board::Network,
+    outbox: OutboxReader,
+    /// Whence the path states come.
+    motion: Option<Source>,
+    telemetry: TrackerTelemetry,
+}
+
+impl Network {
+    /// Listens at the board's address.
+    pub fn new(
+        mut device: board::Network,
+        storage: &'static mut Storage<'static>,
+        outbox: OutboxReader,
+    ) -> Self {
+        let address = Address {
+            mac: device.mac(),
+            ip: board::tracker::ADDRESS,
+            prefix: board::tracker::PREFIX,
+            gateway: board::tracker::GATEWAY,
+        };
+        let identity = Identity {
+            schema_hash: SCHEMA_HASH,
+            role: Role::Tracker,
+            firmware: heapless::String::try_from(env!("CARGO_PKG_VERSION")).unwrap_or_default(),
+            board: heapless::String::try_from(board::NAME).unwrap_or_default(),
+            simulated_machine: board::SIMULATED_MACHINE,
+        };
+        Self {
+            link: Link::new(&mut device, storage, address, identity, board::now_us()),
+            device,
+            outbox,
+            motion: None,
+            telemetry: TrackerTelemetry { samples: Vec::new() },
+        }
+    }
+
+    /// Serves everything that waits; true if frames may be left.
+    pub fn run(&mut self, controller: &mut impl Mutex<T = &'static mut Controller>) -> bool {
+        self.device.acknowledge();
+        self.publish();
+        let mut proxy = Proxy {
+            controller,
+            motion: &mut self.motion,
+        };
+        self.link.poll(
+            &mut self.device,
+            board::Network::last_arrival_us,
+            board::now_us,
+            &mut proxy,
+        )
+    }
+
+    /// Sends what the control ticks published since the last run.
+    fn publish(&mut self) {
+        while let Some(published) = self.outbox.dequeue() {
+            let subscriber = self.link.subscriber();
+            if let Some((capture, subscriber)) = published.capture.zip(subscriber) {
+                self.link.send(&Datagram::Capture(capture), subscriber);
+            }
+            if let Some(motion) = self.motion.filter(|_| published.clock_request.is_some()) {
+                // The round trip begins now, not at the tick.
+                let asked_us = board::now_us();
+                self.link
+                    .send(&Datagram::ClockRequest(ClockRequest { asked_us }), motion);
+            }
+            self.link.flush(&mut self.device, board::now_us());
+            // There is room: a full batch went with the sample that filled it.
+            self.telemetry.samples.extend([published.sample]);
+            if self.telemetry.samples.is_full() {
+                let samples = core::mem::take(&mut self.telemetry.samples);
+                if let Some(subscriber) = subscriber {
+                    let telemetry = Datagram::TrackerTelemetry(TrackerTelemetry { samples });
+                    self.link.send(&telemetry, subscriber);
+                }
+            }
+        }
+    }
+}
+
+/// The controller behind its lock, as the link wants to see it.
+struct Proxy<'a, M> {
+    controller: &'a mut M,
+    motion: &'a mut Option<Source>,
+}
+
+impl<M: Mutex<T = &'static mut Controller>> Node for Proxy<'_, M> {
+    fn handle(&mut self, request: &Request, counters: &Counters) -> Response {
+        self.controller
+            .lock(|controller| controller.handle(request, counters.unsent))
+    }
+
+    fn datagram(&mut self, datagram: &Datagram, from: Source, arrived_us: u64) {
+        if let Datagram::PathState(_) = datagram {
+            *self.motion = Some(from);
+        }
+        self.controller
+            .lock(|controller| controller.datagram(datagram, arrived_us));
+    }
+}
