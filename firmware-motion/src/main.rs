@@ -30,7 +30,7 @@ fn main() {}
 #[rtic::app(device = crate::board::device, peripherals = false)]
 mod app {
     use crate::board::{self, Tick, motion::Axes};
-    use crate::tasks::{self, Controller, Network, Outbox, OutboxReader, Published, RollCall, Servo};
+    use crate::tasks::{self, Controller, Network, Outbox, Published, RollCall, Servo};
     use heapless::spsc::Queue;
 
     #[shared]
@@ -52,12 +52,12 @@ mod app {
 
     #[init(local = [
         controller: Controller = Controller::new(),
-        storage: link::Storage = link::Storage::new(),
+        storage: link::Storage<'static> = link::Storage::new(),
         queue: Queue<Published, 16> = Queue::new(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let board = board::motion::init(cx.core);
-        let (outbox, reader): (Outbox, OutboxReader) = cx.local.queue.split();
+        let (outbox, reader) = cx.local.queue.split();
         let network = Network::new(board.network, cx.local.storage, reader);
         defmt::info!("motion board {} with firmware {}", board::NAME, env!("CARGO_PKG_VERSION"));
         let shared = Shared { servo: Servo::new(RollCall::new(board.watchdog)), controller: cx.local.controller };
@@ -73,18 +73,20 @@ mod app {
     }
 
     #[task(binds = PATH_TICK, priority = 3, shared = [servo, controller], local = [path_tick, outbox])]
-    fn path_tick(cx: path_tick::Context) {
+    fn path_tick(mut cx: path_tick::Context) {
         let elapsed = cx.local.path_tick.acknowledge();
-        (cx.shared.servo, cx.shared.controller)
-            .lock_each(|servo, controller| tasks::path::tick(servo, controller, cx.local.outbox, elapsed));
+        if !tasks::path::tick(&mut cx.shared.servo, &mut cx.shared.controller, cx.local.outbox, elapsed) {
+            defmt::warn!("the network task does not keep up: a path state was dropped");
+        }
         rtic::pend(board::device::Interrupt::ETHERNET);
     }
 
     #[task(binds = ETHERNET, priority = 1, shared = [servo, controller], local = [network])]
     fn network(mut cx: network::Context) {
-        let network = cx.local.network;
-        network.run(|request| cx.shared.controller.lock(|controller| controller.handle(request)));
-        cx.shared.servo.lock(|servo| servo.alive.network());
+        if cx.local.network.run(&mut cx.shared.controller) {
+            rtic::pend(board::device::Interrupt::ETHERNET);
+        }
+        cx.shared.servo.lock(|servo| servo.alive.network_ran());
     }
 
     #[idle]

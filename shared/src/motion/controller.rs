@@ -212,11 +212,12 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         }
     }
 
-    /// One request of the PC. The answer says what was done or why not; nothing changes on a refusal.
-    pub fn handle(&mut self, request: &Request) -> Response {
+    /// One request of the PC; `unsent` datagrams could not be sent so far. The answer says what was done or
+    /// why not; nothing changes on a refusal.
+    pub fn handle(&mut self, request: &Request, unsent: u32) -> Response {
         self.heard = true;
         let done = match request {
-            Request::Status => return Response::MotionStatus(self.status()),
+            Request::Status => return Response::MotionStatus(self.status(unsent)),
             Request::ConfigureMotion(config) => self.configure(config),
             Request::Home => self.start_homing(),
             Request::Disable => self.disable(),
@@ -391,7 +392,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         Ok(())
     }
 
-    fn status(&self) -> MotionStatus {
+    fn status(&self, unsent: u32) -> MotionStatus {
         let (servo_ticks, servo_lost, servo_late) = self.servo_ticks;
         let people = |axes: &[f64; AXES]| core::array::from_fn(|axis| axes[axis] / AXIS_UNIT[axis]);
         MotionStatus {
@@ -407,7 +408,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             servo_lost,
             path_ticks: self.tick,
             path_lost: self.ticks_lost + servo_late,
-            unsent: 0,
+            unsent,
             vibration_level: self.vibration.map(|vibration| vibration.level()),
         }
     }

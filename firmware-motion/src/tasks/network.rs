@@ -1,0 +1,90 @@
+//! The network task: requests of the PC, path states to the tracker board, telemetry to the PC.
+
+use super::{Controller, OutboxReader};
+use crate::board;
+use link::{Address, Counters, Link, Node, Source, Storage};
+use rtic::Mutex;
+use shared::protocol::{
+    Datagram, Identity, MotionTelemetry, PathState, Request, Response, Role, SCHEMA_HASH,
+};
+
+/// Everything the network task owns.
+pub struct Network {
+    link: Link<'static>,
+    device: board::Network,
+    outbox: OutboxReader,
+    tracker: Option<Source>,
+    telemetry: MotionTelemetry,
+}
+
+impl Network {
+    /// Listens at the board's address.
+    pub fn new(mut device: board::Network, storage: &'static mut Storage<'static>, outbox: OutboxReader) -> Self {
+        let address = Address {
+            mac: device.mac(),
+            ip: board::motion::ADDRESS,
+            prefix: board::motion::PREFIX,
+            gateway: board::motion::GATEWAY,
+        };
+        let identity = Identity {
+            schema_hash: SCHEMA_HASH,
+            role: Role::Motion,
+            firmware: heapless::String::try_from(env!("CARGO_PKG_VERSION")).unwrap_or_default(),
+            board: heapless::String::try_from(board::NAME).unwrap_or_default(),
+            simulated_machine: board::SIMULATED_MACHINE,
+        };
+        Self {
+            link: Link::new(&mut device, storage, address, identity, board::now_us()),
+            device,
+            outbox,
+            tracker: None,
+            telemetry: MotionTelemetry { samples: heapless::Vec::new() },
+        }
+    }
+
+    /// Serves everything that waits; true if frames may be left.
+    pub fn run(&mut self, controller: &mut impl Mutex<T = &'static mut Controller>) -> bool {
+        self.device.acknowledge();
+        self.publish();
+        let mut proxy = Proxy { controller, tracker: &mut self.tracker };
+        self.link.poll(&mut self.device, board::Network::last_arrival_us, board::now_us, &mut proxy)
+    }
+
+    /// Sends what the path ticks published since the last run.
+    fn publish(&mut self) {
+        while let Some((path_state, sample)) = self.outbox.dequeue() {
+            if let Some(tracker) = self.tracker {
+                let path_state = PathState { sent_us: board::now_us(), ..path_state };
+                self.link.send(&Datagram::PathState(path_state), tracker);
+                self.link.flush(&mut self.device, board::now_us());
+            }
+            // A full batch was sent with the sample that filled it.
+            let _ = self.telemetry.samples.push(sample);
+            if self.telemetry.samples.is_full() {
+                let samples = core::mem::take(&mut self.telemetry.samples);
+                if let Some(subscriber) = self.link.subscriber() {
+                    self.link.send(&Datagram::MotionTelemetry(MotionTelemetry { samples }), subscriber);
+                }
+            }
+        }
+    }
+}
+
+/// The controller behind its lock, as the link wants to see it.
+struct Proxy<'a, M> {
+    controller: &'a mut M,
+    tracker: &'a mut Option<Source>,
+}
+
+impl<M: Mutex<T = &'static mut Controller>> Node for Proxy<'_, M> {
+    fn handle(&mut self, request: &Request, counters: &Counters) -> Response {
+        if let Request::PathStatesTo { address, port } = request {
+            *self.tracker = Some(Source { address: *address, port: *port });
+            return Response::Done;
+        }
+        self.controller.lock(|controller| controller.handle(request, counters.unsent))
+    }
+
+    /// The motion board takes no datagrams but clock requests, which the link answers.
+    fn datagram(&mut self, _: &Datagram, _: Source, _: u64) {}
+}
