@@ -15,7 +15,10 @@
 use board_mps2_an500 as board;
 #[cfg(all(target_os = "none", feature = "nucleo-h723zg"))]
 use board_nucleo_h723zg as board;
-#[cfg(all(target_os = "none", not(any(feature = "mps2-an500", feature = "nucleo-h723zg"))))]
+#[cfg(all(
+    target_os = "none",
+    not(any(feature = "mps2-an500", feature = "nucleo-h723zg"))
+))]
 compile_error!("select a board: --features mps2-an500 or --features nucleo-h723zg");
 
 #[cfg(target_os = "none")]
@@ -59,23 +62,42 @@ mod app {
         let board = board::motion::init(cx.core);
         let (outbox, reader) = cx.local.queue.split();
         let network = Network::new(board.network, cx.local.storage, reader);
-        defmt::info!("motion board {} with firmware {}", board::NAME, env!("CARGO_PKG_VERSION"));
-        let shared = Shared { servo: Servo::new(RollCall::new(board.watchdog)), controller: cx.local.controller };
-        let local =
-            Local { axes: board.axes, servo_tick: board.servo_tick, path_tick: board.path_tick, outbox, network };
+        defmt::info!(
+            "motion board {} with firmware {}",
+            board::NAME,
+            env!("CARGO_PKG_VERSION")
+        );
+        let shared = Shared {
+            servo: Servo::new(RollCall::new(board.watchdog)),
+            controller: cx.local.controller,
+        };
+        let local = Local {
+            axes: board.axes,
+            servo_tick: board.servo_tick,
+            path_tick: board.path_tick,
+            outbox,
+            network,
+        };
         (shared, local)
     }
 
     #[task(binds = SERVO_TICK, priority = 4, shared = [servo], local = [axes, servo_tick])]
     fn servo_tick(mut cx: servo_tick::Context) {
         let elapsed = cx.local.servo_tick.acknowledge();
-        cx.shared.servo.lock(|servo| tasks::servo::tick(servo, cx.local.axes, elapsed));
+        cx.shared
+            .servo
+            .lock(|servo| tasks::servo::tick(servo, cx.local.axes, elapsed));
     }
 
     #[task(binds = PATH_TICK, priority = 3, shared = [servo, controller], local = [path_tick, outbox])]
     fn path_tick(mut cx: path_tick::Context) {
         let elapsed = cx.local.path_tick.acknowledge();
-        if !tasks::path::tick(&mut cx.shared.servo, &mut cx.shared.controller, cx.local.outbox, elapsed) {
+        if !tasks::path::tick(
+            &mut cx.shared.servo,
+            &mut cx.shared.controller,
+            cx.local.outbox,
+            elapsed,
+        ) {
             defmt::warn!("the network task does not keep up: a path state was dropped");
         }
         rtic::pend(board::device::Interrupt::ETHERNET);

@@ -19,7 +19,11 @@ pub struct Network {
 
 impl Network {
     /// Listens at the board's address.
-    pub fn new(mut device: board::Network, storage: &'static mut Storage<'static>, outbox: OutboxReader) -> Self {
+    pub fn new(
+        mut device: board::Network,
+        storage: &'static mut Storage<'static>,
+        outbox: OutboxReader,
+    ) -> Self {
         let address = Address {
             mac: device.mac(),
             ip: board::motion::ADDRESS,
@@ -38,7 +42,9 @@ impl Network {
             device,
             outbox,
             tracker: None,
-            telemetry: MotionTelemetry { samples: heapless::Vec::new() },
+            telemetry: MotionTelemetry {
+                samples: heapless::Vec::new(),
+            },
         }
     }
 
@@ -46,15 +52,26 @@ impl Network {
     pub fn run(&mut self, controller: &mut impl Mutex<T = &'static mut Controller>) -> bool {
         self.device.acknowledge();
         self.publish();
-        let mut proxy = Proxy { controller, tracker: &mut self.tracker };
-        self.link.poll(&mut self.device, board::Network::last_arrival_us, board::now_us, &mut proxy)
+        let mut proxy = Proxy {
+            controller,
+            tracker: &mut self.tracker,
+        };
+        self.link.poll(
+            &mut self.device,
+            board::Network::last_arrival_us,
+            board::now_us,
+            &mut proxy,
+        )
     }
 
     /// Sends what the path ticks published since the last run.
     fn publish(&mut self) {
         while let Some((path_state, sample)) = self.outbox.dequeue() {
             if let Some(tracker) = self.tracker {
-                let path_state = PathState { sent_us: board::now_us(), ..path_state };
+                let path_state = PathState {
+                    sent_us: board::now_us(),
+                    ..path_state
+                };
                 self.link.send(&Datagram::PathState(path_state), tracker);
                 self.link.flush(&mut self.device, board::now_us());
             }
@@ -63,7 +80,10 @@ impl Network {
             if self.telemetry.samples.is_full() {
                 let samples = core::mem::take(&mut self.telemetry.samples);
                 if let Some(subscriber) = self.link.subscriber() {
-                    self.link.send(&Datagram::MotionTelemetry(MotionTelemetry { samples }), subscriber);
+                    self.link.send(
+                        &Datagram::MotionTelemetry(MotionTelemetry { samples }),
+                        subscriber,
+                    );
                 }
             }
         }
@@ -79,10 +99,14 @@ struct Proxy<'a, M> {
 impl<M: Mutex<T = &'static mut Controller>> Node for Proxy<'_, M> {
     fn handle(&mut self, request: &Request, counters: &Counters) -> Response {
         if let Request::PathStatesTo { address, port } = request {
-            *self.tracker = Some(Source { address: *address, port: *port });
+            *self.tracker = Some(Source {
+                address: *address,
+                port: *port,
+            });
             return Response::Done;
         }
-        self.controller.lock(|controller| controller.handle(request, counters.unsent))
+        self.controller
+            .lock(|controller| controller.handle(request, counters.unsent))
     }
 
     /// The motion board takes no datagrams but clock requests, which the link answers.

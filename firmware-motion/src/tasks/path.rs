@@ -14,10 +14,18 @@ pub fn tick(
 ) -> bool {
     let report = servo.lock(|servo| {
         servo.alive.path_ticked();
-        servo.loops.as_mut().map_or_else(ServoReport::default, ServoLoops::take_report)
+        servo
+            .loops
+            .as_mut()
+            .map_or_else(ServoReport::default, ServoLoops::take_report)
     });
-    let input = PathTickInput { now_us: board::now_us(), elapsed, report };
-    let (output, setup) = controller.lock(|controller| (controller.tick(&input), controller.take_servo_setup()));
+    let input = PathTickInput {
+        now_us: board::now_us(),
+        elapsed,
+        report,
+    };
+    let (output, setup) =
+        controller.lock(|controller| (controller.tick(&input), controller.take_servo_setup()));
     servo.lock(|servo| match setup {
         Some(setup) => servo.loops = Some(setup),
         None => {

@@ -15,7 +15,11 @@ pub struct RollCall {
 impl RollCall {
     /// Everyone has a first chance.
     pub fn new(watchdog: Watchdog) -> Self {
-        Self { watchdog, path: PATIENCE, network: PATIENCE }
+        Self {
+            watchdog,
+            path: PATIENCE,
+            network: PATIENCE,
+        }
     }
 
     /// The path task ran.

@@ -1,3 +1,145 @@
 //! The two boards as the PC sees them, whether they are real, emulated or simulated.
 
+mod network;
 pub mod simulated;
+
+pub use network::{Endpoint, NetworkBoards, Patience};
+
+use shared::protocol::framing::FrameError;
+use shared::protocol::{Datagram, Identity, Refusal, Request, Response, Role};
+use std::time::Duration;
+use thiserror::Error;
+
+/// A session with a motion board and a tracker board.
+///
+/// Whoever makes one has said Hello to both and compared the schema hashes. A job that uses nothing but
+/// this trait for time and data is deterministic on simulated boards.
+pub trait Boards {
+    /// Sends `request` and waits for the answer.
+    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError>;
+
+    /// The next datagram of either board, in the order of arrival; `None` if none came within `timeout`.
+    /// Simulated boards advance their time here, by at most `timeout`.
+    fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError>;
+
+    /// Sends a datagram to a board.
+    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError>;
+
+    /// The PC's clock since the session began; virtual time for simulated boards.
+    fn now(&self) -> Duration;
+
+    /// Who the board says it is.
+    fn identity(&self, role: Role) -> &Identity;
+
+    /// Address and UDP port under which the motion board reaches the tracker board.
+    fn path_states_target(&self) -> ([u8; 4], u16);
+
+    /// UDP port of the PC to which the board shall send its datagrams ([`Request::Subscribe`]).
+    fn datagram_port(&self, role: Role) -> u16;
+}
+
+/// As [`Boards::request`], for requests that are answered by [`Response::Done`].
+pub fn command(boards: &mut (impl Boards + ?Sized), role: Role, request: &Request) -> Result<(), LinkError> {
+    match boards.request(role, request)? {
+        Response::Done => Ok(()),
+        Response::Refused(refusal) => Err(LinkError::Refused { role, refusal }),
+        _ => Err(LinkError::Unexpected { role }),
+    }
+}
+
+/// "motion" or "tracker".
+pub fn role_name(role: Role) -> &'static str {
+    match role {
+        Role::Motion => "motion",
+        Role::Tracker => "tracker",
+    }
+}
+
+/// Why the PC cannot talk with a board.
+#[derive(Debug, Error)]
+pub enum LinkError {
+    /// No connection.
+    #[error("the {} board does not answer at {address} ({source}); is it switched on and in this network?", role_name(*.role))]
+    Unreachable {
+        /// Which board.
+        role: Role,
+        /// Where it was tried.
+        address: String,
+        /// What the network said.
+        source: std::io::Error,
+    },
+    /// The connection broke, or the board is silent.
+    #[error("the connection to the {} board was lost ({source})", role_name(*.role))]
+    Lost {
+        /// Which board.
+        role: Role,
+        /// What the network said.
+        source: std::io::Error,
+    },
+    /// Built from another protocol table.
+    #[error(
+        "the {} board (firmware {firmware}) speaks another version of the protocol than this program ({board:016x}, here {here:016x}); build and flash both from one source",
+        role_name(*.role)
+    )]
+    WrongSchema {
+        /// Which board.
+        role: Role,
+        /// Its firmware version.
+        firmware: String,
+        /// Its schema hash.
+        board: u64,
+        /// Schema hash of this program.
+        here: u64,
+    },
+    /// A tracker board answers where the motion board should be, or the other way round.
+    #[error("a {} board answers at {address}, where the {} board should be; are the addresses swapped?", role_name(*.found), role_name(*.role))]
+    WrongRole {
+        /// Which board should be there.
+        role: Role,
+        /// Which one is.
+        found: Role,
+        /// Where.
+        address: String,
+    },
+    /// Bytes that are no message.
+    #[error("the {} board sent something that is not understood ({source})", role_name(*.role))]
+    Frame {
+        /// Which board.
+        role: Role,
+        /// What is wrong with it.
+        source: FrameError,
+    },
+    /// The board does not do what it was asked.
+    #[error("the {} board refused: {refusal}", role_name(*.role))]
+    Refused {
+        /// Which board.
+        role: Role,
+        /// Its reason.
+        refusal: Refusal,
+    },
+    /// An answer that does not belong to the request.
+    #[error("the {} board gave an answer that does not belong to the question", role_name(*.role))]
+    Unexpected {
+        /// Which board.
+        role: Role,
+    },
+    /// No emulated boards on this machine.
+    #[error(
+        "no emulated boards are running: use `cargo xtask weld`, or `cargo xtask emulate` in another terminal"
+    )]
+    NoEmulator,
+    /// The session file of the emulated boards cannot be used.
+    #[error("the session file {path} of the emulated boards cannot be used: {reason}")]
+    BadSession {
+        /// The file.
+        path: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The controllers of the simulated boards could not be made.
+    #[error("the simulated boards cannot be set up: {reason}")]
+    Simulation {
+        /// Why.
+        reason: String,
+    },
+}

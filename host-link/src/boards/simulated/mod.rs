@@ -38,7 +38,11 @@ enum Happening {
     ServoTick,
     ControlTick,
     /// A datagram arrives at a board, or at the PC.
-    Arrival { from: Node, to: Node, datagram: Box<Datagram> },
+    Arrival {
+        from: Node,
+        to: Node,
+        datagram: Box<Datagram>,
+    },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,17 +127,27 @@ impl SimulatedBoards {
     }
 
     fn post(&mut self, from: Node, to: Node, datagram: Datagram) {
-        let arrival = Happening::Arrival { from, to, datagram: Box::new(datagram) };
+        let arrival = Happening::Arrival {
+            from,
+            to,
+            datagram: Box::new(datagram),
+        };
         self.enter(self.now_us + TRANSIT_US, arrival);
     }
 
     /// The next happening, if it is due by `end_us`.
     fn step(&mut self, end_us: u64) -> bool {
-        if self.queue.peek().is_none_or(|Entry(Reverse((at_us, _)), _)| *at_us > end_us) {
+        if self
+            .queue
+            .peek()
+            .is_none_or(|Entry(Reverse((at_us, _)), _)| *at_us > end_us)
+        {
             self.now_us = end_us;
             return false;
         }
-        let Some(Entry(Reverse((at_us, _)), happening)) = self.queue.pop() else { return false };
+        let Some(Entry(Reverse((at_us, _)), happening)) = self.queue.pop() else {
+            return false;
+        };
         self.now_us = at_us;
         match happening {
             Happening::ServoTick => self.servo_tick(),
@@ -147,7 +161,11 @@ impl SimulatedBoards {
         self.enter(self.now_us + SERVO_US, Happening::ServoTick);
         let motion = Node::Board(Role::Motion);
         if let Some(path_state) = self.motion.tick(self.now_us) {
-            self.post(motion, Node::Board(Role::Tracker), Datagram::PathState(path_state));
+            self.post(
+                motion,
+                Node::Board(Role::Tracker),
+                Datagram::PathState(path_state),
+            );
         }
         if let Some(telemetry) = self.motion.telemetry() {
             self.post(motion, Node::Pc, Datagram::MotionTelemetry(telemetry));
@@ -162,7 +180,11 @@ impl SimulatedBoards {
             self.post(tracker, Node::Pc, Datagram::Capture(capture));
         }
         if let Some(request) = request {
-            self.post(tracker, Node::Board(Role::Motion), Datagram::ClockRequest(request));
+            self.post(
+                tracker,
+                Node::Board(Role::Motion),
+                Datagram::ClockRequest(request),
+            );
         }
         if let Some(telemetry) = self.tracker.telemetry() {
             self.post(tracker, Node::Pc, Datagram::TrackerTelemetry(telemetry));
@@ -177,11 +199,16 @@ impl SimulatedBoards {
         };
         match (to, from, datagram) {
             (Node::Board(_), _, Datagram::ClockRequest(request)) => {
-                let reply =
-                    ClockReply { asked_us: request.asked_us, received_us: clock_us, replied_us: clock_us };
+                let reply = ClockReply {
+                    asked_us: request.asked_us,
+                    received_us: clock_us,
+                    replied_us: clock_us,
+                };
                 self.post(to, from, Datagram::ClockReply(reply));
             }
-            (Node::Board(Role::Tracker), _, datagram) => self.tracker.controller.datagram(&datagram, clock_us),
+            (Node::Board(Role::Tracker), _, datagram) => {
+                self.tracker.controller.datagram(&datagram, clock_us)
+            }
             (Node::Pc, Node::Board(role), datagram) => self.inbox.push_back((role, datagram)),
             // The motion board takes no other datagrams, and the PC does not write to itself.
             (Node::Board(Role::Motion) | Node::Pc, _, _) => {}

@@ -20,7 +20,9 @@ impl TrackerBoard {
             plant: SlidePlant::dual_beam_tracker(),
             command: SlideCommand::SAFE,
             controller: Box::new(TrackerController::new()),
-            batch: TrackerTelemetry { samples: heapless::Vec::new() },
+            batch: TrackerTelemetry {
+                samples: heapless::Vec::new(),
+            },
             estop: false,
         }
     }
@@ -30,7 +32,12 @@ impl TrackerBoard {
         let mut feedback = self.plant.advance(&self.command);
         feedback.estop = self.estop;
         let truth = Some(self.plant.truth());
-        let output = self.controller.tick(&TickInput { now_us, periods: 1, feedback, truth });
+        let output = self.controller.tick(&TickInput {
+            now_us,
+            periods: 1,
+            feedback,
+            truth,
+        });
         self.command = output.command;
         // A full batch was fetched at the control tick that filled it.
         let _ = self.batch.samples.push(output.sample);
@@ -40,7 +47,12 @@ impl TrackerBoard {
     /// A full batch of telemetry.
     pub fn telemetry(&mut self) -> Option<TrackerTelemetry> {
         self.batch.samples.is_full().then(|| {
-            std::mem::replace(&mut self.batch, TrackerTelemetry { samples: heapless::Vec::new() })
+            std::mem::replace(
+                &mut self.batch,
+                TrackerTelemetry {
+                    samples: heapless::Vec::new(),
+                },
+            )
         })
     }
 }
