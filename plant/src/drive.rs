@@ -17,9 +17,8 @@ pub struct DriveConfig {
     pub brake: f64,
 }
 
-/// A drive, its motor and its load. A command takes effect `FIFO` steps after it was given.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Drive<const FIFO: usize> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Coefficients {
     proportional: f64,
     integral_step: f64,
     max_acceleration: f64,
@@ -28,13 +27,23 @@ pub struct Drive<const FIFO: usize> {
     half_backlash: f64,
     brake_step: f64,
     step: f64,
+}
 
-    delayed: [f64; FIFO],
-    oldest: usize,
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct State {
     integral: f64,
     velocity: f64,
     motor: f64,
     load: f64,
+}
+
+/// A drive, its motor and its load. A command takes effect `FIFO` steps after it was given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive<const FIFO: usize> {
+    coefficients: Coefficients,
+    delayed: [f64; FIFO],
+    oldest: usize,
+    state: State,
 }
 
 impl<const FIFO: usize> Drive<FIFO> {
@@ -42,89 +51,98 @@ impl<const FIFO: usize> Drive<FIFO> {
     pub fn new(config: &DriveConfig, step_s: f64, position: f64) -> Self {
         let omega = 2.0 * core::f64::consts::PI * config.bandwidth_hz;
         Self {
-            proportional: omega,
-            integral_step: omega * omega / 4.0 * step_s,
-            max_acceleration: config.max_acceleration,
-            friction: config.friction,
-            damping: config.damping_per_s,
-            half_backlash: config.backlash / 2.0,
-            brake_step: config.brake * step_s,
-            step: step_s,
+            coefficients: Coefficients {
+                proportional: omega,
+                integral_step: omega * omega / 4.0 * step_s,
+                max_acceleration: config.max_acceleration,
+                friction: config.friction,
+                damping: config.damping_per_s,
+                half_backlash: config.backlash / 2.0,
+                brake_step: config.brake * step_s,
+                step: step_s,
+            },
             delayed: [0.0; FIFO],
             oldest: 0,
-            integral: 0.0,
-            velocity: 0.0,
-            motor: position,
-            load: position,
+            state: State {
+                integral: 0.0,
+                velocity: 0.0,
+                motor: position,
+                load: position,
+            },
         }
     }
 
     /// `steps` steps with the velocity `command` \[1/s\].
     pub fn run(&mut self, command: f64, steps: u32) {
+        let mut state = self.state;
         for _ in 0..steps {
             let delayed = core::mem::replace(&mut self.delayed[self.oldest], command);
-            self.oldest += 1;
-            if self.oldest == FIFO {
-                self.oldest = 0;
-            }
-
-            let error = delayed - self.velocity;
-            self.integral = limit(self.integral + self.integral_step * error, self.max_acceleration);
-            let acceleration = limit(self.proportional * error + self.integral, self.max_acceleration);
-            let force = acceleration - self.damping * self.velocity;
-
-            // Friction acts against the motion, at rest against the force. Where it is the larger of the two
-            // it stops the motion but never turns it round.
-            let forward = if self.velocity != 0.0 {
-                self.velocity > 0.0
+            self.oldest = if self.oldest + 1 < FIFO {
+                self.oldest + 1
             } else {
-                force > 0.0
+                0
             };
-            let friction = if forward { self.friction } else { -self.friction };
-            let velocity = self.velocity + (force - friction) * self.step;
-            let holds = force <= self.friction && force >= -self.friction;
-            let passed = if forward { velocity <= 0.0 } else { velocity >= 0.0 };
-            self.velocity = if holds && passed { 0.0 } else { velocity };
-            self.follow();
+            state.drive(&self.coefficients, delayed);
         }
+        self.state = state;
     }
 
     /// `steps` steps with the drive disabled and the brake closed; commands on their way are lost.
     pub fn brake(&mut self, steps: u32) {
         self.delayed = [0.0; FIFO];
-        self.integral = 0.0;
+        self.state.integral = 0.0;
         for _ in 0..steps {
-            self.velocity -= limit(self.velocity, self.brake_step);
-            self.follow();
+            self.state.brake(&self.coefficients);
         }
     }
 
     /// Position of the load, which the grating reads.
     pub fn position(&self) -> f64 {
-        self.load
+        self.state.load
     }
 
     /// Velocity of the motor \[1/s\].
     pub fn velocity(&self) -> f64 {
-        self.velocity
+        self.state.velocity
+    }
+}
+
+impl State {
+    fn drive(&mut self, by: &Coefficients, command: f64) {
+        let error = command - self.velocity;
+        self.integral = limit(self.integral + by.integral_step * error, by.max_acceleration);
+        let acceleration = limit(by.proportional * error + self.integral, by.max_acceleration);
+        let force = acceleration - by.damping * self.velocity;
+
+        // Friction acts against the motion, at rest against the force. Where it is the larger of the two it
+        // stops the motion but never turns it round.
+        let way = if self.velocity == 0.0 {
+            force
+        } else {
+            self.velocity
+        };
+        let friction = if way > 0.0 { by.friction } else { -by.friction };
+        let velocity = self.velocity + (force - friction) * by.step;
+        let stopped = force.abs() <= by.friction && velocity * way <= 0.0;
+        self.velocity = if stopped { 0.0 } else { velocity };
+        self.follow(by);
+    }
+
+    fn brake(&mut self, by: &Coefficients) {
+        self.velocity -= limit(self.velocity, by.brake_step);
+        self.follow(by);
     }
 
     /// Moves the motor on; the load follows within the backlash.
-    fn follow(&mut self) {
-        self.motor += self.velocity * self.step;
-        self.load = self.motor - limit(self.motor - self.load, self.half_backlash);
+    fn follow(&mut self, by: &Coefficients) {
+        self.motor += self.velocity * by.step;
+        self.load = self.motor - limit(self.motor - self.load, by.half_backlash);
     }
 }
 
 /// `x` within ±`bound`.
 fn limit(x: f64, bound: f64) -> f64 {
-    if x > bound {
-        bound
-    } else if x < -bound {
-        -bound
-    } else {
-        x
-    }
+    x.min(bound).max(-bound)
 }
 
 #[cfg(test)]
@@ -222,7 +240,7 @@ mod tests {
             ..IDEAL
         };
         let mut drive = Drive::<1>::new(&weak, STEP, 0.0);
-        drive.velocity = 10.0;
+        drive.state.velocity = 10.0;
         // At least friction alone decelerates: at rest within 10/150 s.
         for _ in 0..1334 {
             drive.run(0.0, 1);
@@ -242,11 +260,11 @@ mod tests {
         };
         let mut drive = Drive::<1>::new(&loose, STEP, 0.0);
         drive.run(10.0, 4000);
-        assert!((drive.motor - drive.load - 0.0025).abs() < 1e-9);
-        let (motor, load) = (drive.motor, drive.load);
+        assert!((drive.state.motor - drive.state.load - 0.0025).abs() < 1e-9);
+        let (motor, load) = (drive.state.motor, drive.state.load);
         drive.run(-10.0, 4000);
-        assert!((drive.motor - drive.load + 0.0025).abs() < 1e-9);
-        assert!(((load - drive.load) - (motor - drive.motor) + 0.005).abs() < 1e-9);
+        assert!((drive.state.motor - drive.state.load + 0.0025).abs() < 1e-9);
+        assert!(((load - drive.state.load) - (motor - drive.state.motor) + 0.005).abs() < 1e-9);
     }
 
     #[test]
