@@ -2,9 +2,9 @@
 
 use crate::file::{golden, near, number};
 use crate::servo::pid;
+use plant::{Drive, DriveConfig};
 use serde_json::{Value, json};
 use shared::control::{PidState, Setpoint};
-use std::collections::VecDeque;
 
 /// Step of the model \[s\].
 const H: f64 = 50e-6;
@@ -13,61 +13,18 @@ const DRIVE_ACCELERATION: f64 = 4000.0;
 /// Tangential acceleration of the reference \[mm/s²\].
 const START: f64 = 500.0;
 
-/// A velocity drive with delay, bandwidth, Coulomb friction, backlash and a quantised scale on the load.
-struct Axis {
-    pipeline: VecDeque<f64>,
-    omega: f64,
-    friction: f64,
-    backlash: f64,
-    quantum: f64,
-    integral: f64,
-    velocity: f64,
-    motor: f64,
-    load: f64,
-}
-
-impl Axis {
-    fn new(par: &Value, position: f64) -> Self {
-        let delay = (number(par, "delay") / H).round() as usize;
-        Self {
-            pipeline: vec![0.0; delay + 1].into(),
-            omega: 2.0 * std::f64::consts::PI * number(par, "fv"),
-            friction: number(par, "fc"),
-            backlash: number(par, "bl"),
-            quantum: number(par, "q"),
-            integral: 0.0,
-            velocity: 0.0,
-            motor: position,
-            load: position,
-        }
-    }
-
-    fn read(&self) -> f64 {
-        (self.load / self.quantum + 0.5).floor() * self.quantum
-    }
-
-    fn step(&mut self, command: f64) {
-        self.pipeline.push_back(command);
-        let command = self.pipeline.pop_front().expect("never empty");
-        let error = command - self.velocity;
-        self.integral = (self.integral + self.omega * self.omega / 4.0 * error * H)
-            .clamp(-DRIVE_ACCELERATION, DRIVE_ACCELERATION);
-        let force = (self.omega * error + self.integral).clamp(-DRIVE_ACCELERATION, DRIVE_ACCELERATION)
-            - self.velocity;
-        if self.velocity == 0.0 {
-            if force.abs() > self.friction {
-                self.velocity = (force - force.signum() * self.friction) * H;
-            }
-        } else {
-            let next = self.velocity + (force - self.velocity.signum() * self.friction) * H;
-            let stuck = next * self.velocity < 0.0 && force.abs() <= self.friction;
-            self.velocity = if stuck { 0.0 } else { next };
-        }
-        self.motor += self.velocity * H;
-        self.load = self
-            .load
-            .clamp(self.motor - self.backlash / 2.0, self.motor + self.backlash / 2.0);
-    }
+/// The drive of one axis, with the dead time of all cases: 0.25 ms / H + 1 steps.
+fn drive(par: &Value, position: f64) -> Drive<6> {
+    assert_eq!(number(par, "delay"), 0.25e-3);
+    let config = DriveConfig {
+        bandwidth_hz: number(par, "fv"),
+        max_acceleration: DRIVE_ACCELERATION,
+        friction: number(par, "fc"),
+        damping_per_s: 1.0,
+        backlash: number(par, "bl"),
+        brake: DRIVE_ACCELERATION,
+    };
+    Drive::new(&config, H, position)
 }
 
 /// Position, velocity and acceleration on the circle about the origin, from rest at (R, 0).
@@ -113,24 +70,22 @@ fn closed_loop_servo() {
         }
         let pid = pid(&par);
         let mut states = [PidState::default(); 2];
-        let mut axes = circle(radius, speed, 0.0).map(|start| Axis::new(input, start.position));
+        let mut axes = circle(radius, speed, 0.0).map(|start| drive(input, start.position));
         let ramp = speed / START;
         let end = ramp + 3.2 * std::f64::consts::PI * radius / speed;
-        let steps = (period / H).round() as usize;
+        let steps = (period / H).round() as u32;
+        let quantum = number(input, "q");
         let (mut contour_max, mut contour_sum, mut follow_max, mut count) = (0.0f64, 0.0, 0.0f64, 0.0);
         for k in 0..(end / period) as usize {
             let t = k as f64 * period;
             let reference = circle(radius, speed, t);
             for ((axis, state), setpoint) in axes.iter_mut().zip(&mut states).zip(&reference) {
-                let command = pid
-                    .step(state, setpoint, axis.read(), 0.0)
-                    .expect("finite inputs");
-                for _ in 0..steps {
-                    axis.step(command);
-                }
+                let read = (axis.position() / quantum + 0.5).floor() * quantum;
+                let command = pid.step(state, setpoint, read, 0.0).expect("finite inputs");
+                axis.run(command, steps);
             }
             if t > ramp + 0.4 {
-                let [x, y] = [axes[0].load, axes[1].load];
+                let [x, y] = [axes[0].position(), axes[1].position()];
                 let contour = (x.hypot(y) - radius).abs();
                 let target = circle(radius, speed, t + period);
                 let follow = (x - target[0].position).hypot(y - target[1].position);
