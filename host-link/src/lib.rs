@@ -1,6 +1,7 @@
 //! The PC's part of Seamwright: programs, planning, sessions with the boards, reports.
 
 pub mod boards;
+pub mod cli;
 pub mod curve;
 pub mod evaluate;
 pub mod machine;
@@ -8,4 +9,6 @@ pub mod nc;
 pub mod path;
 pub mod record;
 pub mod report;
+pub mod seam;
+pub mod table;
 pub mod world;

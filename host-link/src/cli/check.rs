@@ -1,0 +1,83 @@
+//! `host-link check`: can this machine run this program?
+
+use crate::machine::MachineFile;
+use crate::nc::{Motion, Options, interpret};
+use crate::path::{PlannedPath, Planner};
+use crate::seam::Deviation;
+use anyhow::Context;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Check a program against a machine: travel, speeds, and the reach of the slides
+#[derive(Debug, Args)]
+pub struct Check {
+    /// NC program
+    program: PathBuf,
+    /// Machine file
+    #[arg(long)]
+    machine: PathBuf,
+    /// Seam deviation (CSV) that the slides must reach
+    #[arg(long)]
+    seam: Option<PathBuf>,
+    /// Feed that replaces the programmed one [m/min]
+    #[arg(long, value_name = "M_PER_MIN")]
+    speed: Option<f64>,
+    /// Leave out blocks that start with /
+    #[arg(long)]
+    block_delete: bool,
+}
+
+impl Check {
+    /// Prints every path with its length and time.
+    pub fn run(self) -> anyhow::Result<()> {
+        let machine = MachineFile::read(&self.machine)?;
+        let name = self.program.display();
+        let text = std::fs::read_to_string(&self.program)
+            .map_err(|error| anyhow::anyhow!("cannot read program {name}: {error}"))?;
+        let block_delete = self.block_delete;
+        let program =
+            interpret(&text, Options { block_delete }).with_context(|| format!("program {name}"))?;
+        let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
+        let from = planner.tip(&machine.planning.park.to_array());
+        let speed = self.speed.map(|m_min| m_min * shared::units::MM_S_PER_M_MIN);
+        let paths = planner
+            .program(&program, &from, speed)
+            .with_context(|| format!("program {name}"))?;
+        if let Some(file) = &self.seam {
+            let deviation = Deviation::read(file)?;
+            for path in paths.iter().filter(|path| path.weld().is_some()) {
+                deviation
+                    .check(path, &machine)
+                    .with_context(|| file.display().to_string())?;
+            }
+        }
+        print(&paths);
+        Ok(())
+    }
+}
+
+fn print(paths: &[PlannedPath]) {
+    println!(" path            length      time     speed  points");
+    for (index, path) in paths.iter().enumerate() {
+        let kind = match path.motion {
+            Motion::Rapid => "rapid",
+            Motion::Feed(_) => "feed",
+        };
+        println!(
+            "{:5} {kind:<6} {:9.1} mm {:7.2} s {:6.2} m/min {:5}",
+            index + 1,
+            path.length_mm(),
+            path.duration_s(),
+            path.limits.velocity / shared::units::MM_S_PER_M_MIN,
+            path.knots.len(),
+        );
+        if let Some((start, end)) = path.weld() {
+            println!(
+                "      weld from {start:.1} to {end:.1} mm, {:.1} mm long",
+                end - start
+            );
+        }
+    }
+    let time: f64 = paths.iter().map(PlannedPath::duration_s).sum();
+    println!("total {time:.2} s from the park position");
+}
