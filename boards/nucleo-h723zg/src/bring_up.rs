@@ -2,7 +2,7 @@
 
 use crate::ethernet::Parts;
 use crate::outputs::{self, Bus};
-use crate::{Network, Watchdog, clocks, timebase};
+use crate::{Network, Watchdog, clocks, handlers, timebase};
 use defmt_rtt as _;
 use embassy_stm32::spi::Spi;
 use embassy_stm32::{peripherals, rcc};
@@ -13,6 +13,7 @@ pub(crate) fn start(mut core: cortex_m::Peripherals) -> (Watchdog, Network, Bus)
     let watchdog = Watchdog::start();
     let p = clocks::start(&mut core);
     timebase::start();
+    handlers::report_last();
     rcc::enable_and_reset::<peripherals::TIM6>();
     rcc::enable_and_reset::<peripherals::TIM7>();
     let network = Network::start(Parts {

@@ -1,36 +1,81 @@
 //! When the firmware fails: outputs off with a few stores, then still until the watchdog resets the board.
 //!
-//! No formatting, no locks, no SPI: nothing here may fail in its turn.
+//! No formatting, no locks, no SPI: nothing here may fail in its turn. Why it happened is left in memory that a
+//! reset does not clear, and logged at the next start.
 
-use crate::outputs;
+use crate::{outputs, watchdog};
+use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
+use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m_rt::exception;
-use embassy_stm32::pac::IWDG1;
-use embassy_stm32::pac::iwdg::vals::Key;
+use embassy_stm32::pac::RCC;
 
-/// Switches everything off and never returns. The watchdog is started in case it does not run yet.
-fn stop() -> ! {
+/// Words that tell a record from what memory holds at power-up.
+const PANIC: u32 = 0x70616e69;
+const HARD_FAULT: u32 = 0x66617568;
+const UNHANDLED: u32 = 0x756e6861;
+
+/// The last failure.
+#[repr(C, align(8))]
+struct Failure {
+    kind: AtomicU32,
+    /// Line of a panic, number of an exception.
+    detail: AtomicU32,
+    /// The memory keeps the last word written in a buffer that a reset loses: this one may be lost.
+    flush: AtomicU32,
+}
+
+#[unsafe(link_section = ".uninit.failure")]
+static FAILURE: MaybeUninit<Failure> = MaybeUninit::uninit();
+
+fn failure() -> &'static Failure {
+    // SAFETY: any bits are valid in an atomic word.
+    unsafe { FAILURE.assume_init_ref() }
+}
+
+/// Logs why the board was reset, if it had failed.
+pub(crate) fn report_last() {
+    let last = failure();
+    let detail = last.detail.load(Ordering::Relaxed);
+    match last.kind.swap(0, Ordering::Relaxed) {
+        PANIC => defmt::error!("the last run ended in a panic, at line {} of its file", detail),
+        HARD_FAULT => defmt::error!("the last run ended in a hard fault"),
+        UNHANDLED => defmt::error!(
+            "the last run ended in exception {} without handler",
+            detail as i32
+        ),
+        _ if RCC.rsr().read().iwdg1rstf() => defmt::error!("the watchdog was not fed: a task had stopped"),
+        _ => {}
+    }
+    RCC.rsr().modify(|w| w.set_rmvf(true));
+}
+
+/// Switches everything off and never returns.
+fn stop(kind: u32, detail: u32) -> ! {
     cortex_m::interrupt::disable();
     outputs::kill();
-    IWDG1.kr().write(|w| w.set_key(Key::START));
+    let record = failure();
+    record.kind.store(kind, Ordering::Relaxed);
+    record.detail.store(detail, Ordering::Relaxed);
+    record.flush.store(0, Ordering::Relaxed);
+    watchdog::ensure_running();
     loop {
-        // A debugger finds the reason on the stack; the empty loop must stay.
         cortex_m::asm::nop();
     }
 }
 
 #[panic_handler]
-fn panic(_: &PanicInfo) -> ! {
-    stop()
+fn panic(info: &PanicInfo) -> ! {
+    stop(PANIC, info.location().map_or(0, |location| location.line()))
 }
 
 #[exception(trampoline = false)]
 unsafe fn HardFault() -> ! {
-    stop()
+    stop(HARD_FAULT, 0)
 }
 
 /// Any exception or interrupt that nothing handles.
 #[exception]
-unsafe fn DefaultHandler(_: i16) -> ! {
-    stop()
+unsafe fn DefaultHandler(number: i16) -> ! {
+    stop(UNHANDLED, number as u32)
 }

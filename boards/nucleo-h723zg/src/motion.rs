@@ -26,6 +26,8 @@ const CHIPS: usize = 3;
 const FIRST_POWER: usize = 8;
 /// Enable lines.
 const ENABLES: u16 = mask(&MOTION.enable);
+/// A bit for every drive.
+const ALL_DRIVES: u8 = (1 << MOTORS) - 1;
 
 /// The board's parts.
 pub struct Board {
@@ -43,7 +45,7 @@ pub struct Board {
 
 /// Sets the board up, outputs off. Both timers run when it returns.
 pub fn init(core: cortex_m::Peripherals) -> Board {
-    let (mut watchdog, network, bus) = bring_up::start(core);
+    let (watchdog, network, bus) = bring_up::start(core);
     inputs::start(&MOTION, &LASERS_READY);
     let [gate_1, gate_2] = BEAM_GATES;
     let [x1, x2, y, z, a, b, c] = MOTION.enable;
@@ -53,7 +55,6 @@ pub fn init(core: cortex_m::Peripherals) -> Board {
     };
     let mut servo_tick = Tick::new(pac::TIM6, SERVO_PERIOD_US);
     let mut path_tick = Tick::new(pac::TIM7, PATH_PERIOD_US);
-    watchdog.tighten();
     Tick::start([&mut servo_tick, &mut path_tick]);
     Board {
         servo_tick,
@@ -107,6 +108,3 @@ impl Axes {
         None
     }
 }
-
-/// A bit for every drive.
-const ALL_DRIVES: u8 = (1 << MOTORS) - 1;

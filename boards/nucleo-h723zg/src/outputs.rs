@@ -4,6 +4,7 @@ use crate::clocks::{SPI_HZ, Wait};
 use crate::gpio::{self, Output as Line};
 use crate::pins::{DAC_CLEAR, DAC_LOAD, DAC_SYNC, HEARTBEAT, OUTPUT_MASK, OUTPUT_PORT, Pin, mask};
 use ad5764r::{Bank, Channel, Output};
+use defmt::Display2Format;
 use embassy_stm32::mode::Blocking;
 use embassy_stm32::pac::gpio::regs::Bsrr;
 use embassy_stm32::spi::{self, Spi, mode::Master};
@@ -61,13 +62,23 @@ impl<const CHIPS: usize> Outputs<CHIPS> {
         let sync = core::array::from_fn(|chip| Line::new(DAC_SYNC[chip], true));
         let clear = Line::new(DAC_CLEAR, false);
         let bank = Bank::new(bus, sync, Line::new(DAC_LOAD, true), clear, Wait);
-        let mut bank = bank.ok();
-        if let Some(Err(_)) = bank.as_mut().map(Bank::self_test) {
-            defmt::error!("the converters do not answer: check their wiring and supply; outputs stay off");
-            kill();
-            bank = None;
+        match bank.and_then(|mut bank| bank.self_test().map(|()| bank)) {
+            Ok(bank) => Self {
+                bank: Some(bank),
+                beat: false,
+            },
+            Err(error) => {
+                defmt::error!(
+                    "{}; outputs stay off until the board is reset",
+                    Display2Format(&error)
+                );
+                kill();
+                Self {
+                    bank: None,
+                    beat: false,
+                }
+            }
         }
-        Self { bank, beat: false }
     }
 
     /// Whether a converter has failed since reset.
@@ -81,10 +92,13 @@ impl<const CHIPS: usize> Outputs<CHIPS> {
         let Some(bank) = &mut self.bank else { return };
         let port = gpio::port(OUTPUT_PORT);
         port.bsrr().write_value(Bsrr(u32::from(all & !on) << 16));
-        if bank.update(codes).is_err() {
-            defmt::error!("a converter failed: outputs off until the board is reset");
-            self.bank = None;
+        if let Err(error) = bank.update(codes) {
             kill();
+            defmt::error!(
+                "{}; outputs stay off until the board is reset",
+                Display2Format(&error)
+            );
+            self.bank = None;
             return;
         }
         self.beat = !self.beat;

@@ -39,7 +39,7 @@ pub struct Board {
 
 /// Sets the board up, outputs off. The timer runs when it returns.
 pub fn init(core: cortex_m::Peripherals) -> Board {
-    let (mut watchdog, network, bus) = bring_up::start(core);
+    let (watchdog, network, bus) = bring_up::start(core);
     inputs::start(&TRACKER, &[]);
     let [camera_1, camera_2] = CAMERA_TRIGGERS;
     let [u1, v1, u2, v2] = TRACKER.enable;
@@ -48,7 +48,6 @@ pub fn init(core: cortex_m::Peripherals) -> Board {
         encoders: core::array::from_fn(|slide| Encoder::start(&TRACKER.encoders[slide])),
     };
     let mut tick = Tick::new(pac::TIM6, CONTROL_PERIOD_US);
-    watchdog.tighten();
     Tick::start([&mut tick]);
     Board {
         tick,

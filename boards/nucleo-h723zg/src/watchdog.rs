@@ -2,50 +2,50 @@
 //!
 //! It keeps running when a debugger halts the core, because the drives do too: a halted board resets.
 
-use embassy_stm32::pac::{
-    IWDG1, RCC,
-    iwdg::vals::{Key, Pr},
-};
+use embassy_stm32::pac::IWDG1;
+use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 
-/// Time to set the board up: the Ethernet PHY alone may take half a second \[ms\].
+/// Time to the first feed: setting up waits half a second for the Ethernet PHY alone \[ms\].
 const START_MS: u16 = 4000;
 /// Time between two feeds, afterwards \[ms\].
 const RUN_MS: u16 = 50;
 
 /// Resets the board unless it is fed.
-pub struct Watchdog(());
+pub struct Watchdog {
+    fed: bool,
+}
 
 impl Watchdog {
-    /// Starts it with the time allowed for setting up.
+    /// Starts it with the time allowed for setting up. One unit of its reload value is a millisecond.
     pub(crate) fn start() -> Self {
-        if RCC.rsr().read().iwdg1rstf() {
-            defmt::warn!("the last reset came from the watchdog");
-        }
-        RCC.rsr().modify(|w| w.set_rmvf(true));
-        IWDG1.kr().write(|w| w.set_key(Key::START));
-        allow(START_MS);
-        Self(())
+        key(Key::START);
+        key(Key::ENABLE);
+        IWDG1.pr().write(|w| w.set_pr(Pr::DIVIDE_BY32));
+        IWDG1.rlr().write(|w| w.set_rl(START_MS));
+        // Some clocks of its oscillator, which runs.
+        while IWDG1.sr().read().pvu() || IWDG1.sr().read().rvu() {}
+        key(Key::RESET);
+        Self { fed: false }
     }
 
-    /// From now on it bites after 50 ms without food.
-    pub(crate) fn tighten(&mut self) {
-        allow(RUN_MS);
-        self.feed();
-    }
-
-    /// Feeds it: to be called by the servo task alone, once it has seen the others alive.
+    /// The board works: wait anew, 50 ms from the first feed on. To be called by the servo task alone, once it
+    /// has seen the others alive.
     pub fn feed(&mut self) {
-        IWDG1.kr().write(|w| w.set_key(Key::RESET));
+        if !self.fed {
+            // Taken over a few milliseconds later, with a later feed.
+            key(Key::ENABLE);
+            IWDG1.rlr().write(|w| w.set_rl(RUN_MS));
+            self.fed = true;
+        }
+        key(Key::RESET);
     }
 }
 
-/// Sets the time to the bite; the oscillator of 32 kHz ticks once a millisecond behind its prescaler.
-fn allow(ms: u16) {
-    IWDG1.kr().write(|w| w.set_key(Key::ENABLE));
-    // A few clocks of a free-running oscillator.
-    while IWDG1.sr().read().pvu() || IWDG1.sr().read().rvu() {}
-    IWDG1.pr().write(|w| w.set_pr(Pr::DIVIDE_BY32));
-    IWDG1.rlr().write(|w| w.set_rl(ms));
-    while IWDG1.sr().read().pvu() || IWDG1.sr().read().rvu() {}
-    IWDG1.kr().write(|w| w.set_key(Key::RESET));
+/// Starts the watchdog if it does not run: for a failure before [`Watchdog::start`].
+pub(crate) fn ensure_running() {
+    key(Key::START);
+}
+
+fn key(key: Key) {
+    IWDG1.kr().write(|w| w.set_key(key));
 }
