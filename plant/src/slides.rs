@@ -135,13 +135,13 @@ mod tests {
         for k in 1..60 {
             slide.advance(Some(10.0));
             let t = f64::from(k) * TICK;
-            let velocity = 10.0 * (1.0 - libm::exp(-t / LAG));
+            let velocity = 10.0 * (1.0 - libm::exp(-t / 8e-3));
             assert!(
                 (slide.velocity - velocity).abs() < 1e-9,
                 "{k} ms: {}",
                 slide.velocity
             );
-            let position = 10.0 * (t - LAG * (1.0 - libm::exp(-t / LAG)));
+            let position = 10.0 * (t - 8e-3 * (1.0 - libm::exp(-t / 8e-3)));
             assert!(
                 (slide.position() - position).abs() < 1e-3,
                 "{k} ms: {}",
