@@ -121,8 +121,13 @@ impl Deviation {
         let knots = path.path();
         let count = (length / CHECK_STEP).ceil() as usize;
         let mut worst: Option<(f64, SeamError)> = None;
-        for i in 0..=count {
-            let s = length * i as f64 / count as f64;
+        let even = (0..=count).map(|i| length * i as f64 / count as f64);
+        let rows = self
+            .s
+            .iter()
+            .map(|s| s + start)
+            .filter(|s| (0.0..=length).contains(s));
+        for s in even.chain(rows) {
             let follow = knots.at(s).map_or([0.0; 2], |point| point.v_follow());
             let deviation = self.at(s - start);
             for slide in 0..SLIDES {
