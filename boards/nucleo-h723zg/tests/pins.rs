@@ -168,3 +168,12 @@ fn all_that_must_die_together_is_on_one_port_and_in_its_mask() {
         );
     }
 }
+
+#[test]
+fn the_wiring_document_names_every_pin() {
+    let document = include_str!("../../../docs/wiring.md");
+    let words: Vec<&str> = document.split(|c: char| !c.is_ascii_alphanumeric()).collect();
+    for (what, pin) in boards().iter().flatten() {
+        assert!(words.contains(&name(*pin).as_str()), "{} for {what}", name(*pin));
+    }
+}

@@ -42,11 +42,14 @@ impl<B: SpiBus, P: OutputPin, D: DelayNs, const CHIPS: usize> Bank<B, P, D, CHIP
             clr,
             delay,
         };
-        bank.clr.set_low().map_err(Error::Pin)?;
         bank.ldac.set_high().map_err(Error::Pin)?;
         for sync in &mut bank.sync {
             sync.set_high().map_err(Error::Pin)?;
         }
+        // The chip acts on the falling edge: the line may have been low since before the chip had its supply.
+        bank.clr.set_high().map_err(Error::Pin)?;
+        bank.delay.delay_ns(LOAD_WIDTH_NS);
+        bank.clr.set_low().map_err(Error::Pin)?;
         bank.delay.delay_ns(LOAD_WIDTH_NS);
         bank.clr.set_high().map_err(Error::Pin)?;
         Ok(bank)
@@ -65,7 +68,7 @@ impl<B: SpiBus, P: OutputPin, D: DelayNs, const CHIPS: usize> Bank<B, P, D, CHIP
         self.ldac.set_high().map_err(Error::Pin)
     }
 
-    /// Pulls CLR: all outputs go to 0 V at once and stay there until [`Bank::release`].
+    /// Pulls CLR: all outputs go to 0 V at once. An [`Bank::update`] is to come only after [`Bank::release`].
     pub fn clear(&mut self) -> Result<(), BankError<B, P>> {
         self.clr.set_low().map_err(Error::Pin)
     }

@@ -46,7 +46,7 @@ fn with_chip(
         .collect::<Vec<_>>();
     let mut sync = Pin::new(&sync);
     let mut ldac = Pin::new(&[vec![high()], ldac].concat());
-    let mut clr = Pin::new(&[vec![low(), high()], clr].concat());
+    let mut clr = Pin::new(&[vec![high(), low(), high()], clr].concat());
     let mut spi = Spi::new(&frames.concat());
     let mut bank = Bank::new(&mut spi, [&mut sync], &mut ldac, &mut clr, NoDelay).unwrap();
     body(&mut bank);
@@ -182,7 +182,7 @@ fn a_pin_that_fails_is_reported_and_loads_nothing() {
         low().with_error(MockError::Io(io::ErrorKind::NotConnected)),
     ]);
     let mut ldac = Pin::new(&[high()]);
-    let mut clr = Pin::new(&[low(), high()]);
+    let mut clr = Pin::new(&[high(), low(), high()]);
     let mut bank = Bank::new(&mut spi, [&mut sync], &mut ldac, &mut clr, NoDelay).unwrap();
     let error = bank.update(&[(A, 1)]).unwrap_err();
     assert_eq!(error, Error::Pin(MockError::Io(io::ErrorKind::NotConnected)));
