@@ -13,7 +13,7 @@ const OUTGOING: usize = 8;
 /// Short datagrams that wait for others: path states and clock requests, of at most 256 bytes.
 const OUTGOING_SHORT: usize = 8;
 
-/// Buffers of a [`Link`](crate::Link), 29 kB, best in a static.
+/// Buffers of a [`Link`](crate::Link), about 28 kB, best in a static.
 pub struct Storage<'a> {
     pub(crate) sockets: [SocketStorage<'a>; 3],
     pub(crate) requests: [u8; 2 * FRAME],
