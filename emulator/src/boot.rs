@@ -4,12 +4,12 @@ use crate::hello;
 use crate::qemu::{Board, PROGRAM, Setup};
 use crate::session::{Endpoint, PathStatesTo, Session};
 use shared::protocol::{Role, SCHEMA_HASH};
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::net::{Ipv4Addr, TcpListener, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
-use std::{io, thread};
+use std::{env, io, thread};
 use thiserror::Error;
 
 /// Where a board's net ends and this host begins, as the board sees it.
@@ -34,6 +34,28 @@ pub struct Options {
     pub log_directory: PathBuf,
     /// The boards' time per wall time; 1 is real time, less suits a loaded host.
     pub rate: f64,
+}
+
+/// Environment variables by which a test is told what to boot, in the order of [`Options`].
+pub const BOOT_VARIABLES: [&str; 3] = ["SEAMWRIGHT_MOTION", "SEAMWRIGHT_TRACKER", "SEAMWRIGHT_PACE"];
+
+impl Options {
+    /// What `cargo xtask test` has built, in real time; an error names the variable that is not set.
+    pub fn from_environment(log_directory: PathBuf) -> Result<Self, BootError> {
+        let path = |variable| {
+            env::var_os(variable)
+                .map(PathBuf::from)
+                .ok_or(BootError::NotTold { variable })
+        };
+        let [motion, tracker, plugin] = BOOT_VARIABLES;
+        Ok(Self {
+            motion: path(motion)?,
+            tracker: path(tracker)?,
+            plugin: path(plugin)?,
+            log_directory,
+            rate: 1.0,
+        })
+    }
 }
 
 /// Why the boards do not run.
@@ -66,6 +88,18 @@ pub enum BootError {
         directory: PathBuf,
         /// What the system said.
         source: io::Error,
+    },
+    /// The environment does not tell what to boot.
+    #[error("{variable} is not set; run these tests by `cargo xtask test`")]
+    NotTold {
+        /// The variable.
+        variable: &'static str,
+    },
+    /// Other boards run with this directory.
+    #[error("emulated boards that use {} are running already", directory.display())]
+    InUse {
+        /// Directory for the logs.
+        directory: PathBuf,
     },
     /// A board's process has ended.
     #[error("the emulated {board} board has ended ({status}): {said}; its log is in {}", directory.display())]
@@ -110,6 +144,8 @@ pub struct Boards {
     tracker: Board,
     session: Session,
     directory: PathBuf,
+    /// Locked as long as the boards use it.
+    _page: File,
 }
 
 impl Boards {
@@ -127,9 +163,7 @@ impl Boards {
         fs::create_dir_all(&options.log_directory).map_err(setup)?;
         let directory = options.log_directory.canonicalize().map_err(setup)?;
         let session = free_ports().map_err(setup)?;
-        File::create(directory.join(PEERS))
-            .and_then(|page| page.set_len(PEERS_LENGTH))
-            .map_err(setup)?;
+        let page = shared_page(&directory)?;
 
         let start = |name, mac, slot, firmware, endpoint| {
             Board::start(&Setup {
@@ -152,6 +186,7 @@ impl Boards {
             tracker,
             session,
             directory,
+            _page: page,
         };
         let deadline = Instant::now() + PATIENCE;
         boards.wait_for(Role::Motion, deadline)?;
@@ -212,6 +247,33 @@ impl Boards {
             }
         }
     }
+}
+
+/// An empty page for the two plugins, locked against a second pair.
+fn shared_page(directory: &Path) -> Result<File, BootError> {
+    let setup = |source| BootError::Setup {
+        directory: directory.to_owned(),
+        source,
+    };
+    let page = File::options()
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(directory.join(PEERS))
+        .map_err(setup)?;
+    match page.try_lock() {
+        Ok(()) => {}
+        Err(TryLockError::WouldBlock) => {
+            return Err(BootError::InUse {
+                directory: directory.to_owned(),
+            });
+        }
+        Err(TryLockError::Error(source)) => return Err(setup(source)),
+    }
+    page.set_len(0)
+        .and_then(|()| page.set_len(PEERS_LENGTH))
+        .map_err(setup)?;
+    Ok(page)
 }
 
 fn find_program(program: &'static str, package: &'static str) -> Result<(), BootError> {
@@ -279,6 +341,18 @@ mod tests {
             text.contains("seamwright-no-such-program") && text.contains("package qemu-system-arm"),
             "{text}"
         );
+    }
+
+    #[test]
+    fn a_directory_serves_one_pair_at_a_time() {
+        let directory = env::temp_dir().join(format!("seamwright-emulator-{}", std::process::id()));
+        fs::create_dir_all(&directory).expect("the temporary directory is writable");
+        let page = shared_page(&directory).expect("is free");
+        assert_eq!(page.metadata().expect("is open").len(), PEERS_LENGTH);
+        assert!(matches!(shared_page(&directory), Err(BootError::InUse { .. })));
+        drop(page);
+        shared_page(&directory).expect("is free again");
+        fs::remove_dir_all(&directory).expect("is there");
     }
 
     #[test]

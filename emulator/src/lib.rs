@@ -11,6 +11,6 @@ mod hello;
 mod qemu;
 mod session;
 
-pub use boot::{Boards, BootError, Options};
+pub use boot::{BOOT_VARIABLES, Boards, BootError, Options};
 pub use qemu::bound_to_parent;
 pub use session::{Endpoint, PathStatesTo, SESSION_VARIABLE, Session, SessionError};

@@ -1,2 +1,113 @@
-//! Placeholder.
-fn main() {}
+//! Everything around the project: set-up, building for the boards, emulated boards, tests, sizes, flashing.
+
+mod cargo;
+mod emulate;
+mod firmware;
+mod flash;
+mod interrupt;
+mod setup;
+mod size;
+mod test;
+mod weld;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", about, disable_help_subcommand = true)]
+struct Arguments {
+    /// Install nothing; stand before the subcommand
+    #[arg(long)]
+    no_setup: bool,
+    /// Time of the emulated boards per wall time; less than 1 suits a loaded machine
+    #[arg(long, default_value_t = 1.0, value_parser = rate)]
+    rate: f64,
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Install what is missing: the Arm target of Rust, QEMU
+    Setup,
+    /// Weld on two emulated boards: set up, build, boot, and run `host-link weld` with the flags given
+    #[command(disable_help_flag = true)]
+    Weld {
+        /// Flags of `host-link weld`; program, machine and seam default to the shipped job
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        flags: Vec<String>,
+    },
+    /// Boot both emulated boards and keep them until Ctrl-C
+    Emulate,
+    /// Check and test everything
+    Test,
+    /// Flash and RAM of all four firmwares against their budgets
+    Size,
+    /// Write a firmware to a board by probe-rs
+    Flash {
+        /// Which firmware
+        firmware: firmware::Firmware,
+        /// Which board it is for
+        #[arg(long, default_value_t = firmware::Board::NucleoH723zg)]
+        board: firmware::Board,
+    },
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(rate) if rate > 0.0 && rate <= 1.0 => Ok(rate),
+        _ => Err("a number above 0, at most 1".into()),
+    }
+}
+
+fn main() -> ExitCode {
+    let Arguments { no_setup, rate, task } = Arguments::parse();
+    let set_up = |wants: &[setup::Tool]| if no_setup { Ok(()) } else { setup::run(wants) };
+    let result = match task {
+        Task::Setup => setup::run(&setup::ALL).map(|()| ExitCode::SUCCESS),
+        Task::Weld { flags } => weld::run(&flags, rate, set_up),
+        Task::Emulate => set_up(&setup::EMULATION).and_then(|()| emulate::run(rate)),
+        Task::Test => set_up(&setup::ALL).and_then(|()| test::run()),
+        Task::Size => set_up(&[setup::Tool::ArmTarget]).and_then(|()| size::run()),
+        Task::Flash { firmware, board } => {
+            set_up(&[setup::Tool::ArmTarget]).and_then(|()| flash::run(firmware, board))
+        }
+    };
+    result.unwrap_or_else(|error| {
+        eprintln!("error: {error:#}");
+        ExitCode::FAILURE
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn weld_takes_any_flag_and_setup_flags_stand_before_it() {
+        let arguments = Arguments::try_parse_from(["xtask", "--no-setup", "weld", "--speed", "9", "--help"]);
+        let Ok(Arguments {
+            no_setup: true,
+            task: Task::Weld { flags },
+            ..
+        }) = arguments
+        else {
+            panic!("not understood");
+        };
+        assert_eq!(flags, ["--speed", "9", "--help"]);
+    }
+
+    #[test]
+    fn rates_are_above_zero_and_at_most_one() {
+        assert_eq!(rate("0.5"), Ok(0.5));
+        for wrong in ["0", "-1", "2", "NaN", "fast"] {
+            assert!(rate(wrong).is_err(), "{wrong}");
+        }
+    }
+}

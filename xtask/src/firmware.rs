@@ -1,0 +1,105 @@
+//! Builds the firmwares, the pace plugin and the PC's program.
+
+use crate::cargo::{self, cargo, run_command, target_directory};
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+use std::fmt;
+use std::fs;
+use std::path::PathBuf;
+
+/// The boards' processor.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+const PROFILE: &str = "firmware";
+
+/// The two firmwares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Firmware {
+    /// Motion board.
+    Motion,
+    /// Tracker board.
+    Tracker,
+}
+
+/// The boards they are built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Board {
+    /// Emulated.
+    Mps2An500,
+    /// Real.
+    NucleoH723zg,
+}
+
+/// Every pair.
+pub const ALL: [(Firmware, Board); 4] = [
+    (Firmware::Motion, Board::Mps2An500),
+    (Firmware::Tracker, Board::Mps2An500),
+    (Firmware::Motion, Board::NucleoH723zg),
+    (Firmware::Tracker, Board::NucleoH723zg),
+];
+
+impl Firmware {
+    /// Name of the package.
+    pub fn package(self) -> &'static str {
+        match self {
+            Self::Motion => "firmware-motion",
+            Self::Tracker => "firmware-tracker",
+        }
+    }
+}
+
+impl fmt::Display for Board {
+    /// Also the name of the feature that selects it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mps2An500 => "mps2-an500",
+            Self::NucleoH723zg => "nucleo-h723zg",
+        })
+    }
+}
+
+/// Builds a firmware for a board; returns the image. Both boards' images have the same name in the target
+/// folder, so each is kept under a name of its own.
+pub fn build(firmware: Firmware, board: Board) -> Result<PathBuf> {
+    let package = firmware.package();
+    let board = board.to_string();
+    let mut command = cargo(&[
+        "build",
+        "--quiet",
+        "--package",
+        package,
+        "--target",
+        TARGET,
+        "--profile",
+        PROFILE,
+        "--features",
+        &board,
+    ])?;
+    if std::env::var_os("DEFMT_LOG").is_none() {
+        command.env("DEFMT_LOG", "info");
+    }
+    eprintln!("building {package} for {board}");
+    run_command(command, &format!("building {package} for {board}"))?;
+
+    let target = target_directory()?;
+    let built = target.join(TARGET).join(PROFILE).join(package);
+    let images = target.join("images");
+    fs::create_dir_all(&images).with_context(|| format!("cannot make {}", images.display()))?;
+    let image = images.join(format!("{package}-{board}"));
+    fs::copy(&built, &image)
+        .with_context(|| format!("cannot copy {} to {}", built.display(), image.display()))?;
+    Ok(image)
+}
+
+/// Builds the plugin that keeps emulated boards on the wall clock; returns the library.
+pub fn build_pace() -> Result<PathBuf> {
+    eprintln!("building the pace plugin");
+    cargo::run(&["build", "--quiet", "--package", "seamwright-pace", "--release"])?;
+    Ok(target_directory()?.join("release").join("libpace.so"))
+}
+
+/// Builds the PC's program; returns it.
+pub fn build_host_link() -> Result<PathBuf> {
+    eprintln!("building host-link");
+    cargo::run(&["build", "--quiet", "--package", "host-link", "--release"])?;
+    Ok(target_directory()?.join("release").join("host-link"))
+}

@@ -1,0 +1,140 @@
+//! Installs what building and emulating need, if it is missing. Says what it does; does nothing twice.
+
+use crate::cargo::{root, run_command};
+use crate::firmware::TARGET;
+use anyhow::{Context, Result, bail, ensure};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// What the project needs beside cargo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tool {
+    /// Rust's core library for the boards.
+    ArmTarget,
+    /// Formatter and linter.
+    Components,
+    /// The emulator.
+    Qemu,
+}
+
+/// For everything.
+pub const ALL: [Tool; 3] = [Tool::ArmTarget, Tool::Components, Tool::Qemu];
+/// For emulated boards.
+pub const EMULATION: [Tool; 2] = [Tool::ArmTarget, Tool::Qemu];
+
+const QEMU: &str = "qemu-system-arm";
+
+/// Installs those of `wants` that are missing.
+pub fn run(wants: &[Tool]) -> Result<()> {
+    for tool in wants {
+        match tool {
+            Tool::ArmTarget => arm_target()?,
+            Tool::Components => components()?,
+            Tool::Qemu => qemu()?,
+        }
+    }
+    Ok(())
+}
+
+fn arm_target() -> Result<()> {
+    let installed = || Ok::<_, anyhow::Error>(sysroot()?.join("lib/rustlib").join(TARGET).is_dir());
+    if installed()? {
+        return Ok(());
+    }
+    rustup(&["target", "add", TARGET])?;
+    ensure!(
+        installed()?,
+        "rustup has added {TARGET} to another toolchain than {}",
+        sysroot()?.display()
+    );
+    Ok(())
+}
+
+fn components() -> Result<()> {
+    let missing: Vec<&str> = [("rustfmt", "fmt"), ("clippy", "clippy")]
+        .into_iter()
+        .filter(|(_, command)| !runs("cargo", &[command, "--version"]))
+        .map(|(component, _)| component)
+        .collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    rustup(&[&["component", "add"], &missing[..]].concat())
+}
+
+fn qemu() -> Result<()> {
+    if runs(QEMU, &["--version"]) {
+        return Ok(());
+    }
+    let by_hand = "install QEMU for Arm by hand, version 7.2 or later with plugins";
+    ensure!(
+        Path::new("/etc/debian_version").exists(),
+        "{QEMU} is missing and this is not Debian: {by_hand}"
+    );
+    let mut prefix = Vec::new();
+    if !is_root() {
+        ensure!(
+            runs("sudo", &["--version"]),
+            "{QEMU} is missing, and installing it needs root or sudo: {by_hand}"
+        );
+        prefix.push("sudo");
+    }
+    for step in [
+        &["update"][..],
+        &["install", "--yes", "--no-install-recommends", QEMU],
+    ] {
+        let words = [&prefix[..], &["apt-get"], step].concat();
+        let line = words.join(" ");
+        eprintln!("set-up: {line}");
+        let mut command = Command::new(words[0]);
+        command
+            .args(&words[1..])
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .stdout(Stdio::null());
+        run_command(command, &line)?;
+    }
+    ensure!(
+        runs(QEMU, &["--version"]),
+        "the Debian package {QEMU} is installed, but {QEMU} does not run"
+    );
+    Ok(())
+}
+
+fn rustup(arguments: &[&str]) -> Result<()> {
+    let line = format!("rustup {}", arguments.join(" "));
+    if !runs("rustup", &["--version"]) {
+        bail!("rustup is missing; get for the compiler in use what `{line}` would install");
+    }
+    eprintln!("set-up: {line}");
+    let mut command = Command::new("rustup");
+    command.args(arguments).current_dir(root());
+    run_command(command, &line)
+}
+
+fn sysroot() -> Result<PathBuf> {
+    let output = Command::new("rustc")
+        .args(["--print", "sysroot"])
+        .current_dir(root())
+        .output()
+        .context("cannot run rustc")?;
+    ensure!(output.status.success(), "rustc cannot say where it is installed");
+    Ok(PathBuf::from(String::from_utf8_lossy(&output.stdout).trim()))
+}
+
+fn is_root() -> bool {
+    Command::new("id")
+        .arg("-u")
+        .output()
+        .is_ok_and(|output| output.stdout.trim_ascii() == b"0")
+}
+
+fn runs(program: &str, arguments: &[&str]) -> bool {
+    Command::new(program)
+        .args(arguments)
+        .current_dir(root())
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .is_ok_and(|status| status.success())
+}
