@@ -38,6 +38,8 @@ pub struct Evaluation {
     pub ticks: Vec<SeamTick>,
     /// Ticks with a beam on.
     pub weld_ticks: u32,
+    /// Length of path between them \[mm\].
+    pub weld_length_mm: f64,
     /// Of these, ticks whose deviation is not known, since telemetry is missing or the seam ended.
     pub unknown_ticks: u32,
     /// Largest |deviation| with the beam of that side on \[mm\].
@@ -63,6 +65,7 @@ pub fn evaluate(
     let mut result = Evaluation::default();
     let mut deviation = [Peak::default(); SLIDES];
     let mut contour = Peak::default();
+    let mut welded_to: Option<&MotionSample> = None;
     let on_path = |s: &&MotionSample| matches!(s.state, State::Running | State::Holding | State::Stopping);
     for sample in record.motion().iter().filter(on_path) {
         for (max, seen) in result.max_following_error.iter_mut().zip(sample.following_error) {
@@ -73,7 +76,12 @@ pub fn evaluate(
             continue;
         };
         let tick = seam_tick(sample, record, machine, seam, tracker_ahead_us);
-        if sample.beams.contains(&true) {
+        if !sample.beams.contains(&true) {
+            welded_to = None;
+        } else {
+            let from = welded_to.filter(|before| before.path_id == sample.path_id);
+            result.weld_length_mm += from.map_or(0.0, |before| sample.s_mm - before.s_mm);
+            welded_to = Some(sample);
             result.weld_ticks += 1;
             let unknown = (0..SLIDES).any(|i| sample.beams[i / 2] && tick.deviation_mm[i].is_none());
             result.unknown_ticks += u32::from(unknown);
@@ -118,7 +126,7 @@ fn seam_tick(
                     deviation[2 * side + 1] = Some(slides[2 * side + 1] - crossing.v);
                 }
             }
-            let contour = seam.path().contour_error(&pose.position, sample.s_mm);
+            let contour = seam.contour_error(&pose.position, sample.s_mm);
             (deviation, contour, slides)
         }
     };
@@ -170,7 +178,7 @@ mod tests {
     /// A seam tick's machine: axes that hold the pose of the path at s, and slides that sit on the seam.
     fn follow(record: &mut Record, tick: u32, s: f64, off: [f64; SLIDES], tracker_ahead_us: u64) {
         let (machine, seam) = (machine(), wavy_seam());
-        let (pose, _) = seam.path().at(s).unwrap();
+        let (pose, _) = seam.planned(s).unwrap();
         let axes = machine.inverse(&pose);
         let mut sample = motion_sample(tick);
         sample.path_id = 7;
@@ -219,6 +227,7 @@ mod tests {
     fn spots_on_the_seam_have_no_deviation_and_a_tip_on_the_path_no_contour_error() {
         let result = evaluated(&job([0.0; 4], 0), 0);
         assert_eq!((result.weld_ticks, result.unknown_ticks), (50, 0));
+        assert!((result.weld_length_mm - 4.9).abs() < 1e-9);
         for max in result.max_deviation_mm {
             assert!(max.unwrap() < 1e-8, "{max:?}");
         }

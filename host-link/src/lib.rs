@@ -11,4 +11,5 @@ pub mod record;
 pub mod report;
 pub mod seam;
 pub mod table;
+pub mod weld;
 pub mod world;

@@ -1,7 +1,8 @@
 //! `host-link check`: can this machine run this program?
 
+use super::read_program;
 use crate::machine::MachineFile;
-use crate::nc::{Motion, Options, interpret};
+use crate::nc::Motion;
 use crate::path::{PlannedPath, Planner};
 use crate::seam::Deviation;
 use anyhow::Context;
@@ -32,11 +33,7 @@ impl Check {
     pub fn run(self) -> anyhow::Result<()> {
         let machine = MachineFile::read(&self.machine)?;
         let name = self.program.display();
-        let text = std::fs::read_to_string(&self.program)
-            .map_err(|error| anyhow::anyhow!("cannot read program {name}: {error}"))?;
-        let block_delete = self.block_delete;
-        let program =
-            interpret(&text, Options { block_delete }).with_context(|| format!("program {name}"))?;
+        let program = read_program(&self.program, self.block_delete)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
         let from = planner.tip(&machine.planning.park.to_array());
         let speed = self.speed.map(|m_min| m_min * shared::units::MM_S_PER_M_MIN);

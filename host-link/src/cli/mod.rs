@@ -1,8 +1,13 @@
 //! The command line: one file for each command.
 
 mod check;
+mod weld;
 
+use crate::nc::{Options, Program, interpret};
+use anyhow::Context;
 use clap::{Parser, Subcommand};
+use std::path::Path;
+use std::process::ExitCode;
 
 /// Plans, checks and welds with a seam-following machine.
 #[derive(Debug, Parser)]
@@ -15,13 +20,22 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Check(check::Check),
+    Weld(weld::Weld),
 }
 
 impl Cli {
     /// Does what was asked; an error reads as one sentence.
-    pub fn run(self) -> anyhow::Result<()> {
+    pub fn run(self) -> anyhow::Result<ExitCode> {
         match self.command {
-            Command::Check(command) => command.run(),
+            Command::Check(command) => command.run().map(|()| ExitCode::SUCCESS),
+            Command::Weld(command) => command.run(),
         }
     }
+}
+
+/// Reads the NC program in a file.
+fn read_program(path: &Path, block_delete: bool) -> anyhow::Result<Program> {
+    let name = path.display();
+    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read program {name}"))?;
+    interpret(&text, Options { block_delete }).with_context(|| format!("program {name}"))
 }

@@ -36,7 +36,7 @@ pub struct Sight<'a> {
     pub position: MachinePosition,
     /// Path position, where the search for the seam begins \[mm\].
     pub s_mm: f64,
-    /// The seam, if the path has one.
+    /// The seam; `None` on a path without one, where the cameras say nothing.
     pub seam: Option<&'a TrueSeam>,
 }
 
@@ -88,7 +88,12 @@ impl Cameras {
                 return None;
             }
             match sight(next.strobe_motion_us) {
-                Some(sight) => return Some(self.waiting.pop_front()?.measure(machine, &sight)),
+                Some(sight) => {
+                    let capture = self.waiting.pop_front()?;
+                    if let Some(seam) = sight.seam {
+                        return Some(capture.measure(machine, &sight, seam));
+                    }
+                }
                 None if now_us > next.due_us + GIVE_UP_US => {
                     self.waiting.pop_front();
                     self.given_up += 1;
@@ -101,12 +106,11 @@ impl Cameras {
 
 impl Waiting {
     /// What both cameras see: the seam beside their centre, in the plane of the lead.
-    fn measure(&self, machine: &Machine, sight: &Sight) -> Measurement {
+    fn measure(&self, machine: &Machine, sight: &Sight, seam: &TrueSeam) -> Measurement {
         let pose = machine.pose(&sight.position);
         let slides = self.capture.truth_mm.unwrap_or(self.capture.slides_mm);
         let lead = machine.camera_lead();
         let side = |k: usize| {
-            let seam = sight.seam?;
             let crossing = seam.crossing(machine, k, &machine.spot(&pose, k), lead, sight.s_mm + lead)?;
             seam.exists_at(crossing.s, SEEN_BEYOND_END_MM)
                 .then(|| SideMeasurement {
@@ -123,7 +127,7 @@ impl Waiting {
 
 #[cfg(test)]
 mod tests {
-    use super::super::truth::tests::{machine, wavy_seam};
+    use super::super::truth::tests::{bent_path, deviation, machine, wavy_seam};
     use super::*;
     use nalgebra::Vector3;
 
@@ -143,7 +147,7 @@ mod tests {
 
     /// Axes near path position 250 of the bent path, a little beside it.
     fn position() -> MachinePosition {
-        let (mut pose, _) = wavy_seam().path().at(250.0).unwrap();
+        let (mut pose, _) = wavy_seam().planned(250.0).unwrap();
         pose.position += Vector3::new(0.02, -0.03, 0.05);
         MachinePosition::Axes(machine().inverse(&pose))
     }
@@ -178,24 +182,39 @@ mod tests {
 
     #[test]
     fn an_answer_waits_for_its_time_and_for_knowledge_and_is_given_up_at_last() {
-        let machine = machine();
+        let (machine, seam) = (machine(), wavy_seam());
         let mut cameras = Cameras::new(10_000, 0.0, 1);
         cameras.strobe(capture(1), 5_000, 1_000);
         cameras.strobe(capture(2), 10_000, 6_000);
-        let blind = |_| {
+        let sees = |_| {
             Some(Sight {
                 position: position(),
-                s_mm: 0.0,
-                seam: None,
+                s_mm: 250.0,
+                seam: Some(&seam),
             })
         };
         assert_eq!(cameras.next_due_us(), Some(11_000));
-        assert!(cameras.answer(&machine, 10_999, blind).is_none());
+        assert!(cameras.answer(&machine, 10_999, sees).is_none());
         assert!(cameras.answer(&machine, 11_000, |_| None).is_none());
-        let known_later = |time| if time > 5_000 { blind(time) } else { None };
+        let known_later = |time| if time > 5_000 { sees(time) } else { None };
         let answer = cameras.answer(&machine, 211_001, known_later).unwrap();
-        assert_eq!((answer.capture, answer.sides), (2, [None, None]));
+        assert_eq!(answer.capture, 2);
         assert_eq!(cameras.given_up(), 1);
+    }
+
+    #[test]
+    fn on_a_path_without_a_seam_the_cameras_say_nothing() {
+        let mut cameras = Cameras::new(0, 0.0, 1);
+        cameras.strobe(capture(1), 0, 0);
+        let sight = |_| {
+            Some(Sight {
+                position: position(),
+                s_mm: 250.0,
+                seam: None,
+            })
+        };
+        assert_eq!(cameras.answer(&machine(), 0, sight), None);
+        assert_eq!((cameras.next_due_us(), cameras.given_up()), (None, 0));
     }
 
     #[test]
@@ -206,10 +225,9 @@ mod tests {
             cameras.strobe(capture(1), 0, 0);
             // The machine stands still; the seam is moved under it.
             let far = TrueSeam::new(
-                super::super::truth::tests::bent_path(),
+                bent_path(),
                 250.0 - s_mm,
-                (0.0, 200.0),
-                Box::new(|_| [0.0; 4]),
+                deviation([(0.0, [0.0; 4]), (200.0, [0.0; 4])]),
             );
             let sight = |_| {
                 Some(Sight {

@@ -12,4 +12,4 @@ pub(crate) mod truth;
 pub use camera::{Cameras, Sight};
 pub use clock::ClockRelation;
 pub use noise::SplitMix64;
-pub use truth::{Crossing, Machine, PATH_KNOTS, PlannedPath, TrueSeam};
+pub use truth::{Crossing, Machine, TrueSeam};

@@ -1,19 +1,19 @@
 //! Where the seam, the tool and the spots really are.
 
+use crate::path::CAPACITY;
 use crate::record::MachinePosition;
+use crate::seam::Deviation;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
-use shared::io::{SIDES, SLIDES};
+use shared::io::SIDES;
 use shared::kinematics::DualBeam;
 use shared::motion::MotionConfig;
 use shared::parameter::ParameterError;
-use shared::protocol::Knot;
 use shared::tracking::HeadConfig;
 use shared::tracking::frames::{Heads, SpotFrame};
-use shared::trajectory::{Path, PathError};
+use shared::trajectory::Path;
+use std::rc::Rc;
 
-/// Most knots of a path in the world.
-pub const PATH_KNOTS: usize = 2048;
 /// Distance along T at which two points face each other \[mm\].
 const FACING: f64 = 1e-9;
 /// Steps of the search for it.
@@ -62,48 +62,11 @@ impl Machine {
     }
 }
 
-/// A path as it was programmed.
-#[derive(Clone, Debug)]
-pub struct PlannedPath(Box<Path<PATH_KNOTS>>);
-
-impl PlannedPath {
-    /// Takes the knots that the boards got.
-    pub fn new(id: u32, knots: &[Knot]) -> Result<Self, PathError> {
-        let mut path = Box::new(Path::new());
-        path.clear(id);
-        for knot in knots {
-            path.push(*knot)?;
-        }
-        Ok(Self(path))
-    }
-
-    /// Pose and V extensions at path position `s` \[mm\].
-    pub(crate) fn at(&self, s: f64) -> Option<(Pose, [f64; SIDES])> {
-        let point = self.0.at(s)?;
-        Some((point.pose().ok()?, point.v_follow()))
-    }
-
-    /// Distance of `tip` from the path, searched from path position `s` on \[mm\].
-    pub fn contour_error(&self, tip: &Vector3<f64>, mut s: f64) -> Option<f64> {
-        for _ in 0..STEPS {
-            let (pose, _) = self.at(s)?;
-            let apart = tip - pose.position;
-            let along = apart.dot(&pose.tangent);
-            if along.abs() < FACING {
-                return Some(apart.norm());
-            }
-            s += along;
-        }
-        None
-    }
-}
-
 /// The two seams of a path as they really are: beside the programmed ones, in the planned frame of each head.
 pub struct TrueSeam {
-    path: PlannedPath,
+    path: Box<Path<CAPACITY>>,
     start_s: f64,
-    range: (f64, f64),
-    deviation: Box<dyn Fn(f64) -> [f64; SLIDES]>,
+    deviation: Rc<Deviation>,
 }
 
 /// Where a seam passes through a plane perpendicular to T.
@@ -118,25 +81,33 @@ pub struct Crossing {
 }
 
 impl TrueSeam {
-    /// `deviation` gives u1, v1, u2, v2 \[mm\] at a distance from `start_s`, the path position where the first
-    /// beam goes on; there is a seam from `range.0` to `range.1` of that distance.
-    pub fn new(
-        path: PlannedPath,
-        start_s: f64,
-        range: (f64, f64),
-        deviation: Box<dyn Fn(f64) -> [f64; SLIDES]>,
-    ) -> Self {
+    /// Seams beside `path`. `deviation` counts from `start_s`, the path position where the first beam goes on.
+    pub fn new(path: Box<Path<CAPACITY>>, start_s: f64, deviation: Rc<Deviation>) -> Self {
         Self {
             path,
             start_s,
-            range,
             deviation,
         }
     }
 
-    /// The path beside which the seams lie.
-    pub fn path(&self) -> &PlannedPath {
-        &self.path
+    /// The programmed pose and V extensions at path position `s` \[mm\].
+    pub(crate) fn planned(&self, s: f64) -> Option<(Pose, [f64; SIDES])> {
+        let point = self.path.at(s)?;
+        Some((point.pose().ok()?, point.v_follow()))
+    }
+
+    /// Distance of `tip` from the programmed path, searched from path position `s` on \[mm\].
+    pub fn contour_error(&self, tip: &Vector3<f64>, mut s: f64) -> Option<f64> {
+        for _ in 0..STEPS {
+            let (pose, _) = self.planned(s)?;
+            let apart = tip - pose.position;
+            let along = apart.dot(&pose.tangent);
+            if along.abs() < FACING {
+                return Some(apart.norm());
+            }
+            s += along;
+        }
+        None
     }
 
     /// Path position where the first beam goes on \[mm\].
@@ -147,13 +118,14 @@ impl TrueSeam {
     /// Whether there is a seam at path position `s` or within `margin` of it \[mm\].
     pub fn exists_at(&self, s: f64, margin: f64) -> bool {
         let along = s - self.start_s;
-        self.range.0 - margin <= along && along <= self.range.1 + margin
+        let (first, last) = self.deviation.range();
+        first - margin <= along && along <= last + margin
     }
 
     /// The seam of `side` at path position `s` \[mm\].
     pub fn point(&self, machine: &Machine, side: usize, s: f64) -> Option<Vector3<f64>> {
-        let (pose, v_follow) = self.path.at(s)?;
-        let deviation = (self.deviation)(s - self.start_s);
+        let (pose, v_follow) = self.planned(s)?;
+        let deviation = self.deviation.at(s - self.start_s);
         let (du, dv) = (deviation[2 * side], deviation[2 * side + 1]);
         Some(machine.spot(&pose, side).point(0.0, du, v_follow[side] + dv))
     }
@@ -182,6 +154,7 @@ impl TrueSeam {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use shared::protocol::Knot;
     use shared::trajectory::CHANNELS;
 
     impl Machine {
@@ -215,7 +188,7 @@ pub(crate) mod tests {
     }
 
     /// A quarter of a circle of 500 mm radius, rising, the tool leaning.
-    pub(crate) fn bent_path() -> PlannedPath {
+    pub(crate) fn bent_path() -> Box<Path<CAPACITY>> {
         let value = |s: f64| -> [f64; CHANNELS] {
             let a = s / 500.0;
             let (x, y, z) = (
@@ -225,40 +198,51 @@ pub(crate) mod tests {
             );
             [x, y, z, a.cos(), a.sin(), 0.1, 0.1, 0.05, 1.0, 0.3, -0.2]
         };
-        let knots: Vec<Knot> = (0..=100)
-            .map(|k| {
-                let s = 5.0 * f64::from(k);
-                let (before, after) = (value(s - 1e-3), value(s + 1e-3));
-                Knot {
-                    s_mm: s,
-                    value: value(s),
-                    slope: std::array::from_fn(|i| (after[i] - before[i]) / 2e-3),
-                }
+        let mut path = Box::new(Path::new());
+        for k in 0..=100 {
+            let s = 5.0 * f64::from(k);
+            let (before, after) = (value(s - 1e-3), value(s + 1e-3));
+            let slope = std::array::from_fn(|i| (after[i] - before[i]) / 2e-3);
+            path.push(Knot {
+                s_mm: s,
+                value: value(s),
+                slope,
             })
-            .collect();
-        PlannedPath::new(7, &knots).unwrap()
+            .unwrap();
+        }
+        path
+    }
+
+    pub(crate) fn deviation(rows: impl IntoIterator<Item = (f64, [f64; 4])>) -> Rc<Deviation> {
+        let mut text = "s_mm,u1_mm,v1_mm,u2_mm,v2_mm\n".to_owned();
+        for (s, [u1, v1, u2, v2]) in rows {
+            text += &format!("{s},{u1},{v1},{u2},{v2}\n");
+        }
+        Rc::new(Deviation::parse("seam.csv", &text).unwrap())
     }
 
     pub(crate) fn wavy_seam() -> TrueSeam {
-        let wave = |s: f64| {
-            [
+        let rows = (-10..=300).map(|s| {
+            let s = f64::from(s);
+            let value = [
                 0.5 * (s / 16.0).sin(),
                 0.02 * s,
                 -0.3 * (s / 20.0).cos(),
                 0.1 - 0.01 * s,
-            ]
-        };
-        TrueSeam::new(bent_path(), 100.0, (-10.0, 300.0), Box::new(wave))
+            ];
+            (s, value)
+        });
+        TrueSeam::new(bent_path(), 100.0, deviation(rows))
     }
 
     #[test]
     fn a_spot_moved_by_plan_and_deviation_sits_on_the_seam() {
         let (machine, seam) = (machine(), wavy_seam());
-        let (pose, follow) = seam.path().at(223.4).unwrap();
+        let (pose, follow) = seam.planned(223.4).unwrap();
         for side in 0..SIDES {
             let frame = machine.spot(&pose, side);
             let crossing = seam.crossing(&machine, side, &frame, 0.0, 220.0).unwrap();
-            let deviation = (seam.deviation)(123.4);
+            let deviation = seam.deviation.at(123.4);
             assert!((crossing.s - 223.4).abs() < 1e-6);
             assert!((crossing.u - deviation[2 * side]).abs() < 1e-8);
             assert!((crossing.v - follow[side] - deviation[2 * side + 1]).abs() < 1e-8);
@@ -278,10 +262,10 @@ pub(crate) mod tests {
 
     #[test]
     fn contour_error_is_the_distance_across_the_path() {
-        let path = bent_path();
-        let (pose, _) = path.at(200.0).unwrap();
+        let seam = wavy_seam();
+        let (pose, _) = seam.planned(200.0).unwrap();
         let tip = pose.position + pose.normal * 0.03 + pose.lateral() * 0.04;
-        let error = path.contour_error(&tip, 203.0).unwrap();
+        let error = seam.contour_error(&tip, 203.0).unwrap();
         assert!((error - 0.05).abs() < 1e-6, "{error}");
     }
 

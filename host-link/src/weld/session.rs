@@ -1,0 +1,290 @@
+//! A session with both boards while a job runs: takes what they send, answers their captures, asks for their
+//! state and clock.
+
+use super::{JobError, Progress};
+use crate::boards::{Boards, LinkError, command};
+use crate::record::Record;
+use crate::report::ByBoard;
+use crate::world::{Cameras, ClockRelation, Machine, Sight, TrueSeam};
+use shared::motion::State;
+use shared::protocol::{
+    Capture, ClockRequest, Datagram, MotionStatus, Request, Response, Role, TrackerStatus,
+};
+use shared::tracking::TrackerState;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// How often the boards are asked for their state; it also tells them that the PC is there.
+const STATUS_PERIOD: Duration = Duration::from_millis(100);
+/// How often the boards are asked for their clock.
+const CLOCK_PERIOD: Duration = Duration::from_millis(50);
+/// Longest and shortest wait for a datagram.
+const LONGEST_WAIT: Duration = Duration::from_millis(10);
+const SHORTEST_WAIT: Duration = Duration::from_micros(200);
+
+/// A session and everything that was learned in it.
+pub(super) struct Session<'a> {
+    pub boards: &'a mut dyn Boards,
+    pub interrupted: &'a AtomicBool,
+    pub progress: &'a mut dyn Progress,
+    pub machine: Machine,
+    pub seams: BTreeMap<u32, TrueSeam>,
+    pub cameras: Cameras,
+    pub record: Record,
+    pub motion: MotionStatus,
+    pub tracker: TrackerStatus,
+    pub lost_before: ByBoard,
+    /// Largest residual that the tracker told while welding \[µs\].
+    pub clock_residual_us: Option<f64>,
+    /// Largest difference of its relation from the PC's while welding \[µs\].
+    pub clock_difference_us: Option<f64>,
+    pub began: Duration,
+    clocks: [ClockRelation; 2],
+    next_status: Duration,
+    next_clock: Duration,
+}
+
+impl<'a> Session<'a> {
+    /// Begins with the boards as they are.
+    pub fn begin(
+        boards: &'a mut dyn Boards,
+        machine: Machine,
+        cameras: Cameras,
+        interrupted: &'a AtomicBool,
+        progress: &'a mut dyn Progress,
+    ) -> Result<Self, LinkError> {
+        let began = boards.now();
+        for role in [Role::Motion, Role::Tracker] {
+            let port = boards.datagram_port(role);
+            command(boards, role, &Request::Subscribe { port })?;
+        }
+        let (motion, tracker) = status(boards)?;
+        let lost_before = lost(&motion, &tracker);
+        Ok(Self {
+            boards,
+            interrupted,
+            progress,
+            machine,
+            seams: BTreeMap::new(),
+            cameras,
+            record: Record::default(),
+            motion,
+            tracker,
+            lost_before,
+            clock_residual_us: None,
+            clock_difference_us: None,
+            began,
+            clocks: Default::default(),
+            next_status: began,
+            next_clock: began,
+        })
+    }
+
+    /// A request that is answered by "done".
+    pub fn command(&mut self, role: Role, request: &Request) -> Result<(), LinkError> {
+        command(self.boards, role, request)
+    }
+
+    /// Asks both boards for their state now.
+    pub fn refresh(&mut self) -> Result<(), LinkError> {
+        (self.motion, self.tracker) = status(self.boards)?;
+        self.next_status = self.boards.now() + STATUS_PERIOD;
+        if self.welding() {
+            raise(
+                &mut self.clock_residual_us,
+                f64::from(self.tracker.clock_residual_us),
+            );
+        }
+        Ok(())
+    }
+
+    /// Control ticks lost since the session began.
+    pub fn lost_ticks(&self) -> ByBoard {
+        let now = lost(&self.motion, &self.tracker);
+        ByBoard {
+            motion: now.motion.wrapping_sub(self.lost_before.motion),
+            tracker: now.tracker.wrapping_sub(self.lost_before.tracker),
+        }
+    }
+
+    /// How far the tracker's clock is ahead of the motion board's, as the PC found \[µs\].
+    pub fn tracker_ahead_us(&self) -> Option<i64> {
+        let [motion, tracker] = &self.clocks;
+        Some(tracker.offset_us()? - motion.offset_us()?)
+    }
+
+    /// Goes on until `done`, at most for `limit`; a fault or the operator end it early.
+    pub fn wait_until(
+        &mut self,
+        what: &'static str,
+        limit: Duration,
+        mut done: impl FnMut(&mut Self) -> bool,
+    ) -> Result<(), JobError> {
+        let end = self.boards.now() + limit;
+        while !done(self) {
+            self.turn()?;
+            self.check()?;
+            if self.boards.now() > end {
+                let seconds = limit.as_secs();
+                return Err(JobError::TooLong { what, seconds });
+            }
+        }
+        Ok(())
+    }
+
+    /// The first reason not to go on.
+    fn check(&self) -> Result<(), JobError> {
+        if let Some(fault) = self.motion.fault {
+            return Err(JobError::Motion(fault));
+        }
+        let newest = self.record.tracker().last();
+        let told = newest
+            .filter(|sample| sample.state == TrackerState::Tracking)
+            .and_then(|sample| sample.fault);
+        if let Some(fault) = self.tracker.fault.or(told) {
+            return Err(JobError::Tracker(fault));
+        }
+        if self.interrupted.load(Ordering::Relaxed) {
+            return Err(JobError::Interrupted);
+        }
+        Ok(())
+    }
+
+    /// Stops on the path and waits until the machine stands, whatever else is wrong.
+    pub fn stop(&mut self, limit: Duration) -> Result<(), LinkError> {
+        match self.command(Role::Motion, &Request::Stop) {
+            // It does not move any more.
+            Ok(()) | Err(LinkError::Refused { .. }) => {}
+            Err(error) => return Err(error),
+        }
+        self.refresh()?;
+        let end = self.boards.now() + limit;
+        while on_path(self.motion.state) && self.boards.now() < end {
+            self.turn()?;
+        }
+        Ok(())
+    }
+
+    /// One turn: at most one datagram, and whatever is due.
+    pub fn turn(&mut self) -> Result<(), LinkError> {
+        let now = self.boards.now();
+        let mut due = self.next_status.min(self.next_clock);
+        if let Some(camera) = self.cameras.next_due_us() {
+            due = due.min(Duration::from_micros(camera));
+        }
+        let wait = due.saturating_sub(now).clamp(SHORTEST_WAIT, LONGEST_WAIT);
+        if let Some((role, datagram)) = self.boards.receive(wait)? {
+            self.take(role, datagram);
+        }
+        let now = self.boards.now();
+        if now >= self.next_clock {
+            self.next_clock = now + CLOCK_PERIOD;
+            for role in [Role::Motion, Role::Tracker] {
+                let asked_us = self.boards.now().as_micros() as u64;
+                let request = Datagram::ClockRequest(ClockRequest { asked_us });
+                self.boards.send(role, &request)?;
+            }
+        }
+        self.answer_captures()?;
+        if now >= self.next_status {
+            self.refresh()?;
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, role: Role, datagram: Datagram) {
+        match datagram {
+            Datagram::MotionTelemetry(telemetry) => self.record.add_motion(&telemetry.samples),
+            Datagram::TrackerTelemetry(telemetry) => self.record.add_tracker(&telemetry.samples),
+            Datagram::ClockReply(reply) => {
+                let arrived_us = self.boards.now().as_micros() as u64;
+                self.clocks[role as usize].add(&reply, arrived_us);
+            }
+            Datagram::Capture(capture) => self.strobe(capture),
+            // Boards send these to each other only.
+            Datagram::PathState(_) | Datagram::Measurement(_) | Datagram::ClockRequest(_) => {}
+        }
+    }
+
+    /// Gives a capture to the cameras. The time of the strobe is what the PC found, not what the tracker
+    /// believes: a wrong belief must show.
+    fn strobe(&mut self, capture: Capture) {
+        let [motion, tracker] = &self.clocks;
+        let (Some(motion), Some(tracker)) = (motion.offset_us(), tracker.offset_us()) else {
+            return;
+        };
+        let on_pc = capture.time_us.saturating_add_signed(-tracker);
+        let on_motion = on_pc.saturating_add_signed(motion);
+        if self.welding() {
+            let difference = capture.motion_time_us as f64 - on_motion as f64;
+            raise(&mut self.clock_difference_us, difference.abs());
+        }
+        self.cameras.strobe(capture, on_motion, on_pc);
+    }
+
+    fn answer_captures(&mut self) -> Result<(), LinkError> {
+        let now_us = self.boards.now().as_micros() as u64;
+        loop {
+            let (record, seams) = (&self.record, &self.seams);
+            let sight = |time_us| {
+                let (position, sample) = record.machine_at(time_us)?;
+                Some(Sight {
+                    position,
+                    s_mm: sample.s_mm,
+                    seam: seams.get(&sample.path_id),
+                })
+            };
+            let Some(measurement) = self.cameras.answer(&self.machine, now_us, sight) else {
+                return Ok(());
+            };
+            self.boards
+                .send(Role::Tracker, &Datagram::Measurement(measurement))?;
+        }
+    }
+
+    fn welding(&self) -> bool {
+        self.record
+            .motion()
+            .last()
+            .is_some_and(|sample| sample.beams.contains(&true))
+    }
+}
+
+/// Whether the machine is moving along a path, or may be.
+pub(super) fn on_path(state: State) -> bool {
+    matches!(state, State::Running | State::Holding | State::Stopping)
+}
+
+fn status(boards: &mut dyn Boards) -> Result<(MotionStatus, TrackerStatus), LinkError> {
+    let motion = match boards.request(Role::Motion, &Request::Status)? {
+        Response::MotionStatus(status) => status,
+        other => return Err(unexpected(Role::Motion, &other)),
+    };
+    let tracker = match boards.request(Role::Tracker, &Request::Status)? {
+        Response::TrackerStatus(status) => status,
+        other => return Err(unexpected(Role::Tracker, &other)),
+    };
+    Ok((motion, tracker))
+}
+
+fn unexpected(role: Role, response: &Response) -> LinkError {
+    match response {
+        Response::Refused(refusal) => LinkError::Refused {
+            role,
+            refusal: *refusal,
+        },
+        _ => LinkError::Unexpected { role },
+    }
+}
+
+fn lost(motion: &MotionStatus, tracker: &TrackerStatus) -> ByBoard {
+    ByBoard {
+        motion: motion.servo_lost.wrapping_add(motion.path_lost),
+        tracker: tracker.lost,
+    }
+}
+
+fn raise(largest: &mut Option<f64>, value: f64) {
+    *largest = Some(largest.map_or(value, |before| before.max(value)));
+}
