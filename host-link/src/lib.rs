@@ -7,6 +7,7 @@ pub mod evaluate;
 pub mod machine;
 pub mod nc;
 pub mod path;
+pub mod plan;
 pub mod record;
 pub mod report;
 pub mod seam;

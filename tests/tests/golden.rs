@@ -6,6 +6,8 @@
 mod file;
 #[path = "golden/kinematics.rs"]
 mod kinematics;
+#[path = "golden/planning.rs"]
+mod planning;
 #[path = "golden/servo.rs"]
 mod servo;
 #[path = "golden/servo_circle.rs"]

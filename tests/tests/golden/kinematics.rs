@@ -8,7 +8,7 @@ use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::{AxisLimits, DualBeam, DualBeamConfig, feed_limit, violations};
 use shared::motion::AxisConfig;
 
-fn machine(case: &Value) -> DualBeam {
+pub fn machine(case: &Value) -> DualBeam {
     let geometry = &case["in"]["geo"];
     let array = |key: &str| -> [f64; 3] { numbers(&geometry[key]).try_into().expect("three numbers") };
     let across = numbers(&geometry["ot"]);
