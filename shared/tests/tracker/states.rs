@@ -128,6 +128,40 @@ fn tracking_begins_and_ends_with_the_flag_of_the_path() {
 }
 
 #[test]
+fn a_moving_plan_is_followed_without_lag() {
+    let mut bench = ready();
+    bench.speed = 100.0;
+    while bench.s < 60.0 {
+        bench.tick();
+    }
+    // The plan moves at 0.3 mm/s here: without its slope fed forward the slide would lag by 6 µm.
+    let plan = 0.3 * (bench.s_now() / 80.0).sin();
+    let lag = plan - bench.plant.truth()[1];
+    assert!(lag.abs() < 0.001, "{lag} mm");
+}
+
+#[test]
+fn a_seam_seen_before_a_pause_of_tracking_is_not_lost_after_it() {
+    let mut bench = tracking();
+    bench.visible = |_, s| s < 60.0;
+    while bench.s < 61.0 {
+        bench.tick();
+    }
+    bench.tracking = false;
+    while bench.s < 100.0 {
+        bench.tick();
+    }
+    bench.tracking = true;
+    bench.run_ms(100);
+    assert_eq!(bench.controller.state(), TrackerState::Tracking);
+    assert_eq!(bench.last.sample.fault, None);
+    assert!(
+        bench.plant.truth()[0].abs() < 0.002,
+        "the slides stay at the plan"
+    );
+}
+
+#[test]
 fn a_seam_not_yet_seen_leaves_the_slides_at_the_plan_quietly() {
     let mut bench = bench();
     bench.visible = |_, s| s > 100.0;
