@@ -1,4 +1,4 @@
-//! From the timer's counter to a count that never wraps.
+//! From a timer's counter to a count, or a time, that never wraps.
 
 /// How many bits of a timer count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,9 +29,33 @@ impl Width {
     }
 }
 
+/// Half ranges (2³¹ counts) that a 32-bit counter at `count` has begun, when it had begun `seen` at some time
+/// less than half a range ago. The lowest bit of the one is the highest bit of the other.
+pub fn halves_begun(seen: u32, count: u32) -> u32 {
+    if seen & 1 == count >> 31 { seen } else { seen + 1 }
+}
+
+/// The 64-bit count of a counter at `count` in its half range number `halves`.
+pub fn join(halves: u32, count: u32) -> u64 {
+    u64::from(halves) << 31 | u64::from(count & (u32::MAX >> 1))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Width;
+    use super::{Width, halves_begun, join};
+
+    #[test]
+    fn time_runs_on_through_wraps_however_seldom_it_is_asked() {
+        for stride in [1u64 << 20, (1 << 31) - 1] {
+            let (mut halves, mut truth) = (0, 0);
+            while truth < 1 << 36 {
+                let count = truth as u32;
+                halves = halves_begun(halves, count);
+                assert_eq!(join(halves, count), truth, "stride {stride}");
+                truth += stride;
+            }
+        }
+    }
 
     #[test]
     fn a_count_runs_through_wraps_of_the_counter_both_ways() {

@@ -4,14 +4,15 @@
 //! registers, and all `unsafe`, are here. **Compiled for, never yet flashed.**
 //!
 //! What is wired where stands in [`pins`] as data: the same tables set the pins up here and are checked on the
-//! host against the manufacturer's own description of the chip. On a host nothing else of this crate exists but
-//! [`counting`].
+//! host against the manufacturer's own description of the chip. On a host nothing else of this crate exists but the
+//! arithmetic in [`counting`] and [`schedule`].
 #![cfg_attr(target_os = "none", no_std)]
 // Registers, vectors and fault handlers are reached here and nowhere else.
 #![cfg_attr(target_os = "none", allow(unsafe_code))]
 
 pub mod counting;
 pub mod pins;
+pub mod schedule;
 
 #[cfg(target_os = "none")]
 mod bring_up;

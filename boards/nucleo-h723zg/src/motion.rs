@@ -53,9 +53,7 @@ pub fn init(core: cortex_m::Peripherals) -> Board {
         outputs: Outputs::start(bus, &[x1, x2, y, z, a, b, c, gate_1, gate_2]),
         encoders: core::array::from_fn(|motor| Encoder::start(&MOTION.encoders[motor])),
     };
-    let mut servo_tick = Tick::new(pac::TIM6, SERVO_PERIOD_US);
-    let mut path_tick = Tick::new(pac::TIM7, PATH_PERIOD_US);
-    Tick::start([&mut servo_tick, &mut path_tick]);
+    let [servo_tick, path_tick] = Tick::start([(pac::TIM6, SERVO_PERIOD_US), (pac::TIM7, PATH_PERIOD_US)]);
     Board {
         servo_tick,
         path_tick,

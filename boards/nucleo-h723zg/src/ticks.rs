@@ -1,6 +1,7 @@
 //! Periodic interrupts from basic timers.
 
 use crate::clocks::TIMER_MHZ;
+use crate::schedule::Schedule;
 use crate::timebase::now_us;
 use embassy_stm32::pac::timer::TimBasic;
 use embassy_stm32::pac::timer::vals::Urs;
@@ -11,53 +12,39 @@ const TICK_MHZ: u32 = 10;
 /// A periodic interrupt.
 pub struct Tick {
     timer: TimBasic,
-    period_us: u32,
-    /// When the next tick is due \[µs\].
-    due_us: u64,
+    schedule: Schedule,
 }
 
 impl Tick {
-    /// Sets `timer`, which is clocked, to a period of at most 6553 µs; it does not run yet.
-    pub(crate) fn new(timer: TimBasic, period_us: u32) -> Self {
-        timer.psc().write_value((TIMER_MHZ / TICK_MHZ - 1) as u16);
-        timer
-            .arr()
-            .write(|w| w.set_arr((period_us * TICK_MHZ - 1) as u16));
-        // Prescaler and period are taken over at an update, which is not to count as a tick.
-        timer.cr1().modify(|w| w.set_urs(Urs::COUNTER_ONLY));
-        timer.egr().write(|w| w.set_ug(true));
-        timer.sr().modify(|w| w.set_uif(false));
-        timer.dier().modify(|w| w.set_uie(true));
-        Self {
-            timer,
-            period_us,
-            due_us: 0,
+    /// Starts `N` timers, which are clocked, in phase, each with its period of at most 6553 µs.
+    pub(crate) fn start<const N: usize>(timers: [(TimBasic, u32); N]) -> [Self; N] {
+        for (timer, period_us) in timers {
+            timer.psc().write_value((TIMER_MHZ / TICK_MHZ - 1) as u16);
+            timer
+                .arr()
+                .write(|w| w.set_arr((period_us * TICK_MHZ - 1) as u16));
+            // Prescaler and period are taken over at an update, which is not to count as a tick.
+            timer.cr1().modify(|w| w.set_urs(Urs::COUNTER_ONLY));
+            timer.egr().write(|w| w.set_ug(true));
+            timer.sr().modify(|w| w.set_uif(false));
+            timer.dier().modify(|w| w.set_uie(true));
         }
-    }
-
-    /// Starts all of `ticks` in phase.
-    pub(crate) fn start<const N: usize>(ticks: [&mut Self; N]) {
         cortex_m::interrupt::free(|_| {
-            let now = now_us();
-            for tick in ticks {
-                tick.timer.cr1().modify(|w| w.set_cen(true));
-                tick.due_us = now + u64::from(tick.period_us);
+            for (timer, _) in timers {
+                timer.cr1().modify(|w| w.set_cen(true));
             }
-        });
+            let now = now_us();
+            timers.map(|(timer, period_us)| Self {
+                timer,
+                schedule: Schedule::new(period_us, now),
+            })
+        })
     }
 
     /// Clears the interrupt; returns the periods that have passed since the last call, by the one timebase:
     /// 1 when on time, more when ticks were lost.
     pub fn acknowledge(&mut self) -> u32 {
         self.timer.sr().modify(|w| w.set_uif(false));
-        let now = now_us();
-        let period = u64::from(self.period_us);
-        if now + period / 2 < self.due_us {
-            // This tick came between the last call's two lines above, and is accounted for there.
-            return 1;
-        }
-        let periods = now.saturating_sub(self.due_us) / period + 1;
-        self.due_us += periods * period;
-        periods as u32
+        self.schedule.passed(now_us())
     }
 }

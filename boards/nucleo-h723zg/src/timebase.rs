@@ -1,6 +1,7 @@
 //! The one timebase: TIM5 counts microseconds in 32 bits, extended to 64.
 
 use crate::clocks::TIMER_MHZ;
+use crate::counting::{halves_begun, join};
 use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_stm32::{pac::TIM5, peripherals, rcc};
 
@@ -24,13 +25,12 @@ pub fn now_us() -> u64 {
     // that the counter, read later, lies in.
     let seen = HALVES.load(Ordering::SeqCst);
     let count = TIM5.cnt().read();
-    // The lowest bit of `HALVES` is the highest bit of the counter as last seen.
-    let halves = if seen & 1 == count >> 31 { seen } else { seen + 1 };
+    let halves = halves_begun(seen, count);
     if halves != seen {
         // Fails only if someone else has made the same step meanwhile.
         let _ = HALVES.compare_exchange(seen, halves, Ordering::SeqCst, Ordering::SeqCst);
     }
-    u64::from(halves) << 31 | u64::from(count & (u32::MAX >> 1))
+    join(halves, count)
 }
 
 defmt::timestamp!("{=u64:us}", now_us());

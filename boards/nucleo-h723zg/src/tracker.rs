@@ -47,8 +47,7 @@ pub fn init(core: cortex_m::Peripherals) -> Board {
         outputs: Outputs::start(bus, &[u1, v1, u2, v2, camera_1, camera_2]),
         encoders: core::array::from_fn(|slide| Encoder::start(&TRACKER.encoders[slide])),
     };
-    let mut tick = Tick::new(pac::TIM6, CONTROL_PERIOD_US);
-    Tick::start([&mut tick]);
+    let [tick] = Tick::start([(pac::TIM6, CONTROL_PERIOD_US)]);
     Board {
         tick,
         slides,
