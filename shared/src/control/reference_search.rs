@@ -36,9 +36,9 @@ pub struct SearchInput {
     pub counts: i64,
     /// Counts latched at a mark since the last tick.
     pub mark: Option<i64>,
-    /// Limit switch in the positive counting direction.
+    /// Limit switch at the positive end of the axis.
     pub limit_plus: bool,
-    /// Limit switch in the negative counting direction.
+    /// Limit switch at the negative end of the axis.
     pub limit_minus: bool,
 }
 
@@ -193,8 +193,8 @@ impl<const M: usize> ReferenceSearch<M> {
 
     /// Whether a limit switch is pressed on the side that `velocity` leads to.
     fn at_limit(&self, velocity: f64, inputs: &[SearchInput; M]) -> bool {
-        inputs.iter().zip(&self.counts_per_unit).any(|(input, scale)| {
-            if velocity * scale > 0.0 {
+        inputs.iter().any(|input| {
+            if velocity > 0.0 {
                 input.limit_plus
             } else {
                 input.limit_minus
@@ -263,12 +263,11 @@ mod tests {
                     self.passed_at = velocity;
                 }
                 let (low, high) = (self.position < self.switches[0], self.position > self.switches[1]);
-                let reversed = self.scale[i] < 0.0;
                 SearchInput {
                     counts: libm::floor(self.position * self.scale[i]) as i64,
                     mark: crossed.then(|| libm::round(mark * self.scale[i]) as i64),
-                    limit_plus: if reversed { low } else { high },
-                    limit_minus: if reversed { high } else { low },
+                    limit_plus: high,
+                    limit_minus: low,
                 }
             })
         }
