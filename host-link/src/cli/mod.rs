@@ -1,6 +1,7 @@
 //! The command line: one file for each command.
 
 mod check;
+mod plan;
 mod weld;
 
 use crate::nc::{Options, Program, interpret};
@@ -20,6 +21,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Check(check::Check),
+    Plan(plan::Plan),
     Weld(weld::Weld),
 }
 
@@ -28,6 +30,7 @@ impl Cli {
     pub fn run(self) -> anyhow::Result<ExitCode> {
         match self.command {
             Command::Check(command) => command.run().map(|()| ExitCode::SUCCESS),
+            Command::Plan(command) => command.run().map(|()| ExitCode::SUCCESS),
             Command::Weld(command) => command.run(),
         }
     }

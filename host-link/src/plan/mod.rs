@@ -2,8 +2,11 @@
 
 mod beams;
 mod cut;
+mod dual_beam;
 mod locate;
+mod text;
 
 pub use beams::{Approach, closest_approach, slide_extension};
 pub use cut::{Crossing, OtherSeam, Polyline, SmoothSeam};
+pub use dual_beam::{DualBeamPlan, PlanError, PlanOptions, PlannedPoint, plan_dual_beam};
 pub use locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
