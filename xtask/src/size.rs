@@ -20,20 +20,20 @@ struct Budget {
 fn budget(firmware: Firmware, board: Board) -> Budget {
     match (firmware, board) {
         (Firmware::Motion, Board::Mps2An500) => Budget {
-            flash: [100, 400],
-            ram: [20, 200],
+            flash: [200, 450],
+            ram: [100, 240],
         },
         (Firmware::Tracker, Board::Mps2An500) => Budget {
-            flash: [80, 400],
-            ram: [20, 200],
+            flash: [120, 300],
+            ram: [120, 260],
         },
         (Firmware::Motion, Board::NucleoH723zg) => Budget {
-            flash: [100, 400],
-            ram: [20, 200],
+            flash: [200, 450],
+            ram: [100, 240],
         },
         (Firmware::Tracker, Board::NucleoH723zg) => Budget {
-            flash: [80, 400],
-            ram: [20, 200],
+            flash: [120, 300],
+            ram: [120, 260],
         },
     }
 }
