@@ -20,7 +20,7 @@ const PROGRAM: &str = "programs/t-seam-400.ngc";
 const MACHINE: &str = "machines/dual-beam-gantry.toml";
 const SEAM: &str = "programs/t-seam-400-deviation.csv";
 /// Flags of host-link that stand alone; all others take a value.
-const SWITCHES: [&str; 4] = ["-h", "--help", "-q", "--quiet"];
+const SWITCHES: [&str; 3] = ["-h", "--help", "--block-delete"];
 
 /// Runs host-link with `flags` and the defaults; gives back its exit code. `set_up` installs what is missing.
 pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) -> Result<ExitCode> {
@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn values_are_no_programs_and_switches_have_none() {
         assert!(!told("--report out --speed 5").program);
-        assert!(told("--quiet my.ngc").program);
+        assert!(told("--block-delete my.ngc").program);
         assert_eq!(told("--help").missing(), Vec::<String>::new());
     }
 }
