@@ -51,14 +51,21 @@ struct Panel {
 pub(super) fn draw(directory: &Path, report: &Report, ticks: &[SeamTick]) -> Result<(), ReportError> {
     let deviation: Vec<Panel> = (0..SIDES).map(|side| deviation_panel(side, ticks)).collect();
     let subject = format!("{} at {:.2} m/min", report.program, report.speed_m_per_min);
+    let speed = vec![speed_panel(report, ticks)];
     let figures = [
-        ("seam-deviation", "Spot beside seam", deviation, 760),
-        ("following-error", "Following error", following_panels(ticks), 760),
-        ("speed", "Path speed", vec![speed_panel(report, ticks)], 420),
+        ("seam-deviation", "Spot beside seam", deviation, (2, 1), 760),
+        (
+            "following-error",
+            "Largest following error in each tick",
+            following_panels(ticks),
+            (4, 2),
+            880,
+        ),
+        ("speed", "Path speed", speed, (1, 1), 420),
     ];
-    for (name, title, panels, height) in figures {
+    for (name, title, panels, grid, height) in figures {
         let path = directory.join(format!("{name}.svg"));
-        figure(&path, &format!("{title}, {subject}"), height, &panels)
+        figure(&path, &format!("{title}, {subject}"), height, grid, &panels)
             .map_err(|e| ReportError::new(&path, e))?;
     }
     Ok(())
@@ -85,32 +92,29 @@ fn deviation_panel(side: usize, ticks: &[SeamTick]) -> Panel {
     }
 }
 
+/// Linear drives in the left column, rotary ones in the right.
 fn following_panels(ticks: &[SeamTick]) -> Vec<Panel> {
-    let panel = |title: &str, unit, rotary: bool, scale: f64| Panel {
-        title: title.to_owned(),
-        unit,
-        curves: (0..MOTOR_NAMES.len())
-            .filter(|motor| is_rotary(*motor) == rotary)
-            .map(|motor| Curve {
+    let panel = |motor: usize| {
+        let (unit, scale) = if is_rotary(motor) {
+            ("arc seconds", DEG_PER_RAD * 3600.0)
+        } else {
+            ("µm", 1e3)
+        };
+        Panel {
+            title: MOTOR_NAMES[motor].to_owned(),
+            unit,
+            curves: vec![Curve {
                 name: MOTOR_NAMES[motor].to_owned(),
                 points: ticks
                     .iter()
                     .map(|t| (t.along_mm, f64::from(t.following_error[motor]) * scale))
                     .collect(),
-            })
-            .collect(),
-        least: (0.0, 1.0),
-        marks: vec![],
+            }],
+            least: (0.0, 1.0),
+            marks: vec![],
+        }
     };
-    vec![
-        panel("Linear drives, largest in each tick", "µm", false, 1e3),
-        panel(
-            "Rotary drives, largest in each tick",
-            "arc seconds",
-            true,
-            DEG_PER_RAD * 3600.0,
-        ),
-    ]
+    [0, 4, 1, 5, 2, 6, 3].map(panel).into()
 }
 
 fn speed_panel(report: &Report, ticks: &[SeamTick]) -> Panel {
@@ -129,17 +133,24 @@ fn speed_panel(report: &Report, ticks: &[SeamTick]) -> Panel {
     }
 }
 
-fn figure<'a>(path: &'a Path, title: &str, height: u32, panels: &[Panel]) -> Result<(), DrawError<'a>> {
+fn figure<'a>(
+    path: &'a Path,
+    title: &str,
+    height: u32,
+    grid: (usize, usize),
+    panels: &[Panel],
+) -> Result<(), DrawError<'a>> {
     let root = SVGBackend::new(path, (1000, height)).into_drawing_area();
     root.fill(&WHITE)?;
     let root = root.titled(title, (FONT, 20))?;
-    for (area, panel) in root.split_evenly((panels.len(), 1)).iter().zip(panels) {
+    for (area, panel) in root.split_evenly(grid).iter().zip(panels) {
         draw_panel(area, panel)?;
     }
     root.present()
 }
 
 fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Result<(), DrawError<'a>> {
+    let wide = area.dim_in_pixel().0 > 600;
     let across = range(panel, |p| p.0, (f64::INFINITY, f64::NEG_INFINITY), 0.01);
     let up = range(panel, |p| p.1, panel.least, 0.05);
     let mut chart = ChartBuilder::on(area)
@@ -155,8 +166,9 @@ fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Result<(), DrawError<'a>> {
         .bold_line_style(BLACK.mix(0.12))
         .x_desc("path from where the first beam goes on [mm]")
         .y_desc(panel.unit)
-        .x_labels(12)
-        .y_labels(7)
+        .x_labels(if wide { 12 } else { 6 })
+        .y_labels(if wide { 7 } else { 4 })
+        .x_label_formatter(&|x| format!("{x:.0}"))
         .label_style((FONT, 13))
         .axis_desc_style((FONT, 13))
         .draw()?;

@@ -2,6 +2,8 @@
 
 mod progress;
 mod session;
+#[cfg(test)]
+mod tests;
 
 pub use progress::{Progress, Silent, Terminal};
 
@@ -216,7 +218,7 @@ impl Weld {
             self.speed_mm_s.get_or_insert(path.limits.velocity);
         }
         session.progress.phase(what);
-        let ran = Self::follow(session, path);
+        let ran = Self::follow(session, path, id);
         if ran.is_err() {
             session.progress.phase("stopping");
             session.stop(STOP_LIMIT)?;
@@ -224,7 +226,7 @@ impl Weld {
         ran
     }
 
-    fn follow(session: &mut Session, path: &PlannedPath) -> Result<(), JobError> {
+    fn follow(session: &mut Session, path: &PlannedPath, id: u32) -> Result<(), JobError> {
         let run = Request::Run {
             speed_mm_s: path.limits.velocity,
             acceleration_mm_s2: path.limits.acceleration,
@@ -235,8 +237,9 @@ impl Weld {
         let length = path.length_mm();
         let limit = Duration::from_secs_f64(path.duration_s()) + PATH_MARGIN;
         session.wait_until("a path", limit, |s| {
-            let done = s.record.motion().last().map_or(0.0, |sample| sample.s_mm);
-            s.progress.travel(done.min(length), length);
+            if let Some(here) = s.record.motion().last().filter(|here| here.path_id == id) {
+                s.progress.travel(here.s_mm, length);
+            }
             !on_path(s.motion.state)
         })
     }

@@ -151,19 +151,36 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Stops on the path and waits until the machine stands, whatever else is wrong.
-    pub fn stop(&mut self, limit: Duration) -> Result<(), LinkError> {
+    /// Stops on the path and waits until the machine stands. The tracker board is not needed: it may be what was
+    /// lost.
+    pub fn stop(&mut self, limit: Duration) -> Result<(), JobError> {
         match self.command(Role::Motion, &Request::Stop) {
-            // It does not move any more.
+            // Refused: it does not move any more.
             Ok(()) | Err(LinkError::Refused { .. }) => {}
-            Err(error) => return Err(error),
+            Err(error) => return Err(error.into()),
         }
-        self.refresh()?;
         let end = self.boards.now() + limit;
-        while on_path(self.motion.state) && self.boards.now() < end {
-            self.turn()?;
+        loop {
+            self.motion = motion_status(self.boards)?;
+            if !on_path(self.motion.state) {
+                return Ok(());
+            }
+            if self.boards.now() > end {
+                let seconds = limit.as_secs();
+                return Err(JobError::TooLong {
+                    what: "the controlled stop",
+                    seconds,
+                });
+            }
+            let next = self.boards.now() + STATUS_PERIOD / 4;
+            while self.boards.now() < next {
+                match self.boards.receive(LONGEST_WAIT) {
+                    Ok(Some((role, datagram))) => self.take(role, datagram),
+                    Ok(None) => {}
+                    Err(_) => break,
+                }
+            }
         }
-        Ok(())
     }
 
     /// One turn: at most one datagram, and whatever is due.
@@ -257,15 +274,19 @@ pub(super) fn on_path(state: State) -> bool {
 }
 
 fn status(boards: &mut dyn Boards) -> Result<(MotionStatus, TrackerStatus), LinkError> {
-    let motion = match boards.request(Role::Motion, &Request::Status)? {
-        Response::MotionStatus(status) => status,
-        other => return Err(unexpected(Role::Motion, &other)),
-    };
+    let motion = motion_status(boards)?;
     let tracker = match boards.request(Role::Tracker, &Request::Status)? {
         Response::TrackerStatus(status) => status,
         other => return Err(unexpected(Role::Tracker, &other)),
     };
     Ok((motion, tracker))
+}
+
+fn motion_status(boards: &mut dyn Boards) -> Result<MotionStatus, LinkError> {
+    match boards.request(Role::Motion, &Request::Status)? {
+        Response::MotionStatus(status) => Ok(status),
+        other => Err(unexpected(Role::Motion, &other)),
+    }
 }
 
 fn unexpected(role: Role, response: &Response) -> LinkError {
