@@ -8,8 +8,9 @@ use shared::io::{SLIDE_NAMES, SLIDES};
 use std::path::Path;
 use thiserror::Error;
 
-/// How far beyond its ends a deviation goes on in a straight line \[mm\]; constant from there.
-const CONTINUATION: f64 = 100.0;
+/// How far beyond its ends a deviation goes on in a straight line \[mm\], constant from there: enough for the
+/// cameras and the map to see a straight seam, without leading a steep one out of the slides' reach.
+const CONTINUATION: f64 = 20.0;
 /// Distance of the places where the reach is checked \[mm\].
 const CHECK_STEP: f64 = 0.25;
 
@@ -96,7 +97,7 @@ impl Deviation {
     }
 
     /// u1, v1, u2, v2 \[mm\] at `s` \[mm\]. Beyond the rows it goes on in a straight line with the slope of the
-    /// last span, for at most 100 mm.
+    /// last span for 20 mm, then parallel to the plan.
     pub fn at(&self, s: f64) -> [f64; SLIDES] {
         let (first, last) = self.range();
         let s = s.clamp(first - CONTINUATION, last + CONTINUATION);
@@ -238,7 +239,7 @@ mod tests {
         assert_eq!(deviation.at(15.0), [1.0, 0.25, -1.0, 0.0]);
         assert_eq!(deviation.at(-10.0), [-1.0, 0.0, 1.0, 0.0]);
         assert_eq!(deviation.at(40.0), [1.0, 1.5, -1.0, 0.0]);
-        assert_eq!(deviation.at(1e9), deviation.at(120.0));
+        assert_eq!(deviation.at(1e9), deviation.at(40.0));
     }
 
     #[test]

@@ -29,7 +29,7 @@ const RUN_SPACING: f64 = 8.0;
 const SHORTEST_RUN: f64 = 40.0;
 /// Speed for which the runs are long enough: the fastest the measuring unit allows, 9 m/min \[mm/s\].
 const RUN_SPEED: f64 = 150.0;
-/// Time the slides get to settle on the seam before the beams go on \[s\].
+/// Time the slides get to settle once they are on the seam, before the beams go on \[s\].
 const SETTLE: f64 = 0.1;
 /// Frames before an estimate counts.
 const FRAMES: f64 = 4.0;
@@ -289,8 +289,8 @@ fn divide(curve: &Curve<6>) -> Vec<f64> {
 }
 
 /// Lengths of the straight runs before and after the seam \[mm\]: at 9 m/min the tip reaches its speed,
-/// v/2·(v/a + a/j), the map of the seam fills, w + hold + v·(T_p + 4 T_f), and the slides settle for 0.1 s;
-/// after the seam it only stops. Both are at least 40 mm.
+/// v/2·(v/a + a/j), the map of the seam fills, w + hold + v·(T_p + 4 T_f), and the slides cross half their
+/// travel and settle, v·(travel/2/v_slide + 0.1 s); after the seam it only stops. Both are at least 40 mm.
 fn run_lengths(machine: &MachineFile) -> (f64, f64) {
     let (v, a, j) = (
         RUN_SPEED,
@@ -306,7 +306,13 @@ fn run_lengths(machine: &MachineFile) -> (f64, f64) {
     let speed_up = v / 2.0 * time;
     let tracking = &machine.tracker.tracking;
     let frame = f64::from(tracking.frame_period_ms) / 1000.0;
-    let wait = machine.cameras.processing_ms / 1000.0 + FRAMES * frame + SETTLE;
+    let reach = machine
+        .tracker
+        .slides
+        .iter()
+        .map(|slide| (slide.travel_max_mm - slide.travel_min_mm) / 2.0 / slide.max_velocity_mm_s)
+        .fold(0.0, f64::max);
+    let wait = machine.cameras.processing_ms / 1000.0 + FRAMES * frame + reach + SETTLE;
     let lock = tracking.window_mm + tracking.hold_mm + v * wait;
     ((speed_up + lock).max(SHORTEST_RUN), speed_up.max(SHORTEST_RUN))
 }
@@ -519,14 +525,14 @@ mod tests {
     #[test]
     fn the_runs_follow_their_formula() {
         let mut machine = machine();
-        // 75·(150/500 + 500/10000) + 3 + 2 + 150·(0.01 + 4·0.005 + 0.1)
+        // 75·(150/500 + 500/10000) + 3 + 2 + 150·(0.01 + 4·0.005 + 12/50 + 0.1)
         let (run_in, run_out) = run_lengths(&machine);
-        assert!((run_in - 50.75).abs() < 1e-9 && run_out == 40.0);
+        assert!((run_in - 86.75).abs() < 1e-9 && run_out == 40.0);
         // Never at full acceleration: 75·2·√(150/2000) + …
         machine.planning.path_jerk_mm_s3 = 2000.0;
         machine.planning.path_acceleration_mm_s2 = 1000.0;
         let (run_in, run_out) = run_lengths(&machine);
         let speed_up = 150.0 * (150.0_f64 / 2000.0).sqrt();
-        assert!((run_out - speed_up).abs() < 1e-9 && (run_in - speed_up - 24.5).abs() < 1e-9);
+        assert!((run_out - speed_up).abs() < 1e-9 && (run_in - speed_up - 60.5).abs() < 1e-9);
     }
 }

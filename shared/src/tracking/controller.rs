@@ -85,6 +85,8 @@ struct Slide {
     position: f64,
     target: f64,
     saturated_ticks: u32,
+    /// Has been near the seam since tracking began.
+    arrived: bool,
 }
 
 impl<const KNOTS: usize> Default for TrackerController<KNOTS> {
@@ -102,6 +104,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             position: 0.0,
             target: 0.0,
             saturated_ticks: 0,
+            arrived: false,
         };
         Self {
             parameters: None,
@@ -435,6 +438,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         }
         if tracking && self.state == TrackerState::Ready {
             self.seam.begin();
+            for slide in &mut self.slides {
+                slide.arrived = false;
+            }
         }
         if !tracking && self.state == TrackerState::Tracking {
             // Should there be no plan to follow, stay here.
@@ -477,8 +483,13 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             .unwrap_or([0.0; SLIDES]);
         let mut targets = [None; SLIDES];
         for (i, target) in targets.iter_mut().enumerate() {
+            let slide = &mut self.slides[i];
             let in_plan = match self.seam.sight(parameters, i, place.s, place.speed) {
-                Sight::Seam(target) => target,
+                Sight::Seam(target) => {
+                    let away = libm::fabs(target.position - off[i] - slide.position);
+                    slide.arrived |= away <= parameters.map.gate;
+                    target
+                }
                 Sight::NotYet => plan[i],
                 Sight::Lost => {
                     self.report(TrackerFault::LostSeam {
@@ -506,9 +517,15 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             LawFlag::Free | LawFlag::NoTarget | LawFlag::SoftLimit => 0,
         };
         if self.state == TrackerState::Tracking {
+            // On its first way to the seam a slide is as fast as it can be; that takes a whole travel at most.
+            let first_way = if slide.arrived {
+                0
+            } else {
+                parameters.slides[i].travel_ticks
+            };
             let (ms, position_mm) = (slide.saturated_ticks, slide.position as f32);
             let slide = i as u8;
-            if ms > parameters.saturation_ticks {
+            if ms > parameters.saturation_ticks + first_way {
                 self.report(TrackerFault::Saturated { slide, ms });
             }
             if output.flag == LawFlag::SoftLimit {

@@ -38,6 +38,8 @@ pub struct SlideParameters {
     pub law: SlideLaw,
     /// Encoder counts in one mm, signed.
     pub counts_per_mm: f64,
+    /// Control ticks from one end of the travel to the other at full speed.
+    pub travel_ticks: u32,
     /// Search for its reference mark.
     pub search: ReferenceSearch<1>,
 }
@@ -86,18 +88,20 @@ impl SlideConfig {
         // Preview is lag and dead time together; were it all dead time, this gain would be the stability limit.
         let limit = crossover(preview, 0.0, 0.0).gain;
         let max_acceleration = positive(name, "max_acceleration_mm_s2", self.max_acceleration_mm_s2)?;
+        let max_velocity = positive(name, "max_velocity_mm_s", self.max_velocity_mm_s)?;
         Ok(SlideParameters {
             law: SlideLaw {
                 kp: check("tracking", "kp", tracking.kp, |v| v > 0.0 && v < limit)?,
                 ki: not_negative("tracking", "ki", tracking.ki)?,
                 dt: TICK_S,
-                max_velocity: positive(name, "max_velocity_mm_s", self.max_velocity_mm_s)?,
+                max_velocity,
                 max_acceleration,
                 travel: (min, max),
                 dead_band: not_negative("tracking", "dead_band_mm", tracking.dead_band_mm)?,
                 full_scale: not_zero("velocity_at_10v_mm_s", self.velocity_at_10v_mm_s)?,
             },
             counts_per_mm: not_zero("counts_per_mm", self.counts_per_mm)?,
+            travel_ticks: libm::ceil((max - min) / max_velocity / TICK_S) as u32,
             search: ReferenceSearch::build(
                 [name],
                 [&self.home],
