@@ -250,6 +250,22 @@ fn a_seam_too_steep_for_the_slides_is_reported_as_saturation() {
 }
 
 #[test]
+fn a_slide_may_be_at_its_speed_limit_on_its_first_way_to_the_seam() {
+    // 10 mm at 50 mm/s: four times the time after which saturation is a fault on the seam.
+    let mut bench = Bench::new(Shape::Straight, |side, _| {
+        (if side == 0 { 10.0 } else { -10.0 }, 0.0)
+    });
+    bench.prepare();
+    bench.tracking = true;
+    bench.speed = 100.0;
+    while bench.s < 80.0 {
+        bench.tick();
+    }
+    assert_eq!(bench.last.sample.fault, None);
+    assert!(bench.spot_errors().iter().all(|error| error.abs() < 0.02));
+}
+
+#[test]
 fn a_seam_beyond_the_soft_limit_is_reported_and_the_slide_stops_there() {
     let mut bench = Bench::new(Shape::Straight, |_, s| (0.1 * (s - 40.0).max(0.0), 0.0));
     bench.prepare();
