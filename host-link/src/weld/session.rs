@@ -5,7 +5,7 @@ use super::{JobError, Progress};
 use crate::boards::{Boards, LinkError, command};
 use crate::record::Record;
 use crate::report::ByBoard;
-use crate::world::{Cameras, ClockRelation, Machine, Sight, TrueSeam};
+use crate::world::{BoardClocks, Cameras, Machine, Sight, TrueSeam};
 use shared::motion::State;
 use shared::protocol::{
     Capture, ClockRequest, Datagram, MotionStatus, Request, Response, Role, TrackerStatus,
@@ -40,7 +40,7 @@ pub(super) struct Session<'a> {
     /// Largest difference of its relation from the PC's while welding \[µs\].
     pub clock_difference_us: Option<f64>,
     pub began: Duration,
-    clocks: [ClockRelation; 2],
+    clocks: BoardClocks,
     next_status: Duration,
     next_clock: Duration,
 }
@@ -75,7 +75,7 @@ impl<'a> Session<'a> {
             clock_residual_us: None,
             clock_difference_us: None,
             began,
-            clocks: Default::default(),
+            clocks: BoardClocks::default(),
             next_status: began,
             next_clock: began,
         })
@@ -110,8 +110,7 @@ impl<'a> Session<'a> {
 
     /// How far the tracker's clock is ahead of the motion board's, as the PC found \[µs\].
     pub fn tracker_ahead_us(&self) -> Option<i64> {
-        let [motion, tracker] = &self.clocks;
-        Some(tracker.offset_us()? - motion.offset_us()?)
+        self.clocks.tracker_ahead_us()
     }
 
     /// Goes on until `done`, at most for `limit`; a fault or the operator end it early.
@@ -187,8 +186,8 @@ impl<'a> Session<'a> {
     pub fn turn(&mut self) -> Result<(), LinkError> {
         let now = self.boards.now();
         let mut due = self.next_status.min(self.next_clock);
-        if let Some(camera) = self.cameras.next_due_us() {
-            due = due.min(Duration::from_micros(camera));
+        if let (Some(camera), Some(motion)) = (self.cameras.next_due_us(), self.motion_now_us()) {
+            due = due.min(now + Duration::from_micros(camera.saturating_sub(motion)));
         }
         let wait = due.saturating_sub(now).clamp(SHORTEST_WAIT, LONGEST_WAIT);
         if let Some((role, datagram)) = self.boards.receive(wait)? {
@@ -197,9 +196,10 @@ impl<'a> Session<'a> {
         let now = self.boards.now();
         if now >= self.next_clock {
             self.next_clock = now + CLOCK_PERIOD;
+            let request = Datagram::ClockRequest(ClockRequest {
+                asked_us: now.as_micros() as u64,
+            });
             for role in [Role::Motion, Role::Tracker] {
-                let asked_us = self.boards.now().as_micros() as u64;
-                let request = Datagram::ClockRequest(ClockRequest { asked_us });
                 self.boards.send(role, &request)?;
             }
         }
@@ -211,13 +211,16 @@ impl<'a> Session<'a> {
     }
 
     fn take(&mut self, role: Role, datagram: Datagram) {
+        let arrived_us = self.boards.now().as_micros() as u64;
         match datagram {
-            Datagram::MotionTelemetry(telemetry) => self.record.add_motion(&telemetry.samples),
-            Datagram::TrackerTelemetry(telemetry) => self.record.add_tracker(&telemetry.samples),
-            Datagram::ClockReply(reply) => {
-                let arrived_us = self.boards.now().as_micros() as u64;
-                self.clocks[role as usize].add(&reply, arrived_us);
+            Datagram::MotionTelemetry(telemetry) => {
+                if let Some(newest) = telemetry.samples.last() {
+                    self.clocks.saw_motion(newest.time_us, arrived_us);
+                }
+                self.record.add_motion(&telemetry.samples);
             }
+            Datagram::TrackerTelemetry(telemetry) => self.record.add_tracker(&telemetry.samples),
+            Datagram::ClockReply(reply) => self.clocks.add(role, &reply, arrived_us),
             Datagram::Capture(capture) => self.strobe(capture),
             // Boards send these to each other only.
             Datagram::PathState(_) | Datagram::Measurement(_) | Datagram::ClockRequest(_) => {}
@@ -227,21 +230,21 @@ impl<'a> Session<'a> {
     /// Gives a capture to the cameras. The time of the strobe is what the PC found, not what the tracker
     /// believes: a wrong belief must show.
     fn strobe(&mut self, capture: Capture) {
-        let [motion, tracker] = &self.clocks;
-        let (Some(motion), Some(tracker)) = (motion.offset_us(), tracker.offset_us()) else {
+        let Some(ahead) = self.clocks.tracker_ahead_us() else {
             return;
         };
-        let on_pc = capture.time_us.saturating_add_signed(-tracker);
-        let on_motion = on_pc.saturating_add_signed(motion);
+        let on_motion = capture.time_us.saturating_add_signed(-ahead);
         if self.welding() {
             let difference = capture.motion_time_us as f64 - on_motion as f64;
             raise(&mut self.clock_difference_us, difference.abs());
         }
-        self.cameras.strobe(capture, on_motion, on_pc);
+        self.cameras.strobe(capture, on_motion);
     }
 
     fn answer_captures(&mut self) -> Result<(), LinkError> {
-        let now_us = self.boards.now().as_micros() as u64;
+        let Some(now_us) = self.motion_now_us() else {
+            return Ok(());
+        };
         loop {
             let (record, seams) = (&self.record, &self.seams);
             let sight = |time_us| {
@@ -258,6 +261,11 @@ impl<'a> Session<'a> {
             self.boards
                 .send(Role::Tracker, &Datagram::Measurement(measurement))?;
         }
+    }
+
+    /// What the motion board's clock shows now \[µs\].
+    fn motion_now_us(&self) -> Option<u64> {
+        self.clocks.motion_now_us(self.boards.now().as_micros() as u64)
     }
 
     fn welding(&self) -> bool {

@@ -25,7 +25,7 @@ pub struct Cameras {
 #[derive(Clone, Debug)]
 struct Waiting {
     capture: Capture,
-    strobe_motion_us: u64,
+    strobe_us: u64,
     due_us: u64,
     noise: [f64; 2 * SIDES],
 }
@@ -52,19 +52,18 @@ impl Cameras {
         }
     }
 
-    /// Takes a capture that was strobed at `strobe_motion_us` of the motion clock and at `strobe_pc_us` of the
-    /// PC's clock.
-    pub fn strobe(&mut self, capture: Capture, strobe_motion_us: u64, strobe_pc_us: u64) {
+    /// Takes a capture that was strobed at `strobe_us` of the motion clock.
+    pub fn strobe(&mut self, capture: Capture, strobe_us: u64) {
         let noise = std::array::from_fn(|_| self.sigma_mm * self.noise.gauss());
         self.waiting.push_back(Waiting {
             capture,
-            strobe_motion_us,
-            due_us: strobe_pc_us + self.processing_us,
+            strobe_us,
+            due_us: strobe_us + self.processing_us,
             noise,
         });
     }
 
-    /// When the next answer is due on the PC's clock \[µs\].
+    /// When the next answer is due on the motion clock \[µs\].
     pub fn next_due_us(&self) -> Option<u64> {
         self.waiting.front().map(|w| w.due_us)
     }
@@ -74,7 +73,7 @@ impl Cameras {
         self.given_up
     }
 
-    /// The next answer that is due at `now_us` of the PC's clock. `sight` says what was there at a time of the
+    /// The next answer that is due at `now_us` of the motion clock. `sight` says what was there at a time of the
     /// motion clock, `None` if that is not known (yet): the answer then waits for a while.
     pub fn answer<'a>(
         &mut self,
@@ -87,7 +86,7 @@ impl Cameras {
             if next.due_us > now_us {
                 return None;
             }
-            match sight(next.strobe_motion_us) {
+            match sight(next.strobe_us) {
                 Some(sight) => {
                     let capture = self.waiting.pop_front()?;
                     if let Some(seam) = sight.seam {
@@ -156,7 +155,7 @@ mod tests {
     fn a_measurement_mapped_back_hits_the_seam() {
         let (machine, seam) = (machine(), wavy_seam());
         let mut cameras = Cameras::new(10_000, 0.0, 1);
-        cameras.strobe(capture(3), 5_000, 1_000);
+        cameras.strobe(capture(3), 1_000);
         let sight = |_| {
             Some(Sight {
                 position: position(),
@@ -184,8 +183,8 @@ mod tests {
     fn an_answer_waits_for_its_time_and_for_knowledge_and_is_given_up_at_last() {
         let (machine, seam) = (machine(), wavy_seam());
         let mut cameras = Cameras::new(10_000, 0.0, 1);
-        cameras.strobe(capture(1), 5_000, 1_000);
-        cameras.strobe(capture(2), 10_000, 6_000);
+        cameras.strobe(capture(1), 1_000);
+        cameras.strobe(capture(2), 6_000);
         let sees = |_| {
             Some(Sight {
                 position: position(),
@@ -196,7 +195,7 @@ mod tests {
         assert_eq!(cameras.next_due_us(), Some(11_000));
         assert!(cameras.answer(&machine, 10_999, sees).is_none());
         assert!(cameras.answer(&machine, 11_000, |_| None).is_none());
-        let known_later = |time| if time > 5_000 { sees(time) } else { None };
+        let known_later = |time| if time > 1_000 { sees(time) } else { None };
         let answer = cameras.answer(&machine, 211_001, known_later).unwrap();
         assert_eq!(answer.capture, 2);
         assert_eq!(cameras.given_up(), 1);
@@ -205,7 +204,7 @@ mod tests {
     #[test]
     fn on_a_path_without_a_seam_the_cameras_say_nothing() {
         let mut cameras = Cameras::new(0, 0.0, 1);
-        cameras.strobe(capture(1), 0, 0);
+        cameras.strobe(capture(1), 0);
         let sight = |_| {
             Some(Sight {
                 position: position(),
@@ -222,7 +221,7 @@ mod tests {
         let (machine, seam) = (machine(), wavy_seam());
         let sees = |s_mm: f64| {
             let mut cameras = Cameras::new(0, 0.0, 1);
-            cameras.strobe(capture(1), 0, 0);
+            cameras.strobe(capture(1), 0);
             // The machine stands still; the seam is moved under it.
             let far = TrueSeam::new(
                 bent_path(),
@@ -248,7 +247,7 @@ mod tests {
         let (machine, seam) = (machine(), wavy_seam());
         let run = |seed| {
             let mut cameras = Cameras::new(0, 0.02 / 3.0, seed);
-            cameras.strobe(capture(1), 0, 0);
+            cameras.strobe(capture(1), 0);
             let sight = |_| {
                 Some(Sight {
                     position: position(),

@@ -10,6 +10,6 @@ mod noise;
 pub(crate) mod truth;
 
 pub use camera::{Cameras, Sight};
-pub use clock::ClockRelation;
+pub use clock::BoardClocks;
 pub use noise::SplitMix64;
 pub use truth::{Crossing, Machine, TrueSeam};
