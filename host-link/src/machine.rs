@@ -3,7 +3,8 @@
 use serde::Deserialize;
 use shared::io::{AXES, MOTORS, SIDES, SLIDES};
 use shared::kinematics::DualBeamConfig;
-use shared::motion::{AxisConfig, BeamConfig, GantryConfig, MotionConfig, MotorConfig};
+use shared::motion::{AxisConfig, BeamConfig, GantryConfig, Machine, MotionConfig, MotorConfig};
+use shared::parameter::ParameterError;
 use shared::tracking::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
 use std::path::Path;
 use thiserror::Error;
@@ -96,6 +97,14 @@ pub enum MachineError {
         /// What is wrong.
         message: String,
     },
+    /// A parameter of a board makes no sense.
+    #[error("machine file {path}: {parameter}, which is out of range")]
+    Parameter {
+        /// The file.
+        path: String,
+        /// Owner, name and value.
+        parameter: ParameterError,
+    },
     /// A value makes no sense.
     #[error("machine file {path}: {key} is {value}, but must be {requirement}")]
     Value {
@@ -135,7 +144,15 @@ impl MachineFile {
                 value,
                 requirement,
             })?;
-        Ok(document.into())
+        let machine: Self = document.into();
+        let parameter = |parameter| MachineError::Parameter {
+            path: path.to_owned(),
+            parameter,
+        };
+        // As the boards will build it.
+        Machine::build(&machine.motion).map_err(parameter)?;
+        machine.tracker.build().map_err(parameter)?;
+        Ok(machine)
     }
 }
 
@@ -207,7 +224,7 @@ struct Sides<T> {
 }
 
 impl Document {
-    /// Checks what only the PC uses; the boards check the rest when they build it.
+    /// Checks what only the PC uses.
     fn check(&self) -> Result<(), (&'static str, f64, &'static str)> {
         let planning = &self.planning;
         let positive = [
@@ -329,6 +346,16 @@ mod tests {
         assert_eq!(
             error,
             "machine file m.toml: planning.rapid_fraction is 1.5, but must be above 0 and at most 1"
+        );
+        let error = error_of(&SHIPPED.replace("gate_mm = 1.0", "gate_mm = -1.0"));
+        assert_eq!(
+            error,
+            "machine file m.toml: gate_mm of tracking is -1, which is out of range"
+        );
+        let error = error_of(&SHIPPED.replacen("kp = 120.0", "kp = -120.0", 1));
+        assert_eq!(
+            error,
+            "machine file m.toml: kp of X1 is -120, which is out of range"
         );
     }
 }

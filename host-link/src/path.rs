@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use shared::geometry::{AttitudeError, Pose, PoseError, SplineError, angle, interpolate};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits, DualBeam, KinematicsError};
+use shared::motion::MAX_EVENTS;
 use shared::parameter::ParameterError;
 use shared::protocol::{Knot, PathAction, PathEvent};
 use shared::trajectory::{CHANNELS, Path, PathPoint, SpeedLimits, SpeedProfile};
@@ -176,6 +177,16 @@ pub enum PathError {
         /// How many.
         knots: usize,
     },
+    /// More events than the motion board holds.
+    #[error(
+        "line {line}: the path has {events} M62, M63 and M67, the motion board holds {MAX_EVENTS}; use fewer"
+    )]
+    TooManyEvents {
+        /// First line of the path.
+        line: u32,
+        /// How many.
+        events: usize,
+    },
 }
 
 /// Plans program paths for one machine.
@@ -329,6 +340,12 @@ impl Planner {
             return Err(PathError::TooLong {
                 line: path.targets[0].line,
                 knots: shape.knots.len(),
+            });
+        }
+        if path.events.len() > MAX_EVENTS {
+            return Err(PathError::TooManyEvents {
+                line: path.targets[0].line,
+                events: path.events.len(),
             });
         }
         let mut planned = PlannedPath {
@@ -779,6 +796,18 @@ mod tests {
         assert!(matches!(error, PathError::Corner { line: 5, degrees } if (degrees - 90.0).abs() < 1e-9));
         assert_eq!(plan("F600\nG1 A10").unwrap_err(), PathError::NoTravel { line: 4 });
         assert!(plan("F600\nG61.1\nG1 X1010\nY1010").is_ok());
+        let events = MAX_EVENTS + 1;
+        let error = plan(&format!("{}F600\nG1 X1010", "M62 P0\n".repeat(events))).unwrap_err();
+        assert!(matches!(error, PathError::TooManyEvents { events: seen, .. } if seen == events));
+        let points: String = (1..=CAPACITY).map(|i| format!("G1 X{}\n", 1000 + i)).collect();
+        let error = plan(&format!("F600\n{points}")).unwrap_err();
+        assert_eq!(
+            error,
+            PathError::TooLong {
+                line: 4,
+                knots: CAPACITY + 1
+            }
+        );
     }
 
     #[test]
