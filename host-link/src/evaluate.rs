@@ -1,14 +1,12 @@
 //! How well it went: the truth of the spots against the truth of the seams, tick by tick.
 
 use crate::record::Record;
+use crate::seam::OVERHANG_MM;
 use crate::world::{Machine, TrueSeam};
 use shared::io::{MOTORS, SIDES, SLIDES};
 use shared::motion::State;
 use shared::protocol::MotionSample;
 use std::collections::BTreeMap;
-
-/// The beam goes on and off a little beside the ends of the seam; there it counts all the same \[mm\].
-const END_MARGIN_MM: f64 = 1.0;
 
 /// A tick of the motion board on a path with a seam.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +118,7 @@ fn seam_tick(
                 let frame = machine.spot(&pose, side);
                 let crossing = seam.crossing(machine, side, &frame, 0.0, sample.s_mm);
                 if let (Some(slides), Some(crossing)) = (slides, crossing)
-                    && seam.exists_at(crossing.s, END_MARGIN_MM)
+                    && seam.exists_at(crossing.s, OVERHANG_MM)
                 {
                     deviation[2 * side] = Some(slides[2 * side] - crossing.u);
                     deviation[2 * side + 1] = Some(slides[2 * side + 1] - crossing.v);

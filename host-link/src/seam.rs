@@ -11,6 +11,9 @@ use thiserror::Error;
 /// How far beyond its ends a deviation goes on in a straight line \[mm\], constant from there: enough for the
 /// cameras and the map to see a straight seam, without leading a steep one out of the slides' reach.
 const CONTINUATION: f64 = 20.0;
+/// Rows may begin this much after the weld does and end this much before; the straight continuation is the seam
+/// there \[mm\].
+pub const OVERHANG_MM: f64 = 10.0;
 /// Distance of the places where the reach is checked \[mm\].
 const CHECK_STEP: f64 = 0.25;
 
@@ -115,7 +118,7 @@ impl Deviation {
         let length = path.length_mm();
         let (start, end) = path.weld().unwrap_or((0.0, length));
         let (first, last) = self.range();
-        if first > 1e-6 || last < end - start - 1e-6 {
+        if first > OVERHANG_MM || last < end - start - OVERHANG_MM {
             let length = end - start;
             return Err(SeamError::TooShort { first, last, length });
         }
@@ -275,10 +278,10 @@ mod tests {
         let weld = &planner.program(&program, &from, None).unwrap()[1];
         let check = |rows: &str| parse(rows).unwrap().check(weld, &machine);
         assert_eq!(check("0,0,0,0,0\n100,0,0,0,0"), Ok(()));
-        let short = check("0,0,0,0,0\n99,0,0,0,0").unwrap_err();
+        let short = check("0,0,0,0,0\n89,0,0,0,0").unwrap_err();
         assert_eq!(
             short.to_string(),
-            "the seam deviation covers s = 0.000…99.000 mm, but the weld is 0…100.000 mm: add rows to the seam file"
+            "the seam deviation covers s = 0.000…89.000 mm, but the weld is 0…100.000 mm: add rows to the seam file"
         );
         let rows = "0,0,0,0,0\n50,0,0,0,9.5\n100,0,0,0,0\n101,0,0,0,0";
         let Err(SeamError::Reach {

@@ -129,13 +129,8 @@ pub enum LinkError {
     )]
     NoEmulator,
     /// The session file of the emulated boards cannot be used.
-    #[error("the session file {path} of the emulated boards cannot be used: {reason}")]
-    BadSession {
-        /// The file.
-        path: String,
-        /// What is wrong with it.
-        reason: String,
-    },
+    #[error("the emulated boards cannot be found: {0}")]
+    BadSession(#[from] emulator::SessionError),
     /// The controllers of the simulated boards could not be made.
     #[error("the simulated boards cannot be set up: {reason}")]
     Simulation {

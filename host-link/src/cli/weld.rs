@@ -34,7 +34,7 @@ pub struct Weld {
     #[arg(long)]
     seam: PathBuf,
     /// Speed of the weld in place of the programmed feed [m/min]
-    #[arg(long, value_name = "M_PER_MIN")]
+    #[arg(long, value_name = "M_PER_MIN", value_parser = speed)]
     speed: Option<f64>,
     /// emulated, simulated, or the addresses MOTION,TRACKER of real boards
     #[arg(long, default_value = "emulated")]
@@ -94,7 +94,7 @@ impl BoardChoice {
             }
             Self::Emulated => {
                 let path = std::env::var_os(SESSION_VARIABLE).ok_or(LinkError::NoEmulator)?;
-                let session = read_session(Path::new(&path))?;
+                let session = Session::read(Path::new(&path))?;
                 let endpoint = |e: emulator::Endpoint| Endpoint {
                     host: e.host.to_string(),
                     request_port: e.tcp,
@@ -113,11 +113,12 @@ impl BoardChoice {
     }
 }
 
-fn read_session(path: &Path) -> Result<Session, LinkError> {
-    Session::read(path).map_err(|error| LinkError::BadSession {
-        path: path.display().to_string(),
-        reason: error.to_string(),
-    })
+/// A speed that makes sense \[m/min\].
+fn speed(text: &str) -> Result<f64, &'static str> {
+    match text.parse() {
+        Ok(speed) if f64::is_finite(speed) && speed > 0.0 => Ok(speed),
+        _ => Err("say a number of m/min above 0"),
+    }
 }
 
 impl Weld {
@@ -197,8 +198,10 @@ mod tests {
     }
 
     #[test]
-    fn a_session_file_that_is_none_is_named() {
-        let error = read_session(Path::new("no/such/session.toml")).unwrap_err();
-        assert!(error.to_string().contains("no/such/session.toml"), "{error}");
+    fn speeds_are_positive_numbers() {
+        assert_eq!(speed("7.5"), Ok(7.5));
+        for wrong in ["0", "-1", "fast", "NaN", "inf"] {
+            assert!(speed(wrong).is_err(), "{wrong}");
+        }
     }
 }
