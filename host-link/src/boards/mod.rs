@@ -131,10 +131,4 @@ pub enum LinkError {
     /// The session file of the emulated boards cannot be used.
     #[error("the emulated boards cannot be found: {0}")]
     BadSession(#[from] emulator::SessionError),
-    /// The controllers of the simulated boards could not be made.
-    #[error("the simulated boards cannot be set up: {reason}")]
-    Simulation {
-        /// Why.
-        reason: String,
-    },
 }
