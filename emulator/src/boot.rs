@@ -162,7 +162,7 @@ impl Boards {
         };
         fs::create_dir_all(&options.log_directory).map_err(setup)?;
         let directory = options.log_directory.canonicalize().map_err(setup)?;
-        let session = free_ports().map_err(setup)?;
+        let session = free_ports(directory.join(PEERS)).map_err(setup)?;
         let page = shared_page(&directory)?;
 
         let start = |name, mac, slot, firmware, endpoint| {
@@ -299,8 +299,8 @@ fn existing(what: &'static str, path: &Path) -> Result<PathBuf, BootError> {
     })
 }
 
-/// Four ports that nobody uses, found by taking all at once and giving them back.
-fn free_ports() -> io::Result<Session> {
+/// A session on four ports that nobody uses, found by taking all at once and giving them back.
+fn free_ports(pace: PathBuf) -> io::Result<Session> {
     let host = Ipv4Addr::LOCALHOST;
     let tcp = [TcpListener::bind((host, 0))?, TcpListener::bind((host, 0))?];
     let udp = [UdpSocket::bind((host, 0))?, UdpSocket::bind((host, 0))?];
@@ -313,6 +313,7 @@ fn free_ports() -> io::Result<Session> {
     };
     let (motion, tracker) = (endpoint(0)?, endpoint(1)?);
     Ok(Session {
+        pace,
         motion,
         tracker,
         path_states_to: PathStatesTo {

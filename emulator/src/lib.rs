@@ -8,9 +8,11 @@
 
 mod boot;
 mod hello;
+mod pace;
 mod qemu;
 mod session;
 
 pub use boot::{BOOT_VARIABLES, Boards, BootError, Options};
+pub use pace::Pace;
 pub use qemu::bound_to_parent;
 pub use session::{Endpoint, PathStatesTo, SESSION_VARIABLE, Session, SessionError};

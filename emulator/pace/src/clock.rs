@@ -1,7 +1,9 @@
 //! When a board may run on.
 //!
 //! Each board has come to a point of one common time, its own time plus a constant. It waits until the wall
-//! clock has come there, and until its peer is at most [`LEAD_NS`] behind. Who comes late by more than
+//! clock has come there, until its peer is at most [`LEAD_NS`] behind, and until a program on the PC that
+//! takes part is at most [`PC_LEAD_NS`] behind: a PC whose processor is busy elsewhere is not what is to be
+//! tried here. Who comes late by more than
 //! [`LATE_NS`] moves the common epoch, for both: the delay of one is a delay of the pair, and neither races
 //! to catch up. A peer not heard of for [`PATIENCE_NS`] (stopped, ended) is not waited for; when it comes
 //! back it joins where the other is by then.
@@ -12,6 +14,8 @@ use crate::shared::Shared;
 pub const QUANTUM_NS: u64 = 250_000;
 /// Common time a board may be ahead of its peer \[ns\].
 const LEAD_NS: i64 = 500_000;
+/// Common time a board may be ahead of what the PC has handled \[ns\].
+const PC_LEAD_NS: i64 = 20_000_000;
 /// Delay against the wall clock that is caught up; more is forgiven \[ns\].
 const LATE_NS: i64 = 3_000_000;
 /// Common time behind the peer that only a stopped board shows \[ns\].
@@ -63,10 +67,9 @@ impl Clock {
         }
         loop {
             let due = self.shared.epoch(now) + since_epoch;
-            let ahead = self
-                .shared
-                .peer(now, PATIENCE_NS)
-                .is_some_and(|peer| reached - peer > LEAD_NS);
+            let behind = |other: Option<i64>, lead| other.is_some_and(|other| reached - other > lead);
+            let ahead = behind(self.shared.peer(now, PATIENCE_NS), LEAD_NS)
+                || behind(self.shared.pc(now, PATIENCE_NS), PC_LEAD_NS);
             if now < due {
                 sleep(due - now);
             } else if ahead {

@@ -16,16 +16,26 @@ struct Page {
     /// Wall time at which the common time was zero \[ns\]; zero before the first board starts.
     epoch: AtomicI64,
     boards: [Place; 2],
+    /// The program on the PC; it writes the file.
+    pc: Place,
 }
 
-/// How far a board has come.
+/// How far one of them has come.
 #[derive(Default)]
 #[repr(C)]
 struct Place {
-    /// Common time the board has reached \[ns\]; zero before it starts.
+    /// Common time it has reached, for the PC: up to which it has handled everything \[ns\].
     reached: AtomicI64,
-    /// Wall time of that \[ns\].
+    /// Wall time of that \[ns\]; zero before it starts and after it has ended.
     seen: AtomicI64,
+}
+
+impl Place {
+    /// How far it has come, unless it is not there or was not heard of within `patience` ns.
+    fn reached(&self, now: i64, patience: i64) -> Option<i64> {
+        let seen = self.seen.load(Ordering::Relaxed);
+        (seen != 0 && now - seen < patience).then(|| self.reached.load(Ordering::Relaxed))
+    }
 }
 
 /// One board's view of the page.
@@ -94,8 +104,11 @@ impl Shared {
 
     /// How far the other board has come, unless it is not there or was not heard of within `patience` ns.
     pub fn peer(&self, now: i64, patience: i64) -> Option<i64> {
-        let peer = &self.page.boards[1 - self.slot];
-        let seen = peer.seen.load(Ordering::Relaxed);
-        (seen != 0 && now - seen < patience).then(|| peer.reached.load(Ordering::Relaxed))
+        self.page.boards[1 - self.slot].reached(now, patience)
+    }
+
+    /// As [`Self::peer`], for the program on the PC.
+    pub fn pc(&self, now: i64, patience: i64) -> Option<i64> {
+        self.page.pc.reached(now, patience)
     }
 }

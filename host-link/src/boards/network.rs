@@ -86,6 +86,8 @@ pub struct NetworkBoards {
     incoming: Receiver<Incoming>,
     bad: Arc<AtomicU32>,
     began: Instant,
+    /// Of emulated boards.
+    pace: Option<emulator::Pace>,
 }
 
 /// What a reader passes on.
@@ -118,7 +120,25 @@ impl NetworkBoards {
             incoming,
             bad,
             began: Instant::now(),
+            pace: None,
         })
+    }
+
+    /// Lets the boards, which are emulated, wait while this program has no processor.
+    #[must_use]
+    pub fn at_pace(self, pace: emulator::Pace) -> Self {
+        Self {
+            pace: Some(pace),
+            ..self
+        }
+    }
+
+    /// Tells emulated boards that everything they sent was handled. Where that fails they do not wait, which
+    /// costs accuracy on a busy computer and nothing else.
+    fn keep_pace(&self) {
+        if let Some(pace) = &self.pace {
+            let _ = pace.handled();
+        }
     }
 
     /// Datagrams that were not understood, or that came while too many waited.
@@ -136,6 +156,7 @@ impl NetworkBoards {
 
 impl Boards for NetworkBoards {
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
+        self.keep_pace();
         match role {
             Role::Motion => self.motion.stream.request(request),
             Role::Tracker => self.tracker.stream.request(request),
@@ -143,7 +164,8 @@ impl Boards for NetworkBoards {
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
-        match self.incoming.recv_timeout(timeout) {
+        let waiting = self.incoming.try_recv().map_err(|_| self.keep_pace());
+        match waiting.or_else(|()| self.incoming.recv_timeout(timeout)) {
             Ok((role, Ok(datagram))) => Ok(Some((role, datagram))),
             Ok((role, Err(source))) => Err(LinkError::Lost { role, source }),
             // Both readers have ended, each after an error that was returned before.

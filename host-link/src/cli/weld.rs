@@ -11,7 +11,7 @@ use crate::seam::Deviation;
 use crate::weld::{Job, JobError, Names, Terminal, run};
 use anyhow::Context;
 use clap::Args;
-use emulator::{SESSION_VARIABLE, Session};
+use emulator::{Pace, SESSION_VARIABLE, Session, SessionError};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
@@ -107,7 +107,11 @@ impl BoardChoice {
                     Some((target.host.octets(), target.udp)),
                     patience,
                 )?;
-                Ok(Box::new(boards))
+                let pace = Pace::join(&session.pace).map_err(|source| SessionError::File {
+                    path: session.pace,
+                    source,
+                })?;
+                Ok(Box::new(boards.at_pace(pace)))
             }
         }
     }

@@ -1,0 +1,76 @@
+//! Keeps emulated boards from running away from the program on the PC that talks with them.
+//!
+//! The boards' pace plugins share a page; a program that takes part writes into it how far it has come. A
+//! board then waits for a program whose processor is busy elsewhere, as it waits for the other board.
+
+use std::fs::{File, OpenOptions};
+use std::io;
+use std::os::unix::fs::FileExt;
+use std::path::Path;
+
+/// Bytes of the page: epoch, then (reached, seen) of both boards and of the PC, each a native i64.
+const BOARDS_AT: u64 = 8;
+const PC_AT: u64 = 40;
+
+/// A program's part in the pace of the boards; it ends when this is dropped.
+#[derive(Debug)]
+pub struct Pace {
+    page: File,
+}
+
+impl Pace {
+    /// Takes part in the pace of the boards of [`crate::Session::pace`].
+    pub fn join(page: &Path) -> io::Result<Self> {
+        Ok(Self {
+            page: OpenOptions::new().read(true).write(true).open(page)?,
+        })
+    }
+
+    /// Everything that the boards have sent so far has been handled.
+    pub fn handled(&self) -> io::Result<()> {
+        let mut bytes = [0; 32];
+        self.page.read_exact_at(&mut bytes, BOARDS_AT)?;
+        let number = |index: usize| {
+            let bytes = bytes[8 * index..8 * index + 8].try_into();
+            i64::from_ne_bytes(bytes.expect("eight bytes of 32"))
+        };
+        self.write(number(0).min(number(2)), number(1).max(number(3)))
+    }
+
+    fn write(&self, reached: i64, seen: i64) -> io::Result<()> {
+        self.page.write_all_at(&reached.to_ne_bytes(), PC_AT)?;
+        self.page.write_all_at(&seen.to_ne_bytes(), PC_AT + 8)
+    }
+}
+
+impl Drop for Pace {
+    fn drop(&mut self) {
+        // Without it the boards wait once more, for a second.
+        let _ = self.write(0, 0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_slower_board_is_followed_and_the_end_is_told() {
+        let path = std::env::temp_dir().join(format!("seamwright-pace-{}", std::process::id()));
+        let mut page = vec![0; 4096];
+        for (place, number) in [7_i64, 100, 1_000, 90, 1_005].into_iter().enumerate() {
+            page[8 * place..8 * place + 8].copy_from_slice(&number.to_ne_bytes());
+        }
+        std::fs::write(&path, &page).expect("a temporary file");
+        let pc = || {
+            let bytes = std::fs::read(&path).expect("the file");
+            [40, 48].map(|at| i64::from_ne_bytes(bytes[at..at + 8].try_into().expect("eight bytes")))
+        };
+        let pace = Pace::join(&path).expect("the file");
+        pace.handled().expect("the file");
+        assert_eq!(pc(), [90, 1_005]);
+        drop(pace);
+        assert_eq!(pc(), [0, 0]);
+        std::fs::remove_file(&path).expect("the file");
+    }
+}
