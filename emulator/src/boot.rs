@@ -358,7 +358,7 @@ mod tests {
 
     #[test]
     fn ports_differ_and_path_states_go_to_the_tracker() {
-        let session = free_ports().expect("the loopback has ports");
+        let session = free_ports(PathBuf::new()).expect("the loopback has ports");
         assert_ne!(session.motion.tcp, session.tracker.tcp);
         assert_ne!(session.motion.udp, session.tracker.udp);
         assert_eq!(session.path_states_to.udp, session.tracker.udp);
