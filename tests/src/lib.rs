@@ -1,1 +1,115 @@
-//! Placeholder.
+//! What whole-system runs share: the shipped job, other seams for it, and a weld on any boards.
+
+use host_link::boards::Boards;
+use host_link::machine::MachineFile;
+use host_link::nc::{Options, Program, interpret};
+use host_link::report::Report;
+use host_link::seam::Deviation;
+use host_link::weld::{Ended, Job, Names, Silent, run};
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::sync::atomic::AtomicBool;
+
+/// The shipped program, relative to the root of the workspace.
+pub const PROGRAM: &str = "programs/t-seam-400.ngc";
+/// The shipped machine.
+pub const MACHINE: &str = "machines/dual-beam-gantry.toml";
+/// The shipped deviation of the seams.
+pub const SEAM: &str = "programs/t-seam-400-deviation.csv";
+
+/// A shipped file.
+pub fn shipped(file: &str) -> PathBuf {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
+    tests.parent().expect("the root of the workspace").join(file)
+}
+
+fn program() -> Program {
+    let text = std::fs::read_to_string(shipped(PROGRAM)).expect("the shipped program");
+    interpret(&text, Options::default()).expect("the shipped program")
+}
+
+/// How the shipped seams deviate.
+pub fn shipped_seam() -> Deviation {
+    Deviation::read(&shipped(SEAM)).expect("the shipped seam")
+}
+
+/// A file with a deviation of u1, v1, u2, v2 over the whole weld \[mm\].
+pub fn seam_file(deviation: impl Fn(f64) -> [f64; 4]) -> String {
+    let mut text = "s_mm,u1_mm,v1_mm,u2_mm,v2_mm\n".to_owned();
+    for half in 0..=820 {
+        let s = f64::from(half) / 2.0;
+        let [u1, v1, u2, v2] = deviation(s);
+        text += &format!("{s},{u1},{v1},{u2},{v2}\n");
+    }
+    text
+}
+
+/// The same as a seam.
+pub fn seam(deviation: impl Fn(f64) -> [f64; 4]) -> Deviation {
+    Deviation::parse("seam.csv", &seam_file(deviation)).expect("a seam file")
+}
+
+/// Sines of 1 mm over 100 mm on every slide, each in a phase of its own.
+pub fn sines(s: f64) -> [f64; 4] {
+    std::array::from_fn(|slide| (TAU * (s / 100.0 + slide as f64 / 7.0)).sin())
+}
+
+/// Slopes of 5 % on every slide, up and down.
+pub fn slopes(s: f64) -> [f64; 4] {
+    let rise = 0.05 * (s - 200.0);
+    [rise, -rise, -rise, rise]
+}
+
+/// Kinks of 2 %, one every 40 mm, back and forth between slopes of 1 % on every slide.
+pub fn kinks(s: f64) -> [f64; 4] {
+    std::array::from_fn(|slide| {
+        let phase = (s + 10.0 * slide as f64).rem_euclid(80.0);
+        0.01 * (phase - 40.0).abs()
+    })
+}
+
+/// Welds the shipped program along `seam`.
+pub fn weld(boards: &mut dyn Boards, seam: Deviation, speed_m_per_min: f64) -> Ended {
+    let machine = MachineFile::read(&shipped(MACHINE)).expect("the shipped machine");
+    let job = Job {
+        machine: &machine,
+        program: &program(),
+        speed_m_per_min: Some(speed_m_per_min),
+        seam: Rc::new(seam),
+        seed: 1,
+        names: Names {
+            program: PROGRAM.into(),
+            machine: MACHINE.into(),
+            seam: "seam".into(),
+            boards: "test".into(),
+        },
+    };
+    run(boards, &job, &AtomicBool::new(false), &mut Silent).expect("boards that answer")
+}
+
+/// Largest deviation of each slide \[mm\].
+///
+/// # Panics
+/// Where it was not evaluated at every tick of the weld.
+pub fn deviations(report: &Report) -> [f64; 4] {
+    assert_eq!(report.weld_ticks.unknown, 0, "{report}");
+    let max = report.max_deviation_mm;
+    [max.u1, max.v1, max.u2, max.v2].map(|max| max.expect("a weld"))
+}
+
+/// Checks that a job came to its end, undisturbed, and that no spot was ever further than `limit_mm` from its
+/// seam.
+///
+/// # Panics
+/// Where it is not so.
+pub fn assert_on_seam(ended: &Ended, limit_mm: f64) {
+    let report = &ended.report;
+    assert!(ended.error.is_none(), "{:?}", ended.error);
+    assert_eq!(report.faults, [""; 0]);
+    assert_eq!((report.lost_ticks, report.telemetry_gaps), Default::default());
+    assert!((report.weld_length_mm - 400.0).abs() < 0.5, "{report}");
+    let deviations = deviations(report);
+    println!("{:4} m/min: {deviations:.4?} mm", report.speed_m_per_min);
+    assert!(deviations.iter().all(|max| *max <= limit_mm), "{report}");
+}
