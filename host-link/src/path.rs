@@ -11,6 +11,7 @@ use shared::motion::MAX_EVENTS;
 use shared::parameter::ParameterError;
 use shared::protocol::{Knot, PathAction, PathEvent};
 use shared::trajectory::{CHANNELS, Path, PathPoint, SpeedLimits, SpeedProfile};
+use std::ops::Range;
 use thiserror::Error;
 
 /// Most knots of one path: what the boards hold.
@@ -32,6 +33,7 @@ const CURVATURE_SHARE: f64 = 0.5;
 /// The axes, then the extensions of the V slides.
 const DRIVES: usize = AXES + SIDES;
 const DRIVE_NAMES: [&str; DRIVES] = ["X", "Y", "Z", "A", "B", "C", "V1", "V2"];
+const ROTARY: Range<usize> = 3..AXES;
 
 /// A path that the boards can run.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,14 +88,14 @@ impl PlannedPath {
 pub enum PathError {
     /// An axis would leave its travel.
     #[error(
-        "line {line}: axis {axis} would have to go to {position:.3}, which is {beyond:.3} beyond its travel ({min}…{max}) (mm or °)"
+        "line {line}: axis {axis} would have to go to {position:.3}, {beyond:.3} beyond its travel ({min}…{max} {unit})"
     )]
     Travel {
         /// Line of the program.
         line: u32,
         /// Axis or V slide.
         axis: &'static str,
-        /// Where it would go (mm, deg).
+        /// Where it would go.
         position: f64,
         /// By how much too far.
         beyond: f64,
@@ -101,6 +103,8 @@ pub enum PathError {
         min: f64,
         /// Travel.
         max: f64,
+        /// mm or °.
+        unit: &'static str,
     },
     /// An axis cannot follow that fast.
     #[error(
@@ -510,6 +514,7 @@ impl Planner {
                     beyond,
                     min: round_for_people(limits.min / limits.unit),
                     max: round_for_people(limits.max / limits.unit),
+                    unit: if ROTARY.contains(&i) { "°" } else { "mm" },
                 })
             }
             _ => Ok(()),
@@ -771,7 +776,7 @@ mod tests {
         let error = plan("G0 X1000\nG0 Y3020").unwrap_err();
         assert_eq!(
             error.to_string(),
-            "line 4: axis Y would have to go to 3020.000, which is 20.000 beyond its travel (0…3000) (mm or °)"
+            "line 4: axis Y would have to go to 3020.000, 20.000 beyond its travel (0…3000 mm)"
         );
         let error = plan("G0 B31").unwrap_err();
         assert!(matches!(error, PathError::Travel { axis: "B", beyond, .. } if (beyond - 1.0).abs() < 1e-6));

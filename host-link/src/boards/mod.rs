@@ -129,6 +129,6 @@ pub enum LinkError {
     )]
     NoEmulator,
     /// The session file of the emulated boards cannot be used.
-    #[error("the emulated boards cannot be found: {0}")]
+    #[error("the emulated boards cannot be found: {0}; start them by `cargo xtask emulate`")]
     BadSession(#[from] emulator::SessionError),
 }

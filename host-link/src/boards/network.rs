@@ -42,6 +42,15 @@ impl Endpoint {
         }
     }
 
+    /// An emulated board.
+    fn emulated(board: emulator::Endpoint) -> Self {
+        Self {
+            host: board.host.to_string(),
+            request_port: board.tcp,
+            datagram_port: board.udp,
+        }
+    }
+
     /// Its first IPv4 address.
     fn address(&self) -> io::Result<Ipv4Addr> {
         (self.host.as_str(), self.request_port)
@@ -124,13 +133,27 @@ impl NetworkBoards {
         })
     }
 
-    /// Lets the boards, which are emulated, wait while this program has no processor.
-    #[must_use]
-    pub fn at_pace(self, pace: emulator::Pace) -> Self {
-        Self {
+    /// Connects to emulated boards, and takes part in their pace: they wait while this program has no
+    /// processor.
+    ///
+    /// # Errors
+    /// As [`NetworkBoards::connect`], or [`LinkError::BadSession`] if the boards' page cannot be opened.
+    pub fn emulated(session: &emulator::Session, patience: Patience) -> Result<Self, LinkError> {
+        let target = session.path_states_to;
+        let boards = Self::connect(
+            &Endpoint::emulated(session.motion),
+            &Endpoint::emulated(session.tracker),
+            Some((target.host.octets(), target.udp)),
+            patience,
+        )?;
+        let pace = emulator::Pace::join(&session.pace).map_err(|source| emulator::SessionError::File {
+            path: session.pace.clone(),
+            source,
+        })?;
+        Ok(Self {
             pace: Some(pace),
-            ..self
-        }
+            ..boards
+        })
     }
 
     /// Tells emulated boards that everything they sent was handled. Where that fails they do not wait, which

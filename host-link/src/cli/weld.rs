@@ -11,7 +11,7 @@ use crate::seam::Deviation;
 use crate::weld::{Job, JobError, Names, Terminal, run};
 use anyhow::Context;
 use clap::Args;
-use emulator::{Pace, SESSION_VARIABLE, Session, SessionError};
+use emulator::{SESSION_VARIABLE, Session};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
@@ -34,7 +34,7 @@ pub struct Weld {
     #[arg(long)]
     seam: PathBuf,
     /// Speed of the weld in place of the programmed feed [m/min]
-    #[arg(long, value_name = "M_PER_MIN", value_parser = speed)]
+    #[arg(long, value_name = "M_PER_MIN", value_parser = speed, allow_negative_numbers = true)]
     speed: Option<f64>,
     /// emulated, simulated, or the addresses MOTION,TRACKER of real boards
     #[arg(long, default_value = "emulated")]
@@ -95,23 +95,7 @@ impl BoardChoice {
             Self::Emulated => {
                 let path = std::env::var_os(SESSION_VARIABLE).ok_or(LinkError::NoEmulator)?;
                 let session = Session::read(Path::new(&path))?;
-                let endpoint = |e: emulator::Endpoint| Endpoint {
-                    host: e.host.to_string(),
-                    request_port: e.tcp,
-                    datagram_port: e.udp,
-                };
-                let target = session.path_states_to;
-                let boards = NetworkBoards::connect(
-                    &endpoint(session.motion),
-                    &endpoint(session.tracker),
-                    Some((target.host.octets(), target.udp)),
-                    patience,
-                )?;
-                let pace = Pace::join(&session.pace).map_err(|source| SessionError::File {
-                    path: session.pace,
-                    source,
-                })?;
-                Ok(Box::new(boards.at_pace(pace)))
+                Ok(Box::new(NetworkBoards::emulated(&session, patience)?))
             }
         }
     }

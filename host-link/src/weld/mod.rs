@@ -179,7 +179,7 @@ impl Weld {
         }
         for path in &paths {
             let what = if path.weld().is_some() {
-                "welding"
+                "running in"
             } else {
                 "approaching"
             };
@@ -236,8 +236,13 @@ impl Weld {
         session.refresh()?;
         let length = path.length_mm();
         let limit = Duration::from_secs_f64(path.duration_s()) + PATH_MARGIN;
+        let mut welding = false;
         session.wait_until("a path", limit, |s| {
             if let Some(here) = s.record.motion().last().filter(|here| here.path_id == id) {
+                if here.beams.contains(&true) && !welding {
+                    welding = true;
+                    s.progress.phase("welding");
+                }
                 s.progress.travel(here.s_mm, length);
             }
             !on_path(s.motion.state)

@@ -1,0 +1,339 @@
+//! Wrong use of `host-link weld` is answered by one sentence that names the place, and by an exit code.
+
+use emulator::{Endpoint, PathStatesTo, SESSION_VARIABLE, Session};
+use shared::protocol::framing::encode_message;
+use shared::protocol::{Identity, Response, Role};
+use std::io::{Read, Write};
+use std::net::{Ipv4Addr, TcpListener};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const PROGRAM: &str = "programs/t-seam-400.ngc";
+const MACHINE: &str = "machines/dual-beam-gantry.toml";
+const SEAM: &str = "programs/t-seam-400-deviation.csv";
+
+/// A job that is refused, made from the shipped one.
+struct Attempt {
+    program: PathBuf,
+    machine: PathBuf,
+    seam: PathBuf,
+    more: Vec<&'static str>,
+    session: Option<PathBuf>,
+}
+
+impl Attempt {
+    fn new() -> Self {
+        Self {
+            program: shipped(PROGRAM),
+            machine: shipped(MACHINE),
+            seam: shipped(SEAM),
+            more: vec!["--boards", "simulated"],
+            session: None,
+        }
+    }
+
+    /// Runs it; what it says after `host-link: `.
+    fn refusal(self) -> String {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_host-link"));
+        command
+            .arg("weld")
+            .arg(self.program)
+            .arg("--machine")
+            .arg(self.machine);
+        command.arg("--seam").arg(self.seam).args(self.more);
+        command.arg("--report").arg(scratch("no-report"));
+        command.env_remove(SESSION_VARIABLE);
+        if let Some(session) = self.session {
+            command.env(SESSION_VARIABLE, session);
+        }
+        let output = command.output().expect("host-link runs");
+        let said = String::from_utf8(output.stderr).expect("text");
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert_eq!(String::from_utf8_lossy(&output.stdout), "", "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+        assert!(said.chars().count() < 250, "{said}");
+        said.strip_prefix("host-link: ")
+            .expect(&said)
+            .trim_end()
+            .to_owned()
+    }
+}
+
+fn shipped(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file)
+}
+
+fn scratch(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+/// A file with `text`, of its own for each test.
+fn written(name: &str, text: &str) -> PathBuf {
+    let path = scratch(name);
+    std::fs::write(&path, text).expect("the scratch folder is writable");
+    path
+}
+
+/// The text of a shipped file.
+fn text_of(file: &str) -> String {
+    std::fs::read_to_string(shipped(file)).expect("a shipped file")
+}
+
+/// A shipped file with one text replaced by another, once.
+fn changed(name: &str, file: &str, from: &str, to: &str) -> PathBuf {
+    let text = text_of(file);
+    assert!(text.contains(from), "{file} has no {from:?}");
+    written(name, &text.replacen(from, to, 1))
+}
+
+/// Line of the first text that starts with `start`.
+fn line_of(file: &str, start: &str) -> usize {
+    let text = text_of(file);
+    let index = text.lines().position(|line| line.starts_with(start));
+    1 + index.unwrap_or_else(|| panic!("{file} has no {start:?}"))
+}
+
+#[track_caller]
+fn assert_says(said: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(said.contains(part), "no {part:?} in: {said}");
+    }
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let none = || scratch("none.file");
+    let attempts = [
+        Attempt {
+            program: none(),
+            ..Attempt::new()
+        },
+        Attempt {
+            machine: none(),
+            ..Attempt::new()
+        },
+        Attempt {
+            seam: none(),
+            ..Attempt::new()
+        },
+    ];
+    for attempt in attempts {
+        assert_says(&attempt.refusal(), &["cannot read", "none.file", "No such file"]);
+    }
+}
+
+#[test]
+fn a_malformed_seam_is_named_by_its_line_and_column() {
+    let seam = changed("malformed.csv", SEAM, "\n4.5,", "\n4.5,oops,");
+    let line = line_of(SEAM, "4.5,").to_string();
+    let said = Attempt {
+        seam,
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(
+        &said,
+        &["malformed.csv", &format!("line {line}"), "6 values instead of 5"],
+    );
+
+    let seam = written(
+        "word.csv",
+        "s_mm,u1_mm,v1_mm,u2_mm,v2_mm\n0,0,0,0,0\n410,0,much,0,0\n",
+    );
+    let said = Attempt {
+        seam,
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(
+        &said,
+        &["word.csv, line 3", "\"much\" is not a finite number", "v1_mm"],
+    );
+}
+
+#[test]
+fn unknown_and_missing_keys_of_a_machine_are_named_by_their_line() {
+    let line = line_of(MACHINE, "[head]");
+    let machine = changed("unknown.toml", MACHINE, "[head]", "[head]\nwobble = 3.0");
+    let said = Attempt {
+        machine,
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(
+        &said,
+        &["unknown.toml", &format!("line {}", line + 1), "unknown", "wobble"],
+    );
+
+    let machine = changed("missing.toml", MACHINE, "\ncamera_lead_mm", "\n# camera_lead_mm");
+    let said = Attempt {
+        machine,
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(
+        &said,
+        &[
+            "missing.toml",
+            &format!("line {line}"),
+            "missing",
+            "camera_lead_mm",
+        ],
+    );
+}
+
+#[test]
+fn a_seam_beyond_the_slides_is_named_by_slide_place_and_amount() {
+    let rows = "0,0,0,0,0\n200,0,0,0,-12.5\n410,0,0,0,0\n";
+    let seam = written("far.csv", &format!("s_mm,u1_mm,v1_mm,u2_mm,v2_mm\n{rows}"));
+    let said = Attempt {
+        seam,
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(
+        &said,
+        &["far.csv", "V2", "s = 200.0 mm", "0.500 mm beyond", "-12…12 mm"],
+    );
+}
+
+#[test]
+fn a_program_outside_travel_is_named_by_axis_and_amount() {
+    let program = |name, axis: &str| {
+        let program = format!("G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nG0 {axis}\nM2\n");
+        Attempt {
+            program: written(name, &program),
+            ..Attempt::new()
+        }
+        .refusal()
+    };
+    let said = program("travel-y.ngc", "Y3020.5");
+    assert_says(
+        &said,
+        &["travel-y.ngc", "line 3", "axis Y", "20.500 beyond", "0…3000 mm"],
+    );
+    let said = program("travel-c.ngc", "C91");
+    assert_says(
+        &said,
+        &["travel-c.ngc", "line 3", "axis C", "1.000 beyond", "-90…90 °"],
+    );
+}
+
+#[test]
+fn what_a_program_cannot_mean_is_named_by_its_line() {
+    let line = format!("line {}", line_of(PROGRAM, "N100"));
+    for (name, to, what) in [
+        ("word.ngc", "N100 K3 M62", "K"),
+        ("code.ngc", "N100 G5.1 M62", "G5.1"),
+    ] {
+        let program = changed(name, PROGRAM, "N100 M62", to);
+        let said = Attempt {
+            program,
+            ..Attempt::new()
+        }
+        .refusal();
+        assert_says(&said, &[name, &line, what, "not understood"]);
+    }
+}
+
+#[test]
+fn a_speed_out_of_reach_is_named_with_the_drive_and_the_possible_one() {
+    let more = vec!["--boards", "simulated", "--speed", "40"];
+    let said = Attempt {
+        more,
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(&said, &["40000 mm/min is too high", "speed of X", "allows"]);
+}
+
+#[test]
+fn a_board_that_is_not_there_is_named() {
+    let more = vec!["--boards", "no such host,no such host"];
+    let said = Attempt {
+        more,
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(
+        &said,
+        &["motion board does not answer at no such host:7100", "switched on"],
+    );
+}
+
+#[test]
+fn missing_emulated_boards_are_told_with_the_remedy() {
+    let emulated = || Attempt {
+        more: vec!["--boards", "emulated"],
+        ..Attempt::new()
+    };
+    assert_says(
+        &emulated().refusal(),
+        &["no emulated boards are running", "cargo xtask"],
+    );
+    let session = Some(scratch("no-session.toml"));
+    let said = Attempt {
+        session,
+        ..emulated()
+    }
+    .refusal();
+    assert_says(&said, &["no-session.toml", "cargo xtask emulate"]);
+}
+
+/// Two boards of another version: both answer their first request, and are never asked for more.
+#[test]
+fn a_board_of_another_version_is_refused_and_asked_for_nothing() {
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");
+    let board = Endpoint {
+        host: Ipv4Addr::LOCALHOST,
+        tcp: listener.local_addr().expect("a port").port(),
+        udp: 9,
+    };
+    let session = Session {
+        pace: scratch("no-pace"),
+        motion: board,
+        tracker: board,
+        path_states_to: PathStatesTo {
+            host: board.host,
+            udp: board.udp,
+        },
+    };
+    let file = scratch("old-session.toml");
+    session.write(&file).expect("the scratch folder is writable");
+    let asked = std::thread::spawn(move || {
+        let (mut stream, _) = listener.accept().expect("a connection");
+        let mut hello = [0; 64];
+        let length = stream.read(&mut hello).expect("Hello");
+        let identity = Response::Identity(Identity {
+            schema_hash: 0xabcd,
+            role: Role::Motion,
+            firmware: "0.0.9".try_into().expect("short"),
+            board: "fake".try_into().expect("short"),
+            simulated_machine: true,
+        });
+        let mut buffer = [0; 256];
+        let answer = encode_message(&identity, &mut buffer).expect("short");
+        stream.write_all(answer).expect("a connection");
+        let mut rest = Vec::new();
+        stream.read_to_end(&mut rest).expect("the end of the connection");
+        (length, rest.len())
+    });
+    let attempt = Attempt {
+        more: vec!["--boards", "emulated"],
+        session: Some(file),
+        ..Attempt::new()
+    };
+    let said = attempt.refusal();
+    assert_says(
+        &said,
+        &[
+            "motion board",
+            "0.0.9",
+            "another version of the protocol",
+            "abcd",
+            "flash both",
+        ],
+    );
+    let (hello, more) = asked.join().expect("the fake board");
+    assert!(hello > 0 && more == 0, "{hello} and {more} bytes");
+}
