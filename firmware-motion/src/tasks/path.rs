@@ -27,7 +27,10 @@ pub fn tick(
     let (output, setup) =
         controller.lock(|controller| (controller.tick(&input), controller.take_servo_setup()));
     servo.lock(|servo| match setup {
-        Some(setup) => servo.loops = Some(setup),
+        Some(mut setup) => {
+            setup.count_from(servo.ticks);
+            servo.loops = Some(setup);
+        }
         None => {
             if let Some(loops) = &mut servo.loops {
                 loops.give(&output.order);

@@ -9,6 +9,8 @@ use shared::motion::ServoLoops;
 pub struct Servo {
     /// `None` until parameters were accepted: drives off.
     pub loops: Option<ServoLoops>,
+    /// Servo ticks since boot.
+    pub ticks: u32,
     /// Decides about the watchdog.
     pub alive: RollCall,
 }
@@ -16,12 +18,17 @@ pub struct Servo {
 impl Servo {
     /// Without parameters.
     pub fn new(alive: RollCall) -> Self {
-        Self { loops: None, alive }
+        Self {
+            loops: None,
+            ticks: 0,
+            alive,
+        }
     }
 }
 
 /// One servo tick.
 pub fn tick(servo: &mut Servo, axes: &mut Axes, elapsed: u32) {
+    servo.ticks = servo.ticks.wrapping_add(elapsed);
     let feedback = axes.read();
     let truth = axes.truth();
     let command = match &mut servo.loops {

@@ -168,6 +168,12 @@ impl ServoLoops {
         })
     }
 
+    /// Goes on from the board's own count of servo ticks, whose multiples of four are path ticks. Loops that
+    /// counted from their making could ask for a millisecond's references when the path tick has just begun.
+    pub fn count_from(&mut self, ticks: u32) {
+        self.report.ticks = ticks;
+    }
+
     /// One servo tick. `elapsed` is the number of tick periods since the last call (1 when none was lost);
     /// `truth` what only a simulated machine can know, at the same instant as `feedback`.
     pub fn tick(

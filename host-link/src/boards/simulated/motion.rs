@@ -98,6 +98,28 @@ mod tests {
             .motion
     }
 
+    /// Parameters may arrive between two path ticks; the servo loops must not shift against them.
+    #[test]
+    fn the_servo_loops_start_a_millisecond_at_every_fourth_tick_of_the_board() {
+        let mut controller = MotionController::<KNOTS>::new();
+        assert_eq!(
+            controller.handle(&Request::ConfigureMotion(config()), 0),
+            Response::Done
+        );
+        let mut loops = controller.take_servo_setup().expect("configured");
+        loops.count_from(4001);
+        let feedback = shared::io::MotionFeedback {
+            counts: [7; 7],
+            ..Default::default()
+        };
+        let seen = [4002, 4003, 4004].map(|ticks| {
+            loops.tick(&feedback, None, 1);
+            let report = loops.take_report();
+            (report.ticks == ticks, report.counts[0])
+        });
+        assert_eq!(seen, [(true, 0), (true, 0), (true, 7)]);
+    }
+
     /// A board with a clock, that keeps what it published.
     struct Bench {
         board: MotionBoard,
