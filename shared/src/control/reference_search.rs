@@ -9,7 +9,8 @@
 //!    were all taken in one direction and slowly, whichever way the seek went;
 //! 4. *brake* to standstill.
 //!
-//! The largest travel counts the ways there and back together.
+//! The largest travel counts the ways there and back together, and at least what was commanded: a search whose
+//! grating stands still ends too.
 
 use crate::motion::HomeConfig;
 use crate::parameter::{ParameterError, check, positive};
@@ -24,6 +25,7 @@ pub struct ReferenceSearch<const M: usize> {
     mark_position: [f64; M],
     velocity: f64,
     velocity_step: f64,
+    period: f64,
     max_travel: f64,
     /// How far before its mark a grating is when the approach begins.
     run_up: f64,
@@ -73,7 +75,10 @@ pub enum SearchProgress<const M: usize> {
         offset: [f64; M],
     },
     /// Both limit switches or the largest travel were reached without all marks: switch the drives off.
-    Failed,
+    Failed {
+        /// The first grating whose mark is missing, 0 if none is.
+        grating: usize,
+    },
 }
 
 impl<const M: usize> ReferenceSearch<M> {
@@ -91,13 +96,13 @@ impl<const M: usize> ReferenceSearch<M> {
         period_s: f64,
     ) -> Result<Self, ParameterError> {
         let velocity = configs[0].velocity;
+        let period = positive(owners[0], "period_s", period_s)?;
         let mut search = Self {
             counts_per_unit,
             mark_position: [0.0; M],
             velocity: velocity * unit,
-            velocity_step: positive(owners[0], "max_acceleration", acceleration)?
-                * unit
-                * positive(owners[0], "period_s", period_s)?,
+            velocity_step: positive(owners[0], "max_acceleration", acceleration)? * unit * period,
+            period,
             max_travel: positive(owners[0], "home.max_travel", configs[0].max_travel)? * unit,
             run_up: velocity * velocity / acceleration * unit,
         };
@@ -129,7 +134,8 @@ impl<const M: usize> ReferenceSearch<M> {
     pub fn step(&self, state: &mut SearchState<M>, inputs: &[SearchInput; M]) -> SearchProgress<M> {
         let moved = inputs[0].counts - state.last_counts;
         state.last_counts = inputs[0].counts;
-        state.travel += libm::fabs(moved as f64 / self.counts_per_unit[0]);
+        let moved = libm::fabs(moved as f64 / self.counts_per_unit[0]);
+        state.travel += libm::fmax(moved, libm::fabs(state.velocity) * self.period);
         if state.travel > self.max_travel {
             return self.fail(state);
         }
@@ -188,7 +194,8 @@ impl<const M: usize> ReferenceSearch<M> {
 
     fn fail(&self, state: &mut SearchState<M>) -> SearchProgress<M> {
         state.velocity = 0.0;
-        SearchProgress::Failed
+        let grating = state.marks.iter().position(Option::is_none).unwrap_or(0);
+        SearchProgress::Failed { grating }
     }
 
     /// Whether a limit switch is pressed on the side that `velocity` leads to.
@@ -332,7 +339,7 @@ mod tests {
     #[test]
     fn without_a_mark_the_search_fails_at_the_second_switch_or_after_the_largest_travel() {
         let (progress, bench) = one(20.0, 1000.0, 1e6);
-        assert_eq!(progress, SearchProgress::Failed);
+        assert_eq!(progress, SearchProgress::Failed { grating: 0 });
         assert!(bench.position < -30.0);
 
         let short = HomeConfig {
@@ -347,8 +354,23 @@ mod tests {
             position: 0.0,
             passed_at: 0.0,
         };
-        assert_eq!(bench.run(&search), SearchProgress::Failed);
+        assert_eq!(bench.run(&search), SearchProgress::Failed { grating: 0 });
         assert!(bench.position > 9.9 && bench.position < 10.1);
+    }
+
+    #[test]
+    fn a_grating_that_stands_still_fails_after_the_largest_travel_that_was_commanded() {
+        let search = ReferenceSearch::build(["Y"], [&config(20.0)], [1000.0], 1.0, 200.0, PERIOD).unwrap();
+        let mut state = search.start(77);
+        let dead = [SearchInput {
+            counts: 77,
+            ..SearchInput::default()
+        }];
+        let ticks = (0..10_000)
+            .take_while(|_| search.step(&mut state, &dead) == SearchProgress::Moving)
+            .count();
+        // 100 mm at 20 mm/s, after the ramp.
+        assert!((5000..5100).contains(&ticks), "{ticks}");
     }
 
     /// Two gratings on one beam: both are referred to their own mark by one motion.

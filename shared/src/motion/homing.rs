@@ -205,7 +205,7 @@ impl Homing {
                 step.offset[motor] = Some(offset);
                 self.found[motor] = true;
             }
-            SearchProgress::Failed => return Err(Fault::MarkNotFound { motor: motor as u8 }),
+            SearchProgress::Failed { .. } => return Err(Fault::MarkNotFound { motor: motor as u8 }),
         }
         Ok(())
     }
@@ -234,7 +234,11 @@ impl Homing {
                     self.found[motor] = true;
                 }
             }
-            SearchProgress::Failed => return Err(Fault::MarkNotFound { motor: X1 as u8 }),
+            SearchProgress::Failed { grating } => {
+                return Err(Fault::MarkNotFound {
+                    motor: [X1, X2][grating] as u8,
+                });
+            }
         }
         Ok(())
     }
