@@ -3,7 +3,7 @@
 use super::{Controller, Outbox, Servo};
 use crate::board;
 use rtic::Mutex;
-use shared::motion::{PathTickInput, ServoLoops, ServoReport};
+use shared::motion::PathTickInput;
 
 /// One path tick; false if the network does not keep up and what it publishes is dropped.
 pub fn tick(
@@ -14,10 +14,7 @@ pub fn tick(
 ) -> bool {
     let report = servo.lock(|servo| {
         servo.alive.path_ticked();
-        servo
-            .loops
-            .as_mut()
-            .map_or_else(ServoReport::default, ServoLoops::take_report)
+        servo.loops.take_report()
     });
     let input = PathTickInput {
         now_us: board::now_us(),
@@ -26,16 +23,11 @@ pub fn tick(
     };
     let (output, setup) =
         controller.lock(|controller| (controller.tick(&input), controller.take_servo_setup()));
-    servo.lock(|servo| match setup {
-        Some(mut setup) => {
-            setup.count_from(servo.ticks);
-            servo.loops = Some(setup);
+    servo.lock(|servo| {
+        if let Some(setup) = setup {
+            servo.loops.configure(setup);
         }
-        None => {
-            if let Some(loops) = &mut servo.loops {
-                loops.give(&output.order);
-            }
-        }
+        servo.loops.give(&output.order);
     });
     outbox.enqueue((output.path_state, output.sample)).is_ok()
 }

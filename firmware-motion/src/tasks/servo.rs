@@ -2,15 +2,12 @@
 
 use super::RollCall;
 use crate::board::motion::Axes;
-use shared::io::MotionCommand;
 use shared::motion::ServoLoops;
 
-/// The servo loops, once the machine's parameters are known, and who else is alive.
+/// The servo loops, and who else is alive.
 pub struct Servo {
-    /// `None` until parameters were accepted: drives off.
-    pub loops: Option<ServoLoops>,
-    /// Servo ticks since boot.
-    pub ticks: u32,
+    /// Drives off until parameters were accepted.
+    pub loops: ServoLoops,
     /// Decides about the watchdog.
     pub alive: RollCall,
 }
@@ -19,8 +16,7 @@ impl Servo {
     /// Without parameters.
     pub fn new(alive: RollCall) -> Self {
         Self {
-            loops: None,
-            ticks: 0,
+            loops: ServoLoops::default(),
             alive,
         }
     }
@@ -28,13 +24,9 @@ impl Servo {
 
 /// One servo tick.
 pub fn tick(servo: &mut Servo, axes: &mut Axes, elapsed: u32) {
-    servo.ticks = servo.ticks.wrapping_add(elapsed);
     let feedback = axes.read();
     let truth = axes.truth();
-    let command = match &mut servo.loops {
-        Some(loops) => loops.tick(&feedback, truth, elapsed),
-        None => MotionCommand::SAFE,
-    };
+    let command = servo.loops.tick(&feedback, truth, elapsed);
     axes.write(&command);
     servo.alive.servo_ticked();
 }

@@ -8,7 +8,7 @@ use super::beams::{Beams, MAX_EVENTS};
 use super::homing::{Homing, HomingStep};
 use super::machine::Machine;
 use super::segment::{BeamOutput, MotorReference, PATH_PERIOD_S, Segment};
-use super::servo::{ServoLoops, ServoOrder, ServoReport};
+use super::servo::{ServoOrder, ServoReport, ServoSetup};
 use super::state::Event;
 use super::{Fault, MotionConfig, State, Vibration};
 use crate::io::{AXES, MOTORS};
@@ -16,7 +16,7 @@ use crate::kinematics::AXIS_UNIT;
 use crate::protocol::{
     Knot, MotionSample, MotionStatus, PathAction, PathEvent, PathState, Refusal, Request, Response,
 };
-use crate::trajectory::{Path, PathError, SpeedLimits, SpeedProfile, SpeedState, reference};
+use crate::trajectory::{Path, SpeedLimits, SpeedProfile, SpeedState, reference};
 use heapless::Vec;
 
 /// A path begins where the axes stand, to this much (mm or rad).
@@ -61,8 +61,12 @@ pub struct MotionController<const KNOTS: usize> {
     fault: Option<Fault>,
     /// Fault that becomes one when the machine has come to rest.
     pending: Option<Fault>,
+    /// The emergency stop is pressed, or a drive reports a fault.
+    cause_remains: bool,
     machine: Option<Machine>,
-    servo_setup: Option<ServoLoops>,
+    servo_setup: Option<ServoSetup>,
+    /// Drives were ordered on at the last tick.
+    enabled: bool,
     homing: Option<Homing>,
     homed: bool,
     path: Path<KNOTS>,
@@ -79,7 +83,8 @@ pub struct MotionController<const KNOTS: usize> {
     /// Of the axes at k + 2, where a path begins.
     axes: [f64; AXES],
     measured: [f64; AXES],
-    tick: u32,
+    /// 64 bits, because the time of a tick is counted in ticks.
+    tick: u64,
     ticks_lost: u32,
     first_tick_us: Option<u64>,
     heard: bool,
@@ -106,8 +111,10 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             state: State::Off,
             fault: None,
             pending: None,
+            cause_remains: false,
             machine: None,
             servo_setup: None,
+            enabled: false,
             homing: None,
             homed: false,
             path: Path::new(),
@@ -130,8 +137,8 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         }
     }
 
-    /// Servo loops of newly accepted parameters, once; they replace the running ones while the drives are off.
-    pub fn take_servo_setup(&mut self) -> Option<ServoLoops> {
+    /// Newly accepted parameters for the servo loops, once; to be taken after every tick.
+    pub fn take_servo_setup(&mut self) -> Option<ServoSetup> {
         self.servo_setup.take()
     }
 
@@ -149,12 +156,16 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             vibration.add(error);
         }
         self.watch(input);
+        if !self.enabled {
+            self.stand_where(report);
+        }
         let mut from = self.reference;
         let mut step = HomingStep::default();
+        // With new parameters under way to the servo ticks, this report is still of the old ones.
+        let ready = self.servo_setup.is_none();
         match self.state {
-            State::Off | State::Fault => self.stand_where(report),
-            State::Homing => step = self.home(report),
-            State::Idle => {}
+            State::Homing if ready => step = self.home(report),
+            State::Off | State::Homing | State::Idle | State::Fault => {}
             State::Running | State::Holding | State::Stopping => {
                 // After a lost tick the references catch up, as the servo ticks went on without them.
                 for _ in 0..input.elapsed.clamp(1, MAX_CATCH_UP) {
@@ -176,9 +187,10 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
                 self.axes = machine.axes(&self.reference.position);
             }
         }
+        self.enabled = ready && self.state.drives_on();
         let order = ServoOrder {
-            enable: self.state.drives_on(),
-            coupled: self.homed && self.state.drives_on() && self.homing.is_none(),
+            enable: self.enabled,
+            coupled: self.homed && self.enabled && self.homing.is_none(),
             homing: self.homing.is_some(),
             segment: Segment::between(&from, &self.reference, beams),
             offset: step.offset,
@@ -187,7 +199,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         PathTickOutput {
             order,
             path_state: PathState {
-                tick: self.tick,
+                tick: self.tick as u32,
                 time_us,
                 sent_us: time_us,
                 path_id: if on_path { self.path.id() } else { 0 },
@@ -197,7 +209,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
                 tracking: on_path && self.beams.tracking(),
             },
             sample: MotionSample {
-                tick: self.tick,
+                tick: self.tick as u32,
                 time_us,
                 state: self.state,
                 path_id: if on_path { self.path.id() } else { 0 },
@@ -262,6 +274,9 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         self.machine = Some(machine);
         self.servo_setup = Some(servo);
         self.homed = false;
+        // A path was planned for the machine it was loaded for.
+        self.path.clear(0);
+        self.events.clear();
         Ok(())
     }
 
@@ -275,14 +290,21 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
     }
 
     fn disable(&mut self) -> Result<(), Refusal> {
-        // Always possible; a fault stays until it is reset.
-        self.state = self.state.after(Event::Disable).unwrap_or(self.state);
+        // Always possible; a fault stays until it is reset, the one that brings the machine to rest too.
+        match self.pending {
+            Some(fault) => self.trip(fault),
+            None => self.state = self.state.after(Event::Disable).unwrap_or(self.state),
+        }
         self.leave_path();
         Ok(())
     }
 
     fn reset(&mut self) -> Result<(), Refusal> {
-        self.state = self.allowed(Event::Reset)?;
+        let state = self.allowed(Event::Reset)?;
+        if self.cause_remains {
+            return Err(Refusal::CauseRemains);
+        }
+        self.state = state;
         self.fault = None;
         Ok(())
     }
@@ -300,13 +322,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         if self.state.on_path() {
             return Err(Refusal::WrongState { state: self.state });
         }
-        for knot in knots {
-            self.path.push(*knot).map_err(|error| match error {
-                PathError::Full { capacity } => Refusal::PathFull { capacity },
-                PathError::BadKnot { index } => Refusal::BadKnot { index },
-            })?;
-        }
-        Ok(())
+        Ok(self.path.append(knots)?)
     }
 
     fn load_event(&mut self, event: &PathEvent) -> Result<(), Refusal> {
@@ -321,7 +337,10 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             PathAction::Tracking { .. } => true,
         };
         let in_order = self.events.last().is_none_or(|last| last.s_mm <= event.s_mm);
-        if self.state.on_path() || !sound || !in_order || !event.s_mm.is_finite() {
+        if self.state.on_path() {
+            return Err(Refusal::WrongState { state: self.state });
+        }
+        if !sound || !in_order || !event.s_mm.is_finite() {
             return Err(refusal);
         }
         self.events.push(*event).map_err(|_| refusal)
@@ -371,9 +390,12 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
     }
 
     fn hold(&mut self) -> Result<(), Refusal> {
-        self.state = self.allowed(Event::Hold)?;
+        let state = self.allowed(Event::Hold)?;
+        if self.state == State::Running {
+            self.slow_down();
+        }
         self.resume_wanted = false;
-        self.slow_down();
+        self.state = state;
         Ok(())
     }
 
@@ -385,8 +407,10 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
 
     fn stop(&mut self) -> Result<(), Refusal> {
         let state = self.allowed(Event::Stop)?;
-        if self.state == State::Running {
-            self.slow_down();
+        match self.state {
+            State::Running => self.slow_down(),
+            State::Homing => self.leave_path(),
+            _ => {}
         }
         self.state = state;
         Ok(())
@@ -406,8 +430,8 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             knots: self.path.len() as u16,
             servo_ticks,
             servo_lost,
-            path_ticks: self.tick,
-            path_lost: self.ticks_lost + servo_late,
+            path_ticks: self.tick as u32,
+            path_lost: self.ticks_lost.wrapping_add(servo_late),
             unsent,
             vibration_level: self.vibration.map(|vibration| vibration.level()),
         }
@@ -417,13 +441,13 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
 
     /// Counts the tick; returns its time. Ticks are hardware periods, so their times are exact multiples.
     fn count(&mut self, input: &PathTickInput) -> u64 {
-        self.ticks_lost += input.elapsed.saturating_sub(1);
-        self.tick = self.tick.wrapping_add(input.elapsed);
-        let period_us = (PATH_PERIOD_S * 1e6) as u64;
+        self.ticks_lost = self.ticks_lost.wrapping_add(input.elapsed.saturating_sub(1));
+        self.tick += u64::from(input.elapsed);
+        let since_first_us = self.tick * (PATH_PERIOD_S * 1e6) as u64;
         let first = *self
             .first_tick_us
-            .get_or_insert(input.now_us.saturating_sub(u64::from(self.tick) * period_us));
-        first + u64::from(self.tick) * period_us
+            .get_or_insert(input.now_us.saturating_sub(since_first_us));
+        first + since_first_us
     }
 
     /// Faults that the servo ticks found, and those that leave time for a stop on the path.
@@ -431,11 +455,12 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         if core::mem::take(&mut self.heard) || !self.state.on_path() {
             self.heard_us = input.now_us;
         }
+        self.cause_remains = input.report.estop || input.report.drive_fault.any();
         if let (true, Some(fault)) = (self.state.drives_on(), input.report.trip) {
             self.trip(fault);
         }
         let Some(machine) = &self.machine else { return };
-        let silent_us = input.now_us - self.heard_us;
+        let silent_us = input.now_us.saturating_sub(self.heard_us);
         if self.state.on_path() && silent_us > machine.link_timeout_us {
             self.stop_for(Fault::LinkLost {
                 silent_ms: (silent_us / 1000) as u32,
@@ -465,6 +490,12 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
     }
 
     fn leave_path(&mut self) {
+        let stood = SpeedState {
+            s: self.along[0].s,
+            v: 0.0,
+            a: 0.0,
+        };
+        self.along = [stood; 3];
         self.travel = None;
         self.homing = None;
         self.pending = None;
@@ -479,14 +510,10 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
     }
 
     fn home(&mut self, report: &ServoReport) -> HomingStep {
-        let step = match &mut self.homing {
-            Some(homing) => homing.tick(report, &mut self.reference),
-            None => Ok(HomingStep {
-                done: true,
-                ..HomingStep::default()
-            }),
+        let Some(homing) = &mut self.homing else {
+            return HomingStep::default();
         };
-        match step {
+        match homing.tick(report, &mut self.reference) {
             Ok(step) => {
                 if step.done {
                     self.homing = None;

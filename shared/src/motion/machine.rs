@@ -2,7 +2,7 @@
 
 use super::beams::BeamLimits;
 use super::homing::HomingPlan;
-use super::servo::ServoLoops;
+use super::servo::ServoSetup;
 use super::{MotionConfig, SERVO_PERIOD_S};
 use crate::control::{Gantry, Pid};
 use crate::io::{AXES, MOTOR_NAMES, MOTORS};
@@ -25,8 +25,8 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Checks the parameters; the servo loops are returned beside the rest, because they live in another task.
-    pub fn build(config: &MotionConfig) -> Result<(Self, ServoLoops), ParameterError> {
+    /// Checks the parameters; those of the servo loops are returned beside the rest, because they live in another task.
+    pub fn build(config: &MotionConfig) -> Result<(Self, ServoSetup), ParameterError> {
         if config.link_timeout_ms == 0 {
             return Err(ParameterError::new("link", "link_timeout_ms", 0.0));
         }
@@ -40,7 +40,7 @@ impl Machine {
             limits: AxisLimits::build_all(&config.axes)?,
             gantry,
         };
-        Ok((machine, ServoLoops::build(&config.motors, gantry)?))
+        Ok((machine, ServoSetup::build(&config.motors, gantry)?))
     }
 
     /// Motors from axes: X1 and X2 stand so that the beam is square.

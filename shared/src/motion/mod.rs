@@ -21,7 +21,7 @@ pub use controller::{MotionController, PathTickInput, PathTickOutput};
 pub use fault::Fault;
 pub use machine::Machine;
 pub use segment::{PATH_PERIOD_S, SERVO_PERIOD_S, SERVO_TICKS_PER_PATH_TICK};
-pub use servo::{ServoLoops, ServoOrder, ServoReport};
+pub use servo::{ServoLoops, ServoOrder, ServoReport, ServoSetup};
 pub use state::{Event, State};
 
 use vibration::Vibration;

@@ -26,8 +26,6 @@ const GANTRY: usize = 2;
 struct Motor {
     /// Position of one count (mm or rad), signed.
     pitch: f64,
-    /// Position at count 0.
-    offset: f64,
     /// Velocity at +10 V, signed.
     velocity_at_10v: f64,
     following: FollowingTrip,
@@ -41,23 +39,40 @@ impl Motor {
         let full_scale = check(owner, "velocity_at_10v", config.velocity_at_10v, |x| x != 0.0)?;
         Ok(Self {
             pitch: unit / counts,
-            offset: 0.0,
             velocity_at_10v: full_scale * unit,
             following: FollowingTrip::build(index as u8, owner, config, unit)?,
             encoder: EncoderCheck::build(index as u8, owner, config, SERVO_PERIOD_S)?,
         })
     }
-
-    fn position(&self, counts: i64) -> f64 {
-        counts as f64 * self.pitch + self.offset
-    }
 }
 
-/// One position loop.
+/// Parameters of the servo loops, checked and ready for [`ServoLoops::configure`].
 #[derive(Clone, Debug, PartialEq)]
-struct Loop {
-    pid: Pid,
-    state: PidState,
+pub struct ServoSetup {
+    motors: [Motor; MOTORS],
+    gantry: Gantry,
+    pids: [Pid; MOTORS - GANTRY],
+}
+
+impl ServoSetup {
+    /// Builds the loops of a machine.
+    pub fn build(motors: &[MotorConfig; MOTORS], gantry: Gantry) -> Result<Self, ParameterError> {
+        let motor = |index: usize| Motor::build(index, &motors[index]);
+        let pid = |index: usize| Pid::build(MOTOR_NAMES[index], &motors[index], UNIT[index], SERVO_PERIOD_S);
+        Ok(Self {
+            motors: [
+                motor(0)?,
+                motor(1)?,
+                motor(2)?,
+                motor(3)?,
+                motor(4)?,
+                motor(5)?,
+                motor(6)?,
+            ],
+            gantry,
+            pids: [pid(2)?, pid(3)?, pid(4)?, pid(5)?, pid(6)?],
+        })
+    }
 }
 
 /// What the path tick tells the servo ticks.
@@ -98,25 +113,27 @@ pub struct ServoReport {
     pub peak_skew: f64,
     /// First trip since the drives were enabled.
     pub trip: Option<Fault>,
-    /// Laser sources that report a fault.
+    /// Laser sources that reported a fault since the last report, however short.
     pub laser_fault: [bool; SIDES],
     /// Emergency stop is pressed now.
     pub estop: bool,
-    /// Servo ticks since boot.
+    /// Drives that report a fault now.
+    pub drive_fault: Bits,
+    /// Servo ticks since boot (mod 2³²).
     pub ticks: u32,
-    /// Servo ticks that were never served.
+    /// Servo ticks that were never served (mod 2³²).
     pub lost: u32,
-    /// Milliseconds that began without references.
+    /// Milliseconds that began without references (mod 2³²).
     pub late: u32,
 }
 
-/// The servo loops of the motion board.
-#[derive(Clone, Debug, PartialEq)]
+/// The servo loops of the motion board. They count the ticks and watch the inputs from boot on, so that the
+/// millisecond begins where the hardware's does whenever the parameters come; until then the drives are off.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ServoLoops {
-    motors: [Motor; MOTORS],
-    gantry: Gantry,
-    gantry_state: GantryState,
-    loops: [Loop; MOTORS - GANTRY],
+    setup: Option<ServoSetup>,
+    gantry: GantryState,
+    pids: [PidState; MOTORS - GANTRY],
     enabled: bool,
     coupled: bool,
     homing: bool,
@@ -128,50 +145,15 @@ pub struct ServoLoops {
 }
 
 impl ServoLoops {
-    /// Builds the loops of a machine.
-    pub fn build(motors: &[MotorConfig; MOTORS], gantry: Gantry) -> Result<Self, ParameterError> {
-        let motor = |index: usize| Motor::build(index, &motors[index]);
-        let position_loop = |index: usize| {
-            let pid = Pid::build(MOTOR_NAMES[index], &motors[index], UNIT[index], SERVO_PERIOD_S)?;
-            Ok(Loop {
-                pid,
-                state: PidState::default(),
-            })
-        };
-        Ok(Self {
-            motors: [
-                motor(0)?,
-                motor(1)?,
-                motor(2)?,
-                motor(3)?,
-                motor(4)?,
-                motor(5)?,
-                motor(6)?,
-            ],
-            gantry,
-            gantry_state: GantryState::default(),
-            loops: [
-                position_loop(2)?,
-                position_loop(3)?,
-                position_loop(4)?,
-                position_loop(5)?,
-                position_loop(6)?,
-            ],
-            enabled: false,
-            coupled: false,
-            homing: false,
-            current: Segment::default(),
-            next: None,
-            last_counts: None,
-            late_in_a_row: 0,
-            report: ServoReport::default(),
-        })
-    }
-
-    /// Goes on from the board's own count of servo ticks, whose multiples of four are path ticks. Loops that
-    /// counted from their making could ask for a millisecond's references when the path tick has just begun.
-    pub fn count_from(&mut self, ticks: u32) {
-        self.report.ticks = ticks;
+    /// Takes new parameters; the drives go off, and every position counts from count 0.
+    pub fn configure(&mut self, setup: ServoSetup) {
+        self.enabled = false;
+        self.next = None;
+        self.report.trip = None;
+        self.report.offset = [0.0; MOTORS];
+        self.setup = Some(setup);
+        // The next report must not be in the scale of the old ones.
+        self.report.position = self.position(&self.report.counts);
     }
 
     /// One servo tick. `elapsed` is the number of tick periods since the last call (1 when none was lost);
@@ -184,8 +166,8 @@ impl ServoLoops {
     ) -> MotionCommand {
         let before = self.report.ticks / SERVO_TICKS_PER_PATH_TICK;
         self.report.ticks = self.report.ticks.wrapping_add(elapsed);
-        self.report.lost += elapsed.saturating_sub(1);
-        let position: [f64; MOTORS] = core::array::from_fn(|m| self.motors[m].position(feedback.counts[m]));
+        self.report.lost = self.report.lost.wrapping_add(elapsed.saturating_sub(1));
+        let position = self.position(&feedback.counts);
         self.observe(feedback);
         if let Err(fault) = self.watch(feedback, elapsed) {
             self.trip(fault);
@@ -209,6 +191,7 @@ impl ServoLoops {
     pub fn take_report(&mut self) -> ServoReport {
         let report = self.report;
         self.report.mark = [None; MOTORS];
+        self.report.laser_fault = [false; SIDES];
         self.report.peak_error = [0.0; MOTORS];
         self.report.peak_skew = 0.0;
         report
@@ -219,30 +202,38 @@ impl ServoLoops {
         if !order.enable {
             self.report.trip = None;
         } else if !self.enabled && self.report.trip.is_none() {
-            for position_loop in &mut self.loops {
-                position_loop.state = PidState::default();
-            }
-            self.gantry_state = GantryState::default();
+            self.pids = Default::default();
+            self.gantry = GantryState::default();
             self.current = order.segment;
             self.late_in_a_row = 0;
         }
-        self.enabled = order.enable && self.report.trip.is_none();
+        self.enabled = order.enable && self.report.trip.is_none() && self.setup.is_some();
         self.coupled = order.coupled;
         self.homing = order.homing;
         for (index, offset) in order.offset.into_iter().enumerate() {
             if let Some(offset) = offset {
-                self.current.shift(index, offset - self.motors[index].offset);
-                self.motors[index].offset = offset;
+                self.current.shift(index, offset - self.report.offset[index]);
                 self.report.offset[index] = offset;
             }
         }
         self.next = Some(order.segment);
     }
 
+    /// Positions at `counts`, zero before the parameters are known.
+    fn position(&self, counts: &[i64; MOTORS]) -> [f64; MOTORS] {
+        let Some(setup) = &self.setup else {
+            return [0.0; MOTORS];
+        };
+        core::array::from_fn(|m| counts[m] as f64 * setup.motors[m].pitch + self.report.offset[m])
+    }
+
     /// Marks and switches.
     fn observe(&mut self, feedback: &MotionFeedback) {
         self.report.estop = feedback.estop;
-        self.report.laser_fault = feedback.laser_fault;
+        self.report.drive_fault = feedback.drive_fault;
+        for (seen, fault) in self.report.laser_fault.iter_mut().zip(feedback.laser_fault) {
+            *seen |= fault;
+        }
         self.report.limit_plus = feedback.limit_plus;
         self.report.limit_minus = feedback.limit_minus;
         for (seen, mark) in self.report.mark.iter_mut().zip(feedback.mark) {
@@ -259,7 +250,8 @@ impl ServoLoops {
         if feedback.estop {
             return Err(Fault::EmergencyStop);
         }
-        for (index, motor) in self.motors.iter().enumerate() {
+        let Some(setup) = &self.setup else { return Ok(()) };
+        for (index, motor) in setup.motors.iter().enumerate() {
             let number = index as u8;
             if feedback.drive_fault.get(index) {
                 return Err(Fault::Drive { motor: number });
@@ -289,7 +281,7 @@ impl ServoLoops {
             None if self.enabled => {
                 self.current = self.current.continued();
                 self.late_in_a_row += 1;
-                self.report.late += 1;
+                self.report.late = self.report.late.wrapping_add(1);
                 if self.late_in_a_row > 1 {
                     self.trip(Fault::ReferencesLate);
                 }
@@ -299,7 +291,11 @@ impl ServoLoops {
     }
 
     fn control(&mut self, position: &[f64; MOTORS]) -> Result<MotionCommand, Fault> {
-        let phase = self.report.ticks % SERVO_TICKS_PER_PATH_TICK;
+        let Some(setup) = &self.setup else {
+            return Ok(MotionCommand::SAFE);
+        };
+        let report = &mut self.report;
+        let phase = report.ticks % SERVO_TICKS_PER_PATH_TICK;
         let mut setpoints = [Setpoint::default(); MOTORS];
         for (index, setpoint) in setpoints.iter_mut().enumerate() {
             let (position_now, velocity, acceleration) = self.current.at(index, phase);
@@ -309,26 +305,26 @@ impl ServoLoops {
                 acceleration,
             };
             let error = position_now - position[index];
-            self.report.peak_error[index] = self.report.peak_error[index].max(libm::fabs(error));
-            self.motors[index].following.check(error, velocity)?;
+            report.peak_error[index] = report.peak_error[index].max(libm::fabs(error));
+            setup.motors[index].following.check(error, velocity)?;
         }
         let mut output = [0.0; MOTORS];
-        let x = [position[0], position[1]];
-        let gantry = self.gantry.step(
-            &mut self.gantry_state,
-            &[setpoints[0], setpoints[1]],
-            x,
-            self.coupled,
-        );
-        let gantry = gantry.map_err(|_| Fault::NotANumber)?;
+        let gantry = setup
+            .gantry
+            .step(
+                &mut self.gantry,
+                &[setpoints[0], setpoints[1]],
+                [position[0], position[1]],
+                self.coupled,
+            )
+            .map_err(|_| Fault::NotANumber)?;
         output[..GANTRY].copy_from_slice(&gantry.command);
         if self.coupled {
-            self.report.peak_skew = self.report.peak_skew.max(libm::fabs(gantry.skew));
-            self.gantry.check_skew(gantry.skew)?;
+            report.peak_skew = report.peak_skew.max(libm::fabs(gantry.skew));
+            setup.gantry.check_skew(gantry.skew)?;
         }
-        for (place, position_loop) in self.loops.iter_mut().enumerate() {
+        for (place, (pid, state)) in setup.pids.iter().zip(&mut self.pids).enumerate() {
             let index = GANTRY + place;
-            let Loop { pid, state } = position_loop;
             output[index] = pid
                 .step(state, &setpoints[index], position[index], 0.0)
                 .map_err(|_| Fault::NotANumber)?;
@@ -338,11 +334,13 @@ impl ServoLoops {
             ..MotionCommand::SAFE
         };
         for (index, output) in output.into_iter().enumerate() {
-            command.dac[index] = DacCode::from_ratio(output, self.motors[index].velocity_at_10v);
+            command.dac[index] = DacCode::from_ratio(output, setup.motors[index].velocity_at_10v);
         }
-        let beams = self.current.beams;
+        let beams = &mut self.current.beams;
         for side in 0..SIDES {
-            if beams.gate[side] && !self.report.laser_fault[side] {
+            // Once shut it stays shut for the millisecond: the path tick then knows of the fault.
+            beams.gate[side] &= !report.laser_fault[side];
+            if beams.gate[side] {
                 command.beam_gate[side] = true;
                 command.beam_power[side] = beams.power[side];
             }

@@ -38,7 +38,7 @@ pub enum Event {
     Hold,
     /// The operator goes on after a hold.
     Resume,
-    /// The operator, or a fault that allows it, stops on the path.
+    /// The operator, or a fault that allows it, stops on the path; a search for the marks is given up.
     Stop,
     /// The machine has come to rest after a stop.
     AtRest,
@@ -61,9 +61,10 @@ impl State {
             (_, Event::Disable) => Off,
             (Off | Idle, Event::Home) => Homing,
             (Homing, Event::Homed) => Idle,
+            (Homing, Event::Stop) => Off,
             (Idle, Event::Run) => Running,
             (Running, Event::PathEnd) => Idle,
-            (Running, Event::Hold) => Holding,
+            (Running | Holding, Event::Hold) => Holding,
             (Holding, Event::Resume) => Running,
             (Running | Holding | Stopping, Event::Stop) => Stopping,
             (Stopping, Event::AtRest) => Idle,
@@ -125,10 +126,10 @@ mod tests {
         //            Home Homed Run End Hold Resume Stop Rest Disable Trip Reset
         let table = [
             "h-------oF-", // off
-            "-i------oF-", // homing
+            "-i----o-oF-", // homing
             "h-r-----oF-", // idle
             "---iH-s-oF-", // running
-            "-----rs-oF-", // holding
+            "----Hrs-oF-", // holding
             "------sioF-", // stopping
             "---------Fo", // fault
         ];

@@ -4,7 +4,7 @@ use crate::io::{AXES, MOTORS, SLIDES};
 use crate::motion::{Fault, MotionConfig, State};
 use crate::parameter::ParameterError;
 use crate::tracking::{TrackerConfig, TrackerFault, TrackerState};
-use crate::trajectory::CHANNELS;
+use crate::trajectory::{CHANNELS, PathError};
 use heapless::{String, Vec};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -69,7 +69,7 @@ pub enum Request {
     Hold,
     /// Go on along the path after a hold.
     Resume,
-    /// Beams off and controlled stop on the path; the path is given up.
+    /// Beams off and controlled stop on the path; the path is given up. While homing: drives off.
     Stop,
 }
 
@@ -139,6 +139,11 @@ pub enum Refusal {
         /// State of the tracker board.
         state: TrackerState,
     },
+    /// The emergency stop is still pressed, or a drive still reports a fault.
+    #[error(
+        "the cause of the fault is still there: release the emergency stop, clear the drives' faults, then reset"
+    )]
+    CauseRemains,
     /// A field of the configuration makes no sense.
     #[error("a machine parameter is out of range: {0}")]
     Parameter(ParameterError),
@@ -157,8 +162,8 @@ pub enum Refusal {
         /// Number of the knot.
         index: u16,
     },
-    /// An event lies outside the path, out of order, or there are too many.
-    #[error("event {index} of the path is out of order or one too many")]
+    /// An event is not finite, for a beam that does not exist, out of order, or there are too many.
+    #[error("event {index} of the path makes no sense, is out of order or one too many")]
     BadEvent {
         /// Number of the event.
         index: u16,
@@ -174,6 +179,15 @@ pub enum Refusal {
         /// How far.
         distance: f32,
     },
+}
+
+impl From<PathError> for Refusal {
+    fn from(error: PathError) -> Self {
+        match error {
+            PathError::Full { capacity } => Self::PathFull { capacity },
+            PathError::BadKnot { index } => Self::BadKnot { index },
+        }
+    }
 }
 
 /// A knot of the path: between two of them every channel is a cubic Hermite span over s.

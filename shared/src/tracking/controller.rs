@@ -18,7 +18,7 @@ use crate::io::{Bits, Command, DacCode, SIDES, SLIDES, SlideCommand, SlideFeedba
 use crate::protocol::{
     Capture, ClockRequest, Datagram, Measurement, Refusal, Request, Response, TrackerSample, TrackerStatus,
 };
-use crate::trajectory::{Path, PathError};
+use crate::trajectory::Path;
 use heapless::Vec;
 
 /// Control ticks between two clock requests: 10 Hz.
@@ -206,6 +206,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             Request::ConfigureTracker(config) => self.allow(&[TrackerState::Off]).and_then(|()| {
                 self.parameters = Some(config.build().map_err(Refusal::Parameter)?);
                 self.slides = Default::default();
+                // A path was planned for the machine it was loaded for.
+                self.path.clear(0);
                 self.forget_seam();
                 Ok(())
             }),
@@ -221,15 +223,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 self.path.clear(*id);
                 self.forget_seam();
             }),
-            Request::LoadKnots(knots) => self.allow_all_but_tracking().and_then(|()| {
-                for knot in knots {
-                    self.path.push(*knot).map_err(|e| match e {
-                        PathError::Full { capacity } => Refusal::PathFull { capacity },
-                        PathError::BadKnot { index } => Refusal::BadKnot { index },
-                    })?;
-                }
-                Ok(())
-            }),
+            Request::LoadKnots(knots) => self
+                .allow_all_but_tracking()
+                .and_then(|()| Ok(self.path.append(knots)?)),
             // Of the session, or of the motion board.
             Request::Hello { .. }
             | Request::Subscribe { .. }
@@ -274,7 +270,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     fn reset(&mut self) -> Result<(), Refusal> {
         if self.state == TrackerState::Fault {
             if self.feedback.estop || self.feedback.drive_fault.any() {
-                return Err(Refusal::WrongTrackerState { state: self.state });
+                return Err(Refusal::CauseRemains);
             }
             self.state = TrackerState::Off;
         }
@@ -399,7 +395,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                     command.dac[i] = DacCode::from_ratio(search.velocity(), of.law.full_scale);
                 }
                 SearchProgress::Done { offset } => slide.offset = Some(offset[0]),
-                SearchProgress::Failed => {
+                SearchProgress::Failed { .. } => {
                     self.report(TrackerFault::MarkNotFound { slide: i as u8 });
                     self.state = TrackerState::Fault;
                     return self.rest();
@@ -525,7 +521,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             };
             let (ms, position_mm) = (slide.saturated_ticks, slide.position as f32);
             let slide = i as u8;
-            if ms > parameters.saturation_ticks + first_way {
+            if ms > parameters.saturation_ticks.saturating_add(first_way) {
                 self.report(TrackerFault::Saturated { slide, ms });
             }
             if output.flag == LawFlag::SoftLimit {

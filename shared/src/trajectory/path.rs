@@ -76,6 +76,16 @@ impl<const N: usize> Path<N> {
             .map_err(|_| PathError::Full { capacity: N as u16 })
     }
 
+    /// Appends all of `knots`, or none.
+    pub fn append(&mut self, knots: &[Knot]) -> Result<(), PathError> {
+        let before = self.knots.len();
+        let done = knots.iter().try_for_each(|knot| self.push(*knot));
+        if done.is_err() {
+            self.knots.truncate(before);
+        }
+        done
+    }
+
     /// Number of the path.
     pub fn id(&self) -> u32 {
         self.id

@@ -27,7 +27,7 @@ pub struct SpeedState {
 /// Why there is no profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SpeedError {
-    /// A limit is zero, negative or not finite.
+    /// A limit is zero, negative or not finite, or they are so far apart that no time comes out.
     #[error("the limits of speed, acceleration and jerk must be positive")]
     Limits,
     /// The end lies before the start, or a number is not finite, or the path is traversed backwards.
@@ -118,7 +118,7 @@ impl SpeedProfile {
             v: 0.0,
             a: 0.0,
         };
-        Ok(Self::from_segments(
+        let profile = Self::from_segments(
             from,
             [
                 (rise, jerk),
@@ -130,7 +130,13 @@ impl SpeedProfile {
                 (rise, jerk),
             ],
             Some(end),
-        ))
+        );
+        // Limits that are finite each can be out of all proportion together.
+        if profile.duration.is_finite() {
+            Ok(profile)
+        } else {
+            Err(SpeedError::Limits)
+        }
     }
 
     /// From any state to rest in the shortest time, never going backwards. `limits.velocity` plays no part.

@@ -184,7 +184,12 @@ impl Bench {
 
     /// Sends parameters and path, homes, waits for the clocks.
     pub fn prepare(&mut self) {
-        self.accept(Request::ConfigureTracker(config()));
+        self.prepare_with(config());
+    }
+
+    /// As [`Self::prepare`], with other parameters.
+    pub fn prepare_with(&mut self, config: TrackerConfig) {
+        self.accept(Request::ConfigureTracker(config));
         self.accept(Request::ClearPath { id: PATH_ID });
         for batch in 0..83 {
             let knots = (0..6)

@@ -320,7 +320,10 @@ fn estop_drive_and_limit_switch_lead_to_fault_and_reset_leads_out() {
             bench.accept(Request::Disable);
             assert_eq!(bench.controller.state(), TrackerState::Fault);
             if !matches!(fault, TrackerFault::LimitSwitch { .. }) {
-                assert_eq!(bench.ask(Request::Reset), wrong_state(TrackerState::Fault));
+                assert_eq!(
+                    bench.ask(Request::Reset),
+                    Response::Refused(Refusal::CauseRemains)
+                );
             }
             bench.meddle = |_| {};
             bench.run_ms(1);
@@ -451,4 +454,17 @@ fn every_fifth_tick_is_a_capture_of_that_moment() {
     // 30 µs of clock error at 100 mm/s are 3 µm.
     assert!((capture.s_mm - bench.s_now()).abs() < 0.003, "{}", capture.s_mm);
     assert_eq!(capture.truth_mm, Some(bench.plant.truth()));
+}
+
+#[test]
+fn a_saturation_trip_that_never_comes_is_no_overflow() {
+    let mut config = config();
+    config.tracking.saturation_trip_ms = u32::MAX;
+    let mut bench = bench();
+    bench.prepare_with(config);
+    bench.tracking = true;
+    bench.speed = 100.0;
+    bench.run_ms(50);
+    assert_eq!(bench.controller.state(), TrackerState::Tracking);
+    assert_eq!(bench.last.sample.fault, None);
 }

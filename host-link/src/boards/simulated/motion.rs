@@ -3,13 +3,13 @@
 use super::KNOTS;
 use plant::MotionPlant;
 use shared::io::MotionCommand;
-use shared::motion::{MotionController, PathTickInput, SERVO_TICKS_PER_PATH_TICK, ServoLoops, ServoReport};
+use shared::motion::{MotionController, PathTickInput, SERVO_TICKS_PER_PATH_TICK, ServoLoops};
 use shared::protocol::{MotionTelemetry, PathState, Request, Response};
 
 pub struct MotionBoard {
     plant: MotionPlant,
     command: MotionCommand,
-    servo: Option<ServoLoops>,
+    servo: ServoLoops,
     controller: Box<MotionController<KNOTS>>,
     ticks: u32,
     batch: MotionTelemetry,
@@ -21,7 +21,7 @@ impl MotionBoard {
         Self {
             plant: MotionPlant::dual_beam_gantry(),
             command: MotionCommand::SAFE,
-            servo: None,
+            servo: ServoLoops::default(),
             controller: Box::new(MotionController::new()),
             ticks: 0,
             batch: MotionTelemetry {
@@ -36,10 +36,7 @@ impl MotionBoard {
         let mut feedback = self.plant.advance(&self.command);
         feedback.estop = self.estop;
         let truth = Some(self.plant.truth());
-        self.command = self
-            .servo
-            .as_mut()
-            .map_or(MotionCommand::SAFE, |servo| servo.tick(&feedback, truth, 1));
+        self.command = self.servo.tick(&feedback, truth, 1);
         self.ticks += 1;
         self.ticks
             .is_multiple_of(SERVO_TICKS_PER_PATH_TICK)
@@ -47,20 +44,15 @@ impl MotionBoard {
     }
 
     fn path_tick(&mut self, now_us: u64) -> PathState {
-        let report = self
-            .servo
-            .as_mut()
-            .map_or_else(ServoReport::default, ServoLoops::take_report);
         let output = self.controller.tick(&PathTickInput {
             now_us,
             elapsed: 1,
-            report,
+            report: self.servo.take_report(),
         });
         if let Some(setup) = self.controller.take_servo_setup() {
-            self.servo = Some(setup);
-        } else if let Some(servo) = &mut self.servo {
-            servo.give(&output.order);
+            self.servo.configure(setup);
         }
+        self.servo.give(&output.order);
         // A full batch was fetched at the servo tick that filled it.
         let _ = self.batch.samples.push(output.sample);
         output.path_state
@@ -96,28 +88,6 @@ mod tests {
         MachineFile::read(std::path::Path::new(path))
             .expect("the shipped machine file")
             .motion
-    }
-
-    /// Parameters may arrive between two path ticks; the servo loops must not shift against them.
-    #[test]
-    fn the_servo_loops_start_a_millisecond_at_every_fourth_tick_of_the_board() {
-        let mut controller = MotionController::<KNOTS>::new();
-        assert_eq!(
-            controller.handle(&Request::ConfigureMotion(config()), 0),
-            Response::Done
-        );
-        let mut loops = controller.take_servo_setup().expect("configured");
-        loops.count_from(4001);
-        let feedback = shared::io::MotionFeedback {
-            counts: [7; 7],
-            ..Default::default()
-        };
-        let seen = [4002, 4003, 4004].map(|ticks| {
-            loops.tick(&feedback, None, 1);
-            let report = loops.take_report();
-            (report.ticks == ticks, report.counts[0])
-        });
-        assert_eq!(seen, [(true, 0), (true, 0), (true, 7)]);
     }
 
     /// A board with a clock, that keeps what it published.

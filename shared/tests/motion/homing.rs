@@ -1,0 +1,100 @@
+//! The search for the marks, first, again, and in vain.
+
+use super::bench::{Bench, MARK, config};
+use shared::io::MotionCommand;
+use shared::motion::{Fault, State};
+use shared::protocol::Request;
+
+/// Axis positions that the marks 2 below the power-up position mean (mm, degrees).
+fn expected(bench: &Bench) -> [f64; 6] {
+    let at = |motor: usize, mark: f64| bench.position[motor] + 2.0 + mark;
+    [
+        at(0, MARK),
+        at(2, MARK),
+        at(3, MARK),
+        at(4, 0.0),
+        at(5, 0.0),
+        at(6, 0.0),
+    ]
+}
+
+fn agrees(bench: &mut Bench) {
+    bench.run_ms(100);
+    let (axes, expected) = (bench.status().axes, expected(bench));
+    for axis in 0..6 {
+        // A few counts.
+        assert!(
+            (axes[axis] - expected[axis]).abs() < 5e-4,
+            "axis {axis}: {axes:?} {expected:?}"
+        );
+    }
+}
+
+#[test]
+fn homing_again_finds_the_same_positions() {
+    let mut bench = Bench::homed();
+    assert!(bench.status().homed);
+    agrees(&mut bench);
+    bench.load_line(5.0);
+    bench.run();
+    bench.until(State::Idle, 2000);
+    bench.done(&Request::Home);
+    bench.run_ms(2);
+    let status = bench.status();
+    assert_eq!((status.state, status.homed), (State::Homing, false));
+    bench.until(State::Idle, 5000);
+    assert!(bench.status().homed);
+    agrees(&mut bench);
+}
+
+#[test]
+fn a_mark_that_is_not_found_is_named_and_the_drives_go_off() {
+    for missing in 0..7_u8 {
+        let mut bench = Bench::configured();
+        bench.marks[usize::from(missing)] = None;
+        bench.done(&Request::Home);
+        bench.until(State::Fault, 40_000);
+        assert_eq!(bench.fault(), Some(Fault::MarkNotFound { motor: missing }));
+        bench.run_ms(1);
+        assert_eq!(bench.command, MotionCommand::SAFE);
+        assert!(!bench.status().homed);
+    }
+}
+
+#[test]
+fn marks_that_ask_for_more_than_the_skew_trip_are_not_believed() {
+    let mut bench = Bench::configured();
+    bench.marks[1] = Some(-2.4);
+    bench.done(&Request::Home);
+    bench.until(State::Fault, 40_000);
+    let fault = bench.fault();
+    assert!(
+        matches!(fault, Some(Fault::GantrySkew { seen_um, .. }) if (seen_um - 400.0).abs() < 1.0),
+        "{fault:?}"
+    );
+}
+
+/// A PC need not wait between its parameters and the order to home, wherever the machine stands, in whatever
+/// scale it was before.
+#[test]
+fn home_right_after_new_parameters_waits_for_them() {
+    let mut bench = Bench::new();
+    bench.slipped = [987_654_321; 7];
+    bench.run_ms(5);
+    let mut other = config();
+    other.motors[2].counts_per_unit *= -0.5;
+    for config in [other, config()] {
+        bench.done(&Request::Disable);
+        bench.done(&Request::ConfigureMotion(config));
+        bench.done(&Request::Home);
+        let before = bench.position;
+        bench.run_ms(5);
+        assert_eq!((bench.status().state, bench.fault()), (State::Homing, None));
+        // Nothing has jumped.
+        for (motor, before) in before.into_iter().enumerate() {
+            assert!((bench.position[motor] - before).abs() < 0.05, "motor {motor}");
+        }
+    }
+    bench.until(State::Idle, 5000);
+    agrees(&mut bench);
+}

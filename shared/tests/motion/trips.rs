@@ -1,0 +1,257 @@
+//! What switches the drives off at once, and what stops on the path first.
+
+use super::bench::{Bench, MARK, SCALE, TRAVEL_MAX, Y};
+use shared::io::MotionCommand;
+use shared::motion::{Fault, State};
+use shared::protocol::{Refusal, Request};
+
+/// Pushes the motors by `step` in each of `ticks` servo ticks; the fault, all drives off in the tick it came.
+fn push(bench: &mut Bench, motor: usize, step: f64, ticks: u32) -> Option<Fault> {
+    for _ in 0..ticks {
+        bench.position[motor] += step;
+        bench.servo_tick();
+        if bench.command == MotionCommand::SAFE {
+            bench.run_ms(2);
+            assert_eq!(bench.status().state, State::Fault);
+            return bench.fault();
+        }
+    }
+    None
+}
+
+#[test]
+fn a_gantry_out_of_square_switches_both_drives_off() {
+    let mut bench = Bench::homed();
+    // Together is no skew.
+    for _ in 0..4 {
+        bench.position[0] += 0.09;
+        assert_eq!(push(&mut bench, 1, 0.09, 1), None);
+    }
+    bench.run_ms(200);
+    let fault = push(&mut bench, 1, 0.09, 4);
+    assert!(
+        matches!(fault, Some(Fault::GantrySkew { seen_um, limit_um: 300.0 }) if seen_um > 300.0),
+        "{fault:?}"
+    );
+    assert!(!bench.command.enable);
+}
+
+#[test]
+fn a_blocked_axis_trips_at_its_following_error() {
+    let mut bench = Bench::welding();
+    bench.blocked[Y] = true;
+    for _ in 0..400 {
+        bench.servo_tick();
+    }
+    assert_eq!(bench.command, MotionCommand::SAFE);
+    // 0.5 mm and 50 ms of 150 mm/s.
+    let fault = bench.fault();
+    assert!(
+        matches!(fault, Some(Fault::FollowingError { motor: 2, seen_um, limit_um })
+            if (8000.0 - limit_um).abs() < 1.0 && seen_um > limit_um && seen_um < limit_um + 40.0),
+        "{fault:?}"
+    );
+}
+
+#[test]
+fn a_grating_that_jumps_trips_but_not_over_a_lost_tick() {
+    // 400 mm/s × 10 000 /mm × 0.25 ms × 1.5.
+    let limit = 1500;
+    let mut bench = Bench::homed();
+    bench.slipped[5] += i64::from(limit) - 5;
+    bench.servo_tick();
+    assert!(bench.command.enable);
+    bench.slipped[4] += 2 * i64::from(limit);
+    bench.servo_tick_after(2);
+    assert!(bench.command.enable);
+    bench.slipped[3] -= i64::from(limit) + 5;
+    bench.servo_tick_after(1);
+    assert_eq!(bench.command, MotionCommand::SAFE);
+    bench.path_tick_after(1);
+    let fault = bench.fault();
+    assert!(
+        matches!(fault, Some(Fault::EncoderStep { motor: 3, seen, limit: 1500 }) if seen < -1500),
+        "{fault:?}"
+    );
+}
+
+#[test]
+fn a_limit_switch_trips_outside_homing_only() {
+    let mut bench = Bench::configured();
+    bench.inputs.limit_plus.set(1, true);
+    bench.done(&Request::Home);
+    bench.run_ms(200);
+    assert_eq!(bench.status().state, State::Homing);
+    assert!(bench.command.enable);
+    bench.inputs.limit_plus.set(1, false);
+    bench.until(State::Idle, 5000);
+    bench.inputs.limit_minus.set(4, true);
+    bench.servo_tick();
+    assert_eq!(bench.command, MotionCommand::SAFE);
+    bench.run_ms(1);
+    assert_eq!(
+        bench.fault(),
+        Some(Fault::LimitSwitch {
+            motor: 4,
+            positive: false
+        })
+    );
+    // The way off the switch is the search for the marks.
+    bench.done(&Request::Reset);
+    bench.done(&Request::Home);
+    bench.run_ms(5);
+    bench.inputs.limit_minus.set(4, false);
+    bench.until(State::Idle, 5000);
+}
+
+/// However short the fault and wherever in the millisecond it falls.
+#[test]
+fn a_laser_fault_shuts_the_gate_in_its_tick_for_good_and_stops_on_the_path() {
+    for phase in 0..4 {
+        let mut bench = Bench::welding();
+        (0..phase).for_each(|_| bench.servo_tick());
+        bench.inputs.laser_fault[0] = true;
+        bench.servo_tick();
+        assert_eq!(bench.command.beam_gate, [false; 2]);
+        assert_eq!(bench.command.beam_power[0].0, 0);
+        assert!(bench.command.enable);
+        bench.inputs.laser_fault[0] = false;
+        let distance = bench.stops_on_the_path_then_faults();
+        assert!(distance > 10.0 && distance < 25.0, "{distance}");
+        assert_eq!(bench.fault(), Some(Fault::Laser { side: 0 }));
+    }
+}
+
+#[test]
+fn the_emergency_stop_wins_in_its_tick_and_must_be_released_before_the_reset() {
+    let mut bench = Bench::welding();
+    bench.inputs.estop = true;
+    bench.servo_tick();
+    assert_eq!(bench.command, MotionCommand::SAFE);
+    bench.run_ms(2);
+    assert_eq!(bench.fault(), Some(Fault::EmergencyStop));
+    assert!(matches!(
+        bench.refused(&Request::Home),
+        Refusal::WrongState { state: State::Fault }
+    ));
+    assert_eq!(bench.refused(&Request::Reset), Refusal::CauseRemains);
+    bench.inputs.estop = false;
+    bench.inputs.drive_fault.set(2, true);
+    bench.run_ms(1);
+    assert_eq!(bench.refused(&Request::Reset), Refusal::CauseRemains);
+    bench.inputs.drive_fault.set(2, false);
+    bench.run_ms(1);
+    bench.done(&Request::Reset);
+    assert_eq!((bench.status().state, bench.fault()), (State::Off, None));
+    // Nothing moves before it is asked to, and everything works after.
+    bench.run_ms(50);
+    assert_eq!(bench.command, MotionCommand::SAFE);
+    bench.done(&Request::Home);
+    bench.until(State::Idle, 5000);
+    bench.load_line(50.0);
+    bench.run();
+    bench.until(State::Idle, 2000);
+}
+
+#[test]
+fn a_trip_while_the_pc_disables_and_homes_is_not_forgotten() {
+    let mut bench = Bench::homed();
+    bench.inputs.drive_fault.set(6, true);
+    bench.servo_tick();
+    bench.done(&Request::Disable);
+    bench.done(&Request::Home);
+    bench.run_ms(2);
+    assert_eq!(bench.command, MotionCommand::SAFE);
+    assert_eq!(bench.fault(), Some(Fault::Drive { motor: 6 }));
+}
+
+#[test]
+fn references_late_once_cost_the_beam_and_twice_the_drives() {
+    let mut bench = Bench::welding();
+    // The references of the next millisecond are there; those of the one after are not.
+    bench.ms_without_path_tick();
+    assert!(bench.command.beam_gate[0]);
+    bench.ms_without_path_tick();
+    assert!(bench.command.enable && !bench.command.beam_gate[0]);
+    let speed = bench.speed();
+    assert!((speed - 150.0).abs() < 1.0, "{speed}");
+    bench.path_tick_after(2);
+    bench.run_ms(2);
+    assert!(bench.command.enable && bench.command.beam_gate[0]);
+    assert_eq!(bench.status().path_lost, 2, "the tick, and its references");
+
+    (0..2).for_each(|_| bench.ms_without_path_tick());
+    assert!(bench.command.enable);
+    bench.ms_without_path_tick();
+    assert_eq!(bench.command, MotionCommand::SAFE);
+    bench.path_tick_after(3);
+    assert_eq!(bench.fault(), Some(Fault::ReferencesLate));
+}
+
+#[test]
+fn a_path_out_of_the_travel_stops_on_the_path() {
+    let mut bench = Bench::homed();
+    bench.load_line(TRAVEL_MAX - MARK + 100.0);
+    bench.run();
+    while bench.controller.state() == State::Running {
+        bench.run_ms(1);
+        bench.status();
+    }
+    bench.run_ms(2);
+    let distance = bench.stops_on_the_path_then_faults();
+    assert!(distance < 25.0, "{distance}");
+    let fault = bench.fault();
+    assert!(
+        matches!(fault, Some(Fault::SoftLimit { axis: 1, position })
+            if position > 1000.0 && position < 1000.2),
+        "{fault:?}"
+    );
+}
+
+#[test]
+fn a_silent_pc_stops_the_machine_wherever_on_the_path_it_is() {
+    let mut bench = Bench::welding();
+    bench.run_ms(503);
+    assert_eq!(bench.controller.state(), State::Stopping);
+    bench.stops_on_the_path_then_faults();
+    let fault = bench.fault();
+    assert!(
+        matches!(fault, Some(Fault::LinkLost { silent_ms: 500..=501 })),
+        "{fault:?}"
+    );
+
+    let mut bench = Bench::welding();
+    bench.done(&Request::Hold);
+    bench.run_ms(400);
+    assert_eq!(bench.controller.state(), State::Holding);
+    bench.run_ms(200);
+    assert_eq!(bench.controller.state(), State::Fault);
+}
+
+#[test]
+fn disabling_a_machine_that_stops_for_a_fault_keeps_the_fault() {
+    let mut bench = Bench::welding();
+    bench.inputs.laser_fault[1] = true;
+    bench.run_ms(5);
+    bench.done(&Request::Disable);
+    bench.run_ms(1);
+    bench.servo_tick();
+    assert_eq!(bench.command, MotionCommand::SAFE);
+    assert_eq!(bench.status().state, State::Fault);
+    assert_eq!(bench.fault(), Some(Fault::Laser { side: 1 }));
+}
+
+/// A grating that is worn out loses counts slowly; no step check sees it, the gantry's skew does.
+#[test]
+fn counts_lost_on_one_side_of_the_gantry_trip_the_skew() {
+    let mut bench = Bench::homed();
+    bench.blocked[0] = true;
+    bench.blocked[1] = true;
+    let counts_a_tick = (0.01 * SCALE) as i64;
+    for _ in 0..31 {
+        bench.slipped[1] += counts_a_tick;
+        bench.servo_tick();
+    }
+    bench.run_ms(1);
+    assert!(matches!(bench.fault(), Some(Fault::GantrySkew { .. })));
+}
