@@ -39,6 +39,9 @@ pub struct Options {
 /// Environment variables by which a test is told what to boot, in the order of [`Options`].
 pub const BOOT_VARIABLES: [&str; 3] = ["SEAMWRIGHT_MOTION", "SEAMWRIGHT_TRACKER", "SEAMWRIGHT_PACE"];
 
+/// Environment variables by which a test is told the programs it runs: host-link and xtask.
+pub const PROGRAM_VARIABLES: [&str; 2] = ["SEAMWRIGHT_HOST_LINK", "SEAMWRIGHT_XTASK"];
+
 impl Options {
     /// What `cargo xtask test` has built, in real time; an error names the variable that is not set.
     pub fn from_environment(log_directory: PathBuf) -> Result<Self, BootError> {

@@ -12,7 +12,7 @@ mod pace;
 mod qemu;
 mod session;
 
-pub use boot::{BOOT_VARIABLES, Boards, BootError, Options};
+pub use boot::{BOOT_VARIABLES, Boards, BootError, Options, PROGRAM_VARIABLES};
 pub use pace::Pace;
 pub use qemu::bound_to_parent;
 pub use session::{Endpoint, PathStatesTo, SESSION_VARIABLE, Session, SessionError};

@@ -8,7 +8,8 @@ use crate::emulate;
 use crate::firmware::{self, TARGET};
 use crate::size;
 use anyhow::{Context, Result, bail};
-use emulator::BOOT_VARIABLES;
+use emulator::{BOOT_VARIABLES, PROGRAM_VARIABLES};
+use std::env;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, ExitCode, Stdio};
 
@@ -101,6 +102,12 @@ fn emulated_tests() -> Result<Command> {
         BOOT_VARIABLES
             .into_iter()
             .zip([boot.motion, boot.tracker, boot.plugin]),
+    );
+    let xtask = env::current_exe().context("cannot find this program's own file")?;
+    command.envs(
+        PROGRAM_VARIABLES
+            .into_iter()
+            .zip([firmware::build_host_link()?, xtask]),
     );
     Ok(command)
 }

@@ -1,0 +1,89 @@
+//! A pair of emulated boards for one test.
+
+use emulator::{Options, PROGRAM_VARIABLES, SESSION_VARIABLE, bound_to_parent};
+use host_link::boards::{Boards, NetworkBoards, Patience};
+use shared::motion::State;
+use shared::protocol::{MotionStatus, Request, Response, Role, TrackerStatus};
+use shared::tracking::TrackerState;
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use system_tests::{MACHINE, PROGRAM, SEAM, shipped};
+
+/// Boards that run, with a folder of their own.
+pub struct Pair {
+    pub boards: emulator::Boards,
+    folder: PathBuf,
+}
+
+impl Pair {
+    /// Boots boards; `name` is that of their folder.
+    pub fn boot(name: &str) -> Self {
+        let folder = scratch(name);
+        let options = Options::from_environment(folder.clone()).expect("what to boot");
+        let boards = emulator::Boards::boot(&options).unwrap_or_else(|error| panic!("{error}"));
+        boards
+            .session()
+            .write(&folder.join("session.toml"))
+            .expect("the scratch folder is writable");
+        Self { boards, folder }
+    }
+
+    pub fn connect(&self) -> NetworkBoards {
+        NetworkBoards::emulated(self.boards.session(), Patience::default())
+            .unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// `host-link weld` with the shipped job on these boards.
+    pub fn host_link(&self, seam: Option<&Path>) -> Command {
+        let mut command = bound_to_parent(program(PROGRAM_VARIABLES[0]));
+        command
+            .args(["weld", "--boards", "emulated", "--machine"])
+            .arg(shipped(MACHINE))
+            .arg("--seam")
+            .arg(seam.map_or_else(|| shipped(SEAM), Path::to_owned))
+            .arg("--report")
+            .arg(self.report())
+            .arg(shipped(PROGRAM))
+            .env(SESSION_VARIABLE, self.folder.join("session.toml"));
+        command
+    }
+
+    /// Where host-link leaves its report.
+    pub fn report(&self) -> PathBuf {
+        self.folder.join("report")
+    }
+
+    /// Checks that both boards run, free of faults, with their drives off.
+    #[track_caller]
+    pub fn assert_off(&mut self) -> (MotionStatus, TrackerStatus) {
+        self.boards.check().unwrap_or_else(|error| panic!("{error}"));
+        let (motion, tracker) = status(&mut self.connect());
+        assert_eq!((motion.state, motion.fault), (State::Off, None));
+        assert_eq!((tracker.state, tracker.fault), (TrackerState::Off, None));
+        (motion, tracker)
+    }
+}
+
+/// What both boards say of themselves.
+pub fn status(boards: &mut NetworkBoards) -> (MotionStatus, TrackerStatus) {
+    match (
+        boards.request(Role::Motion, &Request::Status),
+        boards.request(Role::Tracker, &Request::Status),
+    ) {
+        (Ok(Response::MotionStatus(motion)), Ok(Response::TrackerStatus(tracker))) => (motion, tracker),
+        other => panic!("no status: {other:?}"),
+    }
+}
+
+/// A folder or file of a test.
+pub fn scratch(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+/// A program that the runner of these tests has built.
+pub fn program(variable: &str) -> PathBuf {
+    env::var_os(variable)
+        .map(PathBuf::from)
+        .unwrap_or_else(|| panic!("{variable} is not set; run these tests by `cargo xtask test`"))
+}

@@ -1,0 +1,187 @@
+//! Jobs that are refused, interrupted or cut off: the machine stands on its path, the beams and, but for the
+//! operator's work, the drives are off, and nothing is left running.
+
+use crate::pair::{Pair, program, scratch, status};
+use crate::process::{Process, runs, wait_until};
+use emulator::PROGRAM_VARIABLES;
+use host_link::boards::{Boards, command};
+use host_link::weld::JobError;
+use nix::sys::signal::Signal;
+use serde_json::Value;
+use shared::motion::{Fault, State};
+use shared::protocol::{Datagram, MotionSample, Request, Role};
+use shared::tracking::TrackerState;
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::os::unix::process::ExitStatusExt;
+use std::process::Command;
+use std::time::{Duration, Instant};
+use system_tests::{assert_on_seam, seam, seam_file, shipped_seam, weld};
+
+/// Beyond the travel of V2 in the middle of the weld.
+fn far(s: f64) -> [f64; 4] {
+    [0.0, 0.0, 0.0, 13.0 - (s - 200.0).abs() / 20.0]
+}
+
+#[test]
+fn ctrl_c_stops_on_the_path_and_leaves_a_report_and_the_drives_off() {
+    let mut pair = Pair::boot("ctrl-c");
+    let mut host_link = Process::start(pair.host_link(None));
+    host_link.wait_for("welding");
+    host_link.signal(Signal::SIGINT);
+    let (status, said) = host_link.end();
+    assert_eq!(status.code(), Some(130), "{said:#?}");
+    assert!(
+        said.last()
+            .is_some_and(|last| last.contains("stopped by the operator")),
+        "{said:#?}"
+    );
+
+    let text = fs::read(pair.report().join("report.json")).expect("a report");
+    let report: Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(report["outcome"], "interrupted");
+    let welded = report["weld_length_mm"].as_f64().expect("a number");
+    assert!((0.0..200.0).contains(&welded), "{welded} mm");
+
+    let log = fs::read_to_string(pair.report().join("log.csv")).expect("a log");
+    let mut lines = log.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let heading = lines.next().expect("a heading");
+    let last = lines.next_back().expect("ticks");
+    let value = |name: &str| {
+        let column = heading.iter().position(|n| *n == name).expect(name);
+        last[column].parse::<f64>().expect(name)
+    };
+    assert_eq!((value("beam_1"), value("beam_2")), (0.0, 0.0));
+    assert!(value("speed_m_per_min").abs() < 0.05, "{last:?}");
+    assert!(value("contour_error_mm") < 0.05, "{last:?}");
+    pair.assert_off();
+}
+
+#[test]
+fn a_refused_job_leaves_the_drives_off() {
+    let mut pair = Pair::boot("refused");
+    let file = scratch("far.csv");
+    fs::write(&file, seam_file(far)).expect("the scratch folder is writable");
+    let (status, said) = Process::start(pair.host_link(Some(&file))).end();
+    assert_eq!((status.code(), said.len()), (Some(1), 1), "{said:#?}");
+    assert!(
+        said[0].contains("V2") && said[0].contains("beyond its travel"),
+        "{said:#?}"
+    );
+    let (motion, tracker) = pair.assert_off();
+    assert!(
+        !motion.homed && !tracker.homed,
+        "the boards were not asked to move"
+    );
+
+    // The job itself finds out when the drives are on.
+    let ended = weld(&mut pair.connect(), seam(far), 5.0);
+    assert!(
+        matches!(ended.error, Some(JobError::Seam(_))),
+        "{:?}",
+        ended.error
+    );
+    let (motion, tracker) = pair.assert_off();
+    assert!(motion.homed && tracker.homed);
+}
+
+#[test]
+fn without_the_pc_the_machine_stops_on_its_path_and_welds_again_later() {
+    let mut pair = Pair::boot("vanished");
+    let mut host_link = Process::start(pair.host_link(None));
+    host_link.wait_for("welding");
+    host_link.signal(Signal::SIGKILL);
+    host_link.end();
+
+    // Saying Hello and listening to telemetry does not count as the PC that started the path.
+    let mut boards = pair.connect();
+    let port = boards.datagram_port(Role::Motion);
+    command(&mut boards, Role::Motion, &Request::Subscribe { port }).expect("a board that answers");
+    let mut samples: Vec<MotionSample> = Vec::new();
+    let end = Instant::now() + Duration::from_secs(30);
+    while samples.last().is_none_or(|last| last.state != State::Fault) {
+        assert!(Instant::now() < end, "no fault after {} ms", samples.len());
+        let received = boards.receive(Duration::from_millis(10));
+        if let Some((_, Datagram::MotionTelemetry(telemetry))) = received.expect("datagrams") {
+            samples.extend(telemetry.samples);
+        }
+    }
+    let stopping: Vec<_> = samples.iter().filter(|s| s.state == State::Stopping).collect();
+    let (first, last) = (
+        stopping.first().expect("a stop"),
+        stopping.last().expect("a stop"),
+    );
+    assert!(
+        first.speed_mm_s > 80.0 && last.speed_mm_s < 1.0,
+        "{first:?} {last:?}"
+    );
+    assert!(last.s_mm - first.s_mm > 1.0, "{first:?} {last:?}");
+    // What was given to the drives and gates before the stop lasts for two more ticks.
+    for sample in samples.iter().skip_while(|s| s.state != State::Stopping).skip(2) {
+        assert_eq!(sample.beams, [false, false], "{sample:?}");
+    }
+    let (motion, tracker) = status(&mut boards);
+    let Some(Fault::LinkLost { silent_ms }) = motion.fault else {
+        panic!("{:?}", motion.fault);
+    };
+    assert!((500..600).contains(&silent_ms), "{silent_ms} ms");
+    assert_ne!(tracker.state, TrackerState::Tracking);
+
+    assert_on_seam(&weld(&mut boards, shipped_seam(), 9.0), 0.05);
+    drop(boards);
+    pair.assert_off();
+}
+
+fn xtask_weld() -> Command {
+    let mut command = Command::new(program(PROGRAM_VARIABLES[1]));
+    let report = scratch("xtask-report");
+    command.args(["--no-setup", "weld", "--report"]).arg(report);
+    command
+}
+
+#[test]
+fn xtask_leaves_no_process_whether_it_is_asked_to_end_or_killed() {
+    for signal in [Signal::SIGINT, Signal::SIGTERM, Signal::SIGKILL] {
+        let mut xtask = Process::start(xtask_weld());
+        xtask.wait_for("searching reference marks");
+        let started = xtask.descendants();
+        assert!(started.len() >= 3, "two boards and host-link: {started:?}");
+        xtask.signal(signal);
+        let (status, said) = xtask.end();
+        match signal {
+            Signal::SIGKILL => assert_eq!(status.signal(), Some(9), "{said:#?}"),
+            _ => assert_eq!(status.code(), Some(130), "{said:#?}"),
+        }
+        wait_until("the end of its processes", || {
+            !started.iter().any(|pid| runs(*pid))
+        });
+    }
+}
+
+#[test]
+fn a_missing_emulator_is_named_with_its_package() {
+    // Every program there is, but for the emulator.
+    let folder = scratch("path-without-qemu");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("the scratch folder is writable");
+    let path = std::env::var_os("PATH").expect("a PATH");
+    for file in std::env::split_paths(&path)
+        .filter_map(|p| fs::read_dir(p).ok())
+        .flatten()
+    {
+        let file = file.expect("a folder that can be read");
+        if file.file_name() != "qemu-system-arm" {
+            // Of two with the same name the first counts.
+            let _ = symlink(file.path(), folder.join(file.file_name()));
+        }
+    }
+    let mut command = xtask_weld();
+    command.env("PATH", &folder);
+    let (status, said) = Process::start(command).end();
+    assert_eq!(status.code(), Some(1), "{said:#?}");
+    let last = said.last().expect("a reason");
+    assert!(
+        last.starts_with("error: ") && last.contains("package qemu-system-arm"),
+        "{last}"
+    );
+}

@@ -1,0 +1,40 @@
+//! Jobs that come to their end.
+
+use crate::pair::Pair;
+use host_link::boards::simulated::SimulatedBoards;
+use host_link::seam::Deviation;
+use system_tests::{assert_on_seam, deviations, seam, shipped_seam, sines, weld};
+
+/// Welds along `seam` on emulated and on simulated boards: no spot leaves its seam, and both agree.
+fn assert_welds(name: &str, seam: &Deviation, speed_m_per_min: f64) {
+    let mut pair = Pair::boot(name);
+    let ended = weld(&mut pair.connect(), seam.clone(), speed_m_per_min);
+    assert_on_seam(&ended, 0.05);
+    assert_eq!(ended.report.measurements.given_up, 0);
+    let simulated = weld(&mut SimulatedBoards::new(), seam.clone(), speed_m_per_min);
+    let both = deviations(&ended.report)
+        .into_iter()
+        .zip(deviations(&simulated.report));
+    for (emulated, simulated) in both {
+        assert!(
+            (emulated - simulated).abs() < 0.01,
+            "{emulated} and {simulated} mm"
+        );
+    }
+    pair.assert_off();
+}
+
+#[test]
+fn the_shipped_job_at_5_m_per_min() {
+    assert_welds("weld-5", &shipped_seam(), 5.0);
+}
+
+#[test]
+fn the_shipped_job_at_9_m_per_min() {
+    assert_welds("weld-9", &shipped_seam(), 9.0);
+}
+
+#[test]
+fn sines_of_1_mm_at_9_m_per_min() {
+    assert_welds("weld-sines", &seam(sines), 9.0);
+}
