@@ -207,6 +207,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
                 speed_mm_s: now.v,
                 pose: self.measured_pose(),
                 tracking: on_path && self.beams.tracking(),
+                beams: self.gates[0].gate,
             },
             sample: MotionSample {
                 tick: self.tick as u32,

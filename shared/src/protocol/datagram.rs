@@ -49,6 +49,8 @@ pub struct PathState {
     pub pose: [f64; 9],
     /// The path asks for tracking.
     pub tracking: bool,
+    /// Gates that are open.
+    pub beams: [bool; SIDES],
 }
 
 /// A strobe: both cameras were triggered, the slides latched.

@@ -486,7 +486,15 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                     slide.arrived |= away <= parameters.map.gate;
                     target
                 }
-                Sight::NotYet => plan[i],
+                Sight::NotYet => {
+                    if place.beams[i / 2] {
+                        self.report(TrackerFault::SeamNotSeen {
+                            side: i as u8 / 2,
+                            s_mm: place.s as f32,
+                        });
+                    }
+                    plan[i]
+                }
                 Sight::Lost => {
                     self.report(TrackerFault::LostSeam {
                         side: i as u8 / 2,

@@ -47,6 +47,14 @@ pub enum TrackerFault {
         /// Index of the slide.
         slide: u8,
     },
+    /// A beam burns where its seam was never seen.
+    #[error("beam {} is on at s = {s_mm:.1} mm, but its camera has not seen the seam yet: look at camera and lights, or give the path a longer run-in", side + 1)]
+    SeamNotSeen {
+        /// 0 or 1.
+        side: u8,
+        /// Path position.
+        s_mm: f32,
+    },
     /// No seam was seen for longer than the map reaches.
     #[error("side {} lost the seam at s = {s_mm:.1} mm", side + 1)]
     LostSeam {

@@ -1,7 +1,7 @@
 //! What was a moment ago: path states of the motion board, and captures.
 
 use crate::geometry::Pose;
-use crate::io::SLIDES;
+use crate::io::{SIDES, SLIDES};
 use crate::protocol::PathState;
 use heapless::{Deque, Vec};
 use nalgebra::Vector3;
@@ -26,6 +26,8 @@ pub struct Place {
     pub pose: Pose,
     /// The path asks for tracking.
     pub tracking: bool,
+    /// Gates that are open.
+    pub beams: [bool; SIDES],
 }
 
 /// The last path states, in order of their time.
@@ -142,6 +144,7 @@ fn place(state: &PathState) -> Option<Place> {
         speed: state.speed_mm_s,
         pose: pose.ok().filter(|_| finite)?,
         tracking: state.tracking,
+        beams: state.beams,
     })
 }
 
@@ -229,6 +232,7 @@ mod tests {
             speed_mm_s: 100.0,
             pose: [s_mm, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
             tracking: true,
+            beams: [false; SIDES],
         }
     }
 

@@ -121,6 +121,7 @@ pub struct Bench {
     /// The motion board is heard.
     pub linked: bool,
     pub tracking: bool,
+    pub beams: [bool; 2],
     pub s: f64,
     pub speed: f64,
     pub path_id: u32,
@@ -153,6 +154,7 @@ impl Bench {
             noise: 0.0,
             linked: true,
             tracking: false,
+            beams: [false; 2],
             s: 0.0,
             speed: 0.0,
             path_id: PATH_ID,
@@ -225,6 +227,7 @@ impl Bench {
                     speed_mm_s: self.speed,
                     pose: core::array::from_fn(|i| flat[i / 3][i % 3]),
                     tracking: self.tracking,
+                    beams: self.beams,
                 }),
                 t + 370 + TRACKER_CLOCK,
             );

@@ -181,6 +181,28 @@ fn a_seam_not_yet_seen_leaves_the_slides_at_the_plan_quietly() {
 }
 
 #[test]
+fn a_beam_that_burns_where_no_seam_was_seen_is_reported_with_its_side() {
+    let mut bench = bench();
+    bench.visible = |side, _| side == 0;
+    bench.prepare();
+    bench.tracking = true;
+    bench.speed = 100.0;
+    while bench.s < 50.0 {
+        bench.tick();
+    }
+    bench.beams = [true, false];
+    bench.run_ms(20);
+    assert_eq!(bench.last.sample.fault, None);
+    bench.beams = [true, true];
+    bench.run_ms(20);
+    let fault = bench.last.sample.fault;
+    assert!(
+        matches!(fault, Some(TrackerFault::SeamNotSeen { side: 1, .. })),
+        "{fault:?}"
+    );
+}
+
+#[test]
 fn a_lost_seam_is_reported_where_the_map_ends_and_only_that_side_stops() {
     let mut bench = ready();
     bench.visible = |side, s| side == 0 || s < 100.0;
