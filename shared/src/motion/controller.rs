@@ -4,18 +4,18 @@
 //! makes the [`Segment`] which the servo ticks follow from k + 1 on, so the path tick has a whole
 //! millisecond. What is published at tick k belongs to k.
 
+mod requests;
+
 use super::beams::{Beams, MAX_EVENTS};
 use super::homing::{Homing, HomingStep};
 use super::machine::Machine;
 use super::segment::{BeamOutput, MotorReference, PATH_PERIOD_S, Segment};
 use super::servo::{ServoOrder, ServoReport, ServoSetup};
 use super::state::Event;
-use super::{Fault, MotionConfig, State, Vibration};
-use crate::io::{AXES, MOTORS};
+use super::{Fault, State, Vibration};
+use crate::io::{AXES, MOTORS, SIDES};
 use crate::kinematics::AXIS_UNIT;
-use crate::protocol::{
-    Knot, MotionSample, MotionStatus, PathAction, PathEvent, PathState, Refusal, Request, Response,
-};
+use crate::protocol::{MotionSample, PathEvent, PathState};
 use crate::trajectory::{Path, SpeedLimits, SpeedProfile, SpeedState, reference};
 use heapless::Vec;
 
@@ -225,221 +225,6 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         }
     }
 
-    /// One request of the PC; `unsent` datagrams could not be sent so far. The answer says what was done or
-    /// why not; nothing changes on a refusal.
-    pub fn handle(&mut self, request: &Request, unsent: u32) -> Response {
-        self.heard = true;
-        let done = match request {
-            Request::Status => return Response::MotionStatus(self.status(unsent)),
-            Request::ConfigureMotion(config) => self.configure(config),
-            Request::Home => self.start_homing(),
-            Request::Disable => self.disable(),
-            Request::Reset => self.reset(),
-            Request::ClearPath { id } => self.clear_path(*id),
-            Request::LoadKnots(knots) => self.load_knots(knots),
-            Request::LoadEvent(event) => self.load_event(event),
-            Request::Run {
-                speed_mm_s,
-                acceleration_mm_s2,
-                jerk_mm_s3,
-            } => self.run(SpeedLimits {
-                velocity: *speed_mm_s,
-                acceleration: *acceleration_mm_s2,
-                jerk: *jerk_mm_s3,
-            }),
-            Request::Hold => self.hold(),
-            Request::Resume => self.resume(),
-            Request::Stop => self.stop(),
-            _ => Err(Refusal::NotMine),
-        };
-        match done {
-            Ok(()) => Response::Done,
-            Err(refusal) => Response::Refused(refusal),
-        }
-    }
-
-    // ---- requests ----
-
-    /// The state after `event`, or a refusal that names the present one.
-    fn allowed(&self, event: Event) -> Result<State, Refusal> {
-        self.state
-            .after(event)
-            .ok_or(Refusal::WrongState { state: self.state })
-    }
-
-    fn configure(&mut self, config: &MotionConfig) -> Result<(), Refusal> {
-        if self.state != State::Off {
-            return Err(Refusal::WrongState { state: self.state });
-        }
-        let (machine, servo) = Machine::build(config).map_err(Refusal::Parameter)?;
-        self.machine = Some(machine);
-        self.servo_setup = Some(servo);
-        self.homed = false;
-        // A path was planned for the machine it was loaded for.
-        self.path.clear(0);
-        self.events.clear();
-        Ok(())
-    }
-
-    fn start_homing(&mut self) -> Result<(), Refusal> {
-        let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
-        let state = self.allowed(Event::Home)?;
-        self.homing = Some(Homing::start(machine.homing.clone()));
-        self.homed = false;
-        self.state = state;
-        Ok(())
-    }
-
-    fn disable(&mut self) -> Result<(), Refusal> {
-        // Always possible; a fault stays until it is reset, the one that brings the machine to rest too.
-        match self.pending {
-            Some(fault) => self.trip(fault),
-            None => self.state = self.state.after(Event::Disable).unwrap_or(self.state),
-        }
-        self.leave_path();
-        Ok(())
-    }
-
-    fn reset(&mut self) -> Result<(), Refusal> {
-        let state = self.allowed(Event::Reset)?;
-        if self.cause_remains {
-            return Err(Refusal::CauseRemains);
-        }
-        self.state = state;
-        self.fault = None;
-        Ok(())
-    }
-
-    fn clear_path(&mut self, id: u32) -> Result<(), Refusal> {
-        if self.state.on_path() {
-            return Err(Refusal::WrongState { state: self.state });
-        }
-        self.path.clear(id);
-        self.events.clear();
-        Ok(())
-    }
-
-    fn load_knots(&mut self, knots: &[Knot]) -> Result<(), Refusal> {
-        if self.state.on_path() {
-            return Err(Refusal::WrongState { state: self.state });
-        }
-        Ok(self.path.append(knots)?)
-    }
-
-    fn load_event(&mut self, event: &PathEvent) -> Result<(), Refusal> {
-        let refusal = Refusal::BadEvent {
-            index: self.events.len() as u16,
-        };
-        let sound = match event.action {
-            PathAction::Beam { side, .. } => usize::from(side) < crate::io::SIDES,
-            PathAction::Power { side, watt } => {
-                usize::from(side) < crate::io::SIDES && watt.is_finite() && watt >= 0.0
-            }
-            PathAction::Tracking { .. } => true,
-        };
-        let in_order = self.events.last().is_none_or(|last| last.s_mm <= event.s_mm);
-        if self.state.on_path() {
-            return Err(Refusal::WrongState { state: self.state });
-        }
-        if !sound || !in_order || !event.s_mm.is_finite() {
-            return Err(refusal);
-        }
-        self.events.push(*event).map_err(|_| refusal)
-    }
-
-    fn run(&mut self, limits: SpeedLimits) -> Result<(), Refusal> {
-        let state = self.allowed(Event::Run)?;
-        let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
-        if !self.homed {
-            return Err(Refusal::NotHomed);
-        }
-        let (start, end) = self
-            .path
-            .start_s()
-            .zip(self.path.end_s())
-            .ok_or(Refusal::NoPath)?;
-        if start >= end {
-            return Err(Refusal::NoPath);
-        }
-        let profile = SpeedProfile::rest_to_rest(start, end, &limits).map_err(|_| Refusal::NoPath)?;
-        let rest = SpeedState {
-            s: start,
-            v: 0.0,
-            a: 0.0,
-        };
-        let first = reference(&machine.kinematics, &self.path, rest).map_err(|_| Refusal::NoPath)?;
-        for axis in 0..AXES {
-            let distance = first.position[axis] - self.axes[axis];
-            let close = libm::fabs(distance) <= START_TOLERANCE;
-            if !close {
-                return Err(Refusal::NotAtStart {
-                    axis: axis as u8,
-                    distance: (distance / AXIS_UNIT[axis]) as f32,
-                });
-            }
-        }
-        self.state = state;
-        self.beams = Beams::NONE;
-        self.resume_wanted = false;
-        self.along = [rest; 3];
-        self.travel = Some(Travel {
-            profile,
-            time: 0.0,
-            limits,
-        });
-        Ok(())
-    }
-
-    fn hold(&mut self) -> Result<(), Refusal> {
-        let state = self.allowed(Event::Hold)?;
-        if self.state == State::Running {
-            self.slow_down();
-        }
-        self.resume_wanted = false;
-        self.state = state;
-        Ok(())
-    }
-
-    fn resume(&mut self) -> Result<(), Refusal> {
-        self.allowed(Event::Resume)?;
-        self.resume_wanted = true;
-        Ok(())
-    }
-
-    fn stop(&mut self) -> Result<(), Refusal> {
-        let state = self.allowed(Event::Stop)?;
-        match self.state {
-            State::Running => self.slow_down(),
-            State::Homing => self.leave_path(),
-            _ => {}
-        }
-        self.state = state;
-        Ok(())
-    }
-
-    fn status(&self, unsent: u32) -> MotionStatus {
-        let (servo_ticks, servo_lost, servo_late) = self.servo_ticks;
-        let people = |axes: &[f64; AXES]| core::array::from_fn(|axis| axes[axis] / AXIS_UNIT[axis]);
-        MotionStatus {
-            state: self.state,
-            fault: self.fault.or(self.pending),
-            homed: self.homed,
-            axes: people(&self.measured),
-            reference: people(&self.axes),
-            path_id: self.path.id(),
-            s_mm: self.along[0].s,
-            knots: self.path.len() as u16,
-            servo_ticks,
-            servo_lost,
-            path_ticks: self.tick as u32,
-            path_lost: self.ticks_lost.wrapping_add(servo_late),
-            unsent,
-            vibration_level: self.vibration.map(|vibration| vibration.level()),
-        }
-    }
-
-    // ---- one tick ----
-
     /// Counts the tick; returns its time. Ticks are hardware periods, so their times are exact multiples.
     fn count(&mut self, input: &PathTickInput) -> u64 {
         self.ticks_lost = self.ticks_lost.wrapping_add(input.elapsed.saturating_sub(1));
@@ -629,7 +414,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
     }
 
     /// Beams of the millisecond from k + 1; events count where the path position is then.
-    fn beam_output(&mut self, laser_fault: [bool; crate::io::SIDES]) -> BeamOutput {
+    fn beam_output(&mut self, laser_fault: [bool; SIDES]) -> BeamOutput {
         let then = self.along[1];
         let armed = self.state == State::Running;
         if armed {

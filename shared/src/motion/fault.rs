@@ -55,7 +55,7 @@ pub enum Fault {
         limit_um: f32,
     },
     /// A limit switch was pressed outside homing.
-    #[error("limit switch {} of {} is pressed; jog away from it", if *positive { "+" } else { "−" }, MOTOR_NAMES[*motor as usize])]
+    #[error("limit switch {} of {} is pressed; reset and home: the search leads away from it", if *positive { "+" } else { "−" }, MOTOR_NAMES[*motor as usize])]
     LimitSwitch {
         /// Index of the motor.
         motor: u8,

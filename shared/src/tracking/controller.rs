@@ -7,17 +7,18 @@
 //! Lost seam, saturation, a soft limit and a silent motion board do not switch the drives off: they are kept as
 //! the fault for status and telemetry, the PC stops the beams, and the slides go on as well as they can.
 
+mod following;
+mod requests;
+
 use super::clock::ClockRelation;
 use super::history::{CaptureHistory, CaptureRecord, PathHistory, Place, Pushed};
-use super::law::{LawFlag, LawState, SlideTarget};
+use super::law::LawState;
 use super::parameters::TrackerParameters;
-use super::seam::{Seam, Sight, deviation, plan};
+use super::seam::Seam;
 use super::{TrackerFault, TrackerState};
 use crate::control::{SearchInput, SearchProgress, SearchState};
 use crate::io::{Bits, Command, DacCode, SIDES, SLIDES, SlideCommand, SlideFeedback};
-use crate::protocol::{
-    Capture, ClockRequest, Datagram, Measurement, Refusal, Request, Response, TrackerSample, TrackerStatus,
-};
+use crate::protocol::{Capture, ClockRequest, Datagram, Measurement, TrackerSample};
 use crate::trajectory::Path;
 use heapless::Vec;
 
@@ -199,100 +200,10 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         }
     }
 
-    /// Answers a request of the PC; `unsent` datagrams could not be sent so far.
-    pub fn handle(&mut self, request: &Request, unsent: u32) -> Response {
-        let result = match request {
-            Request::Status => return Response::TrackerStatus(self.status(unsent)),
-            Request::ConfigureTracker(config) => self.allow(&[TrackerState::Off]).and_then(|()| {
-                self.parameters = Some(config.build().map_err(Refusal::Parameter)?);
-                self.slides = Default::default();
-                // A path was planned for the machine it was loaded for.
-                self.path.clear(0);
-                self.forget_seam();
-                Ok(())
-            }),
-            Request::Home => self.home(),
-            Request::Disable => {
-                if self.state != TrackerState::Fault {
-                    self.state = TrackerState::Off;
-                }
-                Ok(())
-            }
-            Request::Reset => self.reset(),
-            Request::ClearPath { id } => self.allow_all_but_tracking().map(|()| {
-                self.path.clear(*id);
-                self.forget_seam();
-            }),
-            Request::LoadKnots(knots) => self
-                .allow_all_but_tracking()
-                .and_then(|()| Ok(self.path.append(knots)?)),
-            // Of the session, or of the motion board.
-            Request::Hello { .. }
-            | Request::Subscribe { .. }
-            | Request::ConfigureMotion(_)
-            | Request::PathStatesTo { .. }
-            | Request::LoadEvent(_)
-            | Request::Run { .. }
-            | Request::Hold
-            | Request::Resume
-            | Request::Stop => Err(Refusal::NotMine),
-        };
-        match result {
-            Ok(()) => Response::Done,
-            Err(refusal) => Response::Refused(refusal),
-        }
-    }
-
     /// Forgets what was seen, and what was photographed but not yet answered.
     fn forget_seam(&mut self) {
         self.seam.forget();
         self.captures.forget();
-    }
-
-    fn home(&mut self) -> Result<(), Refusal> {
-        let parameters = self.parameters.as_ref().ok_or(Refusal::NotConfigured)?;
-        self.allow(&[TrackerState::Off, TrackerState::Ready])?;
-        self.searches = parameters
-            .slides
-            .iter()
-            .zip(self.feedback.counts)
-            .map(|(slide, counts)| slide.search.start(counts))
-            .collect();
-        for slide in &mut self.slides {
-            slide.offset = None;
-        }
-        self.state = TrackerState::Homing;
-        self.forget_seam();
-        Ok(())
-    }
-
-    /// Forgets the fault; a board in fault goes off if the cause is gone.
-    fn reset(&mut self) -> Result<(), Refusal> {
-        if self.state == TrackerState::Fault {
-            if self.feedback.estop || self.feedback.drive_fault.any() {
-                return Err(Refusal::CauseRemains);
-            }
-            self.state = TrackerState::Off;
-        }
-        self.faults.clear();
-        Ok(())
-    }
-
-    fn allow(&self, states: &[TrackerState]) -> Result<(), Refusal> {
-        if states.contains(&self.state) {
-            Ok(())
-        } else {
-            Err(Refusal::WrongTrackerState { state: self.state })
-        }
-    }
-
-    fn allow_all_but_tracking(&self) -> Result<(), Refusal> {
-        self.allow(&[
-            TrackerState::Off,
-            TrackerState::Homing,
-            TrackerState::Ready,
-            TrackerState::Fault,
-        ])
     }
 
     /// Where the machine is on its path at the motion board's time `motion_now_us`; `None` if the newest path
@@ -417,128 +328,6 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         self.slides.iter().all(|slide| slide.offset.is_some())
     }
 
-    /// Ready and tracking: one tick of the control law toward seam, plan or rest.
-    fn follow(
-        &mut self,
-        parameters: &TrackerParameters,
-        motion_now: Option<u64>,
-        place: Option<&Place>,
-    ) -> SlideCommand {
-        let on_path = place.filter(|p| p.path_id == self.path.id());
-        let tracking = on_path.is_some_and(|p| p.tracking) && self.path.len() >= 2;
-        if self.state == TrackerState::Tracking && place.is_none() {
-            let silent_ms = motion_now.map_or(u64::MAX, |now| self.silent_us(now)) / 1000;
-            self.report(TrackerFault::PathStale {
-                silent_ms: u32::try_from(silent_ms).unwrap_or(u32::MAX),
-            });
-        }
-        if tracking && self.state == TrackerState::Ready {
-            self.seam.begin();
-            for slide in &mut self.slides {
-                slide.arrived = false;
-            }
-        }
-        if !tracking && self.state == TrackerState::Tracking {
-            // Should there be no plan to follow, stay here.
-            for slide in &mut self.slides {
-                slide.target = slide.position;
-            }
-        }
-        self.state = if tracking {
-            TrackerState::Tracking
-        } else {
-            TrackerState::Ready
-        };
-        let plan = on_path.and_then(|p| plan(parameters, &self.path, p.s, p.speed));
-        let targets = match (plan, on_path) {
-            (Some(plan), Some(place)) if tracking => self.seam_targets(parameters, place, &plan),
-            (Some(plan), _) => plan.map(Some),
-            (None, _) => self.slides.map(|slide| Some(SlideTarget::rest(slide.target))),
-        };
-        let mut command = Command::SAFE;
-        command.enable = true;
-        for (i, target) in targets.into_iter().enumerate() {
-            command.dac[i] = self.drive(parameters, i, target);
-        }
-        command
-    }
-
-    /// Targets while tracking: the seam where it is known, the plan where it was not seen yet, none where it
-    /// was lost; all relative to where the heads really are.
-    fn seam_targets(
-        &mut self,
-        parameters: &TrackerParameters,
-        place: &Place,
-        plan: &[SlideTarget; SLIDES],
-    ) -> [Option<SlideTarget>; SLIDES] {
-        // Of the newest state as it was: an extrapolated pose would show a bend of the path as a deviation.
-        let off = self
-            .history
-            .newest()
-            .and_then(|(newest, _)| deviation(&parameters.heads, &self.path, &newest))
-            .unwrap_or([0.0; SLIDES]);
-        let mut targets = [None; SLIDES];
-        for (i, target) in targets.iter_mut().enumerate() {
-            let slide = &mut self.slides[i];
-            let in_plan = match self.seam.sight(parameters, i, place.s, place.speed) {
-                Sight::Seam(target) => {
-                    let away = libm::fabs(target.position - off[i] - slide.position);
-                    slide.arrived |= away <= parameters.map.gate;
-                    target
-                }
-                Sight::NotYet => {
-                    if place.beams[i / 2] {
-                        self.report(TrackerFault::SeamNotSeen {
-                            side: i as u8 / 2,
-                            s_mm: place.s as f32,
-                        });
-                    }
-                    plan[i]
-                }
-                Sight::Lost => {
-                    self.report(TrackerFault::LostSeam {
-                        side: i as u8 / 2,
-                        s_mm: place.s as f32,
-                    });
-                    continue;
-                }
-            };
-            *target = Some(SlideTarget {
-                position: in_plan.position - off[i],
-                ..in_plan
-            });
-        }
-        targets
-    }
-
-    /// One tick of the control law of slide `i`.
-    fn drive(&mut self, parameters: &TrackerParameters, i: usize, target: Option<SlideTarget>) -> DacCode {
-        let slide = &mut self.slides[i];
-        slide.target = target.map_or(slide.position, |t| t.position);
-        let output = slide.law.step(&parameters.slides[i].law, target, slide.position);
-        slide.saturated_ticks = match output.flag {
-            LawFlag::Saturated => slide.saturated_ticks.saturating_add(1),
-            LawFlag::Free | LawFlag::NoTarget | LawFlag::SoftLimit => 0,
-        };
-        if self.state == TrackerState::Tracking {
-            // On its first way to the seam a slide is as fast as it can be; that takes a whole travel at most.
-            let first_way = if slide.arrived {
-                0
-            } else {
-                parameters.slides[i].travel_ticks
-            };
-            let (ms, position_mm) = (slide.saturated_ticks, slide.position as f32);
-            let slide = i as u8;
-            if ms > parameters.saturation_ticks.saturating_add(first_way) {
-                self.report(TrackerFault::Saturated { slide, ms });
-            }
-            if output.flag == LawFlag::SoftLimit {
-                self.report(TrackerFault::SoftLimit { slide, position_mm });
-            }
-        }
-        output.dac
-    }
-
     /// Latches a capture.
     fn strobe(&mut self, input: &TickInput, motion_time_us: u64, place: Place) -> Capture {
         let slides = self.slides.map(|slide| slide.position);
@@ -591,29 +380,6 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             truth_mm: input.truth,
             target_mm: self.slides.map(|slide| slide.target),
             dac: command.dac.map(|code| code.0),
-        }
-    }
-
-    fn status(&self, unsent: u32) -> TrackerStatus {
-        let (path_states, path_states_missing) = self.history.counters();
-        let (accepted, rejected) = self.seam.counters();
-        TrackerStatus {
-            state: self.state,
-            fault: self.faults.first().copied(),
-            homed: self.homed(),
-            slides_mm: self.slides.map(|slide| slide.position),
-            path_id: self.path.id(),
-            knots: self.path.len() as u16,
-            ticks: self.ticks,
-            lost: self.lost,
-            path_states,
-            path_states_missing,
-            clock_residual_us: self.clock.residual_us() as f32,
-            clock_settled: self.clock.settled(),
-            accepted,
-            rejected,
-            too_old: self.too_old,
-            unsent,
         }
     }
 }

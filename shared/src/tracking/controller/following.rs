@@ -1,0 +1,133 @@
+//! Ready and tracking: where the slides should be, and one tick towards it.
+
+use super::TrackerController;
+use crate::io::{Command, DacCode, SLIDES, SlideCommand};
+use crate::tracking::history::Place;
+use crate::tracking::law::{LawFlag, SlideTarget};
+use crate::tracking::parameters::TrackerParameters;
+use crate::tracking::seam::{Sight, deviation, plan};
+use crate::tracking::{TrackerFault, TrackerState};
+
+impl<const KNOTS: usize> TrackerController<KNOTS> {
+    /// Ready and tracking: one tick of the control law toward seam, plan or rest.
+    pub(super) fn follow(
+        &mut self,
+        parameters: &TrackerParameters,
+        motion_now: Option<u64>,
+        place: Option<&Place>,
+    ) -> SlideCommand {
+        let on_path = place.filter(|p| p.path_id == self.path.id());
+        let tracking = on_path.is_some_and(|p| p.tracking) && self.path.len() >= 2;
+        if self.state == TrackerState::Tracking && place.is_none() {
+            let silent_ms = motion_now.map_or(u64::MAX, |now| self.silent_us(now)) / 1000;
+            self.report(TrackerFault::PathStale {
+                silent_ms: u32::try_from(silent_ms).unwrap_or(u32::MAX),
+            });
+        }
+        if tracking && self.state == TrackerState::Ready {
+            self.seam.begin();
+            for slide in &mut self.slides {
+                slide.arrived = false;
+            }
+        }
+        if !tracking && self.state == TrackerState::Tracking {
+            // Should there be no plan to follow, stay here.
+            for slide in &mut self.slides {
+                slide.target = slide.position;
+            }
+        }
+        self.state = if tracking {
+            TrackerState::Tracking
+        } else {
+            TrackerState::Ready
+        };
+        let plan = on_path.and_then(|p| plan(parameters, &self.path, p.s, p.speed));
+        let targets = match (plan, on_path) {
+            (Some(plan), Some(place)) if tracking => self.seam_targets(parameters, place, &plan),
+            (Some(plan), _) => plan.map(Some),
+            (None, _) => self.slides.map(|slide| Some(SlideTarget::rest(slide.target))),
+        };
+        let mut command = Command::SAFE;
+        command.enable = true;
+        for (i, target) in targets.into_iter().enumerate() {
+            command.dac[i] = self.drive(parameters, i, target);
+        }
+        command
+    }
+
+    /// Targets while tracking: the seam where it is known, the plan where it was not seen yet, none where it
+    /// was lost; all relative to where the heads really are.
+    fn seam_targets(
+        &mut self,
+        parameters: &TrackerParameters,
+        place: &Place,
+        plan: &[SlideTarget; SLIDES],
+    ) -> [Option<SlideTarget>; SLIDES] {
+        // Of the newest state as it was: an extrapolated pose would show a bend of the path as a deviation.
+        let off = self
+            .history
+            .newest()
+            .and_then(|(newest, _)| deviation(&parameters.heads, &self.path, &newest))
+            .unwrap_or([0.0; SLIDES]);
+        let mut targets = [None; SLIDES];
+        for (i, target) in targets.iter_mut().enumerate() {
+            let slide = &mut self.slides[i];
+            let in_plan = match self.seam.sight(parameters, i, place.s, place.speed) {
+                Sight::Seam(target) => {
+                    let away = libm::fabs(target.position - off[i] - slide.position);
+                    slide.arrived |= away <= parameters.map.gate;
+                    target
+                }
+                Sight::NotYet => {
+                    if place.beams[i / 2] {
+                        self.report(TrackerFault::SeamNotSeen {
+                            side: i as u8 / 2,
+                            s_mm: place.s as f32,
+                        });
+                    }
+                    plan[i]
+                }
+                Sight::Lost => {
+                    self.report(TrackerFault::LostSeam {
+                        side: i as u8 / 2,
+                        s_mm: place.s as f32,
+                    });
+                    continue;
+                }
+            };
+            *target = Some(SlideTarget {
+                position: in_plan.position - off[i],
+                ..in_plan
+            });
+        }
+        targets
+    }
+
+    /// One tick of the control law of slide `i`.
+    fn drive(&mut self, parameters: &TrackerParameters, i: usize, target: Option<SlideTarget>) -> DacCode {
+        let slide = &mut self.slides[i];
+        slide.target = target.map_or(slide.position, |t| t.position);
+        let output = slide.law.step(&parameters.slides[i].law, target, slide.position);
+        slide.saturated_ticks = match output.flag {
+            LawFlag::Saturated => slide.saturated_ticks.saturating_add(1),
+            LawFlag::Free | LawFlag::NoTarget | LawFlag::SoftLimit => 0,
+        };
+        if self.state == TrackerState::Tracking {
+            // On its first way to the seam a slide is as fast as it can be; that takes a whole travel at most.
+            let first_way = if slide.arrived {
+                0
+            } else {
+                parameters.slides[i].travel_ticks
+            };
+            let (ms, position_mm) = (slide.saturated_ticks, slide.position as f32);
+            let slide = i as u8;
+            if ms > parameters.saturation_ticks.saturating_add(first_way) {
+                self.report(TrackerFault::Saturated { slide, ms });
+            }
+            if output.flag == LawFlag::SoftLimit {
+                self.report(TrackerFault::SoftLimit { slide, position_mm });
+            }
+        }
+        output.dac
+    }
+}

@@ -1,0 +1,120 @@
+//! What the PC may ask of the tracker board, and what it is told.
+
+use super::TrackerController;
+use crate::protocol::{Refusal, Request, Response, TrackerStatus};
+use crate::tracking::TrackerState;
+
+impl<const KNOTS: usize> TrackerController<KNOTS> {
+    /// Answers a request of the PC; `unsent` datagrams could not be sent so far.
+    pub fn handle(&mut self, request: &Request, unsent: u32) -> Response {
+        let result = match request {
+            Request::Status => return Response::TrackerStatus(self.status(unsent)),
+            Request::ConfigureTracker(config) => self.allow(&[TrackerState::Off]).and_then(|()| {
+                self.parameters = Some(config.build().map_err(Refusal::Parameter)?);
+                self.slides = Default::default();
+                // A path was planned for the machine it was loaded for.
+                self.path.clear(0);
+                self.forget_seam();
+                Ok(())
+            }),
+            Request::Home => self.home(),
+            Request::Disable => {
+                if self.state != TrackerState::Fault {
+                    self.state = TrackerState::Off;
+                }
+                Ok(())
+            }
+            Request::Reset => self.reset(),
+            Request::ClearPath { id } => self.allow_all_but_tracking().map(|()| {
+                self.path.clear(*id);
+                self.forget_seam();
+            }),
+            Request::LoadKnots(knots) => self
+                .allow_all_but_tracking()
+                .and_then(|()| Ok(self.path.append(knots)?)),
+            // Of the session, or of the motion board.
+            Request::Hello { .. }
+            | Request::Subscribe { .. }
+            | Request::ConfigureMotion(_)
+            | Request::PathStatesTo { .. }
+            | Request::LoadEvent(_)
+            | Request::Run { .. }
+            | Request::Hold
+            | Request::Resume
+            | Request::Stop => Err(Refusal::NotMine),
+        };
+        match result {
+            Ok(()) => Response::Done,
+            Err(refusal) => Response::Refused(refusal),
+        }
+    }
+
+    fn home(&mut self) -> Result<(), Refusal> {
+        let parameters = self.parameters.as_ref().ok_or(Refusal::NotConfigured)?;
+        self.allow(&[TrackerState::Off, TrackerState::Ready])?;
+        self.searches = parameters
+            .slides
+            .iter()
+            .zip(self.feedback.counts)
+            .map(|(slide, counts)| slide.search.start(counts))
+            .collect();
+        for slide in &mut self.slides {
+            slide.offset = None;
+        }
+        self.state = TrackerState::Homing;
+        self.forget_seam();
+        Ok(())
+    }
+
+    /// Forgets the fault; a board in fault goes off if the cause is gone.
+    fn reset(&mut self) -> Result<(), Refusal> {
+        if self.state == TrackerState::Fault {
+            if self.feedback.estop || self.feedback.drive_fault.any() {
+                return Err(Refusal::CauseRemains);
+            }
+            self.state = TrackerState::Off;
+        }
+        self.faults.clear();
+        Ok(())
+    }
+
+    fn allow(&self, states: &[TrackerState]) -> Result<(), Refusal> {
+        if states.contains(&self.state) {
+            Ok(())
+        } else {
+            Err(Refusal::WrongTrackerState { state: self.state })
+        }
+    }
+
+    fn allow_all_but_tracking(&self) -> Result<(), Refusal> {
+        self.allow(&[
+            TrackerState::Off,
+            TrackerState::Homing,
+            TrackerState::Ready,
+            TrackerState::Fault,
+        ])
+    }
+
+    fn status(&self, unsent: u32) -> TrackerStatus {
+        let (path_states, path_states_missing) = self.history.counters();
+        let (accepted, rejected) = self.seam.counters();
+        TrackerStatus {
+            state: self.state,
+            fault: self.faults.first().copied(),
+            homed: self.homed(),
+            slides_mm: self.slides.map(|slide| slide.position),
+            path_id: self.path.id(),
+            knots: self.path.len() as u16,
+            ticks: self.ticks,
+            lost: self.lost,
+            path_states,
+            path_states_missing,
+            clock_residual_us: self.clock.residual_us() as f32,
+            clock_settled: self.clock.settled(),
+            accepted,
+            rejected,
+            too_old: self.too_old,
+            unsent,
+        }
+    }
+}
