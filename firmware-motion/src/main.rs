@@ -32,8 +32,8 @@ fn main() {}
 #[allow(unsafe_code)]
 #[rtic::app(device = crate::board::device, peripherals = false)]
 mod app {
-    use crate::board::{self, Tick, motion::Axes};
-    use crate::tasks::{self, Controller, Network, Outbox, Published, RollCall, Servo};
+    use crate::board::{self, Tick, Watchdog, motion::Axes};
+    use crate::tasks::{self, Controller, Network, Outbox, Published, Servo};
     use heapless::spsc::Queue;
 
     #[shared]
@@ -48,6 +48,7 @@ mod app {
     struct Local {
         axes: Axes,
         servo_tick: Tick,
+        watchdog: Watchdog,
         path_tick: Tick,
         outbox: Outbox,
         network: Network,
@@ -68,12 +69,13 @@ mod app {
             env!("CARGO_PKG_VERSION")
         );
         let shared = Shared {
-            servo: Servo::new(RollCall::new(board.watchdog)),
+            servo: Servo::new(),
             controller: cx.local.controller,
         };
         let local = Local {
             axes: board.axes,
             servo_tick: board.servo_tick,
+            watchdog: board.watchdog,
             path_tick: board.path_tick,
             outbox,
             network,
@@ -81,12 +83,12 @@ mod app {
         (shared, local)
     }
 
-    #[task(binds = SERVO_TICK, priority = 4, shared = [servo], local = [axes, servo_tick])]
+    #[task(binds = SERVO_TICK, priority = 4, shared = [servo], local = [axes, watchdog, servo_tick])]
     fn servo_tick(mut cx: servo_tick::Context) {
         let elapsed = cx.local.servo_tick.acknowledge();
         cx.shared
             .servo
-            .lock(|servo| tasks::servo::tick(servo, cx.local.axes, elapsed));
+            .lock(|servo| tasks::servo::tick(servo, cx.local.axes, cx.local.watchdog, elapsed));
     }
 
     #[task(binds = PATH_TICK, priority = 3, shared = [servo, controller], local = [path_tick, outbox])]
@@ -108,7 +110,9 @@ mod app {
         if cx.local.network.run(&mut cx.shared.controller) {
             rtic::pend(board::device::Interrupt::ETHERNET);
         }
-        cx.shared.servo.lock(|servo| servo.alive.network_ran());
+        cx.shared
+            .servo
+            .lock(|servo| servo.alive.seen(tasks::NETWORK_TASK));
     }
 
     #[idle]

@@ -31,7 +31,7 @@ fn main() {}
 #[allow(unsafe_code)]
 #[rtic::app(device = crate::board::device, peripherals = false)]
 mod app {
-    use crate::board::{self, Tick, tracker::Slides};
+    use crate::board::{self, Tick, Watchdog, tracker::Slides};
     use crate::tasks::{self, Alive, Controller, Network, Outbox, Published};
     use heapless::spsc::Queue;
 
@@ -47,6 +47,7 @@ mod app {
     struct Local {
         slides: Slides,
         tick: Tick,
+        watchdog: Watchdog,
         outbox: Outbox,
         network: Network,
     }
@@ -67,18 +68,19 @@ mod app {
         );
         let shared = Shared {
             controller: cx.local.controller,
-            alive: Alive::new(board.watchdog),
+            alive: tasks::ROLL_CALL,
         };
         let local = Local {
             slides: board.slides,
             tick: board.tick,
+            watchdog: board.watchdog,
             outbox,
             network,
         };
         (shared, local)
     }
 
-    #[task(binds = CONTROL_TICK, priority = 3, shared = [controller, alive], local = [tick, slides, outbox])]
+    #[task(binds = CONTROL_TICK, priority = 3, shared = [controller, alive], local = [tick, slides, watchdog, outbox])]
     fn control_tick(mut cx: control_tick::Context) {
         let periods = cx.local.tick.acknowledge();
         let published = cx
@@ -88,7 +90,9 @@ mod app {
         if cx.local.outbox.enqueue(published).is_err() {
             defmt::warn!("the network task does not keep up: a sample was dropped");
         }
-        cx.shared.alive.lock(Alive::ticked);
+        if cx.shared.alive.lock(Alive::tick) {
+            cx.local.watchdog.feed();
+        }
         rtic::pend(board::device::Interrupt::ETHERNET);
     }
 
@@ -97,7 +101,7 @@ mod app {
         if cx.local.network.run(&mut cx.shared.controller) {
             rtic::pend(board::device::Interrupt::ETHERNET);
         }
-        cx.shared.alive.lock(Alive::network_ran);
+        cx.shared.alive.lock(|alive| alive.seen(tasks::NETWORK_TASK));
     }
 
     #[idle]

@@ -16,6 +16,7 @@ pub mod kinematics;
 pub mod motion;
 pub mod parameter;
 pub mod protocol;
+pub mod roll_call;
 pub mod tracking;
 pub mod trajectory;
 pub mod units;

@@ -2,19 +2,25 @@
 
 pub mod network;
 pub mod path;
-pub mod roll_call;
 pub mod servo;
 
 use heapless::spsc::{Consumer, Producer};
 use shared::motion::MotionController;
 use shared::protocol::{MotionSample, PathState};
+use shared::roll_call::RollCall;
 
 pub use network::Network;
-pub use roll_call::RollCall;
 pub use servo::Servo;
 
 /// Knots the board has room for.
 pub const KNOTS: usize = 512;
+
+/// Who must be seen for the servo tick to feed the watchdog, every 2000 servo ticks (0.5 s) at least.
+pub const ROLL_CALL: RollCall<2> = RollCall::new(2000);
+/// The path task's place in the roll call.
+pub const PATH_TASK: usize = 0;
+/// The network task's place in the roll call.
+pub const NETWORK_TASK: usize = 1;
 
 /// State machine, path and homing.
 pub type Controller = MotionController<KNOTS>;

@@ -5,7 +5,7 @@ use crate::board;
 use link::{Address, Counters, Link, Node, Source, Storage};
 use rtic::Mutex;
 use shared::protocol::{
-    Datagram, Identity, MotionTelemetry, PathState, Request, Response, Role, SCHEMA_HASH,
+    Batch, Datagram, Identity, MotionSample, MotionTelemetry, PathState, Request, Response, Role,
 };
 
 /// Everything the network task owns.
@@ -14,7 +14,7 @@ pub struct Network {
     device: board::Network,
     outbox: OutboxReader,
     tracker: Option<Source>,
-    telemetry: MotionTelemetry,
+    telemetry: Batch<MotionSample>,
 }
 
 impl Network {
@@ -30,21 +30,18 @@ impl Network {
             prefix: board::motion::PREFIX,
             gateway: board::motion::GATEWAY,
         };
-        let identity = Identity {
-            schema_hash: SCHEMA_HASH,
-            role: Role::Motion,
-            firmware: heapless::String::try_from(env!("CARGO_PKG_VERSION")).unwrap_or_default(),
-            board: heapless::String::try_from(board::NAME).unwrap_or_default(),
-            simulated_machine: board::SIMULATED_MACHINE,
-        };
+        let identity = Identity::new(
+            Role::Motion,
+            env!("CARGO_PKG_VERSION"),
+            board::NAME,
+            board::SIMULATED_MACHINE,
+        );
         Self {
             link: Link::new(&mut device, storage, address, identity, board::now_us()),
             device,
             outbox,
             tracker: None,
-            telemetry: MotionTelemetry {
-                samples: heapless::Vec::new(),
-            },
+            telemetry: Batch::default(),
         }
     }
 
@@ -75,16 +72,9 @@ impl Network {
                 self.link.send(&Datagram::PathState(path_state), tracker);
                 self.link.flush(&mut self.device, board::now_us());
             }
-            // A full batch was sent with the sample that filled it.
-            let _ = self.telemetry.samples.push(sample);
-            if self.telemetry.samples.is_full() {
-                let samples = core::mem::take(&mut self.telemetry.samples);
-                if let Some(subscriber) = self.link.subscriber() {
-                    self.link.send(
-                        &Datagram::MotionTelemetry(MotionTelemetry { samples }),
-                        subscriber,
-                    );
-                }
+            if let Some((samples, subscriber)) = self.telemetry.push(sample).zip(self.link.subscriber()) {
+                let telemetry = Datagram::MotionTelemetry(MotionTelemetry { samples });
+                self.link.send(&telemetry, subscriber);
             }
         }
     }

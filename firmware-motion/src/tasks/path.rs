@@ -1,6 +1,6 @@
 //! The path tick: from what the servo ticks saw to the references of the next millisecond.
 
-use super::{Controller, Outbox, Servo};
+use super::{Controller, Outbox, PATH_TASK, Servo};
 use crate::board;
 use rtic::Mutex;
 use shared::motion::PathTickInput;
@@ -13,7 +13,7 @@ pub fn tick(
     elapsed: u32,
 ) -> bool {
     let report = servo.lock(|servo| {
-        servo.alive.path_ticked();
+        servo.alive.seen(PATH_TASK);
         servo.loops.take_report()
     });
     let input = PathTickInput {

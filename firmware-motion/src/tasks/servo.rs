@@ -1,32 +1,35 @@
-//! The servo tick: read the gratings, run the loops, write the drives.
+//! The servo tick: read the gratings, run the loops, write the drives; feed the watchdog if all others live.
 
-use super::RollCall;
-use crate::board::motion::Axes;
+use super::ROLL_CALL;
+use crate::board::{Watchdog, motion::Axes};
 use shared::motion::ServoLoops;
+use shared::roll_call::RollCall;
 
 /// The servo loops, and who else is alive.
 pub struct Servo {
     /// Drives off until parameters were accepted.
     pub loops: ServoLoops,
     /// Decides about the watchdog.
-    pub alive: RollCall,
+    pub alive: RollCall<2>,
 }
 
 impl Servo {
     /// Without parameters.
-    pub fn new(alive: RollCall) -> Self {
+    pub fn new() -> Self {
         Self {
             loops: ServoLoops::default(),
-            alive,
+            alive: ROLL_CALL,
         }
     }
 }
 
 /// One servo tick.
-pub fn tick(servo: &mut Servo, axes: &mut Axes, elapsed: u32) {
+pub fn tick(servo: &mut Servo, axes: &mut Axes, watchdog: &mut Watchdog, elapsed: u32) {
     let feedback = axes.read();
     let truth = axes.truth();
     let command = servo.loops.tick(&feedback, truth, elapsed);
     axes.write(&command);
-    servo.alive.servo_ticked();
+    if servo.alive.tick() {
+        watchdog.feed();
+    }
 }

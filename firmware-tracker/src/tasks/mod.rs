@@ -1,18 +1,25 @@
 //! What the tasks do; when they do it stands in `main.rs`.
 
-mod alive;
 pub mod control;
 mod network;
 
 use heapless::spsc::{Consumer, Producer};
 use shared::protocol::{Capture, ClockRequest, TrackerSample};
+use shared::roll_call::RollCall;
 use shared::tracking::TrackerController;
 
-pub use alive::Alive;
 pub use network::Network;
 
 /// Knots the board has room for.
 pub const KNOTS: usize = 512;
+
+/// Who must be seen for the control tick to feed the watchdog: the network task, every 500 control ticks
+/// (0.5 s) at least.
+pub type Alive = RollCall<1>;
+/// Everyone has a first chance.
+pub const ROLL_CALL: Alive = RollCall::new(500);
+/// The network task's place in the roll call.
+pub const NETWORK_TASK: usize = 0;
 
 /// State machine, map and control law.
 pub type Controller = TrackerController<KNOTS>;

@@ -2,11 +2,10 @@
 
 use super::{Controller, OutboxReader};
 use crate::board;
-use heapless::Vec;
 use link::{Address, Counters, Link, Node, Source, Storage};
 use rtic::Mutex;
 use shared::protocol::{
-    ClockRequest, Datagram, Identity, Request, Response, Role, SCHEMA_HASH, TrackerTelemetry,
+    Batch, ClockRequest, Datagram, Identity, Request, Response, Role, TrackerSample, TrackerTelemetry,
 };
 
 /// Everything the network task owns.
@@ -16,7 +15,7 @@ pub struct Network {
     outbox: OutboxReader,
     /// Whence the path states come.
     motion: Option<Source>,
-    telemetry: TrackerTelemetry,
+    telemetry: Batch<TrackerSample>,
 }
 
 impl Network {
@@ -32,19 +31,18 @@ impl Network {
             prefix: board::tracker::PREFIX,
             gateway: board::tracker::GATEWAY,
         };
-        let identity = Identity {
-            schema_hash: SCHEMA_HASH,
-            role: Role::Tracker,
-            firmware: heapless::String::try_from(env!("CARGO_PKG_VERSION")).unwrap_or_default(),
-            board: heapless::String::try_from(board::NAME).unwrap_or_default(),
-            simulated_machine: board::SIMULATED_MACHINE,
-        };
+        let identity = Identity::new(
+            Role::Tracker,
+            env!("CARGO_PKG_VERSION"),
+            board::NAME,
+            board::SIMULATED_MACHINE,
+        );
         Self {
             link: Link::new(&mut device, storage, address, identity, board::now_us()),
             device,
             outbox,
             motion: None,
-            telemetry: TrackerTelemetry { samples: Vec::new() },
+            telemetry: Batch::default(),
         }
     }
 
@@ -78,14 +76,9 @@ impl Network {
                     .send(&Datagram::ClockRequest(ClockRequest { asked_us }), motion);
             }
             self.link.flush(&mut self.device, board::now_us());
-            // There is room: a full batch went with the sample that filled it.
-            self.telemetry.samples.extend([published.sample]);
-            if self.telemetry.samples.is_full() {
-                let samples = core::mem::take(&mut self.telemetry.samples);
-                if let Some(subscriber) = subscriber {
-                    let telemetry = Datagram::TrackerTelemetry(TrackerTelemetry { samples });
-                    self.link.send(&telemetry, subscriber);
-                }
+            if let Some((samples, subscriber)) = self.telemetry.push(published.sample).zip(subscriber) {
+                let telemetry = Datagram::TrackerTelemetry(TrackerTelemetry { samples });
+                self.link.send(&telemetry, subscriber);
             }
         }
     }

@@ -4,19 +4,14 @@ use super::segment::{SERVO_TICKS_PER_PATH_TICK, Segment};
 use super::{Fault, MotorConfig, SERVO_PERIOD_S};
 use crate::control::{EncoderCheck, FollowingTrip, Gantry, GantryState, Pid, PidState, Setpoint};
 use crate::io::{Bits, DacCode, MOTOR_NAMES, MOTORS, MotionCommand, MotionFeedback, SIDES};
+use crate::kinematics::AXIS_UNIT;
 use crate::parameter::{ParameterError, check};
-use crate::units::DEG_PER_RAD;
 
-/// Internal units (mm or rad) in one unit of the machine file (mm or degree).
-pub const UNIT: [f64; MOTORS] = [
-    1.0,
-    1.0,
-    1.0,
-    1.0,
-    1.0 / DEG_PER_RAD,
-    1.0 / DEG_PER_RAD,
-    1.0 / DEG_PER_RAD,
-];
+/// Internal units (mm or rad) in one unit of the machine file (mm or degree): those of the motors' axes.
+pub const UNIT: [f64; MOTORS] = {
+    let [x, y, z, a, b, c] = AXIS_UNIT;
+    [x, x, y, z, a, b, c]
+};
 
 /// Motors that are coupled as a gantry; the others have loops of their own.
 const GANTRY: usize = 2;

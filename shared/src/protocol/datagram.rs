@@ -10,6 +10,28 @@ use serde::{Deserialize, Serialize};
 /// Most ticks in one telemetry datagram.
 pub const TELEMETRY_BATCH: usize = 5;
 
+/// Samples on their way into a telemetry datagram.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Batch<T> {
+    samples: Vec<T, TELEMETRY_BATCH>,
+}
+
+impl<T> Default for Batch<T> {
+    fn default() -> Self {
+        Self { samples: Vec::new() }
+    }
+}
+
+impl<T> Batch<T> {
+    /// Takes the next sample; the full batch, once it is.
+    pub fn push(&mut self, sample: T) -> Option<Vec<T, TELEMETRY_BATCH>> {
+        // There is room: a full batch left with the sample that filled it.
+        let stored = self.samples.push(sample).is_ok();
+        debug_assert!(stored);
+        self.samples.is_full().then(|| core::mem::take(&mut self.samples))
+    }
+}
+
 /// All datagrams.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 #[expect(clippy::large_enum_variant, reason = "a datagram lives in one buffer, once")]

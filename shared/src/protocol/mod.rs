@@ -9,8 +9,8 @@ pub mod framing;
 mod request;
 
 pub use datagram::{
-    Capture, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, MotionTelemetry, PathState,
-    SideMeasurement, TELEMETRY_BATCH, TrackerSample, TrackerTelemetry,
+    Batch, Capture, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, MotionTelemetry,
+    PathState, SideMeasurement, TELEMETRY_BATCH, TrackerSample, TrackerTelemetry,
 };
 pub use request::{
     Identity, Knot, LOAD_BATCH, MotionStatus, PathAction, PathEvent, Refusal, Request, Response, Role,

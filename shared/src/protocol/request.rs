@@ -112,6 +112,20 @@ pub struct Identity {
     pub simulated_machine: bool,
 }
 
+impl Identity {
+    /// A board of this table: `firmware` is a version and `board` the name of a board crate; what does not fit
+    /// is left empty.
+    pub fn new(role: Role, firmware: &str, board: &str, simulated_machine: bool) -> Self {
+        Self {
+            schema_hash: super::SCHEMA_HASH,
+            role,
+            firmware: String::try_from(firmware).unwrap_or_default(),
+            board: String::try_from(board).unwrap_or_default(),
+            simulated_machine,
+        }
+    }
+}
+
 /// Why a request was not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema, Error)]
 pub enum Refusal {

@@ -10,7 +10,7 @@ mod tracker;
 
 use super::{Boards, LinkError};
 use motion::MotionBoard;
-use shared::protocol::{ClockReply, Datagram, Identity, Request, Response, Role, SCHEMA_HASH};
+use shared::protocol::{ClockReply, Datagram, Identity, Request, Response, Role};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 use std::time::Duration;
@@ -94,13 +94,7 @@ impl Default for SimulatedBoards {
 impl SimulatedBoards {
     /// Boards that have just been switched on.
     pub fn new() -> Self {
-        let identity = |role| Identity {
-            schema_hash: SCHEMA_HASH,
-            role,
-            firmware: heapless::String::try_from(env!("CARGO_PKG_VERSION")).unwrap_or_default(),
-            board: heapless::String::try_from("simulated").unwrap_or_default(),
-            simulated_machine: true,
-        };
+        let identity = |role| Identity::new(role, env!("CARGO_PKG_VERSION"), "simulated", true);
         let mut boards = Self {
             now_us: 0,
             entered: 0,

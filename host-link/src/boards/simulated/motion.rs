@@ -4,7 +4,7 @@ use super::KNOTS;
 use plant::MotionPlant;
 use shared::io::MotionCommand;
 use shared::motion::{MotionController, PathTickInput, SERVO_TICKS_PER_PATH_TICK, ServoLoops};
-use shared::protocol::{MotionTelemetry, PathState, Request, Response};
+use shared::protocol::{Batch, MotionSample, MotionTelemetry, PathState, Request, Response};
 
 pub struct MotionBoard {
     plant: MotionPlant,
@@ -12,7 +12,8 @@ pub struct MotionBoard {
     servo: ServoLoops,
     controller: Box<MotionController<KNOTS>>,
     ticks: u32,
-    batch: MotionTelemetry,
+    batch: Batch<MotionSample>,
+    telemetry: Option<MotionTelemetry>,
     pub estop: bool,
 }
 
@@ -24,9 +25,8 @@ impl MotionBoard {
             servo: ServoLoops::default(),
             controller: Box::new(MotionController::new()),
             ticks: 0,
-            batch: MotionTelemetry {
-                samples: heapless::Vec::new(),
-            },
+            batch: Batch::default(),
+            telemetry: None,
             estop: false,
         }
     }
@@ -53,21 +53,14 @@ impl MotionBoard {
             self.servo.configure(setup);
         }
         self.servo.give(&output.order);
-        // A full batch was fetched at the servo tick that filled it.
-        let _ = self.batch.samples.push(output.sample);
+        let full = self.batch.push(output.sample);
+        self.telemetry = full.map(|samples| MotionTelemetry { samples });
         output.path_state
     }
 
-    /// A full batch of telemetry.
+    /// Telemetry to send since the last call.
     pub fn telemetry(&mut self) -> Option<MotionTelemetry> {
-        self.batch.samples.is_full().then(|| {
-            std::mem::replace(
-                &mut self.batch,
-                MotionTelemetry {
-                    samples: heapless::Vec::new(),
-                },
-            )
-        })
+        self.telemetry.take()
     }
 
     pub fn handle(&mut self, request: &Request) -> Response {
@@ -80,7 +73,7 @@ mod tests {
     use super::*;
     use crate::machine::MachineFile;
     use shared::motion::{Fault, MotionConfig, State};
-    use shared::protocol::{Knot, MotionSample, MotionStatus, PathAction, PathEvent, Refusal};
+    use shared::protocol::{Knot, MotionStatus, PathAction, PathEvent, Refusal};
     use shared::trajectory::CHANNELS;
 
     fn config() -> MotionConfig {

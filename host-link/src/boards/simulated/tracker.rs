@@ -3,14 +3,15 @@
 use super::KNOTS;
 use plant::SlidePlant;
 use shared::io::SlideCommand;
-use shared::protocol::{Capture, ClockRequest, TrackerTelemetry};
+use shared::protocol::{Batch, Capture, ClockRequest, TrackerSample, TrackerTelemetry};
 use shared::tracking::{TickInput, TrackerController};
 
 pub struct TrackerBoard {
     plant: SlidePlant,
     command: SlideCommand,
     pub controller: Box<TrackerController<KNOTS>>,
-    batch: TrackerTelemetry,
+    batch: Batch<TrackerSample>,
+    telemetry: Option<TrackerTelemetry>,
     pub estop: bool,
 }
 
@@ -20,9 +21,8 @@ impl TrackerBoard {
             plant: SlidePlant::dual_beam_tracker(),
             command: SlideCommand::SAFE,
             controller: Box::new(TrackerController::new()),
-            batch: TrackerTelemetry {
-                samples: heapless::Vec::new(),
-            },
+            batch: Batch::default(),
+            telemetry: None,
             estop: false,
         }
     }
@@ -39,20 +39,13 @@ impl TrackerBoard {
             truth,
         });
         self.command = output.command;
-        // A full batch was fetched at the control tick that filled it.
-        let _ = self.batch.samples.push(output.sample);
+        let full = self.batch.push(output.sample);
+        self.telemetry = full.map(|samples| TrackerTelemetry { samples });
         (output.capture, output.clock_request)
     }
 
-    /// A full batch of telemetry.
+    /// Telemetry to send since the last call.
     pub fn telemetry(&mut self) -> Option<TrackerTelemetry> {
-        self.batch.samples.is_full().then(|| {
-            std::mem::replace(
-                &mut self.batch,
-                TrackerTelemetry {
-                    samples: heapless::Vec::new(),
-                },
-            )
-        })
+        self.telemetry.take()
     }
 }

@@ -1,0 +1,55 @@
+//! Who is alive: one task feeds the watchdog, and only while all the others were seen lately.
+
+/// Tasks `0..N` that must be seen every so many ticks of the one that counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RollCall<const N: usize> {
+    patience: u16,
+    left: [u16; N],
+}
+
+impl<const N: usize> RollCall<N> {
+    /// A task that was not seen for `patience` ticks is dead; everyone has a first chance.
+    pub const fn new(patience: u16) -> Self {
+        Self {
+            patience,
+            left: [patience; N],
+        }
+    }
+
+    /// Task number `task` ran.
+    pub fn seen(&mut self, task: usize) {
+        self.left[task] = self.patience;
+    }
+
+    /// A tick of the task that counts; true if all the others live: feed the watchdog.
+    pub fn tick(&mut self) -> bool {
+        for left in &mut self.left {
+            *left = left.saturating_sub(1);
+        }
+        self.left.iter().all(|left| *left > 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::RollCall;
+
+    #[test]
+    fn one_dead_task_is_enough_and_a_late_one_is_forgiven() {
+        let mut roll_call = RollCall::<2>::new(4);
+        for _ in 0..10 {
+            assert!(roll_call.tick());
+            assert!(roll_call.tick());
+            roll_call.seen(0);
+            roll_call.seen(1);
+        }
+        let mut alive = 0;
+        for _ in 0..10 {
+            roll_call.seen(0);
+            alive += u32::from(roll_call.tick());
+        }
+        assert_eq!(alive, 3, "the fourth tick without task 1 is the last");
+        roll_call.seen(1);
+        assert!(roll_call.tick());
+    }
+}
