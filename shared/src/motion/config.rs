@@ -20,7 +20,7 @@ pub struct MotionConfig {
     pub gantry: GantryConfig,
     /// Beam 1 and 2.
     pub beams: [BeamConfig; SIDES],
-    /// A running path stops when the PC has not been heard for this long \[ms\].
+    /// A running path, or homing, stops when the PC has not been heard for this long \[ms\].
     pub link_timeout_ms: u32,
 }
 

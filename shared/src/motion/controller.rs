@@ -238,7 +238,8 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
 
     /// Faults that the servo ticks found, and those that leave time for a stop on the path.
     fn watch(&mut self, input: &PathTickInput) {
-        if core::mem::take(&mut self.heard) || !self.state.on_path() {
+        let moves = self.state.on_path() || self.state == State::Homing;
+        if core::mem::take(&mut self.heard) || !moves {
             self.heard_us = input.now_us;
         }
         self.cause_remains = input.report.estop || input.report.drive_fault.any();
@@ -247,10 +248,15 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         }
         let Some(machine) = &self.machine else { return };
         let silent_us = input.now_us.saturating_sub(self.heard_us);
-        if self.state.on_path() && silent_us > machine.link_timeout_us {
-            self.stop_for(Fault::LinkLost {
+        if silent_us > machine.link_timeout_us {
+            let fault = Fault::LinkLost {
                 silent_ms: (silent_us / 1000) as u32,
-            });
+            };
+            match self.state {
+                // Slow, and on no path: there is nothing to stop on.
+                State::Homing => self.trip(fault),
+                _ => self.stop_for(fault),
+            }
         }
         let faulty = input.report.laser_fault.iter().position(|fault| *fault);
         if let (State::Running, Some(side)) = (self.state, faulty) {

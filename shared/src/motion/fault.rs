@@ -82,9 +82,9 @@ pub enum Fault {
         /// Path position.
         s_mm: f32,
     },
-    /// The PC was not heard while a path was running.
+    /// The PC was not heard while a path was running, or while homing.
     #[error(
-        "the PC was silent for {silent_ms} ms while the path was running; the machine stopped on the path"
+        "the PC was silent for {silent_ms} ms while the machine moved, which was stopped; look at the connection, then reset"
     )]
     LinkLost {
         /// How long.

@@ -229,6 +229,17 @@ fn a_silent_pc_stops_the_machine_wherever_on_the_path_it_is() {
 }
 
 #[test]
+fn a_silent_pc_ends_the_search_for_the_marks() {
+    let mut bench = Bench::configured();
+    bench.done(&Request::Home);
+    bench.run_ms(490);
+    assert_eq!(bench.controller.state(), State::Homing);
+    bench.run_ms(20);
+    assert!(!bench.command.enable, "drives off");
+    assert!(matches!(bench.fault(), Some(Fault::LinkLost { .. })));
+}
+
+#[test]
 fn disabling_a_machine_that_stops_for_a_fault_keeps_the_fault() {
     let mut bench = Bench::welding();
     bench.inputs.laser_fault[1] = true;
