@@ -1,0 +1,233 @@
+//! Boards in a network, real or emulated: requests over TCP, datagrams over UDP.
+
+mod connection;
+mod stream;
+#[cfg(test)]
+mod tests;
+
+use super::{Boards, LinkError};
+use connection::Connection;
+use shared::protocol::framing;
+use shared::protocol::{DATAGRAM_PORT, Datagram, Identity, REQUEST_PORT, Request, Response, Role};
+use std::fmt;
+use std::io;
+use std::net::{IpAddr, Ipv4Addr, ToSocketAddrs};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::time::{Duration, Instant};
+
+/// Datagrams that wait for [`Boards::receive`]; about ten seconds of both boards. More are dropped and counted.
+const WAITING: usize = 4096;
+
+/// Where a board is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Endpoint {
+    /// Name or IPv4 address.
+    pub host: String,
+    /// TCP port of the requests.
+    pub request_port: u16,
+    /// UDP port of the datagrams.
+    pub datagram_port: u16,
+}
+
+impl Endpoint {
+    /// A board at `host` with the ports every board has.
+    pub fn board(host: &str) -> Self {
+        Self {
+            host: host.to_owned(),
+            request_port: REQUEST_PORT,
+            datagram_port: DATAGRAM_PORT,
+        }
+    }
+
+    /// An emulated board.
+    fn emulated(board: emulator::Endpoint) -> Self {
+        Self {
+            host: board.host.to_string(),
+            request_port: board.tcp,
+            datagram_port: board.udp,
+        }
+    }
+
+    /// Its first IPv4 address.
+    fn address(&self) -> io::Result<Ipv4Addr> {
+        (self.host.as_str(), self.request_port)
+            .to_socket_addrs()?
+            .find_map(|address| match address.ip() {
+                IpAddr::V4(address) => Some(address),
+                IpAddr::V6(_) => None,
+            })
+            .ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "the name has no IPv4 address"))
+    }
+}
+
+impl fmt::Display for Endpoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.host, self.request_port)
+    }
+}
+
+/// How long the PC waits for a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patience {
+    /// For a connection: long enough for a board that boots or gives up the last session.
+    pub connect: Duration,
+    /// For the answer to a request.
+    pub answer: Duration,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Self {
+            connect: Duration::from_secs(7),
+            answer: Duration::from_secs(3),
+        }
+    }
+}
+
+/// A session with two boards in a network.
+pub struct NetworkBoards {
+    motion: Connection,
+    tracker: Connection,
+    path_states_target: ([u8; 4], u16),
+    incoming: Receiver<Incoming>,
+    bad: Arc<AtomicU32>,
+    began: Instant,
+    /// Of emulated boards.
+    pace: Option<emulator::Pace>,
+}
+
+/// What a reader passes on.
+type Incoming = (Role, io::Result<Datagram>);
+
+impl NetworkBoards {
+    /// Connects to both boards, says Hello, and checks schema and role of each.
+    ///
+    /// `path_states_target` is where the motion board reaches the tracker board, if that is not where the PC
+    /// does (emulated boards).
+    ///
+    /// # Errors
+    /// [`LinkError::Unreachable`], [`LinkError::WrongSchema`], [`LinkError::WrongRole`], or what goes wrong
+    /// while Hello is answered.
+    pub fn connect(
+        motion: &Endpoint,
+        tracker: &Endpoint,
+        path_states_target: Option<([u8; 4], u16)>,
+        patience: Patience,
+    ) -> Result<Self, LinkError> {
+        let (sender, incoming) = sync_channel(WAITING);
+        let bad = Arc::new(AtomicU32::new(0));
+        let motion = Connection::open(Role::Motion, motion, patience, &sender, &bad)?;
+        let tracker = Connection::open(Role::Tracker, tracker, patience, &sender, &bad)?;
+        let seen_from_here = (tracker.board.ip().octets(), tracker.board.port());
+        Ok(Self {
+            path_states_target: path_states_target.unwrap_or(seen_from_here),
+            motion,
+            tracker,
+            incoming,
+            bad,
+            began: Instant::now(),
+            pace: None,
+        })
+    }
+
+    /// Connects to emulated boards, and takes part in their pace: they wait while this program has no
+    /// processor.
+    ///
+    /// # Errors
+    /// As [`NetworkBoards::connect`], or [`LinkError::BadSession`] if the boards' page cannot be opened.
+    pub fn emulated(session: &emulator::Session, patience: Patience) -> Result<Self, LinkError> {
+        let target = session.path_states_to;
+        let boards = Self::connect(
+            &Endpoint::emulated(session.motion),
+            &Endpoint::emulated(session.tracker),
+            Some((target.host.octets(), target.udp)),
+            patience,
+        )?;
+        let pace = emulator::Pace::join(&session.pace).map_err(|source| emulator::SessionError::File {
+            path: session.pace.clone(),
+            source,
+        })?;
+        Ok(Self {
+            pace: Some(pace),
+            ..boards
+        })
+    }
+
+    /// Tells emulated boards that everything they sent was handled. Where that fails they do not wait, which
+    /// costs accuracy on a busy computer and nothing else.
+    fn keep_pace(&self) {
+        if let Some(pace) = &self.pace {
+            let _ = pace.handled();
+        }
+    }
+
+    /// Datagrams that were not understood, or that came while too many waited.
+    pub fn bad_datagrams(&self) -> u32 {
+        self.bad.load(Ordering::Relaxed)
+    }
+
+    fn connection(&self, role: Role) -> &Connection {
+        match role {
+            Role::Motion => &self.motion,
+            Role::Tracker => &self.tracker,
+        }
+    }
+}
+
+impl Boards for NetworkBoards {
+    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
+        self.keep_pace();
+        match role {
+            Role::Motion => self.motion.stream.request(request),
+            Role::Tracker => self.tracker.stream.request(request),
+        }
+    }
+
+    fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
+        let waiting = self.incoming.try_recv().map_err(|_| self.keep_pace());
+        match waiting.or_else(|()| self.incoming.recv_timeout(timeout)) {
+            Ok((role, Ok(datagram))) => Ok(Some((role, datagram))),
+            Ok((role, Err(source))) => Err(LinkError::Lost { role, source }),
+            // Both readers have ended, each after an error that was returned before.
+            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => Ok(None),
+        }
+    }
+
+    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
+        let mut buffer = [0; framing::MAX_DATAGRAM];
+        let bytes = framing::encode_datagram(datagram, &mut buffer)
+            .map_err(|source| LinkError::Frame { role, source })?;
+        let connection = self.connection(role);
+        connection
+            .datagrams
+            .send_to(bytes, connection.board)
+            .map(drop)
+            .map_err(|source| LinkError::Lost { role, source })
+    }
+
+    fn now(&self) -> Duration {
+        self.began.elapsed()
+    }
+
+    fn identity(&self, role: Role) -> &Identity {
+        &self.connection(role).identity
+    }
+
+    fn path_states_target(&self) -> ([u8; 4], u16) {
+        self.path_states_target
+    }
+
+    fn datagram_port(&self, role: Role) -> u16 {
+        self.connection(role).datagram_port
+    }
+}
+
+/// Whether `error` means that a time-out has passed: systems differ in the name.
+fn waits(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
+    )
+}

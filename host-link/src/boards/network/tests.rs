@@ -1,0 +1,296 @@
+//! Sessions with boards that are threads of the test, well behaved or not.
+
+use super::*;
+use shared::protocol::{ClockRequest, Refusal, SCHEMA_HASH};
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream, UdpSocket};
+use std::thread::JoinHandle;
+
+const BRIEF: Patience = Patience {
+    connect: Duration::from_millis(500),
+    answer: Duration::from_millis(300),
+};
+const AMPLE: Duration = Duration::from_secs(10);
+
+/// A board on this machine that takes one session and answers with `answer`; the thread ends with the
+/// session. `None` leaves the request unanswered, empty bytes end the session.
+struct Fake {
+    endpoint: Endpoint,
+    datagrams: UdpSocket,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Fake {
+    fn new(mut answer: impl FnMut(Request) -> Option<Vec<u8>> + Send + 'static) -> Self {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        let datagrams = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        datagrams.set_read_timeout(Some(AMPLE)).unwrap();
+        let endpoint = Endpoint {
+            host: "127.0.0.1".into(),
+            request_port: listener.local_addr().unwrap().port(),
+            datagram_port: datagrams.local_addr().unwrap().port(),
+        };
+        let thread = std::thread::spawn(move || {
+            let (mut stream, _) = listener.accept().unwrap();
+            stream.set_read_timeout(Some(AMPLE)).unwrap();
+            let mut prefix = [0; 2];
+            while stream.read_exact(&mut prefix).is_ok() {
+                let mut body = vec![0; usize::from(u16::from_le_bytes(prefix))];
+                stream.read_exact(&mut body).unwrap();
+                let Some(bytes) = answer(framing::decode_message(&body).unwrap()) else {
+                    continue;
+                };
+                if bytes.is_empty() {
+                    return;
+                }
+                // In two pieces, as a stream may bring it.
+                let (head, tail) = bytes.split_at(1);
+                stream.write_all(head).unwrap();
+                stream.write_all(tail).unwrap();
+            }
+        });
+        Self {
+            endpoint,
+            datagrams,
+            thread: Some(thread),
+        }
+    }
+
+    /// A board of `role` that answers Hello, and everything else with `answer`.
+    fn board(role: Role, mut answer: impl FnMut(Request) -> Option<Vec<u8>> + Send + 'static) -> Self {
+        Self::new(move |request| match request {
+            Request::Hello { .. } => Some(bytes(&Response::Identity(identity(role)))),
+            request => answer(request),
+        })
+    }
+
+    fn silent(role: Role) -> Self {
+        Self::board(role, |_| None)
+    }
+}
+
+impl Drop for Fake {
+    fn drop(&mut self) {
+        // Wakes a thread that still waits for its session.
+        let _ = TcpStream::connect(("127.0.0.1", self.endpoint.request_port));
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+fn identity(role: Role) -> Identity {
+    Identity {
+        schema_hash: SCHEMA_HASH,
+        role,
+        firmware: "0.1.0".try_into().unwrap(),
+        board: "fake".try_into().unwrap(),
+        simulated_machine: true,
+    }
+}
+
+fn bytes(response: &Response) -> Vec<u8> {
+    let mut buffer = [0; 2050];
+    framing::encode_message(response, &mut buffer).unwrap().to_vec()
+}
+
+fn connect(motion: &Fake, tracker: &Fake) -> Result<NetworkBoards, LinkError> {
+    NetworkBoards::connect(&motion.endpoint, &tracker.endpoint, None, BRIEF)
+}
+
+fn message(result: Result<NetworkBoards, LinkError>) -> String {
+    result.err().expect("must not connect").to_string()
+}
+
+#[test]
+fn requests_go_to_the_board_they_are_meant_for() {
+    let answer = |request| {
+        let response = match request {
+            Request::Home => Response::Done,
+            _ => Response::Refused(Refusal::NotHomed),
+        };
+        Some(bytes(&response))
+    };
+    let motion = Fake::board(Role::Motion, answer);
+    let tracker = Fake::board(Role::Tracker, |_| {
+        Some(bytes(&Response::Refused(Refusal::NotMine)))
+    });
+    let mut boards = connect(&motion, &tracker).unwrap();
+    assert_eq!(boards.identity(Role::Tracker), &identity(Role::Tracker));
+    for _ in 0..3 {
+        assert_eq!(
+            boards.request(Role::Motion, &Request::Home).unwrap(),
+            Response::Done
+        );
+        let refused = boards.request(Role::Tracker, &Request::Home).unwrap();
+        assert_eq!(refused, Response::Refused(Refusal::NotMine));
+    }
+    let status = boards.request(Role::Motion, &Request::Status).unwrap();
+    assert_eq!(status, Response::Refused(Refusal::NotHomed));
+}
+
+#[test]
+fn datagrams_come_from_both_boards_in_order_and_bad_ones_are_counted() {
+    let (motion, tracker) = (Fake::silent(Role::Motion), Fake::silent(Role::Tracker));
+    let mut boards = connect(&motion, &tracker).unwrap();
+    let datagram = |asked_us| Datagram::ClockRequest(ClockRequest { asked_us });
+    let send = |board: &Fake, port, bytes: &[u8]| {
+        board.datagrams.send_to(bytes, ("127.0.0.1", port)).unwrap();
+    };
+    let mut buffer = [0; 64];
+    let ports = (
+        boards.datagram_port(Role::Motion),
+        boards.datagram_port(Role::Tracker),
+    );
+    send(&motion, ports.0, &[1, 2, 3, 4, 5]);
+    for k in 0..20 {
+        send(
+            &motion,
+            ports.0,
+            framing::encode_datagram(&datagram(k), &mut buffer).unwrap(),
+        );
+        send(
+            &tracker,
+            ports.1,
+            framing::encode_datagram(&datagram(100 + k), &mut buffer).unwrap(),
+        );
+    }
+    let (mut from_motion, mut from_tracker) = (0, 100);
+    for _ in 0..40 {
+        let (role, received) = boards.receive(AMPLE).unwrap().unwrap();
+        let next = match role {
+            Role::Motion => &mut from_motion,
+            Role::Tracker => &mut from_tracker,
+        };
+        assert_eq!(received, datagram(*next));
+        *next += 1;
+    }
+    assert_eq!(boards.receive(Duration::ZERO).unwrap(), None);
+    assert_eq!(boards.bad_datagrams(), 1);
+}
+
+#[test]
+fn datagrams_reach_the_board() {
+    let (motion, tracker) = (Fake::silent(Role::Motion), Fake::silent(Role::Tracker));
+    let mut boards = connect(&motion, &tracker).unwrap();
+    let datagram = Datagram::ClockRequest(ClockRequest { asked_us: 5 });
+    boards.send(Role::Tracker, &datagram).unwrap();
+    let mut buffer = [0; 64];
+    let (length, from) = tracker.datagrams.recv_from(&mut buffer).unwrap();
+    assert_eq!(framing::decode_datagram(&buffer[..length]), Ok(datagram));
+    assert_eq!(from.port(), boards.datagram_port(Role::Tracker));
+    assert_eq!(
+        boards.path_states_target(),
+        ([127, 0, 0, 1], tracker.endpoint.datagram_port)
+    );
+}
+
+#[test]
+fn a_board_that_is_not_there_is_named_with_its_address() {
+    // A port that was just free, and is not listened on.
+    let port = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))
+        .unwrap()
+        .local_addr()
+        .unwrap()
+        .port();
+    let nowhere = Endpoint {
+        request_port: port,
+        ..Endpoint::board("127.0.0.1")
+    };
+    let error = message(NetworkBoards::connect(&nowhere, &nowhere, None, BRIEF));
+    assert!(
+        error.starts_with(&format!("the motion board does not answer at 127.0.0.1:{port}")),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_name_that_does_not_exist_is_an_unreachable_board() {
+    let nobody = Endpoint::board("no such host");
+    let error = message(NetworkBoards::connect(&nobody, &nobody, None, BRIEF));
+    assert!(error.contains("does not answer at no such host:7100"), "{error}");
+}
+
+#[test]
+fn swapped_boards_are_recognised() {
+    let (motion, tracker) = (Fake::silent(Role::Motion), Fake::silent(Role::Tracker));
+    let error = message(connect(&tracker, &motion));
+    assert!(
+        error.contains("a tracker board answers") && error.contains("swapped"),
+        "{error}"
+    );
+}
+
+#[test]
+fn another_schema_is_recognised() {
+    let old = Identity {
+        schema_hash: 0x1234,
+        ..identity(Role::Motion)
+    };
+    let motion = Fake::new(move |_| Some(bytes(&Response::Identity(old.clone()))));
+    let tracker = Fake::silent(Role::Tracker);
+    let error = message(connect(&motion, &tracker));
+    assert!(
+        error.contains("another version of the protocol") && error.contains("0000000000001234"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_silent_board_is_given_up_and_its_late_answers_are_never_used() {
+    let (motion, tracker) = (Fake::silent(Role::Motion), Fake::silent(Role::Tracker));
+    let mut boards = connect(&motion, &tracker).unwrap();
+    let error = boards
+        .request(Role::Motion, &Request::Status)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("motion board was lost (no answer within 0.3 s)"),
+        "{error}"
+    );
+    assert!(matches!(
+        boards.request(Role::Motion, &Request::Status),
+        Err(LinkError::Lost {
+            role: Role::Motion,
+            ..
+        })
+    ));
+}
+
+#[test]
+fn a_board_that_hangs_up_is_lost() {
+    let motion = Fake::board(Role::Motion, |_| Some(Vec::new()));
+    let tracker = Fake::silent(Role::Tracker);
+    let mut boards = connect(&motion, &tracker).unwrap();
+    let error = boards.request(Role::Motion, &Request::Home).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            LinkError::Lost {
+                role: Role::Motion,
+                ..
+            }
+        ),
+        "{error}"
+    );
+}
+
+#[test]
+fn an_answer_that_is_no_message_is_an_error_not_a_panic() {
+    for answer in [vec![2, 0, 0xFF, 0xFF], vec![0xFF, 0xFF, 1]] {
+        let motion = Fake::board(Role::Motion, move |_| Some(answer.clone()));
+        let tracker = Fake::silent(Role::Tracker);
+        let mut boards = connect(&motion, &tracker).unwrap();
+        let error = boards.request(Role::Motion, &Request::Home).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                LinkError::Frame {
+                    role: Role::Motion,
+                    ..
+                }
+            ),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,148 @@
+//! From the targets of a program path to a smooth or straight curve and its knots.
+
+use super::{PathError, Planner, end_of};
+use crate::curve::{Curve, distance};
+use crate::nc::{Motion, ProgramPath, Target, Tip};
+use nalgebra::Vector3;
+use shared::geometry::{Pose, angle, interpolate};
+use shared::io::SIDES;
+use shared::protocol::Knot;
+use shared::trajectory::CHANNELS;
+
+/// Largest turn of the head between two knots of a straight move \[rad\].
+const STRAIGHT_TURN: f64 = 0.05;
+/// Largest angle between two chords of a path \[rad\]: a spline through a sharper corner would swing out.
+const MAX_CORNER: f64 = 0.35;
+/// Path length of a move that turns or stretches without moving the tip \[mm per degree or mm\].
+const LENGTH_PER_TURN: f64 = 1.0;
+/// Shortest path \[mm\], for moves that need next to no motion.
+const SHORTEST: f64 = 1e-3;
+
+/// A path before it is timed.
+pub(super) struct Shape {
+    pub(super) knots: Vec<Knot>,
+    pub(super) speed_error: f64,
+    /// s and program line of each target, in their order.
+    pub(super) targets: Vec<(f64, u32)>,
+}
+
+impl Shape {
+    /// Program line of the motion at `s`.
+    pub(super) fn line(&self, s: f64) -> u32 {
+        let index = self.targets.partition_point(|(end, _)| *end < s);
+        self.targets[index.min(self.targets.len() - 1)].1
+    }
+}
+
+impl Planner {
+    /// The curve of `path`, which starts at `from`.
+    pub(super) fn shape(&self, path: &ProgramPath, from: &Tip) -> Result<Shape, PathError> {
+        if let (Motion::Feed(_), [_, _, ..]) = (path.motion, path.targets.as_slice()) {
+            self.smooth(path, from)
+        } else {
+            self.straight(path, from)
+        }
+    }
+
+    /// The curve through all targets.
+    fn smooth(&self, path: &ProgramPath, from: &Tip) -> Result<Shape, PathError> {
+        let mut points = vec![self.channels(from)];
+        points.extend(path.targets.iter().map(|target| self.channels(&target.tip)));
+        for (pair, target) in points.windows(2).zip(&path.targets) {
+            if distance(&pair[0], &pair[1]) < SHORTEST {
+                return Err(PathError::NoTravel { line: target.line });
+            }
+        }
+        for (three, target) in points.windows(3).zip(&path.targets[1..]) {
+            let chord = |i: usize| position(&three[i + 1]) - position(&three[i]);
+            let turn = angle(&chord(0), &chord(1));
+            if turn > MAX_CORNER {
+                return Err(PathError::Corner {
+                    line: target.line,
+                    degrees: turn.to_degrees(),
+                });
+            }
+        }
+        let line = path.targets[0].line;
+        let curve = Curve::by_length(&points).map_err(|source| PathError::Spline { line, source })?;
+        let ends = curve.parameters()[1..].iter();
+        Ok(Shape {
+            speed_error: curve.speed_error(),
+            targets: ends.zip(&path.targets).map(|(s, t)| (*s, t.line)).collect(),
+            knots: knots_of(&curve),
+        })
+    }
+
+    /// A straight line of the tip while the head turns about one axis.
+    fn straight(&self, path: &ProgramPath, from: &Tip) -> Result<Shape, PathError> {
+        let Target { tip, line } = *end_of(path);
+        let (start, end) = (self.pose(from), self.pose(&tip));
+        let travel = (end.position - start.position).norm();
+        if matches!(path.motion, Motion::Feed(_)) && travel < SHORTEST {
+            return Err(PathError::NoTravel { line });
+        }
+        // Not the angle of the turn, but not smaller than half of it, which is all that counts here.
+        let turn = angle(&start.tangent, &end.tangent) + angle(&start.normal, &end.normal);
+        let stretch = (0..SIDES)
+            .map(|k| (tip.extension_mm[k] - from.extension_mm[k]).abs())
+            .fold(0.0, f64::max);
+        let length = match path.motion {
+            Motion::Feed(_) => travel,
+            Motion::Rapid => travel
+                .max(LENGTH_PER_TURN * turn.to_degrees())
+                .max(stretch)
+                .max(SHORTEST),
+        };
+        let count = (turn / STRAIGHT_TURN).ceil().max(1.0) as usize;
+        let mut points = Vec::new();
+        for i in 0..=count {
+            let part = i as f64 / count as f64;
+            let pose =
+                interpolate(&start, &end, part).map_err(|source| PathError::Attitude { line, source })?;
+            let extension: [f64; SIDES] = std::array::from_fn(|k| {
+                from.extension_mm[k] + (tip.extension_mm[k] - from.extension_mm[k]) * part
+            });
+            points.push(channels(&pose, &extension));
+        }
+        let s = (0..=count).map(|i| length * i as f64 / count as f64).collect();
+        let curve = Curve::through(s, &points).map_err(|source| PathError::Spline { line, source })?;
+        Ok(Shape {
+            knots: knots_of(&curve),
+            speed_error: 0.0,
+            targets: vec![(length, line)],
+        })
+    }
+
+    fn channels(&self, tip: &Tip) -> [f64; CHANNELS] {
+        channels(&self.pose(tip), &tip.extension_mm)
+    }
+}
+
+fn position(channels: &[f64; CHANNELS]) -> Vector3<f64> {
+    Vector3::new(channels[0], channels[1], channels[2])
+}
+
+fn channels(pose: &Pose, extension: &[f64; SIDES]) -> [f64; CHANNELS] {
+    let [d, t, n] = [pose.position, pose.tangent, pose.normal];
+    [
+        d.x,
+        d.y,
+        d.z,
+        t.x,
+        t.y,
+        t.z,
+        n.x,
+        n.y,
+        n.z,
+        extension[0],
+        extension[1],
+    ]
+}
+
+fn knots_of(curve: &Curve<CHANNELS>) -> Vec<Knot> {
+    let knot = |&s_mm: &f64| {
+        let [value, slope, _] = curve.at(s_mm);
+        Knot { s_mm, value, slope }
+    };
+    curve.parameters().iter().map(knot).collect()
+}

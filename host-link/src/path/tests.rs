@@ -1,0 +1,188 @@
+//! Paths planned for the shipped machine: where they lead, how fast, and what is refused.
+
+use super::*;
+use crate::nc::{Options, interpret};
+use nalgebra::Vector3;
+use shared::geometry::{angle, interpolate};
+use std::fmt::Write;
+
+fn planner() -> Planner {
+    let text = include_str!("../../../machines/dual-beam-gantry.toml");
+    Planner::build(&MachineFile::parse("m.toml", text).unwrap()).unwrap()
+}
+
+/// Plans `body` with the tip at X1000 Y1000 Z100, all angles zero.
+fn plan(body: &str) -> Result<Vec<PlannedPath>, PathError> {
+    let text = format!("G43.4\nG0 X1000 Y1000 Z100 A0 B0 C0\n{body}\nM2\n");
+    let program = interpret(&text, Options::default()).unwrap();
+    let planner = planner();
+    let from = planner.tip(&[100.0, 100.0, 900.0, 0.0, 0.0, 0.0]);
+    planner.program(&program, &from, None)
+}
+
+#[test]
+fn a_path_begins_where_the_machine_stands_and_ends_at_its_target() {
+    let planned = plan("G0 X1200 A30 C-20").unwrap();
+    let planner = planner();
+    let at = |path: &PlannedPath, s: f64| {
+        let pose = path.path().at(s).unwrap().pose().unwrap();
+        planner.kinematics().inverse(&pose).unwrap()
+    };
+    let start = at(&planned[0], 0.0);
+    for (axis, wanted) in [100.0, 100.0, 900.0, 0.0, 0.0, 0.0].into_iter().enumerate() {
+        assert!(
+            (start[axis] - wanted).abs() < 1e-9,
+            "axis {axis}: {}",
+            start[axis]
+        );
+    }
+    let end = at(&planned[1], planned[1].length_mm());
+    assert!((end[3].to_degrees() - 30.0).abs() < 1e-9 && (end[5].to_degrees() + 20.0).abs() < 1e-9);
+    let tip = planner.kinematics().forward(&end).position;
+    assert!((tip - Vector3::new(1200.0, 1000.0, 100.0)).norm() < 1e-9);
+}
+
+#[test]
+fn a_straight_move_turns_the_head_about_one_axis_at_an_even_rate() {
+    let planned = plan("G0 X1100 A80 B20 C60").unwrap();
+    let path = planned[1].path();
+    let length = planned[1].length_mm();
+    let (start, end) = (
+        path.at(0.0).unwrap().pose().unwrap(),
+        path.at(length).unwrap().pose().unwrap(),
+    );
+    for i in 0..=100 {
+        let part = f64::from(i) / 100.0;
+        let pose = path.at(part * length).unwrap().pose().unwrap();
+        let exact = interpolate(&start, &end, part).unwrap();
+        assert!((pose.position - exact.position).norm() < 1e-9);
+        let off = angle(&pose.normal, &exact.normal).max(angle(&pose.tangent, &exact.tangent));
+        assert!(off < 1e-4, "{off} rad off the geodesic at {part}");
+    }
+}
+
+#[test]
+fn rapids_use_their_part_of_the_limits_and_no_more() {
+    // Turning the head makes the pivot swing: there the acceleration is shared with the curvature.
+    for (body, least) in [("G0 Y1500", 0.49), ("G0 Z50", 0.49), ("G0 A60 B10", 0.24)] {
+        let planned = plan(body).unwrap();
+        let planner = planner();
+        let path = planned[1].path();
+        let profile = SpeedProfile::rest_to_rest(0.0, planned[1].length_mm(), &planned[1].limits).unwrap();
+        let mut used: f64 = 0.0;
+        for i in 0..=500 {
+            let state = profile.at(profile.duration() * f64::from(i) / 500.0);
+            let at = shared::trajectory::reference(planner.kinematics(), &path, state).unwrap();
+            for axis in 0..AXES {
+                let limits = &planner.drives[axis];
+                let speed = at.velocity[axis].abs() / limits.velocity;
+                let acceleration = at.acceleration[axis].abs() / limits.acceleration;
+                assert!(
+                    speed <= 0.501 && acceleration <= 0.501,
+                    "{body}: axis {axis} {speed} {acceleration}"
+                );
+                used = used.max(speed).max(acceleration);
+            }
+        }
+        assert!(used > least, "{body} uses only {used} of every limit");
+    }
+}
+
+fn arc(radius: f64, feed: f64) -> String {
+    let mut body = format!("F{feed}\nG1\n");
+    for i in 1..=40 {
+        let phi = f64::from(i) * 10.0 / radius;
+        let (x, y) = (1000.0 + radius * phi.sin(), 1000.0 + radius * (1.0 - phi.cos()));
+        let c = phi.to_degrees();
+        writeln!(body, "X{x:.6} Y{y:.6} C{c:.6} V1={:.4}", 0.01 * f64::from(i)).unwrap();
+    }
+    body
+}
+
+#[test]
+fn a_smooth_path_runs_by_its_length_through_every_point() {
+    let planned = plan(&arc(600.0, 5000.0)).unwrap();
+    let weld = &planned[1];
+    assert!((weld.length_mm() - 400.0).abs() < 1e-3);
+    assert!(weld.speed_error < 1e-4, "{}", weld.speed_error);
+    assert_eq!(weld.knots.len(), 41);
+    let last = weld.knots[40];
+    assert!((last.value[9] - 0.4).abs() < 1e-9);
+    let middle = weld.path().at(205.0).unwrap().pose().unwrap();
+    let phi = 205.0_f64 / 600.0;
+    let exact = Vector3::new(1000.0 + 600.0 * phi.sin(), 1600.0 - 600.0 * phi.cos(), 100.0);
+    assert!(
+        (middle.position - exact).norm() < 2e-4,
+        "{}",
+        (middle.position - exact).norm()
+    );
+}
+
+#[test]
+fn events_happen_where_their_motion_starts() {
+    let body = "F5000\nM67 E0 Q100\nG1 X1010\nM62 P0\nX1110\nM63 P0\nX1120";
+    let weld = &plan(body).unwrap()[1];
+    let places: Vec<f64> = weld.events.iter().map(|event| event.s_mm).collect();
+    for (seen, wanted) in places.iter().zip([0.0, 10.0, 110.0]) {
+        assert!((seen - wanted).abs() < 1e-9);
+    }
+    let (on, off) = weld.weld().unwrap();
+    assert!((on - 10.0).abs() < 1e-9 && (off - 110.0).abs() < 1e-9);
+}
+
+#[test]
+fn leaving_the_travel_names_axis_amount_and_line() {
+    let error = plan("G0 X1000\nG0 Y3020").unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "line 4: axis Y would have to go to 3020.000, 20.000 beyond its travel (0…3000 mm)"
+    );
+    let error = plan("G0 B31").unwrap_err();
+    assert!(matches!(error, PathError::Travel { axis: "B", beyond, .. } if (beyond - 1.0).abs() < 1e-6));
+    let error = plan("G0 X1010 V2=12.5").unwrap_err();
+    assert!(matches!(error, PathError::Travel { axis: "V2", beyond, .. } if (beyond - 0.5).abs() < 1e-6));
+}
+
+#[test]
+fn a_feed_above_the_axes_names_the_limiting_one() {
+    // The head stands upright: only the tip's own speed counts, 20 m/min along Y.
+    let error = plan("F21000\nG1 Y1400").unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "line 4: the feed of 21000 mm/min is too high, the speed of Y allows 20000 mm/min"
+    );
+    assert!(plan(&arc(600.0, 9000.0)).is_ok());
+}
+
+#[test]
+fn what_is_not_smooth_is_refused_with_its_line() {
+    let error = plan("F600\nG1 X1010\nY1010").unwrap_err();
+    assert!(matches!(error, PathError::Corner { line: 5, degrees } if (degrees - 90.0).abs() < 1e-9));
+    assert_eq!(plan("F600\nG1 A10").unwrap_err(), PathError::NoTravel { line: 4 });
+    assert!(plan("F600\nG61.1\nG1 X1010\nY1010").is_ok());
+    let events = MAX_EVENTS + 1;
+    let error = plan(&format!("{}F600\nG1 X1010", "M62 P0\n".repeat(events))).unwrap_err();
+    assert!(matches!(error, PathError::TooManyEvents { events: seen, .. } if seen == events));
+    let points: String = (1..=CAPACITY).map(|i| format!("G1 X{}\n", 1000 + i)).collect();
+    let error = plan(&format!("F600\n{points}")).unwrap_err();
+    assert_eq!(
+        error,
+        PathError::TooLong {
+            line: 4,
+            knots: CAPACITY + 1
+        }
+    );
+}
+
+#[test]
+fn parking_ends_at_the_park_position() {
+    let planner = planner();
+    let from = planner.tip(&[1000.0, 1000.0, 700.0, 20.0, 5.0, -10.0]);
+    let paths = planner.park(&from).unwrap();
+    let last = paths.last().unwrap();
+    let pose = last.path().at(last.length_mm()).unwrap().pose().unwrap();
+    let axes = planner.kinematics().inverse(&pose).unwrap();
+    for (axis, wanted) in planner.planning.park.to_array().into_iter().enumerate() {
+        assert!((axes[axis] / planner.drives[axis].unit - wanted).abs() < 1e-6);
+    }
+}

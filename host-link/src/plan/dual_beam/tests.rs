@@ -1,0 +1,132 @@
+//! Plans of the shipped seams: the program, where the spots are, and what is refused.
+
+use super::*;
+use crate::nc::{Options, interpret};
+use crate::path::Planner;
+use crate::plan::OtherSeam;
+use crate::seam::{read_main_curve, read_other_curve};
+use std::path::Path;
+
+fn shipped(name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)
+}
+
+fn machine() -> MachineFile {
+    MachineFile::read(&shipped("machines/dual-beam-gantry.toml")).unwrap()
+}
+
+fn seams() -> (Vec<SeamPoint>, Vec<Vector3<f64>>) {
+    let main = read_main_curve(&shipped("programs/t-seam-400-seam1.csv")).unwrap();
+    (
+        main,
+        read_other_curve(&shipped("programs/t-seam-400-seam2.csv")).unwrap(),
+    )
+}
+
+fn options() -> PlanOptions {
+    PlanOptions {
+        title: "t-seam-400".into(),
+        speed_m_min: 5.0,
+        power_w: [2000.0; 2],
+        paper: false,
+    }
+}
+
+#[test]
+fn the_shipped_program_is_the_plan_of_the_shipped_seams() {
+    let (main, other) = seams();
+    let plan = plan_dual_beam(&main, &other, &machine(), &options()).unwrap();
+    let text = std::fs::read_to_string(shipped("programs/t-seam-400.ngc")).unwrap();
+    assert!(text == plan.program, "write it anew: host-link plan dual-beam");
+}
+
+#[test]
+fn on_the_planned_path_both_spots_stay_on_their_seams() {
+    let (main, other) = seams();
+    let machine = machine();
+    for paper in [false, true] {
+        let options = PlanOptions { paper, ..options() };
+        let plan = plan_dual_beam(&main, &other, &machine, &options).unwrap();
+        let program = interpret(&plan.program, Options::default()).unwrap();
+        let planner = Planner::build(&machine).unwrap();
+        let from = planner.tip(&machine.planning.park.to_array());
+        let paths = planner.program(&program, &from, None).unwrap();
+        let weld = paths.iter().find(|path| path.weld().is_some()).unwrap();
+        let (start, end) = weld.weld().unwrap();
+        assert!((end - start - 400.0).abs() < 0.5 && start > 50.0);
+
+        let heads = machine.tracker.head.build().unwrap();
+        let first: Vec<Vector3<f64>> = main.iter().map(|p| p.position).collect();
+        let seams = [
+            SmoothSeam::through(&first).unwrap(),
+            SmoothSeam::through(&other).unwrap(),
+        ];
+        let path = weld.path();
+        let mut worst: f64 = 0.0;
+        for i in 0..=2000 {
+            let point = path.at(start + (end - start) * f64::from(i) / 2000.0).unwrap();
+            let pose = point.pose().unwrap();
+            for (side, seam) in seams.iter().enumerate() {
+                let spot = heads.spot(&pose, side).point(0.0, 0.0, point.v_follow()[side]);
+                let near = seam.cut(&spot, &pose.tangent, 5.0, None).unwrap();
+                worst = worst.max((near.point - spot).norm());
+            }
+        }
+        assert!(worst < 5e-4, "paper {paper}: a spot is {worst} mm off its seam");
+        assert!(plan.max_gap < 1e-9);
+    }
+}
+
+#[test]
+fn what_cannot_be_welded_is_refused_with_its_place() {
+    let (main, other) = seams();
+    let machine = machine();
+    let plan = |main: &[SeamPoint], other: &[Vector3<f64>]| {
+        plan_dual_beam(main, other, &machine, &options())
+            .map(|_| ())
+            .unwrap_err()
+    };
+    let source = |error: PlanError| match error {
+        PlanError::Place { source, s, .. } => (source, s),
+        other => panic!("{other}"),
+    };
+    let mirrored: Vec<Vector3<f64>> = main
+        .iter()
+        .zip(&other)
+        .map(|(p, q)| p.position * 2.0 - q)
+        .collect();
+    assert_eq!(source(plan(&main, &mirrored)), (LocateError::CrossBefore, 0.0));
+    let away: Vec<_> = other.iter().map(|q| q + Vector3::y() * 60.0).collect();
+    assert_eq!(source(plan(&main, &away)), (LocateError::TooFar, 0.0));
+    let (error, s) = source(plan(&main, &other[..60]));
+    assert_eq!(error, LocateError::Miss);
+    assert!(
+        (310.0..325.0).contains(&s),
+        "seam 2 ends at 295 mm and goes on for 20 mm, refused at {s}"
+    );
+    let slow = PlanOptions {
+        speed_m_min: 0.0,
+        ..options()
+    };
+    assert!(matches!(
+        plan_dual_beam(&main, &other, &machine, &slow),
+        Err(PlanError::Option {
+            name: "the speed",
+            ..
+        })
+    ));
+}
+
+#[test]
+fn the_runs_follow_their_formula() {
+    let mut machine = machine();
+    // 75·(150/500 + 500/10000) + 3 + 2 + 150·(0.01 + 4·0.005 + 12/50 + 0.1)
+    let (run_in, run_out) = run_lengths(&machine);
+    assert!((run_in - 86.75).abs() < 1e-9 && run_out == 40.0);
+    // Never at full acceleration: 75·2·√(150/2000) + …
+    machine.planning.path_jerk_mm_s3 = 2000.0;
+    machine.planning.path_acceleration_mm_s2 = 1000.0;
+    let (run_in, run_out) = run_lengths(&machine);
+    let speed_up = 150.0 * (150.0_f64 / 2000.0).sqrt();
+    assert!((run_out - speed_up).abs() < 1e-9 && (run_in - speed_up - 60.5).abs() < 1e-9);
+}
