@@ -45,6 +45,18 @@ pub enum PathError {
         /// Speed or acceleration.
         quantity: &'static str,
     },
+    /// A beam cannot give that much.
+    #[error("line {line}: {watt} W are more than beam {} gives, at most {largest} W", side + 1)]
+    Power {
+        /// Line of the program.
+        line: u32,
+        /// 0 or 1.
+        side: u8,
+        /// Wanted.
+        watt: f64,
+        /// Power at +10 V.
+        largest: f64,
+    },
     /// The speed must be positive.
     #[error("a feed of {0} mm/min is not possible")]
     NoFeed(f64),

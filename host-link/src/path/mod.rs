@@ -9,7 +9,7 @@ mod tests;
 pub use error::PathError;
 
 use crate::machine::{MachineFile, PlanningConfig};
-use crate::nc::{Motion, Program, ProgramPath, Target, Tip};
+use crate::nc::{Motion, Program, ProgramEvent, ProgramPath, Target, Tip};
 use limits::{DRIVES, DriveLimits};
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
@@ -75,6 +75,8 @@ impl PlannedPath {
 pub struct Planner {
     kinematics: DualBeam,
     drives: [DriveLimits; DRIVES],
+    /// Of each beam \[W\].
+    largest_power: [f64; SIDES],
     planning: PlanningConfig,
 }
 
@@ -84,6 +86,7 @@ impl Planner {
         Ok(Self {
             drives: DriveLimits::build_all(machine)?,
             kinematics: machine.motion.kinematics.build()?,
+            largest_power: machine.motion.beams.clone().map(|beam| beam.power_at_10v_w),
             planning: machine.planning.clone(),
         })
     }
@@ -170,6 +173,7 @@ impl Planner {
                 events: path.events.len(),
             });
         }
+        self.check_powers(&path.events)?;
         let mut planned = PlannedPath {
             motion: path.motion,
             limits: SpeedLimits {
@@ -200,6 +204,25 @@ impl Planner {
             }
         };
         Ok(planned)
+    }
+
+    fn check_powers(&self, events: &[ProgramEvent]) -> Result<(), PathError> {
+        for event in events {
+            let PathAction::Power { side, watt } = event.action else {
+                continue;
+            };
+            let largest = self.largest_power[usize::from(side)];
+            if watt > largest {
+                let line = event.line;
+                return Err(PathError::Power {
+                    line,
+                    side,
+                    watt,
+                    largest,
+                });
+            }
+        }
+        Ok(())
     }
 }
 
