@@ -177,11 +177,13 @@ impl Weld {
         for path in paths.iter().filter(|path| path.weld().is_some()) {
             job.seam.check(path, job.machine)?;
         }
+        let mut elsewhere = "approaching";
         for path in &paths {
             let what = if path.weld().is_some() {
+                elsewhere = "moving on";
                 "running in"
             } else {
-                "approaching"
+                elsewhere
             };
             self.path(session, job, path, what)?;
         }

@@ -31,13 +31,13 @@ pub struct Terminal {
 impl Terminal {
     /// Looks whether standard error is a terminal.
     pub fn new() -> Self {
-        let bar = std::io::stderr().is_terminal().then(|| {
-            let style = ProgressStyle::with_template("{msg:32} {wide_bar} {pos:>5} of {len} mm")
-                .expect("the template is sound");
-            ProgressBar::new(0).with_style(style)
-        });
+        let bar = std::io::stderr().is_terminal().then(ProgressBar::no_length);
         Self { bar }
     }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).expect("the template is sound")
 }
 
 impl Default for Terminal {
@@ -50,8 +50,8 @@ impl Progress for Terminal {
     fn phase(&mut self, text: &str) {
         match &self.bar {
             Some(bar) => {
-                bar.set_position(0);
-                bar.set_length(0);
+                // How far it goes is not known before the path moves.
+                bar.set_style(style("{msg:24} {spinner}"));
                 bar.set_message(text.to_owned());
             }
             None => eprintln!("{text}"),
@@ -60,6 +60,7 @@ impl Progress for Terminal {
 
     fn travel(&mut self, done_mm: f64, length_mm: f64) {
         if let Some(bar) = &self.bar {
+            bar.set_style(style("{msg:24} {wide_bar} {pos:>5} of {len} mm"));
             bar.set_length(length_mm.round() as u64);
             bar.set_position(done_mm.round() as u64);
         }
