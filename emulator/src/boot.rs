@@ -148,7 +148,17 @@ pub struct Boards {
     session: Session,
     directory: PathBuf,
     /// Locked as long as the boards use it.
-    _page: File,
+    _page: Page,
+}
+
+/// The page the plugins share, locked against a second pair.
+struct Page(File);
+
+impl Drop for Page {
+    fn drop(&mut self) {
+        // Closing is not enough: a process that is just being started has a copy until it runs.
+        let _ = self.0.unlock();
+    }
 }
 
 impl Boards {
@@ -252,8 +262,8 @@ impl Boards {
     }
 }
 
-/// An empty page for the two plugins, locked against a second pair.
-fn shared_page(directory: &Path) -> Result<File, BootError> {
+/// An empty page for the two plugins.
+fn shared_page(directory: &Path) -> Result<Page, BootError> {
     let setup = |source| BootError::Setup {
         directory: directory.to_owned(),
         source,
@@ -276,7 +286,7 @@ fn shared_page(directory: &Path) -> Result<File, BootError> {
     page.set_len(0)
         .and_then(|()| page.set_len(PEERS_LENGTH))
         .map_err(setup)?;
-    Ok(page)
+    Ok(Page(page))
 }
 
 fn find_program(program: &'static str, package: &'static str) -> Result<(), BootError> {
@@ -352,7 +362,7 @@ mod tests {
         let directory = env::temp_dir().join(format!("seamwright-emulator-{}", std::process::id()));
         fs::create_dir_all(&directory).expect("the temporary directory is writable");
         let page = shared_page(&directory).expect("is free");
-        assert_eq!(page.metadata().expect("is open").len(), PEERS_LENGTH);
+        assert_eq!(page.0.metadata().expect("is open").len(), PEERS_LENGTH);
         assert!(matches!(shared_page(&directory), Err(BootError::InUse { .. })));
         drop(page);
         shared_page(&directory).expect("is free again");
