@@ -1,3 +1,5 @@
+//! A bank of chips on one bus that are written one by one and step together.
+
 use crate::{Channel, CoarseGain, Error, FRAME_BYTES, Register};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;

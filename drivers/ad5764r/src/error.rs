@@ -1,3 +1,5 @@
+//! Why an access to a bank failed.
+
 use thiserror::Error;
 
 /// Why an access failed. `B` is the error of the bus, `P` of the pins.
