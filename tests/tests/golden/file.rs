@@ -2,12 +2,7 @@
 
 use nalgebra::Vector3;
 use serde_json::Value;
-use std::io::Write;
-use std::path::PathBuf;
-use std::sync::Mutex;
-
-/// Files and cases read so far.
-static TOTAL: Mutex<(usize, usize)> = Mutex::new((0, 0));
+use std::path::Path;
 
 /// One golden file.
 pub struct Golden {
@@ -19,40 +14,24 @@ pub struct Golden {
     pub cases: Vec<Value>,
 }
 
-/// Reads `name`.json from `GOLDEN_DIR`, or else from the files shipped with the tests.
-pub fn golden(name: &str) -> Golden {
-    let folder = std::env::var_os("GOLDEN_DIR").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/golden")),
-        PathBuf::from,
-    );
-    let path = folder.join(name).with_extension("json");
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    let file: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    let cases = file["cases"].as_array().expect("cases").clone();
-    assert!(!cases.is_empty(), "{} has no cases", path.display());
-    let tolerance = match &file["tol"] {
-        Value::Object(several) => several.values().filter_map(Value::as_f64).fold(0.0, f64::max),
-        one => one.as_f64().expect("tol"),
-    };
-    count(name, cases.len());
-    Golden {
-        tolerance,
-        file,
-        cases,
+impl Golden {
+    /// Reads `name`.json from `folder`.
+    pub fn read(folder: &Path, name: &str) -> Self {
+        let path = folder.join(name).with_extension("json");
+        let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let file: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let cases = file["cases"].as_array().expect("cases").clone();
+        assert!(!cases.is_empty(), "{} has no cases", path.display());
+        let tolerance = match &file["tol"] {
+            Value::Object(several) => several.values().filter_map(Value::as_f64).fold(0.0, f64::max),
+            one => one.as_f64().expect("tol"),
+        };
+        Self {
+            tolerance,
+            file,
+            cases,
+        }
     }
-}
-
-/// Says what is checked, past the test harness, which would hide it.
-fn count(name: &str, cases: usize) {
-    let mut total = TOTAL.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    total.0 += 1;
-    total.1 += cases;
-    let (files, all) = *total;
-    writeln!(
-        std::io::stderr(),
-        "golden {name}: {cases} cases (file {files}, {all} cases so far)"
-    )
-    .expect("stderr");
 }
 
 /// The vector `value`.

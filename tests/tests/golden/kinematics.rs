@@ -1,6 +1,6 @@
 //! The dual-beam gantry and attitude (SPEC 0.2–0.4).
 
-use crate::file::{golden, near, near_all, number, numbers, vector};
+use super::file::{Golden, near, near_all, number, numbers, vector};
 use nalgebra::Vector3;
 use serde_json::Value;
 use shared::geometry::{Pose, interpolate};
@@ -44,9 +44,8 @@ fn limits() -> [AxisLimits; AXES] {
     AxisLimits::build_all(&configs).expect("valid limits")
 }
 
-#[test]
-fn m0_kin() {
-    let golden = golden("m0_kin");
+/// Checks the file `m0_kin`.
+pub fn m0_kin(golden: &Golden) {
     let (mm, rad) = (
         number(&golden.file["tol"], "mm"),
         number(&golden.file["tol"], "rad"),
@@ -89,9 +88,8 @@ fn m0_kin() {
     }
 }
 
-#[test]
-fn m0_vel() {
-    let golden = golden("m0_vel");
+/// Checks the file `m0_vel`.
+pub fn m0_vel(golden: &Golden) {
     for case in &golden.cases {
         let kinematics = machine(case);
         let (input, out) = (&case["in"], &case["out"]);
@@ -114,9 +112,8 @@ fn m0_vel() {
     }
 }
 
-#[test]
-fn m0_slerp() {
-    let golden = golden("m0_slerp");
+/// Checks the file `m0_slerp`.
+pub fn m0_slerp(golden: &Golden) {
     for case in &golden.cases {
         let input = &case["in"];
         let column = |matrix: &Value, c: usize| Vector3::from_fn(|r, _| numbers(&matrix[r])[c]);

@@ -1,7 +1,7 @@
 //! Planning of the dual-beam head (SPEC 0.5, 0.6).
 
-use crate::file::{golden, near, near_all, number, vector};
-use crate::kinematics::machine;
+use super::file::{Golden, near, near_all, number, vector};
+use super::kinematics::machine;
 use host_link::plan::{
     LocateError, Location, Polyline, SeamPlace, closest_approach, locate, locate_symmetric, slide_extension,
 };
@@ -55,9 +55,8 @@ fn check_location(case: &Value, at: &Location, tolerance: f64) {
     near(case, "sF", at.distance[1], number(out, "sF"), tolerance);
 }
 
-#[test]
-fn locations_of_one_point_are_the_golden_ones() {
-    let golden = golden("m0_plan");
+/// Checks the file `m0_plan`.
+pub fn m0_plan(golden: &Golden) {
     for case in &golden.cases {
         let input = &case["in"];
         let t2 = (!input["t2"].is_null()).then(|| vector(&input["t2"]));
@@ -82,9 +81,8 @@ fn locations_of_one_point_are_the_golden_ones() {
     }
 }
 
-#[test]
-fn closest_approaches_and_slide_extensions_are_the_golden_ones() {
-    let golden = golden("m0_beams");
+/// Checks the file `m0_beams`.
+pub fn m0_beams(golden: &Golden) {
     for case in &golden.cases {
         let input = &case["in"];
         let [e, n1, f, n2] = ["E", "N1", "F", "N2"].map(|key| vector(&input[key]));
@@ -109,9 +107,8 @@ fn closest_approaches_and_slide_extensions_are_the_golden_ones() {
     }
 }
 
-#[test]
-fn seam_points_lead_to_the_golden_axes_and_the_rigid_head_meets_both_seams() {
-    let golden = golden("m0_e2e");
+/// Checks the file `m0_e2e`.
+pub fn m0_e2e(golden: &Golden) {
     for case in &golden.cases {
         let (input, out) = (&case["in"], &case["out"]);
         let (place, other) = (place(input), polyline(&input["L2"]));

@@ -1,6 +1,6 @@
 //! Position loops and gantry (SPEC 0.10).
 
-use crate::file::{golden, near, number, numbers};
+use super::file::{Golden, near, number, numbers};
 use serde_json::Value;
 use shared::control::{Gantry, GantryState, Pid, PidState, Setpoint};
 use shared::motion::{GantryConfig, HomeConfig, MotorConfig};
@@ -31,9 +31,8 @@ pub fn pid(par: &Value) -> Pid {
     Pid::build("Y", &config, 1.0, p("T")).expect("valid gains")
 }
 
-#[test]
-fn servo_pid() {
-    let golden = golden("servo_pid");
+/// Checks the file `servo_pid`.
+pub fn servo_pid(golden: &Golden) {
     for case in &golden.cases {
         let pid = pid(&case["in"]["par"]);
         let mut state = PidState::default();
@@ -50,9 +49,8 @@ fn servo_pid() {
     }
 }
 
-#[test]
-fn servo_gantry() {
-    let golden = golden("servo_gantry");
+/// Checks the file `servo_gantry`.
+pub fn servo_gantry(golden: &Golden) {
     for case in &golden.cases {
         let par = &case["in"]["gantry"];
         let config = GantryConfig {

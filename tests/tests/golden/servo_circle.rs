@@ -1,7 +1,7 @@
 //! Two closed loops on a circle, with the drive model of SPEC 0.11.
 
-use crate::file::{golden, near, number};
-use crate::servo::pid;
+use super::file::{Golden, near, number};
+use super::servo::pid;
 use plant::{Drive, DriveConfig};
 use serde_json::{Value, json};
 use shared::control::{PidState, Setpoint};
@@ -51,9 +51,8 @@ fn circle(radius: f64, speed: f64, t: f64) -> [Setpoint; 2] {
     ]
 }
 
-#[test]
-fn closed_loop_servo() {
-    let golden = golden("closed_loop_servo");
+/// Checks the file `closed_loop_servo`.
+pub fn closed_loop_servo(golden: &Golden) {
     for case in &golden.cases {
         let input = &case["in"];
         let (radius, speed) = (number(input, "Rc"), number(input, "v"));

@@ -1,11 +1,10 @@
 //! Natural cubic splines (SPEC 0.4.1).
 
-use crate::file::{golden, near_all, numbers};
+use super::file::{Golden, near_all, numbers};
 use shared::geometry::NaturalSpline;
 
-#[test]
-fn spline() {
-    let golden = golden("spline");
+/// Checks the file `spline`.
+pub fn spline(golden: &Golden) {
     for case in &golden.cases {
         let (x, y) = (numbers(&case["in"]["x"]), numbers(&case["in"]["y"]));
         let (mut second, mut scratch) = (vec![0.0; x.len()], vec![0.0; x.len()]);
