@@ -1,8 +1,8 @@
 //! The machine file: everything that is true of one machine, in TOML, mm and degrees.
 
 use serde::Deserialize;
-use shared::io::{AXES, MOTORS, SIDES, SLIDES};
-use shared::kinematics::DualBeamConfig;
+use shared::io::AXES;
+use shared::kinematics::KinematicsConfig;
 use shared::motion::{AxisConfig, BeamConfig, GantryConfig, Machine, MotionConfig, MotorConfig};
 use shared::parameter::ParameterError;
 use shared::tracking::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
@@ -16,10 +16,17 @@ pub struct MachineFile {
     pub name: String,
     /// Parameters of the motion board.
     pub motion: MotionConfig,
-    /// Parameters of the tracker board.
-    pub tracker: TrackerConfig,
+    /// What follows the seam, if the machine has that.
+    pub tracking: Option<TrackingUnit>,
     /// What only the PC needs for planning.
     pub planning: PlanningConfig,
+}
+
+/// The tracker board, its slides and cameras.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackingUnit {
+    /// Parameters of the tracker board.
+    pub board: TrackerConfig,
     /// Cameras, for simulated worlds.
     pub cameras: CameraConfig,
 }
@@ -36,32 +43,47 @@ pub struct PlanningConfig {
     pub rapid_fraction: f64,
     /// Height of the tip Z in the world at which it may travel anywhere \[mm\].
     pub safe_height_mm: f64,
-    /// Where the axes go after the job.
-    pub park: AxisPosition,
+    /// Where the axes go after the job (mm, degrees).
+    pub park: ByAxis<f64>,
+    /// Axes that move to their park position before the others do.
+    pub park_first: Vec<AxisName>,
 }
 
-/// A position of the six axes (mm, degrees).
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+/// An axis by its letter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[expect(missing_docs, reason = "letters")]
+pub enum AxisName {
+    X,
+    Y,
+    Z,
+    A,
+    B,
+    C,
+}
+
+impl PlanningConfig {
+    /// Where the axes go after the job (mm, degrees); 0 for those that the machine does not have.
+    pub fn park_axes(&self) -> [f64; AXES] {
+        self.park.into_array().map(Option::unwrap_or_default)
+    }
+}
+
+/// Something of each axis that the machine has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[expect(non_snake_case, reason = "the keys of the file are the names of the axes")]
-pub struct AxisPosition {
-    /// Along the gantry \[mm\].
-    pub X: f64,
-    /// Across \[mm\].
-    pub Y: f64,
-    /// Up \[mm\].
-    pub Z: f64,
-    /// About the plate's own X \[deg\].
-    pub A: f64,
-    /// About Y \[deg\].
-    pub B: f64,
-    /// About Z \[deg\].
-    pub C: f64,
+pub struct ByAxis<T> {
+    X: Option<T>,
+    Y: Option<T>,
+    Z: Option<T>,
+    A: Option<T>,
+    B: Option<T>,
+    C: Option<T>,
 }
 
-impl AxisPosition {
-    /// In the order of [`shared::io::AXIS_NAMES`] (mm, degrees).
-    pub fn to_array(self) -> [f64; AXES] {
+impl<T> ByAxis<T> {
+    /// In the order of [`shared::io::AXIS_NAMES`].
+    pub fn into_array(self) -> [Option<T>; AXES] {
         [self.X, self.Y, self.Z, self.A, self.B, self.C]
     }
 }
@@ -151,7 +173,9 @@ impl MachineFile {
         };
         // As the boards will build it.
         Machine::build(&machine.motion).map_err(parameter)?;
-        machine.tracker.build().map_err(parameter)?;
+        if let Some(unit) = &machine.tracking {
+            unit.board.build().map_err(parameter)?;
+        }
         Ok(machine)
     }
 }
@@ -167,41 +191,29 @@ fn line_of(text: &str, offset: usize) -> usize {
 struct Document {
     name: String,
     link_timeout_ms: u32,
-    kinematics: DualBeamConfig,
-    axes: Axes<AxisConfig>,
+    kinematics: KinematicsConfig,
+    axes: ByAxis<AxisConfig>,
     motors: Motors,
-    gantry: GantryConfig,
+    gantry: Option<GantryConfig>,
     beams: Sides<BeamConfig>,
-    head: HeadConfig,
-    slides: Slides,
-    tracking: TrackingConfig,
+    head: Option<HeadConfig>,
+    slides: Option<Slides>,
+    tracking: Option<TrackingConfig>,
     planning: PlanningConfig,
-    cameras: CameraConfig,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-#[expect(non_snake_case, reason = "the keys of the file are the names of the axes")]
-struct Axes<T> {
-    X: T,
-    Y: T,
-    Z: T,
-    A: T,
-    B: T,
-    C: T,
+    cameras: Option<CameraConfig>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 #[expect(non_snake_case, reason = "the keys of the file are the names of the motors")]
 struct Motors {
-    X1: MotorConfig,
-    X2: MotorConfig,
-    Y: MotorConfig,
-    Z: MotorConfig,
-    A: MotorConfig,
-    B: MotorConfig,
-    C: MotorConfig,
+    X1: Option<MotorConfig>,
+    X2: Option<MotorConfig>,
+    Y: Option<MotorConfig>,
+    Z: Option<MotorConfig>,
+    A: Option<MotorConfig>,
+    B: Option<MotorConfig>,
+    C: Option<MotorConfig>,
 }
 
 #[derive(Deserialize)]
@@ -218,9 +230,9 @@ struct Slides {
 #[serde(deny_unknown_fields)]
 struct Sides<T> {
     #[serde(rename = "1")]
-    first: T,
+    first: Option<T>,
     #[serde(rename = "2")]
-    second: T,
+    second: Option<T>,
 }
 
 impl Document {
@@ -250,13 +262,15 @@ impl Document {
                 "a finite number",
             ));
         }
-        let not_negative = [
-            ("cameras.processing_ms", self.cameras.processing_ms),
-            ("cameras.noise_3sigma_mm", self.cameras.noise_3sigma_mm),
-        ];
-        for (key, value) in not_negative {
-            if !(value.is_finite() && value >= 0.0) {
-                return Err((key, value, "0 or more"));
+        if let Some(cameras) = &self.cameras {
+            let not_negative = [
+                ("cameras.processing_ms", cameras.processing_ms),
+                ("cameras.noise_3sigma_mm", cameras.noise_3sigma_mm),
+            ];
+            for (key, value) in not_negative {
+                if !(value.is_finite() && value >= 0.0) {
+                    return Err((key, value, "0 or more"));
+                }
             }
         }
         Ok(())
@@ -265,28 +279,30 @@ impl Document {
 
 impl From<Document> for MachineFile {
     fn from(d: Document) -> Self {
-        let axes: [AxisConfig; AXES] = [d.axes.X, d.axes.Y, d.axes.Z, d.axes.A, d.axes.B, d.axes.C];
         let m = d.motors;
-        let motors: [MotorConfig; MOTORS] = [m.X1, m.X2, m.Y, m.Z, m.A, m.B, m.C];
-        let slides: [SlideConfig; SLIDES] = [d.slides.U1, d.slides.V1, d.slides.U2, d.slides.V2];
-        let beams: [BeamConfig; SIDES] = [d.beams.first, d.beams.second];
+        let tracking = match (d.head, d.slides, d.tracking, d.cameras) {
+            (Some(head), Some(slides), Some(tracking), Some(cameras)) => Some(TrackingUnit {
+                board: TrackerConfig {
+                    head,
+                    slides: [slides.U1, slides.V1, slides.U2, slides.V2],
+                    tracking,
+                },
+                cameras,
+            }),
+            _ => None,
+        };
         Self {
             name: d.name,
             motion: MotionConfig {
                 kinematics: d.kinematics,
-                axes,
-                motors,
+                axes: d.axes.into_array(),
+                motors: [m.X1, m.X2, m.Y, m.Z, m.A, m.B, m.C],
                 gantry: d.gantry,
-                beams,
+                beams: [d.beams.first, d.beams.second],
                 link_timeout_ms: d.link_timeout_ms,
             },
-            tracker: TrackerConfig {
-                head: d.head,
-                slides,
-                tracking: d.tracking,
-            },
+            tracking,
             planning: d.planning,
-            cameras: d.cameras,
         }
     }
 }
@@ -308,6 +324,7 @@ mod tests {
             .motion
             .axes
             .iter()
+            .flatten()
             .map(|a| a.travel_max - a.travel_min)
             .collect();
         assert_eq!(travel, [5000.0, 3000.0, 1000.0, 200.0, 60.0, 180.0]);
@@ -315,6 +332,7 @@ mod tests {
             .motion
             .axes
             .iter()
+            .flatten()
             .map(|a| a.max_velocity * 0.06)
             .collect();
         for (seen, published) in m_min.iter().zip([20.0, 20.0, 10.0, 7.2, 7.2, 7.2]) {

@@ -31,6 +31,9 @@ pub struct Deviation {
 /// Why a seam cannot be followed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SeamError {
+    /// The machine has no slides.
+    #[error("the machine file has no slides to follow a seam with")]
+    NoTracking,
     /// Shorter than the weld.
     #[error(
         "the seam deviation covers s = {first:.3}…{last:.3} mm, but the weld is 0…{length:.3} mm: add rows to the seam file"
@@ -115,6 +118,7 @@ impl Deviation {
     /// Whether the rows cover the weld of `path` and the slides reach the seam all along it, the extension
     /// that keeps the defocus included.
     pub fn check(&self, path: &PlannedPath, machine: &MachineFile) -> Result<(), SeamError> {
+        let unit = machine.tracking.as_ref().ok_or(SeamError::NoTracking)?;
         let length = path.length_mm();
         let (start, end) = path.weld().unwrap_or((0.0, length));
         let (first, last) = self.range();
@@ -135,7 +139,7 @@ impl Deviation {
             let follow = knots.at(s).map_or([0.0; 2], |point| point.v_follow());
             let deviation = self.at(s - start);
             for slide in 0..SLIDES {
-                let limits = &machine.tracker.slides[slide];
+                let limits = &unit.board.slides[slide];
                 let planned = if slide % 2 == 1 { follow[slide / 2] } else { 0.0 };
                 let position = planned + deviation[slide];
                 let (min, max) = (limits.travel_min_mm, limits.travel_max_mm);

@@ -18,6 +18,8 @@ pub const SIDES: usize = 2;
 pub const MOTOR_NAMES: [&str; MOTORS] = ["X1", "X2", "Y", "Z", "A", "B", "C"];
 /// Names of the axes, in the order of [`AXES`].
 pub const AXIS_NAMES: [&str; AXES] = ["X", "Y", "Z", "A", "B", "C"];
+/// The axis that each motor drives.
+pub const MOTOR_AXIS: [usize; MOTORS] = [0, 0, 1, 2, 3, 4, 5];
 /// Names of the slides, in the order of [`SLIDES`].
 pub const SLIDE_NAMES: [&str; SLIDES] = ["U1", "V1", "U2", "V2"];
 

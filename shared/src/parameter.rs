@@ -73,6 +73,8 @@ const FIELDS: &[&str] = &[
     "y2_mm",
     "power_at_10v_w",
     "min_speed_mm_s",
+    "fitted",
+    "home_sequence",
     "o1_mm",
     "o2_mm",
     "o3_mm",

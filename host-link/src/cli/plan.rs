@@ -74,7 +74,7 @@ impl DualBeam {
         // What is written has been read and checked as the weld will.
         let program = interpret(&plan.program, Options::default()).context("the planned program")?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
-        let from = planner.tip(&machine.planning.park.to_array());
+        let from = planner.tip(&machine.planning.park_axes());
         let paths = planner
             .program(&program, &from, None)
             .context("the planned program")?;

@@ -3,9 +3,11 @@
 use super::shape::Shape;
 use super::{PathError, PlannedPath, Planner};
 use crate::machine::MachineFile;
+use crate::nc::Tip;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
 use shared::parameter::ParameterError;
+use shared::tracking::SlideConfig;
 use shared::trajectory::{CHANNELS, PathPoint, SpeedLimits};
 use std::ops::Range;
 
@@ -35,6 +37,27 @@ pub(super) struct DriveLimits {
 }
 
 impl DriveLimits {
+    /// A slide that the machine does not have stands at 0.
+    const NO_SLIDE: Self = Self {
+        min: 0.0,
+        max: 0.0,
+        velocity: f64::INFINITY,
+        acceleration: f64::INFINITY,
+        jerk: f64::INFINITY,
+        unit: 1.0,
+    };
+
+    fn of_slide(slide: &SlideConfig) -> Self {
+        Self {
+            min: slide.travel_min_mm,
+            max: slide.travel_max_mm,
+            velocity: slide.max_velocity_mm_s,
+            acceleration: slide.max_acceleration_mm_s2,
+            jerk: f64::INFINITY,
+            unit: 1.0,
+        }
+    }
+
     /// Those of all drives of `machine`; errors name the parameter.
     pub(super) fn build_all(machine: &MachineFile) -> Result<[Self; DRIVES], ParameterError> {
         let axes = AxisLimits::build_all(&machine.motion.axes)?;
@@ -47,17 +70,10 @@ impl DriveLimits {
                 jerk: axis.jerk,
                 unit: AXIS_UNIT[i],
             },
-            None => {
-                let slide = &machine.tracker.slides[2 * (i - AXES) + 1];
-                Self {
-                    min: slide.travel_min_mm,
-                    max: slide.travel_max_mm,
-                    velocity: slide.max_velocity_mm_s,
-                    acceleration: slide.max_acceleration_mm_s2,
-                    jerk: f64::INFINITY,
-                    unit: 1.0,
-                }
-            }
+            None => match &machine.tracking {
+                Some(unit) => Self::of_slide(&unit.board.slides[2 * (i - AXES) + 1]),
+                None => Self::NO_SLIDE,
+            },
         }))
     }
 }
@@ -71,34 +87,54 @@ pub(super) struct Demand {
 }
 
 impl Planner {
-    /// What the path asks of the drives at many places.
-    pub(super) fn demands(&self, planned: &PlannedPath, shape: &Shape) -> Result<Vec<Demand>, PathError> {
+    /// What the path from `from` asks of the drives at many places.
+    pub(super) fn demands(
+        &self,
+        planned: &PlannedPath,
+        shape: &Shape,
+        from: &Tip,
+    ) -> Result<Vec<Demand>, PathError> {
         let (path, length) = (planned.path(), planned.length_mm());
         let count = CHECK_COUNT.max((length / CHECK_STEP).ceil() as usize);
-        (0..=count)
-            .map(|i| length * i as f64 / count as f64)
-            .filter_map(|s| path.at(s).map(|point| self.demand(s, &point, shape.line(s))))
-            .collect()
+        let [a, b, c] = from.angles_deg.map(f64::to_radians);
+        let mut near = [0.0, 0.0, 0.0, a, b, c];
+        let mut demands = Vec::with_capacity(count + 1);
+        for i in 0..=count {
+            let s = length * i as f64 / count as f64;
+            if let Some(point) = path.at(s) {
+                let (demand, axes) = self.demand(s, &point, shape.line(s), &near)?;
+                near = axes;
+                demands.push(demand);
+            }
+        }
+        Ok(demands)
     }
 
-    fn demand(&self, s: f64, point: &PathPoint, line: u32) -> Result<Demand, PathError> {
+    fn demand(
+        &self,
+        s: f64,
+        point: &PathPoint,
+        line: u32,
+        near: &[f64; AXES],
+    ) -> Result<(Demand, [f64; AXES]), PathError> {
         let (pose, motion) = point
             .pose_in_motion()
             .map_err(|source| PathError::Pose { line, source })?;
         let axes = self
             .kinematics
-            .inverse_motion(&pose, &motion)
+            .inverse_motion(&pose, &motion, near)
             .map_err(|source| PathError::Kinematics { line, source })?;
         // The extensions are the last channels of a path.
         let join = |axes: &[f64; AXES], channels: &[f64; CHANNELS]| {
             std::array::from_fn(|i| axes.get(i).copied().unwrap_or(channels[CHANNELS - DRIVES + i]))
         };
-        Ok(Demand {
+        let demand = Demand {
             s,
             position: join(&axes.position, &point.value),
             first: join(&axes.velocity, &point.first),
             second: join(&axes.acceleration, &point.second),
-        })
+        };
+        Ok((demand, axes.position))
     }
 
     /// Names the drive that leaves its travel furthest in its own units.

@@ -13,7 +13,7 @@ use crate::nc::{Motion, Program, ProgramEvent, ProgramPath, Target, Tip};
 use limits::{DRIVES, DriveLimits};
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
-use shared::kinematics::{AXIS_UNIT, DualBeam};
+use shared::kinematics::{AXIS_UNIT, Kinematics};
 use shared::motion::MAX_EVENTS;
 use shared::parameter::ParameterError;
 use shared::protocol::{Knot, PathAction, PathEvent};
@@ -73,7 +73,7 @@ impl PlannedPath {
 /// Plans program paths for one machine.
 #[derive(Clone, Debug)]
 pub struct Planner {
-    kinematics: DualBeam,
+    kinematics: Kinematics,
     drives: [DriveLimits; DRIVES],
     /// Of each beam \[W\].
     largest_power: [f64; SIDES],
@@ -85,14 +85,18 @@ impl Planner {
     pub fn build(machine: &MachineFile) -> Result<Self, ParameterError> {
         Ok(Self {
             drives: DriveLimits::build_all(machine)?,
-            kinematics: machine.motion.kinematics.build()?,
-            largest_power: machine.motion.beams.clone().map(|beam| beam.power_at_10v_w),
+            kinematics: machine.motion.kinematics()?,
+            largest_power: machine
+                .motion
+                .beams
+                .clone()
+                .map(|beam| beam.map_or(0.0, |beam| beam.power_at_10v_w)),
             planning: machine.planning.clone(),
         })
     }
 
     /// Kinematics of the machine.
-    pub fn kinematics(&self) -> &DualBeam {
+    pub fn kinematics(&self) -> &Kinematics {
         &self.kinematics
     }
 
@@ -139,7 +143,7 @@ impl Planner {
     pub fn park(&self, from: &Tip) -> Result<Vec<PlannedPath>, PathError> {
         let mut up = *from;
         up.position_mm[2] = up.position_mm[2].max(self.planning.safe_height_mm);
-        let park = self.tip(&self.planning.park.to_array());
+        let park = self.tip(&self.planning.park_axes());
         let mut above = park;
         above.position_mm[2] = up.position_mm[2];
         let mut from = *from;
@@ -195,7 +199,7 @@ impl Planner {
             speed_error: shape.speed_error,
             knots: shape.knots.clone(),
         };
-        let demands = self.demands(&planned, &shape)?;
+        let demands = self.demands(&planned, &shape, from)?;
         self.check_travel(&demands, &shape)?;
         planned.limits = match path.motion {
             Motion::Rapid => self.rapid_limits(&demands),

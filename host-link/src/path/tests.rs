@@ -26,7 +26,7 @@ fn a_path_begins_where_the_machine_stands_and_ends_at_its_target() {
     let planner = planner();
     let at = |path: &PlannedPath, s: f64| {
         let pose = path.path().at(s).unwrap().pose().unwrap();
-        planner.kinematics().inverse(&pose).unwrap()
+        planner.kinematics().inverse(&pose, &[0.0; AXES]).unwrap()
     };
     let start = at(&planned[0], 0.0);
     for (axis, wanted) in [100.0, 100.0, 900.0, 0.0, 0.0, 0.0].into_iter().enumerate() {
@@ -72,7 +72,7 @@ fn rapids_use_their_part_of_the_limits_and_no_more() {
         let mut used: f64 = 0.0;
         for i in 0..=500 {
             let state = profile.at(profile.duration() * f64::from(i) / 500.0);
-            let at = shared::trajectory::reference(planner.kinematics(), &path, state).unwrap();
+            let at = shared::trajectory::reference(planner.kinematics(), &path, state, &[0.0; AXES]).unwrap();
             for axis in 0..AXES {
                 let limits = &planner.drives[axis];
                 let speed = at.velocity[axis].abs() / limits.velocity;
@@ -181,8 +181,8 @@ fn parking_ends_at_the_park_position() {
     let paths = planner.park(&from).unwrap();
     let last = paths.last().unwrap();
     let pose = last.path().at(last.length_mm()).unwrap().pose().unwrap();
-    let axes = planner.kinematics().inverse(&pose).unwrap();
-    for (axis, wanted) in planner.planning.park.to_array().into_iter().enumerate() {
+    let axes = planner.kinematics().inverse(&pose, &[0.0; AXES]).unwrap();
+    for (axis, wanted) in planner.planning.park_axes().into_iter().enumerate() {
         assert!((axes[axis] / planner.drives[axis].unit - wanted).abs() < 1e-6);
     }
 }

@@ -20,6 +20,7 @@ use shared::motion::{Fault, State};
 use shared::parameter::ParameterError;
 use shared::protocol::{LOAD_BATCH, Request, Role};
 use shared::tracking::{TrackerFault, TrackerState};
+use shared::trajectory::PathSpace;
 use std::rc::Rc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -122,8 +123,9 @@ pub fn run(
     progress: &mut dyn Progress,
 ) -> Result<Ended, JobError> {
     let planner = Planner::build(job.machine)?;
-    let machine = Machine::build(&job.machine.motion, &job.machine.tracker.head)?;
-    let cameras = &job.machine.cameras;
+    let unit = job.machine.tracking.as_ref().ok_or(SeamError::NoTracking)?;
+    let machine = Machine::build(&job.machine.motion, &unit.board.head)?;
+    let cameras = &unit.cameras;
     let cameras = Cameras::new(
         (cameras.processing_ms * 1e3) as u64,
         cameras.noise_3sigma_mm / SIGMAS,
@@ -205,7 +207,13 @@ impl Weld {
         self.paths_begun += 1;
         let id = self.paths_begun;
         for role in [Role::Motion, Role::Tracker] {
-            session.command(role, &Request::ClearPath { id })?;
+            session.command(
+                role,
+                &Request::ClearPath {
+                    id,
+                    space: PathSpace::Tool,
+                },
+            )?;
             for knots in path.knots.chunks(LOAD_BATCH) {
                 let knots = knots.iter().copied().collect();
                 session.command(role, &Request::LoadKnots(knots))?;
@@ -343,10 +351,8 @@ fn set_up(session: &mut Session, job: &Job) -> Result<(), JobError> {
         Role::Motion,
         &Request::ConfigureMotion(job.machine.motion.clone()),
     )?;
-    session.command(
-        Role::Tracker,
-        &Request::ConfigureTracker(job.machine.tracker.clone()),
-    )?;
+    let unit = job.machine.tracking.as_ref().ok_or(SeamError::NoTracking)?;
+    session.command(Role::Tracker, &Request::ConfigureTracker(unit.board.clone()))?;
     session.command(Role::Motion, &Request::PathStatesTo { address, port })?;
     Ok(())
 }

@@ -6,7 +6,7 @@ use crate::seam::Deviation;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::SIDES;
-use shared::kinematics::DualBeam;
+use shared::kinematics::Kinematics;
 use shared::motion::MotionConfig;
 use shared::parameter::ParameterError;
 use shared::tracking::HeadConfig;
@@ -22,9 +22,9 @@ const STEPS: usize = 50;
 /// Geometry of the machine as it really is.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    kinematics: DualBeam,
-    y1_mm: f64,
-    y2_mm: f64,
+    kinematics: Kinematics,
+    /// Cross positions of X1 and X2 \[mm\], where X is a gantry.
+    beam_mm: Option<[f64; 2]>,
     heads: Heads,
 }
 
@@ -32,9 +32,8 @@ impl Machine {
     /// Builds the geometry; errors name the parameter.
     pub fn build(motion: &MotionConfig, head: &HeadConfig) -> Result<Self, ParameterError> {
         Ok(Self {
-            kinematics: motion.kinematics.build()?,
-            y1_mm: motion.gantry.y1_mm,
-            y2_mm: motion.gantry.y2_mm,
+            kinematics: motion.kinematics()?,
+            beam_mm: motion.gantry.as_ref().map(|gantry| [gantry.y1_mm, gantry.y2_mm]),
             heads: head.build()?,
         })
     }
@@ -44,7 +43,7 @@ impl Machine {
         let axes = match *position {
             MachinePosition::Axes(axes) => axes,
             MachinePosition::Motors([x1, x2, y, z, a, b, c]) => {
-                let across = (y - self.y1_mm) / (self.y2_mm - self.y1_mm);
+                let across = self.beam_mm.map_or(0.0, |[y1, y2]| (y - y1) / (y2 - y1));
                 [x1 + (x2 - x1) * across, y, z, a, b, c]
             }
         };
@@ -154,13 +153,14 @@ impl TrueSeam {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use shared::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
     use shared::protocol::Knot;
     use shared::trajectory::CHANNELS;
 
     impl Machine {
         /// Axes that realise a pose.
         pub(crate) fn inverse(&self, pose: &Pose) -> [f64; shared::io::AXES] {
-            self.kinematics.inverse(pose).unwrap()
+            self.kinematics.inverse(pose, &[0.0; shared::io::AXES]).unwrap()
         }
     }
 
@@ -168,15 +168,14 @@ pub(crate) mod tests {
 
     pub(crate) fn machine() -> Machine {
         Machine {
-            kinematics: shared::kinematics::DualBeamConfig {
+            kinematics: KinematicsConfig::DualBeamGantry(DualBeamConfig {
                 o1_mm: [0.0, 0.0, -120.0],
                 o2_mm: [0.0, 0.0, -80.0],
                 o3_mm: [0.0, 0.0, -450.0],
-            }
-            .build()
+            })
+            .build(&[AxisLimits::NOT_FITTED; shared::io::AXES])
             .unwrap(),
-            y1_mm: -250.0,
-            y2_mm: 3250.0,
+            beam_mm: Some([-250.0, 3250.0]),
             heads: HeadConfig {
                 included_angle_deg: -60.0,
                 working_distance_mm: DISTANCE,

@@ -142,6 +142,7 @@ mod tests {
             max_command: 400.0,
             following_error_base: 1.0,
             following_error_time_s: 0.05,
+            home_sequence: 0,
             home: HomeConfig {
                 velocity: 1.0,
                 mark_position: 0.0,

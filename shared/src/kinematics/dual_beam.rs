@@ -4,7 +4,7 @@
 //! ram), then B, then A, which is the direction of travel T: R = Rz(C)·Ry(B)·Rx(A), T = R·ex, N = R·ez.
 //! Inside |B| ≤ 30° and |C| ≤ 90° the solution is unique and regular, so there is no branch to choose.
 
-use super::KinematicsError;
+use super::{AxisLimits, AxisMotion, Chain, KinematicsError};
 use crate::geometry::{Pose, PoseMotion};
 use crate::io::AXES;
 use crate::parameter::{ParameterError, check};
@@ -25,8 +25,9 @@ pub struct DualBeamConfig {
 }
 
 impl DualBeamConfig {
-    /// Checks the geometry: every number finite, and the tip below the A axis.
-    pub fn build(&self) -> Result<DualBeam, ParameterError> {
+    /// Checks the geometry: every number finite, and the tip below the A axis. The solution is unique within
+    /// any travel, so the limits of the axes do not matter.
+    pub fn build(&self, _limits: &[AxisLimits; AXES]) -> Result<DualBeam, ParameterError> {
         let vector = |name, v: &[f64; 3]| -> Result<Vector3<f64>, ParameterError> {
             for &x in v {
                 check("kinematics", name, x, |_| true)?;
@@ -48,17 +49,6 @@ pub struct DualBeam {
     o1: Vector3<f64>,
     o2: Vector3<f64>,
     o3: Vector3<f64>,
-}
-
-/// Axes that realise a pose in motion (mm, rad, s).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AxisMotion {
-    /// Positions.
-    pub position: [f64; AXES],
-    /// First derivatives.
-    pub velocity: [f64; AXES],
-    /// Second derivatives.
-    pub acceleration: [f64; AXES],
 }
 
 /// Sines and cosines of A, B, C: all that the segments and rates need.
@@ -158,25 +148,6 @@ impl DualBeam {
         }
     }
 
-    /// Pose of the plate for axes `q` (SPEC 0.2).
-    pub fn forward(&self, q: &[f64; AXES]) -> Pose {
-        let turn = Turn::of_axes(q);
-        let Segments { r1, r2, r3 } = self.segments(&turn);
-        Pose {
-            position: Vector3::new(q[0], q[1], q[2]) + r1 + r2 + r3,
-            tangent: turn.about_c(&turn.about_b(&Vector3::x())),
-            normal: turn.about_c(&turn.about_b(&Vector3::new(0.0, -turn.sin_a, turn.cos_a))),
-        }
-    }
-
-    /// Axes that realise `pose` (SPEC 0.2, steps 2 and 3; step 1 is [`Pose::new`]). They may lie outside the
-    /// travel: see [`super::violations`].
-    pub fn inverse(&self, pose: &Pose) -> Result<[f64; AXES], KinematicsError> {
-        let turn = Turn::of_pose(pose)?;
-        let segments = self.segments(&turn);
-        Ok(Self::position(pose, &turn, &segments))
-    }
-
     fn position(pose: &Pose, turn: &Turn, segments: &Segments) -> [f64; AXES] {
         let p = pose.position - (segments.r1 + segments.r2 + segments.r3);
         [
@@ -189,58 +160,10 @@ impl DualBeam {
         ]
     }
 
-    /// Axis rates for tip velocity `v` \[mm/s\] and angular velocity `omega` \[rad/s\] at axes `q`
-    /// (SPEC 0.3). With derivatives over path length in place of those over time it gives q′(s).
-    pub fn rates(&self, q: &[f64; AXES], v: &Vector3<f64>, omega: &Vector3<f64>) -> [f64; AXES] {
-        let turn = Turn::of_axes(q);
-        let segments = self.segments(&turn);
-        Self::motion(&turn, &segments, v, omega, &Vector3::zeros(), &Vector3::zeros()).0
-    }
-
-    /// Axis accelerations for tip velocity `v`, angular velocity `omega`, tip acceleration `acc` \[mm/s²\] and
-    /// angular acceleration `alpha` \[rad/s²\] at axes `q` (SPEC 0.3).
-    pub fn accelerations(
-        &self,
-        q: &[f64; AXES],
-        v: &Vector3<f64>,
-        omega: &Vector3<f64>,
-        acc: &Vector3<f64>,
-        alpha: &Vector3<f64>,
-    ) -> [f64; AXES] {
-        let turn = Turn::of_axes(q);
-        let segments = self.segments(&turn);
-        Self::motion(&turn, &segments, v, omega, acc, alpha).1
-    }
-
-    /// Positions, rates and accelerations of the axes at once, for the tick: three arc tangents and no other
-    /// trigonometry.
-    pub fn inverse_motion(&self, pose: &Pose, motion: &PoseMotion) -> Result<AxisMotion, KinematicsError> {
-        let turn = Turn::of_pose(pose)?;
-        let segments = self.segments(&turn);
-        let (velocity, acceleration) = Self::motion(
-            &turn,
-            &segments,
-            &motion.velocity,
-            &motion.angular_velocity,
-            &motion.acceleration,
-            &motion.angular_acceleration,
-        );
-        Ok(AxisMotion {
-            position: Self::position(pose, &turn, &segments),
-            velocity,
-            acceleration,
-        })
-    }
-
     /// The closed forms of SPEC 0.3.
-    fn motion(
-        turn: &Turn,
-        segments: &Segments,
-        v: &Vector3<f64>,
-        omega: &Vector3<f64>,
-        acc: &Vector3<f64>,
-        alpha: &Vector3<f64>,
-    ) -> ([f64; AXES], [f64; AXES]) {
+    fn motion(turn: &Turn, segments: &Segments, motion: &PoseMotion) -> ([f64; AXES], [f64; AXES]) {
+        let (v, omega) = (&motion.velocity, &motion.angular_velocity);
+        let (acc, alpha) = (&motion.acceleration, &motion.angular_acceleration);
         let Segments { r1, r2, r3 } = segments;
         let per_cos_b = 1.0 / turn.cos_b;
         let b_axis = Vector3::new(-turn.sin_c, turn.cos_c, 0.0);
@@ -271,5 +194,54 @@ impl DualBeam {
             [p.x, p.y, p.z, a_rate, b_rate, c_rate],
             [p_acc.x, p_acc.y, p_acc.z, a_acc, b_acc, c_acc],
         )
+    }
+}
+
+impl Chain for DualBeam {
+    const FITTED: [bool; AXES] = [true; AXES];
+
+    /// Pose of the plate for axes `q` (SPEC 0.2).
+    fn forward(&self, q: &[f64; AXES]) -> Pose {
+        let turn = Turn::of_axes(q);
+        let Segments { r1, r2, r3 } = self.segments(&turn);
+        Pose {
+            position: Vector3::new(q[0], q[1], q[2]) + r1 + r2 + r3,
+            tangent: turn.about_c(&turn.about_b(&Vector3::x())),
+            normal: turn.about_c(&turn.about_b(&Vector3::new(0.0, -turn.sin_a, turn.cos_a))),
+        }
+    }
+
+    /// SPEC 0.2, steps 2 and 3; step 1 is [`Pose::new`]. The solution is unique, so `_near` does not matter.
+    fn inverse(&self, pose: &Pose, _near: &[f64; AXES]) -> Result<[f64; AXES], KinematicsError> {
+        let turn = Turn::of_pose(pose)?;
+        let segments = self.segments(&turn);
+        Ok(Self::position(pose, &turn, &segments))
+    }
+
+    fn derivatives(
+        &self,
+        q: &[f64; AXES],
+        motion: &PoseMotion,
+    ) -> Result<([f64; AXES], [f64; AXES]), KinematicsError> {
+        let turn = Turn::of_axes(q);
+        let segments = self.segments(&turn);
+        Ok(Self::motion(&turn, &segments, motion))
+    }
+
+    /// Three arc tangents and no other trigonometry.
+    fn inverse_motion(
+        &self,
+        pose: &Pose,
+        motion: &PoseMotion,
+        _near: &[f64; AXES],
+    ) -> Result<AxisMotion, KinematicsError> {
+        let turn = Turn::of_pose(pose)?;
+        let segments = self.segments(&turn);
+        let (velocity, acceleration) = Self::motion(&turn, &segments, motion);
+        Ok(AxisMotion {
+            position: Self::position(pose, &turn, &segments),
+            velocity,
+            acceleration,
+        })
     }
 }

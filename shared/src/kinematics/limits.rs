@@ -15,6 +15,9 @@ pub const AXIS_UNIT: [f64; AXES] = [
     1.0 / DEG_PER_RAD,
 ];
 
+/// Names of the axes as owners of parameters.
+pub(crate) const AXIS_OWNERS: [&str; AXES] = ["axis X", "axis Y", "axis Z", "axis A", "axis B", "axis C"];
+
 /// How far outside its travel an axis may be by rounding alone, in units of the machine file (SPEC 0.2).
 const TOLERANCE: f64 = 1e-9;
 
@@ -39,8 +42,7 @@ impl AxisLimits {
     /// Limits of axis number `axis` of X Y Z A B C; refuses a travel that is empty and limits that are not
     /// positive.
     pub fn build(axis: usize, config: &AxisConfig) -> Result<Self, ParameterError> {
-        const OWNERS: [&str; AXES] = ["axis X", "axis Y", "axis Z", "axis A", "axis B", "axis C"];
-        let (owner, unit) = (OWNERS[axis], AXIS_UNIT[axis]);
+        let (owner, unit) = (AXIS_OWNERS[axis], AXIS_UNIT[axis]);
         let min = check(owner, "travel_min", config.travel_min, |_| true)?;
         Ok(Self {
             min: min * unit,
@@ -52,17 +54,25 @@ impl AxisLimits {
         })
     }
 
+    /// Of an axis that the machine does not have: it stands at 0, and limits no other.
+    pub const NOT_FITTED: Self = Self {
+        min: 0.0,
+        max: 0.0,
+        velocity: f64::INFINITY,
+        acceleration: f64::INFINITY,
+        jerk: f64::INFINITY,
+        tolerance: TOLERANCE,
+    };
+
     /// Limits of all axes, X Y Z A B C.
-    pub fn build_all(configs: &[AxisConfig; AXES]) -> Result<[Self; AXES], ParameterError> {
-        let [x, y, z, a, b, c] = configs;
-        Ok([
-            Self::build(0, x)?,
-            Self::build(1, y)?,
-            Self::build(2, z)?,
-            Self::build(3, a)?,
-            Self::build(4, b)?,
-            Self::build(5, c)?,
-        ])
+    pub fn build_all(configs: &[Option<AxisConfig>; AXES]) -> Result<[Self; AXES], ParameterError> {
+        let mut limits = [Self::NOT_FITTED; AXES];
+        for (axis, (limits, config)) in limits.iter_mut().zip(configs).enumerate() {
+            if let Some(config) = config {
+                *limits = Self::build(axis, config)?;
+            }
+        }
+        Ok(limits)
     }
 }
 

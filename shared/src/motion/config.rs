@@ -3,7 +3,8 @@
 //! Rotary axes and motors take degrees wherever linear ones take mm; the built forms hold radians.
 
 use crate::io::{AXES, MOTORS, SIDES};
-use crate::kinematics::DualBeamConfig;
+use crate::kinematics::{AxisLimits, Kinematics, KinematicsConfig};
+use crate::parameter::ParameterError;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -11,17 +12,24 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct MotionConfig {
     /// Geometry of the machine.
-    pub kinematics: DualBeamConfig,
-    /// X, Y, Z, A, B, C.
-    pub axes: [AxisConfig; AXES],
-    /// X1, X2, Y, Z, A, B, C.
-    pub motors: [MotorConfig; MOTORS],
+    pub kinematics: KinematicsConfig,
+    /// X, Y, Z, A, B, C; those that the kinematics use.
+    pub axes: [Option<AxisConfig>; AXES],
+    /// X1, X2, Y, Z, A, B, C; one for every axis, and X2 where X is a gantry.
+    pub motors: [Option<MotorConfig>; MOTORS],
     /// Coupling of X1 and X2.
-    pub gantry: GantryConfig,
-    /// Beam 1 and 2.
-    pub beams: [BeamConfig; SIDES],
+    pub gantry: Option<GantryConfig>,
+    /// Beam 1 and 2, or whatever else the process switches: an arc, a spindle.
+    pub beams: [Option<BeamConfig>; SIDES],
     /// A running path, or homing, stops when the PC has not been heard for this long \[ms\].
     pub link_timeout_ms: u32,
+}
+
+impl MotionConfig {
+    /// The kinematics, built with the limits of the axes.
+    pub fn kinematics(&self) -> Result<Kinematics, ParameterError> {
+        self.kinematics.build(&AxisLimits::build_all(&self.axes)?)
+    }
 }
 
 /// Limits of one axis (mm or degrees).
@@ -70,6 +78,8 @@ pub struct MotorConfig {
     pub following_error_base: f64,
     /// Following-error trip grows by this time × speed \[s\].
     pub following_error_time_s: f64,
+    /// Motors with a lower number find their reference first, those with the same number together.
+    pub home_sequence: u8,
     /// How the motor finds its reference mark.
     pub home: HomeConfig,
 }
@@ -114,4 +124,8 @@ pub struct BeamConfig {
     pub power_at_10v_w: f64,
     /// The gate stays closed below this path speed \[mm/s\].
     pub min_speed_mm_s: f64,
+    /// The gate stays as it is between two paths and in a hold, as a spindle needs it; a stop closes it when the
+    /// machine stands. Only sensible with a least speed of 0.
+    #[serde(default)]
+    pub stays_on_at_rest: bool,
 }

@@ -6,7 +6,7 @@
 
 mod requests;
 
-use super::beams::{Beams, MAX_EVENTS};
+use super::beams::{Activity, Beams, MAX_EVENTS};
 use super::homing::{Homing, HomingStep};
 use super::machine::Machine;
 use super::segment::{BeamOutput, MotorReference, PATH_PERIOD_S, Segment};
@@ -238,7 +238,9 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
 
     /// Faults that the servo ticks found, and those that leave time for a stop on the path.
     fn watch(&mut self, input: &PathTickInput) {
-        let moves = self.state.on_path() || self.state == State::Homing;
+        let stay_on = |machine: &Machine| self.beams.stay_on(&machine.beams);
+        let moves =
+            self.state.on_path() || self.state == State::Homing || self.machine.as_ref().is_some_and(stay_on);
         if core::mem::take(&mut self.heard) || !moves {
             self.heard_us = input.now_us;
         }
@@ -291,6 +293,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         self.travel = None;
         self.homing = None;
         self.pending = None;
+        self.beams = Beams::NONE;
     }
 
     /// References follow the position while the drives are off.
@@ -352,7 +355,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         let state = travel.profile.at(travel.time);
         self.along = [self.along[1], self.along[2], state];
         let Some(machine) = &self.machine else { return };
-        match reference(&machine.kinematics, &self.path, state) {
+        match reference(&machine.kinematics, &self.path, state, &self.axes) {
             Ok(next) => {
                 if let Some(axis) = machine.beyond_travel(&next.position) {
                     let position = (next.position[axis] / AXIS_UNIT[axis]) as f32;
@@ -372,12 +375,11 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
 
     fn follow(&mut self, position: &[f64; AXES], velocity: &[f64; AXES], acceleration: &[f64; AXES]) {
         let Some(machine) = &self.machine else { return };
-        let twice = |x: &[f64; AXES]| [x[0], x[0], x[1], x[2], x[3], x[4], x[5]];
         self.axes = *position;
         self.reference = MotorReference {
             position: machine.motors(position),
-            velocity: twice(velocity),
-            acceleration: twice(acceleration),
+            velocity: machine.motor_rates(velocity),
+            acceleration: machine.motor_rates(acceleration),
         };
     }
 
@@ -390,6 +392,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             }
             State::Stopping => {
                 self.travel = None;
+                self.beams = Beams::NONE;
                 match self.pending.take() {
                     Some(fault) => self.trip(fault),
                     None => self.state = self.state.after(Event::AtRest).unwrap_or(self.state),
@@ -422,12 +425,16 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
     /// Beams of the millisecond from k + 1; events count where the path position is then.
     fn beam_output(&mut self, laser_fault: [bool; SIDES]) -> BeamOutput {
         let then = self.along[1];
-        let armed = self.state == State::Running;
-        if armed {
+        let activity = match self.state {
+            State::Running => Activity::Running,
+            State::Idle | State::Holding | State::Stopping => Activity::Waiting,
+            State::Off | State::Homing | State::Fault => Activity::Off,
+        };
+        if activity == Activity::Running {
             self.beams.pass(&self.events, then.s);
         }
         match &self.machine {
-            Some(machine) => self.beams.output(&machine.beams, armed, then.v, laser_fault),
+            Some(machine) => self.beams.output(&machine.beams, activity, then.v, laser_fault),
             None => BeamOutput::OFF,
         }
     }

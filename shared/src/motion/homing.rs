@@ -1,20 +1,16 @@
-//! Finding the reference marks: Z first, so that the tool is clear, then everything else together; the
-//! gantry's two motors move as one, then the beam is squared.
+//! Finding the reference marks, in the sequence of the machine file; the two motors of a gantry move as one,
+//! and in the end the beam is squared.
 
 use super::segment::{MotorReference, PATH_PERIOD_S};
 use super::servo::{ServoReport, UNIT};
 use super::{Fault, MotionConfig};
 use crate::control::{ReferenceSearch, SearchInput, SearchProgress, SearchState};
-use crate::io::{MOTOR_NAMES, MOTORS};
+use crate::io::{MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use crate::parameter::ParameterError;
 use crate::trajectory::{SpeedLimits, SpeedProfile};
 
 const X1: usize = 0;
 const X2: usize = 1;
-/// Motors that search alone, and the axis of each.
-const SINGLE: [(usize, usize); 5] = [(2, 1), (3, 2), (4, 3), (5, 4), (6, 5)];
-/// Place of Z in [`SINGLE`].
-const VERTICAL: usize = 1;
 
 /// Limits with which the gantry is squared: slow, it turns the whole beam.
 const SQUARING: SpeedLimits = SpeedLimits {
@@ -23,43 +19,78 @@ const SQUARING: SpeedLimits = SpeedLimits {
     jerk: 400.0,
 };
 
+/// X1 and X2, which search as one.
+#[derive(Clone, Debug, PartialEq)]
+struct GantryPlan {
+    search: ReferenceSearch<2>,
+    square_offset_mm: f64,
+    max_skew_mm: f64,
+}
+
 /// The searches of a machine, ready to start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HomingPlan {
-    gantry: ReferenceSearch<2>,
-    single: [ReferenceSearch<1>; SINGLE.len()],
-    square_offset_mm: f64,
-    max_skew_mm: f64,
+    gantry: Option<GantryPlan>,
+    /// Motors that search alone.
+    single: [Option<ReferenceSearch<1>>; MOTORS],
+    /// Place of each motor in the sequence; of a gantry X1's.
+    sequence: [u8; MOTORS],
 }
 
 impl HomingPlan {
     /// Builds the searches of all motors.
     pub fn build(config: &MotionConfig) -> Result<Self, ParameterError> {
-        let (x1, x2) = (&config.motors[X1], &config.motors[X2]);
-        let single = |place: usize| {
-            let (motor, axis) = SINGLE[place];
-            ReferenceSearch::build(
-                [MOTOR_NAMES[motor]],
-                [&config.motors[motor].home],
-                [config.motors[motor].counts_per_unit],
-                UNIT[motor],
-                config.axes[axis].max_acceleration,
-                PATH_PERIOD_S,
-            )
+        let acceleration = |motor: usize| {
+            let axis = config.axes[MOTOR_AXIS[motor]].as_ref();
+            axis.map_or(0.0, |axis| axis.max_acceleration)
         };
-        Ok(Self {
-            gantry: ReferenceSearch::build(
-                [MOTOR_NAMES[X1], MOTOR_NAMES[X2]],
-                [&x1.home, &x2.home],
-                [x1.counts_per_unit, x2.counts_per_unit],
-                UNIT[X1],
-                config.axes[0].max_acceleration,
-                PATH_PERIOD_S,
-            )?,
-            single: [single(0)?, single(1)?, single(2)?, single(3)?, single(4)?],
-            square_offset_mm: config.gantry.square_offset_mm,
-            max_skew_mm: config.gantry.skew_trip_mm,
-        })
+        let mut plan = Self {
+            gantry: None,
+            single: [const { None }; MOTORS],
+            sequence: [0; MOTORS],
+        };
+        let coupled = match (&config.gantry, &config.motors) {
+            (Some(gantry), [Some(x1), Some(x2), ..]) => {
+                if x1.home_sequence != x2.home_sequence {
+                    let sequence = f64::from(x2.home_sequence);
+                    return Err(ParameterError::new(MOTOR_NAMES[X2], "home_sequence", sequence));
+                }
+                plan.gantry = Some(GantryPlan {
+                    search: ReferenceSearch::build(
+                        [MOTOR_NAMES[X1], MOTOR_NAMES[X2]],
+                        [&x1.home, &x2.home],
+                        [x1.counts_per_unit, x2.counts_per_unit],
+                        UNIT[X1],
+                        acceleration(X1),
+                        PATH_PERIOD_S,
+                    )?,
+                    square_offset_mm: gantry.square_offset_mm,
+                    max_skew_mm: gantry.skew_trip_mm,
+                });
+                2
+            }
+            _ => 0,
+        };
+        for (index, motor) in config.motors.iter().enumerate() {
+            let Some(motor) = motor else { continue };
+            plan.sequence[index] = motor.home_sequence;
+            if index >= coupled {
+                plan.single[index] = Some(ReferenceSearch::build(
+                    [MOTOR_NAMES[index]],
+                    [&motor.home],
+                    [motor.counts_per_unit],
+                    UNIT[index],
+                    acceleration(index),
+                    PATH_PERIOD_S,
+                )?);
+            }
+        }
+        Ok(plan)
+    }
+
+    /// Whether the machine has `motor`.
+    fn fitted(&self, motor: usize) -> bool {
+        self.single[motor].is_some() || (motor <= X2 && self.gantry.is_some())
     }
 }
 
@@ -87,10 +118,8 @@ impl Squaring {
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "one homing exists at a time")]
 enum Stage {
-    /// Z looks for its mark, the others stand.
-    Vertical,
-    /// All others look for theirs.
-    Others,
+    /// Motors look for their marks.
+    Searching,
     /// X2 moves until the beam is square.
     Squaring(Squaring),
     /// Every axis has its reference.
@@ -103,7 +132,7 @@ pub struct Homing {
     plan: HomingPlan,
     stage: Stage,
     gantry: Option<SearchState<2>>,
-    single: [Option<SearchState<1>>; SINGLE.len()],
+    single: [Option<SearchState<1>>; MOTORS],
     found: [bool; MOTORS],
 }
 
@@ -120,11 +149,11 @@ impl Homing {
     /// Starts a search.
     pub fn start(plan: HomingPlan) -> Self {
         Self {
+            found: core::array::from_fn(|motor| !plan.fitted(motor)),
             plan,
-            stage: Stage::Vertical,
+            stage: Stage::Searching,
             gantry: None,
-            single: [None; SINGLE.len()],
-            found: [false; MOTORS],
+            single: [None; MOTORS],
         }
     }
 
@@ -136,20 +165,12 @@ impl Homing {
     ) -> Result<HomingStep, Fault> {
         let mut step = HomingStep::default();
         match &mut self.stage {
-            Stage::Vertical => {
-                self.search(VERTICAL, report, reference, &mut step)?;
-                if self.found[SINGLE[VERTICAL].0] {
-                    self.stage = Stage::Others;
-                }
-            }
-            Stage::Others => {
-                self.search_gantry(report, reference, &mut step)?;
-                for place in (0..SINGLE.len()).filter(|place| *place != VERTICAL) {
-                    self.search(place, report, reference, &mut step)?;
-                }
-                // The new frame holds from the next report on; square only then.
-                if self.found.iter().all(|found| *found) && step.offset.iter().all(Option::is_none) {
-                    self.stage = self.square(reference)?;
+            Stage::Searching => {
+                let missing = (0..MOTORS).filter(|motor| !self.found[*motor]);
+                match missing.map(|motor| self.plan.sequence[motor]).min() {
+                    Some(now) => self.search_all(now, report, reference, &mut step)?,
+                    // The new frame holds from this report on; square only now.
+                    None => self.stage = self.square(reference)?,
                 }
             }
             Stage::Squaring(squaring) => {
@@ -162,16 +183,40 @@ impl Homing {
         Ok(step)
     }
 
+    /// One tick of all motors whose turn it is.
+    fn search_all(
+        &mut self,
+        sequence: u8,
+        report: &ServoReport,
+        reference: &mut MotorReference,
+        step: &mut HomingStep,
+    ) -> Result<(), Fault> {
+        let turn: [bool; MOTORS] =
+            core::array::from_fn(|motor| !self.found[motor] && self.plan.sequence[motor] == sequence);
+        if self.plan.gantry.is_some() && turn[X1] {
+            self.search_gantry(report, reference, step)?;
+        }
+        for motor in 0..MOTORS {
+            if turn[motor] {
+                self.search(motor, report, reference, step)?;
+            }
+        }
+        Ok(())
+    }
+
     /// X2 to where the beam is square; marks that ask for more than the skew trip were not the right ones.
     fn square(&self, reference: &MotorReference) -> Result<Stage, Fault> {
+        let Some(gantry) = &self.plan.gantry else {
+            return Ok(Stage::Done);
+        };
         let from = reference.position[X2];
-        let distance = reference.position[X1] - self.plan.square_offset_mm - from;
+        let distance = reference.position[X1] - gantry.square_offset_mm - from;
         let length = libm::fabs(distance);
         let skew = Fault::GantrySkew {
             seen_um: (length * 1000.0) as f32,
-            limit_um: (self.plan.max_skew_mm * 1000.0) as f32,
+            limit_um: (gantry.max_skew_mm * 1000.0) as f32,
         };
-        if length > self.plan.max_skew_mm {
+        if length > gantry.max_skew_mm {
             return Err(skew);
         }
         let profile = SpeedProfile::rest_to_rest(0.0, length, &SQUARING).map_err(|_| skew)?;
@@ -186,17 +231,15 @@ impl Homing {
     /// One tick of a motor that searches alone.
     fn search(
         &mut self,
-        place: usize,
+        motor: usize,
         report: &ServoReport,
         reference: &mut MotorReference,
         step: &mut HomingStep,
     ) -> Result<(), Fault> {
-        let motor = SINGLE[place].0;
-        if self.found[motor] {
+        let Some(search) = &self.plan.single[motor] else {
             return Ok(());
-        }
-        let search = &self.plan.single[place];
-        let state = self.single[place].get_or_insert_with(|| search.start(report.counts[motor]));
+        };
+        let state = self.single[motor].get_or_insert_with(|| search.start(report.counts[motor]));
         let progress = search.step(state, &[input(report, motor)]);
         follow(reference, motor, state.velocity());
         match progress {
@@ -217,10 +260,9 @@ impl Homing {
         reference: &mut MotorReference,
         step: &mut HomingStep,
     ) -> Result<(), Fault> {
-        if self.found[X1] {
+        let Some(GantryPlan { search, .. }) = &self.plan.gantry else {
             return Ok(());
-        }
-        let search = &self.plan.gantry;
+        };
         let state = self.gantry.get_or_insert_with(|| search.start(report.counts[X1]));
         let progress = search.step(state, &[input(report, X1), input(report, X2)]);
         for motor in [X1, X2] {

@@ -5,15 +5,18 @@ use super::homing::HomingPlan;
 use super::servo::ServoSetup;
 use super::{MotionConfig, SERVO_PERIOD_S};
 use crate::control::{Gantry, Pid};
-use crate::io::{AXES, MOTOR_NAMES, MOTORS};
-use crate::kinematics::{AxisLimits, DualBeam, violations};
+use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
+use crate::kinematics::{AXIS_OWNERS, AxisLimits, Kinematics, violations};
 use crate::parameter::ParameterError;
+
+/// The second motor of a gantry.
+const X2: usize = 1;
 
 /// What the path tick knows of its machine.
 #[derive(Clone, Debug)]
 pub struct Machine {
     /// Kinematics.
-    pub kinematics: DualBeam,
+    pub kinematics: Kinematics,
     /// Reference marks and squaring.
     pub homing: HomingPlan,
     /// Limits of the beams.
@@ -21,7 +24,7 @@ pub struct Machine {
     /// The PC may be silent for so long while a path runs \[µs\].
     pub link_timeout_us: u64,
     limits: [AxisLimits; AXES],
-    gantry: Gantry,
+    gantry: Option<Gantry>,
 }
 
 impl Machine {
@@ -30,14 +33,15 @@ impl Machine {
         if config.link_timeout_ms == 0 {
             return Err(ParameterError::new("link", "link_timeout_ms", 0.0));
         }
-        let pid = |motor: usize| Pid::build(MOTOR_NAMES[motor], &config.motors[motor], 1.0, SERVO_PERIOD_S);
-        let gantry = Gantry::build(&config.gantry, [pid(0)?, pid(1)?], SERVO_PERIOD_S)?;
+        check_fitted(config)?;
+        let limits = AxisLimits::build_all(&config.axes)?;
+        let gantry = build_gantry(config)?;
         let machine = Self {
-            kinematics: config.kinematics.build()?,
+            kinematics: config.kinematics.build(&limits)?,
             homing: HomingPlan::build(config)?,
             beams: BeamLimits::build(&config.beams)?,
             link_timeout_us: u64::from(config.link_timeout_ms) * 1000,
-            limits: AxisLimits::build_all(&config.axes)?,
+            limits,
             gantry,
         };
         Ok((machine, ServoSetup::build(&config.motors, gantry)?))
@@ -45,14 +49,24 @@ impl Machine {
 
     /// Motors from axes: X1 and X2 stand so that the beam is square.
     pub fn motors(&self, axes: &[f64; AXES]) -> [f64; MOTORS] {
-        let [x1, x2] = self.gantry.motors(axes[0]);
+        let [x1, x2] = self
+            .gantry
+            .map_or([axes[0], 0.0], |gantry| gantry.motors(axes[0]));
         [x1, x2, axes[1], axes[2], axes[3], axes[4], axes[5]]
+    }
+
+    /// Velocities or accelerations of the motors from those of the axes.
+    pub fn motor_rates(&self, axes: &[f64; AXES]) -> [f64; MOTORS] {
+        let x2 = if self.gantry.is_some() { axes[0] } else { 0.0 };
+        [axes[0], x2, axes[1], axes[2], axes[3], axes[4], axes[5]]
     }
 
     /// Axes from motors, X where the beam carries the ram (SPEC 0.10).
     pub fn axes(&self, motors: &[f64; MOTORS]) -> [f64; AXES] {
-        let ram = self.gantry.ram([motors[0], motors[1]], motors[2]);
-        [ram.x, motors[2], motors[3], motors[4], motors[5], motors[6]]
+        let x = self.gantry.map_or(motors[0], |gantry| {
+            gantry.ram([motors[0], motors[1]], motors[2]).x
+        });
+        [x, motors[2], motors[3], motors[4], motors[5], motors[6]]
     }
 
     /// First axis beyond its travel, if any.
@@ -60,4 +74,41 @@ impl Machine {
         let outside = violations(axes, &self.limits);
         (0..AXES).find(|axis| outside.get(*axis))
     }
+}
+
+/// Every axis of the kinematics needs its limits and its motor, and no other may have them.
+fn check_fitted(config: &MotionConfig) -> Result<(), ParameterError> {
+    let fitted = config.kinematics.fitted();
+    for (axis, wanted) in fitted.into_iter().enumerate() {
+        if config.axes[axis].is_some() != wanted {
+            return Err(ParameterError::new(
+                AXIS_OWNERS[axis],
+                "fitted",
+                f64::from(!wanted),
+            ));
+        }
+    }
+    for motor in 0..MOTORS {
+        let wanted = if motor == X2 {
+            config.gantry.is_some()
+        } else {
+            fitted[MOTOR_AXIS[motor]]
+        };
+        if config.motors[motor].is_some() != wanted {
+            return Err(ParameterError::new(
+                MOTOR_NAMES[motor],
+                "fitted",
+                f64::from(!wanted),
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn build_gantry(config: &MotionConfig) -> Result<Option<Gantry>, ParameterError> {
+    let (Some(gantry), [Some(x1), Some(x2), ..]) = (&config.gantry, &config.motors) else {
+        return Ok(None);
+    };
+    let pid = |motor: usize, config| Pid::build(MOTOR_NAMES[motor], config, 1.0, SERVO_PERIOD_S);
+    Gantry::build(gantry, [pid(0, x1)?, pid(X2, x2)?], SERVO_PERIOD_S).map(Some)
 }

@@ -44,29 +44,39 @@ impl Motor {
 /// Parameters of the servo loops, checked and ready for [`ServoLoops::configure`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ServoSetup {
-    motors: [Motor; MOTORS],
-    gantry: Gantry,
-    pids: [Pid; MOTORS - GANTRY],
+    /// Motors that the machine has.
+    motors: [Option<Motor>; MOTORS],
+    gantry: Option<Gantry>,
+    /// Loops of the motors that are not coupled as a gantry.
+    pids: [Option<Pid>; MOTORS],
 }
 
 impl ServoSetup {
-    /// Builds the loops of a machine.
-    pub fn build(motors: &[MotorConfig; MOTORS], gantry: Gantry) -> Result<Self, ParameterError> {
-        let motor = |index: usize| Motor::build(index, &motors[index]);
-        let pid = |index: usize| Pid::build(MOTOR_NAMES[index], &motors[index], UNIT[index], SERVO_PERIOD_S);
-        Ok(Self {
-            motors: [
-                motor(0)?,
-                motor(1)?,
-                motor(2)?,
-                motor(3)?,
-                motor(4)?,
-                motor(5)?,
-                motor(6)?,
-            ],
+    /// Builds the loops of a machine; with a `gantry` it has those of X1 and X2.
+    pub fn build(
+        configs: &[Option<MotorConfig>; MOTORS],
+        gantry: Option<Gantry>,
+    ) -> Result<Self, ParameterError> {
+        let mut setup = Self {
+            motors: [const { None }; MOTORS],
             gantry,
-            pids: [pid(2)?, pid(3)?, pid(4)?, pid(5)?, pid(6)?],
-        })
+            pids: [None; MOTORS],
+        };
+        for (index, config) in configs.iter().enumerate() {
+            let Some(config) = config else { continue };
+            setup.motors[index] = Some(Motor::build(index, config)?);
+            if gantry.is_none() || index >= GANTRY {
+                let pid = Pid::build(MOTOR_NAMES[index], config, UNIT[index], SERVO_PERIOD_S)?;
+                setup.pids[index] = Some(pid);
+            }
+        }
+        Ok(setup)
+    }
+
+    /// The motors that the machine has, with their numbers.
+    fn fitted(&self) -> impl Iterator<Item = (usize, &Motor)> {
+        let numbered = self.motors.iter().enumerate();
+        numbered.filter_map(|(index, motor)| Some((index, motor.as_ref()?)))
     }
 }
 
@@ -128,7 +138,7 @@ pub struct ServoReport {
 pub struct ServoLoops {
     setup: Option<ServoSetup>,
     gantry: GantryState,
-    pids: [PidState; MOTORS - GANTRY],
+    pids: [PidState; MOTORS],
     enabled: bool,
     coupled: bool,
     homing: bool,
@@ -219,13 +229,21 @@ impl ServoLoops {
         let Some(setup) = &self.setup else {
             return [0.0; MOTORS];
         };
-        core::array::from_fn(|m| counts[m] as f64 * setup.motors[m].pitch + self.report.offset[m])
+        let mut position = [0.0; MOTORS];
+        for (index, motor) in setup.fitted() {
+            position[index] = counts[index] as f64 * motor.pitch + self.report.offset[index];
+        }
+        position
     }
 
     /// Marks and switches.
     fn observe(&mut self, feedback: &MotionFeedback) {
         self.report.estop = feedback.estop;
-        self.report.drive_fault = feedback.drive_fault;
+        self.report.drive_fault = Bits::NONE;
+        for (index, _) in self.setup.iter().flat_map(ServoSetup::fitted) {
+            let faulty = feedback.drive_fault.get(index);
+            self.report.drive_fault.set(index, faulty);
+        }
         for (seen, fault) in self.report.laser_fault.iter_mut().zip(feedback.laser_fault) {
             *seen |= fault;
         }
@@ -246,7 +264,7 @@ impl ServoLoops {
             return Err(Fault::EmergencyStop);
         }
         let Some(setup) = &self.setup else { return Ok(()) };
-        for (index, motor) in setup.motors.iter().enumerate() {
+        for (index, motor) in setup.fitted() {
             let number = index as u8;
             if feedback.drive_fault.get(index) {
                 return Err(Fault::Drive { motor: number });
@@ -292,44 +310,46 @@ impl ServoLoops {
         let report = &mut self.report;
         let phase = report.ticks % SERVO_TICKS_PER_PATH_TICK;
         let mut setpoints = [Setpoint::default(); MOTORS];
-        for (index, setpoint) in setpoints.iter_mut().enumerate() {
+        for (index, motor) in setup.fitted() {
             let (position_now, velocity, acceleration) = self.current.at(index, phase);
-            *setpoint = Setpoint {
+            setpoints[index] = Setpoint {
                 position: position_now,
                 velocity,
                 acceleration,
             };
             let error = position_now - position[index];
             report.peak_error[index] = report.peak_error[index].max(libm::fabs(error));
-            setup.motors[index].following.check(error, velocity)?;
+            motor.following.check(error, velocity)?;
         }
         let mut output = [0.0; MOTORS];
-        let gantry = setup
-            .gantry
-            .step(
-                &mut self.gantry,
-                &[setpoints[0], setpoints[1]],
-                [position[0], position[1]],
-                self.coupled,
-            )
-            .map_err(|_| Fault::NotANumber)?;
-        output[..GANTRY].copy_from_slice(&gantry.command);
-        if self.coupled {
-            report.peak_skew = report.peak_skew.max(libm::fabs(gantry.skew));
-            setup.gantry.check_skew(gantry.skew)?;
-        }
-        for (place, (pid, state)) in setup.pids.iter().zip(&mut self.pids).enumerate() {
-            let index = GANTRY + place;
-            output[index] = pid
-                .step(state, &setpoints[index], position[index], 0.0)
+        if let Some(gantry) = &setup.gantry {
+            let coupled = gantry
+                .step(
+                    &mut self.gantry,
+                    &[setpoints[0], setpoints[1]],
+                    [position[0], position[1]],
+                    self.coupled,
+                )
                 .map_err(|_| Fault::NotANumber)?;
+            output[..GANTRY].copy_from_slice(&coupled.command);
+            if self.coupled {
+                report.peak_skew = report.peak_skew.max(libm::fabs(coupled.skew));
+                gantry.check_skew(coupled.skew)?;
+            }
+        }
+        for (index, (pid, state)) in setup.pids.iter().zip(&mut self.pids).enumerate() {
+            if let Some(pid) = pid {
+                output[index] = pid
+                    .step(state, &setpoints[index], position[index], 0.0)
+                    .map_err(|_| Fault::NotANumber)?;
+            }
         }
         let mut command = MotionCommand {
             enable: true,
             ..MotionCommand::SAFE
         };
-        for (index, output) in output.into_iter().enumerate() {
-            command.dac[index] = DacCode::from_ratio(output, setup.motors[index].velocity_at_10v);
+        for (index, motor) in setup.fitted() {
+            command.dac[index] = DacCode::from_ratio(output[index], motor.velocity_at_10v);
         }
         let beams = &mut self.current.beams;
         for side in 0..SIDES {

@@ -4,7 +4,7 @@ use crate::io::{AXES, MOTORS, SLIDES};
 use crate::motion::{Fault, MotionConfig, State};
 use crate::parameter::ParameterError;
 use crate::tracking::{TrackerConfig, TrackerFault, TrackerState};
-use crate::trajectory::{CHANNELS, PathError};
+use crate::trajectory::{CHANNELS, PathError, PathSpace};
 use heapless::{String, Vec};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -15,6 +15,10 @@ pub const LOAD_BATCH: usize = 6;
 
 /// What the PC may ask. A board answers [`Refusal::NotMine`] to what belongs to the other one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "boards do not allocate; one request exists at a time"
+)]
 pub enum Request {
     /// First request of every session; answered by [`Response::Identity`] even if the hash differs, after
     /// which a board refuses everything else.
@@ -50,6 +54,8 @@ pub enum Request {
     ClearPath {
         /// Number of the new path, repeated in [`super::PathState`].
         id: u32,
+        /// What its knots are; in axis space no beam and no tracking can be asked for.
+        space: PathSpace,
     },
     /// Append knots, `s_mm` strictly increasing. Both boards get the same knots.
     LoadKnots(Vec<Knot, LOAD_BATCH>),
@@ -209,7 +215,7 @@ impl From<PathError> for Refusal {
 pub struct Knot {
     /// Path length \[mm\].
     pub s_mm: f64,
-    /// Position of D (3) \[mm\], T (3), N (3), extension of the V slides that keeps the defocus (2) \[mm\].
+    /// Position of D (3) \[mm\], T (3), N (3), or the axes (6) and nothing (3), by the path's space; extension of the V slides that keeps the defocus (2) \[mm\].
     pub value: [f64; CHANNELS],
     /// Derivative of each channel over s.
     pub slope: [f64; CHANNELS],

@@ -4,7 +4,7 @@ mod path;
 mod reference;
 mod speed;
 
-pub use path::{Path, PathError, PathPoint};
+pub use path::{Path, PathError, PathPoint, PathSpace};
 pub use reference::{AxisReference, ReferenceError, reference};
 pub use speed::{SpeedError, SpeedLimits, SpeedProfile, SpeedState};
 

@@ -3,16 +3,30 @@
 use super::CHANNELS;
 use crate::geometry::{Moving, Pose, PoseError, PoseMotion, pose_in_motion};
 use crate::io::SIDES;
+use crate::kinematics::AxisMotion;
 use crate::protocol::Knot;
 use heapless::Vec;
 use nalgebra::Vector3;
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
+
+/// What the first channels of a path are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum PathSpace {
+    /// Position, T and N of the tool in the frame of the work.
+    #[default]
+    Tool,
+    /// The six axes (mm, rad); channels 6 to 8 mean nothing. The beams stay off.
+    Axes,
+}
 
 /// Up to `N` knots; between two of them every channel is a cubic Hermite span over s, outside it goes on in a
 /// straight line.
 #[derive(Clone, Debug)]
 pub struct Path<const N: usize> {
     id: u32,
+    space: PathSpace,
     knots: Vec<Knot, N>,
 }
 
@@ -36,7 +50,7 @@ pub enum PathError {
 /// All channels at one place of the path, with their derivatives over s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPoint {
-    /// Values: D (3) \[mm\], T (3), N (3), extension of the V slides (2) \[mm\].
+    /// Values: D (3) \[mm\], T (3), N (3), or the axes (6); extension of the V slides (2) \[mm\].
     pub value: [f64; CHANNELS],
     /// First derivatives over s.
     pub first: [f64; CHANNELS],
@@ -49,13 +63,15 @@ impl<const N: usize> Path<N> {
     pub const fn new() -> Self {
         Self {
             id: 0,
+            space: PathSpace::Tool,
             knots: Vec::new(),
         }
     }
 
     /// Forgets all knots and starts path number `id`.
-    pub fn clear(&mut self, id: u32) {
+    pub fn clear(&mut self, id: u32, space: PathSpace) {
         self.id = id;
+        self.space = space;
         self.knots.clear();
     }
 
@@ -89,6 +105,11 @@ impl<const N: usize> Path<N> {
     /// Number of the path.
     pub fn id(&self) -> u32 {
         self.id
+    }
+
+    /// What its first channels are.
+    pub fn space(&self) -> PathSpace {
+        self.space
     }
 
     /// Number of knots.
@@ -189,6 +210,16 @@ impl PathPoint {
         [self.first[9], self.first[10]]
     }
 
+    /// The axes here, and their derivatives over s; of a path in [`PathSpace::Axes`].
+    pub fn axes(&self) -> AxisMotion {
+        let six = |c: &[f64; CHANNELS]| core::array::from_fn(|axis| c[axis]);
+        AxisMotion {
+            position: six(&self.value),
+            velocity: six(&self.first),
+            acceleration: six(&self.second),
+        }
+    }
+
     fn moving(&self, channel: usize) -> Moving {
         let vector = |c: &[f64; CHANNELS]| Vector3::new(c[channel], c[channel + 1], c[channel + 2]);
         Moving {
@@ -271,7 +302,7 @@ mod tests {
             (path.len(), path.start_s(), path.end_s()),
             (2, Some(0.0), Some(1.0))
         );
-        path.clear(7);
-        assert!(path.is_empty() && path.id() == 7);
+        path.clear(7, PathSpace::Axes);
+        assert!(path.is_empty() && path.id() == 7 && path.space() == PathSpace::Axes);
     }
 }

@@ -1,9 +1,9 @@
 //! What the servo loops are asked for: path, speed and kinematics put together once a path tick.
 
-use super::{Path, SpeedState};
+use super::{Path, PathSpace, SpeedState};
 use crate::geometry::{Pose, PoseError};
 use crate::io::AXES;
-use crate::kinematics::{DualBeam, KinematicsError};
+use crate::kinematics::{Kinematics, KinematicsError};
 use thiserror::Error;
 
 /// References of the axes at one path tick (X Y Z A B C; mm, rad, s).
@@ -33,16 +33,26 @@ pub enum ReferenceError {
     Kinematics(#[from] KinematicsError),
 }
 
-/// The references at `state` of `path`: the pose at s, its axes, and their rates and accelerations by the
-/// chain rule (SPEC 0.3, 0.4).
+/// The references at `state` of `path`: the pose at s, its axes nearest to `near`, and their rates and
+/// accelerations by the chain rule (SPEC 0.3, 0.4). A path in axis space gives its axes as they are.
 pub fn reference<const N: usize>(
-    kinematics: &DualBeam,
+    kinematics: &Kinematics,
     path: &Path<N>,
     state: SpeedState,
+    near: &[f64; AXES],
 ) -> Result<AxisReference, ReferenceError> {
     let point = path.at(state.s).ok_or(ReferenceError::EmptyPath)?;
-    let (pose, motion) = point.pose_in_motion()?;
-    let axes = kinematics.inverse_motion(&pose, &motion.at_speed(state.v, state.a))?;
+    let (axes, pose) = match path.space() {
+        PathSpace::Tool => {
+            let (pose, motion) = point.pose_in_motion()?;
+            let motion = motion.at_speed(state.v, state.a);
+            (kinematics.inverse_motion(&pose, &motion, near)?, pose)
+        }
+        PathSpace::Axes => {
+            let axes = point.axes().at_speed(state.v, state.a);
+            (axes, kinematics.forward(&axes.position))
+        }
+    };
     Ok(AxisReference {
         position: axes.position,
         velocity: axes.velocity,
@@ -54,17 +64,17 @@ pub fn reference<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kinematics::DualBeamConfig;
+    use crate::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
     use crate::protocol::Knot;
     use crate::trajectory::{CHANNELS, SpeedLimits, SpeedProfile};
 
-    fn machine() -> DualBeam {
-        let config = DualBeamConfig {
+    fn machine() -> Kinematics {
+        let config = KinematicsConfig::DualBeamGantry(DualBeamConfig {
             o1_mm: [3.0, -2.0, -120.0],
             o2_mm: [1.0, 4.0, -80.0],
             o3_mm: [0.5, -0.3, -450.0],
-        };
-        config.build().unwrap()
+        });
+        config.build(&[AxisLimits::NOT_FITTED; AXES]).unwrap()
     }
 
     /// A curved and twisting path whose T and N are neither of unit length nor perpendicular.
@@ -108,7 +118,7 @@ mod tests {
             jerk: 6000.0,
         };
         let profile = SpeedProfile::rest_to_rest(3.0, 307.0, &limits).unwrap();
-        let at = |t: f64| reference(&machine, &path, profile.at(t)).unwrap();
+        let at = |t: f64| reference(&machine, &path, profile.at(t), &[0.0; AXES]).unwrap();
         let h = 1e-4;
         let mut checked = 0;
         for k in 1..400 {
@@ -141,7 +151,9 @@ mod tests {
     #[test]
     fn second_derivatives_are_exact() {
         let (machine, path) = (machine(), path());
-        let at = |s: f64, v: f64, a: f64| reference(&machine, &path, SpeedState { s, v, a }).unwrap();
+        let at = |s: f64, v: f64, a: f64| {
+            reference(&machine, &path, SpeedState { s, v, a }, &[0.0; AXES]).unwrap()
+        };
         for s in [4.0, 55.5, 123.0, 266.6] {
             let h = 1e-3;
             let (before, now, after) = (at(s - h, 1.0, 0.0), at(s, 1.0, 0.0), at(s + h, 1.0, 0.0));
@@ -167,7 +179,7 @@ mod tests {
     fn a_path_without_a_pose_is_refused() {
         let state = SpeedState::default();
         assert_eq!(
-            reference(&machine(), &Path::<2>::new(), state),
+            reference(&machine(), &Path::<2>::new(), state, &[0.0; AXES]),
             Err(ReferenceError::EmptyPath)
         );
         let mut path = Path::<2>::new();
@@ -178,14 +190,14 @@ mod tests {
         };
         path.push(knot).unwrap();
         assert_eq!(
-            reference(&machine(), &path, state),
+            reference(&machine(), &path, state, &[0.0; AXES]),
             Err(ReferenceError::Pose(PoseError::ZeroVector))
         );
-        path.clear(1);
+        path.clear(1, PathSpace::Tool);
         (knot.value[5], knot.value[6]) = (1.0, 1.0);
         path.push(knot).unwrap();
         assert_eq!(
-            reference(&machine(), &path, state),
+            reference(&machine(), &path, state, &[0.0; AXES]),
             Err(ReferenceError::Kinematics(KinematicsError::GimbalLock))
         );
     }

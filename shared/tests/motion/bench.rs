@@ -1,7 +1,7 @@
 //! Servo loops and controller in lockstep with drives that follow their command at once.
 
 use shared::io::{MOTORS, MotionCommand, MotionFeedback};
-use shared::kinematics::{AXIS_UNIT, DualBeamConfig};
+use shared::kinematics::{AXIS_UNIT, DualBeamConfig, KinematicsConfig};
 use shared::motion::{
     AxisConfig, BeamConfig, Fault, GantryConfig, HomeConfig, MotionConfig, MotionController, MotorConfig,
     PathTickInput, SERVO_PERIOD_S, SERVO_TICKS_PER_PATH_TICK, ServoLoops, State,
@@ -9,7 +9,7 @@ use shared::motion::{
 use shared::protocol::{
     Knot, MotionSample, MotionStatus, PathAction, PathEvent, PathState, Refusal, Request, Response,
 };
-use shared::trajectory::CHANNELS;
+use shared::trajectory::{CHANNELS, PathSpace};
 
 /// Counts in one mm or degree.
 pub const SCALE: f64 = 10_000.0;
@@ -38,6 +38,7 @@ pub fn config() -> MotionConfig {
         max_command: FULL_SPEED,
         following_error_base: 0.5,
         following_error_time_s: 0.05,
+        home_sequence: 1,
         home: HomeConfig {
             velocity: -20.0,
             mark_position,
@@ -53,16 +54,21 @@ pub fn config() -> MotionConfig {
     };
     let (linear, rotary) = (axis(0.0, TRAVEL_MAX), axis(-90.0, 90.0));
     let (x, turn) = (motor(MARK), motor(0.0));
+    let z = MotorConfig {
+        home_sequence: 0,
+        ..x.clone()
+    };
     let beam = BeamConfig {
         power_at_10v_w: 4000.0,
         min_speed_mm_s: 5.0,
+        stays_on_at_rest: false,
     };
     MotionConfig {
-        kinematics: DualBeamConfig {
+        kinematics: KinematicsConfig::DualBeamGantry(DualBeamConfig {
             o1_mm: [0.0, 0.0, -120.0],
             o2_mm: [0.0, 0.0, -80.0],
             o3_mm: [0.0, 0.0, -450.0],
-        },
+        }),
         axes: [
             linear.clone(),
             linear.clone(),
@@ -70,17 +76,10 @@ pub fn config() -> MotionConfig {
             rotary.clone(),
             rotary.clone(),
             rotary,
-        ],
-        motors: [
-            x.clone(),
-            x.clone(),
-            x.clone(),
-            x,
-            turn.clone(),
-            turn.clone(),
-            turn,
-        ],
-        gantry: GantryConfig {
+        ]
+        .map(Some),
+        motors: [x.clone(), x.clone(), x, z, turn.clone(), turn.clone(), turn].map(Some),
+        gantry: Some(GantryConfig {
             coupling: 20.0,
             coupling_derivative: 0.0,
             derivative_filter_s: 0.0,
@@ -88,8 +87,8 @@ pub fn config() -> MotionConfig {
             skew_trip_mm: 0.3,
             y1_mm: -250.0,
             y2_mm: 3250.0,
-        },
-        beams: [beam.clone(), beam],
+        }),
+        beams: [Some(beam.clone()), Some(beam)],
         link_timeout_ms: 500,
     }
 }
@@ -258,10 +257,13 @@ impl Bench {
 
     /// Loads a line of `length` mm along Y from where the machine stands, with beam 1 on over all of it.
     pub fn load_line(&mut self, length: f64) {
-        let machine = config().kinematics.build().unwrap();
+        let machine = config().kinematics().unwrap();
         let reference = self.status().reference;
         let pose = machine.forward(&std::array::from_fn(|axis| reference[axis] * AXIS_UNIT[axis]));
-        self.done(&Request::ClearPath { id: 7 });
+        self.done(&Request::ClearPath {
+            id: 7,
+            space: PathSpace::Tool,
+        });
         for s_mm in [0.0, length] {
             let mut value = [0.0; CHANNELS];
             let mut slope = [0.0; CHANNELS];

@@ -82,7 +82,7 @@ fn home_right_after_new_parameters_waits_for_them() {
     bench.slipped = [987_654_321; 7];
     bench.run_ms(5);
     let mut other = config();
-    other.motors[2].counts_per_unit *= -0.5;
+    other.motors[2].as_mut().unwrap().counts_per_unit *= -0.5;
     for config in [other, config()] {
         bench.done(&Request::Disable);
         bench.done(&Request::ConfigureMotion(config));

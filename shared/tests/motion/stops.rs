@@ -5,6 +5,7 @@ use shared::io::MotionCommand;
 use shared::motion::State;
 use shared::protocol::{Knot, PathAction, PathEvent, Refusal, Request};
 use shared::trajectory::CHANNELS;
+use shared::trajectory::PathSpace;
 
 #[test]
 fn resume_while_still_slowing_goes_on_from_rest() {
@@ -128,7 +129,10 @@ fn a_refused_request_leaves_the_path_as_it_was() {
     bench.run_ms(100);
     for request in [
         Bench::run_request(),
-        Request::ClearPath { id: 8 },
+        Request::ClearPath {
+            id: 8,
+            space: PathSpace::Tool,
+        },
         Request::LoadKnots([knot(110.0)].into_iter().collect()),
         Request::LoadEvent(PathEvent {
             s_mm: 1.0,

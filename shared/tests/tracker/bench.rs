@@ -12,6 +12,7 @@ use shared::tracking::frames::Heads;
 use shared::tracking::{
     HeadConfig, SlideConfig, TickInput, TickOutput, TrackerConfig, TrackerController, TrackingConfig,
 };
+use shared::trajectory::PathSpace;
 use std::collections::VecDeque;
 
 pub const KNOTS: usize = 600;
@@ -192,7 +193,10 @@ impl Bench {
     /// As [`Self::prepare`], with other parameters.
     pub fn prepare_with(&mut self, config: TrackerConfig) {
         self.accept(Request::ConfigureTracker(config));
-        self.accept(Request::ClearPath { id: PATH_ID });
+        self.accept(Request::ClearPath {
+            id: PATH_ID,
+            space: PathSpace::Tool,
+        });
         for batch in 0..83 {
             let knots = (0..6)
                 .map(|i| self.shape.knot(f64::from(batch * 6 + i) - 5.0))

@@ -5,6 +5,7 @@ use shared::io::SlideCommand;
 use shared::parameter::ParameterError;
 use shared::protocol::{Datagram, Measurement, Refusal, Request, Response};
 use shared::tracking::{TickInput, TrackerController, TrackerFault, TrackerState};
+use shared::trajectory::PathSpace;
 
 fn bench() -> Bench {
     Bench::new(Shape::Straight, |_, _| (0.2, 0.1))
@@ -386,7 +387,10 @@ fn what_would_disturb_the_weld_is_refused_while_tracking() {
     for request in [
         Request::ConfigureTracker(config()),
         Request::Home,
-        Request::ClearPath { id: 1 },
+        Request::ClearPath {
+            id: 1,
+            space: PathSpace::Tool,
+        },
         Request::LoadKnots([Shape::Straight.knot(1000.0)].into_iter().collect()),
     ] {
         assert_eq!(bench.ask(request), wrong_state(TrackerState::Tracking));

@@ -3,9 +3,9 @@
 use super::file::{Golden, near, near_all, number, numbers, vector};
 use nalgebra::Vector3;
 use serde_json::Value;
-use shared::geometry::{Pose, interpolate};
+use shared::geometry::{Pose, PoseMotion, interpolate};
 use shared::io::{AXES, AXIS_NAMES};
-use shared::kinematics::{AxisLimits, DualBeam, DualBeamConfig, feed_limit, violations};
+use shared::kinematics::{AxisLimits, Chain, DualBeam, DualBeamConfig, feed_limit, violations};
 use shared::motion::AxisConfig;
 
 pub fn machine(case: &Value) -> DualBeam {
@@ -17,7 +17,9 @@ pub fn machine(case: &Value) -> DualBeam {
         o2_mm: array("o2"),
         o3_mm: [across[0], across[1], -number(geometry, "L")],
     };
-    config.build().expect("a valid geometry")
+    config
+        .build(&[AxisLimits::NOT_FITTED; AXES])
+        .expect("a valid geometry")
 }
 
 fn axes(value: &Value) -> [f64; AXES] {
@@ -41,7 +43,7 @@ fn limits() -> [AxisLimits; AXES] {
         axis(-30.0, 30.0, 120.0),
         axis(-90.0, 90.0, 120.0),
     ];
-    AxisLimits::build_all(&configs).expect("valid limits")
+    AxisLimits::build_all(&configs.map(Some)).expect("valid limits")
 }
 
 /// Checks the file `m0_kin`.
@@ -63,7 +65,7 @@ pub fn m0_kin(golden: &Golden) {
         let pose = Pose::new(vector(&input["P"]), vector(&input["T"]), vector(&input["N"]));
         let solved = pose
             .map_err(|e| e.to_string())
-            .and_then(|pose| kinematics.inverse(&pose).map_err(|e| e.to_string()));
+            .and_then(|pose| kinematics.inverse(&pose, &[0.0; AXES]).map_err(|e| e.to_string()));
         match solved {
             Ok(q) => {
                 assert!(
@@ -95,10 +97,14 @@ pub fn m0_vel(golden: &Golden) {
         let (input, out) = (&case["in"], &case["out"]);
         let q = axes(&input["q"]);
         let (t, omega) = (vector(&input["t"]), vector(&input["omega"]));
-        let rates = kinematics.rates(&q, &t, &omega);
+        let motion = PoseMotion {
+            velocity: t,
+            angular_velocity: omega,
+            acceleration: vector(&input["acc"]),
+            angular_acceleration: vector(&input["alpha"]),
+        };
+        let (rates, accelerations) = kinematics.derivatives(&q, &motion).expect("derivatives");
         near_all(case, "qd", &rates, &out["qd"], golden.tolerance);
-        let accelerations =
-            kinematics.accelerations(&q, &t, &omega, &vector(&input["acc"]), &vector(&input["alpha"]));
         near_all(case, "qdd", &accelerations, &out["qdd"], golden.tolerance);
         let (feed, axis) = feed_limit(&rates, &limits());
         near(case, "feed_max", feed, number(out, "feed_max"), golden.tolerance);

@@ -7,6 +7,7 @@ use host_link::plan::{
 };
 use serde_json::Value;
 use shared::geometry::{Pose, rotate};
+use shared::kinematics::Chain;
 
 fn class(error: LocateError) -> &'static str {
     match error {
@@ -124,7 +125,7 @@ pub fn m0_e2e(golden: &Golden) {
         };
         check_location(case, &at, golden.tolerance);
         let pose = Pose::new(at.tip, at.tangent, at.normal).expect("a pose");
-        let q = machine(case).inverse(&pose).expect("a solution");
+        let q = machine(case).inverse(&pose, &[0.0; 6]).expect("a solution");
         near_all(case, "q", &q, &out["q"], golden.tolerance);
         let working = number(input, "ell") - number(input, "f") - number(input, "zd");
         for (k, point) in [place.point, at.p2].into_iter().enumerate() {

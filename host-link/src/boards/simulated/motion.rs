@@ -74,7 +74,7 @@ mod tests {
     use crate::machine::MachineFile;
     use shared::motion::{Fault, MotionConfig, State};
     use shared::protocol::{Knot, MotionStatus, PathAction, PathEvent, Refusal};
-    use shared::trajectory::CHANNELS;
+    use shared::trajectory::{CHANNELS, PathSpace};
 
     fn config() -> MotionConfig {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines/dual-beam-gantry.toml");
@@ -145,11 +145,14 @@ mod tests {
 
         /// Loads a straight line of `length` mm along X from where the machine stands, in its attitude.
         fn load_line(&mut self, length: f64) {
-            let machine = config().kinematics.build().expect("kinematics");
+            let machine = config().kinematics().expect("kinematics");
             let reference = self.status().reference;
             let axes: [f64; 6] = std::array::from_fn(|i| reference[i] * shared::kinematics::AXIS_UNIT[i]);
             let pose = machine.forward(&axes);
-            self.done(&Request::ClearPath { id: 7 });
+            self.done(&Request::ClearPath {
+                id: 7,
+                space: PathSpace::Tool,
+            });
             for s_mm in [0.0, length] {
                 let mut value = [0.0; CHANNELS];
                 let mut slope = [0.0; CHANNELS];
@@ -309,7 +312,7 @@ mod tests {
         };
         assert_eq!(refused(&mut bench, Request::Home), Refusal::NotConfigured);
         let mut bad = config();
-        bad.motors[2].kp = -1.0;
+        bad.motors[2].as_mut().expect("Y").kp = -1.0;
         assert!(matches!(
             refused(&mut bench, Request::ConfigureMotion(bad)),
             Refusal::Parameter(_)
@@ -320,7 +323,10 @@ mod tests {
             acceleration_mm_s2: 1000.0,
             jerk_mm_s3: 20_000.0,
         };
-        bench.done(&Request::ClearPath { id: 1 });
+        bench.done(&Request::ClearPath {
+            id: 1,
+            space: PathSpace::Tool,
+        });
         assert_eq!(refused(&mut bench, run.clone()), Refusal::NoPath);
         assert!(matches!(
             refused(&mut bench, Request::Hold),

@@ -11,12 +11,13 @@ use super::beams::slide_extension;
 use super::cut::SmoothSeam;
 use super::locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
 use crate::curve::Curve;
-use crate::machine::MachineFile;
+use crate::machine::{MachineFile, TrackingUnit};
 use crate::seam::SeamPoint;
 use nalgebra::Vector3;
 use shared::geometry::{Pose, PoseError, SplineError, angle};
 use shared::kinematics::KinematicsError;
 use shared::parameter::ParameterError;
+use shared::tracking::HeadConfig;
 use shared::units::DEG_PER_RAD;
 use thiserror::Error;
 
@@ -119,6 +120,11 @@ pub enum PlanError {
     /// A machine parameter makes no sense.
     #[error("the machine file cannot be used: {0}")]
     Parameter(#[from] ParameterError),
+    /// The machine has no head, slides, tracking and cameras.
+    #[error(
+        "the machine file has no tables head, slides, tracking and cameras: it has no second beam to plan for"
+    )]
+    NoTracking,
     /// An option makes no sense.
     #[error("{name} is {value}, but must be above 0")]
     Option {
@@ -163,7 +169,8 @@ pub fn plan_dual_beam(
     let first = Curve::by_length(&rows).map_err(|source| PlanError::Curve { seam: 1, source })?;
     let second = SmoothSeam::through(other).map_err(|source| PlanError::Curve { seam: 2, source })?;
 
-    let head = &machine.tracker.head;
+    let unit = machine.tracking.as_ref().ok_or(PlanError::NoTracking)?;
+    let head = &unit.board.head;
     let mut weld = Vec::new();
     let mut max_gap: f64 = 0.0;
     let mut sigma: Option<(f64, f64)> = None;
@@ -173,7 +180,7 @@ pub fn plan_dual_beam(
             &first,
             &second,
             s,
-            machine,
+            head,
             options.paper,
             sigma.map(|(_, sigma2)| sigma2),
         )?;
@@ -194,7 +201,7 @@ pub fn plan_dual_beam(
         });
     }
 
-    let (run_in, run_out) = run_lengths(machine);
+    let (run_in, run_out) = run_lengths(machine, unit);
     let start = weld[0];
     let end = weld[weld.len() - 1];
     let in_steps = steps(run_in);
@@ -207,7 +214,7 @@ pub fn plan_dual_beam(
     points.extend((1..=out_steps).map(|i| moved(&end, run_out * i as f64 / out_steps as f64)));
 
     // The map of the seam begins where the camera saw it first.
-    let tracking = &machine.tracker.tracking;
+    let tracking = &unit.board.tracking;
     let seen = head.camera_lead_mm + tracking.window_mm;
     let step = run_in / in_steps as f64;
     let mut plan = DualBeamPlan {
@@ -232,7 +239,7 @@ fn locate_at(
     first: &Curve<6>,
     second: &SmoothSeam,
     s: f64,
-    machine: &MachineFile,
+    head: &HeadConfig,
     paper: bool,
     sigma_prev: Option<f64>,
 ) -> Result<(SeamPlace, Location), PlanError> {
@@ -242,7 +249,7 @@ fn locate_at(
         tangent: Vector3::new(slope[0], slope[1], slope[2]),
         normal: Vector3::new(value[3], value[4], value[5]),
     };
-    let theta2 = machine.tracker.head.included_angle_deg / DEG_PER_RAD;
+    let theta2 = head.included_angle_deg / DEG_PER_RAD;
     let theta1 = -theta2 / 2.0;
     let located = if paper {
         locate(&place, second, theta1, theta2, GAP_MAX, sigma_prev, None)
@@ -294,7 +301,7 @@ fn divide(curve: &Curve<6>) -> Vec<f64> {
 /// Lengths of the straight runs before and after the seam \[mm\]: at 9 m/min the tip reaches its speed,
 /// v/2·(v/a + a/j), the map of the seam fills, w + hold + v·(T_p + 4 T_f), and the slides cross half their
 /// travel and settle, v·(travel/2/v_slide + 0.1 s); after the seam it only stops. Both are at least 40 mm.
-fn run_lengths(machine: &MachineFile) -> (f64, f64) {
+fn run_lengths(machine: &MachineFile, unit: &TrackingUnit) -> (f64, f64) {
     let (v, a, j) = (
         RUN_SPEED,
         machine.planning.path_acceleration_mm_s2,
@@ -307,15 +314,15 @@ fn run_lengths(machine: &MachineFile) -> (f64, f64) {
         2.0 * libm::sqrt(v / j)
     };
     let speed_up = v / 2.0 * time;
-    let tracking = &machine.tracker.tracking;
+    let tracking = &unit.board.tracking;
     let frame = f64::from(tracking.frame_period_ms) / 1000.0;
-    let reach = machine
-        .tracker
+    let reach = unit
+        .board
         .slides
         .iter()
         .map(|slide| (slide.travel_max_mm - slide.travel_min_mm) / 2.0 / slide.max_velocity_mm_s)
         .fold(0.0, f64::max);
-    let wait = machine.cameras.processing_ms / 1000.0 + FRAMES * frame + reach + SETTLE;
+    let wait = unit.cameras.processing_ms / 1000.0 + FRAMES * frame + reach + SETTLE;
     let lock = tracking.window_mm + tracking.hold_mm + v * wait;
     ((speed_up + lock).max(SHORTEST_RUN), speed_up.max(SHORTEST_RUN))
 }

@@ -4,13 +4,14 @@ use super::{CLEARANCE, DualBeamPlan, PlanError, PlanOptions, PlannedPoint};
 use crate::machine::MachineFile;
 use crate::plan::text::{NcText, decimal, tip_words};
 use nalgebra::Vector3;
+use shared::io::AXES;
 use shared::units::DEG_PER_RAD;
 
 impl DualBeamPlan {
     pub(super) fn write(&self, machine: &MachineFile, options: &PlanOptions) -> Result<String, PlanError> {
-        let kinematics = machine.motion.kinematics.build()?;
+        let kinematics = machine.motion.kinematics()?;
         let words = |point: &PlannedPoint| -> Result<(Vector3<f64>, [f64; 3], String), PlanError> {
-            let q = kinematics.inverse(&point.pose)?;
+            let q = kinematics.inverse(&point.pose, &[0.0; AXES])?;
             let angles = [q[3], q[4], q[5]].map(|a| a * DEG_PER_RAD);
             let position = point.pose.position;
             let text = tip_words(&position.into(), &angles, &point.extension);

@@ -49,13 +49,13 @@ fn on_the_planned_path_both_spots_stay_on_their_seams() {
         let plan = plan_dual_beam(&main, &other, &machine, &options).unwrap();
         let program = interpret(&plan.program, Options::default()).unwrap();
         let planner = Planner::build(&machine).unwrap();
-        let from = planner.tip(&machine.planning.park.to_array());
+        let from = planner.tip(&machine.planning.park_axes());
         let paths = planner.program(&program, &from, None).unwrap();
         let weld = paths.iter().find(|path| path.weld().is_some()).unwrap();
         let (start, end) = weld.weld().unwrap();
         assert!((end - start - 400.0).abs() < 0.5 && start > 50.0);
 
-        let heads = machine.tracker.head.build().unwrap();
+        let heads = machine.tracking.as_ref().unwrap().board.head.build().unwrap();
         let first: Vec<Vector3<f64>> = main.iter().map(|p| p.position).collect();
         let seams = [
             SmoothSeam::through(&first).unwrap(),
@@ -121,12 +121,13 @@ fn what_cannot_be_welded_is_refused_with_its_place() {
 fn the_runs_follow_their_formula() {
     let mut machine = machine();
     // 75·(150/500 + 500/10000) + 3 + 2 + 150·(0.01 + 4·0.005 + 12/50 + 0.1)
-    let (run_in, run_out) = run_lengths(&machine);
+    let unit = machine.tracking.clone().unwrap();
+    let (run_in, run_out) = run_lengths(&machine, &unit);
     assert!((run_in - 86.75).abs() < 1e-9 && run_out == 40.0);
     // Never at full acceleration: 75·2·√(150/2000) + …
     machine.planning.path_jerk_mm_s3 = 2000.0;
     machine.planning.path_acceleration_mm_s2 = 1000.0;
-    let (run_in, run_out) = run_lengths(&machine);
+    let (run_in, run_out) = run_lengths(&machine, &unit);
     let speed_up = 150.0 * (150.0_f64 / 2000.0).sqrt();
     assert!((run_out - speed_up).abs() < 1e-9 && (run_in - speed_up - 60.5).abs() < 1e-9);
 }

@@ -1,15 +1,14 @@
 //! What the PC may ask of the motion board, and what it is told.
 
 use super::{MotionController, START_TOLERANCE, Travel};
-use crate::io::{AXES, SIDES};
+use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
-use crate::motion::beams::Beams;
 use crate::motion::homing::Homing;
 use crate::motion::machine::Machine;
 use crate::motion::state::Event;
 use crate::motion::{MotionConfig, State};
 use crate::protocol::{Knot, MotionStatus, PathAction, PathEvent, Refusal, Request, Response};
-use crate::trajectory::{SpeedLimits, SpeedProfile, SpeedState, reference};
+use crate::trajectory::{PathSpace, SpeedLimits, SpeedProfile, SpeedState, reference};
 
 impl<const KNOTS: usize> MotionController<KNOTS> {
     /// One request of the PC; `unsent` datagrams could not be sent so far. The answer says what was done or
@@ -22,7 +21,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             Request::Home => self.start_homing(),
             Request::Disable => self.disable(),
             Request::Reset => self.reset(),
-            Request::ClearPath { id } => self.clear_path(*id),
+            Request::ClearPath { id, space } => self.clear_path(*id, *space),
             Request::LoadKnots(knots) => self.load_knots(knots),
             Request::LoadEvent(event) => self.load_event(event),
             Request::Run {
@@ -61,7 +60,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         self.servo_setup = Some(servo);
         self.homed = false;
         // A path was planned for the machine it was loaded for.
-        self.path.clear(0);
+        self.path.clear(0, PathSpace::Tool);
         self.events.clear();
         Ok(())
     }
@@ -95,11 +94,11 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         Ok(())
     }
 
-    fn clear_path(&mut self, id: u32) -> Result<(), Refusal> {
+    fn clear_path(&mut self, id: u32, space: PathSpace) -> Result<(), Refusal> {
         if self.state.on_path() {
             return Err(Refusal::WrongState { state: self.state });
         }
-        self.path.clear(id);
+        self.path.clear(id, space);
         self.events.clear();
         Ok(())
     }
@@ -115,10 +114,12 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         let refusal = Refusal::BadEvent {
             index: self.events.len() as u16,
         };
+        let beams = &self.machine.as_ref().ok_or(Refusal::NotConfigured)?.beams;
+        let in_tool_space = self.path.space() == PathSpace::Tool;
         let sound = match event.action {
-            PathAction::Beam { side, .. } => usize::from(side) < SIDES,
-            PathAction::Power { side, watt } => usize::from(side) < SIDES && watt.is_finite() && watt >= 0.0,
-            PathAction::Tracking { .. } => true,
+            PathAction::Beam { side, on } => beams.has(side) && (in_tool_space || !on),
+            PathAction::Power { side, watt } => beams.has(side) && watt.is_finite() && watt >= 0.0,
+            PathAction::Tracking { on } => in_tool_space || !on,
         };
         let in_order = self.events.last().is_none_or(|last| last.s_mm <= event.s_mm);
         if self.state.on_path() {
@@ -150,7 +151,8 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             v: 0.0,
             a: 0.0,
         };
-        let first = reference(&machine.kinematics, &self.path, rest).map_err(|_| Refusal::NoPath)?;
+        let first = reference(&machine.kinematics, &self.path, rest, &self.axes);
+        let first = first.map_err(|_| Refusal::NoPath)?;
         for axis in 0..AXES {
             let distance = first.position[axis] - self.axes[axis];
             let close = libm::fabs(distance) <= START_TOLERANCE;
@@ -162,7 +164,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             }
         }
         self.state = state;
-        self.beams = Beams::NONE;
+        self.beams.restart(&machine.beams);
         self.resume_wanted = false;
         self.along = [rest; 3];
         self.travel = Some(Travel {

@@ -3,6 +3,7 @@
 use super::TrackerController;
 use crate::protocol::{Refusal, Request, Response, TrackerStatus};
 use crate::tracking::TrackerState;
+use crate::trajectory::PathSpace;
 
 impl<const KNOTS: usize> TrackerController<KNOTS> {
     /// Answers a request of the PC; `unsent` datagrams could not be sent so far.
@@ -13,7 +14,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 self.parameters = Some(config.build().map_err(Refusal::Parameter)?);
                 self.slides = Default::default();
                 // A path was planned for the machine it was loaded for.
-                self.path.clear(0);
+                self.path.clear(0, PathSpace::Tool);
                 self.forget_seam();
                 Ok(())
             }),
@@ -25,8 +26,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 Ok(())
             }
             Request::Reset => self.reset(),
-            Request::ClearPath { id } => self.allow_all_but_tracking().map(|()| {
-                self.path.clear(*id);
+            Request::ClearPath { id, space } => self.allow_all_but_tracking().map(|()| {
+                self.path.clear(*id, *space);
                 self.forget_seam();
             }),
             Request::LoadKnots(knots) => self
