@@ -11,11 +11,13 @@ mod golden {
     mod file;
     mod folder;
     mod kinematics;
+    mod metrics;
     mod planning;
     mod servo;
     mod servo_circle;
     mod spline;
     mod tally;
+    mod teaching;
     mod tracking;
 
     /// A test for each file, and the list of their names.
@@ -38,5 +40,7 @@ mod golden {
         servo: servo_pid servo_gantry;
         servo_circle: closed_loop_servo;
         spline: spline;
+        teaching: normals teach_loop;
+        metrics: metrics;
     }
 }
