@@ -8,11 +8,13 @@
 //! and its name in the list below.
 
 mod golden {
+    mod arcs;
     mod file;
     mod folder;
     mod kinematics;
     mod metrics;
     mod planning;
+    mod profile;
     mod servo;
     mod servo_circle;
     mod spline;
@@ -40,6 +42,8 @@ mod golden {
         servo: servo_pid servo_gantry;
         servo_circle: closed_loop_servo;
         spline: spline;
+        profile: profile;
+        arcs: arc3 fsw_arc;
         teaching: normals teach_loop;
         metrics: metrics;
     }

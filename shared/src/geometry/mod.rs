@@ -1,11 +1,16 @@
 //! Curves, frames and attitude in the work frame.
 
+mod arc;
+mod arc_steps;
 mod attitude;
+mod line;
 mod motion;
 mod pose;
 mod spline;
 
+pub use arc::{Arc, ArcError, Turn};
 pub use attitude::{AttitudeError, angle, interpolate, rotate};
+pub use line::{Line, LineError};
 pub use motion::{Moving, PoseMotion, frame_rates, pose_in_motion};
 pub use pose::{Pose, PoseError};
 pub use spline::{NaturalSpline, SplineError};

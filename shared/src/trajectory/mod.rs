@@ -1,12 +1,16 @@
 //! The path (where) and the speed along it (when), kept apart.
 
+mod matched_turn;
 mod path;
 mod reference;
 mod speed;
+mod trapezoid;
 
+pub use matched_turn::MatchedTurn;
 pub use path::{Path, PathError, PathPoint, PathSpace};
 pub use reference::{AxisReference, ReferenceError, reference};
 pub use speed::{SpeedError, SpeedLimits, SpeedProfile, SpeedState};
+pub use trapezoid::{SmoothedTrapezoid, Trapezoid, TrapezoidError};
 
 /// Channels of a path: position (3), T (3), N (3), V slide extensions (2).
 pub const CHANNELS: usize = 11;

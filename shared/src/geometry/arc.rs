@@ -1,0 +1,291 @@
+//! Circular arcs and helices over their length (SPEC 1.4, 4.2).
+
+use super::{Moving, pose::unit, rotate};
+use core::f64::consts::{PI, TAU};
+use nalgebra::Vector3;
+use thiserror::Error;
+
+/// Ends nearer than this \[mm\] mean a full circle: no program is written finer.
+const SAME_POINT: f64 = 1e-6;
+
+/// Why there is no arc.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum ArcError {
+    /// Two of three points are the same, to 1e-9 of their largest distance.
+    #[error("coincident: two of the three points are {shortest} mm apart; take three different points")]
+    Coincident {
+        /// Smallest distance between two of the points \[mm\].
+        shortest: f64,
+    },
+    /// The three points lie on a line, to 1e-9 of their largest distance.
+    #[error("collinear: the three points are within {offset} mm of a line; move straight instead")]
+    Collinear {
+        /// Smallest height of the triangle \[mm\].
+        offset: f64,
+    },
+    /// Start and end are not equally far from the centre.
+    #[error(
+        "radius mismatch: the start is {start} mm from the centre, the end {end} mm, and {limit} mm is \
+         allowed; correct the centre or the end"
+    )]
+    RadiusMismatch {
+        /// Distance from start to centre \[mm\].
+        start: f64,
+        /// Distance from end to centre \[mm\].
+        end: f64,
+        /// Largest difference \[mm\].
+        limit: f64,
+    },
+    /// The start lies on the axis.
+    #[error("zero radius: the start of the arc is its centre")]
+    ZeroRadius,
+    /// The axis has no direction.
+    #[error("zero axis: the arc lies in no plane")]
+    ZeroAxis,
+    /// Less than [`Arc::LEAST_TAUGHT_SWEEP`]: small errors of the points become large ones of the radius.
+    #[error("ill-conditioned: the three points span {sweep_deg}° only; take them over at least 10°")]
+    IllConditioned {
+        /// Sweep \[°\].
+        sweep_deg: f64,
+    },
+    /// A step that is not above zero.
+    #[error("step: {step} mm is no step along an arc")]
+    Step {
+        /// The step \[mm\].
+        step: f64,
+    },
+    /// A coordinate is infinite or not a number.
+    #[error("not finite: a coordinate of the arc is no number")]
+    NotFinite,
+}
+
+/// Sense of an arc, seen from the tip of the axis: with the axis of the plane, G3 or G2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// Right-handed about the axis (G3).
+    CounterClockwise,
+    /// Left-handed about the axis (G2).
+    Clockwise,
+}
+
+/// An arc of up to a full circle or, if it rises along its axis, a helix of up to one turn.
+///
+/// It always goes right-handed about its own [`Arc::axis`]; a clockwise arc has the opposite axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc {
+    centre: Vector3<f64>,
+    axis: Vector3<f64>,
+    /// From the centre to the start.
+    arm: Vector3<f64>,
+    radius: f64,
+    sweep: f64,
+    /// Spread evenly over the sweep: the rise, and what the given end is off the circle.
+    drift: Vector3<f64>,
+    length: f64,
+}
+
+impl Arc {
+    /// Largest difference of the radii at start and end \[mm\]: above the rounding of programs with three
+    /// decimals.
+    pub const RADIUS_TOLERANCE: f64 = 0.005;
+
+    /// Least sweep that three measured points should span \[rad\], 10° (SPEC 1.4).
+    pub const LEAST_TAUGHT_SWEEP: f64 = PI / 18.0;
+
+    /// The arc from `start` to `end` about `centre`, as G2 and G3 give it: `axis` is the axis of the plane, of
+    /// any length, and `turn` the sense about it. Ends at one place mean a full circle. The end may be higher
+    /// along the axis than the start (helix); the height of `centre` does not matter.
+    ///
+    /// The arc ends exactly at `end`: a difference of the radii up to [`Arc::RADIUS_TOLERANCE`] is spread
+    /// evenly along it.
+    pub fn about_centre(
+        start: Vector3<f64>,
+        end: Vector3<f64>,
+        centre: Vector3<f64>,
+        axis: Vector3<f64>,
+        turn: Turn,
+    ) -> Result<Self, ArcError> {
+        finite(&[start, end, centre, axis])?;
+        let axis = unit(axis).ok_or(ArcError::ZeroAxis)?;
+        let rise = (end - start).dot(&axis);
+        let centre = centre + axis * (start - centre).dot(&axis);
+        let axis = match turn {
+            Turn::CounterClockwise => axis,
+            Turn::Clockwise => -axis,
+        };
+        let arm = start - centre;
+        let end_arm = end - centre - axis * (end - centre).dot(&axis);
+        let (radius, end_radius) = (arm.norm(), end_arm.norm());
+        if radius <= SAME_POINT {
+            return Err(ArcError::ZeroRadius);
+        }
+        if libm::fabs(radius - end_radius) > Self::RADIUS_TOLERANCE {
+            return Err(ArcError::RadiusMismatch {
+                start: radius,
+                end: end_radius,
+                limit: Self::RADIUS_TOLERANCE,
+            });
+        }
+        let sweep = if (end_arm - arm).norm() <= SAME_POINT {
+            TAU
+        } else {
+            central_angle(&axis, &arm, &end_arm)
+        };
+        Ok(Self {
+            centre,
+            axis,
+            arm,
+            radius,
+            sweep,
+            drift: end - (centre + rotate(&axis, sweep, &arm)),
+            length: libm::hypot(radius * sweep, rise),
+        })
+    }
+
+    /// The arc from `a` through `b` to `c` (SPEC 1.4). It goes right-handed about (b−a)×(c−a) and may be a
+    /// major one. Points taken by measuring should also pass [`Arc::check_conditioning`].
+    pub fn through(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> Result<Self, ArcError> {
+        finite(&[a, b, c])?;
+        let (to_b, to_c) = (b - a, c - a);
+        let sides = [to_b.norm(), to_c.norm(), (c - b).norm()];
+        let longest = sides.iter().fold(0.0, |max: f64, &side| max.max(side));
+        let shortest = sides.iter().fold(longest, |min: f64, &side| min.min(side));
+        if shortest <= 1e-9 * longest {
+            return Err(ArcError::Coincident { shortest });
+        }
+        let normal = to_b.cross(&to_c);
+        let area = normal.norm();
+        if area < 1e-9 * longest * longest {
+            return Err(ArcError::Collinear {
+                offset: area / longest,
+            });
+        }
+        let to_centre = (normal.cross(&to_b) * to_c.norm_squared()
+            + to_c.cross(&normal) * to_b.norm_squared())
+            / (2.0 * area * area);
+        let (axis, arm) = (normal / area, -to_centre);
+        let (radius, sweep) = (arm.norm(), central_angle(&(normal / area), &arm, &(to_c + arm)));
+        Ok(Self {
+            centre: a + to_centre,
+            axis,
+            arm,
+            radius,
+            sweep,
+            drift: Vector3::zeros(),
+            length: radius * sweep,
+        })
+    }
+
+    /// Refuses an arc through measured points that span too little: a sweep of 10° makes an error of the
+    /// radius some 200 times that of the points (SPEC 1.4).
+    pub fn check_conditioning(&self) -> Result<(), ArcError> {
+        if self.sweep < Self::LEAST_TAUGHT_SWEEP {
+            return Err(ArcError::IllConditioned {
+                sweep_deg: self.sweep.to_degrees(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Centre \[mm\], in the plane of the start.
+    pub fn centre(&self) -> Vector3<f64> {
+        self.centre
+    }
+
+    /// Unit axis; the arc goes right-handed about it.
+    pub fn axis(&self) -> Vector3<f64> {
+        self.axis
+    }
+
+    /// Radius \[mm\].
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Central angle from start to end \[rad\], above 0 and up to 2π.
+    pub fn sweep(&self) -> f64 {
+        self.sweep
+    }
+
+    /// Sweep, positive if the arc goes right-handed about `direction`, else negative \[rad\] (SPEC 4.2).
+    pub fn signed_sweep(&self, direction: &Vector3<f64>) -> f64 {
+        libm::copysign(self.sweep, self.axis.dot(direction))
+    }
+
+    /// Height gained along [`Arc::axis`] from start to end \[mm\]; 0 for a plane arc.
+    pub fn rise(&self) -> f64 {
+        self.drift.dot(&self.axis)
+    }
+
+    /// Length \[mm\].
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// Curvature \[1/mm\].
+    pub fn curvature(&self) -> f64 {
+        let turn = self.sweep / self.length;
+        self.radius * turn * turn
+    }
+
+    /// Start \[mm\].
+    pub fn start(&self) -> Vector3<f64> {
+        self.centre + self.arm
+    }
+
+    /// End \[mm\].
+    pub fn end(&self) -> Vector3<f64> {
+        self.at_angle(self.sweep)
+    }
+
+    /// The point after the central angle `angle` \[rad\] from the start \[mm\].
+    pub fn at_angle(&self, angle: f64) -> Vector3<f64> {
+        self.centre + rotate(&self.axis, angle, &self.arm) + self.drift * (angle / self.sweep)
+    }
+
+    /// Point \[mm\] and its derivatives over the length `s` \[mm\] gone. The first is the unit tangent, but for
+    /// the difference of the radii (see [`Arc::about_centre`]) as a part of the length.
+    pub fn at(&self, s: f64) -> Moving {
+        let (part, turn) = (s / self.length, self.sweep / self.length);
+        let arm = rotate(&self.axis, self.sweep * part, &self.arm);
+        Moving {
+            value: self.centre + arm + self.drift * part,
+            first: self.axis.cross(&arm) * turn + self.drift / self.length,
+            second: -arm * (turn * turn),
+        }
+    }
+
+    /// Central angle from the start to the direction of `point`, right-handed about the axis \[rad\], in (0, 2π]
+    /// (SPEC 1.4).
+    pub fn angle_of(&self, point: &Vector3<f64>) -> f64 {
+        central_angle(&self.axis, &self.arm, &(point - self.centre))
+    }
+
+    /// Direction of travel in the XY plane, from X about +Z, after the length `s` \[rad\]: in (−π, π] at the
+    /// start and without a jump from there on. `None` if the axis is not ±Z.
+    ///
+    /// A tool that must look along the path takes C = heading + a constant in every tick, and κ·ṡ as its
+    /// velocity (SPEC 4.2): this holds at any speed and override, see
+    /// [`crate::trajectory::MatchedTurn`] for the rule that does not.
+    pub fn heading(&self, s: f64) -> Option<f64> {
+        if libm::hypot(self.axis.x, self.axis.y) > 1e-9 {
+            return None;
+        }
+        let first = self.axis.cross(&self.arm);
+        Some(libm::atan2(first.y, first.x) + self.signed_sweep(&Vector3::z()) * s / self.length)
+    }
+}
+
+fn finite(points: &[Vector3<f64>]) -> Result<(), ArcError> {
+    if points.iter().all(|p| p.iter().all(|x| x.is_finite())) {
+        Ok(())
+    } else {
+        Err(ArcError::NotFinite)
+    }
+}
+
+/// Angle from `from` to `to`, right-handed about the unit `axis`, in (0, 2π].
+fn central_angle(axis: &Vector3<f64>, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
+    let angle = libm::atan2(axis.dot(&from.cross(to)), from.dot(to));
+    if angle > 0.0 { angle } else { angle + TAU }
+}
