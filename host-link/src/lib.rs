@@ -7,6 +7,7 @@ pub mod evaluate;
 pub mod machine;
 pub mod metrics;
 pub mod nc;
+pub mod part;
 pub mod path;
 pub mod plan;
 pub mod record;

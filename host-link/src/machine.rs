@@ -1,5 +1,6 @@
 //! The machine file: everything that is true of one machine, in TOML, mm and degrees.
 
+use crate::table::line_of;
 use serde::Deserialize;
 use shared::io::AXES;
 use shared::kinematics::KinematicsConfig;
@@ -178,11 +179,6 @@ impl MachineFile {
         }
         Ok(machine)
     }
-}
-
-/// Number of the line that holds byte `offset`.
-fn line_of(text: &str, offset: usize) -> usize {
-    1 + text.bytes().take(offset).filter(|b| *b == b'\n').count()
 }
 
 /// The file as it is written.

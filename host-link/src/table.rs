@@ -126,3 +126,7 @@ pub fn parse<const N: usize>(path: &str, text: &str, columns: [&str; N]) -> Resu
     }
     Ok(rows)
 }
+/// Number of the line that holds byte `offset`; the first is 1.
+pub fn line_of(text: &str, offset: usize) -> usize {
+    1 + text.bytes().take(offset).filter(|b| *b == b'\n').count()
+}

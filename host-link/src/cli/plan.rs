@@ -1,75 +1,44 @@
-//! `host-link plan`: from seam curves to programs.
+//! `host-link plan`: from parts to programs.
 
 use crate::machine::MachineFile;
 use crate::nc::{Options, interpret};
+use crate::part::PartFile;
 use crate::path::Planner;
-use crate::plan::{PlanOptions, plan_dual_beam};
-use crate::seam::{read_main_curve, read_other_curve};
 use anyhow::Context;
-use clap::{Args, Subcommand};
+use clap::Args;
 use std::path::PathBuf;
 
-/// Write a program from seam curves
+/// Write the program of a part
+///
+/// A part file says what is to be made and how; programs/ has one of each kind:
+///
+///   [t-seam]  two seam curves at the feet of a rib, for the dual-beam gantry
 #[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
 pub struct Plan {
-    #[command(subcommand)]
-    kind: Kind,
-}
-
-#[derive(Debug, Subcommand)]
-enum Kind {
-    DualBeam(DualBeam),
-}
-
-/// Weld both feet of a rib with the two beams of the dual-beam head
-#[derive(Debug, Args)]
-struct DualBeam {
-    /// Main seam, in the direction of travel (CSV x_mm,y_mm,z_mm,nx,ny,nz with the skin normal)
-    seam1: PathBuf,
-    /// Seam on the other side of the rib (CSV x_mm,y_mm,z_mm)
-    seam2: PathBuf,
+    /// Part file
+    part: PathBuf,
     /// Machine file
     #[arg(long)]
     machine: PathBuf,
     /// Program to write
     #[arg(short, long)]
     output: PathBuf,
-    /// Speed of the tip [m/min]
-    #[arg(long, default_value_t = 5.0, value_name = "M_PER_MIN")]
-    speed: f64,
-    /// Power of each beam [W]
-    #[arg(long, default_value_t = 2000.0, value_name = "WATT")]
-    power: f64,
-    /// Cut both seams by the plane across seam 1, as the published method does
-    #[arg(long)]
-    paper: bool,
 }
 
 impl Plan {
     /// Plans, checks and writes the program.
     pub fn run(self) -> anyhow::Result<()> {
-        match self.kind {
-            Kind::DualBeam(command) => command.run(),
-        }
-    }
-}
-
-impl DualBeam {
-    fn run(self) -> anyhow::Result<()> {
         let machine = MachineFile::read(&self.machine)?;
-        let main = read_main_curve(&self.seam1)?;
-        let other = read_other_curve(&self.seam2)?;
+        let part = PartFile::read(&self.part)?;
         let title = self
             .output
             .file_stem()
             .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        let options = PlanOptions {
-            title,
-            speed_m_min: self.speed,
-            power_w: [self.power; 2],
-            paper: self.paper,
-        };
-        let plan = plan_dual_beam(&main, &other, &machine, &options)?;
+        let name = self.part.display();
+        let plan = part
+            .plan(&machine, &title)
+            .with_context(|| format!("part {name}"))?;
 
         // What is written has been read and checked as the weld will.
         let program = interpret(&plan.program, Options::default()).context("the planned program")?;
@@ -82,22 +51,20 @@ impl DualBeam {
         std::fs::write(&self.output, &plan.program)
             .map_err(|error| anyhow::anyhow!("cannot write {output}: {error}"))?;
 
-        println!("{output}: {} points", plan.points.len());
+        println!("{output}:");
+        for note in &plan.notes {
+            println!("  {note}");
+        }
         for path in &paths {
             if let Some((start, end)) = path.weld() {
                 println!(
-                    "run-in {start:.2} mm, weld {:.2} mm, run-out {:.2} mm",
+                    "  run-in {start:.2} mm, weld {:.2} mm, run-out {:.2} mm",
                     end - start,
                     path.length_mm() - end
                 );
-                println!("speed along the path exact to {:.1e}", path.speed_error);
+                println!("  speed along the path exact to {:.1e}", path.speed_error);
             }
         }
-        println!(
-            "beam axes meet within {:.1e} mm; speed on seam 2 differs by up to {:.2} %",
-            plan.max_gap,
-            100.0 * plan.max_speed_difference
-        );
         Ok(())
     }
 }

@@ -37,7 +37,10 @@ fn the_shipped_program_is_the_plan_of_the_shipped_seams() {
     let (main, other) = seams();
     let plan = plan_dual_beam(&main, &other, &machine(), &options()).unwrap();
     let text = std::fs::read_to_string(shipped("programs/t-seam-400.ngc")).unwrap();
-    assert!(text == plan.program, "write it anew: host-link plan dual-beam");
+    assert!(
+        text == plan.program,
+        "write it anew: host-link plan programs/t-seam-400.toml"
+    );
 }
 
 #[test]
