@@ -13,10 +13,12 @@ mod golden {
     mod folder;
     mod kinematics;
     mod metrics;
+    mod nurbs;
     mod planning;
     mod profile;
     mod servo;
     mod servo_circle;
+    mod speed_plan;
     mod spline;
     mod tally;
     mod teaching;
@@ -46,5 +48,7 @@ mod golden {
         arcs: arc3 fsw_arc;
         teaching: normals teach_loop;
         metrics: metrics;
+        nurbs: nurbs_eval nurbs_step;
+        speed_plan: speed_plan;
     }
 }

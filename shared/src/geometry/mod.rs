@@ -5,6 +5,7 @@ mod arc_steps;
 mod attitude;
 mod line;
 mod motion;
+pub mod nurbs;
 mod pose;
 mod spline;
 
