@@ -1,5 +1,6 @@
 //! Validation of machine parameters: every `build` names the field it refuses.
 
+use nalgebra::Vector3;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -78,6 +79,10 @@ const FIELDS: &[&str] = &[
     "o1_mm",
     "o2_mm",
     "o3_mm",
+    "torch_mm",
+    "tilt_axis_mm",
+    "turntable_mm",
+    "l4_mm",
     "included_angle_deg",
     "working_distance_mm",
     "camera_lead_mm",
@@ -120,6 +125,14 @@ pub fn check(owner: &str, field: &str, value: f64, ok: impl Fn(f64) -> bool) -> 
     } else {
         Err(ParameterError::new(owner, field, value))
     }
+}
+
+/// `vector` if all its numbers are finite.
+pub fn finite(owner: &str, field: &str, vector: &[f64; 3]) -> Result<Vector3<f64>, ParameterError> {
+    for &x in vector {
+        check(owner, field, x, |_| true)?;
+    }
+    Ok(Vector3::from(*vector))
 }
 
 /// As [`check`], for a value that must be above zero.

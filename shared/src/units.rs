@@ -13,6 +13,11 @@ pub fn wrap(angle: f64) -> f64 {
     angle - turns * 2.0 * PI
 }
 
+/// `angle` plus as many turns as bring it next to `near`, within half a turn \[rad\].
+pub fn next_to(angle: f64, near: f64) -> f64 {
+    near + wrap(angle - near)
+}
+
 /// Rounds to the nearest integer, halves away from zero (SPEC section C).
 pub fn round_half_away(x: f64) -> f64 {
     libm::copysign(libm::floor(libm::fabs(x) + 0.5), x)
@@ -27,6 +32,13 @@ mod tests {
         assert_eq!(wrap(PI), PI);
         assert_eq!(wrap(-PI), PI);
         assert!((wrap(7.0) - (7.0 - 2.0 * PI)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_angle_comes_next_to_another_over_any_number_of_turns() {
+        let turn = 2.0 * PI;
+        assert!((next_to(-3.0, 3.0) - (turn - 3.0)).abs() < 1e-14);
+        assert!((next_to(0.1, -5.0 * turn) - (0.1 - 5.0 * turn)).abs() < 1e-14);
     }
 
     #[test]

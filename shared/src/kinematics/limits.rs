@@ -64,6 +64,11 @@ impl AxisLimits {
         tolerance: TOLERANCE,
     };
 
+    /// Whether `x` is within the travel; a value that is not a number is not.
+    pub fn contains(&self, x: f64) -> bool {
+        x >= self.min - self.tolerance && x <= self.max + self.tolerance
+    }
+
     /// Limits of all axes, X Y Z A B C.
     pub fn build_all(configs: &[Option<AxisConfig>; AXES]) -> Result<[Self; AXES], ParameterError> {
         let mut limits = [Self::NOT_FITTED; AXES];
@@ -80,8 +85,7 @@ impl AxisLimits {
 pub fn violations(q: &[f64; AXES], limits: &[AxisLimits; AXES]) -> Bits {
     let mut outside = Bits::NONE;
     for (i, (&x, limit)) in q.iter().zip(limits).enumerate() {
-        let inside = x >= limit.min - limit.tolerance && x <= limit.max + limit.tolerance;
-        outside.set(i, !inside);
+        outside.set(i, !limit.contains(x));
     }
     outside
 }

@@ -9,15 +9,25 @@
 #[macro_use]
 mod registry;
 
+mod ac_head;
 mod dual_beam;
 mod limits;
+mod pipe_welder;
+mod rpy;
+mod stir_gantry;
+mod tool_axis;
+mod wire_arc;
 
+pub use ac_head::{AcHead, AcHeadConfig};
 pub use dual_beam::{DualBeam, DualBeamConfig};
 pub(crate) use limits::AXIS_OWNERS;
 pub use limits::{AXIS_UNIT, AxisLimits, feed_limit, violations};
+pub use pipe_welder::{PipeWelder, PipeWelderConfig};
+pub use stir_gantry::{StirGantry, StirGantryConfig, StirTilt};
+pub use wire_arc::{WireArc, WireArcConfig};
 
 use crate::geometry::{Pose, PoseMotion};
-use crate::io::AXES;
+use crate::io::{AXES, AXIS_NAMES};
 use crate::parameter::ParameterError;
 use nalgebra::Vector3;
 use postcard_schema::Schema;
@@ -27,6 +37,14 @@ use thiserror::Error;
 machines! {
     /// The ten-axis dual-beam laser welder: X Y Z, then C, B, A.
     "dual-beam-gantry" DualBeamGantry: DualBeamConfig => DualBeam,
+    /// The four-axis pipe-intersection welder: waist, radial, axial, torch tilt.
+    "pipe-welder" PipeWelder: PipeWelderConfig => PipeWelder,
+    /// The five-axis laser cutter: X Y Z, then C, A.
+    "ac-head" AcHead: AcHeadConfig => AcHead,
+    /// The wire-arc robot: X Y Z and A at the torch, B and C at the positioner.
+    "wire-arc" WireArc: WireArcConfig => WireArc,
+    /// The friction-stir gantry: table X, then Y, Z, C, B.
+    "stir-gantry" StirGantry: StirGantryConfig => StirGantry,
 }
 
 /// Axes that realise a pose in motion (mm, rad, s).
@@ -115,4 +133,20 @@ pub enum KinematicsError {
     /// The x axis of the tool is parallel to an axis that turns it.
     #[error("gimbal lock")]
     GimbalLock,
+    /// In every solution the axis, number `axis` of X Y Z A B C, is outside its travel.
+    #[error("{} out of range: no attitude of the tool within its travel takes the pose", AXIS_NAMES[*.axis])]
+    OutOfRange {
+        /// The axis.
+        axis: usize,
+    },
+    /// The tool would point up into the work from below.
+    #[error("axis below horizon: the tool axis N must point upwards")]
+    BelowHorizon,
+    /// The tool stands where the axis, number `axis` of X Y Z A B C, has no effect, and what is asked for needs
+    /// that axis to jump.
+    #[error("pole of {}: the axis would have to jump; turn it before, or keep away from the pole", AXIS_NAMES[*.axis])]
+    Pole {
+        /// The axis.
+        axis: usize,
+    },
 }
