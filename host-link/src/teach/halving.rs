@@ -71,8 +71,8 @@ pub struct Taught {
     pub ring: Ring,
     /// Rings measured.
     pub rings: usize,
-    /// What the rule compares with its limit: the expected error of the least-squares normal, or the spread of the
-    /// three triangles \[rad\].
+    /// What the rule compares with its limit \[rad\]: the expected error of the least-squares normal (rms, right
+    /// within a third), or the spread of the three triangles.
     pub error: f64,
     /// That it is within the limit. If not, no ring down to the smallest was good enough.
     pub ok: bool,

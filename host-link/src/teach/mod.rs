@@ -13,6 +13,9 @@ pub use probe::{Probe, ProbeConfig, Ranging, RangingError, Reading, Refused};
 pub use ring::{Curvature, Harmonics, Plane, Ring, RingError, Unsmooth};
 pub use triples::Triples;
 
+#[cfg(test)]
+mod tests;
+
 use thiserror::Error;
 
 /// A parameter that makes no sense.

@@ -74,9 +74,9 @@ pub enum Refused {
 pub struct Ranging {
     /// Mean of the readings used \[mm\].
     pub distance_mm: f64,
-    /// Standard deviation of that mean, from the scatter of the readings used \[mm\]. The roughness of the surface
-    /// does not show in it.
-    pub deviation_mm: f64,
+    /// Standard deviation of the readings used \[mm\]. Without the outliers it comes out a fifth below that of the
+    /// probe; the roughness of the surface is not in it.
+    pub scatter_mm: f64,
     /// Readings used.
     pub used: usize,
     /// Readings left out as outliers.
@@ -190,7 +190,7 @@ impl Probe {
         let squares: f64 = distances.iter().map(|d| (d - mean) * (d - mean)).sum();
         Ok(Ranging {
             distance_mm: mean,
-            deviation_mm: libm::sqrt(squares / ((used - 1) * used) as f64),
+            scatter_mm: libm::sqrt(squares / (used - 1) as f64),
             used,
             outliers: accepted - used,
             refused: refused.len(),

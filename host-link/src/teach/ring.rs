@@ -232,7 +232,8 @@ impl Ring {
     /// 2. able to turn the normal by more than `limit` \[rad\]: 3·rest/S, as third order along one direction does.
     ///
     /// The rest takes in the fourth harmonic: a crease through the centre shows there only, and so does most of a
-    /// step behind three of the points. A step of 11 times the noise shows wherever it lies.
+    /// step behind three of the points. A step of 20 times the noise shows wherever it lies. One ring cannot see
+    /// third order of the form x(x²+y²), nor a crease through its centre midway between the points.
     pub fn unsmooth(&self, noise: f64, limit: f64) -> Option<Unsmooth> {
         let rest_squared = self.rest_squared();
         let rest = libm::sqrt(rest_squared) / 2.0;
