@@ -16,6 +16,7 @@ mod golden {
     mod nurbs;
     mod planning;
     mod profile;
+    mod saddle;
     mod servo;
     mod servo_circle;
     mod speed_plan;
@@ -46,6 +47,7 @@ mod golden {
         spline: spline;
         profile: profile;
         arcs: arc3 fsw_arc;
+        saddle: saddle;
         teaching: normals teach_loop;
         metrics: metrics;
         nurbs: nurbs_eval nurbs_step;

@@ -1,12 +1,12 @@
 //! Curves, frames and attitude in the work frame.
 
 mod arc;
-mod arc_steps;
 mod attitude;
 mod line;
 mod motion;
 pub mod nurbs;
 mod pose;
+mod saddle;
 mod spline;
 
 pub use arc::{Arc, ArcError, Turn};
@@ -14,4 +14,8 @@ pub use attitude::{AttitudeError, angle, interpolate, rotate};
 pub use line::{Line, LineError};
 pub use motion::{Moving, PoseMotion, frame_rates, pose_in_motion};
 pub use pose::{Pose, PoseError};
+pub use saddle::{
+    CurvePoint, MachineCoordinates, Meeting, Nearest, PipePair, PipePairConfig, SaddleCurve, SaddleError,
+    SeamFrame, SeamPoint, Sheet,
+};
 pub use spline::{NaturalSpline, SplineError};

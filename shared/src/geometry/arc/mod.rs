@@ -1,5 +1,9 @@
 //! Circular arcs and helices over their length (SPEC 1.4, 4.2).
 
+mod steps;
+#[cfg(test)]
+mod tests;
+
 use super::{Moving, pose::unit, rotate};
 use core::f64::consts::{PI, TAU};
 use nalgebra::Vector3;

@@ -1,0 +1,152 @@
+extern crate std;
+
+use super::*;
+use proptest::prelude::*;
+use std::string::ToString;
+use std::vec::Vec;
+
+/// A point within ±`reach` mm.
+fn point(reach: f64) -> impl Strategy<Value = Vector3<f64>> {
+    [-reach..reach, -reach..reach, -reach..reach].prop_map(Vector3::from)
+}
+
+/// Arcs and helices as a program gives them: with start, end, centre, axis and turn.
+fn programmed() -> impl Strategy<Value = (Arc, [Vector3<f64>; 4], Turn)> {
+    (
+        [point(500.0), point(1.0), point(100.0)],
+        (0.01..1.0f64, -20.0..20.0f64, -0.004..0.004f64, any::<bool>()),
+    )
+        .prop_filter_map(
+            "a direction",
+            |([centre, axis, to_start], (part, rise, off, ccw))| {
+                let n = unit(axis)?;
+                let arm = to_start - n * to_start.dot(&n);
+                if axis.norm() < 0.1 || arm.norm() < 1.0 {
+                    return None;
+                }
+                let start = centre + arm;
+                let (turn, sign) = if ccw {
+                    (Turn::CounterClockwise, 1.0)
+                } else {
+                    (Turn::Clockwise, -1.0)
+                };
+                let to_end = rotate(&n, sign * part * TAU, &arm);
+                let end = centre + to_end + n * rise + to_end.normalize() * off;
+                let arc = Arc::about_centre(start, end, centre, axis, turn).ok()?;
+                Some((arc, [start, end, centre, n], turn))
+            },
+        )
+}
+
+proptest! {
+    #[test]
+    fn an_arc_hits_its_ends_and_goes_the_right_way((arc, [start, end, centre, n], turn) in programmed()) {
+        prop_assert!((arc.at(0.0).value - start).norm() < 1e-12);
+        prop_assert!((arc.at(arc.length()).value - end).norm() < 1e-12);
+        prop_assert!((arc.end() - end).norm() < 1e-12);
+        let sign = if turn == Turn::CounterClockwise { 1.0 } else { -1.0 };
+        prop_assert!(arc.signed_sweep(&n) * sign > 0.0);
+        prop_assert!((arc.rise() * sign - (end - start).dot(&n)).abs() < 1e-12);
+        // All of it is at the radius, to what the ends differ by.
+        for i in 0..=16 {
+            let p = arc.at(arc.length() * f64::from(i) / 16.0).value - centre;
+            let distance = (p - n * p.dot(&n)).norm();
+            prop_assert!((distance - arc.radius()).abs() <= Arc::RADIUS_TOLERANCE);
+        }
+    }
+
+    #[test]
+    fn derivatives_agree_with_differences((arc, ..) in programmed(), part in 0.01..0.99f64) {
+        let s = part * arc.length();
+        let h = 1e-4 * arc.length();
+        let (before, now, after) = (arc.at(s - h), arc.at(s), arc.at(s + h));
+        // Errors of the differences: h²/6 times the third derivative, and rounding of 600 mm over h.
+        let tolerance = 2.0 * h * h * arc.curvature() * arc.curvature() + 1e-12 / h;
+        let first = (after.value - before.value) / (2.0 * h);
+        let second = (after.first - before.first) / (2.0 * h);
+        prop_assert!((first - now.first).norm() < tolerance);
+        prop_assert!((second - now.second).norm() < tolerance);
+        prop_assert!((now.second.norm() - arc.curvature()).abs() < 1e-12);
+        prop_assert!((now.first.norm() - 1.0).abs() < 2.0 * Arc::RADIUS_TOLERANCE / arc.length() + 1e-12);
+    }
+
+    #[test]
+    fn an_arc_goes_through_three_points(a in point(300.0), b in point(300.0), c in point(300.0)) {
+        let Ok(arc) = Arc::through(a, b, c) else { return Ok(()) };
+        prop_assume!(arc.radius() < 1e4);
+        let tolerance = 1e-12 * arc.radius() * arc.radius();
+        let at_b = arc.angle_of(&b);
+        prop_assert!((arc.start() - a).norm() < tolerance);
+        prop_assert!((arc.at_angle(at_b) - b).norm() < tolerance);
+        prop_assert!((arc.end() - c).norm() < tolerance);
+        prop_assert!(at_b < arc.sweep());
+    }
+
+    #[test]
+    fn steps_are_equal_and_none_is_too_long((arc, ..) in programmed(), part in 0.01..2.0f64) {
+        let step = part * arc.radius();
+        let points: Vec<_> = arc.equal_steps(step).unwrap().collect();
+        let angle = arc.sweep() / (points.len() - 1) as f64;
+        prop_assert!(angle * arc.radius() <= step * (1.0 + 1e-8));
+        prop_assert!((points.len() - 2) as f64 * step < arc.radius() * arc.sweep() || points.len() == 2);
+        let lengths: Vec<_> = points.windows(2).map(|two| (two[1] - two[0]).norm()).collect();
+        let spread = Arc::RADIUS_TOLERANCE * angle + 1e-9;
+        prop_assert!(lengths.iter().all(|length| (length - lengths[0]).abs() < spread));
+    }
+}
+
+#[test]
+fn ends_at_one_place_make_a_full_circle() {
+    let (start, centre) = (Vector3::new(30.0, 40.0, 5.0), Vector3::new(0.0, 0.0, 77.0));
+    for turn in [Turn::CounterClockwise, Turn::Clockwise] {
+        let arc = Arc::about_centre(start, start, centre, Vector3::z() * 2.0, turn).unwrap();
+        assert_eq!(arc.sweep(), TAU);
+        assert_eq!(arc.centre(), Vector3::new(0.0, 0.0, 5.0));
+        assert!((arc.length() - TAU * 50.0).abs() < 1e-12);
+        assert!((arc.end() - start).norm() < 1e-13);
+        let turned = arc.heading(arc.length()).unwrap() - arc.heading(0.0).unwrap();
+        assert!((turned - arc.signed_sweep(&Vector3::z())).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn what_is_no_arc_is_refused_with_the_reason() {
+    let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+    let ccw = Turn::CounterClockwise;
+    let refused = |arc: Result<Arc, ArcError>| arc.unwrap_err().to_string();
+    let mismatch = refused(Arc::about_centre(x * 10.0, y * 10.2, Vector3::zeros(), z, ccw));
+    assert!(
+        mismatch.starts_with("radius mismatch: the start is 10 mm from the centre, the end 10.2 mm"),
+        "{mismatch}"
+    );
+    assert!(refused(Arc::about_centre(x, y, x, z, ccw)).starts_with("zero radius"));
+    assert!(refused(Arc::about_centre(x, y, x * 2.0, z * 0.0, ccw)).starts_with("zero axis"));
+    assert!(refused(Arc::about_centre(x * f64::NAN, y, x, z, ccw)).starts_with("not finite"));
+    assert!(refused(Arc::through(x, y, x)).starts_with("coincident"));
+    assert!(refused(Arc::through(x, x * 2.0, x * 5.0)).starts_with("collinear"));
+    let short = Arc::through(x, rotate(&z, 0.08, &x), rotate(&z, 0.17, &x)).unwrap();
+    assert!(
+        refused(short.check_conditioning().map(|()| short))
+            .starts_with("ill-conditioned: the three points span 9.7")
+    );
+    let long = Arc::through(x, rotate(&z, 0.08, &x), rotate(&z, 0.18, &x)).unwrap();
+    assert_eq!(long.check_conditioning(), Ok(()));
+    assert_eq!(long.equal_steps(0.0).err(), Some(ArcError::Step { step: 0.0 }));
+    assert!(long.tangent_walk(f64::NAN).is_err());
+    let upright = Arc::through(y, rotate(&x, 0.1, &y), rotate(&x, 1.0, &y)).unwrap();
+    assert_eq!(upright.heading(0.1), None);
+}
+
+/// SPEC 1.5: the paper's walk keeps the radius, but falls behind by (step/R)²/3.
+#[test]
+fn the_tangent_walk_falls_behind() {
+    let z = Vector3::z();
+    let start = Vector3::new(100.0, 0.0, 0.0);
+    let arc = Arc::about_centre(start, start, Vector3::zeros(), z, Turn::CounterClockwise).unwrap();
+    let points: Vec<_> = arc.tangent_walk(10.0).unwrap().collect();
+    for (k, point) in points.iter().enumerate().take(points.len() - 1).skip(1) {
+        assert!((point.norm() - 100.0).abs() < 2e-11);
+        let behind = 1.0 - arc.angle_of(point) / (0.1 * k as f64);
+        assert!((behind - 3.3e-3).abs() < 1e-4, "{behind} after {k} steps");
+    }
+}
