@@ -278,7 +278,7 @@ mod tests {
         let program =
             "G43.4\nG0 X900 Y900 Z100 A0 B0 C0 V2=3\nF5000\nG1 X950\nM62 P0\nX1050\nM63 P0\nX1100\nM2";
         let program = interpret(program, Options::default()).unwrap();
-        let from = planner.tip(&[100.0, 100.0, 900.0, 0.0, 0.0, 0.0]);
+        let from = [100.0, 100.0, 900.0, 0.0, 0.0, 0.0];
         let weld = &planner.program(&program, &from, None).unwrap()[1];
         let check = |rows: &str| parse(rows).unwrap().check(weld, &machine);
         assert_eq!(check("0,0,0,0,0\n100,0,0,0,0"), Ok(()));

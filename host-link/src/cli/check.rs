@@ -35,7 +35,7 @@ impl Check {
         let name = self.program.display();
         let program = read_program(&self.program, self.block_delete)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
-        let from = planner.tip(&machine.planning.park_axes());
+        let from = machine.planning.park_axes();
         let speed = self.speed.map(|m_min| m_min * shared::units::MM_S_PER_M_MIN);
         let paths = planner
             .program(&program, &from, speed)

@@ -43,7 +43,7 @@ impl Plan {
         // What is written has been read and checked as the weld will.
         let program = interpret(&plan.program, Options::default()).context("the planned program")?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
-        let from = planner.tip(&machine.planning.park_axes());
+        let from = machine.planning.park_axes();
         let paths = planner
             .program(&program, &from, None)
             .context("the planned program")?;

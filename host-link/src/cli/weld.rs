@@ -157,7 +157,7 @@ impl Weld {
     fn check(&self, machine: &MachineFile, program: &Program, seam: &Deviation) -> anyhow::Result<()> {
         let planner =
             Planner::build(machine).with_context(|| format!("machine file {}", self.machine.display()))?;
-        let from = planner.tip(&machine.planning.park_axes());
+        let from = machine.planning.park_axes();
         let speed = self.speed.map(|speed| speed * shared::units::MM_S_PER_M_MIN);
         let paths = planner
             .program(program, &from, speed)

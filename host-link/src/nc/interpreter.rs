@@ -234,6 +234,7 @@ impl Interpreter {
     fn start_path(&mut self, motion: Motion, target: Target) {
         let events = take_events(&mut self.pending, 0);
         self.paths.push(ProgramPath {
+            dwell_before_s: 0.0,
             motion,
             targets: vec![target],
             events,

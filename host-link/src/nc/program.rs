@@ -12,6 +12,8 @@ pub struct Program {
 /// One path from rest to rest. It starts where the last one ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProgramPath {
+    /// The machine stands for this long before it \[s\] (G4).
+    pub dwell_before_s: f64,
     /// Rapid or feed.
     pub motion: Motion,
     /// Where it leads, at least one place; several are points of one smooth curve.

@@ -3,12 +3,11 @@
 use super::shape::Shape;
 use super::{PathError, PlannedPath, Planner};
 use crate::machine::MachineFile;
-use crate::nc::Tip;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
 use shared::parameter::ParameterError;
 use shared::tracking::SlideConfig;
-use shared::trajectory::{CHANNELS, PathPoint, SpeedLimits};
+use shared::trajectory::{CHANNELS, PathPoint, PathSpace, SpeedLimits};
 use std::ops::Range;
 
 /// The axes, then the extensions of the V slides.
@@ -92,17 +91,16 @@ impl Planner {
         &self,
         planned: &PlannedPath,
         shape: &Shape,
-        from: &Tip,
+        from: &[f64; AXES],
     ) -> Result<Vec<Demand>, PathError> {
         let (path, length) = (planned.path(), planned.length_mm());
         let count = CHECK_COUNT.max((length / CHECK_STEP).ceil() as usize);
-        let [a, b, c] = from.angles_deg.map(f64::to_radians);
-        let mut near = [0.0, 0.0, 0.0, a, b, c];
+        let mut near = *from;
         let mut demands = Vec::with_capacity(count + 1);
         for i in 0..=count {
             let s = length * i as f64 / count as f64;
             if let Some(point) = path.at(s) {
-                let (demand, axes) = self.demand(s, &point, shape.line(s), &near)?;
+                let (demand, axes) = self.demand(s, &point, planned.space, shape.line(s), &near)?;
                 near = axes;
                 demands.push(demand);
             }
@@ -114,16 +112,21 @@ impl Planner {
         &self,
         s: f64,
         point: &PathPoint,
+        space: PathSpace,
         line: u32,
         near: &[f64; AXES],
     ) -> Result<(Demand, [f64; AXES]), PathError> {
-        let (pose, motion) = point
-            .pose_in_motion()
-            .map_err(|source| PathError::Pose { line, source })?;
-        let axes = self
-            .kinematics
-            .inverse_motion(&pose, &motion, near)
-            .map_err(|source| PathError::Kinematics { line, source })?;
+        let axes = match space {
+            PathSpace::Tool => {
+                let (pose, motion) = point
+                    .pose_in_motion()
+                    .map_err(|source| PathError::Pose { line, source })?;
+                self.kinematics
+                    .inverse_motion(&pose, &motion, near)
+                    .map_err(|source| PathError::Kinematics { line, source })?
+            }
+            PathSpace::Axes => point.axes(),
+        };
         // The extensions are the last channels of a path.
         let join = |axes: &[f64; AXES], channels: &[f64; CHANNELS]| {
             std::array::from_fn(|i| axes.get(i).copied().unwrap_or(channels[CHANNELS - DRIVES + i]))

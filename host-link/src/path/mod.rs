@@ -2,11 +2,13 @@
 
 mod error;
 mod limits;
+mod planned;
 mod shape;
 #[cfg(test)]
 mod tests;
 
 pub use error::PathError;
+pub use planned::PlannedPath;
 
 use crate::machine::{MachineFile, PlanningConfig};
 use crate::nc::{Motion, Program, ProgramEvent, ProgramPath, Target, Tip};
@@ -16,59 +18,11 @@ use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, Kinematics};
 use shared::motion::MAX_EVENTS;
 use shared::parameter::ParameterError;
-use shared::protocol::{Knot, PathAction, PathEvent};
-use shared::trajectory::{Path, SpeedLimits, SpeedProfile};
+use shared::protocol::{PathAction, PathEvent};
+use shared::trajectory::{PathSpace, SpeedLimits};
 
 /// Most knots of one path: what the boards hold.
 pub const CAPACITY: usize = 512;
-
-/// A path that the boards can run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlannedPath {
-    /// Rapid or feed.
-    pub motion: Motion,
-    /// Value and slope of every channel, s from 0.
-    pub knots: Vec<Knot>,
-    /// What happens on the way, s not decreasing.
-    pub events: Vec<PathEvent>,
-    /// Speed, acceleration and jerk along the path.
-    pub limits: SpeedLimits,
-    /// Largest | |dP/ds| − 1 | of a feed path: how exact its speed is.
-    pub speed_error: f64,
-}
-
-impl PlannedPath {
-    /// Length \[mm\].
-    pub fn length_mm(&self) -> f64 {
-        self.knots.last().map_or(0.0, |knot| knot.s_mm)
-    }
-
-    /// Time from rest to rest \[s\].
-    pub fn duration_s(&self) -> f64 {
-        SpeedProfile::rest_to_rest(0.0, self.length_mm(), &self.limits).map_or(0.0, |p| p.duration())
-    }
-
-    /// From where the first beam goes on to where the last one goes off \[mm\]; `None` without beams.
-    pub fn weld(&self) -> Option<(f64, f64)> {
-        let places = |wanted: bool| {
-            self.events
-                .iter()
-                .filter(move |event| matches!(event.action, PathAction::Beam { on, .. } if on == wanted))
-                .map(|event| event.s_mm)
-        };
-        let start = places(true).next()?;
-        Some((start, places(false).next_back().unwrap_or(self.length_mm())))
-    }
-
-    /// The path as the boards see it.
-    pub fn path(&self) -> Box<Path<CAPACITY>> {
-        let mut path = Box::new(Path::new());
-        for knot in &self.knots {
-            path.push(*knot).expect("planned knots are in order and fit");
-        }
-        path
-    }
-}
 
 /// Plans program paths for one machine.
 #[derive(Clone, Debug)]
@@ -120,14 +74,15 @@ impl Planner {
         }
     }
 
-    /// All paths of a program; the first starts at `from`. `speed_mm_s` replaces the programmed feed.
+    /// All paths of a program; the first starts where the axes stand at `from` (mm, degrees). `speed_mm_s`
+    /// replaces the programmed feed.
     pub fn program(
         &self,
         program: &Program,
-        from: &Tip,
+        from: &[f64; AXES],
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
-        let mut from = *from;
+        let mut from = self.tip(from);
         program
             .paths
             .iter()
@@ -139,22 +94,39 @@ impl Planner {
             .collect()
     }
 
-    /// From `from` up to the safe height and on to the park position of the machine.
-    pub fn park(&self, from: &Tip) -> Result<Vec<PlannedPath>, PathError> {
-        let mut up = *from;
-        up.position_mm[2] = up.position_mm[2].max(self.planning.safe_height_mm);
-        let park = self.tip(&self.planning.park_axes());
-        let mut above = park;
-        above.position_mm[2] = up.position_mm[2];
-        let mut from = *from;
-        let mut paths = Vec::new();
-        for tip in [up, above, park] {
-            if tip != from {
-                paths.push(self.path(&rapid(tip), &from, None)?);
-                from = tip;
-            }
+    /// From the axes `from` (mm, degrees) to the park position of the machine, in axis space: first the axes that
+    /// go first, then all.
+    pub fn park(&self, from: &[f64; AXES]) -> Result<Vec<PlannedPath>, PathError> {
+        let park = self.planning.park_axes();
+        let mut first = *from;
+        for axis in &self.planning.park_first {
+            let axis = *axis as usize;
+            first[axis] = park[axis];
         }
-        Ok(paths)
+        let inner = |axes: &[f64; AXES]| std::array::from_fn(|i| axes[i] * AXIS_UNIT[i]);
+        [(from, &first), (&first, &park)]
+            .into_iter()
+            .filter(|(from, to)| from != to)
+            .map(|(from, to)| self.axes_path(&inner(from), &inner(to)))
+            .collect()
+    }
+
+    /// A rapid on the straight line of axis space between two places (mm, rad).
+    fn axes_path(&self, from: &[f64; AXES], to: &[f64; AXES]) -> Result<PlannedPath, PathError> {
+        let shape = Self::axes_line(from, to, &[0.0; SIDES], 0);
+        let mut planned = PlannedPath {
+            motion: Motion::Rapid,
+            space: PathSpace::Axes,
+            dwell_before_s: 0.0,
+            limits: UNLIMITED,
+            events: Vec::new(),
+            speed_error: 0.0,
+            knots: shape.knots.clone(),
+        };
+        let demands = self.demands(&planned, &shape, from)?;
+        self.check_travel(&demands, &shape)?;
+        planned.limits = self.rapid_limits(&demands);
+        Ok(planned)
     }
 
     /// One path, which starts at `from`. `speed_mm_s` replaces the programmed feed.
@@ -180,11 +152,9 @@ impl Planner {
         self.check_powers(&path.events)?;
         let mut planned = PlannedPath {
             motion: path.motion,
-            limits: SpeedLimits {
-                velocity: 0.0,
-                acceleration: 0.0,
-                jerk: 0.0,
-            },
+            space: PathSpace::Tool,
+            dwell_before_s: path.dwell_before_s,
+            limits: UNLIMITED,
             events: path
                 .events
                 .iter()
@@ -199,7 +169,9 @@ impl Planner {
             speed_error: shape.speed_error,
             knots: shape.knots.clone(),
         };
-        let demands = self.demands(&planned, &shape, from)?;
+        let [a, b, c] = from.angles_deg.map(f64::to_radians);
+        let near = [0.0, 0.0, 0.0, a, b, c];
+        let demands = self.demands(&planned, &shape, &near)?;
         self.check_travel(&demands, &shape)?;
         planned.limits = match path.motion {
             Motion::Rapid => self.rapid_limits(&demands),
@@ -230,14 +202,12 @@ impl Planner {
     }
 }
 
-/// A path of one G0 to `tip`.
-fn rapid(tip: Tip) -> ProgramPath {
-    ProgramPath {
-        motion: Motion::Rapid,
-        targets: vec![Target { tip, line: 0 }],
-        events: Vec::new(),
-    }
-}
+/// Stands in a path until its limits are known.
+const UNLIMITED: SpeedLimits = SpeedLimits {
+    velocity: f64::INFINITY,
+    acceleration: f64::INFINITY,
+    jerk: f64::INFINITY,
+};
 
 /// The last target of a path, which has at least one.
 fn end_of(path: &ProgramPath) -> &Target {

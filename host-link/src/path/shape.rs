@@ -5,7 +5,8 @@ use crate::curve::{Curve, distance};
 use crate::nc::{Motion, ProgramPath, Target, Tip};
 use nalgebra::Vector3;
 use shared::geometry::{Pose, angle, interpolate};
-use shared::io::SIDES;
+use shared::io::{AXES, SIDES};
+use shared::kinematics::AXIS_UNIT;
 use shared::protocol::Knot;
 use shared::trajectory::CHANNELS;
 
@@ -111,6 +112,35 @@ impl Planner {
             speed_error: 0.0,
             targets: vec![(length, line)],
         })
+    }
+
+    /// The straight line of axis space between two places (mm, rad), V slides standing at `extension`.
+    pub(super) fn axes_line(
+        from: &[f64; AXES],
+        to: &[f64; AXES],
+        extension: &[f64; SIDES],
+        line: u32,
+    ) -> Shape {
+        let way = |i: usize| (to[i] - from[i]) / AXIS_UNIT[i];
+        let longest = (0..AXES).map(|i| way(i).abs()).fold(SHORTEST, f64::max);
+        let knot = |axes: &[f64; AXES], s_mm: f64| {
+            let mut knot = Knot {
+                s_mm,
+                value: [0.0; CHANNELS],
+                slope: [0.0; CHANNELS],
+            };
+            knot.value[..AXES].copy_from_slice(axes);
+            knot.value[CHANNELS - SIDES..].copy_from_slice(extension);
+            for (i, slope) in knot.slope[..AXES].iter_mut().enumerate() {
+                *slope = (to[i] - from[i]) / longest;
+            }
+            knot
+        };
+        Shape {
+            knots: vec![knot(from, 0.0), knot(to, longest)],
+            speed_error: 0.0,
+            targets: vec![(longest, line)],
+        }
     }
 
     fn channels(&self, tip: &Tip) -> [f64; CHANNELS] {

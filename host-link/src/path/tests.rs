@@ -4,6 +4,7 @@ use super::*;
 use crate::nc::{Options, interpret};
 use nalgebra::Vector3;
 use shared::geometry::{angle, interpolate};
+use shared::trajectory::SpeedProfile;
 use std::fmt::Write;
 
 fn planner() -> Planner {
@@ -16,7 +17,7 @@ fn plan(body: &str) -> Result<Vec<PlannedPath>, PathError> {
     let text = format!("G43.4\nG0 X1000 Y1000 Z100 A0 B0 C0\n{body}\nM2\n");
     let program = interpret(&text, Options::default()).unwrap();
     let planner = planner();
-    let from = planner.tip(&[100.0, 100.0, 900.0, 0.0, 0.0, 0.0]);
+    let from = [100.0, 100.0, 900.0, 0.0, 0.0, 0.0];
     planner.program(&program, &from, None)
 }
 
@@ -175,16 +176,25 @@ fn what_is_not_smooth_is_refused_with_its_line() {
 }
 
 #[test]
-fn parking_ends_at_the_park_position() {
+fn parking_moves_the_first_axes_and_then_all_to_the_park_position() {
     let planner = planner();
-    let from = planner.tip(&[1000.0, 1000.0, 700.0, 20.0, 5.0, -10.0]);
-    let paths = planner.park(&from).unwrap();
-    let last = paths.last().unwrap();
-    let pose = last.path().at(last.length_mm()).unwrap().pose().unwrap();
-    let axes = planner.kinematics().inverse(&pose, &[0.0; AXES]).unwrap();
-    for (axis, wanted) in planner.planning.park_axes().into_iter().enumerate() {
-        assert!((axes[axis] / planner.drives[axis].unit - wanted).abs() < 1e-6);
+    let paths = planner.park(&[1000.0, 1000.0, 700.0, 20.0, 5.0, -10.0]).unwrap();
+    let [up, across] = &paths[..] else {
+        panic!("Z first, then all")
+    };
+    let end = |path: &PlannedPath| path.path().at(path.length_mm()).unwrap().axes().position;
+    let (above, last) = (end(up), end(across));
+    let people = |axes: [f64; AXES]| std::array::from_fn::<_, AXES, _>(|i| axes[i] / AXIS_UNIT[i]);
+    for (seen, wanted) in people(above)
+        .iter()
+        .zip([1000.0, 1000.0, 950.0, 20.0, 5.0, -10.0])
+    {
+        assert!((seen - wanted).abs() < 1e-9);
     }
+    for (seen, wanted) in people(last).iter().zip(planner.planning.park_axes()) {
+        assert!((seen - wanted).abs() < 1e-9);
+    }
+    assert!(planner.park(&planner.planning.park_axes()).unwrap().is_empty());
 }
 
 #[test]

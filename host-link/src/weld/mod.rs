@@ -20,7 +20,6 @@ use shared::motion::{Fault, State};
 use shared::parameter::ParameterError;
 use shared::protocol::{LOAD_BATCH, Request, Role};
 use shared::tracking::{TrackerFault, TrackerState};
-use shared::trajectory::PathSpace;
 use std::rc::Rc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -171,7 +170,7 @@ impl Weld {
             s.tracker.clock_settled && s.tracker_ahead_us().is_some()
         })?;
 
-        let from = self.planner.tip(&session.motion.reference);
+        let from = session.motion.reference;
         let speed = job
             .speed_m_per_min
             .map(|speed| speed * shared::units::MM_S_PER_M_MIN);
@@ -189,7 +188,7 @@ impl Weld {
             };
             self.path(session, job, path, what)?;
         }
-        let from = self.planner.tip(&session.motion.reference);
+        let from = session.motion.reference;
         for path in &self.planner.park(&from)? {
             self.path(session, job, path, "parking")?;
         }
@@ -211,7 +210,7 @@ impl Weld {
                 role,
                 &Request::ClearPath {
                     id,
-                    space: PathSpace::Tool,
+                    space: path.space,
                 },
             )?;
             for knots in path.knots.chunks(LOAD_BATCH) {

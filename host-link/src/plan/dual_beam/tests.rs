@@ -52,7 +52,7 @@ fn on_the_planned_path_both_spots_stay_on_their_seams() {
         let plan = plan_dual_beam(&main, &other, &machine, &options).unwrap();
         let program = interpret(&plan.program, Options::default()).unwrap();
         let planner = Planner::build(&machine).unwrap();
-        let from = planner.tip(&machine.planning.park_axes());
+        let from = machine.planning.park_axes();
         let paths = planner.program(&program, &from, None).unwrap();
         let weld = paths.iter().find(|path| path.weld().is_some()).unwrap();
         let (start, end) = weld.weld().unwrap();

@@ -1,0 +1,59 @@
+//! A planned path: what the boards are given.
+
+use super::CAPACITY;
+use crate::nc::Motion;
+use shared::protocol::{Knot, PathAction, PathEvent};
+use shared::trajectory::{Path, PathSpace, SpeedLimits, SpeedProfile};
+
+/// A path that the boards can run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedPath {
+    /// Rapid or feed.
+    pub motion: Motion,
+    /// What the knots are: the tool in the frame of the work, or the axes.
+    pub space: PathSpace,
+    /// The machine stands for this long before the path begins \[s\] (G4).
+    pub dwell_before_s: f64,
+    /// Value and slope of every channel, s from 0.
+    pub knots: Vec<Knot>,
+    /// What happens on the way, s not decreasing.
+    pub events: Vec<PathEvent>,
+    /// Speed, acceleration and jerk along the path.
+    pub limits: SpeedLimits,
+    /// Largest | |dP/ds| − 1 | of a feed path: how exact its speed is.
+    pub speed_error: f64,
+}
+
+impl PlannedPath {
+    /// Length \[mm\].
+    pub fn length_mm(&self) -> f64 {
+        self.knots.last().map_or(0.0, |knot| knot.s_mm)
+    }
+
+    /// Time from rest to rest \[s\].
+    pub fn duration_s(&self) -> f64 {
+        SpeedProfile::rest_to_rest(0.0, self.length_mm(), &self.limits).map_or(0.0, |p| p.duration())
+    }
+
+    /// From where the first beam goes on to where the last one goes off \[mm\]; `None` without beams.
+    pub fn weld(&self) -> Option<(f64, f64)> {
+        let places = |wanted: bool| {
+            self.events
+                .iter()
+                .filter(move |event| matches!(event.action, PathAction::Beam { on, .. } if on == wanted))
+                .map(|event| event.s_mm)
+        };
+        let start = places(true).next()?;
+        Some((start, places(false).next_back().unwrap_or(self.length_mm())))
+    }
+
+    /// The path as the boards see it.
+    pub fn path(&self) -> Box<Path<CAPACITY>> {
+        let mut path = Box::new(Path::new());
+        path.clear(0, self.space);
+        for knot in &self.knots {
+            path.push(*knot).expect("planned knots are in order and fit");
+        }
+        path
+    }
+}
