@@ -131,7 +131,8 @@ impl Trapezoid {
 }
 
 /// Samples of a trapezoid under a moving mean: continuous acceleration, jerk at most acceleration / (window ·
-/// period), and the exact length at the end. Filtering the length leaves the path as it is.
+/// period), twice that where a move is too short to reach its speed, and the exact length at the end. Filtering
+/// the length leaves the path as it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmoothedTrapezoid {
     trapezoid: Trapezoid,
@@ -171,5 +172,64 @@ impl SmoothedTrapezoid {
         };
         let sum: f64 = (0..self.window).map(|j| sampled(k.saturating_sub(j))).sum();
         sum / self.window as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::string::ToString;
+    use std::vec::Vec;
+
+    /// A long, a short and no move.
+    fn moves() -> [Trapezoid; 3] {
+        [200.0, 0.5, 0.0].map(|length| Trapezoid::build(length, 40.0, 500.0).unwrap())
+    }
+
+    #[test]
+    fn speed_and_acceleration_are_derivatives_within_the_limits() {
+        for profile in moves() {
+            let h = 1e-6;
+            for i in 0..=1000 {
+                let t = profile.duration() * f64::from(i) / 1000.0;
+                let [before, now, after] = [t - h, t, t + h].map(|t| profile.at(t));
+                // At a corner the mean of two accelerations, each at most 500, stands for the slope.
+                assert!(((after.s - before.s) / (2.0 * h) - now.v).abs() < 500.0 * h + 1e-7);
+                assert!((after.v - before.v).abs() < 1000.0 * h * (1.0 + 1e-6));
+                assert!(now.v <= 40.0);
+            }
+            assert_eq!(profile.at(profile.duration()).s, profile.length());
+            assert_eq!(profile.at(-1.0), SpeedState::default());
+        }
+    }
+
+    #[test]
+    fn smoothing_limits_the_jerk_and_keeps_the_end() {
+        for profile in moves() {
+            let (period, window) = (0.001, 20);
+            let smoothed = SmoothedTrapezoid::build(profile, period, window).unwrap();
+            let s: Vec<f64> = (0..smoothed.samples()).map(|k| smoothed.sample(k)).collect();
+            assert_eq!(smoothed.sample(smoothed.samples() - 1), profile.length());
+            for four in s.windows(4) {
+                let jerk = (four[3] - 3.0 * four[2] + 3.0 * four[1] - four[0]) / (period * period * period);
+                // Acceleration over the time of the mean, twice where a short move turns it round.
+                assert!(
+                    jerk.abs() <= 2.0 * 500.0 / (period * window as f64) * (1.0 + 1e-3),
+                    "{jerk}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_profile_is_refused_with_the_reason() {
+        let refused = |trapezoid: Result<Trapezoid, TrapezoidError>| trapezoid.unwrap_err().to_string();
+        assert!(refused(Trapezoid::build(1.0, 0.0, 9.0)).starts_with("limits: a speed of 0 mm/s"));
+        assert!(refused(Trapezoid::build(1.0, 1.0, f64::NAN)).starts_with("limits"));
+        assert!(refused(Trapezoid::build(f64::INFINITY, 1.0, 1.0)).starts_with("length"));
+        for (period, window) in [(0.0, 5), (f64::NAN, 5), (0.001, 0)] {
+            assert!(SmoothedTrapezoid::build(moves()[0], period, window).is_err());
+        }
     }
 }

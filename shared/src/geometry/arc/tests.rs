@@ -109,6 +109,25 @@ fn ends_at_one_place_make_a_full_circle() {
     }
 }
 
+/// The heading follows the tangent without a jump, also past ±180°.
+#[test]
+fn the_heading_is_that_of_the_tangent() {
+    let (start, centre) = (Vector3::new(10.0, -20.0, 3.0), Vector3::new(-7.0, 11.0, 0.0));
+    let end = centre + rotate(&Vector3::z(), 0.3, &(start - centre));
+    for turn in [Turn::CounterClockwise, Turn::Clockwise] {
+        let arc = Arc::about_centre(start, end, centre, Vector3::z(), turn).unwrap();
+        let mut last = arc.heading(0.0).unwrap();
+        for i in 0..=100 {
+            let s = arc.length() * f64::from(i) / 100.0;
+            let (heading, tangent) = (arc.heading(s).unwrap(), arc.at(s).first);
+            let off = libm::remainder(heading - libm::atan2(tangent.y, tangent.x), TAU);
+            assert!(off.abs() < 1e-12);
+            assert!((heading - last).abs() < 0.07);
+            last = heading;
+        }
+    }
+}
+
 #[test]
 fn what_is_no_arc_is_refused_with_the_reason() {
     let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
