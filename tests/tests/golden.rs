@@ -12,6 +12,7 @@ mod golden {
     mod file;
     mod folder;
     mod kinematics;
+    mod machines;
     mod metrics;
     mod nurbs;
     mod planning;
@@ -40,6 +41,7 @@ mod golden {
 
     files! {
         kinematics: m0_kin m0_vel m0_slerp;
+        machines: ac_head fsw_kin;
         planning: m0_plan m0_beams m0_e2e;
         tracking: m0_uv m0_uv_meas m0_track_map tracker_seq track_gain closed_loop_track;
         servo: servo_pid servo_gantry;

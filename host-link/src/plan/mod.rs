@@ -4,7 +4,7 @@ mod beams;
 mod cut;
 mod dual_beam;
 mod locate;
-mod text;
+pub mod text;
 
 pub use beams::{Approach, closest_approach, slide_extension};
 pub use cut::{Crossing, OtherSeam, Polyline, SmoothSeam};

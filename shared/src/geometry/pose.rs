@@ -62,6 +62,23 @@ impl Pose {
         })
     }
 
+    /// The pose of a tool that is a body of revolution: `normal`, of any length, keeps its direction, and T is some
+    /// direction perpendicular to it.
+    pub fn pointing(position: Vector3<f64>, normal: Vector3<f64>) -> Result<Self, PoseError> {
+        if !position.iter().chain(normal.iter()).all(|x| x.is_finite()) {
+            return Err(PoseError::NotFinite);
+        }
+        let normal = unit(normal).ok_or(PoseError::ZeroVector)?;
+        // The coordinate axis furthest from N, turned into the plane perpendicular to it.
+        let furthest = Vector3::ith(normal.iamin(), 1.0);
+        let tangent = furthest - normal * normal.dot(&furthest);
+        Ok(Self {
+            position,
+            tangent: tangent / tangent.norm(),
+            normal,
+        })
+    }
+
     /// Left of travel: M = N × T.
     pub fn lateral(&self) -> Vector3<f64> {
         self.normal.cross(&self.tangent)
@@ -72,4 +89,28 @@ impl Pose {
 pub(crate) fn unit(v: Vector3<f64>) -> Option<Vector3<f64>> {
     let length = v.norm();
     (length > 1e-12).then(|| v / length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pointing_tool_keeps_its_axis_and_gets_some_tangent() {
+        for n in [
+            Vector3::z(),
+            Vector3::new(0.0, -3.0, 0.0),
+            Vector3::new(1.0, 1.0, -1.0),
+            Vector3::new(1e-9, 5.0, 2.0),
+        ] {
+            let pose = Pose::pointing(Vector3::x(), n).unwrap();
+            assert_eq!(pose.normal, n / n.norm());
+            assert!(pose.tangent.dot(&pose.normal).abs() < 1e-15);
+            assert!((pose.tangent.norm() - 1.0).abs() < 1e-15);
+        }
+        let (zero, bad) = (Vector3::zeros(), Vector3::new(0.0, f64::NAN, 1.0));
+        assert_eq!(Pose::pointing(zero, zero), Err(PoseError::ZeroVector));
+        assert_eq!(Pose::pointing(zero, bad), Err(PoseError::NotFinite));
+        assert_eq!(Pose::pointing(bad, Vector3::z()), Err(PoseError::NotFinite));
+    }
 }

@@ -176,12 +176,6 @@ impl Random {
     }
 }
 
-/// A pose that points along `normal`, with any T.
-pub fn pointing(position: Vector3<f64>, normal: Vector3<f64>) -> Pose {
-    let across = normal.cross(&Vector3::new(0.3, 0.4, 0.1));
-    Pose::new(position, across, normal).expect("a pose")
-}
-
 /// T, M, N.
 pub fn frame(pose: &Pose) -> [Vector3<f64>; 3] {
     [pose.tangent, pose.lateral(), pose.normal]

@@ -1,6 +1,6 @@
 //! Choice among solutions, and turns of C.
 
-use crate::bench::{Machine, Random, ac_head, dual_beam, pipe_welder, pointing, stir_gantry, wire_arc};
+use crate::bench::{Machine, Random, ac_head, dual_beam, pipe_welder, stir_gantry, wire_arc};
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::{AXES, AXIS_NAMES, Bits};
@@ -105,7 +105,7 @@ fn the_ac_head_turns_on_over_half_turns_within_its_travel() {
     let at = |lambda: f64| {
         let (c, a) = (-2.0 * PI + 4.0 * PI * lambda, 0.4f64);
         let normal = Vector3::new(c.sin() * a.sin(), -c.cos() * a.sin(), a.cos());
-        pointing(Vector3::zeros(), normal)
+        Pose::pointing(Vector3::zeros(), normal).expect("a pose")
     };
     let mut start = [0.0; AXES];
     (start[3], start[5]) = (0.4, -2.0 * PI);
@@ -119,10 +119,11 @@ fn the_ac_head_passes_its_pole_by_a_change_of_sign() {
     let c = 2.5f64;
     let at = |lambda: f64| {
         let a = 0.6 - 1.2 * lambda;
-        pointing(
+        Pose::pointing(
             Vector3::zeros(),
             Vector3::new(c.sin() * a.sin(), -c.cos() * a.sin(), a.cos()),
         )
+        .expect("a pose")
     };
     let mut start = [0.0; AXES];
     (start[3], start[5]) = (0.6, c);
@@ -169,7 +170,8 @@ fn the_ac_head_takes_the_nearest_solution_within_its_travel() {
 fn of_two_equally_near_solutions_of_the_ac_head_a_decides() {
     let machine = ac_head();
     // C = ±90° from near, A = ±0.5.
-    let pose = pointing(Vector3::zeros(), Vector3::new(0.5f64.sin(), 0.0, 0.5f64.cos()));
+    let pose =
+        Pose::pointing(Vector3::zeros(), Vector3::new(0.5f64.sin(), 0.0, 0.5f64.cos())).expect("a pose");
     for a in [0.4, -0.4] {
         let axes = machine.kinematics.inverse(&pose, &[0.0, 0.0, 0.0, a, 0.0, 0.0]);
         assert!((axes.expect("reachable")[3] - a.signum() * 0.5).abs() < 1e-12);

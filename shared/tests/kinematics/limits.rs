@@ -1,6 +1,6 @@
 //! Travel and speeds.
 
-use crate::bench::{Machine, Random, ac_head, ac_head_within, machines, pointing, stir_gantry};
+use crate::bench::{Machine, Random, ac_head, ac_head_within, machines, stir_gantry};
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::{AXES, AXIS_NAMES, Bits};
@@ -12,7 +12,7 @@ fn what_is_outside_the_travel_of_every_solution_is_named() {
     let (a, b, c) = (3, 4, 5);
     let tilted = |a: f64, c: f64| {
         let normal = Vector3::new(c.sin() * a.sin(), -c.cos() * a.sin(), a.cos());
-        pointing(Vector3::zeros(), normal)
+        Pose::pointing(Vector3::zeros(), normal).expect("a pose")
     };
     let near = [0.0; AXES];
     let refused =
