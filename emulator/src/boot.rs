@@ -3,6 +3,7 @@
 use crate::hello;
 use crate::qemu::{Board, PROGRAM, Setup};
 use crate::session::{Endpoint, PathStatesTo, Session};
+use plant::{DEFAULT_MACHINE, MotionPlant};
 use shared::protocol::{Role, SCHEMA_HASH};
 use std::fs::{self, File, TryLockError};
 use std::net::{Ipv4Addr, TcpListener, UdpSocket};
@@ -34,6 +35,8 @@ pub struct Options {
     pub log_directory: PathBuf,
     /// The boards' time per wall time; 1 is real time, less suits a loaded host.
     pub rate: f64,
+    /// Name of the machine that the motion board is wired to, as kinematics are called in machine files.
+    pub machine: String,
 }
 
 /// Environment variables by which a test is told what to boot, in the order of [`Options`].
@@ -43,7 +46,7 @@ pub const BOOT_VARIABLES: [&str; 3] = ["SEAMWRIGHT_MOTION", "SEAMWRIGHT_TRACKER"
 pub const PROGRAM_VARIABLES: [&str; 2] = ["SEAMWRIGHT_HOST_LINK", "SEAMWRIGHT_XTASK"];
 
 impl Options {
-    /// What `cargo xtask test` has built, in real time; an error names the variable that is not set.
+    /// What `cargo xtask test` has built, in real time, wired to the [`DEFAULT_MACHINE`]; an error names the variable that is not set.
     pub fn from_environment(log_directory: PathBuf) -> Result<Self, BootError> {
         let path = |variable| {
             env::var_os(variable)
@@ -57,6 +60,7 @@ impl Options {
             plugin: path(plugin)?,
             log_directory,
             rate: 1.0,
+            machine: DEFAULT_MACHINE.to_owned(),
         })
     }
 }
@@ -64,6 +68,12 @@ impl Options {
 /// Why the boards do not run.
 #[derive(Debug, Error)]
 pub enum BootError {
+    /// There is no plant of this name.
+    #[error("no emulated board can be wired to a machine called {name}; there are {}", MotionPlant::names().collect::<Vec<_>>().join(", "))]
+    UnknownMachine {
+        /// The name.
+        name: String,
+    },
     /// A file to boot from is not there.
     #[error("{what} {} cannot be read ({source}); build it first", path.display())]
     Missing {
@@ -164,6 +174,7 @@ impl Drop for Page {
 impl Boards {
     /// Boots both boards and waits until both answer.
     pub fn boot(options: &Options) -> Result<Self, BootError> {
+        check_machine(&options.machine)?;
         find_program(PROGRAM, "qemu-system-arm")?;
         find_program("setpriv", "util-linux")?;
         let motion = existing("the motion firmware", &options.motion)?;
@@ -175,7 +186,7 @@ impl Boards {
         };
         fs::create_dir_all(&options.log_directory).map_err(setup)?;
         let directory = options.log_directory.canonicalize().map_err(setup)?;
-        let session = free_ports(directory.join(PEERS)).map_err(setup)?;
+        let session = free_ports(directory.join(PEERS), &options.machine).map_err(setup)?;
         let page = shared_page(&directory)?;
 
         let start = |name, mac, slot, firmware, endpoint| {
@@ -188,6 +199,7 @@ impl Boards {
                 rate: options.rate,
                 directory: &directory,
                 peers: PEERS,
+                machine: &options.machine,
                 endpoint,
             })
             .map_err(setup)
@@ -262,6 +274,16 @@ impl Boards {
     }
 }
 
+/// Only names that the board knows, too, may reach it.
+fn check_machine(name: &str) -> Result<(), BootError> {
+    match MotionPlant::of(name) {
+        Some(_) => Ok(()),
+        None => Err(BootError::UnknownMachine {
+            name: name.to_owned(),
+        }),
+    }
+}
+
 /// An empty page for the two plugins.
 fn shared_page(directory: &Path) -> Result<Page, BootError> {
     let setup = |source| BootError::Setup {
@@ -313,7 +335,7 @@ fn existing(what: &'static str, path: &Path) -> Result<PathBuf, BootError> {
 }
 
 /// A session on four ports that nobody uses, found by taking all at once and giving them back.
-fn free_ports(pace: PathBuf) -> io::Result<Session> {
+fn free_ports(pace: PathBuf, machine: &str) -> io::Result<Session> {
     let host = Ipv4Addr::LOCALHOST;
     let tcp = [TcpListener::bind((host, 0))?, TcpListener::bind((host, 0))?];
     let udp = [UdpSocket::bind((host, 0))?, UdpSocket::bind((host, 0))?];
@@ -326,6 +348,7 @@ fn free_ports(pace: PathBuf) -> io::Result<Session> {
     };
     let (motion, tracker) = (endpoint(0)?, endpoint(1)?);
     Ok(Session {
+        machine: machine.to_owned(),
         pace,
         motion,
         tracker,
@@ -358,6 +381,16 @@ mod tests {
     }
 
     #[test]
+    fn an_unknown_machine_is_named_with_those_there_are() {
+        let text = check_machine("lathe").expect_err("there is none").to_string();
+        assert!(
+            text.contains("called lathe") && text.contains("dual-beam-gantry, "),
+            "{text}"
+        );
+        assert!(check_machine("pipe-welder").is_ok());
+    }
+
+    #[test]
     fn a_directory_serves_one_pair_at_a_time() {
         let directory = env::temp_dir().join(format!("seamwright-emulator-{}", std::process::id()));
         fs::create_dir_all(&directory).expect("the temporary directory is writable");
@@ -371,7 +404,7 @@ mod tests {
 
     #[test]
     fn ports_differ_and_path_states_go_to_the_tracker() {
-        let session = free_ports(PathBuf::new()).expect("the loopback has ports");
+        let session = free_ports(PathBuf::new(), DEFAULT_MACHINE).expect("the loopback has ports");
         assert_ne!(session.motion.tcp, session.tracker.tcp);
         assert_ne!(session.motion.udp, session.tracker.udp);
         assert_eq!(session.path_states_to.udp, session.tracker.udp);

@@ -38,6 +38,8 @@ pub struct Setup<'a> {
     /// Directory for logs and the page the plugins share, both by relative names.
     pub directory: &'a Path,
     pub peers: &'a str,
+    /// The machine that the board is wired to; one that it knows.
+    pub machine: &'a str,
     pub endpoint: Endpoint,
 }
 
@@ -66,7 +68,12 @@ impl Board {
                 setup.slot
             ))
             .args(["-serial", &format!("file:{}.defmt", setup.name)])
-            .args(["-semihosting-config", "enable=on,target=native", "-nic"])
+            .arg("-semihosting-config")
+            .arg(format!(
+                "enable=on,target=native,arg={},arg=machine={}",
+                setup.name, setup.machine
+            ))
+            .arg("-nic")
             .arg(format!(
                 "user,model=lan9118,mac={},hostfwd=tcp:{host}:{tcp}-{BOARD_ADDRESS}:{REQUEST_PORT},\
                  hostfwd=udp:{host}:{udp}-{BOARD_ADDRESS}:{DATAGRAM_PORT}",

@@ -280,6 +280,41 @@ fn missing_emulated_boards_are_told_with_the_remedy() {
     assert_says(&said, &["no-session.toml", "cargo xtask emulate"]);
 }
 
+#[test]
+fn emulated_boards_of_another_machine_are_named_and_asked_for_nothing() {
+    // Nobody listens at these ports.
+    let board = Endpoint {
+        host: Ipv4Addr::LOCALHOST,
+        tcp: 9,
+        udp: 9,
+    };
+    let session = Session {
+        machine: "pipe-welder".to_owned(),
+        pace: scratch("no-pace"),
+        motion: board,
+        tracker: board,
+        path_states_to: PathStatesTo {
+            host: board.host,
+            udp: board.udp,
+        },
+    };
+    let file = scratch("other-machine.toml");
+    session.write(&file).expect("the scratch folder is writable");
+    let attempt = Attempt {
+        more: vec!["--boards", "emulated"],
+        session: Some(file),
+        ..Attempt::new()
+    };
+    assert_says(
+        &attempt.refusal(),
+        &[
+            "wired to a pipe-welder",
+            "describes a dual-beam-gantry",
+            "cargo xtask emulate --machine",
+        ],
+    );
+}
+
 /// Two boards of another version: both answer their first request, and are never asked for more.
 #[test]
 fn a_board_of_another_version_is_refused_and_asked_for_nothing() {
@@ -290,6 +325,7 @@ fn a_board_of_another_version_is_refused_and_asked_for_nothing() {
         udp: 9,
     };
     let session = Session {
+        machine: "dual-beam-gantry".to_owned(),
         pace: scratch("no-pace"),
         motion: board,
         tracker: board,

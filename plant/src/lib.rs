@@ -9,10 +9,12 @@
 
 mod drive;
 mod grating;
+mod machines;
 mod motion;
+mod motor;
 mod slides;
 
 pub use drive::{Drive, DriveConfig};
 pub use grating::{Grating, GratingConfig, Reading};
-pub use motion::MotionPlant;
+pub use motion::{DEFAULT_MACHINE, MotionPlant};
 pub use slides::{Slide, SlidePlant};

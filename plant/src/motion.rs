@@ -1,136 +1,44 @@
-//! The seven servo axes of the dual-beam gantry.
+//! What a motion board is wired to: the servo axes of a machine, and its beams.
 
-use crate::{Drive, DriveConfig, Grating, GratingConfig};
+use crate::machines::MACHINES;
+use crate::motor::{Motors, RunningMotor};
 use shared::io::{Command, DacCode, Feedback, MOTORS, MotionCommand, MotionFeedback, SIDES};
-use shared::units::DEG_PER_RAD;
 
-/// Servo tick \[s\].
-const TICK: f64 = 250e-6;
-/// Steps of the drive model in a servo tick: h = 50 µs as in SPEC 0.11.
-const STEPS: u32 = 5;
-/// Dead time of the drives, round(0.25 ms / h) + 1 steps (SPEC 0.11).
-const FIFO: usize = 6;
+/// The machine where none is named.
+pub const DEFAULT_MACHINE: &str = MACHINES[0].0;
 
-/// One motor in mm or degrees.
-struct Motor {
-    velocity_at_10v: f64,
-    drive: DriveConfig,
-    grating: GratingConfig,
-    power_up: f64,
-    /// mm or rad in one mm or degree.
-    unit: f64,
-}
-
-impl Motor {
-    fn drive(&self) -> Drive<FIFO> {
-        let config = DriveConfig {
-            max_acceleration: self.drive.max_acceleration * self.unit,
-            friction: self.drive.friction * self.unit,
-            backlash: self.drive.backlash * self.unit,
-            brake: self.drive.brake * self.unit,
-            ..self.drive
-        };
-        Drive::new(&config, TICK / f64::from(STEPS), self.power_up * self.unit)
-    }
-
-    fn grating(&self) -> Grating {
-        let config = GratingConfig {
-            counts_per_unit: self.grating.counts_per_unit / self.unit,
-            mark: self.grating.mark * self.unit,
-            switch_minus: self.grating.switch_minus * self.unit,
-            switch_plus: self.grating.switch_plus * self.unit,
-        };
-        Grating::new(config, self.power_up * self.unit)
-    }
-}
-
-const LINEAR: DriveConfig = DriveConfig {
-    bandwidth_hz: 80.0,
-    max_acceleration: 4000.0,
-    friction: 150.0,
-    damping_per_s: 1.0,
-    backlash: 0.005,
-    brake: 4000.0,
-};
-
-const ROTARY: DriveConfig = DriveConfig {
-    backlash: 0.000_36,
-    ..LINEAR
-};
-
-/// 15 % slower than its partner and twice the friction.
-const LAZY: DriveConfig = DriveConfig {
-    bandwidth_hz: 68.0,
-    friction: 300.0,
-    ..LINEAR
-};
-
-const fn linear(
-    velocity_at_10v: f64,
-    drive: DriveConfig,
-    mark: f64,
-    travel_max: f64,
-    power_up: f64,
-) -> Motor {
-    Motor {
-        velocity_at_10v,
-        drive,
-        grating: GratingConfig {
-            counts_per_unit: 10_000.0,
-            mark,
-            switch_minus: -5.0,
-            switch_plus: travel_max + 5.0,
-        },
-        power_up,
-        unit: 1.0,
-    }
-}
-
-const fn rotary(travel: f64, power_up: f64) -> Motor {
-    Motor {
-        velocity_at_10v: 150.0,
-        drive: ROTARY,
-        grating: GratingConfig {
-            counts_per_unit: 10_000.0,
-            mark: 0.0,
-            switch_minus: -travel - 1.0,
-            switch_plus: travel + 1.0,
-        },
-        power_up,
-        unit: 1.0 / DEG_PER_RAD,
-    }
-}
-
-/// The marks of X1 and X2 were mounted at 20 mm, half the square offset of 0.037 mm to either side: positions
-/// counted from them differ by X1 − X2 = 0.037 mm when the beam is square. At power-up it is 0.06 mm out.
-const DUAL_BEAM_GANTRY: [Motor; MOTORS] = [
-    linear(400.0, LINEAR, 20.0 - 0.0185, 5000.0, 35.013),
-    linear(400.0, LAZY, 20.0 + 0.0185, 5000.0, 34.953),
-    linear(400.0, LINEAR, 20.0, 3000.0, 41.27),
-    linear(200.0, LINEAR, 980.0, 1000.0, 955.4),
-    rotary(100.0, 3.2),
-    rotary(30.0, -1.7),
-    rotary(90.0, 2.4),
-];
-
-/// Drives, gratings and beams behind a motion board.
+/// Drives, gratings and beams behind a motion board. A motor that the machine does not have counts nothing,
+/// closes no switch and stays at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionPlant {
-    velocity_at_10v: [f64; MOTORS],
-    drives: [Drive<FIFO>; MOTORS],
-    gratings: [Grating; MOTORS],
+    motors: [Option<RunningMotor>; MOTORS],
     beams: [bool; SIDES],
     power: [f64; SIDES],
 }
 
+impl Default for MotionPlant {
+    /// [`DEFAULT_MACHINE`].
+    fn default() -> Self {
+        let (_, motors) = MACHINES[0];
+        Self::new(motors)
+    }
+}
+
 impl MotionPlant {
-    /// The dual-beam gantry, standing where it was switched off.
-    pub fn dual_beam_gantry() -> Self {
-        let motor = |i: usize| &DUAL_BEAM_GANTRY[i];
+    /// The machine called `name`, standing where it was switched off; `None` if there is none.
+    pub fn of(name: &str) -> Option<Self> {
+        let (_, motors) = MACHINES.iter().find(|(known, _)| *known == name)?;
+        Some(Self::new(motors))
+    }
+
+    /// Names of all machines.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        MACHINES.iter().map(|(name, _)| *name)
+    }
+
+    fn new(motors: &Motors) -> Self {
         Self {
-            velocity_at_10v: core::array::from_fn(|i| motor(i).velocity_at_10v * motor(i).unit),
-            drives: core::array::from_fn(|i| motor(i).drive()),
-            gratings: core::array::from_fn(|i| motor(i).grating()),
+            motors: core::array::from_fn(|i| motors[i].as_ref().map(RunningMotor::new)),
             beams: [false; SIDES],
             power: [0.0; SIDES],
         }
@@ -148,13 +56,9 @@ impl MotionPlant {
         self.power = beam_power.map(DacCode::ratio);
 
         let mut feedback = Feedback::default();
-        for (i, (drive, grating)) in self.drives.iter_mut().zip(&mut self.gratings).enumerate() {
-            if *enable {
-                drive.run(dac[i].ratio() * self.velocity_at_10v[i], STEPS);
-            } else {
-                drive.brake(STEPS);
-            }
-            let reading = grating.read(drive.position());
+        for (i, motor) in self.motors.iter_mut().enumerate() {
+            let Some(motor) = motor else { continue };
+            let reading = motor.advance(*enable, dac[i]);
             feedback.counts[i] = reading.counts;
             feedback.mark[i] = reading.mark;
             feedback.limit_minus.set(i, reading.limit_minus);
@@ -165,7 +69,7 @@ impl MotionPlant {
 
     /// True positions of the loads (mm, rad), at the end of the last tick.
     pub fn truth(&self) -> [f64; MOTORS] {
-        core::array::from_fn(|i| self.drives[i].position())
+        core::array::from_fn(|i| self.motors[i].as_ref().map_or(0.0, RunningMotor::position))
     }
 
     /// Beams that are on: gate open and power above zero.
@@ -177,6 +81,8 @@ impl MotionPlant {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shared::kinematics::KinematicsConfig;
+    use shared::units::DEG_PER_RAD;
 
     fn command(ratio: [f64; MOTORS]) -> MotionCommand {
         MotionCommand {
@@ -197,7 +103,7 @@ mod tests {
 
     #[test]
     fn a_disabled_machine_stands_and_counts_from_zero() {
-        let mut plant = MotionPlant::dual_beam_gantry();
+        let mut plant = MotionPlant::default();
         let mut ignored = command([1.0; MOTORS]);
         ignored.enable = false;
         let before = plant.truth();
@@ -210,7 +116,7 @@ mod tests {
 
     #[test]
     fn ten_volts_drive_every_motor_at_its_speed() {
-        let mut plant = MotionPlant::dual_beam_gantry();
+        let mut plant = MotionPlant::default();
         let half = command([0.5; MOTORS]);
         run(&mut plant, &half, 800);
         let before = plant.truth();
@@ -228,7 +134,7 @@ mod tests {
 
     #[test]
     fn counts_and_truth_agree_within_half_a_count() {
-        let mut plant = MotionPlant::dual_beam_gantry();
+        let mut plant = MotionPlant::default();
         let start = plant.truth();
         for k in 0..2000 {
             let ratio = 0.3 * libm::sin(f64::from(k) * 0.01);
@@ -245,7 +151,7 @@ mod tests {
 
     #[test]
     fn marks_latch_one_count_whatever_the_direction_and_show_the_square_offset() {
-        let mut plant = MotionPlant::dual_beam_gantry();
+        let mut plant = MotionPlant::default();
         let start = plant.truth();
         let down = command([-0.05, -0.05, -0.05, 0.1, -0.05, 0.05, -0.05]);
         let up = command(down.dac.map(|code| -code.ratio()));
@@ -268,7 +174,7 @@ mod tests {
 
     #[test]
     fn limit_switches_close_at_both_ends_of_the_travel() {
-        let mut plant = MotionPlant::dual_beam_gantry();
+        let mut plant = MotionPlant::default();
         let low = run(
             &mut plant,
             &command([-0.5, -0.5, -0.5, -0.5, -0.5, -0.5, -0.5]),
@@ -281,7 +187,7 @@ mod tests {
 
     #[test]
     fn disabling_stops_every_motor_within_a_tenth_of_a_second() {
-        let mut plant = MotionPlant::dual_beam_gantry();
+        let mut plant = MotionPlant::default();
         run(&mut plant, &command([1.0; MOTORS]), 1600);
         run(&mut plant, &MotionCommand::SAFE, 400);
         let rest = plant.truth();
@@ -291,7 +197,7 @@ mod tests {
 
     #[test]
     fn a_beam_needs_its_gate_and_its_power() {
-        let mut plant = MotionPlant::dual_beam_gantry();
+        let mut plant = MotionPlant::default();
         let mut command = MotionCommand::SAFE;
         command.beam_gate = [true, true];
         command.beam_power = [DacCode(1000), DacCode::ZERO];
@@ -303,12 +209,36 @@ mod tests {
 
     #[test]
     fn two_plants_with_the_same_commands_stay_equal_to_the_bit() {
-        let mut one = MotionPlant::dual_beam_gantry();
-        let mut two = MotionPlant::dual_beam_gantry();
+        let mut one = MotionPlant::default();
+        let mut two = MotionPlant::default();
         for k in 0..1000 {
             let command = command([libm::sin(f64::from(k) * 0.03); MOTORS]);
             assert_eq!(one.advance(&command), two.advance(&command));
         }
         assert_eq!(one, two);
+    }
+
+    #[test]
+    fn machines_are_called_as_their_kinematics() {
+        for name in KinematicsConfig::NAMES {
+            assert!(MotionPlant::of(name).is_some(), "{name} has no plant");
+        }
+        assert_eq!(MotionPlant::of(DEFAULT_MACHINE), Some(MotionPlant::default()));
+        assert_eq!(MotionPlant::of("lathe"), None);
+    }
+
+    #[test]
+    fn every_machine_obeys_and_what_is_not_wired_stays() {
+        for name in MotionPlant::names() {
+            let mut plant = MotionPlant::of(name).expect("a name of the list");
+            let start = plant.truth();
+            let feedback = run(&mut plant, &command([0.01; MOTORS]), 4000);
+            assert_eq!((feedback.limit_minus.0, feedback.limit_plus.0), (0, 0), "{name}");
+            for (i, motor) in plant.motors.iter().enumerate() {
+                let moved = plant.truth()[i] - start[i];
+                assert_eq!(motor.is_some(), moved > 0.0, "{name}, motor {i}");
+                assert_eq!(motor.is_some(), feedback.counts[i] > 0, "{name}, motor {i}");
+            }
+        }
     }
 }

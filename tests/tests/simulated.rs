@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use system_tests::{assert_on_seam, kinks, seam, shipped_seam, sines, slopes};
 
 fn weld(seam: Deviation, speed_m_per_min: f64) -> Ended {
-    system_tests::weld(&mut SimulatedBoards::new(), seam, speed_m_per_min)
+    system_tests::weld(&mut SimulatedBoards::default(), seam, speed_m_per_min)
 }
 
 /// Every file of the report, by name.

@@ -19,21 +19,23 @@ pub struct Running {
     pub session_file: PathBuf,
 }
 
-/// What the boards boot from, built. `log_directory` is where the logs go.
-pub fn build(log_directory: PathBuf, rate: f64) -> Result<Options> {
+/// What the boards boot from, built. `log_directory` is where the logs go; `machine` is what the motion board is
+/// wired to.
+pub fn build(log_directory: PathBuf, rate: f64, machine: String) -> Result<Options> {
     Ok(Options {
         motion: firmware::build(Firmware::Motion, Board::Mps2An500)?,
         tracker: firmware::build(Firmware::Tracker, Board::Mps2An500)?,
         plugin: firmware::build_pace()?,
         log_directory,
         rate,
+        machine,
     })
 }
 
 /// Builds and boots both boards. Each pair that runs at the same time has a folder of its own.
-pub fn boot(rate: f64) -> Result<Running> {
+pub fn boot(rate: f64, machine: String) -> Result<Running> {
     let folder = target_directory()?.join("emulated");
-    let mut options = build(folder.clone(), rate)?;
+    let mut options = build(folder.clone(), rate, machine)?;
     for pair in 0..PAIRS {
         options.log_directory = folder.join(pair.to_string());
         match Boards::boot(&options) {
@@ -50,13 +52,14 @@ pub fn boot(rate: f64) -> Result<Running> {
 }
 
 /// Boots both boards and keeps them until Ctrl-C, or until one ends.
-pub fn run(rate: f64) -> Result<ExitCode> {
+pub fn run(rate: f64, machine: String) -> Result<ExitCode> {
     let Running {
         mut boards,
         session_file,
-    } = boot(rate)?;
+    } = boot(rate, machine)?;
     let interrupts = Interrupts::watch()?;
     let session = boards.session();
+    println!("machine:       {}", session.machine);
     println!(
         "motion board:  requests {}, datagrams {}",
         session.motion.requests(),

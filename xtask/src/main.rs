@@ -5,12 +5,15 @@ mod emulate;
 mod firmware;
 mod flash;
 mod interrupt;
+mod machine;
 mod setup;
 mod size;
 mod test;
 mod weld;
 
 use clap::{Parser, Subcommand};
+use plant::DEFAULT_MACHINE;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Parser)]
@@ -38,7 +41,11 @@ enum Task {
         flags: Vec<String>,
     },
     /// Boot both emulated boards and keep them until Ctrl-C
-    Emulate,
+    Emulate {
+        /// Machine file: the motion board is wired to its machine; the dual-beam gantry if none is told
+        #[arg(long, value_name = "FILE")]
+        machine: Option<PathBuf>,
+    },
     /// Check and test everything
     Test,
     /// Flash and RAM of all four firmwares against their budgets
@@ -66,7 +73,11 @@ fn main() -> ExitCode {
     let result = match task {
         Task::Setup => setup::run(&setup::ALL).map(|()| ExitCode::SUCCESS),
         Task::Weld { flags } => weld::run(&flags, rate, set_up),
-        Task::Emulate => set_up(&setup::EMULATION).and_then(|()| emulate::run(rate)),
+        Task::Emulate { machine } => set_up(&setup::EMULATION).and_then(|()| {
+            let machine =
+                machine.map_or_else(|| Ok(DEFAULT_MACHINE.to_owned()), |file| machine::name(&file))?;
+            emulate::run(rate, machine)
+        }),
         Task::Test => set_up(&setup::ALL).and_then(|()| test::run()),
         Task::Size => set_up(&[setup::Tool::ArmTarget]).and_then(|()| size::run()),
         Task::Flash { firmware, board } => {

@@ -9,6 +9,7 @@ use crate::firmware::{self, TARGET};
 use crate::size;
 use anyhow::{Context, Result, bail};
 use emulator::{BOOT_VARIABLES, PROGRAM_VARIABLES};
+use plant::DEFAULT_MACHINE;
 use std::env;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, ExitCode, Stdio};
@@ -87,7 +88,7 @@ const EMULATED: &str = "system-tests/emulated";
 
 fn emulated_tests() -> Result<Command> {
     let logs = target_directory()?.join("emulated");
-    let boot = emulate::build(logs, 1.0)?;
+    let boot = emulate::build(logs, 1.0, DEFAULT_MACHINE.to_owned())?;
     let mut command = cargo(&[
         "test",
         "--package",

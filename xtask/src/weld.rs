@@ -5,13 +5,15 @@ use crate::cargo::root;
 use crate::emulate::{self, Running};
 use crate::firmware::build_host_link;
 use crate::interrupt::Interrupts;
+use crate::machine;
 use crate::setup::{self, Tool};
 use anyhow::{Context, Result};
 use emulator::{SESSION_VARIABLE, bound_to_parent};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
+use plant::DEFAULT_MACHINE;
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ExitCode, ExitStatus};
 use std::thread;
 use std::time::Duration;
@@ -31,10 +33,9 @@ pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) 
     }
     let host_link = build_host_link()?;
     let interrupts = Interrupts::watch()?;
-    let mut running = if emulated {
-        Some(emulate::boot(rate)?)
-    } else {
-        None
+    let mut running = match told.machine_name() {
+        Some(machine) if emulated => Some(emulate::boot(rate, machine)?),
+        _ => None,
     };
 
     let mut command = bound_to_parent(host_link);
@@ -79,7 +80,7 @@ fn wait(child: &mut Child, interrupts: &Interrupts, mut running: Option<&mut Run
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Told {
     program: bool,
-    machine: bool,
+    machine: Option<String>,
     seam: bool,
     boards: Option<String>,
     help: bool,
@@ -103,7 +104,7 @@ impl Told {
                 None => (word.as_str(), words.next().cloned()),
             };
             match flag {
-                "--machine" => told.machine = true,
+                "--machine" => told.machine = value,
                 "--seam" => told.seam = true,
                 "--boards" => told.boards = value,
                 _ => {}
@@ -112,13 +113,21 @@ impl Told {
         told
     }
 
+    /// Name of the machine; of a file that does not tell it none, which host-link will refuse in its own words.
+    fn machine_name(&self) -> Option<String> {
+        match &self.machine {
+            None => Some(DEFAULT_MACHINE.to_owned()),
+            Some(file) => machine::name(Path::new(file)).ok(),
+        }
+    }
+
     /// The shipped job, where nothing else is told.
     fn missing(&self) -> Vec<String> {
         let mut flags = Vec::new();
         if self.help {
             return flags;
         }
-        if !self.machine {
+        if self.machine.is_none() {
             flags.extend(["--machine".into(), shipped(MACHINE)]);
         }
         if !self.seam {
@@ -165,6 +174,8 @@ mod tests {
         let told = told("my.ngc --machine=m.toml --seam s.csv --boards 10.0.0.1,10.0.0.2");
         assert_eq!(told.boards.as_deref(), Some("10.0.0.1,10.0.0.2"));
         assert_eq!(told.missing(), Vec::<String>::new());
+        assert_eq!(told.machine.as_deref(), Some("m.toml"));
+        assert_eq!(told.machine_name(), None, "there is no such file");
     }
 
     #[test]

@@ -13,9 +13,11 @@
 pub mod device;
 mod failure;
 mod logger;
+mod machine;
 pub mod motion;
 mod network;
 mod registers;
+mod semihosting;
 mod tick;
 mod time;
 pub mod tracker;

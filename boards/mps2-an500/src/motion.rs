@@ -1,7 +1,7 @@
 //! What a motion board has: seven axes on a simulated machine, two ticks, a network, a watchdog.
 
 use crate::registers::Block;
-use crate::{Network, Tick, Watchdog, logger, time};
+use crate::{Network, Tick, Watchdog, logger, machine, time};
 use plant::MotionPlant;
 use shared::io::{MOTORS, MotionCommand, MotionFeedback};
 
@@ -36,7 +36,7 @@ pub fn init(mut core: cortex_m::Peripherals) -> Board {
     time::start();
     logger::start();
     let axes = Axes {
-        plant: MotionPlant::dual_beam_gantry(),
+        plant: machine::wired(),
         command: MotionCommand::SAFE,
     };
     let network = Network::start();

@@ -123,6 +123,22 @@ pub enum LinkError {
         /// Which board.
         role: Role,
     },
+    /// Simulated boards have no plant of that name.
+    #[error("no plant is known for a machine called {machine}: it runs on real boards only")]
+    NoPlant {
+        /// Name of its kinematics.
+        machine: String,
+    },
+    /// The emulated boards run another machine.
+    #[error(
+        "the emulated boards are wired to a {wired}, but the machine file describes a {wanted}; boot others by `cargo xtask emulate --machine FILE`"
+    )]
+    WrongMachine {
+        /// What they run.
+        wired: String,
+        /// The kinematics of the machine file.
+        wanted: &'static str,
+    },
     /// No emulated boards on this machine.
     #[error(
         "no emulated boards are running: use `cargo xtask weld`, or `cargo xtask emulate` in another terminal"

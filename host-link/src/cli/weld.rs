@@ -83,10 +83,12 @@ impl BoardChoice {
         }
     }
 
-    fn connect(&self) -> Result<Box<dyn Boards>, LinkError> {
+    /// Connects; simulated boards become the `machine` of the file, emulated ones must have been booted as it.
+    fn connect(&self, machine: &MachineFile) -> Result<Box<dyn Boards>, LinkError> {
+        let wanted = machine.motion.kinematics.name();
         let patience = Patience::default();
         match self {
-            Self::Simulated => Ok(Box::new(SimulatedBoards::new())),
+            Self::Simulated => Ok(Box::new(SimulatedBoards::new(wanted)?)),
             Self::At { motion, tracker } => {
                 let (motion, tracker) = (Endpoint::board(motion), Endpoint::board(tracker));
                 let boards = NetworkBoards::connect(&motion, &tracker, None, patience)?;
@@ -95,6 +97,10 @@ impl BoardChoice {
             Self::Emulated => {
                 let path = std::env::var_os(SESSION_VARIABLE).ok_or(LinkError::NoEmulator)?;
                 let session = Session::read(Path::new(&path))?;
+                if session.machine != wanted {
+                    let wired = session.machine;
+                    return Err(LinkError::WrongMachine { wired, wanted });
+                }
                 Ok(Box::new(NetworkBoards::emulated(&session, patience)?))
             }
         }
@@ -122,7 +128,7 @@ impl Weld {
         let flag = Arc::clone(&interrupted);
         ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot watch for Ctrl-C")?;
 
-        let mut boards = self.boards.connect()?;
+        let mut boards = self.boards.connect(&machine)?;
         let job = Job {
             machine: &machine,
             program: &program,

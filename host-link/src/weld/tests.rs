@@ -89,7 +89,7 @@ struct Troubled {
 impl Troubled {
     fn new(trouble: Trouble, from_s_mm: f64) -> Self {
         Self {
-            boards: SimulatedBoards::new(),
+            boards: SimulatedBoards::default(),
             trouble,
             from_s_mm,
             begun: false,
@@ -206,7 +206,7 @@ fn assert_stopped_on_path(ended: &Ended, before_along_mm: f64) {
 
 #[test]
 fn a_job_follows_both_seams_and_switches_everything_off() {
-    let mut boards = SimulatedBoards::new();
+    let mut boards = SimulatedBoards::default();
     let ended = undisturbed(&mut boards);
     assert!(ended.error.is_none(), "{:?}", ended.error);
     let report = &ended.report;
@@ -230,7 +230,7 @@ fn a_job_follows_both_seams_and_switches_everything_off() {
 
 #[test]
 fn two_runs_are_the_same_to_the_bit() {
-    let run = || undisturbed(&mut SimulatedBoards::new());
+    let run = || undisturbed(&mut SimulatedBoards::default());
     let (first, second) = (run(), run());
     assert_eq!(first.report, second.report);
     assert_eq!(first.evaluation, second.evaluation);
@@ -238,7 +238,7 @@ fn two_runs_are_the_same_to_the_bit() {
 
 #[test]
 fn boards_can_be_used_again_after_a_job() {
-    let mut boards = SimulatedBoards::new();
+    let mut boards = SimulatedBoards::default();
     undisturbed(&mut boards);
     let again = undisturbed(&mut boards);
     assert!(again.error.is_none(), "{:?}", again.error);
@@ -274,7 +274,7 @@ impl Progress for Operator<'_> {
 
 #[test]
 fn the_operator_stops_the_machine_on_its_path() {
-    let mut boards = SimulatedBoards::new();
+    let mut boards = SimulatedBoards::default();
     let interrupted = AtomicBool::new(false);
     let mut operator = Operator {
         interrupted: &interrupted,

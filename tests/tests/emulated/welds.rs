@@ -11,7 +11,7 @@ fn assert_welds(name: &str, seam: &Deviation, speed_m_per_min: f64) {
     let ended = weld(&mut pair.connect(), seam.clone(), speed_m_per_min);
     assert_on_seam(&ended, 0.05);
     assert_eq!(ended.report.measurements.given_up, 0);
-    let simulated = weld(&mut SimulatedBoards::new(), seam.clone(), speed_m_per_min);
+    let simulated = weld(&mut SimulatedBoards::default(), seam.clone(), speed_m_per_min);
     let both = deviations(&ended.report)
         .into_iter()
         .zip(deviations(&simulated.report));

@@ -10,6 +10,7 @@ mod tracker;
 
 use super::{Boards, LinkError};
 use motion::MotionBoard;
+use plant::MotionPlant;
 use shared::protocol::{ClockReply, Datagram, Identity, Request, Response, Role};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
@@ -86,21 +87,29 @@ pub struct SimulatedBoards {
 }
 
 impl Default for SimulatedBoards {
+    /// Wired to [`plant::DEFAULT_MACHINE`].
     fn default() -> Self {
-        Self::new()
+        Self::wired_to(MotionPlant::default())
     }
 }
 
 impl SimulatedBoards {
-    /// Boards that have just been switched on.
-    pub fn new() -> Self {
+    /// Boards that have just been switched on, wired to a machine called as its kinematics are.
+    pub fn new(machine: &str) -> Result<Self, LinkError> {
+        let plant = MotionPlant::of(machine).ok_or_else(|| LinkError::NoPlant {
+            machine: machine.to_owned(),
+        })?;
+        Ok(Self::wired_to(plant))
+    }
+
+    fn wired_to(plant: MotionPlant) -> Self {
         let identity = |role| Identity::new(role, env!("CARGO_PKG_VERSION"), "simulated", true);
         let mut boards = Self {
             now_us: 0,
             entered: 0,
             queue: BinaryHeap::new(),
             inbox: VecDeque::new(),
-            motion: MotionBoard::new(),
+            motion: MotionBoard::new(plant),
             tracker: TrackerBoard::new(),
             identities: [identity(Role::Motion), identity(Role::Tracker)],
         };

@@ -18,9 +18,9 @@ pub struct MotionBoard {
 }
 
 impl MotionBoard {
-    pub fn new() -> Self {
+    pub fn new(plant: MotionPlant) -> Self {
         Self {
-            plant: MotionPlant::dual_beam_gantry(),
+            plant,
             command: MotionCommand::SAFE,
             servo: ServoLoops::default(),
             controller: Box::new(MotionController::new()),
@@ -93,7 +93,7 @@ mod tests {
     impl Bench {
         fn configured() -> Self {
             let mut bench = Self {
-                board: MotionBoard::new(),
+                board: MotionBoard::new(MotionPlant::default()),
                 now_us: 0,
                 samples: Vec::new(),
             };
@@ -302,7 +302,7 @@ mod tests {
     #[test]
     fn what_makes_no_sense_is_refused_and_changes_nothing() {
         let mut bench = Bench {
-            board: MotionBoard::new(),
+            board: MotionBoard::new(MotionPlant::default()),
             now_us: 0,
             samples: Vec::new(),
         };
