@@ -16,6 +16,7 @@ pub fn wired() -> MotionPlant {
         Some(name) => MotionPlant::of(name).unwrap_or_else(|| {
             semihosting::say("this board has no plant for a machine called ");
             semihosting::say(name);
+            semihosting::say("\n");
             panic!("no plant for a machine called {name}")
         }),
     }

@@ -72,14 +72,22 @@ impl MotionBoard {
 mod tests {
     use super::*;
     use crate::machine::MachineFile;
+    use plant::DEFAULT_MACHINE;
+    use shared::io::{AXES, DacCode, MOTOR_AXIS, MOTORS};
+    use shared::kinematics::{AXIS_UNIT, KinematicsConfig};
     use shared::motion::{Fault, MotionConfig, State};
     use shared::protocol::{Knot, MotionStatus, PathAction, PathEvent, Refusal};
     use shared::trajectory::{CHANNELS, PathSpace};
 
     fn config() -> MotionConfig {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines/dual-beam-gantry.toml");
-        MachineFile::read(std::path::Path::new(path))
-            .expect("the shipped machine file")
+        config_of(DEFAULT_MACHINE)
+    }
+
+    /// Of a shipped machine file.
+    fn config_of(machine: &str) -> MotionConfig {
+        let path = format!("{}/../machines/{machine}.toml", env!("CARGO_MANIFEST_DIR"));
+        MachineFile::read(std::path::Path::new(&path))
+            .expect("a shipped machine file")
             .motion
     }
 
@@ -92,12 +100,18 @@ mod tests {
 
     impl Bench {
         fn configured() -> Self {
+            Self::configured_as(DEFAULT_MACHINE)
+        }
+
+        /// Of a machine by its name.
+        fn configured_as(machine: &str) -> Self {
+            let plant = MotionPlant::of(machine).expect("a plant of the machine");
             let mut bench = Self {
-                board: MotionBoard::new(MotionPlant::default()),
+                board: MotionBoard::new(plant),
                 now_us: 0,
                 samples: Vec::new(),
             };
-            bench.done(&Request::ConfigureMotion(config()));
+            bench.done(&Request::ConfigureMotion(config_of(machine)));
             bench.run_ms(5);
             bench
         }
@@ -210,6 +224,43 @@ mod tests {
             "skew {}",
             truth[0] - truth[1]
         );
+    }
+
+    #[test]
+    fn every_machine_homes_and_commands_no_motor_it_does_not_have() {
+        for name in KinematicsConfig::NAMES {
+            let motors = config_of(name).motors.map(|motor| motor.is_some());
+            let mut bench = Bench::configured_as(name);
+            bench.done(&Request::Home);
+            for elapsed in 0..20_000 {
+                bench.run_ms(1);
+                let commanded = bench.board.command.dac;
+                for motor in (0..MOTORS).filter(|motor| !motors[*motor]) {
+                    assert_eq!(commanded[motor], DacCode::ZERO, "{name}, motor {motor}");
+                }
+                let status = if elapsed % 100 == 0 {
+                    bench.status()
+                } else {
+                    continue;
+                };
+                assert_ne!(status.state, State::Fault, "{name}: {:?}", status.fault);
+                if status.state == State::Idle {
+                    break;
+                }
+            }
+            bench.run_ms(200);
+            let status = bench.status();
+            assert!(status.homed && status.state == State::Idle, "{name}: {status:?}");
+            let truth = bench.board.plant.truth();
+            // X1 stands for X; a few counts.
+            for axis in 0..AXES {
+                let motor = (0..MOTORS).find(|motor| MOTOR_AXIS[*motor] == axis).expect("one");
+                let true_position = truth[motor] / AXIS_UNIT[axis];
+                let off = (status.axes[axis] - true_position).abs();
+                assert!(off < 0.002, "{name}, axis {axis}: {off}");
+                assert!(motors[motor] || status.axes[axis] == 0.0, "{name}, axis {axis}");
+            }
+        }
     }
 
     #[test]

@@ -1,0 +1,114 @@
+//! Checks of a machine file that the boards cannot do: that it is complete, and what only the PC uses.
+
+use super::{MachineFile, Mistake, PlanningConfig};
+use shared::io::{AXES, AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
+
+/// The second motor of X, which only a gantry has.
+const X2: usize = 1;
+
+/// Checks all of it.
+pub fn machine(machine: &MachineFile) -> Result<(), Mistake> {
+    axes(machine)?;
+    planning(&machine.planning)?;
+    park(machine)?;
+    if let Some(unit) = &machine.tracking {
+        let cameras = &unit.cameras;
+        at_least_0("cameras.processing_ms", cameras.processing_ms)?;
+        at_least_0("cameras.noise_3sigma_mm", cameras.noise_3sigma_mm)?;
+    }
+    if let Some(process) = &machine.process {
+        let (min, max) = (process.min_speed_mm_s, process.max_speed_mm_s);
+        above_0("process.min_speed_mm_s", min)?;
+        value("process.max_speed_mm_s", max, max > min, "above min_speed_mm_s")?;
+    }
+    Ok(())
+}
+
+/// Limits and a motor for every axis that the machine has, and for no other.
+fn axes(machine: &MachineFile) -> Result<(), Mistake> {
+    let motion = &machine.motion;
+    let fitted = motion.kinematics.fitted();
+    for axis in 0..AXES {
+        let told = motion.axes[axis].is_some();
+        same(machine, &format!("axes.{}", AXIS_NAMES[axis]), told, fitted[axis])?;
+    }
+    for motor in (0..MOTORS).filter(|motor| *motor != X2) {
+        let told = motion.motors[motor].is_some();
+        let key = format!("motors.{}", MOTOR_NAMES[motor]);
+        same(machine, &key, told, fitted[MOTOR_AXIS[motor]])?;
+    }
+    Ok(())
+}
+
+/// A key for every axis that the machine has, and for no other.
+fn same(machine: &MachineFile, key: &str, told: bool, fitted: bool) -> Result<(), Mistake> {
+    let key = key.to_owned();
+    let machine = machine.motion.kinematics.name();
+    match (told, fitted) {
+        (false, true) => Err(Mistake::AxisMissing { key, machine }),
+        (true, false) => Err(Mistake::NoSuchAxis { key, machine }),
+        (true, true) | (false, false) => Ok(()),
+    }
+}
+
+fn planning(planning: &PlanningConfig) -> Result<(), Mistake> {
+    above_0(
+        "planning.path_acceleration_mm_s2",
+        planning.path_acceleration_mm_s2,
+    )?;
+    above_0("planning.path_jerk_mm_s3", planning.path_jerk_mm_s3)?;
+    let fraction = planning.rapid_fraction;
+    let sensible = fraction > 0.0 && fraction <= 1.0;
+    value(
+        "planning.rapid_fraction",
+        fraction,
+        sensible,
+        "above 0 and at most 1",
+    )?;
+    let height = planning.safe_height_mm;
+    value(
+        "planning.safe_height_mm",
+        height,
+        height.is_finite(),
+        "a finite number",
+    )
+}
+
+/// The park position is one of the machine's.
+fn park(machine: &MachineFile) -> Result<(), Mistake> {
+    let fitted = machine.motion.kinematics.fitted();
+    let park = machine.planning.park.into_array();
+    for (axis, name) in AXIS_NAMES.into_iter().enumerate() {
+        let key = format!("planning.park.{name}");
+        same(machine, &key, park[axis].is_some(), fitted[axis])?;
+        if let (Some(at), Some(limits)) = (park[axis], &machine.motion.axes[axis]) {
+            let within = (limits.travel_min..=limits.travel_max).contains(&at);
+            value(&key, at, within, "within the travel")?;
+        }
+    }
+    for name in &machine.planning.park_first {
+        let axis = *name as usize;
+        let key = format!("planning.park_first {}", AXIS_NAMES[axis]);
+        same(machine, &key, true, fitted[axis])?;
+    }
+    Ok(())
+}
+
+fn above_0(key: &str, number: f64) -> Result<(), Mistake> {
+    value(key, number, number.is_finite() && number > 0.0, "above 0")
+}
+
+fn at_least_0(key: &str, number: f64) -> Result<(), Mistake> {
+    value(key, number, number.is_finite() && number >= 0.0, "0 or more")
+}
+
+fn value(key: &str, value: f64, sensible: bool, requirement: &'static str) -> Result<(), Mistake> {
+    if sensible {
+        return Ok(());
+    }
+    Err(Mistake::Value {
+        key: key.to_owned(),
+        value,
+        requirement,
+    })
+}

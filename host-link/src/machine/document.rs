@@ -1,0 +1,102 @@
+//! The machine file as it is written.
+
+use super::{ByAxis, CameraConfig, MachineFile, Mistake, PlanningConfig, ProcessConfig, TrackingUnit};
+use serde::Deserialize;
+use shared::kinematics::KinematicsConfig;
+use shared::motion::{AxisConfig, BeamConfig, GantryConfig, MotionConfig, MotorConfig};
+use shared::tracking::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
+
+/// The file as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Document {
+    name: String,
+    link_timeout_ms: u32,
+    kinematics: KinematicsConfig,
+    axes: ByAxis<AxisConfig>,
+    motors: Motors,
+    gantry: Option<GantryConfig>,
+    beams: Sides<BeamConfig>,
+    head: Option<HeadConfig>,
+    slides: Option<Slides>,
+    tracking: Option<TrackingConfig>,
+    planning: PlanningConfig,
+    cameras: Option<CameraConfig>,
+    process: Option<ProcessConfig>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(non_snake_case, reason = "the keys of the file are the names of the motors")]
+struct Motors {
+    X1: Option<MotorConfig>,
+    X2: Option<MotorConfig>,
+    Y: Option<MotorConfig>,
+    Z: Option<MotorConfig>,
+    A: Option<MotorConfig>,
+    B: Option<MotorConfig>,
+    C: Option<MotorConfig>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(non_snake_case, reason = "the keys of the file are the names of the slides")]
+struct Slides {
+    U1: SlideConfig,
+    V1: SlideConfig,
+    U2: SlideConfig,
+    V2: SlideConfig,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Sides<T> {
+    #[serde(rename = "1")]
+    first: Option<T>,
+    #[serde(rename = "2")]
+    second: Option<T>,
+}
+
+impl TryFrom<Document> for MachineFile {
+    type Error = Mistake;
+
+    fn try_from(d: Document) -> Result<Self, Mistake> {
+        let m = d.motors;
+        Ok(Self {
+            name: d.name,
+            motion: MotionConfig {
+                kinematics: d.kinematics,
+                axes: d.axes.into_array(),
+                motors: [m.X1, m.X2, m.Y, m.Z, m.A, m.B, m.C],
+                gantry: d.gantry,
+                beams: [d.beams.first, d.beams.second],
+                link_timeout_ms: d.link_timeout_ms,
+            },
+            tracking: tracking_unit(d.head, d.slides, d.tracking, d.cameras)?,
+            process: d.process,
+            planning: d.planning,
+        })
+    }
+}
+
+/// All tables of a tracker, or none.
+fn tracking_unit(
+    head: Option<HeadConfig>,
+    slides: Option<Slides>,
+    tracking: Option<TrackingConfig>,
+    cameras: Option<CameraConfig>,
+) -> Result<Option<TrackingUnit>, Mistake> {
+    if head.is_none() && slides.is_none() && tracking.is_none() && cameras.is_none() {
+        return Ok(None);
+    }
+    let missing = |table| Mistake::TrackerIncomplete { table };
+    let slides = slides.ok_or(missing("slides"))?;
+    Ok(Some(TrackingUnit {
+        board: TrackerConfig {
+            head: head.ok_or(missing("head"))?,
+            slides: [slides.U1, slides.V1, slides.U2, slides.V2],
+            tracking: tracking.ok_or(missing("tracking"))?,
+        },
+        cameras: cameras.ok_or(missing("cameras"))?,
+    }))
+}

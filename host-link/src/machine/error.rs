@@ -1,0 +1,80 @@
+//! What is wrong with a machine file.
+
+use shared::parameter::ParameterError;
+use thiserror::Error;
+
+/// Why a machine file cannot be used. Reads as one sentence.
+#[derive(Debug, Error)]
+pub enum MachineError {
+    /// The file cannot be read.
+    #[error("cannot read machine file {path}: {source}")]
+    Read {
+        /// The file.
+        path: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Not TOML, or a key is missing, unknown or of the wrong type.
+    #[error("machine file {path}, line {line}: {message}")]
+    Content {
+        /// The file.
+        path: String,
+        /// First line is 1.
+        line: usize,
+        /// What is wrong.
+        message: String,
+    },
+    /// A parameter of a board makes no sense.
+    #[error("machine file {path}: {parameter}, which is out of range")]
+    Parameter {
+        /// The file.
+        path: String,
+        /// Owner, name and value.
+        parameter: ParameterError,
+    },
+    /// Something else makes no sense.
+    #[error("machine file {path}: {mistake}")]
+    Mistake {
+        /// The file.
+        path: String,
+        /// What it is.
+        mistake: Mistake,
+    },
+}
+
+/// What makes no sense in a machine file.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Mistake {
+    /// A value.
+    #[error("{key} is {value}, but must be {requirement}")]
+    Value {
+        /// Dotted name of the key.
+        key: String,
+        /// What it says.
+        value: f64,
+        /// What it must be.
+        requirement: &'static str,
+    },
+    /// A key for an axis that the machine has is missing.
+    #[error("{key} is missing; a {machine} has that axis")]
+    AxisMissing {
+        /// Dotted name of the key.
+        key: String,
+        /// Name of the kinematics.
+        machine: &'static str,
+    },
+    /// A key for an axis that the machine does not have.
+    #[error("{key} is told, but a {machine} has no such axis")]
+    NoSuchAxis {
+        /// Dotted name of the key.
+        key: String,
+        /// Name of the kinematics.
+        machine: &'static str,
+    },
+    /// Some of the tables of a tracker, but not all.
+    #[error("[{table}] is missing; what follows a seam has [head], [slides], [tracking] and [cameras]")]
+    TrackerIncomplete {
+        /// The first that is missing.
+        table: &'static str,
+    },
+}

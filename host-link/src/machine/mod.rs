@@ -1,0 +1,155 @@
+//! The machine file: everything that is true of one machine, in TOML, mm and degrees.
+
+mod check;
+mod document;
+mod error;
+
+pub use error::{MachineError, Mistake};
+
+use crate::table::line_of;
+use document::Document;
+use serde::Deserialize;
+use shared::io::AXES;
+use shared::motion::{Machine, MotionConfig};
+use shared::tracking::TrackerConfig;
+use std::path::Path;
+
+/// A machine, as its file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MachineFile {
+    /// Name of the machine, for people.
+    pub name: String,
+    /// Parameters of the motion board.
+    pub motion: MotionConfig,
+    /// What follows the seam, if the machine has that.
+    pub tracking: Option<TrackingUnit>,
+    /// What the process asks for, if that is known.
+    pub process: Option<ProcessConfig>,
+    /// What only the PC needs for planning.
+    pub planning: PlanningConfig,
+}
+
+/// The tracker board, its slides and cameras.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackingUnit {
+    /// Parameters of the tracker board.
+    pub board: TrackerConfig,
+    /// Cameras, for simulated worlds.
+    pub cameras: CameraConfig,
+}
+
+/// Between which path speeds the process gives what it should.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProcessConfig {
+    /// Lowest \[mm/s\].
+    pub min_speed_mm_s: f64,
+    /// Highest \[mm/s\].
+    pub max_speed_mm_s: f64,
+}
+
+/// What only the PC needs for planning.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlanningConfig {
+    /// Acceleration along a feed path \[mm/s²\].
+    pub path_acceleration_mm_s2: f64,
+    /// Jerk along a feed path \[mm/s³\].
+    pub path_jerk_mm_s3: f64,
+    /// Rapids use this part of the axes' limits, 0…1.
+    pub rapid_fraction: f64,
+    /// Height of the tip Z in the world at which it may travel anywhere \[mm\].
+    pub safe_height_mm: f64,
+    /// Where the axes go after the job (mm, degrees).
+    pub park: ByAxis<f64>,
+    /// Axes that move to their park position before the others do.
+    pub park_first: Vec<AxisName>,
+}
+
+/// An axis by its letter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[expect(missing_docs, reason = "letters")]
+pub enum AxisName {
+    X,
+    Y,
+    Z,
+    A,
+    B,
+    C,
+}
+
+impl PlanningConfig {
+    /// Where the axes go after the job (mm, degrees); 0 for those that the machine does not have.
+    pub fn park_axes(&self) -> [f64; AXES] {
+        self.park.into_array().map(Option::unwrap_or_default)
+    }
+}
+
+/// Something of each axis that the machine has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(non_snake_case, reason = "the keys of the file are the names of the axes")]
+pub struct ByAxis<T> {
+    X: Option<T>,
+    Y: Option<T>,
+    Z: Option<T>,
+    A: Option<T>,
+    B: Option<T>,
+    C: Option<T>,
+}
+
+impl<T> ByAxis<T> {
+    /// In the order of [`shared::io::AXIS_NAMES`].
+    pub fn into_array(self) -> [Option<T>; AXES] {
+        [self.X, self.Y, self.Z, self.A, self.B, self.C]
+    }
+}
+
+/// Cameras, for simulated worlds; lead and frame period are parameters of the tracker board.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraConfig {
+    /// From the strobe to the measurement \[ms\].
+    pub processing_ms: f64,
+    /// Noise of a measurement, three standard deviations \[mm\].
+    pub noise_3sigma_mm: f64,
+}
+
+impl MachineFile {
+    /// Reads the file at `path`.
+    pub fn read(path: &Path) -> Result<Self, MachineError> {
+        let name = path.display().to_string();
+        match std::fs::read_to_string(path) {
+            Ok(text) => Self::parse(&name, &text),
+            Err(source) => Err(MachineError::Read { path: name, source }),
+        }
+    }
+
+    /// Understands `text`; `path` is used in messages only.
+    pub fn parse(path: &str, text: &str) -> Result<Self, MachineError> {
+        let document: Document = toml::from_str(text).map_err(|error| MachineError::Content {
+            path: path.to_owned(),
+            line: line_of(text, error.span().map_or(0, |span| span.start)),
+            message: error.message().replace('\n', ", "),
+        })?;
+        let mistake = |mistake| MachineError::Mistake {
+            path: path.to_owned(),
+            mistake,
+        };
+        let machine: Self = document.try_into().map_err(mistake)?;
+        check::machine(&machine).map_err(mistake)?;
+        let parameter = |parameter| MachineError::Parameter {
+            path: path.to_owned(),
+            parameter,
+        };
+        // As the boards will build it.
+        Machine::build(&machine.motion).map_err(parameter)?;
+        if let Some(unit) = &machine.tracking {
+            unit.board.build().map_err(parameter)?;
+        }
+        Ok(machine)
+    }
+}
+
+#[cfg(test)]
+mod tests;

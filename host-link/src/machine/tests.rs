@@ -1,0 +1,203 @@
+use super::*;
+use shared::kinematics::{AXIS_UNIT, AxisLimits, KinematicsConfig, violations};
+
+const SHIPPED: &str = include_str!("../../../machines/dual-beam-gantry.toml");
+
+/// The shipped file of a machine.
+fn shipped(name: &str) -> MachineFile {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines");
+    let file = Path::new(folder).join(name).with_extension("toml");
+    MachineFile::read(&file).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn error_of(text: &str) -> String {
+    MachineFile::parse("m.toml", text).unwrap_err().to_string()
+}
+
+#[test]
+fn the_shipped_machine_has_the_published_travel_and_speeds() {
+    let machine = MachineFile::parse("m.toml", SHIPPED).unwrap();
+    let travel: Vec<f64> = machine
+        .motion
+        .axes
+        .iter()
+        .flatten()
+        .map(|a| a.travel_max - a.travel_min)
+        .collect();
+    assert_eq!(travel, [5000.0, 3000.0, 1000.0, 200.0, 60.0, 180.0]);
+    let m_min: Vec<f64> = machine
+        .motion
+        .axes
+        .iter()
+        .flatten()
+        .map(|a| a.max_velocity * 0.06)
+        .collect();
+    for (seen, published) in m_min.iter().zip([20.0, 20.0, 10.0, 7.2, 7.2, 7.2]) {
+        assert!((seen - published).abs() < 1e-3, "{seen} is not {published}");
+    }
+}
+
+#[test]
+fn an_unknown_key_is_named_with_its_line() {
+    let line = 1 + SHIPPED.lines().position(|l| l == "[head]").unwrap();
+    let text = SHIPPED.replace("[head]", "[head]\nwobble = 3.0");
+    let error = error_of(&text);
+    assert!(error.contains(&format!("line {}:", line + 1)), "{error}");
+    assert!(error.contains("wobble"), "{error}");
+    assert_eq!(error.lines().count(), 1);
+}
+
+#[test]
+fn a_missing_key_is_named_with_the_line_of_its_table() {
+    let line = 1 + SHIPPED.lines().position(|l| l == "[head]").unwrap();
+    let error = error_of(&SHIPPED.replace("camera_lead_mm = 10.0", ""));
+    assert!(error.contains(&format!("line {line}:")), "{error}");
+    assert!(error.contains("camera_lead_mm"), "{error}");
+}
+
+#[test]
+fn a_value_that_makes_no_sense_is_named() {
+    let error = error_of(&SHIPPED.replace("rapid_fraction = 0.5", "rapid_fraction = 1.5"));
+    assert_eq!(
+        error,
+        "machine file m.toml: planning.rapid_fraction is 1.5, but must be above 0 and at most 1"
+    );
+    let error = error_of(&SHIPPED.replace("gate_mm = 1.0", "gate_mm = -1.0"));
+    assert_eq!(
+        error,
+        "machine file m.toml: gate_mm of tracking is -1, which is out of range"
+    );
+    let error = error_of(&SHIPPED.replacen("kp = 120.0", "kp = -120.0", 1));
+    assert_eq!(
+        error,
+        "machine file m.toml: kp of X1 is -120, which is out of range"
+    );
+}
+
+#[test]
+fn every_machine_ships_with_a_file_called_as_it() {
+    for name in KinematicsConfig::NAMES {
+        let machine = shipped(name);
+        assert_eq!(machine.name, *name);
+        assert_eq!(machine.motion.kinematics.name(), *name);
+        assert_eq!(machine.tracking.is_some(), *name == "dual-beam-gantry");
+    }
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines");
+    assert_eq!(
+        std::fs::read_dir(folder).unwrap().count(),
+        KinematicsConfig::NAMES.len(),
+        "a file of a machine that there is not"
+    );
+}
+
+/// Where the published work of each machine is: the axes reach it, with room for the ways to and from it.
+#[test]
+fn every_machine_reaches_its_work() {
+    let reaches = |name: &str, axes: [f64; AXES], tip: [f64; 3]| {
+        let machine = shipped(name);
+        let limits = AxisLimits::build_all(&machine.motion.axes).unwrap();
+        let q = std::array::from_fn(|axis| axes[axis] * AXIS_UNIT[axis]);
+        assert!(!violations(&q, &limits).any(), "{name} {axes:?}");
+        let position = machine.motion.kinematics().unwrap().forward(&q).position;
+        let off = (0..3).map(|i| (position[i] - tip[i]).abs()).fold(0.0, f64::max);
+        assert!(off < 0.5, "{name} {axes:?}: {position}");
+    };
+    // Both ends of the saddle of pipes 320 and 80, offset 10, oblique by 5 degrees, with the torch at 41 degrees.
+    reaches(
+        "pipe-welder",
+        [85.283, 0.0, 149.0 + 39.364, 0.0, 41.0, 0.0],
+        [40.0, 0.0, 149.0],
+    );
+    reaches(
+        "pipe-welder",
+        [85.283, 0.0, 167.0 + 39.364, 0.0, 41.0, 360.0],
+        [40.0, 0.0, 167.0],
+    );
+    // A panel in the middle of the table, the head upright; and along the slope of 45 degrees.
+    reaches(
+        "ac-head",
+        [1500.0, 750.0, 300.0, 0.0, 0.0, 0.0],
+        [1500.0, 750.0, 0.0],
+    );
+    reaches(
+        "ac-head",
+        [1500.0, 750.0, 247.279, 45.0, 0.0, 90.0],
+        [1500.0 - 127.279, 750.0, 0.0],
+    );
+    // The middle of the turntable, and a point 150 mm from it with the table tilted.
+    reaches("wire-arc", [600.0, 400.0, 150.0, 0.0, 0.0, 0.0], [0.0; 3]);
+    reaches(
+        "wire-arc",
+        [754.904, 400.0, 68.301, 0.0, 30.0, 0.0],
+        [150.0, 0.0, 0.0],
+    );
+    // A plate on the table.
+    reaches(
+        "stir-gantry",
+        [-500.0, 500.0, 100.0, 0.0, 0.0, 0.0],
+        [500.0, 500.0, 100.0],
+    );
+}
+
+#[test]
+fn the_stir_gantry_has_the_published_travel() {
+    let machine = shipped("stir-gantry");
+    let travel: Vec<f64> = machine
+        .motion
+        .axes
+        .iter()
+        .flatten()
+        .map(|a| a.travel_max - a.travel_min)
+        .collect();
+    assert_eq!(travel, [1500.0, 1280.0, 480.0, 20.0, 360.0]);
+}
+
+#[test]
+fn axes_that_the_machine_has_not_are_named_and_so_are_those_that_are_missing() {
+    let pipe = include_str!("../../../machines/pipe-welder.toml");
+    let error = error_of(&pipe.replace("[axes.Z]", "[axes.Y]"));
+    assert_eq!(
+        error,
+        "machine file m.toml: axes.Y is told, but a pipe-welder has no such axis"
+    );
+    let error = error_of(&pipe.replace("[motors.B]", "[motors.A]"));
+    assert_eq!(
+        error,
+        "machine file m.toml: motors.A is told, but a pipe-welder has no such axis"
+    );
+    let error = error_of(&pipe.replace(", B = 0.0, C = 0.0 }", ", B = 0.0 }"));
+    assert_eq!(
+        error,
+        "machine file m.toml: planning.park.C is missing; a pipe-welder has that axis"
+    );
+    let error = error_of(&pipe.replace("park_first = [\"X\"]", "park_first = [\"A\"]"));
+    assert_eq!(
+        error,
+        "machine file m.toml: planning.park_first A is told, but a pipe-welder has no such axis"
+    );
+    let error = error_of(&pipe.replace("park = { X = 190.0", "park = { X = 210.0"));
+    assert_eq!(
+        error,
+        "machine file m.toml: planning.park.X is 210, but must be within the travel"
+    );
+}
+
+#[test]
+fn half_a_tracker_is_none() {
+    let text = SHIPPED.replace("[cameras]\nprocessing_ms = 10.0\nnoise_3sigma_mm = 0.02", "");
+    assert_ne!(text, SHIPPED);
+    let error = error_of(&text);
+    assert!(error.contains("[cameras] is missing"), "{error}");
+}
+
+#[test]
+fn a_process_window_is_open() {
+    let wire = include_str!("../../../machines/wire-arc.toml");
+    let process = shipped("wire-arc").process.unwrap();
+    assert_eq!((process.min_speed_mm_s, process.max_speed_mm_s), (4.0, 16.0));
+    let error = error_of(&wire.replace("max_speed_mm_s = 16.0", "max_speed_mm_s = 4.0"));
+    assert_eq!(
+        error,
+        "machine file m.toml: process.max_speed_mm_s is 4, but must be above min_speed_mm_s"
+    );
+}
