@@ -4,8 +4,7 @@ use super::read_program;
 use crate::machine::MachineFile;
 use crate::nc::Motion;
 use crate::path::{PlannedPath, Planner};
-use crate::seam::{Deviation, SeamError};
-use crate::weld::check_seam;
+use crate::seam::Deviation;
 use anyhow::Context;
 use clap::Args;
 use std::path::PathBuf;
@@ -41,11 +40,13 @@ impl Check {
         let paths = planner
             .program(&program, &from, speed)
             .with_context(|| format!("program {name}"))?;
-        let seam = self.seam.as_deref().map(Deviation::read).transpose()?;
-        match check_seam(&paths, &machine, seam.as_ref()) {
-            // Without a seam, what can be said without one is said.
-            Ok(()) | Err(SeamError::NoSeam) => {}
-            Err(error) => return Err(error).with_context(|| format!("program {name}")),
+        if let Some(file) = &self.seam {
+            let deviation = Deviation::read(file)?;
+            for path in paths.iter().filter(|path| path.weld().is_some()) {
+                deviation
+                    .check(path, &machine)
+                    .with_context(|| file.display().to_string())?;
+            }
         }
         print(&paths);
         Ok(())
@@ -57,7 +58,7 @@ fn print(paths: &[PlannedPath]) {
     for (index, path) in paths.iter().enumerate() {
         let kind = match path.motion {
             Motion::Rapid => "rapid",
-            Motion::Feed(_) => "feed",
+            Motion::Feed => "feed",
         };
         println!(
             "{:5} {kind:<6} {:9.1} mm {:7.2} s {:6.2} m/min {:5}",
@@ -67,6 +68,12 @@ fn print(paths: &[PlannedPath]) {
             path.limits.velocity / shared::units::MM_S_PER_M_MIN,
             path.knots.len(),
         );
+        if let Some(corner) = path.corner_deg {
+            println!("      begins at a corner of {corner:.1}°, where the machine stops");
+        }
+        if path.dwell_before_s > 0.0 {
+            println!("      after {:.2} s at rest", path.dwell_before_s);
+        }
         if let Some((start, end)) = path.weld() {
             println!(
                 "      weld from {start:.1} to {end:.1} mm, {:.1} mm long",
@@ -74,6 +81,6 @@ fn print(paths: &[PlannedPath]) {
             );
         }
     }
-    let time: f64 = paths.iter().map(PlannedPath::duration_s).sum();
+    let time: f64 = paths.iter().map(|p| p.dwell_before_s + p.duration_s()).sum();
     println!("total {time:.2} s from the park position");
 }

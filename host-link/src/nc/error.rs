@@ -94,19 +94,28 @@ pub enum Problem {
         /// What is possible.
         reason: &'static str,
     },
-    /// Axis words without G0 or G1.
-    #[error("axis words without a motion: G0 or G1 must come first")]
+    /// Axis words without G0, G1, G2 or G3.
+    #[error("axis words without a motion: G0, G1, G2 or G3 must come first")]
     NoMotion,
     /// Motion without tool centre point control.
-    #[error("G43.4 must come before the first motion: X Y Z are coordinates of the tip")]
+    #[error("G43.4 must come before the first motion of the tip: X Y Z are its coordinates")]
     NotTip,
     /// The first motion must be complete.
-    #[error("the first motion must be a G0 with all of X Y Z A B C")]
+    #[error("the first motion of the tip must be a G0 with X Y Z and all rotary axes of the machine")]
     FirstMotion,
-    /// G1 without F.
-    #[error("G1 needs a feed: no F was given")]
+    /// G53 with G1, G2 or G3.
+    #[error("G53 moves axes with G0 only: write G53 G0")]
+    AxesNeedRapid,
+    /// M62 for a motion in axis space.
+    #[error("M62 cannot take effect with G53: in axis space beams and tracking stay off")]
+    OnInAxes,
+    /// An arc with centre and radius.
+    #[error("an arc has a centre (I J) or a radius (R), not both")]
+    CentreAndRadius,
+    /// G1, G2 or G3 without F.
+    #[error("G1, G2 and G3 need a feed: no F was given")]
     NoFeed,
-    /// F changes between two G1 blocks of one path.
+    /// F changes between two blocks of one path.
     #[error(
         "F changes from {from} to {to} within a path; a path has one feed (separate the paths by G0, or by G61.1)"
     )]
@@ -116,8 +125,8 @@ pub enum Problem {
         /// New feed \[mm/min\].
         to: f64,
     },
-    /// M62, M63 or M67 without a motion after it.
-    #[error("{0} has no motion after it, with which it would take effect")]
+    /// G4, M62, M63 or M67 without a motion after it.
+    #[error("{0} has no motion after it, before or with which it would take effect")]
     NoMotionAfter(&'static str),
     /// Something after the end.
     #[error("nothing may follow the end of the program")]

@@ -5,14 +5,18 @@ use super::lexer::{self, Word};
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-const CODES: [(char, u32, Code, &str, Group); 17] = [
+const CODES: [(char, u32, Code, &str, Group); 21] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
+    ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
+    ('G', 30, Code::ArcCounterClockwise, "G3", Group::Motion),
+    ('G', 40, Code::Dwell, "G4", Group::NonModal),
     ('G', 170, Code::PlaneXy, "G17", Group::Plane),
     ('G', 210, Code::Millimetres, "G21", Group::Units),
     ('G', 400, Code::CompensationOff, "G40", Group::Compensation),
     ('G', 434, Code::TipOn, "G43.4", Group::ToolLength),
     ('G', 490, Code::TipOff, "G49", Group::ToolLength),
+    ('G', 530, Code::MachineAxes, "G53", Group::NonModal),
     ('G', 540, Code::WorldOffset, "G54", Group::Offset),
     ('G', 611, Code::ExactStop, "G61.1", Group::PathControl),
     ('G', 640, Code::Continuous, "G64", Group::PathControl),
@@ -32,6 +36,12 @@ pub enum Code {
     Rapid,
     /// G1.
     Feed,
+    /// G2.
+    ArcClockwise,
+    /// G3.
+    ArcCounterClockwise,
+    /// G4.
+    Dwell,
     /// G17.
     PlaneXy,
     /// G21.
@@ -42,6 +52,8 @@ pub enum Code {
     TipOn,
     /// G49.
     TipOff,
+    /// G53.
+    MachineAxes,
     /// G54.
     WorldOffset,
     /// G61.1.
@@ -65,8 +77,10 @@ pub enum Code {
 /// Modal groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
-    /// G0 G1.
+    /// G0 G1 G2 G3.
     Motion,
+    /// G4 G53: they hold in their block only.
+    NonModal,
     /// G17.
     Plane,
     /// G21.
@@ -138,7 +152,7 @@ pub enum Parsed {
 }
 
 /// Letters and names that are words of the dialect, besides G, M and N.
-const WORDS: [&str; 10] = ["X", "Y", "Z", "A", "B", "C", "F", "P", "E", "Q"];
+const WORDS: [&str; 13] = ["X", "Y", "Z", "A", "B", "C", "I", "J", "R", "F", "P", "E", "Q"];
 /// The same, written with `=`.
 const NAMED_WORDS: [&str; 2] = ["V1", "V2"];
 
@@ -244,7 +258,7 @@ mod tests {
     #[test]
     fn foreign_words_and_codes_are_refused() {
         let letter = 'G';
-        assert_eq!(problem("G2 X1"), Problem::UnknownCode { letter, number: 2.0 });
+        assert_eq!(problem("G5 X1"), Problem::UnknownCode { letter, number: 5.0 });
         assert_eq!(problem("G43 H1"), Problem::UnknownCode { letter, number: 43.0 });
         assert_eq!(problem("S100"), Problem::UnknownWord("S".into()));
         assert_eq!(problem("A3=1"), Problem::UnknownWord("A3=".into()));

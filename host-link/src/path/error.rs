@@ -1,7 +1,8 @@
 //! Why a program path cannot be run on this machine.
 
 use super::CAPACITY;
-use shared::geometry::{AttitudeError, PoseError, SplineError};
+use shared::geometry::{ArcError, AttitudeError, PoseError, SplineError};
+use shared::io::AXIS_NAMES;
 use shared::kinematics::KinematicsError;
 use shared::motion::MAX_EVENTS;
 use thiserror::Error;
@@ -9,6 +10,80 @@ use thiserror::Error;
 /// Why a program path cannot be run on this machine.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PathError {
+    /// A word of an axis or slide that the machine does not have.
+    #[error("line {line}: {machine} has no {word}; its words are {fitted}, and X Y Z of the tip")]
+    NotFitted {
+        /// Line of the program.
+        line: u32,
+        /// The word.
+        word: &'static str,
+        /// The machine.
+        machine: String,
+        /// What it has.
+        fitted: String,
+    },
+    /// The first motion of the tip leaves something open.
+    #[error(
+        "line {line}: the first motion of the tip must say how all axes of {machine} stand: {missing} missing"
+    )]
+    Incomplete {
+        /// Line of the program.
+        line: u32,
+        /// Words that it needs.
+        missing: String,
+        /// The machine.
+        machine: String,
+    },
+    /// A beam that the machine does not have, or tracking.
+    #[error("line {line}: {machine} has no {output}")]
+    NoOutput {
+        /// Line of the program.
+        line: u32,
+        /// What is missing.
+        output: String,
+        /// The machine.
+        machine: String,
+    },
+    /// A rotary axis that does not come to stand as the program says.
+    #[error("line {line}: {axis} would come to {reached:.3}°, not to {programmed:.3}°: {advice}")]
+    Turned {
+        /// Line of the program.
+        line: u32,
+        /// The axis.
+        axis: &'static str,
+        /// Where it should stand \[°\].
+        programmed: f64,
+        /// Where it would stand \[°\].
+        reached: f64,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// No arc between these ends.
+    #[error("line {line}: no arc here: {source}")]
+    Arc {
+        /// Line of the program.
+        line: u32,
+        /// Why.
+        source: ArcError,
+    },
+    /// R for an arc whose ends are the same.
+    #[error("line {line}: R tells no centre for a full circle; use I J")]
+    CircleByRadius {
+        /// Line of the program.
+        line: u32,
+    },
+    /// R that does not reach.
+    #[error(
+        "line {line}: the ends of the arc are {distance:.4} mm apart, so R must be at least half of that, not {radius}"
+    )]
+    SmallRadius {
+        /// Line of the program.
+        line: u32,
+        /// R \[mm\].
+        radius: f64,
+        /// Distance of the ends in the XY plane \[mm\].
+        distance: f64,
+    },
     /// An axis would leave its travel.
     #[error(
         "line {line}: axis {axis} would have to go to {position:.3}, {beyond:.3} beyond its travel ({min}…{max} {unit})"
@@ -61,7 +136,7 @@ pub enum PathError {
     #[error("a feed of {0} mm/min is not possible")]
     NoFeed(f64),
     /// G1 without travel of the tip.
-    #[error("line {line}: G1 must move the tip; turn the head alone with G0")]
+    #[error("line {line}: G1 must move the tip; turn axes alone with G0")]
     NoTravel {
         /// Line of the program.
         line: u32,
@@ -109,7 +184,7 @@ pub enum PathError {
         source: SplineError,
     },
     /// More knots than the boards hold.
-    #[error("line {line}: the path has {knots} points, the boards hold {CAPACITY}; use fewer G1 blocks")]
+    #[error("line {line}: the path has {knots} points, the boards hold {CAPACITY}; use fewer blocks")]
     TooLong {
         /// First line of the path.
         line: u32,
@@ -126,4 +201,23 @@ pub enum PathError {
         /// How many.
         events: usize,
     },
+}
+
+impl PathError {
+    /// Axis slot `axis` stands at `reached` instead of `programmed` \[°\].
+    pub(super) fn turned(line: u32, axis: usize, programmed: f64, reached: f64) -> Self {
+        let turns = (reached - programmed) / 360.0;
+        let advice = if (turns - turns.round()).abs() < 1e-6 {
+            "a block turns the short way; write it as several blocks of less than 180°"
+        } else {
+            "the tip decides how this axis stands; correct the word, or X Y Z"
+        };
+        Self::Turned {
+            line,
+            axis: AXIS_NAMES[axis],
+            programmed,
+            reached,
+            advice,
+        }
+    }
 }

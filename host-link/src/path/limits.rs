@@ -1,6 +1,7 @@
 //! What a path asks of the axes and V slides, and the speed that they allow.
 
 use super::shape::Shape;
+use super::targets::ROTARY;
 use super::{PathError, PlannedPath, Planner};
 use crate::machine::MachineFile;
 use shared::io::{AXES, SIDES};
@@ -8,19 +9,17 @@ use shared::kinematics::{AXIS_UNIT, AxisLimits};
 use shared::parameter::ParameterError;
 use shared::tracking::SlideConfig;
 use shared::trajectory::{CHANNELS, PathPoint, PathSpace, SpeedLimits};
-use std::ops::Range;
 
 /// The axes, then the extensions of the V slides.
 pub(super) const DRIVES: usize = AXES + SIDES;
 const DRIVE_NAMES: [&str; DRIVES] = ["X", "Y", "Z", "A", "B", "C", "V1", "V2"];
-const ROTARY: Range<usize> = 3..AXES;
 /// Distance of the places where a path is checked \[mm\], and how many there are at least.
 const CHECK_STEP: f64 = 0.5;
 const CHECK_COUNT: usize = 200;
 /// Fastest rapid \[mm/s\], for moves that need next to no motion.
 const FASTEST: f64 = 1000.0;
-/// Part of an axis' acceleration that a curved rapid may spend on its curvature.
-const CURVATURE_SHARE: f64 = 0.5;
+/// Part of an axis' acceleration that a curved path, or a change at a join, may spend on that.
+pub(super) const CURVATURE_SHARE: f64 = 0.5;
 
 /// Limits of an axis or a V slide in inner units.
 #[derive(Clone, Copy, Debug)]
@@ -93,12 +92,10 @@ impl Planner {
         shape: &Shape,
         from: &[f64; AXES],
     ) -> Result<Vec<Demand>, PathError> {
-        let (path, length) = (planned.path(), planned.length_mm());
-        let count = CHECK_COUNT.max((length / CHECK_STEP).ceil() as usize);
+        let path = planned.path();
         let mut near = *from;
-        let mut demands = Vec::with_capacity(count + 1);
-        for i in 0..=count {
-            let s = length * i as f64 / count as f64;
+        let mut demands = Vec::new();
+        for s in places(shape) {
             if let Some(point) = path.at(s) {
                 let (demand, axes) = self.demand(s, &point, planned.space, shape.line(s), &near)?;
                 near = axes;
@@ -166,46 +163,54 @@ impl Planner {
         }
     }
 
-    /// The programmed speed, if every drive can follow: |q′|·F ≤ q̇max and |q″|·F² + |q′|·a ≤ q̈max (SPEC 0.3).
+    /// The programmed speeds on the way to each target, if every drive can follow: |q′|·F ≤ q̇max and
+    /// |q″|·F² + |q′|·a ≤ q̈max (SPEC 0.3). Given is the first one.
+    ///
+    /// The acceleration a along the path is that of the machine file, less where it would take more than half of
+    /// what a drive has; so is the jerk, where it would take more than all.
     pub(super) fn feed_limits(
         &self,
         demands: &[Demand],
         shape: &Shape,
-        speed_mm_s: f64,
+        speeds: &[f64],
     ) -> Result<SpeedLimits, PathError> {
-        if !(speed_mm_s.is_finite() && speed_mm_s > 0.0) {
-            return Err(PathError::NoFeed(speed_mm_s * 60.0));
-        }
-        let along = self.planning.path_acceleration_mm_s2;
-        let mut lowest = (f64::INFINITY, 0, "speed", 0.0);
+        let mut acceleration = self.planning.path_acceleration_mm_s2;
+        let mut jerk = self.planning.path_jerk_mm_s3;
+        // Of all that is too fast, that which is so by the largest part.
+        let mut worst = (1.0 + 1e-9, None);
         for demand in demands {
+            let target = shape.target(demand.s);
+            let speed = speeds[target];
             for (i, limits) in self.drives.iter().enumerate() {
                 let (first, second) = (demand.first[i].abs(), demand.second[i].abs());
                 let by_speed = limits.velocity / first;
-                let rest = (limits.acceleration - first * along).max(0.0);
+                let along = first * self.planning.path_acceleration_mm_s2;
+                let rest = (limits.acceleration - along).max(CURVATURE_SHARE * limits.acceleration);
                 let by_acceleration = libm::sqrt(rest / second);
                 for (largest, quantity) in [(by_speed, "speed"), (by_acceleration, "acceleration")] {
-                    if largest < lowest.0 {
-                        lowest = (largest, i, quantity, demand.s);
+                    if speed / largest > worst.0 {
+                        let error = PathError::Feed {
+                            line: shape.targets[target].line,
+                            feed: speed * 60.0,
+                            largest: largest * 60.0,
+                            axis: DRIVE_NAMES[i],
+                            quantity,
+                        };
+                        worst = (speed / largest, Some(error));
                     }
                 }
+                acceleration = acceleration.min((limits.acceleration - second * speed * speed) / first);
+                jerk = jerk.min(limits.jerk / first);
             }
         }
-        let (largest, drive, quantity, s) = lowest;
-        if speed_mm_s > largest * (1.0 + 1e-9) {
-            return Err(PathError::Feed {
-                line: shape.line(s),
-                feed: speed_mm_s * 60.0,
-                largest: largest * 60.0,
-                axis: DRIVE_NAMES[drive],
-                quantity,
-            });
+        match worst.1 {
+            Some(error) => Err(error),
+            None => Ok(SpeedLimits {
+                velocity: speeds[0],
+                acceleration,
+                jerk,
+            }),
         }
-        Ok(SpeedLimits {
-            velocity: speed_mm_s,
-            acceleration: along,
-            jerk: self.planning.path_jerk_mm_s3,
-        })
     }
 
     /// As fast as the machine's rapid fraction of every limit allows.
@@ -235,6 +240,29 @@ impl Planner {
             jerk,
         }
     }
+}
+
+/// Where a path is looked at: evenly, in the middle of every span, and at every target, in order.
+fn places(shape: &Shape) -> Vec<f64> {
+    let length = shape.knots.last().map_or(0.0, |knot| knot.s_mm);
+    let count = CHECK_COUNT.max((length / CHECK_STEP).ceil() as usize);
+    let mut places: Vec<f64> = (0..=count).map(|i| length * i as f64 / count as f64).collect();
+    places.extend(
+        shape
+            .knots
+            .windows(2)
+            .map(|span| (span[0].s_mm + span[1].s_mm) / 2.0),
+    );
+    places.extend(shape.targets.iter().map(|goal| goal.s));
+    places.sort_by(f64::total_cmp);
+    places
+}
+
+/// The axes at a target, which is one of the places of `demands` (mm, rad).
+pub(super) fn axes_at(demands: &[Demand], s: f64) -> [f64; AXES] {
+    let after = demands.partition_point(|demand| demand.s < s);
+    let demand = &demands[after.min(demands.len() - 1)];
+    std::array::from_fn(|i| demand.position[i])
 }
 
 /// Degrees that went through radians print without their last bits.

@@ -1,25 +1,28 @@
 //! From program paths to what the boards run: knots, events and limits, checked against the machine.
 
 mod error;
+mod exact;
 mod limits;
+mod outputs;
+mod pieces;
 mod planned;
 mod shape;
+mod targets;
 #[cfg(test)]
 mod tests;
 
 pub use error::PathError;
 pub use planned::PlannedPath;
+pub use targets::Tip;
 
 use crate::machine::{MachineFile, PlanningConfig};
-use crate::nc::{Motion, Program, ProgramEvent, ProgramPath, Target, Tip};
+use crate::nc::Program;
 use limits::{DRIVES, DriveLimits};
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, Kinematics};
-use shared::motion::MAX_EVENTS;
 use shared::parameter::ParameterError;
-use shared::protocol::{PathAction, PathEvent};
-use shared::trajectory::{PathSpace, SpeedLimits};
+use targets::Stand;
 
 /// Most knots of one path: what the boards hold.
 pub const CAPACITY: usize = 512;
@@ -27,24 +30,29 @@ pub const CAPACITY: usize = 512;
 /// Plans program paths for one machine.
 #[derive(Clone, Debug)]
 pub struct Planner {
+    /// Of the machine, for messages.
+    name: String,
     kinematics: Kinematics,
+    fitted: [bool; AXES],
     drives: [DriveLimits; DRIVES],
-    /// Of each beam \[W\].
-    largest_power: [f64; SIDES],
+    /// Of each beam that the machine has \[W\].
+    largest_power: [Option<f64>; SIDES],
+    /// The machine has slides that follow the seam.
+    tracks: bool,
     planning: PlanningConfig,
 }
 
 impl Planner {
     /// A planner for `machine`; errors name the parameter.
     pub fn build(machine: &MachineFile) -> Result<Self, ParameterError> {
+        let beams = machine.motion.beams.clone();
         Ok(Self {
-            drives: DriveLimits::build_all(machine)?,
+            name: machine.name.clone(),
             kinematics: machine.motion.kinematics()?,
-            largest_power: machine
-                .motion
-                .beams
-                .clone()
-                .map(|beam| beam.map_or(0.0, |beam| beam.power_at_10v_w)),
+            fitted: machine.motion.kinematics.fitted(),
+            drives: DriveLimits::build_all(machine)?,
+            largest_power: beams.map(|beam| beam.map(|beam| beam.power_at_10v_w)),
+            tracks: machine.tracking.is_some(),
             planning: machine.planning.clone(),
         })
     }
@@ -56,10 +64,8 @@ impl Planner {
 
     /// Where the tip is when the axes stand at `axes` (mm, degrees); V slides at zero.
     pub fn tip(&self, axes: &[f64; AXES]) -> Tip {
-        let inner = std::array::from_fn(|i| axes[i] * AXIS_UNIT[i]);
-        let pose = self.kinematics.forward(&inner);
         Tip {
-            position_mm: pose.position.into(),
+            position_mm: self.kinematics.forward(&inner(axes)).position.into(),
             angles_deg: [axes[3], axes[4], axes[5]],
             extension_mm: [0.0; SIDES],
         }
@@ -82,16 +88,16 @@ impl Planner {
         from: &[f64; AXES],
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
-        let mut from = self.tip(from);
-        program
-            .paths
-            .iter()
-            .map(|path| {
-                let planned = self.path(path, &from, speed_mm_s)?;
-                from = end_of(path).tip;
-                Ok(planned)
-            })
-            .collect()
+        let mut stand = Stand {
+            tip: self.tip(from),
+            axes: inner(from),
+            placed: false,
+        };
+        let mut planned = Vec::new();
+        for path in &program.paths {
+            planned.extend(self.path(path, &mut stand, speed_mm_s)?);
+        }
+        Ok(planned)
     }
 
     /// From the axes `from` (mm, degrees) to the park position of the machine, in axis space: first the axes that
@@ -103,113 +109,15 @@ impl Planner {
             let axis = *axis as usize;
             first[axis] = park[axis];
         }
-        let inner = |axes: &[f64; AXES]| std::array::from_fn(|i| axes[i] * AXIS_UNIT[i]);
         [(from, &first), (&first, &park)]
             .into_iter()
             .filter(|(from, to)| from != to)
-            .map(|(from, to)| self.axes_path(&inner(from), &inner(to)))
+            .map(|(from, to)| self.axes_path(&inner(from), &inner(to), &[0.0; SIDES], 0))
             .collect()
-    }
-
-    /// A rapid on the straight line of axis space between two places (mm, rad).
-    fn axes_path(&self, from: &[f64; AXES], to: &[f64; AXES]) -> Result<PlannedPath, PathError> {
-        let shape = Self::axes_line(from, to, &[0.0; SIDES], 0);
-        let mut planned = PlannedPath {
-            motion: Motion::Rapid,
-            space: PathSpace::Axes,
-            dwell_before_s: 0.0,
-            limits: UNLIMITED,
-            events: Vec::new(),
-            speed_error: 0.0,
-            knots: shape.knots.clone(),
-        };
-        let demands = self.demands(&planned, &shape, from)?;
-        self.check_travel(&demands, &shape)?;
-        planned.limits = self.rapid_limits(&demands);
-        Ok(planned)
-    }
-
-    /// One path, which starts at `from`. `speed_mm_s` replaces the programmed feed.
-    pub fn path(
-        &self,
-        path: &ProgramPath,
-        from: &Tip,
-        speed_mm_s: Option<f64>,
-    ) -> Result<PlannedPath, PathError> {
-        let shape = self.shape(path, from)?;
-        if shape.knots.len() > CAPACITY {
-            return Err(PathError::TooLong {
-                line: path.targets[0].line,
-                knots: shape.knots.len(),
-            });
-        }
-        if path.events.len() > MAX_EVENTS {
-            return Err(PathError::TooManyEvents {
-                line: path.targets[0].line,
-                events: path.events.len(),
-            });
-        }
-        self.check_powers(&path.events)?;
-        let mut planned = PlannedPath {
-            motion: path.motion,
-            space: PathSpace::Tool,
-            dwell_before_s: path.dwell_before_s,
-            limits: UNLIMITED,
-            events: path
-                .events
-                .iter()
-                .map(|event| PathEvent {
-                    s_mm: event
-                        .with_target
-                        .checked_sub(1)
-                        .map_or(0.0, |i| shape.targets[i].0),
-                    action: event.action,
-                })
-                .collect(),
-            speed_error: shape.speed_error,
-            knots: shape.knots.clone(),
-        };
-        let [a, b, c] = from.angles_deg.map(f64::to_radians);
-        let near = [0.0, 0.0, 0.0, a, b, c];
-        let demands = self.demands(&planned, &shape, &near)?;
-        self.check_travel(&demands, &shape)?;
-        planned.limits = match path.motion {
-            Motion::Rapid => self.rapid_limits(&demands),
-            Motion::Feed(mm_min) => {
-                self.feed_limits(&demands, &shape, speed_mm_s.unwrap_or(mm_min / 60.0))?
-            }
-        };
-        Ok(planned)
-    }
-
-    fn check_powers(&self, events: &[ProgramEvent]) -> Result<(), PathError> {
-        for event in events {
-            let PathAction::Power { side, watt } = event.action else {
-                continue;
-            };
-            let largest = self.largest_power[usize::from(side)];
-            if watt > largest {
-                let line = event.line;
-                return Err(PathError::Power {
-                    line,
-                    side,
-                    watt,
-                    largest,
-                });
-            }
-        }
-        Ok(())
     }
 }
 
-/// Stands in a path until its limits are known.
-const UNLIMITED: SpeedLimits = SpeedLimits {
-    velocity: f64::INFINITY,
-    acceleration: f64::INFINITY,
-    jerk: f64::INFINITY,
-};
-
-/// The last target of a path, which has at least one.
-fn end_of(path: &ProgramPath) -> &Target {
-    &path.targets[path.targets.len() - 1]
+/// From mm and degrees to mm and rad.
+fn inner(axes: &[f64; AXES]) -> [f64; AXES] {
+    std::array::from_fn(|i| axes[i] * AXIS_UNIT[i])
 }

@@ -1,6 +1,7 @@
 //! A planned path: what the boards are given.
 
 use super::CAPACITY;
+use super::shape::Shape;
 use crate::nc::Motion;
 use shared::protocol::{Knot, PathAction, PathEvent};
 use shared::trajectory::{Path, PathSpace, SpeedLimits, SpeedProfile};
@@ -14,6 +15,9 @@ pub struct PlannedPath {
     pub space: PathSpace,
     /// The machine stands for this long before the path begins \[s\] (G4).
     pub dwell_before_s: f64,
+    /// The path begins at a corner of this much within a path of the program, which is too sharp to go on without
+    /// a stop \[°\].
+    pub corner_deg: Option<f64>,
     /// Value and slope of every channel, s from 0.
     pub knots: Vec<Knot>,
     /// What happens on the way, s not decreasing.
@@ -25,6 +29,24 @@ pub struct PlannedPath {
 }
 
 impl PlannedPath {
+    /// A path without events and with no limits yet.
+    pub(super) fn untimed(shape: &Shape, space: PathSpace, motion: Motion) -> Self {
+        Self {
+            motion,
+            space,
+            dwell_before_s: 0.0,
+            corner_deg: None,
+            knots: shape.knots.clone(),
+            events: Vec::new(),
+            limits: SpeedLimits {
+                velocity: f64::INFINITY,
+                acceleration: f64::INFINITY,
+                jerk: f64::INFINITY,
+            },
+            speed_error: shape.speed_error,
+        }
+    }
+
     /// Length \[mm\].
     pub fn length_mm(&self) -> f64 {
         self.knots.last().map_or(0.0, |knot| knot.s_mm)

@@ -1,8 +1,8 @@
 //! From the targets of a program path to a smooth or straight curve and its knots.
 
-use super::{PathError, Planner, end_of};
+use super::{PathError, Planner, Tip};
 use crate::curve::{Curve, distance};
-use crate::nc::{Motion, ProgramPath, Target, Tip};
+use crate::nc::{Motion, Target};
 use nalgebra::Vector3;
 use shared::geometry::{Pose, angle, interpolate};
 use shared::io::{AXES, SIDES};
@@ -17,44 +17,92 @@ const MAX_CORNER: f64 = 0.35;
 /// Path length of a move that turns or stretches without moving the tip \[mm per degree or mm\].
 const LENGTH_PER_TURN: f64 = 1.0;
 /// Shortest path \[mm\], for moves that need next to no motion.
-const SHORTEST: f64 = 1e-3;
+pub(super) const SHORTEST: f64 = 1e-3;
 
 /// A path before it is timed.
 pub(super) struct Shape {
     pub(super) knots: Vec<Knot>,
     pub(super) speed_error: f64,
-    /// s and program line of each target, in their order.
-    pub(super) targets: Vec<(f64, u32)>,
+    /// Where the motion to each target ends.
+    pub(super) targets: Vec<Goal>,
+}
+
+/// Where the motion to a target ends.
+#[derive(Clone, Copy)]
+pub(super) struct Goal {
+    pub(super) s: f64,
+    /// Line of the program.
+    pub(super) line: u32,
+    /// By how much the rotary axes may be off their words there, as they change their rates \[rad\].
+    pub(super) slack: f64,
+}
+
+impl Goal {
+    /// The place is met exactly.
+    pub(super) fn exact(s: f64, line: u32) -> Self {
+        Self { s, line, slack: 0.0 }
+    }
 }
 
 impl Shape {
+    /// The straight line of axis space between two places (mm, rad), V slides standing at `extension`.
+    pub(super) fn of_axes(from: &[f64; AXES], to: &[f64; AXES], extension: &[f64; SIDES], line: u32) -> Self {
+        let way = |i: usize| (to[i] - from[i]) / AXIS_UNIT[i];
+        let longest = (0..AXES).map(|i| way(i).abs()).fold(SHORTEST, f64::max);
+        let knot = |axes: &[f64; AXES], s_mm: f64| {
+            let mut knot = Knot {
+                s_mm,
+                value: [0.0; CHANNELS],
+                slope: [0.0; CHANNELS],
+            };
+            knot.value[..AXES].copy_from_slice(axes);
+            knot.value[CHANNELS - SIDES..].copy_from_slice(extension);
+            for (i, slope) in knot.slope[..AXES].iter_mut().enumerate() {
+                *slope = (to[i] - from[i]) / longest;
+            }
+            knot
+        };
+        Self {
+            knots: vec![knot(from, 0.0), knot(to, longest)],
+            speed_error: 0.0,
+            targets: vec![Goal::exact(longest, line)],
+        }
+    }
+
+    /// Where the motion to each target starts \[mm\].
+    pub(super) fn starts(&self) -> Vec<f64> {
+        let ends = self.targets.iter().map(|goal| goal.s);
+        std::iter::once(0.0)
+            .chain(ends)
+            .take(self.targets.len())
+            .collect()
+    }
+
+    /// Index of the target to which the motion at `s` leads.
+    pub(super) fn target(&self, s: f64) -> usize {
+        let index = self.targets.partition_point(|goal| goal.s < s);
+        index.min(self.targets.len() - 1)
+    }
+
     /// Program line of the motion at `s`.
     pub(super) fn line(&self, s: f64) -> u32 {
-        let index = self.targets.partition_point(|(end, _)| *end < s);
-        self.targets[index.min(self.targets.len() - 1)].1
+        self.targets[self.target(s)].line
     }
 }
 
 impl Planner {
-    /// The curve of `path`, which starts at `from`.
-    pub(super) fn shape(&self, path: &ProgramPath, from: &Tip) -> Result<Shape, PathError> {
-        if let (Motion::Feed(_), [_, _, ..]) = (path.motion, path.targets.as_slice()) {
-            self.smooth(path, from)
-        } else {
-            self.straight(path, from)
-        }
-    }
-
-    /// The curve through all targets.
-    fn smooth(&self, path: &ProgramPath, from: &Tip) -> Result<Shape, PathError> {
-        let mut points = vec![self.channels(from)];
-        points.extend(path.targets.iter().map(|target| self.channels(&target.tip)));
-        for (pair, target) in points.windows(2).zip(&path.targets) {
+    /// The smooth curve from `from` through `tips`, the places of `targets`.
+    pub(super) fn smooth(&self, from: &Tip, tips: &[Tip], targets: &[Target]) -> Result<Shape, PathError> {
+        let points: Vec<_> = std::iter::once(from)
+            .chain(tips)
+            .map(|tip| channels(&self.pose(tip), &tip.extension_mm))
+            .collect();
+        for (pair, target) in points.windows(2).zip(targets) {
             if distance(&pair[0], &pair[1]) < SHORTEST {
                 return Err(PathError::NoTravel { line: target.line });
             }
         }
-        for (three, target) in points.windows(3).zip(&path.targets[1..]) {
+        for (three, target) in points.windows(3).zip(&targets[1..]) {
             let chord = |i: usize| position(&three[i + 1]) - position(&three[i]);
             let turn = angle(&chord(0), &chord(1));
             if turn > MAX_CORNER {
@@ -64,22 +112,27 @@ impl Planner {
                 });
             }
         }
-        let line = path.targets[0].line;
+        let line = targets[0].line;
         let curve = Curve::by_length(&points).map_err(|source| PathError::Spline { line, source })?;
         let ends = curve.parameters()[1..].iter();
         Ok(Shape {
             speed_error: curve.speed_error(),
-            targets: ends.zip(&path.targets).map(|(s, t)| (*s, t.line)).collect(),
+            targets: ends.zip(targets).map(|(s, t)| Goal::exact(*s, t.line)).collect(),
             knots: knots_of(&curve),
         })
     }
 
     /// A straight line of the tip while the head turns about one axis.
-    fn straight(&self, path: &ProgramPath, from: &Tip) -> Result<Shape, PathError> {
-        let Target { tip, line } = *end_of(path);
-        let (start, end) = (self.pose(from), self.pose(&tip));
+    pub(super) fn straight(
+        &self,
+        motion: Motion,
+        from: &Tip,
+        tip: &Tip,
+        line: u32,
+    ) -> Result<Shape, PathError> {
+        let (start, end) = (self.pose(from), self.pose(tip));
         let travel = (end.position - start.position).norm();
-        if matches!(path.motion, Motion::Feed(_)) && travel < SHORTEST {
+        if motion == Motion::Feed && travel < SHORTEST {
             return Err(PathError::NoTravel { line });
         }
         // Not the angle of the turn, but not smaller than half of it, which is all that counts here.
@@ -87,8 +140,8 @@ impl Planner {
         let stretch = (0..SIDES)
             .map(|k| (tip.extension_mm[k] - from.extension_mm[k]).abs())
             .fold(0.0, f64::max);
-        let length = match path.motion {
-            Motion::Feed(_) => travel,
+        let length = match motion {
+            Motion::Feed => travel,
             Motion::Rapid => travel
                 .max(LENGTH_PER_TURN * turn.to_degrees())
                 .max(stretch)
@@ -110,41 +163,8 @@ impl Planner {
         Ok(Shape {
             knots: knots_of(&curve),
             speed_error: 0.0,
-            targets: vec![(length, line)],
+            targets: vec![Goal::exact(length, line)],
         })
-    }
-
-    /// The straight line of axis space between two places (mm, rad), V slides standing at `extension`.
-    pub(super) fn axes_line(
-        from: &[f64; AXES],
-        to: &[f64; AXES],
-        extension: &[f64; SIDES],
-        line: u32,
-    ) -> Shape {
-        let way = |i: usize| (to[i] - from[i]) / AXIS_UNIT[i];
-        let longest = (0..AXES).map(|i| way(i).abs()).fold(SHORTEST, f64::max);
-        let knot = |axes: &[f64; AXES], s_mm: f64| {
-            let mut knot = Knot {
-                s_mm,
-                value: [0.0; CHANNELS],
-                slope: [0.0; CHANNELS],
-            };
-            knot.value[..AXES].copy_from_slice(axes);
-            knot.value[CHANNELS - SIDES..].copy_from_slice(extension);
-            for (i, slope) in knot.slope[..AXES].iter_mut().enumerate() {
-                *slope = (to[i] - from[i]) / longest;
-            }
-            knot
-        };
-        Shape {
-            knots: vec![knot(from, 0.0), knot(to, longest)],
-            speed_error: 0.0,
-            targets: vec![(longest, line)],
-        }
-    }
-
-    fn channels(&self, tip: &Tip) -> [f64; CHANNELS] {
-        channels(&self.pose(tip), &tip.extension_mm)
     }
 }
 
@@ -152,7 +172,7 @@ fn position(channels: &[f64; CHANNELS]) -> Vector3<f64> {
     Vector3::new(channels[0], channels[1], channels[2])
 }
 
-fn channels(pose: &Pose, extension: &[f64; SIDES]) -> [f64; CHANNELS] {
+pub(super) fn channels(pose: &Pose, extension: &[f64; SIDES]) -> [f64; CHANNELS] {
     let [d, t, n] = [pose.position, pose.tangent, pose.normal];
     [
         d.x,

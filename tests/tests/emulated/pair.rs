@@ -30,7 +30,7 @@ impl Pair {
     }
 
     pub fn connect(&self) -> NetworkBoards {
-        NetworkBoards::emulated(self.boards.session(), true, Patience::default())
+        NetworkBoards::emulated(self.boards.session(), Patience::default())
             .unwrap_or_else(|error| panic!("{error}"))
     }
 

@@ -86,11 +86,11 @@ impl Default for Patience {
     }
 }
 
-/// A session with one or two boards in a network.
+/// A session with two boards in a network.
 pub struct NetworkBoards {
     motion: Connection,
-    tracker: Option<Connection>,
-    path_states_target: Option<([u8; 4], u16)>,
+    tracker: Connection,
+    path_states_target: ([u8; 4], u16),
     incoming: Receiver<Incoming>,
     bad: Arc<AtomicU32>,
     began: Instant,
@@ -102,8 +102,7 @@ pub struct NetworkBoards {
 type Incoming = (Role, io::Result<Datagram>);
 
 impl NetworkBoards {
-    /// Connects to the motion board and, if the machine has one, to the tracker board, says Hello, and checks
-    /// schema and role of each.
+    /// Connects to both boards, says Hello, and checks schema and role of each.
     ///
     /// `path_states_target` is where the motion board reaches the tracker board, if that is not where the PC
     /// does (emulated boards).
@@ -113,20 +112,17 @@ impl NetworkBoards {
     /// while Hello is answered.
     pub fn connect(
         motion: &Endpoint,
-        tracker: Option<&Endpoint>,
+        tracker: &Endpoint,
         path_states_target: Option<([u8; 4], u16)>,
         patience: Patience,
     ) -> Result<Self, LinkError> {
         let (sender, incoming) = sync_channel(WAITING);
         let bad = Arc::new(AtomicU32::new(0));
         let motion = Connection::open(Role::Motion, motion, patience, &sender, &bad)?;
-        let open = |endpoint| Connection::open(Role::Tracker, endpoint, patience, &sender, &bad);
-        let tracker = tracker.map(open).transpose()?;
-        let seen_from_here = |tracker: &Connection| (tracker.board.ip().octets(), tracker.board.port());
+        let tracker = Connection::open(Role::Tracker, tracker, patience, &sender, &bad)?;
+        let seen_from_here = (tracker.board.ip().octets(), tracker.board.port());
         Ok(Self {
-            path_states_target: tracker
-                .as_ref()
-                .map(|tracker| path_states_target.unwrap_or_else(|| seen_from_here(tracker))),
+            path_states_target: path_states_target.unwrap_or(seen_from_here),
             motion,
             tracker,
             incoming,
@@ -137,20 +133,15 @@ impl NetworkBoards {
     }
 
     /// Connects to emulated boards, and takes part in their pace: they wait while this program has no
-    /// processor. There are always two; the tracker board is left alone unless it is `tracked`.
+    /// processor.
     ///
     /// # Errors
     /// As [`NetworkBoards::connect`], or [`LinkError::BadSession`] if the boards' page cannot be opened.
-    pub fn emulated(
-        session: &emulator::Session,
-        tracked: bool,
-        patience: Patience,
-    ) -> Result<Self, LinkError> {
+    pub fn emulated(session: &emulator::Session, patience: Patience) -> Result<Self, LinkError> {
         let target = session.path_states_to;
-        let tracker = Endpoint::emulated(session.tracker);
         let boards = Self::connect(
             &Endpoint::emulated(session.motion),
-            tracked.then_some(&tracker),
+            &Endpoint::emulated(session.tracker),
             Some((target.host.octets(), target.udp)),
             patience,
         )?;
@@ -177,10 +168,10 @@ impl NetworkBoards {
         self.bad.load(Ordering::Relaxed)
     }
 
-    fn connection(&self, role: Role) -> Option<&Connection> {
+    fn connection(&self, role: Role) -> &Connection {
         match role {
-            Role::Motion => Some(&self.motion),
-            Role::Tracker => self.tracker.as_ref(),
+            Role::Motion => &self.motion,
+            Role::Tracker => &self.tracker,
         }
     }
 }
@@ -188,12 +179,10 @@ impl NetworkBoards {
 impl Boards for NetworkBoards {
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         self.keep_pace();
-        let connection = match role {
-            Role::Motion => Some(&mut self.motion),
-            Role::Tracker => self.tracker.as_mut(),
-        };
-        let connection = connection.ok_or(LinkError::Absent { role })?;
-        connection.stream.request(request)
+        match role {
+            Role::Motion => self.motion.stream.request(request),
+            Role::Tracker => self.tracker.stream.request(request),
+        }
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
@@ -201,7 +190,7 @@ impl Boards for NetworkBoards {
         match waiting.or_else(|()| self.incoming.recv_timeout(timeout)) {
             Ok((role, Ok(datagram))) => Ok(Some((role, datagram))),
             Ok((role, Err(source))) => Err(LinkError::Lost { role, source }),
-            // All readers have ended, each after an error that was returned before.
+            // Both readers have ended, each after an error that was returned before.
             Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => Ok(None),
         }
     }
@@ -210,7 +199,7 @@ impl Boards for NetworkBoards {
         let mut buffer = [0; framing::MAX_DATAGRAM];
         let bytes = framing::encode_datagram(datagram, &mut buffer)
             .map_err(|source| LinkError::Frame { role, source })?;
-        let connection = self.connection(role).ok_or(LinkError::Absent { role })?;
+        let connection = self.connection(role);
         connection
             .datagrams
             .send_to(bytes, connection.board)
@@ -222,16 +211,16 @@ impl Boards for NetworkBoards {
         self.began.elapsed()
     }
 
-    fn identity(&self, role: Role) -> Option<&Identity> {
-        self.connection(role).map(|connection| &connection.identity)
+    fn identity(&self, role: Role) -> &Identity {
+        &self.connection(role).identity
     }
 
-    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
+    fn path_states_target(&self) -> ([u8; 4], u16) {
         self.path_states_target
     }
 
-    fn datagram_port(&self, role: Role) -> Option<u16> {
-        self.connection(role).map(|connection| connection.datagram_port)
+    fn datagram_port(&self, role: Role) -> u16 {
+        self.connection(role).datagram_port
     }
 }
 

@@ -1,15 +1,53 @@
-//! Paths planned for the shipped machine: where they lead, how fast, and what is refused.
+//! Paths planned for the shipped machines: where they lead, how fast, and what is refused.
+
+mod arcs;
+mod machines;
 
 use super::*;
 use crate::nc::{Options, interpret};
 use nalgebra::Vector3;
 use shared::geometry::{angle, interpolate};
-use shared::trajectory::SpeedProfile;
+use shared::motion::MAX_EVENTS;
+use shared::trajectory::{SpeedProfile, SpeedState, reference};
 use std::fmt::Write;
 
 fn planner() -> Planner {
-    let text = include_str!("../../../machines/dual-beam-gantry.toml");
-    Planner::build(&MachineFile::parse("m.toml", text).unwrap()).unwrap()
+    planner_of("dual-beam-gantry")
+}
+
+/// A planner for a shipped machine.
+fn planner_of(name: &str) -> Planner {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines");
+    let file = std::path::Path::new(folder).join(name).with_extension("toml");
+    Planner::build(&MachineFile::read(&file).unwrap()).unwrap()
+}
+
+/// Plans `program` on a shipped machine from its park position.
+fn plan_on(machine: &str, program: &str) -> Result<Vec<PlannedPath>, PathError> {
+    let program = interpret(program, Options::default()).unwrap();
+    let planner = planner_of(machine);
+    planner.program(&program, &planner.planning.park_axes(), None)
+}
+
+/// Axes along planned paths in steps of at most `step` mm, as the motion board would follow them from park
+/// (mm, degrees); each with the number of its path and s.
+fn followed(machine: &str, paths: &[PlannedPath], step: f64) -> Vec<(usize, f64, [f64; AXES])> {
+    let planner = planner_of(machine);
+    let mut axes = inner(&planner.planning.park_axes());
+    let mut seen = Vec::new();
+    for (index, planned) in paths.iter().enumerate() {
+        let path = planned.path();
+        let count = (planned.length_mm() / step).ceil() as usize;
+        for i in 0..=count {
+            let s = planned.length_mm() * i as f64 / count as f64;
+            let still = SpeedState { s, v: 0.0, a: 0.0 };
+            axes = reference(planner.kinematics(), &path, still, &axes)
+                .unwrap()
+                .position;
+            seen.push((index, s, std::array::from_fn(|i| axes[i] / AXIS_UNIT[i])));
+        }
+    }
+    seen
 }
 
 /// Plans `body` with the tip at X1000 Y1000 Z100, all angles zero.
@@ -73,7 +111,7 @@ fn rapids_use_their_part_of_the_limits_and_no_more() {
         let mut used: f64 = 0.0;
         for i in 0..=500 {
             let state = profile.at(profile.duration() * f64::from(i) / 500.0);
-            let at = shared::trajectory::reference(planner.kinematics(), &path, state, &[0.0; AXES]).unwrap();
+            let at = reference(planner.kinematics(), &path, state, &[0.0; AXES]).unwrap();
             for axis in 0..AXES {
                 let limits = &planner.drives[axis];
                 let speed = at.velocity[axis].abs() / limits.velocity;

@@ -1,0 +1,211 @@
+//! What programs mean, and what is refused where.
+
+use super::interpreter::{Options, interpret};
+use super::*;
+use shared::geometry::Turn;
+use shared::protocol::PathAction;
+
+const HEADER: &str = "G21 G17 G90 G94 G40 G54 G64\nG43.4\nG0 X0 Y0 Z50 A0 B0 C0\nG0 Z0\n";
+
+fn run(body: &str) -> Result<Program, NcError> {
+    interpret(&format!("{HEADER}{body}"), Options::default())
+}
+
+/// Problem and line within the body.
+fn problem(body: &str) -> (Problem, i64) {
+    let error = run(body).unwrap_err();
+    (
+        error.problem,
+        i64::from(error.place.line) - HEADER.lines().count() as i64,
+    )
+}
+
+#[test]
+fn g1_blocks_make_one_path_and_each_g0_its_own() {
+    let program = run("F6000\nG1 X10\nX20 Y1\nx30 y3 v1=0.5 a1\nG0 Z50\nM2").unwrap();
+    let shape: Vec<_> = program
+        .paths
+        .iter()
+        .map(|p| (p.motion, p.targets.len()))
+        .collect();
+    let (feed, rapid) = (Motion::Feed, Motion::Rapid);
+    assert_eq!(shape, [(rapid, 1), (rapid, 1), (feed, 3), (rapid, 1)]);
+    let end = program.paths[2].targets[2];
+    assert_eq!((end.way, end.line), (Way::Line, 8));
+    assert_eq!(
+        end.words.axes,
+        [Some(30.0), Some(3.0), None, Some(1.0), None, None]
+    );
+    assert_eq!(end.words.extension, [Some(0.5), None]);
+    let mm_min = 6000.0;
+    assert_eq!(
+        program.paths[2].feeds,
+        [ProgramFeed {
+            with_target: 0,
+            mm_min
+        }]
+    );
+}
+
+#[test]
+fn outputs_take_effect_with_the_next_motion() {
+    let body = "F600\nM67 E1 Q1500\nG1 X10\nM62 P0\nM62 P2\nX20\nM63 P0\nG0 Z50\nM30";
+    let program = run(body).unwrap();
+    let feed = &program.paths[2].events;
+    let (side, watt) = (1, 1500.0);
+    let actions: Vec<_> = feed.iter().map(|e| (e.with_target, e.action)).collect();
+    assert_eq!(
+        actions,
+        [
+            (0, PathAction::Power { side, watt }),
+            (1, PathAction::Beam { side: 0, on: true }),
+            (1, PathAction::Tracking { on: true }),
+        ]
+    );
+    assert_eq!(program.paths[3].events[0].with_target, 0);
+    assert_eq!(problem("M62 P0\nM2"), (Problem::NoMotionAfter("M62"), 1));
+}
+
+#[test]
+fn exact_stop_ends_a_path_at_each_block() {
+    let program = run("F600\nG61.1\nG1 X10\nX20\nG64\nX30\nX40\nM2").unwrap();
+    let shape: Vec<_> = program.paths[2..].iter().map(|p| p.targets.len()).collect();
+    assert_eq!(shape, [1, 1, 2]);
+}
+
+#[test]
+fn a_change_of_feed_inside_a_path_is_an_error_at_its_line() {
+    let (from, to) = (600.0, 700.0);
+    assert_eq!(
+        problem("G1 X10 F600\nX20\nF700\nX30\nM2"),
+        (Problem::FeedChange { from, to }, 3)
+    );
+    assert!(run("G1 X10 F600\nX20 F600\nG0 X0\nG1 X10 F700\nM2").is_ok());
+}
+
+#[test]
+fn block_delete_is_the_operators_choice() {
+    let body = "F600\nG1 X10\n/X20\nM2";
+    assert_eq!(run(body).unwrap().paths[2].targets.len(), 2);
+    let text = format!("{HEADER}{body}");
+    let block_delete = true;
+    let program = interpret(&text, Options { block_delete }).unwrap();
+    assert_eq!(program.paths[2].targets.len(), 1);
+}
+
+#[test]
+fn what_cannot_be_done_is_named_with_its_line() {
+    assert_eq!(problem("\nG1 X10\nM2"), (Problem::NoFeed, 2));
+    assert_eq!(problem("G49\nG0 X10\nM2"), (Problem::NotTip, 2));
+    assert_eq!(problem("G1 X1 F600"), (Problem::NoEnd, 1));
+    assert_eq!(problem("G1 X1 F600\nM2\nG0 X5"), (Problem::AfterEnd, 3));
+    assert_eq!(problem("G0 X5 P1\nM2"), (Problem::Orphan("P".into()), 1));
+    assert_eq!(problem("M62 P0 Q1\nM2"), (Problem::Orphan("Q".into()), 1));
+    let (code, word) = ("M67", "Q");
+    assert_eq!(problem("M67 E0\nM2"), (Problem::Missing { code, word }, 1));
+    assert!(matches!(
+        problem("M62 P3\nM2"),
+        (Problem::Value { value: 3.0, .. }, 1)
+    ));
+    assert!(matches!(problem("F-5\nM2"), (Problem::Value { .. }, 1)));
+    assert_eq!(problem("G1 X5 F5\nM2\n%"), (Problem::Percent, 3));
+    let bare = |text: &str| interpret(text, Options::default()).unwrap_err().problem;
+    assert_eq!(bare("G43.4\nX5\nM2"), Problem::NoMotion);
+    assert_eq!(bare("G43.4\nG0 X5\nM2"), Problem::FirstMotion);
+    assert_eq!(bare("G43.4\nF60 G1 X5 Y0 Z0\nM2"), Problem::FirstMotion);
+    assert_eq!(bare("G0 X0 Y0 Z0 A0 B0 C0\nM2"), Problem::NotTip);
+    assert_eq!(bare("G21\nM2"), Problem::Empty);
+    assert_eq!(bare("%\nG43.4\nG0 X0 Y0 Z0 A0 B0 C0\nM2"), Problem::Percent);
+}
+
+#[test]
+fn a_block_that_says_nothing_new_is_no_motion() {
+    let program = run("F600\nG1 X10\nX10 Y0\nG0 X10\nZ0\nM2").unwrap();
+    assert_eq!(program.paths.len(), 3);
+    // After G53 the program no longer says where the tip is.
+    let program = run("G53 G0 Z900\nG0 Z0\nM2").unwrap();
+    assert_eq!(program.paths.len(), 4);
+}
+
+#[test]
+fn arcs_have_a_centre_or_a_radius() {
+    let program = run("F600\nG2 X10 Y10 I10\nG3 I-5 J0.5\nX20 R-8\nG1 X30\nM2").unwrap();
+    let [path] = &program.paths[2..] else {
+        panic!("one path")
+    };
+    let ways: Vec<_> = path.targets.iter().map(|t| t.way).collect();
+    let counter = Turn::CounterClockwise;
+    let expected = [
+        Way::Arc(Turn::Clockwise, ArcForm::Centre([10.0, 0.0])),
+        Way::Arc(counter, ArcForm::Centre([-5.0, 0.5])),
+        Way::Arc(counter, ArcForm::Radius(-8.0)),
+        Way::Line,
+    ];
+    assert_eq!(ways, expected);
+    assert_eq!(problem("F600\nG2 X10 I5 R5\nM2"), (Problem::CentreAndRadius, 2));
+    let (code, word) = ("G3", "I J or R");
+    assert_eq!(problem("F600\nG3 X10\nM2"), (Problem::Missing { code, word }, 2));
+    assert!(matches!(
+        problem("F600\nG2 X5 R0\nM2"),
+        (Problem::Value { .. }, 2)
+    ));
+    assert_eq!(problem("F600\nG1 X5 I2\nM2"), (Problem::Orphan("I".into()), 2));
+    assert_eq!(problem("G2 X5 I2\nM2"), (Problem::NoFeed, 1));
+}
+
+#[test]
+fn g53_moves_axes_once_and_needs_g0() {
+    let program = run("G53 G0 Z900 C-450\nX5\nM2").unwrap();
+    let axes = &program.paths[2];
+    assert_eq!(axes.targets[0].way, Way::Axes);
+    let expected = [None, None, Some(900.0), None, None, Some(-450.0)];
+    assert_eq!(axes.targets[0].words.axes, expected);
+    assert_eq!(program.paths[3].targets[0].way, Way::Line);
+    // It needs no G43.4, and says nothing of the tip.
+    let bare = |text: &str| interpret(text, Options::default());
+    assert!(bare("G53 G0 Z5\nM2").is_ok());
+    let error = bare("G53 G0 X0 Y0 Z5\nG43.4\nG0 X1\nM2").unwrap_err();
+    assert_eq!(error.problem, Problem::FirstMotion);
+
+    assert_eq!(problem("F5\nG1 G53 X5\nM2"), (Problem::AxesNeedRapid, 2));
+    assert_eq!(problem("G53 G0 V1=2\nM2"), (Problem::Orphan("V1=".into()), 1));
+    let (code, word) = ("G53", "an axis word");
+    assert_eq!(problem("G53 G0\nM2"), (Problem::Missing { code, word }, 1));
+    assert_eq!(problem("M62 P0\nG53 G0 Z5\nM2"), (Problem::OnInAxes, 1));
+    assert!(run("M63 P0\nG53 G0 Z5\nM2").is_ok());
+}
+
+#[test]
+fn a_dwell_ends_a_path_and_delays_the_next() {
+    let program = run("F600\nG1 X10\nG4 P1.5\nG4 P0.5\nX20\nX30\nM2").unwrap();
+    let shape: Vec<_> = program.paths[2..]
+        .iter()
+        .map(|p| (p.targets.len(), p.dwell_before_s))
+        .collect();
+    assert_eq!(shape, [(1, 0.0), (2, 2.0)]);
+    let (code, word) = ("G4", "P");
+    assert_eq!(problem("G4\nM2"), (Problem::Missing { code, word }, 1));
+    assert!(matches!(
+        problem("G4 P-1\nM2"),
+        (Problem::Value { value: -1.0, .. }, 1)
+    ));
+    assert_eq!(problem("\nG4 P1\nM2"), (Problem::NoMotionAfter("G4"), 2));
+    let (first, second) = ("G4", "M62");
+    assert_eq!(
+        problem("G4 M62 P1\nM2"),
+        (Problem::ModalGroup { first, second }, 1)
+    );
+    let (first, second) = ("G4", "G53");
+    assert_eq!(
+        problem("G4 G53 P1\nM2"),
+        (Problem::ModalGroup { first, second }, 1)
+    );
+}
+
+#[test]
+fn a_message_reads_as_a_sentence_with_its_place() {
+    assert_eq!(
+        run("G1 X10 F600\nG5 X5\nM2").unwrap_err().to_string(),
+        "line 6, column 1: G5 is not understood"
+    );
+}
