@@ -1,5 +1,6 @@
 //! Whole jobs on emulated boards. `cargo xtask test` builds what they need and runs them one after another.
 
+mod machines;
 mod pair;
 mod process;
 mod trouble;

@@ -2,6 +2,7 @@
 
 use emulator::{Options, PROGRAM_VARIABLES, SESSION_VARIABLE, bound_to_parent};
 use host_link::boards::{Boards, NetworkBoards, Patience};
+use plant::DEFAULT_MACHINE;
 use shared::motion::State;
 use shared::protocol::{MotionStatus, Request, Response, Role, TrackerStatus};
 use shared::tracking::TrackerState;
@@ -19,8 +20,14 @@ pub struct Pair {
 impl Pair {
     /// Boots boards; `name` is that of their folder.
     pub fn boot(name: &str) -> Self {
+        Self::boot_as(name, DEFAULT_MACHINE)
+    }
+
+    /// Boots boards that are wired to `machine`.
+    pub fn boot_as(name: &str, machine: &str) -> Self {
         let folder = scratch(name);
-        let options = Options::from_environment(folder.clone()).expect("what to boot");
+        let mut options = Options::from_environment(folder.clone()).expect("what to boot");
+        options.machine = machine.to_owned();
         let boards = emulator::Boards::boot(&options).unwrap_or_else(|error| panic!("{error}"));
         boards
             .session()
