@@ -1,0 +1,132 @@
+//! A motion board with a clock.
+
+use super::super::MotionBoard;
+use crate::machine::MachineFile;
+use plant::{DEFAULT_MACHINE, MotionPlant};
+use shared::motion::{MotionConfig, SERVO_TICKS_PER_PATH_TICK, State};
+use shared::protocol::{Knot, MotionSample, MotionStatus, PathAction, PathEvent, Request, Response};
+use shared::trajectory::{CHANNELS, PathSpace};
+
+pub fn config() -> MotionConfig {
+    config_of(DEFAULT_MACHINE)
+}
+
+/// Of a shipped machine file.
+pub fn config_of(machine: &str) -> MotionConfig {
+    let path = format!("{}/../machines/{machine}.toml", env!("CARGO_MANIFEST_DIR"));
+    MachineFile::read(std::path::Path::new(&path))
+        .expect("a shipped machine file")
+        .motion
+}
+
+/// A board with a clock, that keeps what it published.
+pub struct Bench {
+    pub board: MotionBoard,
+    pub now_us: u64,
+    pub samples: Vec<MotionSample>,
+}
+
+impl Bench {
+    pub fn configured() -> Self {
+        Self::configured_as(DEFAULT_MACHINE)
+    }
+
+    /// Of a machine by its name.
+    pub fn configured_as(machine: &str) -> Self {
+        let plant = MotionPlant::of(machine).expect("a plant of the machine");
+        let mut bench = Self {
+            board: MotionBoard::new(plant),
+            now_us: 0,
+            samples: Vec::new(),
+        };
+        bench.done(&Request::ConfigureMotion(config_of(machine)));
+        bench.run_ms(5);
+        bench
+    }
+
+    pub fn homed() -> Self {
+        let mut bench = Self::configured();
+        bench.done(&Request::Home);
+        bench.until(State::Idle, 20_000);
+        bench
+    }
+
+    pub fn run_ms(&mut self, ms: u32) {
+        for _ in 0..ms * SERVO_TICKS_PER_PATH_TICK {
+            self.now_us += 250;
+            self.board.tick(self.now_us);
+            if let Some(batch) = self.board.telemetry() {
+                self.samples.extend(batch.samples);
+            }
+        }
+    }
+
+    /// Runs until `state`, asking for the status like a PC that is alive; at most `ms`.
+    pub fn until(&mut self, state: State, ms: u32) {
+        for _ in 0..ms / 100 {
+            self.run_ms(100);
+            let status = self.status();
+            if status.state == state {
+                return;
+            }
+            assert_ne!(status.state, State::Fault, "{:?}", status.fault);
+        }
+        panic!("{state:?} was not reached in {ms} ms: {:?}", self.status());
+    }
+
+    pub fn status(&mut self) -> MotionStatus {
+        match self.board.handle(&Request::Status) {
+            Response::MotionStatus(status) => status,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub fn done(&mut self, request: &Request) {
+        assert_eq!(self.board.handle(request), Response::Done, "{request:?}");
+    }
+
+    /// Loads a straight line of `length` mm along X from where the machine stands, in its attitude.
+    pub fn load_line(&mut self, length: f64) {
+        let machine = config().kinematics().expect("kinematics");
+        let reference = self.status().reference;
+        let axes: [f64; 6] = std::array::from_fn(|i| reference[i] * shared::kinematics::AXIS_UNIT[i]);
+        let pose = machine.forward(&axes);
+        self.done(&Request::ClearPath {
+            id: 7,
+            space: PathSpace::Tool,
+        });
+        for s_mm in [0.0, length] {
+            let mut value = [0.0; CHANNELS];
+            let mut slope = [0.0; CHANNELS];
+            value[..3].copy_from_slice(pose.position.as_slice());
+            value[0] += s_mm;
+            value[3..6].copy_from_slice(pose.tangent.as_slice());
+            value[6..9].copy_from_slice(pose.normal.as_slice());
+            slope[0] = 1.0;
+            let mut knots = heapless::Vec::new();
+            knots.push(Knot { s_mm, value, slope }).expect("one knot");
+            self.done(&Request::LoadKnots(knots));
+        }
+        for (s_mm, action) in [
+            (
+                20.0,
+                PathAction::Power {
+                    side: 0,
+                    watt: 2000.0,
+                },
+            ),
+            (20.0, PathAction::Beam { side: 0, on: true }),
+            (length - 20.0, PathAction::Beam { side: 0, on: false }),
+        ] {
+            self.done(&Request::LoadEvent(PathEvent { s_mm, action }));
+        }
+    }
+
+    pub fn run(&mut self) {
+        self.done(&Request::Run {
+            speed_mm_s: 150.0,
+            acceleration_mm_s2: 1000.0,
+            jerk_mm_s3: 20_000.0,
+        });
+    }
+}
