@@ -191,3 +191,150 @@ pub fn limit_acceleration(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use proptest::prelude::*;
+    use std::string::ToString;
+    use std::vec::Vec;
+
+    const LIMITS: CurveLimits = CurveLimits {
+        velocity: 16.0,
+        period: 0.001,
+        chord_error: 0.001,
+        normal_acceleration: 100.0,
+        normal_jerk: 1000.0,
+    };
+
+    #[test]
+    fn a_straight_line_is_as_fast_as_the_machine_and_a_corner_stands_still() {
+        assert_eq!(LIMITS.speed(f64::INFINITY), Ok(16.0));
+        assert_eq!(LIMITS.speed(0.0), Ok(0.0));
+    }
+
+    #[test]
+    fn each_limit_rules_where_it_is_the_least() {
+        let most = CurveLimits {
+            velocity: 1e9,
+            period: 1e-9,
+            chord_error: 1e9,
+            normal_acceleration: 1e30,
+            normal_jerk: 1e30,
+        };
+        let near = |limits: CurveLimits, radius: f64, v: f64| {
+            assert!((limits.speed(radius).unwrap() / v - 1.0).abs() < 1e-12);
+        };
+        near(
+            CurveLimits {
+                normal_acceleration: 50.0,
+                ..most
+            },
+            2.0,
+            10.0,
+        );
+        near(
+            CurveLimits {
+                normal_jerk: 250.0,
+                ..most
+            },
+            2.0,
+            10.0,
+        );
+        // A chord of 6 in a circle of radius 5 is 1 away from it; one of 10 is as far as a chord can be.
+        let sagitta = CurveLimits {
+            period: 2.0,
+            chord_error: 1.0,
+            ..most
+        };
+        near(sagitta, 5.0, 3.0);
+        near(
+            CurveLimits {
+                chord_error: 7.0,
+                ..sagitta
+            },
+            5.0,
+            5.0,
+        );
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_an_error() {
+        let limits = CurveLimits {
+            period: 0.0,
+            ..LIMITS
+        };
+        assert_eq!(limits.speed(1.0), Err(WindowError::Limit(0.0)));
+        assert_eq!(LIMITS.speed(-1.0), Err(WindowError::Radius(-1.0)));
+        assert!(LIMITS.speed(f64::NAN).is_err());
+        let window = |low, high| ProcessWindow { low, high };
+        assert_eq!(
+            window(5.0, 4.0).apply(&mut [1.0]),
+            Err(WindowError::Empty { low: 5.0, high: 4.0 })
+        );
+        assert_eq!(
+            window(4.0, 16.0).apply(&mut []),
+            Err(WindowError::Count { places: 0, speeds: 0 })
+        );
+        let nan = window(4.0, 16.0).apply(&mut [1.0, f64::NAN]).unwrap_err();
+        assert_eq!(
+            nan.to_string(),
+            "the speed planned at point 1 is NaN mm/s, but must be zero or more"
+        );
+        let passes =
+            |s: &[f64], v: &[f64], a: f64, end: f64| limit_acceleration(s, &mut v.to_vec(), a, 0.0, end);
+        assert_eq!(passes(&[0.0, 1.0], &[1.0, 1.0], 10.0, 0.0), Ok(()));
+        assert_eq!(
+            passes(&[0.0, 1.0], &[1.0], 10.0, 0.0),
+            Err(WindowError::Count { places: 2, speeds: 1 })
+        );
+        assert_eq!(
+            passes(&[], &[], 10.0, 0.0),
+            Err(WindowError::Count { places: 0, speeds: 0 })
+        );
+        assert_eq!(
+            passes(&[0.0, 2.0, 1.0], &[1.0; 3], 10.0, 0.0),
+            Err(WindowError::Order { index: 2, value: 1.0 })
+        );
+        assert_eq!(passes(&[0.0], &[1.0], -1.0, 0.0), Err(WindowError::Limit(-1.0)));
+        assert_eq!(
+            passes(&[0.0, 1.0], &[1.0; 2], 1.0, -2.0),
+            Err(WindowError::Speed {
+                index: 1,
+                value: -2.0
+            })
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn acceleration_stays_in_its_limit_and_speeds_are_only_lowered_where_it_needs(
+            steps in prop::collection::vec((prop_oneof![Just(0.0), 0.0..5.0f64], 0.0..100.0f64), 1..40),
+            acceleration in 1.0..1000.0f64, start in 0.0..20.0f64, end in 0.0..20.0f64,
+        ) {
+            let mut s = Vec::new();
+            for (step, _) in &steps {
+                s.push(s.last().unwrap_or(&0.0) + step);
+            }
+            let planned: Vec<f64> = steps.iter().map(|step| step.1).collect();
+            let mut v = planned.clone();
+            limit_acceleration(&s, &mut v, acceleration, start, end).unwrap();
+            let n = v.len();
+            prop_assert!(v[0] <= start && v[n - 1] <= end);
+            for i in 0..n {
+                prop_assert!(v[i] <= planned[i] && v[i] >= 0.0);
+                let change = |j: usize| v[i] * v[i] - v[j] * v[j] - 2.0 * acceleration * (s[i] - s[j]).abs();
+                let neighbours = [i.checked_sub(1), (i + 1 < n).then_some(i + 1)];
+                let changes: Vec<f64> = neighbours.into_iter().flatten().map(change).collect();
+                prop_assert!(changes.iter().all(|c| *c <= 1e-9));
+                // Lowered only if a neighbour or an end asks for it.
+                let asked = [(0, start), (n - 1, end)].iter().any(|&(j, limit)| j == i && v[i] == limit);
+                prop_assert!(v[i] == planned[i] || asked || changes.iter().any(|c| *c >= -1e-9));
+            }
+            let once = v.clone();
+            limit_acceleration(&s, &mut v, acceleration, start, end).unwrap();
+            prop_assert!(once.iter().zip(&v).all(|(a, b)| (a - b).abs() < 1e-9));
+        }
+    }
+}

@@ -20,16 +20,20 @@ pub struct Discretisation {
 /// Why a curve was not cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum DiscretiseError {
-    /// A limit is not above zero.
-    #[error("tolerance, turn and chord of a discretisation must be above zero")]
+    /// A limit is below 1e-9.
+    #[error("tolerance, turn and chord of a discretisation must be 1e-9 (mm, rad) or more")]
     Limits,
-    /// A span is so long in its parameter that halving does not get from it to 1e-9.
-    #[error("the knots are too far apart to cut the curve finely enough: scale them")]
+    /// A span is so large that halving does not get from it to parts fine enough.
+    #[error("the curve or its knots are too large to be cut finely enough: scale them")]
     Depth,
 }
 
 /// An interval of the parameter that is not cut any more.
 const FINEST: f64 = 1e-9;
+
+/// A stretch of curve within this distance \[mm\] is a point, as where control points coincide: its tangent is
+/// rounding. Also the least that limits \[mm, rad\] can be.
+const AT_REST: f64 = 1e-9;
 
 /// Halvings of a span.
 const DEPTH: usize = 64;
@@ -38,13 +42,15 @@ impl Discretisation {
     /// Whether the chord from `x` to `y` is good enough.
     fn accepts<C: Curve>(&self, curve: &C, x: f64, y: f64) -> bool {
         let (from, to) = (curve.at(x), curve.at(y));
-        let flat = |part: f64| {
-            let point = curve.point(x + (y - x) * part);
-            distance_to_chord(&point, &from.value, &to.value) <= self.tolerance
-        };
+        let between = [0.25, 0.5, 0.75].map(|part| curve.point(x + (y - x) * part));
+        let rests = |point: &Vector3<f64>| (point - from.value).norm() <= AT_REST;
+        if rests(&to.value) && between.iter().all(rests) {
+            return true;
+        }
+        let flat = |point| distance_to_chord(point, &from.value, &to.value) <= self.tolerance;
         (to.value - from.value).norm() <= self.max_chord
             && angle(&from.first, &to.first) <= self.max_turn
-            && [0.25, 0.5, 0.75].into_iter().all(flat)
+            && between.iter().all(flat)
     }
 }
 
@@ -75,7 +81,7 @@ pub fn discretise<C: Curve>(
         max_turn,
         max_chord,
     } = *fineness;
-    if !(tolerance > 0.0 && max_turn > 0.0 && max_chord > 0.0) {
+    if !(tolerance >= AT_REST && max_turn >= AT_REST && max_chord >= AT_REST) {
         return Err(DiscretiseError::Limits);
     }
     let [first, last] = curve.domain();

@@ -10,10 +10,10 @@ pub const NEWTON_ITERATIONS: usize = 12;
 /// Newton steps that suffice where curvature · chord < 0.1: chord errors of 1e-12 at 0.01 up to 1e-7 at 0.1.
 pub const EMBEDDED_ITERATIONS: usize = 2;
 
-/// |chord² − wanted²| at which a step counts as exact, of the wanted square.
+/// |chord² − ds²| at which a step counts as exact, of ds².
 const EXACT: f64 = 2e-10;
 
-/// Chord up to which the end of the curve is one step away, of the wanted one.
+/// Chord up to which the end of the curve is one step away, of ds.
 const END: f64 = 1.0 + 1e-9;
 
 /// Why there is no next parameter.
@@ -67,21 +67,28 @@ fn check_length(ds: f64) -> Result<(), StepError> {
     }
 }
 
+/// Where a step of `ds` begins: `u`, clamped to the domain, and what is there.
+fn start<C: Curve>(curve: &C, u: f64, ds: f64) -> Result<(f64, Moving), StepError> {
+    check_length(ds)?;
+    let [first, last] = curve.domain();
+    let u = libm::fmin(libm::fmax(u, first), last);
+    Ok((u, curve.at(u)))
+}
+
 fn speed_at(at: &Moving, u: f64) -> Result<f64, StepError> {
     speed(at).ok_or(StepError::NoTangent { u })
 }
 
 /// u + ds/|C′|, which may lie beyond the end.
 pub fn taylor_1<C: Curve>(curve: &C, u: f64, ds: f64) -> Result<f64, StepError> {
-    check_length(ds)?;
-    Ok(u + ds / speed_at(&curve.at(u), u)?)
+    let (u, at) = start(curve, u, ds)?;
+    Ok(u + ds / speed_at(&at, u)?)
 }
 
 /// u + ds/|C′| − ds²·(C′·C″)/(2|C′|⁴), which may lie beyond the end, or before `u` where the curve changes its
 /// speed within the step.
 pub fn taylor_2<C: Curve>(curve: &C, u: f64, ds: f64) -> Result<f64, StepError> {
-    check_length(ds)?;
-    let at = curve.at(u);
+    let (u, at) = start(curve, u, ds)?;
     Ok(second_order(&at, u, ds, speed_at(&at, u)?))
 }
 
@@ -97,25 +104,16 @@ fn excess<C: Curve>(curve: &C, start: &Moving, u: f64, ds: f64) -> (f64, f64) {
     (chord.norm_squared() - ds * ds, 2.0 * chord.dot(&at.first))
 }
 
-/// What [`newton_step`] came to.
-enum Newton {
-    /// Within [`EXACT`], on the way out of the circle of radius ds.
-    Exact(f64),
-    /// What there is after the last iteration, or on the way back into the circle: not the next point.
-    Doubtful(f64),
-}
-
 /// The end if it is one step away, otherwise Taylor-2 with Newton steps on |C(u) − C(u₀)|² = ds² after it,
-/// halving where Newton leaves the bracket between u₀ and the end.
-fn newton<C: Curve>(curve: &C, u: f64, ds: f64, iterations: usize) -> Result<Newton, StepError> {
-    check_length(ds)?;
+/// halving where Newton leaves the bracket between u₀ and the end. Also whether it converged.
+fn newton<C: Curve>(curve: &C, u: f64, ds: f64, iterations: usize) -> Result<(f64, bool), StepError> {
     let [_, end] = curve.domain();
-    let start = curve.at(u);
+    let (u, start) = start(curve, u, ds)?;
     let speed = speed_at(&start, u)?;
     let straight = u + ds / speed;
     // The chord alone would end a closed curve at its start.
     if straight >= end && (curve.point(end) - start.value).norm() <= ds * END {
-        return Ok(Newton::Exact(end));
+        return Ok((end, true));
     }
     let (mut low, mut high) = (u, end);
     let predicted = second_order(&start, u, ds, speed);
@@ -126,11 +124,7 @@ fn newton<C: Curve>(curve: &C, u: f64, ds: f64, iterations: usize) -> Result<New
     for _ in 0..iterations {
         let (f, slope) = excess(curve, &start, x, ds);
         if libm::fabs(f) <= EXACT * ds * ds {
-            return Ok(if slope >= 0.0 {
-                Newton::Exact(x)
-            } else {
-                Newton::Doubtful(x)
-            });
+            return Ok((x, true));
         }
         if f > 0.0 {
             high = x;
@@ -144,25 +138,35 @@ fn newton<C: Curve>(curve: &C, u: f64, ds: f64, iterations: usize) -> Result<New
             (low + high) / 2.0
         };
     }
-    Ok(Newton::Doubtful(x))
+    Ok((x, false))
 }
 
 /// The next parameter whose chord from `u` is `ds`, by at most `iterations` Newton steps from [`taylor_2`], or
-/// the end if it is nearer. Bounded work, for a control tick; at cusps the chord may be another.
+/// the end if it is nearer. Bounded work, for a control tick; at cusps the chord may be another, and a closed
+/// curve that begins slowly may end at once.
 pub fn newton_step<C: Curve>(curve: &C, u: f64, ds: f64, iterations: usize) -> Result<f64, StepError> {
-    match newton(curve, u, ds, iterations)? {
-        Newton::Exact(x) | Newton::Doubtful(x) => Ok(x),
-    }
+    newton(curve, u, ds, iterations).map(|(x, _)| x)
 }
 
 /// The next parameter whose chord from `u` is `ds` to 1e-10 of it, or the end if there is none: as
-/// [`newton_step`], and by following the curve where that does not converge or where there is no tangent.
+/// [`newton_step`], and by following the curve where that does not converge, where it is seen to skip a part of
+/// the curve, and where there is no tangent.
 pub fn chord_step<C: Curve>(curve: &C, u: f64, ds: f64) -> Result<f64, StepError> {
     match newton(curve, u, ds, NEWTON_ITERATIONS) {
-        Ok(Newton::Exact(x)) => Ok(x),
-        Ok(Newton::Doubtful(_)) | Err(StepError::NoTangent { .. }) => follow(curve, u, ds),
+        Ok((x, true)) if stays_within(curve, [u, x], ds) => Ok(x),
+        Ok(_) | Err(StepError::NoTangent { .. }) => follow(curve, u, ds),
         Err(error) => Err(error),
     }
+}
+
+/// Whether the curve stays within the circle of radius `ds` from one parameter to the other, seen at four
+/// places. The last alone would not do: a closed curve is back where it began.
+fn stays_within<C: Curve>(curve: &C, [from, to]: [f64; 2], ds: f64) -> bool {
+    let start = curve.point(from);
+    [0.25, 0.5, 0.75, 1.0].into_iter().all(|part| {
+        let point = curve.point(from + (to - from) * part);
+        (point - start).norm() <= ds * END
+    })
 }
 
 /// Small steps until the curve leaves the circle of radius `ds`, then halving. Not fast, but sure.
@@ -170,15 +174,14 @@ fn follow<C: Curve>(curve: &C, u: f64, ds: f64) -> Result<f64, StepError> {
     /// Steps of a quarter of `ds` or less; more means a knot of curve inside the circle.
     const STEPS: usize = 1000;
     let [_, end] = curve.domain();
-    let start = curve.at(u);
+    let (u, start) = start(curve, u, ds)?;
     let mut low = u;
     for _ in 0..STEPS {
         if low >= end {
             return Ok(end);
         }
-        let from = curve.point(low);
         let mut high = curve.next_break(low);
-        while (curve.point(high) - from).norm() > ds / 4.0 {
+        while !stays_within(curve, [low, high], ds / 4.0) {
             let middle = (low + high) / 2.0;
             if middle <= low || middle >= high {
                 return Err(StepError::NoProgress { u: low });

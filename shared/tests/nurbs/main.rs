@@ -1,0 +1,6 @@
+//! Properties of NURBS curves, and of what is done along them (SPEC 3).
+
+mod along;
+mod curves;
+mod shape;
+mod validity;
