@@ -83,7 +83,8 @@ pub trait Chain {
     fn forward(&self, axes: &[f64; AXES]) -> Pose;
 
     /// Axes that realise `pose`. Where several do, and where a rotary axis may stand a turn further, those
-    /// nearest to `near`, the axes just before. They may lie outside the travel: see [`violations`].
+    /// nearest to `near`, the axes just before. They may lie outside the travel: see [`violations`]. Only where the
+    /// travel chooses among the solutions, and leaves none, is that an error here.
     fn inverse(&self, pose: &Pose, near: &[f64; AXES]) -> Result<[f64; AXES], KinematicsError>;
 
     /// Velocities and accelerations of the axes standing at `axes`, for a tool that moves by `motion`.

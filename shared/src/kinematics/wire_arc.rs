@@ -25,8 +25,9 @@
 //! angles, and the solution with |B| < 90° is the only one. The positioner turns the travel T into the machine's x
 //! direction, so the bead lies level along x and the torch tilts across it.
 //!
-//! Rates: u̇₁ = Rz(C)·(ṗ + Ċ ez×p) moves the part's point over the turntable, and so on outwards; each further
-//! rotation adds its ω × r and, for accelerations, α × r, ω × (ω × r) and 2 ω × ṙ.
+//! Rates, outwards from the part: a point r that moves by ṙ in a frame turning by ω moves by ṙ + ω × r, and is
+//! accelerated by r̈ + α × r + ω × (2 ṙ + ω × r); so p on the turntable, and u + Rz(C)·p on the tilt axis. The torch's
+//! h is taken off: what remains is the motion of X Y Z.
 
 use super::rpy::RollPitchYaw;
 use super::{AxisLimits, AxisMotion, Chain, KinematicsError};
@@ -79,6 +80,13 @@ fn attitude(q: &[f64; AXES]) -> RollPitchYaw {
 }
 
 impl WireArc {
+    /// The tip of the wire in the part's frame.
+    fn tip(&self, torch: &RollPitchYaw, q: &[f64; AXES]) -> Vector3<f64> {
+        let tip = Vector3::new(q[0], q[1], q[2]) + torch.about_a(&self.torch);
+        let on_tilted = torch.about_b(&(tip - self.tilt_axis));
+        torch.about_c(&(on_tilted - self.turntable))
+    }
+
     /// From the tilt axis to the point `p` of the part, in the frame after B.
     fn on_tilted(&self, torch: &RollPitchYaw, p: &Vector3<f64>) -> Vector3<f64> {
         self.turntable + torch.back_c(p)
@@ -162,10 +170,8 @@ impl Chain for WireArc {
     /// Pose of the torch in the part's frame.
     fn forward(&self, q: &[f64; AXES]) -> Pose {
         let torch = attitude(q);
-        let tip = Vector3::new(q[0], q[1], q[2]) + torch.about_a(&self.torch);
-        let on_tilted = torch.about_b(&(tip - self.tilt_axis));
         Pose {
-            position: torch.about_c(&(on_tilted - self.turntable)),
+            position: self.tip(&torch, q),
             tangent: torch.tangent(),
             normal: torch.normal(),
         }
@@ -180,7 +186,8 @@ impl Chain for WireArc {
         q: &[f64; AXES],
         motion: &PoseMotion,
     ) -> Result<([f64; AXES], [f64; AXES]), KinematicsError> {
-        self.motion(&attitude(q), &self.forward(q).position, motion)
+        let torch = attitude(q);
+        self.motion(&torch, &self.tip(&torch, q), motion)
     }
 
     /// Three arc tangents and no other trigonometry.

@@ -1,6 +1,6 @@
 //! Choice among solutions, and turns of C.
 
-use crate::bench::{Machine, Random, ac_head, dual_beam, pipe_welder, stir_gantry, wire_arc};
+use crate::bench::{Machine, Random, ac_head, ac_head_within, dual_beam, pipe_welder, stir_gantry, wire_arc};
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::{AXES, AXIS_NAMES, Bits};
@@ -175,6 +175,20 @@ fn of_two_equally_near_solutions_of_the_ac_head_a_decides() {
     for a in [0.4, -0.4] {
         let axes = machine.kinematics.inverse(&pose, &[0.0, 0.0, 0.0, a, 0.0, 0.0]);
         assert!((axes.expect("reachable")[3] - a.signum() * 0.5).abs() < 1e-12);
+    }
+}
+
+/// With one sign of A there is no twin: beyond the end of its travel C comes back by a whole turn.
+#[test]
+fn where_the_travel_of_c_ends_another_turn_is_taken() {
+    let machine = ac_head_within((0.0, 90.0), (-360.0, 360.0));
+    for end in [1.0, -1.0] {
+        let (near, beyond) = (end * (2.0 * PI - 0.1), end * (2.0 * PI + 0.1));
+        let pose = machine.kinematics.forward(&[0.0, 0.0, 0.0, 0.4, 0.0, beyond]);
+        let axes = machine
+            .kinematics
+            .inverse(&pose, &[0.0, 0.0, 0.0, 0.4, 0.0, near]);
+        assert!((axes.expect("reachable")[5] - end * 0.1).abs() < 1e-12);
     }
 }
 

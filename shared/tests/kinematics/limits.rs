@@ -32,6 +32,10 @@ fn what_is_outside_the_travel_of_every_solution_is_named() {
         refused(&narrow, &tilted(0.5, 1.7)),
         KinematicsError::OutOfRange { axis: c }
     );
+    // Upright, C would stay where it already is outside its travel.
+    let outside = [0.0, 0.0, 0.0, 0.0, 0.0, 1.7];
+    let upright = narrow.kinematics.inverse(&tilted(0.0, 0.0), &outside);
+    assert_eq!(upright, Err(KinematicsError::OutOfRange { axis: c }));
     let stir = stir_gantry(StirTilt::Positive);
     assert_eq!(
         refused(&stir, &tilted(0.2, 0.0)),
