@@ -1,19 +1,31 @@
-//! How well it went: the truth of the spots against the truth of the seams, tick by tick.
+//! How well it went, tick by tick: the true tool against the programmed path, and the true spots against the
+//! true seams.
 
+use crate::nc::Motion;
+use crate::part::RunSample;
+use crate::path::{CAPACITY, PlannedPath};
 use crate::record::Record;
 use crate::seam::OVERHANG_MM;
 use crate::world::{Machine, TrueSeam};
+use nalgebra::Vector3;
 use shared::io::{MOTORS, SIDES, SLIDES};
 use shared::motion::State;
 use shared::protocol::MotionSample;
+use shared::trajectory::Path;
 use std::collections::BTreeMap;
 
-/// A tick of the motion board on a path with a seam.
+/// The place nearest to the tip is known this well \[mm\].
+const NEAREST: f64 = 1e-9;
+/// Steps of the search for it.
+const STEPS: usize = 50;
+
+/// A tick of the motion board on a path that works: one of G1, or with a beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeamTick {
+pub struct WorkTick {
     /// Path tick.
     pub tick: u32,
-    /// Distance from where the first beam goes on \[mm\].
+    /// Distance from where the first beam goes on (without beams, from where the first such path begins), over
+    /// all such paths \[mm\].
     pub along_mm: f64,
     /// Path speed \[mm/s\].
     pub speed_mm_s: f64,
@@ -32,9 +44,9 @@ pub struct SeamTick {
 /// Figures of a job.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Evaluation {
-    /// Every tick on a path with a seam.
-    pub ticks: Vec<SeamTick>,
-    /// Ticks with a beam on.
+    /// Every tick on a path that works.
+    pub ticks: Vec<WorkTick>,
+    /// Ticks with a beam on; all of them if no beam ever was.
     pub weld_ticks: u32,
     /// Length of path between them \[mm\].
     pub weld_length_mm: f64,
@@ -44,44 +56,62 @@ pub struct Evaluation {
     pub max_deviation_mm: [Option<f64>; SLIDES],
     /// Root mean square of the same \[mm\].
     pub rms_deviation_mm: [Option<f64>; SLIDES],
-    /// Largest distance of the tip from the programmed path with a beam on \[mm\].
+    /// Largest distance of the tip from the programmed path in the ticks of `weld_ticks` \[mm\].
     pub max_contour_error_mm: Option<f64>,
     /// Largest |following error| of each motor on any path (mm, rad).
     pub max_following_error: [f64; MOTORS],
     /// Largest skew of the gantry on any path \[mm\].
     pub max_skew_mm: f64,
+    /// Time on the paths by the motion board's clock \[s\].
+    pub motion_s: f64,
 }
 
-/// Evaluates a record. `seams` are the paths with a seam, by number; `tracker_ahead_us` is how far the
-/// tracker's clock is ahead of the motion board's.
+/// The seams that were followed.
+#[derive(Clone, Copy)]
+pub struct Followed<'a> {
+    /// By path number.
+    pub seams: &'a BTreeMap<u32, TrueSeam>,
+    /// How far the tracker's clock is ahead of the motion board's \[µs\].
+    pub tracker_ahead_us: i64,
+}
+
+/// Evaluates a record of a job that ran `paths`, by their numbers.
 pub fn evaluate(
     record: &Record,
     machine: &Machine,
-    seams: &BTreeMap<u32, TrueSeam>,
-    tracker_ahead_us: i64,
+    paths: &BTreeMap<u32, PlannedPath>,
+    followed: Option<Followed>,
 ) -> Evaluation {
+    let working = working(paths);
+    let any_beam = on_paths(record).any(|s| working.contains_key(&s.path_id) && s.beams.contains(&true));
     let mut result = Evaluation::default();
     let mut deviation = [Peak::default(); SLIDES];
     let mut contour = Peak::default();
     let mut welded_to: Option<&MotionSample> = None;
-    let on_path = |s: &&MotionSample| matches!(s.state, State::Running | State::Holding | State::Stopping);
-    for sample in record.motion().iter().filter(on_path) {
+    let mut before: Option<&MotionSample> = None;
+    for sample in on_paths(record) {
         for (max, seen) in result.max_following_error.iter_mut().zip(sample.following_error) {
             *max = max.max(f64::from(seen));
         }
         result.max_skew_mm = result.max_skew_mm.max(f64::from(sample.skew_mm));
-        let Some(seam) = seams.get(&sample.path_id) else {
+        if let Some(before) = before.filter(|before| before.path_id == sample.path_id) {
+            result.motion_s += (sample.time_us - before.time_us) as f64 * 1e-6;
+        }
+        before = Some(sample);
+        let Some(work) = working.get(&sample.path_id) else {
             continue;
         };
-        let tick = seam_tick(sample, record, machine, seam, tracker_ahead_us);
-        if !sample.beams.contains(&true) {
+        let seam = followed.and_then(|f| Some((f.seams.get(&sample.path_id)?, f.tracker_ahead_us)));
+        let tick = work_tick(sample, record, machine, work, seam);
+        if any_beam && !sample.beams.contains(&true) {
             welded_to = None;
         } else {
             let from = welded_to.filter(|before| before.path_id == sample.path_id);
             result.weld_length_mm += from.map_or(0.0, |before| sample.s_mm - before.s_mm);
             welded_to = Some(sample);
             result.weld_ticks += 1;
-            let unknown = (0..SLIDES).any(|i| sample.beams[i / 2] && tick.deviation_mm[i].is_none());
+            let unseen = |i: usize| sample.beams[i / 2] && tick.deviation_mm[i].is_none();
+            let unknown = tick.contour_error_mm.is_none() || seam.is_some() && (0..SLIDES).any(unseen);
             result.unknown_ticks += u32::from(unknown);
             contour.add(tick.contour_error_mm);
         }
@@ -98,46 +128,118 @@ pub fn evaluate(
     result
 }
 
-fn seam_tick(
+/// The machine at every tick on one of `paths`.
+pub fn run_samples(record: &Record, machine: &Machine, paths: &BTreeMap<u32, PlannedPath>) -> Vec<RunSample> {
+    on_paths(record)
+        .filter(|sample| paths.contains_key(&sample.path_id))
+        .filter_map(|sample| {
+            let (position, _) = record.machine_at(sample.time_us)?;
+            let axes = machine.axes(&position);
+            Some(RunSample {
+                time_us: sample.time_us,
+                path_id: sample.path_id,
+                s_mm: sample.s_mm,
+                speed_mm_s: sample.speed_mm_s,
+                beams: sample.beams,
+                axes,
+                pose: machine.kinematics().forward(&axes),
+            })
+        })
+        .collect()
+}
+
+fn on_paths(record: &Record) -> impl Iterator<Item = &MotionSample> {
+    let on_path = |s: &&MotionSample| matches!(s.state, State::Running | State::Holding | State::Stopping);
+    record.motion().iter().filter(on_path)
+}
+
+/// A path that works.
+struct Work {
+    path: Box<Path<CAPACITY>>,
+    /// `along_mm` at its beginning.
+    along_mm: f64,
+}
+
+/// Whether a path is one that works: a feed, or with a beam.
+pub fn works(path: &PlannedPath) -> bool {
+    path.weld().is_some() || path.motion == Motion::Feed
+}
+
+fn working(paths: &BTreeMap<u32, PlannedPath>) -> BTreeMap<u32, Work> {
+    let chosen = || paths.iter().filter(|(_, path)| works(path));
+    // Up to the first beam it counts backwards.
+    let mut before = 0.0;
+    for (_, path) in chosen() {
+        if let Some((start, _)) = path.weld() {
+            before += start;
+            break;
+        }
+        before += path.length_mm();
+    }
+    let any_beam = chosen().any(|(_, path)| path.weld().is_some());
+    let mut along_mm = if any_beam { -before } else { 0.0 };
+    chosen()
+        .map(|(id, path)| {
+            let work = Work {
+                path: path.path(),
+                along_mm,
+            };
+            along_mm += path.length_mm();
+            (*id, work)
+        })
+        .collect()
+}
+
+/// `seam`: the one beside the path, and how far the tracker's clock is ahead.
+fn work_tick(
     sample: &MotionSample,
     record: &Record,
     machine: &Machine,
-    seam: &TrueSeam,
-    tracker_ahead_us: i64,
-) -> SeamTick {
-    let (deviation_mm, contour_error_mm, slides_mm) = match record.machine_at(sample.time_us) {
-        None => ([None; SLIDES], None, None),
-        Some((position, _)) => {
-            let pose = machine.pose(&position);
-            let slides = sample
-                .time_us
-                .checked_add_signed(tracker_ahead_us)
-                .and_then(|time| record.slides_at(time));
-            let mut deviation = [None; SLIDES];
-            for side in 0..SIDES {
-                let frame = machine.spot(&pose, side);
-                let crossing = seam.crossing(machine, side, &frame, 0.0, sample.s_mm);
-                if let (Some(slides), Some(crossing)) = (slides, crossing)
-                    && seam.exists_at(crossing.s, OVERHANG_MM)
-                {
-                    deviation[2 * side] = Some(slides[2 * side] - crossing.u);
-                    deviation[2 * side + 1] = Some(slides[2 * side + 1] - crossing.v);
-                }
+    work: &Work,
+    seam: Option<(&TrueSeam, i64)>,
+) -> WorkTick {
+    let pose = record
+        .machine_at(sample.time_us)
+        .map(|(position, _)| machine.pose(&position));
+    let slides_mm = seam.and_then(|(_, ahead)| record.slides_at(sample.time_us.checked_add_signed(ahead)?));
+    let mut deviation_mm = [None; SLIDES];
+    if let (Some(pose), Some(slides), Some((seam, _))) = (pose, slides_mm, seam) {
+        for side in 0..SIDES {
+            let crossing = seam.crossing(side, &seam.spot(&pose, side), 0.0, sample.s_mm);
+            if let Some(crossing) = crossing.filter(|crossing| seam.exists_at(crossing.s, OVERHANG_MM)) {
+                deviation_mm[2 * side] = Some(slides[2 * side] - crossing.u);
+                deviation_mm[2 * side + 1] = Some(slides[2 * side + 1] - crossing.v);
             }
-            let contour = seam.contour_error(&pose.position, sample.s_mm);
-            (deviation, contour, slides)
         }
-    };
-    SeamTick {
+    }
+    WorkTick {
         tick: sample.tick,
-        along_mm: sample.s_mm - seam.start_s(),
+        along_mm: work.along_mm + sample.s_mm,
         speed_mm_s: sample.speed_mm_s,
         beams: sample.beams,
         slides_mm,
         deviation_mm,
-        contour_error_mm,
+        contour_error_mm: pose.and_then(|pose| contour_error(&work.path, &pose.position, sample.s_mm)),
         following_error: sample.following_error,
     }
+}
+
+/// Distance of `tip` from `path`, searched from path position `s` on \[mm\]. Beyond its ends a path has no points.
+fn contour_error(path: &Path<CAPACITY>, tip: &Vector3<f64>, s: f64) -> Option<f64> {
+    let (start, end) = (path.start_s()?, path.end_s()?);
+    let mut s = s.clamp(start, end);
+    for _ in 0..STEPS {
+        let point = path.at(s)?;
+        let place = |channels: &[f64]| Vector3::from_column_slice(&channels[..3]);
+        let (apart, slope) = (tip - place(&point.value), place(&point.first));
+        let step = apart.dot(&slope) / slope.norm_squared();
+        let next = (s + step).clamp(start, end);
+        if next.is_nan() || (next - s).abs() < NEAREST {
+            return Some(apart.norm());
+        }
+        s = next;
+    }
+    None
 }
 
 /// Largest value and root mean square.
@@ -171,7 +273,9 @@ mod tests {
     use super::*;
     use crate::record::MachinePosition;
     use crate::record::tests::{motion_sample, tracker_sample};
-    use crate::world::truth::tests::{machine, wavy_seam};
+    use crate::world::truth::tests::{bent_path, machine, wavy_seam};
+    use shared::protocol::{PathAction, PathEvent};
+    use shared::trajectory::{PathSpace, SpeedLimits};
 
     /// A seam tick's machine: axes that hold the pose of the path at s, and slides that sit on the seam.
     fn follow(record: &mut Record, tick: u32, s: f64, off: [f64; SLIDES], tracker_ahead_us: u64) {
@@ -189,9 +293,7 @@ mod tests {
         let mut slides = off;
         for side in 0..SIDES {
             let pose = machine.pose(&MachinePosition::Axes(axes));
-            let crossing = seam
-                .crossing(&machine, side, &machine.spot(&pose, side), 0.0, s)
-                .unwrap();
+            let crossing = seam.crossing(side, &seam.spot(&pose, side), 0.0, s).unwrap();
             slides[2 * side] += crossing.u;
             slides[2 * side + 1] += crossing.v;
         }
@@ -218,7 +320,46 @@ mod tests {
 
     fn evaluated(record: &Record, tracker_ahead_us: i64) -> Evaluation {
         let seams = BTreeMap::from([(7, wavy_seam())]);
-        evaluate(record, &machine(), &seams, tracker_ahead_us)
+        let followed = Followed {
+            seams: &seams,
+            tracker_ahead_us,
+        };
+        evaluate(
+            record,
+            &machine(),
+            &BTreeMap::from([(7, planned())]),
+            Some(followed),
+        )
+    }
+
+    /// The bent path, with a beam from 100 mm on.
+    fn planned() -> PlannedPath {
+        let knots = (0..=100).map(|k| {
+            let s_mm = 5.0 * f64::from(k);
+            let point = bent_path().at(s_mm).unwrap();
+            shared::protocol::Knot {
+                s_mm,
+                value: point.value,
+                slope: point.first,
+            }
+        });
+        PlannedPath {
+            motion: Motion::Feed,
+            space: PathSpace::Tool,
+            dwell_before_s: 0.0,
+            corner_deg: None,
+            knots: knots.collect(),
+            events: vec![PathEvent {
+                s_mm: 100.0,
+                action: PathAction::Beam { side: 0, on: true },
+            }],
+            limits: SpeedLimits {
+                velocity: 100.0,
+                acceleration: 500.0,
+                jerk: 10_000.0,
+            },
+            speed_error: 0.0,
+        }
     }
 
     #[test]
@@ -266,5 +407,62 @@ mod tests {
         assert!(result.max_deviation_mm[0].is_some() && result.max_deviation_mm[1].is_some());
         assert_eq!(result.max_deviation_mm[2..], [None, None]);
         assert!(result.ticks[0].deviation_mm[2].is_some(), "but it is in the log");
+    }
+
+    #[test]
+    fn without_a_tracker_there_is_still_the_path() {
+        let mut record = Record::default();
+        for sample in job([0.0; 4], 0).motion() {
+            record.add_motion(&[*sample]);
+        }
+        let paths = BTreeMap::from([(7, planned())]);
+        let result = evaluate(&record, &machine(), &paths, None);
+        assert_eq!((result.weld_ticks, result.unknown_ticks), (50, 0));
+        assert_eq!(result.max_deviation_mm, [None; SLIDES]);
+        assert!(result.max_contour_error_mm.unwrap() < 1e-8);
+        assert!(
+            (result.ticks[0].along_mm - 50.1).abs() < 1e-9,
+            "{}",
+            result.ticks[0].along_mm
+        );
+        assert!((result.motion_s - 0.049).abs() < 1e-9);
+        let samples = run_samples(&record, &machine(), &paths);
+        assert_eq!((samples.len(), samples[9].path_id), (50, 7));
+        let (pose, _) = wavy_seam().planned(samples[9].s_mm).unwrap();
+        assert!((samples[9].pose.position - pose.position).norm() < 1e-8);
+        assert!(run_samples(&record, &machine(), &BTreeMap::new()).is_empty());
+    }
+
+    #[test]
+    fn without_beams_every_tick_of_a_feed_counts() {
+        let mut record = Record::default();
+        for sample in job([0.0; 4], 0).motion() {
+            let mut sample = *sample;
+            sample.beams = [false; SIDES];
+            record.add_motion(&[sample]);
+        }
+        let mut path = planned();
+        path.events.clear();
+        let result = evaluate(&record, &machine(), &BTreeMap::from([(7, path)]), None);
+        assert_eq!(result.weld_ticks, 50);
+        assert!(result.max_contour_error_mm.unwrap() < 1e-8);
+        assert!((result.ticks[0].along_mm - 150.1).abs() < 1e-9);
+    }
+
+    #[test]
+    fn contour_error_is_the_distance_from_the_nearest_place_of_the_path() {
+        let (path, seam) = (bent_path(), wavy_seam());
+        let (pose, _) = seam.planned(200.0).unwrap();
+        let slope = path.at(200.0).unwrap().first;
+        let along = Vector3::new(slope[0], slope[1], slope[2]).normalize();
+        let across = along.cross(&Vector3::z()).normalize();
+        let tip = pose.position + across * 0.03 + along.cross(&across) * 0.04;
+        let error = contour_error(&path, &tip, 203.0).unwrap();
+        assert!((error - 0.05).abs() < 1e-6, "{error}");
+        let (end, _) = seam.planned(500.0).unwrap();
+        let slope = path.at(500.0).unwrap().first;
+        let beyond = end.position + Vector3::new(slope[0], slope[1], slope[2]).normalize() * 0.07;
+        let error = contour_error(&path, &beyond, 500.0).unwrap();
+        assert!((error - 0.07).abs() < 1e-6, "{error}");
     }
 }

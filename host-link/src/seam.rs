@@ -31,9 +31,14 @@ pub struct Deviation {
 /// Why a seam cannot be followed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SeamError {
-    /// The machine has no slides.
-    #[error("the machine file has no slides to follow a seam with")]
+    /// A seam is given to a machine that cannot follow it.
+    #[error("this machine has no tracker, and no slides to follow a seam with: leave the seam out")]
     NoTracking,
+    /// The program tracks, and no seam is given.
+    #[error(
+        "the program follows the seam (M62 P2): say by --seam FILE how the real seams deviate from the programmed ones"
+    )]
+    NoSeam,
     /// Shorter than the weld.
     #[error(
         "the seam deviation covers s = {first:.3}…{last:.3} mm, but the weld is 0…{length:.3} mm: add rows to the seam file"

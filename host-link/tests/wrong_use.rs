@@ -16,7 +16,7 @@ const SEAM: &str = "programs/t-seam-400-deviation.csv";
 struct Attempt {
     program: PathBuf,
     machine: PathBuf,
-    seam: PathBuf,
+    seam: Option<PathBuf>,
     more: Vec<&'static str>,
     session: Option<PathBuf>,
 }
@@ -26,7 +26,7 @@ impl Attempt {
         Self {
             program: shipped(PROGRAM),
             machine: shipped(MACHINE),
-            seam: shipped(SEAM),
+            seam: Some(shipped(SEAM)),
             more: vec!["--boards", "simulated"],
             session: None,
         }
@@ -40,7 +40,10 @@ impl Attempt {
             .arg(self.program)
             .arg("--machine")
             .arg(self.machine);
-        command.arg("--seam").arg(self.seam).args(self.more);
+        if let Some(seam) = self.seam {
+            command.arg("--seam").arg(seam);
+        }
+        command.args(self.more);
         command.arg("--report").arg(scratch("no-report"));
         command.env_remove(SESSION_VARIABLE);
         if let Some(session) = self.session {
@@ -113,7 +116,7 @@ fn a_missing_file_is_named() {
             ..Attempt::new()
         },
         Attempt {
-            seam: none(),
+            seam: Some(none()),
             ..Attempt::new()
         },
     ];
@@ -127,7 +130,7 @@ fn a_malformed_seam_is_named_by_its_line_and_column() {
     let seam = changed("malformed.csv", SEAM, "\n4.5,", "\n4.5,oops,");
     let line = line_of(SEAM, "4.5,").to_string();
     let said = Attempt {
-        seam,
+        seam: Some(seam),
         ..Attempt::new()
     }
     .refusal();
@@ -141,7 +144,7 @@ fn a_malformed_seam_is_named_by_its_line_and_column() {
         "s_mm,u1_mm,v1_mm,u2_mm,v2_mm\n0,0,0,0,0\n410,0,much,0,0\n",
     );
     let said = Attempt {
-        seam,
+        seam: Some(seam),
         ..Attempt::new()
     }
     .refusal();
@@ -187,7 +190,7 @@ fn a_seam_beyond_the_slides_is_named_by_slide_place_and_amount() {
     let rows = "0,0,0,0,0\n200,0,0,0,-12.5\n410,0,0,0,0\n";
     let seam = written("far.csv", &format!("s_mm,u1_mm,v1_mm,u2_mm,v2_mm\n{rows}"));
     let said = Attempt {
-        seam,
+        seam: Some(seam),
         ..Attempt::new()
     }
     .refusal();
@@ -195,6 +198,61 @@ fn a_seam_beyond_the_slides_is_named_by_slide_place_and_amount() {
         &said,
         &["far.csv", "V2", "s = 200.0 mm", "0.500 mm beyond", "-12…12 mm"],
     );
+}
+
+/// The shipped machine without everything that follows a seam.
+fn without_tracker(name: &str) -> PathBuf {
+    let text = text_of(MACHINE);
+    let table = |heading: &str| text.find(heading).unwrap_or_else(|| panic!("no {heading}"));
+    let (head, planning) = (table("[head]"), table("[planning]"));
+    let cameras = table("[cameras]");
+    written(name, &[&text[..head], &text[planning..cameras]].concat())
+}
+
+#[test]
+fn a_seam_and_boards_that_do_not_suit_the_machine_are_told_with_the_remedy() {
+    let said = Attempt {
+        seam: None,
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(&said, &["t-seam-400.ngc", "follows the seam", "--seam FILE"]);
+
+    let machine = without_tracker("no-tracker.toml");
+    let program = "G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nG0 X910\nM2\n";
+    let said = Attempt {
+        machine: machine.clone(),
+        program: written("untracked.ngc", program),
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(&said, &["no tracker", "leave the seam out"]);
+
+    let said = Attempt {
+        more: vec!["--boards", "192.0.2.1"],
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(&said, &["has a tracker", "--boards MOTION,TRACKER"]);
+    let said = Attempt {
+        machine,
+        seam: None,
+        more: vec!["--boards", "192.0.2.1,192.0.2.2"],
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(&said, &["no tracker", "--boards MOTION"]);
+}
+
+#[test]
+fn a_part_that_cannot_be_planned_or_read_is_named() {
+    let part = written("boat.toml", "[boat]\nlength = 3\n");
+    let said = Attempt {
+        program: part,
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(&said, &["part file", "boat.toml", "line 1", "boat"]);
 }
 
 #[test]

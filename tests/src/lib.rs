@@ -76,12 +76,13 @@ pub fn weld(boards: &mut dyn Boards, seam: Deviation, speed_m_per_min: f64) -> E
         machine: &machine,
         program: &program(),
         speed_m_per_min: Some(speed_m_per_min),
-        seam: Rc::new(seam),
+        part: None,
+        seam: Some(Rc::new(seam)),
         seed: 1,
         names: Names {
             program: PROGRAM.into(),
             machine: MACHINE.into(),
-            seam: "seam".into(),
+            seam: Some("seam".into()),
             boards: "test".into(),
         },
     };
@@ -94,7 +95,7 @@ pub fn weld(boards: &mut dyn Boards, seam: Deviation, speed_m_per_min: f64) -> E
 /// Where it was not evaluated at every tick of the weld.
 pub fn deviations(report: &Report) -> [f64; 4] {
     assert_eq!(report.weld_ticks.unknown, 0, "{report}");
-    let max = report.max_deviation_mm;
+    let max = report.seam.as_ref().expect("a tracker").max_deviation_mm;
     [max.u1, max.v1, max.u2, max.v2].map(|max| max.expect("a weld"))
 }
 
@@ -107,7 +108,7 @@ pub fn assert_on_seam(ended: &Ended, limit_mm: f64) {
     let report = &ended.report;
     assert!(ended.error.is_none(), "{:?}", ended.error);
     assert_eq!(report.faults, [""; 0]);
-    assert_eq!((report.lost_ticks, report.telemetry_gaps), Default::default());
+    assert_eq!((report.lost_ticks.total(), report.telemetry_gaps.total()), (0, 0));
     assert!((report.weld_length_mm - 400.0).abs() < 0.5, "{report}");
     let deviations = deviations(report);
     println!("{:4} m/min: {deviations:.4?} mm", report.speed_m_per_min);

@@ -10,9 +10,9 @@ use shared::protocol::{Datagram, Identity, Refusal, Request, Response, Role};
 use std::time::Duration;
 use thiserror::Error;
 
-/// A session with a motion board and a tracker board.
+/// A session with a motion board and, where the machine has one, a tracker board.
 ///
-/// Whoever makes one has said Hello to both and compared the schema hashes. A job that uses nothing but
+/// Whoever makes one has said Hello to each and compared the schema hashes. A job that uses nothing but
 /// this trait for time and data is deterministic on simulated boards.
 pub trait Boards {
     /// Sends `request` and waits for the answer.
@@ -28,14 +28,15 @@ pub trait Boards {
     /// The PC's clock since the session began; virtual time for simulated boards.
     fn now(&self) -> Duration;
 
-    /// Who the board says it is.
-    fn identity(&self, role: Role) -> &Identity;
+    /// Who the board says it is; `None` if it is not in this session.
+    fn identity(&self, role: Role) -> Option<&Identity>;
 
-    /// Address and UDP port under which the motion board reaches the tracker board.
-    fn path_states_target(&self) -> ([u8; 4], u16);
+    /// Address and UDP port under which the motion board reaches the tracker board; `None` without one.
+    fn path_states_target(&self) -> Option<([u8; 4], u16)>;
 
-    /// UDP port of the PC to which the board shall send its datagrams ([`Request::Subscribe`]).
-    fn datagram_port(&self, role: Role) -> u16;
+    /// UDP port of the PC to which the board shall send its datagrams ([`Request::Subscribe`]); `None` if it
+    /// is not in this session.
+    fn datagram_port(&self, role: Role) -> Option<u16>;
 }
 
 /// As [`Boards::request`], for requests that are answered by [`Response::Done`].
@@ -67,6 +68,12 @@ pub enum LinkError {
         address: String,
         /// What the network said.
         source: std::io::Error,
+    },
+    /// The session was made without this board.
+    #[error("this session has no {} board, which the machine needs; name the addresses of both boards", role_name(*.role))]
+    Absent {
+        /// Which board.
+        role: Role,
     },
     /// The connection broke, or the board is silent.
     #[error("the connection to the {} board was lost ({source})", role_name(*.role))]

@@ -4,7 +4,8 @@ use super::read_program;
 use crate::machine::MachineFile;
 use crate::nc::Motion;
 use crate::path::{PlannedPath, Planner};
-use crate::seam::Deviation;
+use crate::seam::{Deviation, SeamError};
+use crate::weld::check_seam;
 use anyhow::Context;
 use clap::Args;
 use std::path::PathBuf;
@@ -40,13 +41,11 @@ impl Check {
         let paths = planner
             .program(&program, &from, speed)
             .with_context(|| format!("program {name}"))?;
-        if let Some(file) = &self.seam {
-            let deviation = Deviation::read(file)?;
-            for path in paths.iter().filter(|path| path.weld().is_some()) {
-                deviation
-                    .check(path, &machine)
-                    .with_context(|| file.display().to_string())?;
-            }
+        let seam = self.seam.as_deref().map(Deviation::read).transpose()?;
+        match check_seam(&paths, &machine, seam.as_ref()) {
+            // Without a seam, what can be said without one is said.
+            Ok(()) | Err(SeamError::NoSeam) => {}
+            Err(error) => return Err(error).with_context(|| format!("program {name}")),
         }
         print(&paths);
         Ok(())

@@ -4,12 +4,12 @@ use super::read_program;
 use crate::boards::simulated::SimulatedBoards;
 use crate::boards::{Boards, Endpoint, LinkError, NetworkBoards, Patience};
 use crate::machine::MachineFile;
-use crate::nc::Program;
+use crate::part::PartFile;
 use crate::path::Planner;
-use crate::report;
-use crate::seam::Deviation;
+use crate::report::{self, Report};
+use crate::seam::{Deviation, SeamError};
 use crate::weld::{Job, JobError, Names, Terminal, run};
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clap::Args;
 use emulator::{SESSION_VARIABLE, Session};
 use std::path::{Path, PathBuf};
@@ -18,28 +18,44 @@ use std::rc::Rc;
 use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
 
+/// Exit code of a weld that is outside the limits of its part.
+const OUTSIDE: u8 = 3;
 /// Exit code after Ctrl-C, as shells have it.
 const INTERRUPTED: u8 = 130;
+/// How often Ctrl-C is looked for while the boards are connected.
+const POLL: Duration = Duration::from_millis(20);
 
-/// Weld: run a program on two boards while the tracker follows the seam
+/// Weld: run a program on the machine and judge what came of it
+///
+/// A machine with a tracker follows the seam on two boards; every other machine needs the motion board only.
 #[derive(Debug, Args)]
+#[command(
+    after_help = "Exit code: 0 if the weld is done and within its limits, 3 if it is outside them, \
+    1 if it was refused or failed, 130 after Ctrl-C."
+)]
 pub struct Weld {
-    /// NC program
-    program: PathBuf,
+    /// NC program, or part file (*.toml) that a program is planned from
+    #[arg(value_name = "JOB")]
+    job: PathBuf,
     /// Machine file
     #[arg(long)]
     machine: PathBuf,
-    /// Deviation of the real seams (CSV)
+    /// Part file that the run is judged by [default: the one beside the program, of the same name]
     #[arg(long)]
-    seam: PathBuf,
+    part: Option<PathBuf>,
+    /// Deviation of the real seams (CSV), for programs that follow them
+    #[arg(long)]
+    seam: Option<PathBuf>,
     /// Speed of the weld in place of the programmed feed [m/min]
     #[arg(long, value_name = "M_PER_MIN", value_parser = speed, allow_negative_numbers = true)]
     speed: Option<f64>,
-    /// emulated, simulated, or the addresses MOTION,TRACKER of real boards
+    /// emulated, simulated, or the addresses of real boards: MOTION,TRACKER, or MOTION without a tracker
     #[arg(long, default_value = "emulated")]
     boards: BoardChoice,
-    /// Where report.json, log.csv and the plots go
+    /// Where report.json, log.csv and the plots go, and the program planned from a part
     #[arg(long, value_name = "DIR", default_value = "report")]
     report: PathBuf,
     /// Start of the simulated cameras' noise
@@ -55,21 +71,27 @@ pub struct Weld {
 enum BoardChoice {
     Emulated,
     Simulated,
-    At { motion: String, tracker: String },
+    At { motion: String, tracker: Option<String> },
 }
 
 impl FromStr for BoardChoice {
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match (text, text.split_once(',')) {
-            ("emulated", _) => Ok(Self::Emulated),
-            ("simulated", _) => Ok(Self::Simulated),
-            (_, Some((motion, tracker))) if !motion.is_empty() && !tracker.is_empty() => Ok(Self::At {
+        let (motion, tracker) = match text.split_once(',') {
+            Some((motion, tracker)) => (motion, Some(tracker)),
+            None => (text, None),
+        };
+        match text {
+            "emulated" => Ok(Self::Emulated),
+            "simulated" => Ok(Self::Simulated),
+            _ if motion.is_empty() || tracker == Some("") => {
+                Err("say emulated, simulated, or the addresses MOTION,TRACKER (MOTION without a tracker)")
+            }
+            _ => Ok(Self::At {
                 motion: motion.to_owned(),
-                tracker: tracker.to_owned(),
+                tracker: tracker.map(str::to_owned),
             }),
-            _ => Err("say emulated, simulated, or two addresses MOTION,TRACKER"),
         }
     }
 }
@@ -79,19 +101,42 @@ impl BoardChoice {
         match self {
             Self::Emulated => "emulated".to_owned(),
             Self::Simulated => "simulated".to_owned(),
-            Self::At { motion, tracker } => format!("{motion},{tracker}"),
+            Self::At {
+                motion,
+                tracker: None,
+            } => motion.clone(),
+            Self::At {
+                motion,
+                tracker: Some(tracker),
+            } => format!("{motion},{tracker}"),
         }
     }
 
-    /// Connects; simulated boards become the `machine` of the file, emulated ones must have been booted as it.
-    fn connect(&self, machine: &MachineFile) -> Result<Box<dyn Boards>, LinkError> {
-        let wanted = machine.motion.kinematics.name();
+    /// Whether these are the boards that the machine needs.
+    fn check(&self, machine: &MachineFile) -> anyhow::Result<()> {
+        match (self, &machine.tracking) {
+            (Self::At { tracker: None, .. }, Some(_)) => {
+                bail!("this machine has a tracker: say the addresses of both boards, --boards MOTION,TRACKER")
+            }
+            (Self::At { tracker: Some(_), .. }, None) => {
+                bail!(
+                    "this machine has no tracker: say the address of the motion board only, --boards MOTION"
+                )
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Connects; simulated boards become the machine whose kinematics are `wanted`, emulated ones must have been
+    /// booted as it. The tracker board is left alone unless the machine is `tracked`.
+    fn connect(&self, wanted: &'static str, tracked: bool) -> Result<Box<dyn Boards + Send>, LinkError> {
         let patience = Patience::default();
         match self {
             Self::Simulated => Ok(Box::new(SimulatedBoards::new(wanted)?)),
             Self::At { motion, tracker } => {
-                let (motion, tracker) = (Endpoint::board(motion), Endpoint::board(tracker));
-                let boards = NetworkBoards::connect(&motion, &tracker, None, patience)?;
+                let motion = Endpoint::board(motion);
+                let tracker = tracker.as_deref().map(Endpoint::board);
+                let boards = NetworkBoards::connect(&motion, tracker.as_ref(), None, patience)?;
                 Ok(Box::new(boards))
             }
             Self::Emulated => {
@@ -101,8 +146,25 @@ impl BoardChoice {
                     let wired = session.machine;
                     return Err(LinkError::WrongMachine { wired, wanted });
                 }
-                Ok(Box::new(NetworkBoards::emulated(&session, patience)?))
+                Ok(Box::new(NetworkBoards::emulated(&session, tracked, patience)?))
             }
+        }
+    }
+}
+
+/// Does `connect`, which may wait for boards that are silent, unless the operator gives up before: `None`.
+fn unless_interrupted<T: Send + 'static>(
+    connect: impl FnOnce() -> Result<T, LinkError> + Send + 'static,
+    interrupted: &AtomicBool,
+) -> Result<Option<T>, LinkError> {
+    let (sender, connected) = channel();
+    // An attempt that nobody waits for any more ends with this program.
+    std::thread::spawn(move || sender.send(connect()));
+    loop {
+        match connected.recv_timeout(POLL) {
+            Ok(boards) => return boards.map(Some),
+            Err(RecvTimeoutError::Timeout) if !interrupted.load(Ordering::Relaxed) => {}
+            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => return Ok(None),
         }
     }
 }
@@ -120,36 +182,46 @@ impl Weld {
     /// report even if the job ended early.
     pub fn run(self) -> anyhow::Result<ExitCode> {
         let machine = MachineFile::read(&self.machine)?;
-        let program = read_program(&self.program, self.block_delete)?;
-        let seam = Deviation::read(&self.seam)?;
-        self.check(&machine, &program, &seam)?;
+        self.boards.check(&machine)?;
+        let (program_file, part) = self.program_and_part(&machine)?;
+        let program = read_program(&program_file, self.block_delete)?;
+        let seam = self.seam.as_deref().map(Deviation::read).transpose()?;
+        let name = |path: &Path| path.display().to_string();
+        let job = Job {
+            machine: &machine,
+            program: &program,
+            part: part.as_ref(),
+            speed_m_per_min: self.speed,
+            seam: seam.map(Rc::new),
+            seed: self.seed,
+            names: Names {
+                program: name(&program_file),
+                machine: name(&self.machine),
+                seam: self.seam.as_deref().map(name),
+                boards: self.boards.name(),
+            },
+        };
+        self.check(&job)?;
         report::prepare(&self.report)?;
         let interrupted = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&interrupted);
         ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot watch for Ctrl-C")?;
 
-        let mut boards = self.boards.connect(&machine)?;
-        let job = Job {
-            machine: &machine,
-            program: &program,
-            speed_m_per_min: self.speed,
-            seam: Rc::new(seam),
-            seed: self.seed,
-            names: Names {
-                program: self.program.display().to_string(),
-                machine: self.machine.display().to_string(),
-                seam: self.seam.display().to_string(),
-                boards: self.boards.name(),
-            },
+        let (choice, wanted) = (self.boards.clone(), machine.motion.kinematics.name());
+        let tracked = machine.tracking.is_some();
+        let connect = move || choice.connect(wanted, tracked);
+        let Some(mut boards) = unless_interrupted(connect, &interrupted)? else {
+            eprintln!("host-link: stopped by the operator; the boards were not asked for anything");
+            return Ok(ExitCode::from(INTERRUPTED));
         };
         let ended = run(boards.as_mut(), &job, &interrupted, &mut Terminal::new())?;
         if ended.began {
-            report::write(&self.report, &ended.report, &ended.evaluation)?;
+            report::write(&self.report, &ended.report, &ended.evaluation, &ended.plots)?;
             print!("{}", ended.report);
             println!("  report in {}", self.report.display());
         }
         match ended.error {
-            None => Ok(ExitCode::SUCCESS),
+            None => Ok(verdict(&ended.report)),
             Some(JobError::Interrupted) => {
                 eprintln!("host-link: {}", JobError::Interrupted);
                 Ok(ExitCode::from(INTERRUPTED))
@@ -158,22 +230,58 @@ impl Weld {
         }
     }
 
+    /// The program to run, planned if the job is a part, and the part to judge it by.
+    fn program_and_part(&self, machine: &MachineFile) -> anyhow::Result<(PathBuf, Option<PartFile>)> {
+        let told = self.part.as_deref().map(PartFile::read).transpose()?;
+        if self.job.extension().is_none_or(|extension| extension != "toml") {
+            let part = match told {
+                Some(part) => Some(part),
+                None => PartFile::of_program(&self.job)?,
+            };
+            return Ok((self.job.clone(), part));
+        }
+        let part = PartFile::read(&self.job)?;
+        let title = self.job.file_stem().unwrap_or_default().to_string_lossy();
+        let plan = part
+            .plan(machine, &title)
+            .with_context(|| format!("part {}", self.job.display()))?;
+        report::prepare(&self.report)?;
+        let file = self.report.join("program.ngc");
+        std::fs::write(&file, &plan.program).with_context(|| format!("cannot write {}", file.display()))?;
+        println!("{}:", file.display());
+        for note in &plan.notes {
+            println!("  {note}");
+        }
+        Ok((file, Some(told.unwrap_or(part))))
+    }
+
     /// Whether the machine can run the program and the slides reach the seam, from the park position. The boards
     /// are asked to move only if so.
-    fn check(&self, machine: &MachineFile, program: &Program, seam: &Deviation) -> anyhow::Result<()> {
-        let planner =
-            Planner::build(machine).with_context(|| format!("machine file {}", self.machine.display()))?;
-        let from = machine.planning.park_axes();
-        let speed = self.speed.map(|speed| speed * shared::units::MM_S_PER_M_MIN);
-        let paths = planner
-            .program(program, &from, speed)
-            .with_context(|| format!("program {}", self.program.display()))?;
-        for path in paths.iter().filter(|path| path.weld().is_some()) {
-            seam.check(path, machine)
-                .with_context(|| format!("seam {}", self.seam.display()))?;
-        }
-        Ok(())
+    fn check(&self, job: &Job) -> anyhow::Result<()> {
+        let planner = Planner::build(job.machine)
+            .with_context(|| format!("machine file {}", self.machine.display()))?;
+        let planned = job.plan(&planner, &job.machine.planning.park_axes());
+        let owner = match (&planned, &self.seam) {
+            (Err(JobError::Seam(SeamError::TooShort { .. } | SeamError::Reach { .. })), Some(seam)) => {
+                format!("seam {}", seam.display())
+            }
+            _ => format!("program {}", job.names.program),
+        };
+        planned.map(drop).context(owner)
     }
+}
+
+/// Exit code of a job that came to its end; says what is outside its limits.
+fn verdict(report: &Report) -> ExitCode {
+    let exceeded: Vec<String> = report.exceeded().map(report::sentence).collect();
+    if exceeded.is_empty() {
+        return ExitCode::SUCCESS;
+    }
+    eprintln!(
+        "host-link: the weld is outside its limits: {}",
+        exceeded.join(", ")
+    );
+    ExitCode::from(OUTSIDE)
 }
 
 #[cfg(test)]
@@ -181,12 +289,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn boards_are_chosen_by_word_or_by_two_addresses() {
+    fn boards_are_chosen_by_word_or_by_address() {
         assert_eq!("emulated".parse(), Ok(BoardChoice::Emulated));
         assert_eq!("simulated".parse(), Ok(BoardChoice::Simulated));
         let two = "192.168.7.10,192.168.7.11".parse::<BoardChoice>().unwrap();
         assert_eq!(two.name(), "192.168.7.10,192.168.7.11");
-        for wrong in ["", "emulate", "192.168.7.10", "192.168.7.10,", ",x"] {
+        let one = "192.168.7.10".parse::<BoardChoice>().unwrap();
+        assert_eq!(one.name(), "192.168.7.10");
+        for wrong in ["", "192.168.7.10,", ",x"] {
             assert!(wrong.parse::<BoardChoice>().is_err(), "{wrong}");
         }
     }
@@ -197,5 +307,20 @@ mod tests {
         for wrong in ["0", "-1", "fast", "NaN", "inf"] {
             assert!(speed(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn a_silent_board_is_not_waited_for_once_the_operator_gives_up() {
+        let (_never, silent) = channel::<()>();
+        let connect = move || {
+            let _ = silent.recv();
+            Ok(())
+        };
+        assert!(matches!(
+            unless_interrupted(connect, &AtomicBool::new(true)),
+            Ok(None)
+        ));
+        let quick = unless_interrupted(|| Ok(7), &AtomicBool::new(false));
+        assert!(matches!(quick, Ok(Some(7))));
     }
 }

@@ -123,6 +123,11 @@ impl PartFile {
         path.exists().then(|| Self::read(&path)).transpose()
     }
 
+    /// Where it came from.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// The part.
     pub fn part(&self) -> &Part {
         &self.part

@@ -1,27 +1,33 @@
-//! `log.csv`: one line for each tick on a path with a seam.
+//! `log.csv`: one line for each tick on a path that works.
 
-use crate::evaluate::SeamTick;
-use shared::io::{MOTOR_NAMES, SLIDE_NAMES};
+use super::Report;
+use crate::evaluate::WorkTick;
+use shared::io::SLIDE_NAMES;
 use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
 use std::fmt::Write;
 
-/// The log with its heading; unknown values are empty.
-pub(super) fn csv(ticks: &[SeamTick]) -> String {
+/// The log with its heading; unknown values are empty. There are columns for what the machine has.
+pub(super) fn csv(report: &Report, ticks: &[WorkTick]) -> String {
     let mut text = String::from("tick,along_mm,speed_m_per_min,beam_1,beam_2");
-    for name in SLIDE_NAMES {
+    let slides = if report.seam.is_some() {
+        &SLIDE_NAMES[..]
+    } else {
+        &[]
+    };
+    for name in slides {
         text += &format!(",deviation_{}_mm", name.to_lowercase());
     }
     text += ",contour_error_mm";
-    for name in SLIDE_NAMES {
+    for name in slides {
         text += &format!(",slide_{}_mm", name.to_lowercase());
     }
-    for (i, name) in MOTOR_NAMES.iter().enumerate() {
-        let unit = if is_rotary(i) { "deg" } else { "mm" };
+    for (motor, name, _) in report.max_following_error.fitted() {
+        let unit = if is_rotary(motor) { "deg" } else { "mm" };
         text += &format!(",following_error_{name}_{unit}");
     }
     text += "\n";
     for tick in ticks {
-        line(&mut text, tick).expect("a String takes everything");
+        line(&mut text, report, slides.len(), tick).expect("a String takes everything");
     }
     text
 }
@@ -31,7 +37,7 @@ pub(super) fn is_rotary(motor: usize) -> bool {
     motor >= 4
 }
 
-fn line(text: &mut String, tick: &SeamTick) -> std::fmt::Result {
+fn line(text: &mut String, report: &Report, slides: usize, tick: &WorkTick) -> std::fmt::Result {
     let [beam_1, beam_2] = tick.beams.map(u8::from);
     write!(
         text,
@@ -40,28 +46,24 @@ fn line(text: &mut String, tick: &SeamTick) -> std::fmt::Result {
         tick.along_mm,
         tick.speed_mm_s / MM_S_PER_M_MIN
     )?;
-    let slides = match tick.slides_mm {
+    let slides_mm = match tick.slides_mm {
         Some(slides) => slides.map(Some),
         None => [None; 4],
     };
-    for value in tick
-        .deviation_mm
-        .into_iter()
+    let deviation = tick.deviation_mm.into_iter().take(slides);
+    for value in deviation
         .chain([tick.contour_error_mm])
-        .chain(slides)
+        .chain(slides_mm.into_iter().take(slides))
     {
         match value {
             Some(value) => write!(text, ",{value:.7}")?,
             None => text.push(','),
         }
     }
-    for (i, error) in tick.following_error.iter().enumerate() {
-        let error = f64::from(*error);
-        write!(
-            text,
-            ",{:.7}",
-            if is_rotary(i) { error * DEG_PER_RAD } else { error }
-        )?;
+    for (motor, _, _) in report.max_following_error.fitted() {
+        let error = f64::from(tick.following_error[motor]);
+        let unit = if is_rotary(motor) { DEG_PER_RAD } else { 1.0 };
+        write!(text, ",{:.7}", error * unit)?;
     }
     text.push('\n');
     Ok(())
@@ -70,9 +72,10 @@ fn line(text: &mut String, tick: &SeamTick) -> std::fmt::Result {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::report::tests::{report, without_tracker};
 
-    pub(crate) fn tick(tick: u32) -> SeamTick {
-        SeamTick {
+    pub(crate) fn tick(tick: u32) -> WorkTick {
+        WorkTick {
             tick,
             along_mm: 0.1 * f64::from(tick),
             speed_mm_s: 5.0 * MM_S_PER_M_MIN,
@@ -86,7 +89,7 @@ pub(crate) mod tests {
 
     #[test]
     fn every_line_has_the_columns_of_the_heading_and_unknown_values_are_empty() {
-        let text = csv(&[tick(3), tick(4)]);
+        let text = csv(&report(), &[tick(3), tick(4)]);
         let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
         assert_eq!(lines.len(), 3);
         for line in &lines {
@@ -100,5 +103,15 @@ pub(crate) mod tests {
         assert_eq!(value("deviation_u2_mm"), "");
         assert_eq!(value("slide_u1_mm"), "");
         assert_eq!(value("following_error_C_deg"), "0.1145916");
+    }
+
+    #[test]
+    fn there_are_no_columns_of_what_the_machine_does_not_have() {
+        let text = csv(&without_tracker(), &[tick(3)]);
+        let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
+        assert_eq!(lines[0].len(), lines[1].len());
+        let has = |part: &str| lines[0].iter().any(|name| name.contains(part));
+        assert!(!has("slide") && !has("deviation") && !has("X2"));
+        assert!(has("contour_error_mm") && has("following_error_X1_mm"));
     }
 }

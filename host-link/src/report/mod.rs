@@ -1,13 +1,14 @@
 //! What is left of a job: `report.json` and `log.csv` for programs, plots and a table for people.
 
+mod draw;
 mod log;
 mod plots;
 mod table;
 
 use crate::evaluate::Evaluation;
-use serde::Serialize;
-use shared::io::{MOTORS, SLIDES};
-use shared::units::DEG_PER_RAD;
+use crate::part::{Figure, Plot};
+use serde::{Serialize, Serializer};
+use shared::io::{MOTOR_NAMES, MOTORS, SLIDES};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -21,42 +22,89 @@ pub struct Report {
     pub program: String,
     /// The machine file, as it was named.
     pub machine: String,
-    /// The file of the seam's deviation, as it was named.
-    pub seam: String,
+    /// The file of the part that the run was judged by.
+    pub part: Option<String>,
     /// The boards that were used.
     pub boards: BoardsUsed,
     /// Where the positions come from that count as true.
     pub truth: Truth,
-    /// Programmed speed of the weld.
+    /// Programmed speed of the first path that works.
     pub speed_m_per_min: f64,
-    /// Length of path with a beam on.
+    /// Length of path with a beam on; of all feeds if no beam ever was.
     pub weld_length_mm: f64,
-    /// Largest distance of the true spot from the true seam, beam on.
-    pub max_deviation_mm: BySlide,
-    /// Root mean square of the same.
-    pub rms_deviation_mm: BySlide,
-    /// Largest distance of the tip from the programmed path, beam on.
+    /// Largest distance of the tip from the programmed path on the same length.
     pub max_contour_error_mm: Option<f64>,
     /// Largest following error on any path; X1 X2 Y Z in mm, A B C in degrees.
     pub max_following_error: ByMotor,
-    /// Largest |X1 − X2 − square offset| on any path.
-    pub max_gantry_skew_um: f64,
-    /// Path ticks with a beam on, and how many of them could not be evaluated.
+    /// Largest |X1 − X2 − square offset| on any path, where X is a gantry.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_gantry_skew_um: Option<f64>,
+    /// Path ticks of that length, and how many of them could not be evaluated.
     pub weld_ticks: WeldTicks,
     /// Control ticks that a board could not serve in time, during the job.
     pub lost_ticks: ByBoard,
     /// Ticks whose telemetry never arrived.
     pub telemetry_gaps: ByBoard,
+    /// How the seam was followed, where the machine has a tracker.
+    #[serde(flatten)]
+    pub seam: Option<SeamFigures>,
+    /// What the part says of the run, by key.
+    #[serde(serialize_with = "by_key")]
+    pub figures: Vec<Figure>,
+    /// Time that the paths should take, without the dwells between them.
+    pub planned_motion_s: f64,
+    /// Time that they took by the motion board's clock.
+    pub motion_s: f64,
+    /// Faults of the boards and whatever else ended the job early, as sentences.
+    pub faults: Vec<String>,
+    /// From the first request to the last answer, by the boards' time if they are simulated.
+    pub duration_s: f64,
+}
+
+impl Report {
+    /// Figures beyond their limit.
+    pub fn exceeded(&self) -> impl Iterator<Item = &Figure> {
+        self.figures.iter().filter(|figure| is_exceeded(figure))
+    }
+}
+
+/// A figure that is no number keeps no limit.
+fn is_exceeded(figure: &Figure) -> bool {
+    figure
+        .limit
+        .is_some_and(|limit| figure.value > limit || figure.value.is_nan())
+}
+
+/// An exceeded figure in words.
+pub fn sentence(figure: &Figure) -> String {
+    let Figure { text, unit, .. } = figure;
+    let limit = table::number(figure.limit.unwrap_or(f64::NAN));
+    format!(
+        "{text} {} {unit} (may be {limit} {unit})",
+        table::number(figure.value)
+    )
+}
+
+/// A map from the key of each figure to its value, unit and limit.
+fn by_key<S: Serializer>(figures: &[Figure], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(figures.iter().map(|figure| (figure.key, figure)))
+}
+
+/// How the seam was followed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SeamFigures {
+    /// The file of the seam's deviation, as it was named.
+    pub seam: Option<String>,
+    /// Largest distance of the true spot from the true seam, beam on.
+    pub max_deviation_mm: BySlide,
+    /// Root mean square of the same.
+    pub rms_deviation_mm: BySlide,
     /// Measurements of the cameras as the tracker board took them.
     pub measurements: Measurements,
     /// Largest residual of the tracker's relation to the motion clock while welding.
     pub clock_residual_us: Option<f64>,
     /// Largest difference between the tracker's relation to the motion clock and the PC's while welding.
     pub clock_difference_us: Option<f64>,
-    /// Faults of the boards and whatever else ended the job early, as sentences.
-    pub faults: Vec<String>,
-    /// From the first request to the last answer, by the boards' time if they are simulated.
-    pub duration_s: f64,
 }
 
 /// How a job ended.
@@ -89,8 +137,9 @@ pub struct BoardsUsed {
     pub choice: String,
     /// Name and firmware of the motion board.
     pub motion: String,
-    /// Name and firmware of the tracker board.
-    pub tracker: String,
+    /// Name and firmware of the tracker board, if it was used.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tracker: Option<String>,
 }
 
 /// One figure a slide.
@@ -109,47 +158,38 @@ impl From<[Option<f64>; SLIDES]> for BySlide {
     }
 }
 
-/// One figure a motor.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "UPPERCASE")]
-#[expect(missing_docs, reason = "the names of the motors say it")]
-pub struct ByMotor {
-    pub x1: f64,
-    pub x2: f64,
-    pub y: f64,
-    pub z: f64,
-    pub a: f64,
-    pub b: f64,
-    pub c: f64,
-}
+/// One figure for each motor that the machine has, in the order of [`MOTOR_NAMES`] (mm or degrees).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ByMotor(pub [Option<f64>; MOTORS]);
 
 impl ByMotor {
-    /// From mm and rad to mm and degrees.
-    pub fn from_mm_rad([x1, x2, y, z, a, b, c]: [f64; MOTORS]) -> Self {
-        let [a, b, c] = [a, b, c].map(|angle| angle * DEG_PER_RAD);
-        Self {
-            x1,
-            x2,
-            y,
-            z,
-            a,
-            b,
-            c,
-        }
+    /// Number, name and figure of each motor that the machine has.
+    pub fn fitted(&self) -> impl Iterator<Item = (usize, &'static str, f64)> {
+        let named = MOTOR_NAMES.into_iter().zip(self.0).enumerate();
+        named.filter_map(|(motor, (name, figure))| Some((motor, name, figure?)))
     }
+}
 
-    /// In the order of [`shared::io::MOTOR_NAMES`].
-    fn to_array(self) -> [f64; MOTORS] {
-        [self.x1, self.x2, self.y, self.z, self.a, self.b, self.c]
+impl Serialize for ByMotor {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.fitted().map(|(_, name, figure)| (name, figure)))
     }
 }
 
 /// One count a board.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[expect(missing_docs, reason = "the names of the boards say it")]
 pub struct ByBoard {
     pub motion: u32,
-    pub tracker: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tracker: Option<u32>,
+}
+
+impl ByBoard {
+    /// Of both boards.
+    pub fn total(&self) -> u32 {
+        self.motion + self.tracker.unwrap_or(0)
+    }
 }
 
 /// Path ticks with a beam on.
@@ -192,8 +232,13 @@ impl ReportError {
 }
 
 /// Writes `report.json`, `log.csv` and, if anything was welded, the plots into `directory`, which is made if it
-/// is missing.
-pub fn write(directory: &Path, report: &Report, evaluation: &Evaluation) -> Result<(), ReportError> {
+/// is missing. `more` are the plots of the part.
+pub fn write(
+    directory: &Path,
+    report: &Report,
+    evaluation: &Evaluation,
+    more: &[Plot],
+) -> Result<(), ReportError> {
     std::fs::create_dir_all(directory).map_err(|e| ReportError::new(directory, e))?;
     let save = |name: &str, content: String| {
         let path = directory.join(name);
@@ -201,11 +246,11 @@ pub fn write(directory: &Path, report: &Report, evaluation: &Evaluation) -> Resu
     };
     let json = serde_json::to_string_pretty(report).map_err(|e| ReportError::new(directory, e))?;
     save("report.json", json + "\n")?;
-    save("log.csv", log::csv(&evaluation.ticks))?;
+    save("log.csv", log::csv(report, &evaluation.ticks))?;
     if !evaluation.ticks.is_empty() {
         plots::draw(directory, report, &evaluation.ticks)?;
     }
-    Ok(())
+    plots::draw_more(directory, report, more)
 }
 
 /// Checks that a report can be written into `directory`, before anything moves.
@@ -224,34 +269,46 @@ impl fmt::Display for Report {
 pub(crate) mod tests {
     use super::*;
 
+    const NONE: ByBoard = ByBoard {
+        motion: 0,
+        tracker: Some(0),
+    };
+
+    /// A weld with everything.
     pub(crate) fn report() -> Report {
         Report {
             outcome: Outcome::Finished,
             program: "job.ngc".into(),
             machine: "machine.toml".into(),
-            seam: "seam.csv".into(),
+            part: None,
             boards: BoardsUsed {
                 choice: "simulated".into(),
                 motion: "simulation 0.1.0".into(),
-                tracker: "simulation 0.1.0".into(),
+                tracker: Some("simulation 0.1.0".into()),
             },
             truth: Truth::SimulatedMachine,
             speed_m_per_min: 5.0,
             weld_length_mm: 400.0,
-            max_deviation_mm: [Some(0.0123), Some(0.011), Some(0.009), None].into(),
-            rms_deviation_mm: [Some(0.003), Some(0.002), Some(0.002), None].into(),
             max_contour_error_mm: Some(0.004),
-            max_following_error: ByMotor::from_mm_rad([0.01, 0.02, 0.03, 0.04, 0.001, 0.002, 0.003]),
-            max_gantry_skew_um: 4.2,
+            max_following_error: ByMotor([0.01, 0.02, 0.03, 0.04, 0.001, 0.002, 0.1719].map(Some)),
+            max_gantry_skew_um: Some(4.2),
             weld_ticks: WeldTicks {
                 recorded: 4800,
                 unknown: 0,
             },
-            lost_ticks: ByBoard::default(),
-            telemetry_gaps: ByBoard::default(),
-            measurements: Measurements::default(),
-            clock_residual_us: Some(12.0),
-            clock_difference_us: None,
+            lost_ticks: NONE,
+            telemetry_gaps: NONE,
+            seam: Some(SeamFigures {
+                seam: Some("seam.csv".into()),
+                max_deviation_mm: [Some(0.0123), Some(0.011), Some(0.009), None].into(),
+                rms_deviation_mm: [Some(0.003), Some(0.002), Some(0.002), None].into(),
+                measurements: Measurements::default(),
+                clock_residual_us: Some(12.0),
+                clock_difference_us: None,
+            }),
+            figures: Vec::new(),
+            planned_motion_s: 20.0,
+            motion_s: 20.1,
             faults: vec!["laser 1 reports a fault; look at the source's own display".into()],
             duration_s: 42.5,
         }
@@ -266,8 +323,7 @@ pub(crate) mod tests {
         assert_eq!(json["rms_deviation_mm"]["v1"], 0.002);
         assert_eq!(json["max_contour_error_mm"], 0.004);
         assert_eq!(json["max_following_error"]["X2"], 0.02);
-        let degrees = json["max_following_error"]["C"].as_f64().unwrap();
-        assert!((degrees - 0.171_887).abs() < 1e-6);
+        assert_eq!(json["max_following_error"]["C"], 0.1719);
         assert_eq!(json["max_gantry_skew_um"], 4.2);
         assert_eq!(json["lost_ticks"]["motion"], 0);
         assert_eq!(json["lost_ticks"]["tracker"], 0);
@@ -276,5 +332,64 @@ pub(crate) mod tests {
         assert_eq!(json["duration_s"], 42.5);
         assert_eq!(json["outcome"], "finished");
         assert_eq!(json["truth"], "simulated machine");
+        assert_eq!(json["seam"], "seam.csv");
+        assert_eq!(json["figures"], serde_json::json!({}));
+    }
+
+    /// The same of a machine without tracker, judged by its part.
+    pub(crate) fn without_tracker() -> Report {
+        let figure = |key, text, value, limit| Figure {
+            key,
+            text,
+            value,
+            unit: "mm",
+            limit,
+        };
+        let mut report = report();
+        report.seam = None;
+        report.boards.tracker = None;
+        report.lost_ticks.tracker = None;
+        report.telemetry_gaps.tracker = None;
+        report.max_gantry_skew_um = None;
+        report.max_following_error.0[1] = None;
+        report.part = Some("job.toml".into());
+        report.figures = vec![
+            figure("max_distance_mm", "distance to the saddle", 0.0061, Some(0.01)),
+            figure("max_height_error_mm", "height of the torch", 0.25, Some(0.2)),
+            figure("length_mm", "length", 123.4, None),
+        ];
+        report
+    }
+
+    #[test]
+    fn a_machine_without_tracker_has_no_figures_of_one() {
+        let json = serde_json::to_value(without_tracker()).unwrap();
+        for absent in [
+            "/seam",
+            "/max_deviation_mm",
+            "/measurements",
+            "/clock_residual_us",
+            "/boards/tracker",
+            "/lost_ticks/tracker",
+            "/telemetry_gaps/tracker",
+            "/max_gantry_skew_um",
+            "/max_following_error/X2",
+        ] {
+            assert_eq!(json.pointer(absent), None, "{absent}");
+        }
+        assert_eq!(json["max_following_error"]["X1"], 0.01);
+        assert_eq!(json["figures"]["max_distance_mm"]["value"], 0.0061);
+        assert_eq!(json["figures"]["max_distance_mm"]["limit"], 0.01);
+        assert!(json["figures"]["length_mm"]["limit"].is_null());
+    }
+
+    #[test]
+    fn what_is_beyond_its_limit_or_no_number_is_exceeded() {
+        let mut report = without_tracker();
+        let keys = |report: &Report| report.exceeded().map(|f| f.key).collect::<Vec<_>>();
+        assert_eq!(keys(&report), ["max_height_error_mm"]);
+        report.figures[0].value = f64::NAN;
+        report.figures[1].value = 0.2;
+        assert_eq!(keys(&report), ["max_distance_mm"]);
     }
 }

@@ -1,8 +1,7 @@
 //! The table for people.
 
-use super::{Outcome, Report, Truth};
-use crate::report::log::is_rotary;
-use shared::io::MOTOR_NAMES;
+use super::log::is_rotary;
+use super::{Outcome, Report, SeamFigures, Truth, is_exceeded};
 use std::fmt::{Formatter, Result};
 
 pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
@@ -11,14 +10,19 @@ pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
         Outcome::Interrupted => "stopped by the operator",
         Outcome::Failed => "stopped by a fault",
     };
-    writeln!(f, "{} at {:.2} m/min: {ending}", r.program, r.speed_m_per_min)?;
+    writeln!(f, "{} at {}: {ending}", r.program, speed(r.speed_m_per_min))?;
     writeln!(f, "  machine         {}", r.machine)?;
-    writeln!(f, "  seam            {}", r.seam)?;
-    writeln!(
-        f,
-        "  boards          {} ({}, {})",
-        r.boards.choice, r.boards.motion, r.boards.tracker
-    )?;
+    if let Some(seam) = r.seam.as_ref().and_then(|figures| figures.seam.as_ref()) {
+        writeln!(f, "  seam            {seam}")?;
+    }
+    if let Some(part) = &r.part {
+        writeln!(f, "  part            {part}")?;
+    }
+    let boards: Vec<&str> = [Some(r.boards.motion.as_str()), r.boards.tracker.as_deref()]
+        .into_iter()
+        .flatten()
+        .collect();
+    writeln!(f, "  boards          {} ({})", r.boards.choice, boards.join(", "))?;
     let truth = match r.truth {
         Truth::SimulatedMachine => "the simulated machine's own positions",
         Truth::GratingsAndEncoders => "gratings and encoders (what lies behind them is not known)",
@@ -29,9 +33,51 @@ pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
         "  welded          {:.1} mm, {} ticks, job {:.1} s",
         r.weld_length_mm, r.weld_ticks.recorded, r.duration_s
     )?;
-    writeln!(f)?;
-    writeln!(f, "Spot beside seam        max      rms")?;
-    let (max, rms) = (&r.max_deviation_mm, &r.rms_deviation_mm);
+    writeln!(
+        f,
+        "  on the paths    {:.2} s, planned {:.2} s",
+        r.motion_s, r.planned_motion_s
+    )?;
+    part(f, r)?;
+    if let Some(seam) = &r.seam {
+        spots(f, seam)?;
+    }
+    axes(f, r)?;
+    boards_served(f, r)?;
+    match r.faults.as_slice() {
+        [] => writeln!(f, "  no faults"),
+        faults => faults
+            .iter()
+            .try_for_each(|fault| writeln!(f, "  fault: {fault}")),
+    }
+}
+
+/// What the part says of the run.
+fn part(f: &mut Formatter, r: &Report) -> Result {
+    if r.figures.is_empty() {
+        return Ok(());
+    }
+    writeln!(f, "\nPart                                       may be")?;
+    for figure in &r.figures {
+        write!(
+            f,
+            "  {:<28}{:>8} {:<7}",
+            figure.text,
+            number(figure.value),
+            figure.unit
+        )?;
+        match figure.limit {
+            Some(limit) if is_exceeded(figure) => writeln!(f, "{}  EXCEEDED", number(limit))?,
+            Some(limit) => writeln!(f, "{}", number(limit))?,
+            None => writeln!(f)?,
+        }
+    }
+    Ok(())
+}
+
+fn spots(f: &mut Formatter, seam: &SeamFigures) -> Result {
+    writeln!(f, "\nSpot beside seam        max      rms")?;
+    let (max, rms) = (&seam.max_deviation_mm, &seam.rms_deviation_mm);
     for (name, max, rms) in [
         ("side 1, across (U)", max.u1, rms.u1),
         ("side 1, along the beam (V)", max.v1, rms.v1),
@@ -40,48 +86,59 @@ pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
     ] {
         writeln!(f, "  {name:<28}{} {} mm", known(max, 4), known(rms, 4))?;
     }
-    writeln!(f)?;
-    writeln!(f, "Six axes                        max")?;
-    writeln!(
-        f,
-        "  {:<28}{} mm",
-        "tip beside path",
-        known(r.max_contour_error_mm, 4)
-    )?;
-    writeln!(f, "  {:<28}{:8.1} µm", "gantry skew", r.max_gantry_skew_um)?;
-    for (i, (name, error)) in MOTOR_NAMES
-        .iter()
-        .zip(r.max_following_error.to_array())
-        .enumerate()
-    {
-        let unit = if is_rotary(i) { "°" } else { "mm" };
+    Ok(())
+}
+
+fn axes(f: &mut Formatter, r: &Report) -> Result {
+    writeln!(f, "\nAxes                            max")?;
+    let contour = known(r.max_contour_error_mm, 4);
+    writeln!(f, "  {:<28}{contour} mm", "tip beside path")?;
+    if let Some(skew) = r.max_gantry_skew_um {
+        writeln!(f, "  {:<28}{skew:8.1} µm", "gantry skew")?;
+    }
+    for (motor, name, error) in r.max_following_error.fitted() {
+        let unit = if is_rotary(motor) { "°" } else { "mm" };
         writeln!(f, "  {:<28}{error:8.4} {unit}", format!("following error {name}"))?;
     }
-    writeln!(f)?;
-    writeln!(f, "Boards                       motion  tracker")?;
-    let counts =
-        |name, counts: &super::ByBoard| format!("  {name:<25}{:8} {:8}", counts.motion, counts.tracker);
-    writeln!(f, "{}", counts("ticks lost", &r.lost_ticks))?;
-    writeln!(f, "{}", counts("telemetry missing", &r.telemetry_gaps))?;
-    writeln!(
-        f,
-        "  {:<28}{} µm residual, {} µm from the PC's",
-        "clock relation",
-        known(r.clock_residual_us, 1).trim(),
-        known(r.clock_difference_us, 1).trim()
-    )?;
-    let m = &r.measurements;
-    writeln!(
-        f,
-        "  {:<28}{} and {} used, {} and {} rejected, {} too old, {} not made",
-        "measurements, side 1 and 2",
-        m.accepted[0],
-        m.accepted[1],
-        m.rejected[0],
-        m.rejected[1],
-        m.too_old,
-        m.given_up
-    )?;
+    Ok(())
+}
+
+fn boards_served(f: &mut Formatter, r: &Report) -> Result {
+    match r.seam {
+        Some(_) => writeln!(f, "\nBoards                       motion  tracker")?,
+        None => writeln!(f, "\nBoard                        motion")?,
+    }
+    for (name, counts) in [
+        ("ticks lost", &r.lost_ticks),
+        ("telemetry missing", &r.telemetry_gaps),
+    ] {
+        write!(f, "  {name:<25}{:8}", counts.motion)?;
+        match counts.tracker {
+            Some(tracker) => writeln!(f, " {tracker:8}")?,
+            None => writeln!(f)?,
+        }
+    }
+    if let Some(seam) = &r.seam {
+        writeln!(
+            f,
+            "  {:<28}{} µm residual, {} µm from the PC's",
+            "clock relation",
+            known(seam.clock_residual_us, 1).trim(),
+            known(seam.clock_difference_us, 1).trim()
+        )?;
+        let m = &seam.measurements;
+        writeln!(
+            f,
+            "  {:<28}{} and {} used, {} and {} rejected, {} too old, {} not made",
+            "measurements, side 1 and 2",
+            m.accepted[0],
+            m.accepted[1],
+            m.rejected[0],
+            m.rejected[1],
+            m.too_old,
+            m.given_up
+        )?;
+    }
     if r.weld_ticks.unknown > 0 {
         writeln!(
             f,
@@ -89,11 +146,15 @@ pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
             r.weld_ticks.unknown
         )?;
     }
-    match r.faults.as_slice() {
-        [] => writeln!(f, "  no faults"),
-        faults => faults
-            .iter()
-            .try_for_each(|fault| writeln!(f, "  fault: {fault}")),
+    Ok(())
+}
+
+/// A speed with the unit that suits it.
+pub(super) fn speed(m_per_min: f64) -> String {
+    if m_per_min < 0.995 {
+        format!("{:.0} mm/min", 1e3 * m_per_min)
+    } else {
+        format!("{m_per_min:.2} m/min")
     }
 }
 
@@ -105,19 +166,75 @@ fn known(value: Option<f64>, decimals: usize) -> String {
     }
 }
 
+/// A figure of any size in at most eight columns or so.
+pub(super) fn number(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".to_owned()
+    } else if size < 0.001 {
+        format!("{value:.1e}")
+    } else if size < 10.0 {
+        format!("{value:.4}")
+    } else if size < 1000.0 {
+        format!("{value:.2}")
+    } else {
+        format!("{value:.0}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    #[test]
-    fn the_table_tells_figures_unknowns_and_faults() {
-        let text = crate::report::tests::report().to_string();
-        for part in [
-            "job.ngc at 5.00 m/min: finished",
-            "side 1, across (U)            0.0123   0.0030 mm",
-            "side 2, along the beam (V)         –        – mm",
-            "following error C             0.1719 °",
-            "fault: laser 1 reports",
-        ] {
+    use super::*;
+    use crate::report::tests::{report, without_tracker};
+
+    fn assert_says(text: &str, parts: &[&str]) {
+        for part in parts {
             assert!(text.contains(part), "{part} is missing in\n{text}");
         }
+    }
+
+    #[test]
+    fn the_table_tells_figures_unknowns_and_faults() {
+        assert_says(
+            &report().to_string(),
+            &[
+                "job.ngc at 5.00 m/min: finished",
+                "side 1, across (U)            0.0123   0.0030 mm",
+                "side 2, along the beam (V)         –        – mm",
+                "following error C             0.1719 °",
+                "gantry skew                      4.2 µm",
+                "fault: laser 1 reports",
+            ],
+        );
+    }
+
+    #[test]
+    fn the_table_marks_what_is_beyond_its_limit_and_leaves_out_what_is_not_there() {
+        let text = without_tracker().to_string();
+        assert_says(
+            &text,
+            &[
+                "boards          simulated (simulation 0.1.0)\n",
+                "part            job.toml\n",
+                "distance to the saddle        0.0061 mm     0.0100\n",
+                "height of the torch           0.2500 mm     0.2000  EXCEEDED\n",
+                "length                        123.40 mm     \n",
+            ],
+        );
+        for absent in ["seam", "Spot", "X2", "skew", "tracker", "measurements", "clock"] {
+            assert!(!text.contains(absent), "{absent} in\n{text}");
+        }
+    }
+
+    #[test]
+    fn figures_of_any_size_are_short() {
+        assert_eq!(
+            [0.0, 1.23456e-9, 0.012345, 3.0, 45.678, 12345.6].map(number),
+            ["0", "1.2e-9", "0.0123", "3.0000", "45.68", "12346"]
+        );
+        assert_eq!(
+            (speed(9.0), speed(0.06)),
+            ("9.00 m/min".into(), "60 mm/min".into())
+        );
     }
 }

@@ -1,24 +1,20 @@
-//! A session with both boards while a job runs: takes what they send, answers their captures, asks for their
-//! state and clock.
+//! A session with the boards while a job runs: takes what they send and asks for their state.
 
-use super::{JobError, Progress};
+use super::{JobError, Progress, Tracking};
 use crate::boards::{Boards, LinkError, command};
+use crate::machine::MachineFile;
 use crate::record::Record;
 use crate::report::ByBoard;
-use crate::world::{BoardClocks, Cameras, Machine, Sight, TrueSeam};
+use crate::world::Machine;
 use shared::motion::State;
-use shared::protocol::{
-    Capture, ClockRequest, Datagram, MotionStatus, Request, Response, Role, TrackerStatus,
-};
-use shared::tracking::TrackerState;
-use std::collections::BTreeMap;
+use shared::protocol::{Datagram, MotionStatus, Request, Response, Role};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// How often the boards are asked for their state; it also tells them that the PC is there.
 const STATUS_PERIOD: Duration = Duration::from_millis(100);
-/// How often the boards are asked for their clock.
-const CLOCK_PERIOD: Duration = Duration::from_millis(50);
+/// A motion board whose clock has stood still for so long is broken.
+const STANDSTILL: Duration = Duration::from_secs(10);
 /// Longest and shortest wait for a datagram.
 const LONGEST_WAIT: Duration = Duration::from_millis(10);
 const SHORTEST_WAIT: Duration = Duration::from_micros(200);
@@ -29,56 +25,53 @@ pub(super) struct Session<'a> {
     pub interrupted: &'a AtomicBool,
     pub progress: &'a mut dyn Progress,
     pub machine: Machine,
-    pub seams: BTreeMap<u32, TrueSeam>,
-    pub cameras: Cameras,
+    /// The tracker board, if the machine has one.
+    pub tracking: Option<Tracking>,
     pub record: Record,
     pub motion: MotionStatus,
-    pub tracker: TrackerStatus,
-    pub lost_before: ByBoard,
-    /// Largest residual that the tracker told while welding \[µs\].
-    pub clock_residual_us: Option<f64>,
-    /// Largest difference of its relation from the PC's while welding \[µs\].
-    pub clock_difference_us: Option<f64>,
     pub began: Duration,
-    clocks: BoardClocks,
+    lost_before: u32,
     next_status: Duration,
-    next_clock: Duration,
+    /// When the motion board's clock was last seen to go on.
+    ticked: Duration,
 }
 
 impl<'a> Session<'a> {
-    /// Begins with the boards as they are.
+    /// Begins with the boards as they are. `seed` starts the cameras' noise.
     pub fn begin(
         boards: &'a mut dyn Boards,
-        machine: Machine,
-        cameras: Cameras,
+        machine: &MachineFile,
+        seed: u64,
         interrupted: &'a AtomicBool,
         progress: &'a mut dyn Progress,
-    ) -> Result<Self, LinkError> {
+    ) -> Result<Self, JobError> {
+        let geometry = Machine::build(&machine.motion)?;
         let began = boards.now();
-        for role in [Role::Motion, Role::Tracker] {
-            let port = boards.datagram_port(role);
-            command(boards, role, &Request::Subscribe { port })?;
-        }
-        let (motion, tracker) = status(boards)?;
-        let lost_before = lost(&motion, &tracker);
+        begin_with(boards, Role::Motion)?;
+        let unit = machine.tracking.as_ref();
+        let tracking = unit.map(|unit| Tracking::begin(boards, unit, seed)).transpose()?;
+        let motion = motion_status(boards)?;
         Ok(Self {
             boards,
             interrupted,
             progress,
-            machine,
-            seams: BTreeMap::new(),
-            cameras,
+            machine: geometry,
+            tracking,
             record: Record::default(),
+            lost_before: lost(&motion),
             motion,
-            tracker,
-            lost_before,
-            clock_residual_us: None,
-            clock_difference_us: None,
             began,
-            clocks: BoardClocks::default(),
             next_status: began,
-            next_clock: began,
+            ticked: began,
         })
+    }
+
+    /// The boards of the machine.
+    pub fn roles(&self) -> &'static [Role] {
+        match self.tracking {
+            Some(_) => &[Role::Motion, Role::Tracker],
+            None => &[Role::Motion],
+        }
     }
 
     /// A request that is answered by "done".
@@ -86,48 +79,71 @@ impl<'a> Session<'a> {
         command(self.boards, role, request)
     }
 
-    /// Asks both boards for their state now.
-    pub fn refresh(&mut self) -> Result<(), LinkError> {
-        (self.motion, self.tracker) = status(self.boards)?;
-        self.next_status = self.boards.now() + STATUS_PERIOD;
-        if self.welding() {
-            raise(
-                &mut self.clock_residual_us,
-                f64::from(self.tracker.clock_residual_us),
-            );
+    /// The same request to every board of the machine, to each even if the other one is lost.
+    pub fn command_all(&mut self, request: &Request) -> Result<(), LinkError> {
+        let mut result = Ok(());
+        for role in self.roles() {
+            result = result.and(self.command(*role, request));
         }
+        result
+    }
+
+    /// Asks the boards for their state now.
+    pub fn refresh(&mut self) -> Result<(), LinkError> {
+        let ticks = self.motion.path_ticks;
+        self.motion = motion_status(self.boards)?;
+        if self.motion.path_ticks != ticks {
+            self.ticked = self.boards.now();
+        }
+        let welding = self.welding();
+        if let Some(tracking) = &mut self.tracking {
+            tracking.refresh(self.boards, welding)?;
+        }
+        self.next_status = self.boards.now() + STATUS_PERIOD;
         Ok(())
     }
 
     /// Control ticks lost since the session began.
     pub fn lost_ticks(&self) -> ByBoard {
-        let now = lost(&self.motion, &self.tracker);
         ByBoard {
-            motion: now.motion.wrapping_sub(self.lost_before.motion),
-            tracker: now.tracker.wrapping_sub(self.lost_before.tracker),
+            motion: lost(&self.motion).wrapping_sub(self.lost_before),
+            tracker: self.tracking.as_ref().map(Tracking::lost_ticks),
         }
     }
 
-    /// How far the tracker's clock is ahead of the motion board's, as the PC found \[µs\].
-    pub fn tracker_ahead_us(&self) -> Option<i64> {
-        self.clocks.tracker_ahead_us()
+    /// Newest known path tick of the motion board, one a millisecond: the clock of the job.
+    fn tick(&self) -> u32 {
+        let told = self.record.motion().last().map_or(0, |sample| sample.tick);
+        told.max(self.motion.path_ticks)
     }
 
-    /// Goes on until `done`, at most for `limit`; a fault or the operator end it early.
+    /// Goes on until `done`, at most for `limit` by the motion board's clock; a fault or the operator end it
+    /// early.
     pub fn wait_until(
         &mut self,
         what: &'static str,
         limit: Duration,
         mut done: impl FnMut(&mut Self) -> bool,
     ) -> Result<(), JobError> {
-        let end = self.boards.now() + limit;
+        let end = u64::from(self.tick()) + limit.as_millis() as u64;
         while !done(self) {
             self.turn()?;
             self.check()?;
-            if self.boards.now() > end {
+            if u64::from(self.tick()) > end {
                 let seconds = limit.as_secs();
                 return Err(JobError::TooLong { what, seconds });
             }
+        }
+        Ok(())
+    }
+
+    /// Goes on for `seconds` by the motion board's clock, unless a fault or the operator end it early.
+    pub fn dwell(&mut self, seconds: f64) -> Result<(), JobError> {
+        self.refresh()?;
+        let end = u64::from(self.tick()) + (seconds * 1e3).ceil() as u64;
+        while u64::from(self.tick()) < end {
+            self.turn()?;
+            self.check()?;
         }
         Ok(())
     }
@@ -137,15 +153,17 @@ impl<'a> Session<'a> {
         if let Some(fault) = self.motion.fault {
             return Err(JobError::Motion(fault));
         }
-        let newest = self.record.tracker().last();
-        let told = newest
-            .filter(|sample| sample.state == TrackerState::Tracking)
-            .and_then(|sample| sample.fault);
-        if let Some(fault) = self.tracker.fault.or(told) {
+        let tracking = self.tracking.as_ref();
+        if let Some(fault) = tracking.and_then(|tracking| tracking.fault(&self.record)) {
             return Err(JobError::Tracker(fault));
         }
         if self.interrupted.load(Ordering::Relaxed) {
             return Err(JobError::Interrupted);
+        }
+        if self.boards.now() > self.ticked + STANDSTILL {
+            let seconds = STANDSTILL.as_secs();
+            let what = "the next tick of the motion board";
+            return Err(JobError::TooLong { what, seconds });
         }
         Ok(())
     }
@@ -185,26 +203,16 @@ impl<'a> Session<'a> {
     /// One turn: at most one datagram, and whatever is due.
     pub fn turn(&mut self) -> Result<(), LinkError> {
         let now = self.boards.now();
-        let mut due = self.next_status.min(self.next_clock);
-        if let (Some(camera), Some(motion)) = (self.cameras.next_due_us(), self.motion_now_us()) {
-            due = due.min(now + Duration::from_micros(camera.saturating_sub(motion)));
-        }
+        let tracking_due = self.tracking.as_ref().map(|tracking| tracking.next_due(now));
+        let due = tracking_due.map_or(self.next_status, |due| due.min(self.next_status));
         let wait = due.saturating_sub(now).clamp(SHORTEST_WAIT, LONGEST_WAIT);
         if let Some((role, datagram)) = self.boards.receive(wait)? {
             self.take(role, datagram);
         }
-        let now = self.boards.now();
-        if now >= self.next_clock {
-            self.next_clock = now + CLOCK_PERIOD;
-            let request = Datagram::ClockRequest(ClockRequest {
-                asked_us: now.as_micros() as u64,
-            });
-            for role in [Role::Motion, Role::Tracker] {
-                self.boards.send(role, &request)?;
-            }
+        if let Some(tracking) = &mut self.tracking {
+            tracking.turn(self.boards, &self.machine, &self.record)?;
         }
-        self.answer_captures()?;
-        if now >= self.next_status {
+        if self.boards.now() >= self.next_status {
             self.refresh()?;
         }
         Ok(())
@@ -212,60 +220,21 @@ impl<'a> Session<'a> {
 
     fn take(&mut self, role: Role, datagram: Datagram) {
         let arrived_us = self.boards.now().as_micros() as u64;
-        match datagram {
-            Datagram::MotionTelemetry(telemetry) => {
-                if let Some(newest) = telemetry.samples.last() {
-                    self.clocks.saw_motion(newest.time_us, arrived_us);
+        let welding = self.welding();
+        match (datagram, &mut self.tracking) {
+            (Datagram::MotionTelemetry(telemetry), tracking) => {
+                if let (Some(newest), Some(tracking)) = (telemetry.samples.last(), tracking) {
+                    tracking.saw_motion(newest.time_us, arrived_us);
                 }
                 self.record.add_motion(&telemetry.samples);
             }
-            Datagram::TrackerTelemetry(telemetry) => self.record.add_tracker(&telemetry.samples),
-            Datagram::ClockReply(reply) => self.clocks.add(role, &reply, arrived_us),
-            Datagram::Capture(capture) => self.strobe(capture),
-            // Boards send these to each other only.
-            Datagram::PathState(_) | Datagram::Measurement(_) | Datagram::ClockRequest(_) => {}
+            (Datagram::TrackerTelemetry(telemetry), _) => self.record.add_tracker(&telemetry.samples),
+            (Datagram::ClockReply(reply), Some(tracking)) => tracking.clock_reply(role, &reply, arrived_us),
+            (Datagram::Capture(capture), Some(tracking)) => tracking.strobe(capture, welding),
+            // Left over from another session, or what boards send to each other only.
+            (Datagram::ClockReply(_) | Datagram::Capture(_), None)
+            | (Datagram::PathState(_) | Datagram::Measurement(_) | Datagram::ClockRequest(_), _) => {}
         }
-    }
-
-    /// Gives a capture to the cameras. The time of the strobe is what the PC found, not what the tracker
-    /// believes: a wrong belief must show.
-    fn strobe(&mut self, capture: Capture) {
-        let Some(ahead) = self.clocks.tracker_ahead_us() else {
-            return;
-        };
-        let on_motion = capture.time_us.saturating_add_signed(-ahead);
-        if self.welding() {
-            let difference = capture.motion_time_us as f64 - on_motion as f64;
-            raise(&mut self.clock_difference_us, difference.abs());
-        }
-        self.cameras.strobe(capture, on_motion);
-    }
-
-    fn answer_captures(&mut self) -> Result<(), LinkError> {
-        let Some(now_us) = self.motion_now_us() else {
-            return Ok(());
-        };
-        loop {
-            let (record, seams) = (&self.record, &self.seams);
-            let sight = |time_us| {
-                let (position, sample) = record.machine_at(time_us)?;
-                Some(Sight {
-                    position,
-                    s_mm: sample.s_mm,
-                    seam: seams.get(&sample.path_id),
-                })
-            };
-            let Some(measurement) = self.cameras.answer(&self.machine, now_us, sight) else {
-                return Ok(());
-            };
-            self.boards
-                .send(Role::Tracker, &Datagram::Measurement(measurement))?;
-        }
-    }
-
-    /// What the motion board's clock shows now \[µs\].
-    fn motion_now_us(&self) -> Option<u64> {
-        self.clocks.motion_now_us(self.boards.now().as_micros() as u64)
     }
 
     fn welding(&self) -> bool {
@@ -281,13 +250,10 @@ pub(super) fn on_path(state: State) -> bool {
     matches!(state, State::Running | State::Holding | State::Stopping)
 }
 
-fn status(boards: &mut dyn Boards) -> Result<(MotionStatus, TrackerStatus), LinkError> {
-    let motion = motion_status(boards)?;
-    let tracker = match boards.request(Role::Tracker, &Request::Status)? {
-        Response::TrackerStatus(status) => status,
-        other => return Err(unexpected(Role::Tracker, &other)),
-    };
-    Ok((motion, tracker))
+/// Lets a board send its telemetry.
+pub(super) fn begin_with(boards: &mut dyn Boards, role: Role) -> Result<(), LinkError> {
+    let port = boards.datagram_port(role).ok_or(LinkError::Absent { role })?;
+    command(boards, role, &Request::Subscribe { port })
 }
 
 fn motion_status(boards: &mut dyn Boards) -> Result<MotionStatus, LinkError> {
@@ -297,7 +263,7 @@ fn motion_status(boards: &mut dyn Boards) -> Result<MotionStatus, LinkError> {
     }
 }
 
-fn unexpected(role: Role, response: &Response) -> LinkError {
+pub(super) fn unexpected(role: Role, response: &Response) -> LinkError {
     match response {
         Response::Refused(refusal) => LinkError::Refused {
             role,
@@ -307,13 +273,6 @@ fn unexpected(role: Role, response: &Response) -> LinkError {
     }
 }
 
-fn lost(motion: &MotionStatus, tracker: &TrackerStatus) -> ByBoard {
-    ByBoard {
-        motion: motion.servo_lost.wrapping_add(motion.path_lost),
-        tracker: tracker.lost,
-    }
-}
-
-fn raise(largest: &mut Option<f64>, value: f64) {
-    *largest = Some(largest.map_or(value, |before| before.max(value)));
+fn lost(motion: &MotionStatus) -> u32 {
+    motion.servo_lost.wrapping_add(motion.path_lost)
 }

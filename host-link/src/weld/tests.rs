@@ -3,6 +3,7 @@
 use super::*;
 use crate::boards::simulated::SimulatedBoards;
 use crate::nc::{Options, interpret};
+use crate::report::{Outcome, Report, SeamFigures, Truth};
 use shared::protocol::{Datagram, Identity, Response};
 use std::sync::atomic::Ordering;
 
@@ -42,21 +43,37 @@ fn seam() -> Rc<Deviation> {
 }
 
 fn weld(boards: &mut dyn Boards, interrupted: &AtomicBool, progress: &mut dyn Progress) -> Ended {
-    let (machine, program) = (machine(), interpret(PROGRAM, Options::default()).unwrap());
+    run_on(boards, &machine(), PROGRAM, Some(seam()), interrupted, progress).unwrap()
+}
+
+fn run_on(
+    boards: &mut dyn Boards,
+    machine: &MachineFile,
+    program: &str,
+    seam: Option<Rc<Deviation>>,
+    interrupted: &AtomicBool,
+    progress: &mut dyn Progress,
+) -> Result<Ended, JobError> {
+    let program = interpret(program, Options::default()).unwrap();
     let job = Job {
-        machine: &machine,
+        machine,
         program: &program,
+        part: None,
         speed_m_per_min: None,
-        seam: seam(),
         seed: 1,
+        seam,
         names: Names {
             program: "job.ngc".into(),
             machine: "m.toml".into(),
-            seam: "seam.csv".into(),
+            seam: None,
             boards: "simulated".into(),
         },
     };
-    run(boards, &job, interrupted, progress).unwrap()
+    run(boards, &job, interrupted, progress)
+}
+
+fn seam_of(report: &Report) -> &SeamFigures {
+    report.seam.as_ref().expect("a machine with a tracker")
 }
 
 fn undisturbed(boards: &mut dyn Boards) -> Ended {
@@ -162,15 +179,15 @@ impl Boards for Troubled {
         self.boards.now()
     }
 
-    fn identity(&self, role: Role) -> &Identity {
+    fn identity(&self, role: Role) -> Option<&Identity> {
         self.boards.identity(role)
     }
 
-    fn path_states_target(&self) -> ([u8; 4], u16) {
+    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
         self.boards.path_states_target()
     }
 
-    fn datagram_port(&self, role: Role) -> u16 {
+    fn datagram_port(&self, role: Role) -> Option<u16> {
         self.boards.datagram_port(role)
     }
 }
@@ -213,7 +230,7 @@ fn a_job_follows_both_seams_and_switches_everything_off() {
     assert_eq!(report.outcome, Outcome::Finished);
     assert_eq!(report.faults, [""; 0]);
     for max in ended.evaluation.max_deviation_mm {
-        assert!(max.unwrap() < 0.02, "{:?}", report.max_deviation_mm);
+        assert!(max.unwrap() < 0.02, "{:?}", seam_of(report).max_deviation_mm);
     }
     assert!(
         (report.weld_length_mm - 200.0).abs() < 0.2,
@@ -222,9 +239,9 @@ fn a_job_follows_both_seams_and_switches_everything_off() {
     );
     assert!((report.speed_m_per_min - 5.0).abs() < 1e-9);
     assert_eq!(report.weld_ticks.unknown, 0);
-    assert_eq!((report.lost_ticks, report.telemetry_gaps), Default::default());
-    assert_eq!(report.measurements.rejected, [0, 0]);
-    assert_eq!(report.measurements.given_up, 0);
+    assert_eq!((report.lost_ticks.total(), report.telemetry_gaps.total()), (0, 0));
+    assert_eq!(seam_of(report).measurements.rejected, [0, 0]);
+    assert_eq!(seam_of(report).measurements.given_up, 0);
     assert_off(&mut boards);
 }
 
@@ -242,14 +259,14 @@ fn boards_can_be_used_again_after_a_job() {
     undisturbed(&mut boards);
     let again = undisturbed(&mut boards);
     assert!(again.error.is_none(), "{:?}", again.error);
-    assert!(again.report.max_deviation_mm.u1.unwrap() < 0.02);
+    assert!(seam_of(&again.report).max_deviation_mm.u1.unwrap() < 0.02);
 }
 
 #[test]
 fn the_report_tells_the_truth_and_not_what_the_controller_believes() {
     let mut boards = Troubled::new(Trouble::Bias(0.1), 20.0);
     let ended = undisturbed(&mut boards);
-    let max = ended.report.max_deviation_mm;
+    let max = seam_of(&ended.report).max_deviation_mm;
     assert!((max.u1.unwrap() - 0.1).abs() < 0.02, "{max:?}");
     assert!(max.v1.unwrap() < 0.02 && max.u2.unwrap() < 0.02, "{max:?}");
 }
@@ -330,4 +347,112 @@ fn without_the_tracker_board_the_motion_board_is_stopped_and_switched_off() {
     );
     assert_stopped_on_path(&ended, 120.0);
     assert!(boards.motion_disabled);
+}
+
+/// A motion board without a tracker board beside it.
+struct MotionOnly(SimulatedBoards);
+
+impl Boards for MotionOnly {
+    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
+        assert_eq!(role, Role::Motion, "{request:?}");
+        self.0.request(role, request)
+    }
+
+    fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
+        self.0.receive(timeout)
+    }
+
+    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
+        panic!("{datagram:?} to {role:?}")
+    }
+
+    fn now(&self) -> Duration {
+        self.0.now()
+    }
+
+    fn identity(&self, role: Role) -> Option<&Identity> {
+        self.0.identity(role).filter(|_| role == Role::Motion)
+    }
+
+    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
+        None
+    }
+
+    fn datagram_port(&self, role: Role) -> Option<u16> {
+        self.0.datagram_port(role).filter(|_| role == Role::Motion)
+    }
+}
+
+/// The same gantry without its tracker.
+fn without_tracker() -> MachineFile {
+    MachineFile {
+        tracking: None,
+        ..machine()
+    }
+}
+
+/// The same program without tracking.
+fn untracked() -> String {
+    PROGRAM.replace("M62 P2\n", "").replace("M63 P2\n", "")
+}
+
+#[test]
+fn a_machine_without_a_tracker_needs_the_motion_board_only() {
+    let mut boards = MotionOnly(SimulatedBoards::default());
+    let (machine, program) = (without_tracker(), untracked());
+    let never = AtomicBool::new(false);
+    let ended = run_on(&mut boards, &machine, &program, None, &never, &mut Silent).unwrap();
+    assert!(ended.error.is_none(), "{:?}", ended.error);
+    let report = &ended.report;
+    assert_eq!((report.outcome, &report.seam), (Outcome::Finished, &None));
+    assert_eq!(report.truth, Truth::SimulatedMachine);
+    assert_eq!((report.lost_ticks.total(), report.telemetry_gaps.total()), (0, 0));
+    assert_eq!((report.lost_ticks.tracker, report.weld_ticks.unknown), (None, 0));
+    assert!((report.weld_length_mm - 200.0).abs() < 0.2);
+    assert!((0.0..0.02).contains(&report.max_contour_error_mm.unwrap()));
+    let late = report.motion_s - report.planned_motion_s;
+    assert!((-0.02..0.05).contains(&late), "{late} s");
+    assert_eq!(ended.evaluation.ticks.last().unwrap().slides_mm, None);
+}
+
+#[test]
+fn a_seam_is_asked_for_where_the_program_tracks_and_refused_where_the_machine_cannot() {
+    let refused = |machine: &MachineFile, program: &str, seam: Option<Rc<Deviation>>| {
+        let planner = Planner::build(machine).unwrap();
+        let program = interpret(program, Options::default()).unwrap();
+        let paths = planner
+            .program(&program, &machine.planning.park_axes(), None)
+            .unwrap();
+        check_seam(&paths, machine, seam.as_deref()).err()
+    };
+    let (tracks, not) = (machine(), without_tracker());
+    assert_eq!(refused(&tracks, PROGRAM, Some(seam())), None);
+    assert_eq!(refused(&tracks, PROGRAM, None), Some(SeamError::NoSeam));
+    assert_eq!(refused(&tracks, &untracked(), None), None);
+    assert_eq!(
+        refused(&not, &untracked(), Some(seam())),
+        Some(SeamError::NoTracking)
+    );
+    assert_eq!(refused(&not, &untracked(), None), None);
+}
+
+#[test]
+fn a_machine_with_a_tracker_does_not_begin_without_it() {
+    let mut boards = MotionOnly(SimulatedBoards::default());
+    let never = AtomicBool::new(false);
+    let error = run_on(
+        &mut boards,
+        &machine(),
+        PROGRAM,
+        Some(seam()),
+        &never,
+        &mut Silent,
+    )
+    .unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("no tracker board, which the machine needs"),
+        "{error}"
+    );
 }

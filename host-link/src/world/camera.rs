@@ -108,9 +108,9 @@ impl Waiting {
     fn measure(&self, machine: &Machine, sight: &Sight, seam: &TrueSeam) -> Measurement {
         let pose = machine.pose(&sight.position);
         let slides = self.capture.truth_mm.unwrap_or(self.capture.slides_mm);
-        let lead = machine.camera_lead();
+        let lead = seam.camera_lead();
         let side = |k: usize| {
-            let crossing = seam.crossing(machine, k, &machine.spot(&pose, k), lead, sight.s_mm + lead)?;
+            let crossing = seam.crossing(k, &seam.spot(&pose, k), lead, sight.s_mm + lead)?;
             seam.exists_at(crossing.s, SEEN_BEYOND_END_MM)
                 .then(|| SideMeasurement {
                     delta_u_mm: crossing.u - slides[2 * k] + self.noise[2 * k],
@@ -126,7 +126,7 @@ impl Waiting {
 
 #[cfg(test)]
 mod tests {
-    use super::super::truth::tests::{bent_path, deviation, machine, wavy_seam};
+    use super::super::truth::tests::{bent_path, deviation, heads, machine, wavy_seam};
     use super::*;
     use nalgebra::Vector3;
 
@@ -167,14 +167,14 @@ mod tests {
         let pose = machine.pose(&position());
         for side in 0..SIDES {
             let seen = measurement.sides[side].unwrap();
-            let frame = machine.spot(&pose, side);
+            let frame = seam.spot(&pose, side);
             let (u, v) = (
                 SLIDES[2 * side] + seen.delta_u_mm,
                 SLIDES[2 * side + 1] + seen.delta_v_mm,
             );
-            let point = frame.point(machine.camera_lead(), u, v);
-            let s = seam.crossing(&machine, side, &frame, 10.0, 260.0).unwrap().s;
-            let miss = (seam.point(&machine, side, s).unwrap() - point).norm();
+            let point = frame.point(seam.camera_lead(), u, v);
+            let s = seam.crossing(side, &frame, 10.0, 260.0).unwrap().s;
+            let miss = (seam.point(side, s).unwrap() - point).norm();
             assert!(miss < 1e-8, "side {side} misses by {miss}");
         }
     }
@@ -224,6 +224,7 @@ mod tests {
             cameras.strobe(capture(1), 0);
             // The machine stands still; the seam is moved under it.
             let far = TrueSeam::new(
+                heads(),
                 bent_path(),
                 250.0 - s_mm,
                 deviation([(0.0, [0.0; 4]), (200.0, [0.0; 4])]),

@@ -5,11 +5,10 @@ use crate::record::MachinePosition;
 use crate::seam::Deviation;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
-use shared::io::SIDES;
+use shared::io::{AXES, SIDES};
 use shared::kinematics::Kinematics;
 use shared::motion::MotionConfig;
 use shared::parameter::ParameterError;
-use shared::tracking::HeadConfig;
 use shared::tracking::frames::{Heads, SpotFrame};
 use shared::trajectory::Path;
 use std::rc::Rc;
@@ -25,44 +24,42 @@ pub struct Machine {
     kinematics: Kinematics,
     /// Cross positions of X1 and X2 \[mm\], where X is a gantry.
     beam_mm: Option<[f64; 2]>,
-    heads: Heads,
 }
 
 impl Machine {
     /// Builds the geometry; errors name the parameter.
-    pub fn build(motion: &MotionConfig, head: &HeadConfig) -> Result<Self, ParameterError> {
+    pub fn build(motion: &MotionConfig) -> Result<Self, ParameterError> {
         Ok(Self {
             kinematics: motion.kinematics()?,
             beam_mm: motion.gantry.as_ref().map(|gantry| [gantry.y1_mm, gantry.y2_mm]),
-            heads: head.build()?,
         })
     }
 
-    /// Pose of the plate. The ram hangs on the beam between X1 and X2 (SPEC 0.10).
-    pub fn pose(&self, position: &MachinePosition) -> Pose {
-        let axes = match *position {
+    /// Kinematics of the machine.
+    pub fn kinematics(&self) -> &Kinematics {
+        &self.kinematics
+    }
+
+    /// Where the axes stand (mm, rad). The ram of a gantry hangs on the beam between X1 and X2 (SPEC 0.10).
+    pub fn axes(&self, position: &MachinePosition) -> [f64; AXES] {
+        match *position {
             MachinePosition::Axes(axes) => axes,
             MachinePosition::Motors([x1, x2, y, z, a, b, c]) => {
                 let across = self.beam_mm.map_or(0.0, |[y1, y2]| (y - y1) / (y2 - y1));
                 [x1 + (x2 - x1) * across, y, z, a, b, c]
             }
-        };
-        self.kinematics.forward(&axes)
+        }
     }
 
-    /// Frame of the working point of `side` (0 or 1), its slides at zero.
-    pub fn spot(&self, pose: &Pose, side: usize) -> SpotFrame {
-        self.heads.spot(pose, side)
-    }
-
-    /// How far the cameras look ahead of the beams, along T \[mm\].
-    pub fn camera_lead(&self) -> f64 {
-        self.heads.camera_lead()
+    /// Pose of the tool, in the frame of the work.
+    pub fn pose(&self, position: &MachinePosition) -> Pose {
+        self.kinematics.forward(&self.axes(position))
     }
 }
 
 /// The two seams of a path as they really are: beside the programmed ones, in the planned frame of each head.
 pub struct TrueSeam {
+    heads: Heads,
     path: Box<Path<CAPACITY>>,
     start_s: f64,
     deviation: Rc<Deviation>,
@@ -80,9 +77,11 @@ pub struct Crossing {
 }
 
 impl TrueSeam {
-    /// Seams beside `path`. `deviation` counts from `start_s`, the path position where the first beam goes on.
-    pub fn new(path: Box<Path<CAPACITY>>, start_s: f64, deviation: Rc<Deviation>) -> Self {
+    /// Seams beside `path` for the spots of `heads`. `deviation` counts from `start_s`, the path position where
+    /// the first beam goes on.
+    pub fn new(heads: Heads, path: Box<Path<CAPACITY>>, start_s: f64, deviation: Rc<Deviation>) -> Self {
         Self {
+            heads,
             path,
             start_s,
             deviation,
@@ -95,23 +94,14 @@ impl TrueSeam {
         Some((point.pose().ok()?, point.v_follow()))
     }
 
-    /// Distance of `tip` from the programmed path, searched from path position `s` on \[mm\].
-    pub fn contour_error(&self, tip: &Vector3<f64>, mut s: f64) -> Option<f64> {
-        for _ in 0..STEPS {
-            let (pose, _) = self.planned(s)?;
-            let apart = tip - pose.position;
-            let along = apart.dot(&pose.tangent);
-            if along.abs() < FACING {
-                return Some(apart.norm());
-            }
-            s += along;
-        }
-        None
+    /// Frame of the working point of `side` (0 or 1) on the plate at `pose`, its slides at zero.
+    pub fn spot(&self, pose: &Pose, side: usize) -> SpotFrame {
+        self.heads.spot(pose, side)
     }
 
-    /// Path position where the first beam goes on \[mm\].
-    pub fn start_s(&self) -> f64 {
-        self.start_s
+    /// How far the cameras look ahead of the beams, along T \[mm\].
+    pub fn camera_lead(&self) -> f64 {
+        self.heads.camera_lead()
     }
 
     /// Whether there is a seam at path position `s` or within `margin` of it \[mm\].
@@ -122,25 +112,18 @@ impl TrueSeam {
     }
 
     /// The seam of `side` at path position `s` \[mm\].
-    pub fn point(&self, machine: &Machine, side: usize, s: f64) -> Option<Vector3<f64>> {
+    pub fn point(&self, side: usize, s: f64) -> Option<Vector3<f64>> {
         let (pose, v_follow) = self.planned(s)?;
         let deviation = self.deviation.at(s - self.start_s);
         let (du, dv) = (deviation[2 * side], deviation[2 * side + 1]);
-        Some(machine.spot(&pose, side).point(0.0, du, v_follow[side] + dv))
+        Some(self.spot(&pose, side).point(0.0, du, v_follow[side] + dv))
     }
 
     /// Where the seam of `side` passes through the plane `along` \[mm\] ahead of `frame`, searched from path
     /// position `s` on.
-    pub fn crossing(
-        &self,
-        machine: &Machine,
-        side: usize,
-        frame: &SpotFrame,
-        along: f64,
-        mut s: f64,
-    ) -> Option<Crossing> {
+    pub fn crossing(&self, side: usize, frame: &SpotFrame, along: f64, mut s: f64) -> Option<Crossing> {
         for _ in 0..STEPS {
-            let (ahead, u, v) = frame.coordinates(&self.point(machine, side, s)?);
+            let (ahead, u, v) = frame.coordinates(&self.point(side, s)?);
             if (ahead - along).abs() < FACING {
                 return Some(Crossing { s, u, v });
             }
@@ -155,6 +138,7 @@ pub(crate) mod tests {
     use super::*;
     use shared::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
     use shared::protocol::Knot;
+    use shared::tracking::HeadConfig;
     use shared::trajectory::CHANNELS;
 
     impl Machine {
@@ -163,8 +147,6 @@ pub(crate) mod tests {
             self.kinematics.inverse(pose, &[0.0; shared::io::AXES]).unwrap()
         }
     }
-
-    pub(crate) const DISTANCE: [f64; SIDES] = [5.0, 5.2];
 
     pub(crate) fn machine() -> Machine {
         Machine {
@@ -176,14 +158,17 @@ pub(crate) mod tests {
             .build(&[AxisLimits::NOT_FITTED; shared::io::AXES])
             .unwrap(),
             beam_mm: Some([-250.0, 3250.0]),
-            heads: HeadConfig {
-                included_angle_deg: -60.0,
-                working_distance_mm: DISTANCE,
-                camera_lead_mm: 10.0,
-            }
-            .build()
-            .unwrap(),
         }
+    }
+
+    pub(crate) fn heads() -> Heads {
+        HeadConfig {
+            included_angle_deg: -60.0,
+            working_distance_mm: [5.0, 5.2],
+            camera_lead_mm: 10.0,
+        }
+        .build()
+        .unwrap()
     }
 
     /// A quarter of a circle of 500 mm radius, rising, the tool leaning.
@@ -231,16 +216,16 @@ pub(crate) mod tests {
             ];
             (s, value)
         });
-        TrueSeam::new(bent_path(), 100.0, deviation(rows))
+        TrueSeam::new(heads(), bent_path(), 100.0, deviation(rows))
     }
 
     #[test]
     fn a_spot_moved_by_plan_and_deviation_sits_on_the_seam() {
-        let (machine, seam) = (machine(), wavy_seam());
+        let seam = wavy_seam();
         let (pose, follow) = seam.planned(223.4).unwrap();
         for side in 0..SIDES {
-            let frame = machine.spot(&pose, side);
-            let crossing = seam.crossing(&machine, side, &frame, 0.0, 220.0).unwrap();
+            let frame = seam.spot(&pose, side);
+            let crossing = seam.crossing(side, &frame, 0.0, 220.0).unwrap();
             let deviation = seam.deviation.at(123.4);
             assert!((crossing.s - 223.4).abs() < 1e-6);
             assert!((crossing.u - deviation[2 * side]).abs() < 1e-8);
@@ -257,15 +242,6 @@ pub(crate) mod tests {
         assert!((moved - Vector3::new(0.35, 0.0, 0.0)).norm() < 1e-12);
         let axes = MachinePosition::Axes([500.0, 1500.0, 800.0, 0.1, 0.05, -0.2]);
         assert_eq!(machine.pose(&axes), machine.pose(&square));
-    }
-
-    #[test]
-    fn contour_error_is_the_distance_across_the_path() {
-        let seam = wavy_seam();
-        let (pose, _) = seam.planned(200.0).unwrap();
-        let tip = pose.position + pose.normal * 0.03 + pose.lateral() * 0.04;
-        let error = seam.contour_error(&tip, 203.0).unwrap();
-        assert!((error - 0.05).abs() < 1e-6, "{error}");
     }
 
     #[test]

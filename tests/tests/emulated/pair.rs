@@ -37,7 +37,7 @@ impl Pair {
     }
 
     pub fn connect(&self) -> NetworkBoards {
-        NetworkBoards::emulated(self.boards.session(), Patience::default())
+        NetworkBoards::emulated(self.boards.session(), true, Patience::default())
             .unwrap_or_else(|error| panic!("{error}"))
     }
 

@@ -95,7 +95,7 @@ fn without_the_pc_the_machine_stops_on_its_path_and_welds_again_later() {
 
     // Saying Hello and listening to telemetry does not count as the PC that started the path.
     let mut boards = pair.connect();
-    let port = boards.datagram_port(Role::Motion);
+    let port = boards.datagram_port(Role::Motion).expect("a motion board");
     command(&mut boards, Role::Motion, &Request::Subscribe { port }).expect("a board that answers");
     let mut samples: Vec<MotionSample> = Vec::new();
     let end = Instant::now() + Duration::from_secs(30);

@@ -10,7 +10,8 @@ fn assert_welds(name: &str, seam: &Deviation, speed_m_per_min: f64) {
     let mut pair = Pair::boot(name);
     let ended = weld(&mut pair.connect(), seam.clone(), speed_m_per_min);
     assert_on_seam(&ended, 0.05);
-    assert_eq!(ended.report.measurements.given_up, 0);
+    let figures = ended.report.seam.as_ref().expect("a tracker");
+    assert_eq!(figures.measurements.given_up, 0);
     let simulated = weld(&mut SimulatedBoards::default(), seam.clone(), speed_m_per_min);
     let both = deviations(&ended.report)
         .into_iter()

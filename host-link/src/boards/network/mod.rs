@@ -86,11 +86,11 @@ impl Default for Patience {
     }
 }
 
-/// A session with two boards in a network.
+/// A session with one or two boards in a network.
 pub struct NetworkBoards {
     motion: Connection,
-    tracker: Connection,
-    path_states_target: ([u8; 4], u16),
+    tracker: Option<Connection>,
+    path_states_target: Option<([u8; 4], u16)>,
     incoming: Receiver<Incoming>,
     bad: Arc<AtomicU32>,
     began: Instant,
@@ -102,7 +102,8 @@ pub struct NetworkBoards {
 type Incoming = (Role, io::Result<Datagram>);
 
 impl NetworkBoards {
-    /// Connects to both boards, says Hello, and checks schema and role of each.
+    /// Connects to the motion board and, if the machine has one, to the tracker board, says Hello, and checks
+    /// schema and role of each.
     ///
     /// `path_states_target` is where the motion board reaches the tracker board, if that is not where the PC
     /// does (emulated boards).
@@ -112,17 +113,20 @@ impl NetworkBoards {
     /// while Hello is answered.
     pub fn connect(
         motion: &Endpoint,
-        tracker: &Endpoint,
+        tracker: Option<&Endpoint>,
         path_states_target: Option<([u8; 4], u16)>,
         patience: Patience,
     ) -> Result<Self, LinkError> {
         let (sender, incoming) = sync_channel(WAITING);
         let bad = Arc::new(AtomicU32::new(0));
         let motion = Connection::open(Role::Motion, motion, patience, &sender, &bad)?;
-        let tracker = Connection::open(Role::Tracker, tracker, patience, &sender, &bad)?;
-        let seen_from_here = (tracker.board.ip().octets(), tracker.board.port());
+        let open = |endpoint| Connection::open(Role::Tracker, endpoint, patience, &sender, &bad);
+        let tracker = tracker.map(open).transpose()?;
+        let seen_from_here = |tracker: &Connection| (tracker.board.ip().octets(), tracker.board.port());
         Ok(Self {
-            path_states_target: path_states_target.unwrap_or(seen_from_here),
+            path_states_target: tracker
+                .as_ref()
+                .map(|tracker| path_states_target.unwrap_or_else(|| seen_from_here(tracker))),
             motion,
             tracker,
             incoming,
@@ -133,15 +137,20 @@ impl NetworkBoards {
     }
 
     /// Connects to emulated boards, and takes part in their pace: they wait while this program has no
-    /// processor.
+    /// processor. There are always two; the tracker board is left alone unless it is `tracked`.
     ///
     /// # Errors
     /// As [`NetworkBoards::connect`], or [`LinkError::BadSession`] if the boards' page cannot be opened.
-    pub fn emulated(session: &emulator::Session, patience: Patience) -> Result<Self, LinkError> {
+    pub fn emulated(
+        session: &emulator::Session,
+        tracked: bool,
+        patience: Patience,
+    ) -> Result<Self, LinkError> {
         let target = session.path_states_to;
+        let tracker = Endpoint::emulated(session.tracker);
         let boards = Self::connect(
             &Endpoint::emulated(session.motion),
-            &Endpoint::emulated(session.tracker),
+            tracked.then_some(&tracker),
             Some((target.host.octets(), target.udp)),
             patience,
         )?;
@@ -168,10 +177,10 @@ impl NetworkBoards {
         self.bad.load(Ordering::Relaxed)
     }
 
-    fn connection(&self, role: Role) -> &Connection {
+    fn connection(&self, role: Role) -> Option<&Connection> {
         match role {
-            Role::Motion => &self.motion,
-            Role::Tracker => &self.tracker,
+            Role::Motion => Some(&self.motion),
+            Role::Tracker => self.tracker.as_ref(),
         }
     }
 }
@@ -179,10 +188,12 @@ impl NetworkBoards {
 impl Boards for NetworkBoards {
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         self.keep_pace();
-        match role {
-            Role::Motion => self.motion.stream.request(request),
-            Role::Tracker => self.tracker.stream.request(request),
-        }
+        let connection = match role {
+            Role::Motion => Some(&mut self.motion),
+            Role::Tracker => self.tracker.as_mut(),
+        };
+        let connection = connection.ok_or(LinkError::Absent { role })?;
+        connection.stream.request(request)
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
@@ -190,7 +201,7 @@ impl Boards for NetworkBoards {
         match waiting.or_else(|()| self.incoming.recv_timeout(timeout)) {
             Ok((role, Ok(datagram))) => Ok(Some((role, datagram))),
             Ok((role, Err(source))) => Err(LinkError::Lost { role, source }),
-            // Both readers have ended, each after an error that was returned before.
+            // All readers have ended, each after an error that was returned before.
             Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => Ok(None),
         }
     }
@@ -199,7 +210,7 @@ impl Boards for NetworkBoards {
         let mut buffer = [0; framing::MAX_DATAGRAM];
         let bytes = framing::encode_datagram(datagram, &mut buffer)
             .map_err(|source| LinkError::Frame { role, source })?;
-        let connection = self.connection(role);
+        let connection = self.connection(role).ok_or(LinkError::Absent { role })?;
         connection
             .datagrams
             .send_to(bytes, connection.board)
@@ -211,16 +222,16 @@ impl Boards for NetworkBoards {
         self.began.elapsed()
     }
 
-    fn identity(&self, role: Role) -> &Identity {
-        &self.connection(role).identity
+    fn identity(&self, role: Role) -> Option<&Identity> {
+        self.connection(role).map(|connection| &connection.identity)
     }
 
-    fn path_states_target(&self) -> ([u8; 4], u16) {
+    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
         self.path_states_target
     }
 
-    fn datagram_port(&self, role: Role) -> u16 {
-        self.connection(role).datagram_port
+    fn datagram_port(&self, role: Role) -> Option<u16> {
+        self.connection(role).map(|connection| connection.datagram_port)
     }
 }
 

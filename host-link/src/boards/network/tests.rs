@@ -95,7 +95,7 @@ fn bytes(response: &Response) -> Vec<u8> {
 }
 
 fn connect(motion: &Fake, tracker: &Fake) -> Result<NetworkBoards, LinkError> {
-    NetworkBoards::connect(&motion.endpoint, &tracker.endpoint, None, BRIEF)
+    NetworkBoards::connect(&motion.endpoint, Some(&tracker.endpoint), None, BRIEF)
 }
 
 fn message(result: Result<NetworkBoards, LinkError>) -> String {
@@ -116,7 +116,7 @@ fn requests_go_to_the_board_they_are_meant_for() {
         Some(bytes(&Response::Refused(Refusal::NotMine)))
     });
     let mut boards = connect(&motion, &tracker).unwrap();
-    assert_eq!(boards.identity(Role::Tracker), &identity(Role::Tracker));
+    assert_eq!(boards.identity(Role::Tracker), Some(&identity(Role::Tracker)));
     for _ in 0..3 {
         assert_eq!(
             boards.request(Role::Motion, &Request::Home).unwrap(),
@@ -139,8 +139,8 @@ fn datagrams_come_from_both_boards_in_order_and_bad_ones_are_counted() {
     };
     let mut buffer = [0; 64];
     let ports = (
-        boards.datagram_port(Role::Motion),
-        boards.datagram_port(Role::Tracker),
+        boards.datagram_port(Role::Motion).unwrap(),
+        boards.datagram_port(Role::Tracker).unwrap(),
     );
     send(&motion, ports.0, &[1, 2, 3, 4, 5]);
     for k in 0..20 {
@@ -178,11 +178,23 @@ fn datagrams_reach_the_board() {
     let mut buffer = [0; 64];
     let (length, from) = tracker.datagrams.recv_from(&mut buffer).unwrap();
     assert_eq!(framing::decode_datagram(&buffer[..length]), Ok(datagram));
-    assert_eq!(from.port(), boards.datagram_port(Role::Tracker));
+    assert_eq!(Some(from.port()), boards.datagram_port(Role::Tracker));
     assert_eq!(
         boards.path_states_target(),
-        ([127, 0, 0, 1], tracker.endpoint.datagram_port)
+        Some(([127, 0, 0, 1], tracker.endpoint.datagram_port))
     );
+}
+
+#[test]
+fn a_session_without_a_tracker_board_leaves_it_alone() {
+    let motion = Fake::silent(Role::Motion);
+    let mut boards = NetworkBoards::connect(&motion.endpoint, None, None, BRIEF).unwrap();
+    assert!(boards.identity(Role::Motion).is_some());
+    assert_eq!(boards.identity(Role::Tracker), None);
+    assert_eq!(boards.datagram_port(Role::Tracker), None);
+    assert_eq!(boards.path_states_target(), None);
+    let error = boards.request(Role::Tracker, &Request::Status).unwrap_err();
+    assert!(error.to_string().contains("no tracker board"), "{error}");
 }
 
 #[test]
@@ -197,7 +209,7 @@ fn a_board_that_is_not_there_is_named_with_its_address() {
         request_port: port,
         ..Endpoint::board("127.0.0.1")
     };
-    let error = message(NetworkBoards::connect(&nowhere, &nowhere, None, BRIEF));
+    let error = message(NetworkBoards::connect(&nowhere, Some(&nowhere), None, BRIEF));
     assert!(
         error.starts_with(&format!("the motion board does not answer at 127.0.0.1:{port}")),
         "{error}"
@@ -207,7 +219,7 @@ fn a_board_that_is_not_there_is_named_with_its_address() {
 #[test]
 fn a_name_that_does_not_exist_is_an_unreachable_board() {
     let nobody = Endpoint::board("no such host");
-    let error = message(NetworkBoards::connect(&nobody, &nobody, None, BRIEF));
+    let error = message(NetworkBoards::connect(&nobody, Some(&nobody), None, BRIEF));
     assert!(error.contains("does not answer at no such host:7100"), "{error}");
 }
 

@@ -224,7 +224,9 @@ impl Boards for SimulatedBoards {
         let end_us = self.now_us + REQUEST_US;
         while self.step(end_us) {}
         Ok(match (role, request) {
-            (_, Request::Hello { .. }) => Response::Identity(self.identity(role).clone()),
+            (_, Request::Hello { .. }) => {
+                Response::Identity(self.identities[usize::from(role == Role::Tracker)].clone())
+            }
             (_, Request::Subscribe { .. }) | (Role::Motion, Request::PathStatesTo { .. }) => Response::Done,
             (Role::Motion, request) => self.motion.handle(request),
             (Role::Tracker, request) => self.tracker.controller.handle(request, 0),
@@ -246,15 +248,15 @@ impl Boards for SimulatedBoards {
         Duration::from_micros(self.now_us)
     }
 
-    fn identity(&self, role: Role) -> &Identity {
-        &self.identities[usize::from(role == Role::Tracker)]
+    fn identity(&self, role: Role) -> Option<&Identity> {
+        Some(&self.identities[usize::from(role == Role::Tracker)])
     }
 
-    fn path_states_target(&self) -> ([u8; 4], u16) {
-        ([0; 4], 0)
+    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
+        Some(([0; 4], 0))
     }
 
-    fn datagram_port(&self, _role: Role) -> u16 {
-        0
+    fn datagram_port(&self, _role: Role) -> Option<u16> {
+        Some(0)
     }
 }

@@ -1,0 +1,186 @@
+//! How plots are drawn: panels in a grid, as SVG.
+
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use std::path::Path;
+
+/// Points of a curve; more are not seen.
+const POINTS: usize = 1600;
+const FONT: &str = "sans-serif";
+/// Colours that can be told apart by everyone (Okabe and Ito).
+const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(60, 60, 60),
+];
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Chart<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+pub(super) type DrawError<'a> = DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>;
+
+/// A named curve.
+pub(super) struct Curve {
+    pub name: String,
+    pub points: Vec<(f64, f64)>,
+}
+
+/// One set of axes.
+pub(super) struct Panel {
+    pub title: String,
+    /// Label of the horizontal axis.
+    pub x: &'static str,
+    /// Label of the vertical axis.
+    pub y: &'static str,
+    pub curves: Vec<Curve>,
+    /// Smallest range of the vertical axis.
+    pub least: (f64, f64),
+    /// Values that are marked by a dashed line.
+    pub marks: Vec<f64>,
+}
+
+/// No smallest range: what the curves take up.
+pub(super) const AS_CURVES: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
+
+/// Draws `panels`, row by row in a `grid` of rows and columns, into the file at `path`.
+pub(super) fn figure<'a>(
+    path: &'a Path,
+    title: &str,
+    height: u32,
+    grid: (usize, usize),
+    panels: &[Option<Panel>],
+) -> Result<(), DrawError<'a>> {
+    let root = SVGBackend::new(path, (1000, height)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let root = root.titled(title, (FONT, 20))?;
+    for (area, panel) in root.split_evenly(grid).iter().zip(panels) {
+        if let Some(panel) = panel {
+            draw_panel(area, panel)?;
+        }
+    }
+    root.present()
+}
+
+fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Result<(), DrawError<'a>> {
+    let wide = area.dim_in_pixel().0 > 600;
+    let across = range(panel, |p| p.0, AS_CURVES, 0.01);
+    let up = range(panel, |p| p.1, panel.least, 0.05);
+    let mut chart = ChartBuilder::on(area)
+        .caption(&panel.title, (FONT, 15))
+        .margin(8)
+        .margin_right(20)
+        .x_label_area_size(38)
+        .y_label_area_size(62)
+        .build_cartesian_2d(across.0..across.1, up.0..up.1)?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.12))
+        .x_desc(panel.x)
+        .y_desc(panel.y)
+        .x_labels(if wide { 12 } else { 6 })
+        .y_labels(if wide { 7 } else { 4 })
+        .label_style((FONT, 13))
+        .axis_desc_style((FONT, 13))
+        .draw()?;
+    for mark in &panel.marks {
+        let line = [(across.0, *mark), (across.1, *mark)];
+        chart.draw_series(DashedLineSeries::new(line, 6, 5, BLACK.mix(0.6).into()))?;
+    }
+    draw_curves(&mut chart, panel)
+}
+
+fn draw_curves<'a: 'b, 'b>(chart: &mut Chart<'a, 'b>, panel: &Panel) -> Result<(), DrawError<'a>> {
+    for (curve, colour) in panel.curves.iter().zip(COLOURS) {
+        chart
+            .draw_series(LineSeries::new(thin(&curve.points), colour.stroke_width(1)))?
+            .label(&curve.name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(3)));
+    }
+    if panel.curves.len() > 1 {
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .background_style(WHITE.mix(0.85))
+            .border_style(BLACK.mix(0.3))
+            .label_font((FONT, 13))
+            .draw()?;
+    }
+    Ok(())
+}
+
+/// Range of one coordinate of all curves, at least `least`, with a part of its width added on both sides
+/// unless `least` bounds it.
+fn range(panel: &Panel, pick: impl Fn(&(f64, f64)) -> f64, least: (f64, f64), margin: f64) -> (f64, f64) {
+    let (mut low, mut high) = least;
+    for value in panel.curves.iter().flat_map(|c| &c.points).map(pick) {
+        low = low.min(value);
+        high = high.max(value);
+    }
+    if low > high {
+        return (0.0, 1.0);
+    }
+    let room = margin * (high - low).max(1e-6);
+    let low = if low < least.0 { low - room } else { low };
+    let high = if high > least.1 { high + room } else { high };
+    (low, high)
+}
+
+/// At most [`POINTS`] points that still show every peak: of each group the lowest and the highest.
+fn thin(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let group = (2 * points.len()).div_ceil(POINTS).max(2);
+    if points.len() <= POINTS {
+        return points.to_vec();
+    }
+    let mut thinned = Vec::with_capacity(POINTS);
+    for group in points.chunks(group) {
+        let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+        let low = group.iter().min_by(by_value).copied();
+        let high = group.iter().max_by(by_value).copied();
+        let mut pair: Vec<_> = low.into_iter().chain(high).collect();
+        pair.sort_by(|a, b| a.0.total_cmp(&b.0));
+        thinned.extend(pair);
+    }
+    thinned
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_every_peak_in_order() {
+        let mut points: Vec<(f64, f64)> = (0..10_000).map(|i| (f64::from(i), 0.0)).collect();
+        points[4321].1 = 7.0;
+        points[8765].1 = -3.0;
+        let thinned = thin(&points);
+        assert!(thinned.len() <= POINTS + 2, "{}", thinned.len());
+        assert!(thinned.contains(&(4321.0, 7.0)) && thinned.contains(&(8765.0, -3.0)));
+        assert!(thinned.is_sorted_by(|a, b| a.0 <= b.0));
+    }
+
+    #[test]
+    fn a_range_covers_the_curves_and_at_least_what_is_asked() {
+        let panel = |points| Panel {
+            title: String::new(),
+            x: "",
+            y: "",
+            curves: vec![Curve {
+                name: String::new(),
+                points,
+            }],
+            least: (-1.0, 1.0),
+            marks: vec![],
+        };
+        assert_eq!(
+            range(&panel(vec![(0.0, 0.5)]), |p| p.1, (-1.0, 1.0), 0.05),
+            (-1.0, 1.0)
+        );
+        let (low, high) = range(&panel(vec![(0.0, 3.0)]), |p| p.1, (-1.0, 1.0), 0.05);
+        assert!(low == -1.0 && (high - 3.2).abs() < 1e-12, "{low} {high}");
+    }
+}

@@ -1,0 +1,171 @@
+//! What is left of a job after its end.
+
+use super::session::Session;
+use super::{Job, JobError, Tracking};
+use crate::evaluate::{Evaluation, evaluate, run_samples, works};
+use crate::part::{Judgement, Plot, Run};
+use crate::path::PlannedPath;
+use crate::report::{
+    BoardsUsed, ByBoard, ByMotor, Measurements, Outcome, Report, SeamFigures, Truth, WeldTicks,
+};
+use shared::io::MOTOR_AXIS;
+use shared::kinematics::AXIS_UNIT;
+use shared::protocol::Role;
+use shared::units::MM_S_PER_M_MIN;
+use std::collections::BTreeMap;
+
+/// A job after its end.
+#[derive(Debug)]
+pub struct Ended {
+    /// Why it ended early.
+    pub error: Option<JobError>,
+    /// Whether the machine moved along a path, so that there is something to report.
+    pub began: bool,
+    /// The report.
+    pub report: Report,
+    /// What it rests on.
+    pub evaluation: Evaluation,
+    /// Plots of the part's own.
+    pub plots: Vec<Plot>,
+}
+
+/// Evaluates what the session has learned, and judges a run that came to its end by its part.
+pub(super) fn end(
+    session: &Session,
+    job: &Job,
+    paths: &BTreeMap<u32, PlannedPath>,
+    mut error: Option<JobError>,
+) -> Ended {
+    let followed = session.tracking.as_ref().map(Tracking::followed);
+    let evaluation = evaluate(&session.record, &session.machine, paths, followed);
+    let mut judgement = Judgement::default();
+    if error.is_none() {
+        match judge(session, job, paths) {
+            Ok(judged) => judgement = judged,
+            Err(reason) => error = Some(JobError::Judge(format!("{reason:#}"))),
+        }
+    }
+    let outcome = match &error {
+        None => Outcome::Finished,
+        Some(JobError::Interrupted) => Outcome::Interrupted,
+        Some(_) => Outcome::Failed,
+    };
+    let (motion_gaps, tracker_gaps) = session.record.missing();
+    let motors = &job.machine.motion.motors;
+    let following = |motor: usize| {
+        let unit = AXIS_UNIT[MOTOR_AXIS[motor]];
+        motors[motor]
+            .as_ref()
+            .map(|_| evaluation.max_following_error[motor] / unit)
+    };
+    let working = paths.values().find(|path| works(path));
+    let speed_mm_s = working.map(|path| path.limits.velocity);
+    let report = Report {
+        outcome,
+        program: job.names.program.clone(),
+        machine: job.names.machine.clone(),
+        part: job.part.map(|part| part.path().display().to_string()),
+        boards: BoardsUsed {
+            choice: job.names.boards.clone(),
+            motion: board_name(session, Role::Motion).unwrap_or_default(),
+            tracker: session
+                .tracking
+                .as_ref()
+                .and_then(|_| board_name(session, Role::Tracker)),
+        },
+        truth: truth(session),
+        speed_m_per_min: speed_mm_s.unwrap_or(0.0) / MM_S_PER_M_MIN,
+        weld_length_mm: evaluation.weld_length_mm,
+        max_contour_error_mm: evaluation.max_contour_error_mm,
+        max_following_error: ByMotor(std::array::from_fn(following)),
+        max_gantry_skew_um: job
+            .machine
+            .motion
+            .gantry
+            .as_ref()
+            .map(|_| evaluation.max_skew_mm * 1e3),
+        weld_ticks: WeldTicks {
+            recorded: evaluation.weld_ticks,
+            unknown: evaluation.unknown_ticks,
+        },
+        lost_ticks: session.lost_ticks(),
+        telemetry_gaps: ByBoard {
+            motion: motion_gaps,
+            tracker: session.tracking.as_ref().map(|_| tracker_gaps),
+        },
+        seam: session
+            .tracking
+            .as_ref()
+            .map(|tracking| seam_figures(tracking, job, &evaluation)),
+        figures: judgement.figures,
+        planned_motion_s: paths.values().map(PlannedPath::duration_s).sum(),
+        motion_s: evaluation.motion_s,
+        faults: faults(session, error.as_ref()),
+        duration_s: (session.boards.now() - session.began).as_secs_f64(),
+    };
+    Ended {
+        error,
+        began: !paths.is_empty(),
+        report,
+        evaluation,
+        plots: judgement.plots,
+    }
+}
+
+fn judge(session: &Session, job: &Job, paths: &BTreeMap<u32, PlannedPath>) -> anyhow::Result<Judgement> {
+    let Some(part) = job.part else {
+        return Ok(Judgement::default());
+    };
+    part.judge(&Run {
+        machine: job.machine,
+        kinematics: session.machine.kinematics(),
+        paths,
+        samples: &run_samples(&session.record, &session.machine, paths),
+    })
+}
+
+fn board_name(session: &Session, role: Role) -> Option<String> {
+    let identity = session.boards.identity(role)?;
+    Some(format!("{} {}", identity.board, identity.firmware))
+}
+
+fn truth(session: &Session) -> Truth {
+    let mut identities = session.roles().iter().map(|role| session.boards.identity(*role));
+    if identities.all(|identity| identity.is_some_and(|identity| identity.simulated_machine)) {
+        Truth::SimulatedMachine
+    } else {
+        Truth::GratingsAndEncoders
+    }
+}
+
+fn seam_figures(tracking: &Tracking, job: &Job, evaluation: &Evaluation) -> SeamFigures {
+    SeamFigures {
+        seam: job.names.seam.clone(),
+        max_deviation_mm: evaluation.max_deviation_mm.into(),
+        rms_deviation_mm: evaluation.rms_deviation_mm.into(),
+        measurements: Measurements {
+            accepted: tracking.status.accepted,
+            rejected: tracking.status.rejected,
+            too_old: tracking.status.too_old,
+            given_up: tracking.cameras.given_up(),
+        },
+        clock_residual_us: tracking.clock_residual_us,
+        clock_difference_us: tracking.clock_difference_us,
+    }
+}
+
+/// Why the job ended early, and the faults that the boards tell, each once.
+fn faults(session: &Session, error: Option<&JobError>) -> Vec<String> {
+    let mut faults: Vec<String> = error.iter().map(ToString::to_string).collect();
+    let tracker = session.tracking.as_ref().and_then(|t| t.status.fault);
+    let told = [
+        session.motion.fault.map(|fault| fault.to_string()),
+        tracker.map(|fault| fault.to_string()),
+    ];
+    for fault in told.into_iter().flatten() {
+        if !faults.iter().any(|known| known.contains(&fault)) {
+            faults.push(fault);
+        }
+    }
+    faults
+}

@@ -1,0 +1,186 @@
+//! The tracker board's part of a session: its state, its clock, and the cameras that answer its captures.
+
+use super::JobError;
+use super::session::{begin_with, unexpected};
+use crate::boards::{Boards, LinkError};
+use crate::evaluate::Followed;
+use crate::machine::TrackingUnit;
+use crate::path::PlannedPath;
+use crate::record::Record;
+use crate::seam::Deviation;
+use crate::world::{BoardClocks, Cameras, Machine, Sight, TrueSeam};
+use shared::protocol::{Capture, ClockReply, ClockRequest, Datagram, Request, Response, Role, TrackerStatus};
+use shared::tracking::frames::Heads;
+use shared::tracking::{TrackerFault, TrackerState};
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::time::Duration;
+
+/// How often the boards are asked for their clock.
+const CLOCK_PERIOD: Duration = Duration::from_millis(50);
+/// Standard deviations in the noise of the machine file.
+const SIGMAS: f64 = 3.0;
+
+/// What a session knows of the tracker board.
+pub(super) struct Tracking {
+    pub status: TrackerStatus,
+    pub cameras: Cameras,
+    /// Largest residual that the tracker told while welding \[µs\].
+    pub clock_residual_us: Option<f64>,
+    /// Largest difference of its relation from the PC's while welding \[µs\].
+    pub clock_difference_us: Option<f64>,
+    heads: Heads,
+    seams: BTreeMap<u32, TrueSeam>,
+    clocks: BoardClocks,
+    lost_before: u32,
+    next_clock: Duration,
+}
+
+impl Tracking {
+    /// Begins with the board as it is. `seed` starts the cameras' noise.
+    pub fn begin(boards: &mut dyn Boards, unit: &TrackingUnit, seed: u64) -> Result<Self, JobError> {
+        let heads = unit.board.head.build()?;
+        begin_with(boards, Role::Tracker)?;
+        let status = status(boards)?;
+        Ok(Self {
+            lost_before: status.lost,
+            status,
+            cameras: Cameras::new(
+                (unit.cameras.processing_ms * 1e3) as u64,
+                unit.cameras.noise_3sigma_mm / SIGMAS,
+                seed,
+            ),
+            clock_residual_us: None,
+            clock_difference_us: None,
+            heads,
+            seams: BTreeMap::new(),
+            clocks: BoardClocks::default(),
+            next_clock: boards.now(),
+        })
+    }
+
+    /// Asks the board for its state now.
+    pub fn refresh(&mut self, boards: &mut dyn Boards, welding: bool) -> Result<(), LinkError> {
+        self.status = status(boards)?;
+        if welding {
+            let residual = f64::from(self.status.clock_residual_us);
+            raise(&mut self.clock_residual_us, residual);
+        }
+        Ok(())
+    }
+
+    /// Control ticks lost since the session began.
+    pub fn lost_ticks(&self) -> u32 {
+        self.status.lost.wrapping_sub(self.lost_before)
+    }
+
+    /// The boards know each other's clock, and the PC both.
+    pub fn clocks_related(&self) -> bool {
+        self.status.clock_settled && self.clocks.tracker_ahead_us().is_some()
+    }
+
+    /// The first reason not to go on.
+    pub fn fault(&self, record: &Record) -> Option<TrackerFault> {
+        let newest = record.tracker().last();
+        let told = newest
+            .filter(|sample| sample.state == TrackerState::Tracking)
+            .and_then(|sample| sample.fault);
+        self.status.fault.or(told)
+    }
+
+    /// From now on there is a seam beside path `id`, from `start_s` \[mm\] on.
+    pub fn add_seam(&mut self, id: u32, path: &PlannedPath, start_s: f64, deviation: Rc<Deviation>) {
+        let seam = TrueSeam::new(self.heads, path.path(), start_s, deviation);
+        self.seams.insert(id, seam);
+    }
+
+    /// The seams, and what their evaluation needs.
+    pub fn followed(&self) -> Followed<'_> {
+        Followed {
+            seams: &self.seams,
+            tracker_ahead_us: self.clocks.tracker_ahead_us().unwrap_or(0),
+        }
+    }
+
+    /// Takes a time of the motion clock that arrived just now.
+    pub fn saw_motion(&mut self, time_us: u64, arrived_us: u64) {
+        self.clocks.saw_motion(time_us, arrived_us);
+    }
+
+    /// Takes a reply of either board.
+    pub fn clock_reply(&mut self, role: Role, reply: &ClockReply, arrived_us: u64) {
+        self.clocks.add(role, reply, arrived_us);
+    }
+
+    /// Gives a capture to the cameras. The time of the strobe is what the PC found, not what the tracker
+    /// believes: a wrong belief must show.
+    pub fn strobe(&mut self, capture: Capture, welding: bool) {
+        let Some(ahead) = self.clocks.tracker_ahead_us() else {
+            return;
+        };
+        let on_motion = capture.time_us.saturating_add_signed(-ahead);
+        if welding {
+            let difference = capture.motion_time_us as f64 - on_motion as f64;
+            raise(&mut self.clock_difference_us, difference.abs());
+        }
+        self.cameras.strobe(capture, on_motion);
+    }
+
+    /// When the next question or answer is due, by the PC's clock.
+    pub fn next_due(&self, now: Duration) -> Duration {
+        let motion_now = self.clocks.motion_now_us(now.as_micros() as u64);
+        match (self.cameras.next_due_us(), motion_now) {
+            (Some(camera), Some(motion)) => {
+                let answer = now + Duration::from_micros(camera.saturating_sub(motion));
+                self.next_clock.min(answer)
+            }
+            _ => self.next_clock,
+        }
+    }
+
+    /// Asks for the clocks and answers the captures, where that is due.
+    pub fn turn(
+        &mut self,
+        boards: &mut dyn Boards,
+        machine: &Machine,
+        record: &Record,
+    ) -> Result<(), LinkError> {
+        let now = boards.now();
+        if now >= self.next_clock {
+            self.next_clock = now + CLOCK_PERIOD;
+            let request = Datagram::ClockRequest(ClockRequest {
+                asked_us: now.as_micros() as u64,
+            });
+            for role in [Role::Motion, Role::Tracker] {
+                boards.send(role, &request)?;
+            }
+        }
+        while let Some(now_us) = self.clocks.motion_now_us(boards.now().as_micros() as u64) {
+            let seams = &self.seams;
+            let sight = |time_us| {
+                let (position, sample) = record.machine_at(time_us)?;
+                Some(Sight {
+                    position,
+                    s_mm: sample.s_mm,
+                    seam: seams.get(&sample.path_id),
+                })
+            };
+            let Some(measurement) = self.cameras.answer(machine, now_us, sight) else {
+                break;
+            };
+            boards.send(Role::Tracker, &Datagram::Measurement(measurement))?;
+        }
+        Ok(())
+    }
+}
+
+fn status(boards: &mut dyn Boards) -> Result<TrackerStatus, LinkError> {
+    match boards.request(Role::Tracker, &Request::Status)? {
+        Response::TrackerStatus(status) => Ok(status),
+        other => Err(unexpected(Role::Tracker, &other)),
+    }
+}
+
+fn raise(largest: &mut Option<f64>, value: f64) {
+    *largest = Some(largest.map_or(value, |before| before.max(value)));
+}
