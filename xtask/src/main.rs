@@ -36,7 +36,7 @@ enum Task {
     /// Weld on two emulated boards: set up, build, boot, and run `host-link weld` with the flags given
     #[command(disable_help_flag = true)]
     Weld {
-        /// Flags of `host-link weld`; program, machine and seam default to the shipped job
+        /// Flags of `host-link weld`; the machine defaults to the dual-beam gantry, the job to that of the machine
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         flags: Vec<String>,
     },

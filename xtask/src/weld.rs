@@ -8,7 +8,7 @@ use crate::interrupt::Interrupts;
 use crate::machine;
 use crate::setup::{self, Tool};
 use anyhow::{Context, Result};
-use emulator::{SESSION_VARIABLE, bound_to_parent};
+use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE, SESSION_VARIABLE, bound_to_parent};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use plant::DEFAULT_MACHINE;
@@ -18,11 +18,16 @@ use std::process::{Child, ExitCode, ExitStatus};
 use std::thread;
 use std::time::Duration;
 
-const PROGRAM: &str = "programs/t-seam-400.ngc";
-const MACHINE: &str = "machines/dual-beam-gantry.toml";
+/// The shipped job of each machine, by the name of its kinematics.
+const JOBS: [(&str, &str); 5] = [
+    ("dual-beam-gantry", "programs/t-seam-400.ngc"),
+    ("pipe-welder", "programs/saddle-320-80.ngc"),
+    ("ac-head", "programs/panel.toml"),
+    ("wire-arc", "programs/leaf.ngc"),
+    ("stir-gantry", "programs/stir-contour.ngc"),
+];
+/// The real seams of the dual-beam gantry's job.
 const SEAM: &str = "programs/t-seam-400-deviation.csv";
-/// Flags of host-link that stand alone; all others take a value.
-const SWITCHES: [&str; 3] = ["-h", "--help", "--block-delete"];
 
 /// Runs host-link with `flags` and the defaults; gives back its exit code. `set_up` installs what is missing.
 pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) -> Result<ExitCode> {
@@ -39,7 +44,7 @@ pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) 
     };
 
     let mut command = bound_to_parent(host_link);
-    command.arg("weld").args(flags).args(told.missing());
+    command.arg("weld").args(flags).envs(told.defaults());
     if let Some(Running { session_file, .. }) = &running {
         command.env(SESSION_VARIABLE, session_file);
     }
@@ -76,41 +81,30 @@ fn wait(child: &mut Child, interrupts: &Interrupts, mut running: Option<&mut Run
     }
 }
 
-/// What the command line says of the job.
-#[derive(Debug, Default, PartialEq, Eq)]
+/// What the command line says of the boards and their machine.
+#[derive(Debug, PartialEq, Eq)]
 struct Told {
-    program: bool,
     machine: Option<String>,
-    seam: bool,
     boards: Option<String>,
     help: bool,
 }
 
 impl Told {
     fn from(flags: &[String]) -> Self {
-        let mut told = Self::default();
-        let mut words = flags.iter();
-        while let Some(word) = words.next() {
-            if !word.starts_with('-') {
-                told.program = true;
-                continue;
+        let value = |flag: &str| {
+            let place = flags
+                .iter()
+                .position(|word| word.split('=').next() == Some(flag))?;
+            match flags[place].split_once('=') {
+                Some((_, value)) => Some(value.to_owned()),
+                None => flags.get(place + 1).cloned(),
             }
-            if SWITCHES.contains(&word.as_str()) {
-                told.help |= word == "-h" || word == "--help";
-                continue;
-            }
-            let (flag, value) = match word.split_once('=') {
-                Some((flag, value)) => (flag, Some(value.to_owned())),
-                None => (word.as_str(), words.next().cloned()),
-            };
-            match flag {
-                "--machine" => told.machine = value,
-                "--seam" => told.seam = true,
-                "--boards" => told.boards = value,
-                _ => {}
-            }
+        };
+        Self {
+            machine: value("--machine"),
+            boards: value("--boards"),
+            help: flags.iter().any(|word| word == "-h" || word == "--help"),
         }
-        told
     }
 
     /// Name of the machine; of a file that does not tell it none, which host-link will refuse in its own words.
@@ -121,25 +115,20 @@ impl Told {
         }
     }
 
-    /// The shipped job, where nothing else is told.
-    fn missing(&self) -> Vec<String> {
-        let mut flags = Vec::new();
-        if self.help {
-            return flags;
+    /// What host-link shall take where its command line says nothing: machine, and job and seam of that machine.
+    fn defaults(&self) -> Vec<(&'static str, String)> {
+        let machine = self.machine_name().unwrap_or_else(|| DEFAULT_MACHINE.to_owned());
+        let mut defaults = vec![(
+            MACHINE_VARIABLE,
+            shipped(&format!("machines/{DEFAULT_MACHINE}.toml")),
+        )];
+        if let Some((_, job)) = JOBS.iter().find(|(name, _)| *name == machine) {
+            defaults.push((JOB_VARIABLE, shipped(job)));
         }
-        if self.machine.is_none() {
-            flags.extend(["--machine".into(), shipped(MACHINE)]);
+        if machine == DEFAULT_MACHINE {
+            defaults.push((SEAM_VARIABLE, shipped(SEAM)));
         }
-        if !self.seam {
-            flags.extend(["--seam".into(), shipped(SEAM)]);
-        }
-        if self.boards.is_none() {
-            flags.extend(["--boards".into(), "emulated".into()]);
-        }
-        if !self.program {
-            flags.push(shipped(PROGRAM));
-        }
-        flags
+        defaults
     }
 }
 
@@ -155,6 +144,7 @@ fn shipped(file: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use plant::MotionPlant;
 
     fn told(line: &str) -> Told {
         let flags: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
@@ -162,26 +152,33 @@ mod tests {
     }
 
     #[test]
-    fn nothing_told_is_the_shipped_job_on_emulated_boards() {
-        let flags = told("--speed 9").missing();
-        assert_eq!(flags.len(), 7);
-        assert!(flags[1].ends_with(MACHINE) && flags[3].ends_with(SEAM) && flags[6].ends_with(PROGRAM));
-        assert_eq!(flags[4..6], ["--boards", "emulated"]);
+    fn nothing_told_is_the_shipped_job_of_the_gantry_with_its_seam() {
+        let told = told("--speed 9");
+        assert_eq!((&told.boards, told.help), (&None, false));
+        let defaults = told.defaults();
+        let ends: Vec<_> = ["machines/dual-beam-gantry.toml", JOBS[0].1, SEAM].into();
+        assert_eq!(defaults.len(), 3);
+        for ((_, file), end) in defaults.iter().zip(ends) {
+            assert!(file.ends_with(end), "{file}");
+        }
     }
 
     #[test]
-    fn what_is_told_stays() {
-        let told = told("my.ngc --machine=m.toml --seam s.csv --boards 10.0.0.1,10.0.0.2");
+    fn every_machine_has_a_job_and_only_the_gantry_a_seam() {
+        let names: Vec<&str> = JOBS.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, MotionPlant::names().collect::<Vec<_>>());
+        let pipe = root().join("machines/pipe-welder.toml");
+        let defaults = told(&format!("--machine {}", pipe.display())).defaults();
+        assert_eq!(defaults.len(), 2);
+        assert!(defaults[1].1.ends_with("programs/saddle-320-80.ngc"));
+    }
+
+    #[test]
+    fn what_is_told_is_found_wherever_it_stands() {
+        let told = told("my.ngc --machine=m.toml --seam s.csv --boards 10.0.0.1,10.0.0.2 -h");
         assert_eq!(told.boards.as_deref(), Some("10.0.0.1,10.0.0.2"));
-        assert_eq!(told.missing(), Vec::<String>::new());
         assert_eq!(told.machine.as_deref(), Some("m.toml"));
         assert_eq!(told.machine_name(), None, "there is no such file");
-    }
-
-    #[test]
-    fn values_are_no_programs_and_switches_have_none() {
-        assert!(!told("--report out --speed 5").program);
-        assert!(told("--block-delete my.ngc").program);
-        assert_eq!(told("--help").missing(), Vec::<String>::new());
+        assert!(told.help);
     }
 }

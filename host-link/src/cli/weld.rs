@@ -11,7 +11,7 @@ use crate::seam::{Deviation, SeamError};
 use crate::weld::{Job, JobError, Names, Terminal, run};
 use anyhow::{Context, bail};
 use clap::Args;
-use emulator::{SESSION_VARIABLE, Session};
+use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE, SESSION_VARIABLE, Session};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
@@ -38,16 +38,16 @@ const POLL: Duration = Duration::from_millis(20);
 )]
 pub struct Weld {
     /// NC program, or part file (*.toml) that a program is planned from
-    #[arg(value_name = "JOB")]
+    #[arg(value_name = "JOB", env = JOB_VARIABLE, hide_env = true)]
     job: PathBuf,
     /// Machine file
-    #[arg(long)]
+    #[arg(long, env = MACHINE_VARIABLE, hide_env = true)]
     machine: PathBuf,
     /// Part file that the run is judged by [default: the one beside the program, of the same name]
     #[arg(long)]
     part: Option<PathBuf>,
     /// Deviation of the real seams (CSV), for programs that follow them
-    #[arg(long)]
+    #[arg(long, env = SEAM_VARIABLE, hide_env = true)]
     seam: Option<PathBuf>,
     /// Speed of the weld in place of the programmed feed [m/min]
     #[arg(long, value_name = "M_PER_MIN", value_parser = speed, allow_negative_numbers = true)]
