@@ -16,6 +16,13 @@ pub fn machine(machine: &MachineFile) -> Result<(), Mistake> {
         at_least_0("cameras.processing_ms", cameras.processing_ms)?;
         at_least_0("cameras.noise_3sigma_mm", cameras.noise_3sigma_mm)?;
     }
+    if let Some(probe) = &machine.probe {
+        probe.build().map_err(|error| Mistake::Value {
+            key: format!("probe.{}", error.key),
+            value: error.value,
+            requirement: error.requirement,
+        })?;
+    }
     if let Some(process) = &machine.process {
         let (min, max) = (process.min_speed_mm_s, process.max_speed_mm_s);
         above_0("process.min_speed_mm_s", min)?;

@@ -1,6 +1,7 @@
 //! The machine file as it is written.
 
 use super::{ByAxis, CameraConfig, MachineFile, Mistake, PlanningConfig, ProcessConfig, TrackingUnit};
+use crate::teach::ProbeUnit;
 use serde::Deserialize;
 use shared::kinematics::KinematicsConfig;
 use shared::motion::{AxisConfig, BeamConfig, GantryConfig, MotionConfig, MotorConfig};
@@ -23,6 +24,7 @@ pub struct Document {
     planning: PlanningConfig,
     cameras: Option<CameraConfig>,
     process: Option<ProcessConfig>,
+    probe: Option<ProbeUnit>,
 }
 
 #[derive(Deserialize)]
@@ -74,6 +76,7 @@ impl TryFrom<Document> for MachineFile {
             },
             tracking: tracking_unit(d.head, d.slides, d.tracking, d.cameras)?,
             process: d.process,
+            probe: d.probe,
             planning: d.planning,
         })
     }

@@ -7,6 +7,7 @@ mod error;
 pub use error::{MachineError, Mistake};
 
 use crate::table::line_of;
+use crate::teach::ProbeUnit;
 use document::Document;
 use serde::Deserialize;
 use shared::io::AXES;
@@ -25,6 +26,8 @@ pub struct MachineFile {
     pub tracking: Option<TrackingUnit>,
     /// What the process asks for, if that is known.
     pub process: Option<ProcessConfig>,
+    /// The probe that measures surfaces, if the machine has one.
+    pub probe: Option<ProbeUnit>,
     /// What only the PC needs for planning.
     pub planning: PlanningConfig,
 }

@@ -4,14 +4,20 @@
 //! ring at the origin. What is measured there has to be turned into the work frame with the probe's attitude.
 
 mod halving;
+mod points;
 mod probe;
 mod ring;
+mod routine;
 mod triples;
+mod unit;
 
 pub use halving::{Halving, HalvingConfig, HalvingError, StopRule, Taught};
+pub use points::{TaughtPoint, read_points, write_points};
 pub use probe::{Probe, ProbeConfig, Ranging, RangingError, Reading, Refused};
 pub use ring::{Curvature, Harmonics, Plane, Ring, RingError, Unsmooth};
+pub use routine::{Arm, Guide, Look, PointError, TeachError, Teacher, TeachingConfig, aim};
 pub use triples::Triples;
+pub use unit::{ProbeUnit, SimulatedProbeConfig};
 
 #[cfg(test)]
 mod tests;

@@ -158,6 +158,12 @@ impl Probe {
         }
     }
 
+    /// The least and the largest distance that it can show \[mm\].
+    pub fn range_mm(&self) -> [f64; 2] {
+        let reach = (self.0.mm_per_volt * self.0.max_volts).abs();
+        [self.0.distance_at_0v_mm - reach, self.0.distance_at_0v_mm + reach]
+    }
+
     /// The voltage at a distance \[V\], within the range or not.
     pub fn volts(&self, distance_mm: f64) -> f64 {
         (distance_mm - self.0.distance_at_0v_mm) / self.0.mm_per_volt

@@ -3,6 +3,7 @@
 mod loops;
 mod probe;
 mod rings;
+mod routine;
 
 use super::ring::{DIRECTIONS, NEIGHBOURS};
 use super::*;

@@ -7,9 +7,13 @@
 mod camera;
 mod clock;
 mod noise;
+mod probe;
+mod surface;
 pub(crate) mod truth;
 
 pub use camera::{Cameras, Sight};
 pub use clock::BoardClocks;
 pub use noise::SplitMix64;
+pub use probe::SimulatedProbe;
+pub use surface::Surface;
 pub use truth::{Crossing, Machine, TrueSeam};

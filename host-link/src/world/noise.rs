@@ -19,7 +19,7 @@ impl SplitMix64 {
     }
 
     /// 0 ≤ x < 1.
-    fn uniform(&mut self) -> f64 {
+    pub(super) fn uniform(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 

@@ -10,6 +10,7 @@ mod tests;
 use super::beams::slide_extension;
 use super::cut::SmoothSeam;
 use super::locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
+use super::speed_up_length;
 use crate::curve::Curve;
 use crate::machine::{MachineFile, TrackingUnit};
 use crate::seam::SeamPoint;
@@ -302,18 +303,7 @@ fn divide(curve: &Curve<6>) -> Vec<f64> {
 /// v/2·(v/a + a/j), the map of the seam fills, w + hold + v·(T_p + 4 T_f), and the slides cross half their
 /// travel and settle, v·(travel/2/v_slide + 0.1 s); after the seam it only stops. Both are at least 40 mm.
 fn run_lengths(machine: &MachineFile, unit: &TrackingUnit) -> (f64, f64) {
-    let (v, a, j) = (
-        RUN_SPEED,
-        machine.planning.path_acceleration_mm_s2,
-        machine.planning.path_jerk_mm_s3,
-    );
-    // Without constant acceleration in between if a is never reached.
-    let time = if v * j > a * a {
-        v / a + a / j
-    } else {
-        2.0 * libm::sqrt(v / j)
-    };
-    let speed_up = v / 2.0 * time;
+    let speed_up = speed_up_length(&machine.planning, RUN_SPEED);
     let tracking = &unit.board.tracking;
     let frame = f64::from(tracking.frame_period_ms) / 1000.0;
     let reach = unit
@@ -323,7 +313,7 @@ fn run_lengths(machine: &MachineFile, unit: &TrackingUnit) -> (f64, f64) {
         .map(|slide| (slide.travel_max_mm - slide.travel_min_mm) / 2.0 / slide.max_velocity_mm_s)
         .fold(0.0, f64::max);
     let wait = unit.cameras.processing_ms / 1000.0 + FRAMES * frame + reach + SETTLE;
-    let lock = tracking.window_mm + tracking.hold_mm + v * wait;
+    let lock = tracking.window_mm + tracking.hold_mm + RUN_SPEED * wait;
     ((speed_up + lock).max(SHORTEST_RUN), speed_up.max(SHORTEST_RUN))
 }
 
