@@ -5,13 +5,16 @@
 //! Seamwright's by its line in the list below.
 
 mod judge;
+mod panel;
 mod t_seam;
 
 pub use judge::{Figure, Judgement, Plot, Run, RunSample};
+pub use panel::{Panel, PanelError};
 pub use t_seam::TSeam;
 
 use crate::machine::MachineFile;
 use crate::table::line_of;
+use crate::teach::TaughtPoint;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -50,13 +53,13 @@ macro_rules! kinds {
         /// A part of any kind.
         #[derive(Clone, Debug, PartialEq, Deserialize)]
         pub enum Part {
-            $($(#[$doc])* #[serde(rename = $key)] $name($name),)+
+            $($(#[$doc])* #[serde(rename = $key)] $name(Box<$name>),)+
         }
 
         impl Part {
             fn kind(&self) -> &dyn Kind {
                 match self {
-                    $(Self::$name(kind) => kind,)+
+                    $(Self::$name(kind) => kind.as_ref(),)+
                 }
             }
         }
@@ -66,6 +69,8 @@ macro_rules! kinds {
 kinds! {
     /// Two seams at the feet of a rib, for the dual-beam head.
     "t-seam" TSeam,
+    /// A line on a curved panel, taught and cut by the A/C head.
+    "panel" Panel,
 }
 
 /// A part and where it came from.
@@ -131,6 +136,22 @@ impl PartFile {
     /// The part.
     pub fn part(&self) -> &Part {
         &self.part
+    }
+
+    /// The panel, if it has to be taught before it can be planned.
+    pub fn untaught(&self) -> Option<&Panel> {
+        match &self.part {
+            Part::Panel(panel) if panel.is_untaught() => Some(panel),
+            _ => None,
+        }
+    }
+
+    /// The part with the points that were taught; a part that is no panel stays as it is.
+    pub fn taught(mut self, points: Vec<TaughtPoint>) -> Self {
+        if let Part::Panel(panel) = &mut self.part {
+            panel.set_points(points);
+        }
+        self
     }
 
     /// Plans the program for `machine`; `title` names it.

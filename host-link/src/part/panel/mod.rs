@@ -1,0 +1,201 @@
+//! A line on a curved panel, for the A/C head: taught by the ranging probe, then cut (SPEC 2).
+
+mod attitude;
+mod judge;
+mod line;
+mod program;
+#[cfg(test)]
+mod tests;
+
+use super::{Judgement, Kind, Place, Plan, Run};
+use crate::teach::{Guide, TaughtPoint, TeachingConfig, read_points};
+use crate::world::Surface;
+use nalgebra::Vector3;
+use serde::Deserialize;
+use shared::kinematics::KinematicsError;
+use std::borrow::Cow;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// A cut on a curved panel.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Panel {
+    /// Speed of the focus \[m/min\].
+    speed_m_min: f64,
+    /// Power of the beam \[W\].
+    power_w: f64,
+    /// The cut ends where it begins.
+    #[serde(default)]
+    closed: bool,
+    /// The head runs along the line with the beam off for this long before and after the cut \[mm\].
+    lead_mm: f64,
+    /// Distance of the points of the program \[mm\].
+    spacing_mm: f64,
+    /// Points taught before: CSV, as `host-link teach` writes it.
+    taught: Option<PathBuf>,
+    /// Where to teach: X Y Z \[mm\] of the tip and A C \[deg\].
+    #[serde(default)]
+    guide: Vec<[f64; 5]>,
+    /// How to teach.
+    teaching: TeachingConfig,
+    /// The panel as it really is. Only simulated worlds look at it, and the judgement of a run in one.
+    simulated_surface: Option<Surface>,
+    /// Points taught in this session.
+    #[serde(skip)]
+    points: Option<Vec<TaughtPoint>>,
+}
+
+/// Why there is no program. Reads as one sentence.
+#[derive(Debug, Error)]
+pub enum PanelError {
+    /// Nobody knows the surface.
+    #[error(
+        "the panel is not taught: `host-link teach PART --machine FILE -o taught.csv` does that, and taught = \
+         \"taught.csv\" in the part file then names the points; `host-link weld PART` teaches and cuts in one go"
+    )]
+    Untaught,
+    /// Not enough points for a curve.
+    #[error("{found} taught points make no curve, at least {least} are needed")]
+    TooFew {
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        least: usize,
+    },
+    /// A number makes no sense.
+    #[error("{key} is {value}, but must be {requirement}")]
+    Value {
+        /// Its key.
+        key: &'static str,
+        /// What it says.
+        value: f64,
+        /// What it must be.
+        requirement: &'static str,
+    },
+    /// Another machine.
+    #[error("a panel is cut with an A/C head, and the machine has none")]
+    NoHead,
+    /// No smooth curve.
+    #[error("no smooth curve through the taught points: {0}; are two of them the same?")]
+    Curve(shared::geometry::SplineError),
+    /// The head cannot take the attitude.
+    #[error("near taught point {point}: {source}")]
+    Attitude {
+        /// Its number, from 1.
+        point: usize,
+        /// Why.
+        source: KinematicsError,
+    },
+    /// An axis does not reach.
+    #[error("near taught point {point} the path leaves the travel of {axis}: move or turn the work")]
+    Travel {
+        /// Its number, from 1.
+        point: usize,
+        /// The axis.
+        axis: &'static str,
+    },
+    /// An axis is too slow.
+    #[error(
+        "near taught point {point} axis {axis} allows {largest:.2} m/min, not {speed} m/min: cut slower{}",
+        if *.upright { ", or let upright_deg be larger" } else { "" }
+    )]
+    Speed {
+        /// Its number, from 1.
+        point: usize,
+        /// The axis.
+        axis: &'static str,
+        /// Largest speed \[m/min\].
+        largest: f64,
+        /// Asked for \[m/min\].
+        speed: f64,
+        /// It is C, which turns fast where the normal is near the vertical.
+        upright: bool,
+    },
+    /// The safe height is too low.
+    #[error("the safe height of {safe} mm is below the panel, which reaches {top:.1} mm")]
+    SafeHeight {
+        /// It \[mm\].
+        safe: f64,
+        /// Highest point of the path \[mm\].
+        top: f64,
+    },
+}
+
+impl Panel {
+    /// Whether it has to be taught before it can be planned.
+    pub fn is_untaught(&self) -> bool {
+        self.taught.is_none() && self.points.is_none()
+    }
+
+    /// Where to teach.
+    pub fn guides(&self) -> Vec<Guide> {
+        let guide = |[x, y, z, a, c]: &[f64; 5]| Guide {
+            position: Vector3::new(*x, *y, *z),
+            angles_deg: [*a, 0.0, *c],
+        };
+        self.guide.iter().map(guide).collect()
+    }
+
+    /// How to teach.
+    pub fn teaching(&self) -> &TeachingConfig {
+        &self.teaching
+    }
+
+    /// The panel as it really is, in a simulated world.
+    pub fn simulated_surface(&self) -> Option<&Surface> {
+        self.simulated_surface.as_ref()
+    }
+
+    /// Sets the points that were taught.
+    pub fn set_points(&mut self, points: Vec<TaughtPoint>) {
+        self.points = Some(points);
+    }
+
+    /// The taught points: of this session, or of the file.
+    fn points(&self, place: &Place) -> anyhow::Result<Cow<'_, [TaughtPoint]>> {
+        match (&self.points, &self.taught) {
+            (Some(points), _) => Ok(Cow::Borrowed(points)),
+            (None, Some(file)) => Ok(Cow::Owned(read_points(&place.directory.join(file))?)),
+            (None, None) => Err(PanelError::Untaught.into()),
+        }
+    }
+
+    /// Checks the numbers of the cut.
+    fn check(&self) -> Result<(), PanelError> {
+        let above_0 = [
+            ("speed_m_min", self.speed_m_min),
+            ("power_w", self.power_w),
+            ("spacing_mm", self.spacing_mm),
+        ];
+        for (key, value) in above_0 {
+            if !(value.is_finite() && value > 0.0) {
+                let requirement = "above 0";
+                return Err(PanelError::Value {
+                    key,
+                    value,
+                    requirement,
+                });
+            }
+        }
+        if !(self.lead_mm.is_finite() && self.lead_mm >= 0.0) {
+            return Err(PanelError::Value {
+                key: "lead_mm",
+                value: self.lead_mm,
+                requirement: "0 or more",
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Kind for Panel {
+    fn plan(&self, place: &Place) -> anyhow::Result<Plan> {
+        self.check()?;
+        Ok(self.program(place, &self.points(place)?)?)
+    }
+
+    fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement> {
+        Ok(self.figures(run, &self.points(place)?))
+    }
+}
