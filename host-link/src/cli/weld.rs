@@ -221,7 +221,13 @@ impl Weld {
             println!("  report in {}", self.report.display());
         }
         match ended.error {
-            None => Ok(verdict(&ended.report)),
+            None => match verdict(&ended.report) {
+                None => Ok(ExitCode::SUCCESS),
+                Some(outside) => {
+                    eprintln!("host-link: {outside}");
+                    Ok(ExitCode::from(OUTSIDE))
+                }
+            },
             Some(JobError::Interrupted) => {
                 eprintln!("host-link: {}", JobError::Interrupted);
                 Ok(ExitCode::from(INTERRUPTED))
@@ -271,17 +277,10 @@ impl Weld {
     }
 }
 
-/// Exit code of a job that came to its end; says what is outside its limits.
-fn verdict(report: &Report) -> ExitCode {
+/// What is outside its limits, if anything is.
+fn verdict(report: &Report) -> Option<String> {
     let exceeded: Vec<String> = report.exceeded().map(report::sentence).collect();
-    if exceeded.is_empty() {
-        return ExitCode::SUCCESS;
-    }
-    eprintln!(
-        "host-link: the weld is outside its limits: {}",
-        exceeded.join(", ")
-    );
-    ExitCode::from(OUTSIDE)
+    (!exceeded.is_empty()).then(|| format!("the weld is outside its limits: {}", exceeded.join(", ")))
 }
 
 #[cfg(test)]
@@ -299,6 +298,17 @@ mod tests {
         for wrong in ["", "192.168.7.10,", ",x"] {
             assert!(wrong.parse::<BoardChoice>().is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn a_weld_outside_its_limits_is_told_with_figure_and_limit() {
+        let mut report = crate::report::tests::without_tracker();
+        assert_eq!(
+            verdict(&report).as_deref(),
+            Some("the weld is outside its limits: height of the torch 0.2500 mm (may be 0.2000 mm)")
+        );
+        report.figures.remove(1);
+        assert_eq!(verdict(&report), None);
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! Whole jobs on simulated boards, and what happens when something goes wrong in the middle of one.
 
+mod machines;
+
 use super::*;
 use crate::boards::simulated::SimulatedBoards;
 use crate::nc::{Options, interpret};
-use crate::report::{Outcome, Report, SeamFigures, Truth};
+use crate::report::{Outcome, Report, SeamFigures};
 use shared::protocol::{Datagram, Identity, Response};
 use std::sync::atomic::Ordering;
 
@@ -23,7 +25,11 @@ X1180
 M2";
 
 fn machine() -> MachineFile {
-    MachineFile::parse("m.toml", include_str!("../../../machines/dual-beam-gantry.toml")).unwrap()
+    MachineFile::parse(
+        "m.toml",
+        include_str!("../../../../machines/dual-beam-gantry.toml"),
+    )
+    .unwrap()
 }
 
 /// Bends, slopes and a kink.
@@ -347,112 +353,4 @@ fn without_the_tracker_board_the_motion_board_is_stopped_and_switched_off() {
     );
     assert_stopped_on_path(&ended, 120.0);
     assert!(boards.motion_disabled);
-}
-
-/// A motion board without a tracker board beside it.
-struct MotionOnly(SimulatedBoards);
-
-impl Boards for MotionOnly {
-    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
-        assert_eq!(role, Role::Motion, "{request:?}");
-        self.0.request(role, request)
-    }
-
-    fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
-        self.0.receive(timeout)
-    }
-
-    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
-        panic!("{datagram:?} to {role:?}")
-    }
-
-    fn now(&self) -> Duration {
-        self.0.now()
-    }
-
-    fn identity(&self, role: Role) -> Option<&Identity> {
-        self.0.identity(role).filter(|_| role == Role::Motion)
-    }
-
-    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
-        None
-    }
-
-    fn datagram_port(&self, role: Role) -> Option<u16> {
-        self.0.datagram_port(role).filter(|_| role == Role::Motion)
-    }
-}
-
-/// The same gantry without its tracker.
-fn without_tracker() -> MachineFile {
-    MachineFile {
-        tracking: None,
-        ..machine()
-    }
-}
-
-/// The same program without tracking.
-fn untracked() -> String {
-    PROGRAM.replace("M62 P2\n", "").replace("M63 P2\n", "")
-}
-
-#[test]
-fn a_machine_without_a_tracker_needs_the_motion_board_only() {
-    let mut boards = MotionOnly(SimulatedBoards::default());
-    let (machine, program) = (without_tracker(), untracked());
-    let never = AtomicBool::new(false);
-    let ended = run_on(&mut boards, &machine, &program, None, &never, &mut Silent).unwrap();
-    assert!(ended.error.is_none(), "{:?}", ended.error);
-    let report = &ended.report;
-    assert_eq!((report.outcome, &report.seam), (Outcome::Finished, &None));
-    assert_eq!(report.truth, Truth::SimulatedMachine);
-    assert_eq!((report.lost_ticks.total(), report.telemetry_gaps.total()), (0, 0));
-    assert_eq!((report.lost_ticks.tracker, report.weld_ticks.unknown), (None, 0));
-    assert!((report.weld_length_mm - 200.0).abs() < 0.2);
-    assert!((0.0..0.02).contains(&report.max_contour_error_mm.unwrap()));
-    let late = report.motion_s - report.planned_motion_s;
-    assert!((-0.02..0.05).contains(&late), "{late} s");
-    assert_eq!(ended.evaluation.ticks.last().unwrap().slides_mm, None);
-}
-
-#[test]
-fn a_seam_is_asked_for_where_the_program_tracks_and_refused_where_the_machine_cannot() {
-    let refused = |machine: &MachineFile, program: &str, seam: Option<Rc<Deviation>>| {
-        let planner = Planner::build(machine).unwrap();
-        let program = interpret(program, Options::default()).unwrap();
-        let paths = planner
-            .program(&program, &machine.planning.park_axes(), None)
-            .unwrap();
-        check_seam(&paths, machine, seam.as_deref()).err()
-    };
-    let (tracks, not) = (machine(), without_tracker());
-    assert_eq!(refused(&tracks, PROGRAM, Some(seam())), None);
-    assert_eq!(refused(&tracks, PROGRAM, None), Some(SeamError::NoSeam));
-    assert_eq!(refused(&tracks, &untracked(), None), None);
-    assert_eq!(
-        refused(&not, &untracked(), Some(seam())),
-        Some(SeamError::NoTracking)
-    );
-    assert_eq!(refused(&not, &untracked(), None), None);
-}
-
-#[test]
-fn a_machine_with_a_tracker_does_not_begin_without_it() {
-    let mut boards = MotionOnly(SimulatedBoards::default());
-    let never = AtomicBool::new(false);
-    let error = run_on(
-        &mut boards,
-        &machine(),
-        PROGRAM,
-        Some(seam()),
-        &never,
-        &mut Silent,
-    )
-    .unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .contains("no tracker board, which the machine needs"),
-        "{error}"
-    );
 }
