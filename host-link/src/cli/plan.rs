@@ -13,6 +13,7 @@ use std::path::PathBuf;
 /// A part file says what is to be made and how; programs/ has one of each kind:
 ///
 ///   [t-seam]  two seam curves at the feet of a rib, for the dual-beam gantry
+///   [saddle]  two pipes by their dimensions, or by points taught on their seam, for the pipe welder
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct Plan {

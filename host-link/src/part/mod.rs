@@ -6,10 +6,12 @@
 
 mod judge;
 mod panel;
+mod saddle;
 mod t_seam;
 
 pub use judge::{Figure, Judgement, Plot, Run, RunSample};
 pub use panel::{Panel, PanelError};
+pub use saddle::{Saddle, SaddlePartError, TaughtError};
 pub use t_seam::TSeam;
 
 use crate::machine::MachineFile;
@@ -71,6 +73,8 @@ kinds! {
     "t-seam" TSeam,
     /// A line on a curved panel, taught and cut by the A/C head.
     "panel" Panel,
+    /// The saddle of two pipes, for the pipe welder.
+    "saddle" Saddle,
 }
 
 /// A part and where it came from.

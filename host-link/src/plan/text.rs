@@ -69,25 +69,19 @@ impl NcText {
 
 /// A tip as words: X Y Z A B C V1= V2=.
 pub fn tip_words(position: &[f64; 3], angles_deg: &[f64; 3], extension: &[f64; 2]) -> String {
-    let mut words = String::new();
-    let lengths = ["X", "Y", "Z"]
-        .into_iter()
-        .zip(position)
-        .map(|p| (p, LENGTH_DECIMALS));
-    let angles = ["A", "B", "C"]
-        .into_iter()
-        .zip(angles_deg)
-        .map(|p| (p, ANGLE_DECIMALS));
-    let slides = ["V1=", "V2="]
-        .into_iter()
-        .zip(extension)
-        .map(|p| (p, LENGTH_DECIMALS));
-    for ((address, value), decimals) in lengths.chain(angles).chain(slides) {
-        let gap = if words.is_empty() { "" } else { " " };
-        // Writing to a String cannot fail.
-        let _ = write!(words, "{gap}{address}{}", decimal(*value, decimals));
-    }
-    words
+    let addresses = ["X", "Y", "Z", "A", "B", "C", "V1=", "V2="];
+    let values = position.iter().chain(angles_deg).chain(extension).copied();
+    words(addresses.into_iter().zip(values))
+}
+
+/// Words of a block: addresses and values (mm, degrees at A B C).
+pub fn words<'a>(words: impl IntoIterator<Item = (&'a str, f64)>) -> String {
+    let words = words.into_iter().map(|(address, value)| {
+        let angle = matches!(address, "A" | "B" | "C");
+        let decimals = if angle { ANGLE_DECIMALS } else { LENGTH_DECIMALS };
+        format!("{address}{}", decimal(value, decimals))
+    });
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// Block number `number` that moves the axes of a machine to `axes` (X Y Z A B C; mm, rad) in machine coordinates,
