@@ -7,11 +7,13 @@
 mod judge;
 mod panel;
 mod saddle;
+mod stir;
 mod t_seam;
 
 pub use judge::{Figure, Judgement, Plot, Run, RunSample};
 pub use panel::{Panel, PanelError};
 pub use saddle::{Saddle, SaddlePartError, TaughtError};
+pub use stir::Stir;
 pub use t_seam::TSeam;
 
 use crate::machine::MachineFile;
@@ -75,6 +77,8 @@ kinds! {
     "panel" Panel,
     /// The saddle of two pipes, for the pipe welder.
     "saddle" Saddle,
+    /// Friction-stir weld along lines and arcs.
+    "stir" Stir,
 }
 
 /// A part and where it came from.
