@@ -357,6 +357,15 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         let Some(machine) = &self.machine else { return };
         match reference(&machine.kinematics, &self.path, state, &self.axes) {
             Ok(next) => {
+                if let Some(axis) = machine.jump(&self.axes, &next.position) {
+                    let distance = (next.position[axis] - self.axes[axis]) / AXIS_UNIT[axis];
+                    self.trip(Fault::Jump {
+                        axis: axis as u8,
+                        distance: distance as f32,
+                        s_mm: state.s as f32,
+                    });
+                    return;
+                }
                 if let Some(axis) = machine.beyond_travel(&next.position) {
                     let position = (next.position[axis] / AXIS_UNIT[axis]) as f32;
                     self.stop_for(Fault::SoftLimit {

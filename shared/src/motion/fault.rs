@@ -82,6 +82,19 @@ pub enum Fault {
         /// Path position.
         s_mm: f32,
     },
+    /// The path asks an axis for more in a millisecond than twice its speed.
+    #[error(
+        "the path asks {} to jump by {distance:.3} mm (or °) at s = {s_mm:.3} mm; keep it away from poles and half turns",
+        AXIS_NAMES[*axis as usize]
+    )]
+    Jump {
+        /// Index of the axis.
+        axis: u8,
+        /// How far within a millisecond (mm or degrees).
+        distance: f32,
+        /// Path position.
+        s_mm: f32,
+    },
     /// The PC was not heard while a path was running, or while homing.
     #[error(
         "the PC was silent for {silent_ms} ms while the machine moved, which was stopped; look at the connection, then reset"

@@ -2,6 +2,7 @@
 
 use super::beams::BeamLimits;
 use super::homing::HomingPlan;
+use super::segment::PATH_PERIOD_S;
 use super::servo::ServoSetup;
 use super::{MotionConfig, SERVO_PERIOD_S};
 use crate::control::{Gantry, Pid};
@@ -67,6 +68,16 @@ impl Machine {
             gantry.ram([motors[0], motors[1]], motors[2]).x
         });
         [x, motors[2], motors[3], motors[4], motors[5], motors[6]]
+    }
+
+    /// First axis that would go from one path tick to the next further than twice its speed allows, if any: no
+    /// planned path does, but an inverse near a pole or the end of a turn might.
+    pub fn jump(&self, from: &[f64; AXES], to: &[f64; AXES]) -> Option<usize> {
+        let too_far = |axis: &usize| {
+            let step = libm::fabs(to[*axis] - from[*axis]);
+            step > 2.0 * self.limits[*axis].velocity * PATH_PERIOD_S
+        };
+        (0..AXES).find(too_far)
     }
 
     /// First axis beyond its travel, if any.
