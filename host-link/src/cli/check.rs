@@ -59,14 +59,25 @@ fn print(paths: &[PlannedPath]) {
             Motion::Rapid => "rapid",
             Motion::Feed => "feed",
         };
+        let speeds = path.steps().map(|step| step.velocity);
+        let speeds = std::iter::once(path.limits.velocity).chain(speeds);
+        let m_min = |speed: f64| speed / shared::units::MM_S_PER_M_MIN;
         println!(
             "{:5} {kind:<6} {:9.1} mm {:7.2} s {:6.2} m/min {:5}",
             index + 1,
             path.length_mm(),
             path.duration_s(),
-            path.limits.velocity / shared::units::MM_S_PER_M_MIN,
+            m_min(speeds.clone().fold(0.0, f64::max)),
             path.knots.len(),
         );
+        let slowest = speeds.fold(f64::INFINITY, f64::min);
+        if path.steps().next().is_some() {
+            println!(
+                "      changes its feed {} times, down to {:.2} m/min",
+                path.steps().count(),
+                m_min(slowest)
+            );
+        }
         if let Some(corner) = path.corner_deg {
             println!("      begins at a corner of {corner:.1}°, where the machine stops");
         }

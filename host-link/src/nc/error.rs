@@ -115,16 +115,6 @@ pub enum Problem {
     /// G1, G2 or G3 without F.
     #[error("G1, G2 and G3 need a feed: no F was given")]
     NoFeed,
-    /// F changes between two blocks of one path.
-    #[error(
-        "F changes from {from} to {to} within a path; a path has one feed (separate the paths by G0, or by G61.1)"
-    )]
-    FeedChange {
-        /// Feed of the path \[mm/min\].
-        from: f64,
-        /// New feed \[mm/min\].
-        to: f64,
-    },
     /// G4, M62, M63 or M67 without a motion after it.
     #[error("{0} has no motion after it, before or with which it would take effect")]
     NoMotionAfter(&'static str),

@@ -2,7 +2,7 @@
 
 use super::error::{NcError, Place, Problem};
 use super::lexer::Word;
-use super::outputs::{Pending, output, take_events};
+use super::outputs::{Pending, Waiting, take_events, waiting};
 use super::parser::{Block, Code, Group, Parsed, parse};
 use super::program::{ArcForm, Motion, Program, ProgramFeed, ProgramPath, Target, Way, Words};
 use shared::geometry::Turn;
@@ -70,8 +70,8 @@ struct Interpreter {
     motion: Option<MotionMode>,
     tip: bool,
     exact_stop: bool,
-    /// mm/min, and where it was programmed.
-    feed: Option<(f64, Place)>,
+    /// mm/min.
+    feed: Option<f64>,
     /// The tip was given a place.
     placed: bool,
     /// Values programmed last, as far as they still hold; V1 and V2 are 0 before.
@@ -99,9 +99,17 @@ impl Interpreter {
             if f.value <= 0.0 {
                 return Err(value_error(f, "a feed is above 0 mm/min"));
             }
-            self.feed = Some((f.value, f.place));
+            self.feed = Some(f.value);
         }
-        self.outputs(block)?;
+        match waiting(block)? {
+            Some(Waiting::Output(pending)) => self.pending.push(pending),
+            Some(Waiting::Dwell(time, place)) => {
+                let before = self.dwell.map_or(0.0, |(time, _)| time);
+                self.dwell = Some((before + time, place));
+                self.open = false;
+            }
+            None => {}
+        }
         for code in &block.codes {
             match code.code {
                 Code::TipOn => self.tip = true,
@@ -138,45 +146,6 @@ impl Interpreter {
             }
             self.ended = true;
         }
-        Ok(())
-    }
-
-    /// M62, M63, M67 and G4, which share their words.
-    fn outputs(&mut self, block: &Block) -> Result<(), NcError> {
-        let dwell = block
-            .code(Group::NonModal)
-            .filter(|code| code.code == Code::Dwell);
-        match (dwell, block.code(Group::Outputs)) {
-            (Some(dwell), Some(output)) => {
-                let (first, second) = (dwell.name, output.name);
-                return Err(Problem::ModalGroup { first, second }.at(output.place));
-            }
-            (Some(dwell), None) => {
-                let missing = Problem::Missing {
-                    code: dwell.name,
-                    word: "P",
-                };
-                let p = block.word("P").ok_or(missing.at(dwell.place))?;
-                if p.value < 0.0 {
-                    return Err(value_error(p, "a time is 0 s or more"));
-                }
-                let before = self.dwell.map_or(0.0, |(time, _)| time);
-                self.dwell = Some((before + p.value, dwell.place));
-                self.open = false;
-                return match ["E", "Q"].iter().find_map(|w| block.word(w)) {
-                    Some(word) => Err(Problem::Orphan(word.label()).at(word.place)),
-                    None => Ok(()),
-                };
-            }
-            (None, Some(_)) => {}
-            (None, None) => {
-                return match ["P", "E", "Q"].iter().find_map(|w| block.word(w)) {
-                    Some(word) => Err(Problem::Orphan(word.label()).at(word.place)),
-                    None => Ok(()),
-                };
-            }
-        }
-        self.pending.extend(output(block)?);
         Ok(())
     }
 
@@ -262,13 +231,12 @@ impl Interpreter {
 
     /// G1, G2, G3: goes on along an open path, or starts one.
     fn feed_motion(&mut self, target: Target, place: Place) -> Result<(), NcError> {
-        let (mm_min, feed_place) = self.feed.ok_or(Problem::NoFeed.at(place))?;
+        let mm_min = self.feed.ok_or(Problem::NoFeed.at(place))?;
         match self.paths.last_mut() {
             Some(path) if self.open => {
                 let with_target = path.targets.len();
-                let before = path.feeds.last().map(|feed| feed.mm_min);
-                if let Some(from) = before.filter(|before| *before != mm_min) {
-                    return Err(Problem::FeedChange { from, to: mm_min }.at(feed_place));
+                if path.feeds.last().is_none_or(|feed| feed.mm_min != mm_min) {
+                    path.feeds.push(ProgramFeed { with_target, mm_min });
                 }
                 path.targets.push(target);
                 path.events.extend(take_events(&mut self.pending, with_target));

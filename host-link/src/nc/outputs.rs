@@ -1,8 +1,9 @@
-//! M62, M63 and M67: what they switch, and when.
+//! M62, M63, M67 and G4: what they do with the next motion.
 
 use super::error::{NcError, Place, Problem};
 use super::interpreter::{number_below, value_error};
-use super::parser::{Block, Code, Group};
+use super::lexer::Word;
+use super::parser::{Block, Code, CodeWord, Group};
 use super::program::ProgramEvent;
 use shared::protocol::PathAction;
 
@@ -13,28 +14,57 @@ pub(super) struct Pending {
     pub(super) place: Place,
 }
 
-/// The output that `block` asks for, if any.
-pub(super) fn output(block: &Block) -> Result<Option<Pending>, NcError> {
-    let Some(code) = block.code(Group::Outputs) else {
-        return Ok(None);
+/// What waits for the next motion.
+pub(super) enum Waiting {
+    /// It takes effect when the motion starts.
+    Output(Pending),
+    /// The motion starts so much later \[s\].
+    Dwell(f64, Place),
+}
+
+/// What `block` asks for with the next motion: M62, M63, M67 or G4, which share their words.
+pub(super) fn waiting(block: &Block) -> Result<Option<Waiting>, NcError> {
+    let dwell = block
+        .code(Group::NonModal)
+        .filter(|code| code.code == Code::Dwell);
+    let (code, own): (_, &[&str]) = match (dwell, block.code(Group::Outputs)) {
+        (Some(dwell), Some(output)) => {
+            let (first, second) = (dwell.name, output.name);
+            return Err(Problem::ModalGroup { first, second }.at(output.place));
+        }
+        (_, Some(output)) if output.code == Code::Analog => (Some(output), &["E", "Q"]),
+        (_, Some(output)) => (Some(output), &["P"]),
+        (Some(dwell), None) => (Some(dwell), &["P"]),
+        (None, None) => (None, &[]),
     };
-    let need = |word: &'static str| {
-        let missing = Problem::Missing {
-            code: code.name,
-            word,
-        };
-        block.word(word).ok_or(missing.at(code.place))
-    };
-    let foreign: &[&str] = if code.code == Code::Analog {
-        &["P"]
-    } else {
-        &["E", "Q"]
-    };
-    if let Some(word) = foreign.iter().find_map(|w| block.word(w)) {
+    let words = ["P", "E", "Q"].into_iter().filter(|w| !own.contains(w));
+    if let Some(word) = words.filter_map(|w| block.word(w)).next() {
         return Err(Problem::Orphan(word.label()).at(word.place));
     }
+    match code {
+        Some(code) if code.code == Code::Dwell => {
+            let p = need(block, code, "P")?;
+            if p.value < 0.0 {
+                return Err(value_error(p, "a time is 0 s or more"));
+            }
+            Ok(Some(Waiting::Dwell(p.value, code.place)))
+        }
+        Some(code) => Ok(Some(Waiting::Output(output(block, code)?))),
+        None => Ok(None),
+    }
+}
+
+fn need<'b>(block: &'b Block, code: &CodeWord, word: &'static str) -> Result<&'b Word, NcError> {
+    let missing = Problem::Missing {
+        code: code.name,
+        word,
+    };
+    block.word(word).ok_or(missing.at(code.place))
+}
+
+fn output(block: &Block, code: &CodeWord) -> Result<Pending, NcError> {
     let action = if code.code == Code::Analog {
-        let (e, q) = (need("E")?, need("Q")?);
+        let (e, q) = (need(block, code, "E")?, need(block, code, "Q")?);
         let Some(side) = number_below(e.value, 2) else {
             return Err(value_error(e, "E0 and E1 are the powers of beam 1 and 2"));
         };
@@ -43,7 +73,7 @@ pub(super) fn output(block: &Block) -> Result<Option<Pending>, NcError> {
         }
         PathAction::Power { side, watt: q.value }
     } else {
-        let p = need("P")?;
+        let p = need(block, code, "P")?;
         let on = code.code == Code::OutputOn;
         match number_below(p.value, 3) {
             Some(2) => PathAction::Tracking { on },
@@ -56,11 +86,11 @@ pub(super) fn output(block: &Block) -> Result<Option<Pending>, NcError> {
             }
         }
     };
-    Ok(Some(Pending {
+    Ok(Pending {
         action,
         code: code.name,
         place: code.place,
-    }))
+    })
 }
 
 /// The waiting events, which take effect at the start of the motion to target `with_target`.

@@ -74,13 +74,14 @@ fn exact_stop_ends_a_path_at_each_block() {
 }
 
 #[test]
-fn a_change_of_feed_inside_a_path_is_an_error_at_its_line() {
-    let (from, to) = (600.0, 700.0);
-    assert_eq!(
-        problem("G1 X10 F600\nX20\nF700\nX30\nM2"),
-        (Problem::FeedChange { from, to }, 3)
-    );
-    assert!(run("G1 X10 F600\nX20 F600\nG0 X0\nG1 X10 F700\nM2").is_ok());
+fn feeds_may_change_within_a_path() {
+    let program = run("G1 X10 F600\nX20\nF700\nX30\nX40 F700\nX50 F600\nG0 X0\nG1 X10\nM2").unwrap();
+    let feeds = |path: usize| -> Vec<_> {
+        let feeds = program.paths[path].feeds.iter();
+        feeds.map(|feed| (feed.with_target, feed.mm_min)).collect()
+    };
+    assert_eq!(feeds(2), [(0, 600.0), (2, 700.0), (4, 600.0)]);
+    assert_eq!((feeds(3), feeds(4)), (vec![], vec![(0, 600.0)]));
 }
 
 #[test]

@@ -135,6 +135,14 @@ pub enum PathError {
     /// The speed must be positive.
     #[error("a feed of {0} mm/min is not possible")]
     NoFeed(f64),
+    /// One speed for a path with several feeds.
+    #[error(
+        "line {line}: the path has several feeds, one speed cannot take their place; leave the speed out, or write one F"
+    )]
+    SeveralFeeds {
+        /// First line of the path.
+        line: u32,
+    },
     /// G1 without travel of the tip.
     #[error("line {line}: G1 must move the tip; turn axes alone with G0")]
     NoTravel {
@@ -193,7 +201,7 @@ pub enum PathError {
     },
     /// More events than the motion board holds.
     #[error(
-        "line {line}: the path has {events} M62, M63 and M67, the motion board holds {MAX_EVENTS}; use fewer"
+        "line {line}: the path has {events} M62, M63, M67 and changes of F, the motion board holds {MAX_EVENTS}; use fewer"
     )]
     TooManyEvents {
         /// First line of the path.

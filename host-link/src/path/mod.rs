@@ -1,5 +1,6 @@
 //! From program paths to what the boards run: knots, events and limits, checked against the machine.
 
+mod block;
 mod error;
 mod exact;
 mod limits;

@@ -37,7 +37,7 @@ impl Planner {
                 PathAction::Tracking { .. } if !self.tracks => {
                     return Err(missing("seam tracking".to_owned()));
                 }
-                PathAction::Tracking { .. } => {}
+                PathAction::Tracking { .. } | PathAction::Speed { .. } => {}
             }
         }
         Ok(())
@@ -53,6 +53,8 @@ pub(super) fn carried(events: &[ProgramEvent], first: usize) -> Vec<PathEvent> {
             PathAction::Power { side, watt } => powers[usize::from(side)] = Some(watt),
             PathAction::Beam { side, on } => gates[usize::from(side)] = on,
             PathAction::Tracking { on } => tracks = on,
+            // The speed of every block is known by its own.
+            PathAction::Speed { .. } => {}
         }
     }
     let mut actions = Vec::new();

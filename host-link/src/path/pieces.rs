@@ -10,7 +10,7 @@ use crate::nc::{Motion, ProgramPath, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
 use shared::motion::MAX_EVENTS;
-use shared::protocol::PathEvent;
+use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::PathSpace;
 
 /// A rotary axis stands where it should, to this much \[rad\]: below what anything resolves, and above what the
@@ -59,7 +59,7 @@ impl Planner {
         let to = self.axes_target(target, stand)?;
         let extension_mm = stand.tip.extension_mm;
         let mut planned = self.axes_path(&stand.axes, &to, &extension_mm, target.line)?;
-        planned.events = events(path, 0, &[0.0], target.line)?;
+        planned.events = events(path, 0, &[0.0], &[], target.line)?;
         let people = std::array::from_fn(|i| to[i] / AXIS_UNIT[i]);
         stand.axes = to;
         stand.tip = Tip {
@@ -128,7 +128,7 @@ impl Planner {
         }
         let mut planned = PlannedPath::untimed(shape, PathSpace::Tool, path.motion);
         planned.corner_deg = piece.corner.map(f64::to_degrees);
-        planned.events = events(path, first, &shape.starts(), line)?;
+        planned.events = events(path, first, &shape.starts(), &speeds[here.clone()], line)?;
         let demands = self.demands(&planned, shape, &stand.axes)?;
         let reached = self.reached(&demands, shape, &tips[here.clone()])?;
         self.check_travel(&demands, shape)?;
@@ -188,6 +188,10 @@ impl Planner {
 
 /// Speed on the way to each target \[mm/s\], 0 for a rapid; `replaced` takes the place of the programmed one.
 fn speeds(path: &ProgramPath, replaced: Option<f64>) -> Result<Vec<f64>, PathError> {
+    if replaced.is_some() && path.feeds.len() > 1 {
+        let line = path.targets[0].line;
+        return Err(PathError::SeveralFeeds { line });
+    }
     let mut speeds = vec![0.0; path.targets.len()];
     for feed in &path.feeds {
         let speed = replaced.unwrap_or(feed.mm_min / 60.0);
@@ -199,9 +203,15 @@ fn speeds(path: &ProgramPath, replaced: Option<f64>) -> Result<Vec<f64>, PathErr
     Ok(speeds)
 }
 
-/// What happens on the part of `path` that begins with target `first`, whose motions start at `starts` \[mm\]. What
-/// was on before is switched on again.
-fn events(path: &ProgramPath, first: usize, starts: &[f64], line: u32) -> Result<Vec<PathEvent>, PathError> {
+/// What happens on the part of `path` that begins with target `first`, whose motions start at `starts` \[mm\] and go
+/// at `speeds` \[mm/s\]. What was on before is switched on again.
+fn events(
+    path: &ProgramPath,
+    first: usize,
+    starts: &[f64],
+    speeds: &[f64],
+    line: u32,
+) -> Result<Vec<PathEvent>, PathError> {
     let mut events = outputs::carried(&path.events, first);
     for event in &path.events {
         let index = event.with_target.checked_sub(first);
@@ -210,6 +220,13 @@ fn events(path: &ProgramPath, first: usize, starts: &[f64], line: u32) -> Result
             action: event.action,
         }));
     }
+    for (pair, s_mm) in speeds.windows(2).zip(&starts[1..]) {
+        if pair[0] != pair[1] {
+            let action = PathAction::Speed { mm_s: pair[1] };
+            events.push(PathEvent { s_mm: *s_mm, action });
+        }
+    }
+    events.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
     if events.len() > MAX_EVENTS {
         return Err(PathError::TooManyEvents {
             line,

@@ -3,8 +3,9 @@
 use super::CAPACITY;
 use super::shape::Shape;
 use crate::nc::Motion;
+use shared::motion::MAX_EVENTS;
 use shared::protocol::{Knot, PathAction, PathEvent};
-use shared::trajectory::{Path, PathSpace, SpeedLimits, SpeedProfile};
+use shared::trajectory::{Path, PathSpace, SpeedError, SpeedLimits, SpeedPlan, SpeedStep};
 
 /// A path that the boards can run.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +23,7 @@ pub struct PlannedPath {
     pub knots: Vec<Knot>,
     /// What happens on the way, s not decreasing.
     pub events: Vec<PathEvent>,
-    /// Speed, acceleration and jerk along the path.
+    /// Speed, acceleration and jerk along the path; the speed until an event changes it.
     pub limits: SpeedLimits,
     /// Largest | |dP/ds| − 1 | of a feed path: how exact its speed is.
     pub speed_error: f64,
@@ -54,7 +55,25 @@ impl PlannedPath {
 
     /// Time from rest to rest \[s\].
     pub fn duration_s(&self) -> f64 {
-        SpeedProfile::rest_to_rest(0.0, self.length_mm(), &self.limits).map_or(0.0, |p| p.duration())
+        self.speed().map_or(0.0, |plan| plan.duration())
+    }
+
+    /// The speed along the path, as the motion board will plan it.
+    pub fn speed(&self) -> Result<SpeedPlan<{ MAX_EVENTS + 1 }>, SpeedError> {
+        let mut plan = SpeedPlan::new();
+        plan.plan(0.0, self.length_mm(), &self.limits, self.steps())?;
+        Ok(plan)
+    }
+
+    /// Changes of the programmed speed on the way; before the first one it is that of the limits.
+    pub fn steps(&self) -> impl Iterator<Item = SpeedStep> + Clone {
+        self.events.iter().filter_map(|event| match event.action {
+            PathAction::Speed { mm_s } => Some(SpeedStep {
+                s: event.s_mm,
+                velocity: mm_s,
+            }),
+            _ => None,
+        })
     }
 
     /// From where the first beam goes on to where the last one goes off \[mm\]; `None` without beams.

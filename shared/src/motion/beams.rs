@@ -7,7 +7,7 @@ use crate::parameter::{ParameterError, not_negative, positive};
 use crate::protocol::{PathAction, PathEvent};
 
 /// Most events on one path.
-pub const MAX_EVENTS: usize = 32;
+pub const MAX_EVENTS: usize = 128;
 
 /// What the beams of a machine need to know.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,6 +99,8 @@ impl Beams {
                 PathAction::Beam { side, on } => self.on[usize::from(side)] = on,
                 PathAction::Power { side, watt } => self.power_w[usize::from(side)] = watt,
                 PathAction::Tracking { on } => self.tracking = on,
+                // Known to the plan of the speed since the path began.
+                PathAction::Speed { .. } => {}
             }
             self.passed += 1;
         }

@@ -16,7 +16,7 @@ use super::{Fault, State, Vibration};
 use crate::io::{AXES, MOTORS, SIDES};
 use crate::kinematics::AXIS_UNIT;
 use crate::protocol::{MotionSample, PathEvent, PathState};
-use crate::trajectory::{Path, SpeedLimits, SpeedProfile, SpeedState, reference};
+use crate::trajectory::{Path, SpeedLimits, SpeedPlan, SpeedState, StopProfile, reference};
 use heapless::Vec;
 
 /// A path begins where the axes stand, to this much (mm or rad).
@@ -46,12 +46,24 @@ pub struct PathTickOutput {
     pub sample: MotionSample,
 }
 
+/// Speeds of one path: the first one, and every event may be a change.
+const MAX_SPEEDS: usize = MAX_EVENTS + 1;
+
 /// Speed along the path, under way.
 #[derive(Clone, Debug)]
 struct Travel {
-    profile: SpeedProfile,
+    course: Course,
     time: f64,
     limits: SpeedLimits,
+}
+
+/// What the speed follows.
+#[derive(Clone, Debug)]
+enum Course {
+    /// The plan of the speed, to the end of the path.
+    Planned,
+    /// A stop before it.
+    Stop(StopProfile),
 }
 
 /// The motion board's controller above the servo loops.
@@ -72,6 +84,8 @@ pub struct MotionController<const KNOTS: usize> {
     path: Path<KNOTS>,
     events: Vec<PathEvent, MAX_EVENTS>,
     beams: Beams,
+    /// Made when a path is run or resumed, at low priority.
+    plan: SpeedPlan<MAX_SPEEDS>,
     travel: Option<Travel>,
     resume_wanted: bool,
     /// Along the path at k, k + 1, k + 2.
@@ -120,6 +134,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             path: Path::new(),
             events: Vec::new(),
             beams: Beams::NONE,
+            plan: SpeedPlan::new(),
             travel: None,
             resume_wanted: false,
             along: [REST; 3],
@@ -335,14 +350,13 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         }
     }
 
-    /// Replaces the speed profile by one that stops as soon as the limits allow.
+    /// From now on the speed goes down to a stop, as soon as the limits allow.
     fn slow_down(&mut self) {
         let from = self.along[2];
         let Some(travel) = &mut self.travel else { return };
-        // On an error, which checked limits and a finite state rule out, the profile from rest to rest goes
-        // on: it ends at rest as well.
-        if let Ok(profile) = SpeedProfile::stop(from, &travel.limits) {
-            travel.profile = profile;
+        // On an error, which checked limits and a finite state rule out, the plan goes on: it ends at rest too.
+        if let Ok(stop) = StopProfile::build(from, &travel.limits) {
+            travel.course = Course::Stop(stop);
             travel.time = 0.0;
         }
     }
@@ -351,8 +365,11 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
     fn travel(&mut self) {
         let Some(travel) = &mut self.travel else { return };
         travel.time += PATH_PERIOD_S;
-        let at_rest = travel.time >= travel.profile.duration() + 2.0 * PATH_PERIOD_S;
-        let state = travel.profile.at(travel.time);
+        let (duration, state) = match &travel.course {
+            Course::Planned => (self.plan.duration(), self.plan.at(travel.time)),
+            Course::Stop(stop) => (stop.duration(), stop.at(travel.time)),
+        };
+        let at_rest = travel.time >= duration + 2.0 * PATH_PERIOD_S;
         self.along = [self.along[1], self.along[2], state];
         let Some(machine) = &self.machine else { return };
         match reference(&machine.kinematics, &self.path, state, &self.axes) {
@@ -409,18 +426,11 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             }
             State::Holding if self.resume_wanted => {
                 self.resume_wanted = false;
-                let from = self.along[2].s;
-                let (Some(travel), Some(end)) = (&mut self.travel, self.path.end_s()) else {
-                    return;
-                };
                 // Held at the very end, nothing is left to run: that is a stop.
-                let event = match SpeedProfile::rest_to_rest(from, end, &travel.limits) {
-                    Ok(profile) if profile.duration() > 0.0 => {
-                        *travel = Travel {
-                            profile,
-                            time: 0.0,
-                            limits: travel.limits,
-                        };
+                let event = match &mut self.travel {
+                    Some(travel) if self.plan.duration() > 0.0 => {
+                        travel.course = Course::Planned;
+                        travel.time = 0.0;
                         Event::Resume
                     }
                     _ => Event::Stop,

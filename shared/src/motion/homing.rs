@@ -7,7 +7,7 @@ use super::{Fault, MotionConfig};
 use crate::control::{ReferenceSearch, SearchInput, SearchProgress, SearchState};
 use crate::io::{MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use crate::parameter::ParameterError;
-use crate::trajectory::{SpeedLimits, SpeedProfile};
+use crate::trajectory::{SpeedLimits, SpeedPlan};
 
 const X1: usize = 0;
 const X2: usize = 1;
@@ -97,7 +97,7 @@ impl HomingPlan {
 /// X2 on its way to where the beam is square.
 #[derive(Clone, Debug, PartialEq)]
 struct Squaring {
-    profile: SpeedProfile,
+    plan: SpeedPlan<1>,
     from: f64,
     sign: f64,
     time: f64,
@@ -107,16 +107,15 @@ impl Squaring {
     /// Moves the reference of X2 on by a millisecond; true when it has arrived.
     fn tick(&mut self, reference: &mut MotorReference) -> bool {
         self.time += PATH_PERIOD_S;
-        let state = self.profile.at(self.time);
+        let state = self.plan.at(self.time);
         reference.position[X2] = self.from + self.sign * state.s;
         reference.velocity[X2] = self.sign * state.v;
         reference.acceleration[X2] = self.sign * state.a;
-        self.time >= self.profile.duration()
+        self.time >= self.plan.duration()
     }
 }
 
 #[derive(Clone, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "one homing exists at a time")]
 enum Stage {
     /// Motors look for their marks.
     Searching,
@@ -219,9 +218,9 @@ impl Homing {
         if length > gantry.max_skew_mm {
             return Err(skew);
         }
-        let profile = SpeedProfile::rest_to_rest(0.0, length, &SQUARING).map_err(|_| skew)?;
+        let plan = SpeedPlan::rest_to_rest(0.0, length, &SQUARING).map_err(|_| skew)?;
         Ok(Stage::Squaring(Squaring {
-            profile,
+            plan,
             from,
             sign: libm::copysign(1.0, distance),
             time: 0.0,

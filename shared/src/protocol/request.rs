@@ -64,7 +64,7 @@ pub enum Request {
     /// Run the loaded path from its first knot to its last, from rest to rest; motion board, state idle. The
     /// axes must stand where the path begins.
     Run {
-        /// Path speed \[mm/s\].
+        /// Path speed, until an event changes it \[mm/s\].
         speed_mm_s: f64,
         /// Path acceleration \[mm/s²\].
         acceleration_mm_s2: f64,
@@ -182,7 +182,7 @@ pub enum Refusal {
         /// Number of the knot.
         index: u16,
     },
-    /// An event is not finite, for a beam that does not exist, out of order, or there are too many.
+    /// An event is not finite, or not positive where it must be, or for a beam that does not exist, out of order, or there are too many.
     #[error("event {index} of the path makes no sense, is out of order or one too many")]
     BadEvent {
         /// Number of the event.
@@ -251,6 +251,11 @@ pub enum PathAction {
     Tracking {
         /// Follow.
         on: bool,
+    },
+    /// From here on, go at most this fast along the path: the speed comes down before, or goes up from here.
+    Speed {
+        /// Path speed \[mm/s\].
+        mm_s: f64,
     },
 }
 

@@ -2,15 +2,22 @@
 
 mod matched_turn;
 mod path;
+mod plan;
+mod ramp;
 mod reference;
 mod speed;
+#[cfg(test)]
+mod speed_tests;
+mod stop;
 mod trapezoid;
 mod window;
 
 pub use matched_turn::MatchedTurn;
 pub use path::{Path, PathError, PathPoint, PathSpace};
+pub use plan::{SpeedPlan, SpeedStep};
 pub use reference::{AxisReference, ReferenceError, reference};
-pub use speed::{SpeedError, SpeedLimits, SpeedProfile, SpeedState};
+pub use speed::{SpeedError, SpeedLimits, SpeedState};
+pub use stop::StopProfile;
 pub use trapezoid::{SmoothedTrapezoid, Trapezoid, TrapezoidError};
 pub use window::{CurveLimits, ProcessWindow, WindowError, WindowPlan, limit_acceleration};
 

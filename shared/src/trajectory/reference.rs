@@ -66,7 +66,7 @@ mod tests {
     use super::*;
     use crate::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
     use crate::protocol::Knot;
-    use crate::trajectory::{CHANNELS, SpeedLimits, SpeedProfile};
+    use crate::trajectory::{CHANNELS, SpeedLimits, SpeedPlan};
 
     fn machine() -> Kinematics {
         let config = KinematicsConfig::DualBeamGantry(DualBeamConfig {
@@ -117,7 +117,7 @@ mod tests {
             acceleration: 800.0,
             jerk: 6000.0,
         };
-        let profile = SpeedProfile::rest_to_rest(3.0, 307.0, &limits).unwrap();
+        let profile = SpeedPlan::<1>::rest_to_rest(3.0, 307.0, &limits).unwrap();
         let at = |t: f64| reference(&machine, &path, profile.at(t), &[0.0; AXES]).unwrap();
         let h = 1e-4;
         let mut checked = 0;

@@ -1,5 +1,5 @@
 //! The classic speed profile, for comparison: trapezoid of speed, sampled and smoothed by a moving mean
-//! (SPEC 0.4.2). What the machines run is the jerk-limited [`super::SpeedProfile`].
+//! (SPEC 0.4.2). What the machines run is the jerk-limited [`super::SpeedPlan`].
 
 use super::SpeedState;
 use thiserror::Error;

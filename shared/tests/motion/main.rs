@@ -2,6 +2,7 @@
 
 mod bench;
 mod homing;
+mod steps;
 mod stops;
 mod ticks;
 mod trips;

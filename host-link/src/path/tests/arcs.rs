@@ -183,7 +183,7 @@ fn fast_joins_stay_within_the_axes() {
     let planned = plan(body).unwrap().pop().unwrap();
     let planner = planner();
     let path = planned.path();
-    let profile = SpeedProfile::rest_to_rest(0.0, planned.length_mm(), &planned.limits).unwrap();
+    let profile = planned.speed().unwrap();
     let mut near = [1000.0, 1000.0, 750.0, 0.0, 0.0, 0.0];
     let steps = (profile.duration() / 1e-3) as usize;
     for i in 0..=steps {

@@ -1,6 +1,7 @@
 //! Paths planned for the shipped machines: where they lead, how fast, and what is refused.
 
 mod arcs;
+mod feeds;
 mod machines;
 
 use super::*;
@@ -8,7 +9,7 @@ use crate::nc::{Options, interpret};
 use nalgebra::Vector3;
 use shared::geometry::{angle, interpolate};
 use shared::motion::MAX_EVENTS;
-use shared::trajectory::{SpeedProfile, SpeedState, reference};
+use shared::trajectory::{SpeedState, reference};
 use std::fmt::Write;
 
 fn planner() -> Planner {
@@ -107,7 +108,7 @@ fn rapids_use_their_part_of_the_limits_and_no_more() {
         let planned = plan(body).unwrap();
         let planner = planner();
         let path = planned[1].path();
-        let profile = SpeedProfile::rest_to_rest(0.0, planned[1].length_mm(), &planned[1].limits).unwrap();
+        let profile = planned[1].speed().unwrap();
         let mut used: f64 = 0.0;
         for i in 0..=500 {
             let state = profile.at(profile.duration() * f64::from(i) / 500.0);

@@ -1,6 +1,6 @@
 //! What the PC may ask of the motion board, and what it is told.
 
-use super::{MotionController, START_TOLERANCE, Travel};
+use super::{Course, MAX_SPEEDS, MotionController, START_TOLERANCE, Travel};
 use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::homing::Homing;
@@ -8,7 +8,7 @@ use crate::motion::machine::Machine;
 use crate::motion::state::Event;
 use crate::motion::{MotionConfig, State};
 use crate::protocol::{Knot, MotionStatus, PathAction, PathEvent, Refusal, Request, Response};
-use crate::trajectory::{PathSpace, SpeedLimits, SpeedProfile, SpeedState, reference};
+use crate::trajectory::{PathSpace, SpeedError, SpeedLimits, SpeedPlan, SpeedState, SpeedStep, reference};
 
 impl<const KNOTS: usize> MotionController<KNOTS> {
     /// One request of the PC; `unsent` datagrams could not be sent so far. The answer says what was done or
@@ -120,6 +120,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             PathAction::Beam { side, on } => beams.has(side) && (in_tool_space || !on),
             PathAction::Power { side, watt } => beams.has(side) && watt.is_finite() && watt >= 0.0,
             PathAction::Tracking { on } => in_tool_space || !on,
+            PathAction::Speed { mm_s } => mm_s.is_finite() && mm_s > 0.0,
         };
         let in_order = self.events.last().is_none_or(|last| last.s_mm <= event.s_mm);
         if self.state.on_path() {
@@ -145,7 +146,6 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         if start >= end {
             return Err(Refusal::NoPath);
         }
-        let profile = SpeedProfile::rest_to_rest(start, end, &limits).map_err(|_| Refusal::NoPath)?;
         let rest = SpeedState {
             s: start,
             v: 0.0,
@@ -163,12 +163,13 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
                 });
             }
         }
+        plan_speed(&mut self.plan, &self.events, start, end, &limits).map_err(|_| Refusal::NoPath)?;
         self.state = state;
         self.beams.restart(&machine.beams);
         self.resume_wanted = false;
         self.along = [rest; 3];
         self.travel = Some(Travel {
-            profile,
+            course: Course::Planned,
             time: 0.0,
             limits,
         });
@@ -187,6 +188,19 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
 
     fn resume(&mut self) -> Result<(), Refusal> {
         self.allowed(Event::Resume)?;
+        // Where the machine will stand is known by now; the rest of the path is planned from there.
+        let held = Refusal::WrongState { state: self.state };
+        let Some(Travel {
+            course: Course::Stop(stop),
+            limits,
+            ..
+        }) = &self.travel
+        else {
+            return Err(held);
+        };
+        let end = self.path.end_s().ok_or(held)?;
+        let from = libm::fmin(stop.end(), end);
+        plan_speed(&mut self.plan, &self.events, from, end, limits).map_err(|_| held)?;
         self.resume_wanted = true;
         Ok(())
     }
@@ -222,4 +236,22 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             vibration_level: self.vibration.map(|vibration| vibration.level()),
         }
     }
+}
+
+/// The speed from rest at `start` to rest at `end`, with the steps among the events.
+fn plan_speed(
+    plan: &mut SpeedPlan<MAX_SPEEDS>,
+    events: &[PathEvent],
+    start: f64,
+    end: f64,
+    limits: &SpeedLimits,
+) -> Result<(), SpeedError> {
+    let steps = events.iter().filter_map(|event| match event.action {
+        PathAction::Speed { mm_s } => Some(SpeedStep {
+            s: event.s_mm,
+            velocity: mm_s,
+        }),
+        _ => None,
+    });
+    plan.plan(start, end, limits, steps)
 }

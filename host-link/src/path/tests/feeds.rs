@@ -1,0 +1,91 @@
+//! Several feeds on one path.
+
+use super::*;
+use shared::protocol::PathAction;
+
+/// Speed events of a path: where, and mm/s.
+fn steps(path: &PlannedPath) -> Vec<(f64, f64)> {
+    path.steps().map(|step| (step.s, step.velocity)).collect()
+}
+
+#[test]
+fn feeds_change_at_their_blocks() {
+    let body = "F3000\nG1 X1100\nM62 P0\nF1200 X1150\nX1200\nM63 P0\nF4800\nX1400";
+    let path = &plan(body).unwrap()[1];
+    assert_eq!(path.limits.velocity, 50.0);
+    let seen = steps(path);
+    for ((s, v), (wanted_s, wanted_v)) in seen.iter().zip([(100.0, 20.0), (200.0, 80.0)]) {
+        assert!(
+            (s - wanted_s).abs() < 1e-9 && (v - wanted_v).abs() < 1e-9,
+            "{seen:?}"
+        );
+    }
+    let in_order = path.events.windows(2).all(|pair| pair[0].s_mm <= pair[1].s_mm);
+    assert!(in_order && path.events.len() == 4, "{:?}", path.events);
+    // The plan of the speed is what the time is counted by: at the step, the speed of the slower side.
+    let plan = path.speed().unwrap();
+    assert_eq!(plan.duration(), path.duration_s());
+    let at_step = (0..10_000)
+        .map(|i| plan.at(plan.duration() * f64::from(i) / 1e4))
+        .min_by(|a, b| (a.s - 150.0).abs().total_cmp(&(b.s - 150.0).abs()));
+    assert!((at_step.unwrap().v - 20.0).abs() < 1e-9);
+    let ended = plan.at(plan.duration());
+    assert_eq!((ended.s, ended.v), (path.length_mm(), 0.0));
+}
+
+/// On a path with arcs, too, and from piece to piece.
+#[test]
+fn pieces_begin_with_the_feed_of_their_first_block() {
+    let body = "F600\nG1 X1100\nF1200\nG3 X1200 Y1100 J100\nF1800\nG1 X1100\nF2400 X1000";
+    let paths = plan(body).unwrap();
+    let [_, first, second] = &paths[..] else {
+        panic!("cut at the corner")
+    };
+    assert_eq!((first.limits.velocity, second.limits.velocity), (10.0, 30.0));
+    assert_eq!(steps(first).iter().map(|step| step.1).collect::<Vec<_>>(), [20.0]);
+    assert_eq!(steps(second), [(100.0, 40.0)]);
+}
+
+#[test]
+fn a_feed_that_the_axes_cannot_follow_is_named_by_its_block() {
+    let error = plan("F600\nG1 X1010 Y1010\nF40000\nX1300 Y1300\nF600\nX1310 Y1310").unwrap_err();
+    assert!(
+        matches!(error, PathError::Feed { line: 6, feed, .. } if (feed - 40_000.0).abs() < 1e-6),
+        "{error}"
+    );
+}
+
+#[test]
+fn one_speed_does_not_replace_several_feeds() {
+    let program = |body: &str| {
+        let text = format!("G43.4\nG0 X1000 Y1000 Z100 A0 B0 C0\n{body}\nM2");
+        interpret(&text, Options::default()).unwrap()
+    };
+    let planner = planner();
+    let plan =
+        |body: &str| planner.program(&program(body), &[100.0, 100.0, 900.0, 0.0, 0.0, 0.0], Some(40.0));
+    assert_eq!(
+        plan("F600\nG1 X1100\nF900 X1200").unwrap_err().to_string(),
+        "line 4: the path has several feeds, one speed cannot take their place; leave the speed out, or write one F"
+    );
+    let paths = plan("F600\nG1 X1100\nG0 Z150\nF900 G1 X1200").unwrap();
+    assert_eq!((paths[1].limits.velocity, paths[3].limits.velocity), (40.0, 40.0));
+}
+
+#[test]
+fn more_changes_than_the_board_holds_are_refused() {
+    let blocks = |count: usize| -> String {
+        (1..=count).fold("G1\n".to_owned(), |text, i| {
+            text + &format!("F{} X{}\n", 600 + i, 1000 + i)
+        })
+    };
+    let path = &plan(&blocks(MAX_EVENTS + 1)).unwrap()[1];
+    assert_eq!(path.events.len(), MAX_EVENTS);
+    assert!(
+        path.events
+            .iter()
+            .all(|e| matches!(e.action, PathAction::Speed { .. }))
+    );
+    let error = plan(&blocks(MAX_EVENTS + 2)).unwrap_err();
+    assert!(matches!(error, PathError::TooManyEvents { line: 4, events } if events == MAX_EVENTS + 1));
+}
