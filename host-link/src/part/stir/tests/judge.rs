@@ -4,7 +4,6 @@ use super::*;
 use crate::part::{Figure, RunSample};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
-use shared::trajectory::SpeedProfile;
 use std::collections::BTreeMap;
 
 /// Time between two samples \[s\].
@@ -30,7 +29,7 @@ fn judged(
     for (index, plan) in planned.iter().enumerate() {
         time += plan.dwell_before_s * dwells;
         let path = plan.path();
-        let profile = SpeedProfile::rest_to_rest(0.0, plan.length_mm(), &plan.limits).unwrap();
+        let profile = plan.speed().unwrap();
         spindle = (spindle || plan.weld().is_some()) && plan.motion == Motion::Feed;
         for i in 0..=(profile.duration() / STEP) as usize {
             let state = profile.at(i as f64 * STEP);
