@@ -4,12 +4,14 @@
 //! machine, and against it the run of the program is judged. One file a kind; a kind becomes one of
 //! Seamwright's by its line in the list below.
 
+mod bead;
 mod judge;
 mod panel;
 mod saddle;
 mod stir;
 mod t_seam;
 
+pub use bead::Bead;
 pub use judge::{Figure, Judgement, Plot, Run, RunSample};
 pub use panel::{Panel, PanelError};
 pub use saddle::{Saddle, SaddlePartError, TaughtError};
@@ -79,6 +81,8 @@ kinds! {
     "saddle" Saddle,
     /// Friction-stir weld along lines and arcs.
     "stir" Stir,
+    /// A bead of deposited wire along a NURBS, for the wire-arc robot.
+    "bead" Bead,
 }
 
 /// A part and where it came from.
