@@ -5,7 +5,7 @@ use super::*;
 use nalgebra::Vector3;
 use shared::io::AXES;
 use shared::kinematics::AxisLimits;
-use shared::trajectory::{ProcessWindow, SpeedLimits, SpeedState, reference};
+use shared::trajectory::{ProcessWindow, SpeedLimits, SpeedPlan, SpeedState, reference};
 
 const WINDOW: ProcessWindow = ProcessWindow { low: 4.0, high: 16.0 };
 
@@ -136,7 +136,7 @@ fn a_ramp_is_as_long_as_that_of_the_boards() {
             jerk,
         };
         let way = ramp(velocity, &limits);
-        let half = shared::trajectory::SpeedProfile::rest_to_rest(0.0, 2.0 * way, &limits).unwrap();
+        let half = SpeedPlan::<1>::rest_to_rest(0.0, 2.0 * way, &limits).unwrap();
         let middle = half.at(half.duration() / 2.0);
         assert!(
             (middle.s - way).abs() < 1e-9 && (middle.v - velocity).abs() < 1e-6,
