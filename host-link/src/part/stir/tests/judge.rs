@@ -9,16 +9,25 @@ use std::collections::BTreeMap;
 /// Time between two samples \[s\].
 const STEP: f64 = 0.01;
 
-/// Runs the shipped part as planned, but for what `disturb` does to the axes (mm, rad), told the path, s and the
-/// time, and for `dwells`, the part of the dwells that are kept.
+/// What a run of the shipped part is worth, judged by `part`.
 fn judged(
     part: &Stir,
     dwells: f64,
     disturb: impl Fn(&PlannedPath, f64, &mut RunSample),
 ) -> anyhow::Result<Vec<Figure>> {
-    let machine = machine();
+    judged_on(&machine(), [&part_with("", ""), part], dwells, disturb)
+}
+
+/// Runs the first of `parts` as planned, but for what `disturb` does to the samples, told the path and s, and with only
+/// a part of the dwells; judges it by the second one.
+fn judged_on(
+    machine: &MachineFile,
+    parts: [&Stir; 2],
+    dwells: f64,
+    disturb: impl Fn(&PlannedPath, f64, &mut RunSample),
+) -> anyhow::Result<Vec<Figure>> {
     let kinematics = machine.motion.kinematics().unwrap();
-    let planned = planned(&part_with("", ""), &machine);
+    let planned = planned(parts[0], machine);
     let mut samples = Vec::new();
     let mut axes: [f64; AXES] = machine.planning.park_axes();
     for (axis, unit) in axes.iter_mut().zip(AXIS_UNIT) {
@@ -59,12 +68,12 @@ fn judged(
     }
     let paths: BTreeMap<u32, PlannedPath> = (1..).zip(planned).collect();
     let run = Run {
-        machine: &machine,
+        machine,
         kinematics: &kinematics,
         paths: &paths,
         samples: &samples,
     };
-    let judgement = part.judge(&place(&machine), &run)?;
+    let judgement = parts[1].judge(&place(machine), &run)?;
     assert_eq!(judgement.plots.len(), 3);
     for plot in &judgement.plots {
         assert!(
@@ -100,6 +109,20 @@ fn a_run_as_planned_keeps_every_limit() {
         assert!(value(&figures, key) < 1e-5, "{key}: {}", value(&figures, key));
     }
     assert!((value(&figures, "preheat_s") - 2.5).abs() < 0.02);
+}
+
+/// C half a turn from the heading, and turned back where it ends.
+#[test]
+fn a_weld_in_two_passes_with_either_tilt_keeps_every_limit() {
+    let positive = machine_with("tilt = \"negative\"", "tilt = \"positive\"");
+    for machine in [machine(), positive] {
+        let mut part = circle(0.0, "ccw");
+        part.rewind = true;
+        let figures = judged_on(&machine, [&part, &part], 1.0, |_, _, _| {}).unwrap();
+        assert_eq!(exceeded(&figures), Vec::<&str>::new());
+        assert!(value(&figures, "max_heading_error_deg") < 0.001);
+        assert!(value(&figures, "max_contour_distance_mm") < 1e-5);
+    }
 }
 
 #[test]
