@@ -9,7 +9,8 @@ use std::path::PathBuf;
 
 /// The boards' processor.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
-const PROFILE: &str = "firmware";
+/// How firmware is optimised.
+pub const PROFILE: &str = "firmware";
 
 /// The two firmwares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

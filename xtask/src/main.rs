@@ -1,5 +1,6 @@
-//! Everything around the project: set-up, building for the boards, emulated boards, tests, sizes, flashing.
+//! Everything around the project: set-up, building for the boards, emulated boards, tests, benchmarks, sizes, flashing.
 
+mod bench;
 mod cargo;
 mod emulate;
 mod firmware;
@@ -48,6 +49,14 @@ enum Task {
     },
     /// Check and test everything
     Test,
+    /// Count instructions, on the PC by valgrind and on the emulated Cortex-M7
+    Bench {
+        /// What to count
+        benchmark: bench::Benchmark,
+        /// Put the table into docs/benchmarks.md too
+        #[arg(long)]
+        record: bool,
+    },
     /// Flash and RAM of all four firmwares against their budgets
     Size,
     /// Write a firmware to a board by probe-rs
@@ -79,6 +88,9 @@ fn main() -> ExitCode {
             emulate::run(rate, machine)
         }),
         Task::Test => set_up(&setup::ALL).and_then(|()| test::run()),
+        Task::Bench { benchmark, record } => {
+            set_up(&setup::COUNTING).and_then(|()| bench::run(benchmark, record))
+        }
         Task::Size => set_up(&[setup::Tool::ArmTarget]).and_then(|()| size::run()),
         Task::Flash { firmware, board } => {
             set_up(&[setup::Tool::ArmTarget]).and_then(|()| flash::run(firmware, board))

@@ -15,14 +15,16 @@ pub enum Tool {
     Components,
     /// The emulator.
     Qemu,
+    /// What counts instructions on the PC.
+    Valgrind,
 }
 
-/// For everything.
+/// For everything but counting.
 pub const ALL: [Tool; 3] = [Tool::ArmTarget, Tool::Components, Tool::Qemu];
 /// For emulated boards.
 pub const EMULATION: [Tool; 2] = [Tool::ArmTarget, Tool::Qemu];
-
-const QEMU: &str = "qemu-system-arm";
+/// For counting instructions.
+pub const COUNTING: [Tool; 3] = [Tool::ArmTarget, Tool::Qemu, Tool::Valgrind];
 
 /// Installs those of `wants` that are missing.
 pub fn run(wants: &[Tool]) -> Result<()> {
@@ -30,7 +32,11 @@ pub fn run(wants: &[Tool]) -> Result<()> {
         match tool {
             Tool::ArmTarget => arm_target()?,
             Tool::Components => components()?,
-            Tool::Qemu => qemu()?,
+            Tool::Qemu => debian(
+                "qemu-system-arm",
+                "install QEMU for Arm by hand, version 7.2 or later with plugins",
+            )?,
+            Tool::Valgrind => debian("valgrind", "install valgrind by hand")?,
         }
     }
     Ok(())
@@ -62,26 +68,26 @@ fn components() -> Result<()> {
     rustup(&[&["component", "add"], &missing[..]].concat())
 }
 
-fn qemu() -> Result<()> {
-    if runs(QEMU, &["--version"]) {
+/// Installs the program of Debian's package of the same name; `by_hand` says what else to do.
+fn debian(program: &str, by_hand: &str) -> Result<()> {
+    if runs(program, &["--version"]) {
         return Ok(());
     }
-    let by_hand = "install QEMU for Arm by hand, version 7.2 or later with plugins";
     ensure!(
         Path::new("/etc/debian_version").exists(),
-        "{QEMU} is missing and this is not Debian: {by_hand}"
+        "{program} is missing and this is not Debian: {by_hand}"
     );
     let mut prefix = Vec::new();
     if !is_root() {
         ensure!(
             runs("sudo", &["--version"]),
-            "{QEMU} is missing, and installing it needs root or sudo: {by_hand}"
+            "{program} is missing, and installing it needs root or sudo: {by_hand}"
         );
         prefix.push("sudo");
     }
     for step in [
         &["update"][..],
-        &["install", "--yes", "--no-install-recommends", QEMU],
+        &["install", "--yes", "--no-install-recommends", program],
     ] {
         let words = [&prefix[..], &["apt-get"], step].concat();
         let line = words.join(" ");
@@ -94,8 +100,8 @@ fn qemu() -> Result<()> {
         run_command(command, &line)?;
     }
     ensure!(
-        runs(QEMU, &["--version"]),
-        "the Debian package {QEMU} is installed, but {QEMU} does not run"
+        runs(program, &["--version"]),
+        "the Debian package {program} is installed, but {program} does not run"
     );
     Ok(())
 }

@@ -3,6 +3,7 @@
 //! Every step runs, whatever became of the one before. The last line is `N passed, N failed`: the tests as
 //! their runners counted them, and one failure for each step that failed without a count.
 
+use crate::bench;
 use crate::cargo::{self, cargo, root, target_directory};
 use crate::emulate;
 use crate::firmware::{self, TARGET};
@@ -72,6 +73,19 @@ pub fn run() -> Result<ExitCode> {
             ])
         });
     }
+    tally.check("lints of the benchmarks on mps2-an500", || {
+        cargo::run(&[
+            "clippy",
+            "--quiet",
+            "--package",
+            bench::PACKAGE,
+            "--target",
+            TARGET,
+            "--",
+            "-D",
+            "warnings",
+        ])
+    });
     tally.check("firmwares within their budgets", || match size::run()? {
         ExitCode::SUCCESS => Ok(()),
         _ => bail!("a firmware is outside its budget"),

@@ -10,6 +10,7 @@
 // Registers and vectors are reached here and nowhere else.
 #![allow(unsafe_code)]
 
+pub mod benchmark;
 pub mod device;
 mod failure;
 mod logger;

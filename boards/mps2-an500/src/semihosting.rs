@@ -3,11 +3,18 @@
 use core::ffi::CStr;
 
 /// Operations, by their number in Arm's specification of semihosting.
+const SYS_OPEN: usize = 0x01;
+const SYS_CLOSE: usize = 0x02;
 const SYS_WRITEC: usize = 0x03;
+const SYS_READ: usize = 0x06;
 const SYS_GET_CMDLINE: usize = 0x15;
 const SYS_EXIT_EXTENDED: usize = 0x20;
 /// "The application exited", with a code of its own.
 const APPLICATION_EXIT: usize = 0x20026;
+/// Opens for reading, as bytes.
+const READ_BYTES: usize = 1;
+/// Instead of a handle: -1.
+const NO_HANDLE: usize = usize::MAX;
 
 /// Longest command line, with the zero at its end.
 pub const COMMAND_LINE: usize = 256;
@@ -23,6 +30,27 @@ pub fn command_line(buffer: &mut [u8; COMMAND_LINE]) -> Option<&str> {
         return None;
     }
     CStr::from_bytes_until_nul(buffer).ok()?.to_str().ok()
+}
+
+/// The content of a file in the folder that QEMU runs in. `None` if it cannot be read, or fills the buffer: then
+/// it may be longer.
+pub fn read_file<'a>(name: &CStr, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
+    let mut open = [name.as_ptr() as usize, READ_BYTES, name.count_bytes()];
+    // SAFETY: the call reads the name.
+    let handle = unsafe { call(SYS_OPEN, open.as_mut_ptr().cast()) };
+    if handle == NO_HANDLE {
+        return None;
+    }
+    let mut read = [handle, buffer.as_mut_ptr() as usize, buffer.len()];
+    // SAFETY: the call writes at most the buffer's length to the buffer. It returns by how much it wrote less.
+    let left = unsafe { call(SYS_READ, read.as_mut_ptr().cast()) };
+    let mut close = [handle];
+    // SAFETY: the call reads the handle.
+    unsafe { call(SYS_CLOSE, close.as_mut_ptr().cast()) };
+    match left {
+        0 => None,
+        left => buffer.get(..buffer.len().checked_sub(left)?),
+    }
 }
 
 /// Writes to the console of QEMU.

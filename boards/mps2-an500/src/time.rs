@@ -7,6 +7,9 @@ use cortex_m::interrupt::{self, Mutex};
 /// Ticks of the timebase, and of the tick timers, in a microsecond.
 pub const TICKS_PER_US: u64 = 25;
 
+/// Length of a tick \[ns\].
+pub const TICK_NS: u64 = 1000 / TICKS_PER_US;
+
 const LOAD: usize = 0x0;
 const VALUE: usize = 0x4;
 const CONTROL: usize = 0x8;

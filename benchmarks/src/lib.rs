@@ -1,0 +1,57 @@
+//! What is counted, and how: the same calls with the same data on the PC (under callgrind) and on the emulated
+//! Cortex-M7.
+//!
+//! The programs of both read the machines from one [file](machine) and print [`Record`](record::Record)s. `cargo
+//! xtask bench` writes that file, runs both programs and makes the table.
+#![cfg_attr(target_os = "none", no_std)]
+
+pub mod kinematics;
+pub mod machine;
+#[cfg(not(target_os = "none"))]
+pub mod machine_files;
+pub mod meter;
+mod random;
+pub mod record;
+
+use core::ffi::CStr;
+use machine::Unreadable;
+use thiserror::Error;
+
+/// On the emulated board an instruction takes 2^this ns.
+pub const SHIFT: u32 = 10;
+
+/// The file that both programs read the machines from, in the folder they run in.
+pub const MACHINES_FILE: &CStr = c"machines.postcard";
+
+/// Why a benchmark was not run to its end.
+#[derive(Debug, Error)]
+pub enum Failure {
+    /// No benchmark is called so.
+    #[error("there is no such benchmark; kinematics is one")]
+    Unknown,
+    /// The machines cannot be read.
+    #[error(transparent)]
+    Machines(#[from] Unreadable),
+    /// A machine cannot be built.
+    #[error("a machine of the file cannot be built: {0}")]
+    Parameter(#[from] shared::parameter::ParameterError),
+    /// A machine has next to no regular poses inside its travel.
+    #[error("{0}: no regular pose was found inside the travel")]
+    NoPose(&'static str),
+    /// Printing failed.
+    #[error("the results cannot be printed")]
+    Print(#[from] core::fmt::Error),
+}
+
+/// Runs the benchmark called `name` over the machines in `file`, counts by `meter` and prints records to `console`.
+pub fn run(
+    name: &str,
+    file: &[u8],
+    meter: &mut impl meter::Meter,
+    console: &mut impl core::fmt::Write,
+) -> Result<(), Failure> {
+    match name {
+        "kinematics" => kinematics::run(file, meter, console),
+        _ => Err(Failure::Unknown),
+    }
+}

@@ -1,0 +1,18 @@
+//! What a benchmark has of this board in place of a machine: words and files of whoever emulates it, a console, a
+//! clock, and an end.
+
+pub use crate::semihosting::{COMMAND_LINE, command_line, exit, read_file};
+pub use crate::time::{TICK_NS, now_ticks, start};
+
+use crate::semihosting::say;
+use core::fmt;
+
+/// The console of QEMU.
+pub struct Console;
+
+impl fmt::Write for Console {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        say(text);
+        Ok(())
+    }
+}

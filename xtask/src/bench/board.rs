@@ -1,0 +1,36 @@
+//! The board's program in QEMU, with an instruction taking the same time always.
+
+use super::{Counts, bounded};
+use anyhow::Result;
+use benchmarks::SHIFT;
+use std::path::Path;
+use std::time::Duration;
+
+const EMULATOR: &str = "qemu-system-arm";
+/// It takes seconds.
+const LIMIT: Duration = Duration::from_secs(300);
+
+/// Runs the benchmark called `name` in `folder`.
+pub fn run(image: &Path, name: &str, folder: &Path) -> Result<Counts> {
+    let icount = format!("shift={SHIFT},sleep=off");
+    let semihosting = format!("enable=on,target=native,arg=benchmarks,arg={name}");
+    let image = image.display().to_string();
+    let arguments = [
+        ["-machine", "mps2-an500"],
+        ["-display", "none"],
+        ["-monitor", "none"],
+        ["-serial", "null"],
+        ["-nic", "none"],
+        ["-icount", &icount],
+        ["-semihosting-config", &semihosting],
+        ["-kernel", &image],
+    ];
+    let arguments: Vec<String> = arguments.concat().into_iter().map(str::to_owned).collect();
+    Counts::read(&bounded::run(
+        EMULATOR,
+        &arguments,
+        folder,
+        "board.console",
+        LIMIT,
+    )?)
+}

@@ -1,0 +1,189 @@
+//! Instructions of the benchmarks' functions, on the PC and on the emulated board, in one table.
+
+mod board;
+mod bounded;
+mod callgrind;
+mod docs;
+mod table;
+
+use crate::cargo::{cargo, root, run_command, target_directory};
+use crate::firmware::{PROFILE, TARGET};
+use anyhow::{Context, Result, bail, ensure};
+use benchmarks::MACHINES_FILE;
+use benchmarks::machine_files::pack;
+use benchmarks::record::{NOTHING, Record, Tally};
+use clap::ValueEnum;
+use std::fmt;
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// The package of what is counted.
+pub const PACKAGE: &str = "seamwright-benchmarks";
+/// Its program.
+const PROGRAM: &str = "benchmarks";
+
+/// What can be counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Benchmark {
+    /// Forward, inverse, rates and accelerations of every machine.
+    Kinematics,
+}
+
+impl fmt::Display for Benchmark {
+    /// Also its name to the programs, and in the documentation.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Kinematics => "kinematics",
+        })
+    }
+}
+
+/// One function of one subject, counted.
+#[derive(Clone, Debug, PartialEq)]
+struct Row {
+    subject: String,
+    function: String,
+    tally: Tally,
+}
+
+/// All of a run.
+#[derive(Debug, PartialEq)]
+struct Counts {
+    rows: Vec<Row>,
+    checksum: u64,
+}
+
+/// Builds, runs and counts the programs of both, prints the table, and puts it into the documentation if `record`.
+pub fn run(benchmark: Benchmark, record: bool) -> Result<ExitCode> {
+    let folder = target_directory()?.join("benchmarks");
+    let cannot = || format!("cannot write to {}", folder.display());
+    fs::create_dir_all(&folder).with_context(cannot)?;
+    let machines = folder.join(MACHINES_FILE.to_str()?);
+    fs::write(machines, pack(&root().join("machines"))?).with_context(cannot)?;
+
+    let name = benchmark.to_string();
+    let pc = build(None)?;
+    let image = build(Some(TARGET))?;
+    eprintln!("counting on the PC");
+    let pc = callgrind::run(&pc, &name, &folder)?;
+    eprintln!("counting on the emulated board");
+    let board = board::run(&image, &name, &folder)?;
+    ensure!(
+        pc.checksum == board.checksum,
+        "PC and board differ in their results: {:016x}, {:016x}",
+        pc.checksum,
+        board.checksum
+    );
+    let table = table::of(pc.without_counting()?, board.without_counting()?)?;
+    print!("{table}");
+    if record {
+        docs::replace(&root().join("docs/benchmarks.md"), &name, &table)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Builds the program as firmware is built, for the boards' processor or for the PC.
+fn build(target: Option<&str>) -> Result<PathBuf> {
+    let what = format!("the benchmarks for {}", target.unwrap_or("the PC"));
+    eprintln!("building {what}");
+    let mut command = cargo(&["build", "--quiet", "--package", PACKAGE, "--profile", PROFILE])?;
+    let mut folder = target_directory()?;
+    if let Some(target) = target {
+        command.args(["--target", target]);
+        folder.push(target);
+    }
+    run_command(command, &format!("building {what}"))?;
+    Ok(folder.join(PROFILE).join(PROGRAM))
+}
+
+impl Counts {
+    /// Reads what a program printed. Other lines may stand between.
+    fn read(text: &str) -> Result<Self> {
+        let mut rows = Vec::new();
+        for record in text.lines().filter_map(Record::parse) {
+            match record {
+                Record::Count {
+                    subject,
+                    function,
+                    tally,
+                } => rows.push(Row {
+                    subject: subject.to_owned(),
+                    function: function.to_owned(),
+                    tally,
+                }),
+                Record::Checksum(checksum) => return Ok(Self { rows, checksum }),
+            }
+        }
+        bail!("the benchmark did not come to its end; it printed:\n{text}")
+    }
+
+    /// The rows less what counting itself costs, which is what the function that does nothing costs.
+    fn without_counting(&self) -> Result<Vec<Row>> {
+        let mut rows = Vec::new();
+        let mut nothing: Option<&Row> = None;
+        for row in &self.rows {
+            if row.function == NOTHING {
+                let Tally { calls, total, worst } = row.tally;
+                ensure!(
+                    total == u64::from(calls) * u64::from(worst),
+                    "counting itself does not always cost the same: {row:?}"
+                );
+                nothing = Some(row);
+                continue;
+            }
+            let cost = nothing
+                .filter(|nothing| nothing.subject == row.subject)
+                .context("a subject without a function that does nothing")?
+                .tally
+                .worst;
+            let tally = &row.tally;
+            rows.push(Row {
+                tally: Tally {
+                    total: tally.total - u64::from(cost) * u64::from(tally.calls),
+                    worst: tally.worst - cost,
+                    ..*tally
+                },
+                ..row.clone()
+            });
+        }
+        Ok(rows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PRINTED: &str =
+        "warning: of QEMU\ncount m nothing 2 20 10\ncount m inverse 2 230 120\nchecksum 0f\n";
+
+    #[test]
+    fn what_counting_costs_is_taken_off() {
+        let counts = Counts::read(PRINTED).expect("complete");
+        assert_eq!(counts.checksum, 15);
+        let rows = counts.without_counting().expect("consistent");
+        let tally = Tally {
+            calls: 2,
+            total: 210,
+            worst: 110,
+        };
+        assert_eq!((rows.len(), rows[0].tally), (1, tally));
+    }
+
+    #[test]
+    fn a_run_without_its_end_is_an_error_that_shows_what_was_said() {
+        let error = Counts::read("count m inverse 2 230 120\nerror: of the board\n").unwrap_err();
+        assert!(error.to_string().contains("error: of the board"), "{error}");
+    }
+
+    #[test]
+    fn counting_that_costs_now_this_now_that_is_refused() {
+        for text in [
+            PRINTED.replace("2 20 10", "2 19 10"),
+            PRINTED.replace("m nothing", "n nothing"),
+        ] {
+            assert!(Counts::read(&text).expect("complete").without_counting().is_err());
+        }
+    }
+}
