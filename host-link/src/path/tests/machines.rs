@@ -208,3 +208,20 @@ fn every_machine_parks_from_where_a_program_left_it() {
         }
     }
 }
+
+/// From one side of the vertical to the other while C turns on: about one axis the tool would pass beside the pole, and
+/// C would come to the other side.
+#[test]
+fn a_straight_move_of_a_round_tool_passes_its_pole() {
+    let text = "G53 G0 Z600\nG43.4\nG0 X800 Y700 Z200 A-3 C87\nG0 Z205 A4 C80\nM2";
+    let paths = plan_on("ac-head", text).unwrap();
+    let steps = followed("ac-head", &paths[2..], 0.05);
+    for pair in steps.windows(2) {
+        assert!((pair[1].2[5] - pair[0].2[5]).abs() < 0.1, "{:?}", pair[1].2);
+    }
+    let end = steps.last().unwrap().2;
+    assert!(
+        (end[3] - 4.0).abs() < 1e-6 && (end[5] - 80.0).abs() < 1e-6,
+        "{end:?}"
+    );
+}
