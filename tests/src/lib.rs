@@ -5,7 +5,7 @@ use host_link::machine::MachineFile;
 use host_link::nc::{Options, Program, interpret};
 use host_link::report::Report;
 use host_link::seam::Deviation;
-use host_link::weld::{Ended, Job, Names, Silent, run};
+use host_link::weld::{Ended, Job, Names, Silent, Work, run};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -74,7 +74,7 @@ pub fn weld(boards: &mut dyn Boards, seam: Deviation, speed_m_per_min: f64) -> E
     let machine = MachineFile::read(&shipped(MACHINE)).expect("the shipped machine");
     let job = Job {
         machine: &machine,
-        program: &program(),
+        work: Work::Program(&program()),
         speed_m_per_min: Some(speed_m_per_min),
         part: None,
         seam: Some(Rc::new(seam)),

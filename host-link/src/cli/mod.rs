@@ -1,7 +1,9 @@
 //! The command line: one file for each command.
 
+mod boards;
 mod check;
 mod plan;
+mod teach;
 mod weld;
 
 use crate::nc::{Options, Program, interpret};
@@ -22,6 +24,7 @@ pub struct Cli {
 enum Command {
     Check(check::Check),
     Plan(plan::Plan),
+    Teach(teach::Teach),
     Weld(weld::Weld),
 }
 
@@ -31,6 +34,7 @@ impl Cli {
         match self.command {
             Command::Check(command) => command.run().map(|()| ExitCode::SUCCESS),
             Command::Plan(command) => command.run().map(|()| ExitCode::SUCCESS),
+            Command::Teach(command) => command.run(),
             Command::Weld(command) => command.run(),
         }
     }

@@ -1,32 +1,28 @@
 //! `host-link weld`: the job.
 
+use super::boards::{BoardChoice, INTERRUPTED};
 use super::read_program;
-use crate::boards::simulated::SimulatedBoards;
-use crate::boards::{Boards, Endpoint, LinkError, NetworkBoards, Patience};
 use crate::machine::MachineFile;
+use crate::nc::Program;
 use crate::part::PartFile;
 use crate::path::Planner;
 use crate::report::{self, Report};
 use crate::seam::{Deviation, SeamError};
-use crate::weld::{Job, JobError, Names, Terminal, run};
-use anyhow::{Context, bail};
+use crate::teach::write_points;
+use crate::weld::{Job, JobError, Names, NoTeaching, Taught, Terminal, Work, check_teaching, run};
+use anyhow::Context;
 use clap::Args;
-use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE, SESSION_VARIABLE, Session};
+use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
-use std::str::FromStr;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
 
 /// Exit code of a weld that is outside the limits of its part.
 const OUTSIDE: u8 = 3;
-/// Exit code after Ctrl-C, as shells have it.
-const INTERRUPTED: u8 = 130;
-/// How often Ctrl-C is looked for while the boards are connected.
-const POLL: Duration = Duration::from_millis(20);
+
+/// Names of the planned program and of the taught points in the report.
+const PROGRAM: &str = "program.ngc";
+const TAUGHT: &str = "taught.csv";
 
 /// Weld: run a program on the machine and judge what came of it
 ///
@@ -37,7 +33,7 @@ const POLL: Duration = Duration::from_millis(20);
     1 if it was refused or failed, 130 after Ctrl-C."
 )]
 pub struct Weld {
-    /// NC program, or part file (*.toml) that a program is planned from
+    /// NC program, or part file (*.toml) that a program is planned from; a panel is taught first
     #[arg(value_name = "JOB", env = JOB_VARIABLE, hide_env = true)]
     job: PathBuf,
     /// Machine file
@@ -55,118 +51,15 @@ pub struct Weld {
     /// emulated, simulated, or the addresses of real boards: MOTION,TRACKER, or MOTION without a tracker
     #[arg(long, default_value = "emulated")]
     boards: BoardChoice,
-    /// Where report.json, log.csv and the plots go, and the program planned from a part
+    /// Where report.json, log.csv and the plots go, the program planned from a part, and taught points
     #[arg(long, value_name = "DIR", default_value = "report")]
     report: PathBuf,
-    /// Start of the simulated cameras' noise
+    /// Start of the noise of simulated cameras and probes
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Leave out blocks that start with /
     #[arg(long)]
     block_delete: bool,
-}
-
-/// Which boards.
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum BoardChoice {
-    Emulated,
-    Simulated,
-    At { motion: String, tracker: Option<String> },
-}
-
-impl FromStr for BoardChoice {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let (motion, tracker) = match text.split_once(',') {
-            Some((motion, tracker)) => (motion, Some(tracker)),
-            None => (text, None),
-        };
-        match text {
-            "emulated" => Ok(Self::Emulated),
-            "simulated" => Ok(Self::Simulated),
-            _ if motion.is_empty() || tracker == Some("") => {
-                Err("say emulated, simulated, or the addresses MOTION,TRACKER (MOTION without a tracker)")
-            }
-            _ => Ok(Self::At {
-                motion: motion.to_owned(),
-                tracker: tracker.map(str::to_owned),
-            }),
-        }
-    }
-}
-
-impl BoardChoice {
-    fn name(&self) -> String {
-        match self {
-            Self::Emulated => "emulated".to_owned(),
-            Self::Simulated => "simulated".to_owned(),
-            Self::At {
-                motion,
-                tracker: None,
-            } => motion.clone(),
-            Self::At {
-                motion,
-                tracker: Some(tracker),
-            } => format!("{motion},{tracker}"),
-        }
-    }
-
-    /// Whether these are the boards that the machine needs.
-    fn check(&self, machine: &MachineFile) -> anyhow::Result<()> {
-        match (self, &machine.tracking) {
-            (Self::At { tracker: None, .. }, Some(_)) => {
-                bail!("this machine has a tracker: say the addresses of both boards, --boards MOTION,TRACKER")
-            }
-            (Self::At { tracker: Some(_), .. }, None) => {
-                bail!(
-                    "this machine has no tracker: say the address of the motion board only, --boards MOTION"
-                )
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Connects; simulated boards become the machine whose kinematics are `wanted`, emulated ones must have been
-    /// booted as it. The tracker board is left alone unless the machine is `tracked`.
-    fn connect(&self, wanted: &'static str, tracked: bool) -> Result<Box<dyn Boards + Send>, LinkError> {
-        let patience = Patience::default();
-        match self {
-            Self::Simulated => Ok(Box::new(SimulatedBoards::new(wanted)?)),
-            Self::At { motion, tracker } => {
-                let motion = Endpoint::board(motion);
-                let tracker = tracker.as_deref().map(Endpoint::board);
-                let boards = NetworkBoards::connect(&motion, tracker.as_ref(), None, patience)?;
-                Ok(Box::new(boards))
-            }
-            Self::Emulated => {
-                let path = std::env::var_os(SESSION_VARIABLE).ok_or(LinkError::NoEmulator)?;
-                let session = Session::read(Path::new(&path))?;
-                if session.machine != wanted {
-                    let wired = session.machine;
-                    return Err(LinkError::WrongMachine { wired, wanted });
-                }
-                Ok(Box::new(NetworkBoards::emulated(&session, tracked, patience)?))
-            }
-        }
-    }
-}
-
-/// Does `connect`, which may wait for boards that are silent, unless the operator gives up before: `None`.
-fn unless_interrupted<T: Send + 'static>(
-    connect: impl FnOnce() -> Result<T, LinkError> + Send + 'static,
-    interrupted: &AtomicBool,
-) -> Result<Option<T>, LinkError> {
-    let (sender, connected) = channel();
-    // An attempt that nobody waits for any more ends with this program.
-    std::thread::spawn(move || sender.send(connect()));
-    loop {
-        match connected.recv_timeout(POLL) {
-            Ok(boards) => return boards.map(Some),
-            Err(RecvTimeoutError::Timeout) if !interrupted.load(Ordering::Relaxed) => {}
-            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => return Ok(None),
-        }
-    }
 }
 
 /// A speed that makes sense \[m/min\].
@@ -177,25 +70,38 @@ fn speed(text: &str) -> Result<f64, &'static str> {
     }
 }
 
+/// What the job is.
+enum Task {
+    /// A program and its file.
+    Program(PathBuf, Program),
+    /// A panel that has to be taught first.
+    Panel,
+}
+
 impl Weld {
     /// Checks everything that can be checked without boards, then runs the job; prints the table and writes the
     /// report even if the job ended early.
     pub fn run(self) -> anyhow::Result<ExitCode> {
         let machine = MachineFile::read(&self.machine)?;
         self.boards.check(&machine)?;
-        let (program_file, part) = self.program_and_part(&machine)?;
-        let program = read_program(&program_file, self.block_delete)?;
+        let (task, part) = self.task(&machine)?;
         let seam = self.seam.as_deref().map(Deviation::read).transpose()?;
         let name = |path: &Path| path.display().to_string();
         let job = Job {
             machine: &machine,
-            program: &program,
+            work: match &task {
+                Task::Program(_, program) => Work::Program(program),
+                Task::Panel => Work::TeachAndMake,
+            },
             part: part.as_ref(),
             speed_m_per_min: self.speed,
             seam: seam.map(Rc::new),
             seed: self.seed,
             names: Names {
-                program: name(&program_file),
+                program: match &task {
+                    Task::Program(file, _) => name(file),
+                    Task::Panel => name(&self.job),
+                },
                 machine: name(&self.machine),
                 seam: self.seam.as_deref().map(name),
                 boards: self.boards.name(),
@@ -203,18 +109,17 @@ impl Weld {
         };
         self.check(&job)?;
         report::prepare(&self.report)?;
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&interrupted);
-        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot watch for Ctrl-C")?;
-
-        let (choice, wanted) = (self.boards.clone(), machine.motion.kinematics.name());
-        let tracked = machine.tracking.is_some();
-        let connect = move || choice.connect(wanted, tracked);
-        let Some(mut boards) = unless_interrupted(connect, &interrupted)? else {
-            eprintln!("host-link: stopped by the operator; the boards were not asked for anything");
-            return Ok(ExitCode::from(INTERRUPTED));
+        let mut connected = match self.boards.connect_for(&machine)? {
+            Ok(connected) => connected,
+            Err(code) => return Ok(code),
         };
-        let ended = run(boards.as_mut(), &job, &interrupted, &mut Terminal::new())?;
+        let ended = run(
+            connected.boards.as_mut(),
+            &job,
+            &connected.interrupted,
+            &mut Terminal::new(),
+        )?;
+        self.write_taught(&ended.taught)?;
         if ended.began {
             report::write(&self.report, &ended.report, &ended.evaluation, &ended.plots)?;
             print!("{}", ended.report);
@@ -236,29 +141,46 @@ impl Weld {
         }
     }
 
-    /// The program to run, planned if the job is a part, and the part to judge it by.
-    fn program_and_part(&self, machine: &MachineFile) -> anyhow::Result<(PathBuf, Option<PartFile>)> {
+    /// What to do, and the part to judge it by.
+    fn task(&self, machine: &MachineFile) -> anyhow::Result<(Task, Option<PartFile>)> {
         let told = self.part.as_deref().map(PartFile::read).transpose()?;
+        let program = |file: PathBuf| -> anyhow::Result<Task> {
+            let program = read_program(&file, self.block_delete)?;
+            Ok(Task::Program(file, program))
+        };
         if self.job.extension().is_none_or(|extension| extension != "toml") {
             let part = match told {
                 Some(part) => Some(part),
                 None => PartFile::of_program(&self.job)?,
             };
-            return Ok((self.job.clone(), part));
+            return Ok((program(self.job.clone())?, part));
         }
         let part = PartFile::read(&self.job)?;
+        if part.untaught().is_some() {
+            return Ok((Task::Panel, Some(part)));
+        }
         let title = self.job.file_stem().unwrap_or_default().to_string_lossy();
         let plan = part
             .plan(machine, &title)
             .with_context(|| format!("part {}", self.job.display()))?;
         report::prepare(&self.report)?;
-        let file = self.report.join("program.ngc");
-        std::fs::write(&file, &plan.program).with_context(|| format!("cannot write {}", file.display()))?;
-        println!("{}:", file.display());
-        for note in &plan.notes {
-            println!("  {note}");
+        let file = self.report.join(PROGRAM);
+        write(&file, &plan.program)?;
+        told_of(&file, &plan.notes);
+        Ok((program(file)?, Some(told.unwrap_or(part))))
+    }
+
+    /// Writes what was taught on the way.
+    fn write_taught(&self, taught: &Taught) -> anyhow::Result<()> {
+        if !taught.points.is_empty() {
+            write(&self.report.join(TAUGHT), &write_points(&taught.points))?;
         }
-        Ok((file, Some(told.unwrap_or(part))))
+        if let Some(program) = &taught.program {
+            let file = self.report.join(PROGRAM);
+            write(&file, program)?;
+            told_of(&file, &taught.notes);
+        }
+        Ok(())
     }
 
     /// Whether the machine can run the program and the slides reach the seam, from the park position. The boards
@@ -266,7 +188,15 @@ impl Weld {
     fn check(&self, job: &Job) -> anyhow::Result<()> {
         let planner = Planner::build(job.machine)
             .with_context(|| format!("machine file {}", self.machine.display()))?;
-        let planned = job.plan(&planner, &job.machine.planning.park_axes());
+        let program = match (job.work, job.part) {
+            (Work::Program(program), _) => program,
+            (Work::Teach | Work::TeachAndMake, Some(part)) => {
+                return check_teaching(job.machine, part)
+                    .with_context(|| format!("part {}", self.job.display()));
+            }
+            (Work::Teach | Work::TeachAndMake, None) => return Err(NoTeaching::Part.into()),
+        };
+        let planned = job.plan(program, &planner, &job.machine.planning.park_axes());
         let owner = match (&planned, &self.seam) {
             (Err(JobError::Seam(SeamError::TooShort { .. } | SeamError::Reach { .. })), Some(seam)) => {
                 format!("seam {}", seam.display())
@@ -274,6 +204,19 @@ impl Weld {
             _ => format!("program {}", job.names.program),
         };
         planned.map(drop).context(owner)
+    }
+}
+
+/// Writes a file of the report.
+fn write(file: &Path, text: &str) -> anyhow::Result<()> {
+    std::fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))
+}
+
+/// Tells of a planned program.
+fn told_of(file: &Path, notes: &[String]) {
+    println!("{}:", file.display());
+    for note in notes {
+        println!("  {note}");
     }
 }
 
@@ -286,19 +229,6 @@ fn verdict(report: &Report) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn boards_are_chosen_by_word_or_by_address() {
-        assert_eq!("emulated".parse(), Ok(BoardChoice::Emulated));
-        assert_eq!("simulated".parse(), Ok(BoardChoice::Simulated));
-        let two = "192.168.7.10,192.168.7.11".parse::<BoardChoice>().unwrap();
-        assert_eq!(two.name(), "192.168.7.10,192.168.7.11");
-        let one = "192.168.7.10".parse::<BoardChoice>().unwrap();
-        assert_eq!(one.name(), "192.168.7.10");
-        for wrong in ["", "192.168.7.10,", ",x"] {
-            assert!(wrong.parse::<BoardChoice>().is_err(), "{wrong}");
-        }
-    }
 
     #[test]
     fn a_weld_outside_its_limits_is_told_with_figure_and_limit() {
@@ -317,20 +247,5 @@ mod tests {
         for wrong in ["0", "-1", "fast", "NaN", "inf"] {
             assert!(speed(wrong).is_err(), "{wrong}");
         }
-    }
-
-    #[test]
-    fn a_silent_board_is_not_waited_for_once_the_operator_gives_up() {
-        let (_never, silent) = channel::<()>();
-        let connect = move || {
-            let _ = silent.recv();
-            Ok(())
-        };
-        assert!(matches!(
-            unless_interrupted(connect, &AtomicBool::new(true)),
-            Ok(None)
-        ));
-        let quick = unless_interrupted(|| Ok(7), &AtomicBool::new(false));
-        assert!(matches!(quick, Ok(Some(7))));
     }
 }

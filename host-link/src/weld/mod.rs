@@ -3,12 +3,14 @@
 mod outcome;
 mod progress;
 mod session;
+mod teaching;
 #[cfg(test)]
 mod tests;
 mod tracking;
 
 pub use outcome::Ended;
 pub use progress::{Progress, Silent, Terminal};
+pub use teaching::{NoTeaching, Taught, check_teaching};
 
 use crate::boards::{Boards, LinkError};
 use crate::machine::MachineFile;
@@ -44,8 +46,8 @@ const DRAIN: Duration = Duration::from_millis(100);
 pub struct Job<'a> {
     /// The machine.
     pub machine: &'a MachineFile,
-    /// The program.
-    pub program: &'a Program,
+    /// What to do between homing and parking.
+    pub work: Work<'a>,
     /// The part that the run is judged by.
     pub part: Option<&'a PartFile>,
     /// Speed of the weld in place of the programmed feed \[m/min\].
@@ -58,17 +60,42 @@ pub struct Job<'a> {
     pub names: Names,
 }
 
+/// What to do between homing and parking.
+#[derive(Clone, Copy, Debug)]
+pub enum Work<'a> {
+    /// To run a program.
+    Program(&'a Program),
+    /// To teach the part of the job, which is a panel.
+    Teach,
+    /// To teach it, and then to make it.
+    TeachAndMake,
+}
+
 impl Job<'_> {
-    /// Plans the program from where the axes stand at `from` (mm, degrees), and checks that the machine can do
+    /// What the job is called.
+    fn title(&self) -> String {
+        let path = std::path::Path::new(&self.names.program);
+        path.file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    }
+
+    /// Plans `program` from where the axes stand at `from` (mm, degrees), and checks that the machine can do
     /// all of it.
     ///
     /// # Errors
     /// [`JobError::Path`] or [`JobError::Seam`].
-    pub fn plan(&self, planner: &Planner, from: &[f64; AXES]) -> Result<Vec<PlannedPath>, JobError> {
+    pub fn plan(
+        &self,
+        program: &Program,
+        planner: &Planner,
+        from: &[f64; AXES],
+    ) -> Result<Vec<PlannedPath>, JobError> {
         let speed = self
             .speed_m_per_min
             .map(|speed| speed * shared::units::MM_S_PER_M_MIN);
-        let paths = planner.program(self.program, from, speed)?;
+        let paths = planner.program(program, from, speed)?;
         check_seam(&paths, self.machine, self.seam.as_deref())?;
         Ok(paths)
     }
@@ -139,6 +166,15 @@ pub enum JobError {
     /// The seam cannot be followed.
     #[error(transparent)]
     Seam(#[from] SeamError),
+    /// There is nothing to teach with.
+    #[error(transparent)]
+    NoTeaching(#[from] NoTeaching),
+    /// A point cannot be taught.
+    #[error("teaching ended: {0}")]
+    Teach(String),
+    /// What was taught cannot be made.
+    #[error("the taught part cannot be made: {0}")]
+    Plan(String),
     /// It came to its end, but nobody can tell how good it is.
     #[error("the run cannot be judged by its part: {0}")]
     Judge(String),
@@ -159,12 +195,13 @@ pub fn run(
     let mut weld = Weld {
         planner,
         paths: BTreeMap::new(),
+        taught: Taught::default(),
     };
     let mut error = weld.all(&mut session, job).err();
     if let Err(link) = switch_off(&mut session) {
         error.get_or_insert(link.into());
     }
-    Ok(outcome::end(&session, job, &weld.paths, error))
+    Ok(outcome::end(&session, job, weld, error))
 }
 
 /// State of a job.
@@ -172,6 +209,7 @@ struct Weld {
     planner: Planner,
     /// Paths begun, by the number that the boards know them by.
     paths: BTreeMap<u32, PlannedPath>,
+    taught: Taught,
 }
 
 impl Weld {
@@ -194,8 +232,25 @@ impl Weld {
             })?;
         }
 
+        match job.work {
+            Work::Program(program) => self.program(session, job, program)?,
+            Work::Teach => drop(self.teach(session, job)?),
+            Work::TeachAndMake => {
+                let part = self.teach(session, job)?;
+                let program = self.plan_taught(job, &part)?;
+                self.program(session, job, &program)?;
+            }
+        }
+        for path in self.planner.park(&session.motion.reference)? {
+            self.path(session, job, path, "parking")?;
+        }
+        Ok(())
+    }
+
+    /// Runs a program from where the axes stand.
+    fn program(&mut self, session: &mut Session, job: &Job, program: &Program) -> Result<(), JobError> {
         let mut elsewhere = "approaching";
-        for path in job.plan(&self.planner, &session.motion.reference)? {
+        for path in job.plan(program, &self.planner, &session.motion.reference)? {
             let what = if path.weld().is_some() {
                 elsewhere = "moving on";
                 "running in"
@@ -203,9 +258,6 @@ impl Weld {
                 elsewhere
             };
             self.path(session, job, path, what)?;
-        }
-        for path in self.planner.park(&session.motion.reference)? {
-            self.path(session, job, path, "parking")?;
         }
         Ok(())
     }
@@ -263,19 +315,25 @@ fn follow(session: &mut Session, path: &PlannedPath, id: u32) -> Result<(), JobE
     };
     session.command(Role::Motion, &run)?;
     session.refresh()?;
+    let begun = session.tick();
     let length = path.length_mm();
     let limit = Duration::from_secs_f64(path.duration_s()) + PATH_MARGIN;
     let mut welding = false;
     session.wait_until("a path", limit, |s| {
+        let mut stands = false;
         if let Some(here) = s.record.motion().last().filter(|here| here.path_id == id) {
+            // The telemetry tells it sooner than the next status.
+            stands = here.tick > begun && !on_path(here.state);
             if here.beams.contains(&true) && !welding {
                 welding = true;
                 s.progress.phase("welding");
             }
             s.progress.travel(here.s_mm, length);
         }
-        !on_path(s.motion.state)
-    })
+        stands || !on_path(s.motion.state)
+    })?;
+    session.refresh()?;
+    session.check()
 }
 
 /// Brings the boards from any state to off, forgets old faults, and sends the machine's parameters.

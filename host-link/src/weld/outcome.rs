@@ -1,9 +1,9 @@
 //! What is left of a job after its end.
 
 use super::session::Session;
-use super::{Job, JobError, Tracking};
+use super::{Job, JobError, Taught, Tracking, Weld};
 use crate::evaluate::{Evaluation, evaluate, run_samples, works};
-use crate::part::{Judgement, Plot, Run};
+use crate::part::{Judgement, PartFile, Plot, Run};
 use crate::path::PlannedPath;
 use crate::report::{
     BoardsUsed, ByBoard, ByMotor, Measurements, Outcome, Report, SeamFigures, Truth, WeldTicks,
@@ -27,20 +27,19 @@ pub struct Ended {
     pub evaluation: Evaluation,
     /// Plots of the part's own.
     pub plots: Vec<Plot>,
+    /// What was taught, as far as it came.
+    pub taught: Taught,
 }
 
 /// Evaluates what the session has learned, and judges a run that came to its end by its part.
-pub(super) fn end(
-    session: &Session,
-    job: &Job,
-    paths: &BTreeMap<u32, PlannedPath>,
-    mut error: Option<JobError>,
-) -> Ended {
+pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<JobError>) -> Ended {
+    let Weld { paths, taught, .. } = weld;
+    let paths = &paths;
     let followed = session.tracking.as_ref().map(Tracking::followed);
     let evaluation = evaluate(&session.record, &session.machine, paths, followed);
     let mut judgement = Judgement::default();
     if error.is_none() {
-        match judge(session, job, paths) {
+        match judge(session, job, paths, taught.part.as_ref().or(job.part)) {
             Ok(judged) => judgement = judged,
             Err(reason) => error = Some(JobError::Judge(format!("{reason:#}"))),
         }
@@ -109,11 +108,17 @@ pub(super) fn end(
         report,
         evaluation,
         plots: judgement.plots,
+        taught,
     }
 }
 
-fn judge(session: &Session, job: &Job, paths: &BTreeMap<u32, PlannedPath>) -> anyhow::Result<Judgement> {
-    let Some(part) = job.part else {
+fn judge(
+    session: &Session,
+    job: &Job,
+    paths: &BTreeMap<u32, PlannedPath>,
+    part: Option<&PartFile>,
+) -> anyhow::Result<Judgement> {
+    let Some(part) = part else {
         return Ok(Judgement::default());
     };
     part.judge(&Run {

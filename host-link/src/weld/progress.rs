@@ -26,13 +26,16 @@ impl Progress for Silent {
 #[derive(Debug)]
 pub struct Terminal {
     bar: Option<ProgressBar>,
+    /// What was told last.
+    told: String,
 }
 
 impl Terminal {
     /// Looks whether standard error is a terminal.
     pub fn new() -> Self {
         let bar = std::io::stderr().is_terminal().then(ProgressBar::no_length);
-        Self { bar }
+        let told = String::new();
+        Self { bar, told }
     }
 }
 
@@ -48,6 +51,10 @@ impl Default for Terminal {
 
 impl Progress for Terminal {
     fn phase(&mut self, text: &str) {
+        if self.told == text {
+            return;
+        }
+        text.clone_into(&mut self.told);
         match &self.bar {
             Some(bar) => {
                 // How far it goes is not known before the path moves.

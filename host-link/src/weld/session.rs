@@ -112,7 +112,7 @@ impl<'a> Session<'a> {
     }
 
     /// Newest known path tick of the motion board, one a millisecond: the clock of the job.
-    fn tick(&self) -> u32 {
+    pub fn tick(&self) -> u32 {
         let told = self.record.motion().last().map_or(0, |sample| sample.tick);
         told.max(self.motion.path_ticks)
     }
@@ -149,7 +149,7 @@ impl<'a> Session<'a> {
     }
 
     /// The first reason not to go on.
-    fn check(&self) -> Result<(), JobError> {
+    pub fn check(&self) -> Result<(), JobError> {
         if let Some(fault) = self.motion.fault {
             return Err(JobError::Motion(fault));
         }

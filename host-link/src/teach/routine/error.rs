@@ -63,8 +63,13 @@ pub enum PointError {
 #[derive(Debug, Error)]
 pub enum TeachError<E: StdError + 'static> {
     /// The machine does not do what it is asked.
-    #[error(transparent)]
-    Machine(E),
+    #[error("{source}")]
+    Machine {
+        /// Number of the point on which it was, from 1.
+        number: usize,
+        /// Why.
+        source: E,
+    },
     /// A point cannot be taught.
     #[error("point {number} (X{x} Y{y} Z{z}): {reason}")]
     Point {

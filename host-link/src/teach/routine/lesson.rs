@@ -4,12 +4,16 @@ use super::super::halving::HalvingError;
 use super::super::ring::{DIRECTIONS, NEIGHBOURS};
 use super::super::{Ring, Taught, TaughtPoint};
 use super::error::{PointError, Seen, Trouble};
-use super::{Arm, Guide, LENGTH_DECIMALS, ROTARY, Teacher, aim};
-use crate::plan::{NcText, decimal};
+use super::{Arm, Guide, Teacher, aim};
+use crate::plan::NcText;
 use nalgebra::Vector3;
 use shared::geometry::angle;
 use shared::io::AXES;
-use shared::kinematics::AXIS_UNIT;
+
+const Z: usize = 2;
+const C: usize = 5;
+/// Nearer to the vertical than this C has no effect on the tool \[rad\].
+const VERTICAL: f64 = 1e-3;
 
 /// Teaching while it goes on.
 pub(super) struct Lesson<'t, 'a, A: Arm> {
@@ -30,13 +34,10 @@ impl<A: Arm> Lesson<'_, '_, A> {
         let mut over = guide.position;
         over.z = teacher.safe_height.max(over.z + teacher.config.approach_mm);
         let axes = teacher.axes_of(&over, &guide.angles_deg);
-        let people: [f64; AXES] = std::array::from_fn(|i| axes[i] / AXIS_UNIT[i]);
-        let mut nc = NcText::default();
-        if self.axes[2] < axes[2] {
-            nc.block(&format!("G53 G0 Z{}", decimal(people[2], LENGTH_DECIMALS)));
-        }
-        nc.block(&format!("G53 G0 {}", teacher.words(&people)));
-        self.run(nc, axes)
+        let mut up = self.axes;
+        up[Z] = up[Z].max(axes[Z]);
+        self.axes_to(up)?;
+        self.axes_to(axes)
     }
 
     /// Teaches one point.
@@ -45,7 +46,8 @@ impl<A: Arm> Lesson<'_, '_, A> {
         let over = teacher.axes_of(&guide.position, &guide.angles_deg);
         let normal = teacher.kinematics.forward(&over).normal;
         let over = guide.position + normal * teacher.config.approach_mm;
-        self.tip_to(teacher.axes_of(&over, &guide.angles_deg))?;
+        // In axis space: so attitude to attitude is a short way, whatever C means on it.
+        self.axes_to(teacher.axes_of(&over, &guide.angles_deg))?;
         self.shift_to(&guide.position)?;
         let mut centre = self.surface_here().map_err(Trouble::distance)?;
         let mut normal = self.first_normal(&centre)?;
@@ -164,7 +166,22 @@ impl<A: Arm> Lesson<'_, '_, A> {
 
     /// Turns the tool along `normal`, the focus staying where it is.
     fn turn_to(&mut self, normal: &Vector3<f64>) -> Attempt<(), A> {
-        self.tip_to(self.aimed(normal)?)
+        let aimed = self.aimed(normal)?;
+        let tool = self.teacher.kinematics.forward(&self.axes);
+        if angle(&tool.normal, &Vector3::z()) < VERTICAL {
+            // At its pole C has to turn before the tool leaves the vertical: with it would be too late.
+            let mut turned = self.axes;
+            turned[C] = aimed[C];
+            self.axes_to(turned)?;
+        }
+        self.tip_to(aimed)
+    }
+
+    /// Moves the axes straight to `axes` (mm, rad).
+    fn axes_to(&mut self, axes: [f64; AXES]) -> Attempt<(), A> {
+        let mut nc = NcText::default();
+        nc.block(&format!("G53 G0 {}", self.teacher.axis_words(&axes)));
+        self.run(nc, axes)
     }
 
     /// Moves the tip to `position` without turning.
@@ -180,16 +197,11 @@ impl<A: Arm> Lesson<'_, '_, A> {
     /// Moves the tip in a straight line to where it is for `axes`, and turns to their attitude on the way.
     fn tip_to(&mut self, axes: [f64; AXES]) -> Attempt<(), A> {
         let tip = self.teacher.kinematics.forward(&axes).position;
-        let values: [f64; AXES] = std::array::from_fn(|i| {
-            if ROTARY.contains(&i) {
-                axes[i] / AXIS_UNIT[i]
-            } else {
-                tip[i]
-            }
-        });
+        let mut values = axes;
+        values[..3].copy_from_slice(tip.as_slice());
         let mut nc = NcText::default();
         nc.block("G43.4");
-        nc.block(&format!("G0 {}", self.teacher.words(&values)));
+        nc.block(&format!("G0 {}", self.teacher.axis_words(&values)));
         self.run(nc, axes)
     }
 

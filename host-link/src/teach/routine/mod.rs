@@ -19,7 +19,7 @@ use nalgebra::Vector3;
 use serde::Deserialize;
 use shared::geometry::{Pose, angle};
 use shared::io::{AXES, AXIS_NAMES};
-use shared::kinematics::{Kinematics, KinematicsError};
+use shared::kinematics::{AXIS_UNIT, Kinematics, KinematicsError};
 use std::error::Error as StdError;
 use std::ops::Range;
 
@@ -47,6 +47,42 @@ pub struct TeachingConfig {
     pub upright_deg: f64,
     /// The rings.
     pub rings: HalvingConfig,
+}
+
+impl TeachingConfig {
+    /// Checks the settings for a probe.
+    pub fn check(&self, unit: &ProbeUnit) -> Result<(), TeachParameterError> {
+        let readings = self.readings as f64;
+        let enough = self.readings >= unit.output.least_readings;
+        check(
+            "readings",
+            readings,
+            enough,
+            "least_readings of the probe or more",
+        )?;
+        check(
+            "approach_mm",
+            self.approach_mm,
+            self.approach_mm >= 0.0,
+            "0 or more",
+        )?;
+        check("aim_deg", self.aim_deg, self.aim_deg > 0.0, "above 0")?;
+        check(
+            "upright_deg",
+            self.upright_deg,
+            self.upright_deg >= 0.0,
+            "0 or more",
+        )?;
+        let steepest = self.steepest_deg;
+        check(
+            "steepest_deg",
+            steepest,
+            steepest > 0.0 && steepest <= 90.0,
+            "above 0, at most 90",
+        )?;
+        self.rings.build()?;
+        Ok(())
+    }
 }
 
 /// Where an operator would jog to: the tip a few mm, the attitude a few degrees off.
@@ -129,34 +165,7 @@ impl<'a> Teacher<'a> {
         config: &'a TeachingConfig,
     ) -> Result<Self, TeachParameterError> {
         let probe = unit.build()?;
-        let readings = config.readings as f64;
-        let enough = config.readings >= unit.output.least_readings;
-        check(
-            "readings",
-            readings,
-            enough,
-            "least_readings of the probe or more",
-        )?;
-        check(
-            "approach_mm",
-            config.approach_mm,
-            config.approach_mm >= 0.0,
-            "0 or more",
-        )?;
-        check("aim_deg", config.aim_deg, config.aim_deg > 0.0, "above 0")?;
-        check(
-            "upright_deg",
-            config.upright_deg,
-            config.upright_deg >= 0.0,
-            "0 or more",
-        )?;
-        let steepest = config.steepest_deg;
-        check(
-            "steepest_deg",
-            steepest,
-            steepest > 0.0 && steepest <= 90.0,
-            "above 0, at most 90",
-        )?;
+        config.check(unit)?;
         Ok(Self {
             kinematics,
             fitted: std::array::from_fn(|i| machine.motion.axes[i].is_some()),
@@ -177,7 +186,9 @@ impl<'a> Teacher<'a> {
         let Some(first) = guides.first() else {
             return Ok(Vec::new());
         };
-        let here = arm.look(0).map_err(TeachError::Machine)?;
+        let here = arm
+            .look(0)
+            .map_err(|source| TeachError::Machine { number: 1, source })?;
         let mut lesson = Lesson {
             teacher: self,
             arm,
@@ -188,7 +199,10 @@ impl<'a> Teacher<'a> {
         for (index, guide) in guides.iter().enumerate() {
             let place = guide.position;
             let name = |trouble| match trouble {
-                Trouble::Machine(error) => TeachError::Machine(error),
+                Trouble::Machine(source) => TeachError::Machine {
+                    number: index + 1,
+                    source,
+                },
                 Trouble::Point(reason) => TeachError::Point {
                     number: index + 1,
                     x: place.x,
@@ -221,15 +235,15 @@ impl<'a> Teacher<'a> {
         [base.x, base.y, base.z, a, b, c]
     }
 
-    /// Words of `values` (mm, deg) for the axes that the machine has.
-    fn words(&self, values: &[f64; AXES]) -> String {
+    /// Words of `values` (mm, rad) for the axes that the machine has.
+    fn axis_words(&self, values: &[f64; AXES]) -> String {
         let words = (0..AXES).filter(|i| self.fitted[*i]).map(|i| {
             let decimals = if ROTARY.contains(&i) {
                 ANGLE_DECIMALS
             } else {
                 LENGTH_DECIMALS
             };
-            format!("{}{}", AXIS_NAMES[i], decimal(values[i], decimals))
+            format!("{}{}", AXIS_NAMES[i], decimal(values[i] / AXIS_UNIT[i], decimals))
         });
         words.collect::<Vec<_>>().join(" ")
     }

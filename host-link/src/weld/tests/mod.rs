@@ -63,7 +63,7 @@ fn run_on(
     let program = interpret(program, Options::default()).unwrap();
     let job = Job {
         machine,
-        program: &program,
+        work: Work::Program(&program),
         part: None,
         speed_m_per_min: None,
         seed: 1,

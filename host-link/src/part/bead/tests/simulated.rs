@@ -4,7 +4,7 @@ use super::*;
 use crate::boards::simulated::SimulatedBoards;
 use crate::part::PartFile;
 use crate::report::{Outcome, Report};
-use crate::weld::{Job, Names, Silent, run};
+use crate::weld::{Job, Names, Silent, Work, run};
 use std::sync::atomic::AtomicBool;
 
 fn welded() -> Report {
@@ -14,7 +14,7 @@ fn welded() -> Report {
     let part = PartFile::read(&shipped("programs/leaf.toml")).unwrap();
     let job = Job {
         machine: &machine,
-        program: &program,
+        work: Work::Program(&program),
         part: Some(&part),
         speed_m_per_min: None,
         seed: 1,

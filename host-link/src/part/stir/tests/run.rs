@@ -4,7 +4,7 @@ use super::*;
 use crate::boards::simulated::SimulatedBoards;
 use crate::part::PartFile;
 use crate::report::{Outcome, Report};
-use crate::weld::{Job, Names, Silent, run};
+use crate::weld::{Job, Names, Silent, Work, run};
 use std::sync::atomic::AtomicBool;
 
 /// Runs `program` from the search for the marks to the park position, judged by `part`, and keeps every limit.
@@ -13,7 +13,7 @@ fn welded(program: &str, part: &PartFile) -> Report {
     let program = interpret(program, Options::default()).unwrap();
     let job = Job {
         machine: &machine,
-        program: &program,
+        work: Work::Program(&program),
         part: Some(part),
         speed_m_per_min: None,
         seed: 1,

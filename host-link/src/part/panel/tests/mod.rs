@@ -1,5 +1,7 @@
 //! Programs through points that were taught without an error.
 
+mod run;
+
 use super::*;
 use crate::machine::MachineFile;
 use crate::nc::{Options, interpret};
@@ -8,8 +10,8 @@ use crate::path::{PlannedPath, Planner};
 use shared::geometry::angle;
 use std::path::Path;
 
-const MACHINE: &str = include_str!("../../../../machines/ac-head.toml");
-const PANEL: &str = include_str!("../../../../programs/panel.toml");
+const MACHINE: &str = include_str!("../../../../../machines/ac-head.toml");
+const PANEL: &str = include_str!("../../../../../programs/panel.toml");
 
 fn machine() -> MachineFile {
     MachineFile::parse("ac-head.toml", MACHINE).unwrap()

@@ -1,0 +1,189 @@
+//! Which boards a command uses, and how it connects to them.
+
+use crate::boards::simulated::SimulatedBoards;
+use crate::boards::{Boards, Endpoint, LinkError, NetworkBoards, Patience};
+use crate::machine::MachineFile;
+use anyhow::{Context, bail};
+use emulator::{SESSION_VARIABLE, Session};
+use std::path::Path;
+use std::process::ExitCode;
+use std::str::FromStr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+/// Exit code after Ctrl-C, as shells have it.
+pub const INTERRUPTED: u8 = 130;
+/// How often Ctrl-C is looked for while the boards are connected.
+const POLL: Duration = Duration::from_millis(20);
+
+/// Which boards.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum BoardChoice {
+    /// Of `cargo xtask emulate` or `cargo xtask weld`.
+    Emulated,
+    /// In this program.
+    Simulated,
+    /// In the network.
+    At {
+        /// Address of the motion board.
+        motion: String,
+        /// Address of the tracker board, if there is one.
+        tracker: Option<String>,
+    },
+}
+
+impl FromStr for BoardChoice {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let (motion, tracker) = match text.split_once(',') {
+            Some((motion, tracker)) => (motion, Some(tracker)),
+            None => (text, None),
+        };
+        match text {
+            "emulated" => Ok(Self::Emulated),
+            "simulated" => Ok(Self::Simulated),
+            _ if motion.is_empty() || tracker == Some("") => {
+                Err("say emulated, simulated, or the addresses MOTION,TRACKER (MOTION without a tracker)")
+            }
+            _ => Ok(Self::At {
+                motion: motion.to_owned(),
+                tracker: tracker.map(str::to_owned),
+            }),
+        }
+    }
+}
+
+impl BoardChoice {
+    /// What the report calls it.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Emulated => "emulated".to_owned(),
+            Self::Simulated => "simulated".to_owned(),
+            Self::At {
+                motion,
+                tracker: None,
+            } => motion.clone(),
+            Self::At {
+                motion,
+                tracker: Some(tracker),
+            } => format!("{motion},{tracker}"),
+        }
+    }
+
+    /// Whether these are the boards that the machine needs.
+    pub fn check(&self, machine: &MachineFile) -> anyhow::Result<()> {
+        match (self, &machine.tracking) {
+            (Self::At { tracker: None, .. }, Some(_)) => {
+                bail!("this machine has a tracker: say the addresses of both boards, --boards MOTION,TRACKER")
+            }
+            (Self::At { tracker: Some(_), .. }, None) => {
+                bail!(
+                    "this machine has no tracker: say the address of the motion board only, --boards MOTION"
+                )
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Connects while Ctrl-C is watched, which sets the flag from now on; the exit code if it was pressed before.
+    pub fn connect_for(&self, machine: &MachineFile) -> anyhow::Result<Result<Connected, ExitCode>> {
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&interrupted);
+        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot watch for Ctrl-C")?;
+        let (choice, wanted) = (self.clone(), machine.motion.kinematics.name());
+        let tracked = machine.tracking.is_some();
+        let connect = move || choice.connect(wanted, tracked);
+        Ok(match unless_interrupted(connect, &interrupted)? {
+            Some(boards) => Ok(Connected { boards, interrupted }),
+            None => {
+                eprintln!("host-link: stopped by the operator; the boards were not asked for anything");
+                Err(ExitCode::from(INTERRUPTED))
+            }
+        })
+    }
+
+    /// Connects; simulated boards become the machine whose kinematics are `wanted`, emulated ones must have been
+    /// booted as it. The tracker board is left alone unless the machine is `tracked`.
+    fn connect(&self, wanted: &'static str, tracked: bool) -> Result<Box<dyn Boards + Send>, LinkError> {
+        let patience = Patience::default();
+        match self {
+            Self::Simulated => Ok(Box::new(SimulatedBoards::new(wanted)?)),
+            Self::At { motion, tracker } => {
+                let motion = Endpoint::board(motion);
+                let tracker = tracker.as_deref().map(Endpoint::board);
+                let boards = NetworkBoards::connect(&motion, tracker.as_ref(), None, patience)?;
+                Ok(Box::new(boards))
+            }
+            Self::Emulated => {
+                let path = std::env::var_os(SESSION_VARIABLE).ok_or(LinkError::NoEmulator)?;
+                let session = Session::read(Path::new(&path))?;
+                if session.machine != wanted {
+                    let wired = session.machine;
+                    return Err(LinkError::WrongMachine { wired, wanted });
+                }
+                Ok(Box::new(NetworkBoards::emulated(&session, tracked, patience)?))
+            }
+        }
+    }
+}
+
+/// Does `connect`, which may wait for boards that are silent, unless the operator gives up before: `None`.
+fn unless_interrupted<T: Send + 'static>(
+    connect: impl FnOnce() -> Result<T, LinkError> + Send + 'static,
+    interrupted: &AtomicBool,
+) -> Result<Option<T>, LinkError> {
+    let (sender, connected) = channel();
+    // An attempt that nobody waits for any more ends with this program.
+    std::thread::spawn(move || sender.send(connect()));
+    loop {
+        match connected.recv_timeout(POLL) {
+            Ok(boards) => return boards.map(Some),
+            Err(RecvTimeoutError::Timeout) if !interrupted.load(Ordering::Relaxed) => {}
+            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => return Ok(None),
+        }
+    }
+}
+
+/// Boards, and the operator's wish to stop.
+pub struct Connected {
+    /// The boards.
+    pub boards: Box<dyn Boards + Send>,
+    /// Set by Ctrl-C.
+    pub interrupted: Arc<AtomicBool>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boards_are_chosen_by_word_or_by_address() {
+        assert_eq!("emulated".parse(), Ok(BoardChoice::Emulated));
+        assert_eq!("simulated".parse(), Ok(BoardChoice::Simulated));
+        let two = "192.168.7.10,192.168.7.11".parse::<BoardChoice>().unwrap();
+        assert_eq!(two.name(), "192.168.7.10,192.168.7.11");
+        let one = "192.168.7.10".parse::<BoardChoice>().unwrap();
+        assert_eq!(one.name(), "192.168.7.10");
+        for wrong in ["", "192.168.7.10,", ",x"] {
+            assert!(wrong.parse::<BoardChoice>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_silent_board_is_not_waited_for_once_the_operator_gives_up() {
+        let (_never, silent) = channel::<()>();
+        let connect = move || {
+            let _ = silent.recv();
+            Ok(())
+        };
+        assert!(matches!(
+            unless_interrupted(connect, &AtomicBool::new(true)),
+            Ok(None)
+        ));
+        let quick = unless_interrupted(|| Ok(7), &AtomicBool::new(false));
+        assert!(matches!(quick, Ok(Some(7))));
+    }
+}
