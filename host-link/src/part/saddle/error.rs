@@ -47,19 +47,14 @@ pub enum SaddlePartError {
     },
     /// The seam does not go around the branch.
     #[error(
-        "branch_diameter_mm, offset_mm: a branch of radius {branch_mm} mm at {offset_mm} mm reaches to the rim of \
-         the main pipe of radius {main_mm} mm; the seam does not go around the branch, and a machine that turns \
-         about the branch cannot weld it in one round: the branch must stay below {largest_mm} mm of radius"
+        "branch_diameter_mm, offset_mm: the branch ends {reach_mm:.2} mm beside the main axis, past or at the rim of the \
+         main pipe at {main_mm:.2} mm, so no seam goes around it for the waist to follow: make it smaller or move it in"
     )]
     NotAround {
-        /// r.
-        branch_mm: f64,
-        /// |δ|.
-        offset_mm: f64,
+        /// r + |δ|.
+        reach_mm: f64,
         /// R.
         main_mm: f64,
-        /// R − |δ|.
-        largest_mm: f64,
     },
     /// No machine for a saddle.
     #[error("machine {machine} does not turn about a pipe: a saddle needs kinematics.pipe-welder")]
@@ -184,13 +179,10 @@ pub enum TaughtError {
     NoSaddle,
     /// A point is off.
     #[error(
-        "the taught point in line {line} of {file} is {worst_mm:.2} mm from the best saddle, {within_mm} mm are allowed \
-         (rms of all {rms_mm:.2} mm, on average {outside_mm:.2} mm outside the branch): teach it again, or check the \
-         dimensions given"
+        "line {line}: this taught point is {worst_mm:.2} mm from the best saddle, {within_mm} mm are allowed (rms of all \
+         {rms_mm:.2} mm, on average {outside_mm:.2} mm outside the branch): teach it again, or check the dimensions"
     )]
     Poor {
-        /// The file.
-        file: String,
         /// Line of the worst point.
         line: usize,
         /// Its distance.

@@ -59,7 +59,7 @@ pub(super) struct Known {
 }
 
 /// The saddle nearest to the points (mm, rad).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fit {
     pub main_radius: f64,
     pub branch_radius: f64,
@@ -70,6 +70,24 @@ pub(super) struct Fit {
     pub sure: [f64; UNKNOWNS],
     /// The same of the seam, where it is largest \[mm\].
     pub seam_sure: f64,
+    /// That waist \[rad\].
+    pub least_sure_at: f64,
+    /// Of each point from the seam \[mm\].
+    pub distances: Vec<f64>,
+}
+
+impl Fit {
+    /// Whether the seam is sure to `within` \[mm\] everywhere.
+    pub fn check_sure(&self, within: f64) -> Result<(), TaughtError> {
+        if self.seam_sure <= within {
+            return Ok(());
+        }
+        Err(TaughtError::Unsure {
+            unsure_mm: self.seam_sure,
+            waist_deg: self.least_sure_at.to_degrees(),
+            within_mm: within,
+        })
+    }
 }
 
 /// Points of the tip against one set of unknowns.
@@ -114,10 +132,30 @@ fn height(values: &Values, waist: f64) -> Option<Height> {
     })
 }
 
+/// How far `point` is from the seam: across it on the wall of the branch, and outwards; each with its row.
+fn residuals(values: &Values, point: &Vector3<f64>) -> Option<[(f64, Values); 2]> {
+    let height = height(values, libm::atan2(point.y, point.x))?;
+    // From the height to the distance across.
+    let across = 1.0 / libm::hypot(1.0, height.slope / values[BRANCH]);
+    let outwards = Values::from_fn(|row, _| if row == BRANCH { 1.0 } else { 0.0 });
+    Some([
+        ((point.z - height.value) * across, height.gradient * across),
+        (point.xy().norm() - values[BRANCH], outwards),
+    ])
+}
+
 impl Problem<'_> {
     /// `row` without what is known.
     fn masked(&self, row: Values) -> Values {
         row.zip_map(&SVector::from(self.free), |x, free| if free { x } else { 0.0 })
+    }
+
+    /// Of each point from the seam.
+    fn distances(&self, values: &Values) -> Option<Vec<f64>> {
+        let points = self.points.iter();
+        points
+            .map(|point| residuals(values, point).map(|[along, radial]| libm::hypot(along.0, radial.0)))
+            .collect()
     }
 
     /// Sum of squares, normal matrix and gradient at `values`; `None` where there is no seam.
@@ -130,13 +168,9 @@ impl Problem<'_> {
             gradient += row * residual;
         };
         for point in self.points {
-            let height = height(values, libm::atan2(point.y, point.x))?;
-            // From the height to the distance across the seam, on the wall of the branch.
-            let across = 1.0 / libm::hypot(1.0, height.slope / values[BRANCH]);
-            add((point.z - height.value) * across, height.gradient * across);
-            let mut radial = Values::zeros();
-            radial[BRANCH] = 1.0;
-            add(point.xy().norm() - values[BRANCH], radial);
+            let [(along, along_row), (radial, radial_row)] = residuals(values, point)?;
+            add(along, along_row);
+            add(radial, radial_row);
         }
         for i in (0..UNKNOWNS).filter(|&i| !self.free[i]) {
             normal[(i, i)] = 1.0;
@@ -248,9 +282,8 @@ fn check_points(points: &[Vector3<f64>], free: &[bool; UNKNOWNS]) -> Result<(), 
     Ok(())
 }
 
-/// Fits what is not `known` to the `points` of the tip \[mm\], in the frame of the machine. The seam they make must
-/// be sure to `within` \[mm\] everywhere.
-pub(super) fn fit(points: &[Vector3<f64>], known: &Known, within: f64) -> Result<Fit, TaughtError> {
+/// Fits what is not `known` to the `points` of the tip \[mm\], in the frame of the machine.
+pub(super) fn fit(points: &[Vector3<f64>], known: &Known) -> Result<Fit, TaughtError> {
     let free = known.free();
     check_points(points, &free)?;
     let problem = Problem { points, free };
@@ -260,33 +293,26 @@ pub(super) fn fit(points: &[Vector3<f64>], known: &Known, within: f64) -> Result
 
     let unknowns = free.iter().filter(|&&free| free).count();
     let spare = 2 * points.len() - unknowns;
-    let variance = (sum / spare.max(1) as f64).max(NOISE * NOISE);
+    let variance = (sum / spare as f64).max(NOISE * NOISE);
     let covariance = normal.cholesky().ok_or(TaughtError::Undetermined)?.inverse() * variance;
     let sure = |row: &Values| SURE * libm::sqrt((row.transpose() * covariance * row)[0].max(0.0));
     let one = |i: usize| Values::from_fn(|row, _| if row == i && free[i] { 1.0 } else { 0.0 });
 
-    // What the other fits say that are as good, and what the noise leaves open.
+    // What the noise leaves open, and what other fits say that are as good.
     let alike = ends.partition_point(|(other, _)| *other <= sum + ALIKE * variance);
-    let mut least = (0.0, 0.0);
+    let mut open = (0.0, 0.0);
     for asked in 0..ASKED {
         let waist = asked as f64 * TAU / ASKED as f64;
-        let here = height(&values, waist).ok_or(TaughtError::NoSaddle)?;
-        let mut unsure = sure(&problem.masked(here.gradient));
-        for (_, other) in &ends[..alike] {
-            let there = height(other, waist).ok_or(TaughtError::NoSaddle)?;
-            unsure = unsure.max((there.value - here.value).abs());
-        }
-        if unsure > least.0 {
-            least = (unsure, waist);
-        }
-    }
-    let (seam_sure, waist) = least;
-    if seam_sure.is_nan() || seam_sure > within {
-        return Err(TaughtError::Unsure {
-            unsure_mm: seam_sure,
-            waist_deg: waist.to_degrees(),
-            within_mm: within,
+        let Some(here) = height(&values, waist) else {
+            continue;
+        };
+        let unsure = ends[..alike].iter().map(|(_, other)| {
+            height(other, waist).map_or(f64::INFINITY, |there| (there.value - here.value).abs())
         });
+        let unsure = unsure.fold(sure(&problem.masked(here.gradient)), f64::max);
+        if unsure > open.0 {
+            open = (unsure, waist);
+        }
     }
     Ok(Fit {
         main_radius: values[MAIN],
@@ -298,6 +324,8 @@ pub(super) fn fit(points: &[Vector3<f64>], known: &Known, within: f64) -> Result
             lift: values[LIFT],
         },
         sure: std::array::from_fn(|i| sure(&one(i))),
-        seam_sure,
+        seam_sure: open.0,
+        least_sure_at: open.1,
+        distances: problem.distances(&values).ok_or(TaughtError::NoSaddle)?,
     })
 }

@@ -80,10 +80,8 @@ impl Seam {
     pub fn new(pair: PipePair, offset_mm: f64, placement: Placement) -> Result<Self, SaddlePartError> {
         match pair.meeting() {
             Meeting::Tangent | Meeting::Partial => Err(SaddlePartError::NotAround {
-                branch_mm: pair.branch_radius(),
-                offset_mm: offset_mm.abs(),
+                reach_mm: pair.branch_radius() + offset_mm.abs(),
                 main_mm: pair.main_radius(),
-                largest_mm: pair.main_radius() - offset_mm.abs(),
             }),
             Meeting::None | Meeting::Full => Ok(Self {
                 curve: pair.curve(Sheet::Plus).map_err(SaddlePartError::of_pipes)?,

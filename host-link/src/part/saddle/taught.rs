@@ -2,7 +2,7 @@
 
 use super::error::{SaddlePartError, TaughtError};
 use super::fit::{Fit, Known, fit};
-use super::seam::{Offset, Seam};
+use super::seam::Seam;
 use crate::table::{self, TableError};
 use nalgebra::Vector3;
 use shared::geometry::PipePair;
@@ -22,7 +22,7 @@ struct Taught {
 }
 
 /// The seam by the points in `file`, as far as it is not `known`, and what a person should know of it. No point
-/// may lie further than `within` \[mm\] off it.
+/// may lie further than `within` \[mm\] off it, and it must be sure to as much.
 pub(super) fn seam(
     file: &Path,
     kinematics: &Kinematics,
@@ -31,38 +31,32 @@ pub(super) fn seam(
 ) -> anyhow::Result<(Seam, Vec<String>)> {
     let points = read(file, kinematics)?;
     let tips: Vec<_> = points.iter().map(|point| point.tip).collect();
-    let fit = fit(&tips, known, within)?;
-    let pair = PipePair::new(fit.main_radius, fit.branch_radius, fit.angle, fit.offset)
-        .map_err(SaddlePartError::of_pipes)?;
-    let seam = Seam::new(pair, fit.offset, fit.placement)?;
-
-    let mut sum_of_squares = 0.0;
-    let mut worst = (0, 0.0);
-    for point in &points {
-        let distance = (seam.nearest(&point.tip, &Offset::default())?.tip - point.tip).norm();
-        sum_of_squares += distance * distance;
-        if distance > worst.1 {
-            worst = (point.line, distance);
-        }
-    }
+    let fit = fit(&tips, known)?;
     let count = points.len() as f64;
-    let rms_mm = libm::sqrt(sum_of_squares / count);
-    let (line, worst_mm) = worst;
-    if worst_mm > within {
+    let rms_mm = libm::sqrt(fit.distances.iter().map(|d| d * d).sum::<f64>() / count);
+    let distances = points.iter().zip(&fit.distances);
+    let (worst, worst_mm) = distances
+        .max_by(|a, b| a.1.total_cmp(b.1))
+        .ok_or(TaughtError::NoSaddle)?;
+    if *worst_mm > within {
         let radii = tips.iter().map(|tip| tip.xy().norm());
         return Err(TaughtError::Poor {
-            file: file.display().to_string(),
-            line,
-            worst_mm,
+            line: worst.line,
+            worst_mm: *worst_mm,
             rms_mm,
             outside_mm: radii.sum::<f64>() / count - fit.branch_radius,
             within_mm: within,
         }
         .into());
     }
+    fit.check_sure(within)?;
+    let pair = PipePair::new(fit.main_radius, fit.branch_radius, fit.angle, fit.offset)
+        .map_err(SaddlePartError::of_pipes)?;
+    let seam = Seam::new(pair, fit.offset, fit.placement)?;
     let mut notes = vec![format!(
-        "{} taught points lie within {worst_mm:.3} mm of the saddle, rms {rms_mm:.3} mm, the farthest in line {line}",
-        points.len()
+        "{} taught points lie within {worst_mm:.3} mm of the saddle, rms {rms_mm:.3} mm; the farthest is in line {}",
+        points.len(),
+        worst.line
     )];
     notes.extend(fit.notes());
     Ok((seam, notes))

@@ -48,12 +48,12 @@ fn dimensions_that_make_no_seam_are_refused_by_their_key() {
         (
             "offset_mm",
             "-130.0",
-            "branch_diameter_mm, offset_mm: a branch of radius 40 mm at 130 mm reaches to the rim",
+            "branch_diameter_mm, offset_mm: the branch ends 170.00 mm beside the main axis, past or at",
         ),
         (
             "offset_mm",
             "120.0",
-            "branch_diameter_mm, offset_mm: a branch of radius 40 mm at 120 mm",
+            "branch_diameter_mm, offset_mm: the branch ends 160.00 mm beside",
         ),
         ("overlap_mm", "-1.0", "overlap_mm is -1, but must be 0 or more"),
         ("start_deg", "nan", "start_deg is NaN"),

@@ -1,20 +1,23 @@
 //! The shipped part from its dimensions to the run.
 
 use super::*;
+use crate::boards::simulated::SimulatedBoards;
 use crate::nc::{Options, interpret};
 use crate::part::{Judgement, RunSample};
 use crate::path::{PlannedPath, Planner};
+use crate::weld::{Job, Names, Silent, run};
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
 use shared::trajectory::PathSpace;
 use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
 
 fn part() -> PartFile {
     PartFile::read(&shipped("programs/saddle-320-80.toml")).unwrap()
 }
 
-fn paths(program: &str, machine: &MachineFile) -> BTreeMap<u32, PlannedPath> {
+pub(super) fn paths(program: &str, machine: &MachineFile) -> BTreeMap<u32, PlannedPath> {
     let program = interpret(program, Options::default()).unwrap();
     let planner = Planner::build(machine).unwrap();
     let paths = planner
@@ -174,6 +177,42 @@ fn the_torch_leaves_the_work_before_the_waist_turns_back() {
             }
         }
     }
+}
+
+#[test]
+fn the_shipped_job_stays_on_the_saddle_with_drives_and_gratings() {
+    let (machine, part) = (machine(), part());
+    let text = std::fs::read_to_string(shipped("programs/saddle-320-80.ngc")).unwrap();
+    let job = Job {
+        machine: &machine,
+        program: &interpret(&text, Options::default()).unwrap(),
+        speed_m_per_min: None,
+        part: Some(&part),
+        seam: None,
+        seed: 1,
+        names: Names {
+            program: "saddle".to_owned(),
+            machine: "pipe-welder".to_owned(),
+            seam: None,
+            boards: "simulated".to_owned(),
+        },
+    };
+    let never = AtomicBool::new(false);
+    let mut boards = SimulatedBoards::new("pipe-welder").unwrap();
+    let ended = run(&mut boards, &job, &never, &mut Silent).unwrap();
+    assert!(ended.error.is_none(), "{:?}", ended.error);
+    println!("{}", ended.report);
+    let figures = &ended.report.figures;
+    assert_eq!(figures.len(), 6);
+    for figure in figures {
+        assert!(
+            figure.limit.is_none_or(|limit| figure.value <= limit),
+            "{figure:?}"
+        );
+    }
+    // Once around and 5 mm on, twice.
+    assert!((figures[4].value - 528.9).abs() < 0.2, "{:?}", figures[4]);
+    assert!(figures[5].value < 0.1, "{:?}", figures[5]);
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn exact_points_give_the_exact_dimensions_by_as_few_points_as_there_are_unknowns
     ];
     for (count, known) in cases {
         let points = tips(&joints(&truth, &all_around(count), 0.0, 1));
-        let fit = fit(&points, &known, 5.0).unwrap();
+        let fit = fit(&points, &known).unwrap();
         let seen = [
             fit.main_radius - 160.0,
             fit.branch_radius - 40.0,
@@ -113,7 +113,7 @@ fn sixteen_points_off_by_a_twentieth_give_the_seam_to_a_twentieth() {
     let mut unsure = 0;
     for seed in 0..40 {
         let points = tips(&joints(&truth, &all_around(16), 0.05, seed));
-        let fit = fit(&points, &known(true, true, false, false), 0.5).unwrap();
+        let fit = fit(&points, &known(true, true, false, false)).unwrap();
         let errors = [
             apart(&fit, &truth),
             (fit.offset - 10.0).abs(),
@@ -142,7 +142,10 @@ fn points_that_hold_no_saddle_are_refused_with_the_reason() {
     let truth = prototype(CLAMPED);
     let refusal = |waists: &[f64], known: &Known| {
         let points = tips(&joints(&truth, waists, 0.0, 1));
-        fit(&points, known, 0.5).unwrap_err().to_string()
+        fit(&points, known)
+            .and_then(|fit| fit.check_sure(0.5))
+            .unwrap_err()
+            .to_string()
     };
     let all = known(true, true, true, true);
     let error = refusal(&[0.0, 90.0], &all);
@@ -175,7 +178,7 @@ fn points_that_hold_no_saddle_are_refused_with_the_reason() {
     let line: Vec<_> = (0..5)
         .map(|i| Vector3::new(40.0, 0.0, 160.0 + f64::from(i)))
         .collect();
-    assert!(fit(&line, &all, 0.5).unwrap_err().to_string().contains("line"));
+    assert!(fit(&line, &all).unwrap_err().to_string().contains("line"));
 }
 
 fn table(joints: &[[f64; 4]]) -> String {
@@ -193,13 +196,63 @@ fn part_with(file: &Scratch) -> String {
 }
 
 #[test]
+fn a_seam_from_taught_points_is_planned_where_the_pipes_truly_are() {
+    let truth = prototype(CLAMPED);
+    let points = Scratch::new("truth.csv", &table(&joints(&truth, &all_around(16), 0.05, 5)));
+    let part = Scratch::new("truth.toml", &part_with(&points));
+    let plan = part.plan(&machine()).unwrap();
+    let notes = plan.notes.join("\n");
+    assert!(notes.starts_with("16 taught points lie within 0."), "{notes}");
+    assert!(
+        notes.contains("main pipe 320.000 mm as given") && notes.contains("offset "),
+        "{notes}"
+    );
+    let paths = planned::paths(&plan.program, &machine());
+    let root = paths.values().find(|path| path.weld().is_some()).unwrap();
+    let (start, end) = root.weld().unwrap();
+    let path = root.path();
+    let furthest = (0..=200)
+        .map(|i| {
+            let s = start + (end - start) * f64::from(i) / 200.0;
+            let pose = path.at(s).unwrap().pose().unwrap();
+            truth.deviation(&pose, &Offset::default()).unwrap().distance
+        })
+        .fold(0.0, f64::max);
+    println!("weld from taught points: {furthest:.3} mm from the true seam");
+    assert!(furthest < 0.1, "{furthest}");
+}
+
+#[test]
+fn the_shipped_points_tell_where_the_machine_is_clamped() {
+    // As programs/saddle-taught.csv was made.
+    let taught = joints(&prototype(CLAMPED), &all_around(16), 0.05, 16);
+    let points = std::fs::read_to_string(shipped("programs/saddle-taught.csv")).unwrap();
+    assert_eq!(points, table(&taught));
+    let part = PartFile::read(&shipped("programs/saddle-taught.toml")).unwrap();
+    let plan = part.plan(&machine(), "saddle-taught").unwrap();
+    let notes = plan.notes.join("\n");
+    println!("{notes}");
+    assert!(
+        notes.contains("main pipe 320.000 mm as given, branch 80.000 mm as given"),
+        "{notes}"
+    );
+}
+
+#[test]
 fn a_point_that_is_off_is_named_with_its_line() {
     let mut taught = joints(&prototype(CLAMPED), &all_around(16), 0.05, 3);
     taught[6][1] += 2.0;
     let points = Scratch::new("off.csv", &table(&taught));
     let part = Scratch::new("off.toml", &part_with(&points));
     let error = part.plan(&machine()).unwrap_err();
-    assert!(error.contains("the taught point in line 8 of"), "{error}");
+    assert!(error.starts_with("line 8: this taught point is 1."), "{error}");
+    // With as few points as there can be, too: the one that is off is told before what it leaves open.
+    let mut few = joints(&prototype(CLAMPED), &all_around(5), 0.0, 3);
+    few[2][0] += 3.0;
+    let points = Scratch::new("few.csv", &table(&few));
+    let part = Scratch::new("few.toml", &part_with(&points));
+    let error = part.plan(&machine()).unwrap_err();
+    assert!(error.starts_with("line 4: this taught point"), "{error}");
     let points = Scratch::new("header.csv", "X,Z\n1,2\n");
     let part = Scratch::new("header.toml", &part_with(&points));
     let error = part.plan(&machine()).unwrap_err();
