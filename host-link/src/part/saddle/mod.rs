@@ -7,7 +7,9 @@
 mod error;
 mod fit;
 mod judge;
+mod least_squares;
 mod program;
+mod round;
 mod seam;
 mod taught;
 #[cfg(test)]

@@ -240,3 +240,55 @@ fn a_waist_without_travel_and_a_low_safe_height_are_named() {
         "{error}"
     );
 }
+
+#[test]
+fn other_pipes_are_planned_as_exactly_or_refused_as_too_near_to_tangent() {
+    let large = std::fs::read_to_string(shipped("machines/pipe-welder.toml")).unwrap();
+    let large = large
+        .replace("travel_max = 200.0", "travel_max = 400.0")
+        .replace("travel_min = 60.0", "travel_min = -300.0")
+        .replace("travel_max = 360.0", "travel_max = 1200.0")
+        .replace("safe_height_mm = 240.0", "safe_height_mm = 900.0");
+    let machine = MachineFile::parse("large.toml", &large).unwrap();
+    // Main, branch, angle, offset, and what is said.
+    let pipes = [
+        (320.0, 200.0, 60.0, 0.0, Ok("seam of 698.03 mm, 117.58 mm high")),
+        (320.0, 60.0, 45.0, -90.0, Ok("seam of 262.89 mm, 85.34 mm high")),
+        (320.0, 60.0, 135.0, 60.0, Ok("seam of 241.71 mm, 69.79 mm high")),
+        (
+            1000.0,
+            300.0,
+            75.0,
+            100.0,
+            Ok("seam of 976.39 mm, 113.56 mm high"),
+        ),
+        (320.0, 318.0, 90.0, 0.0, Ok("seam of 1175.75 mm, 142.14 mm high")),
+        (320.0, 319.0, 90.0, 0.0, Err("pass 1: the smooth path through")),
+        (
+            320.0,
+            319.9,
+            90.0,
+            0.0,
+            Err("branch_diameter_mm, offset_mm: the seam bends by 38°"),
+        ),
+        (
+            320.0,
+            280.0,
+            90.0,
+            19.999,
+            Err("branch_diameter_mm, offset_mm: the seam bends by 80°"),
+        ),
+    ];
+    for (index, (main, branch, angle, offset, wanted)) in pipes.into_iter().enumerate() {
+        let text = format!(
+            "[saddle]\nmain_diameter_mm = {main:?}\nbranch_diameter_mm = {branch:?}\nangle_deg = {angle:?}\n\
+             offset_mm = {offset:?}\n[[saddle.passes]]\nspeed_mm_s = 5.0\npower_w = 4000.0\n"
+        );
+        let plan = Scratch::new(&format!("pipes-{index}.toml"), &text).plan(&machine);
+        let said = plan.map(|plan| plan.notes.join("; "));
+        match (&said, wanted) {
+            (Ok(said), Ok(wanted)) | (Err(said), Err(wanted)) => assert!(said.starts_with(wanted), "{said}"),
+            _ => panic!("{said:?}, not {wanted:?}"),
+        }
+    }
+}
