@@ -98,10 +98,10 @@ fn motion(job: &Job, segment: &Segment, pass: &Pass) -> String {
 /// What a person should know.
 pub(super) fn notes(part: &Stir, job: &Job, machine: &MachineFile) -> Vec<String> {
     let contour = &job.contour;
-    let [from, to] = [0.0, contour.length()].map(|s| contour.at(s).1 * DEG_PER_RAD);
+    let [least, most] = range_of_c(job).map(|c| decimal(c * DEG_PER_RAD, 2));
     let minutes = contour.length() / part.travel_mm_min;
     let mut notes = vec![format!(
-        "contour of {:.2} mm in {} segments, {minutes:.1} min; the heading goes from {from:.2}° to {to:.2}°",
+        "contour of {:.2} mm in {} segments, {minutes:.1} min; C moves between {least}° and {most}°",
         contour.length(),
         contour.segments().len(),
     )];
@@ -148,6 +148,20 @@ pub(super) fn notes(part: &Stir, job: &Job, machine: &MachineFile) -> Vec<String
         ));
     }
     notes
+}
+
+/// Least and largest C \[rad\]: C turns one way on every segment.
+fn range_of_c(job: &Job) -> [f64; 2] {
+    let of_pass = |pass: &Pass| {
+        let (from, to, offset) = (pass.from, pass.to, pass.offset);
+        let ends = job.contour.segments().iter().map(Segment::end_s);
+        let places = ends.filter(move |s| *s > from && *s < to).chain([from, to]);
+        places.map(move |s| job.contour.at(s).1 + offset)
+    };
+    let all = job.passes.iter().flat_map(of_pass);
+    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], c| {
+        [least.min(c), most.max(c)]
+    })
 }
 
 /// By how much C is off where the curvature changes \[°\]: Δω²/(8α) with the acceleration α that C has for it

@@ -57,7 +57,7 @@ fn the_shipped_program_is_the_plan_of_the_shipped_part() {
     let text = std::fs::read_to_string(shipped("programs/stir-contour.ngc")).unwrap();
     assert!(text == plan.program, "plan it again:\n{}", plan.program);
     assert!(
-        plan.notes[0].contains("94.35 mm in 5 segments, 1.6 min"),
+        plan.notes[0].contains("94.35 mm in 5 segments, 1.6 min; C moves between 0.00° and 36.87°"),
         "{:?}",
         plan.notes
     );
@@ -128,6 +128,11 @@ fn c_is_turned_back_above_the_plate() {
     let cut = 30.0 * std::f64::consts::FRAC_PI_2;
     assert!((job.passes[0].to - cut).abs() < 1e-6 && job.passes.len() == 2);
     let plan = plan(&part, &machine).unwrap();
+    assert!(
+        plan.notes[0].contains("between -180.00° and 180.00°"),
+        "{:?}",
+        plan.notes
+    );
     assert!(
         plan.notes[1].contains("lifted after 47.12 mm"),
         "{:?}",
