@@ -5,7 +5,7 @@ use crate::boards::simulated::SimulatedBoards;
 use crate::nc::{Options, interpret};
 use crate::part::{Judgement, RunSample};
 use crate::path::{PlannedPath, Planner};
-use crate::weld::{Job, Names, Silent, run};
+use crate::weld::{Job, Names, Silent, Work, run};
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
@@ -183,9 +183,10 @@ fn the_torch_leaves_the_work_before_the_waist_turns_back() {
 fn the_shipped_job_stays_on_the_saddle_with_drives_and_gratings() {
     let (machine, part) = (machine(), part());
     let text = std::fs::read_to_string(shipped("programs/saddle-320-80.ngc")).unwrap();
+    let program = interpret(&text, Options::default()).unwrap();
     let job = Job {
         machine: &machine,
-        program: &interpret(&text, Options::default()).unwrap(),
+        work: Work::Program(&program),
         speed_m_per_min: None,
         part: Some(&part),
         seam: None,
