@@ -1,5 +1,6 @@
 //! The speed along a path: how the path length s goes with time.
 
+use super::ramp::Ramps;
 use thiserror::Error;
 
 /// Limits along the path.
@@ -45,6 +46,15 @@ pub enum SpeedError {
 }
 
 impl SpeedLimits {
+    /// Way from rest to the speed, or from it to rest \[mm\].
+    pub fn ramp(&self) -> f64 {
+        let ramps = Ramps {
+            acceleration: self.acceleration,
+            jerk: self.jerk,
+        };
+        ramps.length(0.0, self.velocity)
+    }
+
     pub(super) fn check(&self) -> Result<(), SpeedError> {
         let ok = |x: f64| x.is_finite() && x > 0.0;
         if ok(self.velocity) && ok(self.acceleration) && ok(self.jerk) {

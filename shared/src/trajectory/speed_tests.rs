@@ -268,3 +268,22 @@ fn steps_that_make_no_sense_are_refused_and_leave_nothing_to_run() {
         Ok(())
     );
 }
+
+/// Half of the way of two ramps is at speed.
+#[test]
+fn a_ramp_is_as_long_as_that_of_the_plan() {
+    for velocity in [9.6, 20.0, 60.0] {
+        let limits = SpeedLimits {
+            velocity,
+            acceleration: 400.0,
+            jerk: 8000.0,
+        };
+        let way = limits.ramp();
+        let plan = SpeedPlan::<1>::rest_to_rest(0.0, 2.0 * way, &limits).unwrap();
+        let middle = plan.at(plan.duration() / 2.0);
+        assert!(
+            (middle.s - way).abs() < 1e-9 && (middle.v - velocity).abs() < 1e-6,
+            "{middle:?}"
+        );
+    }
+}
