@@ -72,6 +72,11 @@ pub(super) enum BeadError {
     )]
     Inexact { distance: f64, x: f64, y: f64, z: f64 },
     #[error(
+        "the machine cannot keep the process window in {corners} corners, and the boards change the speed in {most} at \
+         most; round the corners, or widen window_mm_s"
+    )]
+    TooManySlow { corners: usize, most: usize },
+    #[error(
         "lead_mm and overlap_mm together are {ends:.1} mm, but the closed bead is only {length:.1} mm long; shorten \
          them"
     )]

@@ -254,8 +254,7 @@ impl Bead {
     }
 
     fn check_lead(&self, path: &PlannedPath) -> Result<(), BeadError> {
-        let (lead, speed) = (self.lead_mm, path.limits.velocity);
-        let needed = speed::ramp(speed, &path.limits);
+        let (lead, speed, needed) = (self.lead_mm, path.limits.velocity, path.limits.ramp());
         if lead < needed {
             return Err(BeadError::LeadTooShort { lead, needed, speed });
         }

@@ -8,8 +8,8 @@ use shared::geometry::Moving;
 use shared::geometry::nurbs::curvature;
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::{AxisLimits, AxisMotion, Kinematics};
-use shared::motion::PATH_PERIOD_S;
-use shared::trajectory::{CurveLimits, ProcessWindow, SpeedLimits};
+use shared::motion::{MAX_EVENTS, PATH_PERIOD_S};
+use shared::trajectory::{CurveLimits, ProcessWindow, WindowError};
 
 /// Largest distance of the curve from the chord of one path period \[mm\]. The boards interpolate within it, so
 /// this does not make an error; it keeps a period short against the radius.
@@ -151,6 +151,15 @@ pub(super) fn plan(
             feeds.push(FeedStep { target, mm_min });
         }
     }
+    // Besides the steps, the arc is switched twice and its power set.
+    let most = MAX_EVENTS - 3;
+    if feeds.len() > most + 1 {
+        let corners = feeds.len() / 2;
+        return Err(BeadError::TooManySlow {
+            corners,
+            most: most / 2,
+        });
+    }
     let slowest = |limits: &[Limit]| {
         let slowest = limits.iter().min_by(|a, b| a.speed.total_cmp(&b.speed));
         slowest.cloned()
@@ -160,7 +169,7 @@ pub(super) fn plan(
         .filter(|stretch| stretch[0].speed < window.low)
         .filter_map(slowest)
         .collect();
-    let nothing = BeadError::Window(shared::trajectory::WindowError::Count { places: 0, speeds: 0 });
+    let nothing = BeadError::Window(WindowError::Count { places: 0, speeds: 0 });
     Ok(SpeedPlan {
         feeds,
         constant,
@@ -179,14 +188,4 @@ fn stretches(speeds: &[f64], constant: f64) -> Vec<f64> {
             run.iter().map(move |_| least)
         })
         .collect()
-}
-
-/// Way from rest to `speed` \[mm\], jerk-limited.
-pub(super) fn ramp(speed: f64, limits: &SpeedLimits) -> f64 {
-    let rise = limits.acceleration / limits.jerk;
-    if speed >= limits.acceleration * rise {
-        speed / 2.0 * (speed / limits.acceleration + rise)
-    } else {
-        speed * libm::sqrt(speed / limits.jerk)
-    }
 }

@@ -7,13 +7,12 @@ use crate::report::{Outcome, Report};
 use crate::weld::{Job, Names, Silent, Work, run};
 use std::sync::atomic::AtomicBool;
 
-fn welded() -> Report {
-    let machine = machine();
-    let text = std::fs::read_to_string(shipped("programs/leaf.ngc")).unwrap();
-    let program = interpret(&text, Options::default()).unwrap();
+/// Welds a program of the leaf.
+fn welded(text: &str, machine: &MachineFile) -> Report {
+    let program = interpret(text, Options::default()).unwrap();
     let part = PartFile::read(&shipped("programs/leaf.toml")).unwrap();
     let job = Job {
-        machine: &machine,
+        machine,
         work: Work::Program(&program),
         part: Some(&part),
         speed_m_per_min: None,
@@ -39,7 +38,8 @@ fn value(report: &Report, key: &str) -> f64 {
 
 #[test]
 fn the_shipped_leaf_stays_inside_the_window_and_on_the_nurbs() {
-    let report = welded();
+    let text = std::fs::read_to_string(shipped("programs/leaf.ngc")).unwrap();
+    let report = welded(&text, &machine());
     assert_eq!(report.outcome, Outcome::Finished, "{report}");
     let exceeded: Vec<_> = report.exceeded().map(|figure| figure.key).collect();
     assert!(exceeded.is_empty(), "{exceeded:?}: {report}");
@@ -51,4 +51,23 @@ fn the_shipped_leaf_stays_inside_the_window_and_on_the_nurbs() {
         (value(&report, "bead_length_mm") - 353.95).abs() < 0.1,
         "{report}"
     );
+}
+
+/// Where the window cannot be kept, the report says so, with the slowest place.
+#[test]
+fn corners_below_the_window_are_found_in_the_report() {
+    let mut machine = machine();
+    machine.planning.path_jerk_mm_s3 = 300.0;
+    let program = plan(&leaf(), &machine).unwrap().program;
+    let report = welded(&program, &machine);
+    assert_eq!(report.outcome, Outcome::Finished, "{report}");
+    let exceeded: Vec<_> = report.exceeded().map(|figure| figure.key).collect();
+    assert_eq!(exceeded, ["length_outside_window_percent"], "{report}");
+    assert!(
+        (3.1..3.3).contains(&value(&report, "slowest_in_corners_mm_s")),
+        "{report}"
+    );
+    // Friction turns with an axis: the slower the tip, the more it is felt.
+    assert!(value(&report, "speed_fluctuation_rms_percent") < 0.6, "{report}");
+    assert!(value(&report, "contour_error_max_mm") < 0.01, "{report}");
 }

@@ -1,11 +1,11 @@
 //! Speeds: inside the window and what the machine can do, and what is said where it cannot.
 
-use super::super::speed::{FeedStep, Limit, plan as plan_speed, ramp};
+use super::super::speed::{FeedStep, Limit, plan as plan_speed};
 use super::*;
 use nalgebra::Vector3;
 use shared::io::AXES;
 use shared::kinematics::AxisLimits;
-use shared::trajectory::{ProcessWindow, SpeedLimits, SpeedPlan, SpeedState, reference};
+use shared::trajectory::{ProcessWindow, SpeedState, reference};
 
 const WINDOW: ProcessWindow = ProcessWindow { low: 4.0, high: 16.0 };
 
@@ -125,22 +125,57 @@ fn one_speed_where_the_machine_can_and_slow_stretches_where_it_cannot() {
     assert_eq!(below, [(2.5, 2.0), (5.5, 1.93)]);
 }
 
-/// v/2·(v/a + a/j), or v·√(v/j) where the acceleration is not reached.
 #[test]
-fn a_ramp_is_as_long_as_that_of_the_boards() {
-    for (velocity, acceleration, jerk) in [(9.6, 400.0, 8000.0), (60.0, 400.0, 8000.0), (20.0, 400.0, 8000.0)]
-    {
-        let limits = SpeedLimits {
-            velocity,
-            acceleration,
-            jerk,
-        };
-        let way = ramp(velocity, &limits);
-        let half = SpeedPlan::<1>::rest_to_rest(0.0, 2.0 * way, &limits).unwrap();
-        let middle = half.at(half.duration() / 2.0);
-        assert!(
-            (middle.s - way).abs() < 1e-9 && (middle.v - velocity).abs() < 1e-6,
-            "{middle:?}"
-        );
+fn more_slow_corners_than_the_boards_have_steps_are_refused() {
+    let speeds =
+        |count: usize| -> Vec<f64> { (0..2 * count + 1).map(|i| 5.0 - 2.0 * (i % 2) as f64).collect() };
+    assert_eq!(steps(&speeds(62)).len(), 125);
+    let targets: Vec<f64> = (1..=127).map(f64::from).collect();
+    let error = plan_speed(&limits(&speeds(63)), &targets, &WINDOW).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("in 63 corners, and the boards change the speed in 62"),
+        "{error}"
+    );
+}
+
+/// A machine that is too weak for the sharp corners: the lowest speed of the window, and less in some corners, which
+/// the notes name.
+#[test]
+fn what_the_machine_cannot_do_inside_the_window_is_slower_and_said() {
+    let mut machine = machine();
+    machine.planning.path_jerk_mm_s3 = 300.0;
+    let plan = plan(&leaf(), &machine).unwrap();
+    let path = &feed_paths(&plan.program, &machine)[0];
+    assert_eq!(path.limits.velocity, 4.0);
+    let steps: Vec<f64> = path.steps().map(|step| step.velocity).collect();
+    // ∛(300·ρ²) < 4 below 0.462 mm: seven corners of the leaf, the sharpest at 3.2 mm/s.
+    assert_eq!(steps.len(), 14, "{steps:?}");
+    let slowest = steps.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(
+        (slowest - libm::cbrt(300.0 * 0.332 * 0.332)).abs() < 0.02,
+        "{slowest}"
+    );
+    let warnings: Vec<_> = plan
+        .notes
+        .iter()
+        .filter(|note| note.starts_with("below the window"))
+        .collect();
+    assert_eq!(warnings.len(), 7, "{:?}", plan.notes);
+    assert!(
+        warnings[0].contains("mm/s at X32.") && warnings[0].contains("radius of 0.3"),
+        "{}",
+        warnings[0]
+    );
+    // What the boards make of it keeps the curve's own limit everywhere.
+    let speeds = path.speed().unwrap();
+    let curve = path.path();
+    for i in 0..=20_000 {
+        let state = speeds.at(speeds.duration() * f64::from(i) / 2e4);
+        let bend = curve.at(state.s.min(path.length_mm() - 1e-9)).unwrap().second;
+        let curvature = libm::sqrt(bend[..3].iter().map(|x| x * x).sum());
+        let jerk = state.v * state.v * state.v * curvature * curvature;
+        assert!(jerk <= 300.0 * 1.01, "{jerk} mm/s³ at {}", state.s);
     }
 }
