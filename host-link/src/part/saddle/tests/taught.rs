@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::part::saddle::fit::{Fit, fit};
+use crate::part::saddle::least_squares::{Values, height};
 use crate::world::SplitMix64;
 use nalgebra::Vector3;
 use shared::io::AXES;
@@ -74,6 +75,26 @@ fn known(main: bool, branch: bool, angle: bool, offset: bool) -> Known {
         branch_radius: branch.then_some(40.0),
         angle: angle.then_some(85f64.to_radians()),
         offset: offset.then_some(10.0),
+    }
+}
+
+#[test]
+fn the_height_changes_with_every_unknown_as_its_gradient_says() {
+    // z₀, θ₀, δ, β, R, r of an oblique pair.
+    let values = Values::from([12.0, 0.35, 20.0, 1.1, 160.0, 70.0]);
+    for i in 0..24 {
+        let waist = 0.1 + f64::from(i) * 0.26;
+        let here = height(&values, waist).unwrap();
+        for unknown in 0..6 {
+            let step = Values::from_fn(|row, _| if row == unknown { 1e-5 } else { 0.0 });
+            let [after, before] = [step, -step].map(|step| height(&(values + step), waist).unwrap().value);
+            let slope = (after - before) / 2e-5;
+            assert!(
+                (here.gradient[unknown] - slope).abs() < 1e-6,
+                "{unknown}: {} {slope}",
+                here.gradient[unknown]
+            );
+        }
     }
 }
 
