@@ -63,6 +63,8 @@ pub struct PlannedPoint {
     pub pose: Pose,
     /// Extension of V1 and V2 that keeps the defocus \[mm\].
     pub extension: [f64; 2],
+    /// Speed on seam 2 over speed on seam 1 on the way here (SPEC 0.5).
+    pub speed_ratio: f64,
 }
 
 /// A planned weld.
@@ -186,10 +188,10 @@ pub fn plan_dual_beam(
             sigma.map(|(_, sigma2)| sigma2),
         )?;
         max_gap = max_gap.max(at.gap);
-        if let Some((s_prev, sigma_prev)) = sigma {
-            let ratio = (at.sigma2 - sigma_prev).abs() / (s - s_prev);
-            max_speed_difference = max_speed_difference.max((ratio - 1.0).abs());
-        }
+        let speed_ratio = sigma.map_or(1.0, |(s_prev, sigma_prev)| {
+            (at.sigma2 - sigma_prev).abs() / (s - s_prev)
+        });
+        max_speed_difference = max_speed_difference.max((speed_ratio - 1.0).abs());
         sigma = Some((s, at.sigma2));
         if at.distance.iter().any(|distance| *distance < 0.0) {
             return Err(refused(&place, s, LocateError::CrossBefore));
@@ -199,6 +201,7 @@ pub fn plan_dual_beam(
         weld.push(PlannedPoint {
             pose,
             extension: std::array::from_fn(|k| slide_extension(head.working_distance_mm[k], at.distance[k])),
+            speed_ratio,
         });
     }
 

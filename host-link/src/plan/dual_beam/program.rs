@@ -7,6 +7,20 @@ use nalgebra::Vector3;
 use shared::io::AXES;
 use shared::units::DEG_PER_RAD;
 
+/// Power 2 follows the speed on seam 2 where that differs by more from the speed on seam 1 (SPEC 0.5).
+const SPEED_TOLERANCE: f64 = 0.02;
+/// Smallest change of power 2 that is programmed, as part of it.
+const POWER_STEP: f64 = 0.01;
+
+/// By how much power 2 must be scaled, so that seam 2 gets the energy per length of seam 1.
+fn power_factor(speed_ratio: f64) -> f64 {
+    if (speed_ratio - 1.0).abs() > SPEED_TOLERANCE {
+        speed_ratio
+    } else {
+        1.0
+    }
+}
+
 impl DualBeamPlan {
     pub(super) fn write(&self, machine: &MachineFile, options: &PlanOptions) -> Result<String, PlanError> {
         let kinematics = machine.motion.kinematics()?;
@@ -48,6 +62,7 @@ impl DualBeamPlan {
         nc.block(&format!("M67 E1 Q{}", decimal(options.power_w[1], 1)));
         nc.comment("run-in");
         nc.block(&format!("F{}", decimal(options.speed_m_min * 1000.0, 1)));
+        let mut power_2 = options.power_w[1];
         for (index, point) in self.points.iter().enumerate().skip(1) {
             // Outputs change at the start of the motion that leaves the point before.
             let left = index - 1;
@@ -58,6 +73,12 @@ impl DualBeamPlan {
                 nc.comment("seam");
                 nc.block("M62 P0");
                 nc.block("M62 P1");
+            }
+            let wanted = options.power_w[1] * power_factor(point.speed_ratio);
+            let on_seam = (self.seam.0..self.seam.1).contains(&left);
+            if on_seam && (wanted - power_2).abs() > POWER_STEP * options.power_w[1] {
+                power_2 = wanted;
+                nc.block(&format!("M67 E1 Q{}", decimal(power_2, 1)));
             }
             if left == self.seam.1 {
                 nc.comment("run-out");

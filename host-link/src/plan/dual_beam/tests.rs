@@ -134,3 +134,39 @@ fn the_runs_follow_their_formula() {
     let speed_up = 150.0 * (150.0_f64 / 2000.0).sqrt();
     assert!((run_out - speed_up).abs() < 1e-9 && (run_in - speed_up - 60.5).abs() < 1e-9);
 }
+
+#[test]
+fn the_power_of_beam_2_follows_its_speed_on_the_longer_seam() {
+    // Feet of a rib that bends in the plane of a flat skin: seam 2 lies outside.
+    let arc = |radius: f64| -> Vec<Vector3<f64>> {
+        (0..=60)
+            .map(|i| {
+                let angle = (f64::from(i) - 30.0).to_radians();
+                Vector3::new(1500.0 + radius * angle.sin(), 900.0 + radius * angle.cos(), 100.0)
+            })
+            .collect()
+    };
+    let plan = |radius_2: f64| {
+        let main: Vec<SeamPoint> = arc(400.0)
+            .into_iter()
+            .map(|position| SeamPoint {
+                position,
+                normal: Vector3::z(),
+            })
+            .collect();
+        plan_dual_beam(&main, &arc(radius_2), &machine(), &options()).unwrap()
+    };
+    let powers = |plan: &DualBeamPlan| -> Vec<f64> {
+        let blocks = plan
+            .program
+            .lines()
+            .filter_map(|line| line.split_once("M67 E1 Q"));
+        blocks.map(|(_, power)| power.parse().unwrap()).collect()
+    };
+    // 1 % is left alone, 3 % is not.
+    assert_eq!(powers(&plan(404.0)), [2000.0]);
+    // At its ends a curve through points is straighter than the arc.
+    let scaled = powers(&plan(412.0));
+    assert!((2..=3).contains(&scaled.len()), "{scaled:?}");
+    assert!((scaled[1] / 2000.0 - 1.03).abs() < 0.005, "{scaled:?}");
+}
