@@ -69,6 +69,7 @@ fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Result<(), DrawError<'a>> {
     let wide = area.dim_in_pixel().0 > 600;
     let across = range(panel, |p| p.0, AS_CURVES, 0.01);
     let up = range(panel, |p| p.1, panel.least, 0.05);
+    let decimals = if across.1 - across.0 > 20.0 { 0 } else { 2 };
     let mut chart = ChartBuilder::on(area)
         .caption(&panel.title, (FONT, 15))
         .margin(8)
@@ -84,6 +85,7 @@ fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Result<(), DrawError<'a>> {
         .y_desc(panel.y)
         .x_labels(if wide { 12 } else { 6 })
         .y_labels(if wide { 7 } else { 4 })
+        .x_label_formatter(&|x| format!("{x:.decimals$}"))
         .label_style((FONT, 13))
         .axis_desc_style((FONT, 13))
         .draw()?;

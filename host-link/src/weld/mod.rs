@@ -214,24 +214,7 @@ struct Weld {
 
 impl Weld {
     fn all(&mut self, session: &mut Session, job: &Job) -> Result<(), JobError> {
-        session.progress.phase("setting up the boards");
-        set_up(session, job)?;
-        session.progress.phase("searching reference marks");
-        session.command_all(&Request::Home)?;
-        session.refresh()?;
-        session.wait_until("the search for reference marks", HOMING_LIMIT, |s| {
-            let tracking = s.tracking.as_ref().map(|tracking| &tracking.status);
-            s.motion.homed
-                && s.motion.state == State::Idle
-                && tracking.is_none_or(|t| t.homed && t.state == TrackerState::Ready)
-        })?;
-        if session.tracking.is_some() {
-            session.progress.phase("relating the clocks");
-            session.wait_until("relating the boards' clocks", CLOCK_LIMIT, |s| {
-                s.tracking.as_ref().is_none_or(Tracking::clocks_related)
-            })?;
-        }
-
+        make_ready(session, job)?;
         match job.work {
             Work::Program(program) => self.program(session, job, program)?,
             Work::Teach => drop(self.teach(session, job)?),
@@ -290,6 +273,28 @@ impl Weld {
         }
         ran
     }
+}
+
+/// Brings boards and machine from any state to where paths can be run.
+fn make_ready(session: &mut Session, job: &Job) -> Result<(), JobError> {
+    session.progress.phase("setting up the boards");
+    set_up(session, job)?;
+    session.progress.phase("searching reference marks");
+    session.command_all(&Request::Home)?;
+    session.refresh()?;
+    session.wait_until("the search for reference marks", HOMING_LIMIT, |s| {
+        let tracking = s.tracking.as_ref().map(|tracking| &tracking.status);
+        s.motion.homed
+            && s.motion.state == State::Idle
+            && tracking.is_none_or(|t| t.homed && t.state == TrackerState::Ready)
+    })?;
+    if session.tracking.is_some() {
+        session.progress.phase("relating the clocks");
+        session.wait_until("relating the boards' clocks", CLOCK_LIMIT, |s| {
+            s.tracking.as_ref().is_none_or(Tracking::clocks_related)
+        })?;
+    }
+    Ok(())
 }
 
 /// Gives a path to the boards.
