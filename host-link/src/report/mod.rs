@@ -28,7 +28,7 @@ pub struct Report {
     pub boards: BoardsUsed,
     /// Where the positions come from that count as true.
     pub truth: Truth,
-    /// Programmed speed of the first path that works.
+    /// Programmed speed of the longest path that works.
     pub speed_m_per_min: f64,
     /// Length of path with a beam on; of all feeds if no beam ever was.
     pub weld_length_mm: f64,

@@ -174,7 +174,7 @@ fn speed_panel(report: &Report, ticks: &[WorkTick]) -> Panel {
         ("m/min", 1.0)
     };
     Panel {
-        title: "Speed of the tip (dashed: programmed at first)".to_owned(),
+        title: "Speed of the tip (dashed: programmed for the longest path)".to_owned(),
         x: ALONG,
         y: unit,
         curves: vec![Curve {

@@ -57,8 +57,9 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
             .as_ref()
             .map(|_| evaluation.max_following_error[motor] / unit)
     };
-    let working = paths.values().find(|path| works(path));
-    let speed_mm_s = working.map(|path| path.limits.velocity);
+    let working = paths.values().filter(|path| works(path));
+    let longest = working.max_by(|a, b| a.length_mm().total_cmp(&b.length_mm()));
+    let speed_mm_s = longest.map(|path| path.limits.velocity);
     let report = Report {
         outcome,
         program: job.names.program.clone(),
