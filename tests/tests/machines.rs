@@ -10,8 +10,9 @@ use std::sync::atomic::AtomicBool;
 use system_tests::shipped;
 
 /// Machines and their jobs.
-const JOBS: [(&str, &str); 2] = [
+const JOBS: [(&str, &str); 3] = [
     ("pipe-welder", "programs/saddle-320-80.ngc"),
+    ("wire-arc", "programs/leaf.ngc"),
     ("stir-gantry", "programs/stir-contour.ngc"),
 ];
 

@@ -57,19 +57,16 @@ fn part(f: &mut Formatter, r: &Report) -> Result {
     if r.figures.is_empty() {
         return Ok(());
     }
-    writeln!(f, "\nPart                                       may be")?;
+    let texts = r.figures.iter().map(|figure| figure.text.chars().count());
+    let width = texts.max().unwrap_or(0).max(28);
+    writeln!(f, "\n{:<width$}                  may be", "Part")?;
     for figure in &r.figures {
-        write!(
-            f,
-            "  {:<28}{:>8} {:<7}",
-            figure.text,
-            number(figure.value),
-            figure.unit
-        )?;
+        let (value, unit) = (number(figure.value), figure.unit);
+        write!(f, "  {:<width$}{value:>9} ", figure.text)?;
         match figure.limit {
-            Some(limit) if is_exceeded(figure) => writeln!(f, "{}  EXCEEDED", number(limit))?,
-            Some(limit) => writeln!(f, "{}", number(limit))?,
-            None => writeln!(f)?,
+            Some(limit) if is_exceeded(figure) => writeln!(f, "{unit:<7}{:>7}  EXCEEDED", number(limit))?,
+            Some(limit) => writeln!(f, "{unit:<7}{:>7}", number(limit))?,
+            None => writeln!(f, "{unit}")?,
         }
     }
     Ok(())
@@ -216,9 +213,9 @@ mod tests {
             &[
                 "boards          simulated (simulation 0.1.0)\n",
                 "part            job.toml\n",
-                "distance to the saddle        0.0061 mm     0.0100\n",
-                "height of the torch           0.2500 mm     0.2000  EXCEEDED\n",
-                "length                        123.40 mm     \n",
+                "distance to the saddle         0.0061 mm      0.0100\n",
+                "height of the torch            0.2500 mm      0.2000  EXCEEDED\n",
+                "length                         123.40 mm\n",
             ],
         );
         for absent in ["seam", "Spot", "X2", "skew", "tracker", "measurements", "clock"] {
