@@ -8,6 +8,7 @@ mod curve_file;
 mod error;
 mod judge;
 mod length_table;
+mod notes;
 mod points;
 mod program;
 mod route;
@@ -27,7 +28,7 @@ use route::Route;
 use serde::Deserialize;
 use shared::geometry::nurbs::Curve;
 use shared::trajectory::ProcessWindow;
-use speed::{FeedStep, Limit, SpeedPlan};
+use speed::FeedStep;
 use std::borrow::Cow;
 use std::path::PathBuf;
 
@@ -187,11 +188,11 @@ impl Kind for Bead {
             pass.feeds.clone_from(&plan.feeds);
             plans.push(plan);
         }
-        let mut notes = self.notes(&route, &places);
+        let mut notes = notes::of_route(self, &route, places.len());
         notes.push(format!(
             "the path through them is within {deviation:.1e} mm of the NURBS"
         ));
-        notes.extend(speed_notes(&plans, &window));
+        notes.extend(notes::of_speeds(&plans, &window, &place.machine.planning));
         let program = program::write(self, &passes, route.bead(), place, &notes);
         for path in feed_paths(&planner, place, &program)? {
             self.check_lead(&path)?;
@@ -260,78 +261,4 @@ impl Bead {
         }
         Ok(())
     }
-
-    fn notes(&self, route: &Route, places: &[f64]) -> Vec<String> {
-        let [start, end] = route.bead();
-        let length = route.length();
-        let at = |t: f64| {
-            let p = route.point(t);
-            format!("X{:.3} Y{:.3} Z{:.3}", p.x, p.y, p.z)
-        };
-        let shape = if route.closed() {
-            format!(
-                "closed bead of {length:.2} mm: it begins at {}, at speed after {} mm along its own end, and ends {} mm \
-                 beyond its beginning",
-                at(start),
-                self.lead_mm,
-                self.overlap_mm
-            )
-        } else {
-            format!(
-                "open bead of {length:.2} mm from {} to {}, with {} mm straight on at both ends",
-                at(start),
-                at(end),
-                self.lead_mm
-            )
-        };
-        vec![
-            shape,
-            format!(
-                "{} of {} points",
-                if self.layers == 1 {
-                    "1 layer".to_owned()
-                } else {
-                    format!("{} layers, {} mm each,", self.layers, self.layer_height_mm)
-                },
-                places.len()
-            ),
-        ]
-    }
-}
-
-/// What a person should know of the speeds.
-fn speed_notes(plans: &[SpeedPlan], window: &ProcessWindow) -> Vec<String> {
-    let place = |limit: &Limit| {
-        let [x, y, z] = limit.place.into();
-        format!("X{x:.3} Y{y:.3} Z{z:.3} ({:.1} mm on the path)", limit.s)
-    };
-    let ProcessWindow { low, high } = *window;
-    let Some(plan) = plans
-        .iter()
-        .min_by(|a, b| a.slowest.speed.total_cmp(&b.slowest.speed))
-    else {
-        return Vec::new();
-    };
-    let (constant, slowest) = (plan.constant, &plan.slowest);
-    if plan.below.is_empty() {
-        return vec![format!(
-            "one speed of {constant:.2} mm/s all along, inside the window of {low} to {high} mm/s; limited by {} at {}",
-            slowest.cause,
-            place(slowest)
-        )];
-    }
-    let mut notes = vec![format!(
-        "{constant:.2} mm/s, the lowest speed of the window, but below it at {} places: let wire feed and power follow \
-         the true speed, or round the corners",
-        plan.below.len()
-    )];
-    notes.extend(plan.below.iter().map(|limit| {
-        format!(
-            "below the window: {:.2} mm/s at {}, limited by {}",
-            limit.speed,
-            place(limit),
-            limit.cause
-        )
-    }));
-    notes
 }

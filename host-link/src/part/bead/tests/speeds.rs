@@ -168,6 +168,14 @@ fn what_the_machine_cannot_do_inside_the_window_is_slower_and_said() {
         "{}",
         warnings[0]
     );
+    // √(4³/300).
+    assert!(
+        plan.notes
+            .iter()
+            .any(|note| note.contains("WARNING") && note.contains("radius of 0.46 mm on")),
+        "{:?}",
+        plan.notes
+    );
     // What the boards make of it keeps the curve's own limit everywhere.
     let speeds = path.speed().unwrap();
     let curve = path.path();
