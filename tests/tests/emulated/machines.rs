@@ -8,7 +8,7 @@ use shared::kinematics::AXIS_UNIT;
 use shared::motion::State;
 use shared::protocol::{Datagram, MotionSample, Request, Role};
 use std::time::{Duration, Instant};
-use system_tests::shipped;
+use system_tests::{JOBS, assert_within_limits, shipped, weld_job};
 
 /// A few counts of the gratings (mm or degrees).
 const FEW_COUNTS: f64 = 0.002;
@@ -61,4 +61,20 @@ fn the_pipe_welder_homes_to_its_own_marks() {
     drop(boards);
     let (motion, _) = pair.assert_off();
     assert!(motion.homed);
+}
+
+/// Two machines at a time: a pair of boards keeps about one core busy.
+#[test]
+fn the_shipped_job_of_every_other_machine_keeps_the_limits_of_its_part() {
+    for jobs in JOBS.chunks(2) {
+        std::thread::scope(|scope| {
+            for (machine, job) in jobs {
+                scope.spawn(move || {
+                    let mut pair = Pair::boot_as(&format!("job-{machine}"), machine);
+                    assert_within_limits(&weld_job(&mut pair.connect_motion(), machine, job));
+                    pair.assert_off();
+                });
+            }
+        });
+    }
 }

@@ -41,6 +41,12 @@ impl Pair {
             .unwrap_or_else(|error| panic!("{error}"))
     }
 
+    /// A connection to the motion board only, as machines without a tracker have it.
+    pub fn connect_motion(&self) -> NetworkBoards {
+        NetworkBoards::emulated(self.boards.session(), false, Patience::default())
+            .unwrap_or_else(|error| panic!("{error}"))
+    }
+
     /// `host-link weld` with the shipped job on these boards.
     pub fn host_link(&self, seam: Option<&Path>) -> Command {
         let mut command = bound_to_parent(program(PROGRAM_VARIABLES[0]));
