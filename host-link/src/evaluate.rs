@@ -358,6 +358,7 @@ mod tests {
                 acceleration: 500.0,
                 jerk: 10_000.0,
             },
+            bound: None,
             speed_error: 0.0,
         }
     }

@@ -78,6 +78,15 @@ fn print(paths: &[PlannedPath]) {
                 m_min(slowest)
             );
         }
+        if let Some(bound) = path.bound {
+            println!(
+                "      {} of {} allows {:.2} m/min (at {:.1} mm)",
+                bound.quantity,
+                bound.axis,
+                m_min(bound.largest_mm_s),
+                bound.s_mm
+            );
+        }
         if let Some(corner) = path.corner_deg {
             println!("      begins at a corner of {corner:.1}°, where the machine stops");
         }

@@ -2,7 +2,7 @@
 
 use super::shape::Shape;
 use super::targets::ROTARY;
-use super::{PathError, PlannedPath, Planner};
+use super::{Bound, PathError, PlannedPath, Planner};
 use crate::machine::MachineFile;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
@@ -183,11 +183,7 @@ impl Planner {
             let speed = speeds[target];
             for (i, limits) in self.drives.iter().enumerate() {
                 let (first, second) = (demand.first[i].abs(), demand.second[i].abs());
-                let by_speed = limits.velocity / first;
-                let along = first * self.planning.path_acceleration_mm_s2;
-                let rest = (limits.acceleration - along).max(CURVATURE_SHARE * limits.acceleration);
-                let by_acceleration = libm::sqrt(rest / second);
-                for (largest, quantity) in [(by_speed, "speed"), (by_acceleration, "acceleration")] {
+                for (largest, quantity) in self.allowed(demand, i) {
                     if speed / largest > worst.0 {
                         let error = PathError::Feed {
                             line: shape.targets[target].line,
@@ -211,6 +207,37 @@ impl Planner {
                 jerk,
             }),
         }
+    }
+
+    /// Largest speeds along the path that drive `i` allows at a place of a feed, by its speed and by its
+    /// acceleration \[mm/s\].
+    fn allowed(&self, demand: &Demand, i: usize) -> [(f64, &'static str); 2] {
+        let limits = &self.drives[i];
+        let (first, second) = (demand.first[i].abs(), demand.second[i].abs());
+        let along = first * self.planning.path_acceleration_mm_s2;
+        let rest = (limits.acceleration - along).max(CURVATURE_SHARE * limits.acceleration);
+        [
+            (limits.velocity / first, "speed"),
+            (libm::sqrt(rest / second), "acceleration"),
+        ]
+    }
+
+    /// Where the drives allow the least speed along a feed.
+    pub(super) fn bound(&self, demands: &[Demand]) -> Option<Bound> {
+        let bounds = demands.iter().flat_map(|demand| {
+            (0..DRIVES).flat_map(move |i| {
+                let bound = move |(largest, quantity)| Bound {
+                    largest_mm_s: largest,
+                    axis: DRIVE_NAMES[i],
+                    quantity,
+                    s_mm: demand.s,
+                };
+                self.allowed(demand, i).map(bound)
+            })
+        });
+        bounds
+            .filter(|bound| bound.largest_mm_s.is_finite())
+            .min_by(|a, b| a.largest_mm_s.total_cmp(&b.largest_mm_s))
     }
 
     /// As fast as the machine's rapid fraction of every limit allows.

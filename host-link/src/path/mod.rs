@@ -13,7 +13,7 @@ mod targets;
 mod tests;
 
 pub use error::PathError;
-pub use planned::PlannedPath;
+pub use planned::{Bound, PlannedPath};
 pub use targets::Tip;
 
 use crate::machine::{MachineFile, PlanningConfig};

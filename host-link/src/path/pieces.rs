@@ -136,6 +136,10 @@ impl Planner {
             Motion::Rapid => self.rapid_limits(&demands),
             Motion::Feed => self.feed_limits(&demands, shape, &speeds[here])?,
         };
+        planned.bound = match path.motion {
+            Motion::Rapid => None,
+            Motion::Feed => self.bound(&demands),
+        };
         *stand = reached;
         Ok(planned)
     }

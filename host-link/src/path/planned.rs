@@ -25,8 +25,23 @@ pub struct PlannedPath {
     pub events: Vec<PathEvent>,
     /// Speed, acceleration and jerk along the path; the speed until an event changes it.
     pub limits: SpeedLimits,
+    /// What would not let it be faster, of a feed path.
+    pub bound: Option<Bound>,
     /// Largest | |dP/ds| − 1 | of a feed path: how exact its speed is.
     pub speed_error: f64,
+}
+
+/// The drive that allows the least speed along a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// That speed \[mm/s\].
+    pub largest_mm_s: f64,
+    /// Name of the drive.
+    pub axis: &'static str,
+    /// Its "speed" or its "acceleration".
+    pub quantity: &'static str,
+    /// Where on the path \[mm\].
+    pub s_mm: f64,
 }
 
 impl PlannedPath {
@@ -44,6 +59,7 @@ impl PlannedPath {
                 acceleration: f64::INFINITY,
                 jerk: f64::INFINITY,
             },
+            bound: None,
             speed_error: shape.speed_error,
         }
     }

@@ -89,3 +89,21 @@ fn more_changes_than_the_board_holds_are_refused() {
     let error = plan(&blocks(MAX_EVENTS + 2)).unwrap_err();
     assert!(matches!(error, PathError::TooManyEvents { line: 4, events } if events == MAX_EVENTS + 1));
 }
+
+#[test]
+fn what_bounds_a_feed_is_told_and_a_feed_up_to_it_is_planned() {
+    let paths = plan("F3000\nG1 X1080 Y1060").unwrap();
+    assert_eq!(paths[0].bound, None, "a rapid is as fast as it can be");
+    let bound = paths[1].bound.unwrap();
+    // X takes 0.8 of the speed.
+    assert_eq!((bound.axis, bound.quantity), ("X", "speed"));
+    assert!((bound.largest_mm_s - 333.333 / 0.8).abs() < 1e-3, "{bound:?}");
+    let feed = |part: f64| {
+        plan(&format!(
+            "F{:.3}\nG1 X1080 Y1060",
+            part * 60.0 * bound.largest_mm_s
+        ))
+    };
+    assert!(feed(0.9999).is_ok());
+    assert!(matches!(feed(1.0001), Err(PathError::Feed { axis: "X", .. })));
+}
