@@ -60,8 +60,17 @@ impl Ramps {
         }
     }
 
+    /// `wanted`, or what of it can be reached from `from` within `length`; a lower speed is not looked at.
+    pub(super) fn within_reach(&self, from: f64, wanted: f64, length: f64) -> f64 {
+        if wanted <= from || self.length(from, wanted) <= length {
+            wanted
+        } else {
+            self.reach(from, length)
+        }
+    }
+
     /// Highest speed that can be reached from `low` within `length`.
-    pub(super) fn reach(&self, low: f64, length: f64) -> f64 {
+    fn reach(&self, low: f64, length: f64) -> f64 {
         let Self { acceleration, jerk } = *self;
         let rise = acceleration / jerk;
         let short = (2.0 * low + acceleration * rise) * rise;
