@@ -1,9 +1,9 @@
-//! The motion of one block of a path that is followed exactly.
+//! The motion of one block that is followed exactly, straight or round.
 
 use super::shape::{SHORTEST, channels};
 use super::targets::arc;
 use super::{PathError, Planner, Tip};
-use crate::nc::{Target, Way};
+use crate::nc::{Motion, Target, Way};
 use nalgebra::Vector3;
 use shared::geometry::{Arc, Moving, Pose, angle, interpolate};
 use shared::io::SIDES;
@@ -13,6 +13,13 @@ use shared::trajectory::CHANNELS;
 const MAX_ERROR: [f64; 2] = [1e-5, 1e-6];
 /// Step of differences \[rad\].
 const DIFFERENCE: f64 = 1e-3;
+
+/// Path length of a move that turns or stretches without moving the tip \[mm per degree or mm\].
+const LENGTH_PER_TURN: f64 = 1.0;
+/// Half a turn \[deg\].
+const HALF_TURN: f64 = 180.0;
+/// A turn about N that shows whether T is free \[rad\].
+const SOME_TURN: f64 = 0.01;
 
 /// The motion of one block over its length.
 pub(super) struct Block {
@@ -43,30 +50,79 @@ pub(super) struct Jet {
     pub(super) slope: [f64; CHANNELS],
 }
 
+impl Planner {
+    /// Whether the rotary axes turn evenly in a straight block, instead of the tool about one axis.
+    fn turns_evenly(&self, from: &Tip, to: &Tip) -> bool {
+        let turn = |i: usize| (to.angles_deg[i] - from.angles_deg[i]).abs();
+        (0..3).all(|i| turn(i) <= HALF_TURN) && self.tangent_is_free(from)
+    }
+
+    /// Whether the machine takes another T for the same tool, as one does whose tool is a body of revolution.
+    fn tangent_is_free(&self, tip: &Tip) -> bool {
+        let pose = self.pose(tip);
+        let turned = pose.tangent * libm::cos(SOME_TURN) + pose.lateral() * libm::sin(SOME_TURN);
+        let other = Pose {
+            tangent: turned,
+            ..pose
+        };
+        let [a, b, c] = tip.angles_deg.map(f64::to_radians);
+        let taken = self.kinematics.inverse(&other, &[0.0, 0.0, 0.0, a, b, c]);
+        taken.is_ok_and(|axes| angle(&self.kinematics.forward(&axes).tangent, &turned) > SOME_TURN / 2.0)
+    }
+}
+
+/// What the rotary axes turn together from one tip to the other \[rad\].
+fn axes_turn(from: &Tip, to: &Tip) -> f64 {
+    let turn = |i: usize| (to.angles_deg[i] - from.angles_deg[i]).abs();
+    (0..3).map(turn).sum::<f64>().to_radians()
+}
+
 impl Block {
-    /// The motion of `target` between two tips.
-    pub(super) fn build(planner: &Planner, from: &Tip, to: &Tip, target: &Target) -> Result<Self, PathError> {
+    /// The motion of `target` between two tips. A rapid that turns or stretches more than it moves the tip takes its
+    /// length from that.
+    pub(super) fn build(
+        planner: &Planner,
+        motion: Motion,
+        from: &Tip,
+        to: &Tip,
+        target: &Target,
+    ) -> Result<Self, PathError> {
         let line = target.line;
         let [start, end] = [planner.pose(from), planner.pose(to)];
-        let (way, attitude, length, turn) = match target.way {
+        let (way, travel) = match target.way {
             Way::Arc(turn, form) => {
                 let arc = arc(from, to, turn, form, line)?;
-                let angles = Attitude::Axes(from.angles_deg, to.angles_deg);
-                let turned = (0..3).map(|i| (to.angles_deg[i] - from.angles_deg[i]).abs().to_radians());
-                (BlockWay::Round(arc), angles, arc.length(), turned.sum())
+                (BlockWay::Round(arc), arc.length())
             }
             Way::Line | Way::Axes => {
-                interpolate(&start, &end, 0.5).map_err(|source| PathError::Attitude { line, source })?;
-                // Not the angle of the turn, but not smaller.
-                let turn = angle(&start.tangent, &end.tangent) + angle(&start.normal, &end.normal);
                 let (p, q) = (start.position, end.position);
-                let way = BlockWay::Straight(p, q);
-                (way, Attitude::Geodesic(start, end), (q - p).norm(), turn)
+                (BlockWay::Straight(p, q), (q - p).norm())
             }
         };
-        if length < SHORTEST {
+        if motion == Motion::Feed && travel < SHORTEST {
             return Err(PathError::NoTravel { line });
         }
+        let round = matches!(way, BlockWay::Round(_));
+        let (attitude, turn) = if round || planner.turns_evenly(from, to) {
+            (
+                Attitude::Axes(from.angles_deg, to.angles_deg),
+                axes_turn(from, to),
+            )
+        } else {
+            interpolate(&start, &end, 0.5).map_err(|source| PathError::Attitude { line, source })?;
+            // Not the angle of the turn, but not smaller.
+            let turn = angle(&start.tangent, &end.tangent) + angle(&start.normal, &end.normal);
+            (Attitude::Geodesic(start, end), turn)
+        };
+        let stretch = |k: usize| (to.extension_mm[k] - from.extension_mm[k]).abs();
+        let length = match motion {
+            Motion::Feed => travel,
+            Motion::Rapid => (0..SIDES)
+                .map(stretch)
+                .fold(travel, f64::max)
+                .max(LENGTH_PER_TURN * turn.to_degrees())
+                .max(SHORTEST),
+        };
         Ok(Self {
             way,
             attitude,

@@ -58,6 +58,20 @@ pub enum PathError {
         /// What to do.
         advice: &'static str,
     },
+    /// An axis would be here and, at once, there.
+    #[error(
+        "line {line}: {axis} would have to jump from {from:.1} to {to:.1} mm (or °): the tool passes a pole or half a turn there; go around it, in smaller pieces, or turn the axis with G53 G0"
+    )]
+    Jump {
+        /// Line of the program.
+        line: u32,
+        /// The axis.
+        axis: &'static str,
+        /// Where it is (mm or °).
+        from: f64,
+        /// Where it would be (mm or °).
+        to: f64,
+    },
     /// No arc between these ends.
     #[error("line {line}: no arc here: {source}")]
     Arc {

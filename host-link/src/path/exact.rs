@@ -1,4 +1,4 @@
-//! Paths with arcs: every block is followed exactly, straight or round.
+//! Single blocks and paths with arcs: every block is followed exactly, straight or round.
 //!
 //! At a join the tip goes on in the same direction, or the path ends there. The rotary axes may begin to turn
 //! at once, though, as where an arc follows a line; they cannot, so their rates, and the last hundredths of a
@@ -10,7 +10,7 @@ use super::limits::{CURVATURE_SHARE, DRIVES};
 use super::shape::{Goal, Shape};
 use super::targets::ROTARY;
 use super::{PathError, Planner, Tip};
-use crate::nc::Target;
+use crate::nc::{Motion, Target};
 use nalgebra::Vector3;
 use shared::geometry::angle;
 use shared::io::{AXES, SIDES};
@@ -51,6 +51,7 @@ impl Planner {
     /// each of them \[mm/s\].
     pub(super) fn exact(
         &self,
+        motion: Motion,
         from: &Tip,
         tips: &[Tip],
         targets: &[Target],
@@ -60,7 +61,7 @@ impl Planner {
         let blocks: Vec<Block> = starts
             .zip(tips)
             .zip(targets)
-            .map(|((from, to), target)| Block::build(self, from, to, target))
+            .map(|((from, to), target)| Block::build(self, motion, from, to, target))
             .collect::<Result<_, _>>()?;
         let corners: Vec<f64> = blocks
             .windows(2)

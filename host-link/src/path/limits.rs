@@ -16,6 +16,8 @@ const DRIVE_NAMES: [&str; DRIVES] = ["X", "Y", "Z", "A", "B", "C", "V1", "V2"];
 /// Distance of the places where a path is checked \[mm\], and how many there are at least.
 const CHECK_STEP: f64 = 0.5;
 const CHECK_COUNT: usize = 200;
+/// What an axis may move more between two such places than its rates say \[mm or °\].
+const JUMP: f64 = 1.0;
 /// Fastest rapid \[mm/s\], for moves that need next to no motion.
 const FASTEST: f64 = 1000.0;
 /// Part of an axis' acceleration that a curved path, or a change at a join, may spend on that.
@@ -99,6 +101,9 @@ impl Planner {
             if let Some(point) = path.at(s) {
                 let (demand, axes) = self.demand(s, &point, planned.space, shape.line(s), &near)?;
                 near = axes;
+                if let Some(before) = demands.last() {
+                    check_continuous(before, &demand, shape.line(s))?;
+                }
                 demands.push(demand);
             }
         }
@@ -267,6 +272,23 @@ impl Planner {
             jerk,
         }
     }
+}
+
+/// Whether the axes go from one place to the next, as their rates say, and do not jump.
+fn check_continuous(from: &Demand, to: &Demand, line: u32) -> Result<(), PathError> {
+    for (axis, unit) in AXIS_UNIT.into_iter().enumerate() {
+        let fastest = from.first[axis].abs().max(to.first[axis].abs());
+        let way = (to.position[axis] - from.position[axis]).abs();
+        if way > 2.0 * fastest * (to.s - from.s) + JUMP * unit {
+            return Err(PathError::Jump {
+                line,
+                axis: DRIVE_NAMES[axis],
+                from: from.position[axis] / unit,
+                to: to.position[axis] / unit,
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Where a path is looked at: evenly, in the middle of every span, and at every target, in order.

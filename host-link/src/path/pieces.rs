@@ -93,14 +93,12 @@ impl Planner {
         from: &Tip,
         speeds: &[f64],
     ) -> Result<Vec<Piece>, PathError> {
-        let arcs = path.targets.iter().any(|t| matches!(t.way, Way::Arc(..)));
-        if arcs {
-            return self.exact(from, tips, &path.targets, speeds);
+        let targets = &path.targets;
+        let arcs = targets.iter().any(|t| matches!(t.way, Way::Arc(..)));
+        if arcs || targets.len() == 1 {
+            return self.exact(path.motion, from, tips, targets, speeds);
         }
-        let shape = match &path.targets[..] {
-            [target] => self.straight(path.motion, from, &tips[0], target.line)?,
-            targets => self.smooth(from, tips, targets)?,
-        };
+        let shape = self.smooth(from, tips, targets)?;
         Ok(vec![Piece {
             shape,
             first: 0,
@@ -127,6 +125,9 @@ impl Planner {
             });
         }
         let mut planned = PlannedPath::untimed(shape, PathSpace::Tool, path.motion);
+        if path.motion == Motion::Rapid {
+            planned.speed_error = 0.0;
+        }
         planned.corner_deg = piece.corner.map(f64::to_degrees);
         planned.events = events(path, first, &shape.starts(), &speeds[here.clone()], line)?;
         let demands = self.demands(&planned, shape, &stand.axes)?;

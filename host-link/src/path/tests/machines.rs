@@ -113,6 +113,17 @@ fn a_block_that_turns_more_than_half_a_turn_is_refused() {
     assert!((end("ac-head", &paths)[5] - 100.0).abs() < 1e-6);
 }
 
+/// The tool would go on turning evenly, but no axis can follow from one end of its turn to the other.
+#[test]
+fn an_axis_that_would_jump_is_named() {
+    let error = super::plan("G0 Z300\nG0 A-90\nG0 A95").unwrap_err();
+    assert!(
+        matches!(error, PathError::Jump { line: 5, axis: "A", from, to } if from < -175.0 && to > 175.0),
+        "{error}"
+    );
+    assert!(super::plan("G0 Z300\nG0 A-90\nG0 A0\nG0 A95").is_ok());
+}
+
 /// With A upright the pose leaves C free: it stays, and the planner knows. In axis space it turns.
 #[test]
 fn where_the_pose_leaves_an_axis_free_it_stays() {
