@@ -256,6 +256,31 @@ fn a_part_that_cannot_be_planned_or_read_is_named() {
 }
 
 #[test]
+fn a_panel_is_not_taught_by_a_machine_without_a_probe_nor_with_settings_that_make_no_sense() {
+    let taught_by = |program: PathBuf, machine: &str| {
+        let attempt = Attempt {
+            program,
+            machine: shipped(machine),
+            seam: None,
+            ..Attempt::new()
+        };
+        attempt.refusal()
+    };
+    let said = taught_by(shipped("programs/panel.toml"), MACHINE);
+    assert_says(&said, &["panel.toml", "no [probe]"]);
+    let few = changed(
+        "few.toml",
+        "programs/panel.toml",
+        "readings = 12",
+        "readings = 4",
+    );
+    assert_says(
+        &taught_by(few, "machines/ac-head.toml"),
+        &["few.toml", "readings is 4", "least_readings"],
+    );
+}
+
+#[test]
 fn a_program_outside_travel_is_named_by_axis_and_amount() {
     let program = |name, axis: &str| {
         let program = format!("G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nG0 {axis}\nM2\n");

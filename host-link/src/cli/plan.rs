@@ -14,6 +14,7 @@ use std::path::PathBuf;
 ///
 ///   [t-seam]  two seam curves at the feet of a rib, for the dual-beam gantry
 ///   [saddle]  two pipes by their dimensions, or by points taught on their seam, for the pipe welder
+///   [panel]   points on a curved panel, as `host-link teach` writes them, for the A/C head
 ///   [stir]    lines and arcs on a plate, for the friction-stir gantry
 ///   [bead]    a NURBS along which wire is deposited, for the wire-arc robot
 #[derive(Debug, Args)]

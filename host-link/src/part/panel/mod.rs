@@ -51,8 +51,8 @@ pub struct Panel {
 pub enum PanelError {
     /// Nobody knows the surface.
     #[error(
-        "the panel is not taught: `host-link teach PART --machine FILE -o taught.csv` does that, and taught = \
-         \"taught.csv\" in the part file then names the points; `host-link weld PART` teaches and cuts in one go"
+        "the panel is not taught: `host-link teach` writes its points, and taught = \"FILE\" in the part file names \
+         them; `host-link weld` teaches and cuts in one go"
     )]
     Untaught,
     /// Not enough points for a curve.
