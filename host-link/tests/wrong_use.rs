@@ -268,12 +268,7 @@ fn a_panel_is_not_taught_by_a_machine_without_a_probe_nor_with_settings_that_mak
     };
     let said = taught_by(shipped("programs/panel.toml"), MACHINE);
     assert_says(&said, &["panel.toml", "no [probe]"]);
-    let few = changed(
-        "few.toml",
-        "programs/panel.toml",
-        "readings = 12",
-        "readings = 4",
-    );
+    let few = changed("few.toml", "programs/panel.toml", "readings = 12", "readings = 4");
     assert_says(
         &taught_by(few, "machines/ac-head.toml"),
         &["few.toml", "readings is 4", "least_readings"],

@@ -3,7 +3,6 @@
 use super::boards::{BoardChoice, INTERRUPTED};
 use crate::machine::MachineFile;
 use crate::part::PartFile;
-use crate::report::sentence;
 use crate::teach::write_points;
 use crate::weld::{Job, JobError, Names, Terminal, Work, check_teaching, run};
 use anyhow::Context;
@@ -72,7 +71,7 @@ impl Teach {
                 .with_context(|| format!("cannot write {output}"))?;
             println!("{output}: {} points", points.len());
             for figure in &ended.report.figures {
-                println!("  {}", sentence(figure));
+                println!("  {} {:.4} {}", figure.text, figure.value, figure.unit);
             }
         }
         match ended.error {

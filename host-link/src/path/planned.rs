@@ -69,6 +69,14 @@ impl PlannedPath {
         self.knots.last().map_or(0.0, |knot| knot.s_mm)
     }
 
+    /// A rapid that takes `times` as long.
+    pub fn slower(mut self, times: f64) -> Self {
+        self.limits.velocity /= times;
+        self.limits.acceleration /= times * times;
+        self.limits.jerk /= times * times * times;
+        self
+    }
+
     /// Time from rest to rest \[s\].
     pub fn duration_s(&self) -> f64 {
         self.speed().map_or(0.0, |plan| plan.duration())

@@ -152,13 +152,14 @@ struct BoardArm<'w, 's, 'b> {
 impl Arm for BoardArm<'_, '_, '_> {
     type Error = JobError;
 
-    fn run(&mut self, program: &str) -> Result<(), JobError> {
+    fn run(&mut self, program: &str, slower: f64) -> Result<(), JobError> {
         let program = read(program)?;
         let from = self.session.motion.reference;
         let number = self.weld.taught.points.len() + 1;
         let what = format!("teaching point {number} of {}", self.count);
         for path in self.weld.planner.program(&program, &from, None)? {
-            self.weld.path(self.session, self.job, path, &what)?;
+            self.weld
+                .path(self.session, self.job, path.slower(slower), &what)?;
         }
         Ok(())
     }

@@ -15,6 +15,10 @@ const C: usize = 5;
 /// Nearer to the vertical than this C has no effect on the tool \[rad\].
 const VERTICAL: f64 = 1e-3;
 
+/// A turn about the focus begins so many times as slowly: the axes break away from friction one after the other, and
+/// until all move the focus is off.
+const TURNS_SLOWER: f64 = 3.0;
+
 /// Teaching while it goes on.
 pub(super) struct Lesson<'t, 'a, A: Arm> {
     pub(super) teacher: &'t Teacher<'a>,
@@ -174,14 +178,14 @@ impl<A: Arm> Lesson<'_, '_, A> {
             turned[C] = aimed[C];
             self.axes_to(turned)?;
         }
-        self.tip_to(aimed)
+        self.tip_at(aimed, TURNS_SLOWER)
     }
 
     /// Moves the axes straight to `axes` (mm, rad).
     fn axes_to(&mut self, axes: [f64; AXES]) -> Attempt<(), A> {
         let mut nc = NcText::default();
         nc.block(&format!("G53 G0 {}", self.teacher.axis_words(&axes)));
-        self.run(nc, axes)
+        self.run(nc, axes, 1.0)
     }
 
     /// Moves the tip to `position` without turning.
@@ -196,18 +200,23 @@ impl<A: Arm> Lesson<'_, '_, A> {
 
     /// Moves the tip in a straight line to where it is for `axes`, and turns to their attitude on the way.
     fn tip_to(&mut self, axes: [f64; AXES]) -> Attempt<(), A> {
+        self.tip_at(axes, 1.0)
+    }
+
+    /// The same, `slower` times as slowly as the machine can.
+    fn tip_at(&mut self, axes: [f64; AXES], slower: f64) -> Attempt<(), A> {
         let tip = self.teacher.kinematics.forward(&axes).position;
         let mut values = axes;
         values[..3].copy_from_slice(tip.as_slice());
         let mut nc = NcText::default();
         nc.block("G43.4");
         nc.block(&format!("G0 {}", self.teacher.axis_words(&values)));
-        self.run(nc, axes)
+        self.run(nc, axes, slower)
     }
 
-    fn run(&mut self, mut nc: NcText, axes: [f64; AXES]) -> Attempt<(), A> {
+    fn run(&mut self, mut nc: NcText, axes: [f64; AXES], slower: f64) -> Attempt<(), A> {
         nc.block("M2");
-        self.arm.run(&nc.finish()).map_err(Trouble::Machine)?;
+        self.arm.run(&nc.finish(), slower).map_err(Trouble::Machine)?;
         self.axes = axes;
         Ok(())
     }

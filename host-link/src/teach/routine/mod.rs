@@ -99,8 +99,9 @@ pub trait Arm {
     /// Why it does not do what it is asked.
     type Error: StdError + 'static;
 
-    /// Runs an NC program from where the axes stand. They stand at its end when it is done.
-    fn run(&mut self, program: &str) -> Result<(), Self::Error>;
+    /// Runs an NC program of rapids from where the axes stand, `slower` times as slowly as the machine can. They stand
+    /// at its end when it is done.
+    fn run(&mut self, program: &str, slower: f64) -> Result<(), Self::Error>;
 
     /// The axes at rest, and `readings` of the probe meanwhile.
     fn look(&mut self, readings: usize) -> Result<Look, Self::Error>;

@@ -76,7 +76,7 @@ impl Ideal {
 impl Arm for Ideal {
     type Error = Infallible;
 
-    fn run(&mut self, program: &str) -> Result<(), Infallible> {
+    fn run(&mut self, program: &str, _slower: f64) -> Result<(), Infallible> {
         for block in program.lines().filter(|block| block.contains("G0")) {
             let mut to = self.axes;
             let in_axes = block.contains("G53");
