@@ -17,6 +17,15 @@ use std::path::PathBuf;
 ///   [panel]   points on a curved panel, as `host-link teach` writes them, for the A/C head
 ///   [stir]    lines and arcs on a plate, for the friction-stir gantry
 ///   [bead]    a NURBS along which wire is deposited, for the wire-arc robot
+///
+/// To make a part of your own:
+///
+///   1. copy the part file of its kind from programs/ to my.toml, with the curves or points it names, and write
+///      your dimensions into it; what is wrong is said with its place
+///   2. host-link plan my.toml --machine machines/MACHINE.toml -o my.ngc
+///   3. host-link check my.ngc --machine machines/MACHINE.toml
+///   4. cargo xtask weld my.ngc --machine machines/MACHINE.toml, on emulated boards: the run is judged by my.toml,
+///      because it has the name of the program
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct Plan {
