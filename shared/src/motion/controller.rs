@@ -264,6 +264,10 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             self.trip(fault);
         }
         let Some(machine) = &self.machine else { return };
+        // The input of a beam that the machine does not have is an open wire, which reads as a fault.
+        let faulty = (0..)
+            .zip(input.report.laser_fault)
+            .find_map(|(side, fault)| (fault && machine.beams.has(side)).then_some(side));
         let silent_us = input.now_us.saturating_sub(self.heard_us);
         if silent_us > machine.link_timeout_us {
             let fault = Fault::LinkLost {
@@ -275,9 +279,8 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
                 _ => self.stop_for(fault),
             }
         }
-        let faulty = input.report.laser_fault.iter().position(|fault| *fault);
         if let (State::Running, Some(side)) = (self.state, faulty) {
-            self.stop_for(Fault::Laser { side: side as u8 });
+            self.stop_for(Fault::Laser { side });
         }
     }
 

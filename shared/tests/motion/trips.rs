@@ -1,6 +1,6 @@
 //! What switches the drives off at once, and what stops on the path first.
 
-use super::bench::{Bench, MARK, SCALE, TRAVEL_MAX, Y};
+use super::bench::{Bench, MARK, SCALE, TRAVEL_MAX, Y, config};
 use shared::io::{AXES, MotionCommand};
 use shared::kinematics::AXIS_UNIT;
 use shared::motion::{Fault, State};
@@ -298,4 +298,25 @@ fn a_path_that_makes_an_axis_jump_switches_the_drives_off_before_they_follow() {
     );
     let moved = bench.status().axes[1] - reference[1];
     assert!((9.0..10.5).contains(&moved), "moved {moved} mm");
+}
+
+#[test]
+fn open_inputs_of_motors_and_beams_that_the_machine_does_not_have_stop_nothing() {
+    let mut machine = config();
+    (machine.motors[1], machine.gantry, machine.beams[1]) = (None, None, None);
+    let mut bench = Bench::new();
+    bench.inputs.drive_fault.set(1, true);
+    bench.inputs.limit_plus.set(1, true);
+    bench.inputs.limit_minus.set(1, true);
+    bench.inputs.laser_fault[1] = true;
+    bench.done(&Request::ConfigureMotion(machine));
+    bench.run_ms(3);
+    bench.done(&Request::Home);
+    bench.until(State::Idle, 5000);
+    bench.load_line(100.0);
+    bench.run();
+    bench.run_ms(300);
+    assert_eq!(bench.command.beam_gate, [true, false]);
+    bench.until(State::Idle, 2000);
+    assert_eq!((bench.fault(), bench.status().s_mm), (None, 100.0));
 }
