@@ -172,17 +172,17 @@ fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow) -> Vec<Figure> {
         limit,
     };
     let mut figures = vec![
-        figure("bead_length_mm", "Bead, each layer", length / layers, "mm", None),
+        figure("bead_length_mm", "bead, each layer", length / layers, "mm", None),
         figure(
             "length_outside_window_percent",
-            "Length laid outside the process window",
+            "length laid outside the process window",
             100.0 * sum_outside(|l| l.length) / length,
             "%",
             Some(OUTSIDE),
         ),
         figure(
             "time_outside_window_percent",
-            "Time outside the process window",
+            "time outside the process window",
             100.0 * sum_outside(|l| l.time) / time,
             "%",
             None,
@@ -191,14 +191,14 @@ fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow) -> Vec<Figure> {
     if !off.is_empty() {
         figures.push(figure(
             "speed_fluctuation_rms_percent",
-            "Speed error where the speed is constant, rms",
+            "speed error where the speed is constant, rms",
             squares(&mut off.iter().copied()),
             "%",
             None,
         ));
         figures.push(figure(
             "speed_fluctuation_max_percent",
-            "Speed error where the speed is constant, largest",
+            "speed error where the speed is constant, largest",
             off.iter().map(|x| x.abs()).fold(0.0, f64::max),
             "%",
             None,
@@ -208,7 +208,7 @@ fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow) -> Vec<Figure> {
     if let Some(slowest) = sharp.min_by(|a, b| a.speed.total_cmp(&b.speed)) {
         figures.push(figure(
             "slowest_in_corners_mm_s",
-            "Slowest in the sharp corners",
+            "slowest in the sharp corners",
             slowest.speed,
             "mm/s",
             None,
@@ -223,14 +223,14 @@ fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow) -> Vec<Figure> {
     }
     figures.push(figure(
         "contour_error_max_mm",
-        "Distance of the tip from the NURBS, largest",
+        "distance of the tip from the NURBS, largest",
         laid.iter().map(|l| l.contour).fold(0.0, f64::max),
         "mm",
         Some(CONTOUR),
     ));
     figures.push(figure(
         "contour_error_rms_mm",
-        "Distance of the tip from the NURBS, rms",
+        "distance of the tip from the NURBS, rms",
         squares(&mut laid.iter().map(|l| l.contour)),
         "mm",
         None,
