@@ -1,8 +1,9 @@
-//! Which boards a command uses, and how it connects to them.
+//! Which boards a command uses, how it connects to them, and what it returns after its job.
 
 use crate::boards::simulated::SimulatedBoards;
 use crate::boards::{Boards, Endpoint, LinkError, NetworkBoards, Patience};
 use crate::machine::MachineFile;
+use crate::weld::JobError;
 use anyhow::{Context, bail};
 use emulator::{SESSION_VARIABLE, Session};
 use std::path::Path;
@@ -14,7 +15,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 /// Exit code after Ctrl-C, as shells have it.
-pub const INTERRUPTED: u8 = 130;
+const INTERRUPTED: u8 = 130;
 /// How often Ctrl-C is looked for while the boards are connected.
 const POLL: Duration = Duration::from_millis(20);
 
@@ -144,6 +145,18 @@ fn unless_interrupted<T: Send + 'static>(
             Err(RecvTimeoutError::Timeout) if !interrupted.load(Ordering::Relaxed) => {}
             Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => return Ok(None),
         }
+    }
+}
+
+/// What a command returns whose job ended with `error`, if with any.
+pub fn exit_code(error: Option<JobError>) -> anyhow::Result<ExitCode> {
+    match error {
+        None => Ok(ExitCode::SUCCESS),
+        Some(JobError::Interrupted) => {
+            eprintln!("host-link: {}", JobError::Interrupted);
+            Ok(ExitCode::from(INTERRUPTED))
+        }
+        Some(error) => Err(error.into()),
     }
 }
 

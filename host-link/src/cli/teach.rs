@@ -1,10 +1,10 @@
 //! `host-link teach`: points and normals of a surface, by the machine's probe.
 
-use super::boards::{BoardChoice, INTERRUPTED};
+use super::boards::{BoardChoice, exit_code};
 use crate::machine::MachineFile;
 use crate::part::PartFile;
 use crate::teach::write_points;
-use crate::weld::{Job, JobError, Names, Terminal, Work, check_teaching, run};
+use crate::weld::{Job, Names, Terminal, Work, check_teaching, run};
 use anyhow::Context;
 use clap::Args;
 use emulator::MACHINE_VARIABLE;
@@ -74,13 +74,6 @@ impl Teach {
                 println!("  {} {:.4} {}", figure.text, figure.value, figure.unit);
             }
         }
-        match ended.error {
-            None => Ok(ExitCode::SUCCESS),
-            Some(JobError::Interrupted) => {
-                eprintln!("host-link: {}", JobError::Interrupted);
-                Ok(ExitCode::from(INTERRUPTED))
-            }
-            Some(error) => Err(error.into()),
-        }
+        exit_code(ended.error)
     }
 }

@@ -1,6 +1,6 @@
 //! `host-link weld`: the job.
 
-use super::boards::{BoardChoice, INTERRUPTED};
+use super::boards::{BoardChoice, exit_code};
 use super::read_program;
 use crate::machine::MachineFile;
 use crate::nc::Program;
@@ -125,20 +125,13 @@ impl Weld {
             print!("{}", ended.report);
             println!("  report in {}", self.report.display());
         }
-        match ended.error {
-            None => match verdict(&ended.report) {
-                None => Ok(ExitCode::SUCCESS),
-                Some(outside) => {
-                    eprintln!("host-link: {outside}");
-                    Ok(ExitCode::from(OUTSIDE))
-                }
-            },
-            Some(JobError::Interrupted) => {
-                eprintln!("host-link: {}", JobError::Interrupted);
-                Ok(ExitCode::from(INTERRUPTED))
-            }
-            Some(error) => Err(error.into()),
+        if ended.error.is_none()
+            && let Some(outside) = verdict(&ended.report)
+        {
+            eprintln!("host-link: {outside}");
+            return Ok(ExitCode::from(OUTSIDE));
         }
+        exit_code(ended.error)
     }
 
     /// What to do, and the part to judge it by.
