@@ -1,8 +1,10 @@
 //! The path (where) and the speed along it (when), kept apart.
 
+mod element;
 mod matched_turn;
 mod path;
 mod plan;
+mod planner;
 mod ramp;
 mod reference;
 mod speed;
@@ -12,9 +14,11 @@ mod stop;
 mod trapezoid;
 mod window;
 
+pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
 pub use matched_turn::MatchedTurn;
 pub use path::{Path, PathError, PathPoint, PathSpace};
 pub use plan::{SpeedPlan, SpeedStep};
+pub use planner::{Output, PlanLimits, Planner, PushError};
 pub use reference::{AxisReference, ReferenceError, reference};
 pub use speed::{SpeedError, SpeedLimits, SpeedState};
 pub use stop::StopProfile;

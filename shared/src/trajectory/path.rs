@@ -184,7 +184,7 @@ impl PathPoint {
         point
     }
 
-    const ZERO: Self = Self {
+    pub(super) const ZERO: Self = Self {
         value: [0.0; CHANNELS],
         first: [0.0; CHANNELS],
         second: [0.0; CHANNELS],
