@@ -72,7 +72,8 @@ pub enum Turn {
     Clockwise,
 }
 
-/// An arc of up to a full circle or, if it rises along its axis, a helix of up to one turn.
+/// An arc of up to a full circle or, if it rises along its axis, a helix of up to one turn; more than that by
+/// [`Arc::with_turns`].
 ///
 /// It always goes right-handed about its own [`Arc::axis`]; a clockwise arc has the opposite axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -146,6 +147,15 @@ impl Arc {
         })
     }
 
+    /// The same arc after so many full turns more, as the P word of G2 and G3 asks for: with the same ends, and
+    /// what it rises spread over all of it.
+    pub fn with_turns(mut self, more: u32) -> Self {
+        let rise = self.rise();
+        self.sweep += TAU * f64::from(more);
+        self.length = libm::hypot(self.radius * self.sweep, rise);
+        self
+    }
+
     /// The arc from `a` through `b` to `c` (SPEC 1.4). It goes right-handed about (b−a)×(c−a) and may be a
     /// major one. Points taken by measuring should also pass [`Arc::check_conditioning`].
     pub fn through(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> Result<Self, ArcError> {
@@ -206,7 +216,7 @@ impl Arc {
         self.radius
     }
 
-    /// Central angle from start to end \[rad\], above 0 and up to 2π.
+    /// Central angle from start to end \[rad\], above 0 and up to 2π, but for [`Arc::with_turns`].
     pub fn sweep(&self) -> f64 {
         self.sweep
     }

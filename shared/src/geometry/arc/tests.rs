@@ -71,6 +71,18 @@ proptest! {
     }
 
     #[test]
+    fn more_turns_keep_the_ends_and_the_length_of_each((arc, [start, end, ..], _) in programmed(), more in 0..9u32) {
+        let turns = arc.with_turns(more);
+        prop_assert!((turns.at(0.0).value - start).norm() < 1e-12);
+        prop_assert!((turns.at(turns.length()).value - end).norm() < 1e-10);
+        prop_assert!((turns.sweep() - arc.sweep() - TAU * f64::from(more)).abs() < 1e-12);
+        let walked: f64 = (0..1000)
+            .map(|i| turns.at(turns.length() * (f64::from(i) + 0.5) / 1000.0).first.norm())
+            .sum::<f64>() / 1000.0;
+        prop_assert!((walked - 1.0).abs() < 1e-4, "{walked}");
+    }
+
+    #[test]
     fn an_arc_goes_through_three_points(a in point(300.0), b in point(300.0), c in point(300.0)) {
         let Ok(arc) = Arc::through(a, b, c) else { return Ok(()) };
         prop_assume!(arc.radius() < 1e4);
