@@ -2,7 +2,10 @@
 
 use anyhow::{Context, Result};
 use benchmarks::MACHINES_FILE;
+use benchmarks::machine::machines;
 use benchmarks::meter::{Meter, measured};
+use benchmarks::trajectories::of_file;
+use std::path::Path;
 
 struct Outside;
 
@@ -13,14 +16,23 @@ impl Meter for Outside {
     }
 }
 
-/// Runs the benchmark that the command line names.
+/// Runs the benchmark that the command line names: `trajectory` with the file of a program, or one of those that
+/// run on the board too.
 pub fn run() -> Result<()> {
-    let name = std::env::args()
-        .nth(1)
-        .context("which benchmark? give its name")?;
+    let mut arguments = std::env::args().skip(1);
+    let name = arguments.next().context("which benchmark? give its name")?;
     let file = MACHINES_FILE.to_str()?;
     let file = std::fs::read(file)
         .with_context(|| format!("cannot read {file}, which `cargo xtask bench` writes"))?;
+    if name == "trajectory" {
+        let program = arguments.next().context("which program? give its file")?;
+        // Axes are programmed: any machine will do.
+        let machine = machines(&file).next().context("no machine in the file")??;
+        let (kinematics, _) = machine.build()?;
+        let outcome = of_file(Path::new(&program), &kinematics, &mut Outside)?;
+        println!("{}", outcome.line()?);
+        return Ok(());
+    }
     let mut text = String::new();
     benchmarks::run(&name, &file, &mut Outside, &mut text)?;
     print!("{text}");

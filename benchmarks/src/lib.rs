@@ -12,6 +12,8 @@ pub mod machine_files;
 pub mod meter;
 mod random;
 pub mod record;
+#[cfg(not(target_os = "none"))]
+pub mod trajectories;
 
 use core::ffi::CStr;
 use machine::Unreadable;

@@ -1,0 +1,23 @@
+//! Programs of canonical segments through the trajectory planner, and what the axes did. On the PC only.
+//!
+//! The planner is called as on the board: a tick a millisecond, elements as the link brings them. Everything is
+//! judged by the positions that come out, and by the program as it was written.
+
+pub mod baseline;
+mod contour;
+pub mod elements;
+pub mod limits;
+mod metrics;
+mod outcome;
+pub mod run;
+pub mod seg;
+mod spiral;
+pub mod way;
+
+pub use contour::{Contour, cut_off};
+pub use metrics::Figures;
+pub use outcome::{Outcome, of_file};
+pub use spiral::{Spiral, SpiralError};
+
+/// A tick \[s\].
+pub const TICK: f64 = 0.001;

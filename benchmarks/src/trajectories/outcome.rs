@@ -1,0 +1,64 @@
+//! One program from its file to its figures, and how those pass from program to program.
+
+use super::elements::elements;
+use super::limits::plan_limits;
+use super::metrics::Figures;
+use super::run::run;
+use super::seg;
+use crate::meter::Meter;
+use anyhow::{Context, Result};
+use serde::{Deserialize, Serialize};
+use shared::io::AXES;
+use shared::kinematics::Kinematics;
+use std::fs;
+use std::path::Path;
+
+/// First word of the line of an outcome.
+const WORD: &str = "trajectory ";
+
+/// What became of a program.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// Moves of the program.
+    pub moves: usize,
+    /// Elements that the planner was given.
+    pub elements: usize,
+    /// Ticks, each of them counted.
+    pub ticks: usize,
+    /// The figures, or why the program did not come to its end.
+    pub figures: std::result::Result<Figures, String>,
+}
+
+/// Runs the program in `file`. Before the first tick `meter` counts one call of nothing.
+pub fn of_file(file: &Path, kinematics: &Kinematics, meter: &mut impl Meter) -> Result<Outcome> {
+    let name = file.display().to_string();
+    let text = fs::read_to_string(file).with_context(|| format!("cannot read {name}"))?;
+    let moves = seg::read(&text, &name)?;
+    let elements = elements(&moves).with_context(|| name)?;
+    let start = [0.0; AXES];
+    meter.count(&mut || ());
+    let (ticks, figures) = match run(&elements, &start, &plan_limits(), kinematics, meter) {
+        Ok(samples) => (samples.len(), Ok(Figures::of(&moves, &start, &samples))),
+        Err(stuck) => (0, Err(stuck.to_string())),
+    };
+    Ok(Outcome {
+        moves: moves.len(),
+        elements: elements.len(),
+        ticks,
+        figures,
+    })
+}
+
+impl Outcome {
+    /// The line that [`Outcome::parse`] reads.
+    pub fn line(&self) -> Result<String> {
+        Ok(format!("{WORD}{}", serde_json::to_string(self)?))
+    }
+
+    /// The outcome among the lines that a program has printed.
+    pub fn parse(text: &str) -> Result<Self> {
+        let line = text.lines().find_map(|line| line.strip_prefix(WORD));
+        let line = line.with_context(|| format!("the run did not come to its end; it printed:\n{text}"))?;
+        Ok(serde_json::from_str(line)?)
+    }
+}
