@@ -1,9 +1,9 @@
 //! What the servo loops are asked for: path, speed and kinematics put together once a path tick.
 
-use super::{Path, PathSpace, SpeedState};
+use super::{Path, PathPoint, PathSpace, SpeedState};
 use crate::geometry::{Pose, PoseError};
 use crate::io::AXES;
-use crate::kinematics::{Kinematics, KinematicsError};
+use crate::kinematics::{AxisMotion, Kinematics, KinematicsError};
 use thiserror::Error;
 
 /// References of the axes at one path tick (X Y Z A B C; mm, rad, s).
@@ -31,6 +31,22 @@ pub enum ReferenceError {
     /// The machine cannot realise the pose.
     #[error("the machine cannot take the pose: {0}")]
     Kinematics(#[from] KinematicsError),
+}
+
+/// The axes at a point of a path in motion at unit speed: their derivatives over s (SPEC 0.3, 0.4).
+pub(super) fn at_unit_speed(
+    kinematics: &Kinematics,
+    point: &PathPoint,
+    space: PathSpace,
+    near: &[f64; AXES],
+) -> Result<AxisMotion, ReferenceError> {
+    Ok(match space {
+        PathSpace::Tool => {
+            let (pose, motion) = point.pose_in_motion()?;
+            kinematics.inverse_motion(&pose, &motion, near)?
+        }
+        PathSpace::Axes => point.axes(),
+    })
 }
 
 /// The references at `state` of `path`: the pose at s, its axes nearest to `near`, and their rates and

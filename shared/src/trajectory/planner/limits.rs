@@ -1,6 +1,7 @@
 //! What the planner must never exceed.
 
 use crate::io::AXES;
+use crate::motion::PATH_PERIOD_S;
 
 /// Limits of the axes and of the path, and the accuracy that the output filter is made for (mm, rad, s).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,4 +18,92 @@ pub struct PlanLimits {
     pub path_jerk: f64,
     /// Tolerance that most elements are programmed with \[mm\]: decides how long the output filter is.
     pub tolerance: f64,
+}
+
+/// Most ticks that the output filter averages over.
+pub const MAX_FILTER: usize = 64;
+/// Fewest.
+const MIN_FILTER: f64 = 4.0;
+/// Share of the tolerance that the output filter may use on curves; rounding has the rest.
+pub(super) const FILTER_SHARE: f64 = 0.4;
+/// What the plan uses of the accelerations, so that there is room for a change of the rate.
+const ACCELERATION_RESERVE: f64 = 0.97;
+/// The same of the jerks.
+const JERK_RESERVE: f64 = 0.95;
+
+/// Path and axes, each with limits of its own, and one unused lane that makes them eight.
+pub(super) const ROWS: usize = 8;
+/// Row of the path; the axes follow it.
+pub(super) const PATH_ROW: usize = 0;
+
+/// Limits as the planner uses them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bounds {
+    /// Highest acceleration of each row.
+    pub acceleration: [f32; ROWS],
+    /// Most that the acceleration of a row may differ from itself one filter length away: jerk times that
+    /// length.
+    pub swing: [f32; ROWS],
+    /// Highest speed of each axis.
+    pub velocity: [f64; AXES],
+    /// Acceleration that sizes corners: the least of the linear axes and the path.
+    pub corner: f64,
+    /// Tolerance of elements that have none of their own \[mm\].
+    pub tolerance: f64,
+    /// Ticks that the output filter averages over.
+    pub filter_ticks: usize,
+    /// The same \[s\].
+    pub filter: f64,
+}
+
+impl Bounds {
+    /// Of no machine.
+    pub const NONE: Self = Self {
+        acceleration: [1.0; ROWS],
+        swing: [1.0; ROWS],
+        velocity: [1.0; AXES],
+        corner: 1.0,
+        tolerance: 1.0,
+        filter_ticks: 1,
+        filter: PATH_PERIOD_S,
+    };
+
+    pub fn build(limits: &PlanLimits) -> Self {
+        // The longest time in which any row goes from none to its full acceleration.
+        let mut ramp = limits.path_acceleration / limits.path_jerk;
+        let mut corner = limits.path_acceleration;
+        for axis in 0..AXES {
+            if limits.acceleration[axis].is_finite() {
+                ramp = libm::fmax(ramp, limits.acceleration[axis] / limits.jerk[axis]);
+                if axis < 3 {
+                    corner = libm::fmin(corner, limits.acceleration[axis]);
+                }
+            }
+        }
+        // A mean over T is off by T²/24 of the acceleration across a curve; √2: of two axes together.
+        let accurate =
+            libm::sqrt(24.0 * FILTER_SHARE * limits.tolerance / (core::f64::consts::SQRT_2 * corner));
+        let ticks = libm::fmin(1.3 * ramp, accurate) / PATH_PERIOD_S;
+        let ticks = libm::fmin(libm::fmax(libm::floor(ticks), MIN_FILTER), MAX_FILTER as f64);
+        let filter = ticks * PATH_PERIOD_S;
+        let mut bounds = Self {
+            velocity: limits.velocity,
+            corner: corner * ACCELERATION_RESERVE,
+            tolerance: limits.tolerance,
+            filter_ticks: ticks as usize,
+            filter,
+            ..Self::NONE
+        };
+        // Large enough to mean none, small enough for single precision.
+        let sane = |x: f64| libm::fmin(x, 1e9) as f32;
+        bounds.acceleration = [sane(f64::INFINITY); ROWS];
+        bounds.swing = bounds.acceleration;
+        bounds.acceleration[PATH_ROW] = sane(limits.path_acceleration * ACCELERATION_RESERVE);
+        bounds.swing[PATH_ROW] = sane(limits.path_jerk * JERK_RESERVE * filter);
+        for axis in 0..AXES {
+            bounds.acceleration[PATH_ROW + 1 + axis] = sane(limits.acceleration[axis] * ACCELERATION_RESERVE);
+            bounds.swing[PATH_ROW + 1 + axis] = sane(limits.jerk[axis] * JERK_RESERVE * filter);
+        }
+        bounds
+    }
 }

@@ -1,0 +1,308 @@
+//! Where nodes stand: dense where limits change, far apart where they do not.
+
+use super::limits::{Bounds, FILTER_SHARE, PATH_ROW, ROWS};
+use super::node::{Lanes, Node, Nodes, Side};
+use super::track::{REACH, Track, position_norm};
+use crate::io::AXES;
+use crate::kinematics::{AxisMotion, Kinematics};
+use crate::trajectory::reference::at_unit_speed;
+use crate::trajectory::{Join, PathSpace, ReferenceError};
+
+/// Places nearer than this are one \[mm\].
+const SAME: f64 = 1e-7;
+/// Time between nodes on curves \[s\].
+const CURVE_STEP: f64 = 0.003;
+/// Largest turn of the path between two nodes \[rad\].
+const TURN_STEP: f64 = 0.12;
+/// Growth of the intervals away from where limits change, and the shrinking towards it.
+const GROWTH: f64 = 0.4;
+const SHRINK: f64 = 0.286;
+/// Nodes nearer in time than this are one, where the path turns little \[s\].
+const MERGE: f64 = 0.0005;
+/// Turn that may be merged.
+const MERGED_TURN: f64 = 0.03;
+/// How far the limits inside an interval may be off a straight line, as a share of the acceleration.
+const STRAIGHT: f64 = 0.06;
+/// Samples are taken this share of an interval inside its ends, because limits jump there.
+const INSET: f64 = 1e-4;
+/// Most times that an interval is halved to follow the limits.
+const HALVINGS: u32 = 6;
+/// Smallest rate of a row; keeps divisions by it finite.
+const LEAST_RATE: f32 = 1e-6;
+
+/// What the path asks of the rows at one place.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    /// Derivatives of the rows over s.
+    first: Lanes,
+    second: Lanes,
+    /// Highest ṡ².
+    cap: f64,
+    /// Curvature \[1/mm\].
+    bend: f64,
+}
+
+/// Where the grid has got to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grid {
+    /// Path length of the newest node.
+    s: f64,
+    /// Path length of the last change of limits.
+    since: f64,
+    hint: u32,
+    /// Axes at the newest node.
+    near: [f64; AXES],
+}
+
+/// Where limits change next.
+struct Break {
+    s: f64,
+    /// The machine stops there.
+    stop: bool,
+    /// Limits change there; else it is only the end of what is known.
+    real: bool,
+    /// Smaller changes were passed over on the way.
+    merged: bool,
+}
+
+/// What the grid is made of.
+pub(super) struct Ground<'a, const E: usize> {
+    pub track: &'a Track<E>,
+    pub space: PathSpace,
+    pub kinematics: &'a Kinematics,
+    pub bounds: &'a Bounds,
+}
+
+impl<const E: usize> Ground<'_, E> {
+    fn sample(
+        &self,
+        s: f64,
+        hint: &mut u32,
+        near: &[f64; AXES],
+    ) -> Result<(Sample, AxisMotion), ReferenceError> {
+        let piece = self.track.find(s, hint).ok_or(ReferenceError::EmptyPath)?;
+        let feed = piece.element.feed;
+        let tolerance = match piece.element.join {
+            Join::Blend(tolerance) => tolerance.position,
+            Join::Stop => self.bounds.tolerance,
+        };
+        let point = self.track.at(s, hint).ok_or(ReferenceError::EmptyPath)?;
+        let axes = at_unit_speed(self.kinematics, &point, self.space, near)?;
+        let mut sample = Sample {
+            first: [0.0; ROWS],
+            second: [0.0; ROWS],
+            cap: feed * feed,
+            bend: position_norm(&point.second),
+        };
+        sample.first[PATH_ROW] = 1.0;
+        for axis in 0..AXES {
+            let rate = axes.velocity[axis];
+            sample.first[PATH_ROW + 1 + axis] = rate as f32;
+            sample.second[PATH_ROW + 1 + axis] = axes.acceleration[axis] as f32;
+            if libm::fabs(rate) * feed > self.bounds.velocity[axis] {
+                let speed = self.bounds.velocity[axis] / rate;
+                sample.cap = libm::fmin(sample.cap, speed * speed);
+            }
+        }
+        // The output filter cuts curves by T²/24 of the acceleration across.
+        let filter = self.bounds.filter * self.bounds.filter / 24.0;
+        if filter * sample.bend * sample.cap > FILTER_SHARE * tolerance {
+            sample.cap = FILTER_SHARE * tolerance / (filter * sample.bend);
+        }
+        Ok((sample, axes))
+    }
+
+    /// The next change of limits beyond `s`, where nodes nearer than `gap` may be merged.
+    fn next_break(&self, s: f64, hint: u32, gap: f64) -> Break {
+        let settled = self.track.settled_s();
+        let mut next = Break {
+            s: settled,
+            stop: self.track.closed() && settled >= self.track.end_s() - SAME,
+            real: self.track.closed() && settled >= self.track.end_s() - SAME,
+            merged: false,
+        };
+        for serial in hint.saturating_sub(REACH)..=hint + REACH + 1 {
+            let Some(piece) = self.track.get(serial) else {
+                continue;
+            };
+            let half = piece.corner.half;
+            let small = !piece.stop && position_norm(&piece.corner.jump) < MERGED_TURN;
+            for at in [piece.start - half, piece.start, piece.start + half] {
+                if at <= s + SAME || at > next.s + SAME {
+                    continue;
+                }
+                if small && at < s + gap {
+                    next.merged = true;
+                    continue;
+                }
+                let stop = piece.stop && at == piece.start;
+                next = Break {
+                    s: at,
+                    stop: stop || (next.stop && at >= next.s - SAME),
+                    real: true,
+                    merged: next.merged,
+                };
+            }
+        }
+        next
+    }
+}
+
+impl Grid {
+    pub const NONE: Self = Self {
+        s: 0.0,
+        since: 0.0,
+        hint: 0,
+        near: [0.0; AXES],
+    };
+
+    /// The first node, at rest at `s` with the axes at `axes`.
+    pub fn start<const N: usize>(&mut self, s: f64, axes: &[f64; AXES], nodes: &mut Nodes<N>) {
+        *self = Self {
+            s,
+            since: s,
+            hint: 0,
+            near: *axes,
+        };
+        nodes.clear();
+        nodes.push(Node { s, ..Node::ZERO });
+    }
+
+    /// Oldest element that is still needed.
+    pub fn needs(&self) -> u32 {
+        self.hint.saturating_sub(REACH)
+    }
+
+    /// Appends an interval, if the path is settled far enough; says whether it did.
+    pub fn extend<const E: usize, const N: usize>(
+        &mut self,
+        ground: &Ground<E>,
+        nodes: &mut Nodes<N>,
+    ) -> Result<bool, ReferenceError> {
+        let bounds = ground.bounds;
+        let settled = ground.track.settled_s();
+        if nodes.room() == 0 || settled <= self.s + SAME {
+            return Ok(false);
+        }
+        let Some(piece) = ground.track.find(self.s + SAME, &mut self.hint) else {
+            return Ok(false);
+        };
+        let feed = piece.element.feed;
+        let gap = MERGE * feed;
+        let next = ground.next_break(self.s, self.hint, gap);
+        let way = next.s - self.s;
+        if !next.real && way < gap {
+            return Ok(false);
+        }
+        let mut hint = self.hint;
+        let near = self.near;
+        let inset = INSET * libm::fmin(way, feed * CURVE_STEP);
+        let (mut from, _) = ground.sample(self.s + inset, &mut hint, &near)?;
+        let mut delta = step(way, self.s - self.since, next.real, &from, feed, bounds);
+        let mut halvings = 0;
+        let (mid, mut to, axes) = loop {
+            let (mid, _) = ground.sample(self.s + 0.5 * delta, &mut hint, &near)?;
+            let (to, axes) = ground.sample(self.s + delta * (1.0 - INSET), &mut hint, &near)?;
+            if halvings == HALVINGS || next.merged || straight(&from, &mid, &to, bounds) {
+                break (mid, to, axes);
+            }
+            halvings += 1;
+            delta *= 0.5;
+        };
+        let end = if way - delta < SAME {
+            next.s
+        } else {
+            self.s + delta
+        };
+        let delta = end - self.s;
+        cover(&mut from, &mid, &mut to);
+        let cap = libm::fmin(libm::fmin(from.cap, to.cap), mid.cap);
+        let newest = nodes.end - 1;
+        let node = nodes.at_mut(newest);
+        node.cap = libm::fmin(node.cap, cap);
+        node.delta = delta;
+        node.sides = [side(&from, 0.0, bounds), side(&to, delta, bounds)];
+        let at_break = end >= next.s - SAME;
+        nodes.push(Node {
+            s: end,
+            cap: if at_break && next.stop { 0.0 } else { cap },
+            ..Node::ZERO
+        });
+        if at_break && next.real {
+            self.since = end;
+        }
+        self.s = end;
+        self.near = axes.position;
+        Ok(true)
+    }
+}
+
+/// Length of the next interval \[mm\]: `way` to the next change of limits, `gone` since the last one.
+fn step(way: f64, gone: f64, real: bool, from: &Sample, feed: f64, bounds: &Bounds) -> f64 {
+    let finest = 0.09 * bounds.corner * bounds.filter * bounds.filter;
+    let mut delta = finest + GROWTH * gone;
+    if real {
+        delta = libm::fmin(delta, libm::fmax(finest, SHRINK * way));
+    }
+    if from.bend * way > 1e-4 {
+        let speed = libm::fmin(feed, libm::sqrt(bounds.corner / from.bend));
+        delta = libm::fmin(delta, libm::fmin(CURVE_STEP * speed, TURN_STEP / from.bend));
+    }
+    // At least two intervals from one change to the next, and no sliver before the next one.
+    if gone <= 0.0 {
+        delta = libm::fmin(delta, 0.5 * way);
+    }
+    if delta > 0.6 * way {
+        delta = if delta < way { 0.5 * way } else { way };
+    }
+    delta
+}
+
+/// Whether the limits between the ends of an interval are as a straight line would have them.
+fn straight(from: &Sample, mid: &Sample, to: &Sample, bounds: &Bounds) -> bool {
+    let mut x = libm::fmin(libm::fmin(from.cap, to.cap), mid.cap) as f32;
+    for row in 0..ROWS {
+        let most = from.second[row]
+            .abs()
+            .max(to.second[row].abs())
+            .max(mid.second[row].abs());
+        if most * x > bounds.acceleration[row] {
+            x = bounds.acceleration[row] / most;
+        }
+    }
+    (0..ROWS).all(|row| {
+        let off = mid.second[row] - 0.5 * (from.second[row] + to.second[row]);
+        off.abs() * x <= STRAIGHT as f32 * bounds.acceleration[row]
+    })
+}
+
+/// Widens the ends to what lies between them: the highest at the start, the lowest at the end.
+fn cover(from: &mut Sample, mid: &Sample, to: &mut Sample) {
+    for row in 0..ROWS {
+        let (a, b, m) = (from.second[row], to.second[row], mid.second[row]);
+        let (low, high) = (a.min(b), a.max(b));
+        if m > high + 0.05 * high.abs() || m < low - 0.05 * low.abs() {
+            from.second[row] = high.max(m);
+            to.second[row] = low.min(m);
+        }
+    }
+}
+
+/// The limits at one end of an interval; `delta` is 0 at its start, its length at its end, where ṡ² is x + 2Δa.
+fn side(sample: &Sample, delta: f64, bounds: &Bounds) -> Side {
+    let mut side = Side {
+        high: bounds.acceleration,
+        low: bounds.acceleration.map(|limit| -limit),
+        ..Side::ZERO
+    };
+    for row in 0..ROWS {
+        let alpha = sample.first[row] + 2.0 * delta as f32 * sample.second[row];
+        side.alpha[row] = if alpha.abs() < LEAST_RATE {
+            LEAST_RATE.copysign(alpha)
+        } else {
+            alpha
+        };
+        side.slope[row] = sample.second[row] / side.alpha[row];
+    }
+    side
+}

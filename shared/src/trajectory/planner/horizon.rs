@@ -1,0 +1,361 @@
+//! Planning ahead, a little every tick: the plan in force stays as it is until a better one is whole.
+//!
+//! A pass back finds the speeds from which the machine can stop in time, a pass forward takes the highest of them,
+//! both inside boxes for the acceleration of every row. The output filter makes the jerk at a time t the
+//! difference of the accelerations at t and one filter length before, divided by that length; where that is too
+//! much, the boxes are made smaller, and the passes repeated.
+
+use super::limits::{Bounds, ROWS};
+use super::node::{Lanes, Node, Nodes};
+extern crate std;
+use super::scan::{advance, reach};
+use crate::motion::PATH_PERIOD_S;
+
+/// Rounds of passes that a plan is given before it is given up.
+const ROUNDS: u32 = 12;
+/// Rounds in which boxes may also grow.
+const RELAXED: u32 = 3;
+/// A plan is good if no swing of the acceleration is above its limit by more than this share.
+const GOOD: f32 = 0.025;
+/// How much of a swing that is too large is taken away in one round, and given back of one that need not be so small.
+const TIGHTEN: f32 = 0.6;
+const LOOSEN: f32 = 0.4;
+/// Swings within this share of their limit are left alone.
+const TIGHTEN_FROM: f32 = 0.01;
+const LOOSEN_FROM: f32 = 0.02;
+/// No box is made smaller than this share of the acceleration.
+const LEAST_BOX: f32 = 0.03;
+/// Node visits of both passes and all rounds that a plan is expected to need for each node.
+const VISITS: u32 = 8;
+
+/// What the planner does next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    /// Nothing is being planned.
+    Waiting,
+    /// The pass back has come to this node.
+    Back(u32),
+    /// The pass forward has come to this node.
+    Forward(u32),
+}
+
+/// A plan being made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Horizon {
+    phase: Phase,
+    /// Oldest node whose acceleration matters.
+    history: u32,
+    /// First node whose speed may change.
+    commit: u32,
+    /// Last node, at rest.
+    last: u32,
+    /// Last node of the plan in force.
+    in_force: u32,
+    round: u32,
+    /// Rounds in which boxes may also grow: none after a plan was given up.
+    relaxed: u32,
+    /// The boxes are those of an earlier plan.
+    warm: bool,
+    /// Largest swing above its limit, as a share.
+    excess: f32,
+    /// Node before the time one filter length away.
+    away: u32,
+    worst: (usize, f64),
+    /// Plans given up, for display.
+    pub given_up: u32,
+    /// Plans taken.
+    pub taken: u32,
+}
+
+impl Horizon {
+    pub const NONE: Self = Self {
+        phase: Phase::Waiting,
+        history: 0,
+        commit: 0,
+        last: 0,
+        in_force: 0,
+        round: 0,
+        relaxed: RELAXED,
+        warm: false,
+        excess: 0.0,
+        away: 0,
+        worst: (0, 0.0),
+        given_up: 0,
+        taken: 0,
+    };
+
+    pub fn waiting(&self) -> bool {
+        self.phase == Phase::Waiting
+    }
+
+    /// Last node of the plan in force.
+    pub fn in_force(&self) -> u32 {
+        self.in_force
+    }
+
+    /// Oldest node that is needed.
+    pub fn needs(&self) -> u32 {
+        self.history
+    }
+
+    /// Begins a plan, if there is something new: the player is on the way to node `player`, reached in `left` \[s\].
+    pub fn begin<const N: usize>(
+        &mut self,
+        nodes: &mut Nodes<N>,
+        player: u32,
+        left: f64,
+        visits: u32,
+        bounds: &Bounds,
+    ) {
+        let last = nodes.end - 1;
+        if last <= self.in_force {
+            return;
+        }
+        // Committed is what will have been played before the plan can be ready.
+        let lead = f64::from(2 + VISITS * (last - player) / visits) * PATH_PERIOD_S;
+        let (mut commit, mut time) = (player, left);
+        while commit < self.in_force && time < lead {
+            time += duration(nodes.at(commit), nodes.at(commit).x, nodes.at(commit + 1).x);
+            commit += 1;
+        }
+        let (mut history, mut before) = (commit, 0.0);
+        while history > nodes.first && before <= 1.5 * bounds.filter {
+            history -= 1;
+            before += duration(nodes.at(history), nodes.at(history).x, nodes.at(history + 1).x);
+        }
+        (self.history, self.commit, self.last) = (history, commit, last);
+        (self.round, self.warm, self.excess) = (0, true, 0.0);
+        // Times and accelerations up to the commit are as they are.
+        nodes.at_mut(history).time = 0.0;
+        for i in history..commit {
+            let (from, to) = (*nodes.at(i), nodes.at(i + 1).x);
+            let next = nodes.at_mut(i + 1);
+            next.time = from.time + duration(&from, from.x, to) + pause(next.cap, bounds);
+            let node = nodes.at_mut(i);
+            node.trial = node.x;
+            let a = ((to - from.x) / (2.0 * from.delta)) as f32;
+            for side in &mut node.sides {
+                side.allowed = side.accelerations(a, from.x as f32);
+            }
+        }
+        let commit = nodes.at_mut(commit);
+        commit.trial = commit.x;
+        nodes.at_mut(last).reach = 0.0;
+        self.phase = Phase::Back(last);
+    }
+
+    /// Gives up the plan being made if the player has come to where it begins.
+    pub fn watch(&mut self, player: u32) {
+        if self.phase != Phase::Waiting && player > self.commit {
+            self.give_up();
+        }
+    }
+
+    fn give_up(&mut self) {
+        self.given_up += 1;
+        self.relaxed = 0;
+        self.phase = Phase::Waiting;
+    }
+
+    /// One visit of one node.
+    pub fn step<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+        match self.phase {
+            Phase::Waiting => {}
+            Phase::Back(i) if i > self.commit => {
+                if self.round > 0 {
+                    self.repair(nodes, i - 1, bounds);
+                }
+                let next = nodes.at(i).reach;
+                let node = nodes.at_mut(i - 1);
+                node.reach = reach(node, next);
+                self.phase = Phase::Back(i - 1);
+            }
+            Phase::Back(i) => {
+                if std::env::var("TRACE").is_ok() { std::eprintln!("round {} excess {:.4} row {} at {:?} commit {} last {} reach {:.1} x {:.1} T {:.4}", self.round, self.excess, self.worst.0, self.worst.1, self.commit, self.last, nodes.at(i).reach, nodes.at(i).x, nodes.at(self.last).time); }
+                if self.round > 0 && self.excess <= GOOD {
+                    self.take(nodes);
+                } else if nodes.at(i).reach < nodes.at(i).x * (1.0 - 1e-6) {
+                    self.too_fast(nodes, bounds);
+                } else if self.round == ROUNDS {
+                    self.give_up();
+                } else {
+                    self.round += 1;
+                    self.excess = 0.0;
+                    self.away = self.history;
+                    self.phase = Phase::Forward(i);
+                }
+            }
+            Phase::Forward(i) if i < self.last => {
+                self.forward(nodes, i, bounds);
+                self.phase = Phase::Forward(i + 1);
+            }
+            Phase::Forward(i) => {
+                self.away = i.max(1) - 1;
+                self.phase = Phase::Back(i);
+            }
+        }
+    }
+
+    /// The speed at the commit is given, and the boxes do not allow it: with full boxes it is possible.
+    fn too_fast<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+        if !self.warm {
+            self.give_up();
+            return;
+        }
+        self.warm = false;
+        for i in self.commit..self.last {
+            for side in &mut nodes.at_mut(i).sides {
+                side.high = bounds.acceleration;
+                side.low = bounds.acceleration.map(|limit| -limit);
+            }
+        }
+        self.round = 0;
+        self.phase = Phase::Back(self.last);
+    }
+
+    fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
+        for i in self.commit + 1..=self.last {
+            let node = nodes.at_mut(i);
+            node.x = node.trial;
+        }
+        self.in_force = self.last;
+        self.taken += 1;
+        self.relaxed = RELAXED;
+        self.phase = Phase::Waiting;
+    }
+
+    /// Speed, time and accelerations of the interval of node `i`, and what its past allows them to be.
+    fn forward<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        let (node, next) = (*nodes.at(i), *nodes.at(i + 1));
+        let x = advance(&node, node.trial, next.reach);
+        let time = node.time + duration(&node, node.trial, x);
+        let after = nodes.at_mut(i + 1);
+        after.trial = x;
+        after.time = time + pause(next.cap, bounds);
+        let a = ((x - node.trial) / (2.0 * node.delta)) as f32;
+        let (from, to) = (node.time - bounds.filter, libm::fmin(time - bounds.filter, node.time));
+        while self.away < i && nodes.at(self.away + 1).time <= from {
+            self.away += 1;
+        }
+        let was = self.range(nodes, self.away, [from, to], bounds);
+        for side in 0..2 {
+            let wanted = node.sides[side].accelerations(a, node.trial as f32);
+            nodes.at_mut(i).sides[side].allowed = self.clamp(&wanted, &was, bounds, node.s);
+        }
+    }
+
+    /// What the future allows the accelerations of node `i` to be; changes its boxes by that and its past.
+    fn repair<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        let (node, next) = (*nodes.at(i), *nodes.at(i + 1));
+        let end = next.time - pause(next.cap, bounds);
+        let a = ((next.trial - node.trial) / (2.0 * node.delta)) as f32;
+        let (from, to) = (libm::fmax(node.time + bounds.filter, end), end + bounds.filter);
+        while self.away > i + 1 && nodes.at(self.away).time > from {
+            self.away -= 1;
+        }
+        let will = self.range(nodes, self.away, [from, to], bounds);
+        for side in 0..2 {
+            let is = node.sides[side].accelerations(a, node.trial as f32);
+            let by_future = self.clamp(&is, &will, bounds, -node.s);
+            let by_past = node.sides[side].allowed;
+            let place = &mut nodes.at_mut(i).sides[side];
+            place.allowed = by_future;
+            for row in 0..ROWS {
+                let (full, swing) = (bounds.acceleration[row], bounds.swing[row]);
+                let smallest = LEAST_BOX * full.min(swing);
+                let most = by_past[row].min(by_future[row]);
+                let least = by_past[row].max(by_future[row]);
+                if is[row] > most + TIGHTEN_FROM * swing {
+                    place.high[row] = (is[row] - TIGHTEN * (is[row] - most)).max(smallest);
+                } else {
+                    let room = will[0][row] + swing - is[row];
+                    if self.round <= self.relaxed && room > LOOSEN_FROM * swing {
+                        place.high[row] = place.high[row].max(is[row] + LOOSEN * room).min(full);
+                    }
+                }
+                if is[row] < least - TIGHTEN_FROM * swing {
+                    place.low[row] = (is[row] + TIGHTEN * (least - is[row])).min(-smallest);
+                } else {
+                    let room = is[row] - (will[1][row] - swing);
+                    if self.round <= self.relaxed && room > LOOSEN_FROM * swing {
+                        place.low[row] = place.low[row].min(is[row] - LOOSEN * room).max(-full);
+                    }
+                }
+            }
+        }
+    }
+
+    /// `wanted`, at most one swing away from the range of `other`; notes by how much it was more.
+    fn clamp(&mut self, wanted: &Lanes, other: &[Lanes; 2], bounds: &Bounds, at: f64) -> Lanes {
+        let mut allowed = *wanted;
+        for row in 0..ROWS {
+            let swing = bounds.swing[row];
+            let (high, low) = (other[0][row] + swing, other[1][row] - swing);
+            allowed[row] = wanted[row].min(high).max(low);
+            let e = (wanted[row] - allowed[row]).abs() / swing;
+            if e > self.excess {
+                self.excess = e;
+                self.worst = (row, at);
+            }
+        }
+        allowed
+    }
+
+    /// Lowest and highest allowed accelerations between two times, the first of which is in the interval of node
+    /// `i` or before all of them; none at rest.
+    fn range<const N: usize>(&self, nodes: &Nodes<N>, mut i: u32, times: [f64; 2], bounds: &Bounds) -> [Lanes; 2] {
+        let [from, to] = times;
+        let mut low = [f32::INFINITY; ROWS];
+        let mut high = [f32::NEG_INFINITY; ROWS];
+        let mut include = |lanes: &Lanes| {
+            for row in 0..ROWS {
+                low[row] = if lanes[row] < low[row] { lanes[row] } else { low[row] };
+                high[row] = if lanes[row] > high[row] { lanes[row] } else { high[row] };
+            }
+        };
+        if from < nodes.at(i).time {
+            include(&REST);
+        }
+        loop {
+            if i >= self.last {
+                include(&REST);
+                break;
+            }
+            let (node, next) = (nodes.at(i), nodes.at(i + 1));
+            let end = next.time - pause(next.cap, bounds);
+            if node.time <= to && end >= from {
+                let [start, stop] = &node.sides;
+                let at = |time: f64| {
+                    let part = ((time - node.time) / (end - node.time)) as f32;
+                    core::array::from_fn(|row| start.allowed[row] + part * (stop.allowed[row] - start.allowed[row]))
+                };
+                include(&if from > node.time { at(from) } else { start.allowed });
+                include(&if to < end { at(to) } else { stop.allowed });
+            }
+            if end < next.time && next.time > from && end < to {
+                include(&REST);
+            }
+            if next.time > to {
+                break;
+            }
+            i += 1;
+        }
+        [low, high]
+    }
+}
+
+const REST: Lanes = [0.0; ROWS];
+
+/// Time from the start to the end of the interval of `node` with these ṡ² \[s\].
+pub(super) fn duration(node: &Node, from: f64, to: f64) -> f64 {
+    2.0 * node.delta / (libm::sqrt(from) + libm::sqrt(to))
+}
+
+/// Time that the machine stands at a node with this cap: until the output filter has come to rest \[s\].
+pub(super) fn pause(cap: f64, bounds: &Bounds) -> f64 {
+    if cap > 0.0 {
+        0.0
+    } else {
+        bounds.filter + PATH_PERIOD_S
+    }
+}

@@ -1,0 +1,112 @@
+//! The places of the path at which speed is planned.
+
+use super::limits::ROWS;
+
+/// A lane for every row of limits.
+pub(super) type Lanes = [f32; ROWS];
+
+/// Limits of one end of an interval: lo ≤ α·(a + m·x) ≤ hi for every row, where x = ṡ² at the start of the
+/// interval and a = s̈, which is constant over it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side {
+    /// α: acceleration of the row for each unit of a; never zero.
+    pub alpha: Lanes,
+    /// m: acceleration of the row for each unit of x, divided by α.
+    pub slope: Lanes,
+    /// Highest acceleration of the row.
+    pub high: Lanes,
+    /// Lowest.
+    pub low: Lanes,
+    /// Acceleration of the row that the neighbourhood in time allows.
+    pub allowed: Lanes,
+}
+
+/// A place, and the interval from it to the next one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    /// Path length \[mm\].
+    pub s: f64,
+    /// Length of the interval \[mm\].
+    pub delta: f64,
+    /// Highest ṡ² here.
+    pub cap: f64,
+    /// ṡ² of the plan in force.
+    pub x: f64,
+    /// ṡ² of the plan being made.
+    pub trial: f64,
+    /// Highest ṡ² from which the plan being made can come to rest.
+    pub reach: f64,
+    /// Time of the plan being made \[s\].
+    pub time: f64,
+    /// Start and end of the interval.
+    pub sides: [Side; 2],
+}
+
+impl Side {
+    pub const ZERO: Self = Self {
+        alpha: [1.0; ROWS],
+        slope: [0.0; ROWS],
+        high: [0.0; ROWS],
+        low: [0.0; ROWS],
+        allowed: [0.0; ROWS],
+    };
+
+    /// Accelerations of the rows.
+    pub fn accelerations(&self, a: f32, x: f32) -> Lanes {
+        core::array::from_fn(|row| self.alpha[row] * (a + self.slope[row] * x))
+    }
+}
+
+impl Node {
+    pub const ZERO: Self = Self {
+        s: 0.0,
+        delta: 0.0,
+        cap: 0.0,
+        x: 0.0,
+        trial: 0.0,
+        reach: 0.0,
+        time: 0.0,
+        sides: [Side::ZERO; 2],
+    };
+}
+
+/// The last `N` nodes, by serial number; `N` is a power of two.
+#[derive(Clone, Debug)]
+pub(super) struct Nodes<const N: usize> {
+    ring: [Node; N],
+    /// Serial of the oldest kept.
+    pub first: u32,
+    /// Serial after the newest.
+    pub end: u32,
+}
+
+impl<const N: usize> Nodes<N> {
+    pub const fn new() -> Self {
+        Self {
+            ring: [Node::ZERO; N],
+            first: 0,
+            end: 0,
+        }
+    }
+
+    pub fn clear(&mut self) {
+        (self.first, self.end) = (0, 0);
+    }
+
+    pub fn room(&self) -> usize {
+        N - (self.end - self.first) as usize
+    }
+
+    pub fn push(&mut self, node: Node) {
+        self.ring[self.end as usize % N] = node;
+        self.end += 1;
+    }
+
+    pub fn at(&self, serial: u32) -> &Node {
+        &self.ring[serial as usize % N]
+    }
+
+    pub fn at_mut(&mut self, serial: u32) -> &mut Node {
+        &mut self.ring[serial as usize % N]
+    }
+}

@@ -1,0 +1,214 @@
+//! The elements in the queue, with their corners rounded: where the tool is at path length s.
+
+use super::PushError;
+use super::corner::Corner;
+use crate::trajectory::{CHANNELS, Element, Join, PathPoint, SHAPED};
+
+/// Channels of two elements that meet may differ by this much (mm, rad).
+const GAP: f64 = 1e-5;
+/// A change of direction below this is none.
+pub(super) const SMOOTH: f64 = 1e-9;
+/// Junctions on each side that a rounded corner may reach over.
+pub(super) const REACH: u32 = 8;
+
+/// An element in the queue, with the corner where it begins.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub element: Element,
+    /// Path length where it begins \[mm\].
+    pub start: f64,
+    /// The corner there.
+    pub corner: Corner,
+    /// The machine comes to rest there.
+    pub stop: bool,
+    /// How many corners at its start and before reach into it.
+    before: u8,
+    /// How many corners at its end and after.
+    after: u8,
+}
+
+/// A queue of up to `E` elements, a power of two. Elements have serial numbers, which go on for ever.
+#[derive(Clone, Debug)]
+pub(super) struct Track<const E: usize> {
+    pieces: [Option<Piece>; E],
+    /// Serial of the oldest element kept.
+    pub first: u32,
+    /// Serial after the newest.
+    pub end: u32,
+    /// Corners at the start of elements below this serial have their shape.
+    pub decided: u32,
+    end_s: f64,
+    end_value: [f64; CHANNELS],
+    end_slope: [f64; CHANNELS],
+}
+
+impl<const E: usize> Track<E> {
+    pub const fn new() -> Self {
+        Self {
+            pieces: [const { None }; E],
+            first: 0,
+            end: 0,
+            decided: 0,
+            end_s: 0.0,
+            end_value: [0.0; CHANNELS],
+            end_slope: [0.0; CHANNELS],
+        }
+    }
+
+    /// Forgets everything; the next element begins at path length `s`.
+    pub fn clear(&mut self, s: f64) {
+        (self.first, self.end, self.decided) = (0, 0, 0);
+        self.end_s = s;
+    }
+
+    pub fn room(&self) -> usize {
+        E - (self.end - self.first) as usize
+    }
+
+    pub fn get(&self, serial: u32) -> Option<&Piece> {
+        if serial < self.first || serial >= self.end {
+            return None;
+        }
+        self.pieces[serial as usize % E].as_ref()
+    }
+
+    pub fn get_mut(&mut self, serial: u32) -> Option<&mut Piece> {
+        if serial < self.first || serial >= self.end {
+            return None;
+        }
+        self.pieces[serial as usize % E].as_mut()
+    }
+
+    /// Path length where what is known ends \[mm\].
+    pub fn end_s(&self) -> f64 {
+        self.end_s
+    }
+
+    /// The last element known comes to rest at its end.
+    pub fn closed(&self) -> bool {
+        self.end > self.first
+            && self
+                .get(self.end - 1)
+                .is_none_or(|piece| piece.element.join == Join::Stop)
+    }
+
+    pub fn push(&mut self, element: Element) -> Result<(), PushError> {
+        let line = element.line;
+        if self.room() == 0 {
+            return Err(PushError::Full);
+        }
+        let start = element.at(0.0);
+        let end = element.at(element.length);
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        let finite = |point: &PathPoint| {
+            let all = point.value.iter().chain(&point.first).chain(&point.second);
+            all.copied().all(f64::is_finite)
+        };
+        if !(positive(element.length) && positive(element.feed) && finite(&start) && finite(&end)) {
+            return Err(PushError::Unsound { line });
+        }
+        let mut corner = Corner::NONE;
+        let mut stop = true;
+        if self.end > 0 {
+            let mut distance = 0.0;
+            for i in 0..CHANNELS {
+                distance = libm::fmax(distance, libm::fabs(start.value[i] - self.end_value[i]));
+                corner.jump[i] = start.first[i] - self.end_slope[i];
+            }
+            if distance > GAP {
+                return Err(PushError::Gap {
+                    line,
+                    distance: distance as f32,
+                });
+            }
+            stop = self.closed();
+        }
+        let length = element.length;
+        self.pieces[self.end as usize % E] = Some(Piece {
+            start: self.end_s,
+            corner,
+            stop,
+            before: 0,
+            after: 0,
+            element,
+        });
+        self.end += 1;
+        self.end_s += length;
+        self.end_value = end.value;
+        self.end_slope = end.first;
+        Ok(())
+    }
+
+    /// Lets go of the oldest elements, up to but not including `serial`.
+    pub fn release(&mut self, serial: u32) {
+        self.first = self.first.max(serial.min(self.end));
+    }
+
+    /// Gives the corner at the start of element `serial` its shape.
+    pub fn shape_corner(&mut self, serial: u32, half: f64, stop: bool) {
+        let Some(piece) = self.get_mut(serial) else { return };
+        piece.corner.half = half;
+        piece.stop |= stop;
+        let at = piece.start;
+        if half <= 0.0 {
+            return;
+        }
+        let mut before = 1;
+        while let Some(piece) = self
+            .get_mut(serial + before - 1)
+            .filter(|piece| piece.start < at + half)
+        {
+            piece.before = piece.before.max(before as u8);
+            before += 1;
+        }
+        let mut after = 1;
+        while after <= serial {
+            let Some(piece) = self.get_mut(serial - after) else {
+                break;
+            };
+            if piece.start + piece.element.length <= at - half {
+                break;
+            }
+            piece.after = piece.after.max(after as u8);
+            after += 1;
+        }
+    }
+
+    /// The element at path length `s`, looked for from `hint`, which is left there.
+    pub fn find(&self, s: f64, hint: &mut u32) -> Option<&Piece> {
+        *hint = (*hint).clamp(self.first, self.end.saturating_sub(1));
+        let mut piece = self.get(*hint)?;
+        while s < piece.start {
+            let Some(before) = hint.checked_sub(1).and_then(|serial| self.get(serial)) else {
+                break;
+            };
+            piece = before;
+            *hint -= 1;
+        }
+        while s >= piece.start + piece.element.length {
+            let Some(after) = self.get(*hint + 1) else { break };
+            piece = after;
+            *hint += 1;
+        }
+        Some(piece)
+    }
+
+    /// All channels at path length `s`.
+    pub fn at(&self, s: f64, hint: &mut u32) -> Option<PathPoint> {
+        let piece = self.find(s, hint)?;
+        let mut point = piece.element.at(s - piece.start);
+        let serial = *hint;
+        for reaching in (serial + 1).saturating_sub(u32::from(piece.before))..=serial + u32::from(piece.after)
+        {
+            if let Some(other) = self.get(reaching) {
+                other.corner.add_to(&mut point, s - other.start);
+            }
+        }
+        Some(point)
+    }
+}
+
+/// Length of the change of the first channels.
+pub(super) fn position_norm(jump: &[f64; CHANNELS]) -> f64 {
+    libm::sqrt(jump[..SHAPED].iter().map(|x| x * x).sum())
+}
