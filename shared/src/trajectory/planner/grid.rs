@@ -14,6 +14,8 @@ const SAME: f64 = 1e-7;
 const CURVE_STEP: f64 = 0.003;
 /// Largest turn of the path between two nodes \[rad\].
 const TURN_STEP: f64 = 0.12;
+/// Time between nodes next to a change of limits, at the speed at which it can be passed \[s\].
+const BREAK_STEP: f64 = 0.002;
 /// Growth of the intervals away from where limits change, and the shrinking towards it.
 const GROWTH: f64 = 0.4;
 const SHRINK: f64 = 0.286;
@@ -49,6 +51,8 @@ pub(super) struct Grid {
     s: f64,
     /// Path length of the last change of limits.
     since: f64,
+    /// Speed at which that can be passed \[mm/s\].
+    since_speed: f64,
     hint: u32,
     /// Axes at the newest node.
     near: [f64; AXES],
@@ -63,6 +67,8 @@ struct Break {
     real: bool,
     /// Smaller changes were passed over on the way.
     merged: bool,
+    /// Highest speed at which it can be passed \[mm/s\].
+    speed: f64,
 }
 
 /// What the grid is made of.
@@ -120,6 +126,7 @@ impl<const E: usize> Ground<'_, E> {
             stop: self.track.closed() && settled >= self.track.end_s() - SAME,
             real: self.track.closed() && settled >= self.track.end_s() - SAME,
             merged: false,
+            speed: 0.0,
         };
         for serial in hint.saturating_sub(REACH)..=hint + REACH + 1 {
             let Some(piece) = self.track.get(serial) else {
@@ -136,11 +143,23 @@ impl<const E: usize> Ground<'_, E> {
                     continue;
                 }
                 let stop = piece.stop && at == piece.start;
+                let stop = stop || (next.stop && at >= next.s - SAME);
+                let turn = position_norm(&piece.corner.jump);
+                let speed = if half * turn > 0.0 {
+                    libm::sqrt(2.0 * self.bounds.corner * half / turn)
+                } else {
+                    f64::INFINITY
+                };
                 next = Break {
                     s: at,
-                    stop: stop || (next.stop && at >= next.s - SAME),
+                    stop,
                     real: true,
                     merged: next.merged,
+                    speed: if stop {
+                        0.0
+                    } else {
+                        libm::fmin(speed, piece.element.feed)
+                    },
                 };
             }
         }
@@ -152,6 +171,7 @@ impl Grid {
     pub const NONE: Self = Self {
         s: 0.0,
         since: 0.0,
+        since_speed: 0.0,
         hint: 0,
         near: [0.0; AXES],
     };
@@ -161,6 +181,7 @@ impl Grid {
         *self = Self {
             s,
             since: s,
+            since_speed: 0.0,
             hint: 0,
             near: *axes,
         };
@@ -198,7 +219,7 @@ impl Grid {
         let near = self.near;
         let inset = INSET * libm::fmin(way, feed * CURVE_STEP);
         let (mut from, _) = ground.sample(self.s + inset, &mut hint, &near)?;
-        let mut delta = step(way, self.s - self.since, next.real, &from, feed, bounds);
+        let mut delta = step(&next, self, &from, feed, bounds);
         let mut halvings = 0;
         let (mid, mut to, axes) = loop {
             let (mid, _) = ground.sample(self.s + 0.5 * delta, &mut hint, &near)?;
@@ -230,6 +251,7 @@ impl Grid {
         });
         if at_break && next.real {
             self.since = end;
+            self.since_speed = next.speed;
         }
         self.s = end;
         self.near = axes.position;
@@ -237,12 +259,14 @@ impl Grid {
     }
 }
 
-/// Length of the next interval \[mm\]: `way` to the next change of limits, `gone` since the last one.
-fn step(way: f64, gone: f64, real: bool, from: &Sample, feed: f64, bounds: &Bounds) -> f64 {
+/// Length of the next interval \[mm\], on the way to the next change of limits.
+fn step(next: &Break, grid: &Grid, from: &Sample, feed: f64, bounds: &Bounds) -> f64 {
+    let (way, gone) = (next.s - grid.s, grid.s - grid.since);
     let finest = 0.09 * bounds.corner * bounds.filter * bounds.filter;
-    let mut delta = finest + GROWTH * gone;
-    if real {
-        delta = libm::fmin(delta, libm::fmax(finest, SHRINK * way));
+    let at = |speed: f64| libm::fmax(finest, BREAK_STEP * speed);
+    let mut delta = at(grid.since_speed) + GROWTH * gone;
+    if next.real {
+        delta = libm::fmin(delta, libm::fmax(at(next.speed), SHRINK * way));
     }
     if from.bend * way > 1e-4 {
         let speed = libm::fmin(feed, libm::sqrt(bounds.corner / from.bend));

@@ -6,8 +6,7 @@
 //! much, the boxes are made smaller, and the passes repeated.
 
 use super::limits::{Bounds, ROWS};
-use super::node::{Lanes, Node, Nodes};
-extern crate std;
+use super::node::{Lanes, Node, Nodes, least, most};
 use super::scan::{advance, reach};
 use crate::motion::PATH_PERIOD_S;
 
@@ -57,10 +56,9 @@ pub(super) struct Horizon {
     /// The boxes are those of an earlier plan.
     warm: bool,
     /// Largest swing above its limit, as a share.
-    excess: f32,
+    excess: Lanes,
     /// Node before the time one filter length away.
     away: u32,
-    worst: (usize, f64),
     /// Plans given up, for display.
     pub given_up: u32,
     /// Plans taken.
@@ -77,9 +75,8 @@ impl Horizon {
         round: 0,
         relaxed: RELAXED,
         warm: false,
-        excess: 0.0,
+        excess: REST,
         away: 0,
-        worst: (0, 0.0),
         given_up: 0,
         taken: 0,
     };
@@ -93,17 +90,13 @@ impl Horizon {
         self.in_force
     }
 
-    /// Oldest node that is needed.
-    pub fn needs(&self) -> u32 {
-        self.history
-    }
-
     /// Begins a plan, if there is something new: the player is on the way to node `player`, reached in `left` \[s\].
     pub fn begin<const N: usize>(
         &mut self,
         nodes: &mut Nodes<N>,
         player: u32,
         left: f64,
+        rested: bool,
         visits: u32,
         bounds: &Bounds,
     ) {
@@ -119,12 +112,19 @@ impl Horizon {
             commit += 1;
         }
         let (mut history, mut before) = (commit, 0.0);
+        if nodes.at(commit).x <= 0.0 {
+            // From rest: what came before is forgotten only when the output has come to rest too.
+            if !rested {
+                return;
+            }
+            before = f64::INFINITY;
+        }
         while history > nodes.first && before <= 1.5 * bounds.filter {
             history -= 1;
             before += duration(nodes.at(history), nodes.at(history).x, nodes.at(history + 1).x);
         }
         (self.history, self.commit, self.last) = (history, commit, last);
-        (self.round, self.warm, self.excess) = (0, true, 0.0);
+        (self.round, self.warm, self.excess) = (0, true, REST);
         // Times and accelerations up to the commit are as they are.
         nodes.at_mut(history).time = 0.0;
         for i in history..commit {
@@ -146,7 +146,8 @@ impl Horizon {
 
     /// Gives up the plan being made if the player has come to where it begins.
     pub fn watch(&mut self, player: u32) {
-        if self.phase != Phase::Waiting && player > self.commit {
+        let stands = player == self.in_force;
+        if self.phase != Phase::Waiting && player >= self.commit && !stands {
             self.give_up();
         }
     }
@@ -171,8 +172,7 @@ impl Horizon {
                 self.phase = Phase::Back(i - 1);
             }
             Phase::Back(i) => {
-                if std::env::var("TRACE").is_ok() { std::eprintln!("round {} excess {:.4} row {} at {:?} commit {} last {} reach {:.1} x {:.1} T {:.4}", self.round, self.excess, self.worst.0, self.worst.1, self.commit, self.last, nodes.at(i).reach, nodes.at(i).x, nodes.at(self.last).time); }
-                if self.round > 0 && self.excess <= GOOD {
+                if self.round > 0 && self.excess.iter().all(|excess| *excess <= GOOD) {
                     self.take(nodes);
                 } else if nodes.at(i).reach < nodes.at(i).x * (1.0 - 1e-6) {
                     self.too_fast(nodes, bounds);
@@ -180,7 +180,7 @@ impl Horizon {
                     self.give_up();
                 } else {
                     self.round += 1;
-                    self.excess = 0.0;
+                    self.excess = REST;
                     self.away = self.history;
                     self.phase = Phase::Forward(i);
                 }
@@ -233,14 +233,17 @@ impl Horizon {
         after.trial = x;
         after.time = time + pause(next.cap, bounds);
         let a = ((x - node.trial) / (2.0 * node.delta)) as f32;
-        let (from, to) = (node.time - bounds.filter, libm::fmin(time - bounds.filter, node.time));
+        let (from, to) = (
+            node.time - bounds.filter,
+            libm::fmin(time - bounds.filter, node.time),
+        );
         while self.away < i && nodes.at(self.away + 1).time <= from {
             self.away += 1;
         }
         let was = self.range(nodes, self.away, [from, to], bounds);
         for side in 0..2 {
             let wanted = node.sides[side].accelerations(a, node.trial as f32);
-            nodes.at_mut(i).sides[side].allowed = self.clamp(&wanted, &was, bounds, node.s);
+            nodes.at_mut(i).sides[side].allowed = self.clamp(&wanted, &was, bounds);
         }
     }
 
@@ -256,61 +259,84 @@ impl Horizon {
         let will = self.range(nodes, self.away, [from, to], bounds);
         for side in 0..2 {
             let is = node.sides[side].accelerations(a, node.trial as f32);
-            let by_future = self.clamp(&is, &will, bounds, -node.s);
+            let by_future = self.clamp(&is, &will, bounds);
             let by_past = node.sides[side].allowed;
             let place = &mut nodes.at_mut(i).sides[side];
             place.allowed = by_future;
+            let grow = self.round <= self.relaxed;
             for row in 0..ROWS {
                 let (full, swing) = (bounds.acceleration[row], bounds.swing[row]);
-                let smallest = LEAST_BOX * full.min(swing);
-                let most = by_past[row].min(by_future[row]);
-                let least = by_past[row].max(by_future[row]);
-                if is[row] > most + TIGHTEN_FROM * swing {
-                    place.high[row] = (is[row] - TIGHTEN * (is[row] - most)).max(smallest);
+                let smallest = LEAST_BOX * least(full, swing);
+                let (now, high, low) = (is[row], place.high[row], place.low[row]);
+                let top = least(by_past[row], by_future[row]);
+                let bottom = most(by_past[row], by_future[row]);
+                let room = will[0][row] + swing - now;
+                let grown = least(most(high, now + LOOSEN * room), full);
+                let shrunk = most(now - TIGHTEN * (now - top), smallest);
+                let may = if grow && room > LOOSEN_FROM * swing {
+                    grown
                 } else {
-                    let room = will[0][row] + swing - is[row];
-                    if self.round <= self.relaxed && room > LOOSEN_FROM * swing {
-                        place.high[row] = place.high[row].max(is[row] + LOOSEN * room).min(full);
-                    }
-                }
-                if is[row] < least - TIGHTEN_FROM * swing {
-                    place.low[row] = (is[row] + TIGHTEN * (least - is[row])).min(-smallest);
+                    high
+                };
+                place.high[row] = if now > top + TIGHTEN_FROM * swing {
+                    shrunk
                 } else {
-                    let room = is[row] - (will[1][row] - swing);
-                    if self.round <= self.relaxed && room > LOOSEN_FROM * swing {
-                        place.low[row] = place.low[row].min(is[row] - LOOSEN * room).max(-full);
-                    }
-                }
+                    may
+                };
+                let room = now - will[1][row] + swing;
+                let grown = most(least(low, now - LOOSEN * room), -full);
+                let shrunk = least(now + TIGHTEN * (bottom - now), -smallest);
+                let may = if grow && room > LOOSEN_FROM * swing {
+                    grown
+                } else {
+                    low
+                };
+                place.low[row] = if now < bottom - TIGHTEN_FROM * swing {
+                    shrunk
+                } else {
+                    may
+                };
             }
         }
     }
 
     /// `wanted`, at most one swing away from the range of `other`; notes by how much it was more.
-    fn clamp(&mut self, wanted: &Lanes, other: &[Lanes; 2], bounds: &Bounds, at: f64) -> Lanes {
+    fn clamp(&mut self, wanted: &Lanes, other: &[Lanes; 2], bounds: &Bounds) -> Lanes {
         let mut allowed = *wanted;
         for row in 0..ROWS {
             let swing = bounds.swing[row];
             let (high, low) = (other[0][row] + swing, other[1][row] - swing);
-            allowed[row] = wanted[row].min(high).max(low);
-            let e = (wanted[row] - allowed[row]).abs() / swing;
-            if e > self.excess {
-                self.excess = e;
-                self.worst = (row, at);
-            }
+            allowed[row] = most(least(wanted[row], high), low);
+            let off = most(wanted[row] - allowed[row], allowed[row] - wanted[row]);
+            self.excess[row] = most(self.excess[row], off * bounds.per_swing[row]);
         }
         allowed
     }
 
     /// Lowest and highest allowed accelerations between two times, the first of which is in the interval of node
     /// `i` or before all of them; none at rest.
-    fn range<const N: usize>(&self, nodes: &Nodes<N>, mut i: u32, times: [f64; 2], bounds: &Bounds) -> [Lanes; 2] {
+    fn range<const N: usize>(
+        &self,
+        nodes: &Nodes<N>,
+        mut i: u32,
+        times: [f64; 2],
+        bounds: &Bounds,
+    ) -> [Lanes; 2] {
         let [from, to] = times;
         let mut low = [f32::INFINITY; ROWS];
         let mut high = [f32::NEG_INFINITY; ROWS];
         let mut include = |lanes: &Lanes| {
             for row in 0..ROWS {
-                low[row] = if lanes[row] < low[row] { lanes[row] } else { low[row] };
-                high[row] = if lanes[row] > high[row] { lanes[row] } else { high[row] };
+                low[row] = if lanes[row] < low[row] {
+                    lanes[row]
+                } else {
+                    low[row]
+                };
+                high[row] = if lanes[row] > high[row] {
+                    lanes[row]
+                } else {
+                    high[row]
+                };
             }
         };
         if from < nodes.at(i).time {
@@ -327,7 +353,9 @@ impl Horizon {
                 let [start, stop] = &node.sides;
                 let at = |time: f64| {
                     let part = ((time - node.time) / (end - node.time)) as f32;
-                    core::array::from_fn(|row| start.allowed[row] + part * (stop.allowed[row] - start.allowed[row]))
+                    core::array::from_fn(|row| {
+                        start.allowed[row] + part * (stop.allowed[row] - start.allowed[row])
+                    })
                 };
                 include(&if from > node.time { at(from) } else { start.allowed });
                 include(&if to < end { at(to) } else { stop.allowed });

@@ -44,6 +44,8 @@ pub(super) struct Bounds {
     /// Most that the acceleration of a row may differ from itself one filter length away: jerk times that
     /// length.
     pub swing: [f32; ROWS],
+    /// One divided by it.
+    pub per_swing: [f32; ROWS],
     /// Highest speed of each axis.
     pub velocity: [f64; AXES],
     /// Acceleration that sizes corners: the least of the linear axes and the path.
@@ -61,6 +63,7 @@ impl Bounds {
     pub const NONE: Self = Self {
         acceleration: [1.0; ROWS],
         swing: [1.0; ROWS],
+        per_swing: [1.0; ROWS],
         velocity: [1.0; AXES],
         corner: 1.0,
         tolerance: 1.0,
@@ -104,6 +107,7 @@ impl Bounds {
             bounds.acceleration[PATH_ROW + 1 + axis] = sane(limits.acceleration[axis] * ACCELERATION_RESERVE);
             bounds.swing[PATH_ROW + 1 + axis] = sane(limits.jerk[axis] * JERK_RESERVE * filter);
         }
+        bounds.per_swing = bounds.swing.map(|swing| 1.0 / swing);
         bounds
     }
 }

@@ -2,17 +2,17 @@
 //! a = s̈ every limit is a straight line.
 
 use super::limits::ROWS;
-use super::node::{Lanes, Node, Side};
+use super::node::{Lanes, Node, least, most};
 
 /// Iterations of Newton's method; each changes at least one of the two limits that meet.
 const ITERATIONS: u32 = 12;
 
-/// Limits of a at one x: a ≤ upper − slope·x and a ≥ lower − slope·x.
+/// Limits of a at one x, as lines: a ≤ high − slope·x and a ≥ low − slope·x for every row of both ends, and by the
+/// speed at the end of the interval a ≤ (next − x)/2Δ and a ≥ −x/2Δ.
 struct Lines {
-    upper: [Lanes; 2],
-    lower: [Lanes; 2],
+    high: [Lanes; 2],
+    low: [Lanes; 2],
     slope: [Lanes; 2],
-    /// Of the speed at the end of the interval: a ≤ (next − x)/2Δ, a ≥ −x/2Δ.
     next: f32,
     per_length: f32,
 }
@@ -20,52 +20,53 @@ struct Lines {
 impl Lines {
     fn new(node: &Node, next: f64) -> Self {
         let mut lines = Self {
-            upper: [[0.0; ROWS]; 2],
-            lower: [[0.0; ROWS]; 2],
+            high: [[0.0; ROWS]; 2],
+            low: [[0.0; ROWS]; 2],
             slope: [node.sides[0].slope, node.sides[1].slope],
             next: next as f32,
             per_length: (0.5 / node.delta) as f32,
         };
-        for (side, Side { alpha, high, low, .. }) in node.sides.iter().enumerate() {
+        for (i, side) in node.sides.iter().enumerate() {
             for row in 0..ROWS {
-                let (one, other) = (high[row] / alpha[row], low[row] / alpha[row]);
-                lines.upper[side][row] = if one > other { one } else { other };
-                lines.lower[side][row] = if one > other { other } else { one };
+                let per_alpha = 1.0 / side.alpha[row];
+                let (one, other) = (side.high[row] * per_alpha, side.low[row] * per_alpha);
+                lines.high[i][row] = most(one, other);
+                lines.low[i][row] = least(one, other);
             }
         }
         lines
     }
 
-    /// Highest a at `x`, and its line (value at x = 0, slope).
-    fn highest(&self, x: f32) -> (f32, f32, f32) {
-        let mut line = (self.next * self.per_length, self.per_length);
-        let mut a = line.0 - line.1 * x;
+    /// Highest a at `x`.
+    fn highest(&self, x: f32) -> f32 {
+        let mut lanes = [f32::INFINITY; ROWS];
         for side in 0..2 {
             for row in 0..ROWS {
-                let limit = self.upper[side][row] - self.slope[side][row] * x;
-                if limit < a {
-                    a = limit;
-                    line = (self.upper[side][row], self.slope[side][row]);
-                }
+                lanes[row] = least(lanes[row], self.high[side][row] - self.slope[side][row] * x);
             }
         }
-        (a, line.0, line.1)
+        lanes.into_iter().fold((self.next - x) * self.per_length, least)
     }
 
-    /// Lowest a at `x`, and its line.
-    fn lowest(&self, x: f32) -> (f32, f32, f32) {
-        let mut line = (0.0, self.per_length);
-        let mut a = -line.1 * x;
+    /// Lowest a at `x`.
+    fn lowest(&self, x: f32) -> f32 {
+        let mut lanes = [f32::NEG_INFINITY; ROWS];
         for side in 0..2 {
             for row in 0..ROWS {
-                let limit = self.lower[side][row] - self.slope[side][row] * x;
-                if limit > a {
-                    a = limit;
-                    line = (self.lower[side][row], self.slope[side][row]);
-                }
+                lanes[row] = most(lanes[row], self.low[side][row] - self.slope[side][row] * x);
             }
         }
-        (a, line.0, line.1)
+        lanes.into_iter().fold(-x * self.per_length, most)
+    }
+
+    /// The line, as (value at x = 0, slope), that has the value `a` at `x` among `lines`, or else the one of the speed.
+    fn through(&self, lines: &[Lanes; 2], speed: f32, x: f32, a: f32) -> (f32, f32) {
+        for (line, slope) in lines.iter().flatten().zip(self.slope.iter().flatten()) {
+            if *line - *slope * x == a {
+                return (*line, *slope);
+            }
+        }
+        (speed * self.per_length, self.per_length)
     }
 }
 
@@ -77,11 +78,12 @@ pub(super) fn reach(node: &Node, next: f64) -> f64 {
     // The room between the limits is concave in x, and there is some at 0: from above, the crossings of the
     // limits in force come down to where there is none.
     for _ in 0..ITERATIONS {
-        let (high, upper, upper_slope) = lines.highest(x);
-        let (low, lower, lower_slope) = lines.lowest(x);
+        let (high, low) = (lines.highest(x), lines.lowest(x));
         if high >= low {
             return f64::from(x);
         }
+        let (upper, upper_slope) = lines.through(&lines.high, lines.next, x, high);
+        let (lower, lower_slope) = lines.through(&lines.low, 0.0, x, low);
         let crossing = (upper - lower) / (upper_slope - lower_slope);
         if !(crossing > 0.0 && crossing < x) {
             // Rounding: there is nothing between this x and the last one.
@@ -95,7 +97,7 @@ pub(super) fn reach(node: &Node, next: f64) -> f64 {
 /// x at the end of the interval of `node` if it begins at `x` and ends no faster than `next`, as fast as the
 /// limits allow.
 pub(super) fn advance(node: &Node, x: f64, next: f64) -> f64 {
-    let (a, ..) = Lines::new(node, next).highest(x as f32);
+    let a = Lines::new(node, next).highest(x as f32);
     let end = x + 2.0 * node.delta * f64::from(a);
     libm::fmax(libm::fmin(end, next), 0.0)
 }
