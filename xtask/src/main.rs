@@ -49,14 +49,9 @@ enum Task {
     },
     /// Check and test everything
     Test,
-    /// Count instructions, on the PC by valgrind and on the emulated Cortex-M7
-    Bench {
-        /// What to count
-        benchmark: bench::Benchmark,
-        /// Put the table into docs/benchmarks.md too
-        #[arg(long)]
-        record: bool,
-    },
+    /// Count instructions, on the PC by valgrind and on the emulated Cortex-M7; run programs through the planner
+    #[command(subcommand)]
+    Bench(bench::Benchmark),
     /// Flash and RAM of all four firmwares against their budgets
     Size,
     /// Write a firmware to a board by probe-rs
@@ -88,9 +83,7 @@ fn main() -> ExitCode {
             emulate::run(rate, machine)
         }),
         Task::Test => set_up(&setup::ALL).and_then(|()| test::run()),
-        Task::Bench { benchmark, record } => {
-            set_up(&setup::COUNTING).and_then(|()| bench::run(benchmark, record))
-        }
+        Task::Bench(benchmark) => set_up(benchmark.wants()).and_then(|()| benchmark.run()),
         Task::Size => set_up(&[setup::Tool::ArmTarget]).and_then(|()| size::run()),
         Task::Flash { firmware, board } => {
             set_up(&[setup::Tool::ArmTarget]).and_then(|()| flash::run(firmware, board))

@@ -88,30 +88,32 @@ impl<'a> Contour<'a> {
     }
 
     /// Distance \[mm\] of `point` from the path, near the path length `s` \[mm\] when `speed` mm go by in a tick.
-    /// Infinite where there is no path near.
+    /// Where there is no path near, of all of it.
     pub fn error(&self, point: &Vector3<f64>, s: f64, speed: f64) -> f64 {
         let around = AROUND + TICKS * speed;
         let first = self.chords.partition_point(|chord| chord.s[1] < s - around);
-        let near = || {
-            self.chords[first..]
-                .iter()
-                .take_while(|chord| chord.s[0] <= s + around)
-        };
-        let farthest = |chord: &Chord| chord.distance(point).0 + chord.bulge;
-        let bound = near().map(farthest).fold(f64::INFINITY, f64::min);
-        near()
-            .map(|chord| {
-                let (distance, part) = chord.distance(point);
-                match chord.of {
-                    None => distance,
-                    Some(_) if distance - chord.bulge > bound => f64::INFINITY,
-                    Some((curve, range @ [low, high])) => {
-                        curve.distance(point, range, low + (high - low) * part)
-                    }
-                }
-            })
-            .fold(f64::INFINITY, f64::min)
+        let end = self.chords.partition_point(|chord| chord.s[0] <= s + around);
+        if first < end {
+            nearest(&self.chords[first..end], point)
+        } else {
+            nearest(&self.chords, point)
+        }
     }
+}
+
+/// Distance of `point` from the nearest point of what `chords` are of.
+fn nearest(chords: &[Chord], point: &Vector3<f64>) -> f64 {
+    let farthest = |chord: &Chord| chord.distance(point).0 + chord.bulge;
+    let bound = chords.iter().map(farthest).fold(f64::INFINITY, f64::min);
+    let distance = |chord: &Chord| {
+        let (distance, part) = chord.distance(point);
+        match chord.of {
+            None => distance,
+            Some(_) if distance - chord.bulge > bound => distance + chord.bulge,
+            Some((curve, range @ [low, high])) => curve.distance(point, range, low + (high - low) * part),
+        }
+    };
+    chords.iter().map(distance).fold(f64::INFINITY, f64::min)
 }
 
 fn cut<'a, C: Curve>(curve: &'a C, s: f64, parts: u32) -> impl Iterator<Item = Chord<'a>> {
@@ -166,13 +168,12 @@ pub fn cut_off(moves: &[Move], points: &[Vector3<f64>], s: &[f64]) -> f64 {
     for one in moves {
         end += one.length;
         let target = one.way.end();
-        let nearest = (1..points.len())
-            .filter(|i| {
-                let around = AROUND + TICKS * (s[*i] - s[*i - 1]).abs();
-                (s[*i] - end).abs() <= around
-            })
-            .map(|i| distance(&[points[i - 1], points[i]], &target).0)
-            .fold(f64::INFINITY, f64::min);
+        let mut nearest = f64::MAX;
+        for i in 1..points.len() {
+            if (s[i] - end).abs() <= AROUND + TICKS * (s[i] - s[i - 1]).abs() {
+                nearest = nearest.min(distance(&[points[i - 1], points[i]], &target).0);
+            }
+        }
         largest = largest.max(nearest);
     }
     largest

@@ -124,14 +124,11 @@ fn feed(moves: &[Move], points: &[Vector3<f64>], s: &[f64]) -> f64 {
         let speed = (points[i] - points[i - 1]).norm() / TICK;
         let from = s[i.saturating_sub(FEED_TICKS)];
         let to = s[(i + FEED_TICKS).min(last)];
-        let begin = ends.partition_point(|end| *end < from);
-        let highest = moves[begin.min(moves.len() - 1)..]
-            .iter()
-            .zip(&ends[begin.min(moves.len() - 1)..])
-            .take_while(|(one, end)| **end - one.length <= to)
-            .map(|(one, _)| one.feed)
-            .fold(0.0, f64::max);
-        if speed > 0.0 { speed / highest } else { 0.0 }
+        let begin = ends.partition_point(|end| *end < from).min(moves.len() - 1);
+        let highest = (begin + 1..moves.len())
+            .take_while(|next| ends[next - 1] <= to)
+            .fold(moves[begin].feed, |most, next| most.max(moves[next].feed));
+        speed / highest
     };
     (1..s.len()).map(ratio).fold(0.0, f64::max)
 }

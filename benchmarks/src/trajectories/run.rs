@@ -45,6 +45,14 @@ pub enum Stuck {
         /// Why.
         error: ReferenceError,
     },
+    /// An output is not finite.
+    #[error("tick {ticks}, line {line}: an output is not a finite number")]
+    NotFinite {
+        /// Number of the tick.
+        ticks: usize,
+        /// Line of the program.
+        line: u32,
+    },
     /// It says that nothing moves any more, and is not at the end.
     #[error("at rest in line {line}, at s = {s} mm of {length} mm, after {ticks} ticks")]
     Rest {
@@ -98,10 +106,11 @@ pub fn run(
             .map_err(|error| Stuck::Tick { ticks, line, error })?;
         let s = output.along.s;
         line = output.line;
-        samples.push(Sample {
-            axes: output.axes.position,
-            s,
-        });
+        let axes = output.axes.position;
+        if !(s.is_finite() && axes.iter().all(|axis| axis.is_finite())) {
+            return Err(Stuck::NotFinite { ticks, line });
+        }
+        samples.push(Sample { axes, s });
         if coming.len() == 0 && output.at_rest {
             if (s - length).abs() > 1e-6 * length.max(1.0) {
                 return Err(Stuck::Rest {

@@ -21,28 +21,39 @@ const FILE: &str = "callgrind.out";
 
 /// Runs the benchmark called `name` in `folder`.
 pub fn run(program: &Path, name: &str, folder: &Path) -> Result<Counts> {
-    let arguments = [
+    let (said, calls) = count(program, &[name], folder)?;
+    let mut counts = Counts::read(&said)?;
+    assign(&mut counts.rows, &calls)?;
+    Ok(counts)
+}
+
+/// Runs `program` in `folder`: what it said, and the instructions of each call that it measured.
+pub fn count(program: &Path, arguments: &[&str], folder: &Path) -> Result<(String, Vec<u32>)> {
+    let program = program.display().to_string();
+    let flags = [
         "--tool=callgrind".to_owned(),
         format!("--callgrind-out-file={FILE}"),
         format!("--toggle-collect={MEASURED}"),
         format!("--dump-before={MEASURED}"),
         "--combine-dumps=yes".to_owned(),
         "--dump-line=no".to_owned(),
-        program.display().to_string(),
-        name.to_owned(),
     ];
+    let words = [program.as_str()].into_iter().chain(arguments.iter().copied());
+    let arguments: Vec<String> = flags.into_iter().chain(words.map(str::to_owned)).collect();
     let path = folder.join(FILE);
     let cannot = || format!("cannot read {}", path.display());
     // Callgrind would go on with the file of a run that did not come to its end.
     if path.exists() {
         fs::remove_file(&path).with_context(cannot)?;
     }
-    let mut counts = Counts::read(&bounded::run(VALGRIND, &arguments, folder, "pc.console", LIMIT)?)?;
+    let said = bounded::run(VALGRIND, &arguments, folder, "pc.console", LIMIT)?;
     let parts = totals(BufReader::new(File::open(&path).with_context(cannot)?))?;
     // It is large.
     fs::remove_file(&path).with_context(cannot)?;
-    assign(&mut counts.rows, &parts)?;
-    Ok(counts)
+    let Some((0, calls)) = parts.split_first() else {
+        bail!("callgrind has counted before the first call");
+    };
+    Ok((said, calls.to_vec()))
 }
 
 /// Instructions of each part of callgrind's file.
@@ -57,12 +68,9 @@ fn totals(file: impl BufRead) -> Result<Vec<u32>> {
     Ok(totals)
 }
 
-/// Puts the parts, one a call, where they belong: subject by subject, the functions of a subject were called in
+/// Puts the calls where they belong: subject by subject, the functions of a subject were called in
 /// turns.
-fn assign(rows: &mut [Row], parts: &[u32]) -> Result<()> {
-    let Some((0, calls)) = parts.split_first() else {
-        bail!("callgrind has counted before the first call");
-    };
+fn assign(rows: &mut [Row], calls: &[u32]) -> Result<()> {
     let expected: usize = rows.iter().map(|row| row.tally.calls as usize).sum();
     ensure!(
         calls.len() == expected,
@@ -122,7 +130,7 @@ mod tests {
     #[test]
     fn calls_in_turns_go_to_their_functions() {
         let mut rows = rows();
-        assign(&mut rows, &[0, 8, 100, 8, 120, 9, 200, 9, 180]).expect("complete");
+        assign(&mut rows, &[8, 100, 8, 120, 9, 200, 9, 180]).expect("complete");
         let seen: Vec<_> = rows
             .iter()
             .map(|row| (row.tally.total, row.tally.worst))
@@ -132,7 +140,7 @@ mod tests {
 
     #[test]
     fn missing_calls_are_an_error() {
-        assert!(assign(&mut rows(), &[0, 8, 100, 8, 120, 9, 200, 9]).is_err());
+        assert!(assign(&mut rows(), &[8, 100, 8, 120, 9, 200, 9]).is_err());
         assert!(assign(&mut rows(), &[8, 100, 8, 120, 9, 200, 9, 180, 9]).is_err());
         assert!(assign(&mut rows(), &[]).is_err());
     }

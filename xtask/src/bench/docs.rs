@@ -23,9 +23,8 @@ fn replaced(text: &str, name: &str, table: &str) -> Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::Benchmark;
+    use crate::bench::{KINEMATICS, TRAJECTORIES};
     use crate::cargo::root;
-    use clap::ValueEnum;
 
     #[test]
     fn only_what_stands_between_the_marks_is_replaced() {
@@ -38,8 +37,8 @@ mod tests {
     #[test]
     fn every_benchmark_has_its_place() {
         let text = fs::read_to_string(root().join("docs/benchmarks.md")).expect("shipped");
-        for benchmark in Benchmark::value_variants() {
-            assert!(replaced(&text, &benchmark.to_string(), "").is_ok(), "{benchmark}");
+        for benchmark in [KINEMATICS, TRAJECTORIES] {
+            assert!(replaced(&text, benchmark, "").is_ok(), "{benchmark}");
         }
     }
 }

@@ -1,19 +1,22 @@
-//! Instructions of the benchmarks' functions, on the PC and on the emulated board, in one table.
+//! Benchmarks: instructions of functions, on the PC and on the emulated board, and programs through the planner.
 
 mod board;
 mod bounded;
 mod callgrind;
 mod docs;
+mod markdown;
+mod report;
 mod table;
+mod trajectories;
 
 use crate::cargo::{cargo, root, run_command, target_directory};
 use crate::firmware::{PROFILE, TARGET};
+use crate::setup::{self, Tool};
 use anyhow::{Context, Result, bail, ensure};
 use benchmarks::MACHINES_FILE;
 use benchmarks::machine_files::pack;
 use benchmarks::record::{NOTHING, Record, Tally};
-use clap::ValueEnum;
-use std::fmt;
+use clap::Subcommand;
 use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -23,19 +26,55 @@ pub const PACKAGE: &str = "seamwright-benchmarks";
 /// Its program.
 const PROGRAM: &str = "benchmarks";
 
-/// What can be counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+/// What can be run.
+#[derive(Clone, Debug, PartialEq, Eq, Subcommand)]
 pub enum Benchmark {
-    /// Forward, inverse, rates and accelerations of every machine.
-    Kinematics,
+    /// Count instructions of forward, inverse, rates and accelerations of every machine
+    Kinematics {
+        /// Put the table into docs/benchmarks.md too
+        #[arg(long)]
+        record: bool,
+    },
+    /// Run every program (.seg) of a folder through the trajectory planner; fails if a limit is not kept
+    Trajectories {
+        /// Folder of the programs, and of baseline.csv with what another planner took, if there is one
+        #[arg(long, value_name = "DIR")]
+        programs: PathBuf,
+        /// Count instructions of every tick, by valgrind
+        #[arg(long)]
+        instructions: bool,
+        /// Put the table into docs/benchmarks.md too
+        #[arg(long)]
+        record: bool,
+    },
 }
 
-impl fmt::Display for Benchmark {
-    /// Also its name to the programs, and in the documentation.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Kinematics => "kinematics",
-        })
+/// Names of the benchmarks, in the documentation.
+const KINEMATICS: &str = "kinematics";
+const TRAJECTORIES: &str = "trajectories";
+
+impl Benchmark {
+    /// What must be installed for it.
+    pub fn wants(&self) -> &'static [Tool] {
+        match self {
+            Self::Kinematics { .. } => &setup::COUNTING,
+            Self::Trajectories {
+                instructions: true, ..
+            } => &[Tool::Valgrind],
+            Self::Trajectories { .. } => &[],
+        }
+    }
+
+    /// Runs it.
+    pub fn run(self) -> Result<ExitCode> {
+        match self {
+            Self::Kinematics { record } => kinematics(record),
+            Self::Trajectories {
+                programs,
+                instructions,
+                record,
+            } => trajectories::run(&programs, instructions, record),
+        }
     }
 }
 
@@ -55,32 +94,45 @@ struct Counts {
 }
 
 /// Builds, runs and counts the programs of both, prints the table, and puts it into the documentation if `record`.
-pub fn run(benchmark: Benchmark, record: bool) -> Result<ExitCode> {
-    let folder = target_directory()?.join("benchmarks");
-    let cannot = || format!("cannot write to {}", folder.display());
-    fs::create_dir_all(&folder).with_context(cannot)?;
-    let machines = folder.join(MACHINES_FILE.to_str()?);
-    fs::write(machines, pack(&root().join("machines"))?).with_context(cannot)?;
-
-    let name = benchmark.to_string();
+fn kinematics(record: bool) -> Result<ExitCode> {
+    let folder = folder()?;
     let pc = build(None)?;
     let image = build(Some(TARGET))?;
     eprintln!("counting on the PC");
-    let pc = callgrind::run(&pc, &name, &folder)?;
+    let pc = callgrind::run(&pc, KINEMATICS, &folder)?;
     eprintln!("counting on the emulated board");
-    let board = board::run(&image, &name, &folder)?;
+    let board = board::run(&image, KINEMATICS, &folder)?;
     ensure!(
         pc.checksum == board.checksum,
         "PC and board differ in their results: {:016x}, {:016x}",
         pc.checksum,
         board.checksum
     );
-    let table = table::of(pc.without_counting()?, board.without_counting()?)?;
+    publish(
+        KINEMATICS,
+        &table::of(pc.without_counting()?, board.without_counting()?)?,
+        record,
+    )?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The folder that the programs run in, with the file of machines in it.
+fn folder() -> Result<PathBuf> {
+    let folder = target_directory()?.join("benchmarks");
+    let cannot = || format!("cannot write to {}", folder.display());
+    fs::create_dir_all(&folder).with_context(cannot)?;
+    let machines = folder.join(MACHINES_FILE.to_str()?);
+    fs::write(machines, pack(&root().join("machines"))?).with_context(cannot)?;
+    Ok(folder)
+}
+
+/// Prints the table of the benchmark called `name`, and puts it into the documentation if `record`.
+fn publish(name: &str, table: &str, record: bool) -> Result<()> {
     print!("{table}");
     if record {
-        docs::replace(&root().join("docs/benchmarks.md"), &name, &table)?;
+        docs::replace(&root().join("docs/benchmarks.md"), name, table)?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(())
 }
 
 /// Builds the program as firmware is built, for the boards' processor or for the PC.

@@ -1,6 +1,6 @@
 //! The table of what was counted.
 
-use super::Row;
+use super::{Row, markdown};
 use anyhow::{Result, ensure};
 
 const HEAD: [&str; 6] = [
@@ -36,37 +36,7 @@ pub fn of(pc: Vec<Row>, board: Vec<Row>) -> Result<String> {
             ]
         })
         .collect();
-    let width: [usize; 6] = std::array::from_fn(|column| {
-        let cells = lines.iter().map(|line| line[column].len());
-        cells.chain([HEAD[column].len()]).max().unwrap_or_default()
-    });
-    let mut table = line(&HEAD.map(str::to_owned), &width);
-    table += "|";
-    for column in 0..HEAD.len() {
-        let end = if is_text(column) { '-' } else { ':' };
-        table += &format!("{}{end}|", "-".repeat(width[column] + 1));
-    }
-    table += "\n";
-    for cells in &lines {
-        table += &line(cells, &width);
-    }
-    Ok(table)
-}
-
-fn is_text(column: usize) -> bool {
-    column < 2
-}
-
-fn line(cells: &[String; 6], width: &[usize; 6]) -> String {
-    let mut line = String::from("|");
-    for (column, (cell, width)) in cells.iter().zip(width).enumerate() {
-        line += &if is_text(column) {
-            format!(" {cell:<width$} |")
-        } else {
-            format!(" {cell:>width$} |")
-        };
-    }
-    line + "\n"
+    Ok(markdown::table(HEAD, 2, &lines))
 }
 
 #[cfg(test)]

@@ -1,0 +1,139 @@
+//! Programs through the trajectory planner, one after the other, beside what another planner took for them.
+
+use super::report::{Report, Row};
+use super::{TRAJECTORIES, bounded, build, callgrind, folder, publish};
+use anyhow::{Context, Result, ensure};
+use benchmarks::record::Tally;
+use benchmarks::trajectories::{Outcome, baseline};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// Of programs.
+const EXTENSION: &str = "seg";
+/// File of the baseline, in the folder of the programs.
+const BASELINE: &str = "baseline.csv";
+/// To the benchmark program: run a program.
+const TRAJECTORY: &str = "trajectory";
+/// A program takes seconds.
+const LIMIT: Duration = Duration::from_secs(300);
+
+/// Runs all programs of a folder; succeeds if every limit was kept.
+pub fn run(programs: &Path, instructions: bool, record: bool) -> Result<ExitCode> {
+    let files = files(programs)?;
+    let baselines = baselines(programs)?;
+    let folder = folder()?;
+    let benchmark = build(None)?;
+    let mut rows = Vec::new();
+    for file in files {
+        let program = file
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        eprintln!("{program}");
+        let (outcome, ticks) =
+            one(&benchmark, &file, &folder, instructions).with_context(|| file.display().to_string())?;
+        rows.push(Row {
+            baseline: baselines.get(&program).copied(),
+            program,
+            outcome,
+            ticks,
+        });
+    }
+    let report = Report { rows, instructions };
+    publish(TRAJECTORIES, &report.text(), record)?;
+    Ok(if report.kept() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+/// The programs, in the order of their names.
+fn files(folder: &Path) -> Result<Vec<PathBuf>> {
+    let cannot = || format!("cannot read the programs of {}", folder.display());
+    let folder = folder.canonicalize().with_context(cannot)?;
+    let entries = fs::read_dir(&folder).with_context(cannot)?;
+    let mut files = entries
+        .map(|entry| Ok(entry?.path()))
+        .collect::<std::io::Result<Vec<PathBuf>>>()
+        .with_context(cannot)?;
+    files.retain(|file| file.extension().is_some_and(|extension| extension == EXTENSION));
+    ensure!(
+        !files.is_empty(),
+        "no program (*.{EXTENSION}) in {}",
+        folder.display()
+    );
+    files.sort();
+    Ok(files)
+}
+
+fn baselines(folder: &Path) -> Result<BTreeMap<String, baseline::Baseline>> {
+    let file = folder.join(BASELINE);
+    if !file.exists() {
+        return Ok(BTreeMap::new());
+    }
+    let cannot = || format!("cannot read {}", file.display());
+    let text = fs::read_to_string(&file).with_context(cannot)?;
+    baseline::read(&text).with_context(cannot)
+}
+
+/// Runs one program, and counts its ticks if asked to.
+fn one(benchmark: &Path, file: &Path, folder: &Path, instructions: bool) -> Result<(Outcome, Option<Tally>)> {
+    let file = file.to_str().context("the name of the file is not text")?;
+    let arguments = [TRAJECTORY, file];
+    if !instructions {
+        let program = benchmark.display().to_string();
+        let said = bounded::run(
+            &program,
+            &arguments.map(str::to_owned),
+            folder,
+            "pc.console",
+            LIMIT,
+        )?;
+        return Ok((Outcome::parse(&said)?, None));
+    }
+    let (said, calls) = callgrind::count(benchmark, &arguments, folder)?;
+    let outcome = Outcome::parse(&said)?;
+    let tally = outcome.figures.is_ok().then(|| tally(&calls, outcome.ticks));
+    Ok((outcome, tally.transpose()?))
+}
+
+/// What the ticks cost: all calls but the first, which does nothing and costs what counting costs.
+fn tally(calls: &[u32], ticks: usize) -> Result<Tally> {
+    let (nothing, calls) = calls.split_first().context("callgrind saw no call")?;
+    ensure!(
+        calls.len() == ticks,
+        "callgrind saw {} ticks of the {ticks} made",
+        calls.len()
+    );
+    let mut tally = Tally::default();
+    for call in calls {
+        tally.add(call.saturating_sub(*nothing));
+    }
+    Ok(tally)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_call_tells_what_counting_costs() {
+        let tally = tally(&[8, 108, 58], 2).expect("all");
+        assert_eq!((tally.calls, tally.total, tally.worst), (2, 150, 100));
+        assert!(super::tally(&[8, 108], 2).is_err());
+        assert!(super::tally(&[], 0).is_err());
+    }
+
+    #[test]
+    fn a_folder_without_programs_is_an_error() {
+        let error = files(Path::new(env!("CARGO_MANIFEST_DIR")))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("no program"), "{error}");
+    }
+}
