@@ -15,6 +15,9 @@ const NODES: usize = 256;
 /// Elements that come over the link in a tick at most.
 const CREDITS: usize = 8;
 
+/// Ticks at rest before the end that a plan may take to come.
+const REST: usize = 500;
+
 /// Output of one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
@@ -92,7 +95,7 @@ pub fn run(
     let length: f64 = elements.iter().map(|element| element.length).sum();
     let mut coming = elements.iter();
     let mut samples = Vec::new();
-    let mut line = 0;
+    let (mut line, mut resting) = (0, 0);
     for ticks in 0..patience(elements) {
         for element in coming.by_ref().take(CREDITS.min(planner.room())) {
             planner
@@ -111,16 +114,17 @@ pub fn run(
             return Err(Stuck::NotFinite { ticks, line });
         }
         samples.push(Sample { axes, s });
-        if coming.len() == 0 && output.at_rest {
-            if (s - length).abs() > 1e-6 * length.max(1.0) {
-                return Err(Stuck::Rest {
-                    ticks,
-                    line,
-                    s,
-                    length,
-                });
-            }
+        resting = if output.at_rest { resting + 1 } else { 0 };
+        if coming.len() == 0 && output.at_rest && (s - length).abs() <= 1e-6 * length.max(1.0) {
             return Ok(samples);
+        }
+        if resting > REST {
+            return Err(Stuck::Rest {
+                ticks,
+                line,
+                s,
+                length,
+            });
         }
     }
     Err(Stuck::Slow {
