@@ -1,6 +1,6 @@
 //! Elements: what a path is made of between two junctions.
 
-use super::{CHANNELS, PathPoint};
+use super::{ArcLengthCurve, CHANNELS, PathPoint};
 use crate::geometry::{Arc, Line, Moving};
 
 /// Channels that a [`Shape`] gives; the rest are [`Cubic`]s.
@@ -56,6 +56,8 @@ pub enum Shape {
     Arc(Arc),
     /// A cubic over path length: a span of a spline.
     Span([Cubic; SHAPED]),
+    /// Free-form: a piece of a NURBS.
+    Curve(ArcLengthCurve),
 }
 
 /// c₀ + c₁s + c₂s² + c₃s³ over path length s from the start of an element.
@@ -105,6 +107,7 @@ impl Element {
             Shape::Point(position) => point.value[..SHAPED].copy_from_slice(position),
             Shape::Line(line) => point.set_moving(&line.at(s)),
             Shape::Arc(arc) => point.set_moving(&arc.at(s)),
+            Shape::Curve(curve) => point.set_moving(&curve.at(s)),
             Shape::Span(cubics) => point.set_cubics(0, cubics, s),
         }
         point.set_cubics(SHAPED, &self.rest, s);

@@ -1,5 +1,6 @@
 //! The path (where) and the speed along it (when), kept apart.
 
+mod curve;
 mod element;
 mod matched_turn;
 mod path;
@@ -14,6 +15,7 @@ mod stop;
 mod trapezoid;
 mod window;
 
+pub use curve::{ArcLengthCurve, ArcLengthPiece, ArcLengthPieces, Cusp, FLUCTUATION, TooUneven};
 pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
 pub use matched_turn::MatchedTurn;
 pub use path::{Path, PathError, PathPoint, PathSpace};

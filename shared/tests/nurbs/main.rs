@@ -1,6 +1,7 @@
 //! Properties of NURBS curves, and of what is done along them (SPEC 3).
 
 mod along;
+mod arc_length;
 mod curves;
 mod shape;
 mod validity;

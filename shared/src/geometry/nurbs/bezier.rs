@@ -6,7 +6,7 @@ use super::de_boor::{blossom, evaluate, homogeneous};
 use super::spline::Nurbs;
 use super::validation::{NurbsError, check_degree, check_points};
 use super::{MAX_DEGREE, ORDER};
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector4};
 
 /// A rational Bézier curve over t from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +46,27 @@ impl RationalBezier {
     /// Degree.
     pub fn degree(&self) -> usize {
         self.degree
+    }
+
+    /// The curve up to `t` and the curve from `t` on, each over 0 to 1, by de Casteljau. `t` lies inside 0 to 1.
+    ///
+    /// The two meet, and end where the curve ends, to the last digit.
+    pub fn split(&self, t: f64) -> [Self; 2] {
+        let [mut before, mut after] = [*self; 2];
+        let mut net = homogeneous(self.points(), self.weights());
+        for level in 1..=self.degree {
+            for j in 0..=self.degree - level {
+                net[j] = net[j] * (1.0 - t) + net[j + 1] * t;
+            }
+            before.set(level, &net[0]);
+            after.set(self.degree - level, &net[self.degree - level]);
+        }
+        [before, after]
+    }
+
+    fn set(&mut self, i: usize, point: &Vector4<f64>) {
+        self.points[i] = point.xyz() / point.w;
+        self.weights[i] = point.w;
     }
 
     /// Control points \[mm\], one more than the degree.
@@ -123,9 +144,7 @@ impl Iterator for Pieces<'_> {
         };
         for j in 0..=degree {
             let arguments = (0..degree).map(|level| if level < degree - j { from } else { to });
-            let point = blossom(net, knots, arguments);
-            curve.points[j] = point.xyz() / point.w;
-            curve.weights[j] = point.w;
+            curve.set(j, &blossom(net, knots, arguments));
         }
         self.from = to;
         Some(Piece { curve, from, to })

@@ -62,9 +62,10 @@ pub(super) fn evaluate(mut net: Net, knots: &[f64], u: f64) -> Moving {
 }
 
 /// A homogeneous point with its derivatives, divided by its weight.
-fn project(a: &Vector4<f64>, a1: &Vector4<f64>, a2: &Vector4<f64>) -> Moving {
-    let value = a.xyz() / a.w;
-    let first = (a1.xyz() - value * a1.w) / a.w;
-    let second = (a2.xyz() - first * (2.0 * a1.w) - value * a2.w) / a.w;
+pub(super) fn project(a: &Vector4<f64>, a1: &Vector4<f64>, a2: &Vector4<f64>) -> Moving {
+    let per_weight = 1.0 / a.w;
+    let value = a.xyz() * per_weight;
+    let first = (a1.xyz() - value * a1.w) * per_weight;
+    let second = (a2.xyz() - first * (2.0 * a1.w) - value * a2.w) * per_weight;
     Moving { value, first, second }
 }

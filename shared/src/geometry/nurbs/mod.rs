@@ -8,6 +8,7 @@ mod curve;
 mod de_boor;
 mod discretise;
 mod length;
+mod power_basis;
 mod spline;
 mod stepping;
 mod validation;
@@ -16,6 +17,7 @@ pub use bezier::{Piece, Pieces, RationalBezier};
 pub use curve::{Curve, NoTangent, chord_height_radius, curvature};
 pub use discretise::{Discretisation, DiscretiseError, discretise};
 pub use length::{length, length_between, length_in_parts, parameter_at_length};
+pub use power_basis::PowerBasis;
 pub use spline::Nurbs;
 pub use stepping::{
     EMBEDDED_ITERATIONS, NEWTON_ITERATIONS, StepError, StepRule, Walk, chord_step, newton_step, taylor_1,

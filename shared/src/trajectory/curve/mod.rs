@@ -1,0 +1,71 @@
+//! Free-form curves over their arc length.
+//!
+//! A rational Bézier curve has no formula for its parameter at a length, so that is tabulated as a polynomial,
+//! to the accuracy that the [speed](FLUCTUATION) asks for. Where the curve is too uneven for one polynomial, as
+//! where it almost turns on the spot, [`ArcLengthPieces`] cuts it.
+
+mod arc_length;
+mod pieces;
+
+pub use arc_length::TooUneven;
+pub use pieces::{ArcLengthPiece, ArcLengthPieces, Cusp};
+
+use crate::geometry::Moving;
+use crate::geometry::nurbs::{PowerBasis, RationalBezier};
+use arc_length::{COEFFICIENTS, tabulate};
+
+/// Deviation of the speed along a curve from the one that is asked for, as a part of it, at most. Half of it is
+/// kept in reserve for what lies between the places that are checked.
+pub const FLUCTUATION: f64 = 5e-7;
+
+/// A rational Bézier curve over its arc length, of fixed size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArcLengthCurve {
+    curve: PowerBasis,
+    /// Coefficients of the parameter of `curve` over the length after the middle \[mm\].
+    parameter: [f64; COEFFICIENTS],
+    half_length: f64,
+}
+
+impl ArcLengthCurve {
+    /// The same curve as `curve`, or an error if it must be split first. The work is bounded: at most 155
+    /// evaluations of the curve, mostly about 70.
+    pub fn new(curve: &RationalBezier) -> Result<Self, TooUneven> {
+        let curve = PowerBasis::new(curve);
+        let (parameter, half_length) = tabulate(&curve)?;
+        Ok(Self {
+            curve,
+            parameter,
+            half_length,
+        })
+    }
+
+    /// Length \[mm\]; to 1e-9 of itself.
+    pub fn length(&self) -> f64 {
+        2.0 * self.half_length
+    }
+
+    /// Point \[mm\] and its derivatives over the length `s` \[mm\] gone: unit tangent and curvature vector.
+    ///
+    /// They are those of the curve at one parameter, to rounding; that parameter belongs to the length `s` so
+    /// closely that the speed along the curve is off by a part of [`FLUCTUATION`] at most. A little outside 0 to
+    /// the length the curve goes on by its formula.
+    pub fn at(&self, s: f64) -> Moving {
+        let x = s - self.half_length;
+        let [mut v, mut rate] = [0.0; 2];
+        for &coefficient in self.parameter.iter().rev() {
+            rate = rate * x + v;
+            v = v * x + coefficient;
+        }
+        let over_v = self.curve.at(v);
+        // dv/ds is 1/|C′| but for the fluctuation; a step of Newton leaves less than a digit of that.
+        let per_speed = rate * (1.5 - 0.5 * over_v.first.norm_squared() * (rate * rate));
+        let first = over_v.first * per_speed;
+        let second = over_v.second * (per_speed * per_speed);
+        Moving {
+            value: over_v.value,
+            first,
+            second: second - first * first.dot(&second),
+        }
+    }
+}
