@@ -152,7 +152,7 @@ mod tests {
     fn sampled(ticks: usize, at: impl Fn(f64) -> ([f64; AXES], f64)) -> Vec<Sample> {
         (0..=ticks)
             .map(|i| at(i as f64 * TICK))
-            .map(|(axes, s)| Sample { axes, s })
+            .map(|(axes, s)| Sample { axes, s, pushed: 0 })
             .collect()
     }
 
@@ -227,6 +227,7 @@ mod tests {
         let samples = [0.0, 0.3, 0.2, 1.0].map(|s| Sample {
             axes: [s, 0.0, 0.0, 0.0, 0.0, s * (c + 0.01)],
             s,
+            pushed: 0,
         });
         let figures = Figures::of(&moves, &[0.0; AXES], &samples);
         close(figures.back, 0.1, 1e-12);

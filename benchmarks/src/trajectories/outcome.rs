@@ -23,13 +23,13 @@ pub struct Outcome {
     pub moves: usize,
     /// Elements that the planner was given.
     pub elements: usize,
-    /// Ticks, each of them counted.
-    pub ticks: usize,
+    /// For each tick, how many elements came before it. All of these calls are counted, in this order.
+    pub pushed: Vec<u8>,
     /// The figures, or why the program did not come to its end.
     pub figures: std::result::Result<Figures, String>,
 }
 
-/// Runs the program in `file`. Before the first tick `meter` counts one call of nothing.
+/// Runs the program in `file`. Before all else `meter` counts one call of nothing.
 pub fn of_file(file: &Path, kinematics: &Kinematics, meter: &mut impl Meter) -> Result<Outcome> {
     let name = file.display().to_string();
     let text = fs::read_to_string(file).with_context(|| format!("cannot read {name}"))?;
@@ -37,14 +37,17 @@ pub fn of_file(file: &Path, kinematics: &Kinematics, meter: &mut impl Meter) -> 
     let elements = elements(&moves).with_context(|| name)?;
     let start = [0.0; AXES];
     meter.count(&mut || ());
-    let (ticks, figures) = match run(&elements, &start, &plan_limits(), kinematics, meter) {
-        Ok(samples) => (samples.len(), Ok(Figures::of(&moves, &start, &samples))),
-        Err(stuck) => (0, Err(stuck.to_string())),
+    let (pushed, figures) = match run(&elements, &start, &plan_limits(), kinematics, meter) {
+        Ok(samples) => (
+            samples.iter().map(|sample| sample.pushed).collect(),
+            Ok(Figures::of(&moves, &start, &samples)),
+        ),
+        Err(stuck) => (Vec::new(), Err(stuck.to_string())),
     };
     Ok(Outcome {
         moves: moves.len(),
         elements: elements.len(),
-        ticks,
+        pushed,
         figures,
     })
 }

@@ -25,6 +25,8 @@ pub struct Sample {
     pub axes: [f64; AXES],
     /// Path length published \[mm\].
     pub s: f64,
+    /// Elements that came before this tick.
+    pub pushed: u8,
 }
 
 /// Why a program did not come to its end.
@@ -82,7 +84,7 @@ pub enum Stuck {
     },
 }
 
-/// Runs `elements` to their end, from axes at `start`; every tick is counted by `meter`.
+/// Runs `elements` to their end, from axes at `start`; `meter` counts every element that comes and every tick.
 pub fn run(
     elements: &[Element],
     start: &[f64; AXES],
@@ -97,10 +99,13 @@ pub fn run(
     let mut samples = Vec::new();
     let (mut line, mut resting) = (0, 0);
     for ticks in 0..patience(elements) {
+        let mut pushed = 0;
         for element in coming.by_ref().take(CREDITS.min(planner.room())) {
-            planner
-                .push(element.clone())
-                .map_err(|error| Stuck::Push { ticks, error })?;
+            let mut element = Some(element.clone());
+            let mut result = Ok(());
+            meter.count(&mut || result = element.take().map_or(Ok(()), |element| planner.push(element)));
+            result.map_err(|error| Stuck::Push { ticks, error })?;
+            pushed += 1;
         }
         let mut output = None;
         meter.count(&mut || output = Some(black_box(planner.tick(kinematics))));
@@ -113,7 +118,7 @@ pub fn run(
         if !(s.is_finite() && axes.iter().all(|axis| axis.is_finite())) {
             return Err(Stuck::NotFinite { ticks, line });
         }
-        samples.push(Sample { axes, s });
+        samples.push(Sample { axes, s, pushed });
         resting = if output.at_rest { resting + 1 } else { 0 };
         if coming.len() == 0 && output.at_rest && (s - length).abs() <= 1e-6 * length.max(1.0) {
             return Ok(samples);

@@ -1,7 +1,6 @@
 //! What the programs took and kept, as a table and in total.
 
 use super::markdown;
-use benchmarks::record::Tally;
 use benchmarks::trajectories::baseline::Baseline;
 use benchmarks::trajectories::{Figures, Outcome};
 
@@ -10,9 +9,16 @@ use benchmarks::trajectories::{Figures, Outcome};
 pub struct Row {
     pub program: String,
     pub outcome: Outcome,
-    /// Instructions of its ticks, if they were counted.
-    pub ticks: Option<Tally>,
+    pub calls: Option<Calls>,
     pub baseline: Option<Baseline>,
+}
+
+/// Instructions of the calls of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Calls {
+    pub ticks: Vec<u32>,
+    /// Of adding an element.
+    pub pushes: Vec<u32>,
 }
 
 /// All programs that were run.
@@ -130,6 +136,10 @@ impl Row {
                     format!("{:.3}", figures.time / to(base))
                 })
         };
+        let ticks = |of: fn(&[u32]) -> String| {
+            let calls = self.calls.as_ref();
+            calls.map_or_else(String::new, |calls| of(&calls.ticks))
+        };
         let mark = if self.baseline.is_some_and(|base| broken(&base)) {
             " *"
         } else {
@@ -146,12 +156,15 @@ impl Row {
             figure(|figures| figures.path_jerk, 3),
             figure(|figures| figures.contour * 1000.0, 1),
             figure(|figures| figures.cut_off * 1000.0, 1),
-            self.ticks
-                .map_or_else(String::new, |tally| format!("{:.0}", tally.mean())),
-            self.ticks
-                .map_or_else(String::new, |tally| tally.worst.to_string()),
+            ticks(mean),
+            ticks(|ticks| ticks.iter().max().map_or_else(String::new, u32::to_string)),
         ]
     }
+}
+
+fn mean(calls: &[u32]) -> String {
+    let total: u64 = calls.iter().map(|call| u64::from(*call)).sum();
+    format!("{:.0}", total as f64 / calls.len() as f64)
 }
 
 fn broken(base: &Baseline) -> bool {
@@ -185,7 +198,8 @@ impl Report {
 
     fn totals(&self) -> Vec<String> {
         let mut lines = vec![self.time()];
-        lines.extend(self.instructions.then(|| self.ticks()).flatten());
+        lines.extend(self.counted("a tick", |calls| &calls.ticks));
+        lines.extend(self.counted("to add an element", |calls| &calls.pushes));
         lines.push(listed(
             "not at their end",
             self.rows.iter().filter_map(|row| {
@@ -235,14 +249,22 @@ impl Report {
         line
     }
 
-    fn ticks(&self) -> Option<String> {
-        let tallies = || self.rows.iter().filter_map(|row| row.ticks.as_ref());
-        let ticks: u64 = tallies().map(|tally| u64::from(tally.calls)).sum();
-        let total: u64 = tallies().map(|tally| tally.total).sum();
-        let worst = tallies().map(|tally| tally.worst).max()?;
-        let mean = total as f64 / ticks as f64;
+    /// What of all runs together was counted.
+    fn counted(&self, what: &str, of: fn(&Calls) -> &[u32]) -> Option<String> {
+        let runs = self.rows.iter().filter_map(|row| row.calls.as_ref());
+        let mut calls: Vec<u32> = runs.flat_map(of).copied().collect();
+        calls.sort_unstable();
+        let worst = calls.last()?;
+        let below = |percent: usize| calls[(calls.len() - 1) * percent / 100];
         Some(format!(
-            "instructions a tick (x86-64): {mean:.0} in the mean of {ticks} ticks, {worst} in the worst"
+            "instructions {what} (x86-64, {} times): {} in the mean, {worst} in the worst; at most {} in 10 % of \
+             them, {} in half, {} in 90 %, {} in 99 %",
+            calls.len(),
+            mean(&calls),
+            below(10),
+            below(50),
+            below(90),
+            below(99),
         ))
     }
 }
@@ -275,7 +297,7 @@ mod tests {
             outcome: Outcome {
                 moves: 4,
                 elements: 5,
-                ticks: 100,
+                pushed: Vec::new(),
                 figures: Ok(Figures {
                     time,
                     acceleration: 0.99,
@@ -288,7 +310,7 @@ mod tests {
                     back: 0.0,
                 }),
             },
-            ticks: None,
+            calls: None,
             baseline: Some(Baseline {
                 trapezoid: 1.0,
                 trapezoid_acceleration: 2000.0,
@@ -358,17 +380,19 @@ mod tests {
     #[test]
     fn instructions_have_their_columns() {
         let mut counted = row("square", 0.9, 1.0);
-        counted.ticks = Some(Tally {
-            calls: 4,
-            total: 2000,
-            worst: 800,
+        counted.calls = Some(Calls {
+            ticks: vec![100, 800, 200, 900],
+            pushes: vec![70],
         });
         let text = Report {
             rows: vec![counted],
             instructions: true,
         }
         .text();
-        assert!(text.contains("|       500 |   800 |"), "{text}");
-        assert!(text.contains("500 in the mean of 4 ticks, 800 in the worst"));
+        assert!(text.contains("|       500 |   900 |"), "{text}");
+        assert!(
+            text.contains("a tick (x86-64, 4 times): 500 in the mean, 900 in the worst; at most 100 in 10 %")
+        );
+        assert!(text.contains("an element (x86-64, 1 times): 70 in the mean, 70 in the worst"));
     }
 }

@@ -1,9 +1,8 @@
 //! Programs through the trajectory planner, one after the other, beside what another planner took for them.
 
-use super::report::{Report, Row};
+use super::report::{Calls, Report, Row};
 use super::{TRAJECTORIES, bounded, build, callgrind, folder, publish};
 use anyhow::{Context, Result, ensure};
-use benchmarks::record::Tally;
 use benchmarks::trajectories::{Outcome, baseline};
 use std::collections::BTreeMap;
 use std::fs;
@@ -34,13 +33,13 @@ pub fn run(programs: &Path, instructions: bool, record: bool) -> Result<ExitCode
             .to_string_lossy()
             .into_owned();
         eprintln!("{program}");
-        let (outcome, ticks) =
+        let (outcome, calls) =
             one(&benchmark, &file, &folder, instructions).with_context(|| file.display().to_string())?;
         rows.push(Row {
             baseline: baselines.get(&program).copied(),
             program,
             outcome,
-            ticks,
+            calls,
         });
     }
     let report = Report { rows, instructions };
@@ -82,7 +81,7 @@ fn baselines(folder: &Path) -> Result<BTreeMap<String, baseline::Baseline>> {
 }
 
 /// Runs one program, and counts its ticks if asked to.
-fn one(benchmark: &Path, file: &Path, folder: &Path, instructions: bool) -> Result<(Outcome, Option<Tally>)> {
+fn one(benchmark: &Path, file: &Path, folder: &Path, instructions: bool) -> Result<(Outcome, Option<Calls>)> {
     let file = file.to_str().context("the name of the file is not text")?;
     let arguments = [TRAJECTORY, file];
     if !instructions {
@@ -98,23 +97,27 @@ fn one(benchmark: &Path, file: &Path, folder: &Path, instructions: bool) -> Resu
     }
     let (said, calls) = callgrind::count(benchmark, &arguments, folder)?;
     let outcome = Outcome::parse(&said)?;
-    let tally = outcome.figures.is_ok().then(|| tally(&calls, outcome.ticks));
-    Ok((outcome, tally.transpose()?))
+    let calls = outcome.figures.is_ok().then(|| sorted(&calls, &outcome.pushed));
+    Ok((outcome, calls.transpose()?))
 }
 
-/// What the ticks cost: all calls but the first, which does nothing and costs what counting costs.
-fn tally(calls: &[u32], ticks: usize) -> Result<Tally> {
+/// Parts calls into ticks and the elements that came before each. The first does nothing: what that costs, counting
+/// costs.
+fn sorted(calls: &[u32], pushed: &[u8]) -> Result<Calls> {
     let (nothing, calls) = calls.split_first().context("callgrind saw no call")?;
+    let expected = pushed.len() + pushed.iter().map(|n| usize::from(*n)).sum::<usize>();
     ensure!(
-        calls.len() == ticks,
-        "callgrind saw {} ticks of the {ticks} made",
+        calls.len() == expected,
+        "callgrind saw {} calls of the {expected} made",
         calls.len()
     );
-    let mut tally = Tally::default();
-    for call in calls {
-        tally.add(call.saturating_sub(*nothing));
+    let mut calls = calls.iter().map(|call| call.saturating_sub(*nothing));
+    let mut sorted = Calls::default();
+    for n in pushed {
+        sorted.pushes.extend(calls.by_ref().take(usize::from(*n)));
+        sorted.ticks.extend(calls.next());
     }
-    Ok(tally)
+    Ok(sorted)
 }
 
 #[cfg(test)]
@@ -122,11 +125,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_call_tells_what_counting_costs() {
-        let tally = tally(&[8, 108, 58], 2).expect("all");
-        assert_eq!((tally.calls, tally.total, tally.worst), (2, 150, 100));
-        assert!(super::tally(&[8, 108], 2).is_err());
-        assert!(super::tally(&[], 0).is_err());
+    fn calls_are_parted_and_the_first_tells_what_counting_costs() {
+        let calls = sorted(&[8, 18, 28, 108, 58, 38, 68], &[2, 0, 1]).expect("all");
+        assert_eq!(calls.pushes, [10, 20, 30]);
+        assert_eq!(calls.ticks, [100, 50, 60]);
+        assert!(sorted(&[8, 108], &[1]).is_err());
+        assert!(sorted(&[], &[]).is_err());
     }
 
     #[test]
