@@ -16,8 +16,8 @@ impl Meter for Outside {
     }
 }
 
-/// Runs the benchmark that the command line names: `trajectory` with the file of a program, or one of those that
-/// run on the board too.
+/// Runs the benchmark that the command line names: `trajectory` with the file of a program, and its feed if
+/// that is a free-form curve, or one of those that run on the board too.
 pub fn run() -> Result<()> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().context("which benchmark? give its name")?;
@@ -29,7 +29,8 @@ pub fn run() -> Result<()> {
         // Axes are programmed: any machine will do.
         let machine = machines(&file).next().context("no machine in the file")??;
         let (kinematics, _) = machine.build()?;
-        let outcome = of_file(Path::new(&program), &kinematics, &mut Outside)?;
+        let feed = arguments.next().map(|feed| feed.parse()).transpose()?;
+        let outcome = of_file(Path::new(&program), feed, &kinematics, &mut Outside)?;
         println!("{}", outcome.line()?);
         return Ok(());
     }

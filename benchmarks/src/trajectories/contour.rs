@@ -1,7 +1,7 @@
 //! How far the machine was from what was programmed: the true distance to the nearest point of the program, and the
 //! other way round.
 
-use super::way::{Move, Way};
+use super::way::{Course, Move};
 use nalgebra::Vector3;
 use shared::geometry::nurbs::{Curve, length_between};
 
@@ -10,10 +10,10 @@ use shared::geometry::nurbs::{Curve, length_between};
 const AROUND: f64 = 5.0;
 /// ... and more than is gone in so many ticks.
 const TICKS: f64 = 20.0;
-/// Chords of an arc span at most this \[rad\].
-const CHORD: f64 = 0.1;
 /// Steps towards the nearest point of a curve. They end long before.
 const STEPS: usize = 20;
+/// A step \[mm\] that leads nowhere: points are that exact.
+const FINE: f64 = 1e-12;
 
 /// The programmed path, cut into chords.
 pub struct Contour<'a> {
@@ -25,43 +25,18 @@ struct Chord<'a> {
     s: [f64; 2],
     ends: [Vector3<f64>; 2],
     /// What it is a chord of, between two parameters; nothing of a straight one.
-    of: Option<(&'a dyn Nearest, [f64; 2])>,
+    of: Option<(Course<'a>, [f64; 2])>,
     /// The curve is nowhere farther from the chord than this \[mm\].
     bulge: f64,
 }
 
-/// A curve that knows how far a point is.
-trait Nearest {
-    /// Distance \[mm\] of `point` from the part between two parameters, looked for from one between them on.
-    fn distance(&self, point: &Vector3<f64>, range: [f64; 2], from: f64) -> f64;
-}
-
-impl<C: Curve> Nearest for C {
-    fn distance(&self, point: &Vector3<f64>, [low, high]: [f64; 2], from: f64) -> f64 {
-        let ends = [low, high].map(|u| (self.point(u) - point).norm());
-        let mut nearest = ends[0].min(ends[1]);
-        let mut u = from;
-        for _ in 0..STEPS {
-            let here = self.at(u);
-            let to = here.value - point;
-            nearest = nearest.min(to.norm());
-            // Newton on the derivative of half the squared distance; downhill where that is not convex.
-            let convex = here.first.norm_squared() + to.dot(&here.second);
-            let slope = to.dot(&here.first);
-            let step = slope
-                / if convex > 0.0 {
-                    convex
-                } else {
-                    here.first.norm_squared()
-                };
-            let next = (u - step).clamp(low, high);
-            if (next - u).abs() * here.first.norm() < 1e-9 {
-                break;
-            }
-            u = next;
-        }
-        nearest
-    }
+/// The nearest point of the path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// How far it is \[mm\].
+    pub distance: f64,
+    /// At which path length \[mm\].
+    pub s: f64,
 }
 
 impl<'a> Contour<'a> {
@@ -70,26 +45,29 @@ impl<'a> Contour<'a> {
         let mut chords = Vec::new();
         let mut s = 0.0;
         for one in moves {
-            match &one.way {
-                Way::Stand(_) | Way::Line(_) => chords.push(Chord {
+            let Some(course) = one.way.course() else {
+                chords.push(Chord {
                     s: [s, s + one.length],
                     ends: [one.way.start(), one.way.end()],
                     of: None,
                     bulge: 0.0,
-                }),
-                Way::Spiral(spiral) => {
-                    let parts = (spiral.sweep() / CHORD).ceil() as u32;
-                    chords.extend(cut(spiral, s, parts));
-                }
+                });
+                s += one.length;
+                continue;
+            };
+            let mut begin = s;
+            for range in course.parts() {
+                chords.push(Chord::new(course, range, begin));
+                begin = chords[chords.len() - 1].s[1];
             }
             s += one.length;
         }
         Self { chords }
     }
 
-    /// Distance \[mm\] of `point` from the path, near the path length `s` \[mm\] when `speed` mm go by in a tick.
-    /// Where there is no path near, of all of it.
-    pub fn error(&self, point: &Vector3<f64>, s: f64, speed: f64) -> f64 {
+    /// The point of the path nearest to `point`, near the path length `s` \[mm\] when `speed` mm go by in a tick; where
+    /// there is no path, of all of it.
+    pub fn nearest(&self, point: &Vector3<f64>, s: f64, speed: f64) -> Nearest {
         let around = AROUND + TICKS * speed;
         let first = self.chords.partition_point(|chord| chord.s[1] < s - around);
         let end = self.chords.partition_point(|chord| chord.s[0] <= s + around);
@@ -101,47 +79,85 @@ impl<'a> Contour<'a> {
     }
 }
 
-/// Distance of `point` from the nearest point of what `chords` are of.
-fn nearest(chords: &[Chord], point: &Vector3<f64>) -> f64 {
+fn nearest(chords: &[Chord], point: &Vector3<f64>) -> Nearest {
     let farthest = |chord: &Chord| chord.distance(point).0 + chord.bulge;
     let bound = chords.iter().map(farthest).fold(f64::INFINITY, f64::min);
-    let distance = |chord: &Chord| {
-        let (distance, part) = chord.distance(point);
-        match chord.of {
-            None => distance,
-            Some(_) if distance - chord.bulge > bound => distance + chord.bulge,
-            Some((curve, range @ [low, high])) => curve.distance(point, range, low + (high - low) * part),
-        }
+    let mut nearest = Nearest {
+        distance: f64::INFINITY,
+        s: f64::NAN,
     };
-    chords.iter().map(distance).fold(f64::INFINITY, f64::min)
+    for chord in chords {
+        let (distance, part) = chord.distance(point);
+        if distance - chord.bulge > bound {
+            continue;
+        }
+        let found = match &chord.of {
+            None => Nearest {
+                distance,
+                s: chord.s[0] + (chord.s[1] - chord.s[0]) * part,
+            },
+            Some((course, [low, high])) => {
+                let (distance, u) = on_curve(course, point, [*low, *high], low + (high - low) * part);
+                Nearest {
+                    distance,
+                    s: chord.s[0] + length_between(course, *low, u),
+                }
+            }
+        };
+        if found.distance < nearest.distance {
+            nearest = found;
+        }
+    }
+    nearest
 }
 
-fn cut<'a, C: Curve>(curve: &'a C, s: f64, parts: u32) -> impl Iterator<Item = Chord<'a>> {
-    let [first, last] = curve.domain();
-    let u = move |part: u32| first + (last - first) * (f64::from(part) / f64::from(parts));
-    let mut s = s;
-    (0..parts).map(move |part| {
-        let range = [u(part), u(part + 1)];
-        let from = s;
-        s += length_between(curve, range[0], range[1]);
-        let mut chord = Chord {
-            s: [from, s],
-            ends: range.map(|u| curve.point(u)),
-            of: Some((curve, range)),
-            bulge: 0.0,
-        };
+/// Distance \[mm\] of `point` from the part of a curve between two parameters, and the parameter of the nearest point,
+/// looked for from one between them on.
+fn on_curve(course: &Course, point: &Vector3<f64>, [low, high]: [f64; 2], from: f64) -> (f64, f64) {
+    let mut nearest = (f64::INFINITY, from);
+    let mut u = from;
+    for _ in 0..STEPS {
+        let here = course.at(u);
+        let to = here.value - point;
+        if to.norm() < nearest.0 {
+            nearest = (to.norm(), u);
+        }
+        // Newton on the derivative of half the squared distance; downhill where that is not convex.
+        let speed = here.first.norm_squared();
+        let convex = speed + to.dot(&here.second);
+        let step = to.dot(&here.first) / if convex > 0.0 { convex } else { speed };
+        let next = (u - step).clamp(low, high);
+        if (next - u).abs() * speed.sqrt() < FINE {
+            break;
+        }
+        u = next;
+    }
+    for end in [low, high] {
+        let distance = (course.point(end) - point).norm();
+        if distance < nearest.0 {
+            nearest = (distance, end);
+        }
+    }
+    nearest
+}
+
+impl<'a> Chord<'a> {
+    /// Between two parameters of `course`, from path length `s` on.
+    fn new(course: Course<'a>, range: [f64; 2], s: f64) -> Self {
+        let ends = range.map(|u| course.point(u));
         let off = |i: u32| {
             let part = f64::from(i) / 8.0;
-            let point = curve.point(range[0] + (range[1] - range[0]) * part);
-            chord.distance(&point).0
+            distance(&ends, &course.point(range[0] + (range[1] - range[0]) * part)).0
         };
-        // Between those looked at it is hardly more.
-        chord.bulge = 1.5 * (1..8).map(off).fold(0.0, f64::max);
-        chord
-    })
-}
+        Self {
+            s: [s, s + length_between(&course, range[0], range[1])],
+            ends,
+            of: Some((course, range)),
+            // Between those looked at it is hardly more.
+            bulge: 1.5 * (1..8).map(off).fold(0.0, f64::max),
+        }
+    }
 
-impl Chord<'_> {
     /// Distance of `point` \[mm\], and after which part of the chord.
     fn distance(&self, point: &Vector3<f64>) -> (f64, f64) {
         distance(&self.ends, point)
@@ -161,7 +177,7 @@ fn distance(ends: &[Vector3<f64>; 2], point: &Vector3<f64>) -> (f64, f64) {
 }
 
 /// Largest distance \[mm\] of an end of a move from the way through `points`: what is cut off and never reached shows
-/// here, as it does not in [`Contour::error`]. `s` are path lengths of the points.
+/// here, as it does not in [`Contour::nearest`]. `s` are path lengths of the points.
 pub fn cut_off(moves: &[Move], points: &[Vector3<f64>], s: &[f64]) -> f64 {
     let mut end = 0.0;
     let mut largest = 0.0_f64;
@@ -182,6 +198,7 @@ pub fn cut_off(moves: &[Move], points: &[Vector3<f64>], s: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::seg;
+    use super::super::way::Way;
     use super::*;
 
     #[test]
@@ -195,7 +212,7 @@ mod tests {
             ([100.3, -0.4, 0.0], 100.0, 0.5),
             ([100.0, 50.7, 0.0], 150.0, 0.7),
         ] {
-            assert!((contour.error(&point.into(), s, 0.1) - error).abs() < 1e-12);
+            assert!((contour.nearest(&point.into(), s, 0.1).distance - error).abs() < 1e-12);
         }
     }
 
@@ -235,7 +252,7 @@ mod tests {
                         .map(|p| (p - point).norm_squared())
                         .fold(f64::INFINITY, f64::min)
                         .sqrt();
-                    let error = contour.error(&point, s, 0.1);
+                    let error = contour.nearest(&point, s, 0.1).distance;
                     assert!(error <= true_one + 1e-12, "{program}: {error} {true_one}");
                     assert!(true_one - error < 1e-5, "{program}: {error} {true_one}");
                 }

@@ -4,8 +4,9 @@ use super::spiral::Spiral;
 use super::way::{Move, ROTARY, Way};
 use shared::geometry::nurbs::{Curve, length_between};
 use shared::geometry::{Arc, ArcError, Turn};
-use shared::trajectory::{CHANNELS, Cubic, Element, Join, SHAPED, Shape, Tolerance};
+use shared::trajectory::{ArcLengthPieces, CHANNELS, Cubic, Cusp, Element, Join, SHAPED, Shape, Tolerance};
 use std::f64::consts::TAU;
+use thiserror::Error;
 
 /// Largest angle of a piece of a spiral \[rad\]: it is off by this⁴/384 of its radius, 50 nm in 200 mm.
 const SPAN: f64 = 0.1;
@@ -16,8 +17,19 @@ pub const TOLERANCE: Tolerance = Tolerance {
     attitude: 0.05 * TAU / 360.0,
 };
 
+/// Why a move has no elements.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum NoElements {
+    /// It is no arc that geometry knows.
+    #[error(transparent)]
+    Arc(#[from] ArcError),
+    /// It has no tangent somewhere.
+    #[error(transparent)]
+    Cusp(#[from] Cusp),
+}
+
 /// The elements of a program. The last one ends in a stop, the others go on within [`TOLERANCE`].
-pub fn elements(moves: &[Move]) -> Result<Vec<Element>, ArcError> {
+pub fn elements(moves: &[Move]) -> Result<Vec<Element>, NoElements> {
     let mut elements = Vec::new();
     for one in moves {
         let shapes = shapes(&one.way, one.length)?;
@@ -54,7 +66,7 @@ fn rotary(one: &Move, begin: f64, end: f64, length: f64) -> [Cubic; CHANNELS - S
 }
 
 /// Pieces of a way, and their lengths.
-fn shapes(way: &Way, length: f64) -> Result<Vec<(Shape, f64)>, ArcError> {
+fn shapes(way: &Way, length: f64) -> Result<Vec<(Shape, f64)>, NoElements> {
     Ok(match way {
         Way::Stand(point) => vec![(Shape::Point((*point).into()), length)],
         Way::Line(line) => vec![(Shape::Line(*line), length)],
@@ -63,6 +75,9 @@ fn shapes(way: &Way, length: f64) -> Result<Vec<(Shape, f64)>, ArcError> {
             vec![(Shape::Arc(arc), arc.length())]
         }
         Way::Spiral(spiral) => spans(spiral),
+        Way::FreeForm(curve) => ArcLengthPieces::new(&curve.curve())
+            .map(|piece| piece.map(|piece| (Shape::Curve(piece.curve), piece.curve.length())))
+            .collect::<Result<_, Cusp>>()?,
     })
 }
 
@@ -147,7 +162,9 @@ mod tests {
             for part in [0.0, 0.2, 0.5, 0.9] {
                 let point = element.at(element.length * part);
                 let [position, first] = [point.value, point.first].map(|c| Vector3::new(c[0], c[1], c[2]));
-                let error = contour.error(&position, s + element.length * part, 0.0);
+                let error = contour
+                    .nearest(&position, s + element.length * part, 0.0)
+                    .distance;
                 // Arcs reach an end at another radius by drifting there as a whole: off by that at most.
                 assert!(error < 2e-3, "line {}: {error}", element.line);
                 let speed = if matches!(element.shape, Shape::Point(_)) {

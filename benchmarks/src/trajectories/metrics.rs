@@ -52,7 +52,7 @@ impl Figures {
         let contour = Contour::new(moves);
         let error = |i: usize| {
             let speed = if i > 0 { (s[i] - s[i - 1]).abs() } else { 0.0 };
-            contour.error(&points[i], s[i], speed)
+            contour.nearest(&points[i], s[i], speed).distance
         };
         Self {
             time: time(&positions),

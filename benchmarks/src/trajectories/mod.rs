@@ -1,4 +1,4 @@
-//! Programs of canonical segments through the trajectory planner, and what the axes did. On the PC only.
+//! Programs of canonical segments, and free-form curves, through the trajectory planner, and what the axes did. On the PC only.
 //!
 //! The planner is called as on the board: a tick a millisecond, elements as the link brings them. Everything is
 //! judged by the positions that come out, and by the program as it was written.
@@ -6,6 +6,8 @@
 pub mod baseline;
 mod contour;
 pub mod elements;
+pub mod evenness;
+pub mod free_form;
 pub mod limits;
 mod metrics;
 mod outcome;
@@ -14,7 +16,7 @@ pub mod seg;
 mod spiral;
 pub mod way;
 
-pub use contour::{Contour, cut_off};
+pub use contour::{Contour, Nearest, cut_off};
 pub use metrics::Figures;
 pub use outcome::{Outcome, of_file};
 pub use spiral::{Spiral, SpiralError};

@@ -1,10 +1,11 @@
 //! One program from its file to its figures, and how those pass from program to program.
 
 use super::elements::elements;
+use super::evenness::{Evenness, evenness};
 use super::limits::plan_limits;
 use super::metrics::Figures;
 use super::run::run;
-use super::seg;
+use super::{free_form, seg};
 use crate::meter::Meter;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
@@ -25,30 +26,44 @@ pub struct Outcome {
     pub elements: usize,
     /// For each tick, how many elements came before it. All of these calls are counted, in this order.
     pub pushed: Vec<u8>,
+    /// Of a program that is a free-form curve.
+    pub evenness: Option<Evenness>,
     /// The figures, or why the program did not come to its end.
     pub figures: std::result::Result<Figures, String>,
 }
 
-/// Runs the program in `file`. Before all else `meter` counts one call of nothing.
-pub fn of_file(file: &Path, kinematics: &Kinematics, meter: &mut impl Meter) -> Result<Outcome> {
+/// Runs the program in `file`, which is a free-form curve if a `feed` \[mm/s\] is given. Before all else `meter` counts
+/// one call of nothing.
+pub fn of_file(
+    file: &Path,
+    feed: Option<f64>,
+    kinematics: &Kinematics,
+    meter: &mut impl Meter,
+) -> Result<Outcome> {
     let name = file.display().to_string();
     let text = fs::read_to_string(file).with_context(|| format!("cannot read {name}"))?;
-    let moves = seg::read(&text, &name)?;
-    let elements = elements(&moves).with_context(|| name)?;
-    let start = [0.0; AXES];
-    meter.count(&mut || ());
-    let (pushed, figures) = match run(&elements, &start, &plan_limits(), kinematics, meter) {
-        Ok(samples) => (
-            samples.iter().map(|sample| sample.pushed).collect(),
-            Ok(Figures::of(&moves, &start, &samples)),
-        ),
-        Err(stuck) => (Vec::new(), Err(stuck.to_string())),
+    let moves = match feed {
+        Some(feed) => free_form::read(&text, feed).with_context(|| name.clone())?,
+        None => seg::read(&text, &name)?,
     };
+    let elements = elements(&moves).with_context(|| name)?;
+    // Segments begin at the origin, a curve where it does.
+    let mut start = [0.0; AXES];
+    if let Some(first) = moves.first() {
+        start[..3].copy_from_slice(first.way.start().as_slice());
+    }
+    meter.count(&mut || ());
+    let run = run(&elements, &start, &plan_limits(), kinematics, meter);
+    let samples = run.as_deref().unwrap_or_default();
     Ok(Outcome {
         moves: moves.len(),
         elements: elements.len(),
-        pushed,
-        figures,
+        pushed: samples.iter().map(|sample| sample.pushed).collect(),
+        evenness: evenness(&moves, &elements, samples),
+        figures: match &run {
+            Ok(samples) => Ok(Figures::of(&moves, &start, samples)),
+            Err(stuck) => Err(stuck.to_string()),
+        },
     })
 }
 

@@ -87,6 +87,8 @@ impl Limit {
 /// The baseline's own limits, and what of them it may exceed: acceleration \[mm/s²\] and contour error \[µm\].
 const BASELINE_ACCELERATION: f64 = 1.01 * 2000.0;
 const BASELINE_CONTOUR: f64 = 50.0;
+/// How even the speed along a curve must be before the output filter, as a part of it.
+const EVEN: f64 = 1e-6;
 /// Programs of the baseline's that are shorter \[s\] are not compared one by one, ...
 const SHORT: f64 = 0.5;
 /// ... the others may take so many times as long.
@@ -122,6 +124,26 @@ impl Row {
         self.figures()
             .zip(self.baseline)
             .is_some_and(|(figures, base)| slow(figures, base))
+    }
+
+    /// How even the speed is along a curve.
+    fn evenness(&self) -> Option<String> {
+        let even = self.outcome.evenness?;
+        let mut line = format!(
+            "{}: speed along the curve even to {:.1e} before the output filter",
+            self.program, even.interpolator
+        );
+        if even.outputs > 0 {
+            line += &format!(
+                ", {:.1e} behind it in the {} ticks at full feed",
+                even.output, even.outputs
+            );
+        }
+        Some(line)
+    }
+
+    fn is_even(&self) -> bool {
+        self.outcome.evenness.is_none_or(|even| even.interpolator <= EVEN)
     }
 
     fn cells(&self) -> [String; HEAD.len()] {
@@ -175,8 +197,10 @@ impl Report {
     /// Whether every program came to its end within all limits.
     pub fn kept(&self) -> bool {
         self.rows.iter().all(|row| {
-            row.figures()
-                .is_some_and(|figures| LIMITS.iter().all(|limit| limit.is_kept(figures)))
+            row.is_even()
+                && row
+                    .figures()
+                    .is_some_and(|figures| LIMITS.iter().all(|limit| limit.is_kept(figures)))
         })
     }
 
@@ -215,6 +239,7 @@ impl Report {
             };
             lines.push(listed(limit.name, self.rows.iter().filter(beyond).map(named)));
         }
+        lines.extend(self.rows.iter().filter_map(Row::evenness));
         lines.push(listed(
             "slower than 1.05 × a trapezoid that took 0.5 s and kept its limits",
             self.rows
@@ -290,6 +315,7 @@ fn listed(what: &str, which: impl Iterator<Item = String>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use benchmarks::trajectories::evenness::Evenness;
 
     fn row(program: &str, time: f64, jerk: f64) -> Row {
         Row {
@@ -298,6 +324,7 @@ mod tests {
                 moves: 4,
                 elements: 5,
                 pushed: Vec::new(),
+                evenness: None,
                 figures: Ok(Figures {
                     time,
                     acceleration: 0.99,
@@ -359,6 +386,27 @@ mod tests {
         );
 
         assert!(!report(vec![row("nan", 1.0, f64::NAN)]).kept());
+    }
+
+    #[test]
+    fn curves_must_be_even() {
+        let mut curve = row("bow", 0.9, 1.0);
+        curve.outcome.evenness = Some(Evenness {
+            interpolator: 4e-7,
+            output: 3e-4,
+            outputs: 70,
+        });
+        let even = report(vec![curve.clone()]);
+        assert!(even.kept());
+        assert!(even.text().contains(
+            "- bow: speed along the curve even to 4.0e-7 before the output filter, 3.0e-4 behind it in the 70 ticks"
+        ));
+        curve.outcome.evenness = Some(Evenness {
+            interpolator: 1.1e-6,
+            output: 0.0,
+            outputs: 0,
+        });
+        assert!(!report(vec![curve]).kept());
     }
 
     #[test]

@@ -10,8 +10,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Of programs.
-const EXTENSION: &str = "seg";
+/// Of programs of segments.
+const SEGMENTS: &str = "seg";
+/// Of free-form curves, ...
+const CURVE: &str = "json";
+/// ... which are programs at each of these feeds \[mm/s\].
+const FEEDS: [&str; 3] = ["50", "100", "200"];
 /// File of the baseline, in the folder of the programs.
 const BASELINE: &str = "baseline.csv";
 /// To the benchmark program: run a program.
@@ -21,23 +25,18 @@ const LIMIT: Duration = Duration::from_secs(300);
 
 /// Runs all programs of a folder; succeeds if every limit was kept.
 pub fn run(programs: &Path, instructions: bool, record: bool) -> Result<ExitCode> {
-    let files = files(programs)?;
     let baselines = baselines(programs)?;
+    let programs = all(programs)?;
     let folder = folder()?;
     let benchmark = build(None)?;
     let mut rows = Vec::new();
-    for file in files {
-        let program = file
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        eprintln!("{program}");
-        let (outcome, calls) =
-            one(&benchmark, &file, &folder, instructions).with_context(|| file.display().to_string())?;
+    for Program { name, file, feed } in programs {
+        eprintln!("{name}");
+        let (outcome, calls) = one(&benchmark, &file, feed, &folder, instructions)
+            .with_context(|| file.display().to_string())?;
         rows.push(Row {
-            baseline: baselines.get(&program).copied(),
-            program,
+            baseline: baselines.get(&name).copied(),
+            program: name,
             outcome,
             calls,
         });
@@ -51,8 +50,17 @@ pub fn run(programs: &Path, instructions: bool, record: bool) -> Result<ExitCode
     })
 }
 
-/// The programs, in the order of their names.
-fn files(folder: &Path) -> Result<Vec<PathBuf>> {
+/// What is run.
+#[derive(Clone, Debug, PartialEq)]
+struct Program {
+    name: String,
+    file: PathBuf,
+    /// Of a free-form curve.
+    feed: Option<&'static str>,
+}
+
+/// The programs of a folder, in the order of their names, then the free-form curves.
+fn all(folder: &Path) -> Result<Vec<Program>> {
     let cannot = || format!("cannot read the programs of {}", folder.display());
     let folder = folder.canonicalize().with_context(cannot)?;
     let entries = fs::read_dir(&folder).with_context(cannot)?;
@@ -60,14 +68,36 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>> {
         .map(|entry| Ok(entry?.path()))
         .collect::<std::io::Result<Vec<PathBuf>>>()
         .with_context(cannot)?;
-    files.retain(|file| file.extension().is_some_and(|extension| extension == EXTENSION));
+    files.sort();
+    let of = |extension: &'static str| {
+        let is_one = move |file: &&PathBuf| file.extension().is_some_and(|its| its == extension);
+        files.iter().filter(is_one)
+    };
+    let name = |file: &Path| {
+        file.file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
+    let segments = of(SEGMENTS).map(|file| Program {
+        name: name(file),
+        file: file.clone(),
+        feed: None,
+    });
+    let curves = of(CURVE).flat_map(|file| {
+        FEEDS.map(|feed| Program {
+            name: format!("{} at {feed} mm/s", name(file)),
+            file: file.clone(),
+            feed: Some(feed),
+        })
+    });
+    let programs: Vec<Program> = segments.chain(curves).collect();
     ensure!(
-        !files.is_empty(),
-        "no program (*.{EXTENSION}) in {}",
+        !programs.is_empty(),
+        "no program (*.{SEGMENTS}) and no curve (*.{CURVE}) in {}",
         folder.display()
     );
-    files.sort();
-    Ok(files)
+    Ok(programs)
 }
 
 fn baselines(folder: &Path) -> Result<BTreeMap<String, baseline::Baseline>> {
@@ -81,18 +111,19 @@ fn baselines(folder: &Path) -> Result<BTreeMap<String, baseline::Baseline>> {
 }
 
 /// Runs one program, and counts its ticks if asked to.
-fn one(benchmark: &Path, file: &Path, folder: &Path, instructions: bool) -> Result<(Outcome, Option<Calls>)> {
+fn one(
+    benchmark: &Path,
+    file: &Path,
+    feed: Option<&str>,
+    folder: &Path,
+    instructions: bool,
+) -> Result<(Outcome, Option<Calls>)> {
     let file = file.to_str().context("the name of the file is not text")?;
-    let arguments = [TRAJECTORY, file];
+    let arguments: Vec<&str> = [TRAJECTORY, file].into_iter().chain(feed).collect();
     if !instructions {
         let program = benchmark.display().to_string();
-        let said = bounded::run(
-            &program,
-            &arguments.map(str::to_owned),
-            folder,
-            "pc.console",
-            LIMIT,
-        )?;
+        let arguments: Vec<String> = arguments.into_iter().map(str::to_owned).collect();
+        let said = bounded::run(&program, &arguments, folder, "pc.console", LIMIT)?;
         return Ok((Outcome::parse(&said)?, None));
     }
     let (said, calls) = callgrind::count(benchmark, &arguments, folder)?;
@@ -134,8 +165,25 @@ mod tests {
     }
 
     #[test]
+    fn segments_come_first_and_curves_at_every_feed() {
+        let folder = std::env::temp_dir().join(format!("programs-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        for file in ["b.seg", "a.json", "a.seg", "baseline.csv"] {
+            fs::write(folder.join(file), "").expect("a file");
+        }
+        let programs = all(&folder).expect("programs");
+        fs::remove_dir_all(&folder).expect("removed");
+        let names: Vec<&str> = programs.iter().map(|program| program.name.as_str()).collect();
+        assert_eq!(
+            names,
+            ["a", "b", "a at 50 mm/s", "a at 100 mm/s", "a at 200 mm/s"]
+        );
+        assert_eq!(programs[4].feed, Some("200"));
+    }
+
+    #[test]
     fn a_folder_without_programs_is_an_error() {
-        let error = files(Path::new(env!("CARGO_MANIFEST_DIR")))
+        let error = all(Path::new(env!("CARGO_MANIFEST_DIR")))
             .unwrap_err()
             .to_string();
         assert!(error.contains("no program"), "{error}");
