@@ -6,6 +6,7 @@ mod callgrind;
 mod docs;
 mod markdown;
 mod report;
+mod row;
 mod table;
 mod trajectories;
 

@@ -1,6 +1,7 @@
 //! Programs through the trajectory planner, one after the other, beside what another planner took for them.
 
-use super::report::{Calls, Report, Row};
+use super::report::Report;
+use super::row::{Calls, Row};
 use super::{TRAJECTORIES, bounded, build, callgrind, folder, publish};
 use anyhow::{Context, Result, ensure};
 use benchmarks::trajectories::{Outcome, baseline};
