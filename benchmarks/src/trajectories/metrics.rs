@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_and_steps_back_are_seen() {
+    fn time_end_and_steps_back_are_seen() {
         let moves = seg::read("L 1 0 0 0 0 9 100\n", "x").expect("a program");
         let c = 9_f64.to_radians();
         let samples = [0.0, 0.3, 0.2, 1.0].map(|s| Sample {
@@ -232,5 +232,10 @@ mod tests {
         let figures = Figures::of(&moves, &[0.0; AXES], &samples);
         close(figures.back, 0.1, 1e-12);
         close(figures.end, 0.01, 1e-12);
+        // Rest before and after does not count.
+        let resting = [&[samples[0]; 7], &samples[..], &[samples[3]; 5]].concat();
+        for samples in [&samples[..], &resting] {
+            close(Figures::of(&moves, &[0.0; AXES], samples).time, 3.0 * TICK, 1e-12);
+        }
     }
 }
