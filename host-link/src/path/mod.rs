@@ -1,6 +1,7 @@
 //! From program paths to what the boards run: knots, events and limits, checked against the machine.
 
 mod block;
+mod elements;
 mod error;
 mod exact;
 mod limits;
@@ -12,6 +13,7 @@ mod targets;
 #[cfg(test)]
 mod tests;
 
+pub use elements::TOLERANCE;
 pub use error::PathError;
 pub use planned::{Bound, PlannedPath};
 pub use targets::Tip;

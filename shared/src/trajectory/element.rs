@@ -88,6 +88,13 @@ impl Cubic {
         ])
     }
 
+    /// The same curve, counted from `s` on.
+    pub fn from(&self, s: f64) -> Self {
+        let [_, _, _, c3] = self.0;
+        let [value, first, second] = self.at(s);
+        Self([value, first, 0.5 * second, c3])
+    }
+
     /// Value, first and second derivative at `s`.
     pub fn at(&self, s: f64) -> [f64; 3] {
         let [c0, c1, c2, c3] = self.0;

@@ -29,3 +29,10 @@ pub use window::{CurveLimits, ProcessWindow, WindowError, WindowPlan, limit_acce
 
 /// Channels of a path: position (3), T (3), N (3), V slide extensions (2).
 pub const CHANNELS: usize = 11;
+
+/// Elements that the planner of the motion board holds.
+pub const ELEMENTS: usize = 128;
+/// Places of the path at which it plans the speed.
+pub const NODES: usize = 256;
+/// The planner of the motion board.
+pub type BoardPlanner = Planner<ELEMENTS, NODES>;

@@ -1,6 +1,7 @@
 //! What the planner must never exceed.
 
 use crate::io::AXES;
+use crate::kinematics::AxisLimits;
 use crate::motion::PATH_PERIOD_S;
 
 /// Limits of the axes and of the path, and the accuracy that the output filter is made for (mm, rad, s).
@@ -18,6 +19,20 @@ pub struct PlanLimits {
     pub path_jerk: f64,
     /// Tolerance that most elements are programmed with \[mm\]: decides how long the output filter is.
     pub tolerance: f64,
+}
+
+impl PlanLimits {
+    /// Those of a machine's axes, and along a path.
+    pub fn of(axes: &[AxisLimits; AXES], path_acceleration: f64, path_jerk: f64, tolerance: f64) -> Self {
+        Self {
+            velocity: axes.map(|axis| axis.velocity),
+            acceleration: axes.map(|axis| axis.acceleration),
+            jerk: axes.map(|axis| axis.jerk),
+            path_acceleration,
+            path_jerk,
+            tolerance,
+        }
+    }
 }
 
 /// Most ticks that the output filter averages over.

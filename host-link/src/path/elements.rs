@@ -1,0 +1,124 @@
+//! A planned path as elements: what the motion board is given.
+
+use super::PlannedPath;
+use shared::protocol::Knot;
+use shared::trajectory::{CHANNELS, Cubic, Element, Join, SHAPED, Shape, Tolerance};
+
+/// What rounded corners and the planner's output filter may take.
+pub const TOLERANCE: Tolerance = Tolerance {
+    position: 0.01,
+    attitude: 1e-4,
+};
+
+/// A step of the speed this near to a knot is at it \[mm\].
+const SAME: f64 = 1e-6;
+
+impl PlannedPath {
+    /// The path as elements, in order: every span between two knots is one, or several where the speed steps inside
+    /// it. The last one comes to rest.
+    pub fn elements(&self) -> impl Iterator<Item = Element> + '_ {
+        let length = self.length_mm();
+        let spans = self.knots.windows(2).map(|span| (&span[0], &span[1]));
+        spans.flat_map(move |(from, to)| {
+            let inside = self.steps().map(|step| step.s);
+            let inside = inside.filter(|s| *s > from.s_mm + SAME && *s < to.s_mm - SAME);
+            let mut ends: Vec<f64> = inside.chain([to.s_mm]).collect();
+            ends.dedup_by(|a, b| *a - *b <= SAME);
+            let starts: Vec<f64> = std::iter::once(from.s_mm).chain(ends.iter().copied()).collect();
+            starts.into_iter().zip(ends).map(move |(start, end)| {
+                let join = if end >= length {
+                    Join::Stop
+                } else {
+                    Join::Blend(TOLERANCE)
+                };
+                self.element(from, to, start, end, join)
+            })
+        })
+    }
+
+    /// The part from `start` to `end` \[mm\] of the span between two knots.
+    fn element(&self, from: &Knot, to: &Knot, start: f64, end: f64, join: Join) -> Element {
+        let channel = |i: usize| span(from, to, i).from(start - from.s_mm);
+        Element {
+            line: 0,
+            shape: Shape::Span(std::array::from_fn(channel)),
+            rest: std::array::from_fn(|i| channel(SHAPED + i)),
+            length: end - start,
+            feed: self.speed_limit(start),
+            join,
+        }
+    }
+
+    /// Programmed speed from `s` on \[mm/s\].
+    fn speed_limit(&self, s: f64) -> f64 {
+        let before = self.steps().take_while(|step| step.s <= s + SAME);
+        before.last().map_or(self.limits.velocity, |step| step.velocity)
+    }
+}
+
+fn span(from: &Knot, to: &Knot, channel: usize) -> Cubic {
+    debug_assert!(channel < CHANNELS);
+    let end = |knot: &Knot| [knot.value[channel], knot.slope[channel]];
+    Cubic::hermite(end(from), end(to), to.s_mm - from.s_mm)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nc::Motion;
+    use crate::path::shape;
+    use shared::protocol::{PathAction, PathEvent};
+    use shared::trajectory::PathSpace;
+
+    /// A path of three spans whose speed steps at a knot, inside a span twice, and next to a knot.
+    fn planned() -> PlannedPath {
+        let knots: Vec<Knot> = [0.0, 3.0, 7.5, 10.0]
+            .map(|s: f64| Knot {
+                s_mm: s,
+                value: std::array::from_fn(|i| (s * 0.1 * (i + 1) as f64).sin()),
+                slope: std::array::from_fn(|i| 0.1 * (i + 1) as f64 * (s * 0.1 * (i + 1) as f64).cos()),
+            })
+            .to_vec();
+        let shape = shape::Shape {
+            knots,
+            speed_error: 0.0,
+            targets: Vec::new(),
+        };
+        let mut planned = PlannedPath::untimed(&shape, PathSpace::Tool, Motion::Feed);
+        planned.limits.velocity = 40.0;
+        for (s_mm, mm_s) in [(3.0, 30.0), (4.0, 20.0), (6.0, 10.0), (7.5 + 1e-9, 50.0)] {
+            let action = PathAction::Speed { mm_s };
+            planned.events.push(PathEvent { s_mm, action });
+        }
+        planned
+    }
+
+    #[test]
+    fn elements_are_the_path_and_change_their_feed_where_the_speed_steps() {
+        let planned = planned();
+        let (path, elements) = (planned.path(), planned.elements().collect::<Vec<_>>());
+        let feeds: Vec<f64> = elements.iter().map(|element| element.feed).collect();
+        assert_eq!(feeds, [40.0, 30.0, 20.0, 10.0, 50.0]);
+        let mut s = 0.0;
+        for element in &elements {
+            for part in [0.0, 0.3, 0.7, 1.0] {
+                let point = element.at(part * element.length);
+                let wanted = path.at(s + part * element.length).unwrap();
+                for i in 0..CHANNELS {
+                    assert!(
+                        (point.value[i] - wanted.value[i]).abs() < 1e-13,
+                        "channel {i} at {s}"
+                    );
+                    assert!(
+                        (point.first[i] - wanted.first[i]).abs() < 1e-12,
+                        "channel {i} at {s}"
+                    );
+                }
+            }
+            s += element.length;
+        }
+        assert!((s - 10.0).abs() < 1e-12);
+        let stops: Vec<bool> = elements.iter().map(|e| e.join == Join::Stop).collect();
+        assert_eq!(stops, [false, false, false, false, true]);
+    }
+}
