@@ -5,6 +5,7 @@
 //! difference of the accelerations at t and one filter length before, divided by that length; where that is too
 //! much, the boxes are made smaller, and the passes repeated.
 
+extern crate std;
 use super::limits::{Bounds, ROWS};
 use super::node::{Lanes, Node, Nodes, least, most};
 use super::scan::{advance, reach};
@@ -13,11 +14,11 @@ use crate::motion::PATH_PERIOD_S;
 /// Rounds of passes that a plan is given before it is given up.
 const ROUNDS: u32 = 12;
 /// Rounds in which boxes may also grow.
-const RELAXED: u32 = 3;
+const RELAXED: u32 = 2;
 /// A plan is good if no swing of the acceleration is above its limit by more than this share.
 const GOOD: f32 = 0.025;
 /// How much of a swing that is too large is taken away in one round, and given back of one that need not be so small.
-const TIGHTEN: f32 = 0.6;
+const TIGHTEN: f32 = 0.8;
 const LOOSEN: f32 = 0.4;
 /// Swings within this share of their limit are left alone.
 const TIGHTEN_FROM: f32 = 0.01;
@@ -25,7 +26,7 @@ const LOOSEN_FROM: f32 = 0.02;
 /// No box is made smaller than this share of the acceleration.
 const LEAST_BOX: f32 = 0.03;
 /// Node visits of both passes and all rounds that a plan is expected to need for each node.
-const VISITS: u32 = 8;
+const VISITS: u32 = 16;
 
 /// What the planner does next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,10 +105,24 @@ impl Horizon {
         if last <= self.in_force {
             return;
         }
-        // Committed is what will have been played before the plan can be ready.
-        let lead = f64::from(2 + VISITS * (last - player) / visits) * PATH_PERIOD_S;
+        // What slows down only for the end of the plan in force is planned anew, and what the filter reaches before.
+        let mut slowing = self.in_force;
+        while slowing > player && nodes.at(slowing - 1).x > nodes.at(slowing).x {
+            slowing -= 1;
+        }
+        let mut before = 0.0;
+        while slowing > player && before < 14.0 * bounds.filter {
+            slowing -= 1;
+            before += duration(nodes.at(slowing), nodes.at(slowing).x, nodes.at(slowing + 1).x);
+        }
+        // And what will have been played before the plan can be ready stays.
+        let mut lead = f64::from(2 + VISITS * (last - slowing) / visits) * PATH_PERIOD_S;
+        let whole: f64 = (player..self.in_force)
+            .map(|i| duration(nodes.at(i), nodes.at(i).x, nodes.at(i + 1).x))
+            .sum();
+        lead = libm::fmin(lead, 0.6 * (left + whole));
         let (mut commit, mut time) = (player, left);
-        while commit < self.in_force && time < lead {
+        while commit < self.in_force && (time < lead || commit < slowing) {
             time += duration(nodes.at(commit), nodes.at(commit).x, nodes.at(commit + 1).x);
             commit += 1;
         }
@@ -153,6 +168,18 @@ impl Horizon {
     }
 
     fn give_up(&mut self) {
+        if std::env::var("TRACE").is_ok() {
+            std::eprintln!(
+                "gave up round {} excess {:.3?} phase {:?} commit {} last {} inforce {} relaxed {}",
+                self.round,
+                self.excess,
+                self.phase,
+                self.commit,
+                self.last,
+                self.in_force,
+                self.relaxed
+            );
+        }
         self.given_up += 1;
         self.relaxed = 0;
         self.phase = Phase::Waiting;
@@ -214,6 +241,16 @@ impl Horizon {
     }
 
     fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
+        if std::env::var("TRACE").is_ok() {
+            std::eprintln!(
+                "took round {} excess {:.3?} commit {} last {} inforce {}",
+                self.round,
+                self.excess,
+                self.commit,
+                self.last,
+                self.in_force
+            );
+        }
         for i in self.commit + 1..=self.last {
             let node = nodes.at_mut(i);
             node.x = node.trial;

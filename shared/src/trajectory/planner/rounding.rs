@@ -1,7 +1,8 @@
 //! How large the rounded corners are.
 
+use super::chain::chained;
 use super::limits::{Bounds, FILTER_SHARE};
-use super::track::{Piece, Track, position_norm};
+use super::track::{Piece, SMOOTH, Track, position_norm};
 use crate::trajectory::{CHANNELS, Join, SHAPED};
 
 /// A jump of velocity below this share of what the filter takes is none.
@@ -15,7 +16,9 @@ impl<const E: usize> Track<E> {
     /// Shapes one corner, if there is one whose neighbours are known.
     pub fn decide(&mut self, bounds: &Bounds) -> bool {
         let serial = self.decided;
-        if serial >= self.end {
+        while self.moved <= serial + 1 && self.straighten(bounds) {}
+        // Where the element ends that begins there has to be known.
+        if serial >= self.end || self.may_move(serial) {
             return false;
         }
         self.decided += 1;
@@ -38,8 +41,14 @@ impl<const E: usize> Track<E> {
         if undecided == self.end && self.closed() {
             return end;
         }
-        let before = undecided.checked_sub(1).and_then(|serial| self.get(serial));
-        end - before.map_or(0.0, |piece| share(piece, piece.stop))
+        let Some(last) = undecided.checked_sub(1) else {
+            return end;
+        };
+        let part = self.get(last).map_or(0.0, |piece| {
+            let whole = piece.stop || self.may_move(last);
+            share(piece, whole)
+        });
+        end - part
     }
 }
 
@@ -64,29 +73,49 @@ fn size(before: &Piece, after: &Piece, bounds: &Bounds) -> (f64, bool) {
     let (attitude, slides) = (largest(ATTITUDE), largest(ATTITUDE.end..CHANNELS));
     let feed = libm::fmin(before.element.feed, after.element.feed);
     let noticed = UNNOTICED * bounds.corner * bounds.filter / feed;
-    if turn <= noticed && attitude <= super::track::SMOOTH && slides <= noticed {
+    if turn <= noticed && attitude <= SMOOTH && slides <= noticed {
         return (0.0, false);
     }
     let Join::Blend(tolerance) = before.element.join else {
         return (0.0, true);
     };
-    let whole = after.element.join == Join::Stop;
-    let mut half = libm::fmin(share(before, before.stop), share(after, whole));
-    let rounding = 4.0 * (1.0 - FILTER_SHARE);
+    let mut half = room(before, after, turn, bounds);
+    if attitude > SMOOTH || slides > noticed {
+        half = between(before, after);
+    }
+    if after.chained {
+        half = libm::fmin(half, chained(turn, tolerance.position));
+        return (half, false);
+    }
     let mut within = |jump: f64, tolerance: f64| {
         if jump > 0.0 {
-            half = libm::fmin(half, rounding * tolerance / jump);
+            half = libm::fmin(half, plain(jump, tolerance));
         }
     };
     within(libm::fmax(turn, slides), tolerance.position);
     within(attitude, tolerance.attitude);
-    // No larger than the feed needs to be kept.
-    if attitude <= super::track::SMOOTH && slides <= noticed {
-        half = libm::fmin(half, feed * feed * turn / (1.2 * bounds.corner));
-    }
     if half < SMALLEST {
         (0.0, true)
     } else {
         (half, false)
     }
+}
+
+/// What a corner may use of the two elements that meet there \[mm\].
+fn between(before: &Piece, after: &Piece) -> f64 {
+    libm::fmin(
+        share(before, before.stop),
+        share(after, after.element.join == Join::Stop),
+    )
+}
+
+/// The same, but no more than is needed to keep the feed where the direction turns by `turn`.
+pub(super) fn room(before: &Piece, after: &Piece, turn: f64, bounds: &Bounds) -> f64 {
+    let feed = libm::fmin(before.element.feed, after.element.feed);
+    libm::fmin(between(before, after), feed * feed * turn / (1.2 * bounds.corner))
+}
+
+/// Half length of a corner that turns by `turn` and stays within `tolerance` \[mm\].
+pub(super) fn plain(turn: f64, tolerance: f64) -> f64 {
+    4.0 * (1.0 - FILTER_SHARE) * tolerance / turn
 }

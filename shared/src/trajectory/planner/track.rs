@@ -2,7 +2,8 @@
 
 use super::PushError;
 use super::corner::Corner;
-use crate::trajectory::{CHANNELS, Element, Join, PathPoint, SHAPED};
+use crate::trajectory::{CHANNELS, Element, Join, PathPoint, SHAPED, Shape};
+use nalgebra::Vector3;
 
 /// Channels of two elements that meet may differ by this much (mm, rad).
 const GAP: f64 = 1e-5;
@@ -21,6 +22,12 @@ pub(super) struct Piece {
     pub corner: Corner,
     /// The machine comes to rest there.
     pub stop: bool,
+    /// Change of the programmed direction there, of the first channels.
+    pub turn: Vector3<f64>,
+    /// It is a line.
+    pub straight: bool,
+    /// It begins at a corner that was moved, as a chain of lines allows.
+    pub chained: bool,
     /// How many corners at its start and before reach into it.
     before: u8,
     /// How many corners at its end and after.
@@ -35,6 +42,8 @@ pub(super) struct Track<const E: usize> {
     pub first: u32,
     /// Serial after the newest.
     pub end: u32,
+    /// Corners at the start of elements below this serial are where they stay.
+    pub moved: u32,
     /// Corners at the start of elements below this serial have their shape.
     pub decided: u32,
     end_s: f64,
@@ -48,6 +57,7 @@ impl<const E: usize> Track<E> {
             pieces: [const { None }; E],
             first: 0,
             end: 0,
+            moved: 0,
             decided: 0,
             end_s: 0.0,
             end_value: [0.0; CHANNELS],
@@ -57,7 +67,8 @@ impl<const E: usize> Track<E> {
 
     /// Forgets everything; the next element begins at path length `s`.
     pub fn clear(&mut self, s: f64) {
-        (self.first, self.end, self.decided) = (0, 0, 0);
+        (self.first, self.end) = (0, 0);
+        (self.moved, self.decided) = (0, 0);
         self.end_s = s;
     }
 
@@ -108,6 +119,7 @@ impl<const E: usize> Track<E> {
             return Err(PushError::Unsound { line });
         }
         let mut corner = Corner::NONE;
+        let mut turn = Vector3::zeros();
         let mut stop = true;
         if self.end > 0 {
             let mut distance = 0.0;
@@ -115,6 +127,7 @@ impl<const E: usize> Track<E> {
                 distance = libm::fmax(distance, libm::fabs(start.value[i] - self.end_value[i]));
                 corner.jump[i] = start.first[i] - self.end_slope[i];
             }
+            turn = Vector3::new(corner.jump[0], corner.jump[1], corner.jump[2]);
             if distance > GAP {
                 return Err(PushError::Gap {
                     line,
@@ -128,6 +141,9 @@ impl<const E: usize> Track<E> {
             start: self.end_s,
             corner,
             stop,
+            turn,
+            straight: matches!(element.shape, Shape::Line(_)),
+            chained: false,
             before: 0,
             after: 0,
             element,
@@ -136,7 +152,21 @@ impl<const E: usize> Track<E> {
         self.end_s += length;
         self.end_value = end.value;
         self.end_slope = end.first;
+        // The element before it may not be as it was programmed any more.
+        self.renew_jump(self.end - 1);
         Ok(())
+    }
+
+    /// Computes anew by how much the direction jumps at the start of element `serial`.
+    pub fn renew_jump(&mut self, serial: u32) {
+        let Some(before) = serial.checked_sub(1).and_then(|serial| self.get(serial)) else {
+            return;
+        };
+        let slope = before.element.at(before.element.length).first;
+        if let Some(piece) = self.get_mut(serial) {
+            let start = piece.element.at(0.0).first;
+            piece.corner.jump = core::array::from_fn(|i| start[i] - slope[i]);
+        }
     }
 
     /// Lets go of the oldest elements, up to but not including `serial`.
