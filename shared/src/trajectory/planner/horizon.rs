@@ -5,7 +5,6 @@
 //! difference of the accelerations at t and one filter length before, divided by that length; where that is too
 //! much, the boxes are made smaller, and the passes repeated.
 
-extern crate std;
 use super::limits::{Bounds, ROWS};
 use super::node::{Lanes, Node, Nodes, least, most};
 use super::scan::{advance, reach};
@@ -168,18 +167,6 @@ impl Horizon {
     }
 
     fn give_up(&mut self) {
-        if std::env::var("TRACE").is_ok() {
-            std::eprintln!(
-                "gave up round {} excess {:.3?} phase {:?} commit {} last {} inforce {} relaxed {}",
-                self.round,
-                self.excess,
-                self.phase,
-                self.commit,
-                self.last,
-                self.in_force,
-                self.relaxed
-            );
-        }
         self.given_up += 1;
         self.relaxed = 0;
         self.phase = Phase::Waiting;
@@ -241,16 +228,6 @@ impl Horizon {
     }
 
     fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
-        if std::env::var("TRACE").is_ok() {
-            std::eprintln!(
-                "took round {} excess {:.3?} commit {} last {} inforce {}",
-                self.round,
-                self.excess,
-                self.commit,
-                self.last,
-                self.in_force
-            );
-        }
         for i in self.commit + 1..=self.last {
             let node = nodes.at_mut(i);
             node.x = node.trial;
