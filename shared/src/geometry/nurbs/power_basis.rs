@@ -48,9 +48,11 @@ impl PowerBasis {
 
     /// Point \[mm\], first and second derivative over `v`, by Horner's rule. Outside −1 to 1 the curve goes on by
     /// its formula.
+    #[inline]
     pub fn at(&self, v: f64) -> Moving {
-        let [mut value, mut first, mut half_second] = [Vector4::zeros(); 3];
-        for term in self.terms[..self.degree].iter().rev() {
+        let [mut first, mut half_second] = [Vector4::zeros(); 2];
+        let mut value = self.terms[self.degree - 1];
+        for term in self.terms[..self.degree - 1].iter().rev() {
             half_second = half_second * v + first;
             first = first * v + value;
             value = value * v + term;

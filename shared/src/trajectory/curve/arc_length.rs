@@ -6,26 +6,34 @@
 
 use super::FLUCTUATION;
 use crate::geometry::nurbs::PowerBasis;
+use nalgebra::Vector2;
 use thiserror::Error;
 
-/// Lobatto's nodes on [−1, 1]: the ends and the zeros of P′₁₁.
-const NODES: [f64; 12] = [
+/// Nodes of the collocation.
+const COUNT: usize = 13;
+
+/// Lobatto's nodes on [−1, 1]: the ends and the zeros of P′₁₂.
+const NODES: [f64; COUNT] = [
     -1.0,
-    -0.944_899_272_222_882_2,
-    -0.819_279_321_644_006_7,
-    -0.632_876_153_031_860_7,
-    -0.399_530_940_965_348_9,
-    -0.136_552_932_854_927_55,
-    0.136_552_932_854_927_55,
-    0.399_530_940_965_348_9,
-    0.632_876_153_031_860_7,
-    0.819_279_321_644_006_7,
-    0.944_899_272_222_882_2,
+    -0.953_309_846_642_163_9,
+    -0.846_347_564_651_872_3,
+    -0.686_188_469_081_757_5,
+    -0.482_909_821_091_336_2,
+    -0.249_286_930_106_239_98,
+    0.0,
+    0.249_286_930_106_239_98,
+    0.482_909_821_091_336_2,
+    0.686_188_469_081_757_5,
+    0.846_347_564_651_872_3,
+    0.953_309_846_642_163_9,
     1.0,
 ];
 
 /// Coefficients of the parameter, from the constant one on.
-pub(super) const COEFFICIENTS: usize = NODES.len() + 1;
+const COEFFICIENTS: usize = COUNT + 1;
+
+/// For each node, the weights of the values at all nodes in their [integral] there.
+static INTEGRALS: [[f64; COUNT]; COUNT] = integrals();
 
 /// Sweeps of Picard's iteration. Each gains a digit, and later ones more, on curves that are even enough.
 const SWEEPS: usize = 12;
@@ -44,12 +52,40 @@ pub struct TooUneven {
     pub fluctuation: f32,
 }
 
-/// Coefficients of the parameter v, from −1 to 1, over the length from the middle \[mm\], and half the length.
-pub(super) fn tabulate(curve: &PowerBasis) -> Result<([f64; COEFFICIENTS], f64), TooUneven> {
-    let (slope, half_length) = collocate(curve).ok_or(TooUneven {
+/// The parameter v, from −1 to 1, over the length from the middle of a curve.
+///
+/// Coefficients of an even power and the odd one above it side by side: Horner's rule over the square of the
+/// length then takes half as many steps, of two coefficients each, which two lanes of a processor share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Parameter([Vector2<f64>; COEFFICIENTS / 2]);
+
+impl Parameter {
+    /// v and dv/dx \[1/mm\] at the length `x` \[mm\] from the middle.
+    #[inline]
+    pub(super) fn at(&self, x: f64) -> (f64, f64) {
+        let square = x * x;
+        let [lower @ .., highest] = &self.0;
+        let (mut sum, mut slope) = (*highest, Vector2::zeros());
+        for pair in lower.iter().rev() {
+            slope = slope * square + sum;
+            sum = sum * square + pair;
+        }
+        (sum.x + x * sum.y, sum.y + 2.0 * x * (slope.x + x * slope.y))
+    }
+}
+
+/// The parameter over the length, and half the length \[mm\].
+pub(super) fn tabulate(curve: &PowerBasis) -> Result<(Parameter, f64), TooUneven> {
+    let rates = collocate(curve).ok_or(TooUneven {
         fluctuation: f32::INFINITY,
     })?;
-    let mut parameter = integral(&slope, half_length);
+    let slope = interpolate(rates);
+    let mut parameter = integral(&slope);
+    // From these coefficients and no others, so that the ends are exact.
+    let half_length = 1.0 / horner(&parameter, 1.0);
+    for coefficient in &mut parameter {
+        *coefficient *= half_length;
+    }
     for pair in NODES.windows(2) {
         let x = (pair[0] + pair[1]) / 2.0;
         let fluctuation = libm::fabs(speed(curve, horner(&parameter, x)) * horner(&slope, x) - 1.0);
@@ -65,29 +101,31 @@ pub(super) fn tabulate(curve: &PowerBasis) -> Result<([f64; COEFFICIENTS], f64),
         *coefficient *= scale;
         scale /= half_length;
     }
-    Ok((parameter, half_length))
+    let pairs = core::array::from_fn(|i| Vector2::new(parameter[2 * i], parameter[2 * i + 1]));
+    Ok((Parameter(pairs), half_length))
 }
 
-/// Solves dv/ds = 1/|C′(v)| by Picard's iteration: coefficients of 1/|C′| over x, the length from the middle as
-/// a part of half the length, and that half \[mm\]. Nothing if it does not settle or the curve has no speed.
-fn collocate(curve: &PowerBasis) -> Option<([f64; NODES.len()], f64)> {
+/// Solves dv/ds = 1/|C′(v)| by Picard's iteration: 1/|C′| \[1/mm\] at the nodes, which are
+/// spread over the length. Nothing if it does not settle or the curve has no speed.
+fn collocate(curve: &PowerBasis) -> Option<[f64; COUNT]> {
     let mut parameters = NODES;
     for _ in 0..SWEEPS {
-        let slope = interpolate(parameters.map(|v| 1.0 / speed(curve, v)));
-        let half_length = 1.0 / half_rise(&slope);
+        let rates = parameters.map(|v| 1.0 / speed(curve, v));
+        let integral_to = |row: &[f64; COUNT]| -> f64 { row.iter().zip(&rates).map(|(a, b)| a * b).sum() };
+        let integrals = INTEGRALS.each_ref().map(integral_to);
+        let half_length = 1.0 / integrals[COUNT - 1];
         if !half_length.is_normal() {
             return None;
         }
-        let parameter = integral(&slope, half_length);
         let mut change = 0.0;
-        for (v, &x) in parameters.iter_mut().zip(&NODES) {
+        for (v, integral) in parameters.iter_mut().zip(integrals) {
             // The curve is only known between its ends.
-            let new = horner(&parameter, x).clamp(-1.0, 1.0);
+            let new = (half_length * integral).clamp(-1.0, 1.0);
             change = libm::fmax(change, libm::fabs(new - *v));
             *v = new;
         }
         if change <= SETTLED {
-            return Some((slope, half_length));
+            return Some(rates);
         }
     }
     None
@@ -98,40 +136,68 @@ fn speed(curve: &PowerBasis, v: f64) -> f64 {
     curve.at(v).first.norm()
 }
 
-/// Coefficients of the polynomial with these values at the nodes: divided differences, multiplied out.
-fn interpolate(values: [f64; NODES.len()]) -> [f64; NODES.len()] {
-    let last = NODES.len() - 1;
-    let mut c = values;
-    for level in 1..=last {
-        for i in (level..=last).rev() {
-            c[i] = (c[i] - c[i - 1]) / (NODES[i] - NODES[i - level]);
+const fn integrals() -> [[f64; COUNT]; COUNT] {
+    let mut integrals = [[0.0; COUNT]; COUNT];
+    let mut j = 0;
+    while j < COUNT {
+        let mut values = [0.0; COUNT];
+        values[j] = 1.0;
+        let integral = integral(&interpolate(values));
+        let mut i = 0;
+        while i < COUNT {
+            integrals[i][j] = horner(&integral, NODES[i]);
+            i += 1;
         }
+        j += 1;
     }
-    for k in (0..last).rev() {
-        for i in k..last {
+    integrals
+}
+
+/// Coefficients of the polynomial with these values at the nodes: divided differences, multiplied out.
+const fn interpolate(values: [f64; COUNT]) -> [f64; COUNT] {
+    let mut c = values;
+    let mut level = 1;
+    while level < COUNT {
+        let mut i = COUNT - 1;
+        while i >= level {
+            c[i] = (c[i] - c[i - 1]) / (NODES[i] - NODES[i - level]);
+            i -= 1;
+        }
+        level += 1;
+    }
+    let mut k = COUNT - 1;
+    while k > 0 {
+        k -= 1;
+        let mut i = k;
+        while i < COUNT - 1 {
             c[i] -= NODES[k] * c[i + 1];
+            i += 1;
         }
     }
     c
 }
 
-/// Half the integral of a polynomial from −1 to 1; odd powers have no part in that.
-fn half_rise(polynomial: &[f64; NODES.len()]) -> f64 {
-    let even = polynomial.iter().enumerate().step_by(2);
-    even.map(|(power, c)| c / (power + 1) as f64).sum()
-}
-
-/// Coefficients of `scale` times the integral of a polynomial, which is as much above 0 at 1 as below it at −1.
-fn integral(polynomial: &[f64; NODES.len()], scale: f64) -> [f64; COEFFICIENTS] {
+/// Coefficients of the integral of a polynomial that is as much above 0 at 1 as below it at −1.
+const fn integral(polynomial: &[f64; COUNT]) -> [f64; COEFFICIENTS] {
     let mut integral = [0.0; COEFFICIENTS];
-    for (power, c) in (1..).zip(polynomial) {
-        integral[power] = scale * c / power as f64;
+    let mut power = 1;
+    while power < COEFFICIENTS {
+        integral[power] = polynomial[power - 1] / power as f64;
+        if power % 2 == 0 {
+            integral[0] -= integral[power];
+        }
+        power += 1;
     }
-    integral[0] = -integral.iter().skip(2).step_by(2).sum::<f64>();
     integral
 }
 
 /// The value of a polynomial.
-fn horner(polynomial: &[f64], x: f64) -> f64 {
-    polynomial.iter().rev().fold(0.0, |value, c| value * x + c)
+const fn horner(polynomial: &[f64], x: f64) -> f64 {
+    let mut value = 0.0;
+    let mut power = polynomial.len();
+    while power > 0 {
+        power -= 1;
+        value = value * x + polynomial[power];
+    }
+    value
 }
