@@ -20,7 +20,7 @@ pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
 pub use matched_turn::MatchedTurn;
 pub use path::{Path, PathError, PathPoint, PathSpace};
 pub use plan::{SpeedPlan, SpeedStep};
-pub use planner::{Output, PlanLimits, Planner, PushError};
+pub use planner::{Output, PlanLimits, Planner, PushError, Way};
 pub use reference::{AxisReference, ReferenceError, reference};
 pub use speed::{SpeedError, SpeedLimits, SpeedState};
 pub use stop::StopProfile;

@@ -38,8 +38,9 @@ struct Sample {
     /// Derivatives of the rows over s.
     first: Lanes,
     second: Lanes,
-    /// Highest ṡ².
-    cap: f64,
+    /// ṡ² of the feed, and the highest one for all other reasons.
+    feed: f64,
+    limit: f64,
     /// Curvature \[1/mm\].
     bend: f64,
 }
@@ -97,7 +98,8 @@ impl<const E: usize> Ground<'_, E> {
         let mut sample = Sample {
             first: [0.0; ROWS],
             second: [0.0; ROWS],
-            cap: feed * feed,
+            feed: feed * feed,
+            limit: f64::INFINITY,
             bend: position_norm(&point.second),
         };
         sample.first[PATH_ROW] = 1.0;
@@ -105,16 +107,12 @@ impl<const E: usize> Ground<'_, E> {
             let rate = axes.velocity[axis];
             sample.first[PATH_ROW + 1 + axis] = rate as f32;
             sample.second[PATH_ROW + 1 + axis] = axes.acceleration[axis] as f32;
-            if libm::fabs(rate) * feed > self.bounds.velocity[axis] {
-                let speed = self.bounds.velocity[axis] / rate;
-                sample.cap = libm::fmin(sample.cap, speed * speed);
-            }
+            let speed = self.bounds.velocity[axis] / rate;
+            sample.limit = libm::fmin(sample.limit, speed * speed);
         }
         // The output filter cuts curves by T²/24 of the acceleration across.
         let filter = self.bounds.filter * self.bounds.filter / 24.0;
-        if filter * sample.bend * sample.cap > FILTER_SHARE * tolerance {
-            sample.cap = FILTER_SHARE * tolerance / (filter * sample.bend);
-        }
+        sample.limit = libm::fmin(sample.limit, FILTER_SHARE * tolerance / (filter * sample.bend));
         Ok((sample, axes))
     }
 
@@ -189,11 +187,6 @@ impl Grid {
         nodes.push(Node { s, ..Node::ZERO });
     }
 
-    /// Oldest element that is still needed.
-    pub fn needs(&self) -> u32 {
-        self.hint.saturating_sub(REACH)
-    }
-
     /// Appends an interval, if the path is settled far enough; says whether it did.
     pub fn extend<const E: usize, const N: usize>(
         &mut self,
@@ -237,16 +230,19 @@ impl Grid {
         };
         let delta = end - self.s;
         cover(&mut from, &mid, &mut to);
-        let cap = libm::fmin(libm::fmin(from.cap, to.cap), mid.cap);
+        let least = |value: fn(&Sample) -> f64| libm::fmin(libm::fmin(value(&from), value(&to)), value(&mid));
+        let (feed_cap, limit) = (least(|sample| sample.feed), least(|sample| sample.limit));
         let newest = nodes.end - 1;
         let node = nodes.at_mut(newest);
-        node.cap = libm::fmin(node.cap, cap);
+        node.feed = libm::fmin(node.feed, feed_cap);
+        node.limit = libm::fmin(node.limit, limit);
         node.delta = delta;
         node.sides = [side(&from, 0.0, bounds), side(&to, delta, bounds)];
         let at_break = end >= next.s - SAME;
         nodes.push(Node {
             s: end,
-            cap: if at_break && next.stop { 0.0 } else { cap },
+            feed: feed_cap,
+            limit: if at_break && next.stop { 0.0 } else { limit },
             ..Node::ZERO
         });
         if at_break && next.real {
@@ -284,7 +280,10 @@ fn step(next: &Break, grid: &Grid, from: &Sample, feed: f64, bounds: &Bounds) ->
 
 /// Whether the limits between the ends of an interval are as a straight line would have them.
 fn straight(from: &Sample, mid: &Sample, to: &Sample, bounds: &Bounds) -> bool {
-    let mut x = libm::fmin(libm::fmin(from.cap, to.cap), mid.cap) as f32;
+    let mut x = f32::INFINITY;
+    for sample in [from, mid, to] {
+        x = x.min(libm::fmin(sample.feed, sample.limit) as f32);
+    }
     for row in 0..ROWS {
         let most = from.second[row]
             .abs()

@@ -5,6 +5,7 @@
 //! difference of the accelerations at t and one filter length before, divided by that length; where that is too
 //! much, the boxes are made smaller, and the passes repeated.
 
+use super::WORK;
 use super::limits::{Bounds, ROWS};
 use super::node::{Lanes, Node, Nodes, least, most};
 use super::scan::{advance, reach};
@@ -24,6 +25,8 @@ const TIGHTEN_FROM: f32 = 0.01;
 const LOOSEN_FROM: f32 = 0.02;
 /// No box is made smaller than this share of the acceleration.
 const LEAST_BOX: f32 = 0.03;
+/// Time before the end's slowing that is planned anew, in lengths of the output filter.
+const SLACK: f64 = 14.0;
 /// Node visits of both passes and all rounds that a plan is expected to need for each node.
 const VISITS: u32 = 16;
 
@@ -97,33 +100,38 @@ impl Horizon {
         player: u32,
         left: f64,
         rested: bool,
-        visits: u32,
+        factor: f64,
         bounds: &Bounds,
     ) {
         let last = nodes.end - 1;
         if last <= self.in_force {
             return;
         }
-        // What slows down only for the end of the plan in force is planned anew, and what the filter reaches before.
+        // What slows down only for the end of the plan in force is planned anew, and some time before it.
         let mut slowing = self.in_force;
         while slowing > player && nodes.at(slowing - 1).x > nodes.at(slowing).x {
             slowing -= 1;
         }
         let mut before = 0.0;
-        while slowing > player && before < 14.0 * bounds.filter {
+        while slowing > player && before < SLACK * bounds.filter {
             slowing -= 1;
-            before += duration(nodes.at(slowing), nodes.at(slowing).x, nodes.at(slowing + 1).x);
+            before += nodes.at(slowing).lasts;
         }
-        // And what will have been played before the plan can be ready stays.
-        let mut lead = f64::from(2 + VISITS * (last - slowing) / visits) * PATH_PERIOD_S;
-        let whole: f64 = (player..self.in_force)
-            .map(|i| duration(nodes.at(i), nodes.at(i).x, nodes.at(i + 1).x))
-            .sum();
-        lead = libm::fmin(lead, 0.6 * (left + whole));
+        // What will have been played before the plan can be ready stays.
+        let mut lead = f64::from(2 + VISITS * (last - slowing) / WORK) * PATH_PERIOD_S;
         let (mut commit, mut time) = (player, left);
         while commit < self.in_force && (time < lead || commit < slowing) {
-            time += duration(nodes.at(commit), nodes.at(commit).x, nodes.at(commit + 1).x);
+            time += nodes.at(commit).lasts;
             commit += 1;
+        }
+        if commit == self.in_force && time < 1.6 * lead {
+            // Little is left: there must be time to go on without a stop.
+            lead = 0.6 * time;
+            (commit, time) = (player, left);
+            while commit < self.in_force && time < lead {
+                time += nodes.at(commit).lasts;
+                commit += 1;
+            }
         }
         let (mut history, mut before) = (commit, 0.0);
         if nodes.at(commit).x <= 0.0 {
@@ -135,7 +143,7 @@ impl Horizon {
         }
         while history > nodes.first && before <= 1.5 * bounds.filter {
             history -= 1;
-            before += duration(nodes.at(history), nodes.at(history).x, nodes.at(history + 1).x);
+            before += nodes.at(history).lasts;
         }
         (self.history, self.commit, self.last) = (history, commit, last);
         (self.round, self.warm, self.excess) = (0, true, REST);
@@ -144,7 +152,7 @@ impl Horizon {
         for i in history..commit {
             let (from, to) = (*nodes.at(i), nodes.at(i + 1).x);
             let next = nodes.at_mut(i + 1);
-            next.time = from.time + duration(&from, from.x, to) + pause(next.cap, bounds);
+            next.time = from.time + from.lasts + pause(next, bounds);
             let node = nodes.at_mut(i);
             node.trial = node.x;
             let a = ((to - from.x) / (2.0 * from.delta)) as f32;
@@ -152,8 +160,16 @@ impl Horizon {
                 side.allowed = side.accelerations(a, from.x as f32);
             }
         }
-        let commit = nodes.at_mut(commit);
-        commit.trial = commit.x;
+        nodes.at_mut(commit).trial = nodes.at(commit).x;
+        // A feed that was lowered holds for what is new; the rate takes care of the rest.
+        for i in commit + 1..=last {
+            let node = nodes.at_mut(i);
+            node.factor = if i > self.in_force {
+                factor
+            } else {
+                libm::fmax(factor, node.factor)
+            };
+        }
         nodes.at_mut(last).reach = 0.0;
         self.phase = Phase::Back(last);
     }
@@ -187,7 +203,7 @@ impl Horizon {
             }
             Phase::Back(i) => {
                 if self.round > 0 && self.excess.iter().all(|excess| *excess <= GOOD) {
-                    self.take(nodes);
+                    self.take(nodes, bounds);
                 } else if nodes.at(i).reach < nodes.at(i).x * (1.0 - 1e-6) {
                     self.too_fast(nodes, bounds);
                 } else if self.round == ROUNDS {
@@ -227,10 +243,13 @@ impl Horizon {
         self.phase = Phase::Back(self.last);
     }
 
-    fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
-        for i in self.commit + 1..=self.last {
+    fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+        for i in self.commit..self.last {
+            let next = nodes.at_mut(i + 1);
+            next.x = next.trial;
+            let end = next.time - pause(next, bounds);
             let node = nodes.at_mut(i);
-            node.x = node.trial;
+            node.lasts = end - node.time;
         }
         self.in_force = self.last;
         self.taken += 1;
@@ -240,12 +259,10 @@ impl Horizon {
 
     /// Speed, time and accelerations of the interval of node `i`, and what its past allows them to be.
     fn forward<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
-        let (node, next) = (*nodes.at(i), *nodes.at(i + 1));
-        let x = advance(&node, node.trial, next.reach);
-        let time = node.time + duration(&node, node.trial, x);
-        let after = nodes.at_mut(i + 1);
-        after.trial = x;
-        after.time = time + pause(next.cap, bounds);
+        let (node, next) = (nodes.at(i), nodes.at(i + 1));
+        let x = advance(node, node.trial, next.reach);
+        let time = node.time + duration(node, node.trial, x);
+        let leaves = time + pause(next, bounds);
         let a = ((x - node.trial) / (2.0 * node.delta)) as f32;
         let (from, to) = (
             node.time - bounds.filter,
@@ -255,27 +272,29 @@ impl Horizon {
             self.away += 1;
         }
         let was = self.range(nodes, self.away, [from, to], bounds);
-        for side in 0..2 {
-            let wanted = node.sides[side].accelerations(a, node.trial as f32);
-            nodes.at_mut(i).sides[side].allowed = self.clamp(&wanted, &was, bounds);
+        let wanted = [0, 1].map(|side: usize| node.sides[side].accelerations(a, node.trial as f32));
+        let after = nodes.at_mut(i + 1);
+        (after.trial, after.time) = (x, leaves);
+        for (side, wanted) in nodes.at_mut(i).sides.iter_mut().zip(wanted) {
+            side.allowed = self.clamp(&wanted, &was, bounds);
         }
     }
 
     /// What the future allows the accelerations of node `i` to be; changes its boxes by that and its past.
     fn repair<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
-        let (node, next) = (*nodes.at(i), *nodes.at(i + 1));
-        let end = next.time - pause(next.cap, bounds);
+        let (node, next) = (nodes.at(i), nodes.at(i + 1));
+        let end = next.time - pause(next, bounds);
         let a = ((next.trial - node.trial) / (2.0 * node.delta)) as f32;
         let (from, to) = (libm::fmax(node.time + bounds.filter, end), end + bounds.filter);
         while self.away > i + 1 && nodes.at(self.away).time > from {
             self.away -= 1;
         }
         let will = self.range(nodes, self.away, [from, to], bounds);
-        for side in 0..2 {
-            let is = node.sides[side].accelerations(a, node.trial as f32);
+        let node = nodes.at_mut(i);
+        for place in &mut node.sides {
+            let is = place.accelerations(a, node.trial as f32);
             let by_future = self.clamp(&is, &will, bounds);
-            let by_past = node.sides[side].allowed;
-            let place = &mut nodes.at_mut(i).sides[side];
+            let by_past = place.allowed;
             place.allowed = by_future;
             let grow = self.round <= self.relaxed;
             for row in 0..ROWS {
@@ -362,7 +381,7 @@ impl Horizon {
                 break;
             }
             let (node, next) = (nodes.at(i), nodes.at(i + 1));
-            let end = next.time - pause(next.cap, bounds);
+            let end = next.time - pause(next, bounds);
             if node.time <= to && end >= from {
                 let [start, stop] = &node.sides;
                 let at = |time: f64| {
@@ -389,13 +408,13 @@ impl Horizon {
 const REST: Lanes = [0.0; ROWS];
 
 /// Time from the start to the end of the interval of `node` with these ṡ² \[s\].
-pub(super) fn duration(node: &Node, from: f64, to: f64) -> f64 {
+fn duration(node: &Node, from: f64, to: f64) -> f64 {
     2.0 * node.delta / (libm::sqrt(from) + libm::sqrt(to))
 }
 
-/// Time that the machine stands at a node with this cap: until the output filter has come to rest \[s\].
-pub(super) fn pause(cap: f64, bounds: &Bounds) -> f64 {
-    if cap > 0.0 {
+/// Time that the machine stands at a node: until the output filter has come to rest \[s\].
+fn pause(node: &Node, bounds: &Bounds) -> f64 {
+    if node.limit > 0.0 {
         0.0
     } else {
         bounds.filter + PATH_PERIOD_S

@@ -42,9 +42,9 @@ const MIN_FILTER: f64 = 4.0;
 /// Share of the tolerance that the output filter may use on curves; rounding has the rest.
 pub(super) const FILTER_SHARE: f64 = 0.4;
 /// What the plan uses of the accelerations, so that there is room for a change of the rate.
-const ACCELERATION_RESERVE: f64 = 0.97;
+pub(super) const ACCELERATION_RESERVE: f64 = 0.97;
 /// The same of the jerks.
-const JERK_RESERVE: f64 = 0.95;
+pub(super) const JERK_RESERVE: f64 = 0.95;
 
 /// Path and axes, each with limits of its own, and one unused lane that makes them eight.
 pub(super) const ROWS: usize = 8;

@@ -11,6 +11,7 @@ mod horizon;
 mod limits;
 mod node;
 mod player;
+mod rate;
 mod rounding;
 mod scan;
 mod track;
@@ -21,21 +22,27 @@ use super::reference::at_unit_speed;
 use super::{Element, PathSpace, ReferenceError, SpeedState};
 use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics};
+use crate::motion::PATH_PERIOD_S;
 use filter::Filter;
 use grid::{Grid, Ground};
 use horizon::Horizon;
-use limits::Bounds;
+use limits::{ACCELERATION_RESERVE, Bounds, JERK_RESERVE, PATH_ROW, ROWS};
 use node::Nodes;
 use player::Player;
+use rate::{Gentle, Rate};
 use thiserror::Error;
 use track::Track;
 
+/// Highest feed override.
+const MOST_OVERRIDE: f64 = 2.0;
 /// Work of one tick, in visits of nodes.
-const VISITS: u32 = 16;
+const WORK: u32 = 16;
 /// Work to append a node, in the same unit.
 const APPEND: u32 = 3;
-/// Nodes behind the machine that are kept as long as there is room ahead.
-const KEPT: u32 = 32;
+/// Nodes behind the machine that are kept, to run backwards along; fewer where elements are short.
+const KEPT: u32 = 64;
+/// Nodes behind the machine that are always kept: more than an output filter is long.
+const NEEDED: u32 = 32;
 
 /// Elements stream in at one end, and the references of the axes come out at the other.
 ///
@@ -50,14 +57,33 @@ pub struct Planner<const ELEMENTS: usize, const NODES: usize> {
     nodes: Nodes<NODES>,
     horizon: Horizon,
     player: Player,
+    rate: Rate,
+    way: Way,
+    /// Feed override.
+    factor: f64,
     filter: Filter,
     /// Where the unfiltered references are.
     planned: SpeedState,
     axes: [f64; AXES],
     planned_hint: u32,
     output_hint: u32,
+    kept_hint: u32,
+    /// Node that the machine can go back to.
+    oldest: u32,
     /// Ticks since the plan has come to rest.
     resting: u32,
+}
+
+/// Which way the machine goes along the path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Way {
+    /// On to the end.
+    #[default]
+    Forward,
+    /// To a stop, as soon as the limits allow, and stay.
+    Hold,
+    /// Back along what was passed, as far as it is kept.
+    Back,
 }
 
 /// What the machine shall do at one tick.
@@ -106,6 +132,9 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             nodes: Nodes::new(),
             horizon: Horizon::NONE,
             player: Player::NONE,
+            rate: Rate::FORWARD,
+            way: Way::Forward,
+            factor: 1.0,
             filter: Filter::new(),
             planned: SpeedState {
                 s: 0.0,
@@ -115,6 +144,8 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             axes: [0.0; AXES],
             planned_hint: 0,
             output_hint: 0,
+            kept_hint: 0,
+            oldest: 0,
             resting: 0,
         }
     }
@@ -128,9 +159,11 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.grid.start(s, axes, &mut self.nodes);
         self.horizon = Horizon::NONE;
         self.player = Player::NONE;
+        self.rate = Rate::FORWARD;
+        self.way = Way::Forward;
         self.planned = SpeedState { s, v: 0.0, a: 0.0 };
         self.axes = *axes;
-        (self.planned_hint, self.output_hint) = (0, 0);
+        (self.planned_hint, self.output_hint, self.kept_hint, self.oldest) = (0, 0, 0, 0);
         let rest = AxisMotion {
             position: *axes,
             velocity: [0.0; AXES],
@@ -151,6 +184,17 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.track.push(element)
     }
 
+    /// Goes another way, gently, from now on.
+    pub fn go(&mut self, way: Way) {
+        self.way = way;
+    }
+
+    /// Feed override from now on: 0 to 2, and 1 for the programmed feed. What is not between these is taken as the
+    /// nearest that is.
+    pub fn set_override(&mut self, factor: f64) {
+        self.factor = libm::fmin(libm::fmax(factor, 0.0), MOST_OVERRIDE);
+    }
+
     /// Where the path is before the output filter.
     pub fn planned(&self) -> SpeedState {
         self.planned
@@ -168,7 +212,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     }
 
     fn plan(&mut self, kinematics: &Kinematics) -> Result<(), ReferenceError> {
-        let mut work = VISITS;
+        let mut work = WORK;
         while work > 0 {
             if !self.horizon.waiting() {
                 self.horizon.step(&mut self.nodes, &self.bounds);
@@ -198,7 +242,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
                 next,
                 left,
                 self.resting >= self.bounds.filter_ticks as u32,
-                VISITS,
+                libm::fmax(self.factor, 1.0),
                 &self.bounds,
             );
             if self.horizon.waiting() {
@@ -210,48 +254,128 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
 
     /// Lets go of what lies behind.
     fn release(&mut self) {
-        let node = self.player.node.saturating_sub(KEPT);
-        self.nodes.first = self.nodes.first.max(node);
-        let element = self
-            .output_hint
-            .saturating_sub(track::REACH + 1)
-            .min(self.grid.needs());
-        self.track.release(element);
+        let nodes = if self.nodes.room() > NODES / 2 {
+            KEPT
+        } else {
+            NEEDED
+        };
+        self.nodes.first = self.nodes.first.max(self.player.node.saturating_sub(nodes));
+        // Nodes remember accelerations, for which elements are not needed: those of short lines go first.
+        let element = if self.track.room() > ELEMENTS / 2 {
+            self.track
+                .find(self.nodes.at(self.nodes.first).s, &mut self.kept_hint);
+            self.kept_hint
+        } else {
+            self.planned_hint
+        };
+        self.track.release(element.saturating_sub(track::REACH));
+        let from = self.track.kept_s();
+        self.oldest = self.oldest.max(self.nodes.first);
+        while self.oldest < self.player.node && self.nodes.at(self.oldest).s < from {
+            self.oldest += 1;
+        }
     }
 
     fn play(&mut self, kinematics: &Kinematics) -> Result<Output, ReferenceError> {
         let ticks = self.bounds.filter_ticks as u32;
         let last = self.horizon.in_force();
-        let planned = self.player.step(&self.nodes, last, ticks);
+        let time = self.rate.pass();
+        self.player.step(time, &self.nodes, [self.oldest, last], ticks);
         self.horizon.watch(self.player.node);
-        if planned.s == self.planned.s {
-            self.resting = self.resting.saturating_add(1);
+        let plan = self.player.state(&self.nodes, last);
+        self.resting = if plan.s == self.planned.s {
+            self.resting.saturating_add(1)
         } else {
-            self.resting = 0;
-        }
-        self.planned = planned;
-        let axes = match self.track.at(planned.s, &mut self.planned_hint) {
-            Some(point) => {
-                at_unit_speed(kinematics, &point, self.space, &self.axes)?.at_speed(planned.v, planned.a)
-            }
+            0
+        };
+        let unit = match self.track.at(plan.s, &mut self.planned_hint) {
+            Some(point) => at_unit_speed(kinematics, &point, self.space, &self.axes)?,
             None => AxisMotion {
                 position: self.axes,
                 velocity: [0.0; AXES],
                 acceleration: [0.0; AXES],
             },
         };
+        self.change_rate(&plan, &unit);
+        let Rate { value, change } = self.rate;
+        self.planned = SpeedState {
+            s: plan.s,
+            v: value * plan.v,
+            a: value * value * plan.a + change * plan.v,
+        };
+        let axes = unit.at_speed(self.planned.v, self.planned.a);
         self.axes = axes.position;
-        let (axes, along) = self.filter.push(&axes, &planned);
+        let (axes, along) = self.filter.push(&axes, &self.planned);
         let line = self
             .track
             .find(along.s, &mut self.output_hint)
             .map_or(0, |piece| piece.element.line);
+        let stands = match self.way {
+            Way::Forward => self.player.node >= last && self.horizon.waiting(),
+            Way::Hold => value == 0.0,
+            Way::Back => value == 0.0 || self.player.node == self.oldest,
+        };
         Ok(Output {
             axes,
             along,
             line,
-            at_rest: self.resting >= ticks && self.player.node >= last && self.horizon.waiting(),
+            at_rest: stands && self.resting >= ticks,
         })
+    }
+
+    /// Brings the rate nearer to what is wanted, where the plan is at `plan` and the axes move by `unit` over s.
+    fn change_rate(&mut self, plan: &SpeedState, unit: &AxisMotion) {
+        let last = self.horizon.in_force();
+        let planned_for = self.nodes.at(self.player.node).factor;
+        let forward = libm::fmin(self.factor / planned_for, 1.0);
+        let wanted = match self.way {
+            Way::Forward => forward,
+            Way::Hold => 0.0,
+            Way::Back => -forward,
+        };
+        let Rate { value, change } = self.rate;
+        if value == wanted && change == 0.0 && wanted >= 0.0 {
+            return;
+        }
+        let axes = unit.at_speed(plan.v, plan.a);
+        let rows = |path: f64, axes: &[f64; AXES]| {
+            let mut rows = [0.0; ROWS];
+            rows[PATH_ROW] = path;
+            rows[PATH_ROW + 1..=AXES].copy_from_slice(axes);
+            rows
+        };
+        let speed = rows(plan.v, &axes.velocity);
+        let gentle = Gentle::at(&speed, &self.player, &self.nodes, last, &self.bounds);
+        let wanted = if wanted < 0.0 && self.ends_behind(&gentle) {
+            0.0
+        } else {
+            wanted
+        };
+        // What the output filter forgets with this tick decides how much the accelerations may be.
+        let (old_axes, old) = self.filter.oldest();
+        let old = rows(old.a, &old_axes.acceleration);
+        let planned = rows(plan.a, &axes.acceleration);
+        let mut range = [f64::NEG_INFINITY, f64::INFINITY];
+        for row in 0..ROWS {
+            let most = f64::from(self.bounds.acceleration[row]) / ACCELERATION_RESERVE;
+            let swing = f64::from(self.bounds.swing[row]) / JERK_RESERVE;
+            let now = value * value * planned[row];
+            let low = (libm::fmax(-most, old[row] - swing) - now) / speed[row];
+            let high = (libm::fmin(most, old[row] + swing) - now) / speed[row];
+            if speed[row] != 0.0 {
+                range[0] = libm::fmax(range[0], libm::fmin(low, high));
+                range[1] = libm::fmin(range[1], libm::fmax(low, high));
+            }
+        }
+        self.rate.step(wanted, &gentle, range);
+    }
+
+    /// Whether the machine, going back, has to slow down for the end of what is kept.
+    fn ends_behind(&self, gentle: &Gentle) -> bool {
+        let first = self.nodes.at(self.oldest);
+        let rate = libm::fabs(self.rate.value);
+        let needed = rate * (0.5 * rate / gentle.change + gentle.change / gentle.bend);
+        first.x > 0.0 && self.player.gone(&self.nodes, self.oldest) <= needed + 4.0 * PATH_PERIOD_S
     }
 }
 

@@ -38,10 +38,16 @@ pub(super) struct Node {
     pub s: f64,
     /// Length of the interval \[mm\].
     pub delta: f64,
-    /// Highest ṡ² here.
-    pub cap: f64,
+    /// ṡ² of the programmed feed.
+    pub feed: f64,
+    /// Highest ṡ² for all other reasons; 0 where the machine stops.
+    pub limit: f64,
+    /// Factor of the feed that the node is planned with, 1 or more.
+    pub factor: f64,
     /// ṡ² of the plan in force.
     pub x: f64,
+    /// Time that the plan in force takes from here to the next node \[s\].
+    pub lasts: f64,
     /// ṡ² of the plan being made.
     pub trial: f64,
     /// Highest ṡ² from which the plan being made can come to rest.
@@ -71,13 +77,23 @@ impl Node {
     pub const ZERO: Self = Self {
         s: 0.0,
         delta: 0.0,
-        cap: 0.0,
+        feed: 0.0,
+        limit: 0.0,
+        factor: 1.0,
         x: 0.0,
+        lasts: 0.0,
         trial: 0.0,
         reach: 0.0,
         time: 0.0,
         sides: [Side::ZERO; 2],
     };
+}
+
+impl Node {
+    /// Highest ṡ² here; 0 where the machine stops.
+    pub fn cap(&self) -> f64 {
+        libm::fmin(self.feed * self.factor * self.factor, self.limit)
+    }
 }
 
 /// The last `N` nodes, by serial number; `N` is a power of two.

@@ -74,7 +74,7 @@ impl Lines {
 /// than `next`.
 pub(super) fn reach(node: &Node, next: f64) -> f64 {
     let lines = Lines::new(node, next);
-    let mut x = node.cap as f32;
+    let mut x = node.cap() as f32;
     // The room between the limits is concave in x, and there is some at 0: from above, the crossings of the
     // limits in force come down to where there is none.
     for _ in 0..ITERATIONS {

@@ -169,6 +169,12 @@ impl<const E: usize> Track<E> {
         }
     }
 
+    /// Path length from which on the path is as it was, though older elements are gone.
+    pub fn kept_s(&self) -> f64 {
+        let sound = if self.first == 0 { 0 } else { self.first + REACH };
+        self.get(sound).map_or(self.end_s, |piece| piece.start)
+    }
+
     /// Lets go of the oldest elements, up to but not including `serial`.
     pub fn release(&mut self, serial: u32) {
         self.first = self.first.max(serial.min(self.end));
