@@ -22,4 +22,4 @@ pub use outcome::{Outcome, of_file};
 pub use spiral::{Spiral, SpiralError};
 
 /// A tick \[s\].
-pub const TICK: f64 = 0.001;
+pub const TICK: f64 = shared::motion::PATH_PERIOD_S;

@@ -4,14 +4,10 @@ use super::TICK;
 use crate::meter::Meter;
 use shared::io::AXES;
 use shared::kinematics::Kinematics;
-use shared::trajectory::{Element, PathSpace, PlanLimits, Planner, PushError, ReferenceError};
+use shared::trajectory::{BoardPlanner, Element, PathSpace, PlanLimits, PushError, ReferenceError};
 use std::hint::black_box;
 use thiserror::Error;
 
-/// Elements that the planner of the motion board holds.
-const ELEMENTS: usize = 128;
-/// Nodes of its plan.
-const NODES: usize = 256;
 /// Elements that come over the link in a tick at most.
 const CREDITS: usize = 8;
 
@@ -92,7 +88,7 @@ pub fn run(
     kinematics: &Kinematics,
     meter: &mut impl Meter,
 ) -> Result<Vec<Sample>, Stuck> {
-    let mut planner = Box::new(Planner::<ELEMENTS, NODES>::new());
+    let mut planner = Box::new(BoardPlanner::new());
     planner.start(limits, PathSpace::Axes, 0.0, start);
     let length: f64 = elements.iter().map(|element| element.length).sum();
     let mut coming = elements.iter();
