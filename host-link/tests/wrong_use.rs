@@ -301,7 +301,7 @@ fn a_program_outside_travel_is_named_by_axis_and_amount() {
 fn what_a_program_cannot_mean_is_named_by_its_line() {
     let line = format!("line {}", line_of(PROGRAM, "N100"));
     for (name, to, what) in [
-        ("word.ngc", "N100 K3 M62", "K"),
+        ("word.ngc", "N100 D3 M62", "D"),
         ("code.ngc", "N100 G5.1 M62", "G5.1"),
     ] {
         let program = changed(name, PROGRAM, "N100 M62", to);
@@ -312,6 +312,54 @@ fn what_a_program_cannot_mean_is_named_by_its_line() {
         .refusal();
         assert_says(&said, &[name, &line, what, "not understood"]);
     }
+}
+
+#[test]
+fn words_that_the_machine_or_the_curve_cannot_have_are_named_by_line_and_column() {
+    let said = |name, block: &str| {
+        let program = changed(name, PROGRAM, "N100 M62", &format!("N100 {block}\nM62"));
+        Attempt {
+            program,
+            ..Attempt::new()
+        }
+        .refusal()
+    };
+    let line = line_of(PROGRAM, "N100");
+    let at = |line: usize, column: u32| format!("line {line}, column {column}: ");
+    for (name, block, parts) in [
+        ("spindle.ngc", "S500 M3", ["M3 needs a spindle", "M62 P"]),
+        (
+            "input.ngc",
+            "     M66 P0 L3 Q5",
+            ["M66 waits for an input", "G4 P"],
+        ),
+        (
+            "both.ngc",
+            "     G64 G2 I5 P2",
+            ["P could belong to G64 or to G2", "two blocks"],
+        ),
+        (
+            "plane.ngc",
+            "     G18 G2 X5 J2",
+            ["J is not in the plane of G18", "I and K"],
+        ),
+        ("tolerance.ngc", "     G64 P0 Q0", ["P0 is not possible", "G61"]),
+    ] {
+        let said = said(name, block);
+        assert_says(&said, &parts);
+        assert_says(&said, &[name, &format!("line {line}, column ")]);
+    }
+    let open = said("open.ngc", "G5.2 X400 Y300");
+    assert_says(
+        &open,
+        &[
+            &at(line + 1, 1),
+            &format!("the G5.2 of line {line} is not complete"),
+            "G5.3",
+        ],
+    );
+    let flat = said("flat.ngc", "G5.2 X400 Y300 Z90");
+    assert_says(&flat, &[&at(line, 21), "G6.2"]);
 }
 
 #[test]

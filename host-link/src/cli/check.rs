@@ -58,6 +58,7 @@ fn print(paths: &[PlannedPath]) {
         let kind = match path.motion {
             Motion::Rapid => "rapid",
             Motion::Feed => "feed",
+            Motion::Stand => "stand",
         };
         let speeds = path.steps().map(|step| step.velocity);
         let speeds = std::iter::once(path.limits.velocity).chain(speeds);

@@ -1,5 +1,6 @@
 //! What can be wrong with an NC program, and where.
 
+use std::fmt;
 use thiserror::Error;
 
 /// A place in a program; both count from 1.
@@ -11,9 +12,15 @@ pub struct Place {
     pub column: u32,
 }
 
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}, column {}", self.line, self.column)
+    }
+}
+
 /// A problem and its place.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("line {}, column {}: {problem}", place.line, place.column)]
+#[error("{place}: {problem}")]
 pub struct NcError {
     /// Where.
     pub place: Place,
@@ -76,6 +83,16 @@ pub enum Problem {
     /// A word that belongs to a code that is not in the block.
     #[error("{0} has no code in this block that it belongs to")]
     Orphan(String),
+    /// A word that could belong to two codes.
+    #[error("{word} could belong to {first} or to {second}: write them in two blocks")]
+    Ambiguous {
+        /// The word.
+        word: String,
+        /// First code.
+        first: &'static str,
+        /// Second code.
+        second: &'static str,
+    },
     /// A code without a word it needs.
     #[error("{code} needs {word}")]
     Missing {
@@ -95,7 +112,7 @@ pub enum Problem {
         reason: &'static str,
     },
     /// Axis words without G0, G1, G2 or G3.
-    #[error("axis words without a motion: G0, G1, G2 or G3 must come first")]
+    #[error("axis words without a motion: G0, G1, G2, G3, G5.2 or G6.2 must come first, also after a NURBS")]
     NoMotion,
     /// Motion without tool centre point control.
     #[error("G43.4 must come before the first motion of the tip: X Y Z are its coordinates")]
@@ -103,21 +120,100 @@ pub enum Problem {
     /// The first motion must be complete.
     #[error("the first motion of the tip must be a G0 with X Y Z and all rotary axes of the machine")]
     FirstMotion,
-    /// G53 with G1, G2 or G3.
+    /// G53 with a feed.
     #[error("G53 moves axes with G0 only: write G53 G0")]
     AxesNeedRapid,
-    /// M62 for a motion in axis space.
-    #[error("M62 cannot take effect with G53: in axis space beams and tracking stay off")]
-    OnInAxes,
+    /// M62 or M64 for a motion in axis space.
+    #[error("{0} cannot take effect with G53: in axis space beams and tracking stay off")]
+    OnInAxes(&'static str),
     /// An arc with centre and radius.
-    #[error("an arc has a centre (I J) or a radius (R), not both")]
+    #[error("an arc has a centre (I J K) or a radius (R), not both")]
     CentreAndRadius,
-    /// G1, G2 or G3 without F.
-    #[error("G1, G2 and G3 need a feed: no F was given")]
-    NoFeed,
+    /// I, J or K of the axis that the arc goes about.
+    #[error("{word} is not in the plane of {plane}, where the centre has {words}")]
+    OffPlane {
+        /// The word.
+        word: String,
+        /// G17, G18 or G19.
+        plane: &'static str,
+        /// The words of that plane.
+        words: &'static str,
+    },
+    /// A feed motion without F.
+    #[error("{0} needs a feed: no F was given, or none since G94")]
+    NoFeed(&'static str),
+    /// A feed motion with G93 and without F.
+    #[error("with G93 every block that feeds has its own F: 1 / (minutes that {0} takes)")]
+    NoInverseTime(&'static str),
+    /// F with G93 in a block that does not feed.
+    #[error("with G93 F means the time of its own block, and this one does not feed: leave F out")]
+    InverseTimeAlone,
     /// G4, M62, M63 or M67 without a motion after it.
     #[error("{0} has no motion after it, before or with which it would take effect")]
     NoMotionAfter(&'static str),
+    /// M66.
+    #[error("M66 waits for an input, and the boards have none for programs: wait with G4 P")]
+    NoInputs,
+    /// G5.3 or G6.3 without a curve to close.
+    #[error("{0} has no NURBS to close")]
+    NothingToClose(&'static str),
+    /// Another code among control points.
+    #[error("the {open} of line {line} is not complete: it takes control points up to {close}")]
+    NurbsOpen {
+        /// G5.2 or G6.2.
+        open: &'static str,
+        /// Its line.
+        line: u32,
+        /// What closes it.
+        close: &'static str,
+    },
+    /// A word among control points that is none of theirs.
+    #[error("{word} does not belong to {code}: write it in the block that opens the NURBS, or after it")]
+    NotInNurbs {
+        /// The word.
+        word: String,
+        /// Where it stands.
+        code: &'static str,
+    },
+    /// Z in G5.2.
+    #[error("G5.2 lies in the XY plane: write a NURBS in space with G6.2")]
+    FlatNurbs,
+    /// G5.2 in another plane.
+    #[error("G5.2 lies in the XY plane: select it with G17")]
+    NurbsPlane,
+    /// A rotary axis or slide before the last control point.
+    #[error(
+        "{word} belongs to the last control point: rotary axes and slides go evenly from end to end of a NURBS"
+    )]
+    TurnInside {
+        /// The word.
+        word: String,
+    },
+    /// Not enough control points.
+    #[error("a NURBS of order {order} needs at least {order} control points, this one has {points}")]
+    FewPoints {
+        /// Control points.
+        points: usize,
+        /// Order.
+        order: usize,
+    },
+    /// Not enough knots.
+    #[error(
+        "a NURBS of order {order} with {points} control points has {} knots, not {knots}: {order} blocks with K \
+         alone follow the last point",
+        points + order
+    )]
+    FewKnots {
+        /// Knots.
+        knots: usize,
+        /// Control points.
+        points: usize,
+        /// Order.
+        order: usize,
+    },
+    /// A control point after a knot that stands alone.
+    #[error("after a knot that stands alone no control point can follow")]
+    PointAfterKnots,
     /// Something after the end.
     #[error("nothing may follow the end of the program")]
     AfterEnd,

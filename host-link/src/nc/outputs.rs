@@ -1,106 +1,174 @@
-//! M62, M63, M67 and G4: what they do with the next motion.
+//! What a program switches: M62 to M65, M67 and M68 by the number of the output, M3, M4, M5 and S by what it is.
 
+use super::claims::Claims;
+use super::codes::{Code, Group};
 use super::error::{NcError, Place, Problem};
 use super::interpreter::{number_below, value_error};
 use super::lexer::Word;
-use super::parser::{Block, Code, CodeWord, Group};
-use super::program::ProgramEvent;
+use super::parser::{Block, CodeWord};
+use super::program::{ProgramAction, ProgramEvent};
+use shared::geometry::Turn;
 use shared::protocol::PathAction;
 
-/// M62, M63 or M67 that waits for its motion.
+/// An event that waits for its motion.
+#[derive(Clone, Copy)]
 pub(super) struct Pending {
-    pub(super) action: PathAction,
+    pub(super) action: ProgramAction,
     pub(super) code: &'static str,
     pub(super) place: Place,
+    /// It does not need a motion to take effect with: the machine stands anyway.
+    pub(super) at_rest: bool,
 }
 
-/// What waits for the next motion.
-pub(super) enum Waiting {
-    /// It takes effect when the motion starts.
-    Output(Pending),
-    /// The motion starts so much later \[s\].
-    Dwell(f64, Place),
-}
-
-/// What `block` asks for with the next motion: M62, M63, M67 or G4, which share their words.
-pub(super) fn waiting(block: &Block) -> Result<Option<Waiting>, NcError> {
-    let dwell = block
-        .code(Group::NonModal)
-        .filter(|code| code.code == Code::Dwell);
-    let (code, own): (_, &[&str]) = match (dwell, block.code(Group::Outputs)) {
-        (Some(dwell), Some(output)) => {
-            let (first, second) = (dwell.name, output.name);
-            return Err(Problem::ModalGroup { first, second }.at(output.place));
+impl Pending {
+    /// The event at the start of the motion to target `with_target`.
+    pub(super) fn event(self, with_target: usize) -> ProgramEvent {
+        ProgramEvent {
+            with_target,
+            action: self.action,
+            code: self.code,
+            place: self.place,
         }
-        (_, Some(output)) if output.code == Code::Analog => (Some(output), &["E", "Q"]),
-        (_, Some(output)) => (Some(output), &["P"]),
-        (Some(dwell), None) => (Some(dwell), &["P"]),
-        (None, None) => (None, &[]),
-    };
-    let words = ["P", "E", "Q"].into_iter().filter(|w| !own.contains(w));
-    if let Some(word) = words.filter_map(|w| block.word(w)).next() {
-        return Err(Problem::Orphan(word.label()).at(word.place));
     }
-    match code {
-        Some(code) if code.code == Code::Dwell => {
-            let p = need(block, code, "P")?;
-            if p.value < 0.0 {
-                return Err(value_error(p, "a time is 0 s or more"));
-            }
-            Ok(Some(Waiting::Dwell(p.value, code.place)))
-        }
-        Some(code) => Ok(Some(Waiting::Output(output(block, code)?))),
-        None => Ok(None),
+
+    /// Whether it opens a beam gate or lets the tracker go, by number.
+    pub(super) fn opens(&self) -> bool {
+        matches!(
+            self.action,
+            ProgramAction::Output(PathAction::Beam { on: true, .. } | PathAction::Tracking { on: true })
+        )
     }
 }
 
-fn need<'b>(block: &'b Block, code: &CodeWord, word: &'static str) -> Result<&'b Word, NcError> {
-    let missing = Problem::Missing {
-        code: code.name,
-        word,
-    };
-    block.word(word).ok_or(missing.at(code.place))
+/// The spindle as far as the program has come.
+#[derive(Default)]
+pub(super) struct Spindle {
+    /// S \[r/min\].
+    speed: Option<f64>,
+    on: bool,
 }
 
-fn output(block: &Block, code: &CodeWord) -> Result<Pending, NcError> {
-    let action = if code.code == Code::Analog {
-        let (e, q) = (need(block, code, "E")?, need(block, code, "Q")?);
-        let Some(side) = number_below(e.value, 2) else {
-            return Err(value_error(e, "E0 and E1 are the powers of beam 1 and 2"));
+impl Spindle {
+    /// What S, M3, M4 and M5 of `block` ask for.
+    pub(super) fn block(&mut self, block: &Block) -> Result<Vec<Pending>, NcError> {
+        let mut events = Vec::new();
+        let mut add = |action, code, place| {
+            events.push(Pending {
+                action,
+                code,
+                place,
+                at_rest: true,
+            });
         };
-        if q.value < 0.0 {
-            return Err(value_error(q, "a power is 0 W or more"));
+        let s = block.word("S");
+        if let Some(s) = s {
+            if s.value < 0.0 {
+                return Err(value_error(s, "a spindle speed is 0 r/min or more"));
+            }
+            self.speed = Some(s.value);
         }
-        PathAction::Power { side, watt: q.value }
-    } else {
-        let p = need(block, code, "P")?;
-        let on = code.code == Code::OutputOn;
-        match number_below(p.value, 3) {
-            Some(2) => PathAction::Tracking { on },
-            Some(side) => PathAction::Beam { side, on },
-            None => {
-                return Err(value_error(
-                    p,
-                    "P0 and P1 are the beam gates 1 and 2, P2 is tracking",
-                ));
+        match (block.code(Group::Spindle), s) {
+            (Some(code), _) if code.code == Code::SpindleOff => {
+                self.on = false;
+                add(ProgramAction::SpindleOff, code.name, code.place);
+            }
+            (Some(code), _) => {
+                let missing = Problem::Missing {
+                    code: code.name,
+                    word: "S, here or before",
+                };
+                let speed = self.speed.ok_or(missing.at(code.place))?;
+                let turn = match code.code {
+                    Code::SpindleCounterClockwise => Turn::CounterClockwise,
+                    _ => Turn::Clockwise,
+                };
+                self.on = true;
+                add(ProgramAction::SpindleSpeed(speed), code.name, code.place);
+                add(ProgramAction::SpindleOn(turn), code.name, code.place);
+            }
+            (None, Some(s)) if self.on => add(ProgramAction::SpindleSpeed(s.value), "S", s.place),
+            (None, _) => {}
+        }
+        Ok(events)
+    }
+
+    /// What the end of the program asks for: the spindle stops.
+    pub(super) fn end(&mut self, code: &CodeWord) -> Option<Pending> {
+        std::mem::take(&mut self.on).then_some(Pending {
+            action: ProgramAction::SpindleOff,
+            code: code.name,
+            place: code.place,
+            at_rest: true,
+        })
+    }
+}
+
+/// The output that `block` switches.
+pub(super) fn output(block: &Block, claims: &Claims) -> Result<Option<Pending>, NcError> {
+    let Some(code) = block.code(Group::Outputs) else {
+        return Ok(None);
+    };
+    let need = |word: &'static str| -> Result<&Word, NcError> {
+        let missing = Problem::Missing {
+            code: code.name,
+            word,
+        };
+        claims.word(code.code, word).ok_or(missing.at(code.place))
+    };
+    let action = match code.code {
+        Code::WaitForInput => return Err(Problem::NoInputs.at(code.place)),
+        Code::Analog | Code::AnalogNow => {
+            let (e, q) = (need("E")?, need("Q")?);
+            let Some(side) = number_below(e.value, 2) else {
+                return Err(value_error(e, "E0 and E1 are the powers of beam 1 and 2"));
+            };
+            if q.value < 0.0 {
+                return Err(value_error(q, "a power is 0 W or more"));
+            }
+            PathAction::Power { side, watt: q.value }
+        }
+        _ => {
+            let p = need("P")?;
+            let on = matches!(code.code, Code::OutputOn | Code::OutputOnNow);
+            match number_below(p.value, 3) {
+                Some(2) => PathAction::Tracking { on },
+                Some(side) => PathAction::Beam { side, on },
+                None => {
+                    return Err(value_error(
+                        p,
+                        "P0 and P1 are the beam gates 1 and 2, P2 is tracking",
+                    ));
+                }
             }
         }
     };
-    Ok(Pending {
-        action,
+    Ok(Some(Pending {
+        action: ProgramAction::Output(action),
         code: code.name,
         place: code.place,
-    })
+        at_rest: matches!(
+            code.code,
+            Code::OutputOnNow | Code::OutputOffNow | Code::AnalogNow
+        ),
+    }))
 }
 
-/// The waiting events, which take effect at the start of the motion to target `with_target`.
-pub(super) fn take_events(pending: &mut Vec<Pending>, with_target: usize) -> Vec<ProgramEvent> {
-    pending
-        .drain(..)
-        .map(|event| ProgramEvent {
-            with_target,
-            action: event.action,
-            line: event.place.line,
-        })
-        .collect()
+/// The time of a G4 in `block` \[s\].
+pub(super) fn dwell(block: &Block, claims: &Claims) -> Result<Option<(f64, Place)>, NcError> {
+    let Some(code) = block.code(Group::NonModal).filter(|c| c.code == Code::Dwell) else {
+        return Ok(None);
+    };
+    if let Some(output) = block.code(Group::Outputs) {
+        let (first, second) = (code.name, output.name);
+        return Err(Problem::ModalGroup { first, second }.at(output.place));
+    }
+    let missing = Problem::Missing {
+        code: code.name,
+        word: "P",
+    };
+    let p = claims.word(Code::Dwell, "P").ok_or(missing.at(code.place))?;
+    if p.value < 0.0 {
+        return Err(value_error(p, "a time is 0 s or more"));
+    }
+    Ok(Some((p.value, code.place)))
 }

@@ -1,107 +1,8 @@
 //! From the words of a line to a block: codes by modal group, and words by their letter.
 
+use super::codes::{CODES, Code, Group};
 use super::error::{NcError, Place, Problem};
 use super::lexer::{self, Word};
-
-/// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
-/// cannot stand in one block.
-const CODES: [(char, u32, Code, &str, Group); 21] = [
-    ('G', 0, Code::Rapid, "G0", Group::Motion),
-    ('G', 10, Code::Feed, "G1", Group::Motion),
-    ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
-    ('G', 30, Code::ArcCounterClockwise, "G3", Group::Motion),
-    ('G', 40, Code::Dwell, "G4", Group::NonModal),
-    ('G', 170, Code::PlaneXy, "G17", Group::Plane),
-    ('G', 210, Code::Millimetres, "G21", Group::Units),
-    ('G', 400, Code::CompensationOff, "G40", Group::Compensation),
-    ('G', 434, Code::TipOn, "G43.4", Group::ToolLength),
-    ('G', 490, Code::TipOff, "G49", Group::ToolLength),
-    ('G', 530, Code::MachineAxes, "G53", Group::NonModal),
-    ('G', 540, Code::WorldOffset, "G54", Group::Offset),
-    ('G', 611, Code::ExactStop, "G61.1", Group::PathControl),
-    ('G', 640, Code::Continuous, "G64", Group::PathControl),
-    ('G', 900, Code::Absolute, "G90", Group::Distance),
-    ('G', 940, Code::PerMinute, "G94", Group::FeedMode),
-    ('M', 20, Code::End, "M2", Group::Stop),
-    ('M', 300, Code::End, "M30", Group::Stop),
-    ('M', 620, Code::OutputOn, "M62", Group::Outputs),
-    ('M', 630, Code::OutputOff, "M63", Group::Outputs),
-    ('M', 670, Code::Analog, "M67", Group::Outputs),
-];
-
-/// Meaning of a G or M code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Code {
-    /// G0.
-    Rapid,
-    /// G1.
-    Feed,
-    /// G2.
-    ArcClockwise,
-    /// G3.
-    ArcCounterClockwise,
-    /// G4.
-    Dwell,
-    /// G17.
-    PlaneXy,
-    /// G21.
-    Millimetres,
-    /// G40.
-    CompensationOff,
-    /// G43.4.
-    TipOn,
-    /// G49.
-    TipOff,
-    /// G53.
-    MachineAxes,
-    /// G54.
-    WorldOffset,
-    /// G61.1.
-    ExactStop,
-    /// G64.
-    Continuous,
-    /// G90.
-    Absolute,
-    /// G94.
-    PerMinute,
-    /// M2, M30.
-    End,
-    /// M62.
-    OutputOn,
-    /// M63.
-    OutputOff,
-    /// M67.
-    Analog,
-}
-
-/// Modal groups.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Group {
-    /// G0 G1 G2 G3.
-    Motion,
-    /// G4 G53: they hold in their block only.
-    NonModal,
-    /// G17.
-    Plane,
-    /// G21.
-    Units,
-    /// G40.
-    Compensation,
-    /// G43.4 G49.
-    ToolLength,
-    /// G54.
-    Offset,
-    /// G61.1 G64.
-    PathControl,
-    /// G90.
-    Distance,
-    /// G94.
-    FeedMode,
-    /// M2 M30.
-    Stop,
-    /// M62 M63 M67.
-    Outputs,
-}
 
 /// A code in a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,7 +53,9 @@ pub enum Parsed {
 }
 
 /// Letters and names that are words of the dialect, besides G, M and N.
-const WORDS: [&str; 13] = ["X", "Y", "Z", "A", "B", "C", "I", "J", "R", "F", "P", "E", "Q"];
+const WORDS: [&str; 16] = [
+    "X", "Y", "Z", "A", "B", "C", "I", "J", "K", "R", "F", "P", "L", "E", "Q", "S",
+];
 /// The same, written with `=`.
 const NAMED_WORDS: [&str; 2] = ["V1", "V2"];
 
@@ -260,7 +163,7 @@ mod tests {
         let letter = 'G';
         assert_eq!(problem("G5 X1"), Problem::UnknownCode { letter, number: 5.0 });
         assert_eq!(problem("G43 H1"), Problem::UnknownCode { letter, number: 43.0 });
-        assert_eq!(problem("S100"), Problem::UnknownWord("S".into()));
+        assert_eq!(problem("D100"), Problem::UnknownWord("D".into()));
         assert_eq!(problem("A3=1"), Problem::UnknownWord("A3=".into()));
         assert_eq!(problem("V1"), Problem::UnknownWord("V".into()));
         assert_eq!(problem("X1 x2"), Problem::Twice("X".into()));

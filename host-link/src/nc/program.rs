@@ -1,5 +1,6 @@
 //! A program after reading: motions from rest to rest, as their words say them.
 
+use super::error::Place;
 use shared::geometry::Turn;
 use shared::io::{AXES, SIDES};
 use shared::protocol::PathAction;
@@ -16,12 +17,10 @@ pub struct Program {
 pub struct ProgramPath {
     /// The machine stands for this long before it \[s\] (G4).
     pub dwell_before_s: f64,
-    /// Rapid or feed.
+    /// Rapid, feed or none.
     pub motion: Motion,
-    /// Where it leads, at least one place; a rapid leads to one.
+    /// Where it leads; a rapid leads to one place, a feed to at least one, a stand to none.
     pub targets: Vec<Target>,
-    /// Feeds on the way, the first one from the first target on; none of a rapid.
-    pub feeds: Vec<ProgramFeed>,
     /// What happens on the way, in the order of the program.
     pub events: Vec<ProgramEvent>,
 }
@@ -31,39 +30,125 @@ pub struct ProgramPath {
 pub enum Motion {
     /// G0: as fast as the axes allow.
     Rapid,
-    /// G1, G2, G3: with the speed of the tip that F says.
+    /// G1, G2, G3, G5.2, G6.2: with the speed of the tip that F says.
     Feed,
+    /// No motion: M3, M4, M5, M64, M65 and M68 before a G4 or the end of the program take effect at rest.
+    Stand,
 }
 
-/// The motion of one block.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The motion of one block, or of all blocks of a NURBS.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     /// On which way.
     pub way: Way,
     /// Where to.
     pub words: Words,
-    /// Line of the program.
-    pub line: u32,
+    /// How fast; none of a rapid.
+    pub feed: Option<FeedRate>,
+    /// How the way there is followed, and how it goes on.
+    pub control: PathControl,
+    /// Where the program says so.
+    pub place: Place,
+}
+
+/// F of a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FeedRate {
+    /// G94: speed of the tip \[mm/min\].
+    PerMinute(f64),
+    /// G93: the block takes one part in so many of a minute \[1/min\].
+    InverseTime(f64),
+}
+
+/// How closely the programmed way is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PathControl {
+    /// G61: exactly; slower, or with a stop, where the machine could not.
+    ExactPath,
+    /// G61.1: exactly, and with a stop at the end of the block.
+    ExactStop,
+    /// G64: at the best speed, and not further off than this \[mm\] if P says so.
+    Blend(Option<f64>),
 }
 
 /// The way to a target.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Way {
     /// G0, G1: of the tip; straight, or on the smooth curve of its path.
     Line,
-    /// G2, G3: of the tip, on an arc about Z.
-    Arc(Turn, ArcForm),
+    /// G2, G3: of the tip, on an arc or helix.
+    Arc(ArcWay),
+    /// G5.2, G6.2: of the tip, on a NURBS curve.
+    Nurbs(Box<NurbsWay>),
     /// G53 G0: of the axes, straight in axis space.
     Axes,
 }
 
 /// What makes an arc of its two ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArcWay {
+    /// In which plane.
+    pub plane: Plane,
+    /// Seen from the positive end of the plane's axis.
+    pub turn: Turn,
+    /// Centre or radius.
+    pub form: ArcForm,
+    /// Full turns beyond the first one (P less one).
+    pub more_turns: u32,
+}
+
+/// Plane of arcs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Plane {
+    /// G17: X to Y about Z.
+    #[default]
+    Xy,
+    /// G18: Z to X about Y.
+    Zx,
+    /// G19: Y to Z about X.
+    Yz,
+}
+
+impl Plane {
+    /// Index of the axis that arcs go about.
+    pub fn axis(self) -> usize {
+        match self {
+            Self::Xy => 2,
+            Self::Zx => 1,
+            Self::Yz => 0,
+        }
+    }
+}
+
+/// Centre or radius of an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ArcForm {
-    /// I J: from the start to the centre \[mm\].
-    Centre([f64; 2]),
+    /// I J K: from the start to the centre \[mm\].
+    Centre([f64; 3]),
     /// R \[mm\]: the shorter arc of this radius, the longer one if it is negative.
     Radius(f64),
+}
+
+/// A NURBS curve that begins where the tip stands and ends at its last control point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NurbsWay {
+    /// One more than the degree.
+    pub order: usize,
+    /// Control points, at least as many as the order. The first is where the tip stands.
+    pub points: Vec<ControlPoint>,
+    /// As many as control points and order together; as many as the order are equal at both ends.
+    pub knots: Vec<f64>,
+}
+
+/// One control point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ControlPoint {
+    /// X Y Z \[mm\]; what is not said is as at the point before.
+    pub position: [Option<f64>; 3],
+    /// Its weight, above zero.
+    pub weight: f64,
+    /// Where the program says so.
+    pub place: Place,
 }
 
 /// The words of a block that say where to (mm, degrees); what is not said stays as it was.
@@ -75,22 +160,28 @@ pub struct Words {
     pub extension: [Option<f64>; SIDES],
 }
 
-/// The feed from a motion on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ProgramFeed {
-    /// Index of the target whose motion it starts with.
-    pub with_target: usize,
-    /// Speed of the tip \[mm/min\].
-    pub mm_min: f64,
-}
-
 /// Something that happens at the start of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProgramEvent {
-    /// Index of the target whose motion it starts with.
+    /// Index of the target whose motion it starts with; 0 in a stand.
     pub with_target: usize,
     /// What happens.
-    pub action: PathAction,
-    /// Line of the program.
-    pub line: u32,
+    pub action: ProgramAction,
+    /// The code that asks for it.
+    pub code: &'static str,
+    /// Where the program says so.
+    pub place: Place,
+}
+
+/// What an event does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ProgramAction {
+    /// M62 to M68: an output that the program names.
+    Output(PathAction),
+    /// S \[r/min\], of the machine's spindle.
+    SpindleSpeed(f64),
+    /// M3, M4: the spindle turns, seen from its motor to the tool.
+    SpindleOn(Turn),
+    /// M5: it stops.
+    SpindleOff,
 }

@@ -1,9 +1,10 @@
-//! The motion of one block that is followed exactly, straight or round.
+//! The motion of one block that is followed exactly: straight, round, or along a NURBS.
 
+use super::nurbs::LongCurve;
 use super::shape::{SHORTEST, channels};
 use super::targets::arc;
 use super::{PathError, Planner, Tip};
-use crate::nc::{Motion, Target, Way};
+use crate::nc::{Motion, Place, Target, Way};
 use nalgebra::Vector3;
 use shared::geometry::{Arc, Moving, Pose, angle, interpolate};
 use shared::io::SIDES;
@@ -11,6 +12,8 @@ use shared::trajectory::CHANNELS;
 
 /// A cubic span may be off an arc by this much: in position \[mm\] and direction.
 const MAX_ERROR: [f64; 2] = [1e-5, 1e-6];
+/// And off a NURBS by this much \[mm\].
+const NURBS_ERROR: f64 = 1e-4;
 /// Step of differences \[rad\].
 const DIFFERENCE: f64 = 1e-3;
 
@@ -29,12 +32,13 @@ pub(super) struct Block {
     pub(super) length: f64,
     /// Sum of the rates at which rotary axes turn \[rad/mm\].
     turning: f64,
-    pub(super) line: u32,
+    pub(super) place: Place,
 }
 
 enum BlockWay {
     Straight(Vector3<f64>, Vector3<f64>),
     Round(Arc),
+    Free(LongCurve),
 }
 
 enum Attitude {
@@ -87,12 +91,17 @@ impl Block {
         to: &Tip,
         target: &Target,
     ) -> Result<Self, PathError> {
-        let line = target.line;
+        let place = target.place;
         let [start, end] = [planner.pose(from), planner.pose(to)];
-        let (way, travel) = match target.way {
-            Way::Arc(turn, form) => {
-                let arc = arc(from, to, turn, form, line)?;
+        let (way, travel) = match &target.way {
+            Way::Arc(way) => {
+                let arc = arc(from, to, way, place)?;
                 (BlockWay::Round(arc), arc.length())
+            }
+            Way::Nurbs(way) => {
+                let curve = LongCurve::build(way, from, place)?;
+                let length = curve.length();
+                (BlockWay::Free(curve), length)
             }
             Way::Line | Way::Axes => {
                 let (p, q) = (start.position, end.position);
@@ -100,16 +109,16 @@ impl Block {
             }
         };
         if motion == Motion::Feed && travel < SHORTEST {
-            return Err(PathError::NoTravel { line });
+            return Err(PathError::NoTravel { place });
         }
-        let round = matches!(way, BlockWay::Round(_));
-        let (attitude, turn) = if round || planner.turns_evenly(from, to) {
+        let straight = matches!(way, BlockWay::Straight(..));
+        let (attitude, turn) = if !straight || planner.turns_evenly(from, to) {
             (
                 Attitude::Axes(from.angles_deg, to.angles_deg),
                 axes_turn(from, to),
             )
         } else {
-            interpolate(&start, &end, 0.5).map_err(|source| PathError::Attitude { line, source })?;
+            interpolate(&start, &end, 0.5).map_err(|source| PathError::Attitude { place, source })?;
             // Not the angle of the turn, but not smaller.
             let turn = angle(&start.tangent, &end.tangent) + angle(&start.normal, &end.normal);
             (Attitude::Geodesic(start, end), turn)
@@ -117,7 +126,7 @@ impl Block {
         let stretch = |k: usize| (to.extension_mm[k] - from.extension_mm[k]).abs();
         let length = match motion {
             Motion::Feed => travel,
-            Motion::Rapid => (0..SIDES)
+            Motion::Rapid | Motion::Stand => (0..SIDES)
                 .map(stretch)
                 .fold(travel, f64::max)
                 .max(LENGTH_PER_TURN * turn.to_degrees())
@@ -129,7 +138,7 @@ impl Block {
             extension: [from.extension_mm, to.extension_mm],
             length,
             turning: turn / length,
-            line,
+            place,
         })
     }
 
@@ -141,6 +150,7 @@ impl Block {
                 second: Vector3::zeros(),
             },
             BlockWay::Round(arc) => arc.at(u),
+            BlockWay::Free(curve) => curve.at(u),
         }
     }
 
@@ -196,8 +206,12 @@ impl Block {
         fixed.dedup_by(|a, b| *a - *b < 1e-9 * self.length);
         let mut places = Vec::new();
         for pair in fixed.windows(2) {
-            let count = ((pair[1] - pair[0]) / self.spacing()).ceil().max(1.0) as usize;
-            places.extend((1..=count).map(|i| pair[0] + (pair[1] - pair[0]) * i as f64 / count as f64));
+            let mut from = pair[0];
+            for to in self.bends(start, pair) {
+                let count = ((to - from) / self.spacing()).ceil().max(1.0) as usize;
+                places.extend((1..=count).map(|i| from + (to - from) * i as f64 / count as f64));
+                from = to;
+            }
         }
         // The end, to the bit.
         if let Some(last) = places.last_mut() {
@@ -209,10 +223,22 @@ impl Block {
         places
     }
 
+    /// Where a curve that is bent unevenly needs knots from one place to another, the last one included.
+    fn bends(&self, start: f64, pair: &[f64]) -> Vec<f64> {
+        match &self.way {
+            BlockWay::Straight(..) | BlockWay::Round(_) => vec![pair[1]],
+            BlockWay::Free(curve) => {
+                let places = curve.places(pair[0] - start, pair[1] - start, NURBS_ERROR);
+                places.into_iter().map(|s| start + s).collect()
+            }
+        }
+    }
+
     /// Distance of knots: a cubic span of length h is off by h⁴/384 times the fourth derivative.
     fn spacing(&self) -> f64 {
         let fourth = match &self.way {
-            BlockWay::Straight(..) => 0.0,
+            // A NURBS has its own places.
+            BlockWay::Straight(..) | BlockWay::Free(_) => 0.0,
             BlockWay::Round(arc) => {
                 let turn = arc.sweep() / arc.length();
                 arc.radius() * turn * turn * turn * turn

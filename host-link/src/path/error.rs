@@ -1,6 +1,8 @@
 //! Why a program path cannot be run on this machine.
 
 use super::CAPACITY;
+use crate::nc::Place;
+use shared::geometry::nurbs::NurbsError;
 use shared::geometry::{ArcError, AttitudeError, PoseError, SplineError};
 use shared::io::AXIS_NAMES;
 use shared::kinematics::KinematicsError;
@@ -11,10 +13,10 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PathError {
     /// A word of an axis or slide that the machine does not have.
-    #[error("line {line}: {machine} has no {word}; its words are {fitted}, and X Y Z of the tip")]
+    #[error("{place}: {machine} has no {word}; its words are {fitted}, and X Y Z of the tip")]
     NotFitted {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// The word.
         word: &'static str,
         /// The machine.
@@ -24,31 +26,31 @@ pub enum PathError {
     },
     /// The first motion of the tip leaves something open.
     #[error(
-        "line {line}: the first motion of the tip must say how all axes of {machine} stand: {missing} missing"
+        "{place}: the first motion of the tip must say how all axes of {machine} stand: {missing} missing"
     )]
     Incomplete {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// Words that it needs.
         missing: String,
         /// The machine.
         machine: String,
     },
     /// A beam that the machine does not have, or tracking.
-    #[error("line {line}: {machine} has no {output}")]
+    #[error("{place}: {machine} has no {output}")]
     NoOutput {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// What is missing.
         output: String,
         /// The machine.
         machine: String,
     },
     /// A rotary axis that does not come to stand as the program says.
-    #[error("line {line}: {axis} would come to {reached:.3}°, not to {programmed:.3}°: {advice}")]
+    #[error("{place}: {axis} would come to {reached:.3}°, not to {programmed:.3}°: {advice}")]
     Turned {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// The axis.
         axis: &'static str,
         /// Where it should stand \[°\].
@@ -60,11 +62,11 @@ pub enum PathError {
     },
     /// An axis would be here and, at once, there.
     #[error(
-        "line {line}: {axis} would have to jump from {from:.1} to {to:.1} mm (or °): the tool passes a pole or half a turn there; go around it, in smaller pieces, or turn the axis with G53 G0"
+        "{place}: {axis} would have to jump from {from:.1} to {to:.1} mm (or °): the tool passes a pole or half a turn there; go around it, in smaller pieces, or turn the axis with G53 G0"
     )]
     Jump {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// The axis.
         axis: &'static str,
         /// Where it is (mm or °).
@@ -73,38 +75,76 @@ pub enum PathError {
         to: f64,
     },
     /// No arc between these ends.
-    #[error("line {line}: no arc here: {source}")]
+    #[error("{place}: no arc here: {source}")]
     Arc {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// Why.
         source: ArcError,
     },
+    /// No curve by these control points, weights and knots.
+    #[error("{place}: no NURBS here: {source}")]
+    Nurbs {
+        /// Where in the program.
+        place: Place,
+        /// Why.
+        source: NurbsError,
+    },
+    /// A NURBS that does not begin where the tip is.
+    #[error(
+        "{place}: the first control point is {distance:.4} mm from where the tip is; move there first, or leave its X Y Z out"
+    )]
+    NurbsStart {
+        /// Where in the program.
+        place: Place,
+        /// How far \[mm\].
+        distance: f64,
+    },
+    /// A NURBS that stands still or turns sharply on its way.
+    #[error(
+        "{place}: the NURBS has a corner of {degrees:.1}° after {s:.3} mm; end it there and write the rest as another one"
+    )]
+    NurbsCorner {
+        /// Where in the program.
+        place: Place,
+        /// The corner \[°\].
+        degrees: f64,
+        /// Where on the curve \[mm\].
+        s: f64,
+    },
+    /// A NURBS with control points at one place.
+    #[error("{place}: the NURBS has no direction after {s:.3} mm: move control points that coincide apart")]
+    NurbsStands {
+        /// Where in the program.
+        place: Place,
+        /// Where on the curve \[mm\].
+        s: f64,
+    },
     /// R for an arc whose ends are the same.
-    #[error("line {line}: R tells no centre for a full circle; use I J")]
+    #[error("{place}: R tells no centre for a full circle; use I J K")]
     CircleByRadius {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
     },
     /// R that does not reach.
     #[error(
-        "line {line}: the ends of the arc are {distance:.4} mm apart, so R must be at least half of that, not {radius}"
+        "{place}: the ends of the arc are {distance:.4} mm apart, so R must be at least half of that, not {radius}"
     )]
     SmallRadius {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// R \[mm\].
         radius: f64,
-        /// Distance of the ends in the XY plane \[mm\].
+        /// Distance of the ends in the plane of the arc \[mm\].
         distance: f64,
     },
     /// An axis would leave its travel.
     #[error(
-        "line {line}: axis {axis} would have to go to {position:.3}, {beyond:.3} beyond its travel ({min}…{max} {unit})"
+        "{place}: axis {axis} would have to go to {position:.3}, {beyond:.3} beyond its travel ({min}…{max} {unit})"
     )]
     Travel {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// Axis or V slide.
         axis: &'static str,
         /// Where it would go.
@@ -120,11 +160,11 @@ pub enum PathError {
     },
     /// An axis cannot follow that fast.
     #[error(
-        "line {line}: the feed of {feed:.0} mm/min is too high, the {quantity} of {axis} allows {largest:.0} mm/min"
+        "{place}: the feed of {feed:.0} mm/min is too high, the {quantity} of {axis} allows {largest:.0} mm/min"
     )]
     Feed {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// Wanted \[mm/min\].
         feed: f64,
         /// Possible \[mm/min\].
@@ -134,11 +174,41 @@ pub enum PathError {
         /// Speed or acceleration.
         quantity: &'static str,
     },
+    /// M3, M4, M5 or S on a machine without a spindle.
+    #[error(
+        "{place}: {code} needs a spindle, and {machine} has none: switch its beams with M62 P, M63 P and M67 E Q"
+    )]
+    NoSpindle {
+        /// Where in the program.
+        place: Place,
+        /// The code.
+        code: &'static str,
+        /// The machine.
+        machine: String,
+    },
+    /// M4: spindles only have one sense.
+    #[error("{place}: the spindle of {machine} turns clockwise only: write M3")]
+    SpindleSense {
+        /// Where in the program.
+        place: Place,
+        /// The machine.
+        machine: String,
+    },
+    /// The spindle is not that fast.
+    #[error("{place}: {rpm} r/min are more than the spindle gives, at most {largest} r/min")]
+    SpindleSpeed {
+        /// Where in the program.
+        place: Place,
+        /// Wanted.
+        rpm: f64,
+        /// Speed at +10 V.
+        largest: f64,
+    },
     /// A beam cannot give that much.
-    #[error("line {line}: {watt} W are more than beam {} gives, at most {largest} W", side + 1)]
+    #[error("{place}: {watt} W are more than beam {} gives, at most {largest} W", side + 1)]
     Power {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// 0 or 1.
         side: u8,
         /// Wanted.
@@ -151,75 +221,75 @@ pub enum PathError {
     NoFeed(f64),
     /// One speed for a path with several feeds.
     #[error(
-        "line {line}: the path has several feeds, one speed cannot take their place; leave the speed out, or write one F"
+        "{place}: the path has several feeds, one speed cannot take their place; leave the speed out, or write one F"
     )]
     SeveralFeeds {
-        /// First line of the path.
-        line: u32,
+        /// Where its path begins.
+        place: Place,
     },
     /// G1 without travel of the tip.
-    #[error("line {line}: G1 must move the tip; turn axes alone with G0")]
+    #[error("{place}: G1 must move the tip; turn axes alone with G0")]
     NoTravel {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
     },
     /// A corner within a smooth path.
     #[error(
-        "line {line}: a corner of {degrees:.0}° within a path, which must be smooth; stop at the corner with G61.1"
+        "{place}: a corner of {degrees:.0}° within a path, which must be smooth; stop at the corner with G61.1"
     )]
     Corner {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// Its angle.
         degrees: f64,
     },
     /// Two points between which the head would turn by half a turn.
-    #[error("line {line}: the head cannot turn there: {source}")]
+    #[error("{place}: the head cannot turn there: {source}")]
     Attitude {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// Why.
         source: AttitudeError,
     },
     /// The pose has no solution.
-    #[error("line {line}: the machine cannot take this pose: {source}")]
+    #[error("{place}: the machine cannot take this pose: {source}")]
     Kinematics {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// Why.
         source: KinematicsError,
     },
     /// The channels are no pose.
-    #[error("line {line}: the path is no pose there: {source}")]
+    #[error("{place}: the path is no pose there: {source}")]
     Pose {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// Why.
         source: PoseError,
     },
     /// No spline through the points.
-    #[error("line {line}: no smooth curve through these points: {source}")]
+    #[error("{place}: no smooth curve through these points: {source}")]
     Spline {
-        /// Line of the program.
-        line: u32,
+        /// Where in the program.
+        place: Place,
         /// Why.
         source: SplineError,
     },
     /// More knots than the boards hold.
-    #[error("line {line}: the path has {knots} points, the boards hold {CAPACITY}; use fewer blocks")]
+    #[error("{place}: the path has {knots} points, the boards hold {CAPACITY}; use fewer blocks")]
     TooLong {
-        /// First line of the path.
-        line: u32,
+        /// Where its path begins.
+        place: Place,
         /// How many.
         knots: usize,
     },
     /// More events than the motion board holds.
     #[error(
-        "line {line}: the path has {events} M62, M63, M67 and changes of F, the motion board holds {MAX_EVENTS}; use fewer"
+        "{place}: the path has {events} outputs and changes of F, the motion board holds {MAX_EVENTS}; use fewer"
     )]
     TooManyEvents {
-        /// First line of the path.
-        line: u32,
+        /// Where its path begins.
+        place: Place,
         /// How many.
         events: usize,
     },
@@ -227,7 +297,7 @@ pub enum PathError {
 
 impl PathError {
     /// Axis slot `axis` stands at `reached` instead of `programmed` \[°\].
-    pub(super) fn turned(line: u32, axis: usize, programmed: f64, reached: f64) -> Self {
+    pub(super) fn turned(place: Place, axis: usize, programmed: f64, reached: f64) -> Self {
         let turns = (reached - programmed) / 360.0;
         let advice = if (turns - turns.round()).abs() < 1e-6 {
             "a block turns the short way; write it as several blocks of less than 180°"
@@ -235,7 +305,7 @@ impl PathError {
             "the tip decides how this axis stands; correct the word, or X Y Z"
         };
         Self::Turned {
-            line,
+            place,
             axis: AXIS_NAMES[axis],
             programmed,
             reached,

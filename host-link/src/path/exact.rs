@@ -1,4 +1,4 @@
-//! Single blocks and paths with arcs: every block is followed exactly, straight or round.
+//! Single blocks, paths with arcs or NURBS, and those of G61: every block is followed exactly.
 //!
 //! At a join the tip goes on in the same direction, or the path ends there. The rotary axes may begin to turn
 //! at once, though, as where an arc follows a line; they cannot, so their rates, and the last hundredths of a
@@ -9,7 +9,7 @@ use super::block::{Block, Jet};
 use super::limits::{CURVATURE_SHARE, DRIVES};
 use super::shape::{Goal, Shape};
 use super::targets::ROTARY;
-use super::{PathError, Planner, Tip};
+use super::{Feeds, PathError, Planner, Tip};
 use crate::nc::{Motion, Target};
 use nalgebra::Vector3;
 use shared::geometry::angle;
@@ -22,7 +22,7 @@ use shared::trajectory::{CHANNELS, PathPoint};
 /// corner by about a thousandth of the length of the change: nanometres at the feeds of arc and friction
 /// stir welding, less than a micrometre at those of a laser. Programs rounded to 0.001 mm stay far below, on arcs
 /// above a millimetre; a corner that is meant is far above.
-const MAX_TURN: f64 = 0.5 / 180.0 * std::f64::consts::PI;
+pub(super) const MAX_TURN: f64 = 0.5 / 180.0 * std::f64::consts::PI;
 /// Path ticks that a change of rates takes at least.
 const LEAST_TICKS: f64 = 4.0;
 /// Slopes that differ by less need no change: the digits of the differences that they come from.
@@ -33,6 +33,8 @@ pub(super) struct Piece {
     pub(super) shape: Shape,
     /// Index of the first target.
     pub(super) first: usize,
+    /// Speed on the way to each target \[mm/s\], 0 for a rapid.
+    pub(super) speeds: Vec<f64>,
     /// Change of direction where it begins, if that is why it does \[rad\].
     pub(super) corner: Option<f64>,
 }
@@ -47,21 +49,25 @@ struct Join {
 }
 
 impl Planner {
-    /// The pieces of a path from `from` through `tips`, the places of `targets`; `speeds` are those on the way to
-    /// each of them \[mm/s\].
+    /// The pieces of a path from `from` through `tips`, the places of `targets`, at `feeds`.
     pub(super) fn exact(
         &self,
         motion: Motion,
         from: &Tip,
         tips: &[Tip],
         targets: &[Target],
-        speeds: &[f64],
+        feeds: &Feeds,
     ) -> Result<Vec<Piece>, PathError> {
         let starts = std::iter::once(from).chain(tips);
         let blocks: Vec<Block> = starts
             .zip(tips)
             .zip(targets)
             .map(|((from, to), target)| Block::build(self, motion, from, to, target))
+            .collect::<Result<_, _>>()?;
+        let speeds: Vec<f64> = blocks
+            .iter()
+            .zip(targets)
+            .map(|(block, target)| feeds.speed(target, block.length))
             .collect::<Result<_, _>>()?;
         let corners: Vec<f64> = blocks
             .windows(2)
@@ -75,6 +81,7 @@ impl Planner {
             }
             pieces.push(Piece {
                 shape: self.curve(&blocks[first..end], &tips[first..end], &speeds[first..end]),
+                speeds: speeds[first..end].to_vec(),
                 first,
                 corner: first.checked_sub(1).map(|before| corners[before]),
             });
@@ -92,7 +99,7 @@ impl Planner {
         for (i, block) in blocks.iter().enumerate() {
             let start = s;
             s += block.length;
-            let mut goal = Goal::exact(s, block.line);
+            let mut goal = Goal::exact(s, block.place);
             if let Some(next) = blocks.get(i + 1) {
                 let slowest = speeds[i].min(speeds[i + 1]);
                 let join = self.join(s, block, next, &tips[i], slowest);

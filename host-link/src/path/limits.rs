@@ -4,6 +4,7 @@ use super::shape::Shape;
 use super::targets::ROTARY;
 use super::{Bound, PathError, PlannedPath, Planner};
 use crate::machine::MachineFile;
+use crate::nc::Place;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
 use shared::parameter::ParameterError;
@@ -99,10 +100,10 @@ impl Planner {
         let mut demands = Vec::new();
         for s in places(shape) {
             if let Some(point) = path.at(s) {
-                let (demand, axes) = self.demand(s, &point, planned.space, shape.line(s), &near)?;
+                let (demand, axes) = self.demand(s, &point, planned.space, shape.place(s), &near)?;
                 near = axes;
                 if let Some(before) = demands.last() {
-                    check_continuous(before, &demand, shape.line(s))?;
+                    check_continuous(before, &demand, shape.place(s))?;
                 }
                 demands.push(demand);
             }
@@ -115,17 +116,17 @@ impl Planner {
         s: f64,
         point: &PathPoint,
         space: PathSpace,
-        line: u32,
+        place: Place,
         near: &[f64; AXES],
     ) -> Result<(Demand, [f64; AXES]), PathError> {
         let axes = match space {
             PathSpace::Tool => {
                 let (pose, motion) = point
                     .pose_in_motion()
-                    .map_err(|source| PathError::Pose { line, source })?;
+                    .map_err(|source| PathError::Pose { place, source })?;
                 self.kinematics
                     .inverse_motion(&pose, &motion, near)
-                    .map_err(|source| PathError::Kinematics { line, source })?
+                    .map_err(|source| PathError::Kinematics { place, source })?
             }
             PathSpace::Axes => point.axes(),
         };
@@ -155,7 +156,7 @@ impl Planner {
             Some((beyond, i, position, s)) if beyond > 1e-6 => {
                 let limits = &self.drives[i];
                 Err(PathError::Travel {
-                    line: shape.line(s),
+                    place: shape.place(s),
                     axis: DRIVE_NAMES[i],
                     position,
                     beyond,
@@ -191,7 +192,7 @@ impl Planner {
                 for (largest, quantity) in self.allowed(demand, i) {
                     if speed / largest > worst.0 {
                         let error = PathError::Feed {
-                            line: shape.targets[target].line,
+                            place: shape.targets[target].place,
                             feed: speed * 60.0,
                             largest: largest * 60.0,
                             axis: DRIVE_NAMES[i],
@@ -275,13 +276,13 @@ impl Planner {
 }
 
 /// Whether the axes go from one place to the next, as their rates say, and do not jump.
-fn check_continuous(from: &Demand, to: &Demand, line: u32) -> Result<(), PathError> {
+fn check_continuous(from: &Demand, to: &Demand, place: Place) -> Result<(), PathError> {
     for (axis, unit) in AXIS_UNIT.into_iter().enumerate() {
         let fastest = from.first[axis].abs().max(to.first[axis].abs());
         let way = (to.position[axis] - from.position[axis]).abs();
         if way > 2.0 * fastest * (to.s - from.s) + JUMP * unit {
             return Err(PathError::Jump {
-                line,
+                place,
                 axis: DRIVE_NAMES[axis],
                 from: from.position[axis] / unit,
                 to: to.position[axis] / unit,

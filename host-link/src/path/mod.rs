@@ -5,6 +5,7 @@ mod elements;
 mod error;
 mod exact;
 mod limits;
+mod nurbs;
 mod outputs;
 mod pieces;
 mod planned;
@@ -19,8 +20,10 @@ pub use planned::{Bound, PlannedPath};
 pub use targets::Tip;
 
 use crate::machine::{MachineFile, PlanningConfig};
-use crate::nc::Program;
+use crate::nc::{Place, Program};
 use limits::{DRIVES, DriveLimits};
+use outputs::Switched;
+use pieces::Feeds;
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, Kinematics};
@@ -29,6 +32,9 @@ use targets::Stand;
 
 /// Most knots of one path: what the boards hold.
 pub const CAPACITY: usize = 512;
+
+/// Of a path that no program asks for.
+pub(crate) const NOWHERE: Place = Place { line: 0, column: 0 };
 
 /// Plans program paths for one machine.
 #[derive(Clone, Debug)]
@@ -40,6 +46,8 @@ pub struct Planner {
     drives: [DriveLimits; DRIVES],
     /// Of each beam that the machine has \[W\].
     largest_power: [Option<f64>; SIDES],
+    /// The beam that is a spindle.
+    spindle: Option<u8>,
     /// The machine has slides that follow the seam.
     tracks: bool,
     planning: PlanningConfig,
@@ -54,6 +62,10 @@ impl Planner {
             kinematics: machine.motion.kinematics()?,
             fitted: machine.motion.kinematics.fitted(),
             drives: DriveLimits::build_all(machine)?,
+            spindle: (0..).zip(&beams).find_map(|(side, beam)| {
+                let stays_on = beam.as_ref().is_some_and(|beam| beam.stays_on_at_rest);
+                stays_on.then_some(side)
+            }),
             largest_power: beams.map(|beam| beam.map(|beam| beam.power_at_10v_w)),
             tracks: machine.tracking.is_some(),
             planning: machine.planning.clone(),
@@ -95,6 +107,7 @@ impl Planner {
             tip: self.tip(from),
             axes: inner(from),
             placed: false,
+            switched: Switched::default(),
         };
         let mut planned = Vec::new();
         for path in &program.paths {
@@ -115,7 +128,7 @@ impl Planner {
         [(from, &first), (&first, &park)]
             .into_iter()
             .filter(|(from, to)| from != to)
-            .map(|(from, to)| self.axes_path(&inner(from), &inner(to), &[0.0; SIDES], 0))
+            .map(|(from, to)| self.axes_path(&inner(from), &inner(to), &[0.0; SIDES], NOWHERE))
             .collect()
     }
 }

@@ -1,70 +1,134 @@
-//! M62, M63 and M67 on the machine that is there.
+//! What a program switches, on the machine that is there.
 
 use super::{PathError, Planner};
-use crate::nc::ProgramEvent;
+use crate::nc::{Place, ProgramAction, ProgramEvent};
+use shared::geometry::Turn;
 use shared::io::SIDES;
-use shared::protocol::{PathAction, PathEvent};
+use shared::protocol::PathAction;
+
+/// A switching at the start of the motion to a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Switching {
+    pub(super) with_target: usize,
+    pub(super) action: PathAction,
+}
 
 impl Planner {
-    /// Beams and tracking must be there, and a beam gives only so much.
-    pub(super) fn check_outputs(&self, events: &[ProgramEvent]) -> Result<(), PathError> {
-        for event in events {
-            let line = event.line;
-            let missing = |output: String| PathError::NoOutput {
-                line,
-                output,
-                machine: self.name.clone(),
-            };
-            let power = |side: u8| {
-                let power = self.largest_power[usize::from(side)];
-                power.ok_or_else(|| missing(format!("beam {}", side + 1)))
-            };
-            match event.action {
-                PathAction::Beam { side, .. } => {
-                    power(side)?;
+    /// `events` as the motion board knows them. Beams, spindle and tracking must be there, and give only so much.
+    pub(super) fn switchings(&self, events: &[ProgramEvent]) -> Result<Vec<Switching>, PathError> {
+        let switching = |event: &ProgramEvent| {
+            Ok(Switching {
+                with_target: event.with_target,
+                action: self.action(event)?,
+            })
+        };
+        events.iter().map(switching).collect()
+    }
+
+    fn action(&self, event: &ProgramEvent) -> Result<PathAction, PathError> {
+        let place = event.place;
+        match event.action {
+            ProgramAction::Output(action) => {
+                self.check_output(&action, place)?;
+                Ok(action)
+            }
+            ProgramAction::SpindleSpeed(rpm) => {
+                let side = self.spindle(event)?;
+                let largest = self.largest_power[usize::from(side)].unwrap_or(0.0);
+                if rpm > largest {
+                    return Err(PathError::SpindleSpeed { place, rpm, largest });
                 }
-                PathAction::Power { side, watt } => {
-                    let largest = power(side)?;
-                    if watt > largest {
-                        return Err(PathError::Power {
-                            line,
-                            side,
-                            watt,
-                            largest,
-                        });
-                    }
-                }
-                PathAction::Tracking { .. } if !self.tracks => {
-                    return Err(missing("seam tracking".to_owned()));
-                }
-                PathAction::Tracking { .. } | PathAction::Speed { .. } => {}
+                Ok(PathAction::Power { side, watt: rpm })
+            }
+            ProgramAction::SpindleOn(Turn::Clockwise) => {
+                let side = self.spindle(event)?;
+                Ok(PathAction::Beam { side, on: true })
+            }
+            ProgramAction::SpindleOn(Turn::CounterClockwise) => {
+                self.spindle(event)?;
+                let machine = self.name.clone();
+                Err(PathError::SpindleSense { place, machine })
+            }
+            ProgramAction::SpindleOff => {
+                let side = self.spindle(event)?;
+                Ok(PathAction::Beam { side, on: false })
             }
         }
-        Ok(())
+    }
+
+    /// The beam that is the spindle: the one that stays on at rest.
+    fn spindle(&self, event: &ProgramEvent) -> Result<u8, PathError> {
+        self.spindle.ok_or_else(|| PathError::NoSpindle {
+            place: event.place,
+            code: event.code,
+            machine: self.name.clone(),
+        })
+    }
+
+    fn check_output(&self, action: &PathAction, place: Place) -> Result<(), PathError> {
+        let missing = |output: String| PathError::NoOutput {
+            place,
+            output,
+            machine: self.name.clone(),
+        };
+        let power = |side: u8| {
+            let power = self.largest_power[usize::from(side)];
+            power.ok_or_else(|| missing(format!("beam {}", side + 1)))
+        };
+        match *action {
+            PathAction::Beam { side, .. } => power(side).map(|_| ()),
+            PathAction::Power { side, watt } => {
+                let largest = power(side)?;
+                if watt > largest {
+                    return Err(PathError::Power {
+                        place,
+                        side,
+                        watt,
+                        largest,
+                    });
+                }
+                Ok(())
+            }
+            PathAction::Tracking { .. } if !self.tracks => Err(missing("seam tracking".to_owned())),
+            PathAction::Tracking { .. } | PathAction::Speed { .. } => Ok(()),
+        }
     }
 }
 
-/// What must be switched again where a path is cut before target `first`, because the boards begin every path with
-/// everything off.
-pub(super) fn carried(events: &[ProgramEvent], first: usize) -> Vec<PathEvent> {
-    let (mut powers, mut gates, mut tracks) = ([None; SIDES], [false; SIDES], false);
-    for event in events.iter().filter(|event| event.with_target < first) {
-        match event.action {
-            PathAction::Power { side, watt } => powers[usize::from(side)] = Some(watt),
-            PathAction::Beam { side, on } => gates[usize::from(side)] = on,
-            PathAction::Tracking { on } => tracks = on,
+/// What the program has switched on so far. The boards begin every path with everything off, but for a spindle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Switched {
+    powers: [Option<f64>; SIDES],
+    gates: [bool; SIDES],
+    tracks: bool,
+}
+
+impl Switched {
+    /// Takes up `action`.
+    pub(super) fn switch(&mut self, action: &PathAction) {
+        match *action {
+            PathAction::Power { side, watt } => self.powers[usize::from(side)] = Some(watt),
+            PathAction::Beam { side, on } => self.gates[usize::from(side)] = on,
+            PathAction::Tracking { on } => self.tracks = on,
             // The speed of every block is known by its own.
             PathAction::Speed { .. } => {}
         }
     }
-    let mut actions = Vec::new();
-    for (side, (power, gate)) in (0..).zip(powers.into_iter().zip(gates)) {
-        actions.extend(power.map(|watt| PathAction::Power { side, watt }));
-        actions.extend(gate.then_some(PathAction::Beam { side, on: true }));
+
+    /// A rapid leaves gates and tracking off.
+    pub(super) fn rapid(&mut self) {
+        self.gates = [false; SIDES];
+        self.tracks = false;
     }
-    actions.extend(tracks.then_some(PathAction::Tracking { on: true }));
-    actions
-        .into_iter()
-        .map(|action| PathEvent { s_mm: 0.0, action })
-        .collect()
+
+    /// What brings a path there that begins with everything off.
+    pub(super) fn actions(&self) -> Vec<PathAction> {
+        let mut actions = Vec::new();
+        for (side, (power, gate)) in (0..).zip(self.powers.into_iter().zip(self.gates)) {
+            actions.extend(power.map(|watt| PathAction::Power { side, watt }));
+            actions.extend(gate.then_some(PathAction::Beam { side, on: true }));
+        }
+        actions.extend(self.tracks.then_some(PathAction::Tracking { on: true }));
+        actions
+    }
 }

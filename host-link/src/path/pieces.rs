@@ -3,10 +3,11 @@
 
 use super::exact::Piece;
 use super::limits::{Demand, axes_at};
+use super::outputs::{Switched, Switching};
 use super::shape::Shape;
 use super::targets::{ROTARY, Stand};
-use super::{CAPACITY, PathError, PlannedPath, Planner, Tip, outputs};
-use crate::nc::{Motion, ProgramPath, Way};
+use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip};
+use crate::nc::{FeedRate, Motion, PathControl, Place, ProgramPath, Target, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
 use shared::motion::MAX_EVENTS;
@@ -27,11 +28,12 @@ impl Planner {
         stand: &mut Stand,
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
-        self.check_outputs(&path.events)?;
-        let mut planned = if path.targets[0].way == Way::Axes {
-            vec![self.axes_motion(path, stand)?]
-        } else {
-            self.tip_motion(path, stand, speed_mm_s)?
+        let events = self.switchings(&path.events)?;
+        let axes = path.targets.first().filter(|target| target.way == Way::Axes);
+        let mut planned = match (path.motion, axes) {
+            (Motion::Stand, _) => vec![self.stand(path, &events, stand)?],
+            (_, Some(target)) => vec![self.axes_motion(target, &events, stand)?],
+            _ => self.tip_motion(path, &events, stand, speed_mm_s)?,
         };
         planned[0].dwell_before_s = path.dwell_before_s;
         Ok(planned)
@@ -43,9 +45,9 @@ impl Planner {
         from: &[f64; AXES],
         to: &[f64; AXES],
         extension: &[f64; SIDES],
-        line: u32,
+        place: Place,
     ) -> Result<PlannedPath, PathError> {
-        let shape = Shape::of_axes(from, to, extension, line);
+        let shape = Shape::of_axes(from, to, extension, place);
         let mut planned = PlannedPath::untimed(&shape, PathSpace::Axes, Motion::Rapid);
         let demands = self.demands(&planned, &shape, from)?;
         self.check_travel(&demands, &shape)?;
@@ -53,13 +55,34 @@ impl Planner {
         Ok(planned)
     }
 
+    /// No motion: what is switched takes effect as the machine stands.
+    fn stand(
+        &self,
+        path: &ProgramPath,
+        events: &[Switching],
+        stand: &mut Stand,
+    ) -> Result<PlannedPath, PathError> {
+        let place = path.events.first().map_or(NOWHERE, |event| event.place);
+        let mut planned = self.axes_path(&stand.axes, &stand.axes, &stand.tip.extension_mm, place)?;
+        planned.motion = Motion::Stand;
+        planned.events = path_events(&stand.switched, events, 0, &[0.0], &[], place)?;
+        take_up(&mut stand.switched, &planned.events);
+        Ok(planned)
+    }
+
     /// G53 G0.
-    fn axes_motion(&self, path: &ProgramPath, stand: &mut Stand) -> Result<PlannedPath, PathError> {
-        let target = &path.targets[0];
+    fn axes_motion(
+        &self,
+        target: &Target,
+        events: &[Switching],
+        stand: &mut Stand,
+    ) -> Result<PlannedPath, PathError> {
         let to = self.axes_target(target, stand)?;
         let extension_mm = stand.tip.extension_mm;
-        let mut planned = self.axes_path(&stand.axes, &to, &extension_mm, target.line)?;
-        planned.events = events(path, 0, &[0.0], &[], target.line)?;
+        let mut planned = self.axes_path(&stand.axes, &to, &extension_mm, target.place)?;
+        planned.events = path_events(&Switched::default(), events, 0, &[0.0], &[], target.place)?;
+        take_up(&mut stand.switched, &planned.events);
+        stand.switched.rapid();
         let people = std::array::from_fn(|i| to[i] / AXIS_UNIT[i]);
         stand.axes = to;
         stand.tip = Tip {
@@ -72,36 +95,84 @@ impl Planner {
     fn tip_motion(
         &self,
         path: &ProgramPath,
+        events: &[Switching],
         stand: &mut Stand,
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
         let tips = self.tips(path, stand)?;
-        let speeds = speeds(path, speed_mm_s)?;
-        let pieces = self.pieces(path, &tips, &stand.tip, &speeds)?;
+        let feeds = Feeds::of(path, speed_mm_s)?;
+        let pieces = self.pieces(path, &tips, &stand.tip, &feeds)?;
         let mut paths = Vec::with_capacity(pieces.len());
         for piece in &pieces {
-            paths.push(self.piece(path, piece, &tips, &speeds, stand)?);
+            paths.push(self.piece(path.motion, events, piece, &tips, stand)?);
         }
         Ok(paths)
     }
 
-    /// The curves of a path of the tip.
+    /// The curves of a path of the tip. It stops where the program says so with G61.1.
     fn pieces(
         &self,
         path: &ProgramPath,
         tips: &[Tip],
         from: &Tip,
-        speeds: &[f64],
+        feeds: &Feeds,
     ) -> Result<Vec<Piece>, PathError> {
-        let targets = &path.targets;
-        let arcs = targets.iter().any(|t| matches!(t.way, Way::Arc(..)));
-        if arcs || targets.len() == 1 {
-            return self.exact(path.motion, from, tips, targets, speeds);
+        let mut pieces = Vec::new();
+        let mut first: usize = 0;
+        for targets in path
+            .targets
+            .split_inclusive(|target| target.control == PathControl::ExactStop)
+        {
+            let from = first.checked_sub(1).map_or(from, |before| &tips[before]);
+            let tips = &tips[first..first + targets.len()];
+            let more = self.without_stop(path.motion, from, tips, targets, feeds)?;
+            pieces.extend(more.into_iter().map(|piece| Piece {
+                first: first + piece.first,
+                ..piece
+            }));
+            first += targets.len();
         }
-        let shape = self.smooth(from, tips, targets)?;
+        Ok(pieces)
+    }
+
+    /// The curves of targets that need no stop but for corners: a spline through many straight blocks, where G64 allows it,
+    /// or every block exactly.
+    fn without_stop(
+        &self,
+        motion: Motion,
+        from: &Tip,
+        tips: &[Tip],
+        targets: &[Target],
+        feeds: &Feeds,
+    ) -> Result<Vec<Piece>, PathError> {
+        let straight = targets.iter().all(|target| target.way == Way::Line);
+        let tolerance = blend_tolerance(targets);
+        if !straight || targets.len() == 1 || tolerance == Some(0.0) {
+            return self.exact(motion, from, tips, targets, feeds);
+        }
+        let shape = match (self.smooth(from, tips, targets), tolerance) {
+            (Ok((_, off)), Some(tolerance)) if off > tolerance => None,
+            (Err(PathError::Corner { .. }), Some(_)) => None,
+            (smooth, _) => Some(smooth?.0),
+        };
+        let Some(shape) = shape else {
+            return self.exact(motion, from, tips, targets, feeds);
+        };
+        let ends = shape.targets.iter().map(|goal| goal.s);
+        let lengths = shape
+            .starts()
+            .into_iter()
+            .zip(ends)
+            .map(|(start, end)| end - start);
+        let speeds = targets
+            .iter()
+            .zip(lengths)
+            .map(|(target, length)| feeds.speed(target, length))
+            .collect::<Result<_, _>>()?;
         Ok(vec![Piece {
             shape,
             first: 0,
+            speeds,
             corner: None,
         }])
     }
@@ -109,38 +180,48 @@ impl Planner {
     /// One curve, timed and checked; the machine then stands at its end.
     fn piece(
         &self,
-        path: &ProgramPath,
+        motion: Motion,
+        events: &[Switching],
         piece: &Piece,
         tips: &[Tip],
-        speeds: &[f64],
         stand: &mut Stand,
     ) -> Result<PlannedPath, PathError> {
         let (shape, first) = (&piece.shape, piece.first);
-        let here = first..first + shape.targets.len();
-        let line = shape.targets[0].line;
+        let place = shape.targets[0].place;
         if shape.knots.len() > CAPACITY {
             return Err(PathError::TooLong {
-                line,
+                place,
                 knots: shape.knots.len(),
             });
         }
-        let mut planned = PlannedPath::untimed(shape, PathSpace::Tool, path.motion);
-        if path.motion == Motion::Rapid {
+        let mut planned = PlannedPath::untimed(shape, PathSpace::Tool, motion);
+        if motion == Motion::Rapid {
             planned.speed_error = 0.0;
         }
         planned.corner_deg = piece.corner.map(f64::to_degrees);
-        planned.events = events(path, first, &shape.starts(), &speeds[here.clone()], line)?;
-        let demands = self.demands(&planned, shape, &stand.axes)?;
-        let reached = self.reached(&demands, shape, &tips[here.clone()])?;
-        self.check_travel(&demands, shape)?;
-        planned.limits = match path.motion {
-            Motion::Rapid => self.rapid_limits(&demands),
-            Motion::Feed => self.feed_limits(&demands, shape, &speeds[here])?,
+        let rapid = motion == Motion::Rapid;
+        let on = if rapid {
+            Switched::default()
+        } else {
+            stand.switched
         };
-        planned.bound = match path.motion {
-            Motion::Rapid => None,
+        planned.events = path_events(&on, events, first, &shape.starts(), &piece.speeds, place)?;
+        let demands = self.demands(&planned, shape, &stand.axes)?;
+        let mut reached = self.reached(&demands, shape, &tips[first..first + shape.targets.len()])?;
+        self.check_travel(&demands, shape)?;
+        planned.limits = match motion {
+            Motion::Rapid | Motion::Stand => self.rapid_limits(&demands),
+            Motion::Feed => self.feed_limits(&demands, shape, &piece.speeds)?,
+        };
+        planned.bound = match motion {
+            Motion::Rapid | Motion::Stand => None,
             Motion::Feed => self.bound(&demands),
         };
+        reached.switched = stand.switched;
+        take_up(&mut reached.switched, &planned.events);
+        if rapid {
+            reached.switched.rapid();
+        }
         *stand = reached;
         Ok(planned)
     }
@@ -152,6 +233,7 @@ impl Planner {
             tip: Tip::default(),
             axes: [0.0; AXES],
             placed: true,
+            switched: Switched::default(),
         };
         for (tip, goal) in tips.iter().zip(&shape.targets) {
             let axes = axes_at(demands, goal.s);
@@ -172,7 +254,7 @@ impl Planner {
                 if self.leaves_free(tip, &axes, axis) {
                     *angle = reached;
                 } else if worst.as_ref().is_none_or(|(largest, _)| off > *largest) {
-                    worst = Some((off, PathError::turned(goal.line, axis, *angle, reached)));
+                    worst = Some((off, PathError::turned(goal.place, axis, *angle, reached)));
                 }
             }
             if let Some((_, error)) = worst {
@@ -191,52 +273,89 @@ impl Planner {
     }
 }
 
-/// Speed on the way to each target \[mm/s\], 0 for a rapid; `replaced` takes the place of the programmed one.
-fn speeds(path: &ProgramPath, replaced: Option<f64>) -> Result<Vec<f64>, PathError> {
-    if replaced.is_some() && path.feeds.len() > 1 {
-        let line = path.targets[0].line;
-        return Err(PathError::SeveralFeeds { line });
-    }
-    let mut speeds = vec![0.0; path.targets.len()];
-    for feed in &path.feeds {
-        let speed = replaced.unwrap_or(feed.mm_min / 60.0);
-        if !(speed.is_finite() && speed > 0.0) {
-            return Err(PathError::NoFeed(speed * 60.0));
-        }
-        speeds[feed.with_target..].fill(speed);
-    }
-    Ok(speeds)
+/// The closest tolerance that the blocks ask for, 0 with G61; none where the best speed is all.
+fn blend_tolerance(targets: &[Target]) -> Option<f64> {
+    let tolerances = targets.iter().filter_map(|target| match target.control {
+        PathControl::ExactPath => Some(0.0),
+        PathControl::Blend(tolerance) => tolerance,
+        PathControl::ExactStop => None,
+    });
+    tolerances.min_by(f64::total_cmp)
 }
 
-/// What happens on the part of `path` that begins with target `first`, whose motions start at `starts` \[mm\] and go
-/// at `speeds` \[mm/s\]. What was on before is switched on again.
-fn events(
-    path: &ProgramPath,
+/// Feeds of a path.
+pub(super) struct Feeds {
+    /// Takes the place of the programmed ones \[mm/s\].
+    replaced: Option<f64>,
+}
+
+impl Feeds {
+    /// Those of `path`, or `replaced` \[mm/s\] in place of the only one.
+    fn of(path: &ProgramPath, replaced: Option<f64>) -> Result<Self, PathError> {
+        let mut feeds = path.targets.windows(2);
+        if replaced.is_some() && feeds.any(|pair| pair[0].feed != pair[1].feed) {
+            let place = path.targets[0].place;
+            return Err(PathError::SeveralFeeds { place });
+        }
+        Ok(Self { replaced })
+    }
+
+    /// Speed on a way of `length` \[mm\] to `target` \[mm/s\], 0 for a rapid.
+    pub(super) fn speed(&self, target: &Target, length: f64) -> Result<f64, PathError> {
+        let Some(feed) = target.feed else {
+            return Ok(0.0);
+        };
+        let programmed = match feed {
+            FeedRate::PerMinute(mm_min) => mm_min / 60.0,
+            FeedRate::InverseTime(per_minute) => length * per_minute / 60.0,
+        };
+        let speed = self.replaced.unwrap_or(programmed);
+        if speed.is_finite() && speed > 0.0 {
+            Ok(speed)
+        } else {
+            Err(PathError::NoFeed(speed * 60.0))
+        }
+    }
+}
+
+/// What happens on the part of a path that begins with target `first`, whose motions start at `starts` \[mm\] and go
+/// at `speeds` \[mm/s\]: what is on already, then `events`.
+fn path_events(
+    on: &Switched,
+    events: &[Switching],
     first: usize,
     starts: &[f64],
     speeds: &[f64],
-    line: u32,
+    place: Place,
 ) -> Result<Vec<PathEvent>, PathError> {
-    let mut events = outputs::carried(&path.events, first);
-    for event in &path.events {
+    let before = on.actions().into_iter();
+    let mut found: Vec<PathEvent> = before.map(|action| PathEvent { s_mm: 0.0, action }).collect();
+    for event in events {
         let index = event.with_target.checked_sub(first);
-        events.extend(index.and_then(|i| starts.get(i)).map(|s_mm| PathEvent {
+        found.extend(index.and_then(|i| starts.get(i)).map(|s_mm| PathEvent {
             s_mm: *s_mm,
             action: event.action,
         }));
     }
-    for (pair, s_mm) in speeds.windows(2).zip(&starts[1..]) {
+    for (pair, s_mm) in speeds.windows(2).zip(starts.iter().skip(1)) {
         if pair[0] != pair[1] {
             let action = PathAction::Speed { mm_s: pair[1] };
-            events.push(PathEvent { s_mm: *s_mm, action });
+            found.push(PathEvent { s_mm: *s_mm, action });
         }
     }
-    events.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
-    if events.len() > MAX_EVENTS {
+    found.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
+    if found.len() > MAX_EVENTS {
         return Err(PathError::TooManyEvents {
-            line,
-            events: events.len(),
+            place,
+            events: found.len(),
         });
     }
-    Ok(events)
+    Ok(found)
+}
+
+/// What is on after `events`.
+fn take_up(switched: &mut Switched, events: &[PathEvent]) {
+    for event in events {
+        switched.switch(&event.action);
+    }
 }

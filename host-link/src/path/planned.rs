@@ -10,7 +10,7 @@ use shared::trajectory::{Path, PathSpace, SpeedError, SpeedLimits, SpeedPlan, Sp
 /// A path that the boards can run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedPath {
-    /// Rapid or feed.
+    /// Rapid, feed or none.
     pub motion: Motion,
     /// What the knots are: the tool in the frame of the work, or the axes.
     pub space: PathSpace,
@@ -100,8 +100,11 @@ impl PlannedPath {
         })
     }
 
-    /// From where the first beam goes on to where the last one goes off \[mm\]; `None` without beams.
+    /// From where the first beam goes on to where the last one goes off \[mm\]; `None` without beams or motion.
     pub fn weld(&self) -> Option<(f64, f64)> {
+        if self.motion == Motion::Stand {
+            return None;
+        }
         let places = |wanted: bool| {
             self.events
                 .iter()

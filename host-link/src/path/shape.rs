@@ -2,7 +2,7 @@
 
 use super::{PathError, Planner, Tip};
 use crate::curve::{Curve, distance};
-use crate::nc::Target;
+use crate::nc::{Place, Target};
 use nalgebra::Vector3;
 use shared::geometry::{Pose, angle};
 use shared::io::{AXES, SIDES};
@@ -12,6 +12,8 @@ use shared::trajectory::CHANNELS;
 
 /// Largest angle between two chords of a path \[rad\]: a spline through a sharper corner would swing out.
 const MAX_CORNER: f64 = 0.35;
+/// Parts of a span at which its distance from the chord is taken.
+const CHORD_CHECKS: u32 = 16;
 /// Shortest path \[mm\], for moves that need next to no motion.
 pub(super) const SHORTEST: f64 = 1e-3;
 
@@ -27,22 +29,27 @@ pub(super) struct Shape {
 #[derive(Clone, Copy)]
 pub(super) struct Goal {
     pub(super) s: f64,
-    /// Line of the program.
-    pub(super) line: u32,
+    /// Where in the program.
+    pub(super) place: Place,
     /// By how much the rotary axes may be off their words there, as they change their rates \[rad\].
     pub(super) slack: f64,
 }
 
 impl Goal {
     /// The place is met exactly.
-    pub(super) fn exact(s: f64, line: u32) -> Self {
-        Self { s, line, slack: 0.0 }
+    pub(super) fn exact(s: f64, place: Place) -> Self {
+        Self { s, place, slack: 0.0 }
     }
 }
 
 impl Shape {
     /// The straight line of axis space between two places (mm, rad), V slides standing at `extension`.
-    pub(super) fn of_axes(from: &[f64; AXES], to: &[f64; AXES], extension: &[f64; SIDES], line: u32) -> Self {
+    pub(super) fn of_axes(
+        from: &[f64; AXES],
+        to: &[f64; AXES],
+        extension: &[f64; SIDES],
+        place: Place,
+    ) -> Self {
         let way = |i: usize| (to[i] - from[i]) / AXIS_UNIT[i];
         let longest = (0..AXES).map(|i| way(i).abs()).fold(SHORTEST, f64::max);
         let knot = |axes: &[f64; AXES], s_mm: f64| {
@@ -61,7 +68,7 @@ impl Shape {
         Self {
             knots: vec![knot(from, 0.0), knot(to, longest)],
             speed_error: 0.0,
-            targets: vec![Goal::exact(longest, line)],
+            targets: vec![Goal::exact(longest, place)],
         }
     }
 
@@ -80,22 +87,28 @@ impl Shape {
         index.min(self.targets.len() - 1)
     }
 
-    /// Program line of the motion at `s`.
-    pub(super) fn line(&self, s: f64) -> u32 {
-        self.targets[self.target(s)].line
+    /// Place in the program of the motion at `s`.
+    pub(super) fn place(&self, s: f64) -> Place {
+        self.targets[self.target(s)].place
     }
 }
 
 impl Planner {
-    /// The smooth curve from `from` through `tips`, the places of `targets`.
-    pub(super) fn smooth(&self, from: &Tip, tips: &[Tip], targets: &[Target]) -> Result<Shape, PathError> {
+    /// The smooth curve from `from` through `tips`, the places of `targets`, and how far it is off the straight lines
+    /// between them \[mm\].
+    pub(super) fn smooth(
+        &self,
+        from: &Tip,
+        tips: &[Tip],
+        targets: &[Target],
+    ) -> Result<(Shape, f64), PathError> {
         let points: Vec<_> = std::iter::once(from)
             .chain(tips)
             .map(|tip| channels(&self.pose(tip), &tip.extension_mm))
             .collect();
         for (pair, target) in points.windows(2).zip(targets) {
             if distance(&pair[0], &pair[1]) < SHORTEST {
-                return Err(PathError::NoTravel { line: target.line });
+                return Err(PathError::NoTravel { place: target.place });
             }
         }
         for (three, target) in points.windows(3).zip(&targets[1..]) {
@@ -103,20 +116,37 @@ impl Planner {
             let turn = angle(&chord(0), &chord(1));
             if turn > MAX_CORNER {
                 return Err(PathError::Corner {
-                    line: target.line,
+                    place: target.place,
                     degrees: turn.to_degrees(),
                 });
             }
         }
-        let line = targets[0].line;
-        let curve = Curve::by_length(&points).map_err(|source| PathError::Spline { line, source })?;
+        let place = targets[0].place;
+        let curve = Curve::by_length(&points).map_err(|source| PathError::Spline { place, source })?;
         let ends = curve.parameters()[1..].iter();
-        Ok(Shape {
+        let shape = Shape {
             speed_error: curve.speed_error(),
-            targets: ends.zip(targets).map(|(s, t)| Goal::exact(*s, t.line)).collect(),
+            targets: ends.zip(targets).map(|(s, t)| Goal::exact(*s, t.place)).collect(),
             knots: knots_of(&curve),
-        })
+        };
+        Ok((shape, off_chords(&curve, &points)))
     }
+}
+
+/// How far `curve` is off the lines between its points, the first three channels of `points` \[mm\].
+fn off_chords(curve: &Curve<CHANNELS>, points: &[[f64; CHANNELS]]) -> f64 {
+    let mut largest: f64 = 0.0;
+    for (pair, ends) in points.windows(2).zip(curve.parameters().windows(2)) {
+        let (from, chord) = (position(&pair[0]), position(&pair[1]) - position(&pair[0]));
+        for i in 1..CHORD_CHECKS {
+            let part = f64::from(i) / f64::from(CHORD_CHECKS);
+            let [value, ..] = curve.at(ends[0] + (ends[1] - ends[0]) * part);
+            let off = position(&value) - from;
+            let along = off.dot(&chord) / chord.norm_squared();
+            largest = largest.max((off - chord * along.clamp(0.0, 1.0)).norm());
+        }
+    }
+    largest
 }
 
 fn position(channels: &[f64; CHANNELS]) -> Vector3<f64> {

@@ -1,8 +1,9 @@
 //! From the words of a program to places: what is not said is filled in, and what this machine cannot have is
 //! refused.
 
+use super::outputs::Switched;
 use super::{PathError, Planner};
-use crate::nc::{ArcForm, ProgramPath, Target, Way};
+use crate::nc::{ArcForm, ArcWay, Place, ProgramPath, Target, Way};
 use nalgebra::Vector3;
 use shared::geometry::{Arc, Turn};
 use shared::io::{AXES, AXIS_NAMES, SIDES};
@@ -35,6 +36,8 @@ pub(super) struct Stand {
     pub(super) axes: [f64; AXES],
     /// The program has said where all of the tip is.
     pub(super) placed: bool,
+    /// What is switched on.
+    pub(super) switched: Switched,
 }
 
 impl Planner {
@@ -80,7 +83,7 @@ impl Planner {
             .or(slide.map(|side| SLIDE_NAMES[side]))
         {
             Some(word) => Err(PathError::NotFitted {
-                line: target.line,
+                place: target.place,
                 word,
                 machine: self.name.clone(),
                 fitted: self.fitted_words(),
@@ -97,7 +100,7 @@ impl Planner {
             return Ok(());
         }
         Err(PathError::Incomplete {
-            line: target.line,
+            place: target.place,
             missing: missing.join(" "),
             machine: self.name.clone(),
         })
@@ -112,32 +115,36 @@ impl Planner {
 }
 
 /// The arc of a G2 or G3 block between two tips (RS274/NGC).
-pub(super) fn arc(from: &Tip, to: &Tip, turn: Turn, form: ArcForm, line: u32) -> Result<Arc, PathError> {
+pub(super) fn arc(from: &Tip, to: &Tip, way: &ArcWay, place: Place) -> Result<Arc, PathError> {
     let [start, end]: [Vector3<f64>; 2] = [from.position_mm.into(), to.position_mm.into()];
-    let to_centre = match form {
-        ArcForm::Centre([i, j]) => Vector3::new(i, j, 0.0),
-        ArcForm::Radius(radius) => radius_to_centre(end - start, radius, turn, line)?,
+    let mut axis = Vector3::zeros();
+    axis[way.plane.axis()] = 1.0;
+    let to_centre = match way.form {
+        ArcForm::Centre(offset) => offset.into(),
+        ArcForm::Radius(radius) => radius_to_centre(end - start, &axis, radius, way.turn, place)?,
     };
-    Arc::about_centre(start, end, start + to_centre, Vector3::z(), turn)
-        .map_err(|source| PathError::Arc { line, source })
+    let arc = Arc::about_centre(start, end, start + to_centre, axis, way.turn)
+        .map_err(|source| PathError::Arc { place, source })?;
+    Ok(arc.with_turns(way.more_turns))
 }
 
-/// From the start of an arc to its centre: `chord` leads to its end.
+/// From the start of an arc about `axis` to its centre: `chord` leads to its end.
 fn radius_to_centre(
     chord: Vector3<f64>,
+    axis: &Vector3<f64>,
     radius: f64,
     turn: Turn,
-    line: u32,
+    place: Place,
 ) -> Result<Vector3<f64>, PathError> {
-    let across = Vector3::new(-chord.y, chord.x, 0.0);
+    let across = axis.cross(&chord);
     let distance = across.norm();
     if distance <= SAME_POINT {
-        return Err(PathError::CircleByRadius { line });
+        return Err(PathError::CircleByRadius { place });
     }
     let half = distance / 2.0;
     if radius.abs() < half - Arc::RADIUS_TOLERANCE {
         return Err(PathError::SmallRadius {
-            line,
+            place,
             radius,
             distance,
         });
@@ -146,5 +153,6 @@ fn radius_to_centre(
     let left = (turn == Turn::CounterClockwise) == (radius > 0.0);
     let height = libm::sqrt((radius * radius - half * half).max(0.0));
     let side = if left { height } else { -height };
-    Ok(Vector3::new(chord.x, chord.y, 0.0) / 2.0 + across * (side / distance))
+    let level = chord - axis * axis.dot(&chord);
+    Ok(level / 2.0 + across * (side / distance))
 }

@@ -2,7 +2,7 @@
 
 use super::error::BeadError;
 use crate::machine::MachineFile;
-use crate::path::{PathError, PlannedPath};
+use crate::path::{NOWHERE, PathError, PlannedPath};
 use nalgebra::Vector3;
 use shared::geometry::Moving;
 use shared::geometry::nurbs::curvature;
@@ -80,9 +80,10 @@ pub(super) fn limits(
             let part = (i as f64 + 1e-6) / (LOOKS as f64 + 2e-6);
             let s = span[0].s_mm + (span[1].s_mm - span[0].s_mm) * part;
             let Some(point) = path.at(s) else { continue };
-            let (pose, motion) = point
-                .pose_in_motion()
-                .map_err(|source| PathError::Pose { line: 0, source })?;
+            let (pose, motion) = point.pose_in_motion().map_err(|source| PathError::Pose {
+                place: NOWHERE,
+                source,
+            })?;
             let moved = kinematics.inverse_motion(&pose, &motion, &near)?;
             near = moved.position;
             let at = Moving {

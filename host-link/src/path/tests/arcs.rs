@@ -105,16 +105,16 @@ fn arcs_that_do_not_exist_are_named() {
     let message = |body: &str| stir(body).unwrap_err().to_string();
     assert_eq!(
         message("G1 X610\nG3 X660 Y560 J50"),
-        "line 6: no arc here: radius mismatch: the start is 50 mm from the centre, the end 50.99019513592785 mm, \
+        "line 6, column 4: no arc here: radius mismatch: the start is 50 mm from the centre, the end 50.99019513592785 mm, \
          and 0.005 mm is allowed; correct the centre or the end"
     );
     assert_eq!(
         message("G3 X700 R49"),
-        "line 5: the ends of the arc are 100.0000 mm apart, so R must be at least half of that, not 49"
+        "line 5, column 4: the ends of the arc are 100.0000 mm apart, so R must be at least half of that, not 49"
     );
     assert_eq!(
         message("G3 R10"),
-        "line 5: R tells no centre for a full circle; use I J"
+        "line 5, column 4: R tells no centre for a full circle; use I J K"
     );
     assert!(message("G3 X650 I0 J0").contains("zero radius"));
 }

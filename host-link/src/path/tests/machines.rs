@@ -24,10 +24,10 @@ fn assert_axes(seen: [f64; AXES], wanted: [f64; AXES]) {
 fn words_of_axes_that_a_machine_does_not_have_are_refused() {
     assert_eq!(
         pipe("G0 A5").unwrap_err().to_string(),
-        "line 4: pipe-welder has no A; its words are X Z B C, and X Y Z of the tip"
+        "line 4, column 4: pipe-welder has no A; its words are X Z B C, and X Y Z of the tip"
     );
     let no = |error: PathError| match error {
-        PathError::NotFitted { line, word, .. } => (line, word),
+        PathError::NotFitted { place, word, .. } => (place.line, word),
         other => panic!("{other}"),
     };
     assert_eq!(no(pipe("G0 V1=1").unwrap_err()), (4, "V1"));
@@ -42,20 +42,28 @@ fn the_first_motion_says_how_all_rotary_axes_stand() {
     let error = plan_on("pipe-welder", "G43.4\nG0 X100 Y0 Z240 B0\nM2").unwrap_err();
     assert_eq!(
         error.to_string(),
-        "line 2: the first motion of the tip must say how all axes of pipe-welder stand: C missing"
+        "line 2, column 4: the first motion of the tip must say how all axes of pipe-welder stand: C missing"
     );
     let error = plan_on("wire-arc", "G53 G0 B0\nG43.4\nG0 X0 Y0 Z150\nM2").unwrap_err();
-    assert!(matches!(error, PathError::Incomplete { line: 3, missing, .. } if missing == "A B C"));
+    assert!(
+        matches!(error, PathError::Incomplete { place: Place { line: 3, .. }, missing, .. } if missing == "A B C")
+    );
 }
 
 #[test]
 fn beams_and_tracking_that_a_machine_does_not_have_are_refused() {
     let message = |body: &str| pipe(body).unwrap_err().to_string();
-    assert_eq!(message("M62 P1\nG0 Z110"), "line 4: pipe-welder has no beam 2");
-    assert_eq!(message("M67 E1 Q5\nG0 Z110"), "line 4: pipe-welder has no beam 2");
+    assert_eq!(
+        message("M62 P1\nG0 Z110"),
+        "line 4, column 1: pipe-welder has no beam 2"
+    );
+    assert_eq!(
+        message("M67 E1 Q5\nG0 Z110"),
+        "line 4, column 1: pipe-welder has no beam 2"
+    );
     assert_eq!(
         message("M62 P2\nG0 Z110"),
-        "line 4: pipe-welder has no seam tracking"
+        "line 4, column 1: pipe-welder has no seam tracking"
     );
 }
 
@@ -78,7 +86,7 @@ fn an_axis_turns_on_with_the_tip_and_comes_back_in_axis_space() {
     let error = pipe(&format!("{body}G0 Z110 C0")).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "line 78: C would come to 360.000°, not to 0.000°: a block turns the short way; write it as several \
+        "line 78, column 4: C would come to 360.000°, not to 0.000°: a block turns the short way; write it as several \
          blocks of less than 180°"
     );
     let paths = pipe(&format!("{body}G53 G0 X190\nG53 G0 C0\nG0 X40 Y0 Z100")).unwrap();
@@ -92,7 +100,7 @@ fn an_axis_turns_on_with_the_tip_and_comes_back_in_axis_space() {
 fn a_tip_that_contradicts_its_axis_is_named() {
     assert_eq!(
         pipe("G0 X0 Y40 C80").unwrap_err().to_string(),
-        "line 4: C would come to 90.000°, not to 80.000°: the tip decides how this axis stands; correct the \
+        "line 4, column 4: C would come to 90.000°, not to 80.000°: the tip decides how this axis stands; correct the \
          word, or X Y Z"
     );
     assert!(pipe("G0 X0 Y40 C90").is_ok());
@@ -105,7 +113,7 @@ fn a_block_that_turns_more_than_half_a_turn_is_refused() {
     let plan = |body: &str| plan_on("ac-head", &format!("{start}{body}\nM2"));
     let error = plan("G0 C100").unwrap_err();
     assert!(
-        matches!(error, PathError::Turned { line: 4, axis: "C", programmed, reached, .. }
+        matches!(error, PathError::Turned { place: Place { line: 4, .. }, axis: "C", programmed, reached, .. }
             if (programmed - 100.0).abs() < 1e-9 && (reached + 260.0).abs() < 1e-6),
         "{error}"
     );
@@ -118,7 +126,7 @@ fn a_block_that_turns_more_than_half_a_turn_is_refused() {
 fn an_axis_that_would_jump_is_named() {
     let error = super::plan("G0 Z300\nG0 A-90\nG0 A95").unwrap_err();
     assert!(
-        matches!(error, PathError::Jump { line: 5, axis: "A", from, to } if from < -175.0 && to > 175.0),
+        matches!(error, PathError::Jump { place: Place { line: 5, .. }, axis: "A", from, to } if from < -175.0 && to > 175.0),
         "{error}"
     );
     assert!(super::plan("G0 Z300\nG0 A-90\nG0 A0\nG0 A95").is_ok());
@@ -140,7 +148,16 @@ fn where_the_pose_leaves_an_axis_free_it_stays() {
     );
     // Tilting towards where C does not stand needs an endless turn there.
     let error = plan("G0 Z100 A-30 C90").unwrap_err();
-    assert!(matches!(error, PathError::Kinematics { line: 3, .. }), "{error}");
+    assert!(
+        matches!(
+            error,
+            PathError::Kinematics {
+                place: Place { line: 3, .. },
+                ..
+            }
+        ),
+        "{error}"
+    );
 }
 
 /// Named axes go straight in axis space, the others stay, and the program goes on from there.
@@ -175,7 +192,7 @@ fn g53_moves_the_axes_named_and_the_tip_goes_on_from_there() {
         matches!(
             error,
             PathError::Travel {
-                line: 1,
+                place: Place { line: 1, .. },
                 axis: "Z",
                 ..
             }

@@ -1,11 +1,14 @@
 //! Paths planned for the shipped machines: where they lead, how fast, and what is refused.
 
 mod arcs;
+mod control;
 mod feeds;
 mod machines;
+mod nurbs;
+mod outputs;
 
 use super::*;
-use crate::nc::{Options, interpret};
+use crate::nc::{Options, Place, interpret};
 use nalgebra::Vector3;
 use shared::geometry::{angle, interpolate};
 use shared::motion::MAX_EVENTS;
@@ -175,7 +178,7 @@ fn leaving_the_travel_names_axis_amount_and_line() {
     let error = plan("G0 X1000\nG0 Y3020").unwrap_err();
     assert_eq!(
         error.to_string(),
-        "line 4: axis Y would have to go to 3020.000, 20.000 beyond its travel (0…3000 mm)"
+        "line 4, column 4: axis Y would have to go to 3020.000, 20.000 beyond its travel (0…3000 mm)"
     );
     let error = plan("G0 B31").unwrap_err();
     assert!(matches!(error, PathError::Travel { axis: "B", beyond, .. } if (beyond - 1.0).abs() < 1e-6));
@@ -189,7 +192,7 @@ fn a_feed_above_the_axes_names_the_limiting_one() {
     let error = plan("F21000\nG1 Y1400").unwrap_err();
     assert_eq!(
         error.to_string(),
-        "line 4: the feed of 21000 mm/min is too high, the speed of Y allows 20000 mm/min"
+        "line 4, column 4: the feed of 21000 mm/min is too high, the speed of Y allows 20000 mm/min"
     );
     assert!(plan(&arc(600.0, 9000.0)).is_ok());
 }
@@ -197,8 +200,15 @@ fn a_feed_above_the_axes_names_the_limiting_one() {
 #[test]
 fn what_is_not_smooth_is_refused_with_its_line() {
     let error = plan("F600\nG1 X1010\nY1010").unwrap_err();
-    assert!(matches!(error, PathError::Corner { line: 5, degrees } if (degrees - 90.0).abs() < 1e-9));
-    assert_eq!(plan("F600\nG1 A10").unwrap_err(), PathError::NoTravel { line: 4 });
+    assert!(
+        matches!(error, PathError::Corner { place: Place { line: 5, .. }, degrees } if (degrees - 90.0).abs() < 1e-9)
+    );
+    assert_eq!(
+        plan("F600\nG1 A10").unwrap_err(),
+        PathError::NoTravel {
+            place: Place { line: 4, column: 4 }
+        }
+    );
     assert!(plan("F600\nG61.1\nG1 X1010\nY1010").is_ok());
     let events = MAX_EVENTS + 1;
     let error = plan(&format!("{}F600\nG1 X1010", "M62 P0\n".repeat(events))).unwrap_err();
@@ -208,7 +218,7 @@ fn what_is_not_smooth_is_refused_with_its_line() {
     assert_eq!(
         error,
         PathError::TooLong {
-            line: 4,
+            place: Place { line: 4, column: 4 },
             knots: CAPACITY + 1
         }
     );
@@ -241,7 +251,7 @@ fn more_power_than_the_beam_gives_is_refused_with_its_line() {
     let error = plan("M67 E1 Q4000.5\nF600\nG1 X1010").unwrap_err();
     assert_eq!(
         error.to_string(),
-        "line 3: 4000.5 W are more than beam 2 gives, at most 4000 W"
+        "line 3, column 1: 4000.5 W are more than beam 2 gives, at most 4000 W"
     );
     assert!(plan("M67 E1 Q4000\nF600\nG1 X1010").is_ok());
 }

@@ -1,9 +1,12 @@
 //! What programs mean, and what is refused where.
 
+mod modes;
+mod nurbs;
+mod outputs;
+
 use super::interpreter::{Options, interpret};
 use super::*;
 use shared::geometry::Turn;
-use shared::protocol::PathAction;
 
 const HEADER: &str = "G21 G17 G90 G94 G40 G54 G64\nG43.4\nG0 X0 Y0 Z50 A0 B0 C0\nG0 Z0\n";
 
@@ -30,58 +33,15 @@ fn g1_blocks_make_one_path_and_each_g0_its_own() {
         .collect();
     let (feed, rapid) = (Motion::Feed, Motion::Rapid);
     assert_eq!(shape, [(rapid, 1), (rapid, 1), (feed, 3), (rapid, 1)]);
-    let end = program.paths[2].targets[2];
-    assert_eq!((end.way, end.line), (Way::Line, 8));
+    let end = &program.paths[2].targets[2];
+    assert_eq!((&end.way, end.place), (&Way::Line, Place { line: 8, column: 1 }));
     assert_eq!(
         end.words.axes,
         [Some(30.0), Some(3.0), None, Some(1.0), None, None]
     );
     assert_eq!(end.words.extension, [Some(0.5), None]);
-    let mm_min = 6000.0;
-    assert_eq!(
-        program.paths[2].feeds,
-        [ProgramFeed {
-            with_target: 0,
-            mm_min
-        }]
-    );
-}
-
-#[test]
-fn outputs_take_effect_with_the_next_motion() {
-    let body = "F600\nM67 E1 Q1500\nG1 X10\nM62 P0\nM62 P2\nX20\nM63 P0\nG0 Z50\nM30";
-    let program = run(body).unwrap();
-    let feed = &program.paths[2].events;
-    let (side, watt) = (1, 1500.0);
-    let actions: Vec<_> = feed.iter().map(|e| (e.with_target, e.action)).collect();
-    assert_eq!(
-        actions,
-        [
-            (0, PathAction::Power { side, watt }),
-            (1, PathAction::Beam { side: 0, on: true }),
-            (1, PathAction::Tracking { on: true }),
-        ]
-    );
-    assert_eq!(program.paths[3].events[0].with_target, 0);
-    assert_eq!(problem("M62 P0\nM2"), (Problem::NoMotionAfter("M62"), 1));
-}
-
-#[test]
-fn exact_stop_ends_a_path_at_each_block() {
-    let program = run("F600\nG61.1\nG1 X10\nX20\nG64\nX30\nX40\nM2").unwrap();
-    let shape: Vec<_> = program.paths[2..].iter().map(|p| p.targets.len()).collect();
-    assert_eq!(shape, [1, 1, 2]);
-}
-
-#[test]
-fn feeds_may_change_within_a_path() {
-    let program = run("G1 X10 F600\nX20\nF700\nX30\nX40 F700\nX50 F600\nG0 X0\nG1 X10\nM2").unwrap();
-    let feeds = |path: usize| -> Vec<_> {
-        let feeds = program.paths[path].feeds.iter();
-        feeds.map(|feed| (feed.with_target, feed.mm_min)).collect()
-    };
-    assert_eq!(feeds(2), [(0, 600.0), (2, 700.0), (4, 600.0)]);
-    assert_eq!((feeds(3), feeds(4)), (vec![], vec![(0, 600.0)]));
+    assert_eq!(end.feed, Some(FeedRate::PerMinute(6000.0)));
+    assert_eq!(program.paths[3].targets[0].feed, None);
 }
 
 #[test]
@@ -96,7 +56,7 @@ fn block_delete_is_the_operators_choice() {
 
 #[test]
 fn what_cannot_be_done_is_named_with_its_line() {
-    assert_eq!(problem("\nG1 X10\nM2"), (Problem::NoFeed, 2));
+    assert_eq!(problem("\nG1 X10\nM2"), (Problem::NoFeed("G1"), 2));
     assert_eq!(problem("G49\nG0 X10\nM2"), (Problem::NotTip, 2));
     assert_eq!(problem("G1 X1 F600"), (Problem::NoEnd, 1));
     assert_eq!(problem("G1 X1 F600\nM2\nG0 X5"), (Problem::AfterEnd, 3));
@@ -134,24 +94,32 @@ fn arcs_have_a_centre_or_a_radius() {
     let [path] = &program.paths[2..] else {
         panic!("one path")
     };
-    let ways: Vec<_> = path.targets.iter().map(|t| t.way).collect();
+    let ways: Vec<_> = path.targets.iter().map(|t| t.way.clone()).collect();
+    let arc = |turn, form| {
+        Way::Arc(ArcWay {
+            plane: Plane::Xy,
+            turn,
+            form,
+            more_turns: 0,
+        })
+    };
     let counter = Turn::CounterClockwise;
     let expected = [
-        Way::Arc(Turn::Clockwise, ArcForm::Centre([10.0, 0.0])),
-        Way::Arc(counter, ArcForm::Centre([-5.0, 0.5])),
-        Way::Arc(counter, ArcForm::Radius(-8.0)),
+        arc(Turn::Clockwise, ArcForm::Centre([10.0, 0.0, 0.0])),
+        arc(counter, ArcForm::Centre([-5.0, 0.5, 0.0])),
+        arc(counter, ArcForm::Radius(-8.0)),
         Way::Line,
     ];
     assert_eq!(ways, expected);
     assert_eq!(problem("F600\nG2 X10 I5 R5\nM2"), (Problem::CentreAndRadius, 2));
-    let (code, word) = ("G3", "I J or R");
+    let (code, word) = ("G3", "a centre (I J K) or R");
     assert_eq!(problem("F600\nG3 X10\nM2"), (Problem::Missing { code, word }, 2));
     assert!(matches!(
         problem("F600\nG2 X5 R0\nM2"),
         (Problem::Value { .. }, 2)
     ));
     assert_eq!(problem("F600\nG1 X5 I2\nM2"), (Problem::Orphan("I".into()), 2));
-    assert_eq!(problem("G2 X5 I2\nM2"), (Problem::NoFeed, 1));
+    assert_eq!(problem("G2 X5 I2\nM2"), (Problem::NoFeed("G2"), 1));
 }
 
 #[test]
@@ -172,7 +140,7 @@ fn g53_moves_axes_once_and_needs_g0() {
     assert_eq!(problem("G53 G0 V1=2\nM2"), (Problem::Orphan("V1=".into()), 1));
     let (code, word) = ("G53", "an axis word");
     assert_eq!(problem("G53 G0\nM2"), (Problem::Missing { code, word }, 1));
-    assert_eq!(problem("M62 P0\nG53 G0 Z5\nM2"), (Problem::OnInAxes, 1));
+    assert_eq!(problem("M62 P0\nG53 G0 Z5\nM2"), (Problem::OnInAxes("M62"), 1));
     assert!(run("M63 P0\nG53 G0 Z5\nM2").is_ok());
 }
 

@@ -1,0 +1,61 @@
+//! The words of G2 and G3: centre or radius in the plane, and full turns.
+
+use super::claims::Claims;
+use super::codes::Code;
+use super::error::{NcError, Place, Problem};
+use super::interpreter::value_error;
+use super::program::{ArcForm, ArcWay, Plane};
+use shared::geometry::Turn;
+
+/// Words of the centre, X to Z.
+const CENTRE_WORDS: [&str; 3] = ["I", "J", "K"];
+/// Most turns of one arc: a number beyond is a slip.
+const MOST_TURNS: f64 = 10_000.0;
+
+/// The way of the arc `mode`, whose words begin at `place`.
+pub(super) fn way(claims: &Claims, mode: Code, plane: Plane, place: Place) -> Result<ArcWay, NcError> {
+    let turn = match mode {
+        Code::ArcClockwise => Turn::Clockwise,
+        _ => Turn::CounterClockwise,
+    };
+    let more_turns = match claims.word(mode, "P") {
+        Some(p) if p.value.fract() == 0.0 && (1.0..=MOST_TURNS).contains(&p.value) => p.value as u32 - 1,
+        Some(p) => {
+            return Err(value_error(
+                p,
+                "the turns of an arc are 1, 2, 3 and so on up to 10000",
+            ));
+        }
+        None => 0,
+    };
+    Ok(ArcWay {
+        plane,
+        turn,
+        form: form(claims, mode, plane, place)?,
+        more_turns,
+    })
+}
+
+fn form(claims: &Claims, mode: Code, plane: Plane, place: Place) -> Result<ArcForm, NcError> {
+    let centre = CENTRE_WORDS.map(|name| claims.word(mode, name));
+    let (code, words) = match plane {
+        Plane::Xy => ("G17", "I and J"),
+        Plane::Zx => ("G18", "I and K"),
+        Plane::Yz => ("G19", "J and K"),
+    };
+    if let Some(off) = centre[plane.axis()] {
+        let (word, plane) = (off.label(), code);
+        return Err(Problem::OffPlane { word, plane, words }.at(off.place));
+    }
+    let any = centre.iter().any(Option::is_some);
+    match (any, claims.word(mode, "R")) {
+        (true, Some(r)) => Err(Problem::CentreAndRadius.at(r.place)),
+        (true, None) => Ok(ArcForm::Centre(centre.map(|word| word.map_or(0.0, |w| w.value)))),
+        (false, Some(r)) if r.value == 0.0 => Err(value_error(r, "a radius is not 0")),
+        (false, Some(r)) => Ok(ArcForm::Radius(r.value)),
+        (false, None) => {
+            let (code, word) = (mode.name(), "a centre (I J K) or R");
+            Err(Problem::Missing { code, word }.at(place))
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Which code a word belongs to: P, Q and others mean something else with each code.
+
+use super::codes::Code;
+use super::error::{NcError, Problem};
+use super::lexer::Word;
+use super::parser::Block;
+
+/// Words that belong to a code; all others stand for themselves.
+const SHARED: [&str; 8] = ["P", "Q", "L", "E", "I", "J", "K", "R"];
+
+/// The words of a block with their codes.
+#[derive(Debug, Default)]
+pub(super) struct Claims<'b>(Vec<(&'b Word, Code)>);
+
+impl<'b> Claims<'b> {
+    /// Finds for every word of `block` the code that it belongs to; `modal` is the motion that goes on in a block
+    /// without a code of its own.
+    pub(super) fn of(block: &'b Block, modal: Option<Code>) -> Result<Self, NcError> {
+        let own = block.codes.iter().map(|code| code.code);
+        let codes: Vec<Code> = own.chain(modal).collect();
+        let mut claims = Self::default();
+        for word in block
+            .words
+            .iter()
+            .filter(|w| SHARED.contains(&w.address.as_str()))
+        {
+            let address = word.address.as_str();
+            let takes = |words: fn(Code) -> &'static [&'static str]| {
+                let code = codes.iter().copied();
+                code.filter(move |code| words(*code).contains(&address))
+            };
+            // A code that cannot be without the word comes first.
+            let owner = match takes(needs).next() {
+                Some(code) => code,
+                None => {
+                    let mut may = takes(may_have);
+                    let first = may
+                        .next()
+                        .ok_or_else(|| Problem::Orphan(word.label()).at(word.place))?;
+                    if let Some(second) = may.find(|code| *code != first) {
+                        let (first, second) = (first.name(), second.name());
+                        let word_label = word.label();
+                        return Err(Problem::Ambiguous {
+                            word: word_label,
+                            first,
+                            second,
+                        }
+                        .at(word.place));
+                    }
+                    first
+                }
+            };
+            claims.0.push((word, owner));
+        }
+        Ok(claims)
+    }
+
+    /// The word `address` of `code`.
+    pub(super) fn word(&self, code: Code, address: &str) -> Option<&'b Word> {
+        let found = self
+            .0
+            .iter()
+            .find(|(word, owner)| *owner == code && word.address == address);
+        found.map(|(word, _)| *word)
+    }
+}
+
+/// Words without which a code means nothing.
+fn needs(code: Code) -> &'static [&'static str] {
+    match code {
+        Code::Dwell | Code::OutputOn | Code::OutputOff | Code::OutputOnNow | Code::OutputOffNow => &["P"],
+        Code::Analog | Code::AnalogNow => &["E", "Q"],
+        _ => &[],
+    }
+}
+
+/// Words that a code may have besides.
+fn may_have(code: Code) -> &'static [&'static str] {
+    match code {
+        Code::ArcClockwise | Code::ArcCounterClockwise => &["I", "J", "K", "R", "P"],
+        Code::UniformNurbs => &["P", "L"],
+        Code::KnotNurbs => &["P", "K", "R"],
+        Code::Continuous => &["P", "Q"],
+        Code::WaitForInput => &["P", "E", "L", "Q"],
+        _ => &[],
+    }
+}

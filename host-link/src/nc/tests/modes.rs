@@ -1,0 +1,126 @@
+//! Feed modes, path control, planes and turns of arcs, and words that could mean two things.
+
+use super::*;
+
+/// The targets of the only path after the header.
+fn targets(body: &str) -> Vec<Target> {
+    let program = run(body).unwrap();
+    let [path] = &program.paths[2..] else {
+        panic!("one path: {:?}", program.paths)
+    };
+    path.targets.clone()
+}
+
+fn controls(body: &str) -> Vec<PathControl> {
+    targets(body).iter().map(|target| target.control).collect()
+}
+
+#[test]
+fn blocks_know_how_closely_they_are_followed() {
+    let body = "F600\nG1 X10\nG61\nX20\nG61.1\nX30\nG64 P0.05\nX40\nG64 Q0\nX50\nM2";
+    let expected = [
+        PathControl::Blend(None),
+        PathControl::ExactPath,
+        PathControl::ExactStop,
+        PathControl::Blend(Some(0.05)),
+        PathControl::Blend(None),
+    ];
+    assert_eq!(controls(body), expected);
+    for (body, value) in [("G64 P0\nM2", 0.0), ("G64 P0.1 Q0.02\nM2", 0.02)] {
+        let (problem, line) = problem(body);
+        assert!(
+            matches!(problem, Problem::Value { value: seen, .. } if seen == value && line == 1),
+            "{problem}"
+        );
+    }
+    let (first, second) = ("G61", "G64");
+    assert_eq!(problem("G61 G64\nM2"), (Problem::ModalGroup { first, second }, 1));
+}
+
+#[test]
+fn feeds_are_per_minute_or_the_time_of_their_block() {
+    let feeds = |body: &str| -> Vec<_> { targets(body).iter().map(|target| target.feed.unwrap()).collect() };
+    let (mm_min, time) = (FeedRate::PerMinute, FeedRate::InverseTime);
+    let body = "G1 X10 F600\nX20\nF700\nX30\nG93\nX40 F2\nG3 X60 R10 F4\nG94 F500 G1 X70\nM2";
+    let expected = [
+        mm_min(600.0),
+        mm_min(600.0),
+        mm_min(700.0),
+        time(2.0),
+        time(4.0),
+        mm_min(500.0),
+    ];
+    assert_eq!(feeds(body), expected);
+    assert_eq!(
+        problem("G93 G1 X10 F2\nX20\nM2"),
+        (Problem::NoInverseTime("G1"), 2)
+    );
+    assert_eq!(
+        problem("F600 G1 X10\nG93 X20 F2\nG94\nX30\nM2"),
+        (Problem::NoFeed("G1"), 4)
+    );
+    assert_eq!(problem("G93\nF2\nG1 X10 F2\nM2"), (Problem::InverseTimeAlone, 2));
+    assert_eq!(problem("G93\nG0 X5 F2\nM2"), (Problem::InverseTimeAlone, 2));
+    // It does not matter to rapids.
+    assert!(run("G93\nG0 X10\nM2").is_ok());
+}
+
+#[test]
+fn arcs_have_planes_and_turns() {
+    let arcs = |body: &str| -> Vec<_> {
+        let arc = |target: &Target| match target.way {
+            Way::Arc(arc) => arc,
+            _ => panic!("an arc"),
+        };
+        targets(body).iter().map(arc).collect()
+    };
+    let seen = arcs("F600\nG18 G2 X10 Z5 I5 K2.5 P3\nG19\nG3 Y8 Z1 R-20\nG17 X50 I20\nM2");
+    let arc = |plane, turn, form, more_turns| ArcWay {
+        plane,
+        turn,
+        form,
+        more_turns,
+    };
+    let counter = Turn::CounterClockwise;
+    let expected = [
+        arc(Plane::Zx, Turn::Clockwise, ArcForm::Centre([5.0, 0.0, 2.5]), 2),
+        arc(Plane::Yz, counter, ArcForm::Radius(-20.0), 0),
+        arc(Plane::Xy, counter, ArcForm::Centre([20.0, 0.0, 0.0]), 0),
+    ];
+    assert_eq!(seen, expected);
+    for (body, word, plane, words) in [
+        ("F6\nG2 X9 K1\nM2", "K", "G17", "I and J"),
+        ("F6\nG18 G2 X9 J1\nM2", "J", "G18", "I and K"),
+        ("F6\nG19 G2 Y9 I1\nM2", "I", "G19", "J and K"),
+    ] {
+        let word = word.to_owned();
+        assert_eq!(problem(body), (Problem::OffPlane { word, plane, words }, 2));
+    }
+    for turns in ["0", "1.5", "-2", "10001"] {
+        let (problem, line) = problem(&format!("F6\nG2 X9 I1 P{turns}\nM2"));
+        assert!(
+            matches!(problem, Problem::Value { .. }) && line == 2,
+            "{turns}: {problem}"
+        );
+    }
+    // P without an arc to make.
+    let (code, word) = ("G2", "a centre (I J K) or R");
+    assert_eq!(
+        problem("F6\nG2 X9 I4.5\nP2\nM2"),
+        (Problem::Missing { code, word }, 3)
+    );
+}
+
+#[test]
+fn a_word_belongs_to_the_code_that_needs_it() {
+    // P is the output's, as M62 is nothing without it.
+    let program = run("F600\nG2 X10 I5 M62 P0\nM2").unwrap();
+    assert_eq!(program.paths[2].events.len(), 1);
+    assert!(matches!(program.paths[2].targets[0].way, Way::Arc(arc) if arc.more_turns == 0));
+    let (word, first, second) = ("P".to_owned(), "G64", "G2");
+    assert_eq!(
+        problem("F600\nG64 G2 X10 I5 P2\nM2"),
+        (Problem::Ambiguous { word, first, second }, 2)
+    );
+    assert_eq!(problem("F600\nG1 X10 L2\nM2"), (Problem::Orphan("L".into()), 2));
+}

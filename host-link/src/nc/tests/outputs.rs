@@ -1,0 +1,123 @@
+//! Outputs and spindle: what waits for a motion, and what ends the path.
+
+use super::*;
+use shared::protocol::PathAction;
+
+/// Motion, targets and events of the paths after the header.
+type Seen = (Motion, usize, Vec<(usize, ProgramAction, &'static str)>);
+
+fn seen(body: &str) -> Vec<Seen> {
+    let program = run(body).unwrap();
+    let paths = program.paths[2..].iter();
+    paths
+        .map(|path| {
+            let events = path.events.iter();
+            let events = events.map(|event| (event.with_target, event.action, event.code));
+            (path.motion, path.targets.len(), events.collect())
+        })
+        .collect()
+}
+
+fn beam(side: u8, on: bool) -> ProgramAction {
+    ProgramAction::Output(PathAction::Beam { side, on })
+}
+
+fn power(side: u8, watt: f64) -> ProgramAction {
+    ProgramAction::Output(PathAction::Power { side, watt })
+}
+
+#[test]
+fn outputs_take_effect_with_the_next_motion() {
+    let body = "F600\nM67 E1 Q1500\nG1 X10\nM62 P0\nM62 P2\nX20\nM63 P0\nG0 Z50\nM30";
+    let tracking = ProgramAction::Output(PathAction::Tracking { on: true });
+    let feed = vec![
+        (0, power(1, 1500.0), "M67"),
+        (1, beam(0, true), "M62"),
+        (1, tracking, "M62"),
+    ];
+    let expected = [
+        (Motion::Feed, 2, feed),
+        (Motion::Rapid, 1, vec![(0, beam(0, false), "M63")]),
+    ];
+    assert_eq!(seen(body), expected);
+    assert_eq!(problem("M62 P0\nM2"), (Problem::NoMotionAfter("M62"), 1));
+}
+
+/// M64, M65 and M68 end the path, and do not wait for the end of a dwell.
+#[test]
+fn immediate_outputs_end_the_path() {
+    let body = "F600\nG1 X10\nM64 P0\nX20\nM68 E0 Q900\nG4 P1\nX30\nM65 P0\nM2";
+    let expected = [
+        (Motion::Feed, 1, vec![]),
+        (Motion::Feed, 1, vec![(0, beam(0, true), "M64")]),
+        (Motion::Stand, 0, vec![(0, power(0, 900.0), "M68")]),
+        (Motion::Feed, 1, vec![]),
+        (Motion::Stand, 0, vec![(0, beam(0, false), "M65")]),
+    ];
+    assert_eq!(seen(body), expected);
+    let program = run(body).unwrap();
+    let dwells: Vec<f64> = program.paths[2..].iter().map(|p| p.dwell_before_s).collect();
+    assert_eq!(dwells, [0.0, 0.0, 0.0, 1.0, 0.0]);
+    // What is synchronised with motion goes on waiting.
+    let body = "F600\nM62 P1\nM64 P0\nG4 P1\nG1 X10\nM2";
+    let expected = [
+        (Motion::Stand, 0, vec![(0, beam(0, true), "M64")]),
+        (Motion::Feed, 1, vec![(0, beam(1, true), "M62")]),
+    ];
+    assert_eq!(seen(body), expected);
+    assert_eq!(problem("M64 P0\nG53 G0 Z5\nM2"), (Problem::OnInAxes("M64"), 1));
+}
+
+#[test]
+fn a_spindle_turns_at_s_and_stops_with_the_program() {
+    let on = |code: &'static str, turn, rpm: f64| {
+        vec![
+            (0, ProgramAction::SpindleSpeed(rpm), code),
+            (0, ProgramAction::SpindleOn(turn), code),
+        ]
+    };
+    let off = |code: &'static str| vec![(0, ProgramAction::SpindleOff, code)];
+    let body = "F600\nS500\nM3\nG4 P2\nG1 X10\nS600\nX20\nM5\nM4\nX30\nM2";
+    let expected = [
+        (Motion::Stand, 0, on("M3", Turn::Clockwise, 500.0)),
+        (Motion::Feed, 1, vec![]),
+        (
+            Motion::Feed,
+            1,
+            vec![(0, ProgramAction::SpindleSpeed(600.0), "S")],
+        ),
+        (
+            Motion::Feed,
+            1,
+            [off("M5"), on("M4", Turn::CounterClockwise, 600.0)].concat(),
+        ),
+        (Motion::Stand, 0, off("M2")),
+    ];
+    assert_eq!(seen(body), expected);
+    let (code, word) = ("M3", "S, here or before");
+    assert_eq!(problem("M3\nM2"), (Problem::Missing { code, word }, 1));
+    assert!(matches!(
+        problem("S-1 M3\nM2"),
+        (Problem::Value { value: -1.0, .. }, 1)
+    ));
+    let (first, second) = ("M3", "M5");
+    assert_eq!(
+        problem("M3 M5 S1\nM2"),
+        (Problem::ModalGroup { first, second }, 1)
+    );
+    // A dwell with the spindle on needs no motion after it.
+    let body = "M3 S100\nG4 P5\nM2";
+    let expected = [
+        (Motion::Stand, 0, on("M3", Turn::Clockwise, 100.0)),
+        (Motion::Stand, 0, off("M2")),
+    ];
+    assert_eq!(seen(body), expected);
+}
+
+#[test]
+fn inputs_are_refused_with_what_to_do_instead() {
+    assert_eq!(
+        run("M66 P0 L3 Q5\nM2").unwrap_err().to_string(),
+        "line 5, column 1: M66 waits for an input, and the boards have none for programs: wait with G4 P"
+    );
+}
