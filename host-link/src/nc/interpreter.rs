@@ -5,10 +5,11 @@ use super::claims::Claims;
 use super::codes::{Code, Group};
 use super::error::{NcError, Place, Problem};
 use super::lexer::Word;
+use super::modal::Modal;
 use super::nurbs::{OpenNurbs, Progress};
 use super::outputs::{Pending, Spindle, dwell, output};
 use super::parser::{Block, Parsed, parse};
-use super::program::{FeedRate, Motion, PathControl, Plane, Program, ProgramPath, Target, Way, Words};
+use super::program::{FeedRate, Motion, Plane, Program, ProgramPath, Target, Way, Words};
 use shared::io::{AXES, SIDES};
 
 /// Choices of the operator.
@@ -64,25 +65,10 @@ pub fn interpret(text: &str, options: Options) -> Result<Program, NcError> {
     Ok(Program { paths: reader.paths })
 }
 
-/// How F is meant.
-#[derive(Clone, Copy, PartialEq)]
-enum FeedMode {
-    PerMinute,
-    InverseTime,
-}
-
+#[derive(Default)]
 struct Interpreter {
-    /// G0, G1, G2 or G3; none after a NURBS.
-    motion: Option<Code>,
+    modal: Modal,
     nurbs: Option<OpenNurbs>,
-    /// The last motion was a G6.2, which a G6.3 may close once more.
-    closed: bool,
-    tip: bool,
-    plane: Plane,
-    control: PathControl,
-    feed_mode: FeedMode,
-    /// G94 \[mm/min\].
-    feed: Option<f64>,
     /// The tip was given a place.
     placed: bool,
     /// Values programmed last, as far as they still hold; V1 and V2 are 0 before.
@@ -95,29 +81,6 @@ struct Interpreter {
     /// The next motion that feeds goes on along the last path.
     open: bool,
     ended: bool,
-}
-
-impl Default for Interpreter {
-    fn default() -> Self {
-        Self {
-            motion: None,
-            nurbs: None,
-            closed: false,
-            tip: false,
-            plane: Plane::default(),
-            control: PathControl::Blend(None),
-            feed_mode: FeedMode::PerMinute,
-            feed: None,
-            placed: false,
-            known: Words::default(),
-            spindle: Spindle::default(),
-            pending: Vec::new(),
-            dwell: None,
-            paths: Vec::new(),
-            open: false,
-            ended: false,
-        }
-    }
 }
 
 /// Letters of the six axis words, in the order of [`shared::io::AXIS_NAMES`].
@@ -135,9 +98,9 @@ impl Interpreter {
             return Ok(());
         }
         let own_motion = block.code(Group::Motion).map(|code| code.code);
-        let modal = self.motion.filter(|_| own_motion.is_none());
+        let modal = self.modal.motion.filter(|_| own_motion.is_none());
         let claims = Claims::of(block, modal)?;
-        self.modes(block, &claims)?;
+        self.modal.block(block, &claims)?;
         let dwell = dwell(block, &claims)?;
         if let Some(pending) = output(block, &claims)? {
             self.wait(pending);
@@ -158,8 +121,8 @@ impl Interpreter {
             }
             _ => self.tip_motion(block, &claims)?,
         };
-        if let (FeedMode::InverseTime, Some(f), false) = (self.feed_mode, block.word("F"), feeds) {
-            return Err(Problem::InverseTimeAlone.at(f.place));
+        if !feeds {
+            self.modal.check_no_feed(block)?;
         }
         if let Some(code) = block.code(Group::Stop) {
             if let Some(stop) = self.spindle.end(code) {
@@ -176,70 +139,6 @@ impl Interpreter {
             self.ended = true;
         }
         Ok(())
-    }
-
-    /// Modal codes, and F.
-    fn modes(&mut self, block: &Block, claims: &Claims) -> Result<(), NcError> {
-        for code in &block.codes {
-            match code.code {
-                Code::TipOn => self.tip = true,
-                Code::TipOff => self.tip = false,
-                Code::PlaneXy => self.plane = Plane::Xy,
-                Code::PlaneZx => self.plane = Plane::Zx,
-                Code::PlaneYz => self.plane = Plane::Yz,
-                Code::ExactPath => self.control = PathControl::ExactPath,
-                Code::ExactStop => self.control = PathControl::ExactStop,
-                Code::Continuous => self.control = blend(claims)?,
-                Code::InverseTime => self.set_feed_mode(FeedMode::InverseTime),
-                Code::PerMinute => self.set_feed_mode(FeedMode::PerMinute),
-                Code::Rapid
-                | Code::Feed
-                | Code::ArcClockwise
-                | Code::ArcCounterClockwise
-                | Code::UniformNurbs
-                | Code::KnotNurbs => self.motion = Some(code.code),
-                Code::UniformNurbsEnd | Code::KnotNurbsEnd => {
-                    // All of a G6.2 may have been said before its G6.3.
-                    if !(std::mem::take(&mut self.closed) && code.code == Code::KnotNurbsEnd) {
-                        return Err(Problem::NothingToClose(code.name).at(code.place));
-                    }
-                    self.motion = None;
-                }
-                // These have their own places.
-                Code::OutputOn
-                | Code::OutputOff
-                | Code::OutputOnNow
-                | Code::OutputOffNow
-                | Code::WaitForInput
-                | Code::Analog
-                | Code::AnalogNow
-                | Code::SpindleClockwise
-                | Code::SpindleCounterClockwise
-                | Code::SpindleOff
-                | Code::Dwell
-                | Code::MachineAxes
-                | Code::End => {}
-                // These confirm the only state there is.
-                Code::Millimetres | Code::CompensationOff | Code::WorldOffset | Code::Absolute => {}
-            }
-        }
-        if let Some(f) = block.word("F") {
-            if f.value <= 0.0 {
-                return Err(value_error(f, "a feed is above 0"));
-            }
-            if self.feed_mode == FeedMode::PerMinute {
-                self.feed = Some(f.value);
-            }
-        }
-        Ok(())
-    }
-
-    /// A feed of the other mode means nothing any more.
-    fn set_feed_mode(&mut self, mode: FeedMode) {
-        if self.feed_mode != mode {
-            self.feed_mode = mode;
-            self.feed = None;
-        }
     }
 
     /// Keeps an event for the next motion. What takes effect at rest ends the path.
@@ -266,7 +165,7 @@ impl Interpreter {
 
     /// G53: the axes named go, in axis space, where they are told to.
     fn axes_motion(&mut self, block: &Block, place: Place) -> Result<(), NcError> {
-        if self.motion != Some(Code::Rapid) {
+        if self.modal.motion != Some(Code::Rapid) {
             return Err(Problem::AxesNeedRapid.at(place));
         }
         if let Some(word) = EXTENSION_WORDS.iter().find_map(|w| block.word(w)) {
@@ -280,6 +179,8 @@ impl Interpreter {
         if let Some(pending) = self.pending.iter().find(|pending| pending.opens()) {
             return Err(Problem::OnInAxes(pending.code).at(pending.place));
         }
+        // In axis space the boards switch nothing on.
+        self.stand();
         self.rapid(Way::Axes, words, place);
         // Where the tip is now, the program does not say.
         self.known.axes = [None; AXES];
@@ -294,16 +195,16 @@ impl Interpreter {
             let own = |code: Code| claims.word(code, address).is_some();
             AXIS_WORDS.contains(&address)
                 || EXTENSION_WORDS.contains(&address)
-                || self.motion.is_some_and(own)
+                || self.modal.motion.is_some_and(own)
         };
         let first_word = block.words.iter().find(is_motion).map(|word| word.place);
         let Some(place) = nurbs.map(|code| code.place).or(first_word) else {
             return Ok(false);
         };
-        let Some(mode) = self.motion else {
+        let Some(mode) = self.modal.motion else {
             return Err(Problem::NoMotion.at(place));
         };
-        if !self.tip {
+        if !self.modal.tip {
             return Err(Problem::NotTip.at(place));
         }
         let words = words(block);
@@ -312,7 +213,7 @@ impl Interpreter {
         if !(self.placed || places) {
             return Err(Problem::FirstMotion.at(place));
         }
-        self.closed = false;
+        self.modal.closed = false;
         if rapid {
             if self.learn(&words) {
                 self.placed = true;
@@ -320,9 +221,9 @@ impl Interpreter {
             }
             return Ok(false);
         }
-        let feed = self.feed_rate(block, mode, place)?;
+        let feed = self.modal.feed_rate(block, mode, place)?;
         if is_nurbs(mode) {
-            if mode == Code::UniformNurbs && self.plane != Plane::Xy {
+            if mode == Code::UniformNurbs && self.modal.plane != Plane::Xy {
                 return Err(Problem::NurbsPlane.at(place));
             }
             self.nurbs = Some(OpenNurbs::begin(block, claims, mode, place, feed)?);
@@ -330,7 +231,7 @@ impl Interpreter {
         }
         let way = match mode {
             Code::Feed => Way::Line,
-            _ => Way::Arc(arc::way(claims, mode, self.plane, place)?),
+            _ => Way::Arc(arc::way(claims, mode, self.modal.plane, place)?),
         };
         // An arc without a way is a full circle.
         if self.learn(&words) || way != Way::Line {
@@ -344,22 +245,8 @@ impl Interpreter {
         let Some(open) = self.nurbs.take() else { return };
         self.learn(&words);
         self.feed_motion(way, words, open.feed, open.place);
-        self.closed = self.motion == Some(Code::KnotNurbs);
-        self.motion = None;
-    }
-
-    fn feed_rate(&self, block: &Block, mode: Code, place: Place) -> Result<FeedRate, NcError> {
-        match self.feed_mode {
-            FeedMode::PerMinute => {
-                let feed = self.feed.ok_or(Problem::NoFeed(mode.name()).at(place))?;
-                Ok(FeedRate::PerMinute(feed))
-            }
-            FeedMode::InverseTime => {
-                let f = block.word("F");
-                let f = f.ok_or(Problem::NoInverseTime(mode.name()).at(place))?;
-                Ok(FeedRate::InverseTime(f.value))
-            }
-        }
+        self.modal.closed = self.modal.motion == Some(Code::KnotNurbs);
+        self.modal.motion = None;
     }
 
     fn rapid(&mut self, way: Way, words: Words, place: Place) {
@@ -367,7 +254,7 @@ impl Interpreter {
             way,
             words,
             feed: None,
-            control: self.control,
+            control: self.modal.control,
             place,
         };
         self.start_path(Motion::Rapid, target);
@@ -380,7 +267,7 @@ impl Interpreter {
             way,
             words,
             feed: Some(feed),
-            control: self.control,
+            control: self.modal.control,
             place,
         };
         match self.paths.last_mut() {
@@ -423,24 +310,6 @@ impl Interpreter {
 
 fn is_nurbs(code: Code) -> bool {
     matches!(code, Code::UniformNurbs | Code::KnotNurbs)
-}
-
-/// G64 with its P. Q would leave points out, which is never done.
-fn blend(claims: &Claims) -> Result<PathControl, NcError> {
-    let [p, q] = ["P", "Q"].map(|word| claims.word(Code::Continuous, word));
-    if let Some(p) = p.filter(|p| p.value <= 0.0) {
-        return Err(value_error(
-            p,
-            "a tolerance is above 0 mm; without any, write G61",
-        ));
-    }
-    if let Some(q) = q.filter(|q| q.value != 0.0) {
-        return Err(value_error(
-            q,
-            "no point of a program is left out; write Q0, or no Q",
-        ));
-    }
-    Ok(PathControl::Blend(p.map(|p| p.value)))
 }
 
 /// What `block` says of where to.

@@ -15,6 +15,7 @@ mod codes;
 mod error;
 mod interpreter;
 mod lexer;
+mod modal;
 mod nurbs;
 mod outputs;
 mod parser;

@@ -6,10 +6,11 @@
 //! acceleration that the axes have.
 
 use super::block::{Block, Jet};
+use super::feeds::Feeds;
 use super::limits::{CURVATURE_SHARE, DRIVES};
 use super::shape::{Goal, Shape};
 use super::targets::ROTARY;
-use super::{Feeds, PathError, Planner, Tip};
+use super::{PathError, Planner, Tip};
 use crate::nc::{Motion, Target};
 use nalgebra::Vector3;
 use shared::geometry::angle;

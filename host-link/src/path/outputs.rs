@@ -4,7 +4,8 @@ use super::{PathError, Planner};
 use crate::nc::{Place, ProgramAction, ProgramEvent};
 use shared::geometry::Turn;
 use shared::io::SIDES;
-use shared::protocol::PathAction;
+use shared::motion::MAX_EVENTS;
+use shared::protocol::{PathAction, PathEvent};
 
 /// A switching at the start of the motion to a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,14 +105,20 @@ pub(super) struct Switched {
 }
 
 impl Switched {
-    /// Takes up `action`.
-    pub(super) fn switch(&mut self, action: &PathAction) {
+    fn switch(&mut self, action: &PathAction) {
         match *action {
             PathAction::Power { side, watt } => self.powers[usize::from(side)] = Some(watt),
             PathAction::Beam { side, on } => self.gates[usize::from(side)] = on,
             PathAction::Tracking { on } => self.tracks = on,
             // The speed of every block is known by its own.
             PathAction::Speed { .. } => {}
+        }
+    }
+
+    /// Takes up all of `events`.
+    pub(super) fn take_up(&mut self, events: &[PathEvent]) {
+        for event in events {
+            self.switch(&event.action);
         }
     }
 
@@ -122,7 +129,7 @@ impl Switched {
     }
 
     /// What brings a path there that begins with everything off.
-    pub(super) fn actions(&self) -> Vec<PathAction> {
+    fn actions(&self) -> Vec<PathAction> {
         let mut actions = Vec::new();
         for (side, (power, gate)) in (0..).zip(self.powers.into_iter().zip(self.gates)) {
             actions.extend(power.map(|watt| PathAction::Power { side, watt }));
@@ -131,4 +138,39 @@ impl Switched {
         actions.extend(self.tracks.then_some(PathAction::Tracking { on: true }));
         actions
     }
+}
+
+/// What happens on the part of a path that begins with target `first`, whose motions start at `starts` \[mm\] and go
+/// at `speeds` \[mm/s\]: what is on already, then `events`.
+pub(super) fn path_events(
+    on: &Switched,
+    events: &[Switching],
+    first: usize,
+    starts: &[f64],
+    speeds: &[f64],
+    place: Place,
+) -> Result<Vec<PathEvent>, PathError> {
+    let before = on.actions().into_iter();
+    let mut found: Vec<PathEvent> = before.map(|action| PathEvent { s_mm: 0.0, action }).collect();
+    for event in events {
+        let index = event.with_target.checked_sub(first);
+        found.extend(index.and_then(|i| starts.get(i)).map(|s_mm| PathEvent {
+            s_mm: *s_mm,
+            action: event.action,
+        }));
+    }
+    for (pair, s_mm) in speeds.windows(2).zip(starts.iter().skip(1)) {
+        if pair[0] != pair[1] {
+            let action = PathAction::Speed { mm_s: pair[1] };
+            found.push(PathEvent { s_mm: *s_mm, action });
+        }
+    }
+    found.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
+    if found.len() > MAX_EVENTS {
+        return Err(PathError::TooManyEvents {
+            place,
+            events: found.len(),
+        });
+    }
+    Ok(found)
 }

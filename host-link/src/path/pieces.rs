@@ -2,16 +2,15 @@
 //! stands.
 
 use super::exact::Piece;
+use super::feeds::Feeds;
 use super::limits::{Demand, axes_at};
-use super::outputs::{Switched, Switching};
-use super::shape::Shape;
+use super::outputs::{Switched, Switching, path_events};
+use super::shape::{Shape, channels};
 use super::targets::{ROTARY, Stand};
 use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip};
-use crate::nc::{FeedRate, Motion, PathControl, Place, ProgramPath, Target, Way};
+use crate::nc::{Motion, PathControl, Place, ProgramPath, Target, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
-use shared::motion::MAX_EVENTS;
-use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::PathSpace;
 
 /// A rotary axis stands where it should, to this much \[rad\]: below what anything resolves, and above what the
@@ -63,10 +62,14 @@ impl Planner {
         stand: &mut Stand,
     ) -> Result<PlannedPath, PathError> {
         let place = path.events.first().map_or(NOWHERE, |event| event.place);
-        let mut planned = self.axes_path(&stand.axes, &stand.axes, &stand.tip.extension_mm, place)?;
-        planned.motion = Motion::Stand;
+        // Not in axis space, where boards open no gates.
+        let pose = self.kinematics.forward(&stand.axes);
+        let shape = Shape::standing(channels(&pose, &stand.tip.extension_mm), place);
+        let mut planned = PlannedPath::untimed(&shape, PathSpace::Tool, Motion::Stand);
+        let demands = self.demands(&planned, &shape, &stand.axes)?;
+        planned.limits = self.rapid_limits(&demands);
         planned.events = path_events(&stand.switched, events, 0, &[0.0], &[], place)?;
-        take_up(&mut stand.switched, &planned.events);
+        stand.switched.take_up(&planned.events);
         Ok(planned)
     }
 
@@ -81,7 +84,7 @@ impl Planner {
         let extension_mm = stand.tip.extension_mm;
         let mut planned = self.axes_path(&stand.axes, &to, &extension_mm, target.place)?;
         planned.events = path_events(&Switched::default(), events, 0, &[0.0], &[], target.place)?;
-        take_up(&mut stand.switched, &planned.events);
+        stand.switched.take_up(&planned.events);
         stand.switched.rapid();
         let people = std::array::from_fn(|i| to[i] / AXIS_UNIT[i]);
         stand.axes = to;
@@ -218,7 +221,7 @@ impl Planner {
             Motion::Feed => self.bound(&demands),
         };
         reached.switched = stand.switched;
-        take_up(&mut reached.switched, &planned.events);
+        reached.switched.take_up(&planned.events);
         if rapid {
             reached.switched.rapid();
         }
@@ -281,81 +284,4 @@ fn blend_tolerance(targets: &[Target]) -> Option<f64> {
         PathControl::ExactStop => None,
     });
     tolerances.min_by(f64::total_cmp)
-}
-
-/// Feeds of a path.
-pub(super) struct Feeds {
-    /// Takes the place of the programmed ones \[mm/s\].
-    replaced: Option<f64>,
-}
-
-impl Feeds {
-    /// Those of `path`, or `replaced` \[mm/s\] in place of the only one.
-    fn of(path: &ProgramPath, replaced: Option<f64>) -> Result<Self, PathError> {
-        let mut feeds = path.targets.windows(2);
-        if replaced.is_some() && feeds.any(|pair| pair[0].feed != pair[1].feed) {
-            let place = path.targets[0].place;
-            return Err(PathError::SeveralFeeds { place });
-        }
-        Ok(Self { replaced })
-    }
-
-    /// Speed on a way of `length` \[mm\] to `target` \[mm/s\], 0 for a rapid.
-    pub(super) fn speed(&self, target: &Target, length: f64) -> Result<f64, PathError> {
-        let Some(feed) = target.feed else {
-            return Ok(0.0);
-        };
-        let programmed = match feed {
-            FeedRate::PerMinute(mm_min) => mm_min / 60.0,
-            FeedRate::InverseTime(per_minute) => length * per_minute / 60.0,
-        };
-        let speed = self.replaced.unwrap_or(programmed);
-        if speed.is_finite() && speed > 0.0 {
-            Ok(speed)
-        } else {
-            Err(PathError::NoFeed(speed * 60.0))
-        }
-    }
-}
-
-/// What happens on the part of a path that begins with target `first`, whose motions start at `starts` \[mm\] and go
-/// at `speeds` \[mm/s\]: what is on already, then `events`.
-fn path_events(
-    on: &Switched,
-    events: &[Switching],
-    first: usize,
-    starts: &[f64],
-    speeds: &[f64],
-    place: Place,
-) -> Result<Vec<PathEvent>, PathError> {
-    let before = on.actions().into_iter();
-    let mut found: Vec<PathEvent> = before.map(|action| PathEvent { s_mm: 0.0, action }).collect();
-    for event in events {
-        let index = event.with_target.checked_sub(first);
-        found.extend(index.and_then(|i| starts.get(i)).map(|s_mm| PathEvent {
-            s_mm: *s_mm,
-            action: event.action,
-        }));
-    }
-    for (pair, s_mm) in speeds.windows(2).zip(starts.iter().skip(1)) {
-        if pair[0] != pair[1] {
-            let action = PathAction::Speed { mm_s: pair[1] };
-            found.push(PathEvent { s_mm: *s_mm, action });
-        }
-    }
-    found.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
-    if found.len() > MAX_EVENTS {
-        return Err(PathError::TooManyEvents {
-            place,
-            events: found.len(),
-        });
-    }
-    Ok(found)
-}
-
-/// What is on after `events`.
-fn take_up(switched: &mut Switched, events: &[PathEvent]) {
-    for event in events {
-        switched.switch(&event.action);
-    }
 }

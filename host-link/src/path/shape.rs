@@ -72,6 +72,17 @@ impl Shape {
         }
     }
 
+    /// No way at all, in which the tool stands at `value`.
+    pub(super) fn standing(value: [f64; CHANNELS], place: Place) -> Self {
+        let slope = [0.0; CHANNELS];
+        let knot = |s_mm| Knot { s_mm, value, slope };
+        Self {
+            knots: vec![knot(0.0), knot(SHORTEST)],
+            speed_error: 0.0,
+            targets: vec![Goal::exact(SHORTEST, place)],
+        }
+    }
+
     /// Where the motion to each target starts \[mm\].
     pub(super) fn starts(&self) -> Vec<f64> {
         let ends = self.targets.iter().map(|goal| goal.s);

@@ -37,10 +37,16 @@ fn m3_turns_the_spindle_before_a_dwell_and_the_end_stops_it() {
     let [_, _, up, first, second, down] = &paths[..] else {
         panic!("{} paths", paths.len())
     };
-    assert_eq!((up.motion, up.space), (Motion::Stand, PathSpace::Axes));
+    // In tool space: in axis space the boards open no gates.
+    assert_eq!((up.motion, up.space), (Motion::Stand, PathSpace::Tool));
     assert_eq!(actions(up), [power(600.0), gate(true)]);
-    let path = up.path();
-    let [from, to] = [0.0, up.length_mm()].map(|s| path.at(s).unwrap().axes().position);
+    for (_, _, axes) in followed("stir-gantry", &paths[..3], 0.1)
+        .iter()
+        .filter(|at| at.0 == 2)
+    {
+        assert!((axes[4] + 2.5).abs() < 1e-9 && axes[5].abs() < 1e-9, "{axes:?}");
+    }
+    let [from, to] = [0.0, up.length_mm()].map(|s| up.path().at(s).unwrap().value);
     assert_eq!(from, to);
     assert!(up.duration_s() < 0.02 && up.weld().is_none());
     assert_eq!((up.dwell_before_s, first.dwell_before_s), (0.0, 2.0));
@@ -48,6 +54,22 @@ fn m3_turns_the_spindle_before_a_dwell_and_the_end_stops_it() {
     assert_eq!(actions(second), [power(600.0), gate(true), power(800.0)]);
     assert_eq!(down.motion, Motion::Stand);
     assert_eq!(actions(down).last(), Some(&gate(false)));
+}
+
+/// Also where the pose leaves an axis free, and before a move in axis space.
+#[test]
+fn switching_at_rest_moves_no_axis_of_any_machine() {
+    let paths = plan_on("ac-head", "M64 P0\nG4 P1\nG53 G0 Z400\nM2").unwrap();
+    let start = planner_of("ac-head").planning.park_axes();
+    for (_, _, axes) in followed("ac-head", &paths[..1], 0.1) {
+        for (seen, wanted) in axes.iter().zip(start) {
+            assert!((seen - wanted).abs() < 1e-9, "{axes:?}");
+        }
+    }
+    let paths = stir("M3 S600\nG53 G0 Z300").unwrap();
+    let motions: Vec<_> = paths[2..].iter().map(|path| (path.motion, path.space)).collect();
+    let stand = (Motion::Stand, PathSpace::Tool);
+    assert_eq!(motions, [stand, (Motion::Rapid, PathSpace::Axes), stand]);
 }
 
 #[test]
