@@ -43,11 +43,6 @@ impl Filter {
         self.sum = values.map(|value| value * self.length as f64);
     }
 
-    /// The values that the next ones will replace: one filter length old.
-    pub fn oldest(&self) -> (AxisMotion, SpeedState) {
-        unpack(&self.ring[self.head])
-    }
-
     /// Takes the newest values, gives the means.
     pub fn push(&mut self, axes: &AxisMotion, along: &SpeedState) -> (AxisMotion, SpeedState) {
         let values = pack(axes, along);

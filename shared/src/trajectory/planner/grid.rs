@@ -21,6 +21,8 @@ const GROWTH: f64 = 0.4;
 const SHRINK: f64 = 0.286;
 /// Nodes nearer in time than this are one, where the path turns little \[s\].
 const MERGE: f64 = 0.0005;
+/// Longest time between nodes at the programmed feed \[s\]: where the machine can stop.
+const LONGEST: f64 = 0.03;
 /// Turn that may be merged.
 const MERGED_TURN: f64 = 0.03;
 /// How far the limits inside an interval may be off a straight line, as a share of the acceleration.
@@ -48,6 +50,8 @@ struct Sample {
 /// Where the grid has got to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grid {
+    /// +1 on along the path, −1 back.
+    direction: f64,
     /// Path length of the newest node.
     s: f64,
     /// Path length of the last change of limits.
@@ -61,7 +65,8 @@ pub(super) struct Grid {
 
 /// Where limits change next.
 struct Break {
-    s: f64,
+    /// Way to there \[mm\].
+    way: f64,
     /// The machine stops there.
     stop: bool,
     /// Limits change there; else it is only the end of what is known.
@@ -84,6 +89,7 @@ impl<const E: usize> Ground<'_, E> {
     fn sample(
         &self,
         s: f64,
+        direction: f64,
         hint: &mut u32,
         near: &[f64; AXES],
     ) -> Result<(Sample, AxisMotion), ReferenceError> {
@@ -105,7 +111,7 @@ impl<const E: usize> Ground<'_, E> {
         sample.first[PATH_ROW] = 1.0;
         for axis in 0..AXES {
             let rate = axes.velocity[axis];
-            sample.first[PATH_ROW + 1 + axis] = rate as f32;
+            sample.first[PATH_ROW + 1 + axis] = (direction * rate) as f32;
             sample.second[PATH_ROW + 1 + axis] = axes.acceleration[axis] as f32;
             let speed = self.bounds.velocity[axis] / rate;
             sample.limit = libm::fmin(sample.limit, speed * speed);
@@ -116,13 +122,14 @@ impl<const E: usize> Ground<'_, E> {
         Ok((sample, axes))
     }
 
-    /// The next change of limits beyond `s`, where nodes nearer than `gap` may be merged.
-    fn next_break(&self, s: f64, hint: u32, gap: f64) -> Break {
-        let settled = self.track.settled_s();
+    /// The next change of limits from `s` on in a `direction`, where nodes nearer than `gap` may be merged.
+    fn next_break(&self, s: f64, direction: f64, hint: u32, gap: f64) -> Break {
+        let end = self.end(direction);
+        let stop = direction < 0.0 || (self.track.closed() && end >= self.track.end_s() - SAME);
         let mut next = Break {
-            s: settled,
-            stop: self.track.closed() && settled >= self.track.end_s() - SAME,
-            real: self.track.closed() && settled >= self.track.end_s() - SAME,
+            way: direction * (end - s),
+            stop,
+            real: stop,
             merged: false,
             speed: 0.0,
         };
@@ -131,25 +138,24 @@ impl<const E: usize> Ground<'_, E> {
                 continue;
             };
             let half = piece.corner.half;
-            let small = !piece.stop && position_norm(&piece.corner.jump) < MERGED_TURN;
-            for at in [piece.start - half, piece.start, piece.start + half] {
-                if at <= s + SAME || at > next.s + SAME {
+            let turn = position_norm(&piece.corner.jump);
+            for side in [-half, 0.0, half] {
+                let way = direction * (piece.start + side - s);
+                if way <= SAME || way > next.way + SAME {
                     continue;
                 }
-                if small && at < s + gap {
+                if !piece.stop && turn < MERGED_TURN && way < gap {
                     next.merged = true;
                     continue;
                 }
-                let stop = piece.stop && at == piece.start;
-                let stop = stop || (next.stop && at >= next.s - SAME);
-                let turn = position_norm(&piece.corner.jump);
+                let stop = (piece.stop && side == 0.0) || (next.stop && way >= next.way - SAME);
                 let speed = if half * turn > 0.0 {
                     libm::sqrt(2.0 * self.bounds.corner * half / turn)
                 } else {
                     f64::INFINITY
                 };
                 next = Break {
-                    s: at,
+                    way,
                     stop,
                     real: true,
                     merged: next.merged,
@@ -163,10 +169,20 @@ impl<const E: usize> Ground<'_, E> {
         }
         next
     }
+
+    /// Path length where what is settled ends.
+    fn end(&self, direction: f64) -> f64 {
+        if direction > 0.0 {
+            self.track.settled_s()
+        } else {
+            self.track.kept_s()
+        }
+    }
 }
 
 impl Grid {
     pub const NONE: Self = Self {
+        direction: 1.0,
         s: 0.0,
         since: 0.0,
         since_speed: 0.0,
@@ -179,12 +195,31 @@ impl Grid {
         *self = Self {
             s,
             since: s,
-            since_speed: 0.0,
-            hint: 0,
             near: *axes,
+            ..Self::NONE
         };
         nodes.clear();
         nodes.push(Node { s, ..Node::ZERO });
+    }
+
+    /// +1 if nodes lead on along the path, −1 if back.
+    pub fn direction(&self) -> f64 {
+        self.direction
+    }
+
+    /// Goes the other way from node `serial` on, where the machine stands with its axes at `axes`.
+    pub fn turn<const N: usize>(&mut self, serial: u32, axes: &[f64; AXES], nodes: &mut Nodes<N>) {
+        nodes.cut(serial);
+        let node = nodes.at_mut(serial);
+        node.limit = 0.0;
+        *self = Self {
+            direction: -self.direction,
+            s: node.s,
+            since: node.s,
+            near: *axes,
+            hint: self.hint,
+            ..Self::NONE
+        };
     }
 
     /// Appends an interval, if the path is settled far enough; says whether it did.
@@ -194,41 +229,37 @@ impl Grid {
         nodes: &mut Nodes<N>,
     ) -> Result<bool, ReferenceError> {
         let bounds = ground.bounds;
-        let settled = ground.track.settled_s();
-        if nodes.room() == 0 || settled <= self.s + SAME {
+        let direction = self.direction;
+        if nodes.room() == 0 || direction * (ground.end(direction) - self.s) <= SAME {
             return Ok(false);
         }
-        let Some(piece) = ground.track.find(self.s + SAME, &mut self.hint) else {
+        let (start, near) = (self.s, self.near);
+        let Some(piece) = ground.track.find(start + direction * SAME, &mut self.hint) else {
             return Ok(false);
         };
         let feed = piece.element.feed;
         let gap = MERGE * feed;
-        let next = ground.next_break(self.s, self.hint, gap);
-        let way = next.s - self.s;
-        if !next.real && way < gap {
+        let next = ground.next_break(start, direction, self.hint, gap);
+        if !next.real && next.way < gap {
             return Ok(false);
         }
         let mut hint = self.hint;
-        let near = self.near;
-        let inset = INSET * libm::fmin(way, feed * CURVE_STEP);
-        let (mut from, _) = ground.sample(self.s + inset, &mut hint, &near)?;
+        let mut sample = |way: f64| ground.sample(start + direction * way, direction, &mut hint, &near);
+        let (mut from, _) = sample(INSET * libm::fmin(next.way, feed * CURVE_STEP))?;
         let mut delta = step(&next, self, &from, feed, bounds);
         let mut halvings = 0;
         let (mid, mut to, axes) = loop {
-            let (mid, _) = ground.sample(self.s + 0.5 * delta, &mut hint, &near)?;
-            let (to, axes) = ground.sample(self.s + delta * (1.0 - INSET), &mut hint, &near)?;
+            let (mid, _) = sample(0.5 * delta)?;
+            let (to, axes) = sample(delta * (1.0 - INSET))?;
             if halvings == HALVINGS || next.merged || straight(&from, &mid, &to, bounds) {
                 break (mid, to, axes);
             }
             halvings += 1;
             delta *= 0.5;
         };
-        let end = if way - delta < SAME {
-            next.s
-        } else {
-            self.s + delta
-        };
-        let delta = end - self.s;
+        let at_break = next.way - delta < SAME;
+        let delta = if at_break { next.way } else { delta };
+        let end = start + direction * delta;
         cover(&mut from, &mid, &mut to);
         let least = |value: fn(&Sample) -> f64| libm::fmin(libm::fmin(value(&from), value(&to)), value(&mid));
         let (feed_cap, limit) = (least(|sample| sample.feed), least(|sample| sample.limit));
@@ -237,8 +268,8 @@ impl Grid {
         node.feed = libm::fmin(node.feed, feed_cap);
         node.limit = libm::fmin(node.limit, limit);
         node.delta = delta;
+        node.direction = direction;
         node.sides = [side(&from, 0.0, bounds), side(&to, delta, bounds)];
-        let at_break = end >= next.s - SAME;
         nodes.push(Node {
             s: end,
             feed: feed_cap,
@@ -257,10 +288,10 @@ impl Grid {
 
 /// Length of the next interval \[mm\], on the way to the next change of limits.
 fn step(next: &Break, grid: &Grid, from: &Sample, feed: f64, bounds: &Bounds) -> f64 {
-    let (way, gone) = (next.s - grid.s, grid.s - grid.since);
+    let (way, gone) = (next.way, libm::fabs(grid.s - grid.since));
     let finest = 0.09 * bounds.corner * bounds.filter * bounds.filter;
     let at = |speed: f64| libm::fmax(finest, BREAK_STEP * speed);
-    let mut delta = at(grid.since_speed) + GROWTH * gone;
+    let mut delta = libm::fmin(at(grid.since_speed) + GROWTH * gone, LONGEST * feed);
     if next.real {
         delta = libm::fmin(delta, libm::fmax(at(next.speed), SHRINK * way));
     }

@@ -8,7 +8,7 @@
 use super::WORK;
 use super::limits::{Bounds, ROWS};
 use super::node::{Lanes, Node, Nodes, least, most};
-use super::scan::{advance, reach};
+use super::scan::{advance, brake, reach};
 use crate::motion::PATH_PERIOD_S;
 
 /// Rounds of passes that a plan is given before it is given up.
@@ -30,15 +30,33 @@ const SLACK: f64 = 14.0;
 /// Node visits of both passes and all rounds that a plan is expected to need for each node.
 const VISITS: u32 = 16;
 
+/// Node visits that a plan to stop is expected to need.
+const STOP_VISITS: u32 = 200;
+/// Largest factor of the time that a plan is given.
+const MOST_PATIENCE: u32 = 8;
+
 /// What the planner does next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
     /// Nothing is being planned.
     Waiting,
+    /// The search for the lowest speeds that are possible has come to this node.
+    Brake(u32),
     /// The pass back has come to this node.
     Back(u32),
     /// The pass forward has come to this node.
     Forward(u32),
+    /// The making smaller of boxes, by itself, has come to this node.
+    Repair(u32),
+}
+
+/// What a plan is for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wish {
+    /// To come to rest as soon as possible, not at the end of what is known.
+    pub stop: bool,
+    /// Feed override, above 0.
+    pub factor: f64,
 }
 
 /// A plan being made.
@@ -58,6 +76,16 @@ pub(super) struct Horizon {
     relaxed: u32,
     /// The boxes are those of an earlier plan.
     warm: bool,
+    /// What the plan being made is for.
+    wish: Wish,
+    /// Speeds have to come down below those of the plan in force.
+    braking: bool,
+    /// The plan in force is one to stop.
+    stopping: bool,
+    /// Feed override of the plan in force.
+    factor: f64,
+    /// Longer time for a plan after others were given up: a factor.
+    patience: u32,
     /// Largest swing above its limit, as a share.
     excess: Lanes,
     /// Node before the time one filter length away.
@@ -78,6 +106,14 @@ impl Horizon {
         round: 0,
         relaxed: RELAXED,
         warm: false,
+        wish: Wish {
+            stop: false,
+            factor: 1.0,
+        },
+        braking: false,
+        stopping: false,
+        factor: 1.0,
+        patience: 1,
         excess: REST,
         away: 0,
         given_up: 0,
@@ -100,25 +136,37 @@ impl Horizon {
         player: u32,
         left: f64,
         rested: bool,
-        factor: f64,
+        wish: Wish,
         bounds: &Bounds,
     ) {
         let last = nodes.end - 1;
-        if last <= self.in_force {
+        let nothing = match wish.stop {
+            true => self.stopping,
+            false => last <= self.in_force && wish.factor == self.factor,
+        };
+        if nothing || last <= player {
             return;
         }
-        // What slows down only for the end of the plan in force is planned anew, and some time before it.
-        let mut slowing = self.in_force;
-        while slowing > player && nodes.at(slowing - 1).x > nodes.at(slowing).x {
-            slowing -= 1;
-        }
-        let mut before = 0.0;
-        while slowing > player && before < SLACK * bounds.filter {
-            slowing -= 1;
-            before += nodes.at(slowing).lasts;
+        let mut slowing = player;
+        if !wish.stop && wish.factor == self.factor {
+            // What slows down only for the end of the plan in force is planned anew, and some time before it.
+            slowing = self.in_force;
+            while slowing > player && nodes.at(slowing - 1).x > nodes.at(slowing).x {
+                slowing -= 1;
+            }
+            let mut before = 0.0;
+            while slowing > player && before < SLACK * bounds.filter {
+                slowing -= 1;
+                before += nodes.at(slowing).lasts;
+            }
         }
         // What will have been played before the plan can be ready stays.
-        let mut lead = f64::from(2 + VISITS * (last - slowing) / WORK) * PATH_PERIOD_S;
+        let visits = if wish.stop {
+            STOP_VISITS
+        } else {
+            VISITS * (last - slowing)
+        };
+        let mut lead = f64::from(2 + self.patience * visits / WORK) * PATH_PERIOD_S;
         let (mut commit, mut time) = (player, left);
         while commit < self.in_force && (time < lead || commit < slowing) {
             time += nodes.at(commit).lasts;
@@ -133,6 +181,9 @@ impl Horizon {
                 commit += 1;
             }
         }
+        if wish.stop && commit == self.in_force {
+            return;
+        }
         let (mut history, mut before) = (commit, 0.0);
         if nodes.at(commit).x <= 0.0 {
             // From rest: what came before is forgotten only when the output has come to rest too.
@@ -146,7 +197,7 @@ impl Horizon {
             before += nodes.at(history).lasts;
         }
         (self.history, self.commit, self.last) = (history, commit, last);
-        (self.round, self.warm, self.excess) = (0, true, REST);
+        (self.warm, self.excess) = (true, REST);
         // Times and accelerations up to the commit are as they are.
         nodes.at_mut(history).time = 0.0;
         for i in history..commit {
@@ -161,17 +212,24 @@ impl Horizon {
             }
         }
         nodes.at_mut(commit).trial = nodes.at(commit).x;
-        // A feed that was lowered holds for what is new; the rate takes care of the rest.
         for i in commit + 1..=last {
             let node = nodes.at_mut(i);
-            node.factor = if i > self.in_force {
-                factor
-            } else {
-                libm::fmax(factor, node.factor)
-            };
+            (node.factor, node.brake) = (wish.factor, 0.0);
         }
-        nodes.at_mut(last).reach = 0.0;
-        self.phase = Phase::Back(last);
+        self.wish = wish;
+        if wish.stop {
+            self.last = commit + 1;
+        }
+        self.restart(nodes);
+    }
+
+    /// Begins the first round: with a look at how slow the machine can be.
+    fn restart<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
+        let node = nodes.at_mut(self.commit);
+        node.brake = node.x;
+        self.braking = self.wish.stop || node.x > node.cap_of_feed();
+        self.round = 0;
+        self.phase = Phase::Brake(self.commit);
     }
 
     /// Gives up the plan being made if the player has come to where it begins.
@@ -185,6 +243,7 @@ impl Horizon {
     fn give_up(&mut self) {
         self.given_up += 1;
         self.relaxed = 0;
+        self.patience = (2 * self.patience).min(MOST_PATIENCE);
         self.phase = Phase::Waiting;
     }
 
@@ -192,8 +251,9 @@ impl Horizon {
     pub fn step<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
         match self.phase {
             Phase::Waiting => {}
+            Phase::Brake(i) => self.brake(nodes, i),
             Phase::Back(i) if i > self.commit => {
-                if self.round > 0 {
+                if self.round > 0 && !self.braking {
                     self.repair(nodes, i - 1, bounds);
                 }
                 let next = nodes.at(i).reach;
@@ -202,7 +262,7 @@ impl Horizon {
                 self.phase = Phase::Back(i - 1);
             }
             Phase::Back(i) => {
-                if self.round > 0 && self.excess.iter().all(|excess| *excess <= GOOD) {
+                if self.round > 0 && !self.braking && self.is_good() {
                     self.take(nodes, bounds);
                 } else if nodes.at(i).reach < nodes.at(i).x * (1.0 - 1e-6) {
                     self.too_fast(nodes, bounds);
@@ -220,9 +280,46 @@ impl Horizon {
                 self.phase = Phase::Forward(i + 1);
             }
             Phase::Forward(i) => {
-                self.away = i.max(1) - 1;
-                self.phase = Phase::Back(i);
+                self.away = i - 1;
+                self.phase = if self.braking {
+                    Phase::Repair(i)
+                } else {
+                    Phase::Back(i)
+                };
             }
+            Phase::Repair(i) if i > self.commit => {
+                self.repair(nodes, i - 1, bounds);
+                self.phase = Phase::Repair(i - 1);
+            }
+            Phase::Repair(i) => {
+                if self.is_good() {
+                    self.take(nodes, bounds);
+                } else {
+                    // The boxes have changed, and with them how slow the machine can be.
+                    self.phase = Phase::Brake(i);
+                }
+            }
+        }
+    }
+
+    /// No swing of the acceleration is too large.
+    fn is_good(&self) -> bool {
+        self.excess.iter().all(|excess| *excess <= GOOD)
+    }
+
+    /// The lowest speed at the node after `i`, until that is as low as it shall be.
+    fn brake<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32) {
+        let node = nodes.at(i);
+        let enough = if self.wish.stop { 0.0 } else { node.cap_of_feed() };
+        if node.brake <= enough || i + 1 == nodes.end {
+            if self.wish.stop {
+                self.last = self.last.max(i);
+            }
+            nodes.at_mut(self.last).reach = 0.0;
+            self.phase = Phase::Back(self.last);
+        } else {
+            nodes.at_mut(i + 1).brake = brake(node, node.brake);
+            self.phase = Phase::Brake(i + 1);
         }
     }
 
@@ -239,8 +336,7 @@ impl Horizon {
                 side.low = bounds.acceleration.map(|limit| -limit);
             }
         }
-        self.round = 0;
-        self.phase = Phase::Back(self.last);
+        self.restart(nodes);
     }
 
     fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
@@ -254,6 +350,9 @@ impl Horizon {
         self.in_force = self.last;
         self.taken += 1;
         self.relaxed = RELAXED;
+        self.patience = 1;
+        self.stopping = self.wish.stop;
+        self.factor = self.wish.factor;
         self.phase = Phase::Waiting;
     }
 

@@ -41,10 +41,10 @@ pub const MAX_FILTER: usize = 64;
 const MIN_FILTER: f64 = 4.0;
 /// Share of the tolerance that the output filter may use on curves; rounding has the rest.
 pub(super) const FILTER_SHARE: f64 = 0.4;
-/// What the plan uses of the accelerations, so that there is room for a change of the rate.
-pub(super) const ACCELERATION_RESERVE: f64 = 0.97;
+/// What the plan uses of the accelerations: the rest is for rounding, and for what the grid does not see.
+const ACCELERATION_RESERVE: f64 = 0.99;
 /// The same of the jerks.
-pub(super) const JERK_RESERVE: f64 = 0.95;
+const JERK_RESERVE: f64 = 0.985;
 
 /// Path and axes, each with limits of its own, and one unused lane that makes them eight.
 pub(super) const ROWS: usize = 8;

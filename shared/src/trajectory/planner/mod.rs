@@ -11,7 +11,6 @@ mod horizon;
 mod limits;
 mod node;
 mod player;
-mod rate;
 mod rounding;
 mod scan;
 mod track;
@@ -22,14 +21,12 @@ use super::reference::at_unit_speed;
 use super::{Element, PathSpace, ReferenceError, SpeedState};
 use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics};
-use crate::motion::PATH_PERIOD_S;
 use filter::Filter;
 use grid::{Grid, Ground};
-use horizon::Horizon;
-use limits::{ACCELERATION_RESERVE, Bounds, JERK_RESERVE, PATH_ROW, ROWS};
+use horizon::{Horizon, Wish};
+use limits::Bounds;
 use node::Nodes;
 use player::Player;
-use rate::{Gentle, Rate};
 use thiserror::Error;
 use track::Track;
 
@@ -39,10 +36,6 @@ const MOST_OVERRIDE: f64 = 2.0;
 const WORK: u32 = 16;
 /// Work to append a node, in the same unit.
 const APPEND: u32 = 3;
-/// Nodes behind the machine that are kept, to run backwards along; fewer where elements are short.
-const KEPT: u32 = 64;
-/// Nodes behind the machine that are always kept: more than an output filter is long.
-const NEEDED: u32 = 32;
 
 /// Elements stream in at one end, and the references of the axes come out at the other.
 ///
@@ -57,7 +50,6 @@ pub struct Planner<const ELEMENTS: usize, const NODES: usize> {
     nodes: Nodes<NODES>,
     horizon: Horizon,
     player: Player,
-    rate: Rate,
     way: Way,
     /// Feed override.
     factor: f64,
@@ -67,9 +59,6 @@ pub struct Planner<const ELEMENTS: usize, const NODES: usize> {
     axes: [f64; AXES],
     planned_hint: u32,
     output_hint: u32,
-    kept_hint: u32,
-    /// Node that the machine can go back to.
-    oldest: u32,
     /// Ticks since the plan has come to rest.
     resting: u32,
 }
@@ -132,7 +121,6 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             nodes: Nodes::new(),
             horizon: Horizon::NONE,
             player: Player::NONE,
-            rate: Rate::FORWARD,
             way: Way::Forward,
             factor: 1.0,
             filter: Filter::new(),
@@ -144,8 +132,6 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             axes: [0.0; AXES],
             planned_hint: 0,
             output_hint: 0,
-            kept_hint: 0,
-            oldest: 0,
             resting: 0,
         }
     }
@@ -159,11 +145,10 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.grid.start(s, axes, &mut self.nodes);
         self.horizon = Horizon::NONE;
         self.player = Player::NONE;
-        self.rate = Rate::FORWARD;
         self.way = Way::Forward;
         self.planned = SpeedState { s, v: 0.0, a: 0.0 };
         self.axes = *axes;
-        (self.planned_hint, self.output_hint, self.kept_hint, self.oldest) = (0, 0, 0, 0);
+        (self.planned_hint, self.output_hint) = (0, 0);
         let rest = AxisMotion {
             position: *axes,
             velocity: [0.0; AXES],
@@ -235,16 +220,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             if grown && work == 0 {
                 break;
             }
-            let left = self.player.left(&self.nodes, self.horizon.in_force());
-            let next = (self.player.node + 1).min(self.horizon.in_force());
-            self.horizon.begin(
-                &mut self.nodes,
-                next,
-                left,
-                self.resting >= self.bounds.filter_ticks as u32,
-                libm::fmax(self.factor, 1.0),
-                &self.bounds,
-            );
+            self.begin();
             if self.horizon.waiting() {
                 break;
             }
@@ -252,130 +228,93 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         Ok(())
     }
 
+    /// The nodes lead the way that the machine shall go.
+    fn along(&self) -> bool {
+        match self.way {
+            Way::Forward => self.grid.direction() > 0.0,
+            Way::Back => self.grid.direction() < 0.0,
+            Way::Hold => false,
+        }
+    }
+
+    /// Begins a plan, or turns where the machine has come to rest and is to go the other way.
+    fn begin(&mut self) {
+        let rested = self.resting >= self.bounds.filter_ticks as u32;
+        let last = self.horizon.in_force();
+        let along = self.along();
+        let stop = !along || self.factor <= 0.0;
+        if rested && self.player.node >= last && self.way != Way::Hold && !along {
+            self.grid.turn(last, &self.axes, &mut self.nodes);
+            return;
+        }
+        let wish = Wish {
+            stop,
+            factor: if stop { 1.0 } else { self.factor },
+        };
+        let left = self.player.left(&self.nodes, last);
+        let next = (self.player.node + 1).min(last);
+        self.horizon
+            .begin(&mut self.nodes, next, left, rested, wish, &self.bounds);
+    }
+
+    /// Nothing is left to do: where the machine comes to rest it stays.
+    fn stays(&self) -> bool {
+        let last = self.horizon.in_force();
+        let done = last + 1 == self.nodes.end && self.along();
+        let stopped = self.way == Way::Hold || self.factor <= 0.0;
+        self.player.node >= last && self.horizon.waiting() && (done || stopped)
+    }
+
     /// Lets go of what lies behind.
     fn release(&mut self) {
         let nodes = if self.nodes.room() > NODES / 2 {
-            KEPT
+            NODES / 4
         } else {
-            NEEDED
+            NODES / 8
         };
-        self.nodes.first = self.nodes.first.max(self.player.node.saturating_sub(nodes));
-        // Nodes remember accelerations, for which elements are not needed: those of short lines go first.
-        let element = if self.track.room() > ELEMENTS / 2 {
-            self.track
-                .find(self.nodes.at(self.nodes.first).s, &mut self.kept_hint);
-            self.kept_hint
+        let oldest = self.player.node.saturating_sub(nodes as u32);
+        self.nodes.first = self.nodes.first.max(oldest);
+        // What lies further behind than this cannot be gone back to.
+        let elements = if self.track.room() > ELEMENTS / 2 {
+            ELEMENTS / 4
         } else {
-            self.planned_hint
+            0
         };
-        self.track.release(element.saturating_sub(track::REACH));
-        let from = self.track.kept_s();
-        self.oldest = self.oldest.max(self.nodes.first);
-        while self.oldest < self.player.node && self.nodes.at(self.oldest).s < from {
-            self.oldest += 1;
-        }
+        let oldest = self.planned_hint.saturating_sub(track::REACH + elements as u32);
+        self.track.release(oldest);
     }
 
     fn play(&mut self, kinematics: &Kinematics) -> Result<Output, ReferenceError> {
         let ticks = self.bounds.filter_ticks as u32;
         let last = self.horizon.in_force();
-        let time = self.rate.pass();
-        self.player.step(time, &self.nodes, [self.oldest, last], ticks);
+        self.player.step(&self.nodes, last, ticks);
         self.horizon.watch(self.player.node);
-        let plan = self.player.state(&self.nodes, last);
-        self.resting = if plan.s == self.planned.s {
+        let planned = self.player.state(&self.nodes, last);
+        self.resting = if planned.s == self.planned.s {
             self.resting.saturating_add(1)
         } else {
             0
         };
-        let unit = match self.track.at(plan.s, &mut self.planned_hint) {
-            Some(point) => at_unit_speed(kinematics, &point, self.space, &self.axes)?,
+        self.planned = planned;
+        let axes = match self.track.at(planned.s, &mut self.planned_hint) {
+            Some(point) => {
+                at_unit_speed(kinematics, &point, self.space, &self.axes)?.at_speed(planned.v, planned.a)
+            }
             None => AxisMotion {
                 position: self.axes,
                 velocity: [0.0; AXES],
                 acceleration: [0.0; AXES],
             },
         };
-        self.change_rate(&plan, &unit);
-        let Rate { value, change } = self.rate;
-        self.planned = SpeedState {
-            s: plan.s,
-            v: value * plan.v,
-            a: value * value * plan.a + change * plan.v,
-        };
-        let axes = unit.at_speed(self.planned.v, self.planned.a);
         self.axes = axes.position;
-        let (axes, along) = self.filter.push(&axes, &self.planned);
-        let line = self
-            .track
-            .find(along.s, &mut self.output_hint)
-            .map_or(0, |piece| piece.element.line);
-        let stands = match self.way {
-            Way::Forward => self.player.node >= last && self.horizon.waiting(),
-            Way::Hold => value == 0.0,
-            Way::Back => value == 0.0 || self.player.node == self.oldest,
-        };
+        let (axes, along) = self.filter.push(&axes, &planned);
+        let piece = self.track.find(along.s, &mut self.output_hint);
         Ok(Output {
             axes,
             along,
-            line,
-            at_rest: stands && self.resting >= ticks,
+            line: piece.map_or(0, |piece| piece.element.line),
+            at_rest: self.resting >= ticks && self.stays(),
         })
-    }
-
-    /// Brings the rate nearer to what is wanted, where the plan is at `plan` and the axes move by `unit` over s.
-    fn change_rate(&mut self, plan: &SpeedState, unit: &AxisMotion) {
-        let last = self.horizon.in_force();
-        let planned_for = self.nodes.at(self.player.node).factor;
-        let forward = libm::fmin(self.factor / planned_for, 1.0);
-        let wanted = match self.way {
-            Way::Forward => forward,
-            Way::Hold => 0.0,
-            Way::Back => -forward,
-        };
-        let Rate { value, change } = self.rate;
-        if value == wanted && change == 0.0 && wanted >= 0.0 {
-            return;
-        }
-        let axes = unit.at_speed(plan.v, plan.a);
-        let rows = |path: f64, axes: &[f64; AXES]| {
-            let mut rows = [0.0; ROWS];
-            rows[PATH_ROW] = path;
-            rows[PATH_ROW + 1..=AXES].copy_from_slice(axes);
-            rows
-        };
-        let speed = rows(plan.v, &axes.velocity);
-        let gentle = Gentle::at(&speed, &self.player, &self.nodes, last, &self.bounds);
-        let wanted = if wanted < 0.0 && self.ends_behind(&gentle) {
-            0.0
-        } else {
-            wanted
-        };
-        // What the output filter forgets with this tick decides how much the accelerations may be.
-        let (old_axes, old) = self.filter.oldest();
-        let old = rows(old.a, &old_axes.acceleration);
-        let planned = rows(plan.a, &axes.acceleration);
-        let mut range = [f64::NEG_INFINITY, f64::INFINITY];
-        for row in 0..ROWS {
-            let most = f64::from(self.bounds.acceleration[row]) / ACCELERATION_RESERVE;
-            let swing = f64::from(self.bounds.swing[row]) / JERK_RESERVE;
-            let now = value * value * planned[row];
-            let low = (libm::fmax(-most, old[row] - swing) - now) / speed[row];
-            let high = (libm::fmin(most, old[row] + swing) - now) / speed[row];
-            if speed[row] != 0.0 {
-                range[0] = libm::fmax(range[0], libm::fmin(low, high));
-                range[1] = libm::fmin(range[1], libm::fmax(low, high));
-            }
-        }
-        self.rate.step(wanted, &gentle, range);
-    }
-
-    /// Whether the machine, going back, has to slow down for the end of what is kept.
-    fn ends_behind(&self, gentle: &Gentle) -> bool {
-        let first = self.nodes.at(self.oldest);
-        let rate = libm::fabs(self.rate.value);
-        let needed = rate * (0.5 * rate / gentle.change + gentle.change / gentle.bend);
-        first.x > 0.0 && self.player.gone(&self.nodes, self.oldest) <= needed + 4.0 * PATH_PERIOD_S
     }
 }
 

@@ -42,8 +42,12 @@ pub(super) struct Node {
     pub feed: f64,
     /// Highest ṡ² for all other reasons; 0 where the machine stops.
     pub limit: f64,
-    /// Factor of the feed that the node is planned with, 1 or more.
+    /// Feed override that the node is planned with.
     pub factor: f64,
+    /// +1 where the interval leads on along the path, −1 where it leads back.
+    pub direction: f64,
+    /// Lowest ṡ² that the machine can have come down to here, where a feed was lowered; else 0.
+    pub brake: f64,
     /// ṡ² of the plan in force.
     pub x: f64,
     /// Time that the plan in force takes from here to the next node \[s\].
@@ -80,6 +84,8 @@ impl Node {
         feed: 0.0,
         limit: 0.0,
         factor: 1.0,
+        direction: 1.0,
+        brake: 0.0,
         x: 0.0,
         lasts: 0.0,
         trial: 0.0,
@@ -92,6 +98,14 @@ impl Node {
 impl Node {
     /// Highest ṡ² here; 0 where the machine stops.
     pub fn cap(&self) -> f64 {
+        libm::fmin(
+            libm::fmax(self.feed * self.factor * self.factor, self.brake),
+            self.limit,
+        )
+    }
+
+    /// Highest ṡ² here, had the machine always been as slow as its feed.
+    pub fn cap_of_feed(&self) -> f64 {
         libm::fmin(self.feed * self.factor * self.factor, self.limit)
     }
 }
@@ -121,6 +135,11 @@ impl<const N: usize> Nodes<N> {
 
     pub fn room(&self) -> usize {
         N - (self.end - self.first) as usize
+    }
+
+    /// Forgets all after node `serial`.
+    pub fn cut(&mut self, serial: u32) {
+        self.end = serial + 1;
     }
 
     pub fn push(&mut self, node: Node) {
