@@ -50,6 +50,8 @@ fn g64_goes_round_bends_where_its_tolerance_allows() {
         assert_eq!(paths.len(), 1, "{mode}");
         let seen = off(&paths[0], &BENDS);
         assert!((0.5..tolerance).contains(&seen), "{mode}: {seen}");
+        let counts = [1.02, 0.98].map(|part| bends(&format!("G64 P{:.4}", part * seen)).len());
+        assert_eq!(counts, [1, 3], "{seen}");
     }
 }
 
