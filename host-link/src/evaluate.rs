@@ -349,6 +349,7 @@ mod tests {
             dwell_before_s: 0.0,
             corner_deg: None,
             knots: knots.collect(),
+            lines: vec![],
             events: vec![PathEvent {
                 s_mm: 100.0,
                 action: PathAction::Beam { side: 0, on: true },

@@ -40,7 +40,7 @@ impl PlannedPath {
     fn element(&self, from: &Knot, to: &Knot, start: f64, end: f64, join: Join) -> Element {
         let channel = |i: usize| span(from, to, i).from(start - from.s_mm);
         Element {
-            line: 0,
+            line: self.line_at(start + SAME),
             shape: Shape::Span(std::array::from_fn(channel)),
             rest: std::array::from_fn(|i| channel(SHAPED + i)),
             length: end - start,
@@ -65,7 +65,7 @@ fn span(from: &Knot, to: &Knot, channel: usize) -> Cubic {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::nc::Motion;
+    use crate::nc::{Motion, Place};
     use crate::path::shape;
     use shared::protocol::{PathAction, PathEvent};
     use shared::trajectory::PathSpace;
@@ -82,7 +82,9 @@ mod tests {
         let shape = shape::Shape {
             knots,
             speed_error: 0.0,
-            targets: Vec::new(),
+            targets: [(4.0, 7), (10.0, 9)]
+                .map(|(s, line)| shape::Goal::exact(s, Place { line, column: 1 }))
+                .to_vec(),
         };
         let mut planned = PlannedPath::untimed(&shape, PathSpace::Tool, Motion::Feed);
         planned.limits.velocity = 40.0;
@@ -99,6 +101,8 @@ mod tests {
         let (path, elements) = (planned.path(), planned.elements().collect::<Vec<_>>());
         let feeds: Vec<f64> = elements.iter().map(|element| element.feed).collect();
         assert_eq!(feeds, [40.0, 30.0, 20.0, 10.0, 50.0]);
+        let lines: Vec<u32> = elements.iter().map(|element| element.line).collect();
+        assert_eq!(lines, [7, 7, 9, 9, 9]);
         let mut s = 0.0;
         for element in &elements {
             for part in [0.0, 0.3, 0.7, 1.0] {

@@ -21,6 +21,8 @@ pub struct PlannedPath {
     pub corner_deg: Option<f64>,
     /// Value and slope of every channel, s from 0.
     pub knots: Vec<Knot>,
+    /// Where the motion of each target of the program ends \[mm\], and its line; s not decreasing.
+    pub lines: Vec<(f64, u32)>,
     /// What happens on the way, s not decreasing.
     pub events: Vec<PathEvent>,
     /// Speed, acceleration and jerk along the path; the speed until an event changes it.
@@ -53,6 +55,11 @@ impl PlannedPath {
             dwell_before_s: 0.0,
             corner_deg: None,
             knots: shape.knots.clone(),
+            lines: shape
+                .targets
+                .iter()
+                .map(|goal| (goal.s, goal.place.line))
+                .collect(),
             events: Vec::new(),
             limits: SpeedLimits {
                 velocity: f64::INFINITY,
@@ -67,6 +74,14 @@ impl PlannedPath {
     /// Length \[mm\].
     pub fn length_mm(&self) -> f64 {
         self.knots.last().map_or(0.0, |knot| knot.s_mm)
+    }
+
+    /// Line of the program whose motion is at `s` \[mm\], the later one where two meet; 0 for a path that no program
+    /// asks for.
+    pub fn line_at(&self, s: f64) -> u32 {
+        let index = self.lines.partition_point(|(end, _)| *end <= s);
+        let line = self.lines.get(index).or(self.lines.last());
+        line.map_or(0, |(_, line)| *line)
     }
 
     /// A rapid that takes `times` as long.
