@@ -354,6 +354,7 @@ mod tests {
                 s_mm: 100.0,
                 action: PathAction::Beam { side: 0, on: true },
             }],
+            steps: Vec::new(),
             limits: SpeedLimits {
                 velocity: 100.0,
                 acceleration: 500.0,

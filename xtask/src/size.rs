@@ -19,17 +19,19 @@ struct Budget {
 /// Flash includes the initial values of data; RAM is static data, the stack has the rest.
 fn budget(firmware: Firmware, board: Board) -> Budget {
     match (firmware, board) {
+        // Most of the motion board's RAM is the planner: its elements, and the nodes at which it plans the speed.
+        // Their initial values are in flash, too.
         (Firmware::Motion, Board::Mps2An500) => Budget {
-            flash: [200, 450],
-            ram: [100, 240],
+            flash: [200, 600],
+            ram: [100, 300],
         },
         (Firmware::Tracker, Board::Mps2An500) => Budget {
             flash: [120, 300],
             ram: [120, 260],
         },
         (Firmware::Motion, Board::NucleoH723zg) => Budget {
-            flash: [200, 450],
-            ram: [100, 240],
+            flash: [200, 600],
+            ram: [100, 300],
         },
         (Firmware::Tracker, Board::NucleoH723zg) => Budget {
             flash: [120, 300],

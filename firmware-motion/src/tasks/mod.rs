@@ -12,9 +12,6 @@ use shared::roll_call::RollCall;
 pub use network::Network;
 pub use servo::Servo;
 
-/// Knots the board has room for.
-pub const KNOTS: usize = 512;
-
 /// Who must be seen for the servo tick to feed the watchdog, every 2000 servo ticks (0.5 s) at least.
 pub const ROLL_CALL: RollCall<2> = RollCall::new(2000);
 /// The path task's place in the roll call.
@@ -23,7 +20,7 @@ pub const PATH_TASK: usize = 0;
 pub const NETWORK_TASK: usize = 1;
 
 /// State machine, path and homing.
-pub type Controller = MotionController<KNOTS>;
+pub type Controller = MotionController;
 
 /// What a path tick publishes.
 pub type Published = (PathState, MotionSample);

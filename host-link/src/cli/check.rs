@@ -60,7 +60,7 @@ fn print(paths: &[PlannedPath]) {
             Motion::Feed => "feed",
             Motion::Stand => "stand",
         };
-        let speeds = path.steps().map(|step| step.velocity);
+        let speeds = path.steps.iter().map(|step| step.velocity);
         let speeds = std::iter::once(path.limits.velocity).chain(speeds);
         let m_min = |speed: f64| speed / shared::units::MM_S_PER_M_MIN;
         println!(
@@ -72,10 +72,10 @@ fn print(paths: &[PlannedPath]) {
             path.knots.len(),
         );
         let slowest = speeds.fold(f64::INFINITY, f64::min);
-        if path.steps().next().is_some() {
+        if !path.steps.is_empty() {
             println!(
                 "      changes its feed {} times, down to {:.2} m/min",
-                path.steps().count(),
+                path.steps.len(),
                 m_min(slowest)
             );
         }

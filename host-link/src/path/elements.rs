@@ -1,15 +1,18 @@
 //! A planned path as elements: what the motion board is given.
 
 use super::PlannedPath;
-use shared::protocol::Knot;
+use shared::protocol::{Knot, PathLimits};
 use shared::trajectory::{CHANNELS, Cubic, Element, Join, SHAPED, Shape, Tolerance};
 
-/// What rounded corners and the planner's output filter may take.
+/// What rounded corners, and the planner's output filter on curves, may take.
 pub const TOLERANCE: Tolerance = Tolerance {
-    position: 0.01,
+    position: 0.05,
     attitude: 1e-4,
 };
 
+/// What the output filter may take of a curve at a path acceleration \[s²\]: makes it 26 ms long, about half the time
+/// in which the axes of the shipped machines come to their acceleration.
+const FILTER: f64 = 1e-4;
 /// A step of the speed this near to a knot is at it \[mm\].
 const SAME: f64 = 1e-6;
 
@@ -20,7 +23,7 @@ impl PlannedPath {
         let length = self.length_mm();
         let spans = self.knots.windows(2).map(|span| (&span[0], &span[1]));
         spans.flat_map(move |(from, to)| {
-            let inside = self.steps().map(|step| step.s);
+            let inside = self.steps.iter().map(|step| step.s);
             let inside = inside.filter(|s| *s > from.s_mm + SAME && *s < to.s_mm - SAME);
             let mut ends: Vec<f64> = inside.chain([to.s_mm]).collect();
             ends.dedup_by(|a, b| *a - *b <= SAME);
@@ -34,6 +37,15 @@ impl PlannedPath {
                 self.element(from, to, start, end, join)
             })
         })
+    }
+
+    /// Limits along the path, as the motion board takes them.
+    pub fn path_limits(&self) -> PathLimits {
+        PathLimits {
+            acceleration_mm_s2: self.limits.acceleration,
+            jerk_mm_s3: self.limits.jerk,
+            tolerance_mm: FILTER * self.limits.acceleration,
+        }
     }
 
     /// The part from `start` to `end` \[mm\] of the span between two knots.
@@ -51,7 +63,7 @@ impl PlannedPath {
 
     /// Programmed speed from `s` on \[mm/s\].
     fn speed_limit(&self, s: f64) -> f64 {
-        let before = self.steps().take_while(|step| step.s <= s + SAME);
+        let before = self.steps.iter().take_while(|step| step.s <= s + SAME);
         before.last().map_or(self.limits.velocity, |step| step.velocity)
     }
 }
@@ -67,8 +79,7 @@ mod tests {
     use super::*;
     use crate::nc::{Motion, Place};
     use crate::path::shape;
-    use shared::protocol::{PathAction, PathEvent};
-    use shared::trajectory::PathSpace;
+    use shared::trajectory::{PathSpace, SpeedStep};
 
     /// A path of three spans whose speed steps at a knot, inside a span twice, and next to a knot.
     fn planned() -> PlannedPath {
@@ -88,9 +99,8 @@ mod tests {
         };
         let mut planned = PlannedPath::untimed(&shape, PathSpace::Tool, Motion::Feed);
         planned.limits.velocity = 40.0;
-        for (s_mm, mm_s) in [(3.0, 30.0), (4.0, 20.0), (6.0, 10.0), (7.5 + 1e-9, 50.0)] {
-            let action = PathAction::Speed { mm_s };
-            planned.events.push(PathEvent { s_mm, action });
+        for (s, velocity) in [(3.0, 30.0), (4.0, 20.0), (6.0, 10.0), (7.5 + 1e-9, 50.0)] {
+            planned.steps.push(SpeedStep { s, velocity });
         }
         planned
     }

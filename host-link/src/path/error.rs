@@ -1,12 +1,11 @@
 //! Why a program path cannot be run on this machine.
 
-use super::CAPACITY;
+use super::{CAPACITY, MAX_EVENTS};
 use crate::nc::Place;
 use shared::geometry::nurbs::NurbsError;
 use shared::geometry::{ArcError, AttitudeError, PoseError, SplineError};
 use shared::io::AXIS_NAMES;
 use shared::kinematics::KinematicsError;
-use shared::motion::MAX_EVENTS;
 use thiserror::Error;
 
 /// Why a program path cannot be run on this machine.
@@ -285,7 +284,7 @@ pub enum PathError {
     },
     /// More events than the motion board holds.
     #[error(
-        "{place}: the path has {events} outputs and changes of F, the motion board holds {MAX_EVENTS}; use fewer"
+        "{place}: the path has {events} outputs and changes of F, at most {MAX_EVENTS} are possible; use fewer"
     )]
     TooManyEvents {
         /// Where its path begins.

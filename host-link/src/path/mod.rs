@@ -32,6 +32,8 @@ use targets::Stand;
 
 /// Most knots of one path: what the boards hold.
 pub const CAPACITY: usize = 512;
+/// Most outputs and changes of F of one path: what its time is estimated with.
+pub const MAX_EVENTS: usize = 128;
 
 /// Of a path that no program asks for.
 pub(crate) const NOWHERE: Place = Place { line: 0, column: 0 };

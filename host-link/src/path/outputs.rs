@@ -1,11 +1,11 @@
 //! What a program switches, on the machine that is there.
 
-use super::{PathError, Planner};
+use super::{MAX_EVENTS, PathError, Planner};
 use crate::nc::{Place, ProgramAction, ProgramEvent};
 use shared::geometry::Turn;
 use shared::io::SIDES;
-use shared::motion::MAX_EVENTS;
 use shared::protocol::{PathAction, PathEvent};
+use shared::trajectory::SpeedStep;
 
 /// A switching at the start of the motion to a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,7 +91,7 @@ impl Planner {
                 Ok(())
             }
             PathAction::Tracking { .. } if !self.tracks => Err(missing("seam tracking".to_owned())),
-            PathAction::Tracking { .. } | PathAction::Speed { .. } => Ok(()),
+            PathAction::Tracking { .. } => Ok(()),
         }
     }
 }
@@ -110,8 +110,6 @@ impl Switched {
             PathAction::Power { side, watt } => self.powers[usize::from(side)] = Some(watt),
             PathAction::Beam { side, on } => self.gates[usize::from(side)] = on,
             PathAction::Tracking { on } => self.tracks = on,
-            // The speed of every block is known by its own.
-            PathAction::Speed { .. } => {}
         }
     }
 
@@ -141,15 +139,15 @@ impl Switched {
 }
 
 /// What happens on the part of a path that begins with target `first`, whose motions start at `starts` \[mm\] and go
-/// at `speeds` \[mm/s\]: what is on already, then `events`.
-pub(super) fn path_events(
+/// at `speeds` \[mm/s\]: what is on already, then `events`; and where the speed changes.
+pub(super) fn on_the_way(
     on: &Switched,
     events: &[Switching],
     first: usize,
     starts: &[f64],
     speeds: &[f64],
     place: Place,
-) -> Result<Vec<PathEvent>, PathError> {
+) -> Result<(Vec<PathEvent>, Vec<SpeedStep>), PathError> {
     let before = on.actions().into_iter();
     let mut found: Vec<PathEvent> = before.map(|action| PathEvent { s_mm: 0.0, action }).collect();
     for event in events {
@@ -159,18 +157,18 @@ pub(super) fn path_events(
             action: event.action,
         }));
     }
-    for (pair, s_mm) in speeds.windows(2).zip(starts.iter().skip(1)) {
-        if pair[0] != pair[1] {
-            let action = PathAction::Speed { mm_s: pair[1] };
-            found.push(PathEvent { s_mm: *s_mm, action });
-        }
-    }
     found.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
-    if found.len() > MAX_EVENTS {
-        return Err(PathError::TooManyEvents {
-            place,
-            events: found.len(),
-        });
+    let joins = speeds.windows(2).zip(starts.iter().skip(1));
+    let steps: Vec<SpeedStep> = joins
+        .filter(|(pair, _)| pair[0] != pair[1])
+        .map(|(pair, s)| SpeedStep {
+            s: *s,
+            velocity: pair[1],
+        })
+        .collect();
+    let events = found.len() + steps.len();
+    if events > MAX_EVENTS {
+        return Err(PathError::TooManyEvents { place, events });
     }
-    Ok(found)
+    Ok((found, steps))
 }

@@ -4,7 +4,7 @@
 use super::exact::Piece;
 use super::feeds::Feeds;
 use super::limits::{Demand, axes_at};
-use super::outputs::{Switched, Switching, path_events};
+use super::outputs::{Switched, Switching, on_the_way};
 use super::shape::{Shape, channels};
 use super::targets::{ROTARY, Stand};
 use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip};
@@ -68,7 +68,7 @@ impl Planner {
         let mut planned = PlannedPath::untimed(&shape, PathSpace::Tool, Motion::Stand);
         let demands = self.demands(&planned, &shape, &stand.axes)?;
         planned.limits = self.rapid_limits(&demands);
-        planned.events = path_events(&stand.switched, events, 0, &[0.0], &[], place)?;
+        (planned.events, planned.steps) = on_the_way(&stand.switched, events, 0, &[0.0], &[], place)?;
         stand.switched.take_up(&planned.events);
         Ok(planned)
     }
@@ -83,7 +83,8 @@ impl Planner {
         let to = self.axes_target(target, stand)?;
         let extension_mm = stand.tip.extension_mm;
         let mut planned = self.axes_path(&stand.axes, &to, &extension_mm, target.place)?;
-        planned.events = path_events(&Switched::default(), events, 0, &[0.0], &[], target.place)?;
+        (planned.events, planned.steps) =
+            on_the_way(&Switched::default(), events, 0, &[0.0], &[], target.place)?;
         stand.switched.take_up(&planned.events);
         stand.switched.rapid();
         let people = std::array::from_fn(|i| to[i] / AXIS_UNIT[i]);
@@ -208,7 +209,8 @@ impl Planner {
         } else {
             stand.switched
         };
-        planned.events = path_events(&on, events, first, &shape.starts(), &piece.speeds, place)?;
+        (planned.events, planned.steps) =
+            on_the_way(&on, events, first, &shape.starts(), &piece.speeds, place)?;
         let demands = self.demands(&planned, shape, &stand.axes)?;
         let mut reached = self.reached(&demands, shape, &tips[first..first + shape.targets.len()])?;
         self.check_travel(&demands, shape)?;

@@ -1,9 +1,8 @@
 //! A planned path: what the boards are given.
 
-use super::CAPACITY;
 use super::shape::Shape;
+use super::{CAPACITY, MAX_EVENTS};
 use crate::nc::Motion;
-use shared::motion::MAX_EVENTS;
 use shared::protocol::{Knot, PathAction, PathEvent};
 use shared::trajectory::{Path, PathSpace, SpeedError, SpeedLimits, SpeedPlan, SpeedStep};
 
@@ -25,7 +24,9 @@ pub struct PlannedPath {
     pub lines: Vec<(f64, u32)>,
     /// What happens on the way, s not decreasing.
     pub events: Vec<PathEvent>,
-    /// Speed, acceleration and jerk along the path; the speed until an event changes it.
+    /// Changes of the programmed speed on the way, in order.
+    pub steps: Vec<SpeedStep>,
+    /// Speed, acceleration and jerk along the path; the speed until a step changes it.
     pub limits: SpeedLimits,
     /// What would not let it be faster, of a feed path.
     pub bound: Option<Bound>,
@@ -61,6 +62,7 @@ impl PlannedPath {
                 .map(|goal| (goal.s, goal.place.line))
                 .collect(),
             events: Vec::new(),
+            steps: Vec::new(),
             limits: SpeedLimits {
                 velocity: f64::INFINITY,
                 acceleration: f64::INFINITY,
@@ -100,19 +102,8 @@ impl PlannedPath {
     /// The speed along the path, as the motion board will plan it.
     pub fn speed(&self) -> Result<SpeedPlan<{ MAX_EVENTS + 1 }>, SpeedError> {
         let mut plan = SpeedPlan::new();
-        plan.plan(0.0, self.length_mm(), &self.limits, self.steps())?;
+        plan.plan(0.0, self.length_mm(), &self.limits, self.steps.iter().copied())?;
         Ok(plan)
-    }
-
-    /// Changes of the programmed speed on the way; before the first one it is that of the limits.
-    pub fn steps(&self) -> impl Iterator<Item = SpeedStep> + Clone {
-        self.events.iter().filter_map(|event| match event.action {
-            PathAction::Speed { mm_s } => Some(SpeedStep {
-                s: event.s_mm,
-                velocity: mm_s,
-            }),
-            _ => None,
-        })
     }
 
     /// From where the first beam goes on to where the last one goes off \[mm\]; `None` without beams or motion.

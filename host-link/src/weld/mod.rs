@@ -1,5 +1,6 @@
 //! The weld job: from boards that are off to a report, and the machine at rest whatever happens.
 
+mod feeding;
 mod outcome;
 mod progress;
 mod session;
@@ -18,6 +19,7 @@ use crate::nc::Program;
 use crate::part::PartFile;
 use crate::path::{PathError, PlannedPath, Planner};
 use crate::seam::{Deviation, SeamError};
+use feeding::Feeding;
 use session::{Session, on_path};
 use shared::io::AXES;
 use shared::motion::{Fault, State};
@@ -254,7 +256,7 @@ impl Weld {
         what: &str,
     ) -> Result<(), JobError> {
         let id = self.paths.len() as u32 + 1;
-        load(session, &path, id)?;
+        let feeding = load(session, &path, id)?;
         if let (Some((start_s, _)), Some(seam), Some(tracking)) =
             (path.weld(), &job.seam, &mut session.tracking)
         {
@@ -265,7 +267,7 @@ impl Weld {
             session.dwell(path.dwell_before_s)?;
         }
         session.progress.phase(what);
-        let ran = follow(session, &path, id);
+        let ran = follow(session, &path, feeding, id);
         self.paths.insert(id, path);
         if ran.is_err() {
             session.progress.phase("stopping");
@@ -284,47 +286,51 @@ fn make_ready(session: &mut Session, job: &Job) -> Result<(), JobError> {
     session.refresh()?;
     session.wait_until("the search for reference marks", HOMING_LIMIT, |s| {
         let tracking = s.tracking.as_ref().map(|tracking| &tracking.status);
-        s.motion.homed
+        Ok(s.motion.homed
             && s.motion.state == State::Idle
-            && tracking.is_none_or(|t| t.homed && t.state == TrackerState::Ready)
+            && tracking.is_none_or(|t| t.homed && t.state == TrackerState::Ready))
     })?;
     if session.tracking.is_some() {
         session.progress.phase("relating the clocks");
         session.wait_until("relating the boards' clocks", CLOCK_LIMIT, |s| {
-            s.tracking.as_ref().is_none_or(Tracking::clocks_related)
+            Ok(s.tracking.as_ref().is_none_or(Tracking::clocks_related))
         })?;
     }
     Ok(())
 }
 
-/// Gives a path to the boards.
-fn load(session: &mut Session, path: &PlannedPath, id: u32) -> Result<(), LinkError> {
+/// Begins a path on the boards: all knots for the tracker board, as many elements as the motion board has room for.
+fn load<'a>(session: &mut Session, path: &'a PlannedPath, id: u32) -> Result<Feeding<'a>, JobError> {
     let space = path.space;
-    session.command_all(&Request::ClearPath { id, space })?;
-    for knots in path.knots.chunks(LOAD_BATCH) {
-        let knots = knots.iter().copied().collect();
-        session.command_all(&Request::LoadKnots(knots))?;
+    if session.tracking.is_some() {
+        session.command(Role::Tracker, &Request::ClearPath { id, space })?;
+        for knots in path.knots.chunks(LOAD_BATCH) {
+            let knots = knots.iter().copied().collect();
+            session.command(Role::Tracker, &Request::LoadKnots(knots))?;
+        }
     }
-    for event in &path.events {
-        session.command(Role::Motion, &Request::LoadEvent(*event))?;
-    }
-    Ok(())
+    let begin = Request::BeginPath {
+        id,
+        space,
+        start_s_mm: 0.0,
+        limits: path.path_limits(),
+    };
+    session.command(Role::Motion, &begin)?;
+    let mut feeding = Feeding::new(path.elements(), path.events.iter().copied());
+    feeding.go_on(session)?;
+    Ok(feeding)
 }
 
-/// Runs a loaded path to its end.
-fn follow(session: &mut Session, path: &PlannedPath, id: u32) -> Result<(), JobError> {
-    let run = Request::Run {
-        speed_mm_s: path.limits.velocity,
-        acceleration_mm_s2: path.limits.acceleration,
-        jerk_mm_s3: path.limits.jerk,
-    };
-    session.command(Role::Motion, &run)?;
+/// Runs a path that has been begun to its end, and gives the rest of it meanwhile.
+fn follow(session: &mut Session, path: &PlannedPath, mut feeding: Feeding, id: u32) -> Result<(), JobError> {
+    session.command(Role::Motion, &Request::Run)?;
     session.refresh()?;
     let begun = session.tick();
     let length = path.length_mm();
     let limit = Duration::from_secs_f64(path.duration_s()) + PATH_MARGIN;
     let mut welding = false;
     session.wait_until("a path", limit, |s| {
+        feeding.go_on(s)?;
         let mut stands = false;
         if let Some(here) = s.record.motion().last().filter(|here| here.path_id == id) {
             // The telemetry tells it sooner than the next status.
@@ -335,7 +341,7 @@ fn follow(session: &mut Session, path: &PlannedPath, id: u32) -> Result<(), JobE
             }
             s.progress.travel(here.s_mm, length);
         }
-        stands || !on_path(s.motion.state)
+        Ok(stands || !on_path(s.motion.state))
     })?;
     session.refresh()?;
     session.check()

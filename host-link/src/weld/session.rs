@@ -123,10 +123,10 @@ impl<'a> Session<'a> {
         &mut self,
         what: &'static str,
         limit: Duration,
-        mut done: impl FnMut(&mut Self) -> bool,
+        mut done: impl FnMut(&mut Self) -> Result<bool, JobError>,
     ) -> Result<(), JobError> {
         let end = u64::from(self.tick()) + limit.as_millis() as u64;
-        while !done(self) {
+        while !done(self)? {
             self.turn()?;
             self.check()?;
             if u64::from(self.tick()) > end {

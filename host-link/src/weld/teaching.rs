@@ -177,7 +177,7 @@ impl Arm for BoardArm<'_, '_, '_> {
         let wanted = readings.max(1);
         self.session
             .wait_until("a look at the surface", LOOK_LIMIT, |session| {
-                rest(session).len() >= wanted
+                Ok(rest(session).len() >= wanted)
             })?;
         let samples = rest(self.session);
         let mut axes = [0.0; AXES];

@@ -5,9 +5,16 @@ use super::segment::BeamOutput;
 use crate::io::{DacCode, SIDES};
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::protocol::{PathAction, PathEvent};
+use heapless::Deque;
 
-/// Most events on one path.
-pub const MAX_EVENTS: usize = 128;
+/// Events of a path that the board holds: more may come when some have been passed.
+pub const EVENTS: usize = 128;
+
+/// Speed that counts as none \[mm/s\]: what rounding leaves.
+const STILL: f64 = 1e-9;
+
+/// Events that the path has not come to yet, in order of s.
+pub type EventQueue = Deque<PathEvent, EVENTS>;
 
 /// What the beams of a machine need to know.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +27,7 @@ pub struct BeamLimits {
 struct Limits {
     power_at_10v_w: f64,
     min_speed_mm_s: f64,
+    overlap_mm: f64,
     stays_on_at_rest: bool,
 }
 
@@ -32,6 +40,7 @@ impl BeamLimits {
             beams[side] = Some(Limits {
                 power_at_10v_w: positive(owner, "power_at_10v_w", config.power_at_10v_w)?,
                 min_speed_mm_s: not_negative(owner, "min_speed_mm_s", config.min_speed_mm_s)?,
+                overlap_mm: not_negative(owner, "overlap_mm", config.overlap_mm)?,
                 stays_on_at_rest: config.stays_on_at_rest,
             });
         }
@@ -41,6 +50,13 @@ impl BeamLimits {
     /// Whether the machine has the beam of `side`.
     pub fn has(&self, side: u8) -> bool {
         self.beams.get(usize::from(side)).is_some_and(Option::is_some)
+    }
+
+    /// How far the beam of `side` goes over again after a hold \[mm\]; `None` if it stays on in a hold.
+    pub fn overlap(&self, side: usize) -> Option<f64> {
+        self.beams[side]
+            .filter(|beam| !beam.stays_on_at_rest)
+            .map(|beam| beam.overlap_mm)
     }
 
     fn stays_on(&self, side: usize) -> bool {
@@ -62,8 +78,8 @@ pub enum Activity {
 /// What the events passed so far ask for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beams {
-    passed: usize,
-    on: [bool; SIDES],
+    /// Where each went on \[mm\], of those that are on.
+    on: [Option<f64>; SIDES],
     power_w: [f64; SIDES],
     tracking: bool,
 }
@@ -71,8 +87,7 @@ pub struct Beams {
 impl Beams {
     /// Before the first event: everything off.
     pub const NONE: Self = Self {
-        passed: 0,
-        on: [false; SIDES],
+        on: [None; SIDES],
         power_w: [0.0; SIDES],
         tracking: false,
     };
@@ -89,21 +104,24 @@ impl Beams {
 
     /// Whether anything is on that stays on at rest.
     pub fn stay_on(&self, limits: &BeamLimits) -> bool {
-        (0..SIDES).any(|side| self.on[side] && limits.stays_on(side))
+        (0..SIDES).any(|side| self.on[side].is_some() && limits.stays_on(side))
     }
 
-    /// Takes up every event at or before path position `s_mm`; `events` are in order of s.
-    pub fn pass(&mut self, events: &[PathEvent], s_mm: f64) {
-        while let Some(event) = events.get(self.passed).filter(|event| event.s_mm <= s_mm) {
+    /// Takes every event at or before path position `s_mm` from `events`.
+    pub fn pass(&mut self, events: &mut EventQueue, s_mm: f64) {
+        while let Some(event) = events.front().filter(|event| event.s_mm <= s_mm) {
             match event.action {
-                PathAction::Beam { side, on } => self.on[usize::from(side)] = on,
+                PathAction::Beam { side, on } => self.on[usize::from(side)] = on.then_some(event.s_mm),
                 PathAction::Power { side, watt } => self.power_w[usize::from(side)] = watt,
                 PathAction::Tracking { on } => self.tracking = on,
-                // Known to the plan of the speed since the path began.
-                PathAction::Speed { .. } => {}
             }
-            self.passed += 1;
+            events.pop_front();
         }
+    }
+
+    /// Where the beam of `side` went on \[mm\], if it is.
+    pub fn on_since(&self, side: usize) -> Option<f64> {
+        self.on[side]
     }
 
     /// The path asks for tracking.
@@ -112,23 +130,24 @@ impl Beams {
     }
 
     /// What goes to the beams: a gate is open only where the path asks for it, the source is sound, and either
-    /// a path runs not slower than the beam's least speed, or the beam is one that stays on.
+    /// a path runs not slower than the beam's least speed, or the beam is one that stays on. `closed` are kept off
+    /// besides.
     pub fn output(
         &self,
         limits: &BeamLimits,
         activity: Activity,
         speed_mm_s: f64,
-        laser_fault: [bool; SIDES],
+        closed: [bool; SIDES],
     ) -> BeamOutput {
         let mut output = BeamOutput::OFF;
         for (side, beam) in limits.beams.iter().enumerate() {
             let Some(beam) = beam else { continue };
             let allowed = match activity {
-                Activity::Running => speed_mm_s >= beam.min_speed_mm_s,
+                Activity::Running => speed_mm_s >= beam.min_speed_mm_s - STILL,
                 Activity::Waiting => beam.stays_on_at_rest,
                 Activity::Off => false,
             };
-            output.gate[side] = allowed && self.on[side] && !laser_fault[side];
+            output.gate[side] = allowed && self.on[side].is_some() && !closed[side];
             if output.gate[side] {
                 output.power[side] = DacCode::from_ratio(self.power_w[side].max(0.0), beam.power_at_10v_w);
             }
@@ -145,12 +164,19 @@ mod tests {
         let beam = BeamConfig {
             power_at_10v_w: 4000.0,
             min_speed_mm_s: 5.0,
+            overlap_mm: 2.0,
             stays_on_at_rest: false,
         };
         BeamLimits::build(&[Some(beam.clone()), Some(beam)]).unwrap()
     }
 
-    const EVENTS: [PathEvent; 4] = [
+    fn queue(events: &[PathEvent]) -> EventQueue {
+        let mut queue = EventQueue::new();
+        events.iter().for_each(|event| queue.push_back(*event).unwrap());
+        queue
+    }
+
+    const PASSED: [PathEvent; 4] = [
         PathEvent {
             s_mm: 0.0,
             action: PathAction::Power {
@@ -174,7 +200,7 @@ mod tests {
 
     #[test]
     fn gate_opens_at_its_event_and_closes_at_its_event() {
-        let mut beams = Beams::NONE;
+        let (mut beams, mut events) = (Beams::NONE, queue(&PASSED));
         for (s, open) in [
             (0.0, false),
             (9.999, false),
@@ -182,18 +208,18 @@ mod tests {
             (19.9, true),
             (20.0, false),
         ] {
-            beams.pass(&EVENTS, s);
+            beams.pass(&mut events, s);
             let output = beams.output(&limits(), Activity::Running, 80.0, [false; 2]);
             assert_eq!(output.gate, [open, false], "at {s}");
             assert_eq!(output.power[0], if open { DacCode(16384) } else { DacCode::ZERO });
         }
-        assert!(beams.tracking());
+        assert!(beams.tracking() && events.is_empty());
     }
 
     #[test]
     fn gate_stays_closed_when_slow_unarmed_or_faulty() {
         let mut beams = Beams::NONE;
-        beams.pass(&EVENTS, 15.0);
+        beams.pass(&mut queue(&PASSED), 15.0);
         assert!(!beams.output(&limits(), Activity::Running, 4.9, [false; 2]).gate[0]);
         assert!(!beams.output(&limits(), Activity::Waiting, 80.0, [false; 2]).gate[0]);
         assert!(
@@ -213,17 +239,16 @@ mod tests {
         let spindle = BeamConfig {
             power_at_10v_w: 3000.0,
             min_speed_mm_s: 0.0,
+            overlap_mm: 0.0,
             stays_on_at_rest: true,
         };
         let limits = BeamLimits::build(&[Some(spindle), None]).unwrap();
         let mut beams = Beams::NONE;
-        beams.pass(
-            &[PathEvent {
-                s_mm: 0.0,
-                action: PathAction::Beam { side: 0, on: true },
-            }],
-            0.0,
-        );
+        let on = PathEvent {
+            s_mm: 0.0,
+            action: PathAction::Beam { side: 0, on: true },
+        };
+        beams.pass(&mut queue(&[on]), 0.0);
         assert!(beams.stay_on(&limits));
         beams.restart(&limits);
         let gate = |activity| beams.output(&limits, activity, 0.0, [false; 2]).gate;
@@ -237,6 +262,7 @@ mod tests {
         let good = BeamConfig {
             power_at_10v_w: 4000.0,
             min_speed_mm_s: 5.0,
+            overlap_mm: 2.0,
             stays_on_at_rest: false,
         };
         let bad = BeamConfig {

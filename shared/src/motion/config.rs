@@ -124,8 +124,18 @@ pub struct BeamConfig {
     pub power_at_10v_w: f64,
     /// The gate stays closed below this path speed \[mm/s\].
     pub min_speed_mm_s: f64,
+    /// After a hold the beam goes over so much of the path again \[mm\], where it does not stay on.
+    #[serde(default = "BeamConfig::overlap_mm")]
+    pub overlap_mm: f64,
     /// The gate stays as it is between two paths and in a hold, as a spindle needs it; a stop closes it when the
     /// machine stands. Only sensible with a least speed of 0.
     #[serde(default)]
     pub stays_on_at_rest: bool,
+}
+
+impl BeamConfig {
+    /// An overlap where the machine file tells none: assumed, about the width of a bead.
+    pub const fn overlap_mm() -> f64 {
+        2.0
+    }
 }

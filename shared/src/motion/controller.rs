@@ -4,23 +4,22 @@
 //! makes the [`Segment`] which the servo ticks follow from k + 1 on, so the path tick has a whole
 //! millisecond. What is published at tick k belongs to k.
 
+mod loading;
+mod path;
 mod requests;
 
-use super::beams::{Activity, Beams, MAX_EVENTS};
+use super::beams::Beams;
 use super::homing::{Homing, HomingStep};
 use super::machine::Machine;
 use super::segment::{BeamOutput, MotorReference, PATH_PERIOD_S, Segment};
 use super::servo::{ServoOrder, ServoReport, ServoSetup};
 use super::state::Event;
 use super::{Fault, State, Vibration};
-use crate::io::{AXES, MOTORS, SIDES};
-use crate::kinematics::AXIS_UNIT;
-use crate::protocol::{MotionSample, PathEvent, PathState};
-use crate::trajectory::{Path, SpeedLimits, SpeedPlan, SpeedState, StopProfile, reference};
-use heapless::Vec;
+use crate::io::{AXES, MOTORS};
+use crate::protocol::{MotionSample, PathState};
+use crate::trajectory::{BoardPlanner, SpeedState};
+use path::LoadedPath;
 
-/// A path begins where the axes stand, to this much (mm or rad).
-const START_TOLERANCE: f64 = 2e-6;
 /// Lost path ticks that are made up for at once; more are too late anyway.
 const MAX_CATCH_UP: u32 = 4;
 
@@ -46,29 +45,9 @@ pub struct PathTickOutput {
     pub sample: MotionSample,
 }
 
-/// Speeds of one path: the first one, and every event may be a change.
-const MAX_SPEEDS: usize = MAX_EVENTS + 1;
-
-/// Speed along the path, under way.
-#[derive(Clone, Debug)]
-struct Travel {
-    course: Course,
-    time: f64,
-    limits: SpeedLimits,
-}
-
-/// What the speed follows.
-#[derive(Clone, Debug)]
-enum Course {
-    /// The plan of the speed, to the end of the path.
-    Planned,
-    /// A stop before it.
-    Stop(StopProfile),
-}
-
 /// The motion board's controller above the servo loops.
 #[derive(Clone, Debug)]
-pub struct MotionController<const KNOTS: usize> {
+pub struct MotionController {
     state: State,
     fault: Option<Fault>,
     /// Fault that becomes one when the machine has come to rest.
@@ -81,13 +60,11 @@ pub struct MotionController<const KNOTS: usize> {
     enabled: bool,
     homing: Option<Homing>,
     homed: bool,
-    path: Path<KNOTS>,
-    events: Vec<PathEvent, MAX_EVENTS>,
+    planner: BoardPlanner,
+    path: LoadedPath,
+    /// Part of the programmed speed that is asked for.
+    factor: f64,
     beams: Beams,
-    /// Made when a path is run or resumed, at low priority.
-    plan: SpeedPlan<MAX_SPEEDS>,
-    travel: Option<Travel>,
-    resume_wanted: bool,
     /// Along the path at k, k + 1, k + 2.
     along: [SpeedState; 3],
     /// Gates given to the servo ticks for the millisecond from k, and from k + 1.
@@ -107,20 +84,15 @@ pub struct MotionController<const KNOTS: usize> {
     vibration: [Vibration; MOTORS],
 }
 
-impl<const KNOTS: usize> Default for MotionController<KNOTS> {
+impl Default for MotionController {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<const KNOTS: usize> MotionController<KNOTS> {
+impl MotionController {
     /// Without parameters, drives off.
     pub const fn new() -> Self {
-        const REST: SpeedState = SpeedState {
-            s: 0.0,
-            v: 0.0,
-            a: 0.0,
-        };
         Self {
             state: State::Off,
             fault: None,
@@ -131,13 +103,11 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             enabled: false,
             homing: None,
             homed: false,
-            path: Path::new(),
-            events: Vec::new(),
+            planner: BoardPlanner::new(),
+            path: LoadedPath::NONE,
+            factor: 1.0,
             beams: Beams::NONE,
-            plan: SpeedPlan::new(),
-            travel: None,
-            resume_wanted: false,
-            along: [REST; 3],
+            along: [SpeedState::at_rest(0.0); 3],
             gates: [BeamOutput::OFF; 2],
             reference: MotorReference::ZERO,
             axes: [0.0; AXES],
@@ -217,7 +187,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
                 tick: self.tick as u32,
                 time_us,
                 sent_us: time_us,
-                path_id: if on_path { self.path.id() } else { 0 },
+                path_id: if on_path { self.path.id } else { 0 },
                 s_mm: now.s,
                 speed_mm_s: now.v,
                 pose: self.measured_pose(),
@@ -228,7 +198,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
                 tick: self.tick as u32,
                 time_us,
                 state: self.state,
-                path_id: if on_path { self.path.id() } else { 0 },
+                path_id: if on_path { self.path.id } else { 0 },
                 s_mm: now.s,
                 speed_mm_s: now.v,
                 beams: self.gates[0].gate,
@@ -302,13 +272,8 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
     }
 
     fn leave_path(&mut self) {
-        let stood = SpeedState {
-            s: self.along[0].s,
-            v: 0.0,
-            a: 0.0,
-        };
-        self.along = [stood; 3];
-        self.travel = None;
+        self.along = [SpeedState::at_rest(self.along[0].s); 3];
+        self.path.forget();
         self.homing = None;
         self.pending = None;
         self.beams = Beams::NONE;
@@ -350,114 +315,6 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
                 from.position[motor] += shift;
                 self.reference.position[motor] += shift;
             }
-        }
-    }
-
-    /// From now on the speed goes down to a stop, as soon as the limits allow.
-    fn slow_down(&mut self) {
-        let from = self.along[2];
-        let Some(travel) = &mut self.travel else { return };
-        // On an error, which checked limits and a finite state rule out, the plan goes on: it ends at rest too.
-        if let Ok(stop) = StopProfile::build(from, &travel.limits) {
-            travel.course = Course::Stop(stop);
-            travel.time = 0.0;
-        }
-    }
-
-    /// Moves the references on along the path.
-    fn travel(&mut self) {
-        let Some(travel) = &mut self.travel else { return };
-        travel.time += PATH_PERIOD_S;
-        let (duration, state) = match &travel.course {
-            Course::Planned => (self.plan.duration(), self.plan.at(travel.time)),
-            Course::Stop(stop) => (stop.duration(), stop.at(travel.time)),
-        };
-        let at_rest = travel.time >= duration + 2.0 * PATH_PERIOD_S;
-        self.along = [self.along[1], self.along[2], state];
-        let Some(machine) = &self.machine else { return };
-        match reference(&machine.kinematics, &self.path, state, &self.axes) {
-            Ok(next) => {
-                if let Some(axis) = machine.jump(&self.axes, &next.position) {
-                    let distance = (next.position[axis] - self.axes[axis]) / AXIS_UNIT[axis];
-                    self.trip(Fault::Jump {
-                        axis: axis as u8,
-                        distance: distance as f32,
-                        s_mm: state.s as f32,
-                    });
-                    return;
-                }
-                if let Some(axis) = machine.beyond_travel(&next.position) {
-                    let position = (next.position[axis] / AXIS_UNIT[axis]) as f32;
-                    self.stop_for(Fault::SoftLimit {
-                        axis: axis as u8,
-                        position,
-                    });
-                }
-                self.follow(&next.position, &next.velocity, &next.acceleration);
-            }
-            Err(_) => self.trip(Fault::NoSolution { s_mm: state.s as f32 }),
-        }
-        if at_rest {
-            self.come_to_rest();
-        }
-    }
-
-    fn follow(&mut self, position: &[f64; AXES], velocity: &[f64; AXES], acceleration: &[f64; AXES]) {
-        let Some(machine) = &self.machine else { return };
-        self.axes = *position;
-        self.reference = MotorReference {
-            position: machine.motors(position),
-            velocity: machine.motor_rates(velocity),
-            acceleration: machine.motor_rates(acceleration),
-        };
-    }
-
-    /// The profile has ended, and what was published has caught up with it.
-    fn come_to_rest(&mut self) {
-        match self.state {
-            State::Running => {
-                self.travel = None;
-                self.state = self.state.after(Event::PathEnd).unwrap_or(self.state);
-            }
-            State::Stopping => {
-                self.travel = None;
-                self.beams = Beams::NONE;
-                match self.pending.take() {
-                    Some(fault) => self.trip(fault),
-                    None => self.state = self.state.after(Event::AtRest).unwrap_or(self.state),
-                }
-            }
-            State::Holding if self.resume_wanted => {
-                self.resume_wanted = false;
-                // Held at the very end, nothing is left to run: that is a stop.
-                let event = match &mut self.travel {
-                    Some(travel) if self.plan.duration() > 0.0 => {
-                        travel.course = Course::Planned;
-                        travel.time = 0.0;
-                        Event::Resume
-                    }
-                    _ => Event::Stop,
-                };
-                self.state = self.state.after(event).unwrap_or(self.state);
-            }
-            _ => {}
-        }
-    }
-
-    /// Beams of the millisecond from k + 1; events count where the path position is then.
-    fn beam_output(&mut self, laser_fault: [bool; SIDES]) -> BeamOutput {
-        let then = self.along[1];
-        let activity = match self.state {
-            State::Running => Activity::Running,
-            State::Idle | State::Holding | State::Stopping => Activity::Waiting,
-            State::Off | State::Homing | State::Fault => Activity::Off,
-        };
-        if activity == Activity::Running {
-            self.beams.pass(&self.events, then.s);
-        }
-        match &self.machine {
-            Some(machine) => self.beams.output(&machine.beams, activity, then.v, laser_fault),
-            None => BeamOutput::OFF,
         }
     }
 

@@ -9,6 +9,8 @@ use crate::control::{Gantry, Pid};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use crate::kinematics::{AXIS_OWNERS, AxisLimits, Kinematics, violations};
 use crate::parameter::ParameterError;
+use crate::protocol::PathLimits;
+use crate::trajectory::PlanLimits;
 
 /// The second motor of a gantry.
 const X2: usize = 1;
@@ -46,6 +48,16 @@ impl Machine {
             gantry,
         };
         Ok((machine, ServoSetup::build(&config.motors, gantry)?))
+    }
+
+    /// Limits of a path whose own are `path`.
+    pub fn plan_limits(&self, path: &PathLimits) -> PlanLimits {
+        PlanLimits::of(
+            &self.limits,
+            path.acceleration_mm_s2,
+            path.jerk_mm_s3,
+            path.tolerance_mm,
+        )
     }
 
     /// Motors from axes: X1 and X2 stand so that the beam is square.

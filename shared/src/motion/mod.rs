@@ -10,12 +10,13 @@ mod controller;
 mod fault;
 mod homing;
 mod machine;
+mod overlap;
 mod segment;
 mod servo;
 mod state;
 mod vibration;
 
-pub use beams::MAX_EVENTS;
+pub use beams::EVENTS;
 pub use config::{AxisConfig, BeamConfig, GantryConfig, HomeConfig, MotionConfig, MotorConfig};
 pub use controller::{MotionController, PathTickInput, PathTickOutput};
 pub use fault::Fault;

@@ -8,7 +8,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use thiserror::Error;
 
 /// Longest message on the stream, without its length.
-pub const MAX_MESSAGE: usize = 2048;
+pub const MAX_MESSAGE: usize = 2560;
 /// Longest datagram.
 pub const MAX_DATAGRAM: usize = 1400;
 

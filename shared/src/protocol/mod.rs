@@ -5,6 +5,7 @@
 //! connect ([`Request::Hello`]) and stands before every datagram, so two versions that differ never talk.
 
 mod datagram;
+mod element;
 pub mod framing;
 mod request;
 
@@ -12,9 +13,10 @@ pub use datagram::{
     Batch, Capture, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, MotionTelemetry,
     PathState, SideMeasurement, TELEMETRY_BATCH, TrackerSample, TrackerTelemetry,
 };
+pub use element::{BadElement, PathChannel, PathElement, PathJoin, PathShape};
 pub use request::{
-    Identity, Knot, LOAD_BATCH, MotionStatus, PathAction, PathEvent, Refusal, Request, Response, Role,
-    TrackerStatus,
+    Identity, Knot, LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, MotionStatus, PathAction, PathEvent, PathLimits,
+    Refusal, Request, Response, Role, Room, TrackerStatus,
 };
 
 /// TCP port of the requests, on both boards.

@@ -1,10 +1,11 @@
 //! Requests of the PC and the answers of the boards.
 
+use super::element::{BadElement, PathElement};
 use crate::io::{AXES, MOTORS, SLIDES};
 use crate::motion::{Fault, MotionConfig, State};
 use crate::parameter::ParameterError;
 use crate::tracking::{TrackerConfig, TrackerFault, TrackerState};
-use crate::trajectory::{CHANNELS, PathError, PathSpace};
+use crate::trajectory::{CHANNELS, PathError, PathSpace, PushError};
 use heapless::{String, Vec};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,10 @@ use thiserror::Error;
 
 /// Most knots in one [`Request::LoadKnots`].
 pub const LOAD_BATCH: usize = 6;
+/// Most elements in one [`Request::LoadElements`].
+pub const LOAD_ELEMENTS: usize = 4;
+/// Most events in one [`Request::LoadEvents`].
+pub const LOAD_EVENTS: usize = 32;
 
 /// What the PC may ask. A board answers [`Refusal::NotMine`] to what belongs to the other one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
@@ -50,30 +55,51 @@ pub enum Request {
     Disable,
     /// Forget the fault; state off if its cause is gone.
     Reset,
-    /// Start a new path: forget the knots and events of the last one.
+    /// Forget the knots of the last path, a new one begins; tracker board.
     ClearPath {
         /// Number of the new path, repeated in [`super::PathState`].
         id: u32,
-        /// What its knots are; in axis space no beam and no tracking can be asked for.
+        /// What its knots are.
         space: PathSpace,
     },
-    /// Append knots, `s_mm` strictly increasing. Both boards get the same knots.
+    /// Append knots of the path that is tracked, `s_mm` strictly increasing; tracker board.
     LoadKnots(Vec<Knot, LOAD_BATCH>),
-    /// Append an event to the path, `s_mm` not decreasing; motion board.
-    LoadEvent(PathEvent),
-    /// Run the loaded path from its first knot to its last, from rest to rest; motion board, state idle. The
-    /// axes must stand where the path begins.
-    Run {
-        /// Path speed, until an event changes it \[mm/s\].
-        speed_mm_s: f64,
-        /// Path acceleration \[mm/s²\].
-        acceleration_mm_s2: f64,
-        /// Path jerk \[mm/s³\].
-        jerk_mm_s3: f64,
+    /// Begin a path where the axes stand, which are homed; motion board, state idle. Forgets the last one.
+    BeginPath {
+        /// Number of the new path, repeated in [`super::PathState`].
+        id: u32,
+        /// What the channels of its elements are; in axis space no beam and no tracking can be asked for.
+        space: PathSpace,
+        /// Path length where it begins \[mm\].
+        start_s_mm: f64,
+        /// Limits along all of it.
+        limits: PathLimits,
     },
+    /// Append elements to the path, before or while it runs; answered by [`Response::Room`]. Those before one that
+    /// is refused are taken.
+    LoadElements {
+        /// They go on where the last one ends; the first one begins where the axes stand.
+        elements: Vec<PathElement, LOAD_ELEMENTS>,
+        /// The path is complete; its last element comes to rest.
+        last: bool,
+    },
+    /// Append events to the path, `s_mm` not decreasing, before or while it runs, but before it comes there;
+    /// answered by [`Response::Room`]. None is taken if one is refused.
+    LoadEvents(Vec<PathEvent, LOAD_EVENTS>),
+    /// Run the path from where it begins to the end of its last element; motion board, state idle. Where elements
+    /// come too late, the machine waits on the path.
+    Run,
+    /// From now on go at this part of the programmed speed; motion board, at any time.
+    Override {
+        /// 0 to 2.
+        factor: f64,
+    },
+    /// Go back along the path after a hold, beams off, as far as it is kept or until the next hold.
+    Back,
     /// Beams off and controlled stop on the path; can resume.
     Hold,
-    /// Go on along the path after a hold.
+    /// Go on along the path after a hold. Where a beam was on, the machine first goes back, and the beam goes on
+    /// somewhat before the place where it went off, at speed.
     Resume,
     /// Beams off and controlled stop on the path; the path is given up. While homing: drives off.
     Stop,
@@ -86,12 +112,34 @@ pub enum Response {
     Done,
     /// Not accepted; nothing changed.
     Refused(Refusal),
+    /// Accepted; so much more of the path can be taken now.
+    Room(Room),
     /// Who answers.
     Identity(Identity),
     /// State of the motion board.
     MotionStatus(MotionStatus),
     /// State of the tracker board.
     TrackerStatus(TrackerStatus),
+}
+
+/// Credits of the PC: what the motion board has room for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Room {
+    /// Elements.
+    pub elements: u16,
+    /// Events.
+    pub events: u16,
+}
+
+/// Limits along a path, beside those of the axes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct PathLimits {
+    /// Path acceleration \[mm/s²\].
+    pub acceleration_mm_s2: f64,
+    /// Path jerk \[mm/s³\].
+    pub jerk_mm_s3: f64,
+    /// Tolerance that most elements have \[mm\]: decides how far the output filter averages.
+    pub tolerance_mm: f64,
 }
 
 /// Which of the two boards.
@@ -182,14 +230,47 @@ pub enum Refusal {
         /// Number of the knot.
         index: u16,
     },
-    /// An event is not finite, or not positive where it must be, or for a beam that does not exist, out of order, or there are too many.
-    #[error("event {index} of the path makes no sense, is out of order or one too many")]
+    /// An event is not finite, or not positive where it must be, or for a beam that does not exist, out of order,
+    /// or the path has come past it.
+    #[error("event {index} of the path makes no sense, is out of order, or came too late")]
     BadEvent {
         /// Number of the event.
-        index: u16,
+        index: u32,
     },
-    /// Fewer than two knots, or limits that are not positive.
-    #[error("no path to run: load at least two knots and positive limits")]
+    /// More elements or events than there was room for.
+    #[error("the motion board has room for {} elements and {} events only", .room.elements, .room.events)]
+    NoRoom {
+        /// What fits.
+        room: Room,
+    },
+    /// An element is no piece of path.
+    #[error("line {line}: no line, arc or curve can be made of the element's numbers")]
+    BadElement {
+        /// Line of the program.
+        line: u32,
+    },
+    /// An element does not begin where the one before it ends.
+    #[error("line {line}: the path has a gap of {distance} mm (or rad) here")]
+    Gap {
+        /// Line of the program.
+        line: u32,
+        /// Largest difference of a channel.
+        distance: f32,
+    },
+    /// An element came after the last one, or the last one does not come to rest.
+    #[error("line {line}: the path must come to rest at its last element, and end there")]
+    NoEnd {
+        /// Line of the program.
+        line: u32,
+    },
+    /// Limits along the path that are not finite and positive.
+    #[error("acceleration, jerk and tolerance of a path must be positive")]
+    BadLimits,
+    /// The override is not from 0 to 2.
+    #[error("the override must be from 0 to 200 %")]
+    BadOverride,
+    /// No elements.
+    #[error("no path to run: begin one and load its elements")]
     NoPath,
     /// The axes do not stand at the start of the path.
     #[error("axis {} is {distance:.3} mm (or °) away from the start of the path", crate::io::AXIS_NAMES[*axis as usize])]
@@ -206,6 +287,24 @@ impl From<PathError> for Refusal {
         match error {
             PathError::Full { capacity } => Self::PathFull { capacity },
             PathError::BadKnot { index } => Self::BadKnot { index },
+        }
+    }
+}
+
+impl From<BadElement> for Refusal {
+    fn from(BadElement { line }: BadElement) -> Self {
+        Self::BadElement { line }
+    }
+}
+
+impl From<PushError> for Refusal {
+    fn from(error: PushError) -> Self {
+        match error {
+            PushError::Full => Self::NoRoom {
+                room: Room::default(),
+            },
+            PushError::Unsound { line } => Self::BadElement { line },
+            PushError::Gap { line, distance } => Self::Gap { line, distance },
         }
     }
 }
@@ -252,11 +351,6 @@ pub enum PathAction {
         /// Follow.
         on: bool,
     },
-    /// From here on, go at most this fast along the path: the speed comes down before, or goes up from here.
-    Speed {
-        /// Path speed \[mm/s\].
-        mm_s: f64,
-    },
 }
 
 /// State of the motion board.
@@ -276,8 +370,14 @@ pub struct MotionStatus {
     pub path_id: u32,
     /// Position on it \[mm\].
     pub s_mm: f64,
-    /// Knots loaded.
-    pub knots: u16,
+    /// Line of the program there.
+    pub line: u32,
+    /// Elements of it taken so far.
+    pub elements: u32,
+    /// Room for more of it.
+    pub room: Room,
+    /// Part of the programmed speed that is asked for.
+    pub speed_override: f64,
     /// Servo ticks since boot, and how many came too late to be served.
     pub servo_ticks: u32,
     /// Servo ticks lost.

@@ -15,13 +15,15 @@ mod stop;
 mod trapezoid;
 mod window;
 
-pub use curve::{ArcLengthCurve, ArcLengthPiece, ArcLengthPieces, Cusp, FLUCTUATION, TooUneven};
+pub use curve::{
+    ArcLengthCurve, ArcLengthPiece, ArcLengthPieces, CurveNumbers, Cusp, FLUCTUATION, TooUneven,
+};
 pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
 pub use matched_turn::MatchedTurn;
 pub use path::{Path, PathError, PathPoint, PathSpace};
 pub use plan::{SpeedPlan, SpeedStep};
 pub use planner::{Output, PlanLimits, Planner, PushError, Way};
-pub use reference::{AxisReference, ReferenceError, reference};
+pub use reference::{AxisReference, ReferenceError, axes_at, reference};
 pub use speed::{SpeedError, SpeedLimits, SpeedState};
 pub use stop::StopProfile;
 pub use trapezoid::{SmoothedTrapezoid, Trapezoid, TrapezoidError};

@@ -49,6 +49,16 @@ pub(super) fn at_unit_speed(
     })
 }
 
+/// The axes at a point of a path, nearest to `near`.
+pub fn axes_at(
+    kinematics: &Kinematics,
+    point: &PathPoint,
+    space: PathSpace,
+    near: &[f64; AXES],
+) -> Result<[f64; AXES], ReferenceError> {
+    Ok(at_unit_speed(kinematics, point, space, near)?.position)
+}
+
 /// The references at `state` of `path`: the pose at s, its axes nearest to `near`, and their rates and
 /// accelerations by the chain rule (SPEC 0.3, 0.4). A path in axis space gives its axes as they are.
 pub fn reference<const N: usize>(

@@ -25,6 +25,13 @@ pub struct SpeedState {
     pub a: f64,
 }
 
+impl SpeedState {
+    /// At rest at `s` \[mm\].
+    pub const fn at_rest(s: f64) -> Self {
+        Self { s, v: 0.0, a: 0.0 }
+    }
+}
+
 /// Why there is no speed along a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SpeedError {

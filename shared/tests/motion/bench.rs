@@ -7,9 +7,10 @@ use shared::motion::{
     PathTickInput, SERVO_PERIOD_S, SERVO_TICKS_PER_PATH_TICK, ServoLoops, State,
 };
 use shared::protocol::{
-    Knot, MotionSample, MotionStatus, PathAction, PathEvent, PathState, Refusal, Request, Response,
+    MotionSample, MotionStatus, PathAction, PathChannel, PathElement, PathEvent, PathJoin, PathLimits,
+    PathShape, PathState, Refusal, Request, Response, Room,
 };
-use shared::trajectory::{CHANNELS, PathSpace};
+use shared::trajectory::PathSpace;
 
 /// Counts in one mm or degree.
 pub const SCALE: f64 = 10_000.0;
@@ -22,6 +23,25 @@ const LOW_END: f64 = -12.0;
 /// Highest position of the linear axes \[mm\].
 pub const TRAVEL_MAX: f64 = 1000.0;
 pub const Y: usize = 2;
+
+/// Limits of the paths here.
+pub const LIMITS: PathLimits = PathLimits {
+    acceleration_mm_s2: 1000.0,
+    jerk_mm_s3: 20_000.0,
+    tolerance_mm: 0.05,
+};
+pub const BLEND: PathJoin = PathJoin::Blend {
+    position_mm: 0.05,
+    attitude_rad: 1e-4,
+};
+
+/// One element.
+pub fn load(element: PathElement, last: bool) -> Request {
+    Request::LoadElements {
+        elements: [element].into_iter().collect(),
+        last,
+    }
+}
 
 pub fn config() -> MotionConfig {
     let motor = |mark_position| MotorConfig {
@@ -61,6 +81,7 @@ pub fn config() -> MotionConfig {
     let beam = BeamConfig {
         power_at_10v_w: 4000.0,
         min_speed_mm_s: 5.0,
+        overlap_mm: 2.0,
         stays_on_at_rest: false,
     };
     MotionConfig {
@@ -99,7 +120,7 @@ fn counts(position: f64) -> i64 {
 
 pub struct Bench {
     pub servo: ServoLoops,
-    pub controller: MotionController<8>,
+    pub controller: Box<MotionController>,
     /// Where the motors stand, from where they were switched on (mm or degrees).
     pub position: [f64; MOTORS],
     /// Where their marks are.
@@ -122,7 +143,7 @@ impl Bench {
     pub fn new() -> Self {
         Self {
             servo: ServoLoops::default(),
-            controller: MotionController::new(),
+            controller: Box::new(MotionController::new()),
             position: [0.0; MOTORS],
             marks: [Some(-2.0); MOTORS],
             slipped: [0; MOTORS],
@@ -255,48 +276,84 @@ impl Bench {
         }
     }
 
-    /// Loads a line of `length` mm along Y from where the machine stands, with beam 1 on over all of it.
-    pub fn load_line(&mut self, length: f64) {
+    /// A request that is answered by the room that is left.
+    pub fn loaded(&mut self, request: &Request) -> Room {
+        match self.controller.handle(request, 0) {
+            Response::Room(room) => room,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Begins path 7 where the machine stands.
+    pub fn begin(&mut self, space: PathSpace) {
+        self.done(&Self::begin_request(space));
+    }
+
+    pub fn begin_request(space: PathSpace) -> Request {
+        Request::BeginPath {
+            id: 7,
+            space,
+            start_s_mm: 0.0,
+            limits: LIMITS,
+        }
+    }
+
+    /// The part of a line along Y from `from` to `to` mm from where the machine stands, in its attitude.
+    pub fn along_y(&mut self, from: f64, to: f64, feed_mm_s: f64, join: PathJoin) -> PathElement {
         let machine = config().kinematics().unwrap();
         let reference = self.status().reference;
         let pose = machine.forward(&std::array::from_fn(|axis| reference[axis] * AXIS_UNIT[axis]));
-        self.done(&Request::ClearPath {
-            id: 7,
-            space: PathSpace::Tool,
-        });
-        for s_mm in [0.0, length] {
-            let mut value = [0.0; CHANNELS];
-            let mut slope = [0.0; CHANNELS];
-            value[..3].copy_from_slice(pose.position.as_slice());
-            value[1] += s_mm;
-            value[3..6].copy_from_slice(pose.tangent.as_slice());
-            value[6..9].copy_from_slice(pose.normal.as_slice());
-            slope[1] = 1.0;
-            self.done(&Request::LoadKnots(
-                [Knot { s_mm, value, slope }].into_iter().collect(),
-            ));
+        let at = |way: f64| [pose.position.x, pose.position.y + way, pose.position.z];
+        let mut rest = [PathChannel::Constant(0.0); 8];
+        for (i, value) in pose.tangent.iter().chain(&pose.normal).enumerate() {
+            rest[i] = PathChannel::Constant(*value);
         }
-        for action in [
-            PathAction::Power {
-                side: 0,
-                watt: 2000.0,
+        PathElement {
+            line: 1 + from as u32,
+            shape: PathShape::Line {
+                start: at(from),
+                end: at(to),
             },
-            PathAction::Beam { side: 0, on: true },
-        ] {
-            self.done(&Request::LoadEvent(PathEvent { s_mm: 0.0, action }));
+            rest,
+            length_mm: to - from,
+            feed_mm_s,
+            join,
         }
     }
 
-    pub fn run_request() -> Request {
-        Request::Run {
-            speed_mm_s: 150.0,
-            acceleration_mm_s2: 1000.0,
-            jerk_mm_s3: 20_000.0,
+    /// Loads a line of `length` mm along Y from where the machine stands, with beam 1 on over all of it.
+    pub fn load_line(&mut self, length: f64) {
+        self.load_steps(&[(length, 150.0)]);
+    }
+
+    /// Loads a line along Y from where the machine stands, with beam 1 on over all of it: to each place \[mm\] at
+    /// its speed.
+    pub fn load_steps(&mut self, steps: &[(f64, f64)]) {
+        self.begin(PathSpace::Tool);
+        let mut from = 0.0;
+        for (i, (to, feed)) in steps.iter().enumerate() {
+            let last = i + 1 == steps.len();
+            let join = if last { PathJoin::Stop } else { BLEND };
+            let element = self.along_y(from, *to, *feed, join);
+            self.loaded(&load(element, last));
+            from = *to;
         }
+        self.loaded(&Request::LoadEvents(
+            [
+                PathAction::Power {
+                    side: 0,
+                    watt: 2000.0,
+                },
+                PathAction::Beam { side: 0, on: true },
+            ]
+            .into_iter()
+            .map(|action| PathEvent { s_mm: 0.0, action })
+            .collect(),
+        ));
     }
 
     pub fn run(&mut self) {
-        self.done(&Self::run_request());
+        self.done(&Request::Run);
     }
 
     /// Speed of Y now \[mm/s\].

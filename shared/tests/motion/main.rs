@@ -1,8 +1,10 @@
 //! The motion board's controller with ideal drives: every stop, trip and way back.
 
 mod bench;
+mod holds;
 mod homing;
 mod steps;
 mod stops;
+mod streaming;
 mod ticks;
 mod trips;

@@ -1,11 +1,18 @@
 //! Hold, resume, stop and disable, in every order.
 
-use super::bench::{Bench, Y, config};
+use super::bench::{BLEND, Bench, LIMITS, Y, config, load};
 use shared::io::MotionCommand;
 use shared::motion::State;
-use shared::protocol::{Knot, PathAction, PathEvent, Refusal, Request};
-use shared::trajectory::CHANNELS;
+use shared::protocol::{PathAction, PathEvent, PathJoin, PathLimits, Refusal, Request};
 use shared::trajectory::PathSpace;
+
+fn events(events: &[(f64, PathAction)]) -> Request {
+    let events = events.iter().map(|(s_mm, action)| PathEvent {
+        s_mm: *s_mm,
+        action: *action,
+    });
+    Request::LoadEvents(events.collect())
+}
 
 #[test]
 fn resume_while_still_slowing_goes_on_from_rest() {
@@ -17,6 +24,7 @@ fn resume_while_still_slowing_goes_on_from_rest() {
     let mut slowest = f64::MAX;
     while bench.controller.state() == State::Holding {
         bench.run_ms(1);
+        bench.status();
         slowest = slowest.min(bench.speed().abs());
         assert!(!bench.command.beam_gate[0]);
     }
@@ -57,11 +65,8 @@ fn stop_gives_up_the_path_from_running_and_from_holding() {
             bench.refused(&Request::Resume),
             Refusal::WrongState { state: State::Idle }
         ));
-        // Halfway along the path is not where it begins.
-        assert!(matches!(
-            bench.refused(&Bench::run_request()),
-            Refusal::NotAtStart { axis: 1, distance } if distance < -20.0
-        ));
+        // The path is given up.
+        assert_eq!(bench.refused(&Request::Run), Refusal::NoPath);
         assert_eq!(bench.status().state, State::Idle);
     }
 }
@@ -94,7 +99,7 @@ fn disable_on_the_path_switches_everything_off_and_publishes_no_speed() {
     assert_eq!((state.path_id, state.speed_mm_s, state.tracking), (0, 0.0, false));
     // Without drives no path runs, and there is no way on but homing.
     assert!(matches!(
-        bench.refused(&Bench::run_request()),
+        bench.refused(&Request::Run),
         Refusal::WrongState { state: State::Off }
     ));
 }
@@ -103,44 +108,39 @@ fn disable_on_the_path_switches_everything_off_and_publishes_no_speed() {
 fn a_refused_request_leaves_the_path_as_it_was() {
     let mut bench = Bench::homed();
     bench.load_line(100.0);
-    let knot = |s_mm| Knot {
-        s_mm,
-        value: [0.0; CHANNELS],
-        slope: [0.0; CHANNELS],
-    };
-    let knots = [knot(110.0), knot(120.0), knot(120.0)].into_iter().collect();
+    let beyond = bench.along_y(100.0, 110.0, 50.0, PathJoin::Stop);
+    let (line, room) = (beyond.line, bench.status().room);
     assert_eq!(
-        bench.refused(&Request::LoadKnots(knots)),
-        Refusal::BadKnot { index: 4 }
+        bench.refused(&load(beyond.clone(), true)),
+        Refusal::NoEnd { line }
     );
-    assert_eq!(bench.status().knots, 2);
+    let on = PathAction::Beam { side: 0, on: true };
     for (s_mm, action) in [
-        (-1.0, PathAction::Beam { side: 0, on: true }),
-        (f64::NAN, PathAction::Beam { side: 0, on: true }),
+        (-1.0, on),
+        (f64::NAN, on),
         (1.0, PathAction::Beam { side: 2, on: true }),
         (1.0, PathAction::Power { side: 0, watt: -1.0 }),
     ] {
         assert_eq!(
-            bench.refused(&Request::LoadEvent(PathEvent { s_mm, action })),
-            Refusal::BadEvent { index: 2 }
+            bench.refused(&events(&[(0.5, on), (s_mm, action)])),
+            Refusal::BadEvent { index: 3 }
         );
     }
+    assert_eq!(bench.status().room, room);
     bench.run();
-    bench.run_ms(100);
+    bench.run_ms(200);
+    // What was passed cannot be switched any more.
+    assert_eq!(
+        bench.refused(&events(&[(1.0, on)])),
+        Refusal::BadEvent { index: 2 }
+    );
     for request in [
-        Bench::run_request(),
-        Request::ClearPath {
-            id: 8,
-            space: PathSpace::Tool,
-        },
-        Request::LoadKnots([knot(110.0)].into_iter().collect()),
-        Request::LoadEvent(PathEvent {
-            s_mm: 1.0,
-            action: PathAction::Tracking { on: true },
-        }),
+        Request::Run,
+        Bench::begin_request(PathSpace::Tool),
         Request::Home,
         Request::ConfigureMotion(config()),
         Request::Reset,
+        Request::Back,
     ] {
         assert_eq!(
             bench.refused(&request),
@@ -155,24 +155,55 @@ fn a_refused_request_leaves_the_path_as_it_was() {
 }
 
 #[test]
-fn limits_that_make_no_sense_do_not_start_a_path() {
+fn limits_that_make_no_sense_do_not_begin_a_path() {
     let mut bench = Bench::homed();
-    bench.load_line(100.0);
-    for (speed_mm_s, acceleration_mm_s2, jerk_mm_s3) in [
-        (0.0, 1000.0, 20_000.0),
-        (100.0, -1.0, 20_000.0),
-        (100.0, 1000.0, f64::NAN),
-        (f64::INFINITY, 1000.0, 20_000.0),
-        (1e308, 1e308, 1e-308),
+    for change in [
+        |limits: &mut PathLimits| limits.acceleration_mm_s2 = -1.0,
+        |limits: &mut PathLimits| limits.jerk_mm_s3 = f64::NAN,
+        |limits: &mut PathLimits| limits.tolerance_mm = 0.0,
+        |limits: &mut PathLimits| limits.acceleration_mm_s2 = f64::INFINITY,
     ] {
-        let run = Request::Run {
-            speed_mm_s,
-            acceleration_mm_s2,
-            jerk_mm_s3,
+        let mut limits = LIMITS;
+        change(&mut limits);
+        let begin = Request::BeginPath {
+            id: 1,
+            space: PathSpace::Tool,
+            start_s_mm: 0.0,
+            limits,
         };
-        assert_eq!(bench.refused(&run), Refusal::NoPath, "{run:?}");
+        assert_eq!(bench.refused(&begin), Refusal::BadLimits, "{begin:?}");
     }
-    assert_eq!(bench.status().state, State::Idle);
+    assert_eq!(bench.refused(&Request::Run), Refusal::NoPath);
+    for factor in [-0.1, 2.1, f64::NAN] {
+        assert_eq!(bench.refused(&Request::Override { factor }), Refusal::BadOverride);
+    }
+}
+
+#[test]
+fn elements_that_are_no_path_are_refused_with_their_line() {
+    let mut bench = Bench::homed();
+    bench.begin(PathSpace::Tool);
+    let away = bench.along_y(5.0, 10.0, 50.0, BLEND);
+    assert!(matches!(
+        bench.refused(&load(away, false)),
+        Refusal::NotAtStart { axis: 1, distance } if (distance - 5.0).abs() < 1e-3
+    ));
+    let first = bench.along_y(0.0, 10.0, 50.0, BLEND);
+    let no_end = Refusal::NoEnd { line: first.line };
+    assert_eq!(bench.refused(&load(first.clone(), true)), no_end);
+    bench.loaded(&load(first, false));
+    let gap = bench.along_y(11.0, 20.0, 50.0, PathJoin::Stop);
+    assert!(matches!(
+        bench.refused(&load(gap, true)),
+        Refusal::Gap { line: 12, distance } if (distance - 1.0).abs() < 1e-3
+    ));
+    let slow = bench.along_y(10.0, 20.0, 0.0, PathJoin::Stop);
+    assert_eq!(bench.refused(&load(slow, true)), Refusal::BadElement { line: 11 });
+    let good = bench.along_y(10.0, 20.0, 50.0, PathJoin::Stop);
+    bench.loaded(&load(good, true));
+    bench.run();
+    bench.until(State::Idle, 5000);
+    assert_eq!(bench.status().s_mm, 20.0);
 }
 
 #[test]
@@ -182,8 +213,8 @@ fn parameters_of_another_machine_forget_the_path() {
     bench.done(&Request::Disable);
     bench.done(&Request::ConfigureMotion(config()));
     let status = bench.status();
-    assert_eq!((status.knots, status.path_id, status.homed), (0, 0, false));
+    assert_eq!((status.elements, status.path_id, status.homed), (0, 0, false));
     bench.done(&Request::Home);
     bench.until(State::Idle, 5000);
-    assert_eq!(bench.refused(&Bench::run_request()), Refusal::NoPath);
+    assert_eq!(bench.refused(&Request::Run), Refusal::NoPath);
 }

@@ -7,7 +7,7 @@ use shared::protocol::Request;
 /// Path ticks are counted in 32 bits for people, 49 days of them; their time goes on.
 #[test]
 fn the_time_of_path_ticks_goes_on_when_their_counter_wraps() {
-    let mut controller = MotionController::<2>::new();
+    let mut controller = Box::new(MotionController::new());
     let mut tick = |now_us: u64, elapsed: u32| {
         let output = controller.tick(&PathTickInput {
             now_us,

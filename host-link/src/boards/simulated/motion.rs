@@ -1,6 +1,5 @@
 //! The motion board with its machine.
 
-use super::KNOTS;
 use plant::MotionPlant;
 use shared::io::MotionCommand;
 use shared::motion::{MotionController, PathTickInput, SERVO_TICKS_PER_PATH_TICK, ServoLoops};
@@ -10,7 +9,7 @@ pub struct MotionBoard {
     plant: MotionPlant,
     command: MotionCommand,
     servo: ServoLoops,
-    controller: Box<MotionController<KNOTS>>,
+    controller: Box<MotionController>,
     ticks: u32,
     batch: Batch<MotionSample>,
     telemetry: Option<MotionTelemetry>,

@@ -2,13 +2,14 @@
 
 use super::error::BeadError;
 use crate::machine::MachineFile;
+use crate::path::MAX_EVENTS;
 use crate::path::{NOWHERE, PathError, PlannedPath};
 use nalgebra::Vector3;
 use shared::geometry::Moving;
 use shared::geometry::nurbs::curvature;
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::{AxisLimits, AxisMotion, Kinematics};
-use shared::motion::{MAX_EVENTS, PATH_PERIOD_S};
+use shared::motion::PATH_PERIOD_S;
 use shared::trajectory::{CurveLimits, ProcessWindow, WindowError};
 
 /// Largest distance of the curve from the chord of one path period \[mm\]. The boards interpolate within it, so

@@ -1,11 +1,10 @@
 //! Several feeds on one path.
 
 use super::*;
-use shared::protocol::PathAction;
 
-/// Speed events of a path: where, and mm/s.
+/// Changes of the speed of a path: where, and mm/s.
 fn steps(path: &PlannedPath) -> Vec<(f64, f64)> {
-    path.steps().map(|step| (step.s, step.velocity)).collect()
+    path.steps.iter().map(|step| (step.s, step.velocity)).collect()
 }
 
 #[test]
@@ -21,7 +20,7 @@ fn feeds_change_at_their_blocks() {
         );
     }
     let in_order = path.events.windows(2).all(|pair| pair[0].s_mm <= pair[1].s_mm);
-    assert!(in_order && path.events.len() == 4, "{:?}", path.events);
+    assert!(in_order && path.events.len() == 2, "{:?}", path.events);
     // The plan of the speed is what the time is counted by: at the step, the speed of the slower side.
     let plan = path.speed().unwrap();
     assert_eq!(plan.duration(), path.duration_s());
@@ -80,12 +79,7 @@ fn more_changes_than_the_board_holds_are_refused() {
         })
     };
     let path = &plan(&blocks(MAX_EVENTS + 1)).unwrap()[1];
-    assert_eq!(path.events.len(), MAX_EVENTS);
-    assert!(
-        path.events
-            .iter()
-            .all(|e| matches!(e.action, PathAction::Speed { .. }))
-    );
+    assert_eq!((path.steps.len(), path.events.len()), (MAX_EVENTS, 0));
     let error = plan(&blocks(MAX_EVENTS + 2)).unwrap_err();
     assert!(
         matches!(error, PathError::TooManyEvents { place: Place { line: 4, .. }, events } if events == MAX_EVENTS + 1)

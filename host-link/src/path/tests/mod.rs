@@ -11,7 +11,6 @@ use super::*;
 use crate::nc::{Options, Place, interpret};
 use nalgebra::Vector3;
 use shared::geometry::{angle, interpolate};
-use shared::motion::MAX_EVENTS;
 use shared::trajectory::{SpeedState, reference};
 use std::fmt::Write;
 

@@ -46,6 +46,23 @@ impl PowerBasis {
         }
     }
 
+    /// The point in the middle, and the terms in use.
+    pub fn parts(&self) -> (Vector3<f64>, &[Vector4<f64>]) {
+        (self.middle, &self.terms[..self.degree])
+    }
+
+    /// A curve of these [parts](Self::parts); terms beyond the highest degree are left out.
+    pub fn of_parts(middle: Vector3<f64>, terms: &[Vector4<f64>]) -> Self {
+        let degree = terms.len().min(MAX_DEGREE);
+        let mut all = [Vector4::zeros(); MAX_DEGREE];
+        all[..degree].copy_from_slice(&terms[..degree]);
+        Self {
+            middle,
+            terms: all,
+            degree,
+        }
+    }
+
     /// Point \[mm\], first and second derivative over `v`, by Horner's rule. Outside −1 to 1 the curve goes on by
     /// its formula.
     #[inline]

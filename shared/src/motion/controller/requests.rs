@@ -1,16 +1,19 @@
 //! What the PC may ask of the motion board, and what it is told.
 
-use super::{Course, MAX_SPEEDS, MotionController, START_TOLERANCE, Travel};
+use super::MotionController;
+use super::path::LoadedPath;
 use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::homing::Homing;
 use crate::motion::machine::Machine;
 use crate::motion::state::Event;
 use crate::motion::{MotionConfig, State};
-use crate::protocol::{Knot, MotionStatus, PathAction, PathEvent, Refusal, Request, Response};
-use crate::trajectory::{PathSpace, SpeedError, SpeedLimits, SpeedPlan, SpeedState, SpeedStep, reference};
+use crate::protocol::{MotionStatus, Refusal, Request, Response};
 
-impl<const KNOTS: usize> MotionController<KNOTS> {
+/// Highest override.
+const MOST_OVERRIDE: f64 = 2.0;
+
+impl MotionController {
     /// One request of the PC; `unsent` datagrams could not be sent so far. The answer says what was done or
     /// why not; nothing changes on a refusal.
     pub fn handle(&mut self, request: &Request, unsent: u32) -> Response {
@@ -21,18 +24,23 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             Request::Home => self.start_homing(),
             Request::Disable => self.disable(),
             Request::Reset => self.reset(),
-            Request::ClearPath { id, space } => self.clear_path(*id, *space),
-            Request::LoadKnots(knots) => self.load_knots(knots),
-            Request::LoadEvent(event) => self.load_event(event),
-            Request::Run {
-                speed_mm_s,
-                acceleration_mm_s2,
-                jerk_mm_s3,
-            } => self.run(SpeedLimits {
-                velocity: *speed_mm_s,
-                acceleration: *acceleration_mm_s2,
-                jerk: *jerk_mm_s3,
-            }),
+            Request::BeginPath {
+                id,
+                space,
+                start_s_mm,
+                limits,
+            } => self.begin_path(*id, *space, *start_s_mm, limits),
+            Request::LoadElements { elements, last } => {
+                let loaded = self.load_elements(elements, *last);
+                return loaded.map_or_else(Response::Refused, |()| Response::Room(self.room()));
+            }
+            Request::LoadEvents(events) => {
+                let loaded = self.load_events(events);
+                return loaded.map_or_else(Response::Refused, |()| Response::Room(self.room()));
+            }
+            Request::Run => self.run(),
+            Request::Override { factor } => self.change_override(*factor),
+            Request::Back => self.back(),
             Request::Hold => self.hold(),
             Request::Resume => self.resume(),
             Request::Stop => self.stop(),
@@ -45,7 +53,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
     }
 
     /// The state after `event`, or a refusal that names the present one.
-    fn allowed(&self, event: Event) -> Result<State, Refusal> {
+    pub(super) fn allowed(&self, event: Event) -> Result<State, Refusal> {
         self.state
             .after(event)
             .ok_or(Refusal::WrongState { state: self.state })
@@ -60,8 +68,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         self.servo_setup = Some(servo);
         self.homed = false;
         // A path was planned for the machine it was loaded for.
-        self.path.clear(0, PathSpace::Tool);
-        self.events.clear();
+        self.path = LoadedPath::NONE;
         Ok(())
     }
 
@@ -70,6 +77,7 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         let state = self.allowed(Event::Home)?;
         self.homing = Some(Homing::start(machine.homing.clone()));
         self.homed = false;
+        self.path.forget();
         self.state = state;
         Ok(())
     }
@@ -94,121 +102,50 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
         Ok(())
     }
 
-    fn clear_path(&mut self, id: u32, space: PathSpace) -> Result<(), Refusal> {
-        if self.state.on_path() {
-            return Err(Refusal::WrongState { state: self.state });
+    fn run(&mut self) -> Result<(), Refusal> {
+        let state = self.allowed(Event::Run)?;
+        if self.path.start.is_none() || self.path.elements == 0 {
+            return Err(Refusal::NoPath);
         }
-        self.path.clear(id, space);
-        self.events.clear();
+        self.state = state;
+        self.set_off();
         Ok(())
     }
 
-    fn load_knots(&mut self, knots: &[Knot]) -> Result<(), Refusal> {
-        if self.state.on_path() {
-            return Err(Refusal::WrongState { state: self.state });
+    fn change_override(&mut self, factor: f64) -> Result<(), Refusal> {
+        if !(0.0..=MOST_OVERRIDE).contains(&factor) {
+            return Err(Refusal::BadOverride);
         }
-        Ok(self.path.append(knots)?)
+        self.factor = factor;
+        self.planner.set_override(factor);
+        Ok(())
     }
 
-    fn load_event(&mut self, event: &PathEvent) -> Result<(), Refusal> {
-        let refusal = Refusal::BadEvent {
-            index: self.events.len() as u16,
-        };
-        let beams = &self.machine.as_ref().ok_or(Refusal::NotConfigured)?.beams;
-        let in_tool_space = self.path.space() == PathSpace::Tool;
-        let sound = match event.action {
-            PathAction::Beam { side, on } => beams.has(side) && (in_tool_space || !on),
-            PathAction::Power { side, watt } => beams.has(side) && watt.is_finite() && watt >= 0.0,
-            PathAction::Tracking { on } => in_tool_space || !on,
-            PathAction::Speed { mm_s } => mm_s.is_finite() && mm_s > 0.0,
-        };
-        let in_order = self.events.last().is_none_or(|last| last.s_mm <= event.s_mm);
-        if self.state.on_path() {
+    fn back(&mut self) -> Result<(), Refusal> {
+        if self.state != State::Holding {
             return Err(Refusal::WrongState { state: self.state });
         }
-        if !sound || !in_order || !event.s_mm.is_finite() {
-            return Err(refusal);
-        }
-        self.events.push(*event).map_err(|_| refusal)
-    }
-
-    fn run(&mut self, limits: SpeedLimits) -> Result<(), Refusal> {
-        let state = self.allowed(Event::Run)?;
-        let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
-        if !self.homed {
-            return Err(Refusal::NotHomed);
-        }
-        let (start, end) = self
-            .path
-            .start_s()
-            .zip(self.path.end_s())
-            .ok_or(Refusal::NoPath)?;
-        if start >= end {
-            return Err(Refusal::NoPath);
-        }
-        let rest = SpeedState {
-            s: start,
-            v: 0.0,
-            a: 0.0,
-        };
-        let first = reference(&machine.kinematics, &self.path, rest, &self.axes);
-        let first = first.map_err(|_| Refusal::NoPath)?;
-        for axis in 0..AXES {
-            let distance = first.position[axis] - self.axes[axis];
-            let close = libm::fabs(distance) <= START_TOLERANCE;
-            if !close {
-                return Err(Refusal::NotAtStart {
-                    axis: axis as u8,
-                    distance: (distance / AXIS_UNIT[axis]) as f32,
-                });
-            }
-        }
-        plan_speed(&mut self.plan, &self.events, start, end, &limits).map_err(|_| Refusal::NoPath)?;
-        self.state = state;
-        self.beams.restart(&machine.beams);
-        self.resume_wanted = false;
-        self.along = [rest; 3];
-        self.travel = Some(Travel {
-            course: Course::Planned,
-            time: 0.0,
-            limits,
-        });
+        self.go_back();
         Ok(())
     }
 
     fn hold(&mut self) -> Result<(), Refusal> {
         let state = self.allowed(Event::Hold)?;
-        if self.state == State::Running {
-            self.slow_down();
-        }
-        self.resume_wanted = false;
+        self.slow_down();
         self.state = state;
         Ok(())
     }
 
     fn resume(&mut self) -> Result<(), Refusal> {
         self.allowed(Event::Resume)?;
-        // Where the machine will stand is known by now; the rest of the path is planned from there.
-        let held = Refusal::WrongState { state: self.state };
-        let Some(Travel {
-            course: Course::Stop(stop),
-            limits,
-            ..
-        }) = &self.travel
-        else {
-            return Err(held);
-        };
-        let end = self.path.end_s().ok_or(held)?;
-        let from = libm::fmin(stop.end(), end);
-        plan_speed(&mut self.plan, &self.events, from, end, limits).map_err(|_| held)?;
-        self.resume_wanted = true;
+        self.want_resume();
         Ok(())
     }
 
     pub(super) fn stop(&mut self) -> Result<(), Refusal> {
         let state = self.allowed(Event::Stop)?;
         match self.state {
-            State::Running => self.slow_down(),
+            State::Running | State::Holding => self.slow_down(),
             State::Homing => self.leave_path(),
             _ => {}
         }
@@ -225,9 +162,12 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             homed: self.homed,
             axes: people(&self.measured),
             reference: people(&self.axes),
-            path_id: self.path.id(),
+            path_id: self.path.id,
             s_mm: self.along[0].s,
-            knots: self.path.len() as u16,
+            line: self.path.line,
+            elements: self.path.elements,
+            room: self.room(),
+            speed_override: self.factor,
             servo_ticks,
             servo_lost,
             path_ticks: self.tick as u32,
@@ -236,22 +176,4 @@ impl<const KNOTS: usize> MotionController<KNOTS> {
             vibration_level: self.vibration.map(|vibration| vibration.level()),
         }
     }
-}
-
-/// The speed from rest at `start` to rest at `end`, with the steps among the events.
-fn plan_speed(
-    plan: &mut SpeedPlan<MAX_SPEEDS>,
-    events: &[PathEvent],
-    start: f64,
-    end: f64,
-    limits: &SpeedLimits,
-) -> Result<(), SpeedError> {
-    let steps = events.iter().filter_map(|event| match event.action {
-        PathAction::Speed { mm_s } => Some(SpeedStep {
-            s: event.s_mm,
-            velocity: mm_s,
-        }),
-        _ => None,
-    });
-    plan.plan(start, end, limits, steps)
 }

@@ -38,8 +38,12 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             | Request::Subscribe { .. }
             | Request::ConfigureMotion(_)
             | Request::PathStatesTo { .. }
-            | Request::LoadEvent(_)
-            | Request::Run { .. }
+            | Request::BeginPath { .. }
+            | Request::LoadElements { .. }
+            | Request::LoadEvents(_)
+            | Request::Run
+            | Request::Override { .. }
+            | Request::Back
             | Request::Hold
             | Request::Resume
             | Request::Stop => Err(Refusal::NotMine),

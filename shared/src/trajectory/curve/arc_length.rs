@@ -30,7 +30,7 @@ const NODES: [f64; COUNT] = [
 ];
 
 /// Coefficients of the parameter, from the constant one on.
-const COEFFICIENTS: usize = COUNT + 1;
+pub(super) const COEFFICIENTS: usize = COUNT + 1;
 
 /// For each node, the weights of the values at all nodes in their [integral] there.
 static INTEGRALS: [[f64; COUNT]; COUNT] = integrals();
@@ -57,7 +57,7 @@ pub struct TooUneven {
 /// Coefficients of an even power and the odd one above it side by side: Horner's rule over the square of the
 /// length then takes half as many steps, of two coefficients each, which two lanes of a processor share.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Parameter([Vector2<f64>; COEFFICIENTS / 2]);
+pub(super) struct Parameter(pub(super) [Vector2<f64>; COEFFICIENTS / 2]);
 
 impl Parameter {
     /// v and dv/dx \[1/mm\] at the length `x` \[mm\] from the middle.

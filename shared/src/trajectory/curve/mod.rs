@@ -5,9 +5,11 @@
 //! where it almost turns on the spot, [`ArcLengthPieces`] cuts it.
 
 mod arc_length;
+mod numbers;
 mod pieces;
 
 pub use arc_length::TooUneven;
+pub use numbers::CurveNumbers;
 pub use pieces::{ArcLengthPiece, ArcLengthPieces, Cusp};
 
 use crate::geometry::Moving;

@@ -149,7 +149,7 @@ fn what_the_machine_cannot_do_inside_the_window_is_slower_and_said() {
     let plan = plan(&leaf(), &machine).unwrap();
     let path = &feed_paths(&plan.program, &machine)[0];
     assert_eq!(path.limits.velocity, 4.0);
-    let steps: Vec<f64> = path.steps().map(|step| step.velocity).collect();
+    let steps: Vec<f64> = path.steps.iter().map(|step| step.velocity).collect();
     // ∛(300·ρ²) < 4 below 0.462 mm: seven corners of the leaf, the sharpest at 3.2 mm/s.
     assert_eq!(steps.len(), 14, "{steps:?}");
     let slowest = steps.iter().copied().fold(f64::INFINITY, f64::min);

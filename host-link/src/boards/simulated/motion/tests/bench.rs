@@ -4,8 +4,11 @@ use super::super::MotionBoard;
 use crate::machine::MachineFile;
 use plant::{DEFAULT_MACHINE, MotionPlant};
 use shared::motion::{MotionConfig, SERVO_TICKS_PER_PATH_TICK, State};
-use shared::protocol::{Knot, MotionSample, MotionStatus, PathAction, PathEvent, Request, Response};
-use shared::trajectory::{CHANNELS, PathSpace};
+use shared::protocol::{
+    MotionSample, MotionStatus, PathAction, PathChannel, PathElement, PathEvent, PathJoin, PathLimits,
+    PathShape, Request, Response,
+};
+use shared::trajectory::{CHANNELS, PathSpace, SHAPED};
 
 pub fn config() -> MotionConfig {
     config_of(DEFAULT_MACHINE)
@@ -85,48 +88,60 @@ impl Bench {
         assert_eq!(self.board.handle(request), Response::Done, "{request:?}");
     }
 
-    /// Loads a straight line of `length` mm along X from where the machine stands, in its attitude.
+    /// A request that is answered by the room that is left.
+    pub fn loaded(&mut self, request: &Request) {
+        let response = self.board.handle(request);
+        assert!(matches!(response, Response::Room(_)), "{response:?}");
+    }
+
+    /// Loads a straight line of `length` mm along X at 150 mm/s from where the machine stands, in its attitude.
     pub fn load_line(&mut self, length: f64) {
         let machine = config().kinematics().expect("kinematics");
         let reference = self.status().reference;
         let axes: [f64; 6] = std::array::from_fn(|i| reference[i] * shared::kinematics::AXIS_UNIT[i]);
         let pose = machine.forward(&axes);
-        self.done(&Request::ClearPath {
+        self.done(&Request::BeginPath {
             id: 7,
             space: PathSpace::Tool,
+            start_s_mm: 0.0,
+            limits: PathLimits {
+                acceleration_mm_s2: 1000.0,
+                jerk_mm_s3: 20_000.0,
+                tolerance_mm: 0.05,
+            },
         });
-        for s_mm in [0.0, length] {
-            let mut value = [0.0; CHANNELS];
-            let mut slope = [0.0; CHANNELS];
-            value[..3].copy_from_slice(pose.position.as_slice());
-            value[0] += s_mm;
-            value[3..6].copy_from_slice(pose.tangent.as_slice());
-            value[6..9].copy_from_slice(pose.normal.as_slice());
-            slope[0] = 1.0;
-            let mut knots = heapless::Vec::new();
-            knots.push(Knot { s_mm, value, slope }).expect("one knot");
-            self.done(&Request::LoadKnots(knots));
+        let attitude = pose.tangent.iter().chain(&pose.normal).chain(&[0.0; 2]);
+        let mut rest = [PathChannel::Constant(0.0); CHANNELS - SHAPED];
+        for (channel, value) in rest.iter_mut().zip(attitude) {
+            *channel = PathChannel::Constant(*value);
         }
-        for (s_mm, action) in [
-            (
-                20.0,
-                PathAction::Power {
-                    side: 0,
-                    watt: 2000.0,
-                },
-            ),
-            (20.0, PathAction::Beam { side: 0, on: true }),
-            (length - 20.0, PathAction::Beam { side: 0, on: false }),
-        ] {
-            self.done(&Request::LoadEvent(PathEvent { s_mm, action }));
-        }
+        let start = pose.position;
+        let element = PathElement {
+            line: 1,
+            shape: PathShape::Line {
+                start: start.into(),
+                end: [start.x + length, start.y, start.z],
+            },
+            rest,
+            length_mm: length,
+            feed_mm_s: 150.0,
+            join: PathJoin::Stop,
+        };
+        self.loaded(&Request::LoadElements {
+            elements: [element].into_iter().collect(),
+            last: true,
+        });
+        let power = PathAction::Power {
+            side: 0,
+            watt: 2000.0,
+        };
+        let beam = |on| PathAction::Beam { side: 0, on };
+        let events = [(20.0, power), (20.0, beam(true)), (length - 20.0, beam(false))];
+        let events = events.map(|(s_mm, action)| PathEvent { s_mm, action });
+        self.loaded(&Request::LoadEvents(events.into_iter().collect()));
     }
 
     pub fn run(&mut self) {
-        self.done(&Request::Run {
-            speed_mm_s: 150.0,
-            acceleration_mm_s2: 1000.0,
-            jerk_mm_s3: 20_000.0,
-        });
+        self.done(&Request::Run);
     }
 }

@@ -1,13 +1,14 @@
 //! Every machine on its board: it homes, and holds its tool on a path as its work asks.
 
 use super::bench::{Bench, config_of};
+use crate::path::TOLERANCE;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::{AXES, DacCode, MOTOR_AXIS, MOTORS};
 use shared::kinematics::{AXIS_UNIT, KinematicsConfig};
 use shared::motion::State;
-use shared::protocol::{Knot, Request};
-use shared::trajectory::{CHANNELS, PathSpace};
+use shared::protocol::{Knot, PathElement, PathLimits, Request};
+use shared::trajectory::{CHANNELS, Cubic, Element, Join, PathSpace, SHAPED, Shape};
 use std::f64::consts::TAU;
 
 #[test]
@@ -109,19 +110,39 @@ impl Circle {
     }
 }
 
-fn load(bench: &mut Bench, space: PathSpace, knots: impl Iterator<Item = Knot>) {
-    bench.done(&Request::ClearPath { id: 1, space });
-    for knot in knots {
-        bench.done(&Request::LoadKnots([knot].into_iter().collect()));
-    }
-}
-
-fn run(bench: &mut Bench, speed_mm_s: f64, acceleration_mm_s2: f64) {
-    bench.done(&Request::Run {
-        speed_mm_s,
-        acceleration_mm_s2,
-        jerk_mm_s3: 20.0 * acceleration_mm_s2,
+/// Runs through `knots` at one speed, with a path acceleration.
+fn run(bench: &mut Bench, space: PathSpace, knots: &[Knot], speed_mm_s: f64, acceleration_mm_s2: f64) {
+    bench.done(&Request::BeginPath {
+        id: 1,
+        space,
+        start_s_mm: 0.0,
+        limits: PathLimits {
+            acceleration_mm_s2,
+            jerk_mm_s3: 20.0 * acceleration_mm_s2,
+            tolerance_mm: 1e-4 * acceleration_mm_s2,
+        },
     });
+    let spans = knots.windows(2).enumerate();
+    for (i, span) in spans {
+        let (from, to) = (&span[0], &span[1]);
+        let length = to.s_mm - from.s_mm;
+        let end = |knot: &Knot, i: usize| [knot.value[i], knot.slope[i]];
+        let channel = |i: usize| Cubic::hermite(end(from, i), end(to, i), length);
+        let last = i + 2 == knots.len();
+        let element = Element {
+            line: i as u32,
+            shape: Shape::Span(std::array::from_fn(channel)),
+            rest: std::array::from_fn(|i| channel(SHAPED + i)),
+            length,
+            feed: speed_mm_s,
+            join: if last { Join::Stop } else { Join::Blend(TOLERANCE) },
+        };
+        bench.loaded(&Request::LoadElements {
+            elements: [PathElement::from(&element)].into_iter().collect(),
+            last,
+        });
+    }
+    bench.done(&Request::Run);
     bench.until(State::Idle, 300_000);
 }
 
@@ -149,8 +170,7 @@ fn go(bench: &mut Bench, name: &str, axes: &[f64; AXES]) {
         }
         Knot { s_mm, value, slope }
     });
-    load(bench, PathSpace::Axes, knots.into_iter());
-    run(bench, 1.0, 1.0);
+    run(bench, PathSpace::Axes, &knots, 1.0, 1.0);
 }
 
 /// Homes, goes to the beginning of `circle` and follows it; the largest distance of the true tip from it \[mm\],
@@ -165,10 +185,17 @@ fn follow(name: &str, circle: &Circle) -> [f64; 2] {
         .inverse(&circle.pose(0.0), &near)
         .expect("a pose in reach");
     go(&mut bench, name, &start);
-    let knots = (0..=90).map(|k| circle.knot(circle.length() * f64::from(k) / 90.0));
-    load(&mut bench, PathSpace::Tool, knots);
+    let knots: Vec<Knot> = (0..=90)
+        .map(|k| circle.knot(circle.length() * f64::from(k) / 90.0))
+        .collect();
     bench.samples.clear();
-    run(&mut bench, circle.speed, 2.0 * circle.speed);
+    run(
+        &mut bench,
+        PathSpace::Tool,
+        &knots,
+        circle.speed,
+        2.0 * circle.speed,
+    );
 
     let mut worst = [0.0_f64; 2];
     for sample in &bench.samples {

@@ -7,7 +7,6 @@ use super::*;
 use bench::{Bench, config};
 use shared::motion::{Fault, State};
 use shared::protocol::Refusal;
-use shared::trajectory::PathSpace;
 
 #[test]
 fn homing_finds_the_marks_and_squares_the_gantry() {
@@ -72,7 +71,9 @@ fn hold_stops_on_the_path_with_the_beam_off_and_resume_goes_on() {
     bench.done(&Request::Hold);
     bench.run_ms(5);
     assert_eq!(bench.samples.last().expect("samples").beams, [false; 2]);
-    bench.run_ms(400);
+    bench.run_ms(300);
+    bench.status();
+    bench.run_ms(300);
     let held = bench.status();
     assert_eq!(held.state, State::Holding);
     assert!(held.s_mm > 20.0 && held.s_mm < 280.0);
@@ -138,16 +139,7 @@ fn what_makes_no_sense_is_refused_and_changes_nothing() {
         Refusal::Parameter(_)
     ));
     let mut bench = Bench::homed();
-    let run = Request::Run {
-        speed_mm_s: 100.0,
-        acceleration_mm_s2: 1000.0,
-        jerk_mm_s3: 20_000.0,
-    };
-    bench.done(&Request::ClearPath {
-        id: 1,
-        space: PathSpace::Tool,
-    });
-    assert_eq!(refused(&mut bench, run.clone()), Refusal::NoPath);
+    assert_eq!(refused(&mut bench, Request::Run), Refusal::NoPath);
     assert!(matches!(
         refused(&mut bench, Request::Hold),
         Refusal::WrongState { state: State::Idle }
@@ -155,11 +147,8 @@ fn what_makes_no_sense_is_refused_and_changes_nothing() {
     bench.load_line(100.0);
     bench.run();
     bench.until(State::Idle, 5_000);
-    // The axes now stand at the end of that path, not at its start.
-    assert!(matches!(
-        refused(&mut bench, run),
-        Refusal::NotAtStart { axis: 0, .. }
-    ));
+    // The path is over.
+    assert_eq!(refused(&mut bench, Request::Run), Refusal::NoPath);
     assert_eq!(
         refused(&mut bench, Request::ConfigureMotion(config())),
         Refusal::WrongState { state: State::Idle }

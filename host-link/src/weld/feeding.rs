@@ -1,0 +1,131 @@
+//! Giving a path to the motion board as fast as it takes it: elements and events go by its credits, in constant
+//! memory on both sides.
+
+use super::JobError;
+use super::session::Session;
+use crate::boards::LinkError;
+use heapless::Vec;
+use shared::protocol::{
+    LOAD_ELEMENTS, LOAD_EVENTS, PathElement, PathEvent, Refusal, Request, Response, Role, Room,
+};
+use shared::trajectory::Element;
+use std::iter::Peekable;
+use std::time::Duration;
+
+/// How often the board is asked for room while it has none: shorter than what it holds ever lasts.
+const ASK_PERIOD: Duration = Duration::from_millis(10);
+
+/// A path on its way to the motion board.
+pub(super) struct Feeding<'a> {
+    elements: Peekable<Box<dyn Iterator<Item = Element> + 'a>>,
+    events: Peekable<Box<dyn Iterator<Item = PathEvent> + 'a>>,
+    /// Elements that go next, and where they end \[mm\].
+    batch: Vec<PathElement, LOAD_ELEMENTS>,
+    end_s: f64,
+    next_ask: Duration,
+    done: bool,
+}
+
+impl<'a> Feeding<'a> {
+    /// A path that begins at path length 0.
+    pub fn new(
+        elements: impl Iterator<Item = Element> + 'a,
+        events: impl Iterator<Item = PathEvent> + 'a,
+    ) -> Self {
+        let elements: Box<dyn Iterator<Item = Element> + 'a> = Box::new(elements);
+        let events: Box<dyn Iterator<Item = PathEvent> + 'a> = Box::new(events);
+        Self {
+            elements: elements.peekable(),
+            events: events.peekable(),
+            batch: Vec::new(),
+            end_s: 0.0,
+            next_ask: Duration::ZERO,
+            done: false,
+        }
+    }
+
+    /// Sends all that there is room for; to be called often while the path runs.
+    ///
+    /// A board that has left the path takes no more: what it stopped for is in its state.
+    pub fn go_on(&mut self, session: &mut Session) -> Result<(), JobError> {
+        let now = session.boards.now();
+        if self.done || now < self.next_ask {
+            return Ok(());
+        }
+        match self.send(session) {
+            Err(LinkError::Refused {
+                refusal: Refusal::WrongState { .. } | Refusal::NoPath,
+                ..
+            }) => {
+                self.done = true;
+                session.refresh()?;
+            }
+            sent => sent?,
+        }
+        self.next_ask = session.boards.now() + ASK_PERIOD;
+        Ok(())
+    }
+
+    fn send(&mut self, session: &mut Session) -> Result<(), LinkError> {
+        let mut room = ask(session)?;
+        while !self.done {
+            self.fill();
+            // Events go before the elements that carry them.
+            let mut events: Vec<PathEvent, LOAD_EVENTS> = Vec::new();
+            let most = LOAD_EVENTS.min(usize::from(room.events));
+            while self.event_is_due() && events.len() < most {
+                events.extend(self.events.next());
+            }
+            if !events.is_empty() {
+                room = load(session, &Request::LoadEvents(events))?;
+                continue;
+            }
+            if self.event_is_due() || self.batch.len() > usize::from(room.elements) {
+                break;
+            }
+            let last = self.elements.peek().is_none();
+            let elements = std::mem::take(&mut self.batch);
+            room = load(session, &Request::LoadElements { elements, last })?;
+            self.done = last;
+        }
+        Ok(())
+    }
+
+    fn fill(&mut self) {
+        while !self.batch.is_full() {
+            let Some(element) = self.elements.next() else {
+                return;
+            };
+            self.end_s += element.length;
+            // There is room.
+            let _ = self.batch.push(PathElement::from(&element));
+        }
+    }
+
+    /// Whether the next event happens on the elements that go next, or after the last of them.
+    fn event_is_due(&mut self) -> bool {
+        let ends = self.elements.peek().is_none();
+        let end_s = self.end_s;
+        self.events
+            .peek()
+            .is_some_and(|event| ends || event.s_mm <= end_s)
+    }
+}
+
+/// What there is room for: no elements need none.
+fn ask(session: &mut Session) -> Result<Room, LinkError> {
+    let nothing = Request::LoadElements {
+        elements: Vec::new(),
+        last: false,
+    };
+    load(session, &nothing)
+}
+
+fn load(session: &mut Session, request: &Request) -> Result<Room, LinkError> {
+    let role = Role::Motion;
+    match session.boards.request(role, request)? {
+        Response::Room(room) => Ok(room),
+        Response::Refused(refusal) => Err(LinkError::Refused { role, refusal }),
+        _ => Err(LinkError::Unexpected { role }),
+    }
+}

@@ -1,0 +1,157 @@
+//! A path comes in: its beginning, its elements, its events.
+
+use super::MotionController;
+use super::path::LoadedPath;
+use crate::io::AXES;
+use crate::kinematics::AXIS_UNIT;
+use crate::motion::State;
+use crate::motion::beams::EVENTS;
+use crate::protocol::{PathAction, PathElement, PathEvent, PathLimits, Refusal, Room};
+use crate::trajectory::{Element, Join, PathSpace, SpeedLimits, axes_at};
+
+/// A path begins where the axes stand, to this much (mm or rad).
+const START_TOLERANCE: f64 = 2e-6;
+
+impl MotionController {
+    /// What there is room for now.
+    pub(super) fn room(&self) -> Room {
+        Room {
+            elements: self.planner.room() as u16,
+            events: (EVENTS - self.path.events.len()) as u16,
+        }
+    }
+
+    pub(super) fn begin_path(
+        &mut self,
+        id: u32,
+        space: PathSpace,
+        start_s: f64,
+        limits: &PathLimits,
+    ) -> Result<(), Refusal> {
+        let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
+        if !self.homed {
+            return Err(Refusal::NotHomed);
+        }
+        if self.state != State::Idle {
+            return Err(Refusal::WrongState { state: self.state });
+        }
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        let sound = positive(limits.acceleration_mm_s2)
+            && positive(limits.jerk_mm_s3)
+            && positive(limits.tolerance_mm)
+            && start_s.is_finite();
+        if !sound {
+            return Err(Refusal::BadLimits);
+        }
+        self.planner
+            .start(&machine.plan_limits(limits), space, start_s, &self.axes);
+        self.planner.set_override(self.factor);
+        self.path = LoadedPath {
+            id,
+            space,
+            limits: SpeedLimits {
+                velocity: 0.0,
+                acceleration: limits.acceleration_mm_s2,
+                jerk: limits.jerk_mm_s3,
+            },
+            start: Some(self.axes),
+            end_s: start_s,
+            ..LoadedPath::NONE
+        };
+        self.stand_at(start_s);
+        Ok(())
+    }
+
+    /// Takes elements; with `last` the path is complete.
+    pub(super) fn load_elements(&mut self, elements: &[PathElement], last: bool) -> Result<(), Refusal> {
+        self.may_load()?;
+        let room = self.room();
+        if elements.len() > usize::from(room.elements) {
+            return Err(Refusal::NoRoom { room });
+        }
+        for (i, element) in elements.iter().enumerate() {
+            let element = element.build()?;
+            let ends = last && i + 1 == elements.len();
+            if self.path.complete || (ends && element.join != Join::Stop) {
+                return Err(Refusal::NoEnd { line: element.line });
+            }
+            self.check_start(&element)?;
+            let length = element.length;
+            self.planner.push(element)?;
+            self.path.elements += 1;
+            self.path.end_s += length;
+            self.path.complete = ends;
+        }
+        Ok(())
+    }
+
+    /// A path is under way or about to be.
+    fn may_load(&self) -> Result<(), Refusal> {
+        match self.state {
+            State::Idle if self.path.start.is_none() => Err(Refusal::NoPath),
+            State::Idle | State::Running | State::Holding => Ok(()),
+            State::Off | State::Homing | State::Stopping | State::Fault => {
+                Err(Refusal::WrongState { state: self.state })
+            }
+        }
+    }
+
+    /// The first element must begin where the axes stand.
+    fn check_start(&self, element: &Element) -> Result<(), Refusal> {
+        let (Some(machine), Some(start), 0) = (&self.machine, &self.path.start, self.path.elements) else {
+            return Ok(());
+        };
+        let line = element.line;
+        let first = axes_at(&machine.kinematics, &element.at(0.0), self.path.space, start);
+        let first = first.map_err(|_| Refusal::BadElement { line })?;
+        for axis in 0..AXES {
+            let distance = first[axis] - start[axis];
+            let close = libm::fabs(distance) <= START_TOLERANCE;
+            if !close {
+                return Err(Refusal::NotAtStart {
+                    axis: axis as u8,
+                    distance: (distance / AXIS_UNIT[axis]) as f32,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn load_events(&mut self, events: &[PathEvent]) -> Result<(), Refusal> {
+        self.may_load()?;
+        let room = self.room();
+        if events.len() > usize::from(room.events) {
+            return Err(Refusal::NoRoom { room });
+        }
+        let mut last = self.path.last_event_s;
+        for (index, event) in (self.path.event_count..).zip(events) {
+            // What was passed already cannot be switched there any more.
+            let late = event.s_mm < self.along[1].s;
+            if late || event.s_mm < last || !self.is_sound(event) {
+                return Err(Refusal::BadEvent { index });
+            }
+            last = event.s_mm;
+        }
+        for event in events {
+            // There is room.
+            let stored = self.path.events.push_back(*event).is_ok();
+            debug_assert!(stored);
+        }
+        self.path.event_count += events.len() as u32;
+        self.path.last_event_s = last;
+        Ok(())
+    }
+
+    fn is_sound(&self, event: &PathEvent) -> bool {
+        let Some(machine) = &self.machine else {
+            return false;
+        };
+        let in_tool_space = self.path.space == PathSpace::Tool;
+        let sound = match event.action {
+            PathAction::Beam { side, on } => machine.beams.has(side) && (in_tool_space || !on),
+            PathAction::Power { side, watt } => machine.beams.has(side) && watt.is_finite() && watt >= 0.0,
+            PathAction::Tracking { on } => in_tool_space || !on,
+        };
+        sound && event.s_mm.is_finite()
+    }
+}

@@ -1,0 +1,250 @@
+//! On the path: from the planner's output to references, beams, and the ways of a hold.
+
+use super::MotionController;
+use crate::io::{AXES, SIDES};
+use crate::kinematics::AXIS_UNIT;
+use crate::motion::beams::{Activity, Beams, EventQueue};
+use crate::motion::overlap::Overlap;
+use crate::motion::segment::{BeamOutput, MotorReference};
+use crate::motion::state::Event;
+use crate::motion::{Fault, State};
+use crate::trajectory::{Output, PathSpace, SpeedLimits, SpeedState, Way};
+
+/// What is published has caught up with the references after so many ticks.
+const PUBLISHED: u32 = 2;
+/// The end of a path is reached, to this much \[mm\].
+const AT_END: f64 = 1e-6;
+
+/// The path that is loaded, and how far it has come; its elements are in the planner.
+#[derive(Clone, Debug)]
+pub(super) struct LoadedPath {
+    /// Its number.
+    pub id: u32,
+    pub space: PathSpace,
+    /// Limits along it, for run-ups.
+    pub limits: SpeedLimits,
+    /// Where it begins: the planner was started there, and nobody moved since.
+    pub start: Option<[f64; AXES]>,
+    /// Elements taken.
+    pub elements: u32,
+    /// Path length where they end \[mm\].
+    pub end_s: f64,
+    /// No more come.
+    pub complete: bool,
+    pub events: EventQueue,
+    /// Events taken.
+    pub event_count: u32,
+    /// Path length of the last one.
+    pub last_event_s: f64,
+    /// Line of the program.
+    pub line: u32,
+    /// Ticks since the references came to rest.
+    pub resting: u32,
+    /// Beams that wait for their place after a hold.
+    pub overlap: Option<Overlap>,
+    pub resume: Resume,
+}
+
+/// How far a resume has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Resume {
+    /// Not asked for.
+    No,
+    /// Asked for; the machine comes to rest first.
+    Wanted,
+    /// Going back to this path length \[mm\].
+    Back(f64),
+    /// Far enough back; coming to rest.
+    Turning,
+}
+
+impl LoadedPath {
+    pub const NONE: Self = Self {
+        id: 0,
+        space: PathSpace::Tool,
+        limits: SpeedLimits {
+            velocity: 0.0,
+            acceleration: 1.0,
+            jerk: 1.0,
+        },
+        start: None,
+        elements: 0,
+        end_s: 0.0,
+        complete: false,
+        events: EventQueue::new(),
+        event_count: 0,
+        last_event_s: f64::NEG_INFINITY,
+        line: 0,
+        resting: 0,
+        overlap: None,
+        resume: Resume::No,
+    };
+
+    /// The machine will not run it any more.
+    pub fn forget(&mut self) {
+        self.start = None;
+        self.overlap = None;
+        self.resume = Resume::No;
+        self.events.clear();
+    }
+}
+
+impl MotionController {
+    /// Moves the references on along the path.
+    pub(super) fn travel(&mut self) {
+        let Some(machine) = &self.machine else { return };
+        let output = match self.planner.tick(&machine.kinematics) {
+            Ok(output) => output,
+            Err(_) => {
+                let s_mm = self.along[2].s as f32;
+                self.trip(Fault::NoSolution { s_mm });
+                return;
+            }
+        };
+        self.along = [self.along[1], self.along[2], output.along];
+        self.path.line = output.line;
+        if let Some(axis) = machine.jump(&self.axes, &output.axes.position) {
+            let distance = (output.axes.position[axis] - self.axes[axis]) / AXIS_UNIT[axis];
+            self.trip(Fault::Jump {
+                axis: axis as u8,
+                distance: distance as f32,
+                s_mm: output.along.s as f32,
+            });
+            return;
+        }
+        if let Some(axis) = machine.beyond_travel(&output.axes.position) {
+            let position = (output.axes.position[axis] / AXIS_UNIT[axis]) as f32;
+            self.stop_for(Fault::SoftLimit {
+                axis: axis as u8,
+                position,
+            });
+        }
+        self.follow(&output);
+        self.path.resting = if output.at_rest {
+            self.path.resting.saturating_add(1)
+        } else {
+            0
+        };
+        if let Resume::Back(to) = self.path.resume
+            && output.along.s <= to
+        {
+            self.path.resume = Resume::Turning;
+            self.go(Way::Hold);
+        } else if self.path.resting > PUBLISHED {
+            self.come_to_rest();
+        }
+    }
+
+    fn follow(&mut self, output: &Output) {
+        let Some(machine) = &self.machine else { return };
+        self.axes = output.axes.position;
+        self.reference = MotorReference {
+            position: machine.motors(&output.axes.position),
+            velocity: machine.motor_rates(&output.axes.velocity),
+            acceleration: machine.motor_rates(&output.axes.acceleration),
+        };
+    }
+
+    fn go(&mut self, way: Way) {
+        self.path.resting = 0;
+        self.planner.go(way);
+    }
+
+    /// The machine stands, and what was published has caught up with it.
+    fn come_to_rest(&mut self) {
+        match self.state {
+            State::Running if self.path.complete && self.along[0].s >= self.path.end_s - AT_END => {
+                // To the last digit, which the mean over the last ticks does not give.
+                self.stand_at(self.path.end_s);
+                self.beams.pass(&mut self.path.events, self.path.end_s + AT_END);
+                self.path.forget();
+                self.state = self.state.after(Event::PathEnd).unwrap_or(self.state);
+            }
+            State::Stopping => {
+                self.path.forget();
+                self.beams = Beams::NONE;
+                match self.pending.take() {
+                    Some(fault) => self.trip(fault),
+                    None => self.state = self.state.after(Event::AtRest).unwrap_or(self.state),
+                }
+            }
+            State::Holding => match (self.path.resume, &self.path.overlap) {
+                (Resume::No, _) => {}
+                (Resume::Wanted, Some(overlap)) => {
+                    let here = self.along[0].s;
+                    let to = overlap.run_up_from(here, &self.path.limits);
+                    self.path.resume = Resume::Back(to);
+                    self.go(Way::Back);
+                }
+                // As far back as the planner keeps the path, or as was asked for.
+                (Resume::Wanted, None) | (Resume::Back(_) | Resume::Turning, _) => {
+                    self.path.resume = Resume::No;
+                    self.state = self.state.after(Event::Resume).unwrap_or(self.state);
+                    self.go(Way::Forward);
+                }
+            },
+            _ => {}
+        }
+    }
+
+    /// Begins to run the path that is loaded.
+    pub(super) fn set_off(&mut self) {
+        if let Some(machine) = &self.machine {
+            self.beams.restart(&machine.beams);
+        }
+        self.go(Way::Forward);
+    }
+
+    /// Beams off, and down to a stop on the path; they will wait for their place.
+    pub(super) fn slow_down(&mut self) {
+        if let (State::Running, None, Some(machine)) = (self.state, &self.path.overlap, &self.machine) {
+            self.path.overlap = Overlap::at(self.along[1], &self.beams, &machine.beams);
+        }
+        self.path.resume = Resume::No;
+        self.go(Way::Hold);
+    }
+
+    /// Goes back along the path, from rest.
+    pub(super) fn go_back(&mut self) {
+        self.path.resume = Resume::No;
+        self.go(Way::Back);
+    }
+
+    /// Goes on once the machine has come to rest.
+    pub(super) fn want_resume(&mut self) {
+        if self.path.resume == Resume::No {
+            self.path.resume = Resume::Wanted;
+            self.go(Way::Hold);
+        }
+    }
+
+    /// Beams of the millisecond from k + 1; events count where the path position is then.
+    pub(super) fn beam_output(&mut self, laser_fault: [bool; SIDES]) -> BeamOutput {
+        let then = self.along[1];
+        let activity = match self.state {
+            State::Running => Activity::Running,
+            State::Idle | State::Holding | State::Stopping => Activity::Waiting,
+            State::Off | State::Homing | State::Fault => Activity::Off,
+        };
+        let mut closed = laser_fault;
+        if activity == Activity::Running {
+            self.beams.pass(&mut self.path.events, then.s);
+            if let Some(overlap) = &mut self.path.overlap {
+                let waiting = overlap.pass(&then);
+                closed = core::array::from_fn(|side| closed[side] || waiting[side]);
+                if overlap.is_over() {
+                    self.path.overlap = None;
+                }
+            }
+        }
+        match &self.machine {
+            Some(machine) => self.beams.output(&machine.beams, activity, then.v, closed),
+            None => BeamOutput::OFF,
+        }
+    }
+
+    /// Takes note of a path position at rest: the path begins there.
+    pub(super) fn stand_at(&mut self, s: f64) {
+        self.along = [SpeedState::at_rest(s); 3];
+    }
+}
