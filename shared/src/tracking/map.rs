@@ -75,6 +75,11 @@ impl SeamMap {
         }
     }
 
+    /// Whether `sigma` \[mm\] lies before all that the map still knows.
+    pub fn begins_after(&self, sigma: f64) -> bool {
+        self.samples.first().is_some_and(|first| sigma < first.sigma)
+    }
+
     /// Forgets all samples.
     pub fn clear(&mut self) {
         self.samples.clear();

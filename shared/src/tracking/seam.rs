@@ -29,7 +29,7 @@ pub struct Seam {
 pub enum Sight {
     /// The seam, in the frame of the planned path.
     Seam(SlideTarget),
-    /// The seam was not seen yet: follow the plan.
+    /// The seam was not seen there yet, or is forgotten already: follow the plan.
     NotYet,
     /// The seam was seen, but for longer than the map reaches not any more.
     Lost,
@@ -99,7 +99,8 @@ impl Seam {
                 let ahead = map.estimate(&parameters.map, s + speed * parameters.preview);
                 Sight::Seam(SlideTarget::seam(now, ahead, speed))
             }
-            None if self.seen[slide] => Sight::Lost,
+            // Back along the path after a hold, the map ends behind.
+            None if self.seen[slide] && !map.begins_after(s) => Sight::Lost,
             None => Sight::NotYet,
         }
     }

@@ -11,7 +11,6 @@ mod reference;
 mod speed;
 #[cfg(test)]
 mod speed_tests;
-mod stop;
 mod trapezoid;
 mod window;
 
@@ -25,7 +24,6 @@ pub use plan::{SpeedPlan, SpeedStep};
 pub use planner::{Output, PlanLimits, Planner, PushError, Way};
 pub use reference::{AxisReference, ReferenceError, axes_at, reference};
 pub use speed::{SpeedError, SpeedLimits, SpeedState};
-pub use stop::StopProfile;
 pub use trapezoid::{SmoothedTrapezoid, Trapezoid, TrapezoidError};
 pub use window::{CurveLimits, ProcessWindow, WindowError, WindowPlan, limit_acceleration};
 

@@ -1,4 +1,4 @@
-//! Plans of the speed and stops keep their limits, go on without jumps, and end where they should.
+//! Plans of the speed keep their limits, go on without jumps, and end where they should.
 
 extern crate std;
 
@@ -74,34 +74,6 @@ proptest! {
         let almost = profile.at(profile.duration() * (1.0 - 1e-15));
         prop_assert!((almost.s - end).abs() < 1e-8 && almost.v.abs() < 1e-6, "{:?}", almost);
     }
-
-    #[test]
-    fn a_stop_anywhere_keeps_the_limits_and_never_passes_the_programmed_end(
-        length in length(), limits in limits(), part in 0.0..1.0f64,
-    ) {
-        let profile = Plan::rest_to_rest(0.0, length, &limits).unwrap();
-        let from = profile.at(part * profile.duration());
-        let stop = StopProfile::build(from, &limits).unwrap();
-        keeps_limits(|t| stop.at(t), stop.duration(), &limits)?;
-        prop_assert!(stop.end() >= from.s && stop.end() <= length + 1e-8, "{} {}", stop.end(), length);
-        prop_assert!(stop.duration() <= (1.0 - part) * profile.duration() + 1e-6);
-        let almost = stop.at(stop.duration() * (1.0 - 1e-15));
-        prop_assert!((almost.s - stop.end()).abs() < 1e-8 && almost.v.abs() < 1e-6, "{:?}", almost);
-    }
-
-    #[test]
-    fn a_stop_gentler_than_the_braking_in_progress_still_never_goes_backwards(
-        v in 0.0..400.0f64, a in -5000.0..5000.0f64, limits in limits(),
-    ) {
-        let stop = StopProfile::build(SpeedState { s: 0.0, v, a }, &limits).unwrap();
-        let mut last = 0.0;
-        for k in 0..=1000 {
-            let now = stop.at(stop.duration() * f64::from(k) / 1000.0);
-            prop_assert!(now.v >= -1e-6 && now.s >= last - 1e-9, "{:?}", now);
-            prop_assert!(now.a >= -limits.acceleration.max(-a) * (1.0 + 1e-9), "{:?}", now);
-            last = now.s;
-        }
-    }
 }
 
 #[test]
@@ -131,12 +103,6 @@ fn nowhere_to_go_takes_no_time_and_backwards_is_refused() {
         Plan::rest_to_rest(0.0, 1.0, &SpeedLimits { jerk: 0.0, ..limits }),
         Err(SpeedError::Limits)
     );
-    let backwards = SpeedState {
-        s: 0.0,
-        v: -1.0,
-        a: 0.0,
-    };
-    assert_eq!(StopProfile::build(backwards, &limits), Err(SpeedError::Range));
 }
 
 /// Steps with gaps from a micrometre to metres and speeds over three orders of magnitude, in order.

@@ -1,8 +1,10 @@
 //! Whole jobs on simulated boards, and what happens when something goes wrong in the middle of one.
 
+mod holds;
 mod machines;
 
 use super::*;
+use crate::boards::command;
 use crate::boards::simulated::SimulatedBoards;
 use crate::nc::{Options, interpret};
 use crate::report::{Outcome, Report, SeamFigures};

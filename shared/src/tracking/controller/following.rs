@@ -85,6 +85,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                             s_mm: place.s as f32,
                         });
                     }
+                    self.slides[i].arrived = false;
                     plan[i]
                 }
                 Sight::Lost => {
