@@ -40,7 +40,10 @@ fn a_second_hold_takes_back_the_resume() {
     bench.run_ms(20);
     bench.done(&Request::Resume);
     bench.done(&Request::Hold);
-    bench.run_ms(400);
+    for _ in 0..4 {
+        bench.run_ms(200);
+        bench.status();
+    }
     let held = bench.position[Y];
     bench.run_ms(50);
     assert_eq!(bench.status().state, State::Holding);
