@@ -332,9 +332,11 @@ fn follow(session: &mut Session, path: &PlannedPath, mut feeding: Feeding, id: u
     session.wait_until("a path", limit, |s| {
         feeding.go_on(s)?;
         let mut stands = false;
+        if let Some(here) = s.record.motion().last().filter(|here| here.tick > begun) {
+            // The telemetry tells it sooner than the next status; at rest it names no path.
+            stands = !on_path(here.state);
+        }
         if let Some(here) = s.record.motion().last().filter(|here| here.path_id == id) {
-            // The telemetry tells it sooner than the next status.
-            stands = here.tick > begun && !on_path(here.state);
             if here.beams.contains(&true) && !welding {
                 welding = true;
                 s.progress.phase("welding");

@@ -157,6 +157,10 @@ impl Arm for BoardArm<'_, '_, '_> {
         let from = self.session.motion.reference;
         let number = self.weld.taught.points.len() + 1;
         let what = format!("teaching point {number} of {}", self.count);
+        if slower > 1.0 {
+            // A motion that has to be exact from its beginning begins when all axes have settled.
+            self.session.dwell(1e-3 * f64::from(self.settle_ms))?;
+        }
         for path in self.weld.planner.program(&program, &from, None)? {
             self.weld
                 .path(self.session, self.job, path.slower(slower), &what)?;
