@@ -3,6 +3,7 @@
 pub mod boards;
 pub mod cli;
 pub mod curve;
+pub mod dry_run;
 pub mod evaluate;
 pub mod machine;
 pub mod metrics;

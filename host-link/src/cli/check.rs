@@ -1,6 +1,7 @@
 //! `host-link check`: can this machine run this program?
 
 use super::read_program;
+use crate::dry_run::{self, DryRun};
 use crate::machine::MachineFile;
 use crate::nc::Motion;
 use crate::path::{PlannedPath, Planner};
@@ -36,7 +37,7 @@ impl Check {
         let name = self.program.display();
         let program = read_program(&self.program, self.block_delete)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
-        let from = machine.planning.park_axes();
+        let from = machine.homed_axes();
         let speed = self.speed.map(|m_min| m_min * shared::units::MM_S_PER_M_MIN);
         let paths = planner
             .program(&program, &from, speed)
@@ -47,14 +48,15 @@ impl Check {
             Ok(()) | Err(SeamError::NoSeam) => {}
             Err(error) => return Err(error).with_context(|| format!("program {name}")),
         }
-        print(&paths);
+        let ran = dry_run::run(&machine, &planner, &paths, 1.0).with_context(|| format!("program {name}"))?;
+        print(&paths, &ran);
         Ok(())
     }
 }
 
-fn print(paths: &[PlannedPath]) {
+fn print(paths: &[PlannedPath], ran: &DryRun) {
     println!(" path            length      time     speed  points");
-    for (index, path) in paths.iter().enumerate() {
+    for (index, (path, times)) in paths.iter().zip(&ran.paths).enumerate() {
         let kind = match path.motion {
             Motion::Rapid => "rapid",
             Motion::Feed => "feed",
@@ -67,7 +69,7 @@ fn print(paths: &[PlannedPath]) {
             "{:5} {kind:<6} {:9.1} mm {:7.2} s {:6.2} m/min {:5}",
             index + 1,
             path.length_mm(),
-            path.duration_s(),
+            times.duration_s,
             m_min(speeds.clone().fold(0.0, f64::max)),
             path.knots.len(),
         );
@@ -101,6 +103,8 @@ fn print(paths: &[PlannedPath]) {
             );
         }
     }
-    let time: f64 = paths.iter().map(|p| p.dwell_before_s + p.duration_s()).sum();
-    println!("total {time:.2} s from the park position");
+    println!(
+        "total {:.2} s from the end of homing to the park position",
+        ran.duration_s
+    );
 }

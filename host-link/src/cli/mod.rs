@@ -2,6 +2,7 @@
 
 mod boards;
 mod check;
+mod dry_run;
 mod plan;
 mod teach;
 mod weld;
@@ -23,6 +24,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Check(check::Check),
+    DryRun(dry_run::DryRun),
     Plan(plan::Plan),
     Teach(teach::Teach),
     Weld(weld::Weld),
@@ -33,6 +35,7 @@ impl Cli {
     pub fn run(self) -> anyhow::Result<ExitCode> {
         match self.command {
             Command::Check(command) => command.run().map(|()| ExitCode::SUCCESS),
+            Command::DryRun(command) => command.run(),
             Command::Plan(command) => command.run().map(|()| ExitCode::SUCCESS),
             Command::Teach(command) => command.run(),
             Command::Weld(command) => command.run(),

@@ -63,7 +63,7 @@ pub struct Weld {
 }
 
 /// A speed that makes sense \[m/min\].
-fn speed(text: &str) -> Result<f64, &'static str> {
+pub(super) fn speed(text: &str) -> Result<f64, &'static str> {
     match text.parse() {
         Ok(speed) if f64::is_finite(speed) && speed > 0.0 => Ok(speed),
         _ => Err("say a number of m/min above 0"),

@@ -10,7 +10,7 @@ use crate::table::line_of;
 use crate::teach::ProbeUnit;
 use document::Document;
 use serde::Deserialize;
-use shared::io::AXES;
+use shared::io::{AXES, MOTOR_AXIS};
 use shared::motion::{Machine, MotionConfig};
 use shared::tracking::TrackerConfig;
 use std::path::Path;
@@ -151,6 +151,19 @@ impl MachineFile {
             unit.board.build().map_err(parameter)?;
         }
         Ok(machine)
+    }
+
+    /// Where homing leaves the axes: at their reference marks (mm, degrees); 0 for those that the machine does not
+    /// have.
+    pub fn homed_axes(&self) -> [f64; AXES] {
+        let mut axes = [0.0; AXES];
+        // Of a gantry the first motor is the axis.
+        for (motor, axis) in self.motion.motors.iter().zip(MOTOR_AXIS).rev() {
+            if let Some(motor) = motor {
+                axes[axis] = motor.home.mark_position;
+            }
+        }
+        axes
     }
 }
 

@@ -19,6 +19,9 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(60, 60, 60),
 ];
 
+/// Width of a character at a place, as part of the panel's.
+const PLACE_WIDTH: f64 = 0.008;
+
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 pub(super) type DrawError<'a> = DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>;
@@ -30,6 +33,7 @@ pub(super) struct Curve {
 }
 
 /// One set of axes.
+#[derive(Default)]
 pub(super) struct Panel {
     pub title: String,
     /// Label of the horizontal axis.
@@ -41,20 +45,24 @@ pub(super) struct Panel {
     pub least: (f64, f64),
     /// Values that are marked by a dashed line.
     pub marks: Vec<f64>,
+    /// Dashed curves.
+    pub dashed: Vec<Vec<(f64, f64)>>,
+    /// Places on the horizontal axis that are marked by a thin line, with what is written there.
+    pub places: Vec<(f64, String)>,
 }
 
 /// No smallest range: what the curves take up.
 pub(super) const AS_CURVES: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
-/// Draws `panels`, row by row in a `grid` of rows and columns, into the file at `path`.
+/// Draws `panels`, row by row in a `grid` of rows and columns, into the file at `path`; `size` is width and height.
 pub(super) fn figure<'a>(
     path: &'a Path,
     title: &str,
-    height: u32,
+    size: (u32, u32),
     grid: (usize, usize),
     panels: &[Option<Panel>],
 ) -> Result<(), DrawError<'a>> {
-    let root = SVGBackend::new(path, (1000, height)).into_drawing_area();
+    let root = SVGBackend::new(path, size).into_drawing_area();
     root.fill(&WHITE)?;
     let root = root.titled(title, (FONT, 20))?;
     for (area, panel) in root.split_evenly(grid).iter().zip(panels) {
@@ -84,16 +92,32 @@ fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Result<(), DrawError<'a>> {
         .x_desc(panel.x)
         .y_desc(panel.y)
         .x_labels(if wide { 12 } else { 6 })
-        .y_labels(if wide { 7 } else { 4 })
+        .y_labels(if wide { 7 } else { 5 })
         .x_label_formatter(&|x| format!("{x:.decimals$}"))
         .label_style((FONT, 13))
         .axis_desc_style((FONT, 13))
         .draw()?;
-    for mark in &panel.marks {
-        let line = [(across.0, *mark), (across.1, *mark)];
+    for (place, _) in &panel.places {
+        chart.draw_series(LineSeries::new([(*place, up.0), (*place, up.1)], BLACK.mix(0.25)))?;
+    }
+    draw_curves(&mut chart, panel)?;
+    let marks = panel
+        .marks
+        .iter()
+        .map(|mark| vec![(across.0, *mark), (across.1, *mark)]);
+    for line in marks.chain(panel.dashed.iter().cloned()) {
         chart.draw_series(DashedLineSeries::new(line, 6, 5, BLACK.mix(0.6).into()))?;
     }
-    draw_curves(&mut chart, panel)
+    let mut free = across.0;
+    for (place, text) in &panel.places {
+        // Only where it does not run into the last one.
+        if !text.is_empty() && *place >= free {
+            let style = (FONT, 12).into_font().color(&BLACK.mix(0.7));
+            chart.draw_series([Text::new(format!(" {text}"), (*place, up.1), style)])?;
+            free = place + (across.1 - across.0) * PLACE_WIDTH * (text.len() + 1) as f64;
+        }
+    }
+    Ok(())
 }
 
 fn draw_curves<'a: 'b, 'b>(chart: &mut Chart<'a, 'b>, panel: &Panel) -> Result<(), DrawError<'a>> {
@@ -119,7 +143,8 @@ fn draw_curves<'a: 'b, 'b>(chart: &mut Chart<'a, 'b>, panel: &Panel) -> Result<(
 /// unless `least` bounds it.
 fn range(panel: &Panel, pick: impl Fn(&(f64, f64)) -> f64, least: (f64, f64), margin: f64) -> (f64, f64) {
     let (mut low, mut high) = least;
-    for value in panel.curves.iter().flat_map(|c| &c.points).map(pick) {
+    let curves = panel.curves.iter().map(|curve| &curve.points);
+    for value in curves.chain(&panel.dashed).flatten().map(pick) {
         low = low.min(value);
         high = high.max(value);
     }
@@ -176,7 +201,7 @@ mod tests {
                 points,
             }],
             least: (-1.0, 1.0),
-            marks: vec![],
+            ..Panel::default()
         };
         assert_eq!(
             range(&panel(vec![(0.0, 0.5)]), |p| p.1, (-1.0, 1.0), 0.05),

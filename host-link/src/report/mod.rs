@@ -1,9 +1,12 @@
 //! What is left of a job: `report.json` and `log.csv` for programs, plots and a table for people.
 
 mod draw;
+mod dry_run;
 mod log;
 mod plots;
 mod table;
+
+pub use dry_run::write_dry_run;
 
 use crate::evaluate::Evaluation;
 use crate::part::{Figure, Plot};
@@ -51,7 +54,7 @@ pub struct Report {
     /// What the part says of the run, by key.
     #[serde(serialize_with = "by_key")]
     pub figures: Vec<Figure>,
-    /// Time that the paths should take, without the dwells between them.
+    /// Time that the paths should take by a dry run, without the dwells between them.
     pub planned_motion_s: f64,
     /// Time that they took by the motion board's clock.
     pub motion_s: f64,

@@ -14,6 +14,8 @@ use std::path::Path;
 const GOAL_UM: f64 = 50.0;
 /// Label of the horizontal axis.
 const ALONG: &str = "path from where the first beam goes on [mm]";
+/// Width of a figure.
+const WIDTH: u32 = 1000;
 /// Height of a row of plots below each other.
 const ROW: u32 = 220;
 
@@ -60,8 +62,14 @@ pub(super) fn draw(directory: &Path, report: &Report, ticks: &[WorkTick]) -> Res
     ];
     for (name, title, panels, grid, height) in figures {
         let path = directory.join(format!("{name}.svg"));
-        figure(&path, &format!("{title}, {subject}"), height, grid, &panels)
-            .map_err(|e| ReportError::new(&path, e))?;
+        figure(
+            &path,
+            &format!("{title}, {subject}"),
+            (WIDTH, height),
+            grid,
+            &panels,
+        )
+        .map_err(|e| ReportError::new(&path, e))?;
     }
     Ok(())
 }
@@ -83,11 +91,12 @@ pub(super) fn draw_more(directory: &Path, report: &Report, plots: &[Plot]) -> Re
             y: plot.y,
             curves: plot.lines.iter().map(curve).collect(),
             least: AS_CURVES,
-            marks: vec![],
+            ..Panel::default()
         };
         let path = directory.join(format!("{}.svg", plot.file));
         let title = format!("{}, {}", plot.title, report.program);
-        figure(&path, &title, 420, (1, 1), &[Some(panel)]).map_err(|e| ReportError::new(&path, e))?;
+        figure(&path, &title, (WIDTH, 420), (1, 1), &[Some(panel)])
+            .map_err(|e| ReportError::new(&path, e))?;
     }
     Ok(())
 }
@@ -111,6 +120,7 @@ fn deviation_panel(side: usize, ticks: &[WorkTick]) -> Panel {
         ],
         least: (-1.2 * GOAL_UM, 1.2 * GOAL_UM),
         marks: vec![-GOAL_UM, GOAL_UM],
+        ..Panel::default()
     }
 }
 
@@ -127,7 +137,7 @@ fn contour_panel(ticks: &[WorkTick]) -> Panel {
             points: points.collect(),
         }],
         least: (0.0, 1.0),
-        marks: vec![],
+        ..Panel::default()
     }
 }
 
@@ -151,7 +161,7 @@ fn following_panels(report: &Report, ticks: &[WorkTick]) -> Vec<Option<Panel>> {
                     .collect(),
             }],
             least: (0.0, 1.0),
-            marks: vec![],
+            ..Panel::default()
         }
     };
     let column = |rotary: bool| {
@@ -186,6 +196,7 @@ fn speed_panel(report: &Report, ticks: &[WorkTick]) -> Panel {
         }],
         least: (0.0, 1.1 * scale * programmed),
         marks: vec![scale * programmed],
+        ..Panel::default()
     }
 }
 

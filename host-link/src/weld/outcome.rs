@@ -2,6 +2,7 @@
 
 use super::session::Session;
 use super::{Job, JobError, Taught, Tracking, Weld};
+use crate::dry_run;
 use crate::evaluate::{Evaluation, evaluate, run_samples, works};
 use crate::part::{Judgement, PartFile, Plot, Run};
 use crate::path::PlannedPath;
@@ -98,7 +99,7 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
             .as_ref()
             .map(|tracking| seam_figures(tracking, job, &evaluation)),
         figures: judgement.figures,
-        planned_motion_s: paths.values().map(PlannedPath::duration_s).sum(),
+        planned_motion_s: dry_run::motion_s(job.machine, paths.values()).unwrap_or(f64::NAN),
         motion_s: evaluation.motion_s,
         faults: faults(session, error.as_ref()),
         duration_s: (session.boards.now() - session.began).as_secs_f64(),

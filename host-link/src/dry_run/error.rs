@@ -1,0 +1,40 @@
+//! Why there is no prediction.
+
+use crate::path::PathError;
+use shared::parameter::ParameterError;
+use shared::trajectory::{PushError, ReferenceError};
+use thiserror::Error;
+
+/// Why a program cannot be run off-line.
+#[derive(Debug, Error)]
+pub enum DryRunError {
+    /// The machine or its limits do not allow the path.
+    #[error(transparent)]
+    Path(#[from] PathError),
+    /// A machine parameter is out of range.
+    #[error("a machine parameter is out of range: {0}")]
+    Parameter(#[from] ParameterError),
+    /// An element is not one that the planner takes.
+    #[error(transparent)]
+    Element(#[from] PushError),
+    /// There is no reference for the axes.
+    #[error("line {line}: {source}")]
+    Reference {
+        /// Line of the program.
+        line: u32,
+        /// Why.
+        source: ReferenceError,
+    },
+    /// The planner does not go on.
+    #[error(
+        "line {line}: the planner stands still {s_mm:.3} mm along path {path}; please report the program"
+    )]
+    Stuck {
+        /// Line of the program.
+        line: u32,
+        /// Number of the path.
+        path: usize,
+        /// Where on it \[mm\].
+        s_mm: f64,
+    },
+}
