@@ -9,7 +9,7 @@ use crate::seam::OVERHANG_MM;
 use crate::world::{Machine, TrueSeam};
 use nalgebra::Vector3;
 use shared::io::{MOTORS, SIDES, SLIDES};
-use shared::motion::State;
+use shared::motion::{PATH_PERIOD_S, State};
 use shared::protocol::MotionSample;
 use shared::trajectory::Path;
 use std::collections::BTreeMap;
@@ -94,9 +94,11 @@ pub fn evaluate(
             *max = max.max(f64::from(seen));
         }
         result.max_skew_mm = result.max_skew_mm.max(f64::from(sample.skew_mm));
-        if let Some(before) = before.filter(|before| before.path_id == sample.path_id) {
-            result.motion_s += (sample.time_us - before.time_us) as f64 * 1e-6;
-        }
+        // The first sample of a path is told a tick after its beginning.
+        let before_here = before.filter(|before| before.path_id == sample.path_id);
+        result.motion_s += before_here.map_or(PATH_PERIOD_S, |before| {
+            (sample.time_us - before.time_us) as f64 * 1e-6
+        });
         before = Some(sample);
         let Some(work) = working.get(&sample.path_id) else {
             continue;
@@ -428,7 +430,7 @@ mod tests {
             "{}",
             result.ticks[0].along_mm
         );
-        assert!((result.motion_s - 0.049).abs() < 1e-9);
+        assert!((result.motion_s - 0.050).abs() < 1e-9);
         let samples = run_samples(&record, &machine(), &paths);
         assert_eq!((samples.len(), samples[9].path_id), (50, 7));
         let (pose, _) = wavy_seam().planned(samples[9].s_mm).unwrap();
