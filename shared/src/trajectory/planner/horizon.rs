@@ -17,14 +17,6 @@ const ROUNDS: u32 = 12;
 const RELAXED: u32 = 2;
 /// A plan is good if no swing of the acceleration is above its limit by more than this share.
 const GOOD: f32 = 0.025;
-/// How much of a swing that is too large is taken away in one round, and given back of one that need not be so small.
-const TIGHTEN: f32 = 0.8;
-const LOOSEN: f32 = 0.4;
-/// Swings within this share of their limit are left alone.
-const TIGHTEN_FROM: f32 = 0.01;
-const LOOSEN_FROM: f32 = 0.02;
-/// No box is made smaller than this share of the acceleration.
-const LEAST_BOX: f32 = 0.03;
 /// Time before the end's slowing that is planned anew, in lengths of the output filter.
 const SLACK: f64 = 14.0;
 /// Node visits of both passes and all rounds that a plan is expected to need for each node.
@@ -80,6 +72,8 @@ pub(super) struct Horizon {
     wish: Wish,
     /// Speeds have to come down below those of the plan in force.
     braking: bool,
+    /// The reach of the node looked at last is not as in the round before.
+    reach_changed: bool,
     /// The plan in force is one to stop.
     stopping: bool,
     /// Feed override of the plan in force.
@@ -111,6 +105,7 @@ impl Horizon {
             factor: 1.0,
         },
         braking: false,
+        reach_changed: false,
         stopping: false,
         factor: 1.0,
         patience: 1,
@@ -211,7 +206,8 @@ impl Horizon {
                 side.allowed = side.accelerations(a, from.x as f32);
             }
         }
-        nodes.at_mut(commit).trial = nodes.at(commit).x;
+        let node = nodes.at_mut(commit);
+        (node.trial, node.speed) = (node.x, libm::sqrt(node.x));
         for i in commit + 1..=last {
             let node = nodes.at_mut(i);
             (node.factor, node.brake) = (wish.factor, 0.0);
@@ -253,12 +249,15 @@ impl Horizon {
             Phase::Waiting => {}
             Phase::Brake(i) => self.brake(nodes, i),
             Phase::Back(i) if i > self.commit => {
-                if self.round > 0 && !self.braking {
-                    self.repair(nodes, i - 1, bounds);
+                let repaired = self.round > 0 && !self.braking && self.repair(nodes, i - 1, bounds);
+                // Most nodes stay as they were in the round before.
+                if repaired || self.reach_changed || self.round == 0 || self.braking {
+                    let next = nodes.at(i).reach;
+                    let node = nodes.at_mut(i - 1);
+                    let x = reach(node, next);
+                    self.reach_changed = x != node.reach;
+                    node.reach = x;
                 }
-                let next = nodes.at(i).reach;
-                let node = nodes.at_mut(i - 1);
-                node.reach = reach(node, next);
                 self.phase = Phase::Back(i - 1);
             }
             Phase::Back(i) => {
@@ -281,6 +280,7 @@ impl Horizon {
             }
             Phase::Forward(i) => {
                 self.away = i - 1;
+                self.reach_changed = false;
                 self.phase = if self.braking {
                     Phase::Repair(i)
                 } else {
@@ -332,8 +332,7 @@ impl Horizon {
         self.warm = false;
         for i in self.commit..self.last {
             for side in &mut nodes.at_mut(i).sides {
-                side.high = bounds.acceleration;
-                side.low = bounds.acceleration.map(|limit| -limit);
+                side.open(bounds);
             }
         }
         self.restart(nodes);
@@ -360,7 +359,8 @@ impl Horizon {
     fn forward<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let x = advance(node, node.trial, next.reach);
-        let time = node.time + duration(node, node.trial, x);
+        let speed = libm::sqrt(x);
+        let time = node.time + 2.0 * node.delta / (node.speed + speed);
         let leaves = time + pause(next, bounds);
         let a = ((x - node.trial) / (2.0 * node.delta)) as f32;
         let (from, to) = (
@@ -373,14 +373,15 @@ impl Horizon {
         let was = self.range(nodes, self.away, [from, to], bounds);
         let wanted = [0, 1].map(|side: usize| node.sides[side].accelerations(a, node.trial as f32));
         let after = nodes.at_mut(i + 1);
-        (after.trial, after.time) = (x, leaves);
+        (after.trial, after.speed, after.time) = (x, speed, leaves);
         for (side, wanted) in nodes.at_mut(i).sides.iter_mut().zip(wanted) {
             side.allowed = self.clamp(&wanted, &was, bounds);
         }
     }
 
-    /// What the future allows the accelerations of node `i` to be; changes its boxes by that and its past.
-    fn repair<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+    /// What the future allows the accelerations of node `i` to be; changes its boxes by that and its past, and
+    /// says whether it did.
+    fn repair<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) -> bool {
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let end = next.time - pause(next, bounds);
         let a = ((next.trial - node.trial) / (2.0 * node.delta)) as f32;
@@ -389,47 +390,23 @@ impl Horizon {
             self.away -= 1;
         }
         let will = self.range(nodes, self.away, [from, to], bounds);
+        let grow = self.round <= self.relaxed;
         let node = nodes.at_mut(i);
+        let mut changed = false;
         for place in &mut node.sides {
             let is = place.accelerations(a, node.trial as f32);
             let by_future = self.clamp(&is, &will, bounds);
-            let by_past = place.allowed;
-            place.allowed = by_future;
-            let grow = self.round <= self.relaxed;
-            for row in 0..ROWS {
-                let (full, swing) = (bounds.acceleration[row], bounds.swing[row]);
-                let smallest = LEAST_BOX * least(full, swing);
-                let (now, high, low) = (is[row], place.high[row], place.low[row]);
-                let top = least(by_past[row], by_future[row]);
-                let bottom = most(by_past[row], by_future[row]);
-                let room = will[0][row] + swing - now;
-                let grown = least(most(high, now + LOOSEN * room), full);
-                let shrunk = most(now - TIGHTEN * (now - top), smallest);
-                let may = if grow && room > LOOSEN_FROM * swing {
-                    grown
-                } else {
-                    high
-                };
-                place.high[row] = if now > top + TIGHTEN_FROM * swing {
-                    shrunk
-                } else {
-                    may
-                };
-                let room = now - will[1][row] + swing;
-                let grown = most(least(low, now - LOOSEN * room), -full);
-                let shrunk = least(now + TIGHTEN * (bottom - now), -smallest);
-                let may = if grow && room > LOOSEN_FROM * swing {
-                    grown
-                } else {
-                    low
-                };
-                place.low[row] = if now < bottom - TIGHTEN_FROM * swing {
-                    shrunk
-                } else {
-                    may
-                };
+            let by_past = core::mem::replace(&mut place.allowed, by_future);
+            if grow && place.boxed {
+                place.grow(&is, &will, bounds);
+                changed = true;
+            }
+            if is != by_past || is != by_future {
+                place.shrink(&is, &by_past, &by_future, bounds);
+                changed = true;
             }
         }
+        changed
     }
 
     /// `wanted`, at most one swing away from the range of `other`; notes by how much it was more.
@@ -505,11 +482,6 @@ impl Horizon {
 }
 
 const REST: Lanes = [0.0; ROWS];
-
-/// Time from the start to the end of the interval of `node` with these ṡ² \[s\].
-fn duration(node: &Node, from: f64, to: f64) -> f64 {
-    2.0 * node.delta / (libm::sqrt(from) + libm::sqrt(to))
-}
 
 /// Time that the machine stands at a node: until the output filter has come to rest \[s\].
 fn pause(node: &Node, bounds: &Bounds) -> f64 {

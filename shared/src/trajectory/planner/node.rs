@@ -1,6 +1,15 @@
 //! The places of the path at which speed is planned.
 
-use super::limits::ROWS;
+use super::limits::{Bounds, ROWS};
+
+/// How much of a swing that is too large is taken away in one round, and given back of one that need not be so small.
+const TIGHTEN: f32 = 0.8;
+const LOOSEN: f32 = 0.4;
+/// Swings within this share of their limit are left alone.
+const TIGHTEN_FROM: f32 = 0.01;
+const LOOSEN_FROM: f32 = 0.02;
+/// No box is made smaller than this share of the acceleration.
+const LEAST_BOX: f32 = 0.03;
 
 /// A lane for every row of limits.
 pub(super) type Lanes = [f32; ROWS];
@@ -29,6 +38,8 @@ pub(super) struct Side {
     pub low: Lanes,
     /// Acceleration of the row that the neighbourhood in time allows.
     pub allowed: Lanes,
+    /// Some of the box is smaller than the limits.
+    pub boxed: bool,
 }
 
 /// A place, and the interval from it to the next one.
@@ -54,6 +65,8 @@ pub(super) struct Node {
     pub lasts: f64,
     /// ṡ² of the plan being made.
     pub trial: f64,
+    /// ṡ of it.
+    pub speed: f64,
     /// Highest ṡ² from which the plan being made can come to rest.
     pub reach: f64,
     /// Time of the plan being made \[s\].
@@ -69,7 +82,60 @@ impl Side {
         high: [0.0; ROWS],
         low: [0.0; ROWS],
         allowed: [0.0; ROWS],
+        boxed: false,
     };
+
+    /// Full boxes.
+    pub fn open(&mut self, bounds: &Bounds) {
+        self.high = bounds.acceleration;
+        self.low = bounds.acceleration.map(|limit| -limit);
+        self.boxed = false;
+    }
+
+    /// Makes the box smaller where the acceleration `is` more than past and future allow.
+    pub fn shrink(&mut self, is: &Lanes, by_past: &Lanes, by_future: &Lanes, bounds: &Bounds) {
+        for row in 0..ROWS {
+            let swing = bounds.swing[row];
+            let smallest = LEAST_BOX * least(bounds.acceleration[row], swing);
+            let top = least(by_past[row], by_future[row]);
+            let bottom = most(by_past[row], by_future[row]);
+            let high = most(is[row] - TIGHTEN * (is[row] - top), smallest);
+            let low = least(is[row] + TIGHTEN * (bottom - is[row]), -smallest);
+            let (above, below) = (is[row] - top, bottom - is[row]);
+            self.high[row] = if above > TIGHTEN_FROM * swing {
+                high
+            } else {
+                self.high[row]
+            };
+            self.low[row] = if below > TIGHTEN_FROM * swing {
+                low
+            } else {
+                self.low[row]
+            };
+        }
+        self.boxed = true;
+    }
+
+    /// Makes the box larger where the future leaves room.
+    pub fn grow(&mut self, is: &Lanes, will: &[Lanes; 2], bounds: &Bounds) {
+        for row in 0..ROWS {
+            let (full, swing) = (bounds.acceleration[row], bounds.swing[row]);
+            let above = will[0][row] + swing - is[row];
+            let below = is[row] - will[1][row] + swing;
+            let high = least(most(self.high[row], is[row] + LOOSEN * above), full);
+            let low = most(least(self.low[row], is[row] - LOOSEN * below), -full);
+            self.high[row] = if above > LOOSEN_FROM * swing {
+                high
+            } else {
+                self.high[row]
+            };
+            self.low[row] = if below > LOOSEN_FROM * swing {
+                low
+            } else {
+                self.low[row]
+            };
+        }
+    }
 
     /// Accelerations of the rows.
     pub fn accelerations(&self, a: f32, x: f32) -> Lanes {
@@ -89,6 +155,7 @@ impl Node {
         x: 0.0,
         lasts: 0.0,
         trial: 0.0,
+        speed: 0.0,
         reach: 0.0,
         time: 0.0,
         sides: [Side::ZERO; 2],

@@ -39,34 +39,45 @@ impl Lines {
 
     /// Highest a at `x`.
     fn highest(&self, x: f32) -> f32 {
-        let mut lanes = [f32::INFINITY; ROWS];
-        for side in 0..2 {
-            for row in 0..ROWS {
-                lanes[row] = least(lanes[row], self.high[side][row] - self.slope[side][row] * x);
-            }
+        let [start, end] = self.at(&self.high, x);
+        let mut lanes = [0.0; ROWS];
+        for row in 0..ROWS {
+            lanes[row] = least(start[row], end[row]);
         }
         lanes.into_iter().fold((self.next - x) * self.per_length, least)
     }
 
     /// Lowest a at `x`.
     fn lowest(&self, x: f32) -> f32 {
-        let mut lanes = [f32::NEG_INFINITY; ROWS];
-        for side in 0..2 {
-            for row in 0..ROWS {
-                lanes[row] = most(lanes[row], self.low[side][row] - self.slope[side][row] * x);
-            }
+        let [start, end] = self.at(&self.low, x);
+        let mut lanes = [0.0; ROWS];
+        for row in 0..ROWS {
+            lanes[row] = most(start[row], end[row]);
         }
         lanes.into_iter().fold(-x * self.per_length, most)
     }
 
-    /// The line, as (value at x = 0, slope), that has the value `a` at `x` among `lines`, or else the one of the speed.
-    fn through(&self, lines: &[Lanes; 2], speed: f32, x: f32, a: f32) -> (f32, f32) {
-        for (line, slope) in lines.iter().flatten().zip(self.slope.iter().flatten()) {
-            if *line - *slope * x == a {
-                return (*line, *slope);
+    fn at(&self, lines: &[Lanes; 2], x: f32) -> [Lanes; 2] {
+        let mut values = [[0.0; ROWS]; 2];
+        for side in 0..2 {
+            for row in 0..ROWS {
+                values[side][row] = lines[side][row] - self.slope[side][row] * x;
             }
         }
-        (speed * self.per_length, self.per_length)
+        values
+    }
+
+    /// Slope of the one of `lines` that has the value `a` at `x`, or else of the one of the speed.
+    fn slope_of(&self, lines: &[Lanes; 2], x: f32, a: f32) -> f32 {
+        let values = self.at(lines, x);
+        for side in 0..2 {
+            for row in 0..ROWS {
+                if values[side][row] == a {
+                    return self.slope[side][row];
+                }
+            }
+        }
+        self.per_length
     }
 }
 
@@ -82,9 +93,12 @@ pub(super) fn reach(node: &Node, next: f64) -> f64 {
         if high >= low {
             return f64::from(x);
         }
-        let (upper, upper_slope) = lines.through(&lines.high, lines.next, x, high);
-        let (lower, lower_slope) = lines.through(&lines.low, 0.0, x, low);
-        let crossing = (upper - lower) / (upper_slope - lower_slope);
+        let (falls, rises) = (
+            lines.slope_of(&lines.high, x, high),
+            lines.slope_of(&lines.low, x, low),
+        );
+        // Where the two lines meet.
+        let crossing = x - (low - high) / (falls - rises);
         if !(crossing > 0.0 && crossing < x) {
             // Rounding: there is nothing between this x and the last one.
             return if crossing > 0.0 { f64::from(x) } else { 0.0 };
