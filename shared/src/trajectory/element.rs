@@ -95,6 +95,10 @@ impl Cubic {
         Self([value, first, 0.5 * second, c3])
     }
 
+    fn is_constant(&self) -> bool {
+        self.0[1..] == [0.0; 3]
+    }
+
     /// Value, first and second derivative at `s`.
     pub fn at(&self, s: f64) -> [f64; 3] {
         let [c0, c1, c2, c3] = self.0;
@@ -133,7 +137,12 @@ impl PathPoint {
 
     fn set_cubics(&mut self, channel: usize, cubics: &[Cubic], s: f64) {
         for (i, cubic) in (channel..).zip(cubics) {
-            [self.value[i], self.first[i], self.second[i]] = cubic.at(s);
+            if cubic.is_constant() {
+                // As most of these are; `self` was zero.
+                self.value[i] = cubic.0[0];
+            } else {
+                [self.value[i], self.first[i], self.second[i]] = cubic.at(s);
+            }
         }
     }
 }

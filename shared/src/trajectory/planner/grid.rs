@@ -222,26 +222,26 @@ impl Grid {
         };
     }
 
-    /// Appends an interval, if the path is settled far enough; says whether it did.
+    /// Appends an interval, if the path is settled far enough; says how many samples that took.
     pub fn extend<const E: usize, const N: usize>(
         &mut self,
         ground: &Ground<E>,
         nodes: &mut Nodes<N>,
-    ) -> Result<bool, ReferenceError> {
+    ) -> Result<u32, ReferenceError> {
         let bounds = ground.bounds;
         let direction = self.direction;
         if nodes.room() == 0 || direction * (ground.end(direction) - self.s) <= SAME {
-            return Ok(false);
+            return Ok(0);
         }
         let (start, near) = (self.s, self.near);
         let Some(piece) = ground.track.find(start + direction * SAME, &mut self.hint) else {
-            return Ok(false);
+            return Ok(0);
         };
         let feed = piece.element.feed;
         let gap = MERGE * feed;
         let next = ground.next_break(start, direction, self.hint, gap);
         if !next.real && next.way < gap {
-            return Ok(false);
+            return Ok(0);
         }
         let mut hint = self.hint;
         let mut sample = |way: f64| ground.sample(start + direction * way, direction, &mut hint, &near);
@@ -282,7 +282,7 @@ impl Grid {
         }
         self.s = end;
         self.near = axes.position;
-        Ok(true)
+        Ok(3 + 2 * halvings)
     }
 }
 

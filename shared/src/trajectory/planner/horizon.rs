@@ -22,6 +22,8 @@ const SLACK: f64 = 14.0;
 /// Node visits of both passes and all rounds that a plan is expected to need for each node.
 const VISITS: u32 = 16;
 
+/// Work to take a plan, in visits.
+const TAKE: u32 = 4;
 /// Node visits that a plan to stop is expected to need.
 const STOP_VISITS: u32 = 200;
 /// Largest factor of the time that a plan is given.
@@ -124,7 +126,8 @@ impl Horizon {
         self.in_force
     }
 
-    /// Begins a plan, if there is something new: the player is on the way to node `player`, reached in `left` \[s\].
+    /// Begins a plan, if there is something new, and says so: the player is on the way to node `player`, reached in
+    /// `left` \[s\].
     pub fn begin<const N: usize>(
         &mut self,
         nodes: &mut Nodes<N>,
@@ -133,14 +136,14 @@ impl Horizon {
         rested: bool,
         wish: Wish,
         bounds: &Bounds,
-    ) {
+    ) -> bool {
         let last = nodes.end - 1;
         let nothing = match wish.stop {
             true => self.stopping,
             false => last <= self.in_force && wish.factor == self.factor,
         };
         if nothing || last <= player {
-            return;
+            return false;
         }
         let mut slowing = player;
         if !wish.stop && wish.factor == self.factor {
@@ -177,13 +180,13 @@ impl Horizon {
             }
         }
         if wish.stop && commit == self.in_force {
-            return;
+            return false;
         }
         let (mut history, mut before) = (commit, 0.0);
         if nodes.at(commit).x <= 0.0 {
             // From rest: what came before is forgotten only when the output has come to rest too.
             if !rested {
-                return;
+                return false;
             }
             before = f64::INFINITY;
         }
@@ -217,6 +220,7 @@ impl Horizon {
             self.last = commit + 1;
         }
         self.restart(nodes);
+        true
     }
 
     /// Begins the first round: with a look at how slow the machine can be.
@@ -243,8 +247,14 @@ impl Horizon {
         self.phase = Phase::Waiting;
     }
 
-    /// One visit of one node.
-    pub fn step<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+    /// One visit of one node, or the taking of a plan; says how much work that was, in visits.
+    pub fn step<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) -> u32 {
+        let before = self.taken;
+        self.visit(nodes, bounds);
+        if self.taken == before { 1 } else { TAKE }
+    }
+
+    fn visit<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
         match self.phase {
             Phase::Waiting => {}
             Phase::Brake(i) => self.brake(nodes, i),

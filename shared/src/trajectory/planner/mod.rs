@@ -34,8 +34,9 @@ use track::Track;
 const MOST_OVERRIDE: f64 = 2.0;
 /// Work of one tick, in visits of nodes.
 const WORK: u32 = 16;
-/// Work to append a node, in the same unit.
-const APPEND: u32 = 3;
+/// Work to shape a corner, and to begin a plan, in the same unit; a sample of the path is one.
+const CORNER: u32 = 2;
+const BEGIN: u32 = 4;
 
 /// Elements stream in at one end, and the references of the axes come out at the other.
 ///
@@ -196,34 +197,32 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.play(kinematics)
     }
 
+    /// A share of the planning: corners, then nodes, then passes over them.
     fn plan(&mut self, kinematics: &Kinematics) -> Result<(), ReferenceError> {
         let mut work = WORK;
         while work > 0 {
-            if !self.horizon.waiting() {
-                self.horizon.step(&mut self.nodes, &self.bounds);
-                work -= 1;
-                continue;
-            }
-            self.release();
-            while self.track.decide(&self.bounds) {}
-            let ground = Ground {
-                track: &self.track,
-                space: self.space,
-                kinematics,
-                bounds: &self.bounds,
+            let cost = if !self.horizon.waiting() {
+                self.horizon.step(&mut self.nodes, &self.bounds)
+            } else if self.track.decide(&self.bounds) {
+                CORNER
+            } else {
+                self.release();
+                let ground = Ground {
+                    track: &self.track,
+                    space: self.space,
+                    kinematics,
+                    bounds: &self.bounds,
+                };
+                let samples = self.grid.extend(&ground, &mut self.nodes)?;
+                if samples > 0 {
+                    samples
+                } else if self.begin() {
+                    BEGIN
+                } else {
+                    break;
+                }
             };
-            let mut grown = false;
-            while work > 0 && self.grid.extend(&ground, &mut self.nodes)? {
-                grown = true;
-                work = work.saturating_sub(APPEND);
-            }
-            if grown && work == 0 {
-                break;
-            }
-            self.begin();
-            if self.horizon.waiting() {
-                break;
-            }
+            work = work.saturating_sub(cost);
         }
         Ok(())
     }
@@ -237,15 +236,15 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         }
     }
 
-    /// Begins a plan, or turns where the machine has come to rest and is to go the other way.
-    fn begin(&mut self) {
+    /// Begins a plan, or turns where the machine has come to rest and is to go the other way; says whether it did.
+    fn begin(&mut self) -> bool {
         let rested = self.resting >= self.bounds.filter_ticks as u32;
         let last = self.horizon.in_force();
         let along = self.along();
         let stop = !along || self.factor <= 0.0;
         if rested && self.player.node >= last && self.way != Way::Hold && !along {
             self.grid.turn(last, &self.axes, &mut self.nodes);
-            return;
+            return true;
         }
         let wish = Wish {
             stop,
@@ -254,7 +253,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         let left = self.player.left(&self.nodes, last);
         let next = (self.player.node + 1).min(last);
         self.horizon
-            .begin(&mut self.nodes, next, left, rested, wish, &self.bounds);
+            .begin(&mut self.nodes, next, left, rested, wish, &self.bounds)
     }
 
     /// Nothing is left to do: where the machine comes to rest it stays.
