@@ -1,5 +1,6 @@
 //! Rounded corners, as terms that are added to the path.
 
+use super::track::position_norm;
 use crate::trajectory::{CHANNELS, PathPoint};
 
 /// A corner: a jump of the direction, spread over `half` \[mm\] of path length on both sides.
@@ -10,6 +11,8 @@ use crate::trajectory::{CHANNELS, PathPoint};
 pub(super) struct Corner {
     /// Change of the first derivatives over s.
     pub jump: [f64; CHANNELS],
+    /// By how much the direction of the first channels changes \[rad\], if that is little.
+    pub turn: f64,
     /// Half the length \[mm\]; 0 where nothing is rounded.
     pub half: f64,
 }
@@ -17,8 +20,15 @@ pub(super) struct Corner {
 impl Corner {
     pub const NONE: Self = Self {
         jump: [0.0; CHANNELS],
+        turn: 0.0,
         half: 0.0,
     };
+
+    /// The jump from one direction to another.
+    pub fn set_jump(&mut self, from: &[f64; CHANNELS], to: &[f64; CHANNELS]) {
+        self.jump = core::array::from_fn(|i| to[i] - from[i]);
+        self.turn = position_norm(&self.jump);
+    }
 
     /// Adds the corner to `point`, `s` \[mm\] after it.
     pub fn add_to(&self, point: &mut PathPoint, s: f64) {

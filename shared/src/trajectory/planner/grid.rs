@@ -31,6 +31,10 @@ const STRAIGHT: f64 = 0.06;
 const INSET: f64 = 1e-4;
 /// Most times that an interval is halved to follow the limits.
 const HALVINGS: u32 = 6;
+/// Work to append a node, and for each sample.
+const EXTEND: u32 = 10;
+const SAMPLE: u32 = 5;
+const SAMPLE_OF_TOOL: u32 = 12;
 /// Smallest rate of a row; keeps divisions by it finite.
 const LEAST_RATE: f32 = 1e-6;
 
@@ -138,7 +142,7 @@ impl<const E: usize> Ground<'_, E> {
                 continue;
             };
             let half = piece.corner.half;
-            let turn = position_norm(&piece.corner.jump);
+            let turn = piece.corner.turn;
             for side in [-half, 0.0, half] {
                 let way = direction * (piece.start + side - s);
                 if way <= SAME || way > next.way + SAME {
@@ -222,7 +226,8 @@ impl Grid {
         };
     }
 
-    /// Appends an interval, if the path is settled far enough; says how many samples that took.
+    /// Appends an interval, if the path is settled far enough; says how much work
+    /// that was.
     pub fn extend<const E: usize, const N: usize>(
         &mut self,
         ground: &Ground<E>,
@@ -282,7 +287,11 @@ impl Grid {
         }
         self.s = end;
         self.near = axes.position;
-        Ok(3 + 2 * halvings)
+        let sample = match ground.space {
+            PathSpace::Axes => SAMPLE,
+            PathSpace::Tool => SAMPLE_OF_TOOL,
+        };
+        Ok(EXTEND + (3 + 2 * halvings) * sample)
     }
 }
 

@@ -22,8 +22,15 @@ const SLACK: f64 = 14.0;
 /// Node visits of both passes and all rounds that a plan is expected to need for each node.
 const VISITS: u32 = 16;
 
-/// Work to take a plan, in visits.
-const TAKE: u32 = 4;
+/// Work of a visit, of the search for a reach and each of its iterations, and of a look at another interval.
+const VISIT: u32 = 5;
+const REACH: u32 = 2;
+const ITERATION: u32 = 4;
+const LOOK: u32 = 1;
+/// Nodes taken over for a unit of work.
+const TAKEN_FOR_ONE: u32 = 6;
+/// Work that a visit usually is.
+const USUAL: u32 = 7;
 /// Node visits that a plan to stop is expected to need.
 const STOP_VISITS: u32 = 200;
 /// Largest factor of the time that a plan is given.
@@ -42,6 +49,8 @@ enum Phase {
     Forward(u32),
     /// The making smaller of boxes, by itself, has come to this node.
     Repair(u32),
+    /// The plan is whole and good.
+    Take,
 }
 
 /// What a plan is for.
@@ -86,6 +95,8 @@ pub(super) struct Horizon {
     excess: Lanes,
     /// Node before the time one filter length away.
     away: u32,
+    /// Work of this step.
+    work: u32,
     /// Plans given up, for display.
     pub given_up: u32,
     /// Plans taken.
@@ -113,6 +124,7 @@ impl Horizon {
         patience: 1,
         excess: REST,
         away: 0,
+        work: 0,
         given_up: 0,
         taken: 0,
     };
@@ -164,7 +176,7 @@ impl Horizon {
         } else {
             VISITS * (last - slowing)
         };
-        let mut lead = f64::from(2 + self.patience * visits / WORK) * PATH_PERIOD_S;
+        let mut lead = f64::from(2 + self.patience * visits * USUAL / WORK) * PATH_PERIOD_S;
         let (mut commit, mut time) = (player, left);
         while commit < self.in_force && (time < lead || commit < slowing) {
             time += nodes.at(commit).lasts;
@@ -247,16 +259,25 @@ impl Horizon {
         self.phase = Phase::Waiting;
     }
 
-    /// One visit of one node, or the taking of a plan; says how much work that was, in visits.
+    /// Work of the next step, as far as it is known before.
+    pub fn least_work(&self) -> u32 {
+        match self.phase {
+            Phase::Take => (self.last - self.commit) / TAKEN_FOR_ONE + 1,
+            _ => VISIT,
+        }
+    }
+
+    /// One visit of one node, or the taking of a plan; says how much work that was.
     pub fn step<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) -> u32 {
-        let before = self.taken;
+        self.work = self.least_work();
         self.visit(nodes, bounds);
-        if self.taken == before { 1 } else { TAKE }
+        self.work
     }
 
     fn visit<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
         match self.phase {
             Phase::Waiting => {}
+            Phase::Take => self.take(nodes, bounds),
             Phase::Brake(i) => self.brake(nodes, i),
             Phase::Back(i) if i > self.commit => {
                 let repaired = self.round > 0 && !self.braking && self.repair(nodes, i - 1, bounds);
@@ -264,7 +285,8 @@ impl Horizon {
                 if repaired || self.reach_changed || self.round == 0 || self.braking {
                     let next = nodes.at(i).reach;
                     let node = nodes.at_mut(i - 1);
-                    let x = reach(node, next);
+                    let (x, iterations) = reach(node, next);
+                    self.work += REACH + iterations * ITERATION;
                     self.reach_changed = x != node.reach;
                     node.reach = x;
                 }
@@ -272,7 +294,7 @@ impl Horizon {
             }
             Phase::Back(i) => {
                 if self.round > 0 && !self.braking && self.is_good() {
-                    self.take(nodes, bounds);
+                    self.phase = Phase::Take;
                 } else if nodes.at(i).reach < nodes.at(i).x * (1.0 - 1e-6) {
                     self.too_fast(nodes, bounds);
                 } else if self.round == ROUNDS {
@@ -303,7 +325,7 @@ impl Horizon {
             }
             Phase::Repair(i) => {
                 if self.is_good() {
-                    self.take(nodes, bounds);
+                    self.phase = Phase::Take;
                 } else {
                     // The boxes have changed, and with them how slow the machine can be.
                     self.phase = Phase::Brake(i);
@@ -380,7 +402,7 @@ impl Horizon {
         while self.away < i && nodes.at(self.away + 1).time <= from {
             self.away += 1;
         }
-        let was = self.range(nodes, self.away, [from, to], bounds);
+        let was = self.range(nodes, [self.away, i], [from, to], bounds);
         let wanted = [0, 1].map(|side: usize| node.sides[side].accelerations(a, node.trial as f32));
         let after = nodes.at_mut(i + 1);
         (after.trial, after.speed, after.time) = (x, speed, leaves);
@@ -399,7 +421,7 @@ impl Horizon {
         while self.away > i + 1 && nodes.at(self.away).time > from {
             self.away -= 1;
         }
-        let will = self.range(nodes, self.away, [from, to], bounds);
+        let will = self.range(nodes, [self.away, self.last], [from, to], bounds);
         let grow = self.round <= self.relaxed;
         let node = nodes.at_mut(i);
         let mut changed = false;
@@ -432,40 +454,29 @@ impl Horizon {
         allowed
     }
 
-    /// Lowest and highest allowed accelerations between two times, the first of which is in the interval of node
-    /// `i` or before all of them; none at rest.
+    /// Lowest and highest allowed accelerations between two times, the first of which is in the interval of the
+    /// first of `from_to` or before all of them, and the second before the last of them; none at rest.
     fn range<const N: usize>(
-        &self,
+        &mut self,
         nodes: &Nodes<N>,
-        mut i: u32,
+        from_to: [u32; 2],
         times: [f64; 2],
         bounds: &Bounds,
     ) -> [Lanes; 2] {
-        let [from, to] = times;
+        let ([mut i, beyond], [from, to]) = (from_to, times);
         let mut low = [f32::INFINITY; ROWS];
         let mut high = [f32::NEG_INFINITY; ROWS];
         let mut include = |lanes: &Lanes| {
             for row in 0..ROWS {
-                low[row] = if lanes[row] < low[row] {
-                    lanes[row]
-                } else {
-                    low[row]
-                };
-                high[row] = if lanes[row] > high[row] {
-                    lanes[row]
-                } else {
-                    high[row]
-                };
+                low[row] = least(lanes[row], low[row]);
+                high[row] = most(lanes[row], high[row]);
             }
         };
         if from < nodes.at(i).time {
             include(&REST);
         }
-        loop {
-            if i >= self.last {
-                include(&REST);
-                break;
-            }
+        while i < beyond {
+            self.work += LOOK;
             let (node, next) = (nodes.at(i), nodes.at(i + 1));
             let end = next.time - pause(next, bounds);
             if node.time <= to && end >= from {
@@ -483,9 +494,12 @@ impl Horizon {
                 include(&REST);
             }
             if next.time > to {
-                break;
+                return [low, high];
             }
             i += 1;
+        }
+        if beyond == self.last {
+            include(&REST);
         }
         [low, high]
     }

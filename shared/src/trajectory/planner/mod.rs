@@ -32,11 +32,11 @@ use track::Track;
 
 /// Highest feed override.
 const MOST_OVERRIDE: f64 = 2.0;
-/// Work of one tick, in visits of nodes.
-const WORK: u32 = 16;
-/// Work to shape a corner, and to begin a plan, in the same unit; a sample of the path is one.
-const CORNER: u32 = 2;
-const BEGIN: u32 = 4;
+/// Work of planning in one tick, in hundreds of instructions of a PC.
+const WORK: u32 = 100;
+/// Work to shape a corner, and to begin a plan.
+const CORNER: u32 = 15;
+const BEGIN: u32 = 40;
 
 /// Elements stream in at one end, and the references of the axes come out at the other.
 ///
@@ -200,9 +200,14 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     /// A share of the planning: corners, then nodes, then passes over them.
     fn plan(&mut self, kinematics: &Kinematics) -> Result<(), ReferenceError> {
         let mut work = WORK;
-        while work > 0 {
+        loop {
             let cost = if !self.horizon.waiting() {
+                if self.horizon.least_work() > work {
+                    break;
+                }
                 self.horizon.step(&mut self.nodes, &self.bounds)
+            } else if work < BEGIN {
+                break;
             } else if self.track.decide(&self.bounds) {
                 CORNER
             } else {
@@ -213,9 +218,9 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
                     kinematics,
                     bounds: &self.bounds,
                 };
-                let samples = self.grid.extend(&ground, &mut self.nodes)?;
-                if samples > 0 {
-                    samples
+                let extended = self.grid.extend(&ground, &mut self.nodes)?;
+                if extended > 0 {
+                    extended
                 } else if self.begin() {
                     BEGIN
                 } else {

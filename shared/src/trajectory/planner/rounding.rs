@@ -2,7 +2,7 @@
 
 use super::chain::chained;
 use super::limits::{Bounds, FILTER_SHARE};
-use super::track::{Piece, SMOOTH, Track, position_norm};
+use super::track::{Piece, SMOOTH, Track};
 use crate::trajectory::{CHANNELS, Join, SHAPED};
 
 /// A jump of velocity below this share of what the filter takes is none.
@@ -64,7 +64,7 @@ fn share(piece: &Piece, whole: bool) -> f64 {
 /// Half length of the corner between two elements \[mm\], and whether the machine has to stop there instead.
 fn size(before: &Piece, after: &Piece, bounds: &Bounds) -> (f64, bool) {
     let jump = &after.corner.jump;
-    let turn = position_norm(jump);
+    let turn = after.corner.turn;
     let largest = |range: core::ops::Range<usize>| {
         jump[range]
             .iter()

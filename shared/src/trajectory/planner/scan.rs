@@ -82,16 +82,16 @@ impl Lines {
 }
 
 /// The highest x at the start of the interval of `node` from which some a keeps every limit and arrives at no more
-/// than `next`.
-pub(super) fn reach(node: &Node, next: f64) -> f64 {
+/// than `next`; and how many iterations that took.
+pub(super) fn reach(node: &Node, next: f64) -> (f64, u32) {
     let lines = Lines::new(node, next);
     let mut x = node.cap() as f32;
     // The room between the limits is concave in x, and there is some at 0: from above, the crossings of the
     // limits in force come down to where there is none.
-    for _ in 0..ITERATIONS {
+    for iteration in 0..ITERATIONS {
         let (high, low) = (lines.highest(x), lines.lowest(x));
         if high >= low {
-            return f64::from(x);
+            return (f64::from(x), iteration);
         }
         let (falls, rises) = (
             lines.slope_of(&lines.high, x, high),
@@ -101,11 +101,11 @@ pub(super) fn reach(node: &Node, next: f64) -> f64 {
         let crossing = x - (low - high) / (falls - rises);
         if !(crossing > 0.0 && crossing < x) {
             // Rounding: there is nothing between this x and the last one.
-            return if crossing > 0.0 { f64::from(x) } else { 0.0 };
+            return (if crossing > 0.0 { f64::from(x) } else { 0.0 }, iteration);
         }
         x = crossing;
     }
-    f64::from(x)
+    (f64::from(x), ITERATIONS)
 }
 
 /// x at the end of the interval of `node` if it begins at `x` and ends no faster than `next`, as fast as the

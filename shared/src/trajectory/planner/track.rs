@@ -125,8 +125,8 @@ impl<const E: usize> Track<E> {
             let mut distance = 0.0;
             for i in 0..CHANNELS {
                 distance = libm::fmax(distance, libm::fabs(start.value[i] - self.end_value[i]));
-                corner.jump[i] = start.first[i] - self.end_slope[i];
             }
+            corner.set_jump(&self.end_slope, &start.first);
             turn = Vector3::new(corner.jump[0], corner.jump[1], corner.jump[2]);
             if distance > GAP {
                 return Err(PushError::Gap {
@@ -165,7 +165,7 @@ impl<const E: usize> Track<E> {
         let slope = before.element.at(before.element.length).first;
         if let Some(piece) = self.get_mut(serial) {
             let start = piece.element.at(0.0).first;
-            piece.corner.jump = core::array::from_fn(|i| start[i] - slope[i]);
+            piece.corner.set_jump(&slope, &start);
         }
     }
 
