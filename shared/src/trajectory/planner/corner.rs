@@ -1,7 +1,7 @@
 //! Rounded corners, as terms that are added to the path.
 
 use super::track::position_norm;
-use crate::trajectory::{CHANNELS, PathPoint};
+use crate::trajectory::{CHANNELS, PathPoint, SHAPED};
 
 /// A corner: a jump of the direction, spread over `half` \[mm\] of path length on both sides.
 ///
@@ -13,6 +13,8 @@ pub(super) struct Corner {
     pub jump: [f64; CHANNELS],
     /// By how much the direction of the first channels changes \[rad\], if that is little.
     pub turn: f64,
+    /// Largest jump of the other channels.
+    pub others: f64,
     /// Half the length \[mm\]; 0 where nothing is rounded.
     pub half: f64,
 }
@@ -21,6 +23,7 @@ impl Corner {
     pub const NONE: Self = Self {
         jump: [0.0; CHANNELS],
         turn: 0.0,
+        others: 0.0,
         half: 0.0,
     };
 
@@ -28,6 +31,9 @@ impl Corner {
     pub fn set_jump(&mut self, from: &[f64; CHANNELS], to: &[f64; CHANNELS]) {
         self.jump = core::array::from_fn(|i| to[i] - from[i]);
         self.turn = position_norm(&self.jump);
+        self.others = self.jump[SHAPED..]
+            .iter()
+            .fold(0.0, |most, jump| libm::fmax(most, libm::fabs(*jump)));
     }
 
     /// Adds the corner to `point`, `s` \[mm\] after it.

@@ -2,7 +2,8 @@
 
 use super::limits::{Bounds, FILTER_SHARE, PATH_ROW, ROWS};
 use super::node::{Lanes, Node, Nodes, Side};
-use super::track::{REACH, Track, position_norm};
+use super::rounding::ATTITUDE;
+use super::track::{REACH, SMOOTH, Track, position_norm};
 use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics};
 use crate::trajectory::reference::at_unit_speed;
@@ -100,7 +101,7 @@ impl<const E: usize> Ground<'_, E> {
         let piece = self.track.find(s, hint).ok_or(ReferenceError::EmptyPath)?;
         let feed = piece.element.feed;
         let tolerance = match piece.element.join {
-            Join::Blend(tolerance) => tolerance.position,
+            Join::Blend(tolerance) => tolerance,
             Join::Stop => self.bounds.tolerance,
         };
         let point = self.track.at(s, hint).ok_or(ReferenceError::EmptyPath)?;
@@ -122,7 +123,12 @@ impl<const E: usize> Ground<'_, E> {
         }
         // The output filter cuts curves by T²/24 of the acceleration across.
         let filter = self.bounds.filter * self.bounds.filter / 24.0;
-        sample.limit = libm::fmin(sample.limit, FILTER_SHARE * tolerance / (filter * sample.bend));
+        let attitude = point.second[ATTITUDE]
+            .iter()
+            .fold(0.0, |most, bend| libm::fmax(most, libm::fabs(*bend)));
+        for (tolerance, bend) in [(tolerance.position, sample.bend), (tolerance.attitude, attitude)] {
+            sample.limit = libm::fmin(sample.limit, FILTER_SHARE * tolerance / (filter * bend));
+        }
         Ok((sample, axes))
     }
 
@@ -148,7 +154,8 @@ impl<const E: usize> Ground<'_, E> {
                 if way <= SAME || way > next.way + SAME {
                     continue;
                 }
-                if !piece.stop && turn < MERGED_TURN && way < gap {
+                let smooth = turn < MERGED_TURN && piece.corner.others <= SMOOTH;
+                if !piece.stop && smooth && way < gap {
                     next.merged = true;
                     continue;
                 }
@@ -298,7 +305,12 @@ impl Grid {
 /// Length of the next interval \[mm\], on the way to the next change of limits.
 fn step(next: &Break, grid: &Grid, from: &Sample, feed: f64, bounds: &Bounds) -> f64 {
     let (way, gone) = (next.way, libm::fabs(grid.s - grid.since));
-    let finest = 0.09 * bounds.corner * bounds.filter * bounds.filter;
+    // From rest, the way of a part of the filter's length.
+    let mut acceleration = f32::INFINITY;
+    for row in 0..ROWS {
+        acceleration = acceleration.min(bounds.acceleration[row] / from.first[row].abs());
+    }
+    let finest = 0.09 * f64::from(acceleration) * bounds.filter * bounds.filter;
     let at = |speed: f64| libm::fmax(finest, BREAK_STEP * speed);
     let mut delta = libm::fmin(at(grid.since_speed) + GROWTH * gone, LONGEST * feed);
     if next.real {

@@ -85,6 +85,8 @@ pub(super) struct Horizon {
     braking: bool,
     /// The reach of the node looked at last is not as in the round before.
     reach_changed: bool,
+    /// The plan being made was slowed down as a whole.
+    scaled: bool,
     /// The plan in force is one to stop.
     stopping: bool,
     /// Feed override of the plan in force.
@@ -118,6 +120,7 @@ impl Horizon {
             factor: 1.0,
         },
         braking: false,
+        scaled: false,
         reach_changed: false,
         stopping: false,
         factor: 1.0,
@@ -241,6 +244,7 @@ impl Horizon {
         node.brake = node.x;
         self.braking = self.wish.stop || node.x > node.cap_of_feed();
         self.round = 0;
+        self.scaled = false;
         self.phase = Phase::Brake(self.commit);
     }
 
@@ -298,7 +302,7 @@ impl Horizon {
                 } else if nodes.at(i).reach < nodes.at(i).x * (1.0 - 1e-6) {
                     self.too_fast(nodes, bounds);
                 } else if self.round == ROUNDS {
-                    self.give_up();
+                    self.last_resort(nodes);
                 } else {
                     self.round += 1;
                     self.excess = REST;
@@ -313,7 +317,7 @@ impl Horizon {
             Phase::Forward(i) => {
                 self.away = i - 1;
                 self.reach_changed = false;
-                self.phase = if self.braking {
+                self.phase = if self.braking || self.scaled {
                     Phase::Repair(i)
                 } else {
                     Phase::Back(i)
@@ -326,12 +330,33 @@ impl Horizon {
             Phase::Repair(i) => {
                 if self.is_good() {
                     self.phase = Phase::Take;
+                } else if self.scaled || self.round == ROUNDS {
+                    self.last_resort(nodes);
                 } else {
                     // The boxes have changed, and with them how slow the machine can be.
                     self.phase = Phase::Brake(i);
                 }
             }
         }
+    }
+
+    /// The rounds have not led to a good plan. One from rest may be slower as a whole: accelerations go with x, and
+    /// so do their swings. Otherwise the plan in force goes on, to rest.
+    fn last_resort<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
+        if nodes.at(self.commit).x > 0.0 {
+            self.give_up();
+            return;
+        }
+        let excess = self.excess.into_iter().fold(0.0, most);
+        let slower = 1.0 / (1.0 + 1.2 * f64::from(excess));
+        for i in self.commit..=self.last {
+            nodes.at_mut(i).trial *= slower;
+        }
+        self.scaled = true;
+        self.excess = REST;
+        self.away = self.history;
+        self.work += (self.last - self.commit) / TAKEN_FOR_ONE;
+        self.phase = Phase::Forward(self.commit);
     }
 
     /// No swing of the acceleration is too large.
@@ -390,7 +415,11 @@ impl Horizon {
     /// Speed, time and accelerations of the interval of node `i`, and what its past allows them to be.
     fn forward<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
-        let x = advance(node, node.trial, next.reach);
+        let x = if self.scaled {
+            next.trial
+        } else {
+            advance(node, node.trial, next.reach)
+        };
         let speed = libm::sqrt(x);
         let time = node.time + 2.0 * node.delta / (node.speed + speed);
         let leaves = time + pause(next, bounds);
@@ -429,6 +458,9 @@ impl Horizon {
             let is = place.accelerations(a, node.trial as f32);
             let by_future = self.clamp(&is, &will, bounds);
             let by_past = core::mem::replace(&mut place.allowed, by_future);
+            if self.scaled {
+                continue;
+            }
             if grow && place.boxed {
                 place.grow(&is, &will, bounds);
                 changed = true;

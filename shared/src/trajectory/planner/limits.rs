@@ -3,6 +3,7 @@
 use crate::io::AXES;
 use crate::kinematics::AxisLimits;
 use crate::motion::PATH_PERIOD_S;
+use crate::trajectory::Tolerance;
 
 /// Limits of the axes and of the path, and the accuracy that the output filter is made for (mm, rad, s).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +47,8 @@ const ACCELERATION_RESERVE: f64 = 0.99;
 /// The same of the jerks.
 const JERK_RESERVE: f64 = 0.985;
 
+/// Tolerance of the attitude that goes with one of the position, where none is programmed \[rad/mm\].
+const ATTITUDE_OF_POSITION: f64 = 0.02;
 /// Path and axes, each with limits of its own, and one unused lane that makes them eight.
 pub(super) const ROWS: usize = 8;
 /// Row of the path; the axes follow it.
@@ -65,8 +68,8 @@ pub(super) struct Bounds {
     pub velocity: [f64; AXES],
     /// Acceleration that sizes corners: the least of the linear axes and the path.
     pub corner: f64,
-    /// Tolerance of elements that have none of their own \[mm\].
-    pub tolerance: f64,
+    /// Tolerance of elements that have none of their own.
+    pub tolerance: Tolerance,
     /// Ticks that the output filter averages over.
     pub filter_ticks: usize,
     /// The same \[s\].
@@ -81,7 +84,10 @@ impl Bounds {
         per_swing: [1.0; ROWS],
         velocity: [1.0; AXES],
         corner: 1.0,
-        tolerance: 1.0,
+        tolerance: Tolerance {
+            position: 1.0,
+            attitude: 1.0,
+        },
         filter_ticks: 1,
         filter: PATH_PERIOD_S,
     };
@@ -107,7 +113,10 @@ impl Bounds {
         let mut bounds = Self {
             velocity: limits.velocity,
             corner: corner * ACCELERATION_RESERVE,
-            tolerance: limits.tolerance,
+            tolerance: Tolerance {
+                position: limits.tolerance,
+                attitude: limits.tolerance * ATTITUDE_OF_POSITION,
+            },
             filter_ticks: ticks as usize,
             filter,
             ..Self::NONE

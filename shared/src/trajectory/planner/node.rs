@@ -9,7 +9,7 @@ const LOOSEN: f32 = 0.4;
 const TIGHTEN_FROM: f32 = 0.01;
 const LOOSEN_FROM: f32 = 0.02;
 /// No box is made smaller than this share of the acceleration.
-const LEAST_BOX: f32 = 0.03;
+const LEAST_BOX: f32 = 0.008;
 
 /// A lane for every row of limits.
 pub(super) type Lanes = [f32; ROWS];

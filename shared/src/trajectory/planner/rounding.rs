@@ -10,7 +10,7 @@ const UNNOTICED: f64 = 1e-3;
 /// A corner rounded by less \[mm\] is a stop.
 const SMALLEST: f64 = 1e-5;
 /// Channels of attitude (or axes A B C); after them come the V slides \[mm\].
-const ATTITUDE: core::ops::Range<usize> = SHAPED..CHANNELS - 2;
+pub(super) const ATTITUDE: core::ops::Range<usize> = SHAPED..CHANNELS - 2;
 
 impl<const E: usize> Track<E> {
     /// Shapes one corner, if there is one whose neighbours are known.
