@@ -327,34 +327,3 @@ impl<const ELEMENTS: usize, const NODES: usize> Default for Planner<ELEMENTS, NO
         Self::new()
     }
 }
-extern crate std;
-impl<const E: usize, const N: usize> Planner<E, N> {
-    #[doc(hidden)]
-    pub fn dump(&self) {
-        std::eprintln!(
-            "{:?} nodes {}..{}",
-            self.horizon,
-            self.nodes.first,
-            self.nodes.end
-        );
-        for i in self.nodes.first..self.nodes.end {
-            let n = self.nodes.at(i);
-            std::eprintln!(
-                "{i} s {:.5} d {:.5} lim {:.3e} reach {:.2} trial {:.2} x {:.2} t {:.4} | hi {:?} lo {:?} al {:?} / hi {:?} lo {:?} al {:?}",
-                n.s,
-                n.delta,
-                n.cap(),
-                n.reach,
-                n.trial,
-                n.x,
-                n.time,
-                &n.sides[0].high[..],
-                &n.sides[0].low[..],
-                &n.sides[0].allowed[..],
-                &n.sides[1].high[..],
-                &n.sides[1].low[..],
-                &n.sides[1].allowed[..]
-            );
-        }
-    }
-}
