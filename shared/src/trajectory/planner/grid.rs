@@ -10,7 +10,7 @@ use crate::trajectory::reference::at_unit_speed;
 use crate::trajectory::{Join, PathSpace, ReferenceError};
 
 /// Places nearer than this are one \[mm\].
-const SAME: f64 = 1e-7;
+const SAME: f64 = 1e-9;
 /// Time between nodes on curves \[s\].
 const CURVE_STEP: f64 = 0.003;
 /// Largest turn of the path between two nodes \[rad\].
@@ -160,11 +160,11 @@ impl<const E: usize> Ground<'_, E> {
                     continue;
                 }
                 let stop = (piece.stop && side == 0.0) || (next.stop && way >= next.way - SAME);
-                let speed = if half * turn > 0.0 {
-                    libm::sqrt(2.0 * self.bounds.corner * half / turn)
-                } else {
-                    f64::INFINITY
+                let at = |acceleration: f64, jump: f64| match half * jump > 0.0 {
+                    true => libm::sqrt(2.0 * acceleration * half / jump),
+                    false => f64::INFINITY,
                 };
+                let speed = at(self.bounds.corner, turn).min(at(self.bounds.spin, piece.corner.others));
                 next = Break {
                     way,
                     stop,
@@ -233,12 +233,13 @@ impl Grid {
         };
     }
 
-    /// Appends an interval, if the path is settled far enough; says how much work
-    /// that was.
+    /// Appends an interval, if the path is settled far enough; says how much work that was. The plan in force ends
+    /// at node `in_force`.
     pub fn extend<const E: usize, const N: usize>(
         &mut self,
         ground: &Ground<E>,
         nodes: &mut Nodes<N>,
+        in_force: u32,
     ) -> Result<u32, ReferenceError> {
         let bounds = ground.bounds;
         let direction = self.direction;
@@ -258,7 +259,8 @@ impl Grid {
         let mut hint = self.hint;
         let mut sample = |way: f64| ground.sample(start + direction * way, direction, &mut hint, &near);
         let (mut from, _) = sample(INSET * libm::fmin(next.way, feed * CURVE_STEP))?;
-        let mut delta = step(&next, self, &from, feed, bounds);
+        let rests = in_force + 1 == nodes.end;
+        let mut delta = step(&next, self, rests, &from, feed, bounds);
         let mut halvings = 0;
         let (mid, mut to, axes) = loop {
             let (mid, _) = sample(0.5 * delta)?;
@@ -303,7 +305,7 @@ impl Grid {
 }
 
 /// Length of the next interval \[mm\], on the way to the next change of limits.
-fn step(next: &Break, grid: &Grid, from: &Sample, feed: f64, bounds: &Bounds) -> f64 {
+fn step(next: &Break, grid: &Grid, rests: bool, from: &Sample, feed: f64, bounds: &Bounds) -> f64 {
     let (way, gone) = (next.way, libm::fabs(grid.s - grid.since));
     // From rest, the way of a part of the filter's length.
     let mut acceleration = f32::INFINITY;
@@ -320,8 +322,9 @@ fn step(next: &Break, grid: &Grid, from: &Sample, feed: f64, bounds: &Bounds) ->
         let speed = libm::fmin(feed, libm::sqrt(bounds.corner / from.bend));
         delta = libm::fmin(delta, libm::fmin(CURVE_STEP * speed, TURN_STEP / from.bend));
     }
-    // At least two intervals from one change to the next, and no sliver before the next one.
-    if gone <= 0.0 {
+    // At least two intervals from one change to the next, or from where the machine may rest, and no sliver before
+    // the next one.
+    if gone <= 0.0 || rests {
         delta = libm::fmin(delta, 0.5 * way);
     }
     if delta > 0.6 * way {

@@ -31,6 +31,8 @@ const LOOK: u32 = 1;
 const TAKEN_FOR_ONE: u32 = 6;
 /// Work that a visit usually is.
 const USUAL: u32 = 7;
+/// ṡ² where there would be none by rounding, as a share of what is possible.
+const CREEP: f64 = 1e-3;
 /// Node visits that a plan to stop is expected to need.
 const STOP_VISITS: u32 = 200;
 /// Largest factor of the time that a plan is given.
@@ -152,7 +154,11 @@ impl Horizon {
         wish: Wish,
         bounds: &Bounds,
     ) -> bool {
-        let last = nodes.end - 1;
+        let mut last = nodes.end - 1;
+        // A single interval between two places at rest would last for ever.
+        if last > nodes.first && nodes.at(last - 1).limit <= 0.0 {
+            last -= 1;
+        }
         let nothing = match wish.stop {
             true => self.stopping,
             false => last <= self.in_force && wish.factor == self.factor,
@@ -418,7 +424,9 @@ impl Horizon {
         let x = if self.scaled {
             next.trial
         } else {
-            advance(node, node.trial, next.reach)
+            // Rounding must not make a place at rest where there is none.
+            let x = advance(node, node.trial, next.reach);
+            if x > 0.0 { x } else { CREEP * next.reach }
         };
         let speed = libm::sqrt(x);
         let time = node.time + 2.0 * node.delta / (node.speed + speed);

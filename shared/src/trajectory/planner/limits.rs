@@ -3,7 +3,7 @@
 use crate::io::AXES;
 use crate::kinematics::AxisLimits;
 use crate::motion::PATH_PERIOD_S;
-use crate::trajectory::Tolerance;
+use crate::trajectory::{SHAPED, Tolerance};
 
 /// Limits of the axes and of the path, and the accuracy that the output filter is made for (mm, rad, s).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +40,9 @@ impl PlanLimits {
 pub const MAX_FILTER: usize = 64;
 /// Fewest.
 const MIN_FILTER: f64 = 4.0;
+/// Length of the output filter in ramps, in which the acceleration goes from none to full.
+const SHORTEST: f64 = 0.25;
+const LONGEST: f64 = 1.3;
 /// Share of the tolerance that the output filter may use on curves; rounding has the rest.
 pub(super) const FILTER_SHARE: f64 = 0.4;
 /// What the plan uses of the accelerations: the rest is for rounding, and for what the grid does not see.
@@ -68,6 +71,8 @@ pub(super) struct Bounds {
     pub velocity: [f64; AXES],
     /// Acceleration that sizes corners: the least of the linear axes and the path.
     pub corner: f64,
+    /// The same of attitude: the least of the rotary axes.
+    pub spin: f64,
     /// Tolerance of elements that have none of their own.
     pub tolerance: Tolerance,
     /// Ticks that the output filter averages over.
@@ -84,6 +89,7 @@ impl Bounds {
         per_swing: [1.0; ROWS],
         velocity: [1.0; AXES],
         corner: 1.0,
+        spin: 1.0,
         tolerance: Tolerance {
             position: 1.0,
             attitude: 1.0,
@@ -94,25 +100,30 @@ impl Bounds {
 
     pub fn build(limits: &PlanLimits) -> Self {
         // The longest time in which any row goes from none to its full acceleration.
-        let mut ramp = limits.path_acceleration / limits.path_jerk;
+        let mut ramp: f64 = 0.0;
         let mut corner = limits.path_acceleration;
+        let mut spin = f64::INFINITY;
         for axis in 0..AXES {
             if limits.acceleration[axis].is_finite() {
                 ramp = libm::fmax(ramp, limits.acceleration[axis] / limits.jerk[axis]);
-                if axis < 3 {
-                    corner = libm::fmin(corner, limits.acceleration[axis]);
-                }
+                let least = if axis < SHAPED { &mut corner } else { &mut spin };
+                *least = libm::fmin(*least, limits.acceleration[axis]);
             }
         }
+        // No path has more acceleration than all linear axes together.
+        let path = libm::fmin(limits.path_acceleration, 2.0 * corner);
+        ramp = libm::fmax(ramp, path / limits.path_jerk);
         // A mean over T is off by T²/24 of the acceleration across a curve; √2: of two axes together.
         let accurate =
             libm::sqrt(24.0 * FILTER_SHARE * limits.tolerance / (core::f64::consts::SQRT_2 * corner));
-        let ticks = libm::fmin(1.3 * ramp, accurate) / PATH_PERIOD_S;
+        // Where a ramp takes many filter lengths, its steps need as many nodes: rather slow down on curves.
+        let ticks = libm::fmin(libm::fmax(accurate, SHORTEST * ramp), LONGEST * ramp) / PATH_PERIOD_S;
         let ticks = libm::fmin(libm::fmax(libm::floor(ticks), MIN_FILTER), MAX_FILTER as f64);
         let filter = ticks * PATH_PERIOD_S;
         let mut bounds = Self {
             velocity: limits.velocity,
             corner: corner * ACCELERATION_RESERVE,
+            spin: spin * ACCELERATION_RESERVE,
             tolerance: Tolerance {
                 position: limits.tolerance,
                 attitude: limits.tolerance * ATTITUDE_OF_POSITION,

@@ -218,7 +218,8 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
                     kinematics,
                     bounds: &self.bounds,
                 };
-                let extended = self.grid.extend(&ground, &mut self.nodes)?;
+                let in_force = self.horizon.in_force();
+                let extended = self.grid.extend(&ground, &mut self.nodes, in_force)?;
                 if extended > 0 {
                     extended
                 } else if self.begin() {

@@ -67,17 +67,17 @@ impl Lines {
         values
     }
 
-    /// Slope of the one of `lines` that has the value `a` at `x`, or else of the one of the speed.
-    fn slope_of(&self, lines: &[Lanes; 2], x: f32, a: f32) -> f32 {
+    /// The one of `lines` that has the value `a` at `x`, as (value at 0, slope); or else the one of the speed `next`.
+    fn through(&self, lines: &[Lanes; 2], next: f32, x: f32, a: f32) -> (f32, f32) {
         let values = self.at(lines, x);
         for side in 0..2 {
             for row in 0..ROWS {
                 if values[side][row] == a {
-                    return self.slope[side][row];
+                    return (lines[side][row], self.slope[side][row]);
                 }
             }
         }
-        self.per_length
+        (next * self.per_length, self.per_length)
     }
 }
 
@@ -93,12 +93,10 @@ pub(super) fn reach(node: &Node, next: f64) -> (f64, u32) {
         if high >= low {
             return (f64::from(x), iteration);
         }
-        let (falls, rises) = (
-            lines.slope_of(&lines.high, x, high),
-            lines.slope_of(&lines.low, x, low),
-        );
-        // Where the two lines meet.
-        let crossing = x - (low - high) / (falls - rises);
+        let (upper, falls) = lines.through(&lines.high, lines.next, x, high);
+        let (lower, rises) = lines.through(&lines.low, 0.0, x, low);
+        // Where the two lines meet; x itself may be larger by many orders.
+        let crossing = (upper - lower) / (falls - rises);
         if !(crossing > 0.0 && crossing < x) {
             // Rounding: there is nothing between this x and the last one.
             return (if crossing > 0.0 { f64::from(x) } else { 0.0 }, iteration);
