@@ -218,13 +218,19 @@ impl Grid {
         self.direction
     }
 
-    /// Goes the other way from node `serial` on, where the machine stands with its axes at `axes`.
-    pub fn turn<const N: usize>(&mut self, serial: u32, axes: &[f64; AXES], nodes: &mut Nodes<N>) {
+    /// Leads in a `direction` from node `serial` on, where the machine stands with its axes at `axes`.
+    pub fn again<const N: usize>(
+        &mut self,
+        serial: u32,
+        direction: f64,
+        axes: &[f64; AXES],
+        nodes: &mut Nodes<N>,
+    ) {
         nodes.cut(serial);
         let node = nodes.at_mut(serial);
         node.limit = 0.0;
         *self = Self {
-            direction: -self.direction,
+            direction,
             s: node.s,
             since: node.s,
             near: *axes,

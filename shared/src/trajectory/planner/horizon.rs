@@ -31,6 +31,8 @@ const LOOK: u32 = 1;
 const TAKEN_FOR_ONE: u32 = 6;
 /// Work that a visit usually is.
 const USUAL: u32 = 7;
+/// Most nodes that a plan goes beyond the one in force.
+const WINDOW: u32 = 64;
 /// ṡ² where there would be none by rounding, as a share of what is possible.
 const CREEP: f64 = 1e-3;
 /// Node visits that a plan to stop is expected to need.
@@ -159,6 +161,8 @@ impl Horizon {
         if last > nodes.first && nodes.at(last - 1).limit <= 0.0 {
             last -= 1;
         }
+        // A window that is long enough to stop in, and short enough to be planned before it is passed.
+        last = last.min(self.in_force.max(player) + WINDOW);
         let nothing = match wish.stop {
             true => self.stopping,
             false => last <= self.in_force && wish.factor == self.factor,

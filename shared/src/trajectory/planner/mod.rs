@@ -248,8 +248,12 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         let last = self.horizon.in_force();
         let along = self.along();
         let stop = !along || self.factor <= 0.0;
-        if rested && self.player.node >= last && self.way != Way::Hold && !along {
-            self.grid.turn(last, &self.axes, &mut self.nodes);
+        let rests = rested && self.player.node >= last && self.way != Way::Hold && self.factor > 0.0;
+        let inside = last + 1 < self.nodes.end && self.nodes.at(last).limit > 0.0;
+        if rests && (inside || !along) {
+            // From rest the nodes stand closer, and none of the old ones may be the next.
+            let direction = if self.way == Way::Forward { 1.0 } else { -1.0 };
+            self.grid.again(last, direction, &self.axes, &mut self.nodes);
             return true;
         }
         let wish = Wish {

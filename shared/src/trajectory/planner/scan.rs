@@ -117,5 +117,7 @@ pub(super) fn advance(node: &Node, x: f64, next: f64) -> f64 {
 /// x at the end of the interval of `node` if it begins at `x`, as slow as the limits allow.
 pub(super) fn brake(node: &Node, x: f64) -> f64 {
     let a = Lines::new(node, f64::INFINITY).lowest(x as f32);
-    libm::fmax(x + 2.0 * node.delta * f64::from(a), 0.0)
+    let end = x + 2.0 * node.delta * f64::from(a);
+    // What rounding leaves is rest.
+    if end > 1e-5 * x { end } else { 0.0 }
 }
