@@ -156,13 +156,12 @@ impl Horizon {
         wish: Wish,
         bounds: &Bounds,
     ) -> bool {
-        let mut last = nodes.end - 1;
+        // A window that is long enough to stop in, and short enough to be planned before it is passed.
+        let mut last = (nodes.end - 1).min(self.in_force.max(player) + WINDOW);
         // A single interval between two places at rest would last for ever.
         if last > nodes.first && nodes.at(last - 1).limit <= 0.0 {
             last -= 1;
         }
-        // A window that is long enough to stop in, and short enough to be planned before it is passed.
-        last = last.min(self.in_force.max(player) + WINDOW);
         let nothing = match wish.stop {
             true => self.stopping,
             false => last <= self.in_force && wish.factor == self.factor,

@@ -33,7 +33,7 @@ use track::Track;
 /// Highest feed override.
 const MOST_OVERRIDE: f64 = 2.0;
 /// Work of planning in one tick, in hundreds of instructions of a PC.
-const WORK: u32 = 100;
+const WORK: u32 = 200;
 /// Work to shape a corner, and to begin a plan.
 const CORNER: u32 = 15;
 const BEGIN: u32 = 40;
@@ -62,6 +62,8 @@ pub struct Planner<const ELEMENTS: usize, const NODES: usize> {
     output_hint: u32,
     /// Ticks since the plan has come to rest.
     resting: u32,
+    /// There was nothing to plan at the last tick.
+    idle: bool,
 }
 
 /// Which way the machine goes along the path.
@@ -134,6 +136,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             planned_hint: 0,
             output_hint: 0,
             resting: 0,
+            idle: false,
         }
     }
 
@@ -200,6 +203,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     /// A share of the planning: corners, then nodes, then passes over them.
     fn plan(&mut self, kinematics: &Kinematics) -> Result<(), ReferenceError> {
         let mut work = WORK;
+        self.idle = false;
         loop {
             let cost = if !self.horizon.waiting() {
                 if self.horizon.least_work() > work {
@@ -225,6 +229,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
                 } else if self.begin() {
                     BEGIN
                 } else {
+                    self.idle = true;
                     break;
                 }
             };
@@ -269,7 +274,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     /// Nothing is left to do: where the machine comes to rest it stays.
     fn stays(&self) -> bool {
         let last = self.horizon.in_force();
-        let done = last + 1 == self.nodes.end && self.along();
+        let done = self.idle && last + 1 == self.nodes.end && self.along();
         let stopped = self.way == Way::Hold || self.factor <= 0.0;
         self.player.node >= last && self.horizon.waiting() && (done || stopped)
     }
