@@ -13,6 +13,8 @@ mod node;
 mod player;
 mod rounding;
 mod scan;
+#[cfg(test)]
+mod tests;
 mod track;
 
 pub use limits::PlanLimits;

@@ -121,3 +121,68 @@ pub(super) fn brake(node: &Node, x: f64) -> f64 {
     // What rounding leaves is rest.
     if end > 1e-5 * x { end } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trajectory::planner::node::Side;
+    use proptest::prelude::*;
+
+    /// An interval of length 1 with two rows, whose first derivatives and second derivatives are given at both ends.
+    fn node(rows: [[f32; 4]; 2], cap: f64) -> Node {
+        let mut node = Node {
+            delta: 1.0,
+            feed: cap,
+            limit: f64::INFINITY,
+            ..Node::ZERO
+        };
+        for (end, side) in node.sides.iter_mut().enumerate() {
+            *side = Side {
+                high: [1e9; ROWS],
+                low: [-1e9; ROWS],
+                ..Side::ZERO
+            };
+            for (row, q) in rows.iter().enumerate() {
+                let (first, second) = (q[2 * end], q[2 * end + 1]);
+                let alpha = first + if end == 1 { 2.0 * second } else { 0.0 };
+                side.alpha[row] = if alpha.abs() < 1e-3 { 1e-3 } else { alpha };
+                side.slope[row] = second / side.alpha[row];
+                (side.high[row], side.low[row]) = (1.0, -1.0);
+            }
+        }
+        node
+    }
+
+    /// Whether some a keeps all limits at `x` and ends between 0 and `next`, by looking at many.
+    fn possible(node: &Node, x: f64, next: f64, margin: f64) -> bool {
+        (0..=4000).any(|k| {
+            let end = next * f64::from(k) / 4000.0;
+            let a = (end - x) / 2.0;
+            let inside = |side: &Side| {
+                let rows = side.accelerations(a as f32, x as f32);
+                rows[..2].iter().all(|row| f64::from(row.abs()) <= 1.0 + margin)
+            };
+            node.sides.iter().all(inside)
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn the_reach_is_possible_and_more_is_not(
+            rows in prop::array::uniform2(prop::array::uniform4(-2.0..2.0f32)),
+            cap in 0.1..10.0f64, next in 0.0..5.0f64,
+        ) {
+            let node = node(rows, cap);
+            let (x, _) = reach(&node, next);
+            prop_assert!((0.0..=cap * (1.0 + 1e-6)).contains(&x));
+            prop_assert!(possible(&node, x * 0.999, next, 0.02), "{x} is not possible");
+            if x < cap * 0.99 {
+                prop_assert!(!possible(&node, x * 1.02 + 0.01, next, -0.001), "more than {x} is possible");
+            }
+            // From there the fastest end is inside all limits, and the slowest is slower.
+            let end = advance(&node, x, next);
+            prop_assert!((0.0..=next).contains(&end));
+            prop_assert!(brake(&node, x) <= end + 1e-3);
+        }
+    }
+}
