@@ -1,0 +1,10 @@
+//! The trajectory planner from outside: random programs on every machine, and fixed cases whose answer is known.
+//! Everything is judged by the positions that come out, a millisecond apart.
+
+mod bench;
+mod contour;
+mod fixed;
+mod judge;
+mod program;
+mod random;
+mod run;
