@@ -6,9 +6,10 @@
 //! much, the boxes are made smaller, and the passes repeated.
 
 use super::WORK;
-use super::limits::{Bounds, ROWS};
-use super::node::{Lanes, Node, Nodes, least, most};
-use super::scan::{advance, brake, reach};
+use super::limits::Bounds;
+use super::node::{Lanes, Nodes, most};
+use super::scan::{brake, reach};
+use super::swing::{REST, pause};
 use crate::motion::PATH_PERIOD_S;
 
 /// Rounds of passes that a plan is given before it is given up.
@@ -22,19 +23,16 @@ const SLACK: f64 = 14.0;
 /// Node visits of both passes and all rounds that a plan is expected to need for each node.
 const VISITS: u32 = 16;
 
-/// Work of a visit, of the search for a reach and each of its iterations, and of a look at another interval.
+/// Work of a visit, of the search for a reach, and of each of its iterations.
 const VISIT: u32 = 5;
 const REACH: u32 = 2;
 const ITERATION: u32 = 4;
-const LOOK: u32 = 1;
 /// Nodes taken over for a unit of work.
 const TAKEN_FOR_ONE: u32 = 6;
 /// Work that a visit usually is.
 const USUAL: u32 = 7;
 /// Most nodes that a plan goes beyond the one in force.
 const WINDOW: u32 = 64;
-/// ṡ² where there would be none by rounding, as a share of what is possible.
-const CREEP: f64 = 1e-3;
 /// Node visits that a plan to stop is expected to need.
 const STOP_VISITS: u32 = 200;
 /// Largest factor of the time that a plan is given.
@@ -73,14 +71,14 @@ pub(super) struct Horizon {
     /// Oldest node whose acceleration matters.
     history: u32,
     /// First node whose speed may change.
-    commit: u32,
+    pub(super) commit: u32,
     /// Last node, at rest.
-    last: u32,
+    pub(super) last: u32,
     /// Last node of the plan in force.
     in_force: u32,
-    round: u32,
+    pub(super) round: u32,
     /// Rounds in which boxes may also grow: none after a plan was given up.
-    relaxed: u32,
+    pub(super) relaxed: u32,
     /// The boxes are those of an earlier plan.
     warm: bool,
     /// What the plan being made is for.
@@ -90,7 +88,7 @@ pub(super) struct Horizon {
     /// The reach of the node looked at last is not as in the round before.
     reach_changed: bool,
     /// The plan being made was slowed down as a whole.
-    scaled: bool,
+    pub(super) scaled: bool,
     /// The plan in force is one to stop.
     stopping: bool,
     /// Feed override of the plan in force.
@@ -98,11 +96,11 @@ pub(super) struct Horizon {
     /// Longer time for a plan after others were given up: a factor.
     patience: u32,
     /// Largest swing above its limit, as a share.
-    excess: Lanes,
+    pub(super) excess: Lanes,
     /// Node before the time one filter length away.
-    away: u32,
+    pub(super) away: u32,
     /// Work of this step.
-    work: u32,
+    pub(super) work: u32,
     /// Plans given up, for display.
     pub given_up: u32,
     /// Plans taken.
@@ -419,142 +417,5 @@ impl Horizon {
         self.stopping = self.wish.stop;
         self.factor = self.wish.factor;
         self.phase = Phase::Waiting;
-    }
-
-    /// Speed, time and accelerations of the interval of node `i`, and what its past allows them to be.
-    fn forward<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
-        let (node, next) = (nodes.at(i), nodes.at(i + 1));
-        let x = if self.scaled {
-            next.trial
-        } else {
-            // Rounding must not make a place at rest where there is none.
-            let x = advance(node, node.trial, next.reach);
-            if x > 0.0 { x } else { CREEP * next.reach }
-        };
-        let speed = libm::sqrt(x);
-        let time = node.time + 2.0 * node.delta / (node.speed + speed);
-        let leaves = time + pause(next, bounds);
-        let a = ((x - node.trial) / (2.0 * node.delta)) as f32;
-        let (from, to) = (
-            node.time - bounds.filter,
-            libm::fmin(time - bounds.filter, node.time),
-        );
-        while self.away < i && nodes.at(self.away + 1).time <= from {
-            self.away += 1;
-        }
-        let was = self.range(nodes, [self.away, i], [from, to], bounds);
-        let wanted = [0, 1].map(|side: usize| node.sides[side].accelerations(a, node.trial as f32));
-        let after = nodes.at_mut(i + 1);
-        (after.trial, after.speed, after.time) = (x, speed, leaves);
-        for (side, wanted) in nodes.at_mut(i).sides.iter_mut().zip(wanted) {
-            side.allowed = self.clamp(&wanted, &was, bounds);
-        }
-    }
-
-    /// What the future allows the accelerations of node `i` to be; changes its boxes by that and its past, and
-    /// says whether it did.
-    fn repair<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) -> bool {
-        let (node, next) = (nodes.at(i), nodes.at(i + 1));
-        let end = next.time - pause(next, bounds);
-        let a = ((next.trial - node.trial) / (2.0 * node.delta)) as f32;
-        let (from, to) = (libm::fmax(node.time + bounds.filter, end), end + bounds.filter);
-        while self.away > i + 1 && nodes.at(self.away).time > from {
-            self.away -= 1;
-        }
-        let will = self.range(nodes, [self.away, self.last], [from, to], bounds);
-        let grow = self.round <= self.relaxed;
-        let node = nodes.at_mut(i);
-        let mut changed = false;
-        for place in &mut node.sides {
-            let is = place.accelerations(a, node.trial as f32);
-            let by_future = self.clamp(&is, &will, bounds);
-            let by_past = core::mem::replace(&mut place.allowed, by_future);
-            if self.scaled {
-                continue;
-            }
-            if grow && place.boxed {
-                place.grow(&is, &will, bounds);
-                changed = true;
-            }
-            if is != by_past || is != by_future {
-                place.shrink(&is, &by_past, &by_future, bounds);
-                changed = true;
-            }
-        }
-        changed
-    }
-
-    /// `wanted`, at most one swing away from the range of `other`; notes by how much it was more.
-    fn clamp(&mut self, wanted: &Lanes, other: &[Lanes; 2], bounds: &Bounds) -> Lanes {
-        let mut allowed = *wanted;
-        for row in 0..ROWS {
-            let swing = bounds.swing[row];
-            let (high, low) = (other[0][row] + swing, other[1][row] - swing);
-            allowed[row] = most(least(wanted[row], high), low);
-            let off = most(wanted[row] - allowed[row], allowed[row] - wanted[row]);
-            self.excess[row] = most(self.excess[row], off * bounds.per_swing[row]);
-        }
-        allowed
-    }
-
-    /// Lowest and highest allowed accelerations between two times, the first of which is in the interval of the
-    /// first of `from_to` or before all of them, and the second before the last of them; none at rest.
-    fn range<const N: usize>(
-        &mut self,
-        nodes: &Nodes<N>,
-        from_to: [u32; 2],
-        times: [f64; 2],
-        bounds: &Bounds,
-    ) -> [Lanes; 2] {
-        let ([mut i, beyond], [from, to]) = (from_to, times);
-        let mut low = [f32::INFINITY; ROWS];
-        let mut high = [f32::NEG_INFINITY; ROWS];
-        let mut include = |lanes: &Lanes| {
-            for row in 0..ROWS {
-                low[row] = least(lanes[row], low[row]);
-                high[row] = most(lanes[row], high[row]);
-            }
-        };
-        if from < nodes.at(i).time {
-            include(&REST);
-        }
-        while i < beyond {
-            self.work += LOOK;
-            let (node, next) = (nodes.at(i), nodes.at(i + 1));
-            let end = next.time - pause(next, bounds);
-            if node.time <= to && end >= from {
-                let [start, stop] = &node.sides;
-                let at = |time: f64| {
-                    let part = ((time - node.time) / (end - node.time)) as f32;
-                    core::array::from_fn(|row| {
-                        start.allowed[row] + part * (stop.allowed[row] - start.allowed[row])
-                    })
-                };
-                include(&if from > node.time { at(from) } else { start.allowed });
-                include(&if to < end { at(to) } else { stop.allowed });
-            }
-            if end < next.time && next.time > from && end < to {
-                include(&REST);
-            }
-            if next.time > to {
-                return [low, high];
-            }
-            i += 1;
-        }
-        if beyond == self.last {
-            include(&REST);
-        }
-        [low, high]
-    }
-}
-
-const REST: Lanes = [0.0; ROWS];
-
-/// Time that the machine stands at a node: until the output filter has come to rest \[s\].
-fn pause(node: &Node, bounds: &Bounds) -> f64 {
-    if node.limit > 0.0 {
-        0.0
-    } else {
-        bounds.filter + PATH_PERIOD_S
     }
 }

@@ -13,6 +13,7 @@ mod node;
 mod player;
 mod rounding;
 mod scan;
+mod swing;
 #[cfg(test)]
 mod tests;
 mod track;
