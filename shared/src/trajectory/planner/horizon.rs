@@ -201,7 +201,9 @@ impl Horizon {
                 commit += 1;
             }
         }
-        if wish.stop && commit == self.in_force {
+        if wish.stop && nodes.at(commit).x <= 0.0 {
+            // The machine comes to rest there anyway; now it stays.
+            (self.in_force, self.stopping) = (commit, true);
             return false;
         }
         let (mut history, mut before) = (commit, 0.0);

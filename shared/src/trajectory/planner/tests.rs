@@ -204,6 +204,22 @@ fn a_hold_stops_on_the_path_and_back_leads_over_the_same_points() {
 }
 
 #[test]
+fn a_hold_at_any_time_around_a_stop_ends_when_told() {
+    let mut lines = polyline(&[[0.0; 3], [5.0, 0.0, 0.0], [5.0, 5.0, 0.0]], 50.0);
+    lines[0].join = Join::Stop;
+    for hold in (40..220).step_by(3) {
+        let (positions, _) = run(&lines, |planner, tick| {
+            planner.go(if (hold..hold + 300).contains(&tick) {
+                Way::Hold
+            } else {
+                Way::Forward
+            });
+        });
+        assert_kept(&positions);
+    }
+}
+
+#[test]
 fn an_override_changes_the_speed_without_passing_a_limit() {
     let line = polyline(&[[0.0; 3], [100.0, 0.0, 0.0]], 50.0);
     for (factor, wanted) in [(0.4, 20.0), (1.6, 80.0)] {
