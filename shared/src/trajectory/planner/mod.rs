@@ -289,8 +289,16 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         } else {
             NODES / 8
         };
-        let oldest = self.player.node.saturating_sub(nodes as u32);
-        self.nodes.first = self.nodes.first.max(oldest);
+        let mut oldest = self.player.node;
+        // The swings need all that the output filter remembers, and more.
+        let mut time = 0.0;
+        while oldest > self.nodes.first
+            && (time < 2.0 * self.bounds.filter || oldest + nodes as u32 > self.player.node)
+        {
+            oldest -= 1;
+            time += self.nodes.at(oldest).lasts;
+        }
+        self.nodes.first = oldest;
         // What lies further behind than this cannot be gone back to.
         let elements = if self.track.room() > ELEMENTS / 2 {
             ELEMENTS / 4

@@ -4,6 +4,10 @@ use super::node::Nodes;
 use crate::motion::PATH_PERIOD_S;
 use crate::trajectory::SpeedState;
 
+/// A node is reached this much before its time \[s\]: else rounding leaves a tick of braking behind a stop, in the
+/// direction of what comes next.
+const ARRIVED: f64 = 1e-9;
+
 /// Where on the plan the machine is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Player {
@@ -37,8 +41,8 @@ impl Player {
             return;
         }
         self.time += PATH_PERIOD_S;
-        while self.node < last && self.time >= nodes.at(self.node).lasts {
-            self.time -= nodes.at(self.node).lasts;
+        while self.node < last && self.time >= nodes.at(self.node).lasts - ARRIVED {
+            self.time = libm::fmax(self.time - nodes.at(self.node).lasts, 0.0);
             self.node += 1;
             if nodes.at(self.node).limit <= 0.0 {
                 (self.time, self.standing) = (0.0, pause);
