@@ -191,7 +191,8 @@ impl MotionController {
                 s_mm: now.s,
                 speed_mm_s: now.v,
                 pose: self.measured_pose(),
-                tracking: on_path && self.beams.tracking(),
+                // On a path that is given up nobody looks for the seam any more.
+                tracking: on_path && self.state != State::Stopping && self.beams.tracking(),
                 beams: self.gates[0].gate,
             },
             sample: MotionSample {
