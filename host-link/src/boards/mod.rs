@@ -1,6 +1,8 @@
 //! The two boards as the PC sees them, whether they are real, emulated or simulated.
 
 mod network;
+#[cfg(test)]
+pub mod overheard;
 pub mod simulated;
 
 pub use network::{Endpoint, NetworkBoards, Patience};

@@ -1,4 +1,8 @@
-//! The path (where) and the speed along it (when), kept apart.
+//! The path (where) and the speed along it (when).
+//!
+//! The motion board runs [`Element`]s through the [`Planner`], which looks ahead. [`Path`] is what the tracker board
+//! looks places up in, and what planners on the PC begin with; [`SpeedPlan`] is their estimate of the speed, from rest
+//! to rest. [`Trapezoid`] and [`MatchedTurn`] are for comparison only.
 
 mod curve;
 mod element;

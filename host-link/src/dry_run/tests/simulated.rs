@@ -1,65 +1,13 @@
 //! Predictions beside runs on simulated boards, streams, drives and servo loops included.
 
 use super::*;
+use crate::boards::overheard::Overheard;
 use crate::boards::simulated::SimulatedBoards;
-use crate::boards::{Boards, LinkError};
 use crate::seam::Deviation;
 use crate::weld::{Job, Names, Silent, Work, run as weld};
-use shared::protocol::{Datagram, Identity, MotionSample, Request, Response, Role};
+use shared::protocol::MotionSample;
 use std::rc::Rc;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
-
-/// Simulated boards, and when the machine was on a path: first and last tick, and how many.
-struct Timed {
-    boards: SimulatedBoards,
-    ticks: Option<(u32, u32)>,
-    on_path: u32,
-}
-
-impl Timed {
-    fn see(&mut self, sample: &MotionSample) {
-        if sample.state.on_path() {
-            let (first, _) = self.ticks.unwrap_or((sample.tick, 0));
-            self.ticks = Some((first, sample.tick));
-            self.on_path += 1;
-        }
-    }
-}
-
-impl Boards for Timed {
-    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
-        self.boards.request(role, request)
-    }
-
-    fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
-        let received = self.boards.receive(timeout)?;
-        if let Some((_, Datagram::MotionTelemetry(telemetry))) = &received {
-            telemetry.samples.iter().for_each(|sample| self.see(sample));
-        }
-        Ok(received)
-    }
-
-    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
-        self.boards.send(role, datagram)
-    }
-
-    fn now(&self) -> Duration {
-        self.boards.now()
-    }
-
-    fn identity(&self, role: Role) -> Option<&Identity> {
-        self.boards.identity(role)
-    }
-
-    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
-        self.boards.path_states_target()
-    }
-
-    fn datagram_port(&self, role: Role) -> Option<u16> {
-        self.boards.datagram_port(role)
-    }
-}
 
 /// A shipped program both ways: by how much the prediction of the whole job, and of its motion, is off, as parts.
 fn off(machine: &str, program: &str, seam: Option<&str>) -> [f64; 2] {
@@ -84,15 +32,22 @@ fn off(machine: &str, program: &str, seam: Option<&str>) -> [f64; 2] {
             boards: "simulated".into(),
         },
     };
-    let mut boards = Timed {
+    // When the machine was on a path: first and last tick, and how many.
+    let (mut ticks, mut on_path) = (None, 0);
+    let mut boards = Overheard {
         boards: SimulatedBoards::new(name).unwrap(),
-        ticks: None,
-        on_path: 0,
+        hear: |_: &mut SimulatedBoards, sample: &MotionSample| {
+            if sample.state.on_path() {
+                let (first, _) = ticks.unwrap_or((sample.tick, 0));
+                ticks = Some((first, sample.tick));
+                on_path += 1;
+            }
+        },
     };
     let ended = weld(&mut boards, &job, &AtomicBool::new(false), &mut Silent).unwrap();
     assert!(ended.error.is_none(), "{:?}", ended.error);
-    let (first, last) = boards.ticks.unwrap();
-    let seen = [f64::from(last - first + 1), f64::from(boards.on_path)].map(|ticks| 1e-3 * ticks);
+    let (first, last) = ticks.unwrap();
+    let seen = [f64::from(last - first + 1), f64::from(on_path)].map(|ticks| 1e-3 * ticks);
     println!(
         "{name}: {:.3} {:.3}, seen {seen:.3?}",
         predicted.duration_s, predicted.motion_s

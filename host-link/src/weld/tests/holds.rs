@@ -1,88 +1,40 @@
 //! A hold in the middle of a weld.
 
 use super::*;
+use crate::boards::overheard::Overheard;
 use shared::motion::State;
 use shared::protocol::MotionSample;
-
-/// Simulated boards whose operator holds the weld at a path position, and goes on some time later.
-struct Operated {
-    boards: SimulatedBoards,
-    hold_at_mm: f64,
-    /// Told by the motion board since the hold.
-    since: Vec<MotionSample>,
-    resumed: bool,
-}
-
-impl Operated {
-    fn look(&mut self, samples: &[MotionSample]) {
-        for sample in samples {
-            if !self.since.is_empty() {
-                self.since.push(*sample);
-            } else if sample.beams[0] && sample.s_mm >= self.hold_at_mm {
-                self.since.push(*sample);
-                command(&mut self.boards, Role::Motion, &Request::Hold).unwrap();
-            }
-        }
-        let waits = |sample: &MotionSample| sample.state == State::Holding && sample.speed_mm_s == 0.0;
-        let stood = self.since.iter().rev().take_while(|sample| waits(sample)).count();
-        if stood > 300 && !self.resumed {
-            self.resumed = true;
-            command(&mut self.boards, Role::Motion, &Request::Resume).unwrap();
-        }
-    }
-}
-
-impl Boards for Operated {
-    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
-        self.boards.request(role, request)
-    }
-
-    fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
-        let received = self.boards.receive(timeout)?;
-        if let Some((_, Datagram::MotionTelemetry(telemetry))) = &received {
-            self.look(&telemetry.samples);
-        }
-        Ok(received)
-    }
-
-    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
-        self.boards.send(role, datagram)
-    }
-
-    fn now(&self) -> Duration {
-        self.boards.now()
-    }
-
-    fn identity(&self, role: Role) -> Option<&Identity> {
-        self.boards.identity(role)
-    }
-
-    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
-        self.boards.path_states_target()
-    }
-
-    fn datagram_port(&self, role: Role) -> Option<u16> {
-        self.boards.datagram_port(role)
-    }
-}
 
 /// The beams go off before the motion is slower than they may be on, the machine stops on the path, and goes over
 /// the place again at the speed of the weld; the seam is followed all the time.
 #[test]
 fn a_weld_goes_on_over_the_place_where_it_was_held() {
     for hold_at_mm in [60.0, 140.0] {
-        let mut boards = Operated {
+        // Told by the motion board since the operator held the weld; the operator goes on some time later.
+        let mut since = Vec::<MotionSample>::new();
+        let mut stood = 0;
+        let mut boards = Overheard {
             boards: SimulatedBoards::default(),
-            hold_at_mm,
-            since: Vec::new(),
-            resumed: false,
+            hear: |boards: &mut SimulatedBoards, sample: &MotionSample| {
+                let holds = since.is_empty() && sample.beams[0] && sample.s_mm >= hold_at_mm;
+                if holds || !since.is_empty() {
+                    since.push(*sample);
+                }
+                if holds {
+                    command(boards, Role::Motion, &Request::Hold).unwrap();
+                }
+                stood += i32::from(sample.state == State::Holding && sample.speed_mm_s == 0.0);
+                if stood == 301 {
+                    command(boards, Role::Motion, &Request::Resume).unwrap();
+                }
+            },
         };
         let ended = undisturbed(&mut boards);
         assert!(ended.error.is_none(), "{:?}", ended.error);
         for max in ended.evaluation.max_deviation_mm {
             assert!(max.unwrap() < 0.02, "{:?}", ended.evaluation.max_deviation_mm);
         }
-        let (machine, since) = (machine(), &boards.since);
+        let machine = machine();
         let slowest = machine.motion.beams[0].as_ref().unwrap().min_speed_mm_s;
         let path = since[0].path_id;
         assert!(

@@ -1,49 +1,13 @@
 //! Jobs of machines without a tracker.
 
 use super::*;
+use crate::boards::overheard::Overheard;
 use crate::report::Truth;
 use shared::protocol::MotionSample;
 use std::path::Path;
 
 /// A motion board without a tracker board beside it.
 struct MotionOnly(SimulatedBoards);
-
-/// The same, keeping what the motion board tells.
-struct Overheard(MotionOnly, Vec<MotionSample>);
-
-impl Boards for Overheard {
-    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
-        self.0.request(role, request)
-    }
-
-    fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
-        let received = self.0.receive(timeout)?;
-        if let Some((_, Datagram::MotionTelemetry(telemetry))) = &received {
-            self.1.extend(telemetry.samples.iter().cloned());
-        }
-        Ok(received)
-    }
-
-    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
-        self.0.send(role, datagram)
-    }
-
-    fn now(&self) -> Duration {
-        self.0.now()
-    }
-
-    fn identity(&self, role: Role) -> Option<&Identity> {
-        self.0.identity(role)
-    }
-
-    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
-        self.0.path_states_target()
-    }
-
-    fn datagram_port(&self, role: Role) -> Option<u16> {
-        self.0.datagram_port(role)
-    }
-}
 
 impl Boards for MotionOnly {
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
@@ -212,26 +176,27 @@ fn every_machine_runs_from_its_marks_to_its_park_position_on_its_motion_board() 
 fn a_spindle_runs_up_before_the_motion_and_stops_before_the_next() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../machines/stir-gantry.toml");
     let machine = MachineFile::read(&file).unwrap();
-    let mut boards = Overheard(
-        MotionOnly(SimulatedBoards::new("stir-gantry").unwrap()),
-        Vec::new(),
-    );
+    let mut samples = Vec::new();
+    let mut boards = Overheard {
+        boards: MotionOnly(SimulatedBoards::new("stir-gantry").unwrap()),
+        hear: |_: &mut MotionOnly, sample: &MotionSample| samples.push(*sample),
+    };
     let program =
         "G43.4\nG0 X300 Y200 Z50 B-3 C0\nM3 S600\nG4 P2\nG1 Z45 F120\nG0 Z60\nM5\nG4 P1\nG0 X310\nM2";
     let never = AtomicBool::new(false);
     let ended = run_on(&mut boards, &machine, program, None, &never, &mut Silent).unwrap();
     assert!(ended.error.is_none(), "{:?}", ended.error);
     // Paths: approach, spindle on, plunge, retract, spindle off, across.
-    let of_path = |id: u32| boards.1.iter().filter(move |sample| sample.path_id == id);
+    let of_path = |id: u32| samples.iter().filter(move |sample| sample.path_id == id);
     let on = |sample: &&MotionSample| sample.beams[0];
-    let first_on = boards.1.iter().find(on).unwrap().time_us;
+    let first_on = samples.iter().find(on).unwrap().time_us;
     let plunge = of_path(3).next().unwrap().time_us;
     assert!((1_950_000..2_200_000).contains(&(plunge - first_on)));
     assert!(of_path(1).all(|sample| !on(&sample)));
     assert!(of_path(3).count() > 1000);
     let off = of_path(3).chain(of_path(4)).find(|sample| !on(sample));
     assert_eq!(off, None);
-    let last_on = boards.1.iter().rev().find(on).unwrap().time_us;
+    let last_on = samples.iter().rev().find(on).unwrap().time_us;
     let across = of_path(6).next().unwrap().time_us;
     assert!((950_000..1_200_000).contains(&(across - last_on)));
 }

@@ -90,7 +90,7 @@ pub struct Output {
     pub along: SpeedState,
     /// Line of the program of the element there.
     pub line: u32,
-    /// Nothing moves, and nothing will before another element comes or the rate is changed.
+    /// Nothing moves, and nothing will before another element comes, or another way or override is asked for.
     pub at_rest: bool,
 }
 
@@ -176,7 +176,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.track.push(element)
     }
 
-    /// Goes another way, gently, from now on.
+    /// Goes another way from now on, inside all limits.
     pub fn go(&mut self, way: Way) {
         self.way = way;
     }
