@@ -4,7 +4,7 @@ use super::TICK;
 use crate::meter::Meter;
 use shared::io::AXES;
 use shared::kinematics::Kinematics;
-use shared::trajectory::{BoardPlanner, Element, PathSpace, PlanLimits, PushError, ReferenceError};
+use shared::trajectory::{BoardPlanner, Element, PathSpace, PlanLimits, PushError, Unreachable};
 use std::hint::black_box;
 use thiserror::Error;
 
@@ -44,7 +44,7 @@ pub enum Stuck {
         /// Line of the program in the last output.
         line: u32,
         /// Why.
-        error: ReferenceError,
+        error: Unreachable,
     },
     /// An output is not finite.
     #[error("tick {ticks}, line {line}: an output is not a finite number")]

@@ -2,7 +2,7 @@
 
 use crate::path::PathError;
 use shared::parameter::ParameterError;
-use shared::trajectory::{PushError, ReferenceError};
+use shared::trajectory::{PushError, Unreachable};
 use thiserror::Error;
 
 /// Why a program cannot be run off-line.
@@ -18,13 +18,8 @@ pub enum DryRunError {
     #[error(transparent)]
     Element(#[from] PushError),
     /// There is no reference for the axes.
-    #[error("line {line}: {source}")]
-    Reference {
-        /// Line of the program.
-        line: u32,
-        /// Why.
-        source: ReferenceError,
-    },
+    #[error(transparent)]
+    Reference(#[from] Unreachable),
     /// The planner does not go on.
     #[error(
         "line {line}: the planner stands still {s_mm:.3} mm along path {path}; please report the program"

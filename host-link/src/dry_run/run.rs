@@ -113,11 +113,7 @@ impl Runner {
         self.differences.count_from(PATH, 0.0);
         let (mut arrived, mut idle, mut last_s) = (0, 0, 0.0);
         while arrived < ARRIVED {
-            let output = self.planner.tick(&self.board.kinematics);
-            let output = output.map_err(|source| DryRunError::Reference {
-                line: path.line_at(self.planner.planned().s),
-                source,
-            })?;
+            let output = self.planner.tick(&self.board.kinematics)?;
             let feed = feeds.at(output.along.s) * self.factor;
             self.tick(&output, [feed, acceleration, jerk], &mut seen);
             stream.tick(&mut self.planner, |element| feeds.add(element))?;

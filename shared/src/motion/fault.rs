@@ -77,8 +77,12 @@ pub enum Fault {
         position: f32,
     },
     /// The path has no inverse kinematics or is not finite there.
-    #[error("the path cannot be followed at s = {s_mm:.3} mm: no solution of the kinematics")]
+    #[error(
+        "line {line}: the machine cannot follow the path to s = {s_mm:.3} mm: no solution of the kinematics there"
+    )]
     NoSolution {
+        /// Line of the program.
+        line: u32,
         /// Path position.
         s_mm: f32,
     },

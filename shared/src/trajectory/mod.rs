@@ -26,7 +26,7 @@ pub use matched_turn::MatchedTurn;
 pub use path::{Path, PathError, PathPoint, PathSpace};
 pub use plan::{SpeedPlan, SpeedStep};
 pub use planner::{Output, PlanLimits, Planner, PushError, Way};
-pub use reference::{AxisReference, ReferenceError, axes_at, reference};
+pub use reference::{AxisReference, ReferenceError, Unreachable, axes_at, reference};
 pub use speed::{SpeedError, SpeedLimits, SpeedState};
 pub use trapezoid::{SmoothedTrapezoid, Trapezoid, TrapezoidError};
 pub use window::{CurveLimits, ProcessWindow, WindowError, WindowPlan, limit_acceleration};

@@ -33,6 +33,18 @@ pub enum ReferenceError {
     Kinematics(#[from] KinematicsError),
 }
 
+/// A place of a path that the machine cannot be at.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("line {line}: {source} (at s = {s:.3} mm)")]
+pub struct Unreachable {
+    /// Line of the program.
+    pub line: u32,
+    /// Path length there \[mm\].
+    pub s: f64,
+    /// Why.
+    pub source: ReferenceError,
+}
+
 /// The axes at a point of a path in motion at unit speed: their derivatives over s (SPEC 0.3, 0.4).
 pub(super) fn at_unit_speed(
     kinematics: &Kinematics,

@@ -1,9 +1,10 @@
 //! What switches the drives off at once, and what stops on the path first.
 
-use super::bench::{Bench, MARK, SCALE, TRAVEL_MAX, Y, config};
+use super::bench::{BLEND, Bench, MARK, SCALE, TRAVEL_MAX, Y, config, load};
 use shared::io::MotionCommand;
 use shared::motion::{Fault, State};
-use shared::protocol::{Refusal, Request};
+use shared::protocol::{MotionSample, PathAction, PathChannel, PathEvent, PathJoin, Refusal, Request};
+use shared::trajectory::PathSpace;
 
 /// Pushes the motors by `step` in each of `ticks` servo ticks; the fault, all drives off in the tick it came.
 fn push(bench: &mut Bench, motor: usize, step: f64, ticks: u32) -> Option<Fault> {
@@ -286,4 +287,53 @@ fn open_inputs_of_motors_and_beams_that_the_machine_does_not_have_stop_nothing()
     assert_eq!(bench.command.beam_gate, [true, false]);
     bench.until(State::Idle, 2000);
     assert_eq!((bench.fault(), bench.status().s_mm), (None, 100.0));
+}
+
+/// A place without a pose, looked at ahead: the beam goes off as the machine slows down for it, which then stands
+/// before that place with its drives off, and the fault names the line.
+#[test]
+fn a_place_that_cannot_be_taken_stops_the_path_before_it() {
+    let mut bench = Bench::homed();
+    bench.begin(PathSpace::Tool);
+    let mut loaded = |from, to, scale: [f64; 2], join| {
+        let mut element = bench.along_y(from, to, 150.0, join);
+        for channel in &mut element.rest[..3] {
+            if let PathChannel::Constant(value) = *channel {
+                *channel = PathChannel::Linear(scale.map(|scale| scale * value));
+            }
+        }
+        let last = join == PathJoin::Stop;
+        bench.loaded(&load(element, last));
+    };
+    loaded(0.0, 100.0, [1.0, 0.0], BLEND);
+    // T becomes shorter and shorter, and then there is none.
+    loaded(100.0, 200.0, [1.0, -0.01], BLEND);
+    loaded(200.0, 300.0, [0.0, 0.0], PathJoin::Stop);
+    let (side, s_mm) = (0, 0.0);
+    let watt = 2000.0;
+    let events = [
+        PathAction::Power { side, watt },
+        PathAction::Beam { side, on: true },
+    ];
+    let events = events.map(|action| PathEvent { s_mm, action });
+    bench.loaded(&Request::LoadEvents(events.into_iter().collect()));
+    bench.run();
+    for _ in 0..40 {
+        bench.run_ms(100);
+        bench.status();
+    }
+    let fault = bench.fault();
+    assert!(
+        matches!(fault, Some(Fault::NoSolution { line, .. }) if line == 101 || line == 201),
+        "{fault:?}"
+    );
+    let on_path = |sample: &&MotionSample| sample.state == State::Running;
+    let samples: Vec<_> = bench.samples.iter().filter(on_path).collect();
+    assert!(samples.iter().any(|sample| sample.beams[0]));
+    assert!(samples.iter().all(|s| !s.beams[0] || s.speed_mm_s >= 5.0));
+    let last = samples.last().unwrap();
+    assert!(last.speed_mm_s.abs() < 0.01 && !last.beams[0], "{last:?}");
+    // The corner at 200 mm is rounded.
+    assert!((195.0..200.5).contains(&last.s_mm), "{} mm", last.s_mm);
+    assert_eq!(bench.command, MotionCommand::SAFE);
 }

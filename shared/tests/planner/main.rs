@@ -8,3 +8,4 @@ mod judge;
 mod program;
 mod random;
 mod run;
+mod unreachable;

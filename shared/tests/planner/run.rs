@@ -1,7 +1,7 @@
 //! Running programs, with hands on the controls.
 
 use super::bench::Bench;
-use shared::trajectory::{BoardPlanner, Element, Output, PushError, ReferenceError, Way};
+use shared::trajectory::{BoardPlanner, Element, Output, PushError, Unreachable, Way};
 use thiserror::Error;
 
 /// What somebody does at the controls, or what befalls the link.
@@ -31,7 +31,7 @@ pub enum Stuck {
     #[error("at tick {0}: {1}")]
     Push(usize, PushError),
     #[error("tick {0}: {1}")]
-    Tick(usize, ReferenceError),
+    Tick(usize, Unreachable),
     #[error("slow: at s = {s} mm of {length} mm after {ticks} ticks")]
     Slow { ticks: usize, s: f64, length: f64 },
     #[error("stands at s = {s} mm of {length} mm, after {ticks} ticks; it says it is at rest: {at_rest}")]

@@ -95,9 +95,13 @@ impl MotionController {
         let Some(machine) = &self.machine else { return };
         let output = match self.planner.tick(&machine.kinematics) {
             Ok(output) => output,
-            Err(_) => {
-                let s_mm = self.along[2].s as f32;
-                self.trip(Fault::NoSolution { s_mm });
+            // The machine stands before a place that was looked at ahead; only one that shows between two such
+            // places is met in motion.
+            Err(place) => {
+                self.trip(Fault::NoSolution {
+                    line: place.line,
+                    s_mm: place.s as f32,
+                });
                 return;
             }
         };

@@ -7,7 +7,7 @@ use super::track::{REACH, SMOOTH, Track, position_norm};
 use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics};
 use crate::trajectory::reference::at_unit_speed;
-use crate::trajectory::{Join, PathSpace, ReferenceError};
+use crate::trajectory::{Join, PathSpace, ReferenceError, Unreachable};
 
 /// Places nearer than this are one \[mm\].
 const SAME: f64 = 1e-9;
@@ -97,15 +97,17 @@ impl<const E: usize> Ground<'_, E> {
         direction: f64,
         hint: &mut u32,
         near: &[f64; AXES],
-    ) -> Result<(Sample, AxisMotion), ReferenceError> {
-        let piece = self.track.find(s, hint).ok_or(ReferenceError::EmptyPath)?;
-        let feed = piece.element.feed;
+    ) -> Result<(Sample, AxisMotion), Unreachable> {
+        let nowhere = |line| move |source| Unreachable { line, s, source };
+        let empty = ReferenceError::EmptyPath;
+        let piece = self.track.find(s, hint).ok_or(empty).map_err(nowhere(0))?;
+        let (feed, line) = (piece.element.feed, piece.element.line);
         let tolerance = match piece.element.join {
             Join::Blend(tolerance) => tolerance,
             Join::Stop => self.bounds.tolerance,
         };
-        let point = self.track.at(s, hint).ok_or(ReferenceError::EmptyPath)?;
-        let axes = at_unit_speed(self.kinematics, &point, self.space, near)?;
+        let point = self.track.at(s, hint).ok_or(empty).map_err(nowhere(line))?;
+        let axes = at_unit_speed(self.kinematics, &point, self.space, near).map_err(nowhere(line))?;
         let mut sample = Sample {
             first: [0.0; ROWS],
             second: [0.0; ROWS],
@@ -246,7 +248,7 @@ impl Grid {
         ground: &Ground<E>,
         nodes: &mut Nodes<N>,
         in_force: u32,
-    ) -> Result<u32, ReferenceError> {
+    ) -> Result<u32, Unreachable> {
         let bounds = ground.bounds;
         let direction = self.direction;
         if nodes.room() == 0 || direction * (ground.end(direction) - self.s) <= SAME {

@@ -21,7 +21,7 @@ mod track;
 pub use limits::PlanLimits;
 
 use super::reference::at_unit_speed;
-use super::{Element, PathSpace, ReferenceError, SpeedState};
+use super::{Element, PathSpace, SpeedState, Unreachable};
 use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics};
 use filter::Filter;
@@ -67,6 +67,8 @@ pub struct Planner<const ELEMENTS: usize, const NODES: usize> {
     resting: u32,
     /// There was nothing to plan at the last tick.
     idle: bool,
+    /// Why no node follows the newest one: for the planner, the path ends there.
+    blocked: Option<Unreachable>,
 }
 
 /// Which way the machine goes along the path.
@@ -140,6 +142,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             output_hint: 0,
             resting: 0,
             idle: false,
+            blocked: None,
         }
     }
 
@@ -149,6 +152,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.space = space;
         self.bounds = Bounds::build(limits);
         self.track.clear(s);
+        self.blocked = None;
         self.grid.start(s, axes, &mut self.nodes);
         self.horizon = Horizon::NONE;
         self.player = Player::NONE;
@@ -198,13 +202,16 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     }
 
     /// One path tick: a bounded share of the planning, and the next references.
-    pub fn tick(&mut self, kinematics: &Kinematics) -> Result<Output, ReferenceError> {
+    ///
+    /// # Errors
+    /// A place ahead that the machine cannot be at, as soon as it rests before that and shall go on.
+    pub fn tick(&mut self, kinematics: &Kinematics) -> Result<Output, Unreachable> {
         self.plan(kinematics)?;
         self.play(kinematics)
     }
 
     /// A share of the planning: corners, then nodes, then passes over them.
-    fn plan(&mut self, kinematics: &Kinematics) -> Result<(), ReferenceError> {
+    fn plan(&mut self, kinematics: &Kinematics) -> Result<(), Unreachable> {
         let mut work = WORK;
         self.idle = false;
         loop {
@@ -226,12 +233,21 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
                     bounds: &self.bounds,
                 };
                 let in_force = self.horizon.in_force();
-                let extended = self.grid.extend(&ground, &mut self.nodes, in_force)?;
+                let mut extended = 0;
+                if self.blocked.is_none() {
+                    match self.grid.extend(&ground, &mut self.nodes, in_force) {
+                        Ok(work) => extended = work,
+                        Err(place) => self.blocked = Some(place),
+                    }
+                }
                 if extended > 0 {
                     extended
                 } else if self.begin() {
                     BEGIN
                 } else {
+                    if let (Some(place), true) = (self.blocked, self.rests()) {
+                        return Err(place);
+                    }
                     self.idle = true;
                     break;
                 }
@@ -250,18 +266,28 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         }
     }
 
+    /// The output has come to rest.
+    fn rested(&self) -> bool {
+        self.resting >= self.bounds.filter_ticks as u32
+    }
+
+    /// At rest at the end of the plan in force, and not because it shall be.
+    fn rests(&self) -> bool {
+        let ended = self.player.node >= self.horizon.in_force();
+        self.rested() && ended && self.way != Way::Hold && self.factor > 0.0
+    }
+
     /// Begins a plan, or turns where the machine has come to rest and is to go the other way; says whether it did.
     fn begin(&mut self) -> bool {
-        let rested = self.resting >= self.bounds.filter_ticks as u32;
         let last = self.horizon.in_force();
         let along = self.along();
         let stop = !along || self.factor <= 0.0;
-        let rests = rested && self.player.node >= last && self.way != Way::Hold && self.factor > 0.0;
         let inside = last + 1 < self.nodes.end && self.nodes.at(last).limit > 0.0;
-        if rests && (inside || !along) {
+        if self.rests() && (inside || !along) {
             // From rest the nodes stand closer, and none of the old ones may be the next.
             let direction = if self.way == Way::Forward { 1.0 } else { -1.0 };
             self.grid.again(last, direction, &self.axes, &mut self.nodes);
+            self.blocked = None;
             return true;
         }
         let wish = Wish {
@@ -270,6 +296,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         };
         let left = self.player.left(&self.nodes, last);
         let next = (self.player.node + 1).min(last);
+        let rested = self.rested();
         self.horizon
             .begin(&mut self.nodes, next, left, rested, wish, &self.bounds)
     }
@@ -309,7 +336,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.track.release(oldest);
     }
 
-    fn play(&mut self, kinematics: &Kinematics) -> Result<Output, ReferenceError> {
+    fn play(&mut self, kinematics: &Kinematics) -> Result<Output, Unreachable> {
         let ticks = self.bounds.filter_ticks as u32;
         let last = self.horizon.in_force();
         self.player.step(&self.nodes, last, ticks);
@@ -323,7 +350,14 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.planned = planned;
         let axes = match self.track.at(planned.s, &mut self.planned_hint) {
             Some(point) => {
-                at_unit_speed(kinematics, &point, self.space, &self.axes)?.at_speed(planned.v, planned.a)
+                let axes = at_unit_speed(kinematics, &point, self.space, &self.axes);
+                let axes = axes.map_err(|source| {
+                    let piece = self.track.find(planned.s, &mut self.planned_hint);
+                    let line = piece.map_or(0, |piece| piece.element.line);
+                    let s = planned.s;
+                    Unreachable { line, s, source }
+                })?;
+                axes.at_speed(planned.v, planned.a)
             }
             None => AxisMotion {
                 position: self.axes,
