@@ -33,7 +33,7 @@ fn main() {}
 #[rtic::app(device = crate::board::device, peripherals = false)]
 mod app {
     use crate::board::{self, Tick, Watchdog, motion::Axes};
-    use crate::tasks::{self, Controller, Network, Outbox, Published, Servo};
+    use crate::tasks::{self, Controller, Network, PathTask, Published, Servo};
     use heapless::spsc::Queue;
 
     #[shared]
@@ -50,7 +50,7 @@ mod app {
         servo_tick: Tick,
         watchdog: Watchdog,
         path_tick: Tick,
-        outbox: Outbox,
+        path: PathTask,
         network: Network,
     }
 
@@ -77,7 +77,7 @@ mod app {
             servo_tick: board.servo_tick,
             watchdog: board.watchdog,
             path_tick: board.path_tick,
-            outbox,
+            path: PathTask::new(outbox),
             network,
         };
         (shared, local)
@@ -91,15 +91,11 @@ mod app {
             .lock(|servo| tasks::servo::tick(servo, cx.local.axes, cx.local.watchdog, elapsed));
     }
 
-    #[task(binds = PATH_TICK, priority = 3, shared = [servo, controller], local = [path_tick, outbox])]
+    #[task(binds = PATH_TICK, priority = 3, shared = [servo, controller], local = [path_tick, path])]
     fn path_tick(mut cx: path_tick::Context) {
         let elapsed = cx.local.path_tick.acknowledge();
-        if !tasks::path::tick(
-            &mut cx.shared.servo,
-            &mut cx.shared.controller,
-            cx.local.outbox,
-            elapsed,
-        ) {
+        let path = cx.local.path;
+        if !path.tick(&mut cx.shared.servo, &mut cx.shared.controller, elapsed) {
             defmt::warn!("the network task does not keep up: a path state was dropped");
         }
         rtic::pend(board::device::Interrupt::ETHERNET);

@@ -5,6 +5,7 @@ use crate::nc::Motion;
 use crate::part::RunSample;
 use crate::path::{CAPACITY, PlannedPath};
 use crate::record::Record;
+use crate::report::Load;
 use crate::seam::OVERHANG_MM;
 use crate::world::{Machine, TrueSeam};
 use nalgebra::Vector3;
@@ -64,6 +65,8 @@ pub struct Evaluation {
     pub max_skew_mm: f64,
     /// Time on the paths by the motion board's clock \[s\].
     pub motion_s: f64,
+    /// What the ticks on the paths took, if the board has a processor of its own.
+    pub load: Option<Load>,
 }
 
 /// The seams that were followed.
@@ -127,6 +130,7 @@ pub fn evaluate(
     result.max_deviation_mm = deviation.map(|peak| peak.max());
     result.rms_deviation_mm = deviation.map(|peak| peak.rms());
     result.max_contour_error_mm = contour.max();
+    result.load = Load::of(on_paths(record).filter_map(|sample| sample.load));
     result
 }
 

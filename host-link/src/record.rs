@@ -128,6 +128,7 @@ pub(crate) mod tests {
             truth: Some([0.0; MOTORS]),
             following_error: [0.0; MOTORS],
             skew_mm: 0.0,
+            load: None,
         }
     }
 

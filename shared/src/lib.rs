@@ -10,6 +10,7 @@
 #![no_std]
 
 pub mod control;
+pub mod execution_time;
 pub mod geometry;
 pub mod io;
 pub mod kinematics;

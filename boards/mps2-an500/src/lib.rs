@@ -26,7 +26,7 @@ mod watchdog;
 
 pub use network::Network;
 pub use tick::Tick;
-pub use time::now_us;
+pub use time::{CYCLES_PER_US, cycles, now_us};
 pub use watchdog::Watchdog;
 
 /// Name of the board, as it tells the PC.

@@ -36,6 +36,14 @@ pub fn now_ticks() -> u64 {
     })
 }
 
+/// Instructions that the board executes in a microsecond, as it is emulated (see the `emulator` crate).
+pub const CYCLES_PER_US: u16 = 125;
+
+/// Counts instructions, in steps of 5, and wraps. The real board counts cycles.
+pub fn cycles() -> u32 {
+    (now_ticks() * (u64::from(CYCLES_PER_US) / TICKS_PER_US)) as u32
+}
+
 /// Time since start \[µs\]. Callable at any priority.
 pub fn now_us() -> u64 {
     now_ticks() / TICKS_PER_US

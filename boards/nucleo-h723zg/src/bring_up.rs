@@ -12,7 +12,7 @@ pub(crate) fn start(mut core: cortex_m::Peripherals) -> (Watchdog, Network, Bus)
     // First of all: should anything below hang, the board starts anew.
     let watchdog = Watchdog::start();
     let p = clocks::start(&mut core);
-    timebase::start();
+    timebase::start(&mut core);
     handlers::report_last();
     rcc::enable_and_reset::<peripherals::TIM6>();
     rcc::enable_and_reset::<peripherals::TIM7>();

@@ -46,7 +46,12 @@ pub mod tracker;
 mod watchdog;
 
 #[cfg(target_os = "none")]
-pub use {ethernet::Network, ticks::Tick, timebase::now_us, watchdog::Watchdog};
+pub use {
+    ethernet::Network,
+    ticks::Tick,
+    timebase::{CYCLES_PER_US, cycles, now_us},
+    watchdog::Watchdog,
+};
 
 /// Name of the board, as it tells the PC.
 pub const NAME: &str = "nucleo-h723zg";

@@ -10,6 +10,7 @@ use shared::protocol::{MotionSample, PathState};
 use shared::roll_call::RollCall;
 
 pub use network::Network;
+pub use path::PathTask;
 pub use servo::Servo;
 
 /// Who must be seen for the servo tick to feed the watchdog, every 2000 servo ticks (0.5 s) at least.

@@ -1,7 +1,8 @@
 //! The servo tick: read the gratings, run the loops, write the drives; feed the watchdog if all others live.
 
 use super::ROLL_CALL;
-use crate::board::{Watchdog, motion::Axes};
+use crate::board::{self, Watchdog, motion::Axes};
+use shared::execution_time::ExecutionTime;
 use shared::motion::ServoLoops;
 use shared::roll_call::RollCall;
 
@@ -11,6 +12,8 @@ pub struct Servo {
     pub loops: ServoLoops,
     /// Decides about the watchdog.
     pub alive: RollCall<2>,
+    /// What the servo ticks take, on an emulated board with its machine.
+    pub time: ExecutionTime,
 }
 
 impl Servo {
@@ -19,12 +22,14 @@ impl Servo {
         Self {
             loops: ServoLoops::default(),
             alive: ROLL_CALL,
+            time: ExecutionTime::new(),
         }
     }
 }
 
 /// One servo tick.
 pub fn tick(servo: &mut Servo, axes: &mut Axes, watchdog: &mut Watchdog, elapsed: u32) {
+    let begin = board::cycles();
     let feedback = axes.read();
     let truth = axes.truth();
     let command = servo.loops.tick(&feedback, truth, elapsed);
@@ -32,4 +37,5 @@ pub fn tick(servo: &mut Servo, axes: &mut Axes, watchdog: &mut Watchdog, elapsed
     if servo.alive.tick() {
         watchdog.feed();
     }
+    servo.time.add(begin, board::cycles());
 }

@@ -2,11 +2,13 @@
 
 mod draw;
 mod dry_run;
+mod load;
 mod log;
 mod plots;
 mod table;
 
 pub use dry_run::write_dry_run;
+pub use load::{ExecutionTimes, Load};
 
 use crate::evaluate::Evaluation;
 use crate::part::{Figure, Plot};
@@ -46,6 +48,9 @@ pub struct Report {
     pub weld_ticks: WeldTicks,
     /// Control ticks that a board could not serve in time, during the job.
     pub lost_ticks: ByBoard,
+    /// CPU load of the motion board; a simulated one has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<Load>,
     /// Ticks whose telemetry never arrived.
     pub telemetry_gaps: ByBoard,
     /// How the seam was followed, where the machine has a tracker.
@@ -300,6 +305,7 @@ pub(crate) mod tests {
                 unknown: 0,
             },
             lost_ticks: NONE,
+            load: None,
             telemetry_gaps: NONE,
             seam: Some(SeamFigures {
                 seam: Some("seam.csv".into()),

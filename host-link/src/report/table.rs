@@ -115,6 +115,10 @@ fn boards_served(f: &mut Formatter, r: &Report) -> Result {
             None => writeln!(f)?,
         }
     }
+    if let Some(load) = &r.load {
+        writeln!(f, "  load of the motion board     path tick  {}", load.path_tick)?;
+        writeln!(f, "                               servo tick {}", load.servo_tick)?;
+    }
     if let Some(seam) = &r.seam {
         writeln!(
             f,

@@ -90,6 +90,7 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
             unknown: evaluation.unknown_ticks,
         },
         lost_ticks: session.lost_ticks(),
+        load: evaluation.load,
         telemetry_gaps: ByBoard {
             motion: motion_gaps,
             tracker: session.tracking.as_ref().map(|_| tracker_gaps),

@@ -207,6 +207,7 @@ impl MotionController {
                 truth: report.truth,
                 following_error: report.peak_error.map(|error| error as f32),
                 skew_mm: report.peak_skew as f32,
+                load: None,
             },
         }
     }

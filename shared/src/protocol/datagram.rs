@@ -144,6 +144,20 @@ pub struct MotionSample {
     pub following_error: [f32; MOTORS],
     /// Largest |X1 − X2 − square offset| since the last sample \[mm\].
     pub skew_mm: f32,
+    /// What the ticks took; `None` where the board has no processor of its own, as in the simulation.
+    pub load: Option<BoardLoad>,
+}
+
+/// Execution times of the motion board's ticks, without what interrupted them \[processor cycles; on an emulated
+/// board, whose time advances by instructions alone, instructions\].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct BoardLoad {
+    /// Cycles in a microsecond.
+    pub cycles_per_us: u16,
+    /// Of the path tick before this one: planning, interpolation, kinematics.
+    pub path_tick: u32,
+    /// Of the longest servo tick since the last sample.
+    pub servo_tick: u32,
 }
 
 /// A few control ticks of the tracker board.

@@ -10,8 +10,8 @@ pub mod framing;
 mod request;
 
 pub use datagram::{
-    Batch, Capture, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, MotionTelemetry,
-    PathState, SideMeasurement, TELEMETRY_BATCH, TrackerSample, TrackerTelemetry,
+    Batch, BoardLoad, Capture, ClockReply, ClockRequest, Datagram, Measurement, MotionSample,
+    MotionTelemetry, PathState, SideMeasurement, TELEMETRY_BATCH, TrackerSample, TrackerTelemetry,
 };
 pub use element::{BadElement, PathChannel, PathElement, PathJoin, PathShape};
 pub use request::{
