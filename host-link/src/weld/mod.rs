@@ -1,6 +1,7 @@
 //! The weld job: from boards that are off to a report, and the machine at rest whatever happens.
 
 mod feeding;
+mod following;
 mod outcome;
 mod progress;
 mod session;
@@ -20,7 +21,8 @@ use crate::part::PartFile;
 use crate::path::{PathError, PlannedPath, Planner};
 use crate::seam::{Deviation, SeamError};
 use feeding::Feeding;
-use session::{Session, on_path};
+use following::follow;
+use session::Session;
 use shared::io::AXES;
 use shared::motion::{Fault, State};
 use shared::parameter::ParameterError;
@@ -39,8 +41,6 @@ const HOMING_LIMIT: Duration = Duration::from_secs(240);
 const CLOCK_LIMIT: Duration = Duration::from_secs(30);
 /// Longest time of a controlled stop.
 const STOP_LIMIT: Duration = Duration::from_secs(10);
-/// A path may take this much longer than planned.
-const PATH_MARGIN: Duration = Duration::from_secs(10);
 /// Time for the last telemetry to arrive.
 const DRAIN: Duration = Duration::from_millis(100);
 
@@ -162,6 +162,19 @@ pub enum JobError {
         /// How long it may take.
         seconds: u64,
     },
+    /// The machine should move, and does not.
+    #[error(
+        "the machine has stood still for {seconds} s in line {line}, {s_mm:.1} mm along the path, and nothing holds \
+         it; look at the motion board's log"
+    )]
+    Standstill {
+        /// Line of the program.
+        line: u32,
+        /// Path length \[mm\].
+        s_mm: f64,
+        /// For how long.
+        seconds: u32,
+    },
     /// A path cannot be run.
     #[error(transparent)]
     Path(#[from] PathError),
@@ -267,7 +280,7 @@ impl Weld {
             session.dwell(path.dwell_before_s)?;
         }
         session.progress.phase(what);
-        let ran = follow(session, &path, feeding, id);
+        let ran = follow(session, feeding, path.length_mm(), id);
         self.paths.insert(id, path);
         if ran.is_err() {
             session.progress.phase("stopping");
@@ -319,34 +332,6 @@ fn load<'a>(session: &mut Session, path: &'a PlannedPath, id: u32) -> Result<Fee
     let mut feeding = Feeding::new(path.elements(), path.events.iter().copied());
     feeding.go_on(session)?;
     Ok(feeding)
-}
-
-/// Runs a path that has been begun to its end, and gives the rest of it meanwhile.
-fn follow(session: &mut Session, path: &PlannedPath, mut feeding: Feeding, id: u32) -> Result<(), JobError> {
-    session.command(Role::Motion, &Request::Run)?;
-    session.refresh()?;
-    let begun = session.tick();
-    let length = path.length_mm();
-    let limit = Duration::from_secs_f64(path.duration_s()) + PATH_MARGIN;
-    let mut welding = false;
-    session.wait_until("a path", limit, |s| {
-        feeding.go_on(s)?;
-        let mut stands = false;
-        if let Some(here) = s.record.motion().last().filter(|here| here.tick > begun) {
-            // The telemetry tells it sooner than the next status; at rest it names no path.
-            stands = !on_path(here.state);
-        }
-        if let Some(here) = s.record.motion().last().filter(|here| here.path_id == id) {
-            if here.beams.contains(&true) && !welding {
-                welding = true;
-                s.progress.phase("welding");
-            }
-            s.progress.travel(here.s_mm, length);
-        }
-        Ok(stands || !on_path(s.motion.state))
-    })?;
-    session.refresh()?;
-    session.check()
 }
 
 /// Brings the boards from any state to off, forgets old faults, and sends the machine's parameters.

@@ -117,6 +117,18 @@ impl<'a> Session<'a> {
         told.max(self.motion.path_ticks)
     }
 
+    /// Goes on until `done`; a fault or the operator end it early.
+    pub fn go_on_until(
+        &mut self,
+        mut done: impl FnMut(&mut Self) -> Result<bool, JobError>,
+    ) -> Result<(), JobError> {
+        while !done(self)? {
+            self.turn()?;
+            self.check()?;
+        }
+        Ok(())
+    }
+
     /// Goes on until `done`, at most for `limit` by the motion board's clock; a fault or the operator end it
     /// early.
     pub fn wait_until(
@@ -126,26 +138,21 @@ impl<'a> Session<'a> {
         mut done: impl FnMut(&mut Self) -> Result<bool, JobError>,
     ) -> Result<(), JobError> {
         let end = u64::from(self.tick()) + limit.as_millis() as u64;
-        while !done(self)? {
-            self.turn()?;
-            self.check()?;
-            if u64::from(self.tick()) > end {
+        self.go_on_until(|s| {
+            let over = done(s)?;
+            if !over && u64::from(s.tick()) > end {
                 let seconds = limit.as_secs();
                 return Err(JobError::TooLong { what, seconds });
             }
-        }
-        Ok(())
+            Ok(over)
+        })
     }
 
     /// Goes on for `seconds` by the motion board's clock, unless a fault or the operator end it early.
     pub fn dwell(&mut self, seconds: f64) -> Result<(), JobError> {
         self.refresh()?;
         let end = u64::from(self.tick()) + (seconds * 1e3).ceil() as u64;
-        while u64::from(self.tick()) < end {
-            self.turn()?;
-            self.check()?;
-        }
-        Ok(())
+        self.go_on_until(|s| Ok(u64::from(s.tick()) >= end))
     }
 
     /// The first reason not to go on.

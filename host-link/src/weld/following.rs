@@ -1,0 +1,132 @@
+//! A path while the motion board runs it: the rest of it is given, and the machine is watched.
+
+use super::JobError;
+use super::feeding::Feeding;
+use super::session::{Session, on_path};
+use shared::motion::State;
+use shared::protocol::{MotionStatus, Request, Role};
+
+/// A machine that shall move and does not for so long never will \[s\]; far longer than a queue runs dry.
+const STANDSTILL_S: u32 = 10;
+/// A path tick is a millisecond.
+const TICKS_PER_S: u32 = 1000;
+
+/// Runs a path of `length_mm` that has been begun as `id` to its end, and gives the rest of it meanwhile.
+pub(super) fn follow(
+    session: &mut Session,
+    mut feeding: Feeding,
+    length_mm: f64,
+    id: u32,
+) -> Result<(), JobError> {
+    session.command(Role::Motion, &Request::Run)?;
+    session.refresh()?;
+    let begun = session.tick();
+    let mut welding = false;
+    let mut progress = Advance::new(&session.motion);
+    session.go_on_until(|s| {
+        feeding.go_on(s)?;
+        progress.watch(&s.motion)?;
+        let mut stands = false;
+        if let Some(here) = s.record.motion().last().filter(|here| here.tick > begun) {
+            // The telemetry tells it sooner than the next status; at rest it names no path.
+            stands = !on_path(here.state);
+        }
+        if let Some(here) = s.record.motion().last().filter(|here| here.path_id == id) {
+            if here.beams.contains(&true) && !welding {
+                welding = true;
+                s.progress.phase("welding");
+            }
+            s.progress.travel(here.s_mm, length_mm);
+        }
+        Ok(stands || !on_path(s.motion.state))
+    })?;
+    session.refresh()?;
+    session.check()
+}
+
+/// When the machine was last seen to go on, or to have a reason not to.
+struct Advance {
+    s_mm: f64,
+    tick: u32,
+}
+
+impl Advance {
+    fn new(motion: &MotionStatus) -> Self {
+        Self {
+            s_mm: motion.s_mm,
+            tick: motion.path_ticks,
+        }
+    }
+
+    /// A hold and an override of 0 may last for ever, and a low override takes what it takes.
+    fn watch(&mut self, motion: &MotionStatus) -> Result<(), JobError> {
+        let shall_move = match motion.state {
+            State::Running => motion.speed_override > 0.0,
+            State::Stopping => true,
+            State::Off | State::Homing | State::Idle | State::Holding | State::Fault => false,
+        };
+        if !shall_move || motion.s_mm != self.s_mm {
+            *self = Self::new(motion);
+        }
+        if motion.path_ticks.wrapping_sub(self.tick) > STANDSTILL_S * TICKS_PER_S {
+            return Err(JobError::Standstill {
+                line: motion.line,
+                s_mm: motion.s_mm,
+                seconds: STANDSTILL_S,
+            });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::motion::MotionController;
+    use shared::protocol::Response;
+
+    /// What the board says `seconds` after the path began.
+    fn status(seconds: u32, state: State, speed_override: f64, s_mm: f64) -> MotionStatus {
+        let Response::MotionStatus(any) = MotionController::new().handle(&Request::Status, 0) else {
+            panic!("a board tells its state");
+        };
+        MotionStatus {
+            state,
+            speed_override,
+            s_mm,
+            line: 12,
+            // The counter wraps.
+            path_ticks: (seconds * TICKS_PER_S).wrapping_sub(5000),
+            ..any
+        }
+    }
+
+    #[test]
+    fn only_a_machine_that_shall_move_and_does_not_is_given_up() {
+        use State::{Holding, Running, Stopping};
+        let mut advance = Advance::new(&status(0, Running, 1.0, 0.0));
+        // Slow, held for an hour, on at no feed for another: nothing is wrong with that.
+        for seconds in 1..100 {
+            let s_mm = 1e-4 * f64::from(seconds);
+            advance.watch(&status(seconds, Running, 0.001, s_mm)).unwrap();
+        }
+        advance.watch(&status(3700, Holding, 1.0, 0.01)).unwrap();
+        advance.watch(&status(7300, Running, 0.0, 0.01)).unwrap();
+        for (from, state) in [(7300, Running), (8000, Stopping)] {
+            advance.watch(&status(from, Holding, 1.0, 0.01)).unwrap();
+            advance.watch(&status(from + 10, state, 1.0, 0.01)).unwrap();
+            let given_up = advance.watch(&status(from + 11, state, 1.0, 0.01));
+            assert!(
+                matches!(
+                    given_up,
+                    Err(JobError::Standstill {
+                        line: 12,
+                        seconds: 10,
+                        ..
+                    })
+                ),
+                "{given_up:?}"
+            );
+        }
+    }
+}
