@@ -10,6 +10,7 @@ pub mod machine;
 #[cfg(not(target_os = "none"))]
 pub mod machine_files;
 pub mod meter;
+pub mod planner;
 mod random;
 pub mod record;
 #[cfg(not(target_os = "none"))]
@@ -29,7 +30,7 @@ pub const MACHINES_FILE: &CStr = c"machines.postcard";
 #[derive(Debug, Error)]
 pub enum Failure {
     /// No benchmark is called so.
-    #[error("there is no such benchmark; kinematics is one")]
+    #[error("there is no such benchmark; kinematics and planner are some")]
     Unknown,
     /// The machines cannot be read.
     #[error(transparent)]
@@ -40,6 +41,18 @@ pub enum Failure {
     /// A machine has next to no regular poses inside its travel.
     #[error("{0}: no regular pose was found inside the travel")]
     NoPose(&'static str),
+    /// The machine is not among those of the file.
+    #[error("{0} is not in the file of machines")]
+    NoMachine(&'static str),
+    /// The planner has refused an element.
+    #[error("the planner has refused an element: {0}")]
+    Push(#[from] shared::trajectory::PushError),
+    /// The planner has given no output.
+    #[error("the planner has given no output: {0}")]
+    Tick(#[from] shared::trajectory::Unreachable),
+    /// A program cannot be made, or does not come to its end.
+    #[error("the program {0} does not come to its end")]
+    Stuck(&'static str),
     /// Printing failed.
     #[error("the results cannot be printed")]
     Print(#[from] core::fmt::Error),
@@ -54,6 +67,7 @@ pub fn run(
 ) -> Result<(), Failure> {
     match name {
         "kinematics" => kinematics::run(file, meter, console),
+        "planner" => planner::run(file, meter, console),
         _ => Err(Failure::Unknown),
     }
 }

@@ -4,6 +4,8 @@ use core::fmt;
 
 /// First word of a record's line.
 const COUNT: &str = "count";
+/// First word of a record's line that is of one call.
+const CALL: &str = "call";
 /// First word of the last line.
 const CHECKSUM: &str = "checksum";
 
@@ -47,6 +49,15 @@ pub enum Record<'a> {
         /// Its instructions.
         tally: Tally,
     },
+    /// Of a single call.
+    Call {
+        /// Whose function it is, a program for example.
+        subject: &'a str,
+        /// The function.
+        function: &'a str,
+        /// Its instructions.
+        instructions: u32,
+    },
     /// Over all results, bit by bit: the last line.
     Checksum(u64),
 }
@@ -59,6 +70,11 @@ impl fmt::Display for Record<'_> {
                 function,
                 tally: Tally { calls, total, worst },
             } => write!(f, "{COUNT} {subject} {function} {calls} {total} {worst}"),
+            Self::Call {
+                subject,
+                function,
+                instructions,
+            } => write!(f, "{CALL} {subject} {function} {instructions}"),
             Self::Checksum(sum) => write!(f, "{CHECKSUM} {sum:016x}"),
         }
     }
@@ -77,6 +93,11 @@ impl<'a> Record<'a> {
                     total: words.next()?.parse().ok()?,
                     worst: words.next()?.parse().ok()?,
                 },
+            },
+            CALL => Self::Call {
+                subject: words.next()?,
+                function: words.next()?,
+                instructions: words.next()?.parse().ok()?,
             },
             CHECKSUM => Self::Checksum(u64::from_str_radix(words.next()?, 16).ok()?),
             _ => return None,
@@ -129,6 +150,11 @@ mod tests {
                 function: "inverse",
                 tally,
             },
+            Record::Call {
+                subject: "square",
+                function: "tick",
+                instructions: 8,
+            },
             Record::Checksum(0xfeed),
         ] {
             assert_eq!(Record::parse(&record.to_string()), Some(record));
@@ -141,6 +167,7 @@ mod tests {
             "",
             "count a b 1 2",
             "count a b 1 2 3 4",
+            "call a b",
             "checksum",
             "checksum x",
             "error: no",

@@ -5,6 +5,7 @@ mod bounded;
 mod callgrind;
 mod docs;
 mod markdown;
+mod planner;
 mod report;
 mod row;
 mod table;
@@ -36,6 +37,12 @@ pub enum Benchmark {
         #[arg(long)]
         record: bool,
     },
+    /// Count instructions of the trajectory planner, tick by tick, on programs that need no files
+    Planner {
+        /// Put the table into docs/benchmarks.md too
+        #[arg(long)]
+        record: bool,
+    },
     /// Run every program (.seg) of a folder through the trajectory planner; fails if a limit is not kept
     Trajectories {
         /// Folder of the programs, and of baseline.csv with what another planner took, if there is one
@@ -52,13 +59,14 @@ pub enum Benchmark {
 
 /// Names of the benchmarks, in the documentation.
 const KINEMATICS: &str = "kinematics";
+const PLANNER: &str = "planner";
 const TRAJECTORIES: &str = "trajectories";
 
 impl Benchmark {
     /// What must be installed for it.
     pub fn wants(&self) -> &'static [Tool] {
         match self {
-            Self::Kinematics { .. } => &setup::COUNTING,
+            Self::Kinematics { .. } | Self::Planner { .. } => &setup::COUNTING,
             Self::Trajectories {
                 instructions: true, ..
             } => &[Tool::Valgrind],
@@ -70,6 +78,7 @@ impl Benchmark {
     pub fn run(self) -> Result<ExitCode> {
         match self {
             Self::Kinematics { record } => kinematics(record),
+            Self::Planner { record } => planner::run(record),
             Self::Trajectories {
                 programs,
                 instructions,
@@ -165,6 +174,7 @@ impl Counts {
                     function: function.to_owned(),
                     tally,
                 }),
+                Record::Call { .. } => {}
                 Record::Checksum(checksum) => return Ok(Self { rows, checksum }),
             }
         }
