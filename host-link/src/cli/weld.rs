@@ -60,6 +60,9 @@ pub struct Weld {
     /// Leave out blocks that start with /
     #[arg(long)]
     block_delete: bool,
+    /// Wait after every block of the program until the operator goes on
+    #[arg(long)]
+    single_block: bool,
 }
 
 /// A speed that makes sense \[m/min\].
@@ -117,7 +120,7 @@ impl Weld {
             connected.boards.as_mut(),
             &job,
             &connected.interrupted,
-            &mut Terminal::new(),
+            &mut Terminal::with_words(self.single_block),
         )?;
         self.write_taught(&ended.taught)?;
         if ended.began {

@@ -8,7 +8,7 @@ use heapless::Vec;
 use shared::protocol::{
     LOAD_ELEMENTS, LOAD_EVENTS, PathElement, PathEvent, Refusal, Request, Response, Role, Room,
 };
-use shared::trajectory::Element;
+use shared::trajectory::{Element, Join};
 use std::iter::Peekable;
 use std::time::Duration;
 
@@ -24,6 +24,17 @@ pub(super) struct Feeding<'a> {
     end_s: f64,
     next_ask: Duration,
     done: bool,
+    /// Single block: nothing goes beyond the block that ends with the batch, or ended with the one before.
+    ended: Option<EndedBlock>,
+}
+
+/// A block of the program after which the machine rests.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct EndedBlock {
+    /// Path length where it ends \[mm\].
+    pub end_s: f64,
+    /// Line of the next one.
+    pub next_line: u32,
 }
 
 impl<'a> Feeding<'a> {
@@ -41,7 +52,20 @@ impl<'a> Feeding<'a> {
             end_s: 0.0,
             next_ask: Duration::ZERO,
             done: false,
+            ended: None,
         }
+    }
+
+    /// The block after which nothing goes to the board before [`Self::next_block`].
+    pub fn ended_block(&self) -> Option<EndedBlock> {
+        self.ended.filter(|_| self.batch.is_empty())
+    }
+
+    /// Begins the next block, or all the rest if the operator wants no single block any more.
+    pub fn next_block(&mut self, session: &mut Session) -> Result<(), JobError> {
+        self.ended = None;
+        self.next_ask = Duration::ZERO;
+        self.go_on(session)
     }
 
     /// Sends all that there is room for; to be called often while the path runs.
@@ -69,7 +93,10 @@ impl<'a> Feeding<'a> {
     fn send(&mut self, session: &mut Session) -> Result<(), LinkError> {
         let mut room = ask(session)?;
         while !self.done {
-            self.fill();
+            self.fill(session.progress.single_block());
+            if self.batch.is_empty() && self.ended.is_some() {
+                break;
+            }
             // Events go before the elements that carry them.
             let mut events: Vec<PathEvent, LOAD_EVENTS> = Vec::new();
             let most = LOAD_EVENTS.min(usize::from(room.events));
@@ -91,12 +118,20 @@ impl<'a> Feeding<'a> {
         Ok(())
     }
 
-    fn fill(&mut self) {
-        while !self.batch.is_full() {
-            let Some(element) = self.elements.next() else {
+    fn fill(&mut self, single_block: bool) {
+        while !self.batch.is_full() && self.ended.is_none() {
+            let Some(mut element) = self.elements.next() else {
                 return;
             };
             self.end_s += element.length;
+            if single_block && let Some(next) = self.elements.peek().filter(|next| next.line != element.line)
+            {
+                element.join = Join::Stop;
+                self.ended = Some(EndedBlock {
+                    end_s: self.end_s,
+                    next_line: next.line,
+                });
+            }
             // There is room.
             let _ = self.batch.push(PathElement::from(&element));
         }

@@ -1,17 +1,22 @@
 //! A path while the motion board runs it: the rest of it is given, and the machine is watched.
 
 use super::JobError;
-use super::feeding::Feeding;
+use super::feeding::{EndedBlock, Feeding};
 use super::session::{Session, on_path};
 use shared::motion::State;
-use shared::protocol::{MotionStatus, Request, Role};
+use shared::protocol::{MotionSample, MotionStatus, Request, Role};
 
 /// A machine that shall move and does not for so long never will \[s\]; far longer than a queue runs dry.
 const STANDSTILL_S: u32 = 10;
 /// A path tick is a millisecond.
 const TICKS_PER_S: u32 = 1000;
 
-/// Runs a path of `length_mm` that has been begun as `id` to its end, and gives the rest of it meanwhile.
+/// A place on the path is reached, to this much \[mm\]; and what is slower stands \[mm/s\].
+const REACHED: f64 = 1e-3;
+const STILL: f64 = 1e-6;
+
+/// Runs a path of `length_mm` that has been begun as `id` to its end, and gives the rest of it meanwhile; in single
+/// block the operator is asked after every block of the program.
 pub(super) fn follow(
     session: &mut Session,
     mut feeding: Feeding,
@@ -22,26 +27,51 @@ pub(super) fn follow(
     session.refresh()?;
     let begun = session.tick();
     let mut welding = false;
-    let mut progress = Advance::new(&session.motion);
+    let mut advance = Advance::new(&session.motion);
+    // Line of the next block, while the machine waits before that.
+    let mut waits: Option<u32> = None;
     session.go_on_until(|s| {
         feeding.go_on(s)?;
-        progress.watch(&s.motion)?;
+        advance.watch(&s.motion)?;
         let mut stands = false;
-        if let Some(here) = s.record.motion().last().filter(|here| here.tick > begun) {
+        let here = s.record.motion().last().filter(|here| here.tick > begun).copied();
+        if let Some(here) = &here {
             // The telemetry tells it sooner than the next status; at rest it names no path.
             stands = !on_path(here.state);
         }
-        if let Some(here) = s.record.motion().last().filter(|here| here.path_id == id) {
+        if let Some(here) = here.filter(|here| here.path_id == id) {
             if here.beams.contains(&true) && !welding {
                 welding = true;
                 s.progress.phase("welding");
             }
             s.progress.travel(here.s_mm, length_mm);
+            if let (None, Some(block)) = (waits, feeding.ended_block())
+                && rests_after(&block, &here)
+            {
+                // Held, the beams stay off, and go over the place again.
+                s.ask(&Request::Hold)?;
+                s.tell_waiting(&format!("line {}", block.next_line));
+                waits = Some(block.next_line);
+            }
+        }
+        if s.obey(waits.is_some())? {
+            if let Some(line) = waits.take() {
+                welding = false;
+                s.progress.phase(&format!("line {line}"));
+                feeding.next_block(s)?;
+            }
+            s.ask(&Request::Resume)?;
         }
         Ok(stands || !on_path(s.motion.state))
     })?;
     session.refresh()?;
     session.check()
+}
+
+/// Whether the machine, which is `here`, has come to rest after `block`.
+fn rests_after(block: &EndedBlock, here: &MotionSample) -> bool {
+    let reached = (here.s_mm - block.end_s).abs() < REACHED;
+    reached && here.speed_mm_s.abs() < STILL && here.state == State::Running
 }
 
 /// When the machine was last seen to go on, or to have a reason not to.

@@ -2,17 +2,20 @@
 
 mod feeding;
 mod following;
+mod operator;
 mod outcome;
 mod progress;
 mod session;
 mod teaching;
+mod terminal;
 #[cfg(test)]
 mod tests;
 mod tracking;
 
 pub use outcome::Ended;
-pub use progress::{Progress, Silent, Terminal};
+pub use progress::{Progress, Silent, Word};
 pub use teaching::{NoTeaching, Taught, check_teaching};
+pub use terminal::Terminal;
 
 use crate::boards::{Boards, LinkError};
 use crate::machine::MachineFile;
@@ -154,6 +157,11 @@ pub enum JobError {
     /// The operator stopped it.
     #[error("stopped by the operator; beams are off and the machine stands")]
     Interrupted,
+    /// Nobody can say that the next block may begin.
+    #[error(
+        "single block waits for the operator, and the input has ended; run host-link in a terminal, or without it"
+    )]
+    NoOperator,
     /// Something does not come to an end.
     #[error("{what} took longer than {seconds} s; look at the boards' logs")]
     TooLong {
@@ -239,6 +247,7 @@ impl Weld {
                 self.program(session, job, &program)?;
             }
         }
+        session.wait_before("parking")?;
         for path in self.planner.park(&session.motion.reference)? {
             self.path(session, job, path, "parking")?;
         }
@@ -248,7 +257,11 @@ impl Weld {
     /// Runs a program from where the axes stand.
     fn program(&mut self, session: &mut Session, job: &Job, program: &Program) -> Result<(), JobError> {
         let mut elsewhere = "approaching";
-        for path in job.plan(program, &self.planner, &session.motion.reference)? {
+        let paths = job.plan(program, &self.planner, &session.motion.reference)?;
+        for (index, path) in paths.into_iter().enumerate() {
+            if index > 0 {
+                session.wait_before(&format!("line {}", path.line_at(0.0)))?;
+            }
             let what = if path.weld().is_some() {
                 elsewhere = "moving on";
                 "running in"
@@ -345,6 +358,8 @@ fn set_up(session: &mut Session, job: &Job) -> Result<(), JobError> {
         Role::Motion,
         &Request::ConfigureMotion(job.machine.motion.clone()),
     )?;
+    // An override that an operator left behind is not one for this job.
+    session.command(Role::Motion, &Request::Override { factor: 1.0 })?;
     if let (Some(tracking), Some(unit)) = (&session.tracking, &job.machine.tracking) {
         let role = Role::Tracker;
         if tracking.status.fault.is_some() {

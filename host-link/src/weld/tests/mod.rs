@@ -2,6 +2,7 @@
 
 mod holds;
 mod machines;
+mod single_block;
 
 use super::*;
 use crate::boards::command;
