@@ -4,9 +4,9 @@ use super::node::Nodes;
 use crate::motion::PATH_PERIOD_S;
 use crate::trajectory::SpeedState;
 
-/// A node is reached this much before its time \[s\]: else rounding leaves a tick of braking behind a stop, in the
-/// direction of what comes next.
-const ARRIVED: f64 = 1e-9;
+/// A stop is reached this much before its time \[s\]: s is rounded, and else a tick of braking may come to lie behind
+/// it, in the direction of what comes next.
+const ARRIVED: f64 = 1e-6;
 
 /// Where on the plan the machine is.
 #[derive(Clone, Copy, Debug)]
@@ -41,10 +41,14 @@ impl Player {
             return;
         }
         self.time += PATH_PERIOD_S;
-        while self.node < last && self.time >= nodes.at(self.node).lasts - ARRIVED {
-            self.time = libm::fmax(self.time - nodes.at(self.node).lasts, 0.0);
+        while self.node < last {
+            let (lasts, stop) = (nodes.at(self.node).lasts, nodes.at(self.node + 1).limit <= 0.0);
+            if self.time < lasts - if stop { ARRIVED } else { 0.0 } {
+                break;
+            }
+            self.time -= lasts;
             self.node += 1;
-            if nodes.at(self.node).limit <= 0.0 {
+            if stop {
                 (self.time, self.standing) = (0.0, pause);
                 return;
             }
