@@ -5,7 +5,7 @@
 use super::bench::{self, Bench, Frame};
 use super::judge::judge;
 use super::program::{Kind, Move, elements};
-use super::run::run;
+use super::run::{Acts, run};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use shared::trajectory::Tolerance;
@@ -103,13 +103,14 @@ fn moves() -> impl Strategy<Value = Vec<Move>> {
     prop::collection::vec(any_move(&mix), 0..10)
 }
 
-fn check(bench: &Bench, moves: &[Move]) -> Result<(), TestCaseError> {
+/// Whether a program of `moves` runs to its end without a fault.
+pub fn check(bench: &Bench, moves: &[Move], acts: &Acts) -> Result<(), TestCaseError> {
     let tolerance = Tolerance {
         position: bench.limits.tolerance,
         attitude: 1e-3,
     };
     let elements = elements(bench, moves, tolerance);
-    let samples = run(bench, &elements, &vec![]).map_err(|stuck| TestCaseError::fail(stuck.to_string()))?;
+    let samples = run(bench, &elements, acts).map_err(|stuck| TestCaseError::fail(stuck.to_string()))?;
     let faults = judge(bench, &elements, tolerance, &samples).faults();
     prop_assert!(faults.is_empty(), "{}", faults.join("; "));
     Ok(())
@@ -133,31 +134,31 @@ proptest! {
 
     #[test]
     fn in_axis_space(frame in frame(), moves in moves()) {
-        check(&bench::axes(&frame), &moves)?;
+        check(&bench::axes(&frame), &moves, &vec![])?;
     }
 
     #[test]
     fn on_the_dual_beam_gantry(moves in moves()) {
-        check(&bench::dual_beam(), &moves)?;
+        check(&bench::dual_beam(), &moves, &vec![])?;
     }
 
     #[test]
     fn on_the_pipe_welder(moves in moves()) {
-        check(&bench::pipe_welder(), &moves)?;
+        check(&bench::pipe_welder(), &moves, &vec![])?;
     }
 
     #[test]
     fn on_the_ac_head(moves in moves()) {
-        check(&bench::ac_head(), &moves)?;
+        check(&bench::ac_head(), &moves, &vec![])?;
     }
 
     #[test]
     fn on_the_wire_arc_robot(moves in moves()) {
-        check(&bench::wire_arc(), &moves)?;
+        check(&bench::wire_arc(), &moves, &vec![])?;
     }
 
     #[test]
     fn on_the_stir_gantry(moves in moves()) {
-        check(&bench::stir_gantry(), &moves)?;
+        check(&bench::stir_gantry(), &moves, &vec![])?;
     }
 }

@@ -1,16 +1,17 @@
 //! Where nodes stand: dense where limits change, far apart where they do not.
 
+use super::breaks::Break;
 use super::limits::{Bounds, FILTER_SHARE, PATH_ROW, ROWS};
 use super::node::{Lanes, Node, Nodes, Side};
 use super::rounding::ATTITUDE;
-use super::track::{REACH, SMOOTH, Track, position_norm};
+use super::track::{Track, position_norm};
 use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics};
 use crate::trajectory::reference::at_unit_speed;
 use crate::trajectory::{Join, PathSpace, ReferenceError, Unreachable};
 
 /// Places nearer than this are one \[mm\].
-const SAME: f64 = 1e-9;
+pub(super) const SAME: f64 = 1e-9;
 /// Time between nodes on curves \[s\].
 const CURVE_STEP: f64 = 0.003;
 /// Largest turn of the path between two nodes \[rad\].
@@ -20,12 +21,10 @@ const BREAK_STEP: f64 = 0.003;
 /// Growth of the intervals away from where limits change, and the shrinking towards it.
 const GROWTH: f64 = 0.4;
 const SHRINK: f64 = 0.286;
-/// Nodes nearer in time than this are one, where the path turns little \[s\].
+/// Nodes are no nearer than this where only what nothing feels is between them \[s\].
 const MERGE: f64 = 0.0005;
 /// Longest time between nodes at the programmed feed \[s\]: where the machine can stop.
 const LONGEST: f64 = 0.03;
-/// Turn that may be merged.
-const MERGED_TURN: f64 = 0.03;
 /// How far the limits inside an interval may be off a straight line, as a share of the acceleration.
 const STRAIGHT: f64 = 0.06;
 /// Samples are taken this share of an interval inside its ends, because limits jump there.
@@ -36,6 +35,8 @@ const HALVINGS: u32 = 6;
 const EXTEND: u32 = 10;
 const SAMPLE: u32 = 5;
 const SAMPLE_OF_TOOL: u32 = 12;
+/// Junctions looked at for a unit of work.
+const LOOKS_FOR_ONE: u32 = 2;
 /// Smallest rate of a row; keeps divisions by it finite.
 const LEAST_RATE: f32 = 1e-6;
 
@@ -66,20 +67,6 @@ pub(super) struct Grid {
     hint: u32,
     /// Axes at the newest node.
     near: [f64; AXES],
-}
-
-/// Where limits change next.
-struct Break {
-    /// Way to there \[mm\].
-    way: f64,
-    /// The machine stops there.
-    stop: bool,
-    /// Limits change there; else it is only the end of what is known.
-    real: bool,
-    /// Smaller changes were passed over on the way.
-    merged: bool,
-    /// Highest speed at which it can be passed \[mm/s\].
-    speed: f64,
 }
 
 /// What the grid is made of.
@@ -134,57 +121,8 @@ impl<const E: usize> Ground<'_, E> {
         Ok((sample, axes))
     }
 
-    /// The next change of limits from `s` on in a `direction`, where nodes nearer than `gap` may be merged.
-    fn next_break(&self, s: f64, direction: f64, hint: u32, gap: f64) -> Break {
-        let end = self.end(direction);
-        let stop = direction < 0.0 || (self.track.closed() && end >= self.track.end_s() - SAME);
-        let mut next = Break {
-            way: direction * (end - s),
-            stop,
-            real: stop,
-            merged: false,
-            speed: 0.0,
-        };
-        for serial in hint.saturating_sub(REACH)..=hint + REACH + 1 {
-            let Some(piece) = self.track.get(serial) else {
-                continue;
-            };
-            let half = piece.corner.half;
-            let turn = piece.corner.turn;
-            for side in [-half, 0.0, half] {
-                let way = direction * (piece.start + side - s);
-                if way <= SAME || way > next.way + SAME {
-                    continue;
-                }
-                let smooth = turn < MERGED_TURN && piece.corner.others <= SMOOTH;
-                if !piece.stop && smooth && way < gap {
-                    next.merged = true;
-                    continue;
-                }
-                let stop = (piece.stop && side == 0.0) || (next.stop && way >= next.way - SAME);
-                let at = |acceleration: f64, jump: f64| match half * jump > 0.0 {
-                    true => libm::sqrt(2.0 * acceleration * half / jump),
-                    false => f64::INFINITY,
-                };
-                let speed = at(self.bounds.corner, turn).min(at(self.bounds.spin, piece.corner.others));
-                next = Break {
-                    way,
-                    stop,
-                    real: true,
-                    merged: next.merged,
-                    speed: if stop {
-                        0.0
-                    } else {
-                        libm::fmin(speed, piece.element.feed)
-                    },
-                };
-            }
-        }
-        next
-    }
-
     /// Path length where what is settled ends.
-    fn end(&self, direction: f64) -> f64 {
+    pub fn end(&self, direction: f64) -> f64 {
         if direction > 0.0 {
             self.track.settled_s()
         } else {
@@ -260,8 +198,8 @@ impl Grid {
         };
         let feed = piece.element.feed;
         let gap = MERGE * feed;
-        let next = ground.next_break(start, direction, self.hint, gap);
-        if !next.real && next.way < gap {
+        let next = ground.next_break(start, direction, self.hint);
+        if next.end && !next.real && next.way < gap {
             return Ok(0);
         }
         let mut hint = self.hint;
@@ -273,7 +211,8 @@ impl Grid {
         let (mid, mut to, axes) = loop {
             let (mid, _) = sample(0.5 * delta)?;
             let (to, axes) = sample(delta * (1.0 - INSET))?;
-            if halvings == HALVINGS || next.merged || straight(&from, &mid, &to, bounds) {
+            let short = next.merged && delta <= gap;
+            if halvings == HALVINGS || short || straight(&from, &mid, &to, bounds) {
                 break (mid, to, axes);
             }
             halvings += 1;
@@ -308,7 +247,7 @@ impl Grid {
             PathSpace::Axes => SAMPLE,
             PathSpace::Tool => SAMPLE_OF_TOOL,
         };
-        Ok(EXTEND + (3 + 2 * halvings) * sample)
+        Ok(EXTEND + next.looks / LOOKS_FOR_ONE + (3 + 2 * halvings) * sample)
     }
 }
 

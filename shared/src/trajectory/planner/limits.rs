@@ -50,6 +50,8 @@ const ACCELERATION_RESERVE: f64 = 0.99;
 /// The same of the jerks.
 const JERK_RESERVE: f64 = 0.985;
 
+/// Share of a tick's change of acceleration that nothing feels.
+const UNFELT: f64 = 0.01;
 /// Tolerance of the attitude that goes with one of the position, where none is programmed \[rad/mm\].
 const ATTITUDE_OF_POSITION: f64 = 0.02;
 /// Path and axes, each with limits of its own, and one unused lane that makes them eight.
@@ -73,6 +75,10 @@ pub(super) struct Bounds {
     pub corner: f64,
     /// The same of attitude: the least of the rotary axes.
     pub spin: f64,
+    /// A jump of velocity that nothing feels behind the output filter \[mm/s\].
+    pub unfelt: f64,
+    /// Being off that nothing feels \[mm\].
+    pub unfelt_way: f64,
     /// Tolerance of elements that have none of their own.
     pub tolerance: Tolerance,
     /// Ticks that the output filter averages over.
@@ -90,6 +96,8 @@ impl Bounds {
         velocity: [1.0; AXES],
         corner: 1.0,
         spin: 1.0,
+        unfelt: 0.0,
+        unfelt_way: 0.0,
         tolerance: Tolerance {
             position: 1.0,
             attitude: 1.0,
@@ -142,6 +150,13 @@ impl Bounds {
             bounds.acceleration[PATH_ROW + 1 + axis] = sane(limits.acceleration[axis] * ACCELERATION_RESERVE);
             bounds.swing[PATH_ROW + 1 + axis] = sane(limits.jerk[axis] * JERK_RESERVE * filter);
         }
+        let feels = |row: usize| bounds.acceleration[row].min(bounds.swing[row]);
+        let most_sensitive = (PATH_ROW..=PATH_ROW + SHAPED)
+            .map(feels)
+            .fold(f32::INFINITY, f32::min);
+        bounds.unfelt = UNFELT * f64::from(most_sensitive) * PATH_PERIOD_S;
+        // There and back from tick to tick, and the other way one filter length later.
+        bounds.unfelt_way = bounds.unfelt * PATH_PERIOD_S / 8.0;
         bounds.per_swing = bounds.swing.map(|swing| 1.0 / swing);
         bounds
     }

@@ -3,6 +3,7 @@
 //! It looks ahead over everything it holds and plans the fastest speed along the path that no limit forbids, down
 //! to rest at the end of what it knows. Corners are rounded inside their tolerance.
 
+mod breaks;
 mod chain;
 mod corner;
 mod filter;
@@ -317,8 +318,12 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             NODES / 8
         };
         let mut oldest = self.player.node;
-        // The swings need all that the output filter remembers, and more.
-        let mut time = 0.0;
+        // The swings need all that the output filter remembers, and more; at rest it remembers nothing.
+        let mut time = if self.resting >= self.bounds.filter_ticks as u32 {
+            f64::INFINITY
+        } else {
+            0.0
+        };
         while oldest > self.nodes.first
             && (time < 2.0 * self.bounds.filter || oldest + nodes as u32 > self.player.node)
         {

@@ -5,8 +5,6 @@ use super::limits::{Bounds, FILTER_SHARE};
 use super::track::{Piece, SMOOTH, Track};
 use crate::trajectory::{CHANNELS, Join, SHAPED};
 
-/// A jump of velocity below this share of what the filter takes is none.
-const UNNOTICED: f64 = 1e-3;
 /// A corner rounded by less \[mm\] is a stop.
 const SMALLEST: f64 = 1e-5;
 /// Channels of attitude (or axes A B C); after them come the V slides \[mm\].
@@ -72,7 +70,7 @@ fn size(before: &Piece, after: &Piece, bounds: &Bounds) -> (f64, bool) {
     };
     let (attitude, slides) = (largest(ATTITUDE), largest(ATTITUDE.end..CHANNELS));
     let feed = libm::fmin(before.element.feed, after.element.feed);
-    let noticed = UNNOTICED * bounds.corner * bounds.filter / feed;
+    let noticed = bounds.unfelt / feed;
     if turn <= noticed && attitude <= SMOOTH && slides <= noticed {
         return (0.0, false);
     }

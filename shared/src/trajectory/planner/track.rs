@@ -24,6 +24,8 @@ pub(super) struct Piece {
     pub stop: bool,
     /// Change of the programmed direction there, of the first channels.
     pub turn: Vector3<f64>,
+    /// By how much its direction turns in all; infinite where the rates of other channels change.
+    pub bend: f64,
     /// It is a line.
     pub straight: bool,
     /// It begins at a corner that was moved, as a chain of lines allows.
@@ -142,6 +144,7 @@ impl<const E: usize> Track<E> {
             corner,
             stop,
             turn,
+            bend: bend(&element, [&start, &end]),
             straight: matches!(element.shape, Shape::Line(_)),
             chained: false,
             before: 0,
@@ -242,6 +245,22 @@ impl<const E: usize> Track<E> {
         }
         Some(point)
     }
+}
+
+/// By how much the direction of `element` turns in all, of which `ends` are the ends.
+fn bend(element: &Element, ends: [&PathPoint; 2]) -> f64 {
+    let middle = element.at(0.5 * element.length);
+    let mut most = 0.0;
+    for point in [ends[0], &middle, ends[1]] {
+        if point.second[SHAPED..]
+            .iter()
+            .any(|second| libm::fabs(*second) > SMOOTH)
+        {
+            return f64::INFINITY;
+        }
+        most = libm::fmax(most, position_norm(&point.second));
+    }
+    most * element.length
 }
 
 /// Length of the change of the first channels.

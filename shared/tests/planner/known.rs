@@ -1,0 +1,272 @@
+//! Programs that broke something, as small as they could be made.
+
+use super::bench::{self, Bench, Frame};
+use super::program::{Kind, Move};
+use super::random::check;
+use super::run::{Act, Acts};
+use shared::trajectory::Way;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+const LINE: Move = Move {
+    kind: Kind::Line,
+    corner: 0.0,
+    side: 0.0,
+    size: 1.0,
+    feed: 1.0,
+    turn: [0.0; 3],
+    stop: false,
+};
+
+const FRAME: Frame = Frame {
+    acceleration: 200.0,
+    ramp: 0.1,
+    rotary: 1.0,
+    velocity: None,
+    path: None,
+    tolerance: 1.0,
+};
+
+fn axes() -> Bench {
+    bench::axes(&FRAME)
+}
+
+fn passes(bench: &Bench, moves: &[Move], acts: &Acts) {
+    if let Err(error) = check(bench, moves, acts) {
+        panic!("{error}");
+    }
+}
+
+#[test]
+fn a_fast_feed_does_not_jump_over_a_tiny_arc() {
+    let arc = Kind::Arc {
+        sweep: 4.564,
+        rise: 0.0,
+    };
+    let moves = [
+        LINE,
+        Move {
+            kind: arc,
+            size: 1.856e-4,
+            feed: 1096.5,
+            ..LINE
+        },
+        Move { size: 7.63, ..LINE },
+    ];
+    passes(&axes(), &moves, &vec![]);
+}
+
+#[test]
+fn a_fast_feed_does_not_jump_over_rotary_axes() {
+    let spans = Kind::Spans { sweep: 5.562 };
+    let moves = [
+        Move {
+            kind: spans,
+            size: 6e-4,
+            feed: 42726.0,
+            turn: [0.0, 0.0, 0.9448],
+            ..LINE
+        },
+        Move { size: 8.716, ..LINE },
+    ];
+    passes(&axes(), &moves, &vec![]);
+}
+
+#[test]
+fn tiny_spans_before_a_rotary_corner_are_seen() {
+    let spans = Kind::Spans { sweep: 1.75 };
+    let moves = [
+        LINE,
+        Move {
+            kind: spans,
+            size: 9.567e-4,
+            feed: 3723.0,
+            ..LINE
+        },
+        Move {
+            size: 13.6066,
+            turn: [-0.528, 0.0, 0.0],
+            ..LINE
+        },
+    ];
+    passes(&axes(), &moves, &vec![]);
+}
+
+#[test]
+fn dense_corners_keep_their_past() {
+    let chain = Kind::Chain {
+        lines: 25,
+        angle: 0.5565837088906562,
+        both: false,
+    };
+    let frame = Frame {
+        acceleration: 2130.028,
+        ramp: 0.0392915,
+        path: Some(141.3377),
+        tolerance: 0.269755,
+        ..FRAME
+    };
+    let moves = [Move {
+        kind: chain,
+        size: 0.17656178,
+        feed: 48.81278,
+        ..LINE
+    }];
+    passes(&bench::axes(&frame), &moves, &vec![]);
+}
+
+#[test]
+fn at_a_stop_nothing_of_the_next_element_is_felt() {
+    let moves = [
+        LINE,
+        Move {
+            size: 3.1408805419128733e-4,
+            turn: [0.0, 0.0, -0.7326690895798916],
+            ..LINE
+        },
+    ];
+    passes(&bench::dual_beam(), &moves, &vec![]);
+}
+
+#[test]
+fn a_hold_in_a_short_turn_is_obeyed() {
+    let moves = [Move {
+        size: 0.0011820585494809984,
+        feed: 3.16,
+        turn: [0.0, 0.0, 0.8992],
+        ..LINE
+    }];
+    passes(&bench::dual_beam(), &moves, &vec![(1, Act::Override(0.0))]);
+}
+
+#[test]
+fn a_raised_override_is_obeyed() {
+    let arc = Kind::Arc {
+        sweep: 0.05,
+        rise: 0.0,
+    };
+    let line = |size: f64, feed: f64| Move { size, feed, ..LINE };
+    let moves = [
+        line(2.849281794785042, 12.670622489754681),
+        Move {
+            stop: true,
+            ..line(9.65282044672689, 1.0)
+        },
+        Move {
+            kind: arc,
+            ..line(9.638670982237256, 60.59459808677323)
+        },
+        line(14.949683133162512, 52.30137124490044),
+    ];
+    passes(
+        &bench::dual_beam(),
+        &moves,
+        &vec![(0, Act::Override(0.006461132679683189))],
+    );
+}
+
+#[test]
+fn a_lowered_override_is_obeyed() {
+    let nurbs = Kind::Nurbs {
+        off: [0.0, -0.4098, 0.2769, 0.0],
+        weight: 0.3,
+    };
+    let moves = [
+        Move {
+            kind: nurbs,
+            size: 2.579,
+            feed: 1.7736,
+            ..LINE
+        },
+        Move { size: 10.948, ..LINE },
+        Move {
+            turn: [0.9377, 0.0, -0.658],
+            ..LINE
+        },
+    ];
+    let acts = vec![
+        (65, Act::Override(0.0)),
+        (3, Act::Override(1.0)),
+        (260, Act::Override(2.0)),
+    ];
+    passes(&bench::ac_head(), &moves, &acts);
+}
+
+#[test]
+fn it_goes_on_after_a_hold_at_a_stop() {
+    let arc = |sweep: f64| Kind::Arc { sweep, rise: 0.0 };
+    let moves = [
+        Move {
+            kind: arc(4.675667),
+            size: 10.80736736114959,
+            stop: true,
+            ..LINE
+        },
+        Move {
+            kind: arc(2.7197344),
+            size: 7.678114731556938,
+            feed: 39.9152,
+            ..LINE
+        },
+    ];
+    let acts = vec![
+        (41, Act::Override(2.0)),
+        (643, Act::Starve(1)),
+        (69, Act::Go(Way::Hold)),
+    ];
+    passes(&bench::stir_gantry(), &moves, &acts);
+}
+
+#[test]
+fn a_stop_is_seen_where_a_rounded_corner_ends_with_it() {
+    let moves = [
+        Move {
+            size: 23.78,
+            turn: [0.0, 0.52, 0.0],
+            ..LINE
+        },
+        Move {
+            feed: 2.957,
+            stop: true,
+            ..LINE
+        },
+        Move {
+            feed: 8.725,
+            turn: [0.2, 0.0, 0.0],
+            ..LINE
+        },
+    ];
+    passes(&bench::stir_gantry(), &moves, &vec![]);
+}
+
+#[test]
+fn it_goes_on_where_nodes_were_too_dense_to_go_farther() {
+    let arc = |sweep: f64| Kind::Arc { sweep, rise: 0.0 };
+    let chain = Kind::Chain {
+        lines: 27,
+        angle: 0.46877,
+        both: false,
+    };
+    let moves = [
+        LINE,
+        LINE,
+        Move {
+            kind: arc(0.05),
+            size: 4.436689619502657e-4,
+            ..LINE
+        },
+        Move {
+            kind: arc(5.0 * PI),
+            corner: FRAC_PI_2,
+            size: 0.02211716767,
+            feed: 24.423,
+            ..LINE
+        },
+        Move {
+            kind: chain,
+            side: -2.25757,
+            size: 9.833432e-4,
+            ..LINE
+        },
+    ];
+    passes(&bench::dual_beam(), &moves, &vec![]);
+}
