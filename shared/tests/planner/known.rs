@@ -270,3 +270,16 @@ fn it_goes_on_where_nodes_were_too_dense_to_go_farther() {
     ];
     passes(&bench::dual_beam(), &moves, &vec![]);
 }
+
+#[test]
+fn a_plan_that_begins_behind_the_machine_is_given_up() {
+    let moves = [Move {
+        kind: Kind::Arc {
+            sweep: 5.0 * PI,
+            rise: 0.0,
+        },
+        size: 0.003486448374448057,
+        ..LINE
+    }];
+    passes(&bench::dual_beam(), &moves, &vec![]);
+}

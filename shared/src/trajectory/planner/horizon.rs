@@ -259,7 +259,7 @@ impl Horizon {
 
     /// Gives up the plan being made if the player has come to where it begins.
     pub fn watch(&mut self, player: u32) {
-        let stands = player == self.in_force;
+        let stands = player == self.commit && player == self.in_force;
         if self.phase != Phase::Waiting && player >= self.commit && !stands {
             self.give_up();
         }
