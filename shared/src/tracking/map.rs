@@ -98,24 +98,52 @@ impl SeamMap {
         {
             return Added::TooClose;
         }
-        let relock = self.consecutive_outliers >= OUTLIERS_TO_RELOCK;
-        if relock {
+        let added = self.judge(law, sigma, y);
+        if added != Added::Outlier {
+            if self.samples.len() >= law.keep.clamp(1, MAP_CAPACITY) {
+                self.samples.remove(0);
+            }
+            // There is room: one was just removed if there was none.
+            let stored = self.samples.push(Sample { sigma, y }).is_ok();
+            debug_assert!(stored);
+        }
+        added
+    }
+
+    /// The same while the machine goes back: what lies before all that the map still knows goes in there, at the cost
+    /// of the samples furthest ahead, which will be seen again.
+    pub fn add_going_back(&mut self, law: &MapLaw, sigma: f64, y: f64) -> Added {
+        let before = |first: &Sample| sigma < first.sigma - law.spacing;
+        if !y.is_finite() || !self.samples.first().is_some_and(before) {
+            return self.add(law, sigma, y);
+        }
+        let added = self.judge(law, sigma, y);
+        if added != Added::Outlier {
+            if self.samples.len() >= law.keep.clamp(1, MAP_CAPACITY) {
+                self.samples.pop();
+            }
+            let stored = self.samples.insert(0, Sample { sigma, y }).is_ok();
+            debug_assert!(stored);
+        }
+        added
+    }
+
+    /// Whether a sample is an outlier; if the seam has jumped, all samples are given up.
+    fn judge(&mut self, law: &MapLaw, sigma: f64, y: f64) -> Added {
+        let added = if self.consecutive_outliers >= OUTLIERS_TO_RELOCK {
             self.samples.clear();
+            Added::Relocked
         } else if self
             .estimate(law, sigma)
             .is_some_and(|seam| libm::fabs(y - seam.value) > law.gate)
         {
             self.consecutive_outliers += 1;
             return Added::Outlier;
-        }
+        } else {
+            Added::Accepted
+        };
         self.consecutive_outliers = 0;
-        if self.samples.len() >= law.keep.clamp(1, MAP_CAPACITY) {
-            self.samples.remove(0);
-        }
-        // There is room: one was just removed if there was none.
-        let stored = self.samples.push(Sample { sigma, y }).is_ok();
-        debug_assert!(stored);
-        if relock { Added::Relocked } else { Added::Accepted }
+        added
     }
 
     /// The seam at path position `sigma` \[mm\]: a straight line fitted to the samples within the window, or to
@@ -227,6 +255,30 @@ mod tests {
         assert_eq!(map.estimate(&LAW, 10.8).unwrap().value, 3.0);
         assert_eq!(map.add(&LAW, 10.8, 3.0), Added::TooClose);
         assert_eq!(map.add(&LAW, 11.0, f64::NAN), Added::Outlier);
+    }
+
+    #[test]
+    fn going_back_the_map_goes_along_and_is_seen_again_on_the_way_on() {
+        let mut map = SeamMap::new();
+        line(&mut map, 0, 100);
+        let y = |sigma: f64| 1.0 + 0.02 * sigma;
+        assert_eq!(map.add(&LAW, 20.0, y(20.0)), Added::TooClose);
+        // 24 samples reach back to 38 mm.
+        for i in (20..100).rev() {
+            let sigma = 0.5 * f64::from(i);
+            let expected = if i < 76 { Added::Accepted } else { Added::TooClose };
+            assert_eq!(map.add_going_back(&LAW, sigma, y(sigma)), expected, "{sigma}");
+        }
+        assert!(!map.begins_after(10.0) && map.estimate(&LAW, 40.0).is_none());
+        assert_eq!(map.add_going_back(&LAW, 9.5, 3.0), Added::Outlier);
+        for i in 20..100 {
+            let sigma = 0.5 * f64::from(i);
+            assert!(
+                (map.estimate(&LAW, sigma).unwrap().value - y(sigma)).abs() < 1e-12,
+                "{sigma}"
+            );
+            map.add(&LAW, sigma + 10.0, y(sigma + 10.0));
+        }
     }
 
     #[test]

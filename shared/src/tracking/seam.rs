@@ -81,8 +81,13 @@ impl Seam {
             self.rejected[side] = self.rejected[side].saturating_add(1);
             return;
         };
+        let add = if place.speed < 0.0 {
+            SeamMap::add_going_back
+        } else {
+            SeamMap::add
+        };
         let added = [(u, meeting.u), (v, meeting.v)]
-            .map(|(slide, y)| self.maps[slide].add(&parameters.map, meeting.sigma, y));
+            .map(|(slide, y)| add(&mut self.maps[slide], &parameters.map, meeting.sigma, y));
         if added.contains(&Added::Outlier) {
             self.rejected[side] = self.rejected[side].saturating_add(1);
         } else if added != [Added::TooClose; 2] {
