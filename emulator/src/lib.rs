@@ -14,7 +14,7 @@ mod session;
 
 pub use boot::{BOOT_VARIABLES, Boards, BootError, Options, PROGRAM_VARIABLES};
 pub use pace::Pace;
-pub use qemu::bound_to_parent;
+pub use qemu::{INSTRUCTIONS_PER_US, bound_to_parent};
 pub use session::{
     Endpoint, JOB_VARIABLE, MACHINE_VARIABLE, PathStatesTo, SEAM_VARIABLE, SESSION_VARIABLE, Session,
     SessionError,

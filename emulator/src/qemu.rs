@@ -14,6 +14,8 @@ pub const PROGRAM: &str = "qemu-system-arm";
 /// A board's time per instruction is 2^SHIFT ns: 125 instructions a microsecond, about a quarter of what the real
 /// part does at 550 MHz, of which the simulated machine takes its share.
 const SHIFT: u32 = 3;
+/// The same, as a board counts what its ticks take.
+pub const INSTRUCTIONS_PER_US: u16 = 1000 >> SHIFT;
 /// Address of a board in its own net; the two nets know nothing of each other.
 const BOARD_ADDRESS: &str = "10.0.2.15";
 

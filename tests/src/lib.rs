@@ -1,4 +1,9 @@
-//! What whole-system runs share: the shipped job, other seams for it, and a weld on any boards.
+//! What whole-system runs share: the shipped jobs, other seams for them, and welds on any boards.
+
+mod hold;
+mod prediction;
+
+pub use hold::assert_held_weld_goes_on;
 
 use host_link::boards::Boards;
 use host_link::machine::MachineFile;
@@ -6,11 +11,10 @@ use host_link::nc::{Options, Program, interpret};
 use host_link::part::PartFile;
 use host_link::report::Report;
 use host_link::seam::Deviation;
-use host_link::weld::{Ended, Job, Names, Silent, Work, run};
+use host_link::weld::{Ended, Job, Names, Work};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use std::sync::atomic::AtomicBool;
 
 /// The shipped program, relative to the root of the workspace.
 pub const PROGRAM: &str = "programs/t-seam-400.ngc";
@@ -70,11 +74,20 @@ pub fn kinks(s: f64) -> [f64; 4] {
     })
 }
 
-/// Welds the shipped program along `seam`.
+/// The shipped machine.
+fn machine() -> MachineFile {
+    MachineFile::read(&shipped(MACHINE)).expect("the shipped machine")
+}
+
+/// Welds the shipped program along `seam`; if nothing ends that early, it takes as long as predicted.
 pub fn weld(boards: &mut dyn Boards, seam: Deviation, speed_m_per_min: f64) -> Ended {
-    let machine = MachineFile::read(&shipped(MACHINE)).expect("the shipped machine");
-    let job = Job {
-        machine: &machine,
+    with_weld(seam, speed_m_per_min, |job| prediction::run(boards, job))
+}
+
+/// Does something with the shipped program along `seam`.
+fn with_weld<R>(seam: Deviation, speed_m_per_min: f64, act: impl FnOnce(&Job) -> R) -> R {
+    act(&Job {
+        machine: &machine(),
         work: Work::Program(&program()),
         speed_m_per_min: Some(speed_m_per_min),
         part: None,
@@ -86,8 +99,7 @@ pub fn weld(boards: &mut dyn Boards, seam: Deviation, speed_m_per_min: f64) -> E
             seam: Some("seam".into()),
             boards: "test".into(),
         },
-    };
-    run(boards, &job, &AtomicBool::new(false), &mut Silent).expect("boards that answer")
+    })
 }
 
 /// The machines without a tracker and their shipped jobs.
@@ -98,7 +110,7 @@ pub const JOBS: [(&str, &str); 4] = [
     ("stir-gantry", "programs/stir-contour.ngc"),
 ];
 
-/// Does the shipped `job` of `machine`, by its short names as in [`JOBS`].
+/// Does the shipped `job` of `machine`, by its short names as in [`JOBS`]; a program takes as long as predicted.
 pub fn weld_job(boards: &mut dyn Boards, machine: &str, job: &str) -> Ended {
     let file = shipped(&format!("machines/{machine}.toml"));
     let machine_file = MachineFile::read(&file).unwrap_or_else(|error| panic!("{error}"));
@@ -123,7 +135,7 @@ pub fn weld_job(boards: &mut dyn Boards, machine: &str, job: &str) -> Ended {
             boards: "test".into(),
         },
     };
-    run(boards, &job, &AtomicBool::new(false), &mut Silent).unwrap_or_else(|error| panic!("{error}"))
+    prediction::run(boards, &job)
 }
 
 /// Checks that a job came to its end, undisturbed and in its time, within the limits of its part.
@@ -165,11 +177,16 @@ pub fn deviations(report: &Report) -> [f64; 4] {
 /// # Panics
 /// Where it is not so.
 pub fn assert_on_seam(ended: &Ended, limit_mm: f64) {
+    assert_welded(ended, 400.0, limit_mm);
+}
+
+/// The same of a weld of another length than the seam's \[mm\].
+fn assert_welded(ended: &Ended, length_mm: f64, limit_mm: f64) {
     let report = &ended.report;
     assert!(ended.error.is_none(), "{:?}", ended.error);
     assert_eq!(report.faults, [""; 0]);
     assert_eq!((report.lost_ticks.total(), report.telemetry_gaps.total()), (0, 0));
-    assert!((report.weld_length_mm - 400.0).abs() < 0.5, "{report}");
+    assert!((report.weld_length_mm - length_mm).abs() < 0.5, "{report}");
     let deviations = deviations(report);
     println!("{:4} m/min: {deviations:.4?} mm", report.speed_m_per_min);
     assert!(deviations.iter().all(|max| *max <= limit_mm), "{report}");

@@ -7,7 +7,7 @@ use host_link::weld::Ended;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use system_tests::{assert_on_seam, kinks, seam, shipped_seam, sines, slopes};
+use system_tests::{assert_held_weld_goes_on, assert_on_seam, kinks, seam, shipped_seam, sines, slopes};
 
 fn weld(seam: Deviation, speed_m_per_min: f64) -> Ended {
     system_tests::weld(&mut SimulatedBoards::default(), seam, speed_m_per_min)
@@ -32,6 +32,13 @@ fn report_files(ended: &Ended, name: &str) -> BTreeMap<String, Vec<u8>> {
 fn the_shipped_job_stays_on_both_seams_at_5_and_9_m_per_min() {
     for speed in [5.0, 9.0] {
         assert_on_seam(&weld(shipped_seam(), speed), 0.03);
+    }
+}
+
+#[test]
+fn a_held_weld_goes_on_over_the_place() {
+    for speed in [1.0, 5.0, 9.0] {
+        assert_held_weld_goes_on(&mut SimulatedBoards::default(), speed);
     }
 }
 

@@ -1,11 +1,11 @@
 //! The two boards as the PC sees them, whether they are real, emulated or simulated.
 
 mod network;
-#[cfg(test)]
-pub mod overheard;
+mod overheard;
 pub mod simulated;
 
 pub use network::{Endpoint, NetworkBoards, Patience};
+pub use overheard::Overheard;
 
 use shared::protocol::framing::FrameError;
 use shared::protocol::{Datagram, Identity, Refusal, Request, Response, Role};

@@ -5,14 +5,14 @@ use shared::protocol::{Datagram, Identity, MotionSample, Request, Response, Role
 use std::time::Duration;
 
 /// Boards, and what is done with every sample of the motion board before the job gets it.
-pub struct Overheard<B, F> {
+pub struct Overheard<'a, F> {
     /// The boards.
-    pub boards: B,
+    pub boards: &'a mut dyn Boards,
     /// Gets the boards, too, so that it can act.
     pub hear: F,
 }
 
-impl<B: Boards, F: FnMut(&mut B, &MotionSample)> Boards for Overheard<B, F> {
+impl<F: FnMut(&mut dyn Boards, &MotionSample)> Boards for Overheard<'_, F> {
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         self.boards.request(role, request)
     }
@@ -21,7 +21,7 @@ impl<B: Boards, F: FnMut(&mut B, &MotionSample)> Boards for Overheard<B, F> {
         let received = self.boards.receive(timeout)?;
         if let Some((_, Datagram::MotionTelemetry(telemetry))) = &received {
             for sample in &telemetry.samples {
-                (self.hear)(&mut self.boards, sample);
+                (self.hear)(self.boards, sample);
             }
         }
         Ok(received)

@@ -1,6 +1,6 @@
 //! Boards wired to another machine than the dual-beam gantry.
 
-use crate::pair::{Pair, status};
+use crate::pair::{Pair, assert_served, status};
 use host_link::boards::{Boards, command};
 use host_link::machine::MachineFile;
 use shared::io::{AXES, MOTOR_AXIS, MOTORS};
@@ -71,7 +71,9 @@ fn the_shipped_job_of_every_other_machine_keeps_the_limits_of_its_part() {
             for (machine, job) in jobs {
                 scope.spawn(move || {
                     let mut pair = Pair::boot_as(&format!("job-{machine}"), machine);
-                    assert_within_limits(&weld_job(&mut pair.connect_motion(), machine, job));
+                    let ended = weld_job(&mut pair.connect_motion(), machine, job);
+                    assert_within_limits(&ended);
+                    assert_served(&ended.report);
                     pair.assert_off();
                 });
             }

@@ -1,7 +1,8 @@
 //! A pair of emulated boards for one test.
 
-use emulator::{Options, PROGRAM_VARIABLES, SESSION_VARIABLE, bound_to_parent};
+use emulator::{INSTRUCTIONS_PER_US, Options, PROGRAM_VARIABLES, SESSION_VARIABLE, bound_to_parent};
 use host_link::boards::{Boards, NetworkBoards, Patience};
+use host_link::report::Report;
 use plant::DEFAULT_MACHINE;
 use shared::motion::State;
 use shared::protocol::{MotionStatus, Request, Response, Role, TrackerStatus};
@@ -76,6 +77,18 @@ impl Pair {
         assert_eq!((tracker.state, tracker.fault), (TrackerState::Off, None));
         (motion, tracker)
     }
+}
+
+/// Checks that the motion board served every tick in time: what it did in the worst millisecond fits into one.
+#[track_caller]
+pub fn assert_served(report: &Report) {
+    assert_eq!(report.lost_ticks.total(), 0);
+    let load = report.load.expect("a processor");
+    println!("path tick {}\nservo tick {}", load.path_tick, load.servo_tick);
+    assert_eq!(load.cycles_per_us, INSTRUCTIONS_PER_US);
+    let servo_ticks = load.path_tick.period / load.servo_tick.period;
+    let worst = load.path_tick.worst + servo_ticks * load.servo_tick.worst;
+    assert!(worst < load.path_tick.period, "{load:?}");
 }
 
 /// What both boards say of themselves.

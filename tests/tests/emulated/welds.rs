@@ -1,15 +1,16 @@
 //! Jobs that come to their end.
 
-use crate::pair::Pair;
+use crate::pair::{Pair, assert_served};
 use host_link::boards::simulated::SimulatedBoards;
 use host_link::seam::Deviation;
-use system_tests::{assert_on_seam, deviations, seam, shipped_seam, sines, weld};
+use system_tests::{assert_held_weld_goes_on, assert_on_seam, deviations, seam, shipped_seam, sines, weld};
 
 /// Welds along `seam` on emulated and on simulated boards: no spot leaves its seam, and both agree.
 fn assert_welds(name: &str, seam: &Deviation, speed_m_per_min: f64) {
     let mut pair = Pair::boot(name);
     let ended = weld(&mut pair.connect(), seam.clone(), speed_m_per_min);
     assert_on_seam(&ended, 0.05);
+    assert_served(&ended.report);
     let figures = ended.report.seam.as_ref().expect("a tracker");
     assert_eq!(figures.measurements.given_up, 0);
     let simulated = weld(&mut SimulatedBoards::default(), seam.clone(), speed_m_per_min);
@@ -33,6 +34,14 @@ fn the_shipped_job_at_5_m_per_min() {
 #[test]
 fn the_shipped_job_at_9_m_per_min() {
     assert_welds("weld-9", &shipped_seam(), 9.0);
+}
+
+#[test]
+fn a_held_weld_goes_on_over_the_place() {
+    let mut pair = Pair::boot("hold");
+    let ended = assert_held_weld_goes_on(&mut pair.connect(), 5.0);
+    assert_served(&ended.report);
+    pair.assert_off();
 }
 
 #[test]

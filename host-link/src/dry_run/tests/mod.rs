@@ -1,5 +1,3 @@
-mod simulated;
-
 use super::*;
 use crate::nc::{Motion, Options, interpret};
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Jobs of machines without a tracker.
 
 use super::*;
-use crate::boards::overheard::Overheard;
+use crate::boards::Overheard;
 use crate::report::Truth;
 use shared::protocol::MotionSample;
 use std::path::Path;
@@ -178,8 +178,8 @@ fn a_spindle_runs_up_before_the_motion_and_stops_before_the_next() {
     let machine = MachineFile::read(&file).unwrap();
     let mut samples = Vec::new();
     let mut boards = Overheard {
-        boards: MotionOnly(SimulatedBoards::new("stir-gantry").unwrap()),
-        hear: |_: &mut MotionOnly, sample: &MotionSample| samples.push(*sample),
+        boards: &mut MotionOnly(SimulatedBoards::new("stir-gantry").unwrap()),
+        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let program =
         "G43.4\nG0 X300 Y200 Z50 B-3 C0\nM3 S600\nG4 P2\nG1 Z45 F120\nG0 Z60\nM5\nG4 P1\nG0 X310\nM2";
