@@ -368,6 +368,8 @@ mod tests {
             },
             bound: None,
             speed_error: 0.0,
+            start_s: 0.0,
+            start_actions: Vec::new(),
         }
     }
 

@@ -90,6 +90,7 @@ fn with_weld<R>(seam: Deviation, speed_m_per_min: f64, act: impl FnOnce(&Job) ->
         machine: &machine(),
         work: Work::Program(&program()),
         speed_m_per_min: Some(speed_m_per_min),
+        from_line: None,
         part: None,
         seam: Some(Rc::new(seam)),
         seed: 1,
@@ -126,6 +127,7 @@ pub fn weld_job(boards: &mut dyn Boards, machine: &str, job: &str) -> Ended {
         work: program.as_ref().map_or(Work::TeachAndMake, Work::Program),
         part: part.as_ref(),
         speed_m_per_min: None,
+        from_line: None,
         seam: None,
         seed: 1,
         names: Names {

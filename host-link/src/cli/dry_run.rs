@@ -36,6 +36,9 @@ pub struct DryRun {
     /// Leave out blocks that start with /
     #[arg(long)]
     block_delete: bool,
+    /// Start at this line of the program (its first motion in or after it)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    from_line: Option<u32>,
 }
 
 /// An override with which a program comes to its end.
@@ -54,16 +57,22 @@ impl DryRun {
         let program = read_program(&self.program, self.block_delete)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
         let speed = self.speed.map(|m_min| m_min * shared::units::MM_S_PER_M_MIN);
-        let paths = planner
-            .program(&program, &machine.homed_axes(), speed)
+        let from = machine.homed_axes();
+        let mut paths = planner
+            .program(&program, &from, speed)
             .with_context(|| format!("program {name}"))?;
+        if let Some(line) = self.from_line {
+            let started = planner.from_line(&program, paths, line, &from);
+            paths = started.with_context(|| format!("program {name}"))?;
+        }
         let ran = dry_run::run(&machine, &planner, &paths, self.factor)
             .with_context(|| format!("program {name}"))?;
         let at = match self.factor {
             1.0 => String::new(),
             factor => format!(" at {:.0} % feed", 100.0 * factor),
         };
-        let title = format!("{name} on {}{at}", machine.name);
+        let start = self.from_line.map(|line| format!(" from line {line}"));
+        let title = format!("{name}{} on {}{at}", start.unwrap_or_default(), machine.name);
         if let Some(directory) = &self.report {
             write_dry_run(directory, &title, &ran)?;
         }

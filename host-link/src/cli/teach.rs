@@ -45,6 +45,7 @@ impl Teach {
             work: Work::Teach,
             part: Some(&part),
             speed_m_per_min: None,
+            from_line: None,
             seam: None,
             seed: self.seed,
             names: Names {

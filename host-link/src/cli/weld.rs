@@ -10,7 +10,7 @@ use crate::report::{self, Report};
 use crate::seam::{Deviation, SeamError};
 use crate::teach::write_points;
 use crate::weld::{Job, JobError, Names, NoTeaching, Taught, Terminal, Work, check_teaching, run};
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clap::Args;
 use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
 use std::path::{Path, PathBuf};
@@ -63,6 +63,9 @@ pub struct Weld {
     /// Wait after every block of the program until the operator goes on
     #[arg(long)]
     single_block: bool,
+    /// Start at this line of the program (its first motion in or after it); the part is not judged then
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "part")]
+    from_line: Option<u32>,
 }
 
 /// A speed that makes sense \[m/min\].
@@ -87,7 +90,14 @@ impl Weld {
     pub fn run(self) -> anyhow::Result<ExitCode> {
         let machine = MachineFile::read(&self.machine)?;
         self.boards.check(&machine)?;
-        let (task, part) = self.task(&machine)?;
+        let (task, mut part) = self.task(&machine)?;
+        if self.from_line.is_some() {
+            if matches!(task, Task::Panel) {
+                bail!("--from-line needs a program, and a panel is taught before there is one");
+            }
+            // A part is judged as a whole.
+            part = None;
+        }
         let seam = self.seam.as_deref().map(Deviation::read).transpose()?;
         let name = |path: &Path| path.display().to_string();
         let job = Job {
@@ -98,12 +108,14 @@ impl Weld {
             },
             part: part.as_ref(),
             speed_m_per_min: self.speed,
+            from_line: self.from_line,
             seam: seam.map(Rc::new),
             seed: self.seed,
             names: Names {
-                program: match &task {
-                    Task::Program(file, _) => name(file),
-                    Task::Panel => name(&self.job),
+                program: match (&task, self.from_line) {
+                    (Task::Program(file, _), None) => name(file),
+                    (Task::Program(file, _), Some(line)) => format!("{} from line {line}", file.display()),
+                    (Task::Panel, _) => name(&self.job),
                 },
                 machine: name(&self.machine),
                 seam: self.seam.as_deref().map(name),

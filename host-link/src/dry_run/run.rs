@@ -99,10 +99,13 @@ impl Runner {
     pub fn run(&mut self, path: &PlannedPath, parking: bool) -> Result<(), DryRunError> {
         let (acceleration, jerk) = (path.limits.acceleration, path.limits.jerk);
         let limits = self.board.plan_limits(&path.path_limits());
-        self.planner.start(&limits, path.space, 0.0, &self.axes);
+        self.planner.start(&limits, path.space, path.start_s, &self.axes);
         self.planner.set_override(self.factor);
         let mut stream = Stream::new(path);
-        let mut feeds = Feeds::default();
+        let mut feeds = Feeds {
+            end_s: path.start_s,
+            ..Feeds::default()
+        };
         let requests = stream.begin(&mut self.planner, |element| feeds.add(element))?;
         self.wait(match self.result.paths.last() {
             Some(_) => ticks_between(path, requests, self.tracker),
@@ -110,8 +113,8 @@ impl Runner {
         });
         let start = self.ticks;
         let mut seen = Seen::default();
-        self.differences.count_from(PATH, 0.0);
-        let (mut arrived, mut idle, mut last_s) = (0, 0, 0.0);
+        self.differences.count_from(PATH, path.start_s);
+        let (mut arrived, mut idle, mut last_s) = (0, 0, path.start_s);
         while arrived < ARRIVED {
             let output = self.planner.tick(&self.board.kinematics)?;
             let feed = feeds.at(output.along.s) * self.factor;
@@ -129,12 +132,12 @@ impl Runner {
             }
         }
         self.result.highest.take(&seen.highest);
-        let lines = (path.line_at(0.0), path.line_at(path.length_mm()));
+        let lines = (path.line_at(path.start_s), path.line_at(path.length_mm()));
         self.result.paths.push(PathFigures {
             motion: path.motion,
             parking,
             lines,
-            length_mm: path.length_mm(),
+            length_mm: path.length_mm() - path.start_s,
             dwell_s: path.dwell_before_s,
             start_s: start as f64 * PATH_PERIOD_S,
             duration_s: (self.ticks - start) as f64 * PATH_PERIOD_S,

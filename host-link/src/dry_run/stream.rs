@@ -37,7 +37,7 @@ pub fn dwell_ticks(path: &PlannedPath) -> u32 {
 /// A path on its way to the planner.
 pub struct Stream<'a> {
     elements: Peekable<Box<dyn Iterator<Item = Element> + 'a>>,
-    events: Peekable<std::slice::Iter<'a, PathEvent>>,
+    events: Peekable<Box<dyn Iterator<Item = PathEvent> + 'a>>,
     /// Elements that go next.
     batch: Vec<Element>,
     /// Where they end \[mm\].
@@ -48,12 +48,13 @@ pub struct Stream<'a> {
 
 impl<'a> Stream<'a> {
     pub fn new(path: &'a PlannedPath) -> Self {
-        let elements: Box<dyn Iterator<Item = Element> + 'a> = Box::new(path.elements());
+        let elements: Box<dyn Iterator<Item = Element> + 'a> = Box::new(path.given_elements());
+        let events: Box<dyn Iterator<Item = PathEvent> + 'a> = Box::new(path.given_events());
         Self {
             elements: elements.peekable(),
-            events: path.events.iter().peekable(),
+            events: events.peekable(),
             batch: Vec::new(),
-            end_s: 0.0,
+            end_s: path.start_s,
             wait: ASK,
         }
     }
@@ -101,7 +102,7 @@ impl<'a> Stream<'a> {
         // Events go before the elements that carry them.
         let ends = self.elements.peek().is_none();
         let end_s = self.end_s;
-        let is_due = |event: &&PathEvent| ends || event.s_mm <= end_s;
+        let is_due = |event: &PathEvent| ends || event.s_mm <= end_s;
         if self.events.next_if(is_due).is_some() {
             while self.events.next_if(is_due).is_some() {}
             return Ok(true);

@@ -1,7 +1,7 @@
 //! A planned path as elements: what the motion board is given.
 
 use super::PlannedPath;
-use shared::protocol::{Knot, PathLimits};
+use shared::protocol::{Knot, PathEvent, PathLimits};
 use shared::trajectory::{CHANNELS, Cubic, Element, Join, SHAPED, Shape, Tolerance};
 
 /// What rounded corners, and the planner's output filter on curves, may take.
@@ -37,6 +37,30 @@ impl PlannedPath {
                 self.element(from, to, start, end, join)
             })
         })
+    }
+
+    /// The elements that the motion board is given: those from where the machine begins.
+    pub fn given_elements(&self) -> impl Iterator<Item = Element> + '_ {
+        let mut s = 0.0;
+        self.elements().skip_while(move |element| {
+            let before = s < self.start_s - SAME;
+            s += element.length;
+            before
+        })
+    }
+
+    /// The events that the motion board is given.
+    pub fn given_events(&self) -> impl Iterator<Item = PathEvent> + '_ {
+        let s_mm = self.start_s;
+        let first = self.start_actions.iter().copied();
+        let first = first.map(move |action| PathEvent { s_mm, action });
+        let rest = self.events.iter().filter(move |event| event.s_mm >= s_mm - SAME);
+        // What was where a line begins is no sooner than the machine is there.
+        let rest = rest.map(move |event| PathEvent {
+            s_mm: event.s_mm.max(s_mm),
+            ..*event
+        });
+        first.chain(rest)
     }
 
     /// Limits along the path, as the motion board takes them.

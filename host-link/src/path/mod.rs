@@ -5,6 +5,7 @@ mod elements;
 mod error;
 mod exact;
 mod feeds;
+mod from_line;
 mod limits;
 mod nurbs;
 mod outputs;
@@ -17,6 +18,7 @@ mod tests;
 
 pub use elements::TOLERANCE;
 pub use error::PathError;
+pub use from_line::FromLineError;
 pub use planned::{Bound, PlannedPath};
 pub use targets::Tip;
 

@@ -127,7 +127,7 @@ impl Switched {
     }
 
     /// What brings a path there that begins with everything off.
-    fn actions(&self) -> Vec<PathAction> {
+    pub(super) fn actions(&self) -> Vec<PathAction> {
         let mut actions = Vec::new();
         for (side, (power, gate)) in (0..).zip(self.powers.into_iter().zip(self.gates)) {
             actions.extend(power.map(|watt| PathAction::Power { side, watt }));

@@ -32,6 +32,10 @@ pub struct PlannedPath {
     pub bound: Option<Bound>,
     /// Largest | |dP/ds| − 1 | of a feed path: how exact its speed is.
     pub speed_error: f64,
+    /// Path length at which the machine begins \[mm\]: 0, unless the program is started at a line in the middle.
+    pub start_s: f64,
+    /// What is switched there besides, if that is not 0.
+    pub start_actions: Vec<PathAction>,
 }
 
 /// The drive that allows the least speed along a path.
@@ -70,6 +74,8 @@ impl PlannedPath {
             },
             bound: None,
             speed_error: shape.speed_error,
+            start_s: 0.0,
+            start_actions: Vec::new(),
         }
     }
 
@@ -84,6 +90,11 @@ impl PlannedPath {
         let index = self.lines.partition_point(|(end, _)| *end <= s);
         let line = self.lines.get(index).or(self.lines.last());
         line.map_or(0, |(_, line)| *line)
+    }
+
+    /// Begins at `s` \[mm\], where an element does, with `actions`.
+    pub(super) fn begin_at(&mut self, s: f64, actions: Vec<PathAction>) {
+        (self.start_s, self.start_actions) = (s, actions);
     }
 
     /// A rapid that takes `times` as long.

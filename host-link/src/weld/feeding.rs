@@ -38,10 +38,11 @@ pub(super) struct EndedBlock {
 }
 
 impl<'a> Feeding<'a> {
-    /// A path that begins at path length 0.
+    /// A path that begins at path length `start_s` \[mm\].
     pub fn new(
         elements: impl Iterator<Item = Element> + 'a,
         events: impl Iterator<Item = PathEvent> + 'a,
+        start_s: f64,
     ) -> Self {
         let elements: Box<dyn Iterator<Item = Element> + 'a> = Box::new(elements);
         let events: Box<dyn Iterator<Item = PathEvent> + 'a> = Box::new(events);
@@ -49,7 +50,7 @@ impl<'a> Feeding<'a> {
             elements: elements.peekable(),
             events: events.peekable(),
             batch: Vec::new(),
-            end_s: 0.0,
+            end_s: start_s,
             next_ask: Duration::ZERO,
             done: false,
             ended: None,

@@ -21,7 +21,7 @@ use crate::boards::{Boards, LinkError};
 use crate::machine::MachineFile;
 use crate::nc::Program;
 use crate::part::PartFile;
-use crate::path::{PathError, PlannedPath, Planner};
+use crate::path::{FromLineError, PathError, PlannedPath, Planner};
 use crate::seam::{Deviation, SeamError};
 use feeding::Feeding;
 use following::follow;
@@ -57,6 +57,8 @@ pub struct Job<'a> {
     pub part: Option<&'a PartFile>,
     /// Speed of the weld in place of the programmed feed \[m/min\].
     pub speed_m_per_min: Option<f64>,
+    /// Line of the program to start at, in place of its beginning.
+    pub from_line: Option<u32>,
     /// How the true seams deviate, if there are any.
     pub seam: Option<Rc<Deviation>>,
     /// Start of the cameras' noise.
@@ -90,7 +92,7 @@ impl Job<'_> {
     /// all of it.
     ///
     /// # Errors
-    /// [`JobError::Path`] or [`JobError::Seam`].
+    /// [`JobError::Path`], [`JobError::FromLine`] or [`JobError::Seam`].
     pub fn plan(
         &self,
         program: &Program,
@@ -102,7 +104,10 @@ impl Job<'_> {
             .map(|speed| speed * shared::units::MM_S_PER_M_MIN);
         let paths = planner.program(program, from, speed)?;
         check_seam(&paths, self.machine, self.seam.as_deref())?;
-        Ok(paths)
+        match self.from_line {
+            Some(line) => Ok(planner.from_line(program, paths, line, from)?),
+            None => Ok(paths),
+        }
     }
 }
 
@@ -186,6 +191,9 @@ pub enum JobError {
     /// A path cannot be run.
     #[error(transparent)]
     Path(#[from] PathError),
+    /// The program cannot be started at a line.
+    #[error(transparent)]
+    FromLine(#[from] FromLineError),
     /// The seam cannot be followed.
     #[error(transparent)]
     Seam(#[from] SeamError),
@@ -338,11 +346,11 @@ fn load<'a>(session: &mut Session, path: &'a PlannedPath, id: u32) -> Result<Fee
     let begin = Request::BeginPath {
         id,
         space,
-        start_s_mm: 0.0,
+        start_s_mm: path.start_s,
         limits: path.path_limits(),
     };
     session.command(Role::Motion, &begin)?;
-    let mut feeding = Feeding::new(path.elements(), path.events.iter().copied());
+    let mut feeding = Feeding::new(path.given_elements(), path.given_events(), path.start_s);
     feeding.go_on(session)?;
     Ok(feeding)
 }

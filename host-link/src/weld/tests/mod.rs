@@ -1,5 +1,6 @@
 //! Whole jobs on simulated boards, and what happens when something goes wrong in the middle of one.
 
+mod from_line;
 mod holds;
 mod machines;
 mod single_block;
@@ -64,11 +65,16 @@ fn run_on(
     progress: &mut dyn Progress,
 ) -> Result<Ended, JobError> {
     let program = interpret(program, Options::default()).unwrap();
-    let job = Job {
+    run(boards, &job(machine, &program, seam), interrupted, progress)
+}
+
+fn job<'a>(machine: &'a MachineFile, program: &'a Program, seam: Option<Rc<Deviation>>) -> Job<'a> {
+    Job {
         machine,
-        work: Work::Program(&program),
+        work: Work::Program(program),
         part: None,
         speed_m_per_min: None,
+        from_line: None,
         seed: 1,
         seam,
         names: Names {
@@ -77,8 +83,7 @@ fn run_on(
             seam: None,
             boards: "simulated".into(),
         },
-    };
-    run(boards, &job, interrupted, progress)
+    }
 }
 
 fn seam_of(report: &Report) -> &SeamFigures {

@@ -1,9 +1,8 @@
 //! Single block, and an operator who says words.
 
 use super::*;
-use crate::boards::overheard::Overheard;
+use crate::boards::Overheard;
 use shared::protocol::MotionSample;
-use std::cell::RefCell;
 
 /// Waits for a while before every word.
 #[derive(Default)]
@@ -51,14 +50,13 @@ impl Progress for Patient {
 
 /// The welding job block by block, and all that the motion board told.
 fn block_by_block(operator: &mut Patient) -> (Ended, Vec<MotionSample>) {
-    let samples = RefCell::new(Vec::new());
+    let mut samples = Vec::new();
     let mut boards = Overheard {
-        boards: SimulatedBoards::default(),
-        hear: |_: &mut SimulatedBoards, sample: &MotionSample| samples.borrow_mut().push(*sample),
+        boards: &mut SimulatedBoards::default(),
+        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let ended = weld(&mut boards, &AtomicBool::new(false), operator);
-    drop(boards);
-    (ended, samples.into_inner())
+    (ended, samples)
 }
 
 /// Also in the middle of a tracked weld: the beams go off at rest, and over the place again.
@@ -121,10 +119,10 @@ fn single_block_can_be_switched_off_on_the_way() {
 #[test]
 fn a_weld_goes_on_over_the_end_of_a_block() {
     let program = PROGRAM.replace("X1140", "X1040\nX1140");
-    let samples = RefCell::new(Vec::new());
+    let mut samples = Vec::new();
     let mut boards = Overheard {
-        boards: SimulatedBoards::default(),
-        hear: |_: &mut SimulatedBoards, sample: &MotionSample| samples.borrow_mut().push(*sample),
+        boards: &mut SimulatedBoards::default(),
+        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let never = AtomicBool::new(false);
     let mut operator = Patient::default();
@@ -141,8 +139,6 @@ fn a_weld_goes_on_over_the_end_of_a_block() {
     for max in ended.evaluation.max_deviation_mm {
         assert!(max.unwrap() < 0.02, "{:?}", ended.evaluation.max_deviation_mm);
     }
-    drop(boards);
-    let samples = samples.into_inner();
     let welded = |sample: &&MotionSample| sample.path_id == 2 && sample.beams == [true; 2];
     let held = samples
         .iter()
@@ -200,8 +196,8 @@ fn words_hold_the_machine_lead_it_back_and_change_its_feed() {
     };
     let mut samples = Vec::new();
     let mut boards = Overheard {
-        boards: SimulatedBoards::default(),
-        hear: |_: &mut SimulatedBoards, sample: &MotionSample| samples.push(*sample),
+        boards: &mut SimulatedBoards::default(),
+        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let never = AtomicBool::new(false);
     let ended = run_on(&mut boards, &machine(), program, None, &never, &mut operator).unwrap();

@@ -25,6 +25,7 @@ fn made(part: &PartFile, work: Work, interrupted: &AtomicBool, progress: &mut dy
         work,
         part: Some(part),
         speed_m_per_min: None,
+        from_line: None,
         seed: 1,
         seam: None,
         names: Names {

@@ -188,6 +188,7 @@ fn the_shipped_job_stays_on_the_saddle_with_drives_and_gratings() {
         machine: &machine,
         work: Work::Program(&program),
         speed_m_per_min: None,
+        from_line: None,
         part: Some(&part),
         seam: None,
         seed: 1,

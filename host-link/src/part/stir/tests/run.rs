@@ -16,6 +16,7 @@ fn welded(program: &str, part: &PartFile) -> Report {
         work: Work::Program(&program),
         part: Some(part),
         speed_m_per_min: None,
+        from_line: None,
         seed: 1,
         seam: None,
         names: Names {
