@@ -316,7 +316,6 @@ fn cover(from: &mut Sample, mid: &Sample, to: &mut Sample) {
 /// The limits at one end of an interval; `delta` is 0 at its start, its length at its end, where ṡ² is x + 2Δa.
 fn side(sample: &Sample, delta: f64, bounds: &Bounds) -> Side {
     let mut side = Side::ZERO;
-    side.open(bounds);
     for row in 0..ROWS {
         let alpha = sample.first[row] + 2.0 * delta as f32 * sample.second[row];
         side.alpha[row] = if alpha.abs() < LEAST_RATE {
@@ -326,5 +325,6 @@ fn side(sample: &Sample, delta: f64, bounds: &Bounds) -> Side {
         };
         side.slope[row] = sample.second[row] / side.alpha[row];
     }
+    side.open(bounds);
     side
 }

@@ -7,42 +7,49 @@
 
 use super::WORK;
 use super::limits::Bounds;
-use super::node::{Lanes, Nodes, most};
-use super::scan::{brake, reach};
+use super::node::{Lanes, Nodes};
 use super::swing::{REST, pause};
 use crate::motion::PATH_PERIOD_S;
 
-/// Rounds of passes that a plan is given before it is given up.
-const ROUNDS: u32 = 12;
 /// Rounds in which boxes may also grow.
 const RELAXED: u32 = 2;
-/// A plan is good if no swing of the acceleration is above its limit by more than this share.
-const GOOD: f32 = 0.025;
-/// Time before the end's slowing that is planned anew, in lengths of the output filter.
-const SLACK: f64 = 14.0;
-/// Node visits of both passes and all rounds that a plan is expected to need for each node.
-const VISITS: u32 = 16;
-
-/// Work of a visit, of the search for a reach, and of each of its iterations.
-const VISIT: u32 = 5;
-const REACH: u32 = 2;
-const ITERATION: u32 = 4;
-/// Nodes taken over for a unit of work.
-const TAKEN_FOR_ONE: u32 = 6;
-/// Work that a visit usually is.
-const USUAL: u32 = 7;
-/// Most nodes that a plan goes beyond the one in force.
+/// Most nodes that a plan goes beyond the one in force, and the fewest if it has them.
 const WINDOW: u32 = 64;
-/// Node visits that a plan to stop is expected to need.
-const STOP_VISITS: u32 = 200;
+const LEAST_WINDOW: u32 = 32;
+/// Time before the slowing at the end of the plan in force that may be planned anew, in lengths of the output filter,
+const SLACK: f64 = 14.0;
+/// and that is, from the first round on.
+const NEAR: f64 = 2.0;
+/// Time from which on the acceleration matters, in the same.
+const REMEMBERED: f64 = 1.5;
+/// A plan is not begun earlier than this many times the time it needs,
+const EARLY: f64 = 3.0;
+/// has to be ready in this many times that,
+const MARGIN: f64 = 2.0;
+/// and is made shorter where there is less than this.
+const AFFORD: f64 = 1.5;
+/// Work that a plan is expected to need for each node, as long as nothing else is known.
+const WORK_OF_NODE: f64 = 80.0;
+/// Work that a plan to stop is expected to need.
+const WORK_OF_STOP: f64 = 800.0;
+/// How fast what is expected goes to what was needed, if that was more or less.
+const RISE: f64 = 0.5;
+const FALL: f64 = 0.125;
 /// Largest factor of the time that a plan is given.
 const MOST_PATIENCE: u32 = 8;
 
+/// Work of a visit.
+const VISIT: u32 = 5;
+/// Nodes taken over for a unit of work.
+pub(super) const TAKEN_FOR_ONE: u32 = 6;
+
 /// What the planner does next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Phase {
+pub(super) enum Phase {
     /// Nothing is being planned.
     Waiting,
+    /// The plan in force is being taken over as the start of the new one, and this node is next.
+    Ready(u32),
     /// The search for the lowest speeds that are possible has come to this node.
     Brake(u32),
     /// The pass back has come to this node.
@@ -67,32 +74,48 @@ pub(super) struct Wish {
 /// A plan being made.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Horizon {
-    phase: Phase,
+    pub(super) phase: Phase,
     /// Oldest node whose acceleration matters.
-    history: u32,
+    pub(super) history: u32,
     /// First node whose speed may change.
     pub(super) commit: u32,
     /// Last node, at rest.
     pub(super) last: u32,
     /// Last node of the plan in force.
     in_force: u32,
+    /// First node that the first round looks at.
+    pub(super) start: u32,
+    /// First node at which the next pass forward may find something else than the one before.
+    pub(super) from: u32,
+    /// Last node whose boxes were changed by the last pass back.
+    pub(super) until: u32,
+    /// First and last node whose speeds the last pass forward changed.
+    pub(super) moved: [u32; 2],
+    /// By how much the times of nodes beyond it were moved by that pass \[s\].
+    pub(super) shift: f64,
+    /// First node whose speed is another one than in the plan in force.
+    pub(super) lowest: u32,
+    /// Rounds of passes so far.
     pub(super) round: u32,
     /// Rounds in which boxes may also grow: none after a plan was given up.
     pub(super) relaxed: u32,
     /// The boxes are those of an earlier plan.
-    warm: bool,
+    pub(super) warm: bool,
     /// What the plan being made is for.
-    wish: Wish,
+    pub(super) wish: Wish,
     /// Speeds have to come down below those of the plan in force.
-    braking: bool,
+    pub(super) braking: bool,
     /// The reach of the node looked at last is not as in the round before.
-    reach_changed: bool,
+    pub(super) reach_changed: bool,
     /// The plan being made was slowed down as a whole.
     pub(super) scaled: bool,
     /// The plan in force is one to stop.
     stopping: bool,
     /// Feed override of the plan in force.
     factor: f64,
+    /// Work on the plan being made, and what plans have taken for each node, in the mean.
+    spent: u32,
+    work_of_node: f64,
     /// Longer time for a plan after others were given up: a factor.
     patience: u32,
     /// Largest swing above its limit, as a share.
@@ -114,6 +137,12 @@ impl Horizon {
         commit: 0,
         last: 0,
         in_force: 0,
+        start: 0,
+        from: 0,
+        until: 0,
+        moved: [0; 2],
+        shift: 0.0,
+        lowest: 0,
         round: 0,
         relaxed: RELAXED,
         warm: false,
@@ -126,6 +155,8 @@ impl Horizon {
         reach_changed: false,
         stopping: false,
         factor: 1.0,
+        spent: 0,
+        work_of_node: WORK_OF_NODE,
         patience: 1,
         excess: REST,
         away: 0,
@@ -160,98 +191,126 @@ impl Horizon {
         if last > nodes.first && nodes.at(last - 1).limit <= 0.0 {
             last -= 1;
         }
+        let goes_on = !wish.stop && wish.factor == self.factor;
         let nothing = match wish.stop {
             true => self.stopping,
-            false => last <= self.in_force && wish.factor == self.factor,
+            false => last <= self.in_force && goes_on,
         };
         if nothing || last <= player {
             return false;
         }
-        let mut slowing = player;
-        if !wish.stop && wish.factor == self.factor {
-            // What slows down only for the end of the plan in force is planned anew, and some time before it.
-            slowing = self.in_force;
-            while slowing > player && nodes.at(slowing - 1).x > nodes.at(slowing).x {
-                slowing -= 1;
-            }
-            let mut before = 0.0;
-            while slowing > player && before < SLACK * bounds.filter {
-                slowing -= 1;
-                before += nodes.at(slowing).lasts;
-            }
-        }
-        // What will have been played before the plan can be ready stays.
-        let visits = if wish.stop {
-            STOP_VISITS
+        let slowing = if goes_on {
+            self.slowing(nodes, player)
         } else {
-            VISITS * (last - slowing)
+            player
         };
-        let mut lead = f64::from(2 + self.patience * visits * USUAL / WORK) * PATH_PERIOD_S;
-        let (mut commit, mut time) = (player, left);
-        while commit < self.in_force && (time < lead || commit < slowing) {
-            time += nodes.at(commit).lasts;
-            commit += 1;
-        }
-        if commit == self.in_force && time < 1.6 * lead {
-            // Little is left: there must be time to go on without a stop.
-            lead = 0.6 * time;
-            (commit, time) = (player, left);
-            while commit < self.in_force && time < lead {
-                time += nodes.at(commit).lasts;
-                commit += 1;
+        let work_of_node = f64::from(self.patience) * self.work_of_node;
+        if goes_on && nodes.at(slowing).x > 0.0 {
+            let until = left + (player..slowing).map(|i| nodes.at(i).lasts).sum::<f64>();
+            // Many nodes at once are less work; but they must be planned in time.
+            let needed = time_of(f64::from(last - slowing) * work_of_node);
+            if last < self.in_force + WINDOW && until > EARLY * needed {
+                return false;
             }
+            let affordable = (until / (AFFORD * time_of(work_of_node))) as u32;
+            let beyond = affordable.saturating_sub(self.in_force - slowing);
+            last = last.min(self.in_force + LEAST_WINDOW.max(beyond));
         }
+        let work = match wish.stop {
+            true => f64::from(self.patience) * WORK_OF_STOP,
+            false => f64::from(last - slowing) * work_of_node,
+        };
+        let lead = MARGIN * time_of(work) + 2.0 * PATH_PERIOD_S;
+        let earliest = before(nodes, slowing, player, SLACK * bounds.filter);
+        let commit = self.commit(nodes, player, left, lead, earliest);
         if wish.stop && nodes.at(commit).x <= 0.0 {
             // The machine comes to rest there anyway; now it stays.
             (self.in_force, self.stopping) = (commit, true);
             return false;
         }
-        let (mut history, mut before) = (commit, 0.0);
-        if nodes.at(commit).x <= 0.0 {
-            // From rest: what came before is forgotten only when the output has come to rest too.
-            if !rested {
-                return false;
-            }
-            before = f64::INFINITY;
+        // From rest: what came before is forgotten only when the output has come to rest too.
+        let rest = nodes.at(commit).x <= 0.0;
+        if rest && !rested {
+            return false;
         }
-        while history > nodes.first && before <= 1.5 * bounds.filter {
-            history -= 1;
-            before += nodes.at(history).lasts;
-        }
-        (self.history, self.commit, self.last) = (history, commit, last);
-        (self.warm, self.excess) = (true, REST);
-        // Times and accelerations up to the commit are as they are.
-        nodes.at_mut(history).time = 0.0;
-        for i in history..commit {
-            let (from, to) = (*nodes.at(i), nodes.at(i + 1).x);
-            let next = nodes.at_mut(i + 1);
-            next.time = from.time + from.lasts + pause(next, bounds);
-            let node = nodes.at_mut(i);
-            node.trial = node.x;
-            let a = ((to - from.x) / (2.0 * from.delta)) as f32;
-            for side in &mut node.sides {
-                side.allowed = side.accelerations(a, from.x as f32);
-            }
-        }
-        let node = nodes.at_mut(commit);
-        (node.trial, node.speed) = (node.x, libm::sqrt(node.x));
+        let remembered = if rest { 0.0 } else { REMEMBERED * bounds.filter };
+        self.history = before(nodes, commit, nodes.first, remembered);
+        self.start = before(nodes, slowing.max(commit), commit, NEAR * bounds.filter);
+        (self.commit, self.last) = (commit, if wish.stop { commit + 1 } else { last });
+        (self.warm, self.excess, self.spent) = (true, REST, 0);
         for i in commit + 1..=last {
             let node = nodes.at_mut(i);
             (node.factor, node.brake) = (wish.factor, 0.0);
         }
+        let node = nodes.at_mut(self.history);
+        (node.time, node.trial, node.speed) = (0.0, node.x, libm::sqrt(node.x));
         self.wish = wish;
-        if wish.stop {
-            self.last = commit + 1;
-        }
-        self.restart(nodes);
+        self.phase = Phase::Ready(self.history);
         true
     }
 
+    /// First node, from `player` on, from which the plan in force only slows down to its end.
+    fn slowing<const N: usize>(&self, nodes: &Nodes<N>, player: u32) -> u32 {
+        let mut slowing = self.in_force;
+        while slowing > player && nodes.at(slowing - 1).x > nodes.at(slowing).x {
+            slowing -= 1;
+        }
+        slowing
+    }
+
+    /// First node that will not have been played, and is not before `earliest`, when `lead` \[s\] are over: what
+    /// comes before it stays as it is.
+    fn commit<const N: usize>(
+        &self,
+        nodes: &Nodes<N>,
+        player: u32,
+        left: f64,
+        lead: f64,
+        earliest: u32,
+    ) -> u32 {
+        let after = |lead: f64, earliest: u32| {
+            let (mut commit, mut time) = (player, left);
+            while commit < self.in_force && (time < lead || commit < earliest) {
+                time += nodes.at(commit).lasts;
+                commit += 1;
+            }
+            (commit, time)
+        };
+        let (commit, time) = after(lead, earliest);
+        if commit == self.in_force && time < 1.6 * lead {
+            // Little is left: there must be time to go on without a stop.
+            return after(0.6 * time, player).0;
+        }
+        commit
+    }
+
+    /// Times and accelerations up to the start are as they are.
+    pub(super) fn ready<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        if i == self.start {
+            self.restart(nodes);
+            return;
+        }
+        let (node, next) = (nodes.at(i), nodes.at(i + 1));
+        let (x, end) = (node.x, next.x);
+        let time = node.time + node.lasts + pause(next, bounds);
+        let a = ((end - x) / (2.0 * node.delta)) as f32;
+        let next = nodes.at_mut(i + 1);
+        (next.time, next.trial, next.speed) = (time, end, libm::sqrt(end));
+        for side in &mut nodes.at_mut(i).sides {
+            side.allowed = side.accelerations(a, x as f32);
+        }
+        self.phase = Phase::Ready(i + 1);
+    }
+
     /// Begins the first round: with a look at how slow the machine can be.
-    fn restart<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
+    pub(super) fn restart<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
         let node = nodes.at_mut(self.commit);
         node.brake = node.x;
         self.braking = self.wish.stop || node.x > node.cap_of_feed();
+        if self.braking {
+            self.start = self.commit;
+        }
+        (self.from, self.until, self.lowest) = (self.start, self.last, self.start);
         self.round = 0;
         self.scaled = false;
         self.phase = Phase::Brake(self.commit);
@@ -265,152 +324,43 @@ impl Horizon {
         }
     }
 
-    fn give_up(&mut self) {
+    pub(super) fn give_up(&mut self) {
         self.given_up += 1;
         self.relaxed = 0;
         self.patience = (2 * self.patience).min(MOST_PATIENCE);
         self.phase = Phase::Waiting;
     }
 
+    /// Goes on with the plan being made for as long as there is `most` work; says how much it was.
+    pub fn run<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds, most: u32) -> u32 {
+        self.work = 0;
+        while !self.waiting() && self.work + self.least_work() <= most {
+            self.work += self.least_work();
+            self.visit(nodes, bounds);
+        }
+        self.spent += self.work;
+        self.work
+    }
+
     /// Work of the next step, as far as it is known before.
-    pub fn least_work(&self) -> u32 {
+    fn least_work(&self) -> u32 {
         match self.phase {
-            Phase::Take => (self.last - self.commit) / TAKEN_FOR_ONE + 1,
+            Phase::Take => (self.last - self.lowest) / TAKEN_FOR_ONE + 1,
             _ => VISIT,
         }
     }
 
-    /// One visit of one node, or the taking of a plan; says how much work that was.
-    pub fn step<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) -> u32 {
-        self.work = self.least_work();
-        self.visit(nodes, bounds);
-        self.work
-    }
-
-    fn visit<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
-        match self.phase {
-            Phase::Waiting => {}
-            Phase::Take => self.take(nodes, bounds),
-            Phase::Brake(i) => self.brake(nodes, i),
-            Phase::Back(i) if i > self.commit => {
-                let repaired = self.round > 0 && !self.braking && self.repair(nodes, i - 1, bounds);
-                // Most nodes stay as they were in the round before.
-                if repaired || self.reach_changed || self.round == 0 || self.braking {
-                    let next = nodes.at(i).reach;
-                    let node = nodes.at_mut(i - 1);
-                    let (x, iterations) = reach(node, next);
-                    self.work += REACH + iterations * ITERATION;
-                    self.reach_changed = x != node.reach;
-                    node.reach = x;
-                }
-                self.phase = Phase::Back(i - 1);
-            }
-            Phase::Back(i) => {
-                if self.round > 0 && !self.braking && self.is_good() {
-                    self.phase = Phase::Take;
-                } else if nodes.at(i).reach < nodes.at(i).x * (1.0 - 1e-6) {
-                    self.too_fast(nodes, bounds);
-                } else if self.round == ROUNDS {
-                    self.last_resort(nodes);
-                } else {
-                    self.round += 1;
-                    self.excess = REST;
-                    self.away = self.history;
-                    self.phase = Phase::Forward(i);
-                }
-            }
-            Phase::Forward(i) if i < self.last => {
-                self.forward(nodes, i, bounds);
-                self.phase = Phase::Forward(i + 1);
-            }
-            Phase::Forward(i) => {
-                self.away = i - 1;
-                self.reach_changed = false;
-                self.phase = if self.braking || self.scaled {
-                    Phase::Repair(i)
-                } else {
-                    Phase::Back(i)
-                };
-            }
-            Phase::Repair(i) if i > self.commit => {
-                self.repair(nodes, i - 1, bounds);
-                self.phase = Phase::Repair(i - 1);
-            }
-            Phase::Repair(i) => {
-                if self.is_good() {
-                    self.phase = Phase::Take;
-                } else if self.scaled || self.round == ROUNDS {
-                    self.last_resort(nodes);
-                } else {
-                    // The boxes have changed, and with them how slow the machine can be.
-                    self.phase = Phase::Brake(i);
-                }
-            }
-        }
-    }
-
-    /// The rounds have not led to a good plan. One from rest may be slower as a whole: accelerations go with x, and
-    /// so do their swings. Otherwise the plan in force goes on, to rest.
-    fn last_resort<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
-        if nodes.at(self.commit).x > 0.0 {
-            self.give_up();
-            return;
-        }
-        let excess = self.excess.into_iter().fold(0.0, most);
-        let slower = 1.0 / (1.0 + 1.2 * f64::from(excess));
-        for i in self.commit..=self.last {
-            nodes.at_mut(i).trial *= slower;
-        }
-        self.scaled = true;
-        self.excess = REST;
-        self.away = self.history;
-        self.work += (self.last - self.commit) / TAKEN_FOR_ONE;
-        self.phase = Phase::Forward(self.commit);
-    }
-
-    /// No swing of the acceleration is too large.
-    fn is_good(&self) -> bool {
-        self.excess.iter().all(|excess| *excess <= GOOD)
-    }
-
-    /// The lowest speed at the node after `i`, until that is as low as it shall be.
-    fn brake<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32) {
-        let node = nodes.at(i);
-        let enough = if self.wish.stop { 0.0 } else { node.cap_of_feed() };
-        if node.brake <= enough || i + 1 == nodes.end {
-            if self.wish.stop {
-                self.last = self.last.max(i);
-            }
-            nodes.at_mut(self.last).reach = 0.0;
-            self.phase = Phase::Back(self.last);
-        } else {
-            nodes.at_mut(i + 1).brake = brake(node, node.brake);
-            self.phase = Phase::Brake(i + 1);
-        }
-    }
-
-    /// The speed at the commit is given, and the boxes do not allow it: with full boxes it is possible.
-    fn too_fast<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
-        if !self.warm {
-            self.give_up();
-            return;
-        }
-        self.warm = false;
-        for i in self.commit..self.last {
-            for side in &mut nodes.at_mut(i).sides {
-                side.open(bounds);
-            }
-        }
-        self.restart(nodes);
-    }
-
-    fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
-        for i in self.commit..self.last {
+    pub(super) fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+        for i in self.lowest..self.last {
             let next = nodes.at_mut(i + 1);
             next.x = next.trial;
             let end = next.time - pause(next, bounds);
             let node = nodes.at_mut(i);
             node.lasts = end - node.time;
+        }
+        if !self.wish.stop {
+            let more = f64::from(self.spent) / f64::from(self.last - self.start) - self.work_of_node;
+            self.work_of_node += if more > 0.0 { RISE } else { FALL } * more;
         }
         self.in_force = self.last;
         self.taken += 1;
@@ -420,4 +370,19 @@ impl Horizon {
         self.factor = self.wish.factor;
         self.phase = Phase::Waiting;
     }
+}
+
+/// Time that an amount of work takes \[s\].
+fn time_of(work: f64) -> f64 {
+    work / f64::from(WORK) * PATH_PERIOD_S
+}
+
+/// The node that the plan in force passes `time` \[s\] before node `from`, but not before `first`.
+fn before<const N: usize>(nodes: &Nodes<N>, from: u32, first: u32, time: f64) -> u32 {
+    let (mut node, mut before) = (from, 0.0);
+    while node > first && before < time {
+        node -= 1;
+        before += nodes.at(node).lasts;
+    }
+    node
 }

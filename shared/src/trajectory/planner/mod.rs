@@ -13,6 +13,7 @@ mod limits;
 mod node;
 mod player;
 mod rounding;
+mod rounds;
 mod scan;
 mod swing;
 #[cfg(test)]
@@ -37,7 +38,7 @@ use track::Track;
 /// Highest feed override.
 const MOST_OVERRIDE: f64 = 2.0;
 /// Work of planning in one tick, in hundreds of instructions of a PC.
-const WORK: u32 = 200;
+const WORK: u32 = 100;
 /// Work to shape a corner, and to begin a plan.
 const CORNER: u32 = 15;
 const BEGIN: u32 = 40;
@@ -217,10 +218,11 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.idle = false;
         loop {
             let cost = if !self.horizon.waiting() {
-                if self.horizon.least_work() > work {
+                let done = self.horizon.run(&mut self.nodes, &self.bounds, work);
+                if !self.horizon.waiting() {
                     break;
                 }
-                self.horizon.step(&mut self.nodes, &self.bounds)
+                done
             } else if work < BEGIN {
                 break;
             } else if self.track.decide(&self.bounds) {

@@ -24,15 +24,15 @@ pub(super) fn most(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// Limits of one end of an interval: lo ≤ α·(a + m·x) ≤ hi for every row, where x = ṡ² at the start of the
-/// interval and a = s̈, which is constant over it.
+/// Limits of one end of an interval: low ≤ a + m·x ≤ high for every row, where x = ṡ² at the start of the
+/// interval and a = s̈, which is constant over it. The acceleration of the row is α times what is between.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
     /// α: acceleration of the row for each unit of a; never zero.
     pub alpha: Lanes,
     /// m: acceleration of the row for each unit of x, divided by α.
     pub slope: Lanes,
-    /// Highest acceleration of the row.
+    /// Highest a + m·x: the box of the row, divided by α.
     pub high: Lanes,
     /// Lowest.
     pub low: Lanes,
@@ -87,54 +87,77 @@ impl Side {
 
     /// Full boxes.
     pub fn open(&mut self, bounds: &Bounds) {
-        self.high = bounds.acceleration;
-        self.low = bounds.acceleration.map(|limit| -limit);
+        for row in 0..ROWS {
+            self.high[row] = bounds.acceleration[row] / self.alpha[row].abs();
+            self.low[row] = -self.high[row];
+        }
         self.boxed = false;
     }
 
-    /// Makes the box smaller where the acceleration `is` more than past and future allow.
-    pub fn shrink(&mut self, is: &Lanes, by_past: &Lanes, by_future: &Lanes, bounds: &Bounds) {
+    /// Makes the box smaller where the acceleration `is` more than past and future allow; says whether it did.
+    pub fn shrink(&mut self, is: &Lanes, by_past: &Lanes, by_future: &Lanes, bounds: &Bounds) -> bool {
+        let mut off = 0.0;
+        for row in 0..ROWS {
+            let (top, bottom) = (
+                least(by_past[row], by_future[row]),
+                most(by_past[row], by_future[row]),
+            );
+            let far = most(is[row] - top, bottom - is[row]);
+            off = most(off, far * bounds.per_swing[row]);
+        }
+        if off <= TIGHTEN_FROM {
+            return false;
+        }
         for row in 0..ROWS {
             let swing = bounds.swing[row];
             let smallest = LEAST_BOX * least(bounds.acceleration[row], swing);
-            let top = least(by_past[row], by_future[row]);
-            let bottom = most(by_past[row], by_future[row]);
-            let high = most(is[row] - TIGHTEN * (is[row] - top), smallest);
-            let low = least(is[row] + TIGHTEN * (bottom - is[row]), -smallest);
+            let (top, bottom) = (
+                least(by_past[row], by_future[row]),
+                most(by_past[row], by_future[row]),
+            );
             let (above, below) = (is[row] - top, bottom - is[row]);
-            self.high[row] = if above > TIGHTEN_FROM * swing {
-                high
-            } else {
-                self.high[row]
-            };
-            self.low[row] = if below > TIGHTEN_FROM * swing {
-                low
-            } else {
-                self.low[row]
-            };
+            let mut rows = self.of_row(row);
+            if above > TIGHTEN_FROM * swing {
+                rows.1 = most(is[row] - TIGHTEN * above, smallest);
+            }
+            if below > TIGHTEN_FROM * swing {
+                rows.0 = least(is[row] + TIGHTEN * below, -smallest);
+            }
+            self.set_row(row, rows);
         }
         self.boxed = true;
+        true
     }
 
-    /// Makes the box larger where the future leaves room.
-    pub fn grow(&mut self, is: &Lanes, will: &[Lanes; 2], bounds: &Bounds) {
+    /// Makes the box larger where the future leaves room; says whether it did.
+    pub fn grow(&mut self, is: &Lanes, will: &[Lanes; 2], bounds: &Bounds) -> bool {
+        let before = (self.high, self.low);
         for row in 0..ROWS {
             let (full, swing) = (bounds.acceleration[row], bounds.swing[row]);
             let above = will[0][row] + swing - is[row];
             let below = is[row] - will[1][row] + swing;
-            let high = least(most(self.high[row], is[row] + LOOSEN * above), full);
-            let low = most(least(self.low[row], is[row] - LOOSEN * below), -full);
-            self.high[row] = if above > LOOSEN_FROM * swing {
-                high
-            } else {
-                self.high[row]
-            };
-            self.low[row] = if below > LOOSEN_FROM * swing {
-                low
-            } else {
-                self.low[row]
-            };
+            let (mut low, mut high) = self.of_row(row);
+            if above > LOOSEN_FROM * swing {
+                high = least(most(high, is[row] + LOOSEN * above), full);
+            }
+            if below > LOOSEN_FROM * swing {
+                low = most(least(low, is[row] - LOOSEN * below), -full);
+            }
+            self.set_row(row, (low, high));
         }
+        before != (self.high, self.low)
+    }
+
+    /// Lowest and highest acceleration of a row.
+    fn of_row(&self, row: usize) -> (f32, f32) {
+        let (low, high) = (self.low[row] * self.alpha[row], self.high[row] * self.alpha[row]);
+        (least(low, high), most(low, high))
+    }
+
+    fn set_row(&mut self, row: usize, (low, high): (f32, f32)) {
+        let per_alpha = 1.0 / self.alpha[row];
+        let (low, high) = (low * per_alpha, high * per_alpha);
+        (self.low[row], self.high[row]) = (least(low, high), most(low, high));
     }
 
     /// Accelerations of the rows.

@@ -2,78 +2,61 @@
 //! a = s̈ every limit is a straight line.
 
 use super::limits::ROWS;
-use super::node::{Lanes, Node, least, most};
+use super::node::{Lanes, Node, Side, least, most};
 
 /// Iterations of Newton's method; each changes at least one of the two limits that meet.
 const ITERATIONS: u32 = 12;
 
-/// Limits of a at one x, as lines: a ≤ high − slope·x and a ≥ low − slope·x for every row of both ends, and by the
+/// The limits of a at one x are lines: a ≤ high − slope·x and a ≥ low − slope·x for every row of both ends, and by the
 /// speed at the end of the interval a ≤ (next − x)/2Δ and a ≥ −x/2Δ.
-struct Lines {
-    high: [Lanes; 2],
-    low: [Lanes; 2],
-    slope: [Lanes; 2],
+struct Lines<'a> {
+    sides: &'a [Side; 2],
     next: f32,
     per_length: f32,
 }
 
-impl Lines {
-    fn new(node: &Node, next: f64) -> Self {
-        let mut lines = Self {
-            high: [[0.0; ROWS]; 2],
-            low: [[0.0; ROWS]; 2],
-            slope: [node.sides[0].slope, node.sides[1].slope],
+impl<'a> Lines<'a> {
+    fn new(node: &'a Node, next: f64) -> Self {
+        Self {
+            sides: &node.sides,
             next: next as f32,
             per_length: (0.5 / node.delta) as f32,
-        };
-        for (i, side) in node.sides.iter().enumerate() {
-            for row in 0..ROWS {
-                let per_alpha = 1.0 / side.alpha[row];
-                let (one, other) = (side.high[row] * per_alpha, side.low[row] * per_alpha);
-                lines.high[i][row] = most(one, other);
-                lines.low[i][row] = least(one, other);
-            }
         }
-        lines
     }
 
     /// Highest a at `x`.
     fn highest(&self, x: f32) -> f32 {
-        let [start, end] = self.at(&self.high, x);
+        let [start, end] = self.sides;
         let mut lanes = [0.0; ROWS];
         for row in 0..ROWS {
-            lanes[row] = least(start[row], end[row]);
+            lanes[row] = least(
+                start.high[row] - start.slope[row] * x,
+                end.high[row] - end.slope[row] * x,
+            );
         }
         lanes.into_iter().fold((self.next - x) * self.per_length, least)
     }
 
     /// Lowest a at `x`.
     fn lowest(&self, x: f32) -> f32 {
-        let [start, end] = self.at(&self.low, x);
+        let [start, end] = self.sides;
         let mut lanes = [0.0; ROWS];
         for row in 0..ROWS {
-            lanes[row] = most(start[row], end[row]);
+            lanes[row] = most(
+                start.low[row] - start.slope[row] * x,
+                end.low[row] - end.slope[row] * x,
+            );
         }
         lanes.into_iter().fold(-x * self.per_length, most)
     }
 
-    fn at(&self, lines: &[Lanes; 2], x: f32) -> [Lanes; 2] {
-        let mut values = [[0.0; ROWS]; 2];
-        for side in 0..2 {
+    /// The line that has the value `a` at `x`, as (value at 0, slope): `of` a row, or else that of the speed `next`.
+    fn through(&self, of: fn(&Side) -> &Lanes, next: f32, x: f32, a: f32) -> (f32, f32) {
+        for side in self.sides {
+            let lines = of(side);
             for row in 0..ROWS {
-                values[side][row] = lines[side][row] - self.slope[side][row] * x;
-            }
-        }
-        values
-    }
-
-    /// The one of `lines` that has the value `a` at `x`, as (value at 0, slope); or else the one of the speed `next`.
-    fn through(&self, lines: &[Lanes; 2], next: f32, x: f32, a: f32) -> (f32, f32) {
-        let values = self.at(lines, x);
-        for side in 0..2 {
-            for row in 0..ROWS {
-                if values[side][row] == a {
-                    return (lines[side][row], self.slope[side][row]);
+                if lines[row] - side.slope[row] * x == a {
+                    return (lines[row], side.slope[row]);
                 }
             }
         }
@@ -93,8 +76,8 @@ pub(super) fn reach(node: &Node, next: f64) -> (f64, u32) {
         if high >= low {
             return (f64::from(x), iteration);
         }
-        let (upper, falls) = lines.through(&lines.high, lines.next, x, high);
-        let (lower, rises) = lines.through(&lines.low, 0.0, x, low);
+        let (upper, falls) = lines.through(|side| &side.high, lines.next, x, high);
+        let (lower, rises) = lines.through(|side| &side.low, 0.0, x, low);
         // Where the two lines meet; x itself may be larger by many orders.
         let crossing = (upper - lower) / (falls - rises);
         if !(crossing > 0.0 && crossing < x) {
@@ -125,7 +108,6 @@ pub(super) fn brake(node: &Node, x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trajectory::planner::node::Side;
     use proptest::prelude::*;
 
     /// An interval of length 1 with two rows, whose first derivatives and second derivatives are given at both ends.
@@ -147,7 +129,8 @@ mod tests {
                 let alpha = first + if end == 1 { 2.0 * second } else { 0.0 };
                 side.alpha[row] = if alpha.abs() < 1e-3 { 1e-3 } else { alpha };
                 side.slope[row] = second / side.alpha[row];
-                (side.high[row], side.low[row]) = (1.0, -1.0);
+                side.high[row] = 1.0 / side.alpha[row].abs();
+                side.low[row] = -side.high[row];
             }
         }
         node

@@ -38,6 +38,10 @@ impl Horizon {
         let was = self.range(nodes, [self.away, i], [from, to], bounds);
         let wanted = [0, 1].map(|side: usize| node.sides[side].accelerations(a, node.trial as f32));
         let after = nodes.at_mut(i + 1);
+        if x != after.trial || i >= self.in_force() {
+            self.moved = [self.moved[0].min(i + 1), i + 1];
+        }
+        self.shift = leaves - after.time;
         (after.trial, after.speed, after.time) = (x, speed, leaves);
         for (side, wanted) in nodes.at_mut(i).sides.iter_mut().zip(wanted) {
             side.allowed = self.clamp(&wanted, &was, bounds);
@@ -65,14 +69,8 @@ impl Horizon {
             if self.scaled {
                 continue;
             }
-            if grow && place.boxed {
-                place.grow(&is, &will, bounds);
-                changed = true;
-            }
-            if is != by_past || is != by_future {
-                place.shrink(&is, &by_past, &by_future, bounds);
-                changed = true;
-            }
+            changed |= grow && place.boxed && place.grow(&is, &will, bounds);
+            changed |= place.shrink(&is, &by_past, &by_future, bounds);
         }
         changed
     }

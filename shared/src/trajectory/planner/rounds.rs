@@ -1,0 +1,204 @@
+//! Rounds of passes over the nodes of a plan being made. Only where boxes have changed, or what is one filter length
+//! away from that, is looked at again.
+
+use super::horizon::{Horizon, Phase, TAKEN_FOR_ONE};
+use super::limits::Bounds;
+use super::node::{Nodes, most};
+use super::scan::{brake, reach};
+use super::swing::REST;
+
+/// Rounds of passes that a plan is given before it is given up.
+const ROUNDS: u32 = 12;
+/// A plan is good if no swing of the acceleration is above its limit by more than this share.
+const GOOD: f32 = 0.025;
+/// Work of the search for a reach, and of each of its iterations.
+const REACH: u32 = 2;
+const ITERATION: u32 = 4;
+/// Nodes whose times are shifted for a unit of work.
+const SHIFTED_FOR_ONE: u32 = 16;
+
+impl Horizon {
+    /// One visit of one node, or a step from one pass to the next.
+    pub(super) fn visit<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+        match self.phase {
+            Phase::Waiting => {}
+            Phase::Take => self.take(nodes, bounds),
+            Phase::Brake(i) => self.brake(nodes, i),
+            Phase::Ready(i) => self.ready(nodes, i, bounds),
+            Phase::Back(i) if self.goes_back(nodes, i, bounds) => {
+                self.back(nodes, i - 1, bounds);
+                self.phase = Phase::Back(i - 1);
+            }
+            Phase::Back(i) => {
+                if self.round > 0 && !self.braking && self.is_good() {
+                    self.phase = Phase::Take;
+                } else if i == self.commit && nodes.at(i).reach < nodes.at(i).x * (1.0 - 1e-6) {
+                    self.too_fast(nodes, bounds);
+                } else if self.round == ROUNDS {
+                    self.last_resort(nodes, bounds);
+                } else {
+                    self.round += 1;
+                    self.excess = REST;
+                    self.begin_forward(nodes, bounds);
+                }
+            }
+            Phase::Forward(i) if self.goes_forward(nodes, i, bounds) => {
+                self.forward(nodes, i, bounds);
+                self.phase = Phase::Forward(i + 1);
+            }
+            Phase::Forward(i) => self.end_forward(nodes, i, bounds),
+            Phase::Repair(i) if i > self.commit => {
+                self.repair(nodes, i - 1, bounds);
+                self.phase = Phase::Repair(i - 1);
+            }
+            Phase::Repair(i) => {
+                if self.is_good() {
+                    self.phase = Phase::Take;
+                } else if self.scaled || self.round == ROUNDS {
+                    self.last_resort(nodes, bounds);
+                } else {
+                    // The boxes have changed, and with them how slow the machine can be.
+                    self.phase = Phase::Brake(i);
+                }
+            }
+        }
+    }
+
+    /// The rounds have not led to a good plan. One from rest may be slower as a whole: accelerations go with x, and
+    /// so do their swings. Otherwise the plan in force goes on, to rest.
+    fn last_resort<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+        if nodes.at(self.commit).x > 0.0 {
+            self.give_up();
+            return;
+        }
+        let excess = self.excess.into_iter().fold(0.0, most);
+        let slower = 1.0 / (1.0 + 1.2 * f64::from(excess));
+        for i in self.commit..=self.last {
+            nodes.at_mut(i).trial *= slower;
+        }
+        self.scaled = true;
+        self.excess = REST;
+        self.work += (self.last - self.commit) / TAKEN_FOR_ONE;
+        self.from = self.commit;
+        self.begin_forward(nodes, bounds);
+    }
+
+    /// Whether the pass back has more to do below node `i`.
+    fn goes_back<const N: usize>(&self, nodes: &Nodes<N>, i: u32, bounds: &Bounds) -> bool {
+        if i == self.commit {
+            return false;
+        }
+        if self.round == 0 {
+            return i > self.start || nodes.at(i).reach < nodes.at(i).trial * (1.0 - 1e-6);
+        }
+        // Below, nothing has changed, and nothing that has is as near in time as the filter's length.
+        self.braking
+            || self.reach_changed
+            || i >= self.moved[0]
+            || nodes.at(i).time + bounds.filter >= nodes.at(self.moved[0] - 1).time
+    }
+
+    /// One step of the pass back: boxes and reach of node `i`.
+    fn back<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        let first = self.round == 0 || self.braking;
+        let repaired = !first && self.repair(nodes, i, bounds);
+        if repaired {
+            self.until = self.until.max(i);
+            self.from = self.from.min(i);
+        }
+        // Most nodes stay as they were in the round before.
+        if repaired || self.reach_changed || first {
+            let next = nodes.at(i + 1).reach;
+            let node = nodes.at_mut(i);
+            let (x, iterations) = reach(node, next);
+            self.work += REACH + iterations * ITERATION;
+            self.reach_changed = x != node.reach;
+            node.reach = x;
+            if self.reach_changed {
+                self.from = self.from.min(i.saturating_sub(1).max(self.commit));
+            }
+        }
+    }
+
+    /// Begins a pass forward where the last pass back has changed something.
+    fn begin_forward<const N: usize>(&mut self, nodes: &Nodes<N>, bounds: &Bounds) {
+        self.from = self.from.max(self.commit);
+        if self.braking || self.scaled {
+            self.from = self.commit;
+            self.until = self.last;
+        }
+        let time = nodes.at(self.from).time - bounds.filter;
+        self.away = self.from;
+        while self.away > self.history && nodes.at(self.away).time > time {
+            self.away -= 1;
+        }
+        self.moved = [self.last, self.from];
+        self.shift = 0.0;
+        self.lowest = self.lowest.min(self.from);
+        self.phase = Phase::Forward(self.from);
+    }
+
+    /// Whether the pass forward has more to do from node `i` on.
+    fn goes_forward<const N: usize>(&self, nodes: &Nodes<N>, i: u32, bounds: &Bounds) -> bool {
+        let near = || nodes.at(i).time - bounds.filter <= nodes.at(self.moved[1] + 1).time;
+        i < self.last && (i <= self.until || i <= self.moved[1] + 1 || near())
+    }
+
+    /// Begins the pass back, or the repair, where the pass forward has ended.
+    fn end_forward<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        for later in i + 1..=self.last {
+            nodes.at_mut(later).time += self.shift;
+        }
+        self.work += (self.last - i) / SHIFTED_FOR_ONE;
+        self.reach_changed = false;
+        if self.braking || self.scaled {
+            self.away = i - 1;
+            self.phase = Phase::Repair(i);
+            return;
+        }
+        self.away = i;
+        let time = nodes.at(i).time + bounds.filter;
+        while self.away < self.last && nodes.at(self.away).time <= time {
+            self.away += 1;
+        }
+        (self.from, self.until) = (self.last, self.commit);
+        self.phase = Phase::Back(i);
+    }
+
+    /// No swing of the acceleration is too large.
+    fn is_good(&self) -> bool {
+        self.excess.iter().all(|excess| *excess <= GOOD)
+    }
+
+    /// The lowest speed at the node after `i`, until that is as low as it shall be.
+    fn brake<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32) {
+        let node = nodes.at(i);
+        let enough = if self.wish.stop { 0.0 } else { node.cap_of_feed() };
+        if node.brake <= enough || i + 1 == nodes.end {
+            if self.wish.stop {
+                self.last = self.last.max(i);
+            }
+            nodes.at_mut(self.last).reach = 0.0;
+            self.phase = Phase::Back(self.last);
+        } else {
+            nodes.at_mut(i + 1).brake = brake(node, node.brake);
+            self.phase = Phase::Brake(i + 1);
+        }
+    }
+
+    /// The speed at the commit is given, and the boxes do not allow it: with full boxes it is possible.
+    fn too_fast<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+        if !self.warm {
+            self.give_up();
+            return;
+        }
+        self.warm = false;
+        for i in self.commit..self.last {
+            for side in &mut nodes.at_mut(i).sides {
+                side.open(bounds);
+            }
+        }
+        self.start = self.commit;
+        self.restart(nodes);
+    }
+}
