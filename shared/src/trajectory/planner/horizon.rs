@@ -87,6 +87,8 @@ pub(super) struct Horizon {
     pub(super) start: u32,
     /// First node at which the next pass forward may find something else than the one before.
     pub(super) from: u32,
+    /// Where the last pass forward began.
+    pub(super) began: u32,
     /// Last node whose boxes were changed by the last pass back.
     pub(super) until: u32,
     /// First and last node whose speeds the last pass forward changed.
@@ -139,6 +141,7 @@ impl Horizon {
         in_force: 0,
         start: 0,
         from: 0,
+        began: 0,
         until: 0,
         moved: [0; 2],
         shift: 0.0,
@@ -186,11 +189,12 @@ impl Horizon {
         bounds: &Bounds,
     ) -> bool {
         // A window that is long enough to stop in, and short enough to be planned before it is passed.
-        let mut last = (nodes.end - 1).min(self.in_force.max(player) + WINDOW);
         // A single interval between two places at rest would last for ever.
-        if last > nodes.first && nodes.at(last - 1).limit <= 0.0 {
-            last -= 1;
-        }
+        let ends = |last: u32| match last > nodes.first && nodes.at(last - 1).limit <= 0.0 {
+            true => last - 1,
+            false => last,
+        };
+        let mut last = ends((nodes.end - 1).min(self.in_force.max(player) + WINDOW));
         let goes_on = !wish.stop && wish.factor == self.factor;
         let nothing = match wish.stop {
             true => self.stopping,
@@ -214,7 +218,7 @@ impl Horizon {
             }
             let affordable = (until / (AFFORD * time_of(work_of_node))) as u32;
             let beyond = affordable.saturating_sub(self.in_force - slowing);
-            last = last.min(self.in_force + LEAST_WINDOW.max(beyond));
+            last = ends(last.min(self.in_force + LEAST_WINDOW.max(beyond)));
         }
         let work = match wish.stop {
             true => f64::from(self.patience) * WORK_OF_STOP,

@@ -32,7 +32,7 @@ impl Horizon {
             Phase::Back(i) => {
                 if self.round > 0 && !self.braking && self.is_good() {
                     self.phase = Phase::Take;
-                } else if i == self.commit && nodes.at(i).reach < nodes.at(i).x * (1.0 - 1e-6) {
+                } else if is_too_fast(nodes, i) {
                     self.too_fast(nodes, bounds);
                 } else if self.round == ROUNDS {
                     self.last_resort(nodes, bounds);
@@ -89,11 +89,14 @@ impl Horizon {
             return false;
         }
         if self.round == 0 {
-            return i > self.start || nodes.at(i).reach < nodes.at(i).trial * (1.0 - 1e-6);
+            return i > self.start || is_too_fast(nodes, i);
         }
-        // Below, nothing has changed, and nothing that has is as near in time as the filter's length.
+        // Below, nothing was looked at by the pass forward, and nothing that has changed is as near in time as the
+        // filter's length.
         self.braking
             || self.reach_changed
+            || is_too_fast(nodes, i)
+            || i > self.began
             || i >= self.moved[0]
             || nodes.at(i).time + bounds.filter >= nodes.at(self.moved[0] - 1).time
     }
@@ -114,9 +117,9 @@ impl Horizon {
             self.work += REACH + iterations * ITERATION;
             self.reach_changed = x != node.reach;
             node.reach = x;
-            if self.reach_changed {
-                self.from = self.from.min(i.saturating_sub(1).max(self.commit));
-            }
+        }
+        if self.reach_changed || first || is_too_fast(nodes, i + 1) {
+            self.from = self.from.min(i.saturating_sub(1).max(self.commit));
         }
     }
 
@@ -132,9 +135,14 @@ impl Horizon {
         while self.away > self.history && nodes.at(self.away).time > time {
             self.away -= 1;
         }
-        self.moved = [self.last, self.from];
+        self.moved = if self.until == self.last {
+            [self.from, self.last]
+        } else {
+            [self.last, self.from]
+        };
         self.shift = 0.0;
         self.lowest = self.lowest.min(self.from);
+        self.began = self.from;
         self.phase = Phase::Forward(self.from);
     }
 
@@ -201,4 +209,10 @@ impl Horizon {
         self.start = self.commit;
         self.restart(nodes);
     }
+}
+
+/// The plan passes node `i` faster than it could stop from there.
+fn is_too_fast<const N: usize>(nodes: &Nodes<N>, i: u32) -> bool {
+    let node = nodes.at(i);
+    node.reach < node.trial * (1.0 - 1e-6)
 }

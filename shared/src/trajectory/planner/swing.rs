@@ -38,7 +38,7 @@ impl Horizon {
         let was = self.range(nodes, [self.away, i], [from, to], bounds);
         let wanted = [0, 1].map(|side: usize| node.sides[side].accelerations(a, node.trial as f32));
         let after = nodes.at_mut(i + 1);
-        if x != after.trial || i >= self.in_force() {
+        if x != after.trial {
             self.moved = [self.moved[0].min(i + 1), i + 1];
         }
         self.shift = leaves - after.time;
