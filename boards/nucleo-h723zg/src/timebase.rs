@@ -15,6 +15,8 @@ pub const CYCLES_PER_US: u16 = CORE_MHZ as u16;
 /// Starts time at zero, and the count of cycles.
 pub(crate) fn start(core: &mut cortex_m::Peripherals) {
     core.DCB.enable_trace();
+    // Locked after a reset without debugger, on this core.
+    DWT::unlock();
     core.DWT.enable_cycle_counter();
     rcc::enable_and_reset::<peripherals::TIM5>();
     TIM5.psc().write_value((TIMER_MHZ - 1) as u16);
