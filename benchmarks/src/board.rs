@@ -4,6 +4,7 @@ use benchmarks::meter::{Meter, measured};
 use benchmarks::{Failure, MACHINES_FILE, SHIFT};
 use board_mps2_an500::benchmark::{self, COMMAND_LINE, Console, TICK_NS};
 use core::fmt::Write;
+use shared::trajectory::BoardPlanner;
 use thiserror::Error;
 
 /// Longest file of machines \[bytes\].
@@ -22,13 +23,13 @@ impl Meter for Timer {
 }
 
 /// Runs the benchmark that the command line names.
-fn run() -> Result<(), Stopped> {
+fn run(planner: &mut BoardPlanner) -> Result<(), Stopped> {
     let mut line = [0; COMMAND_LINE];
     let mut buffer = [0; LONGEST];
     let line = benchmark::command_line(&mut line).ok_or(Stopped::NoName)?;
     let name = line.split(' ').nth(1).ok_or(Stopped::NoName)?;
     let file = benchmark::read_file(MACHINES_FILE, &mut buffer).ok_or(Stopped::NoFile)?;
-    Ok(benchmarks::run(name, file, &mut Timer, &mut Console)?)
+    Ok(benchmarks::run(name, file, &mut Timer, &mut Console, planner)?)
 }
 
 #[derive(Debug, Error)]
@@ -45,8 +46,9 @@ enum Stopped {
 #[allow(unsafe_code)]
 #[cortex_m_rt::entry]
 fn main() -> ! {
+    static mut PLANNER: BoardPlanner = BoardPlanner::new();
     benchmark::start();
-    let code = match run() {
+    let code = match run(PLANNER) {
         Ok(()) => 0,
         Err(error) => {
             // The console takes everything.

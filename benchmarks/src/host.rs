@@ -5,6 +5,7 @@ use benchmarks::MACHINES_FILE;
 use benchmarks::machine::machines;
 use benchmarks::meter::{Meter, measured};
 use benchmarks::trajectories::of_file;
+use shared::trajectory::BoardPlanner;
 use std::path::Path;
 
 struct Outside;
@@ -35,7 +36,8 @@ pub fn run() -> Result<()> {
         return Ok(());
     }
     let mut text = String::new();
-    benchmarks::run(&name, &file, &mut Outside, &mut text)?;
+    let mut planner = Box::new(BoardPlanner::new());
+    benchmarks::run(&name, &file, &mut Outside, &mut text, &mut planner)?;
     print!("{text}");
     Ok(())
 }

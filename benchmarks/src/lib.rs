@@ -18,6 +18,7 @@ pub mod trajectories;
 
 use core::ffi::CStr;
 use machine::Unreadable;
+use shared::trajectory::BoardPlanner;
 use thiserror::Error;
 
 /// On the emulated board an instruction takes 2^this ns.
@@ -59,15 +60,17 @@ pub enum Failure {
 }
 
 /// Runs the benchmark called `name` over the machines in `file`, counts by `meter` and prints records to `console`.
+/// `planner` is too large for the stack of a board.
 pub fn run(
     name: &str,
     file: &[u8],
     meter: &mut impl meter::Meter,
     console: &mut impl core::fmt::Write,
+    planner: &mut BoardPlanner,
 ) -> Result<(), Failure> {
     match name {
         "kinematics" => kinematics::run(file, meter, console),
-        "planner" => planner::run(file, meter, console),
+        "planner" => planner::run(file, meter, console, planner),
         _ => Err(Failure::Unknown),
     }
 }

@@ -10,8 +10,7 @@ use crate::record::{Checksum, NOTHING, Record};
 use core::fmt;
 use core::hint::black_box;
 use programs::{PROGRAMS, Program};
-use shared::io::AXES;
-use shared::kinematics::{AxisLimits, Kinematics};
+use shared::kinematics::Kinematics;
 use shared::trajectory::BoardPlanner;
 
 /// The machine whose kinematics and limits are used.
@@ -25,7 +24,12 @@ const PATIENCE: usize = 60_000;
 pub const FUNCTIONS: [&str; 2] = ["push", "tick"];
 
 /// Runs every program to its end, and prints what each call took; before each program what counting itself costs.
-pub(crate) fn run(file: &[u8], meter: &mut impl Meter, console: &mut impl fmt::Write) -> Result<(), Failure> {
+pub(crate) fn run(
+    file: &[u8],
+    meter: &mut impl Meter,
+    console: &mut impl fmt::Write,
+    planner: &mut BoardPlanner,
+) -> Result<(), Failure> {
     let mut machines = machines(file).filter_map(Result::ok);
     let machine = machines
         .find(|machine| machine.kinematics.name() == MACHINE)
@@ -33,16 +37,19 @@ pub(crate) fn run(file: &[u8], meter: &mut impl Meter, console: &mut impl fmt::W
     let (kinematics, limits) = machine.build()?;
     let mut checksum = Checksum::new();
     for program in &PROGRAMS {
-        drive(program, &kinematics, &limits, meter, console, &mut checksum)?;
+        let start = program.start(&kinematics).ok_or(Failure::Stuck(program.name))?;
+        planner.start(&program.limits(&limits), program.space, 0.0, &start);
+        drive(program, &kinematics, planner, meter, console, &mut checksum)?;
     }
     writeln!(console, "{}", Record::Checksum(checksum.sum()))?;
     Ok(())
 }
 
+/// Runs a program to its end; the planner stands at its beginning.
 fn drive(
     program: &Program,
     kinematics: &Kinematics,
-    axes: &[AxisLimits; AXES],
+    planner: &mut BoardPlanner,
     meter: &mut impl Meter,
     console: &mut impl fmt::Write,
     checksum: &mut Checksum,
@@ -56,9 +63,6 @@ fn drive(
         };
         writeln!(console, "{record}")
     };
-    let start = program.start(kinematics).ok_or(Failure::Stuck(subject))?;
-    let mut planner = BoardPlanner::new();
-    planner.start(&program.limits(axes), program.space, 0.0, &start);
     tell(NOTHING, meter.count(black_box(&mut || {})))?;
     let mut next = 0;
     for _ in 0..PATIENCE {

@@ -6,6 +6,7 @@ use benchmarks::machine_files::pack;
 use benchmarks::meter::{Meter, measured};
 use benchmarks::record::Record;
 use shared::kinematics::KinematicsConfig;
+use shared::trajectory::BoardPlanner;
 use std::path::Path;
 
 fn packed() -> Vec<u8> {
@@ -25,7 +26,14 @@ impl Meter for Seven {
 #[test]
 fn every_machine_and_function_has_a_record() {
     let mut text = String::new();
-    benchmarks::run("kinematics", &packed(), &mut Seven, &mut text).expect("it runs");
+    benchmarks::run(
+        "kinematics",
+        &packed(),
+        &mut Seven,
+        &mut text,
+        &mut BoardPlanner::new(),
+    )
+    .expect("it runs");
     let mut lines = text.lines();
     let mut machines: Vec<&str> = Vec::new();
     let calls = SAMPLES as u32;
@@ -96,10 +104,28 @@ fn a_file_that_is_cut_off_is_an_error_and_an_end() {
     let read: Vec<Result<Machine, _>> = machines(&file[..file.len() - 1]).collect();
     let (last, before) = read.split_last().expect("machines");
     assert!(last.is_err() && before.iter().all(Result::is_ok));
-    assert!(benchmarks::run("kinematics", &file[1..], &mut Seven, &mut String::new()).is_err());
+    assert!(
+        benchmarks::run(
+            "kinematics",
+            &file[1..],
+            &mut Seven,
+            &mut String::new(),
+            &mut BoardPlanner::new()
+        )
+        .is_err()
+    );
 }
 
 #[test]
 fn an_unknown_benchmark_is_an_error() {
-    assert!(benchmarks::run("baking", &packed(), &mut Seven, &mut String::new()).is_err());
+    assert!(
+        benchmarks::run(
+            "baking",
+            &packed(),
+            &mut Seven,
+            &mut String::new(),
+            &mut BoardPlanner::new()
+        )
+        .is_err()
+    );
 }

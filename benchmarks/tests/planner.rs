@@ -4,6 +4,7 @@ use benchmarks::machine_files::pack;
 use benchmarks::meter::{Meter, measured};
 use benchmarks::planner::FUNCTIONS;
 use benchmarks::record::{NOTHING, Record};
+use shared::trajectory::BoardPlanner;
 use std::path::Path;
 
 struct Seven;
@@ -19,7 +20,14 @@ impl Meter for Seven {
 fn every_program_has_its_pushes_and_its_ticks() {
     let machines = pack(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../machines")).expect("shipped files");
     let mut text = String::new();
-    benchmarks::run("planner", &machines, &mut Seven, &mut text).expect("all programs");
+    benchmarks::run(
+        "planner",
+        &machines,
+        &mut Seven,
+        &mut text,
+        &mut BoardPlanner::new(),
+    )
+    .expect("all programs");
     let mut programs = Vec::new();
     for line in text.lines() {
         match Record::parse(line).expect(line) {
