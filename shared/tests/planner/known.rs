@@ -1,10 +1,11 @@
 //! Programs that broke something, as small as they could be made.
 
 use super::bench::{self, Bench, Frame};
-use super::program::{Kind, Move};
+use super::judge::judge;
+use super::program::{Kind, Move, elements};
 use super::random::check;
-use super::run::{Act, Acts};
-use shared::trajectory::Way;
+use super::run::{Act, Acts, run};
+use shared::trajectory::{Tolerance, Way};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const LINE: Move = Move {
@@ -282,4 +283,80 @@ fn a_plan_that_begins_behind_the_machine_is_given_up() {
         ..LINE
     }];
     passes(&bench::dual_beam(), &moves, &vec![]);
+}
+
+#[test]
+fn the_filter_leaves_corners_inside_a_small_tolerance() {
+    let chain = Kind::Chain {
+        lines: 2,
+        angle: 0.21808829,
+        both: false,
+    };
+    let frame = Frame {
+        acceleration: 4371.17,
+        tolerance: 0.001417356,
+        ..FRAME
+    };
+    passes(
+        &bench::axes(&frame),
+        &[Move {
+            kind: chain,
+            feed: 27.65,
+            ..LINE
+        }],
+        &vec![],
+    );
+}
+
+#[test]
+fn the_filter_leaves_the_attitude_at_corners_inside_its_tolerance() {
+    let frame = Frame {
+        rotary: 27.9,
+        tolerance: 0.65,
+        ..FRAME
+    };
+    let nurbs = Kind::Nurbs {
+        off: [0.0; 4],
+        weight: 1.0,
+    };
+    let moves = [
+        Move {
+            size: 11.7,
+            turn: [0.0, 0.233, 0.0],
+            ..LINE
+        },
+        Move { kind: nurbs, ..LINE },
+        Move {
+            size: 0.47,
+            turn: [0.0, -0.833, 0.0],
+            ..LINE
+        },
+    ];
+    passes(&bench::axes(&frame), &moves, &vec![]);
+}
+
+#[test]
+fn an_element_that_ends_in_a_stop_keeps_the_tolerance_of_the_one_before() {
+    let bench = axes();
+    let tolerance = Tolerance {
+        position: 0.002,
+        attitude: 1e-3,
+    };
+    let arc = Kind::Arc {
+        sweep: 3.0,
+        rise: 0.0,
+    };
+    let moves = [
+        Move { feed: 20.0, ..LINE },
+        Move {
+            kind: arc,
+            size: 6.0,
+            feed: 20.0,
+            ..LINE
+        },
+    ];
+    let elements = elements(&bench, &moves, tolerance);
+    let samples = run(&bench, &elements, &vec![]).expect("a run to the end");
+    let faults = judge(&bench, &elements, tolerance, &samples).faults();
+    assert!(faults.is_empty(), "{}", faults.join("; "));
 }

@@ -1,14 +1,13 @@
 //! Where nodes stand: dense where limits change, far apart where they do not.
 
 use super::breaks::Break;
-use super::limits::{Bounds, FILTER_SHARE, PATH_ROW, ROWS};
+use super::limits::{Bounds, PATH_ROW, ROWS};
 use super::node::{Lanes, Node, Nodes, Side};
-use super::rounding::ATTITUDE;
 use super::track::{Track, position_norm};
 use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics};
 use crate::trajectory::reference::at_unit_speed;
-use crate::trajectory::{Join, PathSpace, ReferenceError, Unreachable};
+use crate::trajectory::{PathSpace, ReferenceError, Unreachable};
 
 /// Places nearer than this are one \[mm\].
 pub(super) const SAME: f64 = 1e-9;
@@ -42,15 +41,15 @@ const LEAST_RATE: f32 = 1e-6;
 
 /// What the path asks of the rows at one place.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
+pub(super) struct Sample {
     /// Derivatives of the rows over s.
-    first: Lanes,
+    pub first: Lanes,
     second: Lanes,
     /// ṡ² of the feed, and the highest one for all other reasons.
     feed: f64,
-    limit: f64,
+    pub limit: f64,
     /// Curvature \[1/mm\].
-    bend: f64,
+    pub bend: f64,
 }
 
 /// Where the grid has got to.
@@ -89,10 +88,6 @@ impl<const E: usize> Ground<'_, E> {
         let empty = ReferenceError::EmptyPath;
         let piece = self.track.find(s, hint).ok_or(empty).map_err(nowhere(0))?;
         let (feed, line) = (piece.element.feed, piece.element.line);
-        let tolerance = match piece.element.join {
-            Join::Blend(tolerance) => tolerance,
-            Join::Stop => self.bounds.tolerance,
-        };
         let point = self.track.at(s, hint).ok_or(empty).map_err(nowhere(line))?;
         let axes = at_unit_speed(self.kinematics, &point, self.space, near).map_err(nowhere(line))?;
         let mut sample = Sample {
@@ -110,14 +105,7 @@ impl<const E: usize> Ground<'_, E> {
             let speed = self.bounds.velocity[axis] / rate;
             sample.limit = libm::fmin(sample.limit, speed * speed);
         }
-        // The output filter cuts curves by T²/24 of the acceleration across.
-        let filter = self.bounds.filter * self.bounds.filter / 24.0;
-        let attitude = point.second[ATTITUDE]
-            .iter()
-            .fold(0.0, |most, bend| libm::fmax(most, libm::fabs(*bend)));
-        for (tolerance, bend) in [(tolerance.position, sample.bend), (tolerance.attitude, attitude)] {
-            sample.limit = libm::fmin(sample.limit, FILTER_SHARE * tolerance / (filter * bend));
-        }
+        self.keep_accurate(&mut sample, &point, s, *hint);
         Ok((sample, axes))
     }
 

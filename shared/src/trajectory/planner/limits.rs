@@ -54,10 +54,12 @@ const JERK_RESERVE: f64 = 0.985;
 const UNFELT: f64 = 0.01;
 /// Tolerance of the attitude that goes with one of the position, where none is programmed \[rad/mm\].
 const ATTITUDE_OF_POSITION: f64 = 0.02;
-/// Path and axes, each with limits of its own, and one unused lane that makes them eight.
+/// Path and axes, each with limits of its own, and what keeps corners accurate.
 pub(super) const ROWS: usize = 8;
 /// Row of the path; the axes follow it.
 pub(super) const PATH_ROW: usize = 0;
+/// Row of what the output filter is off by next to corners, as a share of what it may be.
+pub(super) const ACCURACY_ROW: usize = 7;
 
 /// Limits as the planner uses them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,6 +152,7 @@ impl Bounds {
             bounds.acceleration[PATH_ROW + 1 + axis] = sane(limits.acceleration[axis] * ACCELERATION_RESERVE);
             bounds.swing[PATH_ROW + 1 + axis] = sane(limits.jerk[axis] * JERK_RESERVE * filter);
         }
+        bounds.acceleration[ACCURACY_ROW] = 1.0;
         let feels = |row: usize| bounds.acceleration[row].min(bounds.swing[row]);
         let most_sensitive = (PATH_ROW..=PATH_ROW + SHAPED)
             .map(feels)

@@ -3,6 +3,7 @@
 //! It looks ahead over everything it holds and plans the fastest speed along the path that no limit forbids, down
 //! to rest at the end of what it knows. Corners are rounded inside their tolerance.
 
+mod accuracy;
 mod breaks;
 mod chain;
 mod corner;
