@@ -69,6 +69,8 @@ struct Place {
     /// mm, rad.
     axes: [f64; AXES],
     extension_mm: [f64; SIDES],
+    /// Where the last rapid before it ended (mm, rad).
+    clear: [f64; AXES],
     /// Of that path, before the line.
     switched: Switched,
     spindle: Spindle,
@@ -92,7 +94,7 @@ impl Planner {
     /// there from the axes `from` (mm, degrees): away first, as for parking, then over the place, then down to it.
     ///
     /// `paths` are those of all of `program`. Beams go on where the line begins, if they are on there. A spindle is on
-    /// before the machine goes down, which is then no faster than a feed.
+    /// before the machine goes down, which is no faster than a feed from where the program itself did not go by a rapid.
     ///
     /// # Errors
     /// [`FromLineError`].
@@ -129,7 +131,7 @@ impl Planner {
 
     /// Follows the axes and all that is switched to the first motion in or after `line`.
     fn find(&self, paths: &[PlannedPath], line: u32, from: &[f64; AXES]) -> Result<Place, FromLineError> {
-        let mut axes = *from;
+        let (mut axes, mut clear) = (*from, *from);
         let mut last = 0;
         let mut spindle = Spindle::default();
         let mut tracking_since = None;
@@ -153,6 +155,7 @@ impl Planner {
                         line: element.line,
                         axes,
                         extension_mm: std::array::from_fn(|side| value[CHANNELS - SIDES + side]),
+                        clear,
                         switched,
                         spindle,
                         // The line itself may turn it off.
@@ -173,6 +176,9 @@ impl Planner {
                 axes = self.followed(path.space, &element, &axes)?;
                 last = last.max(element.line);
                 s += element.length;
+            }
+            if path.motion == Motion::Rapid {
+                clear = axes;
             }
         }
         Err(FromLineError::Nothing { line, last })
@@ -210,7 +216,8 @@ impl Planner {
         Ok(axes)
     }
 
-    /// To where a line begins, with beams off. With a spindle the way down is no faster than `slow` \[mm/s\].
+    /// To where a line begins, with beams off. With a spindle the rest of the way down, from where the last rapid of
+    /// the program ended, is no faster than `slow` \[mm/s\].
     fn approach(
         &self,
         from: &[f64; AXES],
@@ -218,36 +225,37 @@ impl Planner {
         slow: Option<f64>,
     ) -> Result<Vec<PlannedPath>, FromLineError> {
         let park = inner(&self.planning.park_axes());
-        let (mut away, mut over) = (*from, place.axes);
+        let (mut away, mut over, mut above) = (*from, place.axes, place.axes);
         for axis in &self.planning.park_first {
             let axis = *axis as usize;
-            (away[axis], over[axis]) = (park[axis], park[axis]);
+            (away[axis], over[axis], above[axis]) = (park[axis], park[axis], park[axis]);
+            let clear = place.clear[axis];
+            let (low, high) = (park[axis].min(place.axes[axis]), park[axis].max(place.axes[axis]));
+            if (low..=high).contains(&clear) {
+                above[axis] = clear;
+            }
         }
-        let extension = &place.extension_mm;
         let way = |from: &[f64; AXES], to: &[f64; AXES]| -> Result<Option<PlannedPath>, PathError> {
-            let moves = from != to;
-            moves
-                .then(|| self.axes_path(from, to, extension, NOWHERE))
-                .transpose()
+            let path = || self.axes_path(from, to, &place.extension_mm, NOWHERE);
+            (from != to).then(path).transpose()
         };
         let mut paths = Vec::new();
         paths.extend(way(from, &away)?);
         paths.extend(way(&away, &over)?);
-        if place.spindle.on {
-            paths.push(self.spun_up(&over, place)?);
+        if !place.spindle.on {
+            paths.extend(way(&over, &place.axes)?);
+            return Ok(paths);
         }
-        let mut down = way(&over, &place.axes)?;
-        if let Some(down) = &mut down {
-            if let Some(feed) = slow {
-                down.limits.velocity = down.limits.velocity.min(feed);
-            }
-            down.dwell_before_s = if place.spindle.on {
-                place.spindle.run_up_s
-            } else {
-                0.0
-            };
+        let spun_up = paths.len() + 1;
+        paths.push(self.spun_up(&over, place)?);
+        paths.extend(way(&over, &above)?);
+        if let Some(mut down) = way(&above, &place.axes)? {
+            down.limits.velocity = slow.unwrap_or(f64::INFINITY).min(down.limits.velocity);
+            paths.push(down);
         }
-        paths.extend(down);
+        if let Some(next) = paths.get_mut(spun_up) {
+            next.dwell_before_s = place.spindle.run_up_s;
+        }
         Ok(paths)
     }
 

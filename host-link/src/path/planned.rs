@@ -92,9 +92,10 @@ impl PlannedPath {
         line.map_or(0, |(_, line)| *line)
     }
 
-    /// Begins at `s` \[mm\], where an element does, with `actions`.
+    /// Begins at `s` \[mm\], where an element does, with `actions`, and at once.
     pub(super) fn begin_at(&mut self, s: f64, actions: Vec<PathAction>) {
         (self.start_s, self.start_actions) = (s, actions);
+        (self.dwell_before_s, self.corner_deg) = (0.0, None);
     }
 
     /// A rapid that takes `times` as long.

@@ -268,7 +268,11 @@ impl Weld {
         let paths = job.plan(program, &self.planner, &session.motion.reference)?;
         for (index, path) in paths.into_iter().enumerate() {
             if index > 0 {
-                session.wait_before(&format!("line {}", path.line_at(0.0)))?;
+                let next = match path.line_at(path.start_s) {
+                    0 => "the next way of the approach".to_owned(),
+                    line => format!("line {line}"),
+                };
+                session.wait_before(&next)?;
             }
             let what = if path.weld().is_some() {
                 elsewhere = "moving on";

@@ -154,13 +154,16 @@ M2";
         .position(|s| s.axes[2] < park[2] - 0.1)
         .unwrap();
     assert!(down > 2000, "down after {down} ms");
-    let begun = samples.iter().position(|s| s.path_id == 5).unwrap();
+    let begun = samples.iter().position(|s| s.path_id == 6).unwrap();
     assert!(samples[on..begun].iter().all(|s| s.beams[0]));
-    let fastest = samples[on + down..begun]
-        .iter()
-        .map(|s| s.speed_mm_s)
-        .fold(0.0, f64::max);
+    // The program went to 50 mm by a rapid, and on at 120 mm/min.
+    let slow = samples[..begun].iter().filter(|s| s.path_id == 5);
+    let [fastest, highest] = slow.fold([0.0; 2], |[speed, z]: [f64; 2], s| {
+        let height = s.axes[2] - samples[begun].axes[2];
+        [speed.max(s.speed_mm_s), z.max(height)]
+    });
     assert!((1.9..2.01).contains(&fastest), "{fastest} mm/s");
+    assert!((highest - 30.0).abs() < 0.02, "{highest} mm");
     let first = &samples[begun];
     assert!((first.s_mm - 10.0).abs() < 1e-6, "{first:?}");
     assert!(!samples.last().unwrap().beams[0]);
