@@ -232,7 +232,8 @@ impl MotionController {
         };
         let mut closed = laser_fault;
         if activity == Activity::Running {
-            self.beams.pass(&mut self.path.events, then.s);
+            // Rounding must not keep one from coming at a stop that stands just there.
+            self.beams.pass(&mut self.path.events, then.s + AT_END);
             if let Some(overlap) = &mut self.path.overlap {
                 let waiting = overlap.pass(&then);
                 closed = core::array::from_fn(|side| closed[side] || waiting[side]);
