@@ -286,6 +286,33 @@ fn a_plan_that_begins_behind_the_machine_is_given_up() {
 }
 
 #[test]
+fn a_rest_at_a_stop_is_none_at_the_end_of_the_plan() {
+    let frame = Frame {
+        acceleration: 1815.363,
+        ramp: 0.019175,
+        tolerance: 0.039177,
+        ..FRAME
+    };
+    let circle = Kind::Arc {
+        sweep: 2.0 * PI,
+        rise: 0.0,
+    };
+    let moves = [
+        Move {
+            kind: circle,
+            size: 7.117e-4,
+            stop: true,
+            ..LINE
+        },
+        Move {
+            turn: [0.0, 0.0, 0.96929],
+            ..LINE
+        },
+    ];
+    passes(&bench::axes(&frame), &moves, &vec![]);
+}
+
+#[test]
 fn the_filter_leaves_corners_inside_a_small_tolerance() {
     let chain = Kind::Chain {
         lines: 2,

@@ -300,7 +300,8 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         };
         let left = self.player.left(&self.nodes, last);
         let next = (self.player.node + 1).min(last);
-        let rested = self.rested();
+        // At the end of the plan, not at a stop before it.
+        let rested = self.rested() && self.player.node >= last;
         self.horizon
             .begin(&mut self.nodes, next, left, rested, wish, &self.bounds)
     }
