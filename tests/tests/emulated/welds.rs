@@ -3,7 +3,9 @@
 use crate::pair::{Pair, assert_served};
 use host_link::boards::simulated::SimulatedBoards;
 use host_link::seam::Deviation;
-use system_tests::{assert_held_weld_goes_on, assert_on_seam, deviations, seam, shipped_seam, sines, weld};
+use system_tests::{
+    assert_held_weld_goes_on, assert_on_seam, deviations, seam, shipped_seam, short_lines, sines, weld,
+};
 
 /// Welds along `seam` on emulated and on simulated boards: no spot leaves its seam, and both agree.
 fn assert_welds(name: &str, seam: &Deviation, speed_m_per_min: f64) {
@@ -47,4 +49,15 @@ fn a_held_weld_goes_on_over_the_place() {
 #[test]
 fn sines_of_1_mm_at_9_m_per_min() {
     assert_welds("weld-sines", &seam(sines), 9.0);
+}
+
+#[test]
+fn short_lines_at_6_m_per_min() {
+    let mut pair = Pair::boot("short-lines");
+    let ended = short_lines(&mut pair.connect());
+    assert!(ended.error.is_none(), "{:?}", ended.error);
+    assert_served(&ended.report);
+    let contour = ended.report.max_contour_error_mm.expect("no gap");
+    assert!(contour < 0.05, "{contour} mm");
+    pair.assert_off();
 }
