@@ -3,7 +3,7 @@
 
 use crate::nc::Motion;
 use crate::part::RunSample;
-use crate::path::{CAPACITY, PlannedPath};
+use crate::path::{Course, PlannedPath};
 use crate::record::Record;
 use crate::report::Load;
 use crate::seam::OVERHANG_MM;
@@ -12,7 +12,6 @@ use nalgebra::Vector3;
 use shared::io::{MOTORS, SIDES, SLIDES};
 use shared::motion::{PATH_PERIOD_S, State};
 use shared::protocol::MotionSample;
-use shared::trajectory::Path;
 use std::collections::BTreeMap;
 
 /// The place nearest to the tip is known this well \[mm\].
@@ -161,7 +160,7 @@ fn on_paths(record: &Record) -> impl Iterator<Item = &MotionSample> {
 
 /// A path that works.
 struct Work {
-    path: Box<Path<CAPACITY>>,
+    path: Course,
     /// `along_mm` at its beginning.
     along_mm: f64,
 }
@@ -231,21 +230,29 @@ fn work_tick(
 }
 
 /// Distance of `tip` from `path`, searched from path position `s` on \[mm\]. Beyond its ends a path has no points.
-fn contour_error(path: &Path<CAPACITY>, tip: &Vector3<f64>, s: f64) -> Option<f64> {
+fn contour_error(path: &Course, tip: &Vector3<f64>, s: f64) -> Option<f64> {
     let (start, end) = (path.start_s()?, path.end_s()?);
     let mut s = s.clamp(start, end);
+    // Outside of a corner the search goes to and fro between its sides.
+    let (mut damped, mut last, mut nearest) = (1.0, 0.0, f64::INFINITY);
     for _ in 0..STEPS {
         let point = path.at(s)?;
         let place = |channels: &[f64]| Vector3::from_column_slice(&channels[..3]);
         let (apart, slope) = (tip - place(&point.value), place(&point.first));
-        let step = apart.dot(&slope) / slope.norm_squared();
+        nearest = nearest.min(apart.norm());
+        let mut step = damped * apart.dot(&slope) / slope.norm_squared();
+        if step * last < 0.0 {
+            damped *= 0.5;
+            step *= 0.5;
+        }
+        last = step;
         let next = (s + step).clamp(start, end);
         if next.is_nan() || (next - s).abs() < NEAREST {
             return Some(apart.norm());
         }
         s = next;
     }
-    None
+    (damped < 1.0).then_some(nearest)
 }
 
 /// Largest value and root mean square.
@@ -370,6 +377,7 @@ mod tests {
             speed_error: 0.0,
             start_s: 0.0,
             start_actions: Vec::new(),
+            blocks: None,
         }
     }
 
@@ -462,7 +470,7 @@ mod tests {
 
     #[test]
     fn contour_error_is_the_distance_from_the_nearest_place_of_the_path() {
-        let (path, seam) = (bent_path(), wavy_seam());
+        let (path, seam) = (Course::Knots(bent_path()), wavy_seam());
         let (pose, _) = seam.planned(200.0).unwrap();
         let slope = path.at(200.0).unwrap().first;
         let along = Vector3::new(slope[0], slope[1], slope[2]).normalize();

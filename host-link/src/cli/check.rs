@@ -4,7 +4,7 @@ use super::read_program;
 use crate::dry_run::{self, DryRun};
 use crate::machine::MachineFile;
 use crate::nc::Motion;
-use crate::path::{PlannedPath, Planner};
+use crate::path::{Blocks, PlannedPath, Planner};
 use crate::seam::{Deviation, SeamError};
 use crate::weld::check_seam;
 use anyhow::Context;
@@ -55,31 +55,43 @@ impl Check {
 }
 
 fn print(paths: &[PlannedPath], ran: &DryRun) {
-    println!(" path            length      time     speed  points");
+    println!(" path            length      time     speed  pieces");
     for (index, (path, times)) in paths.iter().zip(&ran.paths).enumerate() {
         let kind = match path.motion {
             Motion::Rapid => "rapid",
             Motion::Feed => "feed",
             Motion::Stand => "stand",
         };
-        let speeds = path.steps.iter().map(|step| step.velocity);
-        let speeds = std::iter::once(path.limits.velocity).chain(speeds);
         let m_min = |speed: f64| speed / shared::units::MM_S_PER_M_MIN;
+        let speeds = path.speeds();
         println!(
-            "{:5} {kind:<6} {:9.1} mm {:7.2} s {:6.2} m/min {:5}",
+            "{:5} {kind:<6} {:9.1} mm {:7.2} s {:6.2} m/min {:7}",
             index + 1,
             path.length_mm(),
             times.duration_s,
-            m_min(speeds.clone().fold(0.0, f64::max)),
-            path.knots.len(),
+            m_min(speeds.fastest_mm_s),
+            path.pieces(),
         );
-        let slowest = speeds.fold(f64::INFINITY, f64::min);
-        if !path.steps.is_empty() {
+        if speeds.changes > 0 {
             println!(
                 "      changes its feed {} times, down to {:.2} m/min",
-                path.steps.len(),
-                m_min(slowest)
+                speeds.changes,
+                m_min(speeds.slowest_mm_s)
             );
+        }
+        let summary = path.blocks.as_ref().map(Blocks::summary);
+        if let Some(summary) = summary.filter(|summary| summary.stops > 0) {
+            print!("      stops {} times on the way", summary.stops);
+            match summary.corners {
+                0 => println!(),
+                corners => println!(
+                    ", {corners} times at a corner, of {:.1}° at most",
+                    summary.sharpest.to_degrees()
+                ),
+            }
+        }
+        if let Some(tolerance) = summary.and_then(|summary| summary.tolerance_mm) {
+            println!("      rounds corners by {tolerance} mm at most, at the closest");
         }
         if let Some(bound) = path.bound {
             println!(

@@ -132,7 +132,7 @@ impl Runner {
             }
         }
         self.result.highest.take(&seen.highest);
-        let lines = (path.line_at(path.start_s), path.line_at(path.length_mm()));
+        let lines = path.first_and_last_line();
         self.result.paths.push(PathFigures {
             motion: path.motion,
             parking,

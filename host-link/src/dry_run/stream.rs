@@ -1,8 +1,9 @@
 //! How paths reach the planner: as the PC gives them to the motion board, a request a millisecond.
 
-use crate::path::PlannedPath;
-use shared::protocol::{LOAD_BATCH, LOAD_ELEMENTS, PathEvent, TELEMETRY_BATCH};
-use shared::trajectory::{BoardPlanner, Element, PushError};
+use super::DryRunError;
+use crate::path::{Leg, PathError, PlannedPath};
+use shared::protocol::{LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, TELEMETRY_BATCH};
+use shared::trajectory::{BoardPlanner, Element};
 use std::iter::Peekable;
 
 /// Ticks that a request and its answer take.
@@ -36,25 +37,21 @@ pub fn dwell_ticks(path: &PlannedPath) -> u32 {
 
 /// A path on its way to the planner.
 pub struct Stream<'a> {
-    elements: Peekable<Box<dyn Iterator<Item = Element> + 'a>>,
-    events: Peekable<Box<dyn Iterator<Item = PathEvent> + 'a>>,
+    legs: Peekable<Box<dyn Iterator<Item = Result<Leg, PathError>> + 'a>>,
     /// Elements that go next.
     batch: Vec<Element>,
-    /// Where they end \[mm\].
-    end_s: f64,
+    /// How many events on them have not gone yet.
+    events: usize,
     /// Ticks until the next request.
     wait: u32,
 }
 
 impl<'a> Stream<'a> {
     pub fn new(path: &'a PlannedPath) -> Self {
-        let elements: Box<dyn Iterator<Item = Element> + 'a> = Box::new(path.given_elements());
-        let events: Box<dyn Iterator<Item = PathEvent> + 'a> = Box::new(path.given_events());
         Self {
-            elements: elements.peekable(),
-            events: events.peekable(),
+            legs: path.given_legs().peekable(),
             batch: Vec::new(),
-            end_s: path.start_s,
+            events: 0,
             wait: ASK,
         }
     }
@@ -64,7 +61,7 @@ impl<'a> Stream<'a> {
         &mut self,
         planner: &mut BoardPlanner,
         mut given: impl FnMut(&Element),
-    ) -> Result<u32, PushError> {
+    ) -> Result<u32, DryRunError> {
         // To begin the path, to ask for room, to run it.
         let mut requests = 3;
         while self.send(planner, &mut given)? {
@@ -78,7 +75,7 @@ impl<'a> Stream<'a> {
         &mut self,
         planner: &mut BoardPlanner,
         mut given: impl FnMut(&Element),
-    ) -> Result<(), PushError> {
+    ) -> Result<(), DryRunError> {
         self.wait = self.wait.saturating_sub(1);
         if self.wait == 0 && !self.send(planner, &mut given)? {
             // The question itself is a request.
@@ -92,19 +89,18 @@ impl<'a> Stream<'a> {
         &mut self,
         planner: &mut BoardPlanner,
         given: &mut impl FnMut(&Element),
-    ) -> Result<bool, PushError> {
+    ) -> Result<bool, DryRunError> {
         while self.batch.len() < LOAD_ELEMENTS
-            && let Some(element) = self.elements.next()
+            && self.events < LOAD_EVENTS
+            && let Some(leg) = self.legs.next()
         {
-            self.end_s += element.length;
-            self.batch.push(element);
+            let leg = leg?;
+            self.events += leg.events.len();
+            self.batch.push(leg.element);
         }
         // Events go before the elements that carry them.
-        let ends = self.elements.peek().is_none();
-        let end_s = self.end_s;
-        let is_due = |event: &PathEvent| ends || event.s_mm <= end_s;
-        if self.events.next_if(is_due).is_some() {
-            while self.events.next_if(is_due).is_some() {}
+        if self.events > 0 {
+            self.events = self.events.saturating_sub(LOAD_EVENTS);
             return Ok(true);
         }
         if self.batch.is_empty() || self.batch.len() > planner.room() {

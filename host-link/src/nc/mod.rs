@@ -26,6 +26,6 @@ mod tests;
 pub use error::{NcError, Place, Problem};
 pub use interpreter::{Options, interpret};
 pub use program::{
-    ArcForm, ArcWay, ControlPoint, FeedRate, Motion, NurbsWay, PathControl, Plane, Program, ProgramAction,
-    ProgramEvent, ProgramPath, Target, Way, Words,
+    ArcForm, ArcWay, ControlPoint, FeedRate, Motion, Move, NurbsWay, PathControl, Plane, Program,
+    ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,
 };

@@ -25,6 +25,29 @@ pub struct ProgramPath {
     pub events: Vec<ProgramEvent>,
 }
 
+/// The motion of one block of a path, with what happens at its start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Move {
+    /// Where it leads.
+    pub target: Target,
+    /// In the order of the program.
+    pub events: Vec<ProgramEvent>,
+}
+
+impl ProgramPath {
+    /// Its blocks one after the other.
+    pub fn moves(&self) -> Vec<Move> {
+        let of = |index: usize| self.events.iter().filter(move |event| event.with_target == index);
+        let targets = self.targets.iter().enumerate();
+        targets
+            .map(|(index, target)| Move {
+                target: target.clone(),
+                events: of(index).copied().collect(),
+            })
+            .collect()
+    }
+}
+
 /// How fast.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {

@@ -11,7 +11,7 @@ use shared::io::SIDES;
 use shared::trajectory::CHANNELS;
 
 /// A cubic span may be off an arc by this much: in position \[mm\] and direction.
-const MAX_ERROR: [f64; 2] = [1e-5, 1e-6];
+pub(super) const MAX_ERROR: [f64; 2] = [1e-5, 1e-6];
 /// And off a NURBS by this much \[mm\].
 const NURBS_ERROR: f64 = 1e-4;
 /// Step of differences \[rad\].
@@ -26,16 +26,16 @@ const SOME_TURN: f64 = 0.01;
 
 /// The motion of one block over its length.
 pub(super) struct Block {
-    way: BlockWay,
+    pub(super) way: BlockWay,
     attitude: Attitude,
     extension: [[f64; SIDES]; 2],
     pub(super) length: f64,
     /// Sum of the rates at which rotary axes turn \[rad/mm\].
-    turning: f64,
+    pub(super) turning: f64,
     pub(super) place: Place,
 }
 
-enum BlockWay {
+pub(super) enum BlockWay {
     Straight(Vector3<f64>, Vector3<f64>),
     Round(Arc),
     Free(LongCurve),
@@ -49,6 +49,7 @@ enum Attitude {
 }
 
 /// Values and slopes of all channels.
+#[derive(Clone)]
 pub(super) struct Jet {
     pub(super) value: [f64; CHANNELS],
     pub(super) slope: [f64; CHANNELS],
@@ -140,6 +141,11 @@ impl Block {
             turning: turn / length,
             place,
         })
+    }
+
+    /// Whether anything but the tip moves.
+    pub(super) fn turns(&self) -> bool {
+        self.turning > 0.0 || self.extension[0] != self.extension[1]
     }
 
     fn position(&self, u: f64) -> Moving {

@@ -1,6 +1,7 @@
 //! A planned path as elements: what the motion board is given.
 
-use super::PlannedPath;
+use super::blocks::Leg;
+use super::{PathError, PlannedPath};
 use shared::protocol::{Knot, PathEvent, PathLimits};
 use shared::trajectory::{CHANNELS, Cubic, Element, Join, SHAPED, Shape, Tolerance};
 
@@ -10,16 +11,37 @@ pub const TOLERANCE: Tolerance = Tolerance {
     attitude: 1e-4,
 };
 
-/// What the output filter may take of a curve at a path acceleration \[s²\]: makes it 26 ms long, about half the time
+/// What the output filter may take of a curve at a path acceleration \[s²\], if no corner asks for less: makes it 26 ms long, about half the time
 /// in which the axes of the shipped machines come to their acceleration.
 const FILTER: f64 = 1e-4;
 /// A step of the speed this near to a knot is at it \[mm\].
 const SAME: f64 = 1e-6;
 
 impl PlannedPath {
-    /// The path as elements, in order: every span between two knots is one, or several where the speed steps inside
+    /// All of the path as elements with their events, in order. The last element comes to rest.
+    ///
+    /// # Errors
+    /// The program is not the one that was checked, so there are no more legs.
+    pub fn legs(&self) -> Box<dyn Iterator<Item = Result<Leg, PathError>> + '_> {
+        if let Some(blocks) = &self.blocks {
+            return Box::new(blocks.legs());
+        }
+        let mut elements = self.elements().peekable();
+        let mut events = self.events.iter().copied().peekable();
+        let mut end_s = 0.0;
+        Box::new(std::iter::from_fn(move || {
+            let element = elements.next()?;
+            end_s += element.length;
+            let ends = elements.peek().is_none();
+            let here = |event: &PathEvent| ends || event.s_mm < end_s - SAME;
+            let events = std::iter::from_fn(|| events.next_if(here)).collect();
+            Some(Ok(Leg { events, element }))
+        }))
+    }
+
+    /// The knots as elements, in order: every span between two knots is one, or several where the speed steps inside
     /// it. The last one comes to rest.
-    pub fn elements(&self) -> impl Iterator<Item = Element> + '_ {
+    fn elements(&self) -> impl Iterator<Item = Element> + '_ {
         let length = self.length_mm();
         let spans = self.knots.windows(2).map(|span| (&span[0], &span[1]));
         spans.flat_map(move |(from, to)| {
@@ -39,36 +61,45 @@ impl PlannedPath {
         })
     }
 
-    /// The elements that the motion board is given: those from where the machine begins.
-    pub fn given_elements(&self) -> impl Iterator<Item = Element> + '_ {
+    /// What the motion board is given of it: from where the machine begins.
+    ///
+    /// # Errors
+    /// As of [`Self::legs`].
+    pub fn given_legs(&self) -> Box<dyn Iterator<Item = Result<Leg, PathError>> + '_> {
+        if self.start_s <= 0.0 {
+            return self.legs();
+        }
         let mut s = 0.0;
-        self.elements().skip_while(move |element| {
+        let given = self.legs().skip_while(move |leg| {
             let before = s < self.start_s - SAME;
-            s += element.length;
-            before
-        })
-    }
-
-    /// The events that the motion board is given.
-    pub fn given_events(&self) -> impl Iterator<Item = PathEvent> + '_ {
-        let s_mm = self.start_s;
-        let first = self.start_actions.iter().copied();
-        let first = first.map(move |action| PathEvent { s_mm, action });
-        let rest = self.events.iter().filter(move |event| event.s_mm >= s_mm - SAME);
-        // What was where a line begins is no sooner than the machine is there.
-        let rest = rest.map(move |event| PathEvent {
-            s_mm: event.s_mm.max(s_mm),
-            ..*event
+            s += leg.as_ref().map_or(0.0, |leg| leg.element.length);
+            before && leg.is_ok()
         });
-        first.chain(rest)
+        Box::new(given.enumerate().map(|(index, leg)| {
+            let mut leg = leg?;
+            if index == 0 {
+                // What was where a line begins is no sooner than the machine is there.
+                let here = leg.events.iter().map(|event| event.action);
+                let actions = self.start_actions.iter().copied().chain(here);
+                let s_mm = self.start_s;
+                leg.events = actions.map(|action| PathEvent { s_mm, action }).collect();
+            }
+            Ok(leg)
+        }))
     }
 
     /// Limits along the path, as the motion board takes them.
     pub fn path_limits(&self) -> PathLimits {
+        let closest = self
+            .blocks
+            .as_ref()
+            .and_then(|blocks| blocks.summary().tolerance_mm);
         PathLimits {
             acceleration_mm_s2: self.limits.acceleration,
             jerk_mm_s3: self.limits.jerk,
-            tolerance_mm: FILTER * self.limits.acceleration,
+            tolerance_mm: closest
+                .unwrap_or(f64::INFINITY)
+                .min(FILTER * self.limits.acceleration),
         }
     }
 

@@ -17,7 +17,7 @@ use shared::geometry::angle;
 use shared::io::{AXES, SIDES};
 use shared::motion::PATH_PERIOD_S;
 use shared::protocol::Knot;
-use shared::trajectory::{CHANNELS, PathPoint};
+use shared::trajectory::{CHANNELS, PathPoint, SHAPED};
 
 /// Largest change of direction that is gone over without a stop \[rad\], half a degree. The tip then leaves the
 /// corner by about a thousandth of the length of the change: nanometres at the feeds of arc and friction
@@ -41,12 +41,15 @@ pub(super) struct Piece {
 }
 
 /// Where slopes change from one block to the next, over `half` on both sides.
-struct Join {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Join {
     s: f64,
-    half: f64,
+    pub(super) half: f64,
     step: [f64; CHANNELS],
+    /// At the join itself, the slope is that of the block after it.
+    after: bool,
     /// By how much the rotary axes are off at `s`, for that \[rad\].
-    slack: f64,
+    pub(super) slack: f64,
 }
 
 impl Planner {
@@ -132,13 +135,14 @@ impl Planner {
     }
 
     /// The change from one block to the next at `s`, where the tip is `tip` and the speed at most `speed`.
-    fn join(&self, s: f64, before: &Block, after: &Block, tip: &Tip, speed: f64) -> Join {
+    pub(super) fn join(&self, s: f64, before: &Block, after: &Block, tip: &Tip, speed: f64) -> Join {
         let (a, b) = (before.jet(self, before.length), after.jet(self, 0.0));
         let step = std::array::from_fn(|c| b.slope[c] - a.slope[c]);
         let mut join = Join {
             s,
             half: 0.0,
             step,
+            after: false,
             slack: 0.0,
         };
         if step.iter().all(|step: &f64| step.abs() < NO_STEP) {
@@ -146,20 +150,29 @@ impl Planner {
         }
         let longest = before.length.min(after.length) / 2.0;
         join.half = LEAST_TICKS / 2.0 * PATH_PERIOD_S * speed;
-        // What the machine cannot do there is found when the whole path is followed.
-        let rates = self.drive_rates(&a, tip).zip(self.drive_rates(&b, tip));
-        let change = rates.map(|(from, to)| std::array::from_fn::<_, DRIVES, _>(|i| (to[i] - from[i]).abs()));
-        for (change, limits) in change.iter().flatten().zip(&self.drives) {
-            let needed = change * speed * speed / (2.0 * CURVATURE_SHARE * limits.acceleration);
-            join.half = join.half.max(needed);
-        }
-        join.half = join.half.min(longest);
+        let change = self.change_of_rates(&a, &b, tip);
+        join.half = join.half.max(self.change_length(&change, speed)).min(longest);
         if let Some(change) = change {
             // A quarter of it at the join; a little more, as rates are not quite the same all along.
             let largest = change[ROTARY].iter().fold(0.0, |a: f64, b| a.max(*b));
             join.slack = largest * join.half / 2.0;
         }
         join
+    }
+
+    /// By how much the derivatives of all drives over s change between two blocks, where the tip is `tip`. What the
+    /// machine cannot do there is found when the whole path is followed.
+    fn change_of_rates(&self, before: &Jet, after: &Jet, tip: &Tip) -> Option<[f64; DRIVES]> {
+        let rates = self.drive_rates(before, tip).zip(self.drive_rates(after, tip));
+        rates.map(|(from, to)| std::array::from_fn(|i| (to[i] - from[i]).abs()))
+    }
+
+    /// Half the length that such a change takes at `speed` \[mm/s\], with the share of acceleration for it.
+    fn change_length(&self, change: &Option<[f64; DRIVES]>, speed: f64) -> f64 {
+        let drives = change.iter().flatten().zip(&self.drives);
+        let needed = drives
+            .map(|(change, limits)| change * speed * speed / (2.0 * CURVATURE_SHARE * limits.acceleration));
+        needed.fold(0.0, f64::max)
     }
 
     /// Derivatives of all drives over s.
@@ -181,16 +194,31 @@ impl Planner {
 }
 
 impl Join {
+    /// The same without a change of the tip's own direction.
+    pub(super) fn of_attitude(mut self) -> Self {
+        self.step[..SHAPED].fill(0.0);
+        self
+    }
+
+    /// The same for the block after it, counted from there.
+    pub(super) fn for_the_next(mut self) -> Self {
+        (self.s, self.after) = (0.0, true);
+        self
+    }
+
     /// Adds the change to channels that bend sharply at the join: a parabola over both halves.
-    fn add(&self, s: f64, jet: &mut Jet) {
+    pub(super) fn add(&self, s: f64, jet: &mut Jet) {
         let off = s - self.s;
         if off.abs() >= self.half {
             return;
         }
         let y = off / self.half;
         let rest = 1.0 - y.abs();
-        // At the join itself the slope is still that of the block before.
-        let side = if y > 0.0 { -0.5 } else { 0.5 };
+        let side = if y > 0.0 || (y == 0.0 && self.after) {
+            -0.5
+        } else {
+            0.5
+        };
         for (c, step) in self.step.iter().enumerate() {
             jet.value[c] += step * self.half * rest * rest / 4.0;
             jet.slope[c] += step * side * rest;

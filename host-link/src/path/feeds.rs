@@ -1,23 +1,47 @@
 //! How fast the way to each target is to be gone.
 
 use super::PathError;
-use crate::nc::{FeedRate, ProgramPath, Target};
+use crate::nc::{FeedRate, Place, ProgramPath, Target};
 
 /// Feeds of a path.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Feeds {
     /// Takes the place of the programmed ones \[mm/s\].
     replaced: Option<f64>,
+    /// Of the first block gone through, and where its path begins.
+    first: Option<(FeedRate, Place)>,
 }
 
 impl Feeds {
     /// Those of `path`, or `replaced` \[mm/s\] in place of the only one.
     pub(super) fn of(path: &ProgramPath, replaced: Option<f64>) -> Result<Self, PathError> {
-        let mut feeds = path.targets.windows(2);
-        if replaced.is_some() && feeds.any(|pair| pair[0].feed != pair[1].feed) {
-            let place = path.targets[0].place;
+        let mut feeds = Self::replaced_by(replaced);
+        for target in &path.targets {
+            feeds.see(target)?;
+        }
+        Ok(feeds)
+    }
+
+    /// Those of a path that is not known yet, or `replaced` \[mm/s\].
+    pub(super) fn replaced_by(replaced: Option<f64>) -> Self {
+        let first = None;
+        Self { replaced, first }
+    }
+
+    /// The speed of the next block, on a way of `length` \[mm\] to `target` \[mm/s\].
+    pub(super) fn next(&mut self, target: &Target, length: f64) -> Result<f64, PathError> {
+        self.see(target)?;
+        self.speed(target, length)
+    }
+
+    /// One speed cannot take the place of several feeds.
+    fn see(&mut self, target: &Target) -> Result<(), PathError> {
+        let Some(feed) = target.feed else { return Ok(()) };
+        let (first, place) = *self.first.get_or_insert((feed, target.place));
+        if self.replaced.is_some() && feed != first {
             return Err(PathError::SeveralFeeds { place });
         }
-        Ok(Self { replaced })
+        Ok(())
     }
 
     /// Speed on a way of `length` \[mm\] to `target` \[mm/s\], 0 for a rapid.

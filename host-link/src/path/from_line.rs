@@ -2,7 +2,7 @@
 
 use super::outputs::Switched;
 use super::shape::{Shape, channels};
-use super::{NOWHERE, PathError, PlannedPath, Planner, inner};
+use super::{Leg, NOWHERE, PathError, PlannedPath, Planner, inner};
 use crate::nc::{Motion, Program, Way};
 use shared::io::{AXES, SIDES};
 use shared::protocol::{PathAction, PathEvent};
@@ -144,9 +144,9 @@ impl Planner {
             if tracking_at(path, 0.0) != Some(true) {
                 tracking_since = None;
             }
-            let mut events = path.events.iter().peekable();
             let mut s = 0.0;
-            for element in path.elements() {
+            for leg in path.legs() {
+                let Leg { events, element } = leg?;
                 if element.line >= line {
                     let value = element.at(0.0).value;
                     return Ok(Place {
@@ -162,8 +162,8 @@ impl Planner {
                         tracking_since: tracking_since.filter(|_| tracking_at(path, s) != Some(false)),
                     });
                 }
-                while let Some(event) = events.next_if(|event| event.s_mm <= s + SAME) {
-                    switched.take_up(std::slice::from_ref(event));
+                switched.take_up(&events);
+                for event in &events {
                     self.spin(&mut spindle, event, index);
                     match event.action {
                         PathAction::Tracking { on: true } => {

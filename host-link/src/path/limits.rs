@@ -15,10 +15,13 @@ use shared::trajectory::{CHANNELS, PathPoint, PathSpace, SpeedLimits};
 pub(super) const DRIVES: usize = AXES + SIDES;
 const DRIVE_NAMES: [&str; DRIVES] = ["X", "Y", "Z", "A", "B", "C", "V1", "V2"];
 /// Distance of the places where a path is checked \[mm\], and how many there are at least.
-const CHECK_STEP: f64 = 0.5;
+pub(super) const CHECK_STEP: f64 = 0.5;
 const CHECK_COUNT: usize = 200;
 /// What an axis may move more between two such places than its rates say \[mm or °\].
 const JUMP: f64 = 1.0;
+/// What is no more than this outside the travel of an axis \[mm or °\], or faster than it allows, is rounding.
+const BEYOND: f64 = 1e-6;
+const TOO_FAST: f64 = 1.0 + 1e-9;
 /// Fastest rapid \[mm/s\], for moves that need next to no motion.
 const FASTEST: f64 = 1000.0;
 /// Part of an axis' acceleration that a curved path, or a change at a join, may spend on that.
@@ -79,9 +82,26 @@ impl DriveLimits {
     }
 }
 
+/// The worst of all that is wrong, which is told.
+#[derive(Debug, Default)]
+pub(super) struct Worst(Option<(f64, PathError)>);
+
+impl Worst {
+    fn see(&mut self, size: f64, error: impl FnOnce() -> PathError) {
+        if self.0.as_ref().is_none_or(|(largest, _)| size > *largest) {
+            self.0 = Some((size, error()));
+        }
+    }
+
+    /// The worst as an error, if anything is wrong.
+    pub(super) fn found(self) -> Result<(), PathError> {
+        self.0.map_or(Ok(()), |(_, error)| Err(error))
+    }
+}
+
 /// What a path asks of the drives at one place: position and derivatives over s.
 pub(super) struct Demand {
-    s: f64,
+    pub(super) s: f64,
     position: [f64; DRIVES],
     first: [f64; DRIVES],
     second: [f64; DRIVES],
@@ -111,7 +131,7 @@ impl Planner {
         Ok(demands)
     }
 
-    fn demand(
+    pub(super) fn demand(
         &self,
         s: f64,
         point: &PathPoint,
@@ -145,27 +165,46 @@ impl Planner {
 
     /// Names the drive that leaves its travel furthest in its own units.
     pub(super) fn check_travel(&self, demands: &[Demand], shape: &Shape) -> Result<(), PathError> {
-        let outside = demands.iter().flat_map(|demand| {
-            (0..DRIVES).map(move |i| {
-                let (limits, position) = (&self.drives[i], demand.position[i]);
-                let beyond = (position - limits.max).max(limits.min - position) / limits.unit;
-                (beyond, i, position / limits.unit, demand.s)
-            })
-        });
-        match outside.max_by(|a, b| a.0.total_cmp(&b.0)) {
-            Some((beyond, i, position, s)) if beyond > 1e-6 => {
-                let limits = &self.drives[i];
-                Err(PathError::Travel {
-                    place: shape.place(s),
+        let mut worst = Worst::default();
+        for demand in demands {
+            self.see_travel(demand, shape.place(demand.s), &mut worst);
+        }
+        worst.found()
+    }
+
+    /// Tells `worst` how far the drives are outside their travel, in their own units.
+    pub(super) fn see_travel(&self, demand: &Demand, place: Place, worst: &mut Worst) {
+        for (i, limits) in self.drives.iter().enumerate() {
+            let position = demand.position[i];
+            let beyond = (position - limits.max).max(limits.min - position) / limits.unit;
+            if beyond > BEYOND {
+                worst.see(beyond, || PathError::Travel {
+                    place,
                     axis: DRIVE_NAMES[i],
-                    position,
+                    position: position / limits.unit,
                     beyond,
                     min: round_for_people(limits.min / limits.unit),
                     max: round_for_people(limits.max / limits.unit),
                     unit: if ROTARY.contains(&i) { "°" } else { "mm" },
-                })
+                });
             }
-            _ => Ok(()),
+        }
+    }
+
+    /// Tells `worst` how much faster than each drive allows `speed` \[mm/s\] is, as a part.
+    pub(super) fn see_feed(&self, demand: &Demand, speed: f64, place: Place, worst: &mut Worst) {
+        for i in 0..DRIVES {
+            for (largest, quantity) in self.allowed(demand, i) {
+                if speed / largest > TOO_FAST {
+                    worst.see(speed / largest, || PathError::Feed {
+                        place,
+                        feed: speed * 60.0,
+                        largest: largest * 60.0,
+                        axis: DRIVE_NAMES[i],
+                        quantity,
+                    });
+                }
+            }
         }
     }
 
@@ -182,37 +221,23 @@ impl Planner {
     ) -> Result<SpeedLimits, PathError> {
         let mut acceleration = self.planning.path_acceleration_mm_s2;
         let mut jerk = self.planning.path_jerk_mm_s3;
-        // Of all that is too fast, that which is so by the largest part.
-        let mut worst = (1.0 + 1e-9, None);
+        let mut worst = Worst::default();
         for demand in demands {
             let target = shape.target(demand.s);
             let speed = speeds[target];
+            self.see_feed(demand, speed, shape.targets[target].place, &mut worst);
             for (i, limits) in self.drives.iter().enumerate() {
                 let (first, second) = (demand.first[i].abs(), demand.second[i].abs());
-                for (largest, quantity) in self.allowed(demand, i) {
-                    if speed / largest > worst.0 {
-                        let error = PathError::Feed {
-                            place: shape.targets[target].place,
-                            feed: speed * 60.0,
-                            largest: largest * 60.0,
-                            axis: DRIVE_NAMES[i],
-                            quantity,
-                        };
-                        worst = (speed / largest, Some(error));
-                    }
-                }
                 acceleration = acceleration.min((limits.acceleration - second * speed * speed) / first);
                 jerk = jerk.min(limits.jerk / first);
             }
         }
-        match worst.1 {
-            Some(error) => Err(error),
-            None => Ok(SpeedLimits {
-                velocity: speeds[0],
-                acceleration,
-                jerk,
-            }),
-        }
+        worst.found()?;
+        Ok(SpeedLimits {
+            velocity: speeds[0],
+            acceleration,
+            jerk,
+        })
     }
 
     /// Largest speeds along the path that drive `i` allows at a place of a feed, by its speed and by its
@@ -230,16 +255,20 @@ impl Planner {
 
     /// Where the drives allow the least speed along a feed.
     pub(super) fn bound(&self, demands: &[Demand]) -> Option<Bound> {
-        let bounds = demands.iter().flat_map(|demand| {
-            (0..DRIVES).flat_map(move |i| {
-                let bound = move |(largest, quantity)| Bound {
-                    largest_mm_s: largest,
-                    axis: DRIVE_NAMES[i],
-                    quantity,
-                    s_mm: demand.s,
-                };
-                self.allowed(demand, i).map(bound)
-            })
+        let bounds = demands.iter().filter_map(|demand| self.bound_at(demand));
+        bounds.min_by(|a, b| a.largest_mm_s.total_cmp(&b.largest_mm_s))
+    }
+
+    /// What the drives allow at a place of a feed, if they do not allow everything.
+    pub(super) fn bound_at(&self, demand: &Demand) -> Option<Bound> {
+        let bounds = (0..DRIVES).flat_map(|i| {
+            let bound = move |(largest, quantity)| Bound {
+                largest_mm_s: largest,
+                axis: DRIVE_NAMES[i],
+                quantity,
+                s_mm: demand.s,
+            };
+            self.allowed(demand, i).map(bound)
         });
         bounds
             .filter(|bound| bound.largest_mm_s.is_finite())
@@ -276,7 +305,7 @@ impl Planner {
 }
 
 /// Whether the axes go from one place to the next, as their rates say, and do not jump.
-fn check_continuous(from: &Demand, to: &Demand, place: Place) -> Result<(), PathError> {
+pub(super) fn check_continuous(from: &Demand, to: &Demand, place: Place) -> Result<(), PathError> {
     for (axis, unit) in AXIS_UNIT.into_iter().enumerate() {
         let fastest = from.first[axis].abs().max(to.first[axis].abs());
         let way = (to.position[axis] - from.position[axis]).abs();

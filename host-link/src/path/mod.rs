@@ -1,6 +1,7 @@
 //! From program paths to what the boards run: knots, events and limits, checked against the machine.
 
 mod block;
+mod blocks;
 mod elements;
 mod error;
 mod exact;
@@ -16,10 +17,11 @@ mod targets;
 #[cfg(test)]
 mod tests;
 
+pub use blocks::{Blocks, Course, Leg, Summary};
 pub use elements::TOLERANCE;
 pub use error::PathError;
 pub use from_line::FromLineError;
-pub use planned::{Bound, PlannedPath};
+pub use planned::{Bound, PlannedPath, Speeds};
 pub use targets::Tip;
 
 use crate::machine::{MachineFile, PlanningConfig};

@@ -5,6 +5,7 @@ use crate::nc::{NurbsWay, Place};
 use nalgebra::Vector3;
 use shared::geometry::nurbs::{Curve, Nurbs, RationalBezier, length, parameter_at_length};
 use shared::geometry::{Moving, angle};
+use shared::trajectory::ArcLengthCurve;
 
 /// The first control point may be this far from where the tip is \[mm\]: the rounding of programs.
 const START_TOLERANCE: f64 = 1e-3;
@@ -14,6 +15,8 @@ const MAX_TURN: f64 = super::exact::MAX_TURN;
 const NO_SPEED: f64 = 1e-6;
 /// Spans of cubics are not made shorter than this \[mm\].
 const SHORTEST_SPAN: f64 = 1e-3;
+/// A piece of a curve that has no even speed and is shorter than this \[mm\] turns on the spot.
+const SHORTEST_PIECE: f64 = 1e-5;
 
 /// A curve as its spans, one after the other.
 pub(super) struct LongCurve {
@@ -57,6 +60,27 @@ impl LongCurve {
     /// Where spans begin and end \[mm\].
     pub(super) fn breaks(&self) -> impl Iterator<Item = f64> + '_ {
         self.spans.iter().map(|span| span.start).chain([self.length])
+    }
+
+    /// The curve from one length to another \[mm\] in pieces over their own length; or the length up to where it has no
+    /// direction \[mm\].
+    pub(super) fn pieces(&self, from: f64, to: f64) -> Result<Vec<ArcLengthCurve>, f64> {
+        let mut pieces = Vec::new();
+        for span in &self.spans {
+            let Some(part) = span.part(from, to) else { continue };
+            let mut waiting = vec![part];
+            while let Some(piece) = waiting.pop() {
+                match ArcLengthCurve::new(&piece) {
+                    Ok(curve) => pieces.push(curve),
+                    Err(_) if length(&piece) < SHORTEST_PIECE => return Err(span.start),
+                    Err(_) => {
+                        let [first, second] = piece.split(0.5);
+                        waiting.extend([second, first]);
+                    }
+                }
+            }
+        }
+        Ok(pieces)
     }
 
     /// Point \[mm\], direction and curvature \[1/mm\] a length `s` \[mm\] after the start.
@@ -110,6 +134,25 @@ impl LongCurve {
 }
 
 impl Span {
+    /// What of it lies between two lengths of the curve \[mm\], if that is not next to nothing.
+    fn part(&self, from: f64, to: f64) -> Option<RationalBezier> {
+        let (from, to) = (from - self.start, to - self.start);
+        if to <= SHORTEST_PIECE || from >= self.length - SHORTEST_PIECE {
+            return None;
+        }
+        let mut part = self.curve;
+        let mut end = 1.0;
+        if to < self.length - SHORTEST_PIECE {
+            end = parameter_at_length(&self.curve, 0.0, to);
+            [part, _] = part.split(end);
+        }
+        if from > SHORTEST_PIECE {
+            let start = parameter_at_length(&self.curve, 0.0, from);
+            [_, part] = part.split(start / end);
+        }
+        Some(part)
+    }
+
     /// Whether it goes on from where the last one went, `before`, and has a direction at both ends.
     fn check(&self, before: Option<Vector3<f64>>, place: Place) -> Result<(), PathError> {
         let polygon = self.curve.points().windows(2).map(|two| (two[1] - two[0]).norm());

@@ -26,7 +26,7 @@ impl Planner {
         events.iter().map(switching).collect()
     }
 
-    fn action(&self, event: &ProgramEvent) -> Result<PathAction, PathError> {
+    pub(super) fn action(&self, event: &ProgramEvent) -> Result<PathAction, PathError> {
         let place = event.place;
         match event.action {
             ProgramAction::Output(action) => {
@@ -105,7 +105,7 @@ pub(super) struct Switched {
 }
 
 impl Switched {
-    fn switch(&mut self, action: &PathAction) {
+    pub(super) fn switch(&mut self, action: &PathAction) {
         match *action {
             PathAction::Power { side, watt } => self.powers[usize::from(side)] = Some(watt),
             PathAction::Beam { side, on } => self.gates[usize::from(side)] = on,

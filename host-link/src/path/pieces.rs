@@ -1,17 +1,19 @@
 //! From one path of a program to what the boards run: its curves, timed and checked, and where the machine then
 //! stands.
 
+use super::blocks::Moves;
 use super::exact::Piece;
 use super::feeds::Feeds;
 use super::limits::{Demand, axes_at};
 use super::outputs::{Switched, Switching, on_the_way};
-use super::shape::{Shape, channels};
+use super::shape::{Goal, Shape, channels};
 use super::targets::{ROTARY, Stand};
 use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip};
-use crate::nc::{Motion, PathControl, Place, ProgramPath, Target, Way};
+use crate::nc::{Motion, Move, PathControl, Place, ProgramPath, Target, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
 use shared::trajectory::PathSpace;
+use std::rc::Rc;
 
 /// A rotary axis stands where it should, to this much \[rad\]: below what anything resolves, and above what the
 /// figures of a program are rounded to, where its tip decides how an axis stands.
@@ -103,6 +105,14 @@ impl Planner {
         stand: &mut Stand,
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
+        if path.motion == Motion::Feed && !self.tracks && !self.is_smooth(path, stand)? {
+            let moves: Rc<[Move]> = path.moves().into();
+            let again = move || -> Moves {
+                let moves = moves.clone();
+                Box::new((0..moves.len()).map(move |i| Ok(moves[i].clone())))
+            };
+            return Ok(vec![self.exact_path(Rc::new(again), stand, speed_mm_s)?]);
+        }
         let tips = self.tips(path, stand)?;
         let feeds = Feeds::of(path, speed_mm_s)?;
         let pieces = self.pieces(path, &tips, &stand.tip, &feeds)?;
@@ -111,6 +121,22 @@ impl Planner {
             paths.push(self.piece(path.motion, events, piece, &tips, stand)?);
         }
         Ok(paths)
+    }
+
+    /// Whether a path is one smooth curve through its points: straight blocks with G64 alone, no more of them than a
+    /// board holds knots, and no corner.
+    fn is_smooth(&self, path: &ProgramPath, from: &Stand) -> Result<bool, PathError> {
+        let targets = &path.targets;
+        let asked = |target: &Target| target.way == Way::Line && target.control == PathControl::Blend(None);
+        if targets.len() < 2 || targets.len() >= CAPACITY || !targets.iter().all(asked) {
+            return Ok(false);
+        }
+        let tips = self.tips(path, from)?;
+        match self.smooth(&from.tip, &tips, targets) {
+            Ok(_) => Ok(true),
+            Err(PathError::Corner { .. }) => Ok(false),
+            Err(error) => Err(error),
+        }
     }
 
     /// The curves of a path of the tip. It stops where the program says so with G61.1.
@@ -243,30 +269,34 @@ impl Planner {
         for (tip, goal) in tips.iter().zip(&shape.targets) {
             let axes = axes_at(demands, goal.s);
             stand = Stand {
-                tip: *tip,
+                tip: self.settled(tip, &axes, goal)?,
                 axes,
                 ..stand
             };
-            // Where the tip forces one axis, others may follow; the largest difference is the cause.
-            let mut worst = None;
-            for axis in ROTARY.filter(|&axis| self.fitted[axis]) {
-                let angle = &mut stand.tip.angles_deg[axis - ROTARY.start];
-                let reached = axes[axis].to_degrees();
-                let off = (reached - *angle).abs();
-                if off <= (SAME_ANGLE + goal.slack).to_degrees() {
-                    continue;
-                }
-                if self.leaves_free(tip, &axes, axis) {
-                    *angle = reached;
-                } else if worst.as_ref().is_none_or(|(largest, _)| off > *largest) {
-                    worst = Some((off, PathError::turned(goal.place, axis, *angle, reached)));
-                }
-            }
-            if let Some((_, error)) = worst {
-                return Err(error);
-            }
         }
         Ok(stand)
+    }
+
+    /// `tip` with its rotary axes where they come to stand, the axes standing at `axes`: as it says, but where its
+    /// pose leaves an axis free.
+    pub(super) fn settled(&self, tip: &Tip, axes: &[f64; AXES], goal: &Goal) -> Result<Tip, PathError> {
+        let mut settled = *tip;
+        // Where the tip forces one axis, others may follow; the largest difference is the cause.
+        let mut worst = None;
+        for axis in ROTARY.filter(|&axis| self.fitted[axis]) {
+            let angle = &mut settled.angles_deg[axis - ROTARY.start];
+            let reached = axes[axis].to_degrees();
+            let off = (reached - *angle).abs();
+            if off <= (SAME_ANGLE + goal.slack).to_degrees() {
+                continue;
+            }
+            if self.leaves_free(tip, axes, axis) {
+                *angle = reached;
+            } else if worst.as_ref().is_none_or(|(largest, _)| off > *largest) {
+                worst = Some((off, PathError::turned(goal.place, axis, *angle, reached)));
+            }
+        }
+        worst.map_or(Ok(settled), |(_, error)| Err(error))
     }
 
     /// Whether the pose of `tip`, at which the axes stand at `axes`, leaves `axis` where it happens to be.

@@ -1,13 +1,14 @@
 //! A planned path: what the boards are given.
 
+use super::blocks::{Blocks, Course, Leg};
 use super::shape::Shape;
-use super::{CAPACITY, MAX_EVENTS};
+use super::{CAPACITY, MAX_EVENTS, PathError};
 use crate::nc::Motion;
 use shared::protocol::{Knot, PathAction, PathEvent};
 use shared::trajectory::{Path, PathSpace, SpeedError, SpeedLimits, SpeedPlan, SpeedStep};
 
 /// A path that the boards can run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct PlannedPath {
     /// Rapid, feed or none.
     pub motion: Motion,
@@ -18,15 +19,17 @@ pub struct PlannedPath {
     /// The path begins at a corner of this much within a path of the program, which is too sharp to go on without
     /// a stop \[°\].
     pub corner_deg: Option<f64>,
-    /// Value and slope of every channel, s from 0.
+    /// Value and slope of every channel, s from 0; none of blocks that are followed exactly.
     pub knots: Vec<Knot>,
-    /// Where the motion of each target of the program ends \[mm\], and its line; s not decreasing.
+    /// Where the motion of each target of the program ends \[mm\], and its line; s not decreasing. Of blocks that
+    /// are followed exactly only the last.
     pub lines: Vec<(f64, u32)>,
-    /// What happens on the way, s not decreasing.
+    /// What happens on the way, s not decreasing; of blocks that are followed exactly [`PlannedPath::legs`] tell it.
     pub events: Vec<PathEvent>,
-    /// Changes of the programmed speed on the way, in order.
+    /// Changes of the programmed speed on the way, in order; of blocks that are followed exactly the elements tell
+    /// them.
     pub steps: Vec<SpeedStep>,
-    /// Speed, acceleration and jerk along the path; the speed until a step changes it.
+    /// Speed, acceleration and jerk along the path; the speed until it changes.
     pub limits: SpeedLimits,
     /// What would not let it be faster, of a feed path.
     pub bound: Option<Bound>,
@@ -36,6 +39,43 @@ pub struct PlannedPath {
     pub start_s: f64,
     /// What is switched there besides, if that is not 0.
     pub start_actions: Vec<PathAction>,
+    /// The blocks, where they are followed exactly.
+    pub blocks: Option<Blocks>,
+}
+
+/// Programmed speeds along a path \[mm/s\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Speeds {
+    /// That it begins with.
+    pub first_mm_s: f64,
+    /// The lowest.
+    pub slowest_mm_s: f64,
+    /// The highest.
+    pub fastest_mm_s: f64,
+    /// How often it changes.
+    pub changes: u64,
+    last_mm_s: f64,
+}
+
+impl Speeds {
+    /// One speed.
+    pub(super) fn of(speed: f64) -> Self {
+        Self {
+            first_mm_s: speed,
+            slowest_mm_s: speed,
+            fastest_mm_s: speed,
+            changes: 0,
+            last_mm_s: speed,
+        }
+    }
+
+    /// Goes on at `speed`.
+    pub(super) fn change_to(&mut self, speed: f64) {
+        self.changes += u64::from(speed != self.last_mm_s);
+        self.slowest_mm_s = self.slowest_mm_s.min(speed);
+        self.fastest_mm_s = self.fastest_mm_s.max(speed);
+        self.last_mm_s = speed;
+    }
 }
 
 /// The drive that allows the least speed along a path.
@@ -76,12 +116,16 @@ impl PlannedPath {
             speed_error: shape.speed_error,
             start_s: 0.0,
             start_actions: Vec::new(),
+            blocks: None,
         }
     }
 
     /// Length \[mm\].
     pub fn length_mm(&self) -> f64 {
-        self.knots.last().map_or(0.0, |knot| knot.s_mm)
+        match &self.blocks {
+            Some(blocks) => blocks.summary().length_mm,
+            None => self.knots.last().map_or(0.0, |knot| knot.s_mm),
+        }
     }
 
     /// Line of the program whose motion is at `s` \[mm\], the later one where two meet; 0 for a path that no program
@@ -98,6 +142,25 @@ impl PlannedPath {
         (self.dwell_before_s, self.corner_deg) = (0.0, None);
     }
 
+    /// The programmed speeds, or those that a rapid is planned with.
+    pub fn speeds(&self) -> Speeds {
+        if let Some(blocks) = &self.blocks {
+            return blocks.summary().speeds;
+        }
+        let steps = self.steps.iter().map(|step| step.velocity);
+        let mut speeds = Speeds::of(self.limits.velocity);
+        steps.for_each(|speed| speeds.change_to(speed));
+        speeds
+    }
+
+    /// How many pieces it is made of: spans between knots, or elements.
+    pub fn pieces(&self) -> u64 {
+        match &self.blocks {
+            Some(blocks) => blocks.summary().elements,
+            None => self.knots.len().saturating_sub(1) as u64,
+        }
+    }
+
     /// A rapid that takes `times` as long.
     pub fn slower(mut self, times: f64) -> Self {
         self.limits.velocity /= times;
@@ -106,12 +169,17 @@ impl PlannedPath {
         self
     }
 
-    /// Time from rest to rest \[s\].
-    pub fn duration_s(&self) -> f64 {
-        self.speed().map_or(0.0, |plan| plan.duration())
+    /// First and last line of the program that the machine runs of it; 0 for a path that no program asks for.
+    pub fn first_and_last_line(&self) -> (u32, u32) {
+        let (first, last) = match &self.blocks {
+            Some(blocks) => blocks.summary().lines,
+            None => (self.line_at(0.0), self.line_at(self.length_mm())),
+        };
+        let begins = |leg: Result<Leg, PathError>| leg.map_or(first, |leg| leg.element.line);
+        (self.given_legs().next().map_or(first, begins), last)
     }
 
-    /// The speed along the path, as the motion board will plan it.
+    /// An estimate of the speed along the path, from its limits and steps.
     pub fn speed(&self) -> Result<SpeedPlan<{ MAX_EVENTS + 1 }>, SpeedError> {
         let mut plan = SpeedPlan::new();
         plan.plan(0.0, self.length_mm(), &self.limits, self.steps.iter().copied())?;
@@ -123,6 +191,9 @@ impl PlannedPath {
         if self.motion == Motion::Stand {
             return None;
         }
+        if let Some(blocks) = &self.blocks {
+            return blocks.summary().weld_mm;
+        }
         let places = |wanted: bool| {
             self.events
                 .iter()
@@ -133,8 +204,16 @@ impl PlannedPath {
         Some((start, places(false).next_back().unwrap_or(self.length_mm())))
     }
 
-    /// The path as the boards see it.
-    pub fn path(&self) -> Box<Path<CAPACITY>> {
+    /// Where it is, by its length.
+    pub fn path(&self) -> Course {
+        match &self.blocks {
+            Some(blocks) => Course::of(blocks),
+            None => Course::Knots(self.knot_path()),
+        }
+    }
+
+    /// The path as the tracker board sees it: by its knots.
+    pub fn knot_path(&self) -> Box<Path<CAPACITY>> {
         let mut path = Box::new(Path::new());
         path.clear(0, self.space);
         for knot in &self.knots {

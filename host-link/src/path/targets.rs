@@ -47,22 +47,29 @@ impl Planner {
         let mut placed = from.placed;
         let mut tips = Vec::with_capacity(path.targets.len());
         for target in &path.targets {
-            self.check_fitted(target)?;
-            if !placed {
-                self.check_complete(target)?;
-                placed = true;
-            }
-            let words = &target.words;
-            for i in 0..3 {
-                tip.position_mm[i] = words.axes[i].unwrap_or(tip.position_mm[i]);
-                tip.angles_deg[i] = words.axes[3 + i].unwrap_or(tip.angles_deg[i]);
-            }
-            for (extension, word) in tip.extension_mm.iter_mut().zip(words.extension) {
-                *extension = word.unwrap_or(*extension);
-            }
+            tip = self.next_tip(target, &tip, placed)?;
+            placed = true;
             tips.push(tip);
         }
         Ok(tips)
+    }
+
+    /// The tip that `target` leads to from another one; the program has said where all of that one is, or it is not yet `placed`.
+    pub(super) fn next_tip(&self, target: &Target, from: &Tip, placed: bool) -> Result<Tip, PathError> {
+        self.check_fitted(target)?;
+        if !placed {
+            self.check_complete(target)?;
+        }
+        let mut tip = *from;
+        let words = &target.words;
+        for i in 0..3 {
+            tip.position_mm[i] = words.axes[i].unwrap_or(tip.position_mm[i]);
+            tip.angles_deg[i] = words.axes[3 + i].unwrap_or(tip.angles_deg[i]);
+        }
+        for (extension, word) in tip.extension_mm.iter_mut().zip(words.extension) {
+            *extension = word.unwrap_or(*extension);
+        }
+        Ok(tip)
     }
 
     /// Where a G53 block leads the axes (mm, rad).

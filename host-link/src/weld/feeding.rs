@@ -4,11 +4,13 @@
 use super::JobError;
 use super::session::Session;
 use crate::boards::LinkError;
+use crate::path::{Leg, PathError, PlannedPath};
 use heapless::Vec;
 use shared::protocol::{
     LOAD_ELEMENTS, LOAD_EVENTS, PathElement, PathEvent, Refusal, Request, Response, Role, Room,
 };
-use shared::trajectory::{Element, Join};
+use shared::trajectory::Join;
+use std::collections::VecDeque;
 use std::iter::Peekable;
 use std::time::Duration;
 
@@ -17,10 +19,12 @@ const ASK_PERIOD: Duration = Duration::from_millis(10);
 
 /// A path on its way to the motion board.
 pub(super) struct Feeding<'a> {
-    elements: Peekable<Box<dyn Iterator<Item = Element> + 'a>>,
-    events: Peekable<Box<dyn Iterator<Item = PathEvent> + 'a>>,
-    /// Elements that go next, and where they end \[mm\].
+    legs: Peekable<Box<dyn Iterator<Item = Result<Leg, PathError>> + 'a>>,
+    /// Elements that go next.
     batch: Vec<PathElement, LOAD_ELEMENTS>,
+    /// Events on them that have not gone yet; they go first.
+    events: VecDeque<PathEvent>,
+    /// Where the batch ends \[mm\].
     end_s: f64,
     next_ask: Duration,
     done: bool,
@@ -38,19 +42,13 @@ pub(super) struct EndedBlock {
 }
 
 impl<'a> Feeding<'a> {
-    /// A path that begins at path length `start_s` \[mm\].
-    pub fn new(
-        elements: impl Iterator<Item = Element> + 'a,
-        events: impl Iterator<Item = PathEvent> + 'a,
-        start_s: f64,
-    ) -> Self {
-        let elements: Box<dyn Iterator<Item = Element> + 'a> = Box::new(elements);
-        let events: Box<dyn Iterator<Item = PathEvent> + 'a> = Box::new(events);
+    /// What the board is given of `path`.
+    pub fn new(path: &'a PlannedPath) -> Self {
         Self {
-            elements: elements.peekable(),
-            events: events.peekable(),
+            legs: path.given_legs().peekable(),
             batch: Vec::new(),
-            end_s: start_s,
+            events: VecDeque::new(),
+            end_s: path.start_s,
             next_ask: Duration::ZERO,
             done: false,
             ended: None,
@@ -78,10 +76,10 @@ impl<'a> Feeding<'a> {
             return Ok(());
         }
         match self.send(session) {
-            Err(LinkError::Refused {
+            Err(JobError::Link(LinkError::Refused {
                 refusal: Refusal::WrongState { .. } | Refusal::NoPath,
                 ..
-            }) => {
+            })) => {
                 self.done = true;
                 session.refresh()?;
             }
@@ -91,27 +89,26 @@ impl<'a> Feeding<'a> {
         Ok(())
     }
 
-    fn send(&mut self, session: &mut Session) -> Result<(), LinkError> {
+    fn send(&mut self, session: &mut Session) -> Result<(), JobError> {
         let mut room = ask(session)?;
         while !self.done {
-            self.fill(session.progress.single_block());
+            self.fill(session.progress.single_block())?;
             if self.batch.is_empty() && self.ended.is_some() {
                 break;
             }
-            // Events go before the elements that carry them.
-            let mut events: Vec<PathEvent, LOAD_EVENTS> = Vec::new();
-            let most = LOAD_EVENTS.min(usize::from(room.events));
-            while self.event_is_due() && events.len() < most {
-                events.extend(self.events.next());
-            }
-            if !events.is_empty() {
+            if !self.events.is_empty() {
+                let count = self.events.len().min(LOAD_EVENTS).min(usize::from(room.events));
+                if count == 0 {
+                    break;
+                }
+                let events = self.events.drain(..count).collect();
                 room = load(session, &Request::LoadEvents(events))?;
                 continue;
             }
-            if self.event_is_due() || self.batch.len() > usize::from(room.elements) {
+            if self.batch.len() > usize::from(room.elements) {
                 break;
             }
-            let last = self.elements.peek().is_none();
+            let last = self.legs.peek().is_none();
             let elements = std::mem::take(&mut self.batch);
             room = load(session, &Request::LoadElements { elements, last })?;
             self.done = last;
@@ -119,32 +116,32 @@ impl<'a> Feeding<'a> {
         Ok(())
     }
 
-    fn fill(&mut self, single_block: bool) {
-        while !self.batch.is_full() && self.ended.is_none() {
-            let Some(mut element) = self.elements.next() else {
-                return;
-            };
+    /// Takes elements until the batch is full, has more events than go at once, or ends with a single block.
+    fn fill(&mut self, single_block: bool) -> Result<(), PathError> {
+        while !self.batch.is_full() && self.events.len() < LOAD_EVENTS && self.ended.is_none() {
+            let Some(leg) = self.legs.next() else { break };
+            let Leg { events, mut element } = leg?;
+            self.events.extend(events);
             self.end_s += element.length;
-            if single_block && let Some(next) = self.elements.peek().filter(|next| next.line != element.line)
+            if single_block
+                && let Some(Ok(next)) = self.legs.peek()
+                && next.element.line != element.line
             {
                 element.join = Join::Stop;
                 self.ended = Some(EndedBlock {
                     end_s: self.end_s,
-                    next_line: next.line,
+                    next_line: next.element.line,
                 });
             }
             // There is room.
             let _ = self.batch.push(PathElement::from(&element));
+            // What happens just at its end is told with it: the board may be there before the next one comes.
+            if let Some(Ok(next)) = self.legs.peek_mut() {
+                let at_end = next.events.partition_point(|event| event.s_mm <= self.end_s);
+                self.events.extend(next.events.drain(..at_end));
+            }
         }
-    }
-
-    /// Whether the next event happens on the elements that go next, or after the last of them.
-    fn event_is_due(&mut self) -> bool {
-        let ends = self.elements.peek().is_none();
-        let end_s = self.end_s;
-        self.events
-            .peek()
-            .is_some_and(|event| ends || event.s_mm <= end_s)
+        Ok(())
     }
 }
 

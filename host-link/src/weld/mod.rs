@@ -268,7 +268,7 @@ impl Weld {
         let paths = job.plan(program, &self.planner, &session.motion.reference)?;
         for (index, path) in paths.into_iter().enumerate() {
             if index > 0 {
-                let next = match path.line_at(path.start_s) {
+                let next = match path.first_and_last_line().0 {
                     0 => "the next way of the approach".to_owned(),
                     line => format!("line {line}"),
                 };
@@ -354,7 +354,7 @@ fn load<'a>(session: &mut Session, path: &'a PlannedPath, id: u32) -> Result<Fee
         limits: path.path_limits(),
     };
     session.command(Role::Motion, &begin)?;
-    let mut feeding = Feeding::new(path.given_elements(), path.given_events(), path.start_s);
+    let mut feeding = Feeding::new(path);
     feeding.go_on(session)?;
     Ok(feeding)
 }

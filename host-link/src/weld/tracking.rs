@@ -90,7 +90,7 @@ impl Tracking {
 
     /// From now on there is a seam beside path `id`, from `start_s` \[mm\] on.
     pub fn add_seam(&mut self, id: u32, path: &PlannedPath, start_s: f64, deviation: Rc<Deviation>) {
-        let seam = TrueSeam::new(self.heads, path.path(), start_s, deviation);
+        let seam = TrueSeam::new(self.heads, path.knot_path(), start_s, deviation);
         self.seams.insert(id, seam);
     }
 

@@ -2,12 +2,12 @@
 
 use super::Panel;
 use crate::part::{Figure, Judgement, Plot, Run, RunSample};
-use crate::path::{CAPACITY, PlannedPath};
+use crate::path::{Course, PlannedPath};
 use crate::teach::TaughtPoint;
 use crate::world::Surface;
 use nalgebra::Vector3;
 use shared::geometry::angle;
-use shared::trajectory::{Path, PathSpace};
+use shared::trajectory::PathSpace;
 
 /// Largest distance of the focus from where it should be \[mm\].
 const FOCUS_LIMIT: f64 = 0.01;
@@ -44,9 +44,9 @@ fn focus(run: &Run, judgement: &mut Judgement) {
     for (id, path) in run.paths.iter().filter(|(_, path)| path.space == PathSpace::Tool) {
         let samples = || run.samples.iter().filter(|sample| sample.path_id == *id);
         if path.weld().is_some() {
-            let knots = path.path();
+            let course = path.path();
             for sample in samples().filter(|sample| sample.beams[0]) {
-                if let Some(off) = beside(&knots, sample) {
+                if let Some(off) = beside(&course, sample) {
                     cut.add(off);
                     line.push((sample.s_mm, off));
                 }
@@ -190,7 +190,7 @@ impl Largest {
 }
 
 /// Distance of the focus from the nearest place of the path \[mm\].
-fn beside(path: &Path<CAPACITY>, sample: &RunSample) -> Option<f64> {
+fn beside(path: &Course, sample: &RunSample) -> Option<f64> {
     let mut s = sample.s_mm;
     for _ in 0..STEPS {
         let point = path.at(s)?;

@@ -10,8 +10,7 @@ use super::{B, C, Job, SPINDLE, Stir};
 use crate::metrics::compare;
 use crate::nc::Motion;
 use crate::part::{Figure, Judgement, Plot, Run, RunSample};
-use crate::path::{CAPACITY, PlannedPath};
-use shared::trajectory::Path;
+use crate::path::{Course, PlannedPath};
 use shared::units::{DEG_PER_RAD, wrap};
 
 /// The heading may be off by this much \[°\].
@@ -35,7 +34,7 @@ const LEVEL: f64 = 0.5;
 /// A path along the contour.
 struct Stirring {
     id: u32,
-    path: Box<Path<CAPACITY>>,
+    path: Course,
     /// Length of the contour before it \[mm\].
     start_s: f64,
 }
@@ -100,8 +99,8 @@ pub(super) fn judge(part: &Stir, job: &Job, run: &Run) -> anyhow::Result<Judgeme
 /// The paths along the contour, in the order of the program.
 fn stirring(run: &Run) -> Vec<Stirring> {
     let level = |path: &PlannedPath| {
-        let knot = path.knots.first();
-        knot.is_some_and(|knot| libm::hypot(knot.slope[0], knot.slope[1]) > LEVEL)
+        let start = path.path().at(0.0);
+        start.is_some_and(|start| libm::hypot(start.first[0], start.first[1]) > LEVEL)
     };
     let mut start_s = 0.0;
     let paths = run.paths.iter();

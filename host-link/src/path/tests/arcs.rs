@@ -3,6 +3,7 @@
 use super::*;
 use crate::nc::Motion;
 use shared::protocol::PathAction;
+use shared::trajectory::Join;
 
 const STIR: &str = "G43.4\nG0 X600 Y500 Z150 B-2.5 C0\nG0 Z50\nF120\n";
 
@@ -75,7 +76,8 @@ fn more_than_half_a_turn_in_an_arc_turns_evenly() {
         assert!((axes[0] - 70.0).abs() < 1e-4 && (axes[4] - 60.0).abs() < 1e-4);
         assert!((axes[2] - (100.0 + 10.0 * part + 60.0 * 60f64.to_radians().sin())).abs() < 1e-4);
     }
-    assert!(turn.knots.len() < 80, "{}", turn.knots.len());
+    let elements = turn.blocks.as_ref().unwrap().summary().elements;
+    assert!(elements < 80, "{elements}");
 }
 
 /// R takes the shorter arc, −R the longer one, and both meet the same ends as their centres.
@@ -119,30 +121,41 @@ fn arcs_that_do_not_exist_are_named() {
     assert!(message("G3 X650 I0 J0").contains("zero radius"));
 }
 
-/// A corner within a run with arcs ends the path; what was on goes on being on.
+/// With G61 the path stops exactly at a corner and goes on; what is switched is at its place.
 #[test]
-fn a_corner_stops_exactly_and_carries_on_with_what_was_on() {
-    let paths = stir(
-        "M67 E0 Q1200\nM62 P0\nG1 X650\nG3 X700 Y550 J50\nM67 E0 Q900\nG1 X690 Y560\nM63 P0\nG1 X680 Y570",
-    )
-    .unwrap();
-    let [_, _, round, back] = &paths[..] else {
-        panic!("two feed paths: {}", paths.len())
+fn a_corner_stops_exactly_with_g61() {
+    let body =
+        "M67 E0 Q1200\nM62 P0\nG1 X650\nG3 X700 Y550 J50\nM67 E0 Q900\nG1 X690 Y560\nM63 P0\nG1 X680 Y570";
+    let paths = stir(&format!("G61\n{body}")).unwrap();
+    let [_, _, path] = &paths[..] else {
+        panic!("one feed path: {}", paths.len())
     };
-    assert!((back.corner_deg.unwrap() - 45.0).abs() < 1e-6);
-    assert_eq!(round.motion, Motion::Feed);
-    let side = 0;
-    let actions: Vec<_> = back.events.iter().map(|e| (e.s_mm, e.action)).collect();
+    let summary = path.blocks.as_ref().unwrap().summary();
+    assert_eq!((summary.blocks, summary.stops, summary.corners), (4, 1, 1));
+    assert!((summary.sharpest.to_degrees() - 45.0).abs() < 1e-6);
+    assert_eq!(path.motion, Motion::Feed);
+    let (corner, side) = (50.0 + 25.0 * std::f64::consts::PI, 0);
     let expected = [
         (0.0, PathAction::Power { side, watt: 1200.0 }),
         (0.0, PathAction::Beam { side, on: true }),
-        (0.0, PathAction::Power { side, watt: 900.0 }),
+        (corner, PathAction::Power { side, watt: 900.0 }),
+        (corner + 200f64.sqrt(), PathAction::Beam { side, on: false }),
     ];
-    assert_eq!(actions[..3], expected);
-    assert_eq!(actions[3].1, PathAction::Beam { side, on: false });
-    assert!((actions[3].0 - 200f64.sqrt()).abs() < 1e-9);
-    let at = |path: &PlannedPath, s: f64| path.path().at(s).unwrap().pose().unwrap().position;
-    assert!((at(round, round.length_mm()) - at(back, 0.0)).norm() < 1e-9);
+    let legs: Vec<_> = path.legs().map(Result::unwrap).collect();
+    let events: Vec<_> = legs.iter().flat_map(|leg| &leg.events).collect();
+    assert_eq!(events.len(), 4);
+    for (event, (s, action)) in events.iter().zip(expected) {
+        assert!(
+            (event.s_mm - s).abs() < 1e-9 && event.action == action,
+            "{event:?}"
+        );
+    }
+    let stops: Vec<_> = legs.iter().filter(|leg| leg.element.join == Join::Stop).collect();
+    assert_eq!(stops.len(), 2);
+    // With G64 it is rounded.
+    let paths = stir(body).unwrap();
+    let summary = paths[2].blocks.as_ref().unwrap().summary();
+    assert_eq!((summary.stops, summary.tolerance_mm), (0, Some(0.05)));
 }
 
 /// Half a degree is gone over without a stop and without leaving the corner by a micrometre.
@@ -151,7 +164,7 @@ fn a_corner_of_less_than_half_a_degree_is_gone_over() {
     let body = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let (x, y) = (700.0 - 50.0 * sin, 550.0 + 50.0 * cos);
-        format!("G3 X700 Y550 I0 J50\nG1 X{x:.6} Y{y:.6}")
+        format!("G61 G3 X700 Y550 I0 J50\nG1 X{x:.6} Y{y:.6}")
     };
     let start = "G1 X650\n";
     let paths = stir(&format!("{start}{}", body(0.4))).unwrap();
@@ -173,7 +186,11 @@ fn a_corner_of_less_than_half_a_degree_is_gone_over() {
         "{}",
         (at.position - corner).norm()
     );
-    assert_eq!(stir(&format!("{start}{}", body(0.6))).unwrap().len(), 4);
+    let stops = |degrees: f64| {
+        let paths = stir(&format!("{start}{}", body(degrees))).unwrap();
+        paths[2].blocks.as_ref().unwrap().summary().stops
+    };
+    assert_eq!([0.4, 0.6].map(stops), [0, 1]);
 }
 
 /// With a laser's feed the head cannot begin to turn at once: that takes a length, in which no limit is passed.
@@ -182,7 +199,7 @@ fn fast_joins_stay_within_the_axes() {
     let body = "F6000\nG1 X1100\nG3 X1400 Y1300 J300 C80\nG1 Y1500";
     let planned = plan(body).unwrap().pop().unwrap();
     let planner = planner();
-    let path = planned.path();
+    let path = planned.knot_path();
     let profile = planned.speed().unwrap();
     let mut near = [1000.0, 1000.0, 750.0, 0.0, 0.0, 0.0];
     let steps = (profile.duration() / 1e-3) as usize;

@@ -23,7 +23,6 @@ fn feeds_change_at_their_blocks() {
     assert!(in_order && path.events.len() == 2, "{:?}", path.events);
     // The plan of the speed is what the time is counted by: at the step, the speed of the slower side.
     let plan = path.speed().unwrap();
-    assert_eq!(plan.duration(), path.duration_s());
     let at_step = (0..10_000)
         .map(|i| plan.at(plan.duration() * f64::from(i) / 1e4))
         .min_by(|a, b| (a.s - 150.0).abs().total_cmp(&(b.s - 150.0).abs()));

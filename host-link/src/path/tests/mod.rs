@@ -1,6 +1,7 @@
 //! Paths planned for the shipped machines: where they lead, how fast, and what is refused.
 
 mod arcs;
+mod blocks;
 mod control;
 mod feeds;
 mod machines;
@@ -11,7 +12,7 @@ use super::*;
 use crate::nc::{Options, Place, interpret};
 use nalgebra::Vector3;
 use shared::geometry::{angle, interpolate};
-use shared::trajectory::{SpeedState, reference};
+use shared::trajectory::{axes_at, reference};
 use std::fmt::Write;
 
 fn planner() -> Planner {
@@ -43,10 +44,8 @@ fn followed(machine: &str, paths: &[PlannedPath], step: f64) -> Vec<(usize, f64,
         let count = (planned.length_mm() / step).ceil() as usize;
         for i in 0..=count {
             let s = planned.length_mm() * i as f64 / count as f64;
-            let still = SpeedState { s, v: 0.0, a: 0.0 };
-            axes = reference(planner.kinematics(), &path, still, &axes)
-                .unwrap()
-                .position;
+            let point = path.at(s).unwrap();
+            axes = axes_at(planner.kinematics(), &point, planned.space, &axes).unwrap();
             seen.push((index, s, std::array::from_fn(|i| axes[i] / AXIS_UNIT[i])));
         }
     }
@@ -109,7 +108,7 @@ fn rapids_use_their_part_of_the_limits_and_no_more() {
     for (body, least) in [("G0 Y1500", 0.49), ("G0 Z50", 0.49), ("G0 A60 B10", 0.24)] {
         let planned = plan(body).unwrap();
         let planner = planner();
-        let path = planned[1].path();
+        let path = planned[1].knot_path();
         let profile = planned[1].speed().unwrap();
         let mut used: f64 = 0.0;
         for i in 0..=500 {

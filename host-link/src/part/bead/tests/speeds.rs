@@ -13,7 +13,7 @@ const WINDOW: ProcessWindow = ProcessWindow { low: 4.0, high: 16.0 };
 fn shares(path: &PlannedPath, machine: &MachineFile) -> [f64; 3] {
     let limits = AxisLimits::build_all(&machine.motion.axes).unwrap();
     let planner = Planner::build(machine).unwrap();
-    let (curve, v) = (path.path(), path.limits.velocity);
+    let (curve, v) = (path.knot_path(), path.limits.velocity);
     let dt = 1e-3;
     let mut near = [0.0; AXES];
     let mut past: Vec<[f64; AXES]> = Vec::new();

@@ -144,7 +144,7 @@ fn timing_is_no_distance_from_the_contour() {
     let weld = along(&paths)[0].path();
     let kinematics = machine().motion.kinematics().unwrap();
     let figures = judged(&part_with("", ""), 1.0, |plan, s, sample| {
-        if plan.knots.len() > 2 && s > late {
+        if plan.dwell_before_s > 0.0 && s > late {
             let pose = weld.at(s - late).unwrap().pose().unwrap();
             sample.axes = kinematics.inverse(&pose, &sample.axes).unwrap();
         }
@@ -171,7 +171,7 @@ fn a_lagging_head_exceeds_the_limit() {
 #[test]
 fn a_spindle_that_stops_and_a_short_preheat_are_seen() {
     let stops = judged(&part_with("", ""), 1.0, |plan, s, sample| {
-        sample.beams[SPINDLE] &= plan.knots.len() < 3 || s < 47.0;
+        sample.beams[SPINDLE] &= plan.dwell_before_s == 0.0 || s < 47.0;
     })
     .unwrap();
     assert!((value(&stops, "spindle_off_percent") - 50.0).abs() < 1.0);

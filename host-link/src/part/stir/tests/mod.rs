@@ -73,7 +73,9 @@ fn planned(part: &Stir, machine: &MachineFile) -> Vec<PlannedPath> {
 
 /// Those along the contour.
 fn along(paths: &[PlannedPath]) -> Vec<&PlannedPath> {
-    let level = |path: &&PlannedPath| path.motion == Motion::Feed && path.knots[0].slope[2].abs() < 0.5;
+    let level = |path: &&PlannedPath| {
+        path.motion == Motion::Feed && path.path().at(0.0).unwrap().first[2].abs() < 0.5
+    };
     paths.iter().filter(level).collect()
 }
 
