@@ -93,12 +93,23 @@ pub fn frame() -> impl Strategy<Value = Frame> {
         })
 }
 
-/// Programs of up to ten moves.
+/// Programs of up to ten moves, of the sizes and feeds of a workshop.
 fn moves() -> impl Strategy<Value = Vec<Move>> {
     let mix = Mix {
         size: -0.3..1.5,
         feed: 0.0..2.0,
         turning: 0.2,
+    };
+    prop::collection::vec(any_move(&mix), 0..10)
+}
+
+/// The same, from less than a micrometre to centimetres, and from a millimetre an hour to far more than any machine
+/// can.
+fn wild_moves() -> impl Strategy<Value = Vec<Move>> {
+    let mix = Mix {
+        size: -4.0..1.5,
+        feed: -4.0..5.0,
+        turning: 0.3,
     };
     prop::collection::vec(any_move(&mix), 0..10)
 }
@@ -129,6 +140,38 @@ fn cases(cases: u32) -> ProptestConfig {
     }
 }
 
+/// Programs on a machine that nobody disturbs.
+macro_rules! on {
+    ($($name:ident: $bench:path;)+) => {
+        $(
+            mod $name {
+                use super::*;
+                proptest! {
+                    #![proptest_config(cases(40))]
+
+                    #[test]
+                    fn usual(moves in moves()) {
+                        check(&$bench(), &moves, &vec![])?;
+                    }
+
+                    #[test]
+                    fn wild(moves in wild_moves()) {
+                        check(&$bench(), &moves, &vec![])?;
+                    }
+                }
+            }
+        )+
+    };
+}
+
+on! {
+    dual_beam_gantry: bench::dual_beam;
+    pipe_welder: bench::pipe_welder;
+    ac_head: bench::ac_head;
+    wire_arc_robot: bench::wire_arc;
+    stir_gantry: bench::stir_gantry;
+}
+
 proptest! {
     #![proptest_config(cases(40))]
 
@@ -138,27 +181,7 @@ proptest! {
     }
 
     #[test]
-    fn on_the_dual_beam_gantry(moves in moves()) {
-        check(&bench::dual_beam(), &moves, &vec![])?;
-    }
-
-    #[test]
-    fn on_the_pipe_welder(moves in moves()) {
-        check(&bench::pipe_welder(), &moves, &vec![])?;
-    }
-
-    #[test]
-    fn on_the_ac_head(moves in moves()) {
-        check(&bench::ac_head(), &moves, &vec![])?;
-    }
-
-    #[test]
-    fn on_the_wire_arc_robot(moves in moves()) {
-        check(&bench::wire_arc(), &moves, &vec![])?;
-    }
-
-    #[test]
-    fn on_the_stir_gantry(moves in moves()) {
-        check(&bench::stir_gantry(), &moves, &vec![])?;
+    fn wild_in_axis_space(frame in frame(), moves in wild_moves()) {
+        check(&bench::axes(&frame), &moves, &vec![])?;
     }
 }
