@@ -21,7 +21,7 @@ pub use blocks::{Blocks, Course, Leg, Summary};
 pub use elements::TOLERANCE;
 pub use error::PathError;
 pub use from_line::FromLineError;
-pub use planned::{Bound, PlannedPath, Speeds};
+pub use planned::{Bound, PlannedPath, SpeedStep, Speeds};
 pub use targets::Tip;
 
 use crate::machine::{MachineFile, PlanningConfig};
@@ -36,7 +36,7 @@ use targets::Stand;
 
 /// Most knots of one path: what the boards hold.
 pub const CAPACITY: usize = 512;
-/// Most outputs and changes of F of one path: what its time is estimated with.
+/// Most outputs and changes of F of one path.
 pub const MAX_EVENTS: usize = 128;
 
 /// Of a path that no program asks for.

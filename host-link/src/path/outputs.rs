@@ -1,11 +1,10 @@
 //! What a program switches, on the machine that is there.
 
-use super::{MAX_EVENTS, PathError, Planner};
+use super::{MAX_EVENTS, PathError, Planner, SpeedStep};
 use crate::nc::{Place, ProgramAction, ProgramEvent};
 use shared::geometry::Turn;
 use shared::io::SIDES;
 use shared::protocol::{PathAction, PathEvent};
-use shared::trajectory::SpeedStep;
 
 /// A switching at the start of the motion to a target.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,10 +2,10 @@
 
 use super::blocks::{Blocks, Course, Leg};
 use super::shape::Shape;
-use super::{CAPACITY, MAX_EVENTS, PathError};
+use super::{CAPACITY, PathError};
 use crate::nc::Motion;
 use shared::protocol::{Knot, PathAction, PathEvent};
-use shared::trajectory::{Path, PathSpace, SpeedError, SpeedLimits, SpeedPlan, SpeedStep};
+use shared::trajectory::{Path, PathSpace, SpeedLimits};
 
 /// A path that the boards can run.
 #[derive(Clone, Debug)]
@@ -76,6 +76,15 @@ impl Speeds {
         self.fastest_mm_s = self.fastest_mm_s.max(speed);
         self.last_mm_s = speed;
     }
+}
+
+/// From a path length on, this speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeedStep {
+    /// Path length \[mm\].
+    pub s: f64,
+    /// Speed \[mm/s\].
+    pub velocity: f64,
 }
 
 /// The drive that allows the least speed along a path.
@@ -177,13 +186,6 @@ impl PlannedPath {
         };
         let begins = |leg: Result<Leg, PathError>| leg.map_or(first, |leg| leg.element.line);
         (self.given_legs().next().map_or(first, begins), last)
-    }
-
-    /// An estimate of the speed along the path, from its limits and steps.
-    pub fn speed(&self) -> Result<SpeedPlan<{ MAX_EVENTS + 1 }>, SpeedError> {
-        let mut plan = SpeedPlan::new();
-        plan.plan(0.0, self.length_mm(), &self.limits, self.steps.iter().copied())?;
-        Ok(plan)
     }
 
     /// From where the first beam goes on to where the last one goes off \[mm\]; `None` without beams or motion.

@@ -7,7 +7,7 @@ use super::{Fault, MotionConfig};
 use crate::control::{ReferenceSearch, SearchInput, SearchProgress, SearchState};
 use crate::io::{MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use crate::parameter::ParameterError;
-use crate::trajectory::{SpeedLimits, SpeedPlan};
+use crate::trajectory::{RestToRest, SpeedLimits};
 
 const X1: usize = 0;
 const X2: usize = 1;
@@ -97,7 +97,7 @@ impl HomingPlan {
 /// X2 on its way to where the beam is square.
 #[derive(Clone, Debug, PartialEq)]
 struct Squaring {
-    plan: SpeedPlan<1>,
+    way: RestToRest,
     from: f64,
     sign: f64,
     time: f64,
@@ -107,11 +107,11 @@ impl Squaring {
     /// Moves the reference of X2 on by a millisecond; true when it has arrived.
     fn tick(&mut self, reference: &mut MotorReference) -> bool {
         self.time += PATH_PERIOD_S;
-        let state = self.plan.at(self.time);
+        let state = self.way.at(self.time);
         reference.position[X2] = self.from + self.sign * state.s;
         reference.velocity[X2] = self.sign * state.v;
         reference.acceleration[X2] = self.sign * state.a;
-        self.time >= self.plan.duration()
+        self.time >= self.way.duration()
     }
 }
 
@@ -215,12 +215,12 @@ impl Homing {
             seen_um: (length * 1000.0) as f32,
             limit_um: (gantry.max_skew_mm * 1000.0) as f32,
         };
-        if length > gantry.max_skew_mm {
+        let small = length <= gantry.max_skew_mm;
+        if !small {
             return Err(skew);
         }
-        let plan = SpeedPlan::rest_to_rest(0.0, length, &SQUARING).map_err(|_| skew)?;
         Ok(Stage::Squaring(Squaring {
-            plan,
+            way: RestToRest::new(length, &SQUARING),
             from,
             sign: libm::copysign(1.0, distance),
             time: 0.0,

@@ -1,20 +1,17 @@
 //! The path (where) and the speed along it (when).
 //!
 //! The motion board runs [`Element`]s through the [`Planner`], which looks ahead. [`Path`] is what the tracker board
-//! looks places up in, and what planners on the PC begin with; [`SpeedPlan`] is their estimate of the speed, from rest
-//! to rest. [`Trapezoid`] and [`MatchedTurn`] are for comparison only.
+//! looks places up in, and what planners on the PC begin with. [`RestToRest`] is one way by itself, as in homing.
+//! [`Trapezoid`] and [`MatchedTurn`] are for comparison only.
 
 mod curve;
 mod element;
 mod matched_turn;
 mod path;
-mod plan;
 mod planner;
-mod ramp;
 mod reference;
+mod rest_to_rest;
 mod speed;
-#[cfg(test)]
-mod speed_tests;
 mod trapezoid;
 mod window;
 
@@ -24,10 +21,10 @@ pub use curve::{
 pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
 pub use matched_turn::MatchedTurn;
 pub use path::{Path, PathError, PathPoint, PathSpace};
-pub use plan::{SpeedPlan, SpeedStep};
 pub use planner::{Output, PlanLimits, Planner, PushError, Way};
-pub use reference::{AxisReference, ReferenceError, Unreachable, axes_at, reference};
-pub use speed::{SpeedError, SpeedLimits, SpeedState};
+pub use reference::{ReferenceError, Unreachable, at_unit_speed, axes_at};
+pub use rest_to_rest::RestToRest;
+pub use speed::{SpeedLimits, SpeedState};
 pub use trapezoid::{SmoothedTrapezoid, Trapezoid, TrapezoidError};
 pub use window::{CurveLimits, ProcessWindow, WindowError, WindowPlan, limit_acceleration};
 

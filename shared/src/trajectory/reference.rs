@@ -1,23 +1,10 @@
-//! What the servo loops are asked for: path, speed and kinematics put together once a path tick.
+//! Where the axes are at a place of a path, and how they move along it: path and kinematics put together.
 
-use super::{Path, PathPoint, PathSpace, SpeedState};
-use crate::geometry::{Pose, PoseError};
+use super::{PathPoint, PathSpace};
+use crate::geometry::PoseError;
 use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics, KinematicsError};
 use thiserror::Error;
-
-/// References of the axes at one path tick (X Y Z A B C; mm, rad, s).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AxisReference {
-    /// Positions.
-    pub position: [f64; AXES],
-    /// Velocities.
-    pub velocity: [f64; AXES],
-    /// Accelerations.
-    pub acceleration: [f64; AXES],
-    /// The pose these positions realise.
-    pub pose: Pose,
-}
 
 /// Why there is no reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -45,8 +32,9 @@ pub struct Unreachable {
     pub source: ReferenceError,
 }
 
-/// The axes at a point of a path in motion at unit speed: their derivatives over s (SPEC 0.3, 0.4).
-pub(super) fn at_unit_speed(
+/// The axes at a point of a path in motion at unit speed: nearest to `near`, with their derivatives over s (SPEC 0.3,
+/// 0.4). A path in axis space gives its axes as they are.
+pub fn at_unit_speed(
     kinematics: &Kinematics,
     point: &PathPoint,
     space: PathSpace,
@@ -71,40 +59,12 @@ pub fn axes_at(
     Ok(at_unit_speed(kinematics, point, space, near)?.position)
 }
 
-/// The references at `state` of `path`: the pose at s, its axes nearest to `near`, and their rates and
-/// accelerations by the chain rule (SPEC 0.3, 0.4). A path in axis space gives its axes as they are.
-pub fn reference<const N: usize>(
-    kinematics: &Kinematics,
-    path: &Path<N>,
-    state: SpeedState,
-    near: &[f64; AXES],
-) -> Result<AxisReference, ReferenceError> {
-    let point = path.at(state.s).ok_or(ReferenceError::EmptyPath)?;
-    let (axes, pose) = match path.space() {
-        PathSpace::Tool => {
-            let (pose, motion) = point.pose_in_motion()?;
-            let motion = motion.at_speed(state.v, state.a);
-            (kinematics.inverse_motion(&pose, &motion, near)?, pose)
-        }
-        PathSpace::Axes => {
-            let axes = point.axes().at_speed(state.v, state.a);
-            (axes, kinematics.forward(&axes.position))
-        }
-    };
-    Ok(AxisReference {
-        position: axes.position,
-        velocity: axes.velocity,
-        acceleration: axes.acceleration,
-        pose,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
     use crate::protocol::Knot;
-    use crate::trajectory::{CHANNELS, SpeedLimits, SpeedPlan};
+    use crate::trajectory::{CHANNELS, Path, RestToRest, SpeedLimits, SpeedState};
 
     fn machine() -> Kinematics {
         let config = KinematicsConfig::DualBeamGantry(DualBeamConfig {
@@ -145,6 +105,17 @@ mod tests {
         path
     }
 
+    /// The axes at `state` of `path`, by the chain rule.
+    fn moving(
+        machine: &Kinematics,
+        path: &Path<32>,
+        state: SpeedState,
+    ) -> Result<AxisMotion, ReferenceError> {
+        let point = path.at(state.s).ok_or(ReferenceError::EmptyPath)?;
+        let axes = at_unit_speed(machine, &point, path.space(), &[0.0; AXES])?;
+        Ok(axes.at_speed(state.v, state.a))
+    }
+
     /// Velocities and accelerations are the derivatives of the positions over time, as differences see them
     /// (away from knots, where the second derivative of a Hermite path steps), and the pose is realised.
     #[test]
@@ -155,13 +126,20 @@ mod tests {
             acceleration: 800.0,
             jerk: 6000.0,
         };
-        let profile = SpeedPlan::<1>::rest_to_rest(3.0, 307.0, &limits).unwrap();
-        let at = |t: f64| reference(&machine, &path, profile.at(t), &[0.0; AXES]).unwrap();
+        let way = RestToRest::new(304.0, &limits);
+        let state = |t: f64| {
+            let state = way.at(t);
+            SpeedState {
+                s: 3.0 + state.s,
+                ..state
+            }
+        };
+        let at = |t: f64| moving(&machine, &path, state(t)).unwrap();
         let h = 1e-4;
         let mut checked = 0;
         for k in 1..400 {
-            let t = profile.duration() * f64::from(k) / 400.0;
-            let span = |t: f64| libm::floor(profile.at(t).s / 10.0);
+            let t = way.duration() * f64::from(k) / 400.0;
+            let span = |t: f64| libm::floor(state(t).s / 10.0);
             if span(t - h) != span(t + h) {
                 continue;
             }
@@ -178,9 +156,10 @@ mod tests {
                 );
             }
             let realised = machine.forward(&now.position);
-            assert!((realised.position - now.pose.position).norm() < 1e-9);
-            assert!((realised.normal - now.pose.normal).norm() < 1e-12);
-            assert!((realised.tangent - now.pose.tangent).norm() < 1e-12);
+            let (pose, _) = path.at(state(t).s).unwrap().pose_in_motion().unwrap();
+            assert!((realised.position - pose.position).norm() < 1e-9);
+            assert!((realised.normal - pose.normal).norm() < 1e-12);
+            assert!((realised.tangent - pose.tangent).norm() < 1e-12);
         }
         assert!(checked > 300, "only {checked} places checked");
     }
@@ -189,9 +168,7 @@ mod tests {
     #[test]
     fn second_derivatives_are_exact() {
         let (machine, path) = (machine(), path());
-        let at = |s: f64, v: f64, a: f64| {
-            reference(&machine, &path, SpeedState { s, v, a }, &[0.0; AXES]).unwrap()
-        };
+        let at = |s: f64, v: f64, a: f64| moving(&machine, &path, SpeedState { s, v, a }).unwrap();
         for s in [4.0, 55.5, 123.0, 266.6] {
             let h = 1e-3;
             let (before, now, after) = (at(s - h, 1.0, 0.0), at(s, 1.0, 0.0), at(s + h, 1.0, 0.0));
@@ -217,10 +194,10 @@ mod tests {
     fn a_path_without_a_pose_is_refused() {
         let state = SpeedState::default();
         assert_eq!(
-            reference(&machine(), &Path::<2>::new(), state, &[0.0; AXES]),
+            moving(&machine(), &Path::new(), state),
             Err(ReferenceError::EmptyPath)
         );
-        let mut path = Path::<2>::new();
+        let mut path = Path::new();
         let mut knot = Knot {
             s_mm: 0.0,
             value: [0.0; CHANNELS],
@@ -228,14 +205,14 @@ mod tests {
         };
         path.push(knot).unwrap();
         assert_eq!(
-            reference(&machine(), &path, state, &[0.0; AXES]),
+            moving(&machine(), &path, state),
             Err(ReferenceError::Pose(PoseError::ZeroVector))
         );
         path.clear(1, PathSpace::Tool);
         (knot.value[5], knot.value[6]) = (1.0, 1.0);
         path.push(knot).unwrap();
         assert_eq!(
-            reference(&machine(), &path, state, &[0.0; AXES]),
+            moving(&machine(), &path, state),
             Err(ReferenceError::Kinematics(KinematicsError::GimbalLock))
         );
     }

@@ -12,7 +12,7 @@ use super::*;
 use crate::nc::{Options, Place, interpret};
 use nalgebra::Vector3;
 use shared::geometry::{angle, interpolate};
-use shared::trajectory::{axes_at, reference};
+use shared::trajectory::{SpeedLimits, at_unit_speed, axes_at};
 use std::fmt::Write;
 
 fn planner() -> Planner {
@@ -109,11 +109,16 @@ fn rapids_use_their_part_of_the_limits_and_no_more() {
         let planned = plan(body).unwrap();
         let planner = planner();
         let path = planned[1].knot_path();
-        let profile = planned[1].speed().unwrap();
+        let SpeedLimits {
+            velocity,
+            acceleration,
+            ..
+        } = planned[1].limits;
         let mut used: f64 = 0.0;
         for i in 0..=500 {
-            let state = profile.at(profile.duration() * f64::from(i) / 500.0);
-            let at = reference(planner.kinematics(), &path, state, &[0.0; AXES]).unwrap();
+            let point = path.at(planned[1].length_mm() * f64::from(i) / 500.0).unwrap();
+            let at = at_unit_speed(planner.kinematics(), &point, planned[1].space, &[0.0; AXES]).unwrap();
+            let at = at.at_speed(velocity, acceleration);
             for axis in 0..AXES {
                 let limits = &planner.drives[axis];
                 let speed = at.velocity[axis].abs() / limits.velocity;

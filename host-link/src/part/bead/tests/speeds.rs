@@ -5,7 +5,7 @@ use super::*;
 use nalgebra::Vector3;
 use shared::io::AXES;
 use shared::kinematics::AxisLimits;
-use shared::trajectory::{ProcessWindow, SpeedState, reference};
+use shared::trajectory::{ProcessWindow, at_unit_speed};
 
 const WINDOW: ProcessWindow = ProcessWindow { low: 4.0, high: 16.0 };
 
@@ -20,12 +20,9 @@ fn shares(path: &PlannedPath, machine: &MachineFile) -> [f64; 3] {
     let mut largest = [0.0_f64; 3];
     let count = (path.length_mm() / v / dt) as usize;
     for k in 0..count {
-        let state = SpeedState {
-            s: v * dt * k as f64,
-            v,
-            a: 0.0,
-        };
-        let at = reference(planner.kinematics(), &curve, state, &near).unwrap();
+        let point = curve.at(v * dt * k as f64).unwrap();
+        let at = at_unit_speed(planner.kinematics(), &point, path.space, &near).unwrap();
+        let at = at.at_speed(v, 0.0);
         near = at.position;
         past.push(at.acceleration);
         for axis in 0..AXES {
@@ -176,14 +173,14 @@ fn what_the_machine_cannot_do_inside_the_window_is_slower_and_said() {
         "{:?}",
         plan.notes
     );
-    // What the boards make of it keeps the curve's own limit everywhere.
-    let speeds = path.speed().unwrap();
-    let curve = path.path();
-    for i in 0..=20_000 {
-        let state = speeds.at(speeds.duration() * f64::from(i) / 2e4);
-        let bend = curve.at(state.s.min(path.length_mm() - 1e-9)).unwrap().second;
-        let curvature = libm::sqrt(bend[..3].iter().map(|x| x * x).sum());
-        let jerk = state.v * state.v * state.v * curvature * curvature;
-        assert!(jerk <= 300.0 * 1.01, "{jerk} mm/s³ at {}", state.s);
+    // What the boards are given keeps the curve's own limit everywhere.
+    for leg in path.legs() {
+        let element = leg.unwrap().element;
+        for i in 0..=20 {
+            let bend = element.at(element.length * f64::from(i) / 20.0).second;
+            let curvature = libm::sqrt(bend[..3].iter().map(|x| x * x).sum());
+            let jerk = element.feed * element.feed * element.feed * curvature * curvature;
+            assert!(jerk <= 300.0 * 1.01, "{jerk} mm/s³ in line {}", element.line);
+        }
     }
 }

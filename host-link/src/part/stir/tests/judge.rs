@@ -4,6 +4,7 @@ use super::*;
 use crate::part::{Figure, RunSample};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
+use shared::trajectory::RestToRest;
 use std::collections::BTreeMap;
 
 /// Time between two samples \[s\].
@@ -38,7 +39,7 @@ fn judged_on(
     for (index, plan) in planned.iter().enumerate() {
         time += plan.dwell_before_s * dwells;
         let path = plan.path();
-        let profile = plan.speed().unwrap();
+        let profile = RestToRest::new(plan.length_mm(), &plan.limits);
         spindle = (spindle || plan.weld().is_some()) && plan.motion == Motion::Feed;
         for i in 0..=(profile.duration() / STEP) as usize {
             let state = profile.at(i as f64 * STEP);
