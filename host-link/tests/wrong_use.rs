@@ -499,3 +499,27 @@ fn a_board_of_another_version_is_refused_and_asked_for_nothing() {
     let (hello, more) = asked.join().expect("the fake board");
     assert!(hello > 0 && more == 0, "{hello} and {more} bytes");
 }
+
+#[test]
+fn lines_that_a_program_cannot_be_started_at_are_answered_before_the_machine_moves() {
+    for (line, words) in [
+        ("9999", "nothing moves in line 9999 or after it"),
+        (
+            "60",
+            "line 60 follows the seam, which has to be found before: start from line 17",
+        ),
+    ] {
+        let mut attempt = Attempt::new();
+        attempt.more.extend(["--from-line", line]);
+        assert_says(&attempt.refusal(), &["t-seam-400.ngc", words]);
+    }
+    let said = Attempt {
+        program: shipped("programs/panel.toml"),
+        machine: shipped("machines/ac-head.toml"),
+        seam: None,
+        more: vec!["--boards", "simulated", "--from-line", "3"],
+        session: None,
+    }
+    .refusal();
+    assert_says(&said, &["--from-line needs a program", "taught"]);
+}
