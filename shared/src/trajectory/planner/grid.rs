@@ -31,9 +31,9 @@ const INSET: f64 = 1e-4;
 /// Most times that an interval is halved to follow the limits.
 const HALVINGS: u32 = 6;
 /// Work to append a node, and for each sample.
-const EXTEND: u32 = 10;
-const SAMPLE: u32 = 5;
-const SAMPLE_OF_TOOL: u32 = 12;
+const EXTEND: u32 = 20;
+const SAMPLE: u32 = 11;
+const SAMPLE_OF_TOOL: u32 = 20;
 /// Junctions looked at for a unit of work.
 const LOOKS_FOR_ONE: u32 = 2;
 /// Smallest rate of a row; keeps divisions by it finite.
@@ -66,6 +66,8 @@ pub(super) struct Grid {
     hint: u32,
     /// Axes at the newest node.
     near: [f64; AXES],
+    /// What the path asks for just before the newest node, if limits do not change there.
+    before: Option<Sample>,
 }
 
 /// What the grid is made of.
@@ -127,6 +129,7 @@ impl Grid {
         since_speed: 0.0,
         hint: 0,
         near: [0.0; AXES],
+        before: None,
     };
 
     /// The first node, at rest at `s` with the axes at `axes`.
@@ -192,20 +195,30 @@ impl Grid {
         }
         let mut hint = self.hint;
         let mut sample = |way: f64| ground.sample(start + direction * way, direction, &mut hint, &near);
-        let (mut from, _) = sample(INSET * libm::fmin(next.way, feed * CURVE_STEP))?;
+        let mut samples = 2;
+        let mut from = match self.before {
+            Some(sample) => sample,
+            None => {
+                samples += 1;
+                sample(INSET * libm::fmin(next.way, feed * CURVE_STEP))?.0
+            }
+        };
         let rests = in_force + 1 == nodes.end;
         let mut delta = step(&next, self, rests, &from, feed, bounds);
+        let mut to = sample(delta * (1.0 - INSET))?;
         let mut halvings = 0;
-        let (mid, mut to, axes) = loop {
-            let (mid, _) = sample(0.5 * delta)?;
-            let (to, axes) = sample(delta * (1.0 - INSET))?;
+        let mid = loop {
+            let mid = sample(0.5 * delta)?;
             let short = next.merged && delta <= gap;
-            if halvings == HALVINGS || short || straight(&from, &mid, &to, bounds) {
-                break (mid, to, axes);
+            if halvings == HALVINGS || short || straight(&from, &mid.0, &to.0, bounds) {
+                break mid.0;
             }
             halvings += 1;
             delta *= 0.5;
+            to = mid;
         };
+        let (mut to, axes) = to;
+        let before = to;
         let at_break = next.way - delta < SAME;
         let delta = if at_break { next.way } else { delta };
         let end = start + direction * delta;
@@ -229,13 +242,14 @@ impl Grid {
             self.since = end;
             self.since_speed = next.speed;
         }
+        self.before = (!at_break).then_some(before);
         self.s = end;
         self.near = axes.position;
         let sample = match ground.space {
             PathSpace::Axes => SAMPLE,
             PathSpace::Tool => SAMPLE_OF_TOOL,
         };
-        Ok(EXTEND + next.looks / LOOKS_FOR_ONE + (3 + 2 * halvings) * sample)
+        Ok(EXTEND + next.looks / LOOKS_FOR_ONE + (samples + halvings) * sample)
     }
 }
 

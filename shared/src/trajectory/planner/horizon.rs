@@ -118,6 +118,8 @@ pub(super) struct Horizon {
     /// Work on the plan being made, and what plans have taken for each node, in the mean.
     spent: u32,
     work_of_node: f64,
+    /// Ticks until it is worth looking again whether a plan has to be begun.
+    early: u32,
     /// Longer time for a plan after others were given up: a factor.
     patience: u32,
     /// Largest swing above its limit, as a share.
@@ -160,6 +162,7 @@ impl Horizon {
         factor: 1.0,
         spent: 0,
         work_of_node: WORK_OF_NODE,
+        early: 0,
         patience: 1,
         excess: REST,
         away: 0,
@@ -188,6 +191,11 @@ impl Horizon {
         wish: Wish,
         bounds: &Bounds,
     ) -> bool {
+        let goes_on = !wish.stop && wish.factor == self.factor;
+        self.early = self.early.saturating_sub(1);
+        if goes_on && self.early > 0 {
+            return false;
+        }
         // A window that is long enough to stop in, and short enough to be planned before it is passed.
         // A single interval between two places at rest would last for ever.
         let ends = |last: u32| match last > nodes.first && nodes.at(last - 1).limit <= 0.0 {
@@ -195,7 +203,6 @@ impl Horizon {
             false => last,
         };
         let mut last = ends((nodes.end - 1).min(self.in_force.max(player) + WINDOW));
-        let goes_on = !wish.stop && wish.factor == self.factor;
         let nothing = match wish.stop {
             true => self.stopping,
             false => last <= self.in_force && goes_on,
@@ -213,7 +220,9 @@ impl Horizon {
             let until = left + (player..slowing).map(|i| nodes.at(i).lasts).sum::<f64>();
             // Many nodes at once are less work; but they must be planned in time.
             let needed = time_of(f64::from(last - slowing) * work_of_node);
-            if last < self.in_force + WINDOW && until > EARLY * needed {
+            let early = until - EARLY * needed;
+            if last < self.in_force + WINDOW && early > 0.0 {
+                self.early = (0.25 * early / PATH_PERIOD_S) as u32;
                 return false;
             }
             let affordable = (until / (AFFORD * time_of(work_of_node))) as u32;

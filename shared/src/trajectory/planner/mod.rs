@@ -316,25 +316,20 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
 
     /// Lets go of what lies behind.
     fn release(&mut self) {
-        let nodes = if self.nodes.room() > NODES / 2 {
-            NODES / 4
-        } else {
-            NODES / 8
-        };
-        let mut oldest = self.player.node;
-        // The swings need all that the output filter remembers, and more; at rest it remembers nothing.
-        let mut time = if self.resting >= self.bounds.filter_ticks as u32 {
-            f64::INFINITY
-        } else {
-            0.0
-        };
-        while oldest > self.nodes.first
-            && (time < 2.0 * self.bounds.filter || oldest + nodes as u32 > self.player.node)
-        {
-            oldest -= 1;
-            time += self.nodes.at(oldest).lasts;
+        // In one go for many of them.
+        let behind = self.player.node - self.nodes.first;
+        if self.nodes.room() == 0 && behind as usize > NODES / 4 {
+            // The swings need all that the output filter remembers, and more; at rest it remembers nothing.
+            let mut time = if self.rested() { f64::INFINITY } else { 0.0 };
+            let mut oldest = self.player.node;
+            while oldest > self.nodes.first
+                && (time < 2.0 * self.bounds.filter || oldest + NODES as u32 / 8 > self.player.node)
+            {
+                oldest -= 1;
+                time += self.nodes.at(oldest).lasts;
+            }
+            self.nodes.first = oldest;
         }
-        self.nodes.first = oldest;
         // What lies further behind than this cannot be gone back to.
         let elements = if self.track.room() > ELEMENTS / 2 {
             ELEMENTS / 4
