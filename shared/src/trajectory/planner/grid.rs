@@ -12,7 +12,7 @@ use crate::trajectory::{PathSpace, ReferenceError, Unreachable};
 /// Places nearer than this are one \[mm\].
 pub(super) const SAME: f64 = 1e-9;
 /// Time between nodes on curves \[s\].
-const CURVE_STEP: f64 = 0.003;
+const CURVE_STEP: f64 = 0.004;
 /// Largest turn of the path between two nodes \[rad\].
 const TURN_STEP: f64 = 0.12;
 /// Time between nodes next to a change of limits, at the speed at which it can be passed \[s\].

@@ -24,10 +24,13 @@ const NEAR: f64 = 2.0;
 const REMEMBERED: f64 = 1.5;
 /// A plan is not begun earlier than this many times the time it needs,
 const EARLY: f64 = 3.0;
-/// has to be ready in this many times that,
-const MARGIN: f64 = 2.0;
-/// and is made shorter where there is less than this.
-const AFFORD: f64 = 1.5;
+/// and whether it is time is looked at after a quarter of what is left, but after so many ticks
+/// at the latest;
+const MOST_EARLY: f64 = 100.0;
+/// it has to be ready in this many times that,
+const MARGIN: f64 = 1.7;
+/// and at least in this many.
+const TIGHT: f64 = 1.2;
 /// Work that a plan is expected to need for each node, as long as nothing else is known.
 const WORK_OF_NODE: f64 = 80.0;
 /// Work that a plan to stop is expected to need.
@@ -192,8 +195,8 @@ impl Horizon {
         bounds: &Bounds,
     ) -> bool {
         let goes_on = !wish.stop && wish.factor == self.factor;
-        self.early = self.early.saturating_sub(1);
-        if goes_on && self.early > 0 {
+        self.early = if goes_on { self.early.saturating_sub(1) } else { 0 };
+        if self.early > 0 {
             return false;
         }
         // A window that is long enough to stop in, and short enough to be planned before it is passed.
@@ -216,16 +219,16 @@ impl Horizon {
             player
         };
         let work_of_node = f64::from(self.patience) * self.work_of_node;
+        let until = left + (player..slowing).map(|i| nodes.at(i).lasts).sum::<f64>();
         if goes_on && nodes.at(slowing).x > 0.0 {
-            let until = left + (player..slowing).map(|i| nodes.at(i).lasts).sum::<f64>();
             // Many nodes at once are less work; but they must be planned in time.
             let needed = time_of(f64::from(last - slowing) * work_of_node);
             let early = until - EARLY * needed;
             if last < self.in_force + WINDOW && early > 0.0 {
-                self.early = (0.25 * early / PATH_PERIOD_S) as u32;
+                self.early = libm::fmin(0.25 * early / PATH_PERIOD_S, MOST_EARLY) as u32;
                 return false;
             }
-            let affordable = (until / (AFFORD * time_of(work_of_node))) as u32;
+            let affordable = (until / (MARGIN * time_of(work_of_node))) as u32;
             let beyond = affordable.saturating_sub(self.in_force - slowing);
             last = ends(last.min(self.in_force + LEAST_WINDOW.max(beyond)));
         }
@@ -233,7 +236,9 @@ impl Horizon {
             true => f64::from(self.patience) * WORK_OF_STOP,
             false => f64::from(last - slowing) * work_of_node,
         };
-        let lead = MARGIN * time_of(work) + 2.0 * PATH_PERIOD_S;
+        // It should be ready before the slowing begins.
+        let tight = TIGHT * time_of(work) + 2.0 * PATH_PERIOD_S;
+        let lead = until.clamp(tight, libm::fmax(tight, MARGIN * time_of(work)));
         let earliest = before(nodes, slowing, player, SLACK * bounds.filter);
         let commit = self.commit(nodes, player, left, lead, earliest);
         if wish.stop && nodes.at(commit).x <= 0.0 {
@@ -290,7 +295,7 @@ impl Horizon {
             (commit, time)
         };
         let (commit, time) = after(lead, earliest);
-        if commit == self.in_force && time < 1.6 * lead {
+        if commit == self.in_force && time < lead {
             // Little is left: there must be time to go on without a stop.
             return after(0.6 * time, player).0;
         }
