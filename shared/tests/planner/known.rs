@@ -286,6 +286,26 @@ fn a_plan_that_begins_behind_the_machine_is_given_up() {
 }
 
 #[test]
+fn on_the_way_back_a_stop_is_left_on_its_side() {
+    let first = Move {
+        stop: true,
+        size: 10.0,
+        feed: 20.0,
+        ..LINE
+    };
+    // It turns about much on little way.
+    let second = Move {
+        size: 3e-4,
+        turn: [0.0, 0.0, -0.7],
+        ..LINE
+    };
+    for begin in (600..1200).step_by(50) {
+        let acts = vec![(begin, Act::Go(Way::Back)), (1500, Act::Go(Way::Forward))];
+        passes(&bench::dual_beam(), &[first, second], &acts);
+    }
+}
+
+#[test]
 fn a_rest_at_a_stop_is_none_at_the_end_of_the_plan() {
     let frame = Frame {
         acceleration: 1815.363,

@@ -73,10 +73,11 @@ impl Player {
         SpeedState {
             s: from.s + from.direction * self.time * (v + 0.5 * a * self.time),
             v: from.direction * (v + a * self.time),
-            a: if self.standing > 0 {
-                0.0
-            } else {
+            // Where it rests, s does not say which of two elements that meet there it will move on.
+            a: if v + self.time > 0.0 {
                 from.direction * a
+            } else {
+                0.0
             },
         }
     }
