@@ -407,3 +407,54 @@ fn an_element_that_ends_in_a_stop_keeps_the_tolerance_of_the_one_before() {
     let faults = judge(&bench, &elements, tolerance, &samples).faults();
     assert!(faults.is_empty(), "{}", faults.join("; "));
 }
+
+#[test]
+fn it_goes_on_after_a_hold_at_a_rotary_corner() {
+    let two = Kind::Chain {
+        lines: 2,
+        angle: 0.0,
+        both: false,
+    };
+    let frame = Frame {
+        ramp: 0.0197544638492439,
+        acceleration: 199.526,
+        ..FRAME
+    };
+    let moves = [
+        Move {
+            kind: two,
+            size: 0.0016342504351444904,
+            turn: [0.0, 0.0, -0.8785],
+            ..LINE
+        },
+        LINE,
+    ];
+    let acts = vec![
+        (513, Act::Override(1.0)),
+        (407, Act::Starve(1)),
+        (731, Act::Go(Way::Hold)),
+    ];
+    passes(&bench::axes(&frame), &moves, &acts);
+    let three = Kind::Chain {
+        lines: 3,
+        angle: 0.1179185,
+        both: false,
+    };
+    let frame = Frame {
+        ramp: 0.0574469,
+        acceleration: 199.526,
+        rotary: 9.89443,
+        tolerance: 0.008426,
+        ..FRAME
+    };
+    let moves = [
+        Move {
+            kind: three,
+            size: 0.00392213928154636,
+            turn: [0.0, 0.0, 0.9523],
+            ..LINE
+        },
+        LINE,
+    ];
+    passes(&bench::axes(&frame), &moves, &vec![(100, Act::Go(Way::Hold))]);
+}
