@@ -7,9 +7,10 @@ mod plan;
 mod teach;
 mod weld;
 
-use crate::nc::{Options, Program, interpret};
+use crate::nc::{Options, Program, interpret_file};
 use anyhow::Context;
 use clap::{Parser, Subcommand};
+use std::fs::File;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -46,6 +47,6 @@ impl Cli {
 /// Reads the NC program in a file.
 fn read_program(path: &Path, block_delete: bool) -> anyhow::Result<Program> {
     let name = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read program {name}"))?;
-    interpret(&text, Options { block_delete }).with_context(|| format!("program {name}"))
+    let file = File::open(path).with_context(|| format!("cannot read program {name}"))?;
+    interpret_file(file, Options { block_delete }).with_context(|| format!("program {name}"))
 }

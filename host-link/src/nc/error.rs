@@ -31,6 +31,9 @@ pub struct NcError {
 /// What is wrong.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Problem {
+    /// The file cannot be read.
+    #[error("cannot be read: {0}")]
+    Unreadable(String),
     /// No character of the dialect.
     #[error("'{0}' is not understood here")]
     Character(char),

@@ -8,8 +8,9 @@ use super::lexer::Word;
 use super::modal::Modal;
 use super::nurbs::{OpenNurbs, Progress};
 use super::outputs::{Pending, Spindle, dwell, output};
-use super::parser::{Block, Parsed, parse};
-use super::program::{FeedRate, Motion, Plane, Program, ProgramPath, Target, Way, Words};
+use super::parser::Block;
+use super::program::{FeedRate, Motion, Plane, ProgramPath, Target, Way, Words};
+use super::reading::Rest;
 use shared::io::{AXES, SIDES};
 
 /// Choices of the operator.
@@ -19,54 +20,8 @@ pub struct Options {
     pub block_delete: bool,
 }
 
-/// Reads a whole program.
-///
-/// Consecutive blocks that feed make one path, and every G0 one of its own. M62, M63 and M67 take effect at the start
-/// of the next motion; M3, M4, M5, M64, M65 and M68 end a path and take effect at rest; G4 ends a path and delays the
-/// next one.
-pub fn interpret(text: &str, options: Options) -> Result<Program, NcError> {
-    let mut reader = Interpreter::default();
-    let mut percent_open = None;
-    let mut percent_closed = false;
-    let mut seen = false;
-    let mut last = Place { line: 1, column: 1 };
-    for (index, content) in text.lines().enumerate() {
-        let line = index as u32 + 1;
-        let first = Place { line, column: 1 };
-        match parse(content, line)? {
-            Parsed::Blank => continue,
-            _ if percent_closed => return Err(Problem::AfterEnd.at(first)),
-            Parsed::Percent(place) if !seen => percent_open = Some(place),
-            Parsed::Percent(place) => {
-                if percent_open.is_none() {
-                    return Err(Problem::Percent.at(place));
-                }
-                percent_closed = true;
-            }
-            Parsed::Block(_) if reader.ended => return Err(Problem::AfterEnd.at(first)),
-            Parsed::Block(block) if block.delete && options.block_delete => {}
-            Parsed::Block(block) => reader.block(&block)?,
-        }
-        seen = true;
-        last = first;
-    }
-    if let Some(open) = &reader.nurbs {
-        return Err(open.left_open(last));
-    }
-    if !reader.ended {
-        return Err(Problem::NoEnd.at(last));
-    }
-    if let (Some(place), false) = (percent_open, percent_closed) {
-        return Err(Problem::Percent.at(place));
-    }
-    if reader.paths.is_empty() {
-        return Err(Problem::Empty.at(last));
-    }
-    Ok(Program { paths: reader.paths })
-}
-
-#[derive(Default)]
-struct Interpreter {
+#[derive(Clone, Default)]
+pub(super) struct Interpreter {
     modal: Modal,
     nurbs: Option<OpenNurbs>,
     /// The tip was given a place.
@@ -80,7 +35,7 @@ struct Interpreter {
     paths: Vec<ProgramPath>,
     /// The next motion that feeds goes on along the last path.
     open: bool,
-    ended: bool,
+    pub(super) ended: bool,
 }
 
 /// Letters of the six axis words, in the order of [`shared::io::AXIS_NAMES`].
@@ -90,7 +45,7 @@ const EXTENSION_WORDS: [&str; SIDES] = ["V1", "V2"];
 
 impl Interpreter {
     /// Carries out a block in the order of RS274/NGC: modes and feed, outputs, spindle, dwell, motion, end.
-    fn block(&mut self, block: &Block) -> Result<(), NcError> {
+    pub(super) fn block(&mut self, block: &Block) -> Result<(), NcError> {
         if let Some(open) = &mut self.nurbs {
             if let Progress::Complete(way, words) = open.block(block)? {
                 self.end_nurbs(Way::Nurbs(Box::new(way)), words);
@@ -141,6 +96,46 @@ impl Interpreter {
         Ok(())
     }
 
+    /// The paths, if the program that ends at `last` is whole.
+    pub(super) fn end(self, last: Place) -> Result<Vec<ProgramPath>, NcError> {
+        if let Some(open) = &self.nurbs {
+            return Err(open.left_open(last));
+        }
+        if !self.ended {
+            return Err(Problem::NoEnd.at(last));
+        }
+        Ok(self.paths)
+    }
+
+    /// Keeps no more than `count` blocks of the last path; what reads the others again is made of the state between
+    /// them.
+    pub(super) fn trim(&mut self, count: usize, rest: impl FnOnce(Self) -> Rest) {
+        let Some(mut path) = self.paths.pop() else { return };
+        if self.open && path.rest.is_none() && path.targets.len() >= count {
+            let before = std::mem::take(&mut self.paths);
+            let mut state = self.clone();
+            self.paths = before;
+            state.paths.push(path.without_blocks());
+            path.rest = Some(rest(state));
+        }
+        if path.rest.is_some() {
+            path.targets.truncate(count);
+            let events = path.events.partition_point(|event| event.with_target < count);
+            path.events.truncate(events);
+        }
+        self.paths.push(path);
+    }
+
+    /// The blocks that came to the first path since the last time, and whether more may come.
+    pub(super) fn take_blocks(&mut self) -> (Option<ProgramPath>, bool) {
+        let goes_on = self.open && self.paths.len() == 1;
+        let taken = self.paths.first_mut().map(|path| {
+            let without = path.without_blocks();
+            std::mem::replace(path, without)
+        });
+        (taken, goes_on)
+    }
+
     /// Keeps an event for the next motion. What takes effect at rest ends the path.
     fn wait(&mut self, pending: Pending) {
         self.open &= !pending.at_rest;
@@ -158,6 +153,7 @@ impl Interpreter {
                 motion: Motion::Stand,
                 targets: Vec::new(),
                 events: now.into_iter().map(|pending| pending.event(0)).collect(),
+                rest: None,
             });
             self.open = false;
         }
@@ -289,6 +285,7 @@ impl Interpreter {
             motion,
             targets: vec![target],
             events: self.pending.drain(..).map(|pending| pending.event(0)).collect(),
+            rest: None,
         });
     }
 

@@ -20,12 +20,15 @@ mod nurbs;
 mod outputs;
 mod parser;
 mod program;
+mod reading;
+mod source;
 #[cfg(test)]
 mod tests;
 
 pub use error::{NcError, Place, Problem};
-pub use interpreter::{Options, interpret};
+pub use interpreter::Options;
 pub use program::{
     ArcForm, ArcWay, ControlPoint, FeedRate, Motion, Move, NurbsWay, PathControl, Plane, Program,
     ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,
 };
+pub use reading::{KEPT, Rest, interpret, interpret_file};

@@ -15,6 +15,7 @@ enum FeedMode {
 }
 
 /// Modes of a program.
+#[derive(Clone)]
 pub(super) struct Modal {
     /// G0, G1, G2 or G3; none after a NURBS.
     pub(super) motion: Option<Code>,

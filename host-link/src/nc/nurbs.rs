@@ -19,6 +19,7 @@ const UNIFORM_ORDER: usize = 3;
 const KNOT_ORDER: usize = 4;
 
 /// A curve that is not complete yet.
+#[derive(Clone)]
 pub(super) struct OpenNurbs {
     /// G5.2 or G6.2.
     code: Code,

@@ -41,7 +41,7 @@ impl Pending {
 }
 
 /// The spindle as far as the program has come.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Spindle {
     /// S \[r/min\].
     speed: Option<f64>,

@@ -1,6 +1,7 @@
 //! A program after reading: motions from rest to rest, as their words say them.
 
 use super::error::Place;
+use super::reading::Rest;
 use shared::geometry::Turn;
 use shared::io::{AXES, SIDES};
 use shared::protocol::PathAction;
@@ -19,10 +20,13 @@ pub struct ProgramPath {
     pub dwell_before_s: f64,
     /// Rapid, feed or none.
     pub motion: Motion,
-    /// Where it leads; a rapid leads to one place, a feed to at least one, a stand to none.
+    /// Where it leads; a rapid leads to one place, a feed to at least one, a stand to none. Of a long path the
+    /// first ones.
     pub targets: Vec<Target>,
     /// What happens on the way, in the order of the program.
     pub events: Vec<ProgramEvent>,
+    /// The other blocks of a long path.
+    pub rest: Option<Rest>,
 }
 
 /// The motion of one block of a path, with what happens at its start.
@@ -32,20 +36,6 @@ pub struct Move {
     pub target: Target,
     /// In the order of the program.
     pub events: Vec<ProgramEvent>,
-}
-
-impl ProgramPath {
-    /// Its blocks one after the other.
-    pub fn moves(&self) -> Vec<Move> {
-        let of = |index: usize| self.events.iter().filter(move |event| event.with_target == index);
-        let targets = self.targets.iter().enumerate();
-        targets
-            .map(|(index, target)| Move {
-                target: target.clone(),
-                events: of(index).copied().collect(),
-            })
-            .collect()
-    }
 }
 
 /// How fast.

@@ -1,7 +1,7 @@
 //! Why a program path cannot be run on this machine.
 
 use super::{CAPACITY, MAX_EVENTS};
-use crate::nc::Place;
+use crate::nc::{NcError, Place};
 use shared::geometry::nurbs::NurbsError;
 use shared::geometry::{ArcError, AttitudeError, PoseError, SplineError};
 use shared::io::AXIS_NAMES;
@@ -11,6 +11,9 @@ use thiserror::Error;
 /// Why a program path cannot be run on this machine.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PathError {
+    /// The program cannot be read again.
+    #[error(transparent)]
+    Program(#[from] NcError),
     /// A word of an axis or slide that the machine does not have.
     #[error("{place}: {machine} has no {word}; its words are {fitted}, and X Y Z of the tip")]
     NotFitted {

@@ -7,6 +7,7 @@ use crate::nc::{Motion, Program, Way};
 use shared::io::{AXES, SIDES};
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{CHANNELS, Element, PathSpace, ReferenceError, axes_at};
+use std::rc::Rc;
 use thiserror::Error;
 
 /// The axes are followed in steps of this \[mm\], or degrees where the tip stands.
@@ -287,13 +288,16 @@ fn tracking_at(path: &PlannedPath, s: f64) -> Option<bool> {
 
 /// A line in the middle of a NURBS is none of its own.
 fn check_whole(program: &Program, line: u32) -> Result<(), FromLineError> {
-    for target in program.paths.iter().flat_map(|path| &path.targets) {
-        let begins = target.place.line;
-        if let Way::Nurbs(curve) = &target.way
-            && curve.points.last().is_some_and(|point| line <= point.place.line)
-            && line > begins
-        {
-            return Err(FromLineError::Inside { line, begins });
+    for path in &program.paths {
+        for next in Rc::new(path.clone()).moves() {
+            let target = next.map_err(PathError::from)?.target;
+            let begins = target.place.line;
+            if let Way::Nurbs(curve) = &target.way
+                && curve.points.last().is_some_and(|point| line <= point.place.line)
+                && line > begins
+            {
+                return Err(FromLineError::Inside { line, begins });
+            }
         }
     }
     Ok(())

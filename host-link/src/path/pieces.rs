@@ -9,7 +9,7 @@ use super::outputs::{Switched, Switching, on_the_way};
 use super::shape::{Goal, Shape, channels};
 use super::targets::{ROTARY, Stand};
 use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip};
-use crate::nc::{Motion, Move, PathControl, Place, ProgramPath, Target, Way};
+use crate::nc::{Motion, PathControl, Place, ProgramPath, Target, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
 use shared::trajectory::PathSpace;
@@ -29,6 +29,13 @@ impl Planner {
         stand: &mut Stand,
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
+        let whole;
+        let path = if self.tracks && path.rest.is_some() {
+            whole = path.whole()?;
+            &whole
+        } else {
+            path
+        };
         let events = self.switchings(&path.events)?;
         let axes = path.targets.first().filter(|target| target.way == Way::Axes);
         let mut planned = match (path.motion, axes) {
@@ -106,11 +113,8 @@ impl Planner {
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
         if path.motion == Motion::Feed && !self.tracks && !self.is_smooth(path, stand)? {
-            let moves: Rc<[Move]> = path.moves().into();
-            let again = move || -> Moves {
-                let moves = moves.clone();
-                Box::new((0..moves.len()).map(move |i| Ok(moves[i].clone())))
-            };
+            let path = Rc::new(path.clone());
+            let again = move || -> Moves { Box::new(path.moves().map(|next| next.map_err(PathError::from))) };
             return Ok(vec![self.exact_path(Rc::new(again), stand, speed_mm_s)?]);
         }
         let tips = self.tips(path, stand)?;
@@ -128,7 +132,8 @@ impl Planner {
     fn is_smooth(&self, path: &ProgramPath, from: &Stand) -> Result<bool, PathError> {
         let targets = &path.targets;
         let asked = |target: &Target| target.way == Way::Line && target.control == PathControl::Blend(None);
-        if targets.len() < 2 || targets.len() >= CAPACITY || !targets.iter().all(asked) {
+        if path.rest.is_some() || targets.len() < 2 || targets.len() >= CAPACITY || !targets.iter().all(asked)
+        {
             return Ok(false);
         }
         let tips = self.tips(path, from)?;

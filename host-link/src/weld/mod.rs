@@ -207,7 +207,7 @@ pub enum JobError {
     #[error("the taught part cannot be made: {0}")]
     Plan(String),
     /// It came to its end, but nobody can tell how good it is.
-    #[error("the run cannot be judged by its part: {0}")]
+    #[error("the run cannot be judged: {0}")]
     Judge(String),
     /// A machine parameter is out of range.
     #[error("a machine parameter is out of range: {0}")]

@@ -2,10 +2,10 @@
 
 use super::session::Session;
 use super::{Job, JobError, Taught, Tracking, Weld};
-use crate::dry_run;
+use crate::dry_run::{self, DryRunError};
 use crate::evaluate::{Evaluation, evaluate, run_samples, works};
 use crate::part::{Judgement, PartFile, Plot, Run};
-use crate::path::PlannedPath;
+use crate::path::{PathError, PlannedPath};
 use crate::report::{
     BoardsUsed, ByBoard, ByMotor, Measurements, Outcome, Report, SeamFigures, Truth, WeldTicks,
 };
@@ -44,6 +44,11 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
             Ok(judged) => judgement = judged,
             Err(reason) => error = Some(JobError::Judge(format!("{reason:#}"))),
         }
+    }
+    let planned_motion_s = dry_run::motion_s(job.machine, paths.values());
+    // Here, as for all figures above, long programs are read again.
+    if let Err(DryRunError::Path(lost @ PathError::Program(_))) = &planned_motion_s {
+        error.get_or_insert(JobError::Judge(lost.to_string()));
     }
     let outcome = match &error {
         None => Outcome::Finished,
@@ -100,7 +105,7 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
             .as_ref()
             .map(|tracking| seam_figures(tracking, job, &evaluation)),
         figures: judgement.figures,
-        planned_motion_s: dry_run::motion_s(job.machine, paths.values()).unwrap_or(f64::NAN),
+        planned_motion_s: planned_motion_s.unwrap_or(f64::NAN),
         motion_s: evaluation.motion_s,
         faults: faults(session, error.as_ref()),
         duration_s: (session.boards.now() - session.began).as_secs_f64(),

@@ -3,8 +3,10 @@
 mod modes;
 mod nurbs;
 mod outputs;
+mod reading;
 
-use super::interpreter::{Options, interpret};
+use super::interpreter::Options;
+use super::reading::interpret;
 use super::*;
 use shared::geometry::Turn;
 

@@ -41,7 +41,8 @@ impl Course {
         }
     }
 
-    /// All channels at path length `s` \[mm\], as programmed: before corners are rounded.
+    /// All channels at path length `s` \[mm\], as programmed: before corners are rounded. None once the program cannot be
+    /// read again.
     pub fn at(&self, s: f64) -> Option<PathPoint> {
         match self {
             Self::Knots(path) => path.at(s),
@@ -58,6 +59,8 @@ pub struct Window {
     elements: VecDeque<(f64, Element)>,
     /// Where the next one begins \[mm\].
     end_s: f64,
+    /// The program could not be read again.
+    lost: bool,
 }
 
 impl fmt::Debug for Window {
@@ -75,17 +78,25 @@ impl Window {
             blocks: blocks.clone(),
             elements: VecDeque::new(),
             end_s: 0.0,
+            lost: false,
         }
     }
 
     fn at(&mut self, s: f64) -> Option<PathPoint> {
+        if self.lost {
+            return None;
+        }
         let s = s.clamp(0.0, self.blocks.summary().length_mm);
         if self.elements.front().is_some_and(|(start, _)| s < *start) {
             *self = Self::new(&self.blocks);
         }
         while s >= self.end_s
-            && let Some(Ok(leg)) = self.legs.next()
+            && let Some(leg) = self.legs.next()
         {
+            let Ok(leg) = leg else {
+                self.lost = true;
+                return None;
+            };
             if self.elements.len() > KEPT {
                 self.elements.pop_front();
             }

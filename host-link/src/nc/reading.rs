@@ -1,0 +1,272 @@
+//! Programs of any length: the first blocks of a path are kept, the others are read again whenever they are needed.
+
+use super::error::{NcError, Place, Problem};
+use super::interpreter::{Interpreter, Options};
+use super::parser::{Parsed, parse};
+use super::program::{Move, Program, ProgramEvent, ProgramPath};
+use super::source::{Lines, Source};
+use std::collections::VecDeque;
+use std::fmt;
+use std::fs::File;
+use std::rc::Rc;
+
+/// Blocks of a path that are kept.
+pub const KEPT: usize = 1024;
+
+/// Reads a whole program.
+///
+/// Consecutive blocks that feed make one path, and every G0 one of its own. M62, M63 and M67 take effect at the start
+/// of the next motion; M3, M4, M5, M64, M65 and M68 end a path and take effect at rest; G4 ends a path and delays the
+/// next one.
+///
+/// # Errors
+/// The first thing that is wrong, with its place.
+pub fn interpret(text: &str, options: Options) -> Result<Program, NcError> {
+    read(&Source::Text(text.as_bytes().into()), options, KEPT)
+}
+
+/// Reads a whole program from a file. Of long paths no more than [`KEPT`] blocks are kept; a file of more than 1 MiB
+/// must stay as it is while the others are needed, or they are an error.
+///
+/// # Errors
+/// As of [`interpret`], and what keeps the file from being read.
+pub fn interpret_file(file: File, options: Options) -> Result<Program, NcError> {
+    let first = Place { line: 1, column: 1 };
+    let source = Source::of(file).map_err(|error| Problem::Unreadable(error.to_string()).at(first))?;
+    read(&source, options, KEPT)
+}
+
+/// Reads a program and keeps no more than `kept` blocks of a path.
+pub(super) fn read(source: &Source, options: Options, kept: usize) -> Result<Program, NcError> {
+    let mut reader = Reader::new(source, options);
+    while reader.block()? {
+        let (offset, line) = (reader.lines.offset, reader.line);
+        reader.interpreter.trim(kept, |state| Rest {
+            kept,
+            source: source.clone(),
+            options,
+            offset,
+            line,
+            state: Rc::new(state),
+        });
+    }
+    reader.end()
+}
+
+/// Blocks of a path that are not kept.
+#[derive(Clone)]
+pub struct Rest {
+    /// Blocks of the path before these.
+    kept: usize,
+    source: Source,
+    options: Options,
+    /// Where they begin: bytes and lines before.
+    offset: u64,
+    line: u32,
+    /// As it is there.
+    state: Rc<Interpreter>,
+}
+
+impl fmt::Debug for Rest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Rest(after line {})", self.line)
+    }
+}
+
+impl PartialEq for Rest {
+    fn eq(&self, other: &Self) -> bool {
+        (self.offset, self.line) == (other.offset, other.line)
+    }
+}
+
+impl ProgramPath {
+    /// Its blocks one after the other.
+    ///
+    /// # Errors
+    /// What keeps the program from being read again; it is not as it was then.
+    pub fn moves(self: &Rc<Self>) -> impl Iterator<Item = Result<Move, NcError>> + use<> {
+        let path = self.clone();
+        let kept = (0..self.kept_count()).map(move |index| Ok(path.kept(index)));
+        let rest = self.rest.as_ref().map(Again::new);
+        kept.chain(rest.into_iter().flatten())
+    }
+
+    /// The same path with all of its blocks kept.
+    pub(crate) fn whole(&self) -> Result<Self, NcError> {
+        let mut whole = self.clone();
+        if let Some(rest) = whole.rest.take() {
+            let count = self.kept_count();
+            whole.targets.truncate(count);
+            whole.events.retain(|event| event.with_target < count);
+            for next in Again::new(&rest) {
+                let Move { target, events } = next?;
+                let with_target = whole.targets.len();
+                whole.targets.push(target);
+                whole.events.extend(events.into_iter().map(|mut event| {
+                    event.with_target = with_target;
+                    event
+                }));
+            }
+        }
+        Ok(whole)
+    }
+
+    /// How many blocks are kept of it, of all that are here.
+    fn kept_count(&self) -> usize {
+        let most = self.rest.as_ref().map_or(usize::MAX, |rest| rest.kept);
+        self.targets.len().min(most)
+    }
+
+    /// The same path without any of its blocks.
+    pub(super) fn without_blocks(&self) -> Self {
+        Self {
+            targets: Vec::new(),
+            events: Vec::new(),
+            rest: None,
+            ..*self
+        }
+    }
+
+    fn kept(&self, index: usize) -> Move {
+        let events = self.events.iter().filter(|event| event.with_target == index);
+        Move {
+            target: self.targets[index].clone(),
+            events: events
+                .map(|event| ProgramEvent {
+                    with_target: 0,
+                    ..*event
+                })
+                .collect(),
+        }
+    }
+}
+
+/// The rest of a path, read again.
+struct Again {
+    reader: Reader,
+    waiting: VecDeque<Move>,
+    ended: bool,
+}
+
+impl Again {
+    fn new(rest: &Rest) -> Self {
+        Self {
+            reader: Reader {
+                lines: rest.source.lines(rest.offset),
+                options: rest.options,
+                line: rest.line,
+                interpreter: (*rest.state).clone(),
+                seen: true,
+                last: Place {
+                    line: rest.line,
+                    column: 1,
+                },
+                // Whether there was one was seen the first time.
+                percent_open: Some(Place { line: 1, column: 1 }),
+                percent_closed: false,
+            },
+            waiting: VecDeque::new(),
+            ended: false,
+        }
+    }
+
+    fn more(&mut self) -> Result<(), NcError> {
+        self.ended = !self.reader.block()?;
+        let (path, goes_on) = self.reader.interpreter.take_blocks();
+        let blocks = path
+            .iter()
+            .flat_map(|path| (0..path.targets.len()).map(|index| path.kept(index)));
+        self.waiting.extend(blocks);
+        self.ended |= !goes_on;
+        Ok(())
+    }
+}
+
+impl Iterator for Again {
+    type Item = Result<Move, NcError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while self.waiting.is_empty() && !self.ended {
+            if let Err(error) = self.more() {
+                self.ended = true;
+                return Some(Err(error));
+            }
+        }
+        self.waiting.pop_front().map(Ok)
+    }
+}
+
+/// A program on its way through the interpreter.
+struct Reader {
+    lines: Lines,
+    options: Options,
+    /// Lines before the next one.
+    line: u32,
+    interpreter: Interpreter,
+    /// Anything but blank lines.
+    seen: bool,
+    /// The last of these.
+    last: Place,
+    percent_open: Option<Place>,
+    percent_closed: bool,
+}
+
+impl Reader {
+    fn new(source: &Source, options: Options) -> Self {
+        Self {
+            lines: source.lines(0),
+            options,
+            line: 0,
+            interpreter: Interpreter::default(),
+            seen: false,
+            last: Place { line: 1, column: 1 },
+            percent_open: None,
+            percent_closed: false,
+        }
+    }
+
+    /// Carries out the next line; whether there was one.
+    fn block(&mut self) -> Result<bool, NcError> {
+        let read = self.lines.next();
+        self.line += 1;
+        let line = self.line;
+        let here = Place { line, column: 1 };
+        let content = match read {
+            Ok(Some(content)) => content,
+            Ok(None) => {
+                self.line -= 1;
+                return Ok(false);
+            }
+            Err(error) => return Err(Problem::Unreadable(error.to_string()).at(here)),
+        };
+        match parse(&content, line)? {
+            Parsed::Blank => return Ok(true),
+            _ if self.percent_closed => return Err(Problem::AfterEnd.at(here)),
+            Parsed::Percent(place) if !self.seen => self.percent_open = Some(place),
+            Parsed::Percent(place) => {
+                if self.percent_open.is_none() {
+                    return Err(Problem::Percent.at(place));
+                }
+                self.percent_closed = true;
+            }
+            Parsed::Block(_) if self.interpreter.ended => return Err(Problem::AfterEnd.at(here)),
+            Parsed::Block(block) if block.delete && self.options.block_delete => {}
+            Parsed::Block(block) => self.interpreter.block(&block)?,
+        }
+        (self.seen, self.last) = (true, here);
+        Ok(true)
+    }
+
+    /// The program, if it is whole.
+    fn end(self) -> Result<Program, NcError> {
+        let last = self.last;
+        let paths = self.interpreter.end(last)?;
+        if let (Some(place), false) = (self.percent_open, self.percent_closed) {
+            return Err(Problem::Percent.at(place));
+        }
+        if paths.is_empty() {
+            return Err(Problem::Empty.at(last));
+        }
+        Ok(Program { paths })
+    }
+}

@@ -1,0 +1,131 @@
+//! Where the text of a program is, to be read line by line any number of times.
+
+use std::cell::RefCell;
+use std::fs::File;
+use std::hash::{DefaultHasher, Hasher};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
+use std::rc::Rc;
+
+/// Bytes of a file that are compared at once.
+pub(super) const CHUNK: usize = 1 << 16;
+/// Bytes of the largest file that is kept in memory, where nothing changes it.
+const KEPT: u64 = 1 << 20;
+
+/// The text of a program.
+#[derive(Clone, Debug)]
+pub(super) enum Source {
+    /// In memory.
+    Text(Rc<[u8]>),
+    /// In a file, which stays open: another file of its name is another program.
+    File(Rc<Checked>),
+}
+
+impl Source {
+    /// The text in `file`, left there if it is long and can be read more than once.
+    pub(super) fn of(mut file: File) -> io::Result<Self> {
+        let about = file.metadata()?;
+        if about.is_file() && about.len() > KEPT {
+            return Ok(Self::File(Rc::new(Checked::new(file))));
+        }
+        let mut text = Vec::new();
+        file.read_to_end(&mut text)?;
+        Ok(Self::Text(text.into()))
+    }
+
+    /// The lines after `offset` bytes.
+    pub(super) fn lines(&self, offset: u64) -> Lines {
+        let text: Box<dyn BufRead> = match self {
+            Self::Text(text) => {
+                let mut cursor = io::Cursor::new(text.clone());
+                cursor.set_position(offset);
+                Box::new(cursor)
+            }
+            Self::File(file) => {
+                let (file, at) = (file.clone(), offset);
+                Box::new(BufReader::with_capacity(CHUNK, ReadAt { file, at }))
+            }
+        };
+        Lines { text, offset }
+    }
+}
+
+/// Lines one after the other.
+pub(super) struct Lines {
+    text: Box<dyn BufRead>,
+    /// Bytes before the next line.
+    pub(super) offset: u64,
+}
+
+impl Lines {
+    /// The next line without its end; nothing after the last one.
+    pub(super) fn next(&mut self) -> io::Result<Option<String>> {
+        let mut line = Vec::new();
+        let count = self.text.read_until(b'\n', &mut line)?;
+        if count == 0 {
+            return Ok(None);
+        }
+        self.offset += count as u64;
+        if line.ends_with(b"\n") {
+            line.pop();
+            if line.ends_with(b"\r") {
+                line.pop();
+            }
+        }
+        let not_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text");
+        String::from_utf8(line).map(Some).map_err(not_text)
+    }
+}
+
+/// A file that gives the same text every time, or an error: what runs is what was checked.
+#[derive(Debug)]
+pub(super) struct Checked {
+    file: File,
+    /// Of every chunk that has been read.
+    digests: RefCell<Vec<u64>>,
+}
+
+impl Checked {
+    /// A file that nothing has been read of.
+    pub(super) fn new(file: File) -> Self {
+        let digests = RefCell::default();
+        Self { file, digests }
+    }
+
+    /// The bytes of a chunk, fewer at the end of the file. The first time through they are read in order.
+    fn chunk(&self, index: usize) -> io::Result<Vec<u8>> {
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start((index * CHUNK) as u64))?;
+        let mut chunk = Vec::with_capacity(CHUNK);
+        file.take(CHUNK as u64).read_to_end(&mut chunk)?;
+        let mut hasher = DefaultHasher::new();
+        hasher.write(&chunk);
+        let digest = hasher.finish();
+        let mut digests = self.digests.borrow_mut();
+        match digests.get(index) {
+            Some(before) if *before != digest => Err(io::Error::other(
+                "the file has changed since it was checked; begin again with the new one",
+            )),
+            Some(_) => Ok(chunk),
+            None => {
+                digests.push(digest);
+                Ok(chunk)
+            }
+        }
+    }
+}
+
+/// A file from a place of its own.
+struct ReadAt {
+    file: Rc<Checked>,
+    at: u64,
+}
+
+impl Read for ReadAt {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let chunk = self.file.chunk((self.at / CHUNK as u64) as usize)?;
+        let mut rest = chunk.get((self.at % CHUNK as u64) as usize..).unwrap_or_default();
+        let count = rest.read(buffer)?;
+        self.at += count as u64;
+        Ok(count)
+    }
+}

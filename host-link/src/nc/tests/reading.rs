@@ -1,0 +1,162 @@
+//! Blocks of long paths that are not kept are read again as they were.
+
+use super::super::reading::read;
+use super::super::source::{CHUNK, Checked, Source};
+use super::*;
+use std::fmt::Write;
+use std::fs::File;
+use std::path::Path;
+use std::rc::Rc;
+
+/// Every kind of word that lasts from block to block, on three long paths.
+fn long() -> String {
+    let mut text = "%\nG43.4\nG0 X0 Y0 Z0 A0 B0 C0\n".to_owned();
+    for path in 0..3 {
+        text += "G94 F600 G61\nM67 E0 Q500\nG1\n";
+        for i in 0..50 {
+            let x = path * 100 + i;
+            match i % 10 {
+                0 => writeln!(
+                    text,
+                    "(comment)\n\nG64 P0.{}\r\nM62 P0\nG1 X{x} Y1 F{}",
+                    i + 1,
+                    500 + i
+                ),
+                3 => writeln!(text, "M67 E0 Q{i}\nM63 P0\nG3 X{x} Y2 R50"),
+                5 => writeln!(text, "G5.2 P1\nX{x}.25 Y3\nX{x}.5 Y4\nG5.3\nG1 X{x}.75"),
+                7 => writeln!(text, "G93 G1 X{x} F20"),
+                8 => writeln!(text, "G94 F700\n/G1 X-5\nX{x} Y0"),
+                _ => writeln!(text, "G1 X{x} Y{}", i % 2),
+            }
+            .unwrap();
+        }
+        text += ["G4 P1\n", "M3 S100\n", "G1 X1000 M5\n"][path];
+    }
+    text += "M2\n%\n";
+    text
+}
+
+fn in_file(name: &Path) -> Source {
+    Source::File(Rc::new(Checked::new(File::open(name).unwrap())))
+}
+
+fn all(program: &Program) -> Vec<(Motion, f64, Vec<Move>)> {
+    let paths = program.paths.iter();
+    paths
+        .map(|path| {
+            let moves = Rc::new(path.clone()).moves().map(Result::unwrap).collect();
+            (path.motion, path.dwell_before_s, moves)
+        })
+        .collect()
+}
+
+#[test]
+fn what_is_not_kept_is_read_again_as_it_was() {
+    for block_delete in [false, true] {
+        let options = Options { block_delete };
+        let source = Source::Text(long().as_bytes().into());
+        let whole = read(&source, options, usize::MAX).unwrap();
+        let wanted = all(&whole);
+        assert!(wanted.iter().any(|(_, _, moves)| moves.len() > 50));
+        for kept in [1, 2, 3, 5, 6, 7, 20, 53, 54, 55, 56, 57] {
+            let program = read(&source, options, kept).unwrap();
+            // One more where the block that makes the path too long ends it.
+            assert!(program.paths.iter().all(|path| path.targets.len() <= kept + 1));
+            assert_eq!(all(&program), wanted, "{kept} kept");
+            for (path, whole) in program.paths.iter().zip(&whole.paths) {
+                assert_eq!(&path.whole().unwrap(), whole, "{kept} kept");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_file_is_read_as_a_text() {
+    let name = std::env::temp_dir().join(format!("reading-{}.ngc", std::process::id()));
+    std::fs::write(&name, long()).unwrap();
+    let source = in_file(&name);
+    std::fs::remove_file(&name).unwrap();
+    let wanted = all(&interpret(&long(), Options::default()).unwrap());
+    let program = read(&source, Options::default(), 10).unwrap();
+    assert_eq!(
+        program.paths.iter().filter_map(|path| path.rest.as_ref()).count(),
+        3
+    );
+    // Two at once, from one file.
+    let paths: Vec<_> = program.paths.iter().cloned().map(Rc::new).collect();
+    let mut pair: Vec<_> = paths
+        .iter()
+        .filter(|path| path.rest.is_some())
+        .map(ProgramPath::moves)
+        .collect();
+    let mut seen = vec![Vec::new(); pair.len()];
+    loop {
+        let mut more = false;
+        for (moves, seen) in pair.iter_mut().zip(&mut seen) {
+            let next = moves.next().map(Result::unwrap);
+            more |= next.is_some();
+            seen.extend(next);
+        }
+        if !more {
+            break;
+        }
+    }
+    let long = wanted.into_iter().filter(|(_, _, moves)| moves.len() > 10);
+    assert_eq!(seen, long.map(|(_, _, moves)| moves).collect::<Vec<_>>());
+}
+
+#[test]
+fn what_is_no_text_is_told_with_its_line() {
+    let source = Source::Text(b"G21\n\xff\n".as_slice().into());
+    let error = read(&source, Options::default(), 10).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "line 2, column 1: cannot be read: it is not UTF-8 text"
+    );
+}
+
+#[test]
+fn a_file_that_changes_is_an_error_and_gives_no_other_block() {
+    let mut text = "G43.4\nG0 X0 Y0 Z0 A0 B0 C0\nF600\n".to_owned();
+    for i in 1..=20_000 {
+        writeln!(text, "G1 X{:.1}", f64::from(i) / 10.0).unwrap();
+    }
+    text += "M2\n";
+    // The last line, one of the second chunk, and what comes after the end.
+    let shorter = text[..text.len() - 20].to_owned();
+    let aligned = text[..CHUNK].to_owned();
+    let longer = text.clone() + "\n";
+    let other = text.replace("X1500.0", "X1500.1");
+    for changed in [shorter, aligned, longer, other] {
+        let name = std::env::temp_dir().join(format!("changed-{}.ngc", std::process::id()));
+        std::fs::write(&name, &text).unwrap();
+        let program = read(&in_file(&name), Options::default(), KEPT).unwrap();
+        let path = Rc::new(program.paths[1].clone());
+        let before: Vec<_> = path.moves().map(Result::unwrap).collect();
+        assert_eq!(before.len(), 20_000);
+        std::fs::write(&name, changed).unwrap();
+        std::fs::remove_file(&name).unwrap();
+        let mut after: Vec<_> = path.moves().collect();
+        let error = after.pop().unwrap().unwrap_err();
+        assert!(
+            error.to_string().contains("the file has changed since"),
+            "{error}"
+        );
+        let after: Vec<_> = after.into_iter().map(Result::unwrap).collect();
+        assert!(after.len() < 20_000);
+        assert_eq!(after, before[..after.len()]);
+        // The block after the last one.
+        assert_eq!(error.place.line as usize, 3 + after.len() + 1);
+    }
+}
+
+#[test]
+fn a_short_file_may_change() {
+    let name = std::env::temp_dir().join(format!("short-{}.ngc", std::process::id()));
+    let text = "G43.4\nG0 X0 Y0 Z0 A0 B0 C0\nF600\n".to_owned() + &"G1 X1\nX2\n".repeat(KEPT) + "M2\n";
+    std::fs::write(&name, &text).unwrap();
+    let program = interpret_file(File::open(&name).unwrap(), Options::default()).unwrap();
+    std::fs::write(&name, "M2\n").unwrap();
+    std::fs::remove_file(&name).unwrap();
+    assert_eq!(all(&program)[1].2.len(), 2 * KEPT);
+}
