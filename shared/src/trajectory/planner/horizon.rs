@@ -8,6 +8,8 @@
 use super::WORK;
 use super::limits::Bounds;
 use super::node::{Lanes, Nodes};
+use super::player::Player;
+use super::split::split;
 use super::swing::{REST, pause};
 use crate::motion::PATH_PERIOD_S;
 
@@ -174,6 +176,14 @@ impl Horizon {
         taken: 0,
     };
 
+    /// With nothing planned, at rest at a node.
+    pub const fn at(node: u32) -> Self {
+        Self {
+            in_force: node,
+            ..Self::NONE
+        }
+    }
+
     pub fn waiting(&self) -> bool {
         self.phase == Phase::Waiting
     }
@@ -183,17 +193,18 @@ impl Horizon {
         self.in_force
     }
 
-    /// Begins a plan, if there is something new, and says so: the player is on the way to node `player`, reached in
-    /// `left` \[s\].
+    /// Begins a plan, if there is something new, and says so.
     pub fn begin<const N: usize>(
         &mut self,
         nodes: &mut Nodes<N>,
-        player: u32,
-        left: f64,
+        player: &mut Player,
         rested: bool,
         wish: Wish,
         bounds: &Bounds,
     ) -> bool {
+        // On the way to node `next`, reached in `left`.
+        let left = player.left(nodes, self.in_force);
+        let mut next = (player.node + 1).min(self.in_force);
         let goes_on = !wish.stop && wish.factor == self.factor;
         self.early = if goes_on { self.early.saturating_sub(1) } else { 0 };
         if self.early > 0 {
@@ -205,21 +216,17 @@ impl Horizon {
             true => last - 1,
             false => last,
         };
-        let mut last = ends((nodes.end - 1).min(self.in_force.max(player) + WINDOW));
+        let mut last = ends((nodes.end - 1).min(self.in_force + WINDOW));
         let nothing = match wish.stop {
             true => self.stopping,
             false => last <= self.in_force && goes_on,
         };
-        if nothing || last <= player {
+        if nothing || last < next || goes_on && last == next {
             return false;
         }
-        let slowing = if goes_on {
-            self.slowing(nodes, player)
-        } else {
-            player
-        };
+        let mut slowing = if goes_on { self.slowing(nodes, next) } else { next };
         let work_of_node = f64::from(self.patience) * self.work_of_node;
-        let until = left + (player..slowing).map(|i| nodes.at(i).lasts).sum::<f64>();
+        let until = left + (next..slowing).map(|i| nodes.at(i).lasts).sum::<f64>();
         if goes_on && nodes.at(slowing).x > 0.0 {
             // Many nodes at once are less work; but they must be planned in time.
             let needed = time_of(f64::from(last - slowing) * work_of_node);
@@ -239,8 +246,16 @@ impl Horizon {
         // It should be ready before the slowing begins.
         let tight = TIGHT * time_of(work) + 2.0 * PATH_PERIOD_S;
         let lead = until.clamp(tight, libm::fmax(tight, MARGIN * time_of(work)));
-        let earliest = before(nodes, slowing, player, SLACK * bounds.filter);
-        let commit = self.commit(nodes, player, left, lead, earliest);
+        if !goes_on {
+            let more = split(nodes, [next, self.in_force], left, lead, bounds);
+            player.node -= more;
+            (next, slowing) = (next - more, slowing - more);
+            if last <= next {
+                return false;
+            }
+        }
+        let earliest = before(nodes, slowing, next, SLACK * bounds.filter);
+        let commit = self.commit(nodes, next, left, lead, earliest);
         if wish.stop && nodes.at(commit).x <= 0.0 {
             // The machine comes to rest there anyway; now it stays.
             (self.in_force, self.stopping) = (commit, true);

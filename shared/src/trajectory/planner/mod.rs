@@ -16,6 +16,7 @@ mod player;
 mod rounding;
 mod rounds;
 mod scan;
+mod split;
 mod swing;
 #[cfg(test)]
 mod tests;
@@ -43,6 +44,8 @@ const WORK: u32 = 100;
 /// Work to shape a corner, and to begin a plan.
 const CORNER: u32 = 15;
 const BEGIN: u32 = 40;
+/// Work to split an interval for it.
+const SPLIT: u32 = 45;
 
 /// Elements stream in at one end, and the references of the axes come out at the other.
 ///
@@ -157,8 +160,8 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.track.clear(s);
         self.blocked = None;
         self.grid.start(s, axes, &mut self.nodes);
-        self.horizon = Horizon::NONE;
-        self.player = Player::NONE;
+        self.horizon = Horizon::at(self.nodes.first);
+        self.player = Player::at(self.nodes.first);
         self.way = Way::Forward;
         self.planned = SpeedState { s, v: 0.0, a: 0.0 };
         self.axes = *axes;
@@ -246,8 +249,8 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
                 }
                 if extended > 0 {
                     extended
-                } else if self.begin() {
-                    BEGIN
+                } else if let begun @ 1.. = self.begin() {
+                    begun
                 } else {
                     if let (Some(place), true) = (self.blocked, self.rests()) {
                         return Err(place);
@@ -281,8 +284,9 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.rested() && ended && self.way != Way::Hold && self.factor > 0.0
     }
 
-    /// Begins a plan, or turns where the machine has come to rest and is to go the other way; says whether it did.
-    fn begin(&mut self) -> bool {
+    /// Begins a plan, or turns where the machine has come to rest and is to go the other way; says how much work
+    /// it was: none if it did not.
+    fn begin(&mut self) -> u32 {
         let last = self.horizon.in_force();
         let along = self.along();
         let stop = !along || self.factor <= 0.0;
@@ -292,18 +296,23 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             let direction = if self.way == Way::Forward { 1.0 } else { -1.0 };
             self.grid.again(last, direction, &self.axes, &mut self.nodes);
             self.blocked = None;
-            return true;
+            return BEGIN;
         }
         let wish = Wish {
             stop,
             factor: if stop { 1.0 } else { self.factor },
         };
-        let left = self.player.left(&self.nodes, last);
-        let next = (self.player.node + 1).min(last);
         // At the end of the plan, not at a stop before it.
         let rested = self.rested() && self.player.node >= last;
-        self.horizon
-            .begin(&mut self.nodes, next, left, rested, wish, &self.bounds)
+        let node = self.player.node;
+        let begun = self
+            .horizon
+            .begin(&mut self.nodes, &mut self.player, rested, wish, &self.bounds);
+        match (begun, self.player.node < node) {
+            (_, true) => BEGIN + SPLIT,
+            (true, false) => BEGIN,
+            (false, false) => 0,
+        }
     }
 
     /// Nothing is left to do: where the machine comes to rest it stays.

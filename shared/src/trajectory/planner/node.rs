@@ -219,8 +219,9 @@ impl<const N: usize> Nodes<N> {
         }
     }
 
+    /// Forgets all; serials begin so high that nodes put in between never come below 0.
     pub fn clear(&mut self) {
-        (self.first, self.end) = (0, 0);
+        (self.first, self.end) = (N as u32, N as u32);
     }
 
     pub fn room(&self) -> usize {

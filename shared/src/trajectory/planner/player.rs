@@ -26,6 +26,11 @@ impl Player {
         standing: 0,
     };
 
+    /// At rest at a node.
+    pub const fn at(node: u32) -> Self {
+        Self { node, ..Self::NONE }
+    }
+
     /// Time left to the next node \[s\], 0 where the plan has come to rest.
     pub fn left<const N: usize>(&self, nodes: &Nodes<N>, last: u32) -> f64 {
         if self.node >= last {

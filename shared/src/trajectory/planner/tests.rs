@@ -285,3 +285,26 @@ fn what_does_not_fit_is_refused_and_nothing_changes() {
     planner.push(parts[1].clone()).unwrap();
     assert_eq!(planner.push(parts[2].clone()), Err(PushError::Full));
 }
+
+/// At a hundredth of the feed the nodes are seconds apart; what is asked for does not wait for the next of them.
+#[test]
+fn what_is_asked_for_at_a_crawl_is_done_at_once() {
+    let line = polyline(&[[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]], 12.0);
+    let at = |output: &[Output], tick: usize| output[tick].along.v;
+    let (positions, outputs) = run(&line, |planner, tick| match tick {
+        0 => planner.set_override(0.0065),
+        700 => planner.set_override(1.0),
+        _ => {}
+    });
+    assert_kept(&positions);
+    assert!(at(&outputs, 1000) > 11.9, "raised: {} mm/s", at(&outputs, 1000));
+    let (positions, outputs) = run(&line, |planner, tick| match tick {
+        0 => planner.set_override(0.0065),
+        700 => planner.go(Way::Hold),
+        1000 => planner.go(Way::Forward),
+        1200 => planner.set_override(1.0),
+        _ => {}
+    });
+    assert_kept(&positions);
+    assert_eq!(at(&outputs, 900), 0.0, "held");
+}

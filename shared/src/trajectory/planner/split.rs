@@ -1,0 +1,276 @@
+//! Nodes put inside an interval that lasts long, so that a hold or another override need not wait for its end.
+
+use super::limits::{Bounds, ROWS};
+use super::node::{Node, Nodes, Side, least, most};
+use crate::motion::PATH_PERIOD_S;
+
+/// An interval is split if it would make a change of the plan later than this \[s\], and than twice the time that a plan
+/// needs: more nodes are more work.
+const LATE: f64 = 0.05;
+/// Ticks after the time at which the plan has to be ready.
+const SPARE: f64 = 2.0;
+/// Nodes for the way in which the machine can stop, and that way is this many times the shortest.
+const STEPS: usize = 6;
+const LONGER: f64 = 1.3;
+/// What lies behind is kept for so many lengths of the output filter, and no longer an interval than so many nodes
+/// after that is split: elsewhere they are close together anyway.
+const KEPT: f64 = 2.0;
+const MOST_MOVED: u32 = 48;
+/// No part is shorter than this share of the interval.
+const SLIVER: f64 = 1e-3;
+/// Smallest rate of a row.
+const LEAST_RATE: f32 = 1e-6;
+
+/// Splits the interval in which the plan in force is `lead` \[s\] from now, if it lasts long: there, and at some
+/// places beyond, where the machine can slow down. The player is on the way to node `player`, reached in `left` \[s\]
+/// from now; the plan ends at node `last`. Says how many nodes there are more: so much less are the serials of all
+/// nodes up to the start of that interval, and those beyond are as they were.
+pub(super) fn split<const N: usize>(
+    nodes: &mut Nodes<N>,
+    [player, last]: [u32; 2],
+    left: f64,
+    lead: f64,
+    bounds: &Bounds,
+) -> u32 {
+    let (mut end, mut time) = (player, left);
+    while end < last && time < lead {
+        time += nodes.at(end).lasts;
+        end += 1;
+    }
+    if end == nodes.first || time < lead + libm::fmax(lead, LATE) {
+        return 0;
+    }
+    let interval = end - 1;
+    let after = lead + SPARE * PATH_PERIOD_S - (time - nodes.at(interval).lasts);
+    let (places, count) = places(nodes.at(interval), nodes.at(end), after, bounds);
+    let oldest = oldest(nodes, player - 1, KEPT * bounds.filter);
+    if interval - oldest > MOST_MOVED {
+        return 0;
+    }
+    if nodes.room() < count {
+        nodes.first = oldest;
+    }
+    let count = count.min(nodes.room()).min(nodes.first as usize);
+    insert(nodes, interval, &places[..count], bounds);
+    count as u32
+}
+
+/// The node that was passed `time` \[s\] before node `from`, or the oldest there is.
+fn oldest<const N: usize>(nodes: &Nodes<N>, from: u32, time: f64) -> u32 {
+    let (mut node, mut before) = (from, 0.0);
+    while node > nodes.first && before < time {
+        node -= 1;
+        before += nodes.at(node).lasts;
+    }
+    node
+}
+
+/// Where an interval is split, as distances from its start, and how many of them there are: the first is `after`
+/// \[s\], the others are on the way on which the machine can come to rest from there.
+fn places(node: &Node, next: &Node, after: f64, bounds: &Bounds) -> ([f64; STEPS + 1], usize) {
+    let (v, a) = (libm::sqrt(node.x), (next.x - node.x) / (2.0 * node.delta));
+    let mut places = [0.0; STEPS + 1];
+    places[0] = after * (v + 0.5 * a * after);
+    let sliver = SLIVER * node.delta;
+    if !(places[0] > sliver && places[0] < node.delta - sliver) {
+        return (places, 0);
+    }
+    // What the rows allow along the path, and how long it takes to get there.
+    let (mut most_a, mut most_swing) = (f32::INFINITY, f32::INFINITY);
+    for side in &node.sides {
+        for row in 0..ROWS {
+            let per_alpha = 1.0 / side.alpha[row].abs();
+            most_a = most_a.min(bounds.acceleration[row] * per_alpha);
+            most_swing = most_swing.min(bounds.swing[row] * per_alpha);
+        }
+    }
+    let most_a = f64::from(most_a);
+    let ramp = bounds.filter * libm::fmax(1.0, most_a / f64::from(most_swing));
+    let v = v + a * after + 0.5 * libm::fmax(a, 0.0) * ramp;
+    let step = LONGER * (v * v / (2.0 * most_a) + v * ramp) / STEPS as f64;
+    let mut count = 1;
+    while count < places.len() {
+        let place = places[count - 1] + step;
+        if place > node.delta - libm::fmax(0.5 * step, sliver) {
+            break;
+        }
+        places[count] = place;
+        count += 1;
+    }
+    (places, count)
+}
+
+/// Puts nodes into the interval that begins at node `interval`, at these distances from there; the plan in force is
+/// as before. The nodes up to there move down by as many serials: they are fewer than those ahead.
+fn insert<const N: usize>(nodes: &mut Nodes<N>, interval: u32, places: &[f64], bounds: &Bounds) {
+    let count = places.len() as u32;
+    let (whole, end) = (*nodes.at(interval), *nodes.at(interval + 1));
+    for serial in nodes.first..=interval {
+        *nodes.at_mut(serial - count) = *nodes.at(serial);
+    }
+    nodes.first -= count;
+    let a = (end.x - whole.x) / (2.0 * whole.delta);
+    let (mut serial, mut from, mut gone) = (interval - count, 0.0, 0.0);
+    for to in places.iter().copied().chain([whole.delta]) {
+        let x = whole.x + 2.0 * a * from;
+        let (v, v_to) = (
+            libm::sqrt(x),
+            libm::sqrt(libm::fmax(x + 2.0 * a * (to - from), 0.0)),
+        );
+        let lasts = if to < whole.delta {
+            2.0 * (to - from) / (v + v_to)
+        } else {
+            whole.lasts - gone
+        };
+        let part = Node {
+            delta: to - from,
+            lasts,
+            sides: [
+                side(&whole, from, 0.0, [a, x], bounds),
+                side(&whole, to, to - from, [a, x], bounds),
+            ],
+            ..whole
+        };
+        *nodes.at_mut(serial) = if from > 0.0 {
+            Node {
+                s: whole.s + whole.direction * from,
+                // Both ends keep the limits of the interval too.
+                feed: libm::fmax(whole.feed, end.feed),
+                limit: libm::fmax(whole.limit, end.limit),
+                factor: end.factor,
+                x,
+                ..part
+            }
+        } else {
+            part
+        };
+        (serial, from, gone) = (serial + 1, to, gone + lasts);
+    }
+}
+
+/// The limits `at` a distance from the start of an interval, for an end of a part of it that begins with `x` = ṡ²:
+/// rates are straight lines between the ends. `delta` is 0 at the start of the part, its length at its end. The plan
+/// in force, which has the acceleration `a`, is always inside them, whatever rounding does.
+fn side(whole: &Node, at: f64, delta: f64, [a, x]: [f64; 2], bounds: &Bounds) -> Side {
+    let [start, end] = &whole.sides;
+    let (part, length) = ((at / whole.delta) as f32, whole.delta as f32);
+    let mut side = Side::ZERO;
+    for row in 0..ROWS {
+        let second = [
+            start.slope[row] * start.alpha[row],
+            end.slope[row] * end.alpha[row],
+        ];
+        let first = [start.alpha[row], end.alpha[row] - 2.0 * length * second[1]];
+        let second = second[0] + part * (second[1] - second[0]);
+        let alpha = first[0] + part * (first[1] - first[0]) + 2.0 * delta as f32 * second;
+        side.alpha[row] = if alpha.abs() < LEAST_RATE {
+            LEAST_RATE.copysign(alpha)
+        } else {
+            alpha
+        };
+        side.slope[row] = second / side.alpha[row];
+    }
+    side.open(bounds);
+    for row in 0..ROWS {
+        let is = a as f32 + side.slope[row] * x as f32;
+        side.high[row] = most(side.high[row], is);
+        side.low[row] = least(side.low[row], is);
+    }
+    side
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::player::Player;
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Three intervals, of which the last is long; `x` is ṡ² at its ends.
+    fn nodes(x: [f64; 2], rates: [[f32; 2]; 2]) -> Nodes<16> {
+        let mut nodes = Nodes::new();
+        nodes.clear();
+        let side = |[first, second]: [f32; 2], delta: f32| {
+            let mut side = Side::ZERO;
+            side.alpha[0] = first + 2.0 * delta * second;
+            side.slope[0] = second / side.alpha[0];
+            side.open(&Bounds::NONE);
+            side
+        };
+        let mut s = 0.0;
+        for (delta, x, to) in [(0.01, 0.0, x[0]), (0.01, x[0], x[0]), (1.0, x[0], x[1])] {
+            nodes.push(Node {
+                s,
+                delta,
+                x,
+                lasts: 2.0 * delta / (libm::sqrt(x) + libm::sqrt(to)),
+                feed: 1.0,
+                limit: 2.0,
+                sides: [side(rates[0], 0.0), side(rates[1], delta as f32)],
+                ..Node::ZERO
+            });
+            s += delta;
+        }
+        nodes.push(Node {
+            s,
+            x: x[1],
+            feed: 0.5,
+            limit: 0.0,
+            ..Node::ZERO
+        });
+        nodes
+    }
+
+    proptest! {
+        /// The same places at the same times, and the plan in force is inside the limits of every part.
+        #[test]
+        fn the_plan_in_force_is_as_it_was(
+            x in prop::array::uniform2(0.01..1.0f64), lead in 0.01..0.1f64,
+            rates in prop::array::uniform2([0.5..2.0f32, -0.3..0.3f32]),
+        ) {
+            let mut after = nodes(x, rates);
+            let mut player = Player::at(after.first + 2);
+            let before = after.clone();
+            let mut was = player;
+            let last = after.end - 1;
+            let left = player.left(&after, last);
+            let more = split(&mut after, [last, last], left, lead, &Bounds::NONE);
+            prop_assert!(more > 0);
+            player.node -= more;
+            prop_assert_eq!(after.end, before.end);
+            let mut time = 0.0;
+            for serial in player.node..last {
+                let (node, next) = (after.at(serial), after.at(serial + 1));
+                time += node.lasts;
+                prop_assert!(node.delta > 0.0 && node.lasts > 0.0 && node.cap() >= node.x * (1.0 - 1e-12));
+                prop_assert!((node.s + node.delta - next.s).abs() < 1e-12);
+                let a = ((next.x - node.x) / (2.0 * node.delta)) as f32;
+                let second = &node.sides[0];
+                let is = a + second.slope[0] * node.x as f32;
+                prop_assert!(is <= second.high[0] + 1e-5 && is >= second.low[0] - 1e-5);
+            }
+            prop_assert!((time - left).abs() < 1e-12);
+            prop_assert!(after.at(player.node).lasts >= lead);
+            for _ in 0..(1000.0 * left) as u32 {
+                was.step(&before, last, 0);
+                player.step(&after, last, 0);
+                let (old, new) = (was.state(&before, last), player.state(&after, last));
+                prop_assert!((old.s - new.s).abs() < 1e-12 && (old.v - new.v).abs() < 1e-12, "{old:?} {new:?}");
+                prop_assert!((old.a - new.a).abs() < 1e-9);
+            }
+        }
+
+        /// The rates at a new node are those of a straight line between the ends.
+        #[test]
+        fn the_rates_go_on_over_a_split(rates in prop::array::uniform2([0.5..2.0f32, -0.3..0.3f32])) {
+            let mut after = nodes([0.04, 0.04], rates);
+            let interval = after.end - 2;
+            insert(&mut after, interval, &[0.25], &Bounds::NONE);
+            let node = after.at(interval);
+            let at = |k: usize| rates[0][k] + 0.25 * (rates[1][k] - rates[0][k]);
+            prop_assert!((node.sides[0].alpha[0] - at(0)).abs() < 1e-5);
+            prop_assert!((node.sides[0].slope[0] * node.sides[0].alpha[0] - at(1)).abs() < 1e-5);
+            let end = &after.at(interval - 1).sides[1];
+            prop_assert!((end.alpha[0] - at(0) - 0.5 * at(1)).abs() < 1e-5);
+        }
+    }
+}
