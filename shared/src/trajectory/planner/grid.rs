@@ -28,6 +28,8 @@ const LONGEST: f64 = 0.03;
 const STRAIGHT: f64 = 0.06;
 /// Samples are taken this share of an interval inside its ends, because limits jump there.
 const INSET: f64 = 1e-4;
+/// Acceleration by a bend that is none, as a share of the limit.
+const NO_BEND: f32 = 1e-6;
 /// Most times that an interval is halved to follow the limits.
 const HALVINGS: u32 = 6;
 /// Work to append a node, and for each sample.
@@ -68,6 +70,8 @@ pub(super) struct Grid {
     near: [f64; AXES],
     /// What the path asks for just before the newest node, if limits do not change there.
     before: Option<Sample>,
+    /// The next change of limits from there, if it is known.
+    next: Option<Break>,
 }
 
 /// What the grid is made of.
@@ -121,6 +125,14 @@ impl<const E: usize> Ground<'_, E> {
     }
 }
 
+impl Sample {
+    /// No row feels a bend at the feed.
+    fn is_straight(&self, bounds: &Bounds) -> bool {
+        let x = self.feed as f32;
+        (0..ROWS).all(|row| self.second[row].abs() * x <= NO_BEND * bounds.acceleration[row])
+    }
+}
+
 impl Grid {
     pub const NONE: Self = Self {
         direction: 1.0,
@@ -130,6 +142,7 @@ impl Grid {
         hint: 0,
         near: [0.0; AXES],
         before: None,
+        next: None,
     };
 
     /// The first node, at rest at `s` with the axes at `axes`.
@@ -187,9 +200,12 @@ impl Grid {
         let Some(piece) = ground.track.find(start + direction * SAME, &mut self.hint) else {
             return Ok(0);
         };
-        let feed = piece.element.feed;
+        let (feed, line) = (piece.element.feed, piece.straight);
         let gap = MERGE * feed;
-        let next = ground.next_break(start, direction, self.hint);
+        let next = match self.next.take() {
+            Some(next) => next,
+            None => ground.next_break(start, direction, self.hint),
+        };
         if next.end && !next.real && next.way < gap {
             return Ok(0);
         }
@@ -208,6 +224,10 @@ impl Grid {
         let mut to = sample(delta * (1.0 - INSET))?;
         let mut halvings = 0;
         let mid = loop {
+            if line && [&from, &to.0].into_iter().all(|sample| sample.is_straight(bounds)) {
+                samples -= 1;
+                break to.0;
+            }
             let mid = sample(0.5 * delta)?;
             let short = next.merged && delta <= gap;
             if halvings == HALVINGS || short || straight(&from, &mid.0, &to.0, bounds) {
@@ -243,6 +263,11 @@ impl Grid {
             self.since_speed = next.speed;
         }
         self.before = (!at_break).then_some(before);
+        self.next = (next.real && !next.end && !at_break).then_some(Break {
+            way: next.way - delta,
+            looks: 0,
+            ..next
+        });
         self.s = end;
         self.near = axes.position;
         let sample = match ground.space {
