@@ -6,6 +6,8 @@ use crate::trajectory::{CHANNELS, SHAPED};
 
 /// Most junctions that are looked at.
 const LOOK: u32 = 32;
+/// A turn of a sharp corner \[rad\].
+const SHARP: f64 = 0.5;
 /// Another feed for a shorter time than this is as good as the lower one \[s\].
 const SHORT: f64 = 0.0005;
 
@@ -80,6 +82,11 @@ impl<const E: usize> Ground<'_, E> {
                 .iter()
                 .flat_map(|piece| [-half, 0.0, half].map(|side| (piece, side)))
             {
+                // A rounded corner bends evenly; a sharp one needs a place to turn the acceleration.
+                let even = piece.even && !piece.stop && piece.corner.turn < SHARP;
+                if side == 0.0 && half > 0.0 && even {
+                    continue;
+                }
                 let way = way + side;
                 // Where a corner ends with the next junction, that is the change.
                 if way <= SAME || (side > 0.0 && way >= seen - SAME) {

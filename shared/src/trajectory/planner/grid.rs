@@ -270,11 +270,19 @@ impl Grid {
         });
         self.s = end;
         self.near = axes.position;
-        let sample = match ground.space {
-            PathSpace::Axes => SAMPLE,
-            PathSpace::Tool => SAMPLE_OF_TOOL,
-        };
-        Ok(EXTEND + next.looks / LOOKS_FOR_ONE + (samples + halvings) * sample)
+        Ok(EXTEND + next.looks / LOOKS_FOR_ONE + (samples + halvings) * sampling(ground.space))
+    }
+}
+
+/// Work of an interval, as most are.
+pub(super) fn usual_work(space: PathSpace) -> u32 {
+    EXTEND + 3 * sampling(space)
+}
+
+fn sampling(space: PathSpace) -> u32 {
+    match space {
+        PathSpace::Axes => SAMPLE,
+        PathSpace::Tool => SAMPLE_OF_TOOL,
     }
 }
 

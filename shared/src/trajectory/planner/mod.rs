@@ -29,7 +29,7 @@ use super::{Element, PathSpace, SpeedState, Unreachable};
 use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics};
 use filter::Filter;
-use grid::{Grid, Ground};
+use grid::{Grid, Ground, usual_work};
 use horizon::{Horizon, Wish};
 use limits::Bounds;
 use node::Nodes;
@@ -40,7 +40,7 @@ use track::Track;
 /// Highest feed override.
 const MOST_OVERRIDE: f64 = 2.0;
 /// Work of planning in one tick, in hundreds of instructions of a PC.
-const WORK: u32 = 60;
+const WORK: u32 = 120;
 /// Work to shape a corner, and to begin a plan.
 const CORNER: u32 = 15;
 const BEGIN: u32 = 40;
@@ -227,7 +227,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
                     break;
                 }
                 done
-            } else if work < BEGIN {
+            } else if work < BEGIN.max(usual_work(self.space)) {
                 break;
             } else if self.track.decide(&self.bounds) {
                 CORNER

@@ -26,6 +26,8 @@ pub(super) struct Piece {
     pub turn: Vector3<f64>,
     /// By how much its direction turns in all; infinite where the rates of other channels change.
     pub bend: f64,
+    /// But for its corner, neither the bend of the path nor the feed changes where it begins.
+    pub even: bool,
     /// It is a line.
     pub straight: bool,
     /// It begins at a corner that was moved, as a chain of lines allows.
@@ -51,6 +53,8 @@ pub(super) struct Track<const E: usize> {
     end_s: f64,
     end_value: [f64; CHANNELS],
     end_slope: [f64; CHANNELS],
+    end_bend: [f64; CHANNELS],
+    end_feed: f64,
 }
 
 impl<const E: usize> Track<E> {
@@ -64,6 +68,8 @@ impl<const E: usize> Track<E> {
             end_s: 0.0,
             end_value: [0.0; CHANNELS],
             end_slope: [0.0; CHANNELS],
+            end_bend: [0.0; CHANNELS],
+            end_feed: 0.0,
         }
     }
 
@@ -138,7 +144,7 @@ impl<const E: usize> Track<E> {
             }
             stop = self.closed();
         }
-        let length = element.length;
+        let (length, feed) = (element.length, element.feed);
         self.pieces[self.end as usize % E] = Some(Piece {
             start: self.end_s,
             corner,
@@ -146,6 +152,7 @@ impl<const E: usize> Track<E> {
             turn,
             bend: bend(&element, [&start, &end]),
             straight: matches!(element.shape, Shape::Line(_)),
+            even: element.feed == self.end_feed && start.second == self.end_bend,
             chained: false,
             before: 0,
             after: 0,
@@ -155,6 +162,8 @@ impl<const E: usize> Track<E> {
         self.end_s += length;
         self.end_value = end.value;
         self.end_slope = end.first;
+        self.end_bend = end.second;
+        self.end_feed = feed;
         // The element before it may not be as it was programmed any more.
         self.renew_jump(self.end - 1);
         Ok(())
