@@ -224,7 +224,11 @@ impl Grid {
         let mut to = sample(delta * (1.0 - INSET))?;
         let mut halvings = 0;
         let mid = loop {
-            if line && [&from, &to.0].into_iter().all(|sample| sample.is_straight(bounds)) {
+            if line
+                && [&from, &to.0]
+                    .into_iter()
+                    .all(|sample| sample.is_straight(bounds))
+            {
                 samples -= 1;
                 break to.0;
             }

@@ -16,7 +16,7 @@ use crate::motion::PATH_PERIOD_S;
 /// Rounds in which boxes may also grow.
 const RELAXED: u32 = 2;
 /// Most nodes that a plan goes beyond the one in force, and the fewest if it has them.
-const WINDOW: u32 = 64;
+pub(super) const WINDOW: u32 = 64;
 const LEAST_WINDOW: u32 = 32;
 /// Time before the slowing at the end of the plan in force that may be planned anew, in lengths of the output filter,
 const SLACK: f64 = 14.0;

@@ -30,7 +30,7 @@ use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics};
 use filter::Filter;
 use grid::{Grid, Ground, usual_work};
-use horizon::{Horizon, Wish};
+use horizon::{Horizon, WINDOW, Wish};
 use limits::Bounds;
 use node::Nodes;
 use player::Player;
@@ -220,6 +220,10 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     fn plan(&mut self, kinematics: &Kinematics) -> Result<(), Unreachable> {
         let mut work = WORK;
         self.idle = false;
+        // Not only when no more nodes can be had.
+        if self.horizon.waiting() && self.nodes.end > self.horizon.in_force() + WINDOW && self.begin() {
+            work -= BEGIN;
+        }
         loop {
             let cost = if !self.horizon.waiting() {
                 let done = self.horizon.run(&mut self.nodes, &self.bounds, work);
