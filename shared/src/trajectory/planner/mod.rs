@@ -221,8 +221,8 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         let mut work = WORK;
         self.idle = false;
         // Not only when no more nodes can be had.
-        if self.horizon.waiting() && self.nodes.end > self.horizon.in_force() + WINDOW && self.begin() {
-            work -= BEGIN;
+        if self.horizon.waiting() && self.nodes.end > self.horizon.in_force() + WINDOW {
+            work = work.saturating_sub(self.begin());
         }
         loop {
             let cost = if !self.horizon.waiting() {
