@@ -432,7 +432,7 @@ fn it_goes_on_after_a_hold_at_a_rotary_corner() {
     let acts = vec![
         (513, Act::Override(1.0)),
         (407, Act::Starve(1)),
-        (731, Act::Go(Way::Hold)),
+        (950, Act::Go(Way::Hold)),
     ];
     passes(&bench::axes(&frame), &moves, &acts);
     let three = Kind::Chain {
@@ -456,5 +456,5 @@ fn it_goes_on_after_a_hold_at_a_rotary_corner() {
         },
         LINE,
     ];
-    passes(&bench::axes(&frame), &moves, &vec![(100, Act::Go(Way::Hold))]);
+    passes(&bench::axes(&frame), &moves, &vec![(300, Act::Go(Way::Hold))]);
 }

@@ -83,7 +83,7 @@ impl<const E: usize> Ground<'_, E> {
                 .flat_map(|piece| [-half, 0.0, half].map(|side| (piece, side)))
             {
                 // A rounded corner bends evenly; a sharp one needs a place to turn the acceleration.
-                let even = piece.even && !piece.stop && piece.corner.turn < SHARP;
+                let even = piece.even && smooth && piece.corner.turn < SHARP;
                 if side == 0.0 && half > 0.0 && even {
                     continue;
                 }

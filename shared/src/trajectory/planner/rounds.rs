@@ -182,7 +182,8 @@ impl Horizon {
     fn brake<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32) {
         let node = nodes.at(i);
         let enough = if self.wish.stop { 0.0 } else { node.cap_of_feed() };
-        if node.brake <= enough || i + 1 == nodes.end {
+        let stops = i > self.commit && node.limit <= 0.0;
+        if node.brake <= enough || stops || i + 1 == nodes.end {
             if self.wish.stop {
                 self.last = self.last.max(i);
             }
