@@ -76,7 +76,7 @@ fn no_limit_is_exceeded_and_the_largest_values_are_told_with_their_lines() {
     for words in [
         "rests for 2.50 s",
         "21–25",
-        "feed 9",
+        "feed 100 %",
         "mm/s³",
         "longest stop",
         "park position",

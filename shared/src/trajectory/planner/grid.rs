@@ -38,8 +38,6 @@ const SAMPLE: u32 = 11;
 const SAMPLE_OF_TOOL: u32 = 20;
 /// Junctions looked at for a unit of work.
 const LOOKS_FOR_ONE: u32 = 2;
-/// Smallest rate of a row; keeps divisions by it finite.
-const LEAST_RATE: f32 = 1e-6;
 
 /// What the path asks of the rows at one place.
 #[derive(Clone, Copy, Debug)]
@@ -357,12 +355,7 @@ fn side(sample: &Sample, delta: f64, bounds: &Bounds) -> Side {
     let mut side = Side::ZERO;
     for row in 0..ROWS {
         let alpha = sample.first[row] + 2.0 * delta as f32 * sample.second[row];
-        side.alpha[row] = if alpha.abs() < LEAST_RATE {
-            LEAST_RATE.copysign(alpha)
-        } else {
-            alpha
-        };
-        side.slope[row] = sample.second[row] / side.alpha[row];
+        side.set_rates(row, alpha, sample.second[row]);
     }
     side.open(bounds);
     side

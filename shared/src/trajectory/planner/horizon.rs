@@ -254,7 +254,7 @@ impl Horizon {
                 return false;
             }
         }
-        let earliest = before(nodes, slowing, next, SLACK * bounds.filter);
+        let earliest = nodes.before(slowing, next, SLACK * bounds.filter);
         let commit = self.commit(nodes, next, left, lead, earliest);
         if wish.stop && nodes.at(commit).x <= 0.0 {
             // The machine comes to rest there anyway; now it stays.
@@ -267,8 +267,8 @@ impl Horizon {
             return false;
         }
         let remembered = if rest { 0.0 } else { REMEMBERED * bounds.filter };
-        self.history = before(nodes, commit, nodes.first, remembered);
-        self.start = before(nodes, slowing.max(commit), commit, NEAR * bounds.filter);
+        self.history = nodes.before(commit, nodes.first, remembered);
+        self.start = nodes.before(slowing.max(commit), commit, NEAR * bounds.filter);
         (self.commit, self.last) = (commit, if wish.stop { commit + 1 } else { last });
         (self.warm, self.excess, self.spent) = (true, REST, 0);
         for i in commit + 1..=last {
@@ -408,14 +408,4 @@ impl Horizon {
 /// Time that an amount of work takes \[s\].
 fn time_of(work: f64) -> f64 {
     work / f64::from(WORK) * PATH_PERIOD_S
-}
-
-/// The node that the plan in force passes `time` \[s\] before node `from`, but not before `first`.
-fn before<const N: usize>(nodes: &Nodes<N>, from: u32, first: u32, time: f64) -> u32 {
-    let (mut node, mut before) = (from, 0.0);
-    while node > first && before < time {
-        node -= 1;
-        before += nodes.at(node).lasts;
-    }
-    node
 }

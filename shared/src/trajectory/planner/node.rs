@@ -11,6 +11,9 @@ const LOOSEN_FROM: f32 = 0.02;
 /// No box is made smaller than this share of the acceleration.
 const LEAST_BOX: f32 = 0.008;
 
+/// Smallest rate of a row; keeps divisions by it finite.
+const LEAST_RATE: f32 = 1e-6;
+
 /// A lane for every row of limits.
 pub(super) type Lanes = [f32; ROWS];
 
@@ -84,6 +87,16 @@ impl Side {
         allowed: [0.0; ROWS],
         boxed: false,
     };
+
+    /// Rates of a row: α, and its acceleration for each unit of x.
+    pub fn set_rates(&mut self, row: usize, alpha: f32, second: f32) {
+        self.alpha[row] = if alpha.abs() < LEAST_RATE {
+            LEAST_RATE.copysign(alpha)
+        } else {
+            alpha
+        };
+        self.slope[row] = second / self.alpha[row];
+    }
 
     /// Full boxes.
     pub fn open(&mut self, bounds: &Bounds) {
@@ -236,6 +249,16 @@ impl<const N: usize> Nodes<N> {
     pub fn push(&mut self, node: Node) {
         self.ring[self.end as usize % N] = node;
         self.end += 1;
+    }
+
+    /// The node that the plan in force passes `time` \[s\] before node `from`, but not before `first`.
+    pub fn before(&self, from: u32, first: u32, time: f64) -> u32 {
+        let (mut node, mut before) = (from, 0.0);
+        while node > first && before < time {
+            node -= 1;
+            before += self.at(node).lasts;
+        }
+        node
     }
 
     pub fn at(&self, serial: u32) -> &Node {

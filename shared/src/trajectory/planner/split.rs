@@ -18,8 +18,6 @@ const KEPT: f64 = 2.0;
 const MOST_MOVED: u32 = 48;
 /// No part is shorter than this share of the interval.
 const SLIVER: f64 = 1e-3;
-/// Smallest rate of a row.
-const LEAST_RATE: f32 = 1e-6;
 
 /// Splits the interval in which the plan in force is `lead` \[s\] from now, if it lasts long: there, and at some
 /// places beyond, where the machine can slow down. The player is on the way to node `player`, reached in `left` \[s\]
@@ -43,7 +41,7 @@ pub(super) fn split<const N: usize>(
     let interval = end - 1;
     let after = lead + SPARE * PATH_PERIOD_S - (time - nodes.at(interval).lasts);
     let (places, count) = places(nodes.at(interval), nodes.at(end), after, bounds);
-    let oldest = oldest(nodes, player - 1, KEPT * bounds.filter);
+    let oldest = nodes.before(player - 1, nodes.first, KEPT * bounds.filter);
     if interval - oldest > MOST_MOVED {
         return 0;
     }
@@ -53,16 +51,6 @@ pub(super) fn split<const N: usize>(
     let count = count.min(nodes.room()).min(nodes.first as usize);
     insert(nodes, interval, &places[..count], bounds);
     count as u32
-}
-
-/// The node that was passed `time` \[s\] before node `from`, or the oldest there is.
-fn oldest<const N: usize>(nodes: &Nodes<N>, from: u32, time: f64) -> u32 {
-    let (mut node, mut before) = (from, 0.0);
-    while node > nodes.first && before < time {
-        node -= 1;
-        before += nodes.at(node).lasts;
-    }
-    node
 }
 
 /// Where an interval is split, as distances from its start, and how many of them there are: the first is `after`
@@ -163,12 +151,7 @@ fn side(whole: &Node, at: f64, delta: f64, [a, x]: [f64; 2], bounds: &Bounds) ->
         let first = [start.alpha[row], end.alpha[row] - 2.0 * length * second[1]];
         let second = second[0] + part * (second[1] - second[0]);
         let alpha = first[0] + part * (first[1] - first[0]) + 2.0 * delta as f32 * second;
-        side.alpha[row] = if alpha.abs() < LEAST_RATE {
-            LEAST_RATE.copysign(alpha)
-        } else {
-            alpha
-        };
-        side.slope[row] = second / side.alpha[row];
+        side.set_rates(row, alpha, second);
     }
     side.open(bounds);
     for row in 0..ROWS {
