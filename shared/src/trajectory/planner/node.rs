@@ -19,12 +19,24 @@ pub(super) type Lanes = [f32; ROWS];
 
 /// The smaller one, for lanes: unlike `f32::min` it costs one instruction, as no number here is NaN.
 pub(super) fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
+    if cfg!(target_arch = "arm") {
+        a.min(b)
+    } else if a < b {
+        a
+    } else {
+        b
+    }
 }
 
 /// The larger one.
 pub(super) fn most(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
+    if cfg!(target_arch = "arm") {
+        a.max(b)
+    } else if a > b {
+        a
+    } else {
+        b
+    }
 }
 
 /// Limits of one end of an interval: low ≤ a + m·x ≤ high for every row, where x = ṡ² at the start of the
