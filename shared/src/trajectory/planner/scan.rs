@@ -50,17 +50,27 @@ impl<'a> Lines<'a> {
         lanes.into_iter().fold(-x * self.per_length, most)
     }
 
-    /// The line that has the value `a` at `x`, as (value at 0, slope): `of` a row, or else that of the speed `next`.
-    fn through(&self, of: fn(&Side) -> &Lanes, next: f32, x: f32, a: f32) -> (f32, f32) {
+    /// The line of the highest a that is `a` at `x`, as (value at 0, slope): that of a row, or else of the next speed.
+    fn upper(&self, x: f32, a: f32) -> (f32, f32) {
+        self.through(|side| &side.high, x, a)
+            .unwrap_or((self.next * self.per_length, self.per_length))
+    }
+
+    /// The same of the lowest a: that of a row, or else of rest.
+    fn lower(&self, x: f32, a: f32) -> (f32, f32) {
+        self.through(|side| &side.low, x, a).unwrap_or((0.0, self.per_length))
+    }
+
+    fn through(&self, of: fn(&Side) -> &Lanes, x: f32, a: f32) -> Option<(f32, f32)> {
         for side in self.sides {
             let lines = of(side);
             for row in 0..ROWS {
                 if lines[row] - side.slope[row] * x == a {
-                    return (lines[row], side.slope[row]);
+                    return Some((lines[row], side.slope[row]));
                 }
             }
         }
-        (next * self.per_length, self.per_length)
+        None
     }
 }
 
@@ -69,6 +79,14 @@ impl<'a> Lines<'a> {
 pub(super) fn reach(node: &Node, next: f64) -> (f64, u32) {
     let lines = Lines::new(node, next);
     let mut x = node.cap() as f32;
+    if x > lines.next {
+        // Mostly the limit of braking at `next` is that at the reach too, and this crossing is what is searched.
+        let (lower, rises) = lines.lower(lines.next, lines.lowest(lines.next));
+        let crossing = (lines.next * lines.per_length - lower) / (lines.per_length - rises);
+        if crossing > lines.next {
+            x = least(x, crossing);
+        }
+    }
     // The room between the limits is concave in x, and there is some at 0: from above, the crossings of the
     // limits in force come down to where there is none.
     for iteration in 0..ITERATIONS {
@@ -76,8 +94,8 @@ pub(super) fn reach(node: &Node, next: f64) -> (f64, u32) {
         if high >= low {
             return (f64::from(x), iteration);
         }
-        let (upper, falls) = lines.through(|side| &side.high, lines.next, x, high);
-        let (lower, rises) = lines.through(|side| &side.low, 0.0, x, low);
+        let (upper, falls) = lines.upper(x, high);
+        let (lower, rises) = lines.lower(x, low);
         // Where the two lines meet; x itself may be larger by many orders.
         let crossing = (upper - lower) / (falls - rises);
         if !(crossing > 0.0 && crossing < x) {
