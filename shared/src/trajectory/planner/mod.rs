@@ -40,7 +40,7 @@ use track::Track;
 /// Highest feed override.
 const MOST_OVERRIDE: f64 = 2.0;
 /// Work of planning in one tick, in hundreds of instructions of a PC.
-const WORK: u32 = 120;
+const WORK: u32 = 95;
 /// Work to shape a corner, and to begin a plan.
 const CORNER: u32 = 15;
 const BEGIN: u32 = 40;

@@ -58,7 +58,8 @@ impl<'a> Lines<'a> {
 
     /// The same of the lowest a: that of a row, or else of rest.
     fn lower(&self, x: f32, a: f32) -> (f32, f32) {
-        self.through(|side| &side.low, x, a).unwrap_or((0.0, self.per_length))
+        self.through(|side| &side.low, x, a)
+            .unwrap_or((0.0, self.per_length))
     }
 
     fn through(&self, of: fn(&Side) -> &Lanes, x: f32, a: f32) -> Option<(f32, f32)> {
