@@ -43,8 +43,12 @@ const FALL: f64 = 0.125;
 /// Largest factor of the time that a plan is given.
 const MOST_PATIENCE: u32 = 8;
 
-/// Work of a visit.
-const VISIT: u32 = 5;
+/// Most work of a step of the pass forward or of a repair, and of the pass back, but for rare ones; that of all others.
+const FORWARD_STEP: u32 = 10;
+const BACK_STEP: u32 = 18;
+const SHORT_STEP: u32 = 3;
+/// Work of a node of the plan in force that stays as it is.
+const READY: u32 = 2;
 /// Nodes taken over for a unit of work.
 pub(super) const TAKEN_FOR_ONE: u32 = 6;
 
@@ -323,6 +327,7 @@ impl Horizon {
             self.restart(nodes);
             return;
         }
+        self.work += READY;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let (x, end) = (node.x, next.x);
         let time = node.time + node.lasts + pause(next, bounds);
@@ -367,20 +372,26 @@ impl Horizon {
     /// Goes on with the plan being made for as long as there is `most` work; says how much it was.
     pub fn run<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds, most: u32) -> u32 {
         self.work = 0;
-        while !self.waiting() && self.work + self.least_work() <= most {
-            self.work += self.least_work();
+        while !self.waiting() && self.work + self.step_work() <= most {
             self.visit(nodes, bounds);
         }
         self.spent += self.work;
         self.work
     }
 
-    /// Work of the next step, as far as it is known before.
-    fn least_work(&self) -> u32 {
+    /// Most work that the next step may be.
+    fn step_work(&self) -> u32 {
         match self.phase {
-            Phase::Take => (self.last - self.lowest) / TAKEN_FOR_ONE + 1,
-            _ => VISIT,
+            Phase::Take => self.taking(),
+            Phase::Forward(_) | Phase::Repair(_) => FORWARD_STEP,
+            Phase::Back(_) => BACK_STEP,
+            Phase::Waiting | Phase::Ready(_) | Phase::Brake(_) => SHORT_STEP,
         }
+    }
+
+    /// Work of taking the plan over.
+    fn taking(&self) -> u32 {
+        (self.last - self.lowest) / TAKEN_FOR_ONE + 1
     }
 
     pub(super) fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
@@ -391,6 +402,7 @@ impl Horizon {
             let node = nodes.at_mut(i);
             node.lasts = end - node.time;
         }
+        self.work += self.taking();
         if !self.wish.stop {
             let more = f64::from(self.spent) / f64::from(self.last - self.start) - self.work_of_node;
             self.work_of_node += if more > 0.0 { RISE } else { FALL } * more;

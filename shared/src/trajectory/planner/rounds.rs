@@ -11,9 +11,14 @@ use super::swing::REST;
 const ROUNDS: u32 = 12;
 /// A plan is good if no swing of the acceleration is above its limit by more than this share.
 const GOOD: f32 = 0.025;
+/// Work of a step of a search for how slow the machine can be, and of the pass back.
+const BRAKE: u32 = 2;
+const BACK: u32 = 1;
 /// Work of the search for a reach, and of each of its iterations.
-const REACH: u32 = 2;
-const ITERATION: u32 = 4;
+const REACH: u32 = 5;
+const ITERATION: u32 = 3;
+/// Work of opening the boxes of a node.
+const OPEN: u32 = 2;
 /// Nodes whose times are shifted for a unit of work.
 const SHIFTED_FOR_ONE: u32 = 16;
 
@@ -23,7 +28,7 @@ impl Horizon {
         match self.phase {
             Phase::Waiting => {}
             Phase::Take => self.take(nodes, bounds),
-            Phase::Brake(i) => self.brake(nodes, i),
+            Phase::Brake(i) => self.brake(nodes, i, bounds),
             Phase::Ready(i) => self.ready(nodes, i, bounds),
             Phase::Back(i) if self.goes_back(nodes, i, bounds) => {
                 self.back(nodes, i - 1, bounds);
@@ -33,7 +38,7 @@ impl Horizon {
                 if self.round > 0 && !self.braking && self.is_good() {
                     self.phase = Phase::Take;
                 } else if is_too_fast(nodes, i) {
-                    self.too_fast(nodes, bounds);
+                    self.too_fast(nodes);
                 } else if self.round == ROUNDS {
                     self.last_resort(nodes, bounds);
                 } else {
@@ -103,6 +108,8 @@ impl Horizon {
 
     /// One step of the pass back: boxes and reach of node `i`.
     fn back<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        self.work += BACK;
+        self.renew(nodes, i, bounds);
         let first = self.round == 0 || self.braking;
         let repaired = !first && self.repair(nodes, i, bounds);
         if repaired {
@@ -179,7 +186,9 @@ impl Horizon {
     }
 
     /// The lowest speed at the node after `i`, until that is as low as it shall be.
-    fn brake<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32) {
+    fn brake<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        self.work += BRAKE;
+        self.renew(nodes, i, bounds);
         let node = nodes.at(i);
         let enough = if self.wish.stop { 0.0 } else { node.cap_of_feed() };
         let stops = i > self.commit && node.limit <= 0.0;
@@ -196,19 +205,25 @@ impl Horizon {
     }
 
     /// The speed at the commit is given, and the boxes do not allow it: with full boxes it is possible.
-    fn too_fast<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+    fn too_fast<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
         if !self.warm {
             self.give_up();
             return;
         }
         self.warm = false;
-        for i in self.commit..self.last {
-            for side in &mut nodes.at_mut(i).sides {
-                side.open(bounds);
-            }
-        }
         self.start = self.commit;
         self.restart(nodes);
+    }
+
+    /// Opens the boxes of node `i` in the first round of a plan that does not begin with those of an earlier one.
+    fn renew<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        if self.warm || self.round > 0 {
+            return;
+        }
+        self.work += OPEN;
+        for side in &mut nodes.at_mut(i).sides {
+            side.open(bounds);
+        }
     }
 }
 

@@ -8,7 +8,9 @@ use crate::motion::PATH_PERIOD_S;
 
 /// No acceleration.
 pub(super) const REST: Lanes = [0.0; ROWS];
-/// Work of a look at another interval.
+/// Work of a step of the pass forward, of a repair, and of each interval one filter length away that they look at.
+const FORWARD: u32 = 5;
+const REPAIR: u32 = 6;
 const LOOK: u32 = 1;
 /// ṡ² where there would be none by rounding, as a share of what is possible.
 const CREEP: f64 = 1e-3;
@@ -16,6 +18,7 @@ const CREEP: f64 = 1e-3;
 impl Horizon {
     /// Speed, time and accelerations of the interval of node `i`, and what its past allows them to be.
     pub(super) fn forward<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        self.work += FORWARD;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let x = if self.scaled {
             next.trial
@@ -51,6 +54,7 @@ impl Horizon {
     /// What the future allows the accelerations of node `i` to be; changes its boxes by that and its past, and
     /// says whether it did.
     pub(super) fn repair<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) -> bool {
+        self.work += REPAIR;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let end = next.time - pause(next, bounds);
         let a = ((next.trial - node.trial) / (2.0 * node.delta)) as f32;
