@@ -59,6 +59,15 @@ pub struct AxisMotion {
 }
 
 impl AxisMotion {
+    /// Standing at `position`.
+    pub const fn at_rest(position: &[f64; AXES]) -> Self {
+        Self {
+            position: *position,
+            velocity: [0.0; AXES],
+            acceleration: [0.0; AXES],
+        }
+    }
+
     /// From derivatives over path length to derivatives over time, at path speed `v` \[mm/s\] and path
     /// acceleration `a` \[mm/s²\].
     pub fn at_speed(&self, v: f64, a: f64) -> Self {

@@ -2,6 +2,7 @@
 
 use super::{ArcLengthCurve, CHANNELS, PathPoint};
 use crate::geometry::{Arc, Line, Moving};
+use nalgebra::Vector3;
 
 /// Channels that a [`Shape`] gives; the rest are [`Cubic`]s.
 pub const SHAPED: usize = 3;
@@ -95,17 +96,17 @@ impl Cubic {
         Self([value, first, 0.5 * second, c3])
     }
 
-    fn is_constant(&self) -> bool {
-        self.0[1..] == [0.0; 3]
-    }
-
     /// Value, first and second derivative at `s`.
     pub fn at(&self, s: f64) -> [f64; 3] {
         let [c0, c1, c2, c3] = self.0;
+        // Horner's rule, of which the derivatives need the same parts.
+        let outer = s * c3;
+        let bend = c2 + outer;
+        let growth = bend + outer;
         [
-            c0 + s * (c1 + s * (c2 + s * c3)),
-            c1 + s * (2.0 * c2 + s * 3.0 * c3),
-            2.0 * c2 + 6.0 * c3 * s,
+            c0 + s * (c1 + s * bend),
+            c1 + s * (bend + growth),
+            2.0 * (growth + outer),
         ]
     }
 }
@@ -113,36 +114,38 @@ impl Cubic {
 impl Element {
     /// All channels `s` \[mm\] after the start of the element.
     pub fn at(&self, s: f64) -> PathPoint {
-        let mut point = PathPoint::ZERO;
-        match &self.shape {
-            Shape::Point(position) => point.value[..SHAPED].copy_from_slice(position),
-            Shape::Line(line) => point.set_moving(&line.at(s)),
-            Shape::Arc(arc) => point.set_moving(&arc.at(s)),
-            Shape::Curve(curve) => point.set_moving(&curve.at(s)),
-            Shape::Span(cubics) => point.set_cubics(0, cubics, s),
-        }
-        point.set_cubics(SHAPED, &self.rest, s);
-        point
-    }
-}
-
-impl PathPoint {
-    fn set_moving(&mut self, moving: &Moving) {
-        for i in 0..SHAPED {
-            self.value[i] = moving.value[i];
-            self.first[i] = moving.first[i];
-            self.second[i] = moving.second[i];
-        }
+        self.channels(s)
     }
 
-    fn set_cubics(&mut self, channel: usize, cubics: &[Cubic], s: f64) {
-        for (i, cubic) in (channel..).zip(cubics) {
-            if cubic.is_constant() {
-                // As most of these are; `self` was zero.
-                self.value[i] = cubic.0[0];
-            } else {
-                [self.value[i], self.first[i], self.second[i]] = cubic.at(s);
+    /// The same of the first `N` channels only.
+    pub(super) fn channels<const N: usize>(&self, s: f64) -> PathPoint<N> {
+        let position = match &self.shape {
+            Shape::Point(position) => Moving {
+                value: (*position).into(),
+                first: Vector3::zeros(),
+                second: Vector3::zeros(),
+            },
+            Shape::Line(line) => line.at(s),
+            Shape::Arc(arc) => arc.at(s),
+            Shape::Curve(curve) => curve.at(s),
+            Shape::Span(cubics) => {
+                let [x, y, z] = cubics.each_ref().map(|cubic| cubic.at(s));
+                let part = |i: usize| Vector3::new(x[i], y[i], z[i]);
+                Moving {
+                    value: part(0),
+                    first: part(1),
+                    second: part(2),
+                }
             }
+        };
+        let mut point = PathPoint::ZERO;
+        for i in 0..SHAPED {
+            (point.value[i], point.first[i]) = (position.value[i], position.first[i]);
+            point.second[i] = position.second[i];
         }
+        for i in SHAPED..N {
+            [point.value[i], point.first[i], point.second[i]] = self.rest[i - SHAPED].at(s);
+        }
+        point
     }
 }

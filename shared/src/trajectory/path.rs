@@ -47,15 +47,15 @@ pub enum PathError {
     },
 }
 
-/// All channels at one place of the path, with their derivatives over s.
+/// All channels at one place of the path, or the first `N` of them, with their derivatives over s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathPoint {
+pub struct PathPoint<const N: usize = CHANNELS> {
     /// Values: D (3) \[mm\], T (3), N (3), or the axes (6); extension of the V slides (2) \[mm\].
-    pub value: [f64; CHANNELS],
+    pub value: [f64; N],
     /// First derivatives over s.
-    pub first: [f64; CHANNELS],
+    pub first: [f64; N],
     /// Second derivatives over s.
-    pub second: [f64; CHANNELS],
+    pub second: [f64; N],
 }
 
 impl<const N: usize> Path<N> {
@@ -184,10 +184,22 @@ impl PathPoint {
         point
     }
 
+    /// Extension of the V slide of each side that keeps the defocus \[mm\] (SPEC 0.6).
+    pub fn v_follow(&self) -> [f64; SIDES] {
+        [self.value[9], self.value[10]]
+    }
+
+    /// Derivative of [`Self::v_follow`] over s.
+    pub fn v_follow_slope(&self) -> [f64; SIDES] {
+        [self.first[9], self.first[10]]
+    }
+}
+
+impl<const N: usize> PathPoint<N> {
     pub(super) const ZERO: Self = Self {
-        value: [0.0; CHANNELS],
-        first: [0.0; CHANNELS],
-        second: [0.0; CHANNELS],
+        value: [0.0; N],
+        first: [0.0; N],
+        second: [0.0; N],
     };
 
     /// The pose here, T and N orthonormal (SPEC 0.4).
@@ -200,19 +212,9 @@ impl PathPoint {
         pose_in_motion(&self.moving(0), &self.moving(3), &self.moving(6))
     }
 
-    /// Extension of the V slide of each side that keeps the defocus \[mm\] (SPEC 0.6).
-    pub fn v_follow(&self) -> [f64; SIDES] {
-        [self.value[9], self.value[10]]
-    }
-
-    /// Derivative of [`Self::v_follow`] over s.
-    pub fn v_follow_slope(&self) -> [f64; SIDES] {
-        [self.first[9], self.first[10]]
-    }
-
     /// The axes here, and their derivatives over s; of a path in [`PathSpace::Axes`].
     pub fn axes(&self) -> AxisMotion {
-        let six = |c: &[f64; CHANNELS]| core::array::from_fn(|axis| c[axis]);
+        let six = |c: &[f64; N]| core::array::from_fn(|axis| c[axis]);
         AxisMotion {
             position: six(&self.value),
             velocity: six(&self.first),
@@ -221,7 +223,7 @@ impl PathPoint {
     }
 
     fn moving(&self, channel: usize) -> Moving {
-        let vector = |c: &[f64; CHANNELS]| Vector3::new(c[channel], c[channel + 1], c[channel + 2]);
+        let vector = |c: &[f64; N]| Vector3::new(c[channel], c[channel + 1], c[channel + 2]);
         Moving {
             value: vector(&self.value),
             first: vector(&self.first),

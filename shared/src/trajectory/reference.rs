@@ -34,9 +34,11 @@ pub struct Unreachable {
 
 /// The axes at a point of a path in motion at unit speed: nearest to `near`, with their derivatives over s (SPEC 0.3,
 /// 0.4). A path in axis space gives its axes as they are.
-pub fn at_unit_speed(
+///
+/// Of the channels of a point it needs the first six in axis space, the first nine of a tool.
+pub fn at_unit_speed<const N: usize>(
     kinematics: &Kinematics,
-    point: &PathPoint,
+    point: &PathPoint<N>,
     space: PathSpace,
     near: &[f64; AXES],
 ) -> Result<AxisMotion, ReferenceError> {

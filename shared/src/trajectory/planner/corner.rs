@@ -37,7 +37,7 @@ impl Corner {
     }
 
     /// Adds the corner to `point`, `s` \[mm\] after it.
-    pub fn add_to(&self, point: &mut PathPoint, s: f64) {
+    pub fn add_to<const N: usize>(&self, point: &mut PathPoint<N>, s: f64) {
         let away = libm::fabs(s);
         if away >= self.half {
             return;
@@ -47,7 +47,7 @@ impl Corner {
         let value = 0.25 * self.half * rest * rest;
         let first = -libm::copysign(0.5 * rest, s);
         let second = 0.5 * per_half;
-        for i in 0..CHANNELS {
+        for i in 0..N {
             point.value[i] += self.jump[i] * value;
             point.first[i] += self.jump[i] * first;
             point.second[i] += self.jump[i] * second;

@@ -5,29 +5,38 @@ use crate::io::AXES;
 use crate::kinematics::AxisMotion;
 use crate::trajectory::SpeedState;
 
-/// Values that are filtered together: position, velocity and acceleration of the axes and along the path.
-const VALUES: usize = 3 * AXES + 3;
-
 /// A mean over a fixed number of ticks, the same for all, so that what moves together stays together.
 ///
 /// It is linear: the mean of the velocities is the velocity of the mean.
 #[derive(Clone, Debug)]
 pub(super) struct Filter {
-    ring: [[f64; VALUES]; MAX_FILTER],
-    /// Sum over the ring.
-    sum: [f64; VALUES],
-    /// Sum of what was written since the last wrap; becomes `sum` at the next, so rounding cannot add up.
-    fresh: [f64; VALUES],
+    position: Mean<AXES>,
+    velocity: Mean<AXES>,
+    acceleration: Mean<AXES>,
+    /// s, v and a.
+    along: Mean<3>,
     length: usize,
+    /// Where the oldest values are.
     head: usize,
+}
+
+/// Means of `N` values.
+#[derive(Clone, Debug)]
+struct Mean<const N: usize> {
+    ring: [[f64; N]; MAX_FILTER],
+    /// Sum over the ring.
+    sum: [f64; N],
+    /// Sum of what was written since the last wrap; becomes `sum` at the next, so rounding cannot add up.
+    fresh: [f64; N],
 }
 
 impl Filter {
     pub const fn new() -> Self {
         Self {
-            ring: [[0.0; VALUES]; MAX_FILTER],
-            sum: [0.0; VALUES],
-            fresh: [0.0; VALUES],
+            position: Mean::NONE,
+            velocity: Mean::NONE,
+            acceleration: Mean::NONE,
+            along: Mean::NONE,
             length: 1,
             head: 0,
         }
@@ -37,52 +46,77 @@ impl Filter {
     pub fn settle(&mut self, length: usize, axes: &AxisMotion, along: &SpeedState) {
         self.length = length.clamp(1, MAX_FILTER);
         self.head = 0;
-        self.fresh = [0.0; VALUES];
-        let values = pack(axes, along);
-        self.ring[..self.length].fill(values);
-        self.sum = values.map(|value| value * self.length as f64);
+        self.position.settle(self.length, &axes.position);
+        self.velocity.settle(self.length, &axes.velocity);
+        self.acceleration.settle(self.length, &axes.acceleration);
+        self.along.settle(self.length, &[along.s, along.v, along.a]);
     }
 
-    /// Takes the newest values, gives the means.
-    pub fn push(&mut self, axes: &AxisMotion, along: &SpeedState) -> (AxisMotion, SpeedState) {
-        let values = pack(axes, along);
-        let oldest = &mut self.ring[self.head];
-        for i in 0..VALUES {
-            self.sum[i] += values[i] - oldest[i];
-            self.fresh[i] += values[i];
-        }
-        *oldest = values;
+    /// Takes the newest values.
+    pub fn push(&mut self, axes: &AxisMotion, along: &SpeedState) {
+        let oldest = self.head;
+        self.position.push(&axes.position, oldest);
+        self.velocity.push(&axes.velocity, oldest);
+        self.acceleration.push(&axes.acceleration, oldest);
+        self.along.push(&[along.s, along.v, along.a], oldest);
         self.head += 1;
         if self.head >= self.length {
             self.head = 0;
-            self.sum = self.fresh;
-            self.fresh = [0.0; VALUES];
+            self.position.wrap();
+            self.velocity.wrap();
+            self.acceleration.wrap();
+            self.along.wrap();
         }
-        let per_length = 1.0 / self.length as f64;
-        unpack(&self.sum.map(|sum| sum * per_length))
+    }
+
+    /// Mean of the axes.
+    pub fn axes(&self) -> AxisMotion {
+        let per_length = self.per_length();
+        AxisMotion {
+            position: self.position.mean(per_length),
+            velocity: self.velocity.mean(per_length),
+            acceleration: self.acceleration.mean(per_length),
+        }
+    }
+
+    /// Mean along the path.
+    pub fn along(&self) -> SpeedState {
+        let [s, v, a] = self.along.mean(self.per_length());
+        SpeedState { s, v, a }
+    }
+
+    fn per_length(&self) -> f64 {
+        1.0 / self.length as f64
     }
 }
 
-fn pack(axes: &AxisMotion, along: &SpeedState) -> [f64; VALUES] {
-    let mut values = [0.0; VALUES];
-    values[..AXES].copy_from_slice(&axes.position);
-    values[AXES..2 * AXES].copy_from_slice(&axes.velocity);
-    values[2 * AXES..3 * AXES].copy_from_slice(&axes.acceleration);
-    values[3 * AXES..].copy_from_slice(&[along.s, along.v, along.a]);
-    values
-}
+impl<const N: usize> Mean<N> {
+    const NONE: Self = Self {
+        ring: [[0.0; N]; MAX_FILTER],
+        sum: [0.0; N],
+        fresh: [0.0; N],
+    };
 
-fn unpack(values: &[f64; VALUES]) -> (AxisMotion, SpeedState) {
-    let part = |from: usize| core::array::from_fn(|axis| values[from + axis]);
-    let axes = AxisMotion {
-        position: part(0),
-        velocity: part(AXES),
-        acceleration: part(2 * AXES),
-    };
-    let along = SpeedState {
-        s: values[3 * AXES],
-        v: values[3 * AXES + 1],
-        a: values[3 * AXES + 2],
-    };
-    (axes, along)
+    fn settle(&mut self, length: usize, values: &[f64; N]) {
+        self.ring[..length].fill(*values);
+        self.sum = values.map(|value| value * length as f64);
+        self.fresh = [0.0; N];
+    }
+
+    /// Puts `values` in the place of the oldest.
+    fn push(&mut self, values: &[f64; N], oldest: usize) {
+        let leave = core::mem::replace(&mut self.ring[oldest], *values);
+        self.sum = core::array::from_fn(|i| self.sum[i] + (values[i] - leave[i]));
+        self.fresh = core::array::from_fn(|i| self.fresh[i] + values[i]);
+    }
+
+    /// Before the first place of the ring is written again.
+    fn wrap(&mut self) {
+        self.sum = self.fresh;
+        self.fresh = [0.0; N];
+    }
+
+    fn mean(&self, per_length: f64) -> [f64; N] {
+        self.sum.map(|sum| sum * per_length)
+    }
 }

@@ -39,6 +39,8 @@ use track::Track;
 
 /// Highest feed override.
 const MOST_OVERRIDE: f64 = 2.0;
+/// Channels that make a pose: position, T and N.
+const POSE_CHANNELS: usize = 9;
 /// Work of planning in one tick, in hundreds of instructions of a PC.
 const WORK: u32 = 95;
 /// Work to shape a corner, and to begin a plan.
@@ -166,11 +168,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.planned = SpeedState { s, v: 0.0, a: 0.0 };
         self.axes = *axes;
         (self.planned_hint, self.output_hint) = (0, 0);
-        let rest = AxisMotion {
-            position: *axes,
-            velocity: [0.0; AXES],
-            acceleration: [0.0; AXES],
-        };
+        let rest = AxisMotion::at_rest(axes);
         self.filter.settle(self.bounds.filter_ticks, &rest, &self.planned);
         self.resting = self.bounds.filter_ticks as u32;
     }
@@ -365,32 +363,38 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             0
         };
         self.planned = planned;
-        let axes = match self.track.at(planned.s, &mut self.planned_hint) {
-            Some(point) => {
-                let axes = at_unit_speed(kinematics, &point, self.space, &self.axes);
-                let axes = axes.map_err(|source| {
-                    let piece = self.track.find(planned.s, &mut self.planned_hint);
-                    let line = piece.map_or(0, |piece| piece.element.line);
-                    let s = planned.s;
-                    Unreachable { line, s, source }
-                })?;
-                axes.at_speed(planned.v, planned.a)
-            }
-            None => AxisMotion {
-                position: self.axes,
-                velocity: [0.0; AXES],
-                acceleration: [0.0; AXES],
-            },
-        };
-        self.axes = axes.position;
-        let (axes, along) = self.filter.push(&axes, &planned);
+        match self.space {
+            PathSpace::Axes => self.drive::<AXES>(kinematics),
+            PathSpace::Tool => self.drive::<POSE_CHANNELS>(kinematics),
+        }?;
+        let along = self.filter.along();
         let piece = self.track.find(along.s, &mut self.output_hint);
         Ok(Output {
-            axes,
+            axes: self.filter.axes(),
             along,
             line: piece.map_or(0, |piece| piece.element.line),
             at_rest: self.resting >= ticks && self.stays(),
         })
+    }
+
+    /// Moves the axes to the planned place, which takes the first `N` channels of the path.
+    fn drive<const N: usize>(&mut self, kinematics: &Kinematics) -> Result<(), Unreachable> {
+        let SpeedState { s, v, a } = self.planned;
+        let axes = match self.track.at::<N>(s, &mut self.planned_hint) {
+            Some(point) => {
+                let axes = at_unit_speed(kinematics, &point, self.space, &self.axes);
+                let axes = axes.map_err(|source| {
+                    let piece = self.track.get(self.planned_hint);
+                    let line = piece.map_or(0, |piece| piece.element.line);
+                    Unreachable { line, s, source }
+                })?;
+                axes.at_speed(v, a)
+            }
+            None => AxisMotion::at_rest(&self.axes),
+        };
+        self.axes = axes.position;
+        self.filter.push(&axes, &self.planned);
+        Ok(())
     }
 }
 

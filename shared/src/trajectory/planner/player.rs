@@ -73,13 +73,14 @@ impl Player {
                 a: 0.0,
             };
         }
-        let v = libm::sqrt(from.x);
         let a = (nodes.at(self.node + 1).x - from.x) / (2.0 * from.delta);
+        // √x without a root: some processors have none of this precision.
+        let v = from.delta / from.lasts - 0.5 * a * from.lasts;
         SpeedState {
             s: from.s + from.direction * self.time * (v + 0.5 * a * self.time),
             v: from.direction * (v + a * self.time),
             // Where it rests, s does not say which of two elements that meet there it will move on.
-            a: if v + self.time > 0.0 {
+            a: if from.x + self.time > 0.0 {
                 from.direction * a
             } else {
                 0.0

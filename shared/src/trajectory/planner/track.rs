@@ -241,10 +241,10 @@ impl<const E: usize> Track<E> {
         Some(piece)
     }
 
-    /// All channels at path length `s`.
-    pub fn at(&self, s: f64, hint: &mut u32) -> Option<PathPoint> {
+    /// The first `N` channels at path length `s`.
+    pub fn at<const N: usize>(&self, s: f64, hint: &mut u32) -> Option<PathPoint<N>> {
         let piece = self.find(s, hint)?;
-        let mut point = piece.element.at(s - piece.start);
+        let mut point = piece.element.channels(s - piece.start);
         let serial = *hint;
         for reaching in (serial + 1).saturating_sub(u32::from(piece.before))..=serial + u32::from(piece.after)
         {
