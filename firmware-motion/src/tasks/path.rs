@@ -4,7 +4,7 @@ use super::{Controller, Outbox, PATH_TASK, Servo};
 use crate::board;
 use rtic::Mutex;
 use shared::motion::PathTickInput;
-use shared::protocol::{BoardLoad, MotionSample};
+use shared::protocol::BoardLoad;
 
 /// What the path tick owns.
 pub struct PathTask {
@@ -26,34 +26,27 @@ impl PathTask {
         controller: &mut impl Mutex<T = &'static mut Controller>,
         elapsed: u32,
     ) -> bool {
-        let (span, servo_tick, report) = servo.lock(|servo| {
+        let (span, servo_tick) = servo.lock(|servo| {
             servo.alive.seen(PATH_TASK);
-            let span = servo.time.span(board::cycles());
-            (span, servo.time.take_longest(), servo.loops.take_report())
+            (servo.time.span(board::cycles()), servo.time.take_longest())
         });
-        let input = PathTickInput {
+        // What is large is made where it stays: moving it costs as much as using it.
+        let input = servo.lock(|servo| PathTickInput {
             now_us: board::now_us(),
             elapsed,
-            report,
-        };
-        let (output, setup) =
-            controller.lock(|controller| (controller.tick(&input), controller.take_servo_setup()));
-        servo.lock(|servo| {
-            if let Some(setup) = setup {
-                servo.loops.configure(setup);
-            }
-            servo.loops.give(&output.order);
+            report: servo.loops.take_report(),
         });
-        let load = BoardLoad {
+        let mut output = controller.lock(|controller| controller.tick(&input));
+        if let Some(setup) = controller.lock(|controller| controller.take_servo_setup()) {
+            servo.lock(|servo| servo.loops.configure(setup));
+        }
+        servo.lock(|servo| servo.loops.give(&output.order));
+        output.sample.load = Some(BoardLoad {
             cycles_per_us: board::CYCLES_PER_US,
             path_tick: self.took,
             servo_tick,
-        };
-        let sample = MotionSample {
-            load: Some(load),
-            ..output.sample
-        };
-        let published = self.outbox.enqueue((output.path_state, sample)).is_ok();
+        });
+        let published = self.outbox.enqueue((output.path_state, output.sample)).is_ok();
         self.took = servo.lock(|servo| servo.time.without(span, board::cycles()));
         published
     }

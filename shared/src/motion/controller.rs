@@ -124,6 +124,8 @@ impl MotionController {
 
     /// Newly accepted parameters for the servo loops, once; to be taken after every tick.
     pub fn take_servo_setup(&mut self) -> Option<ServoSetup> {
+        // It is large, and mostly there is none: then nothing is moved.
+        self.servo_setup.as_ref()?;
         self.servo_setup.take()
     }
 
@@ -144,6 +146,12 @@ impl MotionController {
         if !self.enabled {
             self.stand_where(report);
         }
+        if self.state.on_path() {
+            // After a lost tick the references catch up, as the servo ticks went on without them.
+            for _ in 1..input.elapsed.clamp(1, MAX_CATCH_UP) {
+                self.travel();
+            }
+        }
         let mut from = self.reference;
         let mut step = HomingStep::default();
         // With new parameters under way to the servo ticks, this report is still of the old ones.
@@ -151,13 +159,7 @@ impl MotionController {
         match self.state {
             State::Homing if ready => step = self.home(report),
             State::Off | State::Homing | State::Idle | State::Fault => {}
-            State::Running | State::Holding | State::Stopping => {
-                // After a lost tick the references catch up, as the servo ticks went on without them.
-                for _ in 0..input.elapsed.clamp(1, MAX_CATCH_UP) {
-                    from = self.reference;
-                    self.travel();
-                }
-            }
+            State::Running | State::Holding | State::Stopping => self.travel(),
         }
         let on_path = self.state.on_path();
         let beams = self.beam_output(report.laser_fault);

@@ -7,7 +7,7 @@ use super::servo::ServoSetup;
 use super::{MotionConfig, SERVO_PERIOD_S};
 use crate::control::{Gantry, Pid};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
-use crate::kinematics::{AXIS_OWNERS, AxisLimits, Kinematics, violations};
+use crate::kinematics::{AXIS_OWNERS, AxisLimits, Kinematics};
 use crate::parameter::ParameterError;
 use crate::protocol::PathLimits;
 use crate::trajectory::PlanLimits;
@@ -94,8 +94,7 @@ impl Machine {
 
     /// First axis beyond its travel, if any.
     pub fn beyond_travel(&self, axes: &[f64; AXES]) -> Option<usize> {
-        let outside = violations(axes, &self.limits);
-        (0..AXES).find(|axis| outside.get(*axis))
+        (0..AXES).find(|axis| !self.limits[*axis].contains(axes[*axis]))
     }
 }
 
