@@ -458,3 +458,98 @@ fn it_goes_on_after_a_hold_at_a_rotary_corner() {
     ];
     passes(&bench::axes(&frame), &moves, &vec![(300, Act::Go(Way::Hold))]);
 }
+
+/// At such a corner an interval of nodes lasts longer than the output filter, and the machine slows down in it.
+#[test]
+fn a_long_interval_at_a_corner_keeps_the_jerk() {
+    for k in 0..10 {
+        let arc = Kind::Arc {
+            sweep: 0.165,
+            rise: 0.0,
+        };
+        let moves = [
+            Move {
+                size: 28.0 + 0.1 * f64::from(k),
+                ..LINE
+            },
+            Move {
+                kind: arc,
+                size: 12.28,
+                feed: 190.22,
+                turn: [0.0, -0.5904, 0.0],
+                ..LINE
+            },
+        ];
+        passes(&bench::wire_arc(), &moves, &vec![]);
+    }
+}
+
+/// What one interval may do is asked for by two that lie one filter length before, and they ask for different things.
+#[test]
+fn a_past_that_leaves_nothing_is_made_to_leave_something() {
+    for k in 0..10 {
+        let spans = Kind::Spans { sweep: 5.1892 };
+        let two = Kind::Chain {
+            lines: 2,
+            angle: 0.12641,
+            both: false,
+        };
+        let moves = [
+            Move {
+                kind: spans,
+                size: 0.18 + 0.001 * f64::from(k),
+                feed: 52.53,
+                ..LINE
+            },
+            Move {
+                kind: two,
+                size: 3.925,
+                feed: 826.4,
+                ..LINE
+            },
+        ];
+        passes(&bench::wire_arc(), &moves, &vec![]);
+    }
+}
+
+/// The acceleration of an axis goes evenly over the way of an interval, not over its time.
+#[test]
+fn a_machine_that_slows_down_at_a_corner_keeps_the_jerk() {
+    let frame = Frame {
+        acceleration: 627.5045,
+        ramp: 0.0666981,
+        rotary: 10.874047,
+        path: Some(221.67292),
+        tolerance: 0.0065718,
+        ..FRAME
+    };
+    for k in 0..10 {
+        let chain = Kind::Chain {
+            lines: 8,
+            angle: 0.0,
+            both: false,
+        };
+        let moves = [
+            Move {
+                corner: FRAC_PI_2,
+                side: -0.911464,
+                size: 3.0608407 + 0.001 * f64::from(k),
+                feed: 301.1556,
+                ..LINE
+            },
+            Move {
+                corner: FRAC_PI_2,
+                size: 0.5976438,
+                feed: 4.8963288,
+                ..LINE
+            },
+            Move {
+                kind: chain,
+                feed: 143.197166,
+                turn: [0.0, -0.7744439, 0.0],
+                ..LINE
+            },
+        ];
+        passes(&bench::axes(&frame), &moves, &vec![]);
+    }
+}

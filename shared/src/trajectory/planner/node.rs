@@ -154,13 +154,14 @@ impl Side {
         true
     }
 
-    /// Makes the box larger where the future leaves room; says whether it did.
-    pub fn grow(&mut self, is: &Lanes, will: &[Lanes; 2], bounds: &Bounds) -> bool {
+    /// Makes the box larger where the future leaves `room`: up to its highest and lowest accelerations. Says whether
+    /// it did.
+    pub fn grow(&mut self, is: &Lanes, room: &[Lanes; 2], bounds: &Bounds) -> bool {
         let before = (self.high, self.low);
         for row in 0..ROWS {
             let (full, swing) = (bounds.acceleration[row], bounds.swing[row]);
-            let above = will[0][row] + swing - is[row];
-            let below = is[row] - will[1][row] + swing;
+            let above = room[0][row] - is[row];
+            let below = is[row] - room[1][row];
             let (mut low, mut high) = self.of_row(row);
             if above > LOOSEN_FROM * swing {
                 high = least(most(high, is[row] + LOOSEN * above), full);

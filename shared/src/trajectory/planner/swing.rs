@@ -38,8 +38,10 @@ impl Horizon {
         while self.away < i && nodes.at(self.away + 1).time <= from {
             self.away += 1;
         }
-        let was = self.range(nodes, [self.away, i], [from, to], bounds);
+        let was = self.room(nodes, [self.away, i], [from, to], bounds);
         let wanted = [0, 1].map(|side: usize| node.sides[side].accelerations(a, node.trial as f32));
+        let length = time - node.time;
+        let alone = (length > bounds.filter).then(|| alone([node.speed, speed], length, &wanted, bounds));
         let after = nodes.at_mut(i + 1);
         if x != after.trial {
             self.moved = [self.moved[0].min(i + 1), i + 1];
@@ -48,6 +50,9 @@ impl Horizon {
         (after.trial, after.speed, after.time) = (x, speed, leaves);
         for (side, wanted) in nodes.at_mut(i).sides.iter_mut().zip(wanted) {
             side.allowed = self.clamp(&wanted, &was, bounds);
+            if let Some(alone) = &alone {
+                side.allowed = self.clamp(&side.allowed, alone, bounds);
+            }
         }
     }
 
@@ -62,7 +67,7 @@ impl Horizon {
         while self.away > i + 1 && nodes.at(self.away).time > from {
             self.away -= 1;
         }
-        let will = self.range(nodes, [self.away, self.last], [from, to], bounds);
+        let will = self.room(nodes, [self.away, self.last], [from, to], bounds);
         let grow = self.round <= self.relaxed;
         let node = nodes.at_mut(i);
         let mut changed = false;
@@ -79,17 +84,35 @@ impl Horizon {
         changed
     }
 
-    /// `wanted`, at most one swing away from the range of `other`; notes by how much it was more.
-    fn clamp(&mut self, wanted: &Lanes, other: &[Lanes; 2], bounds: &Bounds) -> Lanes {
+    /// `wanted`, no higher and no lower than there is `room`; notes by how much it was off.
+    fn clamp(&mut self, wanted: &Lanes, room: &[Lanes; 2], bounds: &Bounds) -> Lanes {
         let mut allowed = *wanted;
         for row in 0..ROWS {
-            let swing = bounds.swing[row];
-            let (high, low) = (other[0][row] + swing, other[1][row] - swing);
-            allowed[row] = most(least(wanted[row], high), low);
+            allowed[row] = most(least(wanted[row], room[0][row]), room[1][row]);
             let off = most(wanted[row] - allowed[row], allowed[row] - wanted[row]);
             self.excess[row] = most(self.excess[row], off * bounds.per_swing[row]);
         }
         allowed
+    }
+
+    /// Highest and lowest accelerations that are at most one swing away from all between two times, as in `range`.
+    fn room<const N: usize>(
+        &mut self,
+        nodes: &Nodes<N>,
+        from_to: [u32; 2],
+        times: [f64; 2],
+        bounds: &Bounds,
+    ) -> [Lanes; 2] {
+        let [mut highest, mut lowest] = self.range(nodes, from_to, times, bounds);
+        for row in 0..ROWS {
+            let (top, bottom) = (highest[row] + bounds.swing[row], lowest[row] - bounds.swing[row]);
+            // Where they are farther apart than two swings, the middle is off by the least.
+            let middle = 0.5 * (top + bottom);
+            highest[row] = most(middle, top);
+            lowest[row] = least(middle, bottom);
+            self.excess[row] = most(self.excess[row], 0.5 * (bottom - top) * bounds.per_swing[row]);
+        }
+        [highest, lowest]
     }
 
     /// Lowest and highest allowed accelerations between two times, the first of which is in the interval of the
@@ -120,7 +143,7 @@ impl Horizon {
             if node.time <= to && end >= from {
                 let [start, stop] = &node.sides;
                 let at = |time: f64| {
-                    let part = ((time - node.time) / (end - node.time)) as f32;
+                    let part = way([node.speed, next.speed], (time - node.time) / (end - node.time)) as f32;
                     core::array::from_fn(|row| {
                         start.allowed[row] + part * (stop.allowed[row] - start.allowed[row])
                     })
@@ -141,6 +164,24 @@ impl Horizon {
         }
         [low, high]
     }
+}
+
+/// Share of the way of an interval that is passed after a share of its time; `from` and `to` are the speeds at its
+/// ends. Over the way, accelerations go evenly from one end to the other.
+fn way([from, to]: [f64; 2], part: f64) -> f64 {
+    part * (1.0 + (1.0 - part) * (from - to) / libm::fmax(from + to, f64::MIN_POSITIVE))
+}
+
+/// Highest and lowest accelerations in an interval by itself that is longer than the filter and lasts `length` \[s\]:
+/// where it is fastest they go one swing in the filter's length at most, on the way from one `wanted` to the other.
+fn alone([from, to]: [f64; 2], length: f64, wanted: &[Lanes; 2], bounds: &Bounds) -> [Lanes; 2] {
+    let part = way(
+        [libm::fmax(from, to), libm::fmin(from, to)],
+        bounds.filter / length,
+    );
+    let swings = 0.5 / part as f32;
+    let middle = |row: usize| 0.5 * (wanted[0][row] + wanted[1][row]);
+    [1.0, -1.0].map(|sign| core::array::from_fn(|row| middle(row) + sign * swings * bounds.swing[row]))
 }
 
 /// Time that the machine stands at a node: until the output filter has come to rest \[s\].
