@@ -16,6 +16,8 @@ pub(super) struct Filter {
     /// s, v and a.
     along: Mean<3>,
     length: usize,
+    /// One divided by it.
+    per_length: f64,
     /// Where the oldest values are.
     head: usize,
 }
@@ -38,6 +40,7 @@ impl Filter {
             acceleration: Mean::NONE,
             along: Mean::NONE,
             length: 1,
+            per_length: 1.0,
             head: 0,
         }
     }
@@ -45,6 +48,7 @@ impl Filter {
     /// At rest for longer than it remembers.
     pub fn settle(&mut self, length: usize, axes: &AxisMotion, along: &SpeedState) {
         self.length = length.clamp(1, MAX_FILTER);
+        self.per_length = 1.0 / self.length as f64;
         self.head = 0;
         self.position.settle(self.length, &axes.position);
         self.velocity.settle(self.length, &axes.velocity);
@@ -71,22 +75,17 @@ impl Filter {
 
     /// Mean of the axes.
     pub fn axes(&self) -> AxisMotion {
-        let per_length = self.per_length();
         AxisMotion {
-            position: self.position.mean(per_length),
-            velocity: self.velocity.mean(per_length),
-            acceleration: self.acceleration.mean(per_length),
+            position: self.position.mean(self.per_length),
+            velocity: self.velocity.mean(self.per_length),
+            acceleration: self.acceleration.mean(self.per_length),
         }
     }
 
     /// Mean along the path.
     pub fn along(&self) -> SpeedState {
-        let [s, v, a] = self.along.mean(self.per_length());
+        let [s, v, a] = self.along.mean(self.per_length);
         SpeedState { s, v, a }
-    }
-
-    fn per_length(&self) -> f64 {
-        1.0 / self.length as f64
     }
 }
 

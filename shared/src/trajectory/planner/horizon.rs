@@ -197,6 +197,20 @@ impl Horizon {
         self.in_force
     }
 
+    /// The plan in force goes on as wished, and it is not yet time to look whether another has to be begun.
+    pub fn early(&mut self, wish: &Wish) -> bool {
+        self.early = if self.goes_on(wish) {
+            self.early.saturating_sub(1)
+        } else {
+            0
+        };
+        self.early > 0
+    }
+
+    fn goes_on(&self, wish: &Wish) -> bool {
+        !wish.stop && wish.factor == self.factor
+    }
+
     /// Begins a plan, if there is something new, and says so.
     pub fn begin<const N: usize>(
         &mut self,
@@ -209,11 +223,7 @@ impl Horizon {
         // On the way to node `next`, reached in `left`.
         let left = player.left(nodes, self.in_force);
         let mut next = (player.node + 1).min(self.in_force);
-        let goes_on = !wish.stop && wish.factor == self.factor;
-        self.early = if goes_on { self.early.saturating_sub(1) } else { 0 };
-        if self.early > 0 {
-            return false;
-        }
+        let goes_on = self.goes_on(&wish);
         // A window that is long enough to stop in, and short enough to be planned before it is passed.
         // A single interval between two places at rest would last for ever.
         let ends = |last: u32| match last > nodes.first && nodes.at(last - 1).limit <= 0.0 {

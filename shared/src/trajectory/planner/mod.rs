@@ -75,6 +75,8 @@ pub struct Planner<const ELEMENTS: usize, const NODES: usize> {
     resting: u32,
     /// There was nothing to plan at the last tick.
     idle: bool,
+    /// No node could be appended, and since then no element came and no node was passed.
+    laid: bool,
     /// Why no node follows the newest one: for the planner, the path ends there.
     blocked: Option<Unreachable>,
 }
@@ -150,6 +152,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             output_hint: 0,
             resting: 0,
             idle: false,
+            laid: false,
             blocked: None,
         }
     }
@@ -160,7 +163,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.space = space;
         self.bounds = Bounds::build(limits);
         self.track.clear(s);
-        self.blocked = None;
+        (self.blocked, self.laid) = (None, false);
         self.grid.start(s, axes, &mut self.nodes);
         self.horizon = Horizon::at(self.nodes.first);
         self.player = Player::at(self.nodes.first);
@@ -181,6 +184,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     /// Appends an element. The last one of a program has [`Join::Stop`](super::Join::Stop); before that one is
     /// there, the plan ends somewhat before the end of the last one known, because its corner is not.
     pub fn push(&mut self, element: Element) -> Result<(), PushError> {
+        self.laid = false;
         self.track.push(element)
     }
 
@@ -231,25 +235,10 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
                 done
             } else if work < BEGIN.max(usual_work(self.space)) {
                 break;
-            } else if self.track.decide(&self.bounds) {
+            } else if !self.laid && self.track.decide(&self.bounds) {
                 CORNER
             } else {
-                self.release();
-                let ground = Ground {
-                    track: &self.track,
-                    space: self.space,
-                    kinematics,
-                    bounds: &self.bounds,
-                };
-                let in_force = self.horizon.in_force();
-                let mut extended = 0;
-                if self.blocked.is_none() {
-                    match self.grid.extend(&ground, &mut self.nodes, in_force) {
-                        Ok(work) => extended = work,
-                        Err(place) => self.blocked = Some(place),
-                    }
-                }
-                if extended > 0 {
+                if let extended @ 1.. = self.extend(kinematics) {
                     extended
                 } else if let begun @ 1.. = self.begin() {
                     begun
@@ -264,6 +253,34 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             work = work.saturating_sub(cost);
         }
         Ok(())
+    }
+
+    /// Appends a node, if there is room and the path is settled far enough; says how much work that was.
+    fn extend(&mut self, kinematics: &Kinematics) -> u32 {
+        if self.laid {
+            return 0;
+        }
+        self.release();
+        if self.blocked.is_some() {
+            return 0;
+        }
+        let ground = Ground {
+            track: &self.track,
+            space: self.space,
+            kinematics,
+            bounds: &self.bounds,
+        };
+        let in_force = self.horizon.in_force();
+        match self.grid.extend(&ground, &mut self.nodes, in_force) {
+            Ok(work) => {
+                self.laid = work == 0;
+                work
+            }
+            Err(place) => {
+                self.blocked = Some(place);
+                0
+            }
+        }
     }
 
     /// The nodes lead the way that the machine shall go.
@@ -288,22 +305,32 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
 
     /// Begins a plan, or turns where the machine has come to rest and is to go the other way; says how much work
     /// it was: none if it did not.
+    #[inline]
     fn begin(&mut self) -> u32 {
-        let last = self.horizon.in_force();
+        let stop = !self.along() || self.factor <= 0.0;
+        let wish = Wish {
+            stop,
+            factor: if stop { 1.0 } else { self.factor },
+        };
+        if self.horizon.early(&wish) {
+            return 0;
+        }
+        self.begin_for(wish)
+    }
+
+    /// A call of its own: in most ticks it is too early for it.
+    #[inline(never)]
+    fn begin_for(&mut self, wish: Wish) -> u32 {
         let along = self.along();
-        let stop = !along || self.factor <= 0.0;
+        let last = self.horizon.in_force();
         let inside = last + 1 < self.nodes.end && self.nodes.at(last).limit > 0.0;
         if self.rests() && (inside || !along) {
             // From rest the nodes stand closer, and none of the old ones may be the next.
             let direction = if self.way == Way::Forward { 1.0 } else { -1.0 };
             self.grid.again(last, direction, &self.axes, &mut self.nodes);
-            self.blocked = None;
+            (self.blocked, self.laid) = (None, false);
             return BEGIN;
         }
-        let wish = Wish {
-            stop,
-            factor: if stop { 1.0 } else { self.factor },
-        };
         // At the end of the plan, not at a stop before it.
         let rested = self.rested() && self.player.node >= last;
         let node = self.player.node;
@@ -354,6 +381,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     fn play(&mut self, kinematics: &Kinematics) -> Result<Output, Unreachable> {
         let ticks = self.bounds.filter_ticks as u32;
         let last = self.horizon.in_force();
+        let node = self.player.node;
         self.player.step(&self.nodes, last, ticks);
         self.horizon.watch(self.player.node);
         let planned = self.player.state(&self.nodes, last);
@@ -362,6 +390,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         } else {
             0
         };
+        self.laid &= self.player.node == node && self.resting == 0;
         self.planned = planned;
         match self.space {
             PathSpace::Axes => self.drive::<AXES>(kinematics),

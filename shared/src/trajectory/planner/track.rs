@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 const GAP: f64 = 1e-5;
 /// A change of direction below this is none.
 pub(super) const SMOOTH: f64 = 1e-9;
-/// Junctions on each side that a rounded corner may reach over.
+/// Elements that are kept behind the one that the machine is on.
 pub(super) const REACH: u32 = 8;
 
 /// An element in the queue, with the corner where it begins.
@@ -32,10 +32,15 @@ pub(super) struct Piece {
     pub straight: bool,
     /// It begins at a corner that was moved, as a chain of lines allows.
     pub chained: bool,
-    /// How many corners at its start and before reach into it.
-    before: u8,
-    /// How many corners at its end and after.
-    after: u8,
+    /// How far the corner at its end reaches into it \[mm\].
+    end_half: f64,
+}
+
+impl Piece {
+    /// Path length where it ends \[mm\].
+    fn end(&self) -> f64 {
+        self.start + self.element.length
+    }
 }
 
 /// A queue of up to `E` elements, a power of two. Elements have serial numbers, which go on for ever.
@@ -154,8 +159,7 @@ impl<const E: usize> Track<E> {
             straight: matches!(element.shape, Shape::Line(_)),
             even: element.feed == self.end_feed && start.second == self.end_bend,
             chained: false,
-            before: 0,
-            after: 0,
+            end_half: 0.0,
             element,
         });
         self.end += 1;
@@ -192,38 +196,27 @@ impl<const E: usize> Track<E> {
         self.first = self.first.max(serial.min(self.end));
     }
 
-    /// Gives the corner at the start of element `serial` its shape.
+    /// Gives the corner at the start of element `serial` its shape; it reaches no farther than the elements that meet
+    /// there.
     pub fn shape_corner(&mut self, serial: u32, half: f64, stop: bool) {
         let Some(piece) = self.get_mut(serial) else { return };
         piece.corner.half = half;
         piece.stop |= stop;
-        let at = piece.start;
-        if half <= 0.0 {
-            return;
-        }
-        let mut before = 1;
-        while let Some(piece) = self
-            .get_mut(serial + before - 1)
-            .filter(|piece| piece.start < at + half)
-        {
-            piece.before = piece.before.max(before as u8);
-            before += 1;
-        }
-        let mut after = 1;
-        while after <= serial {
-            let Some(piece) = self.get_mut(serial - after) else {
-                break;
-            };
-            if piece.start + piece.element.length <= at - half {
-                break;
-            }
-            piece.after = piece.after.max(after as u8);
-            after += 1;
+        if let Some(before) = serial.checked_sub(1).and_then(|serial| self.get_mut(serial)) {
+            before.end_half = half;
         }
     }
 
     /// The element at path length `s`, looked for from `hint`, which is left there.
+    #[inline]
     pub fn find(&self, s: f64, hint: &mut u32) -> Option<&Piece> {
+        match self.get(*hint) {
+            Some(piece) if piece.start <= s && s < piece.end() => Some(piece),
+            _ => self.search(s, hint),
+        }
+    }
+
+    fn search(&self, s: f64, hint: &mut u32) -> Option<&Piece> {
         *hint = (*hint).clamp(self.first, self.end.saturating_sub(1));
         let mut piece = self.get(*hint)?;
         while s < piece.start {
@@ -233,7 +226,7 @@ impl<const E: usize> Track<E> {
             piece = before;
             *hint -= 1;
         }
-        while s >= piece.start + piece.element.length {
+        while s >= piece.end() {
             let Some(after) = self.get(*hint + 1) else { break };
             piece = after;
             *hint += 1;
@@ -245,12 +238,12 @@ impl<const E: usize> Track<E> {
     pub fn at<const N: usize>(&self, s: f64, hint: &mut u32) -> Option<PathPoint<N>> {
         let piece = self.find(s, hint)?;
         let mut point = piece.element.channels(s - piece.start);
-        let serial = *hint;
-        for reaching in (serial + 1).saturating_sub(u32::from(piece.before))..=serial + u32::from(piece.after)
+        piece.corner.add_to(&mut point, s - piece.start);
+        let beyond = s - piece.end();
+        if -beyond < piece.end_half
+            && let Some(next) = self.get(*hint + 1)
         {
-            if let Some(other) = self.get(reaching) {
-                other.corner.add_to(&mut point, s - other.start);
-            }
+            next.corner.add_to(&mut point, beyond);
         }
         Some(point)
     }
