@@ -12,7 +12,7 @@ mod spline;
 pub use arc::{Arc, ArcError, Turn};
 pub use attitude::{AttitudeError, angle, interpolate, rotate};
 pub use line::{Line, LineError};
-pub use motion::{Moving, PoseMotion, frame_rates, pose_in_motion};
+pub use motion::{Moving, PoseMotion, pose_in_motion};
 pub use pose::{Pose, PoseError};
 pub use saddle::{
     CurvePoint, MachineCoordinates, Meeting, Nearest, PipePair, PipePairConfig, SaddleCurve, SaddleError,

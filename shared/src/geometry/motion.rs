@@ -1,5 +1,6 @@
 //! A pose in motion: derivatives of the location data, and the angular velocity they mean.
 
+use super::pose::{SHORTEST, length_across};
 use super::{Pose, PoseError};
 use nalgebra::Vector3;
 
@@ -41,71 +42,60 @@ pub struct Moving {
     pub second: Vector3<f64>,
 }
 
-impl Moving {
-    /// The vector at length 1, with its exact derivatives; `length` is its length.
-    fn normalised(&self, length: f64) -> Self {
-        // v = r·u, differentiated twice; u·u′ = 0 and u·u″ = −u′·u′.
-        let per_length = 1.0 / length;
-        let value = self.value * per_length;
-        let r1 = value.dot(&self.first);
-        let first = (self.first - value * r1) * per_length;
-        let r2 = value.dot(&self.second) + length * first.dot(&first);
-        let second = (self.second - value * r2 - first * (2.0 * r1)) * per_length;
-        Self { value, first, second }
-    }
-
-    /// The part perpendicular to the unit vector `u`, with its exact derivatives.
-    fn across(&self, u: &Self) -> Self {
-        let c = self.value.dot(&u.value);
-        let c1 = self.first.dot(&u.value) + self.value.dot(&u.first);
-        let c2 = self.second.dot(&u.value) + 2.0 * self.first.dot(&u.first) + self.value.dot(&u.second);
-        Self {
-            value: self.value - u.value * c,
-            first: self.first - u.value * c1 - u.first * c,
-            second: self.second - u.value * c2 - u.first * (2.0 * c1) - u.second * c,
-        }
-    }
-}
-
-/// Angular velocity and acceleration of the frame whose unit vectors T and N move as given:
-/// ω = T×Ṫ − T(Ṅ·M) (SPEC 0.3) and its derivative.
-pub fn frame_rates(tangent: &Moving, normal: &Moving) -> (Vector3<f64>, Vector3<f64>) {
-    let (t, n) = (tangent, normal);
-    let m = n.value.cross(&t.value);
-    let about_t = -n.first.dot(&m);
-    // Ṁ = Ṅ×T + N×Ṫ, and Ṅ·(Ṅ×T) = 0.
-    let about_t_1 = -n.second.dot(&m) - n.first.dot(&n.value.cross(&t.first));
-    let omega = t.value.cross(&t.first) + t.value * about_t;
-    let alpha = t.value.cross(&t.second) + t.first * about_t + t.value * about_t_1;
-    (omega, alpha)
-}
-
 /// Makes a pose in motion of a position and two directions of any length: as [`Pose::new`], with the exact
 /// derivatives of what it does.
+///
+/// With M = N × T and both directions made a frame, ω = T×Ṫ − T(Ṅ·M) (SPEC 0.3), and α is its derivative. What the
+/// given directions move along T and N only changes their lengths.
 pub fn pose_in_motion(
     position: &Moving,
     tangent: &Moving,
     normal: &Moving,
 ) -> Result<(Pose, PoseMotion), PoseError> {
-    // Checks the values; the derivatives are finite if they are.
-    let finite = |v: &Moving| v.first.iter().chain(v.second.iter()).all(|x| x.is_finite());
-    if !(finite(position) && finite(tangent) && finite(normal)) {
+    // Not finite if a component is not.
+    let sum = |v: &Moving| (v.value + v.first + v.second).sum();
+    if !(sum(position) + sum(tangent) + sum(normal)).is_finite() {
         return Err(PoseError::NotFinite);
     }
-    let pose = Pose::new(position.value, tangent.value, normal.value)?;
-    let t = tangent.normalised(tangent.value.norm());
-    let across = normal.across(&t);
-    let n = across.normalised(across.value.norm());
-    let (angular_velocity, angular_acceleration) = frame_rates(&t, &n);
-    Ok((
-        pose,
-        PoseMotion {
-            velocity: position.first,
-            angular_velocity,
-            acceleration: position.second,
-            angular_acceleration,
-        },
-    ))
+    let length = tangent.value.norm();
+    if length <= SHORTEST {
+        return Err(PoseError::ZeroVector);
+    }
+    let per_length = 1.0 / length;
+    let t = tangent.value * per_length;
+    let lengthening = t.dot(&tangent.first);
+    let t_1 = (tangent.first - t * lengthening) * per_length;
+    // But for its part along T.
+    let t_2 = (tangent.second - t_1 * (2.0 * lengthening)) * per_length;
+
+    // The part of the normal perpendicular to T, which N has the direction of, is `normal` − T·`along`.
+    let along = normal.value.dot(&t);
+    let across = normal.value - t * along;
+    let width = length_across(&normal.value, &across)?;
+    let per_width = 1.0 / width;
+    let n = across * per_width;
+    let m = n.cross(&t);
+    // Ṫ = M·yaw + N·pitch.
+    let (yaw, pitch) = (t_1.dot(&m), t_1.dot(&n));
+    let along_1 = normal.first.dot(&t) + normal.value.dot(&t_1);
+    let widening = normal.first.dot(&n) - along * pitch;
+    // Parts of Ṅ and N̈ along M.
+    let n_1 = (normal.first.dot(&m) - along * yaw) * per_width;
+    let n_2 = normal.second.dot(&m) - 2.0 * along_1 * yaw - along * t_2.dot(&m);
+    let n_2 = (n_2 - 2.0 * widening * n_1) * per_width;
+    let pose = Pose {
+        position: position.value,
+        tangent: t,
+        normal: n,
+    };
+    let motion = PoseMotion {
+        velocity: position.first,
+        angular_velocity: t.cross(&t_1) - t * n_1,
+        acceleration: position.second,
+        // (Ṅ·M)˙ = N̈·M + Ṅ·Ṁ, and Ṅ·Ṁ = yaw·pitch.
+        angular_acceleration: t.cross(&t_2) - t_1 * n_1 - t * (n_2 + yaw * pitch),
+    };
+    Ok((pose, motion))
 }
 
 #[cfg(test)]
@@ -129,26 +119,53 @@ mod tests {
         }
     }
 
-    /// Derivatives of the frame agree with differences of the frame.
+    fn at(t: f64) -> (Pose, PoseMotion) {
+        pose_in_motion(&moving(t, 1.0), &moving(t, 0.0), &moving(t, 2.0)).unwrap()
+    }
+
+    /// The frame is that of the values, turns by ω, and ω changes by α, as differences see it.
     #[test]
-    fn normalised_and_perpendicular_vectors_have_exact_derivatives() {
-        let frame = |t: f64| {
-            let tangent = moving(t, 0.0);
-            let tangent = tangent.normalised(tangent.value.norm());
-            let across = moving(t, 2.0).across(&tangent);
-            (tangent, across.normalised(across.value.norm()))
-        };
+    fn the_frame_of_changing_directions_has_exact_rates() {
         let h = 1e-5;
         for k in 0..20 {
             let t = f64::from(k) * 0.1 - 1.0;
-            let (before, now, after) = (frame(t - h), frame(t), frame(t + h));
-            assert!(now.0.value.dot(&now.1.value).abs() < 1e-15);
-            for (before, now, after) in [(before.0, now.0, after.0), (before.1, now.1, after.1)] {
-                let first = (after.value - before.value) / (2.0 * h);
-                let second = (after.first - before.first) / (2.0 * h);
-                assert!((first - now.first).norm() < 1e-7, "first at {t}");
-                assert!((second - now.second).norm() < 1e-7, "second at {t}");
+            let (pose, motion) = at(t);
+            let still = Pose::new(along(t, 1.0), along(t, 0.0), along(t, 2.0)).unwrap();
+            assert!((pose.tangent - still.tangent).norm() < 1e-15);
+            assert!((pose.normal - still.normal).norm() < 1e-15);
+            let [before, after] = [at(t - h), at(t + h)];
+            let omega = motion.angular_velocity;
+            for (direction, before, after) in [
+                (pose.tangent, before.0.tangent, after.0.tangent),
+                (pose.normal, before.0.normal, after.0.normal),
+            ] {
+                let rate = (after - before) / (2.0 * h);
+                assert!((omega.cross(&direction) - rate).norm() < 1e-7, "ω at {t}");
             }
+            let alpha = (after.1.angular_velocity - before.1.angular_velocity) / (2.0 * h);
+            assert!((motion.angular_acceleration - alpha).norm() < 1e-6, "α at {t}");
         }
+    }
+
+    #[test]
+    fn a_motion_that_is_not_finite_or_without_a_frame_is_refused() {
+        let (position, tangent, normal) = (moving(0.3, 1.0), moving(0.3, 0.0), moving(0.3, 2.0));
+        let refused =
+            |tangent: &Moving, normal: &Moving| pose_in_motion(&position, tangent, normal).unwrap_err();
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut other = normal;
+            other.second.y = bad;
+            assert_eq!(refused(&tangent, &other), PoseError::NotFinite);
+            let mut other = tangent;
+            other.value.z = bad;
+            assert_eq!(refused(&other, &normal), PoseError::NotFinite);
+        }
+        let none = Moving {
+            value: Vector3::zeros(),
+            ..normal
+        };
+        assert_eq!(refused(&none, &normal), PoseError::ZeroVector);
+        assert_eq!(refused(&tangent, &none), PoseError::ZeroNormal);
+        assert_eq!(refused(&tangent, &tangent), PoseError::NormalParallelTangent);
     }
 }

@@ -47,18 +47,12 @@ impl Pose {
             return Err(PoseError::NotFinite);
         }
         let tangent = unit(tangent).ok_or(PoseError::ZeroVector)?;
-        let length = normal.norm();
-        if length <= 1e-12 {
-            return Err(PoseError::ZeroNormal);
-        }
         let across = normal - tangent * normal.dot(&tangent);
-        if across.norm() < 1e-6 * length {
-            return Err(PoseError::NormalParallelTangent);
-        }
+        let width = length_across(&normal, &across)?;
         Ok(Self {
             position,
             tangent,
-            normal: across / across.norm(),
+            normal: across / width,
         })
     }
 
@@ -85,10 +79,27 @@ impl Pose {
     }
 }
 
+/// Vectors that are shorter have no direction.
+pub(super) const SHORTEST: f64 = 1e-12;
+/// A normal that is off T by less has none across it \[rad\].
+const PARALLEL: f64 = 1e-6;
+
+/// Length of `across`, which is the part of `normal` perpendicular to T.
+pub(super) fn length_across(normal: &Vector3<f64>, across: &Vector3<f64>) -> Result<f64, PoseError> {
+    let (whole, part) = (normal.norm_squared(), across.norm_squared());
+    if whole <= SHORTEST * SHORTEST {
+        return Err(PoseError::ZeroNormal);
+    }
+    if part < PARALLEL * PARALLEL * whole {
+        return Err(PoseError::NormalParallelTangent);
+    }
+    Ok(libm::sqrt(part))
+}
+
 /// `v` with length 1, or `None` if it is shorter than 1e-12.
 pub(crate) fn unit(v: Vector3<f64>) -> Option<Vector3<f64>> {
     let length = v.norm();
-    (length > 1e-12).then(|| v / length)
+    (length > SHORTEST).then(|| v / length)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! ram), then B, then A, which is the direction of travel T: R = Rz(C)·Ry(B)·Rx(A), T = R·ex, N = R·ez.
 //! Inside |B| ≤ 30° and |C| ≤ 90° the solution is unique and regular, so there is no branch to choose.
 
-use super::rpy::RollPitchYaw;
+use super::rpy::{RollPitchYaw, across_z};
 use super::{AxisLimits, AxisMotion, Chain, KinematicsError};
 use crate::geometry::{Pose, PoseMotion};
 use crate::io::AXES;
@@ -81,16 +81,14 @@ impl DualBeam {
         let [a_acc, b_acc, c_acc] = angles.acceleration;
         let b_axis = turn.pitch_axis();
 
-        let omega_1 = Vector3::new(0.0, 0.0, c_rate);
-        let omega_2 = omega_1 + b_axis * b_rate;
+        let omega_2 = b_axis * b_rate + Vector3::new(0.0, 0.0, c_rate);
         // ω_i × r_i is needed again for the centripetal parts.
-        let (u1, u2, u3) = (omega_1.cross(r1), omega_2.cross(r2), omega.cross(r3));
+        let (u1, u2, u3) = (across_z(c_rate, r1), omega_2.cross(r2), omega.cross(r3));
         let p = motion.velocity - (u1 + u2 + u3);
 
-        let alpha_1 = Vector3::new(0.0, 0.0, c_acc);
-        let alpha_2 = alpha_1 + b_axis * b_acc + omega_1.cross(&b_axis) * b_rate;
+        let alpha_2 = b_axis * b_acc + across_z(c_rate * b_rate, &b_axis) + Vector3::new(0.0, 0.0, c_acc);
         let p_acc = motion.acceleration
-            - (alpha_1.cross(r1) + omega_1.cross(&u1))
+            - (across_z(c_acc, r1) + across_z(c_rate, &u1))
             - (alpha_2.cross(r2) + omega_2.cross(&u2))
             - (alpha.cross(r3) + omega.cross(&u3));
 

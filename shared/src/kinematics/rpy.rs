@@ -27,6 +27,11 @@ pub(super) struct AngleMotion {
     pub(super) acceleration: [f64; 3],
 }
 
+/// What turning at `rate` about Z moves `r` by: ω×r.
+pub(super) fn across_z(rate: f64, r: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(-rate * r.y, rate * r.x, 0.0)
+}
+
 impl RollPitchYaw {
     pub(super) fn of_angles(a: f64, b: f64, c: f64) -> Self {
         let (sin_a, cos_a) = libm::sincos(a);
@@ -146,7 +151,7 @@ impl RollPitchYaw {
         let b_rate = w.y;
         let c_rate = w.z + a_rate * self.sin_b;
 
-        let mut w = self.back_c(alpha) - Vector3::new(0.0, 0.0, c_rate).cross(&w);
+        let mut w = self.back_c(alpha) - across_z(c_rate, &w);
         w.x += a_rate * self.sin_b * b_rate;
         let a_acc = w.x * per_cos_b;
         let b_acc = w.y;
