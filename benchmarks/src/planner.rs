@@ -75,8 +75,8 @@ fn drive(
             next += 1;
         }
         let mut output = None;
-        let count = meter.count(&mut || output = Some(black_box(planner.tick(kinematics))));
-        let output = output.ok_or(Failure::Stuck(subject))??;
+        let count = meter.count(&mut || output = Some(planner.tick(kinematics)));
+        let output = black_box(output).ok_or(Failure::Stuck(subject))??;
         tell(FUNCTIONS[1], count)?;
         output.axes.position.iter().for_each(|x| checksum.add(*x));
         if next == program.elements && output.at_rest {

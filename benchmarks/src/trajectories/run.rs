@@ -104,8 +104,8 @@ pub fn run(
             pushed += 1;
         }
         let mut output = None;
-        meter.count(&mut || output = Some(black_box(planner.tick(kinematics))));
-        let output = output
+        meter.count(&mut || output = Some(planner.tick(kinematics)));
+        let output = black_box(output)
             .expect("a meter makes the call")
             .map_err(|error| Stuck::Tick { ticks, line, error })?;
         let s = output.along.s;
