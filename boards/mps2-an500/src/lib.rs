@@ -10,6 +10,8 @@
 // Registers and vectors are reached here and nowhere else.
 #![allow(unsafe_code)]
 
+use board_copy as _;
+
 pub mod benchmark;
 pub mod device;
 mod failure;

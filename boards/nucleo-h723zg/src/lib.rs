@@ -10,6 +10,9 @@
 // Registers, vectors and fault handlers are reached here and nowhere else.
 #![cfg_attr(target_os = "none", allow(unsafe_code))]
 
+#[cfg(target_os = "none")]
+use board_copy as _;
+
 pub mod counting;
 pub mod pins;
 pub mod schedule;

@@ -1,0 +1,91 @@
+//! Copies of memory, for every board: eight words at a time where it is aligned.
+//!
+//! The compiler calls `__aeabi_memcpy`, and its kin for aligned memory, to move what is larger than 64 bytes (Run-time ABI
+//! for the Arm Architecture, 4.3.4). The compiler's own take three instructions a word, and many more where it is not
+//! aligned; these take half a one, and three. On a host this crate is empty.
+#![cfg(target_os = "none")]
+#![no_std]
+// Memory is copied here by its addresses, and nowhere else.
+#![allow(unsafe_code)]
+
+// r0: to, r1: from, both aligned to words; r2: bytes. They may be changed, and r3, r12 and the flags.
+core::arch::global_asm!(
+    ".syntax unified",
+    ".section .text.__aeabi_memcpy4, \"ax\", %progbits",
+    ".global __aeabi_memcpy4",
+    ".global __aeabi_memcpy8",
+    ".type __aeabi_memcpy4, %function",
+    ".type __aeabi_memcpy8, %function",
+    ".balign 8",
+    ".thumb_func",
+    "__aeabi_memcpy4:",
+    ".thumb_func",
+    "__aeabi_memcpy8:",
+    "push {{r4-r9, lr}}",
+    "subs r2, r2, #32",
+    "blo 2f",
+    "1:",
+    "ldmia r1!, {{r3-r9, r12}}",
+    "subs r2, r2, #32",
+    "stmia r0!, {{r3-r9, r12}}",
+    "bhs 1b",
+    // The low five bits of r2 are those of what is left: 16 to the carry, 8 to the sign.
+    "2:",
+    "lsls r2, r2, #28",
+    "itt cs",
+    "ldmiacs r1!, {{r3-r6}}",
+    "stmiacs r0!, {{r3-r6}}",
+    "itt mi",
+    "ldmiami r1!, {{r3-r4}}",
+    "stmiami r0!, {{r3-r4}}",
+    // 4 to the carry, 2 to the sign.
+    "lsls r2, r2, #2",
+    "itt cs",
+    "ldrcs r3, [r1], #4",
+    "strcs r3, [r0], #4",
+    "itt mi",
+    "ldrhmi r3, [r1], #2",
+    "strhmi r3, [r0], #2",
+    "lsls r2, r2, #1",
+    "itt mi",
+    "ldrbmi r3, [r1]",
+    "strbmi r3, [r0]",
+    "pop {{r4-r9, pc}}",
+    ".size __aeabi_memcpy4, . - __aeabi_memcpy4",
+    ".size __aeabi_memcpy8, . - __aeabi_memcpy8",
+    // Not aligned: a word at a time all the same, which this processor loads and stores anywhere in memory.
+    ".section .text.__aeabi_memcpy, \"ax\", %progbits",
+    ".global __aeabi_memcpy",
+    ".type __aeabi_memcpy, %function",
+    ".balign 8",
+    ".thumb_func",
+    "__aeabi_memcpy:",
+    "orr r3, r0, r1",
+    "lsls r3, r3, #30",
+    "beq __aeabi_memcpy4",
+    "subs r2, r2, #8",
+    "blo 2f",
+    "1:",
+    "ldr r3, [r1], #4",
+    "ldr r12, [r1], #4",
+    "subs r2, r2, #8",
+    "str r3, [r0], #4",
+    "str r12, [r0], #4",
+    "bhs 1b",
+    // What is left: 4 to the carry, 2 to the sign.
+    "2:",
+    "lsls r2, r2, #30",
+    "itt cs",
+    "ldrcs r3, [r1], #4",
+    "strcs r3, [r0], #4",
+    "itt mi",
+    "ldrhmi r3, [r1], #2",
+    "strhmi r3, [r0], #2",
+    "lsls r2, r2, #1",
+    "itt mi",
+    "ldrbmi r3, [r1]",
+    "strbmi r3, [r0]",
+    "bx lr",
+    ".size __aeabi_memcpy, . - __aeabi_memcpy",
+    ".text",
+);
