@@ -42,13 +42,13 @@ pub fn at_unit_speed<const N: usize>(
     space: PathSpace,
     near: &[f64; AXES],
 ) -> Result<AxisMotion, ReferenceError> {
-    Ok(match space {
-        PathSpace::Tool => {
-            let (pose, motion) = point.pose_in_motion()?;
-            kinematics.inverse_motion(&pose, &motion, near)?
-        }
-        PathSpace::Axes => point.axes(),
-    })
+    match space {
+        PathSpace::Tool => match &point.pose_in_motion() {
+            Ok((pose, motion)) => Ok(kinematics.inverse_motion(pose, motion, near)?),
+            Err(error) => Err((*error).into()),
+        },
+        PathSpace::Axes => Ok(point.axes()),
+    }
 }
 
 /// The axes at a point of a path, nearest to `near`.

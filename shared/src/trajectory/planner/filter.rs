@@ -103,10 +103,12 @@ impl<const N: usize> Mean<N> {
     }
 
     /// Puts `values` in the place of the oldest.
+    #[inline]
     fn push(&mut self, values: &[f64; N], oldest: usize) {
-        let leave = core::mem::replace(&mut self.ring[oldest], *values);
-        self.sum = core::array::from_fn(|i| self.sum[i] + (values[i] - leave[i]));
+        let oldest = &mut self.ring[oldest];
+        self.sum = core::array::from_fn(|i| self.sum[i] + (values[i] - oldest[i]));
         self.fresh = core::array::from_fn(|i| self.fresh[i] + values[i]);
+        *oldest = *values;
     }
 
     /// Before the first place of the ring is written again.

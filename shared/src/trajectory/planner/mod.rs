@@ -392,10 +392,12 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         };
         self.laid &= self.player.node == node && self.resting == 0;
         self.planned = planned;
-        match self.space {
-            PathSpace::Axes => self.drive::<AXES>(kinematics),
-            PathSpace::Tool => self.drive::<POSE_CHANNELS>(kinematics),
+        let axes = match self.space {
+            PathSpace::Axes => self.planned_axes::<AXES>(kinematics),
+            PathSpace::Tool => self.planned_axes::<POSE_CHANNELS>(kinematics),
         }?;
+        self.axes = axes.position;
+        self.filter.push(&axes, &self.planned);
         let along = self.filter.along();
         let piece = self.track.find(along.s, &mut self.output_hint);
         Ok(Output {
@@ -406,24 +408,21 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         })
     }
 
-    /// Moves the axes to the planned place, which takes the first `N` channels of the path.
-    fn drive<const N: usize>(&mut self, kinematics: &Kinematics) -> Result<(), Unreachable> {
+    /// The axes at the planned place, which takes the first `N` channels of the path.
+    #[inline]
+    fn planned_axes<const N: usize>(&mut self, kinematics: &Kinematics) -> Result<AxisMotion, Unreachable> {
         let SpeedState { s, v, a } = self.planned;
-        let axes = match self.track.at::<N>(s, &mut self.planned_hint) {
-            Some(point) => {
-                let axes = at_unit_speed(kinematics, &point, self.space, &self.axes);
-                let axes = axes.map_err(|source| {
-                    let piece = self.track.get(self.planned_hint);
-                    let line = piece.map_or(0, |piece| piece.element.line);
-                    Unreachable { line, s, source }
-                })?;
-                axes.at_speed(v, a)
-            }
-            None => AxisMotion::at_rest(&self.axes),
+        let Some(point) = self.track.at::<N>(s, &mut self.planned_hint) else {
+            return Ok(AxisMotion::at_rest(&self.axes));
         };
-        self.axes = axes.position;
-        self.filter.push(&axes, &self.planned);
-        Ok(())
+        match at_unit_speed(kinematics, &point, self.space, &self.axes) {
+            Ok(axes) => Ok(axes.at_speed(v, a)),
+            Err(source) => {
+                let piece = self.track.get(self.planned_hint);
+                let line = piece.map_or(0, |piece| piece.element.line);
+                Err(Unreachable { line, s, source })
+            }
+        }
     }
 }
 
