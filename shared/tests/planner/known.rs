@@ -553,3 +553,17 @@ fn a_machine_that_slows_down_at_a_corner_keeps_the_jerk() {
         passes(&bench::axes(&frame), &moves, &vec![]);
     }
 }
+
+#[test]
+fn all_that_the_attitude_turns_at_a_corner_counts() {
+    let moves = [
+        Move {
+            kind: Kind::Stand,
+            corner: 3.12559,
+            turn: [0.9913311, -0.5473534, 0.0],
+            ..LINE
+        },
+        LINE,
+    ];
+    passes(&bench::pipe_welder(), &moves, &vec![]);
+}

@@ -2,8 +2,7 @@
 
 use super::grid::{Ground, Sample};
 use super::limits::{ACCURACY_ROW, FILTER_SHARE};
-use super::rounding::ATTITUDE;
-use super::track::Piece;
+use super::track::{Piece, attitude_norm};
 use crate::trajectory::{Join, PathPoint, Tolerance};
 use core::f64::consts::SQRT_2;
 
@@ -27,9 +26,7 @@ impl<const E: usize> Ground<'_, E> {
             .sum::<f64>();
         let share = if corners > 0.0 { HALF } else { 1.0 };
         sample.first[ACCURACY_ROW] = (corners / HALF) as f32;
-        let attitude = point.second[ATTITUDE]
-            .iter()
-            .fold(0.0, |most, bend| libm::fmax(most, libm::fabs(*bend)));
+        let attitude = attitude_norm(&point.second);
         for (per_acceleration, bend) in per_acceleration.into_iter().zip([sample.bend, attitude]) {
             sample.limit = libm::fmin(sample.limit, share / (per_acceleration * bend));
         }

@@ -1,7 +1,8 @@
 //! Rounded corners, as terms that are added to the path.
 
-use super::track::position_norm;
-use crate::trajectory::{CHANNELS, PathPoint, SHAPED};
+use super::rounding::ATTITUDE;
+use super::track::{attitude_norm, position_norm};
+use crate::trajectory::{CHANNELS, PathPoint};
 
 /// A corner: a jump of the direction, spread over `half` \[mm\] of path length on both sides.
 ///
@@ -13,7 +14,7 @@ pub(super) struct Corner {
     pub jump: [f64; CHANNELS],
     /// By how much the direction of the first channels changes \[rad\], if that is little.
     pub turn: f64,
-    /// Largest jump of the other channels.
+    /// Largest jump of the attitude and the other channels.
     pub others: f64,
     /// Half the length \[mm\]; 0 where nothing is rounded.
     pub half: f64,
@@ -31,9 +32,11 @@ impl Corner {
     pub fn set_jump(&mut self, from: &[f64; CHANNELS], to: &[f64; CHANNELS]) {
         self.jump = core::array::from_fn(|i| to[i] - from[i]);
         self.turn = position_norm(&self.jump);
-        self.others = self.jump[SHAPED..]
+        self.others = self.jump[ATTITUDE.end..]
             .iter()
-            .fold(0.0, |most, jump| libm::fmax(most, libm::fabs(*jump)));
+            .fold(attitude_norm(&self.jump), |most, jump| {
+                libm::fmax(most, libm::fabs(*jump))
+            });
     }
 
     /// Adds the corner to `point`, `s` \[mm\] after it.

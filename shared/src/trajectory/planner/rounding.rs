@@ -2,7 +2,7 @@
 
 use super::chain::chained;
 use super::limits::{Bounds, FILTER_SHARE};
-use super::track::{Piece, SMOOTH, Track};
+use super::track::{Piece, SMOOTH, Track, attitude_norm};
 use crate::trajectory::{CHANNELS, Join, SHAPED};
 
 /// A corner rounded by less \[mm\] is a stop.
@@ -63,12 +63,10 @@ fn share(piece: &Piece, whole: bool) -> f64 {
 fn size(before: &Piece, after: &Piece, bounds: &Bounds) -> (f64, bool) {
     let jump = &after.corner.jump;
     let turn = after.corner.turn;
-    let largest = |range: core::ops::Range<usize>| {
-        jump[range]
-            .iter()
-            .fold(0.0, |most: f64, x| libm::fmax(most, libm::fabs(*x)))
-    };
-    let (attitude, slides) = (largest(ATTITUDE), largest(ATTITUDE.end..CHANNELS));
+    let attitude = attitude_norm(jump);
+    let slides = jump[ATTITUDE.end..]
+        .iter()
+        .fold(0.0, |most: f64, x| libm::fmax(most, libm::fabs(*x)));
     let feed = libm::fmin(before.element.feed, after.element.feed);
     let noticed = bounds.unfelt / feed;
     if turn <= noticed && attitude <= SMOOTH && slides <= noticed {

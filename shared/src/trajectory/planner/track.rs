@@ -2,6 +2,7 @@
 
 use super::PushError;
 use super::corner::Corner;
+use super::rounding::ATTITUDE;
 use crate::trajectory::{CHANNELS, Element, Join, PathPoint, SHAPED, Shape};
 use nalgebra::Vector3;
 
@@ -268,4 +269,11 @@ fn bend(element: &Element, ends: [&PathPoint; 2]) -> f64 {
 /// Length of the change of the first channels.
 pub(super) fn position_norm(jump: &[f64; CHANNELS]) -> f64 {
     libm::sqrt(jump[..SHAPED].iter().map(|x| x * x).sum())
+}
+
+/// Length of the change of the attitude: of A B C together, or of T or N, whichever is more.
+pub(super) fn attitude_norm(jump: &[f64; CHANNELS]) -> f64 {
+    let square = |range: core::ops::Range<usize>| jump[range].iter().map(|x| x * x).sum::<f64>();
+    let middle = SHAPED + 3;
+    libm::sqrt(libm::fmax(square(SHAPED..middle), square(middle..ATTITUDE.end)))
 }
