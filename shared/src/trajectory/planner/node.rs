@@ -17,6 +17,9 @@ const LEAST_RATE: f32 = 1e-6;
 /// A lane for every row of limits.
 pub(super) type Lanes = [f32; ROWS];
 
+/// The board goes through the lanes one by one, and is faster where it can pass some over; a PC takes several at once.
+const ONE_BY_ONE: bool = cfg!(target_arch = "arm");
+
 /// The smaller one, for lanes: unlike `f32::min` it costs one instruction, as no number here is NaN.
 pub(super) fn least(a: f32, b: f32) -> f32 {
     if cfg!(target_arch = "arm") {
@@ -53,8 +56,8 @@ pub(super) struct Side {
     pub low: Lanes,
     /// Acceleration of the row that the neighbourhood in time allows.
     pub allowed: Lanes,
-    /// Some of the box is smaller than the limits.
-    pub boxed: bool,
+    /// A bit for every row whose box is smaller than the limits.
+    pub boxed: u8,
 }
 
 /// A place, and the interval from it to the next one.
@@ -97,7 +100,7 @@ impl Side {
         high: [0.0; ROWS],
         low: [0.0; ROWS],
         allowed: [0.0; ROWS],
-        boxed: false,
+        boxed: 0,
     };
 
     /// Rates of a row: α, and its acceleration for each unit of x.
@@ -116,7 +119,7 @@ impl Side {
             self.high[row] = bounds.acceleration[row] / self.alpha[row].abs();
             self.low[row] = -self.high[row];
         }
-        self.boxed = false;
+        self.boxed = 0;
     }
 
     /// Makes the box smaller where the acceleration `is` more than past and future allow; says whether it did.
@@ -135,43 +138,60 @@ impl Side {
         }
         for row in 0..ROWS {
             let swing = bounds.swing[row];
-            let smallest = LEAST_BOX * least(bounds.acceleration[row], swing);
             let (top, bottom) = (
                 least(by_past[row], by_future[row]),
                 most(by_past[row], by_future[row]),
             );
             let (above, below) = (is[row] - top, bottom - is[row]);
-            let mut rows = self.of_row(row);
-            if above > TIGHTEN_FROM * swing {
-                rows.1 = most(is[row] - TIGHTEN * above, smallest);
+            let (shut_above, shut_below) = (above > TIGHTEN_FROM * swing, below > TIGHTEN_FROM * swing);
+            let changes = shut_above || shut_below;
+            if ONE_BY_ONE && !changes {
+                continue;
             }
-            if below > TIGHTEN_FROM * swing {
-                rows.0 = least(is[row] + TIGHTEN * below, -smallest);
+            let smallest = LEAST_BOX * least(bounds.acceleration[row], swing);
+            let (mut low, mut high) = self.of_row(row);
+            if shut_above {
+                high = most(is[row] - TIGHTEN * above, smallest);
             }
-            self.set_row(row, rows);
+            if shut_below {
+                low = least(is[row] + TIGHTEN * below, -smallest);
+            }
+            self.set_row(row, (low, high), changes);
+            self.boxed |= u8::from(changes) << row;
         }
-        self.boxed = true;
         true
     }
 
     /// Makes the box larger where the future leaves `room`: up to its highest and lowest accelerations. Says whether
     /// it did.
     pub fn grow(&mut self, is: &Lanes, room: &[Lanes; 2], bounds: &Bounds) -> bool {
-        let before = (self.high, self.low);
+        if self.boxed == 0 {
+            return false;
+        }
+        let mut changed = false;
         for row in 0..ROWS {
+            let boxed = self.boxed & (1 << row) != 0;
+            if ONE_BY_ONE && !boxed {
+                continue;
+            }
             let (full, swing) = (bounds.acceleration[row], bounds.swing[row]);
             let above = room[0][row] - is[row];
             let below = is[row] - room[1][row];
+            let (opens_above, opens_below) = (above > LOOSEN_FROM * swing, below > LOOSEN_FROM * swing);
+            let changes = boxed && (opens_above || opens_below);
+            if ONE_BY_ONE && !changes {
+                continue;
+            }
             let (mut low, mut high) = self.of_row(row);
-            if above > LOOSEN_FROM * swing {
+            if opens_above {
                 high = least(most(high, is[row] + LOOSEN * above), full);
             }
-            if below > LOOSEN_FROM * swing {
+            if opens_below {
                 low = most(least(low, is[row] - LOOSEN * below), -full);
             }
-            self.set_row(row, (low, high));
+            changed |= self.set_row(row, (low, high), changes);
         }
-        before != (self.high, self.low)
+        changed
     }
 
     /// Lowest and highest acceleration of a row.
@@ -180,10 +200,18 @@ impl Side {
         (least(low, high), most(low, high))
     }
 
-    fn set_row(&mut self, row: usize, (low, high): (f32, f32)) {
+    /// Puts other accelerations in their place if it `changes`; says whether they were others.
+    fn set_row(&mut self, row: usize, (low, high): (f32, f32), changes: bool) -> bool {
         let per_alpha = 1.0 / self.alpha[row];
         let (low, high) = (low * per_alpha, high * per_alpha);
-        (self.low[row], self.high[row]) = (least(low, high), most(low, high));
+        let before = (self.low[row], self.high[row]);
+        let after = if changes {
+            (least(low, high), most(low, high))
+        } else {
+            before
+        };
+        (self.low[row], self.high[row]) = after;
+        before != after
     }
 
     /// Accelerations of the rows.

@@ -78,7 +78,7 @@ impl Horizon {
             if self.scaled {
                 continue;
             }
-            changed |= grow && place.boxed && place.grow(&is, &will, bounds);
+            changed |= grow && place.grow(&is, &will, bounds);
             changed |= place.shrink(&is, &by_past, &by_future, bounds);
         }
         changed
