@@ -1,9 +1,10 @@
 //! What keeps the path behind the output filter inside its share of the tolerance.
 
-use super::grid::{Ground, Sample};
-use super::limits::{ACCURACY_ROW, FILTER_SHARE};
-use super::track::{Piece, attitude_norm};
-use crate::trajectory::{Join, PathPoint, Tolerance};
+use super::limits::{ACCURACY_ROW, Bounds};
+use super::node::{greater, lesser};
+use super::sample::{Ground, Sample};
+use super::track::Piece;
+use crate::trajectory::{Join, Tolerance};
 use core::f64::consts::SQRT_2;
 
 /// Where the machine is too quick for the filter at a corner, turning and speeding up have half of the share each.
@@ -15,20 +16,24 @@ const NEAR: u32 = 2;
 
 impl<const E: usize> Ground<'_, E> {
     /// A mean over T is off by T²/24 of the acceleration across the path: limits the speed on curves, and the
-    /// acceleration along the path next to corners.
-    pub fn keep_accurate(&self, sample: &mut Sample, point: &PathPoint, s: f64, serial: u32) {
-        let tolerance = self.tolerance(serial);
-        let off = self.bounds.filter * self.bounds.filter / (24.0 * FILTER_SHARE);
-        let per_acceleration = [off / tolerance.position, off / tolerance.attitude];
-        let corners = (serial.saturating_sub(NEAR - 1)..=serial + NEAR)
-            .filter_map(|serial| self.track.get(serial))
-            .map(|piece| self.at_corner(piece, per_acceleration, s))
-            .sum::<f64>();
-        let share = if corners > 0.0 { HALF } else { 1.0 };
+    /// acceleration along the path next to corners. `serial` is the element there, and `attitude` how much the
+    /// attitude bends.
+    pub fn keep_accurate(&self, sample: &mut Sample, attitude: f64, serial: u32) {
+        let mut corners = 0.0;
+        for serial in serial.saturating_sub(NEAR - 1)..serial + NEAR + 1 {
+            if let Some(piece) = self.track.get(serial)
+                && libm::fabs(sample.s - piece.start) < piece.corner.strained
+            {
+                corners += piece.corner.strain;
+            }
+        }
         sample.first[ACCURACY_ROW] = (corners / HALF) as f32;
-        let attitude = attitude_norm(&point.second);
-        for (per_acceleration, bend) in per_acceleration.into_iter().zip([sample.bend, attitude]) {
-            sample.limit = libm::fmin(sample.limit, share / (per_acceleration * bend));
+        sample.limit = f64::INFINITY;
+        if sample.bend > 0.0 || attitude > 0.0 {
+            let tolerance = self.tolerance(serial);
+            let share = if corners > 0.0 { HALF } else { 1.0 };
+            let used = greater(sample.bend / tolerance.position, attitude / tolerance.attitude);
+            sample.limit = share / (used * self.bounds.off);
         }
     }
 
@@ -40,29 +45,29 @@ impl<const E: usize> Ground<'_, E> {
             _ => self.bounds.tolerance,
         }
     }
+}
 
-    /// Share of the filter's tolerance for each unit of acceleration along the path, at the corner where `piece`
-    /// begins: half the jump of the direction lies across. Nothing where `s` is too far from it, or where the limits
-    /// are low enough anyway.
-    fn at_corner(&self, piece: &Piece, per_acceleration: [f64; 2], s: f64) -> f64 {
-        let (corner, bounds) = (&piece.corner, self.bounds);
-        let [position, attitude] = [corner.turn, corner.others].map(|jump| 0.5 * jump);
+impl Piece {
+    /// Share of the filter's tolerance for each unit of acceleration along the path, at the corner where the element
+    /// begins, of which `half` is half the length, and how far away that matters: half the jump of the direction
+    /// lies across. Nothing where the limits are low enough anyway. The element before it has the `join`.
+    pub fn strain(&self, join: Join, half: f64, bounds: &Bounds) -> (f64, f64) {
+        let Join::Blend(tolerance) = join else {
+            return (0.0, 0.0);
+        };
+        let per_acceleration = [bounds.off / tolerance.position, bounds.off / tolerance.attitude];
+        let [position, attitude] = [self.corner.turn, self.corner.others].map(|jump| 0.5 * jump);
         let share = [position * per_acceleration[0], attitude * per_acceleration[1]];
         // Two axes that turn may do so together.
-        let turning = libm::fmin(SQRT_2 * bounds.spin, attitude * bounds.corner);
-        let most = libm::fmax(share[0] * bounds.corner, per_acceleration[1] * turning);
-        if piece.stop || most <= UNSEEN {
-            return 0.0;
+        let turning = lesser(SQRT_2 * bounds.spin, attitude * bounds.corner);
+        if greater(share[0] * bounds.corner, per_acceleration[1] * turning) <= UNSEEN {
+            return (0.0, 0.0);
         }
-        let share = libm::fmax(share[0], share[1]);
-        let speed = libm::fmin(piece.element.feed, libm::sqrt(HALF * corner.half / share));
+        let share = greater(share[0], share[1]);
+        let speed = lesser(self.element.feed, libm::sqrt(HALF * half / share));
         // As far as the machine comes in half the filter's length.
         let half_time = 0.5 * bounds.filter;
-        let way = corner.half + half_time * (speed + 0.5 * half_time * HALF / share);
-        if libm::fabs(s - piece.start) < way {
-            share
-        } else {
-            0.0
-        }
+        let way = half + half_time * (speed + 0.5 * half_time * HALF / share);
+        (share, way)
     }
 }

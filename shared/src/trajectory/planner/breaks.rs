@@ -1,11 +1,14 @@
 //! Where limits change along the path.
 
-use super::grid::{Ground, SAME};
+use super::grid::SAME;
+use super::node::{greater, lesser};
+use super::sample::Ground;
 use super::track::{Piece, SMOOTH};
-use crate::trajectory::{CHANNELS, SHAPED};
+use crate::trajectory::SHAPED;
+use nalgebra::Vector3;
 
 /// Most junctions that are looked at.
-const LOOK: u32 = 32;
+pub(super) const MOST_LOOKS: u32 = 32;
 /// A turn of a sharp corner \[rad\].
 const SHARP: f64 = 0.5;
 /// Another feed for a shorter time than this is as good as the lower one \[s\].
@@ -26,99 +29,132 @@ pub(super) struct Break {
     pub merged: bool,
     /// Highest speed at which it can be passed \[mm/s\].
     pub speed: f64,
-    /// Junctions that were looked at.
-    pub looks: u32,
+    /// Lowest feed on the way \[mm/s\].
+    pub feed: f64,
+}
+
+/// A look along the path for the next change of limits, a few junctions at a time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Search {
+    s: f64,
+    forward: bool,
+    /// Serial of the element at `s`.
+    hint: u32,
+    /// Junctions looked at.
+    seen: u32,
+    /// Way to the end of the elements seen \[mm\].
+    way: f64,
+    door: Door,
+    /// What is found if nothing comes before.
+    next: Break,
 }
 
 impl<const E: usize> Ground<'_, E> {
-    /// The next change of limits from `s` on in a `direction`; `hint` is the serial of the element there.
-    ///
-    /// Junctions, corners and whole elements are passed over where the path is straight but for what nothing feels.
-    pub fn next_break(&self, s: f64, direction: f64, hint: u32) -> Break {
+    /// Begins to look for the next change of limits from `s` on in a `direction`; `hint` is the serial of the element
+    /// there.
+    pub fn search(&self, s: f64, direction: f64, hint: u32) -> Search {
         let forward = direction > 0.0;
         let end = self.end(direction);
         let stop = !forward || (self.track.closed() && end >= self.track.end_s() - SAME);
-        let mut next = Break {
-            way: direction * (end - s),
-            real: stop,
-            stop,
-            end: true,
-            merged: false,
-            speed: 0.0,
-            looks: 0,
+        Search {
+            s,
+            forward,
+            hint,
+            seen: 0,
+            way: 0.0,
+            door: Door::open(self.track.along(hint, s)),
+            next: Break {
+                way: direction * (end - s),
+                real: stop,
+                stop,
+                end: true,
+                merged: false,
+                speed: 0.0,
+                feed: f64::INFINITY,
+            },
+        }
+    }
+
+    /// Goes on with a `search`, over one junction and the element beyond; gives what is found.
+    ///
+    /// Junctions, corners and whole elements are passed over where the path is straight but for what nothing feels;
+    /// so is the end of a corner inside which the search begins: intervals are halved until they follow it.
+    pub fn look(&self, search: &mut Search) -> Option<Break> {
+        let (s, hint, k) = (search.s, search.hint, search.seen);
+        let next = &mut search.next;
+        if k == MOST_LOOKS {
+            if search.way < next.way {
+                (next.way, next.real, next.stop, next.end) = (search.way, false, false, false);
+            }
+            return Some(*next);
+        }
+        search.seen += 1;
+        let beyond = if search.forward {
+            self.track.get(hint + k)
+        } else {
+            hint.checked_sub(k).and_then(|serial| self.track.get(serial))
         };
-        let Some(start) = self.track.at(s, &mut hint.clone()) else {
-            return next;
+        let Some(element) = beyond else {
+            return Some(*next);
         };
-        let mut door = Door::open(&start.value);
-        let (mut lowest, mut seen) = (f64::INFINITY, 0.0);
-        for k in 0..LOOK {
-            // A junction, and the element beyond it.
-            let (junction, beyond) = match forward {
-                true => (Some(hint + k), Some(hint + k)),
-                false => ((hint + 1).checked_sub(k), hint.checked_sub(k)),
-            };
-            let Some(element) = beyond.and_then(|serial| self.track.get(serial)) else {
-                return next;
-            };
-            next.looks += 1;
-            let length = element.element.length;
-            let (way, far) = match forward {
-                true => (element.start - s, length),
-                false => (s - element.start - length, 0.0),
-            };
-            seen = way + length;
-            let slower = libm::fmin(element.element.feed, lowest);
-            let alike = element.element.feed == lowest || k == 0 || seen <= SHORT * slower;
-            lowest = slower;
-            let corner = junction.and_then(|serial| self.track.get(serial));
-            let smooth = corner.is_none_or(|piece| !piece.stop && piece.corner.others <= SMOOTH);
-            let on = alike
-                && smooth
-                && element.bend * length <= 8.0 * self.bounds.unfelt_way
-                && door.passes(seen, &element.element.at(far).value, self.bounds.unfelt_way);
-            let half = corner.map_or(0.0, |piece| piece.corner.half);
-            for (piece, side) in corner
-                .iter()
-                .flat_map(|piece| [-half, 0.0, half].map(|side| (piece, side)))
-            {
-                // A rounded corner bends evenly; a sharp one needs a place to turn the acceleration.
-                let even = piece.even && smooth && piece.corner.turn < SHARP;
-                if side == 0.0 && half > 0.0 && even {
-                    continue;
-                }
+        let (length, feed) = (element.element.length, element.element.feed);
+        let (way, corner, far) = if search.forward {
+            (
+                element.start - s,
+                Some(element),
+                self.track.junction(hint + k + 1),
+            )
+        } else {
+            let corner = self.track.get(hint + 1 - k);
+            (s - element.start - length, corner, element.place)
+        };
+        let seen = way + length;
+        let slower = lesser(feed, next.feed);
+        let alike = feed == next.feed || k == 0 || seen <= SHORT * slower;
+        search.way = seen;
+        let smooth = corner.is_none_or(|piece| !piece.stop && piece.corner.others <= SMOOTH);
+        let near = self.bounds.unfelt_way;
+        let on =
+            alike && smooth && element.bend * length <= 8.0 * near && search.door.passes(seen, far, near);
+        if let Some(piece) = corner {
+            let half = piece.corner.half;
+            // A rounded corner bends evenly; a sharp one needs a place to turn the acceleration.
+            let even = piece.even && smooth && half > 0.0 && piece.corner.turn < SHARP;
+            for side in [-half, 0.0, half] {
                 let way = way + side;
                 // Where a corner ends with the next junction, that is the change.
-                if way <= SAME || (side > 0.0 && way >= seen - SAME) {
+                if (side == 0.0 && even) || way <= SAME || (side > 0.0 && way >= seen - SAME) {
                     continue;
                 }
                 if way > next.way + SAME {
-                    return next;
+                    return Some(*next);
                 }
                 if !on {
-                    return self.at(piece, way, piece.stop && side == 0.0, next);
+                    return Some(self.at(piece, way, piece.stop && side == 0.0, *next));
                 }
                 next.merged = true;
             }
-            if !on {
-                door.shut();
-            }
         }
-        if seen < next.way {
-            (next.way, next.real, next.stop, next.end) = (seen, false, false, false);
+        next.feed = slower;
+        if !on {
+            search.door.shut();
         }
-        next
+        None
     }
 
     /// The change of limits at the corner where `piece` begins; `end` is the one where all ends.
     fn at(&self, piece: &Piece, way: f64, stop: bool, end: Break) -> Break {
         let corner = &piece.corner;
         let stop = stop || (end.stop && way >= end.way - SAME);
+        // ṡ² at which the acceleration is all used.
         let passing = |acceleration: f64, jump: f64| match corner.half * jump > 0.0 {
-            true => libm::sqrt(2.0 * acceleration * corner.half / jump),
+            true => 2.0 * acceleration * corner.half / jump,
             false => f64::INFINITY,
         };
-        let speed = passing(self.bounds.corner, corner.turn).min(passing(self.bounds.spin, corner.others));
+        let x = lesser(
+            passing(self.bounds.corner, corner.turn),
+            passing(self.bounds.spin, corner.others),
+        );
         Break {
             way,
             real: true,
@@ -127,7 +163,7 @@ impl<const E: usize> Ground<'_, E> {
             speed: if stop {
                 0.0
             } else {
-                libm::fmin(speed, piece.element.feed)
+                lesser(libm::sqrt(x), piece.element.feed)
             },
             ..end
         }
@@ -135,32 +171,33 @@ impl<const E: usize> Ground<'_, E> {
 }
 
 /// Directions in which a straight line through the start passes all points so far.
+#[derive(Clone, Copy, Debug)]
 struct Door {
-    start: [f64; SHAPED],
-    low: [f64; SHAPED],
-    high: [f64; SHAPED],
+    start: Vector3<f64>,
+    low: Vector3<f64>,
+    high: Vector3<f64>,
 }
 
 impl Door {
-    fn open(start: &[f64; CHANNELS]) -> Self {
+    fn open(start: Vector3<f64>) -> Self {
         Self {
-            start: core::array::from_fn(|i| start[i]),
-            low: [f64::NEG_INFINITY; SHAPED],
-            high: [f64::INFINITY; SHAPED],
+            start,
+            low: Vector3::repeat(f64::NEG_INFINITY),
+            high: Vector3::repeat(f64::INFINITY),
         }
     }
 
     fn shut(&mut self) {
-        self.low = [f64::INFINITY; SHAPED];
+        self.low = Vector3::repeat(f64::INFINITY);
     }
 
     /// Whether there is one that passes `point` too, `way` \[mm\] on, no farther away than `near`.
-    fn passes(&mut self, way: f64, point: &[f64; CHANNELS], near: f64) -> bool {
+    fn passes(&mut self, way: f64, point: Vector3<f64>, near: f64) -> bool {
         let per_way = 1.0 / way;
         (0..SHAPED).all(|i| {
             let moved = point[i] - self.start[i];
-            self.low[i] = libm::fmax(self.low[i], (moved - near) * per_way);
-            self.high[i] = libm::fmin(self.high[i], (moved + near) * per_way);
+            self.low[i] = greater(self.low[i], (moved - near) * per_way);
+            self.high[i] = lesser(self.high[i], (moved + near) * per_way);
             self.low[i] <= self.high[i]
         })
     }

@@ -45,7 +45,7 @@ impl<const E: usize> Track<E> {
         straight
             && self
                 .turn(serial)
-                .is_some_and(|turn| turn.norm() < TURN && turn.norm() > 0.0)
+                .is_some_and(|turn| turn.norm_squared() < TURN * TURN && turn.norm_squared() > 0.0)
     }
 
     /// Change of the programmed direction at the start of element `serial`.
@@ -71,7 +71,10 @@ impl<const E: usize> Track<E> {
         }
         let alike = |serial: u32| {
             let other = self.turn(serial).unwrap_or_default();
-            other.dot(&after.turn) > SAME_SENSE * turn * other.norm() && other.norm() < TURN
+            let (along, square) = (other.dot(&after.turn), other.norm_squared());
+            along > 0.0
+                && along * along > SAME_SENSE * SAME_SENSE * turn * turn * square
+                && square < TURN * TURN
         };
         let wanted = room(before, after, turn, bounds);
         if plain(turn, tolerance.position) >= wanted || !(alike(serial - 1) && alike(serial + 1)) {
@@ -82,19 +85,28 @@ impl<const E: usize> Track<E> {
         Some(after.turn * (-inside / turn))
     }
 
-    /// Moves the point where element `serial` begins.
+    /// Moves the point where element `serial` begins, the end of a line and the start of another.
     fn move_corner(&mut self, serial: u32, shift: Vector3<f64>) {
-        let none = Vector3::zeros();
-        for (serial, at_start, at_end) in [(serial - 1, none, shift), (serial, shift, none)] {
-            let Some(piece) = self.get_mut(serial) else { return };
+        let [start, middle, end] = [serial - 1, serial, serial + 1].map(|serial| self.junction(serial));
+        let middle = middle + shift;
+        let mut turned = [Vector3::zeros(); 2];
+        for (i, from, to, shift) in [(0, start, middle, shift), (1, middle, end, -shift)] {
+            let Some(piece) = self.get_mut(serial - 1 + i) else {
+                return;
+            };
             let length = piece.element.length;
-            let start = position(&piece.element.at(0.0).value) + at_start;
-            let end = position(&piece.element.at(length).value) + at_end;
+            piece.place = from;
             piece.element.shape =
-                Shape::Span(core::array::from_fn(|i| Cubic::linear(start[i], end[i], length)));
+                Shape::Span(core::array::from_fn(|i| Cubic::linear(from[i], to[i], length)));
+            turned[i as usize] = shift / length;
         }
-        for serial in serial - 1..=serial + 1 {
-            self.renew_jump(serial);
+        let [before, after] = turned;
+        let jumps = [before, after - before, -after];
+        for (serial, more) in (serial - 1..).zip(jumps) {
+            match self.get_mut(serial) {
+                Some(piece) => piece.corner.turn_by(more),
+                None => self.end_turned += after,
+            }
         }
         if let Some(piece) = self.get_mut(serial) {
             piece.chained = true;
@@ -105,8 +117,4 @@ impl<const E: usize> Track<E> {
 /// Half length of a moved corner that turns by `turn` \[mm\].
 pub(super) fn chained(turn: f64, tolerance: f64) -> f64 {
     8.0 * (USED - 0.5 * FILTER_SHARE) * tolerance / turn
-}
-
-fn position(channels: &[f64]) -> Vector3<f64> {
-    Vector3::new(channels[0], channels[1], channels[2])
 }

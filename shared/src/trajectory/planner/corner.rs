@@ -2,7 +2,8 @@
 
 use super::rounding::ATTITUDE;
 use super::track::{attitude_norm, position_norm};
-use crate::trajectory::{CHANNELS, PathPoint};
+use crate::trajectory::{CHANNELS, PathPoint, SHAPED};
+use nalgebra::Vector3;
 
 /// A corner: a jump of the direction, spread over `half` \[mm\] of path length on both sides.
 ///
@@ -18,6 +19,10 @@ pub(super) struct Corner {
     pub others: f64,
     /// Half the length \[mm\]; 0 where nothing is rounded.
     pub half: f64,
+    /// Share of the output filter's tolerance for each unit of acceleration along the path, within so far \[mm\].
+    pub strain: f64,
+    /// So far; 0 where it needs no care.
+    pub strained: f64,
 }
 
 impl Corner {
@@ -26,6 +31,8 @@ impl Corner {
         turn: 0.0,
         others: 0.0,
         half: 0.0,
+        strain: 0.0,
+        strained: 0.0,
     };
 
     /// The jump from one direction to another.
@@ -37,6 +44,14 @@ impl Corner {
             .fold(attitude_norm(&self.jump), |most, jump| {
                 libm::fmax(most, libm::fabs(*jump))
             });
+    }
+
+    /// The direction of the first channels changes by so much more.
+    pub fn turn_by(&mut self, more: Vector3<f64>) {
+        for i in 0..SHAPED {
+            self.jump[i] += more[i];
+        }
+        self.turn = position_norm(&self.jump);
     }
 
     /// Adds the corner to `point`, `s` \[mm\] after it.

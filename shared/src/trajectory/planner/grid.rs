@@ -1,13 +1,12 @@
 //! Where nodes stand: dense where limits change, far apart where they do not.
 
-use super::breaks::Break;
-use super::limits::{Bounds, PATH_ROW, ROWS};
-use super::node::{Lanes, Node, Nodes, Side};
-use super::track::{Track, position_norm};
+use super::breaks::{Break, MOST_LOOKS, Search};
+use super::limits::{Bounds, ROWS};
+use super::node::{Lanes, Node, Nodes, Side, greater, highest, least, lesser, most};
+use super::sample::{Ground, Sample};
 use crate::io::AXES;
-use crate::kinematics::{AxisMotion, Kinematics};
-use crate::trajectory::reference::at_unit_speed;
-use crate::trajectory::{PathSpace, ReferenceError, Unreachable};
+use crate::trajectory::{PathSpace, Unreachable};
+use core::array::from_fn;
 
 /// Places nearer than this are one \[mm\].
 pub(super) const SAME: f64 = 1e-9;
@@ -25,32 +24,20 @@ const MERGE: f64 = 0.0005;
 /// Longest time between nodes at the programmed feed \[s\]: where the machine can stop.
 const LONGEST: f64 = 0.03;
 /// How far the limits inside an interval may be off a straight line, as a share of the acceleration.
-const STRAIGHT: f64 = 0.06;
+const STRAIGHT: f32 = 0.06;
 /// Samples are taken this share of an interval inside its ends, because limits jump there.
 const INSET: f64 = 1e-4;
-/// Acceleration by a bend that is none, as a share of the limit.
-const NO_BEND: f32 = 1e-6;
 /// Most times that an interval is halved to follow the limits.
 const HALVINGS: u32 = 6;
-/// Work to append a node, and for each sample.
-const EXTEND: u32 = 20;
-const SAMPLE: u32 = 11;
+/// Work to try an interval, for a sample, and for a junction looked at, in hundreds of instructions of a PC.
+const EXTEND: u32 = 12;
+const SAMPLE: u32 = 7;
 const SAMPLE_OF_TOOL: u32 = 20;
-/// Junctions looked at for a unit of work.
-const LOOKS_FOR_ONE: u32 = 2;
-
-/// What the path asks of the rows at one place.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
-    /// Derivatives of the rows over s.
-    pub first: Lanes,
-    second: Lanes,
-    /// ṡ² of the feed, and the highest one for all other reasons.
-    feed: f64,
-    pub limit: f64,
-    /// Curvature \[1/mm\].
-    pub bend: f64,
-}
+const LOOK: u32 = 2;
+/// Elements passed over for one more.
+const PASSED_FOR_ONE: u32 = 4;
+/// Junctions looked at in one go.
+const LOOKS: u32 = 6;
 
 /// Where the grid has got to.
 #[derive(Clone, Copy, Debug)]
@@ -66,69 +53,25 @@ pub(super) struct Grid {
     hint: u32,
     /// Axes at the newest node.
     near: [f64; AXES],
-    /// What the path asks for just before the newest node, if limits do not change there.
-    before: Option<Sample>,
+    /// What the path asks for at the newest node, if it is known.
+    from: Option<Sample>,
     /// The next change of limits from there, if it is known.
     next: Option<Break>,
+    /// How far the look for it has got.
+    search: Option<Search>,
+    /// The next interval, as far as it has been tried.
+    trial: Option<Trial>,
 }
 
-/// What the grid is made of.
-pub(super) struct Ground<'a, const E: usize> {
-    pub track: &'a Track<E>,
-    pub space: PathSpace,
-    pub kinematics: &'a Kinematics,
-    pub bounds: &'a Bounds,
-}
-
-impl<const E: usize> Ground<'_, E> {
-    fn sample(
-        &self,
-        s: f64,
-        direction: f64,
-        hint: &mut u32,
-        near: &[f64; AXES],
-    ) -> Result<(Sample, AxisMotion), Unreachable> {
-        let nowhere = |line| move |source| Unreachable { line, s, source };
-        let empty = ReferenceError::EmptyPath;
-        let piece = self.track.find(s, hint).ok_or(empty).map_err(nowhere(0))?;
-        let (feed, line) = (piece.element.feed, piece.element.line);
-        let point = self.track.at(s, hint).ok_or(empty).map_err(nowhere(line))?;
-        let axes = at_unit_speed(self.kinematics, &point, self.space, near).map_err(nowhere(line))?;
-        let mut sample = Sample {
-            first: [0.0; ROWS],
-            second: [0.0; ROWS],
-            feed: feed * feed,
-            limit: f64::INFINITY,
-            bend: position_norm(&point.second),
-        };
-        sample.first[PATH_ROW] = 1.0;
-        for axis in 0..AXES {
-            let rate = axes.velocity[axis];
-            sample.first[PATH_ROW + 1 + axis] = (direction * rate) as f32;
-            sample.second[PATH_ROW + 1 + axis] = axes.acceleration[axis] as f32;
-            let speed = self.bounds.velocity[axis] / rate;
-            sample.limit = libm::fmin(sample.limit, speed * speed);
-        }
-        self.keep_accurate(&mut sample, &point, s, *hint);
-        Ok((sample, axes))
-    }
-
-    /// Path length where what is settled ends.
-    pub fn end(&self, direction: f64) -> f64 {
-        if direction > 0.0 {
-            self.track.settled_s()
-        } else {
-            self.track.kept_s()
-        }
-    }
-}
-
-impl Sample {
-    /// No row feels a bend at the feed.
-    fn is_straight(&self, bounds: &Bounds) -> bool {
-        let x = self.feed as f32;
-        (0..ROWS).all(|row| self.second[row].abs() * x <= NO_BEND * bounds.acceleration[row])
-    }
+/// An interval that may be too long.
+#[derive(Clone, Copy, Debug)]
+struct Trial {
+    /// Its length \[mm\].
+    delta: f64,
+    /// How often it has been halved.
+    halvings: u32,
+    /// What the path asks for at its end, and the axes there, if that is known.
+    to: Option<(Sample, [f64; AXES])>,
 }
 
 impl Grid {
@@ -139,8 +82,10 @@ impl Grid {
         since_speed: 0.0,
         hint: 0,
         near: [0.0; AXES],
-        before: None,
+        from: None,
         next: None,
+        search: None,
+        trial: None,
     };
 
     /// The first node, at rest at `s` with the axes at `axes`.
@@ -181,104 +126,170 @@ impl Grid {
         };
     }
 
-    /// Appends an interval, if the path is settled far enough; says how much work that was. The plan in force ends
-    /// at node `in_force`.
+    /// Goes on to append an interval, if the path is settled far enough; says how much work that was: none where
+    /// there is nothing to do. The plan in force ends at node `in_force`.
+    ///
+    /// Where the next change of limits is, what the path asks for after one, and an interval that is too long, are
+    /// steps of their own.
     pub fn extend<const E: usize, const N: usize>(
         &mut self,
         ground: &Ground<E>,
         nodes: &mut Nodes<N>,
         in_force: u32,
     ) -> Result<u32, Unreachable> {
-        let bounds = ground.bounds;
-        let direction = self.direction;
-        if nodes.room() == 0 || direction * (ground.end(direction) - self.s) <= SAME {
+        let (direction, bounds) = (self.direction, ground.bounds);
+        let settled = direction * (ground.end(direction) - self.s);
+        if nodes.room() == 0 || settled <= SAME {
             return Ok(0);
         }
-        let (start, near) = (self.s, self.near);
-        let Some(piece) = ground.track.find(start + direction * SAME, &mut self.hint) else {
+        let Some(piece) = ground.track.find(self.s + direction * SAME, &mut self.hint) else {
             return Ok(0);
         };
-        let (feed, line) = (piece.element.feed, piece.straight);
-        let gap = MERGE * feed;
-        let next = match self.next.take() {
-            Some(next) => next,
-            None => ground.next_break(start, direction, self.hint),
+        let feed = piece.element.feed;
+        let mut work = 0;
+        // More may be settled than when the end was looked for.
+        if self.next.is_none_or(|next| next.end && next.way < settled - SAME) {
+            work = LOOK * self.look(ground);
+        }
+        let Some(next) = self.next else {
+            return Ok(work);
         };
-        if next.end && !next.real && next.way < gap {
+        if next.end && !next.real && next.way < MERGE * feed {
             return Ok(0);
         }
-        let mut hint = self.hint;
-        let mut sample = |way: f64| ground.sample(start + direction * way, direction, &mut hint, &near);
-        let mut samples = 2;
-        let mut from = match self.before {
-            Some(sample) => sample,
-            None => {
-                samples += 1;
-                sample(INSET * libm::fmin(next.way, feed * CURVE_STEP))?.0
-            }
+        let Some(from) = self.from else {
+            let inset = INSET * lesser(next.way, feed * CURVE_STEP);
+            self.from = Some(self.sample(ground, inset, &mut self.hint.clone())?.0);
+            return Ok(work + sampling(ground.space));
         };
+        if work > 0 {
+            return Ok(work);
+        }
         let rests = in_force + 1 == nodes.end;
-        let mut delta = step(&next, self, rests, &from, feed, bounds);
-        let mut to = sample(delta * (1.0 - INSET))?;
-        let mut halvings = 0;
-        let mid = loop {
-            if line
-                && [&from, &to.0]
-                    .into_iter()
-                    .all(|sample| sample.is_straight(bounds))
-            {
-                samples -= 1;
-                break to.0;
+        let begun = self.trial.take();
+        let Trial { delta, halvings, to } = begun.unwrap_or_else(|| Trial {
+            delta: step(&next, self, rests, &from, feed, bounds),
+            halvings: 0,
+            to: None,
+        });
+        // Nothing changes along a line of axes between two changes of limits.
+        let straight = from.is_straight(bounds);
+        let known = straight && !next.merged && piece.bend == 0.0 && ground.space == PathSpace::Axes;
+        let inside = delta * (1.0 - INSET);
+        let sampled = to.is_some();
+        let mut hint = self.hint;
+        let (to, near) = match to {
+            Some(to) => to,
+            None if known => {
+                let s = self.s + direction * inside;
+                (ground.farther(&from, s, self.hint), self.near)
             }
-            let mid = sample(0.5 * delta)?;
-            let short = next.merged && delta <= gap;
-            if halvings == HALVINGS || short || straight(&from, &mid.0, &to.0, bounds) {
-                break mid.0;
-            }
-            halvings += 1;
-            delta *= 0.5;
-            to = mid;
+            None => self.sample(ground, inside, &mut hint)?,
         };
-        let (mut to, axes) = to;
-        let before = to;
+        let passed = hint.abs_diff(self.hint) / PASSED_FOR_ONE;
+        let work = EXTEND + passed + if known { 0 } else { sampling(ground.space) };
+        let straight = straight && piece.straight && to.is_straight(bounds);
+        let mut halved = None;
+        let mid = if straight {
+            to
+        } else if !next.merged {
+            // What lies between is smooth.
+            Sample::between(&from, &to)
+        } else if sampled {
+            let mid = self.sample(ground, 0.5 * delta, &mut hint)?;
+            halved = Some(mid);
+            mid.0
+        } else {
+            self.trial = Some(Trial {
+                delta,
+                halvings,
+                to: Some((to, near)),
+            });
+            return Ok(work);
+        };
+        let quickest = most(
+            mid.quickest(bounds),
+            most(from.quickest(bounds), to.quickest(bounds)),
+        );
+        let feed_cap = lesser(
+            lesser(mid.feed, next.feed * next.feed),
+            lesser(from.feed, to.feed),
+        );
+        let limit = lesser(
+            f64::from(1.0 / (quickest * quickest)),
+            lesser(mid.limit, lesser(from.limit, to.limit)),
+        );
+        let short = next.merged && delta <= MERGE * feed;
+        if !straight
+            && !short
+            && halvings < HALVINGS
+            && !even(&[from, mid, to], lesser(feed_cap, limit) as f32, bounds)
+        {
+            self.trial = Some(Trial {
+                delta: 0.5 * delta,
+                halvings: halvings + 1,
+                to: halved,
+            });
+            return Ok(work);
+        }
         let at_break = next.way - delta < SAME;
         let delta = if at_break { next.way } else { delta };
-        let end = start + direction * delta;
-        cover(&mut from, &mid, &mut to);
-        let least = |value: fn(&Sample) -> f64| libm::fmin(libm::fmin(value(&from), value(&to)), value(&mid));
-        let (feed_cap, limit) = (least(|sample| sample.feed), least(|sample| sample.limit));
+        let end = self.s + direction * delta;
         let newest = nodes.end - 1;
         let node = nodes.at_mut(newest);
-        node.feed = libm::fmin(node.feed, feed_cap);
-        node.limit = libm::fmin(node.limit, limit);
+        node.feed = lesser(node.feed, feed_cap);
+        node.limit = lesser(node.limit, limit);
         node.delta = delta;
         node.direction = direction;
-        node.sides = [side(&from, 0.0, bounds), side(&to, delta, bounds)];
-        nodes.push(Node {
-            s: end,
-            feed: feed_cap,
-            limit: if at_break && next.stop { 0.0 } else { limit },
-            ..Node::ZERO
-        });
+        let seconds = cover(&from, &mid, &to);
+        set(&mut node.sides[0], &from.first, &seconds[0], 0.0, bounds);
+        set(&mut node.sides[1], &to.first, &seconds[1], delta, bounds);
+        nodes.append(end, feed_cap, if at_break && next.stop { 0.0 } else { limit });
         if at_break && next.real {
             self.since = end;
             self.since_speed = next.speed;
         }
-        self.before = (!at_break).then_some(before);
+        self.from = (!at_break).then_some(to);
         self.next = (next.real && !next.end && !at_break).then_some(Break {
             way: next.way - delta,
-            looks: 0,
             ..next
         });
         self.s = end;
-        self.near = axes.position;
-        Ok(EXTEND + next.looks / LOOKS_FOR_ONE + (samples + halvings) * sampling(ground.space))
+        self.hint = hint;
+        self.near = near;
+        Ok(work)
+    }
+
+    /// Looks on for the next change of limits; says at how many junctions.
+    fn look<const E: usize>(&mut self, ground: &Ground<E>) -> u32 {
+        let begun = self.search.take();
+        let mut search = begun.unwrap_or_else(|| ground.search(self.s, self.direction, self.hint));
+        for looks in 1..=LOOKS {
+            self.next = ground.look(&mut search);
+            if self.next.is_some() {
+                return looks;
+            }
+        }
+        self.search = Some(search);
+        LOOKS
+    }
+
+    /// What the path asks for after a `way` from the newest node, and the axes there; `hint` is left at the serial of
+    /// the element there.
+    fn sample<const E: usize>(
+        &self,
+        ground: &Ground<E>,
+        way: f64,
+        hint: &mut u32,
+    ) -> Result<(Sample, [f64; AXES]), Unreachable> {
+        let s = self.s + self.direction * way;
+        ground.sample(s, self.direction, hint, &self.near)
     }
 }
 
-/// Work of an interval, as most are.
-pub(super) fn usual_work(space: PathSpace) -> u32 {
-    EXTEND + 3 * sampling(space)
+/// Most work of one step.
+pub(super) fn most_work(space: PathSpace) -> u32 {
+    EXTEND.max(LOOKS * LOOK) + sampling(space) + MOST_LOOKS / PASSED_FOR_ONE
 }
 
 fn sampling(space: PathSpace) -> u32 {
@@ -292,24 +303,23 @@ fn sampling(space: PathSpace) -> u32 {
 fn step(next: &Break, grid: &Grid, rests: bool, from: &Sample, feed: f64, bounds: &Bounds) -> f64 {
     let (way, gone) = (next.way, libm::fabs(grid.s - grid.since));
     // From rest, the way of a part of the filter's length.
-    let mut acceleration = f32::INFINITY;
-    for row in 0..ROWS {
-        acceleration = acceleration.min(bounds.acceleration[row] / from.first[row].abs());
-    }
-    let finest = 0.09 * f64::from(acceleration) * bounds.filter * bounds.filter;
-    let at = |speed: f64| libm::fmax(finest, BREAK_STEP * speed);
-    let mut delta = libm::fmin(at(grid.since_speed) + GROWTH * gone, LONGEST * feed);
+    let rate = highest(from_fn(|row| {
+        from.first[row].abs() * bounds.per_acceleration[row]
+    }));
+    let finest = 0.09 * bounds.filter * bounds.filter / f64::from(rate);
+    let at = |speed: f64| greater(finest, BREAK_STEP * speed);
+    let mut delta = lesser(at(grid.since_speed) + GROWTH * gone, LONGEST * feed);
     if next.real {
-        delta = libm::fmin(delta, libm::fmax(at(next.speed), SHRINK * way));
+        delta = lesser(delta, greater(at(next.speed), SHRINK * way));
     }
     if from.bend * way > 1e-4 {
-        let speed = libm::fmin(feed, libm::sqrt(bounds.corner / from.bend));
-        delta = libm::fmin(delta, libm::fmin(CURVE_STEP * speed, TURN_STEP / from.bend));
+        let speed = lesser(feed, libm::sqrt(bounds.corner / from.bend));
+        delta = lesser(delta, lesser(CURVE_STEP * speed, TURN_STEP / from.bend));
     }
     // At least two intervals from one change to the next, or from where the machine may rest, and no sliver before
     // the next one.
     if gone <= 0.0 || rests {
-        delta = libm::fmin(delta, 0.5 * way);
+        delta = lesser(delta, 0.5 * way);
     }
     if delta > 0.6 * way {
         delta = if delta < way { 0.5 * way } else { way };
@@ -317,46 +327,50 @@ fn step(next: &Break, grid: &Grid, rests: bool, from: &Sample, feed: f64, bounds
     delta
 }
 
-/// Whether the limits between the ends of an interval are as a straight line would have them.
-fn straight(from: &Sample, mid: &Sample, to: &Sample, bounds: &Bounds) -> bool {
-    let mut x = f32::INFINITY;
-    for sample in [from, mid, to] {
-        x = x.min(libm::fmin(sample.feed, sample.limit) as f32);
-    }
-    for row in 0..ROWS {
-        let most = from.second[row]
-            .abs()
-            .max(to.second[row].abs())
-            .max(mid.second[row].abs());
-        if most * x > bounds.acceleration[row] {
-            x = bounds.acceleration[row] / most;
-        }
-    }
-    (0..ROWS).all(|row| {
+/// Whether the limits between the ends of an interval, where ṡ² is at most `x`, are as a straight line would have them.
+fn even([from, mid, to]: &[Sample; 3], x: f32, bounds: &Bounds) -> bool {
+    let bent = most(
+        mid.most_bent(bounds),
+        most(from.most_bent(bounds), to.most_bent(bounds)),
+    );
+    let off = highest(from_fn(|row| {
         let off = mid.second[row] - 0.5 * (from.second[row] + to.second[row]);
-        off.abs() * x <= STRAIGHT as f32 * bounds.acceleration[row]
-    })
+        off.abs() * bounds.per_acceleration[row]
+    }));
+    off * least(x, 1.0 / bent) <= STRAIGHT
 }
 
-/// Widens the ends to what lies between them: the highest at the start, the lowest at the end.
-fn cover(from: &mut Sample, mid: &Sample, to: &mut Sample) {
-    for row in 0..ROWS {
-        let (a, b, m) = (from.second[row], to.second[row], mid.second[row]);
-        let (low, high) = (a.min(b), a.max(b));
-        if m > high + 0.05 * high.abs() || m < low - 0.05 * low.abs() {
-            from.second[row] = high.max(m);
-            to.second[row] = low.min(m);
-        }
-    }
+/// Second derivatives of the rows at both ends, widened to what lies between them: the highest at the start, the
+/// lowest at the end.
+fn cover(from: &Sample, mid: &Sample, to: &Sample) -> [Lanes; 2] {
+    let (a, b, m) = (&from.second, &to.second, &mid.second);
+    let high: Lanes = from_fn(|row| most(a[row], b[row]));
+    let low: Lanes = from_fn(|row| least(a[row], b[row]));
+    let above: Lanes = from_fn(|row| m[row] - high[row] - 0.05 * high[row].abs());
+    let below: Lanes = from_fn(|row| low[row] - 0.05 * low[row].abs() - m[row]);
+    let outside: [bool; ROWS] = from_fn(|row| most(above[row], below[row]) > 0.0);
+    [
+        from_fn(|row| {
+            if outside[row] {
+                most(high[row], m[row])
+            } else {
+                a[row]
+            }
+        }),
+        from_fn(|row| {
+            if outside[row] {
+                least(low[row], m[row])
+            } else {
+                b[row]
+            }
+        }),
+    ]
 }
 
 /// The limits at one end of an interval; `delta` is 0 at its start, its length at its end, where ṡ² is x + 2Δa.
-fn side(sample: &Sample, delta: f64, bounds: &Bounds) -> Side {
-    let mut side = Side::ZERO;
+fn set(side: &mut Side, first: &Lanes, second: &Lanes, delta: f64, bounds: &Bounds) {
     for row in 0..ROWS {
-        let alpha = sample.first[row] + 2.0 * delta as f32 * sample.second[row];
-        side.set_rates(row, alpha, sample.second[row]);
+        side.set_rates(row, first[row] + 2.0 * delta as f32 * second[row], second[row]);
     }
     side.open(bounds);
-    side
 }

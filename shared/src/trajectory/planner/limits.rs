@@ -66,13 +66,15 @@ pub(super) const ACCURACY_ROW: usize = 7;
 pub(super) struct Bounds {
     /// Highest acceleration of each row.
     pub acceleration: [f32; ROWS],
+    /// One divided by it.
+    pub per_acceleration: [f32; ROWS],
     /// Most that the acceleration of a row may differ from itself one filter length away: jerk times that
     /// length.
     pub swing: [f32; ROWS],
     /// One divided by it.
     pub per_swing: [f32; ROWS],
-    /// Highest speed of each axis.
-    pub velocity: [f64; AXES],
+    /// One divided by the highest speed of a row; 0 where it has none.
+    pub per_velocity: [f32; ROWS],
     /// Acceleration that sizes corners: the least of the linear axes and the path.
     pub corner: f64,
     /// The same of attitude: the least of the rotary axes.
@@ -87,15 +89,19 @@ pub(super) struct Bounds {
     pub filter_ticks: usize,
     /// The same \[s\].
     pub filter: f64,
+    /// By how much it is off for each unit of acceleration across the path, as a share of what it may be, times the
+    /// tolerance.
+    pub off: f64,
 }
 
 impl Bounds {
     /// Of no machine.
     pub const NONE: Self = Self {
         acceleration: [1.0; ROWS],
+        per_acceleration: [1.0; ROWS],
         swing: [1.0; ROWS],
         per_swing: [1.0; ROWS],
-        velocity: [1.0; AXES],
+        per_velocity: [0.0; ROWS],
         corner: 1.0,
         spin: 1.0,
         unfelt: 0.0,
@@ -106,6 +112,7 @@ impl Bounds {
         },
         filter_ticks: 1,
         filter: PATH_PERIOD_S,
+        off: 0.0,
     };
 
     pub fn build(limits: &PlanLimits) -> Self {
@@ -131,7 +138,6 @@ impl Bounds {
         let ticks = libm::fmin(libm::fmax(libm::floor(ticks), MIN_FILTER), MAX_FILTER as f64);
         let filter = ticks * PATH_PERIOD_S;
         let mut bounds = Self {
-            velocity: limits.velocity,
             corner: corner * ACCELERATION_RESERVE,
             spin: spin * ACCELERATION_RESERVE,
             tolerance: Tolerance {
@@ -140,6 +146,7 @@ impl Bounds {
             },
             filter_ticks: ticks as usize,
             filter,
+            off: filter * filter / (24.0 * FILTER_SHARE),
             ..Self::NONE
         };
         // Large enough to mean none, small enough for single precision.
@@ -151,6 +158,7 @@ impl Bounds {
         for axis in 0..AXES {
             bounds.acceleration[PATH_ROW + 1 + axis] = sane(limits.acceleration[axis] * ACCELERATION_RESERVE);
             bounds.swing[PATH_ROW + 1 + axis] = sane(limits.jerk[axis] * JERK_RESERVE * filter);
+            bounds.per_velocity[PATH_ROW + 1 + axis] = (1.0 / limits.velocity[axis]) as f32;
         }
         bounds.acceleration[ACCURACY_ROW] = 1.0;
         let feels = |row: usize| bounds.acceleration[row].min(bounds.swing[row]);
@@ -161,6 +169,7 @@ impl Bounds {
         // There and back from tick to tick, and the other way one filter length later.
         bounds.unfelt_way = bounds.unfelt * PATH_PERIOD_S / 8.0;
         bounds.per_swing = bounds.swing.map(|swing| 1.0 / swing);
+        bounds.per_acceleration = bounds.acceleration.map(|acceleration| 1.0 / acceleration);
         bounds
     }
 }

@@ -15,6 +15,7 @@ mod node;
 mod player;
 mod rounding;
 mod rounds;
+mod sample;
 mod scan;
 mod split;
 mod swing;
@@ -29,11 +30,12 @@ use super::{Element, PathSpace, SpeedState, Unreachable};
 use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics};
 use filter::Filter;
-use grid::{Grid, Ground, usual_work};
+use grid::{Grid, most_work};
 use horizon::{Horizon, WINDOW, Wish};
 use limits::Bounds;
 use node::Nodes;
 use player::Player;
+use sample::Ground;
 use thiserror::Error;
 use track::Track;
 
@@ -44,7 +46,7 @@ const POSE_CHANNELS: usize = 9;
 /// Work of planning in one tick, in hundreds of instructions of a PC.
 const WORK: u32 = 95;
 /// Work to shape a corner, and to begin a plan.
-const CORNER: u32 = 15;
+const CORNER: u32 = 5;
 const BEGIN: u32 = 40;
 /// Work to split an interval for it.
 const SPLIT: u32 = 45;
@@ -233,13 +235,15 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
                     break;
                 }
                 done
-            } else if work < BEGIN.max(usual_work(self.space)) {
-                break;
-            } else if !self.laid && self.track.decide(&self.bounds) {
+            } else if work >= CORNER && !self.laid && self.track.decide(&self.bounds) {
                 CORNER
+            } else if work < most_work(self.space) {
+                break;
             } else {
                 if let extended @ 1.. = self.extend(kinematics) {
                     extended
+                } else if work < BEGIN {
+                    break;
                 } else if let begun @ 1.. = self.begin() {
                     begun
                 } else {

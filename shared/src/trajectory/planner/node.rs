@@ -42,6 +42,28 @@ pub(super) fn most(a: f32, b: f32) -> f32 {
     }
 }
 
+/// The smaller one of two that are not NaN.
+pub(super) fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger one.
+pub(super) fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The largest lane.
+pub(super) fn highest(mut lanes: Lanes) -> f32 {
+    let mut half = ROWS / 2;
+    while half > 0 {
+        for row in 0..half {
+            lanes[row] = most(lanes[row], lanes[row + half]);
+        }
+        half /= 2;
+    }
+    lanes[0]
+}
+
 /// Limits of one end of an interval: low ≤ a + m·x ≤ high for every row, where x = ṡ² at the start of the
 /// interval and a = s̈, which is constant over it. The acceleration of the row is α times what is between.
 #[derive(Clone, Copy, Debug)]
@@ -289,6 +311,19 @@ impl<const N: usize> Nodes<N> {
 
     pub fn push(&mut self, node: Node) {
         self.ring[self.end as usize % N] = node;
+        self.end += 1;
+    }
+
+    /// Appends a place; of the interval after it, nothing is known.
+    pub fn append(&mut self, s: f64, feed: f64, limit: f64) {
+        let node = self.at_mut(self.end);
+        *node = Node {
+            s,
+            feed,
+            limit,
+            sides: node.sides,
+            ..Node::ZERO
+        };
         self.end += 1;
     }
 

@@ -11,10 +11,12 @@ const SMALLEST: f64 = 1e-5;
 pub(super) const ATTITUDE: core::ops::Range<usize> = SHAPED..CHANNELS - 2;
 
 impl<const E: usize> Track<E> {
-    /// Shapes one corner, if there is one whose neighbours are known.
+    /// Moves or shapes one corner, if there is one whose neighbours are known.
     pub fn decide(&mut self, bounds: &Bounds) -> bool {
         let serial = self.decided;
-        while self.moved <= serial + 1 && self.straighten(bounds) {}
+        if self.moved <= serial + 1 && self.straighten(bounds) {
+            return true;
+        }
         // Where the element ends that begins there has to be known.
         if serial >= self.end || self.may_move(serial) {
             return false;
@@ -28,7 +30,11 @@ impl<const E: usize> Track<E> {
             return true;
         };
         let (half, stop) = size(before, after, bounds);
+        let strain = after.strain(before.element.join, half, bounds);
         self.shape_corner(serial, half, stop);
+        if let (Some(piece), false) = (self.get_mut(serial), stop) {
+            (piece.corner.strain, piece.corner.strained) = strain;
+        }
         true
     }
 

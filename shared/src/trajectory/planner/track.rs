@@ -3,7 +3,7 @@
 use super::PushError;
 use super::corner::Corner;
 use super::rounding::ATTITUDE;
-use crate::trajectory::{CHANNELS, Element, Join, PathPoint, SHAPED, Shape};
+use crate::trajectory::{CHANNELS, Cubic, Element, Join, PathPoint, SHAPED, Shape};
 use nalgebra::Vector3;
 
 /// Channels of two elements that meet may differ by this much (mm, rad).
@@ -19,6 +19,8 @@ pub(super) struct Piece {
     pub element: Element,
     /// Path length where it begins \[mm\].
     pub start: f64,
+    /// The first channels there, but for its corner \[mm\].
+    pub place: Vector3<f64>,
     /// The corner there.
     pub corner: Corner,
     /// The machine comes to rest there.
@@ -59,6 +61,8 @@ pub(super) struct Track<const E: usize> {
     end_s: f64,
     end_value: [f64; CHANNELS],
     end_slope: [f64; CHANNELS],
+    /// By how much the slope of the first channels at the end is other than programmed.
+    pub end_turned: Vector3<f64>,
     end_bend: [f64; CHANNELS],
     end_feed: f64,
 }
@@ -74,6 +78,7 @@ impl<const E: usize> Track<E> {
             end_s: 0.0,
             end_value: [0.0; CHANNELS],
             end_slope: [0.0; CHANNELS],
+            end_turned: Vector3::new(0.0, 0.0, 0.0),
             end_bend: [0.0; CHANNELS],
             end_feed: 0.0,
         }
@@ -141,7 +146,9 @@ impl<const E: usize> Track<E> {
                 distance = libm::fmax(distance, libm::fabs(start.value[i] - self.end_value[i]));
             }
             corner.set_jump(&self.end_slope, &start.first);
-            turn = Vector3::new(corner.jump[0], corner.jump[1], corner.jump[2]);
+            turn = position(&corner.jump);
+            // The element before it may not be as it was programmed any more.
+            corner.turn_by(-self.end_turned);
             if distance > GAP {
                 return Err(PushError::Gap {
                     line,
@@ -153,6 +160,7 @@ impl<const E: usize> Track<E> {
         let (length, feed) = (element.length, element.feed);
         self.pieces[self.end as usize % E] = Some(Piece {
             start: self.end_s,
+            place: position(&start.value),
             corner,
             stop,
             turn,
@@ -168,22 +176,25 @@ impl<const E: usize> Track<E> {
         self.end_value = end.value;
         self.end_slope = end.first;
         self.end_bend = end.second;
+        self.end_turned = Vector3::zeros();
         self.end_feed = feed;
-        // The element before it may not be as it was programmed any more.
-        self.renew_jump(self.end - 1);
         Ok(())
     }
 
-    /// Computes anew by how much the direction jumps at the start of element `serial`.
-    pub fn renew_jump(&mut self, serial: u32) {
-        let Some(before) = serial.checked_sub(1).and_then(|serial| self.get(serial)) else {
-            return;
-        };
-        let slope = before.element.at(before.element.length).first;
-        if let Some(piece) = self.get_mut(serial) {
-            let start = piece.element.at(0.0).first;
-            piece.corner.set_jump(&slope, &start);
-        }
+    /// The first channels where element `serial` begins, or where the newest one ends if it is the next one to come,
+    /// without rounding \[mm\].
+    pub fn junction(&self, serial: u32) -> Vector3<f64> {
+        self.get(serial)
+            .map_or_else(|| position(&self.end_value), |piece| piece.place)
+    }
+
+    /// The first channels at path length `s`, were element `serial` straight and no corner rounded \[mm\].
+    pub fn along(&self, serial: u32, s: f64) -> Vector3<f64> {
+        let (start, end) = (self.junction(serial), self.junction(serial + 1));
+        let part = self
+            .get(serial)
+            .map_or(0.0, |piece| (s - piece.start) / piece.element.length);
+        start + (end - start) * part
     }
 
     /// Path length from which on the path is as it was, though older elements are gone.
@@ -252,6 +263,10 @@ impl<const E: usize> Track<E> {
 
 /// By how much the direction of `element` turns in all, of which `ends` are the ends.
 fn bend(element: &Element, ends: [&PathPoint; 2]) -> f64 {
+    let even = |cubic: &Cubic| cubic.0[2..] == [0.0; 2];
+    if matches!(element.shape, Shape::Line(_)) && element.rest.iter().all(even) {
+        return 0.0;
+    }
     let middle = element.at(0.5 * element.length);
     let mut most = 0.0;
     for point in [ends[0], &middle, ends[1]] {
@@ -266,14 +281,19 @@ fn bend(element: &Element, ends: [&PathPoint; 2]) -> f64 {
     most * element.length
 }
 
+/// The first channels.
+fn position(channels: &[f64; CHANNELS]) -> Vector3<f64> {
+    Vector3::new(channels[0], channels[1], channels[2])
+}
+
 /// Length of the change of the first channels.
-pub(super) fn position_norm(jump: &[f64; CHANNELS]) -> f64 {
+pub(super) fn position_norm(jump: &[f64]) -> f64 {
     libm::sqrt(jump[..SHAPED].iter().map(|x| x * x).sum())
 }
 
 /// Length of the change of the attitude: of A B C together, or of T or N, whichever is more.
-pub(super) fn attitude_norm(jump: &[f64; CHANNELS]) -> f64 {
+pub(super) fn attitude_norm(jump: &[f64]) -> f64 {
     let square = |range: core::ops::Range<usize>| jump[range].iter().map(|x| x * x).sum::<f64>();
-    let middle = SHAPED + 3;
-    libm::sqrt(libm::fmax(square(SHAPED..middle), square(middle..ATTITUDE.end)))
+    let (middle, end) = (SHAPED + 3, ATTITUDE.end.min(jump.len()));
+    libm::sqrt(libm::fmax(square(SHAPED..middle), square(middle..end)))
 }
