@@ -247,6 +247,8 @@ impl<const E: usize> Track<E> {
     }
 
     /// The first `N` channels at path length `s`.
+    // Into its two callers: a point is many numbers to hand over.
+    #[inline(always)]
     pub fn at<const N: usize>(&self, s: f64, hint: &mut u32) -> Option<PathPoint<N>> {
         let piece = self.find(s, hint)?;
         let mut point = piece.element.channels(s - piece.start);
