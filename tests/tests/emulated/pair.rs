@@ -79,7 +79,11 @@ impl Pair {
     }
 }
 
-/// Checks that the motion board served every tick in time: what it did in the worst millisecond fits into one.
+/// Most that a path tick may take: a share of planning, interpolation and kinematics \[instructions\].
+const PATH_TICK: u32 = 30_000;
+
+/// Checks that the motion board served every tick in time: what it did in the worst millisecond fits into one, and no
+/// path tick took more than it may.
 #[track_caller]
 pub fn assert_served(report: &Report) {
     assert_eq!(report.lost_ticks.total(), 0);
@@ -89,6 +93,7 @@ pub fn assert_served(report: &Report) {
     let servo_ticks = load.path_tick.period / load.servo_tick.period;
     let worst = load.path_tick.worst + servo_ticks * load.servo_tick.worst;
     assert!(worst < load.path_tick.period, "{load:?}");
+    assert!(load.path_tick.worst <= PATH_TICK, "{load:?}");
 }
 
 /// What both boards say of themselves.
