@@ -35,7 +35,7 @@ const SAMPLE: u32 = 7;
 const SAMPLE_OF_TOOL: u32 = 20;
 const LOOK: u32 = 2;
 /// Elements passed over for one more.
-const PASSED_FOR_ONE: u32 = 4;
+const PASSED_FOR_ONE: u32 = 2;
 /// Junctions looked at in one go.
 const LOOKS: u32 = 6;
 
@@ -142,6 +142,7 @@ impl Grid {
         if nodes.room() == 0 || settled <= SAME {
             return Ok(0);
         }
+        let was = self.hint;
         let Some(piece) = ground.track.find(self.s + direction * SAME, &mut self.hint) else {
             return Ok(0);
         };
@@ -149,7 +150,7 @@ impl Grid {
         let mut work = 0;
         // More may be settled than when the end was looked for.
         if self.next.is_none_or(|next| next.end && next.way < settled - SAME) {
-            work = LOOK * self.look(ground);
+            work = passed(was, self.hint) + LOOK * self.look(ground);
         }
         let Some(next) = self.next else {
             return Ok(work);
@@ -186,8 +187,7 @@ impl Grid {
             }
             None => self.sample(ground, inside, &mut hint)?,
         };
-        let passed = hint.abs_diff(self.hint) / PASSED_FOR_ONE;
-        let work = EXTEND + passed + if known { 0 } else { sampling(ground.space) };
+        let work = passed(was, hint) + EXTEND + if known { 0 } else { sampling(ground.space) };
         let straight = straight && piece.straight && to.is_straight(bounds);
         let mut halved = None;
         let mid = if straight {
@@ -290,6 +290,11 @@ impl Grid {
 /// Most work of one step.
 pub(super) fn most_work(space: PathSpace) -> u32 {
     EXTEND.max(LOOKS * LOOK) + sampling(space) + MOST_LOOKS / PASSED_FOR_ONE
+}
+
+/// Work of passing over elements.
+fn passed(from: u32, to: u32) -> u32 {
+    from.abs_diff(to) / PASSED_FOR_ONE
 }
 
 fn sampling(space: PathSpace) -> u32 {
