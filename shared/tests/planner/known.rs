@@ -567,3 +567,19 @@ fn all_that_the_attitude_turns_at_a_corner_counts() {
     ];
     passes(&bench::pipe_welder(), &moves, &vec![]);
 }
+
+#[test]
+fn it_does_not_creep_from_a_corner_to_the_end() {
+    let moves = [
+        Move {
+            size: 0.0012968,
+            turn: [0.0, 0.0, 0.2772],
+            ..LINE
+        },
+        Move {
+            size: 0.029717,
+            ..LINE
+        },
+    ];
+    passes(&bench::pipe_welder(), &moves, &vec![]);
+}

@@ -19,6 +19,8 @@ const BREAK_STEP: f64 = 0.003;
 /// Growth of the intervals away from where limits change, and the shrinking towards it.
 const GROWTH: f64 = 0.4;
 const SHRINK: f64 = 0.286;
+/// The last interval before a change is no longer than this many times the way since the one before.
+const MOST_OF_GONE: f64 = 1.5;
 /// Nodes are no nearer than this where only what nothing feels is between them \[s\].
 const MERGE: f64 = 0.0005;
 /// Longest time between nodes at the programmed feed \[s\]: where the machine can stop.
@@ -327,7 +329,9 @@ fn step(next: &Break, grid: &Grid, rests: bool, from: &Sample, feed: f64, bounds
         delta = lesser(delta, 0.5 * way);
     }
     if delta > 0.6 * way {
-        delta = if delta < way { 0.5 * way } else { way };
+        // Nor one from a change just passed: where it was slow, and is to be slow again, it would have to creep.
+        let one = delta >= way && way <= MOST_OF_GONE * gone;
+        delta = if one { way } else { 0.5 * way };
     }
     delta
 }

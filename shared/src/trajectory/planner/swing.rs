@@ -12,7 +12,7 @@ pub(super) const REST: Lanes = [0.0; ROWS];
 const FORWARD: u32 = 5;
 const REPAIR: u32 = 6;
 const LOOK: u32 = 1;
-/// ṡ² where there would be none by rounding, as a share of what is possible.
+/// Least ṡ² at the end of an interval, as a share of that at its start and of what is possible.
 const CREEP: f64 = 1e-3;
 
 impl Horizon {
@@ -23,9 +23,9 @@ impl Horizon {
         let x = if self.scaled {
             next.trial
         } else {
-            // Rounding must not make a place at rest where there is none.
+            // Boxes may ask for all but a rest where there is none: it would not end.
             let x = advance(node, node.trial, next.reach);
-            if x > 0.0 { x } else { CREEP * next.reach }
+            libm::fmax(x, CREEP * libm::fmin(node.trial, next.reach))
         };
         let speed = libm::sqrt(x);
         let time = node.time + 2.0 * node.delta / (node.speed + speed);
@@ -190,5 +190,96 @@ pub(super) fn pause(node: &Node, bounds: &Bounds) -> f64 {
         0.0
     } else {
         bounds.filter + PATH_PERIOD_S
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trajectory::planner::node::Side;
+    use proptest::prelude::*;
+
+    /// Boxes that the machine keeps only by coming to all but a rest, in an interval behind which it could go on.
+    #[test]
+    fn boxes_do_not_bring_it_to_rest() {
+        let side = Side {
+            slope: [2.0; ROWS],
+            high: [1.500_000_1; ROWS],
+            low: [-1e9; ROWS],
+            ..Side::ZERO
+        };
+        let mut nodes = Nodes::<4>::new();
+        nodes.clear();
+        let first = nodes.first;
+        nodes.push(Node {
+            delta: 1.0,
+            trial: 1.0,
+            speed: 1.0,
+            sides: [side; 2],
+            ..Node::ZERO
+        });
+        nodes.push(Node {
+            reach: 0.5,
+            limit: 1.0,
+            ..Node::ZERO
+        });
+        let mut horizon = Horizon::at(first);
+        (horizon.history, horizon.away) = (first, first);
+        horizon.forward(&mut nodes, first, &Bounds::NONE);
+        assert!(nodes.at(first + 1).trial >= CREEP * 0.5);
+        assert!(nodes.at(first + 1).time < 3.0);
+    }
+
+    /// A row that has to be one swing away from two others at most, which are farther apart than two swings.
+    #[test]
+    fn a_past_that_asks_for_two_things_is_noticed() {
+        let bounds = Bounds::NONE;
+        let mut nodes = Nodes::<4>::new();
+        nodes.clear();
+        let first = nodes.first;
+        for (k, high) in [3.0, -1.0].into_iter().enumerate() {
+            let side = Side {
+                allowed: [high; ROWS],
+                ..Side::ZERO
+            };
+            nodes.push(Node {
+                time: k as f64,
+                delta: 1.0,
+                speed: 1.0,
+                limit: 1.0,
+                sides: [side; 2],
+                ..Node::ZERO
+            });
+        }
+        nodes.push(Node {
+            time: 2.0,
+            speed: 1.0,
+            limit: 1.0,
+            ..Node::ZERO
+        });
+        let mut horizon = Horizon::at(first);
+        horizon.last = first + 3;
+        let [highest, lowest] = horizon.room(&nodes, [first, first + 2], [0.5, 1.5], &bounds);
+        assert_eq!([highest[0], lowest[0]], [1.0, 1.0]);
+        assert_eq!(horizon.excess[0], 1.0);
+    }
+
+    proptest! {
+        /// By steps of time, and in an interval by itself the filter's length of it is one swing at most.
+        #[test]
+        fn accelerations_go_over_the_way(from in 0.0..2.0f64, to in 0.01..2.0f64, part in 0.0..1.0f64) {
+            let speed = |time: f64| from + time * (to - from);
+            let steps = 1000;
+            let gone = |part: f64| {
+                let mean = |k: i32| speed(part * (f64::from(k) + 0.5) / f64::from(steps));
+                (0..steps).map(mean).sum::<f64>() * part / f64::from(steps)
+            };
+            prop_assert!((way([from, to], part) - gone(part) / gone(1.0)).abs() < 1e-9);
+            let bounds = Bounds::NONE;
+            let length = 1.5 * bounds.filter;
+            let [highest, lowest] = alone([from, to], length, &[[4.0; ROWS], [-4.0; ROWS]], &bounds);
+            let fastest = libm::fmax(way([from, to], 2.0 / 3.0), 1.0 - way([from, to], 1.0 / 3.0));
+            prop_assert!(((highest[0] - lowest[0]) * fastest as f32 - bounds.swing[0]).abs() < 1e-4);
+        }
     }
 }
