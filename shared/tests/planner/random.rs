@@ -96,9 +96,9 @@ pub fn frame() -> impl Strategy<Value = Frame> {
 /// Programs of up to ten moves, of the sizes and feeds of a workshop.
 fn moves() -> impl Strategy<Value = Vec<Move>> {
     let mix = Mix {
-        size: -0.3..1.5,
-        feed: 0.0..2.0,
-        turning: 0.2,
+        size: -1.0..1.5,
+        feed: 0.0..3.0,
+        turning: 0.3,
     };
     prop::collection::vec(any_move(&mix), 0..10)
 }
@@ -147,7 +147,7 @@ macro_rules! on {
             mod $name {
                 use super::*;
                 proptest! {
-                    #![proptest_config(cases(40))]
+                    #![proptest_config(cases(100))]
 
                     #[test]
                     fn usual(moves in moves()) {
@@ -173,7 +173,7 @@ on! {
 }
 
 proptest! {
-    #![proptest_config(cases(40))]
+    #![proptest_config(cases(100))]
 
     #[test]
     fn in_axis_space(frame in frame(), moves in moves()) {
