@@ -132,7 +132,11 @@ impl Sample {
                 [from.second[row], to.second[row]],
             );
             middle.first[row] = 0.5 * (first[0] + first[1]) + 0.125 * way * (second[0] - second[1]);
-            middle.second[row] = 1.5 * per_way * (first[1] - first[0]) - 0.25 * (second[0] + second[1]);
+            let even = 0.5 * (second[0] + second[1]);
+            let off = 1.5 * (per_way * (first[1] - first[0]) - even);
+            // Less is rounding of the rates.
+            let sure = f32::EPSILON * (first[0].abs() + first[1].abs()) * per_way;
+            middle.second[row] = if off.abs() > sure { even + off } else { even };
         }
         middle
     }
