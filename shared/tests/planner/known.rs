@@ -583,3 +583,11 @@ fn it_does_not_creep_from_a_corner_to_the_end() {
     ];
     passes(&bench::pipe_welder(), &moves, &vec![]);
 }
+
+#[test]
+fn a_hold_while_it_speeds_up_is_obeyed() {
+    for begin in [101, 150, 200, 400] {
+        let acts = vec![(100, Act::Override(2.0)), (begin - 100, Act::Go(Way::Hold))];
+        passes(&axes(), &[Move { size: 22.64, ..LINE }], &acts);
+    }
+}

@@ -43,9 +43,12 @@ const FALL: f64 = 0.125;
 /// Largest factor of the time that a plan is given.
 const MOST_PATIENCE: u32 = 8;
 
-/// Most work of a step of the pass forward or of a repair, and of the pass back, but for rare ones; that of all others.
+/// Most work of a step of the pass forward or of a repair, of the pass back, and of the two that look for how slow the
+/// machine can be, but for rare ones; that of all others.
 const FORWARD_STEP: u32 = 10;
 const BACK_STEP: u32 = 18;
+const BRAKE_STEP: u32 = 12;
+const SETTLE_STEP: u32 = 26;
 const SHORT_STEP: u32 = 3;
 /// Work of a node of the plan in force that stays as it is.
 const READY: u32 = 2;
@@ -61,6 +64,8 @@ pub(super) enum Phase {
     Ready(u32),
     /// The search for the lowest speeds that are possible has come to this node.
     Brake(u32),
+    /// What shapes the end of the slowing has come to this node.
+    Settle(u32),
     /// The pass back has come to this node.
     Back(u32),
     /// The pass forward has come to this node.
@@ -76,7 +81,7 @@ pub(super) enum Phase {
 pub(super) struct Wish {
     /// To come to rest as soon as possible, not at the end of what is known.
     pub stop: bool,
-    /// Feed override, above 0.
+    /// Feed override; 0 to stop.
     pub factor: f64,
 }
 
@@ -114,6 +119,10 @@ pub(super) struct Horizon {
     pub(super) warm: bool,
     /// What the plan being made is for.
     pub(super) wish: Wish,
+    /// First node at which all speeds are again what they shall be.
+    pub(super) settled: u32,
+    /// How much ṡ² is lower before it than it could be, if that was looked for.
+    pub(super) trim: Option<f64>,
     /// Speeds have to come down below those of the plan in force.
     pub(super) braking: bool,
     /// The reach of the node looked at last is not as in the round before.
@@ -164,6 +173,8 @@ impl Horizon {
             stop: false,
             factor: 1.0,
         },
+        settled: 0,
+        trim: None,
         braking: false,
         scaled: false,
         reach_changed: false,
@@ -197,6 +208,15 @@ impl Horizon {
         self.in_force
     }
 
+    /// A plan being made is of no use when the machine is to be slower than that; one for a lower override is finished,
+    /// else an override that keeps falling would never be obeyed.
+    pub fn obey(&mut self, wish: Wish) {
+        let faster = self.wish.factor >= self.factor || wish.stop;
+        if wish.factor < self.wish.factor && faster {
+            self.phase = Phase::Waiting;
+        }
+    }
+
     /// The plan in force goes on as wished, and it is not yet time to look whether another has to be begun.
     pub fn early(&mut self, wish: &Wish) -> bool {
         self.early = if self.goes_on(wish) {
@@ -224,13 +244,21 @@ impl Horizon {
         let left = player.left(nodes, self.in_force);
         let mut next = (player.node + 1).min(self.in_force);
         let goes_on = self.goes_on(&wish);
+        if wish.factor != self.wish.factor {
+            self.patience = 1;
+        }
         // A window that is long enough to stop in, and short enough to be planned before it is passed.
         // A single interval between two places at rest would last for ever.
         let ends = |last: u32| match last > nodes.first && nodes.at(last - 1).limit <= 0.0 {
             true => last - 1,
             false => last,
         };
-        let mut last = ends((nodes.end - 1).min(self.in_force + WINDOW));
+        // A lower override is a matter of the plan in force alone.
+        let slower = !wish.stop && wish.factor < self.factor && player.node < self.in_force;
+        let mut last = match slower {
+            true => self.in_force,
+            false => ends((nodes.end - 1).min(self.in_force + WINDOW)),
+        };
         let nothing = match wish.stop {
             true => self.stopping,
             false => last <= self.in_force && goes_on,
@@ -277,7 +305,7 @@ impl Horizon {
         }
         // From rest: what came before is forgotten only when the output has come to rest too.
         let rest = nodes.at(commit).x <= 0.0;
-        if rest && !rested {
+        if commit == last || rest && !rested {
             return false;
         }
         let remembered = if rest { 0.0 } else { REMEMBERED * bounds.filter };
@@ -285,9 +313,9 @@ impl Horizon {
         self.start = nodes.before(slowing.max(commit), commit, NEAR * bounds.filter);
         (self.commit, self.last) = (commit, if wish.stop { commit + 1 } else { last });
         (self.warm, self.excess, self.spent) = (true, REST, 0);
-        for i in commit + 1..=last {
+        for i in commit..=last {
             let node = nodes.at_mut(i);
-            (node.factor, node.brake) = (wish.factor, 0.0);
+            (node.factor, node.brake, node.floor) = (wish.factor, 0.0, f32::NEG_INFINITY);
         }
         let node = nodes.at_mut(self.history);
         (node.time, node.trial, node.speed) = (0.0, node.x, libm::sqrt(node.x));
@@ -354,7 +382,7 @@ impl Horizon {
     pub(super) fn restart<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
         let node = nodes.at_mut(self.commit);
         node.brake = node.x;
-        self.braking = self.wish.stop || node.x > node.cap_of_feed();
+        self.braking = self.wish.stop || node.x > 0.0 && self.wish.factor < self.factor;
         if self.braking {
             self.start = self.commit;
         }
@@ -395,7 +423,9 @@ impl Horizon {
             Phase::Take => self.taking(),
             Phase::Forward(_) | Phase::Repair(_) => FORWARD_STEP,
             Phase::Back(_) => BACK_STEP,
-            Phase::Waiting | Phase::Ready(_) | Phase::Brake(_) => SHORT_STEP,
+            Phase::Brake(_) => BRAKE_STEP,
+            Phase::Settle(_) => SETTLE_STEP,
+            Phase::Waiting | Phase::Ready(_) => SHORT_STEP,
         }
     }
 

@@ -17,6 +17,7 @@ mod rounding;
 mod rounds;
 mod sample;
 mod scan;
+mod slowest;
 mod split;
 mod swing;
 #[cfg(test)]
@@ -224,6 +225,9 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     fn plan(&mut self, kinematics: &Kinematics) -> Result<(), Unreachable> {
         let mut work = WORK;
         self.idle = false;
+        if !self.horizon.waiting() {
+            self.horizon.obey(self.wish());
+        }
         // Not only when no more nodes can be had.
         if self.horizon.waiting() && self.nodes.end > self.horizon.in_force() + WINDOW {
             work = work.saturating_sub(self.begin());
@@ -296,6 +300,15 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         }
     }
 
+    /// What a plan shall be for now.
+    fn wish(&self) -> Wish {
+        let stop = !self.along() || self.factor <= 0.0;
+        Wish {
+            stop,
+            factor: if stop { 0.0 } else { self.factor },
+        }
+    }
+
     /// The output has come to rest.
     fn rested(&self) -> bool {
         self.resting >= self.bounds.filter_ticks as u32
@@ -311,11 +324,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     /// it was: none if it did not.
     #[inline]
     fn begin(&mut self) -> u32 {
-        let stop = !self.along() || self.factor <= 0.0;
-        let wish = Wish {
-            stop,
-            factor: if stop { 1.0 } else { self.factor },
-        };
+        let wish = self.wish();
         if self.horizon.early(&wish) {
             return 0;
         }

@@ -99,6 +99,8 @@ pub(super) struct Node {
     pub direction: f64,
     /// Lowest ṡ² that the machine can have come down to here, where a feed was lowered; else 0.
     pub brake: f64,
+    /// Lowest a that the past allows here, where the plan has to slow down.
+    pub floor: f32,
     /// ṡ² of the plan in force.
     pub x: f64,
     /// Time that the plan in force takes from here to the next node \[s\].
@@ -251,6 +253,7 @@ impl Node {
         factor: 1.0,
         direction: 1.0,
         brake: 0.0,
+        floor: f32::NEG_INFINITY,
         x: 0.0,
         lasts: 0.0,
         trial: 0.0,

@@ -4,21 +4,20 @@
 use super::horizon::{Horizon, Phase, TAKEN_FOR_ONE};
 use super::limits::Bounds;
 use super::node::{Nodes, most};
-use super::scan::{brake, reach};
+use super::scan::reach;
 use super::swing::REST;
 
 /// Rounds of passes that a plan is given before it is given up.
 const ROUNDS: u32 = 12;
 /// A plan is good if no swing of the acceleration is above its limit by more than this share.
 const GOOD: f32 = 0.025;
-/// Work of a step of a search for how slow the machine can be, and of the pass back.
-const BRAKE: u32 = 2;
+/// Work of a step of the pass back.
 const BACK: u32 = 1;
 /// Work of the search for a reach, and of each of its iterations.
-const REACH: u32 = 5;
-const ITERATION: u32 = 3;
+pub(super) const REACH: u32 = 5;
+pub(super) const ITERATION: u32 = 3;
 /// Work of opening the boxes of a node.
-const OPEN: u32 = 2;
+pub(super) const OPEN: u32 = 2;
 /// Nodes whose times are shifted for a unit of work.
 const SHIFTED_FOR_ONE: u32 = 16;
 
@@ -29,6 +28,7 @@ impl Horizon {
             Phase::Waiting => {}
             Phase::Take => self.take(nodes, bounds),
             Phase::Brake(i) => self.brake(nodes, i, bounds),
+            Phase::Settle(i) => self.shape(nodes, i, bounds),
             Phase::Ready(i) => self.ready(nodes, i, bounds),
             Phase::Back(i) if self.goes_back(nodes, i, bounds) => {
                 self.back(nodes, i - 1, bounds);
@@ -118,9 +118,14 @@ impl Horizon {
         }
         // Most nodes stay as they were in the round before.
         if repaired || self.reach_changed || first {
-            let next = nodes.at(i + 1).reach;
+            let next = nodes.at(i + 1);
+            let (next, follows) = (next.reach, next.reach >= next.brake);
             let node = nodes.at_mut(i);
-            let (x, iterations) = reach(node, next);
+            let (mut x, iterations) = reach(node, next, node.cap(), node.floor);
+            if self.braking && follows && i < self.settled {
+                // From there it can settle, but for rounding.
+                x = libm::fmax(x, libm::fmin(node.brake, node.cap()));
+            }
             self.work += REACH + iterations * ITERATION;
             self.reach_changed = x != node.reach;
             node.reach = x;
@@ -183,25 +188,6 @@ impl Horizon {
     /// No swing of the acceleration is too large.
     fn is_good(&self) -> bool {
         self.excess.iter().all(|excess| *excess <= GOOD)
-    }
-
-    /// The lowest speed at the node after `i`, until that is as low as it shall be.
-    fn brake<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
-        self.work += BRAKE;
-        self.renew(nodes, i, bounds);
-        let node = nodes.at(i);
-        let enough = if self.wish.stop { 0.0 } else { node.cap_of_feed() };
-        let stops = i > self.commit && node.limit <= 0.0;
-        if node.brake <= enough || stops || i + 1 == nodes.end {
-            if self.wish.stop {
-                self.last = self.last.max(i);
-            }
-            nodes.at_mut(self.last).reach = 0.0;
-            self.phase = Phase::Back(self.last);
-        } else {
-            nodes.at_mut(i + 1).brake = brake(node, node.brake);
-            self.phase = Phase::Brake(i + 1);
-        }
     }
 
     /// The speed at the commit is given, and the boxes do not allow it: with full boxes it is possible.

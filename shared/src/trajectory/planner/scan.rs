@@ -12,6 +12,7 @@ const ITERATIONS: u32 = 12;
 struct Lines<'a> {
     sides: &'a [Side; 2],
     next: f32,
+    floor: f32,
     per_length: f32,
 }
 
@@ -20,6 +21,7 @@ impl<'a> Lines<'a> {
         Self {
             sides: &node.sides,
             next: next as f32,
+            floor: f32::NEG_INFINITY,
             per_length: (0.5 / node.delta) as f32,
         }
     }
@@ -47,7 +49,9 @@ impl<'a> Lines<'a> {
                 end.low[row] - end.slope[row] * x,
             );
         }
-        lanes.into_iter().fold(-x * self.per_length, most)
+        lanes
+            .into_iter()
+            .fold(most(-x * self.per_length, self.floor), most)
     }
 
     /// The line of the highest a that is `a` at `x`, as (value at 0, slope): that of a row, or else of the next speed.
@@ -58,6 +62,9 @@ impl<'a> Lines<'a> {
 
     /// The same of the lowest a: that of a row, or else of rest.
     fn lower(&self, x: f32, a: f32) -> (f32, f32) {
+        if a == self.floor {
+            return (a, 0.0);
+        }
         self.through(|side| &side.low, x, a)
             .unwrap_or((0.0, self.per_length))
     }
@@ -76,10 +83,13 @@ impl<'a> Lines<'a> {
 }
 
 /// The highest x at the start of the interval of `node` from which some a keeps every limit and arrives at no more
-/// than `next`; and how many iterations that took.
-pub(super) fn reach(node: &Node, next: f64) -> (f64, u32) {
-    let lines = Lines::new(node, next);
-    let mut x = node.cap() as f32;
+/// than `next`, with x at most `cap` and a at least `floor`; and how many iterations that took.
+pub(super) fn reach(node: &Node, next: f64, cap: f64, floor: f32) -> (f64, u32) {
+    let lines = Lines {
+        floor,
+        ..Lines::new(node, next)
+    };
+    let mut x = cap as f32;
     if x > lines.next {
         // Mostly the limit of braking at `next` is that at the reach too, and this crossing is what is searched.
         let (lower, rises) = lines.lower(lines.next, lines.lowest(lines.next));
@@ -116,12 +126,9 @@ pub(super) fn advance(node: &Node, x: f64, next: f64) -> f64 {
     libm::fmax(libm::fmin(end, next), 0.0)
 }
 
-/// x at the end of the interval of `node` if it begins at `x`, as slow as the limits allow.
-pub(super) fn brake(node: &Node, x: f64) -> f64 {
-    let a = Lines::new(node, f64::INFINITY).lowest(x as f32);
-    let end = x + 2.0 * node.delta * f64::from(a);
-    // What rounding leaves is rest.
-    if end > 1e-5 * x { end } else { 0.0 }
+/// The lowest a at the start of the interval of `node` that its boxes allow at `x`.
+pub(super) fn lowest(node: &Node, x: f64) -> f32 {
+    Lines::new(node, f64::INFINITY).lowest(x as f32)
 }
 
 #[cfg(test)]
@@ -175,7 +182,7 @@ mod tests {
             cap in 0.1..10.0f64, next in 0.0..5.0f64,
         ) {
             let node = node(rows, cap);
-            let (x, _) = reach(&node, next);
+            let (x, _) = reach(&node, next, cap, f32::NEG_INFINITY);
             prop_assert!((0.0..=cap * (1.0 + 1e-6)).contains(&x));
             prop_assert!(possible(&node, x * 0.999, next, 0.02), "{x} is not possible");
             if x < cap * 0.99 {
@@ -184,7 +191,7 @@ mod tests {
             // From there the fastest end is inside all limits, and the slowest is slower.
             let end = advance(&node, x, next);
             prop_assert!((0.0..=next).contains(&end));
-            prop_assert!(brake(&node, x) <= end + 1e-3);
+            prop_assert!(x + 2.0 * f64::from(lowest(&node, x)) <= end + 1e-3);
         }
     }
 }

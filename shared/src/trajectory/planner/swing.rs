@@ -11,7 +11,7 @@ pub(super) const REST: Lanes = [0.0; ROWS];
 /// Work of a step of the pass forward, of a repair, and of each interval one filter length away that they look at.
 const FORWARD: u32 = 5;
 const REPAIR: u32 = 6;
-const LOOK: u32 = 1;
+pub(super) const LOOK: u32 = 1;
 /// Least ṡ² at the end of an interval, as a share of that at its start and of what is possible.
 const CREEP: f64 = 1e-3;
 
