@@ -429,12 +429,14 @@ fn it_goes_on_after_a_hold_at_a_rotary_corner() {
         },
         LINE,
     ];
-    let acts = vec![
-        (513, Act::Override(1.0)),
-        (407, Act::Starve(1)),
-        (950, Act::Go(Way::Hold)),
-    ];
-    passes(&bench::axes(&frame), &moves, &acts);
+    for begin in [731, 950] {
+        let acts = vec![
+            (513, Act::Override(1.0)),
+            (407, Act::Starve(1)),
+            (begin, Act::Go(Way::Hold)),
+        ];
+        passes(&bench::axes(&frame), &moves, &acts);
+    }
     let three = Kind::Chain {
         lines: 3,
         angle: 0.1179185,
@@ -456,7 +458,9 @@ fn it_goes_on_after_a_hold_at_a_rotary_corner() {
         },
         LINE,
     ];
-    passes(&bench::axes(&frame), &moves, &vec![(300, Act::Go(Way::Hold))]);
+    for begin in [100, 300] {
+        passes(&bench::axes(&frame), &moves, &vec![(begin, Act::Go(Way::Hold))]);
+    }
 }
 
 /// At such a corner an interval of nodes lasts longer than the output filter, and the machine slows down in it.
