@@ -121,6 +121,8 @@ pub(super) struct Horizon {
     pub(super) wish: Wish,
     /// First node at which all speeds are again what they shall be.
     pub(super) settled: u32,
+    /// First node whose boxes are still those of the plan in force.
+    pub(super) opened: u32,
     /// How much ṡ² is lower before it than it could be, if that was looked for.
     pub(super) trim: Option<f64>,
     /// Speeds have to come down below those of the plan in force.
@@ -174,6 +176,7 @@ impl Horizon {
             factor: 1.0,
         },
         settled: 0,
+        opened: 0,
         trim: None,
         braking: false,
         scaled: false,
@@ -389,7 +392,13 @@ impl Horizon {
         (self.from, self.until, self.lowest) = (self.start, self.last, self.start);
         self.round = 0;
         self.scaled = false;
-        self.phase = Phase::Brake(self.commit);
+        self.opened = self.commit;
+        if self.braking {
+            self.phase = Phase::Brake(self.commit);
+        } else {
+            nodes.at_mut(self.last).reach = 0.0;
+            self.phase = Phase::Back(self.last);
+        }
     }
 
     /// Gives up the plan being made if the player has come to where it begins.

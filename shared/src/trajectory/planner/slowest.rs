@@ -55,16 +55,9 @@ impl Horizon {
 
     /// One step of it.
     fn slow_down<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
-        let node = nodes.at_mut(i);
-        node.floor = f32::NEG_INFINITY;
         self.work += BRAKE;
-        if self.round == 0 {
-            self.work += OPEN;
-            // Boxes were made for going on.
-            for side in &mut node.sides {
-                side.open(bounds);
-            }
-        }
+        self.open(nodes, i, bounds);
+        nodes.at_mut(i).floor = f32::NEG_INFINITY;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let x = node.brake;
         let per_length = 2.0 * node.delta;
@@ -97,6 +90,18 @@ impl Horizon {
         }
     }
 
+    /// Opens the boxes of node `i`, once: they were made for going on.
+    fn open<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        if i < self.opened {
+            return;
+        }
+        self.opened = i + 1;
+        self.work += OPEN;
+        for side in &mut nodes.at_mut(i).sides {
+            side.open(bounds);
+        }
+    }
+
     /// Begins to let go of the acceleration before node `settled`.
     fn settle<const N: usize>(&mut self, nodes: &mut Nodes<N>, settled: u32) {
         self.settled = settled;
@@ -126,7 +131,7 @@ impl Horizon {
                 self.settle(nodes, settled);
             } else {
                 self.trim = None;
-                self.settle_later(nodes, lacks);
+                self.settle_later(nodes, lacks, bounds);
             }
             return;
         }
@@ -142,7 +147,7 @@ impl Horizon {
         self.phase = Phase::Back(self.last);
     }
 
-    fn settle_later<const N: usize>(&mut self, nodes: &mut Nodes<N>, lacks: f64) {
+    fn settle_later<const N: usize>(&mut self, nodes: &mut Nodes<N>, lacks: f64, bounds: &Bounds) {
         let mut steepest = 0.0;
         for i in self.commit..self.settled {
             steepest = most(steepest, -nodes.at(i).sides[0].allowed[PATH_ROW]);
@@ -151,6 +156,7 @@ impl Horizon {
         let mut way = 0.5 * lacks / f64::from(steepest);
         let mut settled = self.settled;
         while way > 0.0 && settled < self.in_force() && nodes.at(settled).limit > 0.0 {
+            self.open(nodes, settled, bounds);
             way -= nodes.at(settled).delta;
             settled += 1;
         }
