@@ -595,3 +595,20 @@ fn a_hold_while_it_speeds_up_is_obeyed() {
         passes(&axes(), &[Move { size: 22.64, ..LINE }], &acts);
     }
 }
+
+#[test]
+fn it_does_not_creep_along_a_tiny_chain() {
+    let chain = Kind::Chain {
+        lines: 7,
+        angle: 0.15157934791261782,
+        both: true,
+    };
+    let moves = [Move {
+        kind: chain,
+        corner: 0.3,
+        size: 0.00018377789497339388,
+        feed: 19176.09648993937,
+        ..LINE
+    }];
+    passes(&bench::pipe_welder(), &moves, &vec![]);
+}

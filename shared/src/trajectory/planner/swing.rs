@@ -25,7 +25,8 @@ impl Horizon {
         } else {
             // Boxes may ask for all but a rest where there is none: it would not end.
             let x = advance(node, node.trial, next.reach);
-            libm::fmax(x, CREEP * libm::fmin(node.trial, next.reach))
+            let from = if x > 0.0 { node.trial } else { f64::INFINITY };
+            libm::fmax(x, CREEP * libm::fmin(from, next.reach))
         };
         let speed = libm::sqrt(x);
         let time = node.time + 2.0 * node.delta / (node.speed + speed);
