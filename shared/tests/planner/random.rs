@@ -1,14 +1,15 @@
-//! Random programs on every machine.
+//! Random programs on every machine, and random hands at the controls: a hold is at rest, and a lower override obeyed, at
+//! the latest after 0.4 s and four times what slowing down takes with the lowest acceleration.
 //!
 //! The same few cases in every run; where `PROPTEST_CASES` is set, so many others.
 
 use super::bench::{self, Bench, Frame};
 use super::judge::judge;
 use super::program::{Kind, Move, elements};
-use super::run::{Acts, run};
+use super::run::{Act, Acts, run};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use shared::trajectory::Tolerance;
+use shared::trajectory::{Tolerance, Way};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
@@ -71,6 +72,19 @@ pub fn any_move(mix: &Mix) -> impl Strategy<Value = Move> + use<> {
             turn,
             stop,
         })
+}
+
+/// What is done at the controls: a few things, or nothing.
+pub fn any_acts() -> impl Strategy<Value = Acts> {
+    let factor = prop_oneof![Just(0.0), Just(1.0), Just(2.0), 0.0..2.0f64];
+    let way = prop_oneof![3 => Just(Way::Forward), 2 => Just(Way::Hold), 2 => Just(Way::Back)];
+    let act = prop_oneof![
+        2 => factor.prop_map(Act::Override),
+        3 => way.prop_map(Act::Go),
+        1 => (1u32..600).prop_map(Act::Starve),
+    ];
+    let pause = prop_oneof![3 => 0u32..100, 2 => 100u32..800];
+    prop::collection::vec((pause, act), 0..8)
 }
 
 /// Limits in axis space.
@@ -140,7 +154,7 @@ fn cases(cases: u32) -> ProptestConfig {
     }
 }
 
-/// Programs on a machine that nobody disturbs.
+/// Programs on a machine: nobody disturbs them, or somebody is at the controls.
 macro_rules! on {
     ($($name:ident: $bench:path;)+) => {
         $(
@@ -157,6 +171,15 @@ macro_rules! on {
                     #[test]
                     fn wild(moves in wild_moves()) {
                         check(&$bench(), &moves, &vec![])?;
+                    }
+                }
+
+                proptest! {
+                    #![proptest_config(cases(40))]
+
+                    #[test]
+                    fn by_hand(moves in moves(), acts in any_acts()) {
+                        check(&$bench(), &moves, &acts)?;
                     }
                 }
             }
@@ -183,5 +206,14 @@ proptest! {
     #[test]
     fn wild_in_axis_space(frame in frame(), moves in wild_moves()) {
         check(&bench::axes(&frame), &moves, &vec![])?;
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(40))]
+
+    #[test]
+    fn by_hand_in_axis_space(frame in frame(), moves in moves(), acts in any_acts()) {
+        check(&bench::axes(&frame), &moves, &acts)?;
     }
 }
