@@ -4,7 +4,7 @@
 //! allow. Where all speeds have come down to what they shall be, the plan settles; from there back in time, so that the
 //! acceleration is let go in time too. If that does not lead back to the speed at the commit, it settles later.
 
-use super::horizon::{Horizon, Phase};
+use super::horizon::{Horizon, LEAST_WINDOW, Phase};
 use super::limits::{Bounds, PATH_ROW, ROWS};
 use super::node::{Lanes, Node, Nodes, least, most};
 use super::rounds::{ITERATION, OPEN, REACH};
@@ -46,6 +46,13 @@ impl Horizon {
                 node.brake = 0.0;
                 if later >= i {
                     node.floor = f32::NEG_INFINITY;
+                }
+            }
+            if !self.wish.stop {
+                // Nodes far beyond would only take time now; they are planned when it is obeyed.
+                let near = i.max(self.settled) + LEAST_WINDOW;
+                if near < self.last && nodes.at(near - 1).limit > 0.0 {
+                    self.last = near;
                 }
             }
             self.trim = None;
@@ -155,7 +162,12 @@ impl Horizon {
         self.work += (self.settled - self.commit) / LOOKED_AT_FOR_ONE;
         let mut way = 0.5 * lacks / f64::from(steepest);
         let mut settled = self.settled;
-        while way > 0.0 && settled < self.in_force() && nodes.at(settled).limit > 0.0 {
+        let end = if self.wish.stop {
+            self.in_force()
+        } else {
+            self.last - 1
+        };
+        while way > 0.0 && settled < end && nodes.at(settled).limit > 0.0 {
             self.open(nodes, settled, bounds);
             way -= nodes.at(settled).delta;
             settled += 1;
