@@ -45,8 +45,8 @@ const MOST_PATIENCE: u32 = 8;
 
 /// Most work of a step of the pass forward or of a repair, of the pass back, and of the two that look for how slow the
 /// machine can be, but for rare ones; that of all others.
-const FORWARD_STEP: u32 = 10;
-const BACK_STEP: u32 = 18;
+const FORWARD_STEP: u32 = 11;
+const BACK_STEP: u32 = 27;
 const BRAKE_STEP: u32 = 12;
 const SETTLE_STEP: u32 = 26;
 const SHORT_STEP: u32 = 3;

@@ -17,9 +17,6 @@ const LEAST_RATE: f32 = 1e-6;
 /// A lane for every row of limits.
 pub(super) type Lanes = [f32; ROWS];
 
-/// The board goes through the lanes one by one, and is faster where it can pass some over; a PC takes several at once.
-const ONE_BY_ONE: bool = cfg!(target_arch = "arm");
-
 /// The smaller one, for lanes: unlike `f32::min` it costs one instruction, as no number here is NaN.
 pub(super) fn least(a: f32, b: f32) -> f32 {
     if cfg!(target_arch = "arm") {
@@ -168,8 +165,7 @@ impl Side {
             );
             let (above, below) = (is[row] - top, bottom - is[row]);
             let (shut_above, shut_below) = (above > TIGHTEN_FROM * swing, below > TIGHTEN_FROM * swing);
-            let changes = shut_above || shut_below;
-            if ONE_BY_ONE && !changes {
+            if !(shut_above || shut_below) {
                 continue;
             }
             let smallest = LEAST_BOX * least(bounds.acceleration[row], swing);
@@ -180,8 +176,8 @@ impl Side {
             if shut_below {
                 low = least(is[row] + TIGHTEN * below, -smallest);
             }
-            self.set_row(row, (low, high), changes);
-            self.boxed |= u8::from(changes) << row;
+            self.set_row(row, (low, high));
+            self.boxed |= 1 << row;
         }
         true
     }
@@ -194,16 +190,14 @@ impl Side {
         }
         let mut changed = false;
         for row in 0..ROWS {
-            let boxed = self.boxed & (1 << row) != 0;
-            if ONE_BY_ONE && !boxed {
+            if self.boxed & (1 << row) == 0 {
                 continue;
             }
             let (full, swing) = (bounds.acceleration[row], bounds.swing[row]);
             let above = room[0][row] - is[row];
             let below = is[row] - room[1][row];
             let (opens_above, opens_below) = (above > LOOSEN_FROM * swing, below > LOOSEN_FROM * swing);
-            let changes = boxed && (opens_above || opens_below);
-            if ONE_BY_ONE && !changes {
+            if !(opens_above || opens_below) {
                 continue;
             }
             let (mut low, mut high) = self.of_row(row);
@@ -213,7 +207,7 @@ impl Side {
             if opens_below {
                 low = most(least(low, is[row] - LOOSEN * below), -full);
             }
-            changed |= self.set_row(row, (low, high), changes);
+            changed |= self.set_row(row, (low, high));
         }
         changed
     }
@@ -224,16 +218,12 @@ impl Side {
         (least(low, high), most(low, high))
     }
 
-    /// Puts other accelerations in their place if it `changes`; says whether they were others.
-    fn set_row(&mut self, row: usize, (low, high): (f32, f32), changes: bool) -> bool {
+    /// Puts other accelerations in their place; says whether they were others.
+    fn set_row(&mut self, row: usize, (low, high): (f32, f32)) -> bool {
         let per_alpha = 1.0 / self.alpha[row];
         let (low, high) = (low * per_alpha, high * per_alpha);
         let before = (self.low[row], self.high[row]);
-        let after = if changes {
-            (least(low, high), most(low, high))
-        } else {
-            before
-        };
+        let after = (least(low, high), most(low, high));
         (self.low[row], self.high[row]) = after;
         before != after
     }

@@ -8,9 +8,11 @@ use crate::motion::PATH_PERIOD_S;
 
 /// No acceleration.
 pub(super) const REST: Lanes = [0.0; ROWS];
-/// Work of a step of the pass forward, of a repair, and of each interval one filter length away that they look at.
-const FORWARD: u32 = 5;
+/// Work of a step of the pass forward, of a repair, of another box in it, and of each interval one filter length away
+/// that they look at.
+const FORWARD: u32 = 7;
 const REPAIR: u32 = 6;
+const RESIZE: u32 = 3;
 pub(super) const LOOK: u32 = 1;
 /// Least ṡ² at the end of an interval, as a share of that at its start and of what is possible.
 const CREEP: f64 = 1e-3;
@@ -79,8 +81,13 @@ impl Horizon {
             if self.scaled {
                 continue;
             }
-            changed |= grow && place.grow(&is, &will, bounds);
-            changed |= place.shrink(&is, &by_past, &by_future, bounds);
+            for resized in [
+                grow && place.grow(&is, &will, bounds),
+                place.shrink(&is, &by_past, &by_future, bounds),
+            ] {
+                changed |= resized;
+                self.work += u32::from(resized) * RESIZE;
+            }
         }
         changed
     }
