@@ -34,7 +34,7 @@ const MARGIN: f64 = 1.7;
 /// and at least in this many.
 const TIGHT: f64 = 1.2;
 /// Work that a plan is expected to need for each node, as long as nothing else is known.
-const WORK_OF_NODE: f64 = 110.0;
+const WORK_OF_NODE: f64 = 105.0;
 /// Work that a plan to stop is expected to need.
 const WORK_OF_STOP: f64 = 800.0;
 /// How fast what is expected goes to what was needed, if that was more or less.
