@@ -1,0 +1,10 @@
+//! The seam in pictures of a micro depth of field: measured, and rendered with a known truth.
+//!
+//! The camera looks at the work at an angle; its picture is sharp only in a thin band, where the focal plane cuts the
+//! surface. Where that band is tells the height, its slope the roll, and the dark gap in it the seam (SPEC 0.12).
+
+mod image;
+mod optics;
+
+pub use image::{Image, ImageError};
+pub use optics::{Optics, OpticsError};
