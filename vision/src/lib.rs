@@ -8,6 +8,7 @@ mod image;
 mod noise;
 mod optics;
 mod precision;
+pub mod render;
 
 pub use geometry::{Corner, CornerFeatures, GeometryError, PlateFeatures, PlateSeam};
 pub use image::{Image, ImageError};

@@ -1,0 +1,47 @@
+//! Writes rendered pictures for people to look at: `cargo run --release -p seamwright-vision --example look -- FOLDER`.
+
+use std::path::Path;
+use vision::render::{TruthRenderer, random_corner, random_gap};
+use vision::{Optics, PhotonTransfer};
+
+fn main() {
+    let folder = std::env::args().nth(1).expect("a folder to write to");
+    let optics = Optics {
+        magnification: 4.0,
+        pixel_mm: 0.0138,
+        tilt_rad: 45f64.to_radians(),
+        aperture: 0.10,
+        wavelength_mm: 0.000_55,
+        rows: 300,
+        columns: 400,
+    };
+    let noise = PhotonTransfer {
+        full_well: 10_000.0,
+        read_noise: 10.0,
+    };
+    let mut renderer = TruthRenderer::new(optics, noise, 3).expect("a camera");
+    for seed in 0..12 {
+        for (kind, scene) in [
+            ("gap", random_gap(seed, &optics)),
+            ("corner", random_corner(seed, &optics)),
+        ] {
+            let pixels = renderer.render(&scene, seed);
+            let path = Path::new(&folder).join(format!("{kind}-{seed}.png"));
+            write(&path, &pixels, &optics);
+            println!(
+                "{}: {:?} {:?}",
+                path.display(),
+                scene.texture.finish,
+                scene.truth(&optics)
+            );
+        }
+    }
+}
+
+fn write(path: &Path, pixels: &[u8], optics: &Optics) {
+    let file = std::fs::File::create(path).expect("a file to write");
+    let mut encoder = png::Encoder::new(file, optics.columns as u32, optics.rows as u32);
+    encoder.set_color(png::ColorType::Grayscale);
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(pixels).expect("a picture");
+}

@@ -1,0 +1,191 @@
+//! Surfaces of metal, close up: brightness that belongs to a place on the work.
+
+use super::random::{of_place, unit};
+
+/// After how much a texture repeats: along travel and across \[mm\]. A picture shows a fifth of it.
+pub const PERIOD_MM: [f64; 2] = [7.0656, 3.5328];
+
+/// How a surface was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finish {
+    /// Noise of 12 and 32 µm (SPEC 0.12).
+    Plain,
+    /// Rolled: streaks along the seam.
+    Rolled,
+    /// Blasted, with glints.
+    Blasted,
+    /// Specular: its logarithm is what is even.
+    Specular,
+    /// Hardly any contrast: 6 %.
+    Faint,
+    /// Nothing finer than 30 µm.
+    Coarse,
+}
+
+impl Finish {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Plain,
+        Self::Rolled,
+        Self::Blasted,
+        Self::Specular,
+        Self::Faint,
+        Self::Coarse,
+    ];
+
+    /// The contrast surfaces like that usually have.
+    pub fn contrast(self) -> f64 {
+        match self {
+            Self::Plain | Self::Coarse => 0.4,
+            Self::Rolled | Self::Blasted => 0.35,
+            Self::Specular => 1.0,
+            Self::Faint => 0.06,
+        }
+    }
+
+    /// Pitch along travel, pitch across \[mm\], weight.
+    fn layers(self) -> &'static [(f64, f64, f64)] {
+        match self {
+            Self::Plain | Self::Specular | Self::Faint => &[(0.012, 0.012, 0.7), (0.032, 0.032, 0.5)],
+            Self::Rolled => &[(0.3, 0.012, 0.7), (0.6, 0.04, 0.4), (0.012, 0.012, 0.25)],
+            Self::Blasted => &[(0.014, 0.014, 0.7), (0.028, 0.028, 0.5)],
+            Self::Coarse => &[(0.032, 0.032, 0.6), (0.07, 0.07, 0.6)],
+        }
+    }
+}
+
+/// A surface's looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Texture {
+    /// How it was made.
+    pub finish: Finish,
+    /// `tex` of SPEC 0.12: what the noise, within ±1 before its weights, is multiplied by.
+    pub contrast: f64,
+    /// Which piece of it.
+    pub seed: u64,
+}
+
+impl Texture {
+    /// A piece with the usual contrast.
+    pub fn new(finish: Finish, seed: u64) -> Self {
+        let contrast = finish.contrast();
+        Self {
+            finish,
+            contrast,
+            seed,
+        }
+    }
+}
+
+/// A texture, ready to be looked up: bilinear value noise on lattices, and glints.
+#[derive(Clone, Debug)]
+pub(super) struct Field {
+    texture: Texture,
+    layers: Vec<Lattice>,
+    /// What the logarithm of a specular surface is lowered by, so that its mean is 1.
+    lowered: f32,
+}
+
+#[derive(Clone, Debug)]
+struct Lattice {
+    /// Cells in a period, along travel and across.
+    cells: [usize; 2],
+    weight: f32,
+    /// −1…1, row by row along travel.
+    values: Vec<f32>,
+}
+
+/// Cells of glints in a period: one of [`GLINT_SHARE`] has a glint.
+const GLINT_CELLS: [usize; 2] = [294, 147];
+const GLINT_SHARE: u64 = 9;
+
+impl Field {
+    pub fn new(texture: Texture) -> Self {
+        let lattice = |(k, &(along, across, weight)): (usize, &(f64, f64, f64))| {
+            let cells = [PERIOD_MM[0] / along, PERIOD_MM[1] / across].map(|n| n.round() as usize);
+            let seed = texture.seed.wrapping_mul(8).wrapping_add(k as u64);
+            let value = |i: usize| (2.0 * unit(of_place(seed, i / cells[1], i % cells[1])) - 1.0) as f32;
+            Lattice {
+                cells,
+                weight: weight as f32,
+                values: (0..cells[0] * cells[1]).map(value).collect(),
+            }
+        };
+        let layers: Vec<Lattice> = texture.finish.layers().iter().enumerate().map(lattice).collect();
+        // Variance of value noise: 1/3 on the lattice, 4/9 of it between.
+        let variance: f32 = layers.iter().map(|l| l.weight * l.weight).sum::<f32>() * 4.0 / 27.0;
+        let lowered = variance * (texture.contrast * texture.contrast) as f32 / 2.0;
+        Self {
+            texture,
+            layers,
+            lowered,
+        }
+    }
+
+    /// The texture it was made of.
+    pub fn texture(&self) -> Texture {
+        self.texture
+    }
+
+    /// Brightness at a place on the work \[mm\], 1 on average.
+    pub fn at(&self, along: f64, across: f64) -> f32 {
+        let turn = |x: f64, period: f64| {
+            let turns = x / period;
+            turns - turns.floor()
+        };
+        let place = [turn(along, PERIOD_MM[0]), turn(across, PERIOD_MM[1])];
+        let noise: f32 = self.layers.iter().map(|layer| layer.at(place)).sum();
+        let noise = noise * self.texture.contrast as f32;
+        match self.texture.finish {
+            Finish::Specular => (noise - self.lowered).exp(),
+            Finish::Blasted => (1.0 + noise).max(0.02) + self.glint(place),
+            Finish::Plain | Finish::Rolled | Finish::Faint | Finish::Coarse => (1.0 + noise).max(0.02),
+        }
+    }
+
+    /// What a glint adds: every ninth cell of 24 µm holds one of 3 to 6 µm radius.
+    fn glint(&self, place: [f64; 2]) -> f32 {
+        let at = [0, 1].map(|k| place[k] * GLINT_CELLS[k] as f64);
+        let bits = of_place(!self.texture.seed, at[0] as usize, at[1] as usize);
+        if !bits.is_multiple_of(GLINT_SHARE) {
+            return 0.0;
+        }
+        let [x, y, radius, height] = [8, 20, 32, 44].map(|shift| ((bits >> shift) & 0xfff) as f64 / 4096.0);
+        let radius = 0.12 + 0.12 * radius;
+        let far = |at: f64, middle: f64| at.fract() - radius - (1.0 - 2.0 * radius) * middle;
+        let distance = far(at[0], x).hypot(far(at[1], y)) / radius;
+        if distance < 1.0 {
+            ((0.4 + 1.6 * height) * (1.0 - distance * distance)) as f32
+        } else {
+            0.0
+        }
+    }
+}
+
+impl Lattice {
+    fn at(&self, place: [f64; 2]) -> f32 {
+        let [rows, columns] = self.cells;
+        let (y, x) = (place[0] * rows as f64, place[1] * columns as f64);
+        // `place` is below 1, yet rounding may carry the product to the end.
+        let (i, j) = ((y as usize).min(rows - 1), (x as usize).min(columns - 1));
+        let (y, x) = ((y - i as f64) as f32, (x - j as f64) as f32);
+        let below = if i + 1 == rows { 0 } else { i + 1 };
+        let right = if j + 1 == columns { 0 } else { j + 1 };
+        let value = |i: usize, j: usize| self.values[i * columns + j];
+        let top = value(i, j) + (value(i, right) - value(i, j)) * x;
+        let bottom = value(below, j) + (value(below, right) - value(below, j)) * x;
+        (top + (bottom - top) * y) * self.weight
+    }
+}
+
+/// Roughness of an edge at a place along travel, standard deviation 1 (value noise of 25 µm).
+pub(super) fn roughness(seed: u64, edge: usize, along: f64) -> f64 {
+    const CELLS: f64 = 283.0;
+    let turns = along / PERIOD_MM[0];
+    let at = (turns - turns.floor()) * CELLS;
+    let i = at as usize;
+    let value = |i: usize| 2.0 * unit(of_place(!seed, i % CELLS as usize, edge)) - 1.0;
+    let between = value(i) + (value(i + 1) - value(i)) * at.fract();
+    // Variance of value noise along a line: 1/3 on the lattice, 2/3 of it between.
+    between / (2.0f64 / 9.0).sqrt()
+}

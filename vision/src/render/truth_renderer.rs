@@ -1,0 +1,187 @@
+//! The renderer whose pictures tests believe.
+
+use super::blur::{Discs, Kernel, Lens};
+use super::random::SplitMix64;
+use super::scene::Scene;
+use super::sharp::Sharp;
+use super::surface::Surface;
+use crate::noise::PhotonTransfer;
+use crate::optics::{Optics, OpticsError};
+
+/// Renders by the physics, slowly: the sharp work is sampled finer than pixels, smeared by travel, diffraction and the
+/// pixels' area, and each pixel gathers it over the disc that its own depth makes of a point. Then the light, the
+/// electrons that are counted and read, and 8 bits.
+///
+/// Not in the model: rays that the other side of a step or wall cuts off, an entocentric lens, aberrations, true glints.
+#[derive(Debug)]
+pub struct TruthRenderer {
+    optics: Optics,
+    noise: PhotonTransfer,
+    samples: usize,
+    sharp: Sharp,
+    discs: Discs,
+    /// Samples of the sharp work, rows of a stretch that is wider than the picture by the largest disc.
+    samples_of_work: Vec<f32>,
+    smeared: Vec<f32>,
+    /// Sums along each row up to a sample.
+    sums: Vec<f64>,
+    depths: Vec<f32>,
+}
+
+/// The stretch of the focal plane that is sampled.
+#[derive(Clone, Copy)]
+struct Stretch {
+    rows: usize,
+    columns: usize,
+    /// Samples added on each side of the picture.
+    margin: usize,
+}
+
+impl TruthRenderer {
+    /// A renderer for a camera. `samples` a pixel in each direction, an odd number: 1 is quick, 3 is good.
+    pub fn new(optics: Optics, noise: PhotonTransfer, samples: usize) -> Result<Self, OpticsError> {
+        optics.check()?;
+        Ok(Self {
+            optics,
+            noise,
+            samples: samples | 1,
+            sharp: Sharp::default(),
+            discs: Discs::default(),
+            samples_of_work: Vec::new(),
+            smeared: Vec::new(),
+            sums: Vec::new(),
+            depths: Vec::new(),
+        })
+    }
+
+    /// The camera.
+    pub fn optics(&self) -> &Optics {
+        &self.optics
+    }
+
+    /// The picture of `scene`, rows from the top; the same seed gives the same noise.
+    pub fn render(&mut self, scene: &Scene, seed: u64) -> Vec<u8> {
+        let mut noise = SplitMix64::new(seed);
+        let step = 255.0 / self.noise.full_well;
+        self.light(scene)
+            .iter()
+            .map(|&share| {
+                let electrons = noise.count(f64::from(share.max(0.0)) * self.noise.full_well);
+                let read = electrons + self.noise.read_noise * noise.gauss()[0];
+                (read * step).round().clamp(0.0, 255.0) as u8
+            })
+            .collect()
+    }
+
+    /// What reaches the pixels before noise, as shares of full scale.
+    pub fn light(&mut self, scene: &Scene) -> Vec<f32> {
+        let Optics { rows, columns, .. } = self.optics;
+        let lens = Lens::new(&self.optics);
+        let sample = lens.pixel_mm / self.samples as f64;
+        let surface = Surface::new(&scene.joint, &self.optics);
+        let [r0, c0] = self.optics.centre();
+        self.depths.clear();
+        for row in 0..rows {
+            let r = (row as f64 - r0) * lens.pixel_mm;
+            let depth = |column: usize| surface.at(r, (column as f64 - c0) * lens.pixel_mm).depth as f32;
+            self.depths.extend((0..columns).map(depth));
+        }
+        let deepest = self.depths.iter().fold(0.0f32, |d, z| d.max(z.abs()));
+        let largest = f64::from(deepest) * lens.spread / sample;
+        self.discs.provide(largest);
+
+        let pixel = self.samples as f64;
+        let diffraction = lens.diffraction_mm / sample;
+        let smear = scene.smear_mm * self.optics.tilt_rad.cos() / sample;
+        let across = Kernel::new(diffraction, &[pixel]);
+        let along = Kernel::new(diffraction, &[pixel, smear]);
+        let margin = largest.ceil() as usize + 2 + across.reach().max(along.reach());
+        let stretch = Stretch {
+            rows: rows * self.samples + 2 * margin,
+            columns: columns * self.samples + 2 * margin,
+            margin,
+        };
+        self.sample(scene, &surface, stretch, sample);
+        self.smear(stretch, &across, &along);
+        self.gather(scene, stretch, lens.spread / sample)
+    }
+
+    fn sample(&mut self, scene: &Scene, surface: &Surface, stretch: Stretch, sample: f64) {
+        self.sharp.prepare(scene);
+        self.samples_of_work.clear();
+        let middle = |count: usize| (count as f64 - 1.0) / 2.0;
+        for row in 0..stretch.rows {
+            let r = (row as f64 - middle(stretch.rows)) * sample;
+            let brightness = |column: usize| {
+                let u = (column as f64 - middle(stretch.columns)) * sample;
+                self.sharp.brightness(scene, &surface.at(r, u), sample)
+            };
+            self.samples_of_work.extend((0..stretch.columns).map(brightness));
+        }
+    }
+
+    /// Diffraction, pixel and travel; the sums along rows are of the result.
+    fn smear(&mut self, stretch: Stretch, across: &Kernel, along: &Kernel) {
+        let Stretch { rows, columns, .. } = stretch;
+        let clamped =
+            |at: usize, k: usize, reach: usize, count: usize| (at + k).saturating_sub(reach).min(count - 1);
+        self.smeared.clear();
+        self.smeared.resize(rows * columns, 0.0);
+        for row in 0..rows {
+            let out = &mut self.smeared[row * columns..][..columns];
+            for (k, &weight) in along.0.iter().enumerate() {
+                let from = clamped(row, k, along.reach(), rows);
+                let line = &self.samples_of_work[from * columns..][..columns];
+                out.iter_mut().zip(line).for_each(|(o, x)| *o += weight * x);
+            }
+        }
+        self.sums.clear();
+        for line in self.smeared.chunks_exact(columns) {
+            let mut sum = 0.0;
+            self.sums.push(sum);
+            for column in 0..columns {
+                for (k, &weight) in across.0.iter().enumerate() {
+                    sum += f64::from(weight * line[clamped(column, k, across.reach(), columns)]);
+                }
+                self.sums.push(sum);
+            }
+        }
+    }
+
+    /// The mean over each pixel's disc, in its light.
+    fn gather(&self, scene: &Scene, stretch: Stretch, spread: f64) -> Vec<f32> {
+        let Optics { rows, columns, .. } = self.optics;
+        let [r0, c0] = self.optics.centre();
+        let line = stretch.columns + 1;
+        let middle = stretch.margin + self.samples / 2;
+        let haze = scene.light.haze;
+        let mut picture = Vec::with_capacity(rows * columns);
+        for row in 0..rows {
+            for column in 0..columns {
+                let radius = f64::from(self.depths[row * columns + column].abs()) * spread;
+                let (i, j) = (middle + row * self.samples, middle + column * self.samples);
+                let centre = j as f64 + 0.5;
+                let within = |i: usize, half: f64| {
+                    let sums = &self.sums[i * line..][..line];
+                    let up_to = |x: f64| {
+                        let k = x as usize;
+                        sums[k] + (sums[k + 1] - sums[k]) * (x - k as f64)
+                    };
+                    up_to(centre + half) - up_to(centre - half)
+                };
+                let halves = self.discs.of(radius);
+                let (mut sum, mut area) = (within(i, halves[0]), 2.0 * halves[0]);
+                for (k, &half) in halves.iter().enumerate().skip(1) {
+                    sum += within(i - k, half) + within(i + k, half);
+                    area += 4.0 * half;
+                }
+                let light = scene.light.at(
+                    (column as f64 - c0) / c0.max(1.0),
+                    (row as f64 - r0) / r0.max(1.0),
+                );
+                picture.push((light * ((1.0 - haze) * sum / area + haze)) as f32);
+            }
+        }
+        picture
+    }
+}
