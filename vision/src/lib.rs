@@ -3,15 +3,32 @@
 //! The camera looks at the work at an angle; its picture is sharp only in a thin band, where the focal plane cuts the
 //! surface. Where that band is tells the height, its slope the roll, and the dark gap in it the seam (SPEC 0.12).
 
+mod band;
+mod cells;
+mod coarse;
+mod detector;
+mod gap;
 mod geometry;
 mod image;
+mod layer;
+mod level;
+mod measure_corner;
+mod measure_gap;
 mod noise;
 mod optics;
 mod precision;
+mod prior;
+mod profile;
 pub mod render;
+mod report;
+mod surface;
 
+pub use detector::{Detector, DetectorError};
 pub use geometry::{Corner, CornerFeatures, GeometryError, PlateFeatures, PlateSeam};
 pub use image::{Image, ImageError};
 pub use noise::PhotonTransfer;
 pub use optics::{Optics, OpticsError};
 pub use precision::{Precision, Readings};
+pub use prior::{Joint, Prior, Track, Walls};
+pub use profile::Profile;
+pub use report::{Form, Measured, Report, Second, Sigma, Status};

@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+/// Finest object pixel that is measured \[mm\].
+const FINEST_MM: f64 = 0.0024;
+
 /// Lens and sensor of a camera whose optical axis is tilted against the plate (SPEC 0.12).
 ///
 /// Columns of its picture go along +u, across the seam; rows along (cos α, 0, sin α) in the frame (a along travel, u, n
@@ -70,6 +73,15 @@ impl Optics {
     /// g: what a pixel sees of the object in the focal plane \[mm\].
     pub fn object_pixel_mm(&self) -> f64 {
         self.pixel_mm / self.magnification
+    }
+
+    /// How many pixels a side count as one where a picture is measured: finer ones than 2.4 µm tell nothing more.
+    pub fn binning(&self) -> usize {
+        let mut binning = 1;
+        while self.object_pixel_mm() * (binning as f64) < FINEST_MM {
+            binning *= 2;
+        }
+        binning
     }
 
     /// Row and column of the optical axis.

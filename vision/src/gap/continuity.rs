@@ -1,0 +1,147 @@
+//! Whether a dark run goes on beyond the strip, as a gap does and a blob does not.
+//!
+//! Out of focus the gap is wide and pale, but the light it lacks, ∫(1 − I/I0) du, stays.
+
+use super::median;
+use super::strip::BandLine;
+use super::{Candidate, between};
+use crate::layer::Layer;
+
+/// Distances from the band at which the run is looked for again \[mm along the rows\].
+const DISTANCES_MM: [f64; 6] = [-0.22, -0.16, -0.11, 0.11, 0.16, 0.22];
+
+/// Half the height of the rows taken there, and in the band \[mm\].
+const ROWS_MM: f64 = 0.0105;
+const BAND_MM: f64 = 0.05;
+
+/// Columns beside the run that tell the light \[mm\].
+const BESIDE_MM: f64 = 0.03;
+
+/// Margin of the window beyond edge and blur \[mm\].
+const MARGIN_MM: f64 = 0.012;
+
+/// Looks for a run beyond the strip.
+#[derive(Clone, Debug)]
+pub(crate) struct Continuity {
+    /// tan α · tan(asin NA): radius of the blur a mm of row.
+    blur: f64,
+    /// Columns of the window, summed over rows.
+    window: Vec<f32>,
+}
+
+/// Light that is missing, and where \[mm\].
+#[derive(Clone, Copy, Debug)]
+struct Deficit {
+    area: f64,
+    middle: f64,
+}
+
+impl Continuity {
+    /// For pictures of this many columns.
+    pub fn new(columns: usize, tilt_rad: f64, aperture: f64) -> Self {
+        Self {
+            blur: tilt_rad.tan() * aperture.asin().tan(),
+            window: vec![0.0; columns],
+        }
+    }
+
+    /// Share of the distances at which a gap of this slant goes on.
+    pub fn of(&mut self, layer: &Layer, line: BandLine, candidate: &Candidate, slant: f64) -> f64 {
+        let width = candidate.width() * layer.pitch_mm;
+        let Some(here) = self.deficit(layer, line, candidate, slant, 0.0, BAND_MM) else {
+            return 0.0;
+        };
+        let g = layer.pitch_mm;
+        let (mut points, mut count) = (0.0, 0.0);
+        for distance in DISTANCES_MM {
+            let Some(there) = self.deficit(layer, line, candidate, slant, distance, ROWS_MM) else {
+                continue;
+            };
+            let area = 0.27 * here.area + 0.006 + 0.8 * g;
+            let middle = 0.11 * width + 0.009 + 0.8 * g + 0.035 * distance.abs();
+            let off =
+                ((there.area - here.area).abs() / area).max((there.middle - here.middle).abs() / middle);
+            count += 1.0;
+            points += if off < 1.0 {
+                1.0
+            } else if off < 2.0 {
+                0.5
+            } else {
+                0.0
+            };
+        }
+        if count > 0.0 { points / count } else { 0.0 }
+    }
+
+    /// Light missing at a distance from the band; its middle counts from the seam's line. None outside the picture.
+    fn deficit(
+        &mut self,
+        layer: &Layer,
+        line: BandLine,
+        candidate: &Candidate,
+        slant: f64,
+        distance: f64,
+        half_rows_mm: f64,
+    ) -> Option<Deficit> {
+        let g = layer.pitch_mm;
+        let middle = candidate.middle() + slant * distance / g;
+        let row = line.row(middle) + distance / g;
+        let half_rows = (half_rows_mm / g).round();
+        if row - half_rows < 0.0 || row + half_rows > layer.rows as f64 - 1.0 {
+            return None;
+        }
+        let blur = self.blur * distance.abs();
+        let half = candidate.width() / 2.0 + (blur + MARGIN_MM) / g;
+        let beside = (BESIDE_MM / g).round().max(2.0);
+        let first = (middle - half - beside).ceil().max(0.0) as usize;
+        let last = (middle + half + beside).floor().min(layer.columns as f64 - 1.0) as usize;
+        if last < first + 4 {
+            return None;
+        }
+        let window = &mut self.window[..=last - first];
+        window.fill(0.0);
+        let rows =
+            (row - half_rows).round() as usize..=((row + half_rows).round() as usize).min(layer.rows - 1);
+        for row in rows {
+            for (sum, pixel) in window.iter_mut().zip(&layer.row(row)[first..=last]) {
+                *sum += f32::from(*pixel);
+            }
+        }
+        let left = (middle - half).ceil().max(first as f64) as usize - first;
+        let right = (middle + half).floor().min(last as f64) as usize - first;
+        let lights = [side_light(&window[..left]), side_light(&window[right + 1..])];
+        let lights = match lights {
+            [Some(left), Some(right)] => [left, right],
+            [Some(light), None] | [None, Some(light)] => [light, light],
+            [None, None] => return None,
+        };
+        let (mut area, mut moment) = (0.0, 0.0);
+        for (k, value) in window[left..=right].iter().enumerate() {
+            let share = (k as f32 + 0.5) / (right - left + 1) as f32;
+            let missing = f64::from(1.0 - value / between(lights, share).max(1.0));
+            area += missing;
+            moment += missing * ((first + left + k) as f64 - middle);
+        }
+        let middle = if area.abs() > 1e-3 {
+            moment / area * g
+        } else {
+            f64::INFINITY
+        };
+        Some(Deficit {
+            area: area * g,
+            middle,
+        })
+    }
+}
+
+/// Median of the columns to one side, if there are any.
+fn side_light(values: &[f32]) -> Option<f32> {
+    let mut sorted = [0.0; 64];
+    let count = values.len().min(64);
+    sorted[..count].copy_from_slice(&values[..count]);
+    if count < 2 {
+        None
+    } else {
+        median(&mut sorted[..count])
+    }
+}

@@ -1,0 +1,114 @@
+//! The closed corner of two walls: a bent band, and no gap.
+
+use crate::band::{Knowledge, SMALLEST_GAIN};
+use crate::detector::Detector;
+use crate::prior::{Prior, Walls};
+use crate::report::{Form, Measured, Report, Sigma, Status, ramp};
+use crate::surface::Corner;
+
+/// Scatter of height and lateral position while tracking, and in an unknown picture \[mm\].
+const TRACKED: f64 = 0.1;
+const UNKNOWN: f64 = 1.0;
+
+/// Scatter of the focus.
+const FOCUS: f64 = 0.3;
+
+/// Half the width of the root that is rounded, dark or mirrored \[mm\].
+const SPOILT_MM: f64 = 0.06;
+
+/// True errors over those the scores predict.
+const HONEST: f64 = 1.3;
+
+/// Iterations: on half resolution, on both.
+const ITERATIONS: [usize; 2] = [5, 6];
+
+impl Detector {
+    /// Measures a corner.
+    pub(crate) fn measure_corner(&mut self, prior: &Prior, walls: &Walls) -> Report {
+        let [left, right] = walls.slopes;
+        let (height, lateral, scatter) = match prior.track {
+            Some(track) => (track.height_mm, track.lateral_mm, TRACKED),
+            None => {
+                self.correlate();
+                let [height, lateral] = self.coarse.corner(walls.slopes).at;
+                (height, lateral, UNKNOWN)
+            }
+        };
+        let surface = Corner { spoilt: SPOILT_MM };
+        let mean = [height, lateral, left, right, prior.focus];
+        let sigma = [scatter, scatter, walls.sigma, walls.sigma, FOCUS];
+        let knowledge = Knowledge { mean, sigma };
+        let mut at = mean;
+        self.band.start(&surface, &at);
+        let found = self.band.fit(&surface, &mut at, &knowledge, 1, ITERATIONS[0])
+            && self.band.fit(&surface, &mut at, &knowledge, 0, ITERATIONS[1]);
+        if !found {
+            return Report::without(Status::NoBand);
+        }
+        let Some(fitness) = self.band.fitness(&surface, &at, &knowledge) else {
+            return Report::without(Status::NoBand);
+        };
+        if fitness.gain < SMALLEST_GAIN {
+            return Report::without(Status::NoBand);
+        }
+        let [height, lateral, left, right, focus] = at;
+        let sigmas: [f64; 5] = std::array::from_fn(|k| HONEST * fitness.covariance[(k, k)].max(0.0).sqrt());
+        let visible = self.visible(&at);
+        let quality = [
+            ramp(sigmas[1], 0.012, 0.004),
+            ramp(sigmas[0], 0.012, 0.004),
+            ramp(fitness.gain, 0.02, 0.08),
+            ramp(visible[0].min(visible[1]), 0.15, 0.35),
+        ];
+        let quality = quality.into_iter().fold(1.0, f64::min);
+        Report {
+            status: if quality >= 0.5 {
+                Status::Seam
+            } else {
+                Status::NoSeam
+            },
+            measured: Some(Measured {
+                form: Form::Corner,
+                lateral_mm: lateral,
+                travel_mm: height / self.optics.tilt_rad.tan(),
+                height_mm: height,
+                width_mm: 0.0,
+                step_mm: 0.0,
+                roll: ((left.atan() + right.atan()) / 2.0).tan(),
+                walls: [left, right],
+                yaw_rad: 0.0,
+                focus,
+                quality,
+                gain: fitness.gain,
+                contrast: fitness.contrast,
+                sigma: Sigma {
+                    lateral_mm: sigmas[1],
+                    height_mm: sigmas[0],
+                    width_mm: f64::INFINITY,
+                    roll: sigmas[2].hypot(sigmas[3]) / 2.0,
+                    walls: [sigmas[2], sigmas[3]],
+                    yaw_rad: f64::INFINITY,
+                },
+                second: None,
+            }),
+        }
+    }
+
+    /// How much of the left and the right wall the band crosses in the picture, the root left out \[mm\].
+    fn visible(&self, at: &[f64; 5]) -> [f64; 2] {
+        let cells = &self.band.levels[1].cells;
+        let [height, lateral, ..] = *at;
+        let first = f64::from(cells.origin_mm[0]);
+        let last = first + (cells.rows - 1) as f64 * f64::from(cells.pitch_mm);
+        let mut visible = [0.0, 0.0];
+        for column in 0..cells.columns {
+            let from = f64::from(cells.lateral(column)) - lateral;
+            let side = usize::from(from > 0.0);
+            let row = (height + at[2 + side] * from) / self.optics.tilt_rad.sin();
+            if from.abs() > SPOILT_MM && row > first && row < last {
+                visible[side] += f64::from(cells.pitch_mm);
+            }
+        }
+        visible
+    }
+}
