@@ -1,7 +1,9 @@
-//! Writes rendered pictures for people to look at: `cargo run --release -p seamwright-vision --example look -- FOLDER`.
+//! Writes rendered pictures for people to look at, the truth left and the fast renderer's right:
+//! `cargo run --release -p seamwright-vision --example look -- FOLDER`.
 
 use std::path::Path;
-use vision::render::{TruthRenderer, random_corner, random_gap};
+use std::sync::Arc;
+use vision::render::{FastRenderer, Tile, TruthRenderer, random_corner, random_gap};
 use vision::{Optics, PhotonTransfer};
 
 fn main() {
@@ -20,14 +22,26 @@ fn main() {
         read_noise: 10.0,
     };
     let mut renderer = TruthRenderer::new(optics, noise, 3).expect("a camera");
-    for seed in 0..12 {
+    for seed in 0..6 {
         for (kind, scene) in [
             ("gap", random_gap(seed, &optics)),
             ("corner", random_corner(seed, &optics)),
         ] {
-            let pixels = renderer.render(&scene, seed);
+            let truth = renderer.render(&scene, seed);
+            let tile = Tile::new(scene.texture, optics, scene.smear_mm).expect("a camera");
+            let mut fast = FastRenderer::new(Arc::new(tile), noise);
+            let fast = fast.render(&scene, seed).expect("the tile's texture");
             let path = Path::new(&folder).join(format!("{kind}-{seed}.png"));
-            write(&path, &pixels, &optics);
+            let rows = truth
+                .chunks_exact(optics.columns)
+                .zip(fast.chunks_exact(optics.columns));
+            write(
+                &path,
+                &rows
+                    .flat_map(|(left, right)| [left, right].concat())
+                    .collect::<Vec<u8>>(),
+                &optics,
+            );
             println!(
                 "{}: {:?} {:?}",
                 path.display(),
@@ -40,7 +54,7 @@ fn main() {
 
 fn write(path: &Path, pixels: &[u8], optics: &Optics) {
     let file = std::fs::File::create(path).expect("a file to write");
-    let mut encoder = png::Encoder::new(file, optics.columns as u32, optics.rows as u32);
+    let mut encoder = png::Encoder::new(file, 2 * optics.columns as u32, optics.rows as u32);
     encoder.set_color(png::ColorType::Grayscale);
     let mut writer = encoder.write_header().expect("a header");
     writer.write_image_data(pixels).expect("a picture");

@@ -147,7 +147,7 @@ impl PlateSeam {
 
     /// Share of the gap's extent along u that counts square to the seam: |S × l| / |S|, S along the seam and
     /// l = (0, 1, q) across it, both in the plate.
-    fn squareness(&self) -> f64 {
+    pub(crate) fn squareness(&self) -> f64 {
         let tangent = self.yaw_rad.tan();
         let along = Vector3::new(1.0, tangent, self.pitch + self.roll * tangent);
         let across = Vector3::new(0.0, 1.0, self.roll);

@@ -1,21 +1,29 @@
 //! Pictures of a seam whose truth is known.
 //!
-//! A [`Scene`] says what stands before the camera; [`TruthRenderer`] makes its picture by the physics of SPEC 0.12, and
-//! [`Scene::truth`] says what a measurement should find in it.
+//! A [`Scene`] says what stands before the camera, and [`Scene::truth`] what a measurement should find in its picture.
+//! [`TruthRenderer`] makes the picture by the physics of SPEC 0.12, for tests; [`FastRenderer`] makes it at the pace of a
+//! camera, from a [`Tile`] of textured work that was blurred beforehand.
 
 mod blur;
+mod fast_renderer;
 mod protocol;
 mod random;
+mod row;
 mod scene;
 mod sharp;
+mod sketch;
+mod source;
 mod surface;
 mod texture;
+mod tile;
 mod truth;
 mod truth_renderer;
 
+pub use fast_renderer::{FastRenderer, RenderError};
 pub use protocol::{random_corner, random_gap};
 pub use random::SplitMix64;
 pub use scene::{Blob, Gap, Joint, Light, Root, Scene, Stripe};
 pub use texture::{Finish, PERIOD_MM, Texture};
+pub use tile::Tile;
 pub use truth::{Shown, Truth};
 pub use truth_renderer::TruthRenderer;

@@ -5,7 +5,7 @@ use super::surface::Point;
 use super::texture::{Field, roughness};
 
 /// Light from wall to wall fades by 1/e over this \[mm\].
-pub(super) const FADING_MM: f64 = 0.1;
+const FADING_MM: f64 = 0.1;
 
 /// Textures of a scene: one for a plate, one for each wall of a corner.
 #[derive(Clone, Debug, Default)]
@@ -81,7 +81,12 @@ fn opening(gap: &Gap, seed: u64, along: f64, lateral: f64, sample: f64) -> f64 {
 
 impl Root {
     /// What lights a wall at `lateral` mm from the root.
-    pub(super) fn lit(&self, lateral: f64, side: usize) -> f64 {
-        self.brightness[side] * (1.0 + self.interreflection * (-lateral.abs() / FADING_MM).exp())
+    fn lit(&self, lateral: f64, side: usize) -> f64 {
+        self.brightness[side] * self.interreflected(lateral)
+    }
+
+    /// What light from wall to wall multiplies a wall's brightness by.
+    pub(super) fn interreflected(&self, lateral: f64) -> f64 {
+        1.0 + self.interreflection * (-lateral.abs() / FADING_MM).exp()
     }
 }

@@ -18,7 +18,7 @@ pub(super) struct Surface {
 pub(super) struct Point {
     /// a.
     pub along: f64,
-    /// Way across the seam in the surface: u on a plate, from the root along the wall in a corner.
+    /// Way across the seam in the surface: u on a plate; in a corner u of the root and from there along the wall.
     pub across: f64,
     /// From the middle of the seam, square to it.
     pub lateral: f64,
@@ -32,12 +32,7 @@ impl Surface {
     pub fn new(joint: &Joint, optics: &Optics) -> Self {
         let (sin, cos) = optics.tilt_rad.sin_cos();
         let (tangent, squareness) = match joint {
-            Joint::Gap(gap) => {
-                let (p, q, tangent) = (gap.plate.pitch, gap.plate.roll, gap.plate.yaw_rad.tan());
-                // |S × l| / |S| of SPEC 0.12: an extent along u, seen square to the seam.
-                let across = (1.0 + p * p + q * q) / (1.0 + tangent * tangent + (p + q * tangent).powi(2));
-                (tangent, across.sqrt())
-            }
+            Joint::Gap(gap) => (gap.plate.yaw_rad.tan(), gap.plate.squareness()),
             Joint::Corner(_) => (0.0, 1.0),
         };
         Self {
@@ -82,7 +77,7 @@ impl Surface {
         let side = usize::from(lateral >= 0.0);
         Point {
             along: a,
-            across: lateral * root.corner.walls[side].hypot(1.0),
+            across: root.corner.lateral_mm + lateral * root.corner.walls[side].hypot(1.0),
             lateral,
             depth: a * self.sin - n * self.cos,
             side,
@@ -93,7 +88,7 @@ impl Surface {
 impl Root {
     /// Height over the corner at `lateral` from it \[mm\]: two slopes, and between them a parabola that has the radius
     /// of the rounding at its bottom.
-    fn rise(&self, lateral: f64) -> f64 {
+    pub(super) fn rise(&self, lateral: f64) -> f64 {
         let [left, right] = self.corner.walls;
         let reach = self.rounding_mm * (right - left).abs() / 2.0;
         if lateral <= -reach {

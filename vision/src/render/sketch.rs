@@ -1,0 +1,179 @@
+//! A scene, prepared column by column for rows to be rendered.
+
+use super::blur::Lens;
+use super::scene::{Joint, Scene};
+use super::tile::Tile;
+
+/// What rows of a picture have in common. Lengths are millimetres.
+#[derive(Clone, Debug)]
+pub(super) struct Sketch {
+    pub lens: Lens,
+    pub columns: usize,
+    /// Column of the optical axis.
+    pub middle: f64,
+    /// u of the seam at r = 0 and what it gains along r.
+    seam: [f64; 2],
+    /// What a step between the sides shifts a line along the seam by, seen in one row: left and right \[mm along u\].
+    shift: [f64; 2],
+    /// Way square to the seam for a way along u.
+    pub squareness: f64,
+    /// a of the seam at r = 0 and what it gains along r.
+    along: [f64; 2],
+    /// Depth gained along r.
+    steepness: f64,
+    /// cos α + p sin α.
+    divisor: f64,
+    /// What the surface's height takes from the depth in each column, on a plate left and right of the seam; a corner's
+    /// are the same.
+    pub fall: [Vec<f32>; 2],
+    /// Brightness of each column's wall relative to the left and right one, root far away.
+    pub lit: Vec<f32>,
+    /// Brightness of the walls.
+    pub walls: [f32; 2],
+    /// Whether `lit` and `walls` are anything but 1.
+    pub corner: bool,
+    /// x of the shading, −1…1, and x².
+    pub shading: [Vec<f32>; 2],
+    /// Which row and column of the tile the picture begins at, for each side of the seam.
+    pub begin: [[usize; 2]; 2],
+    /// Way across the seam in the surface for each column, as blobs have it.
+    pub across: Vec<f32>,
+    /// sin and cos of the tilt.
+    tilt: [f64; 2],
+    /// Row of the optical axis.
+    middle_row: f64,
+    /// Pixels in a period of the tile.
+    period: [usize; 2],
+}
+
+impl Sketch {
+    pub fn new(tile: &Tile) -> Self {
+        let optics = tile.optics();
+        let columns = optics.columns;
+        let [middle_row, middle] = optics.centre();
+        let (sin, cos) = optics.tilt_rad.sin_cos();
+        let x = |column: usize| ((column as f64 - middle) / middle.max(1.0)) as f32;
+        Self {
+            lens: Lens::new(optics),
+            columns,
+            middle,
+            seam: [0.0; 2],
+            shift: [0.0; 2],
+            squareness: 1.0,
+            along: [0.0; 2],
+            steepness: 1.0,
+            divisor: 1.0,
+            fall: [vec![0.0; columns], vec![0.0; columns]],
+            lit: vec![1.0; columns],
+            walls: [1.0; 2],
+            corner: false,
+            shading: [
+                (0..columns).map(x).collect(),
+                (0..columns).map(|c| x(c) * x(c)).collect(),
+            ],
+            begin: [[0; 2]; 2],
+            across: vec![0.0; columns],
+            tilt: [sin, cos],
+            middle_row,
+            period: tile.size(),
+        }
+    }
+
+    /// Takes up a scene.
+    pub fn prepare(&mut self, scene: &Scene) {
+        let [sin, cos] = self.tilt;
+        let (g, middle) = (self.lens.pixel_mm, self.middle);
+        let u = |column: usize| (column as f64 - middle) * g;
+        let height = match &scene.joint {
+            Joint::Gap(gap) => {
+                let (p, q) = (gap.plate.pitch, gap.plate.roll);
+                let (h, u0) = (gap.plate.height_mm, gap.plate.lateral_mm);
+                let tangent = gap.plate.yaw_rad.tan();
+                // r = a cos α + n sin α with n = h + p a + q u and u = u0 + a tan ψ.
+                let gain = 1.0 / (cos + (p + q * tangent) * sin);
+                self.along = [-(h + q * u0) * sin * gain, gain];
+                self.seam = [u0 + self.along[0] * tangent, gain * tangent];
+                self.shift = [0.5, -0.5].map(|side| side * gap.step_mm * sin * gain * tangent);
+                let divisor = cos + p * sin;
+                self.divisor = divisor;
+                self.squareness = gap.plate.squareness() * (1.0 + tangent * q * sin / divisor);
+                self.steepness = (sin - p * cos) / divisor;
+                for column in 0..self.columns {
+                    let level = h + q * u(column);
+                    self.across[column] = u(column) as f32;
+                    self.fall[0][column] = ((level - gap.step_mm / 2.0) / divisor) as f32;
+                    self.fall[1][column] = ((level + gap.step_mm / 2.0) / divisor) as f32;
+                }
+                self.corner = false;
+                h
+            }
+            Joint::Corner(root) => {
+                let (h, u0) = (root.corner.height_mm, root.corner.lateral_mm);
+                self.seam = [u0, 0.0];
+                self.shift = [0.0; 2];
+                self.squareness = 1.0;
+                self.along = [-h * sin / cos, 1.0 / cos];
+                self.divisor = cos;
+                self.steepness = sin / cos;
+                for column in 0..self.columns {
+                    let lateral = u(column) - u0;
+                    let wall = root.corner.walls[usize::from(lateral >= 0.0)];
+                    self.across[column] = (u0 + lateral * wall.hypot(1.0)) as f32;
+                    let fall = ((h + root.rise(lateral)) / cos) as f32;
+                    self.fall[0][column] = fall;
+                    self.fall[1][column] = fall;
+                    self.lit[column] = root.interreflected(lateral) as f32;
+                }
+                self.walls = root.brightness.map(|b| b as f32);
+                self.corner = true;
+                h
+            }
+        };
+        // The texture goes with the work, along travel as the rows of the picture see it, and across. The right wall of
+        // a corner shows another part of it.
+        let row = (scene.position_mm[0] * cos - height * sin) / g - self.middle_row;
+        let column = scene.position_mm[1] / g - self.middle;
+        let begin = |k: usize, at: f64, parts: usize| {
+            let at = at.round() as i64 + (self.period[k] / 2 * parts) as i64;
+            at.rem_euclid(self.period[k] as i64) as usize
+        };
+        let other = usize::from(self.corner);
+        self.begin = [0, other].map(|parts| [begin(0, row, parts), begin(1, column, parts)]);
+    }
+
+    /// Row of the tile that a row of the picture shows, on each side of the seam.
+    pub fn tile_rows(&self, row: usize) -> [usize; 2] {
+        self.begin.map(|[begin, _]| (begin + row) % self.period[0])
+    }
+
+    /// Depth at `r` over a height of 0.
+    pub fn depth(&self, r: f64) -> f64 {
+        r * self.steepness
+    }
+
+    /// Column in which the middle of the seam lies at `r`.
+    pub fn seam_column(&self, r: f64) -> f64 {
+        self.middle + (self.seam[0] + self.seam[1] * r) / self.lens.pixel_mm
+    }
+
+    /// Column of a line that runs `lateral` mm from the seam, square to it.
+    pub fn line_column(&self, r: f64, lateral: f64) -> f64 {
+        let shift = self.shift[usize::from(lateral >= 0.0)];
+        self.seam_column(r) + (lateral / self.squareness + shift) / self.lens.pixel_mm
+    }
+
+    /// a of the seam at `r`.
+    pub fn seam_along(&self, r: f64) -> f64 {
+        self.along[0] + self.along[1] * r
+    }
+
+    /// Way along travel for a way along r.
+    pub fn travel(&self, r: f64) -> f64 {
+        r / self.divisor
+    }
+
+    /// a of a column's surface at `r`, on a side of the seam.
+    pub fn along(&self, r: f64, column: usize, side: usize) -> f64 {
+        self.travel(r) - f64::from(self.fall[side][column]) * self.tilt[0]
+    }
+}
