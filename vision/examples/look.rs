@@ -28,8 +28,10 @@ fn main() {
             ("corner", random_corner(seed, &optics)),
         ] {
             let truth = renderer.render(&scene, seed);
-            let tile = Tile::new(scene.texture, optics, scene.smear_mm).expect("a camera");
-            let mut fast = FastRenderer::new(Arc::new(tile), noise);
+            let walls = scene.truth(&optics).expect("a surface the camera sees").walls;
+            let tile =
+                |slope| Arc::new(Tile::new(scene.texture, optics, slope, scene.smear_mm).expect("a camera"));
+            let mut fast = FastRenderer::new(walls.map(tile), noise).expect("tiles of one camera");
             let fast = fast.render(&scene, seed).expect("the tile's texture");
             let path = Path::new(&folder).join(format!("{kind}-{seed}.png"));
             let rows = truth

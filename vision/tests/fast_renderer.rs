@@ -3,12 +3,17 @@
 use std::sync::Arc;
 use vision::render::{FastRenderer, Finish, Gap, Joint, Root, Scene, Stripe, Texture, Tile, TruthRenderer};
 use vision::render::{RenderError, random_corner, random_gap};
-use vision::{Corner, Optics, PhotonTransfer, PlateSeam};
+use vision::{Corner, Detector, Image, Optics, PhotonTransfer, PlateSeam, Prior, Profile};
 
 /// Hardly any noise but that of 8 bits.
 const QUIET: PhotonTransfer = PhotonTransfer {
     full_well: 1e9,
     read_noise: 0.0,
+};
+
+const NOISE: PhotonTransfer = PhotonTransfer {
+    full_well: 10_000.0,
+    read_noise: 10.0,
 };
 
 const ROWS: usize = 150;
@@ -29,19 +34,18 @@ fn camera() -> Optics {
     }
 }
 
-fn tile(texture: Texture) -> Arc<Tile> {
-    Arc::new(Tile::new(texture, camera(), SMEAR_MM).unwrap())
+/// A fast renderer of surfaces with these slopes left and right.
+fn renderer(texture: Texture, noise: PhotonTransfer, slopes: [f64; 2]) -> FastRenderer {
+    let tiles = slopes.map(|slope| Arc::new(Tile::new(texture, camera(), slope, SMEAR_MM).unwrap()));
+    FastRenderer::new(tiles, noise).unwrap()
 }
 
 /// The same scene by both renderers, the fast one's first.
-fn both(tile: &Arc<Tile>, noise: PhotonTransfer, scene: &Scene) -> [Vec<u8>; 2] {
-    let fast = FastRenderer::new(tile.clone(), noise)
-        .render(scene, 1)
-        .unwrap()
-        .to_vec();
+fn both(fast: &mut FastRenderer, scene: &Scene) -> [Vec<u8>; 2] {
+    let fast = fast.render(scene, 1).unwrap().to_vec();
     [
         fast,
-        TruthRenderer::new(camera(), noise, 3).unwrap().render(scene, 2),
+        TruthRenderer::new(camera(), QUIET, 3).unwrap().render(scene, 2),
     ]
 }
 
@@ -94,14 +98,14 @@ fn contrasts(
     band: impl Fn(usize) -> f64 + Copy,
     used: impl Fn(usize) -> bool + Copy,
 ) -> [Vec<f64>; 2] {
-    let tile = tile(scene.texture);
+    let mut fast = renderer(scene.texture, QUIET, scene.truth(&camera()).unwrap().walls);
     let mut sums = [vec![0.0; 9], vec![0.0; 9]];
     for place in 0..6 {
         let scene = Scene {
             position_mm: [1.1 * place as f64, 0.57 * place as f64],
             ..scene.clone()
         };
-        for (sum, picture) in sums.iter_mut().zip(both(&tile, QUIET, &scene)) {
+        for (sum, picture) in sums.iter_mut().zip(both(&mut fast, &scene)) {
             let energies = contrast(&picture, band, used);
             sum.iter_mut().zip(energies).for_each(|(s, e)| *s += e / 6.0);
         }
@@ -142,13 +146,11 @@ fn contrast_of_a_corner_falls_along_its_walls_as_in_truth() {
         vertex + features.band_slopes[usize::from(from > 0.0)] * from
     };
     let [fast, truth] = contrasts(&scene, band, |column| (column as f64 - root).abs() > 10.0);
-    // The fast one does not compress the texture of a wall seen at a slant: less contrast, but all over alike.
-    let level = fast[0] / truth[0];
-    assert!((0.7..1.05).contains(&level), "{level}");
-    for (bin, (fast, truth)) in fast.iter().zip(&truth).enumerate().take(6) {
+    for (bin, (fast, truth)) in fast.iter().zip(&truth).enumerate() {
+        let tolerance = if bin < 6 { 0.2 } else { 0.35 };
         assert!(
-            (fast / truth / level - 1.0).abs() < 0.25,
-            "bin {bin}: {fast:.2e}, truth {truth:.2e}, {level}"
+            (fast / truth - 1.0).abs() < tolerance,
+            "bin {bin}: {fast:.2e}, truth {truth:.2e}"
         );
     }
 }
@@ -168,7 +170,7 @@ fn gaps_and_stripes_lie_where_they_do_in_truth() {
         contrast: 0.0,
         ..Texture::new(Finish::Plain, 1)
     };
-    let tile = tile(texture);
+    let mut fast = renderer(texture, QUIET, [0.0; 2]);
     for (u0, yaw, width, roll, step) in [
         (0.0, 0.0, 0.02, 0.0, 0.0),
         (0.2, 0.06, 0.1, 0.15, 0.05),
@@ -191,7 +193,7 @@ fn gaps_and_stripes_lie_where_they_do_in_truth() {
             width_mm: 0.015,
             factor: 0.5,
         });
-        let [fast, truth] = both(&tile, QUIET, &scene);
+        let [fast, truth] = both(&mut fast, &scene);
         for row in (0..ROWS).step_by(7) {
             let [fast, truth] = [&fast, &truth].map(|picture| deficit(&picture[row * COLUMNS..][..COLUMNS]));
             assert!(
@@ -217,14 +219,14 @@ fn gaps_and_stripes_lie_where_they_do_in_truth() {
 fn random_scenes_look_the_same_from_afar() {
     let optics = camera();
     let texture = Texture::new(Finish::Plain, 2);
-    let tile = tile(texture);
+    let [mut plates, mut walls] = [[0.0, 0.0], [-0.75, 0.75]].map(|slopes| renderer(texture, QUIET, slopes));
     for seed in 0..24 {
-        for (kind, mut scene) in [
-            ("gap", random_gap(seed, &optics)),
-            ("corner", random_corner(seed, &optics)),
+        for (kind, fast, mut scene) in [
+            ("gap", &mut plates, random_gap(seed, &optics)),
+            ("corner", &mut walls, random_corner(seed, &optics)),
         ] {
             scene.texture = texture;
-            let [fast, truth] = both(&tile, QUIET, &scene);
+            let [fast, truth] = both(fast, &scene);
             let mean = |picture: &[u8], row: usize, column: usize| {
                 let rows = picture.chunks_exact(COLUMNS).skip(row).take(15);
                 rows.flat_map(|row| &row[column..column + 20])
@@ -247,13 +249,60 @@ fn random_scenes_look_the_same_from_afar() {
 }
 
 #[test]
-fn noise_is_that_of_the_photons() {
-    let noise = PhotonTransfer {
-        full_well: 10_000.0,
-        read_noise: 10.0,
+fn a_detector_measures_the_same_in_both() {
+    let optics = camera();
+    let texture = Texture::new(Finish::Plain, 4);
+    let mut fast = renderer(texture, NOISE, [0.0; 2]);
+    let mut truth = TruthRenderer::new(optics, NOISE, 3).unwrap();
+    let mut detector = Detector::new(optics, NOISE, Profile::expected(&optics)).unwrap();
+    let prior = Prior {
+        joint: vision::Joint::Gap,
+        track: None,
+        focus: 0.0,
     };
+    let mut errors = [Vec::new(), Vec::new()];
+    for seed in 0..60 {
+        let mut scene = random_gap(seed, &optics);
+        scene.texture = texture;
+        let known = scene.truth(&optics).unwrap();
+        let pictures = [
+            fast.render(&scene, seed).unwrap().to_vec(),
+            truth.render(&scene, seed),
+        ];
+        for (errors, picture) in errors.iter_mut().zip(pictures) {
+            let picture = Image::new(&picture, ROWS, COLUMNS).unwrap();
+            let report = detector.measure(&picture, &prior).unwrap();
+            if let Some(seen) = report.seam() {
+                let height = seen.plate_height_mm() - known.height_mm;
+                errors.push([
+                    seen.lateral_mm - known.centre_mm,
+                    height,
+                    seen.width_mm - known.width_mm,
+                ]);
+            }
+        }
+    }
+    let accepted = errors.each_ref().map(Vec::len);
+    assert!(
+        accepted[0].abs_diff(accepted[1]) <= 4,
+        "accepted {accepted:?} of 60"
+    );
+    for (k, what, limit) in [(0, "centre", 0.004), (1, "height", 0.009), (2, "width", 0.007)] {
+        let [fast, truth] = errors.each_ref().map(|errors| {
+            (errors.iter().map(|error| error[k].powi(2)).sum::<f64>() / errors.len() as f64).sqrt()
+        });
+        assert!(fast < limit && truth < limit, "{what}: {fast} and {truth} mm rms");
+        assert!(
+            (0.6..1.6).contains(&(fast / truth)),
+            "{what}: {fast} and {truth} mm rms"
+        );
+    }
+}
+
+#[test]
+fn noise_is_that_of_the_photons() {
     let texture = Texture::new(Finish::Plain, 2);
-    let mut renderer = FastRenderer::new(tile(texture), noise);
+    let mut renderer = renderer(texture, NOISE, [0.0; 2]);
     let mut scene = scene(Joint::Gap(Gap::new(closed(0.0, 0.0))), texture);
     for level in [0.1, 0.6] {
         scene.light.level = level;
@@ -263,7 +312,7 @@ fn noise_is_that_of_the_photons() {
         let mean = pairs().map(|(a, b)| a + b).sum::<f64>() / count / 2.0;
         let variance = pairs().map(|(a, b)| (a - b).powi(2)).sum::<f64>() / count / 2.0;
         assert!(
-            (variance / noise.variance(mean) - 1.0).abs() < 0.06,
+            (variance / NOISE.variance(mean) - 1.0).abs() < 0.06,
             "{level}: {variance}"
         );
     }
@@ -273,7 +322,7 @@ fn noise_is_that_of_the_photons() {
 fn the_same_seed_gives_the_same_picture_and_another_texture_none() {
     let optics = camera();
     let texture = Texture::new(Finish::Blasted, 2);
-    let mut renderer = FastRenderer::new(tile(texture), QUIET);
+    let mut renderer = renderer(texture, QUIET, [0.0; 2]);
     let mut first = random_gap(3, &optics);
     assert_eq!(renderer.render(&first, 1), Err(RenderError::Texture));
     first.texture = texture;
@@ -287,7 +336,7 @@ fn the_same_seed_gives_the_same_picture_and_another_texture_none() {
 #[test]
 fn the_texture_moves_with_the_work() {
     let texture = Texture::new(Finish::Plain, 2);
-    let mut renderer = FastRenderer::new(tile(texture), QUIET);
+    let mut renderer = renderer(texture, QUIET, [0.0; 2]);
     let mut scene = scene(Joint::Gap(Gap::new(closed(0.0, 0.0))), texture);
     let g = camera().object_pixel_mm();
     let before = renderer.render(&scene, 1).unwrap().to_vec();

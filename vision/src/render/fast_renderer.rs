@@ -6,6 +6,7 @@ use super::scene::{Joint, Scene};
 use super::sketch::Sketch;
 use super::tile::Tile;
 use crate::noise::PhotonTransfer;
+use crate::optics::Optics;
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -13,13 +14,13 @@ use thiserror::Error;
 ///
 /// The physics is kept where a detector looks: each pixel's own depth and blur, edges where they are and as soft as
 /// they have to be, light and noise. The texture comes from a tile that was blurred beforehand, so that it moves in whole
-/// pixels, all with the tile's travel smear, and is not turned by roll or sheared by walls. Gaps, stripes and blobs are
+/// pixels, with the smear and on the slope the tile was made for. Gaps, stripes and blobs are
 /// laid over with soft edges instead of being blurred together with the texture; a blob smaller than its blur is too
 /// dark. Everything else of a scene is as there.
 #[derive(Clone, Debug)]
 pub struct FastRenderer {
     noise: PhotonTransfer,
-    tile: Arc<Tile>,
+    tiles: [Arc<Tile>; 2],
     /// Normally distributed numbers, picked up at a random place for each row.
     gauss: Vec<f32>,
     sketch: Sketch,
@@ -27,45 +28,54 @@ pub struct FastRenderer {
     pixels: Vec<u8>,
 }
 
-/// Why a picture cannot be rendered.
+/// Why there is no picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum RenderError {
-    /// The scene has another texture than the tile.
-    #[error("the scene's texture is not that of the tile; make a tile of it")]
+    /// The scene has another texture than the tiles.
+    #[error("the scene's texture is not that of the tiles; make tiles of it")]
     Texture,
+    /// The tiles left and right are of different cameras or textures.
+    #[error(
+        "the tiles left and right of the seam are of different cameras or textures; make both of the same"
+    )]
+    Tiles,
 }
 
 /// How many normally distributed numbers there are to pick from.
 const GAUSS: usize = 1 << 16;
 
 impl FastRenderer {
-    /// A renderer for the camera and texture of a tile.
-    pub fn new(tile: Arc<Tile>, noise: PhotonTransfer) -> Self {
-        let optics = *tile.optics();
+    /// A renderer for the camera and texture of two tiles, of what is left and right of the seam: the same twice for a
+    /// plate, one of each wall for a corner.
+    pub fn new(tiles: [Arc<Tile>; 2], noise: PhotonTransfer) -> Result<Self, RenderError> {
+        let optics = *tiles[0].optics();
+        if optics != *tiles[1].optics() || tiles[0].texture() != tiles[1].texture() {
+            return Err(RenderError::Tiles);
+        }
         let mut random = SplitMix64::new(0);
         let gauss = (0..(GAUSS + optics.columns).div_ceil(2)).flat_map(|_| random.gauss());
-        Self {
+        Ok(Self {
             noise,
             gauss: gauss.map(|x| x as f32).collect(),
-            sketch: Sketch::new(&tile),
+            sketch: Sketch::new(&tiles),
             row: Row::new(optics.columns),
             pixels: vec![0; optics.rows * optics.columns],
-            tile,
-        }
+            tiles,
+        })
     }
 
-    /// The tile.
-    pub fn tile(&self) -> &Tile {
-        &self.tile
+    /// The camera.
+    pub fn optics(&self) -> &Optics {
+        self.tiles[0].optics()
     }
 
     /// The picture of `scene`, rows from the top; the same seed gives the same noise. The scene's smear is taken to be
-    /// the tile's.
+    /// the tiles'.
     pub fn render(&mut self, scene: &Scene, seed: u64) -> Result<&[u8], RenderError> {
-        if scene.texture != self.tile.texture() {
+        if scene.texture != self.tiles[0].texture() {
             return Err(RenderError::Texture);
         }
-        let optics = *self.tile.optics();
+        let optics = *self.optics();
         self.sketch.prepare(scene);
         let mut random = SplitMix64::new(seed);
         let [r0, _] = optics.centre();
@@ -73,7 +83,7 @@ impl FastRenderer {
         let read = (self.noise.read_noise * 255.0 / self.noise.full_well).powi(2) as f32;
         for (row, pixels) in self.pixels.chunks_exact_mut(optics.columns).enumerate() {
             let r = (row as f64 - r0) * self.sketch.lens.pixel_mm;
-            self.row.see(&self.tile, &self.sketch, row, r);
+            self.row.see(&self.tiles, &self.sketch, row, r);
             for stripe in &scene.stripes {
                 self.row.lay_stripe(&self.sketch, r, stripe);
             }

@@ -6,6 +6,7 @@ use super::source::Source;
 use super::texture::roughness;
 use super::tile::Tile;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Where the roughness of an edge is looked up, in radii of the blur: places that spread as far as a disc does.
 const ROUGHNESS_AT: [f64; 5] = [-0.7, -0.35, 0.0, 0.35, 0.7];
@@ -66,7 +67,7 @@ impl Row {
     }
 
     /// The textured surface in the row that lies at `r`.
-    pub fn see(&mut self, tile: &Tile, sketch: &Sketch, row: usize, r: f64) {
+    pub fn see(&mut self, tiles: &[Arc<Tile>; 2], sketch: &Sketch, row: usize, r: f64) {
         let seam = sketch.seam_column(r);
         let split = (seam.ceil().max(0.0) as usize).min(sketch.columns);
         let radius = sketch.lens.spread / sketch.lens.pixel_mm;
@@ -78,7 +79,7 @@ impl Row {
                 let defocus = depth - fall * radius;
                 *squared = defocus * defocus;
             }
-            let source = Source::new(tile, rows[side], sketch.begin[side][1]);
+            let source = Source::new(&tiles[side], rows[side], sketch.begin[side][1]);
             source.blend(
                 &self.radii_squared,
                 columns.clone(),
@@ -86,13 +87,20 @@ impl Row {
             );
         }
         if sketch.corner {
-            self.join_walls(tile, sketch, rows, split, seam);
+            self.join_walls(tiles, sketch, rows, split, seam);
         }
         self.plain.copy_from_slice(&self.brightness);
     }
 
     /// Blurs the textures and the brightness of two walls into each other.
-    fn join_walls(&mut self, tile: &Tile, sketch: &Sketch, rows: [usize; 2], split: usize, seam: f64) {
+    fn join_walls(
+        &mut self,
+        tiles: &[Arc<Tile>; 2],
+        sketch: &Sketch,
+        rows: [usize; 2],
+        split: usize,
+        seam: f64,
+    ) {
         let softness = self.softness(sketch, seam);
         let touched = Strip {
             edges: [seam; 2],
@@ -102,7 +110,7 @@ impl Row {
         let split = split.clamp(touched.start, touched.end);
         let sides = [touched.start..split, split..touched.end];
         for (side, columns) in sides.into_iter().enumerate() {
-            let other = Source::new(tile, rows[1 - side], sketch.begin[1 - side][1]);
+            let other = Source::new(&tiles[1 - side], rows[1 - side], sketch.begin[1 - side][1]);
             let out = &mut self.other[columns.clone()];
             other.blend(&self.radii_squared, columns.clone(), out);
             for (column, (own, other)) in columns.clone().zip(self.brightness[columns].iter_mut().zip(out)) {
@@ -150,7 +158,7 @@ impl Row {
             return;
         }
         let column = (sketch.seam_column(r).max(0.0) as usize).min(sketch.columns - 1);
-        let blur = self.radii_squared[column].sqrt() as f64 * sketch.lens.pixel_mm;
+        let blur = f64::from(self.radii_squared[column].sqrt()) * sketch.lens.pixel_mm;
         let along = scene.position_mm[0] + sketch.seam_along(r);
         let rough = |edge: usize| {
             let at = |k: f64| roughness(scene.texture.seed, edge, along + sketch.travel(k * blur));

@@ -2,7 +2,8 @@
 
 use super::blur::Lens;
 use super::scene::{Joint, Scene};
-use super::tile::Tile;
+use super::tile::{Grid, Tile};
+use std::sync::Arc;
 
 /// What rows of a picture have in common. Lengths are millimetres.
 #[derive(Clone, Debug)]
@@ -34,7 +35,7 @@ pub(super) struct Sketch {
     pub corner: bool,
     /// x of the shading, −1…1, and x².
     pub shading: [Vec<f32>; 2],
-    /// Which row and column of the tile the picture begins at, for each side of the seam.
+    /// Which row and column of its tile the picture begins at, for each side of the seam.
     pub begin: [[usize; 2]; 2],
     /// Way across the seam in the surface for each column, as blobs have it.
     pub across: Vec<f32>,
@@ -42,13 +43,14 @@ pub(super) struct Sketch {
     tilt: [f64; 2],
     /// Row of the optical axis.
     middle_row: f64,
-    /// Pixels in a period of the tile.
-    period: [usize; 2],
+    /// How the tiles left and right repeat, and dn/du of their surfaces.
+    grids: [Grid; 2],
+    slopes: [f64; 2],
 }
 
 impl Sketch {
-    pub fn new(tile: &Tile) -> Self {
-        let optics = tile.optics();
+    pub fn new(tiles: &[Arc<Tile>; 2]) -> Self {
+        let optics = tiles[0].optics();
         let columns = optics.columns;
         let [middle_row, middle] = optics.centre();
         let (sin, cos) = optics.tilt_rad.sin_cos();
@@ -75,7 +77,8 @@ impl Sketch {
             across: vec![0.0; columns],
             tilt: [sin, cos],
             middle_row,
-            period: tile.size(),
+            grids: tiles.each_ref().map(|tile| tile.grid()),
+            slopes: tiles.each_ref().map(|tile| tile.slope()),
         }
     }
 
@@ -129,21 +132,29 @@ impl Sketch {
                 h
             }
         };
-        // The texture goes with the work, along travel as the rows of the picture see it, and across. The right wall of
-        // a corner shows another part of it.
-        let row = (scene.position_mm[0] * cos - height * sin) / g - self.middle_row;
-        let column = scene.position_mm[1] / g - self.middle;
-        let begin = |k: usize, at: f64, parts: usize| {
-            let at = at.round() as i64 + (self.period[k] / 2 * parts) as i64;
-            at.rem_euclid(self.period[k] as i64) as usize
+        // The texture goes with the work, along travel as the rows of the picture see it, and across: on a wall as far
+        // as from the root. Of the right wall it is another part.
+        let [lateral, part] = match &scene.joint {
+            Joint::Gap(_) => [0.0, 0.0],
+            Joint::Corner(root) => [root.corner.lateral_mm, 0.5],
         };
-        let other = usize::from(self.corner);
-        self.begin = [0, other].map(|parts| [begin(0, row, parts), begin(1, column, parts)]);
+        for side in 0..2 {
+            let (grid, slope) = (self.grids[side], self.slopes[side]);
+            let across = (scene.position_mm[1] + lateral) / slope.hypot(1.0);
+            let along = scene.position_mm[0] * cos - height * sin + slope * sin * across;
+            let part = part * side as f64;
+            let row = along / g - self.middle_row + part * grid.size[0] as f64;
+            let column = (across - lateral) / g - self.middle + part * grid.size[1] as f64;
+            let [row, column] = [row, column].map(|x| x.round() as i64);
+            let columns = grid.size[1] as i64;
+            let periods = column.div_euclid(columns);
+            self.begin[side] = [grid.row(row, periods), column.rem_euclid(columns) as usize];
+        }
     }
 
-    /// Row of the tile that a row of the picture shows, on each side of the seam.
+    /// Rows of the tiles that a row of the picture shows, on each side of the seam.
     pub fn tile_rows(&self, row: usize) -> [usize; 2] {
-        self.begin.map(|[begin, _]| (begin + row) % self.period[0])
+        [0, 1].map(|side| (self.begin[side][0] + row) % self.grids[side].size[0])
     }
 
     /// Depth at `r` over a height of 0.
