@@ -2,7 +2,7 @@
 //!
 //! The files lie in `tests/golden`. `GOLDEN_DIR=path cargo test golden`, from the root of the workspace, checks
 //! another set of the same form; a relative path starts at that root. A file of a name that is not listed below is
-//! an error, as is a listed one that is missing. Files named `vision_*` are counted and named, not checked yet.
+//! an error, as is a listed one that is missing.
 //!
 //! A new file needs: its JSON in `tests/golden`, a function of its name that checks every field of every case,
 //! and its name in the list below.
@@ -25,6 +25,7 @@ mod golden {
     mod tally;
     mod teaching;
     mod tracking;
+    mod vision;
 
     /// A test for each file, and the list of their names.
     macro_rules! files {
@@ -54,5 +55,7 @@ mod golden {
         metrics: metrics;
         nurbs: nurbs_eval nurbs_step;
         speed_plan: speed_plan;
+        vision: vision_geom vision_fillet vision_err vision_img_0 vision_img_1 vision_img_2
+            vision_mid_0 vision_mid_1 vision_mid_2 vision_mid_3;
     }
 }

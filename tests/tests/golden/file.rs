@@ -6,7 +6,8 @@ use std::path::Path;
 
 /// One golden file.
 pub struct Golden {
-    /// Absolute tolerance, unless a case says otherwise; the largest if the file names several.
+    /// Absolute tolerance, unless a case says otherwise; the largest if the file names several; NaN, which
+    /// nothing is near to, if its bounds are of another kind.
     pub tolerance: f64,
     /// All of the file.
     pub file: Value,
@@ -24,6 +25,7 @@ impl Golden {
         assert!(!cases.is_empty(), "{} has no cases", path.display());
         let tolerance = match &file["tol"] {
             Value::Object(several) => several.values().filter_map(Value::as_f64).fold(0.0, f64::max),
+            Value::Null => f64::NAN,
             one => one.as_f64().expect("tol"),
         };
         Self {

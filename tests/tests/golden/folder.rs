@@ -26,19 +26,12 @@ fn names(folder: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
-/// Files of `folder` that no test covers yet: those of the vision measurement.
-pub fn not_yet_covered(folder: &Path) -> io::Result<Vec<String>> {
-    let mut names = names(folder)?;
-    names.retain(|name| name.starts_with("vision_"));
-    Ok(names)
-}
-
 /// What is wrong with the files of `folder`, nothing if all is well.
 fn faults(folder: &Path) -> io::Result<Vec<String>> {
     let names = names(folder)?;
     let unknown = names
         .iter()
-        .filter(|name| !FILES.contains(&name.as_str()) && !name.starts_with("vision_"))
+        .filter(|name| !FILES.contains(&name.as_str()))
         .map(|name| format!("{name}.json is of no known name"));
     let missing = FILES
         .iter()
@@ -58,13 +51,11 @@ fn every_file_is_known_and_every_known_file_is_there() {
 fn a_stray_file_and_missing_ones_are_named() {
     let folder = std::env::temp_dir().join(format!("seamwright-golden-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
-    for name in FILES.iter().skip(1).chain(&["vision_geom", "stray"]) {
+    for name in FILES.iter().skip(1).chain(&["stray"]) {
         std::fs::write(folder.join(name).with_extension("json"), "{}").expect("a file");
     }
     let faults = faults(&folder).expect("a list of faults");
-    let vision = not_yet_covered(&folder).expect("a list of files");
     std::fs::remove_dir_all(&folder).expect("to tidy up");
     let missing = format!("{}.json is missing", FILES[0]);
     assert_eq!(faults, ["stray.json is of no known name", missing.as_str()]);
-    assert_eq!(vision, ["vision_geom"]);
 }

@@ -2,7 +2,7 @@
 
 use super::FILES;
 use super::file::Golden;
-use super::folder::{folder, not_yet_covered};
+use super::folder::folder;
 use std::io::Write;
 use std::sync::Mutex;
 
@@ -38,16 +38,6 @@ impl Drop for Counted {
                 "golden: {files} files, {cases} cases, {failed} files failed, of {}",
                 folder().display()
             ));
-            // A folder that cannot be listed has failed every file already.
-            if let Ok(vision) = not_yet_covered(&folder())
-                && !vision.is_empty()
-            {
-                say(&format!(
-                    "golden: {} files not yet covered: {}",
-                    vision.len(),
-                    vision.join(" ")
-                ));
-            }
         }
     }
 }
