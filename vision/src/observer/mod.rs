@@ -1,0 +1,356 @@
+//! One camera's seam from picture to picture: acquired, tracked, lost.
+
+mod gate;
+mod running;
+
+use crate::detector::{Detector, DetectorError};
+use crate::image::Image;
+use crate::prior::{Joint, Prior, Track, Walls};
+use crate::report::{Form, Measured, Report, Sigma, Status};
+use gate::{Gate, Verdict};
+use running::Running;
+use serde::{Deserialize, Serialize};
+
+pub use gate::Doubt;
+
+/// Fewest pictures of which a height is the mean.
+const FEWEST_HEIGHTS: usize = 4;
+
+/// Pictures over which the pitch is taken.
+const PITCH_FRAMES: usize = 16;
+
+/// Share of a picture's focus that goes into the running one.
+const FOCUS_SHARE: f64 = 0.05;
+
+/// Share by which the walls' slopes follow a picture. It is fitted with those slopes as prior and moves off them by a
+/// tenth or two of the truth, so they settle in some 50 pictures.
+const WALL_SHARE: f64 = 0.125;
+
+/// Equal votes for "too high" or "too low" before it is said.
+const VOTES: u32 = 3;
+
+/// How an observer judges.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ObserverConfig {
+    /// How far the seam may lie from where it was in the last picture \[mm\].
+    pub gate_mm: f64,
+    /// Pictures without a believed seam after which it is lost.
+    pub hold_frames: u32,
+    /// Pictures of which heights and roll are means; at least 4 count.
+    pub mean_frames: usize,
+    /// What is added to a corner's lateral position and height so that they agree with a gap's \[mm\]. Without it the
+    /// form that was acquired is kept until the seam is lost.
+    pub corner_offset_mm: Option<[f64; 2]>,
+}
+
+impl Default for ObserverConfig {
+    fn default() -> Self {
+        Self {
+            gate_mm: 0.1,
+            hold_frames: 20,
+            mean_frames: FEWEST_HEIGHTS,
+            corner_offset_mm: None,
+        }
+    }
+}
+
+/// How far a camera moved since its last picture \[mm\], in the frame of the camera: along travel, across, up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moved {
+    /// Along a.
+    pub travel_mm: f64,
+    /// Along u: a seam that stays appears at smaller u.
+    pub lateral_mm: f64,
+    /// Along n: work that stays appears lower.
+    pub height_mm: f64,
+}
+
+/// What an observer is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Looking for the seam in whole pictures, until 3 in a row agree.
+    Acquiring,
+    /// Following it.
+    Tracking,
+    /// It was followed and is lost; it is looked for again.
+    Lost,
+}
+
+/// What an observer makes of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observation {
+    /// What the picture says by itself.
+    pub report: Report,
+    /// What the observer is doing, this picture included.
+    pub state: State,
+    /// The seam, if it is believed.
+    pub seam: Option<Seam>,
+    /// Why it is not, where the picture shows one.
+    pub doubt: Option<Doubt>,
+    /// Whether the seam jumped and is believed at its new place or width from now on.
+    pub relocked: bool,
+    /// Too high or too low, after three pictures in a row that say so.
+    pub out_of_view: Option<Status>,
+}
+
+/// A seam that is believed, in the camera's frame (see [`Measured`]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seam {
+    /// Form it was seen in.
+    pub form: Form,
+    /// u of its middle on the band, in this picture \[mm\].
+    pub lateral_mm: f64,
+    /// a of that point \[mm\].
+    pub travel_mm: f64,
+    /// n, the mean of at least 4 pictures seen from where the camera is now; none before there are so many \[mm\].
+    pub height_mm: Option<f64>,
+    /// Width of the gap in this picture, 0 of a corner \[mm\].
+    pub width_mm: f64,
+    /// q: slope across the seam, the mean of the same pictures.
+    pub roll: f64,
+    /// p: slope along travel, from the heights of 16 pictures; none before there are so many or without travel.
+    pub pitch: Option<f64>,
+    /// ψ: angle against travel \[rad\].
+    pub yaw_rad: f64,
+    /// Quality of this picture, 0.5 to 1.
+    pub quality: f64,
+    /// Standard deviations in this picture, but of height and roll those of the means.
+    pub sigma: Sigma,
+}
+
+/// Follows the seam of one camera.
+#[derive(Clone, Debug)]
+pub struct Observer {
+    detector: Detector,
+    config: ObserverConfig,
+    joint: Joint,
+    state: State,
+    /// Form of the seam that is followed.
+    form: Option<Form>,
+    track: Option<Track>,
+    gate: Gate,
+    missed: u32,
+    focus: f64,
+    /// Where the camera is, as the sum of its moves \[mm\].
+    place: Moved,
+    /// Heights and where they were seen, of a camera that stays \[mm\]; roll slopes.
+    heights: Running,
+    rolls: Running,
+    long_heights: Running,
+    long_places: Running,
+    /// What the last pictures without a band said, and how often.
+    votes: (Status, u32),
+}
+
+impl Observer {
+    /// An observer of a joint; the walls of a corner are those of the programmed pose.
+    pub fn new(detector: Detector, config: ObserverConfig, joint: Joint) -> Self {
+        let frames = config.mean_frames.max(FEWEST_HEIGHTS);
+        Self {
+            detector,
+            config,
+            joint,
+            state: State::Acquiring,
+            form: None,
+            track: None,
+            gate: Gate::new(config.gate_mm),
+            missed: 0,
+            focus: 0.0,
+            place: Moved::default(),
+            heights: Running::new(frames),
+            rolls: Running::new(frames),
+            long_heights: Running::new(PITCH_FRAMES),
+            long_places: Running::new(PITCH_FRAMES),
+            votes: (Status::NoBand, 0),
+        }
+    }
+
+    /// Its detector.
+    pub fn detector(&self) -> &Detector {
+        &self.detector
+    }
+
+    /// What it is doing.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// The joint it looks for, with the slopes of the walls as it has learnt them.
+    pub fn joint(&self) -> Joint {
+        self.joint
+    }
+
+    /// Takes the joint of a new pose; what was learnt of the walls is gone.
+    pub fn set_joint(&mut self, joint: Joint) {
+        self.joint = joint;
+    }
+
+    /// Forgets where the seam was, and acquires it anew.
+    pub fn forget(&mut self) {
+        self.lose(State::Acquiring);
+    }
+
+    /// Measures a picture; the camera has moved since the last one.
+    pub fn observe(&mut self, image: &Image, moved: Moved) -> Result<Observation, DetectorError> {
+        self.follow(moved);
+        let prior = Prior {
+            joint: self.expected_joint(),
+            track: self.track.filter(|_| self.state == State::Tracking),
+            focus: self.focus,
+        };
+        let report = self.detector.measure(image, &prior)?;
+        self.vote(report.status);
+        let (mut seam, mut doubt, mut relocked) = (None, None, false);
+        match report.seam().map(|measured| self.as_gap(measured)) {
+            None => self.miss(),
+            Some(measured) => match self.gate.judge(&measured, self.state) {
+                Verdict::Doubt(why) => {
+                    doubt = Some(why);
+                    self.miss();
+                }
+                Verdict::Believe { jumped } => {
+                    relocked = jumped && self.state == State::Tracking;
+                    if jumped {
+                        self.restart();
+                    }
+                    seam = Some(self.accept(&measured));
+                }
+            },
+        }
+        Ok(Observation {
+            report,
+            state: self.state,
+            seam,
+            doubt,
+            relocked,
+            out_of_view: (self.votes.1 >= VOTES).then_some(self.votes.0),
+        })
+    }
+
+    /// Sees what is known from where the camera is now.
+    fn follow(&mut self, moved: Moved) {
+        self.place.travel_mm += moved.travel_mm;
+        self.place.lateral_mm += moved.lateral_mm;
+        self.place.height_mm += moved.height_mm;
+        if let Some(track) = &mut self.track {
+            track.lateral_mm -= moved.lateral_mm;
+            track.height_mm -= moved.height_mm;
+        }
+        self.gate.follow(&moved);
+    }
+
+    /// What the next picture may show: both forms only if their places can be compared.
+    fn expected_joint(&self) -> Joint {
+        match (self.joint, self.form, self.config.corner_offset_mm) {
+            (Joint::GapOrCorner(_), Some(Form::Gap), None) => Joint::Gap,
+            (Joint::GapOrCorner(walls), Some(Form::Corner), None) => Joint::Corner(walls),
+            (joint, ..) => joint,
+        }
+    }
+
+    /// A measurement as one of a gap.
+    fn as_gap(&self, measured: &Measured) -> Measured {
+        let offset = self.config.corner_offset_mm;
+        let [lateral, height] = offset
+            .filter(|_| measured.form == Form::Corner)
+            .unwrap_or_default();
+        Measured {
+            lateral_mm: measured.lateral_mm + lateral,
+            height_mm: measured.height_mm + height,
+            ..*measured
+        }
+    }
+
+    /// Takes a believed measurement.
+    fn accept(&mut self, measured: &Measured) -> Seam {
+        self.state = State::Tracking;
+        self.missed = 0;
+        self.form = Some(measured.form);
+        self.focus += FOCUS_SHARE * (measured.focus - self.focus);
+        self.learn_walls(measured);
+        let height_mm = measured.height_mm + self.place.height_mm;
+        self.heights.push(height_mm);
+        self.rolls.push(measured.roll);
+        self.long_heights.push(height_mm);
+        self.long_places.push(self.place.travel_mm + measured.travel_mm);
+        self.track = Some(Track {
+            lateral_mm: measured.lateral_mm,
+            height_mm: measured.height_mm,
+            roll: self.rolls.mean(1).unwrap_or(measured.roll),
+            width_mm: self.gate.width_mm(),
+        });
+        let averaged = 1.0 / (self.heights.len() as f64).sqrt();
+        Seam {
+            form: measured.form,
+            lateral_mm: measured.lateral_mm,
+            travel_mm: measured.travel_mm,
+            height_mm: self
+                .heights
+                .mean(FEWEST_HEIGHTS)
+                .map(|height| height - self.place.height_mm),
+            width_mm: measured.width_mm,
+            roll: self.rolls.mean(1).unwrap_or(measured.roll),
+            pitch: Running::slope(&self.long_heights, &self.long_places, PITCH_FRAMES),
+            yaw_rad: measured.yaw_rad,
+            quality: measured.quality,
+            sigma: Sigma {
+                height_mm: measured.sigma.height_mm * averaged,
+                roll: measured.sigma.roll * averaged,
+                ..measured.sigma
+            },
+        }
+    }
+}
+
+/// What pictures do to what is remembered.
+impl Observer {
+    /// Moves the walls' slopes a little towards what a corner showed.
+    fn learn_walls(&mut self, measured: &Measured) {
+        let (Joint::Corner(Walls { slopes, .. }) | Joint::GapOrCorner(Walls { slopes, .. })) =
+            &mut self.joint
+        else {
+            return;
+        };
+        if measured.form == Form::Corner {
+            for (slope, seen) in slopes.iter_mut().zip(measured.walls) {
+                *slope += WALL_SHARE * (seen - *slope);
+            }
+        }
+    }
+
+    /// A picture without a believed seam.
+    fn miss(&mut self) {
+        self.missed += 1;
+        if self.state == State::Tracking && self.missed > self.config.hold_frames {
+            self.lose(State::Lost);
+        }
+    }
+
+    /// Forgets the seam.
+    fn lose(&mut self, state: State) {
+        self.state = state;
+        self.form = None;
+        self.track = None;
+        self.missed = 0;
+        self.gate.forget();
+        self.restart();
+    }
+
+    /// Begins all means anew.
+    fn restart(&mut self) {
+        self.heights.clear();
+        self.rolls.clear();
+        self.long_heights.clear();
+        self.long_places.clear();
+    }
+
+    /// Counts equal answers without a band.
+    fn vote(&mut self, status: Status) {
+        let count = match status {
+            Status::TooHigh | Status::TooLow if status == self.votes.0 => self.votes.1 + 1,
+            Status::TooHigh | Status::TooLow => 1,
+            _ => 0,
+        };
+        self.votes = (status, count);
+    }
+}

@@ -1,0 +1,54 @@
+//! Measuring allocates nothing once the detector stands.
+
+mod common;
+
+use common::{NOISE, OPTICS, detector};
+use vision::render::{TruthRenderer, random_corner, random_gap};
+use vision::{Image, Joint, Moved, Observer, ObserverConfig, Prior, Track, Walls};
+
+/// Gap and corner, tracked and unknown, by the detector and by an observer.
+#[test]
+fn measuring_allocates_nothing_after_the_first_picture() {
+    let walls = Walls {
+        slopes: [-0.75, 0.75],
+        sigma: 0.05,
+    };
+    let mut renderer = TruthRenderer::new(OPTICS, NOISE, 1).expect("a renderer");
+    let pictures =
+        [random_gap(3, &OPTICS), random_corner(3, &OPTICS)].map(|scene| renderer.render(&scene, 1));
+    let track = Track {
+        lateral_mm: 0.0,
+        height_mm: 0.0,
+        roll: 0.0,
+        width_mm: 0.1,
+    };
+    let mut detector = detector();
+    let mut observer = Observer::new(
+        detector.clone(),
+        ObserverConfig::default(),
+        Joint::GapOrCorner(walls),
+    );
+    let mut measure = || {
+        for pixels in &pictures {
+            let image = Image::new(pixels, OPTICS.rows, OPTICS.columns).expect("a picture");
+            for joint in [Joint::Gap, Joint::Corner(walls), Joint::GapOrCorner(walls)] {
+                for track in [None, Some(track)] {
+                    let prior = Prior {
+                        joint,
+                        track,
+                        focus: 0.0,
+                    };
+                    detector.measure(&image, &prior).expect("a measurement");
+                }
+            }
+            for _ in 0..6 {
+                observer
+                    .observe(&image, Moved::default())
+                    .expect("an observation");
+            }
+        }
+    };
+    measure();
+    let allocations = allocation_counter::measure(&mut measure);
+    assert_eq!(allocations.count_total, 0, "{allocations:?}");
+}
