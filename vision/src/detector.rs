@@ -157,10 +157,8 @@ impl Detector {
             Joint::Gap => self.measure_gap(prior),
             Joint::Corner(walls) => self.measure_corner(prior, &walls),
             Joint::GapOrCorner(walls) => {
+                // The dark line where walls touch looks like a gap; the band tells which of both it is.
                 let gap = self.measure_gap(prior);
-                if gap.status == Status::Seam {
-                    return Ok(gap);
-                }
                 let corner = self.measure_corner(prior, &walls);
                 let gain = |report: &Report| report.measured.map_or(0.0, |measured| measured.gain);
                 if gain(&corner) > gain(&gap) { corner } else { gap }

@@ -20,6 +20,9 @@ const FOCUS: f64 = 0.3;
 /// Focus beyond which it is no band any more.
 const WIDEST: f64 = 1.2;
 
+/// Distance of the band from the picture's border at which it is not trusted, and is \[mm along the rows\].
+const BORDER_MM: [f64; 2] = [0.05, 0.15];
+
 /// What a gap spoils beyond its edges \[mm\].
 const SPOILT_MM: f64 = 0.06;
 
@@ -31,6 +34,9 @@ const HONEST: f64 = 1.6;
 
 /// The same of edges, whose roughness is alike in neighbouring rows.
 const ROUGH: f64 = 1.8;
+
+/// Score over the highest from which a band on the coarse grid is tried.
+const WORTH_A_TRY: f64 = 0.6;
 
 /// Smallest standard deviations: what no scatter shows \[mm\].
 const FLOOR_MM: f64 = 0.0005;
@@ -93,7 +99,12 @@ impl Detector {
         self.correlate();
         let plate = Plate { gap: None };
         let mut best: Option<(f64, [f64; 4], Knowledge<4>)> = None;
-        for found in self.coarse.plates().inside {
+        let stand_out = self.coarse.plates().inside;
+        let highest = stand_out.iter().map(|found| found.score).fold(0.0, f64::max);
+        for found in stand_out {
+            if found.score < WORTH_A_TRY * highest {
+                continue;
+            }
             let [height, roll] = found.at;
             let mut at = [height, roll, 0.0, prior.focus];
             let knowledge = Knowledge {
@@ -248,6 +259,7 @@ impl Detector {
         let unambiguous = ramp(rank, 0.8, 0.45);
         let from_border =
             (middle - edges.width / 2.0).min(layer.columns as f64 - 1.0 - middle - edges.width / 2.0);
+        let half_view_mm = layer.rows as f64 * g / 2.0;
         let others = [
             ramp(best.depth, 0.5, 0.8),
             ramp(edges.inliers, 0.45, 0.75),
@@ -256,6 +268,11 @@ impl Detector {
             ramp(measured.sigma.height_mm, 0.028, 0.010),
             ramp(edges.width * g, 0.006, 0.012),
             ramp(from_border * g, 0.010, 0.030),
+            ramp(
+                half_view_mm - (measured.height_mm / sin).abs(),
+                BORDER_MM[0],
+                BORDER_MM[1],
+            ),
         ];
         let other = others.into_iter().fold(1.0, f64::min);
         measured.quality = other.min(unambiguous);

@@ -4,7 +4,7 @@ use super::{between, quantile};
 use crate::layer::Layer;
 
 /// Half the height of the strip \[mm along the rows\].
-const HALF_MM: f64 = 0.055;
+const HALF_MM: f64 = 0.08;
 
 /// Height of a group of rows \[mm\].
 const GROUP_MM: f64 = 0.0104;
