@@ -155,6 +155,40 @@ fn contrast_of_a_corner_falls_along_its_walls_as_in_truth() {
     }
 }
 
+#[test]
+fn the_same_texture_is_at_the_same_place_as_in_truth() {
+    let optics = camera();
+    let texture = Texture::new(Finish::Coarse, 6);
+    let plate = closed(0.03, 0.0);
+    let band = plate.features(&optics).unwrap().band_row;
+    let corner = v_joint();
+    let features = corner.features(&optics);
+    let [vertex, root] = features.vertex;
+    let left = |column: usize| vertex + features.band_slopes[0] * (column as f64 - root);
+    let on_plate: (Joint, &dyn Fn(usize) -> f64) = (Joint::Gap(Gap::new(plate)), &|_| band);
+    let on_wall: (Joint, &dyn Fn(usize) -> f64) = (Joint::Corner(Root::new(corner)), &left);
+    for (joint, band) in [on_plate, on_wall] {
+        let mut scene = scene(joint, texture);
+        let mut fast = renderer(texture, QUIET, scene.truth(&optics).unwrap().walls);
+        for position in [[0.0, 0.0], [3.2, -0.45], [-11.3, 5.0]] {
+            scene.position_mm = position;
+            let [fast, truth] = both(&mut fast, &scene);
+            let mut sums = [0.0; 3];
+            for column in (40..root as usize - 10)
+                .flat_map(|column| [column; 5])
+                .enumerate()
+            {
+                let (row, column) = (band(column.1).round() as usize + column.0 % 5 - 2, column.1);
+                let [x, y] =
+                    [&fast, &truth].map(|picture| f64::from(picture[row * COLUMNS + column]) - 127.5);
+                sums = [sums[0] + x * y, sums[1] + x * x, sums[2] + y * y];
+            }
+            let likeness = sums[0] / (sums[1] * sums[2]).sqrt();
+            assert!(likeness > 0.9, "{joint:?} at {position:?}: likeness {likeness}");
+        }
+    }
+}
+
 /// What a dark line takes from a row: sum and middle over the columns.
 fn deficit(row: &[u8]) -> [f64; 2] {
     let taken = row.iter().map(|&x| 1.0 - f64::from(x) / 200.0);

@@ -244,6 +244,31 @@ fn the_texture_moves_with_the_work() {
 }
 
 #[test]
+fn travel_smears_as_the_mean_of_the_places_passed() {
+    let optics = camera(60, 80);
+    let smear_mm = 4.0 * optics.object_pixel_mm() / optics.tilt_rad.cos();
+    let still = Scene::new(Joint::Gap(Gap::new(plate(0.0))), Texture::new(Finish::Plain, 3));
+    let mut mean = vec![0.0; 60 * 80];
+    for k in 0..8 {
+        let position_mm = [smear_mm * ((f64::from(k) + 0.5) / 8.0 - 0.5), 0.0];
+        let passed = Scene {
+            position_mm,
+            ..still.clone()
+        };
+        mean.iter_mut()
+            .zip(light(optics, &passed))
+            .for_each(|(mean, x)| *mean += x / 8.0);
+    }
+    let smeared = light(optics, &Scene { smear_mm, ..still });
+    let furthest = mean
+        .iter()
+        .zip(&smeared)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f32::max);
+    assert!(furthest < 0.01, "{furthest} of full scale apart");
+}
+
+#[test]
 fn random_gaps_are_mixed_as_the_protocol_says() {
     let optics = camera(300, 400);
     let shown: Vec<Shown> = (0..4000)
