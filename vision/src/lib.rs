@@ -28,7 +28,7 @@ pub use detector::{Detector, DetectorError};
 pub use geometry::{Corner, CornerFeatures, GeometryError, PlateFeatures, PlateSeam};
 pub use image::{Image, ImageError};
 pub use noise::PhotonTransfer;
-pub use observer::{Doubt, Moved, Observation, Observer, ObserverConfig, Seam, State};
+pub use observer::{Doubt, MeanPoint, Moved, Observation, Observer, ObserverConfig, Seam, State};
 pub use optics::{Optics, OpticsError};
 pub use precision::{Precision, Readings};
 pub use prior::{Joint, Prior, Track, Walls};

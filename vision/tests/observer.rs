@@ -5,7 +5,8 @@ mod common;
 use common::{NOISE, OPTICS, detector};
 use vision::render::{Finish, Gap, Joint as Work, Root, Scene, Texture, TruthRenderer};
 use vision::{
-    Corner, Doubt, Form, Image, Joint, Moved, Observation, Observer, ObserverConfig, PlateSeam, State, Walls,
+    Corner, Doubt, Form, Image, Joint, MeanPoint, Moved, Observation, Observer, ObserverConfig, PlateSeam,
+    Seam, State, Walls,
 };
 
 /// Takes pictures and has them observed.
@@ -22,6 +23,14 @@ impl Bench {
             observer: Observer::new(detector(), ObserverConfig::default(), joint),
             seed: 0,
         }
+    }
+
+    /// Observes a scene; the camera has moved.
+    fn observe_from(&mut self, scene: &Scene, moved: Moved) -> Observation {
+        self.seed += 1;
+        let pixels = self.renderer.render(scene, self.seed);
+        let image = Image::new(&pixels, OPTICS.rows, OPTICS.columns).expect("a picture");
+        self.observer.observe(&image, moved).expect("an observation")
     }
 
     /// Observes a scene 0.417 mm further on.
@@ -71,15 +80,158 @@ fn three_pictures_acquire() {
     }
     let seen = bench.observe(&scene);
     assert_eq!(seen.state, State::Tracking);
-    assert_eq!(seen.seam.expect("a seam").height_mm, None);
+    assert_eq!(seen.seam.expect("a seam").mean, None);
     let mut seam = seen.seam;
     for _ in 0..4 {
         seam = bench.observe(&scene).seam;
     }
     let seam = seam.expect("a seam");
     assert!((seam.lateral_mm - 0.1).abs() < 0.005, "{seam:?}");
-    let height = seam.height_mm.expect("a height");
+    let height = seam.mean.expect("a mean").height_mm;
     assert!((height - (0.05 + 0.05 * 0.1)).abs() < 0.008, "{seam:?}");
+}
+
+/// A plate that climbs, leans and has a slanting seam, as a camera sees it that stands at `camera`.
+fn slanting(camera: [f64; 3], width_mm: f64) -> Scene {
+    let [a, u, n] = camera;
+    let plate = PlateSeam {
+        height_mm: CLIMB * a + LEAN * u - n,
+        pitch: CLIMB,
+        roll: LEAN,
+        lateral_mm: SLANT * a - u,
+        yaw_rad: SLANT.atan(),
+        width_mm,
+    };
+    let mut scene = Scene::new(Work::Gap(Gap::new(plate)), Texture::new(Finish::Plain, 9));
+    scene.position_mm = [a, u];
+    scene
+}
+
+/// How far the mean point of a seam lies off [`slanting`]'s: across and in height \[mm\].
+fn off_the_line(mean: MeanPoint, camera: [f64; 3]) -> [f64; 2] {
+    let [a, u, n] = [
+        mean.travel_mm + camera[0],
+        mean.lateral_mm + camera[1],
+        mean.height_mm + camera[2],
+    ];
+    [u - SLANT * a, n - CLIMB * a - LEAN * u]
+}
+
+const CLIMB: f64 = 0.03;
+const SLANT: f64 = 0.05;
+const LEAN: f64 = 0.04;
+
+/// The mean point lies on the true line, though the camera goes on and the slides move in between, and though a picture
+/// shows another seam, another one none at all. It lies behind what the last picture shows.
+#[test]
+fn the_mean_point_lies_on_the_seam() {
+    let mut bench = Bench::new(Joint::Gap);
+    let mut camera = [0.0; 3];
+    let (mut seams, mut errors) = (0, [0.0; 2]);
+    for frame in 0..24 {
+        let step = [
+            0.417,
+            0.03 * f64::from(frame % 3),
+            0.02 - 0.01 * f64::from(frame % 2),
+        ];
+        for k in 0..3 {
+            camera[k] += step[k];
+        }
+        let moved = Moved {
+            travel_mm: step[0],
+            lateral_mm: step[1],
+            height_mm: step[2],
+        };
+        let width_mm = if frame == 13 { 0.2 } else { 0.1 };
+        let mut scene = slanting(camera, width_mm);
+        if frame == 17 {
+            scene.light.level = 0.0;
+        }
+        let seen = bench.observe_from(&scene, moved);
+        assert_eq!(
+            seen.seam.is_none(),
+            [0, 1, 13, 17].contains(&frame),
+            "{frame}: {seen:?}"
+        );
+        let Some(seam) = seen.seam else { continue };
+        seams += 1;
+        assert_eq!(seam.mean.is_some(), seams >= 4, "{frame}");
+        let Some(mean) = seam.mean else { continue };
+        assert!(
+            mean.travel_mm < seam.travel_mm - 0.4,
+            "{frame}: {mean:?}, last {seam:?}"
+        );
+        let off = off_the_line(mean, camera);
+        assert!(
+            off[0].abs() < 0.002 && off[1].abs() < 0.006,
+            "{frame}: {off:?} mm off"
+        );
+        errors = std::array::from_fn(|k| errors[k] + off[k] / 17.0);
+    }
+    assert_eq!(seams, 20);
+    assert!(
+        errors[0].abs() < 0.001 && errors[1].abs() < 0.003,
+        "{errors:?} mm off on the mean"
+    );
+}
+
+/// A seam is acquired while the slides sweep at 40 mm/s, 200 pictures a second.
+#[test]
+fn a_sweeping_camera_acquires() {
+    let mut bench = Bench::new(Joint::Gap);
+    let mut believed = 0;
+    for frame in 0..9 {
+        let camera = [0.0, -0.9 + 0.2 * f64::from(frame), 0.0];
+        let moved = Moved {
+            lateral_mm: 0.2,
+            ..Moved::default()
+        };
+        if let Some(seam) = bench.observe_from(&slanting(camera, 0.1), moved).seam {
+            believed += 1;
+            assert!((seam.lateral_mm + camera[1]).abs() < 0.005, "{frame}: {seam:?}");
+            if let Some(mean) = seam.mean {
+                let off = off_the_line(mean, camera);
+                assert!(
+                    off[0].abs() < 0.003 && off[1].abs() < 0.010,
+                    "{frame}: {off:?} mm off"
+                );
+            }
+        }
+    }
+    assert!(believed >= 3, "{believed}");
+}
+
+/// Means begin anew after a jump, and after four pictures in a row without the seam.
+#[test]
+fn means_begin_anew_after_a_gap() {
+    let mut bench = Bench::new(Joint::Gap);
+    let scene = gap(0.0, 0.1, 0.0);
+    for _ in 0..6 {
+        bench.observe(&scene);
+    }
+    for (dark, mean) in [(3, true), (4, false)] {
+        for _ in 0..dark {
+            bench.dark();
+        }
+        for later in 0..4 {
+            let seam = bench.observe(&scene).seam.expect("a seam");
+            assert_eq!(
+                seam.mean.is_some(),
+                mean || later == 3,
+                "after {dark} dark pictures"
+            );
+        }
+    }
+    let jumped = gap(0.15, 0.1, 0.0);
+    let seams: Vec<Option<Seam>> = (0..8).map(|_| bench.observe(&jumped).seam).collect();
+    assert!(seams[..3].iter().all(Option::is_none));
+    assert!(
+        seams[3..6]
+            .iter()
+            .all(|seam| seam.expect("a seam").mean.is_none())
+    );
+    let mean = seams[7].expect("a seam").mean.expect("a mean");
+    assert!((mean.lateral_mm - 0.15).abs() < 0.003, "{mean:?}");
 }
 
 /// A gap that is suddenly wider is doubted three times and believed then; so is one that jumps.

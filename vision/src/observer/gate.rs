@@ -15,6 +15,9 @@ const WIDTHS: usize = 31;
 const AGREEING: u32 = 3;
 const AGREEING_JUMP: u32 = 4;
 
+/// Pictures in a row without any seam that a doubted one outlives.
+const UNSEEN: u32 = 1;
+
 /// Why a measured seam is not believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
@@ -53,6 +56,8 @@ pub(super) struct Gate {
     believed: Option<Seen>,
     /// The last one that was not, and how many before it were like it.
     doubted: Option<(Seen, u32)>,
+    /// Pictures in a row without any seam.
+    unseen: u32,
 }
 
 impl Gate {
@@ -64,6 +69,7 @@ impl Gate {
             width_mm: 0.0,
             believed: None,
             doubted: None,
+            unseen: 0,
         }
     }
 
@@ -89,8 +95,17 @@ impl Gate {
         }
     }
 
+    /// Nothing was seen that may be the seam.
+    pub fn see_nothing(&mut self) {
+        self.unseen += 1;
+        if self.unseen > UNSEEN {
+            self.doubted = None;
+        }
+    }
+
     /// Judges a seam.
     pub fn judge(&mut self, measured: &Measured, state: State) -> Verdict {
+        self.unseen = 0;
         let seen = Seen {
             form: measured.form,
             lateral_mm: measured.lateral_mm,

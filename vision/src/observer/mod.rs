@@ -1,20 +1,24 @@
 //! One camera's seam from picture to picture: acquired, tracked, lost.
 
 mod gate;
+mod places;
 mod running;
+mod seam;
 
 use crate::detector::{Detector, DetectorError};
 use crate::image::Image;
 use crate::prior::{Joint, Prior, Track, Walls};
-use crate::report::{Form, Measured, Report, Sigma, Status};
+use crate::report::{Form, Measured, Sigma, Status};
 use gate::{Gate, Verdict};
+use places::Places;
 use running::Running;
 use serde::{Deserialize, Serialize};
 
 pub use gate::Doubt;
+pub use seam::{MeanPoint, Moved, Observation, Seam};
 
-/// Fewest pictures of which a height is the mean.
-const FEWEST_HEIGHTS: usize = 4;
+/// Fewest pictures of which a point is the mean.
+const FEWEST_PLACES: usize = 4;
 
 /// Pictures over which the pitch is taken.
 const PITCH_FRAMES: usize = 16;
@@ -36,7 +40,7 @@ pub struct ObserverConfig {
     pub gate_mm: f64,
     /// Pictures without a believed seam after which it is lost.
     pub hold_frames: u32,
-    /// Pictures of which heights and roll are means; at least 4 count.
+    /// Pictures of which the mean point and roll are means; at least 4 count.
     pub mean_frames: usize,
     /// What is added to a corner's lateral position and height so that they agree with a gap's \[mm\]. Without it the
     /// form that was acquired is kept until the seam is lost.
@@ -48,21 +52,10 @@ impl Default for ObserverConfig {
         Self {
             gate_mm: 0.1,
             hold_frames: 20,
-            mean_frames: FEWEST_HEIGHTS,
+            mean_frames: FEWEST_PLACES,
             corner_offset_mm: None,
         }
     }
-}
-
-/// How far a camera moved since its last picture \[mm\], in the frame of the camera: along travel, across, up.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Moved {
-    /// Along a.
-    pub travel_mm: f64,
-    /// Along u: a seam that stays appears at smaller u.
-    pub lateral_mm: f64,
-    /// Along n: work that stays appears lower.
-    pub height_mm: f64,
 }
 
 /// What an observer is doing.
@@ -74,48 +67,6 @@ pub enum State {
     Tracking,
     /// It was followed and is lost; it is looked for again.
     Lost,
-}
-
-/// What an observer makes of a picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Observation {
-    /// What the picture says by itself.
-    pub report: Report,
-    /// What the observer is doing, this picture included.
-    pub state: State,
-    /// The seam, if it is believed.
-    pub seam: Option<Seam>,
-    /// Why it is not, where the picture shows one.
-    pub doubt: Option<Doubt>,
-    /// Whether the seam jumped and is believed at its new place or width from now on.
-    pub relocked: bool,
-    /// Too high or too low, after three pictures in a row that say so.
-    pub out_of_view: Option<Status>,
-}
-
-/// A seam that is believed, in the camera's frame (see [`Measured`]).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seam {
-    /// Form it was seen in.
-    pub form: Form,
-    /// u of its middle on the band, in this picture \[mm\].
-    pub lateral_mm: f64,
-    /// a of that point \[mm\].
-    pub travel_mm: f64,
-    /// n, the mean of at least 4 pictures seen from where the camera is now; none before there are so many \[mm\].
-    pub height_mm: Option<f64>,
-    /// Width of the gap in this picture, 0 of a corner \[mm\].
-    pub width_mm: f64,
-    /// q: slope across the seam, the mean of the same pictures.
-    pub roll: f64,
-    /// p: slope along travel, from the heights of 16 pictures; none before there are so many or without travel.
-    pub pitch: Option<f64>,
-    /// ψ: angle against travel \[rad\].
-    pub yaw_rad: f64,
-    /// Quality of this picture, 0.5 to 1.
-    pub quality: f64,
-    /// Standard deviations in this picture, but of height and roll those of the means.
-    pub sigma: Sigma,
 }
 
 /// Follows the seam of one camera.
@@ -133,11 +84,11 @@ pub struct Observer {
     focus: f64,
     /// Where the camera is, as the sum of its moves \[mm\].
     place: Moved,
-    /// Heights and where they were seen, of a camera that stays \[mm\]; roll slopes.
-    heights: Running,
+    /// Where the seam was seen, of a camera that stays; roll slopes of the same pictures.
+    places: Places,
     rolls: Running,
-    long_heights: Running,
-    long_places: Running,
+    /// The same of more pictures, for the pitch.
+    way: Places,
     /// What the last pictures without a band said, and how often.
     votes: (Status, u32),
 }
@@ -145,7 +96,7 @@ pub struct Observer {
 impl Observer {
     /// An observer of a joint; the walls of a corner are those of the programmed pose.
     pub fn new(detector: Detector, config: ObserverConfig, joint: Joint) -> Self {
-        let frames = config.mean_frames.max(FEWEST_HEIGHTS);
+        let frames = config.mean_frames.max(FEWEST_PLACES);
         Self {
             detector,
             config,
@@ -157,10 +108,9 @@ impl Observer {
             missed: 0,
             focus: 0.0,
             place: Moved::default(),
-            heights: Running::new(frames),
+            places: Places::new(frames),
             rolls: Running::new(frames),
-            long_heights: Running::new(PITCH_FRAMES),
-            long_places: Running::new(PITCH_FRAMES),
+            way: Places::new(PITCH_FRAMES),
             votes: (Status::NoBand, 0),
         }
     }
@@ -202,7 +152,10 @@ impl Observer {
         self.vote(report.status);
         let (mut seam, mut doubt, mut relocked) = (None, None, false);
         match report.seam().map(|measured| self.as_gap(measured)) {
-            None => self.miss(),
+            None => {
+                self.gate.see_nothing();
+                self.miss();
+            }
             Some(measured) => match self.gate.judge(&measured, self.state) {
                 Verdict::Doubt(why) => {
                     doubt = Some(why);
@@ -268,29 +221,24 @@ impl Observer {
         self.form = Some(measured.form);
         self.focus += FOCUS_SHARE * (measured.focus - self.focus);
         self.learn_walls(measured);
-        let height_mm = measured.height_mm + self.place.height_mm;
-        self.heights.push(height_mm);
+        self.places.push(measured, &self.place);
+        self.way.push(measured, &self.place);
         self.rolls.push(measured.roll);
-        self.long_heights.push(height_mm);
-        self.long_places.push(self.place.travel_mm + measured.travel_mm);
         self.track = Some(Track {
             lateral_mm: measured.lateral_mm,
             height_mm: measured.height_mm,
             roll: self.rolls.mean(1).unwrap_or(measured.roll),
             width_mm: self.gate.width_mm(),
         });
-        let averaged = 1.0 / (self.heights.len() as f64).sqrt();
+        let averaged = 1.0 / (self.places.len() as f64).sqrt();
         Seam {
             form: measured.form,
             lateral_mm: measured.lateral_mm,
             travel_mm: measured.travel_mm,
-            height_mm: self
-                .heights
-                .mean(FEWEST_HEIGHTS)
-                .map(|height| height - self.place.height_mm),
+            mean: self.places.mean(FEWEST_PLACES, &self.place),
             width_mm: measured.width_mm,
             roll: self.rolls.mean(1).unwrap_or(measured.roll),
-            pitch: Running::slope(&self.long_heights, &self.long_places, PITCH_FRAMES),
+            pitch: self.way.pitch(PITCH_FRAMES),
             yaw_rad: measured.yaw_rad,
             quality: measured.quality,
             sigma: Sigma {
@@ -323,6 +271,8 @@ impl Observer {
         self.missed += 1;
         if self.state == State::Tracking && self.missed > self.config.hold_frames {
             self.lose(State::Lost);
+        } else if self.missed as usize >= self.places.room() {
+            self.restart();
         }
     }
 
@@ -338,10 +288,9 @@ impl Observer {
 
     /// Begins all means anew.
     fn restart(&mut self) {
-        self.heights.clear();
+        self.places.clear();
         self.rolls.clear();
-        self.long_heights.clear();
-        self.long_places.clear();
+        self.way.clear();
     }
 
     /// Counts equal answers without a band.

@@ -38,6 +38,11 @@ impl Running {
         self.next = 0;
     }
 
+    /// How many values there is room for.
+    pub fn room(&self) -> usize {
+        self.room
+    }
+
     /// Number of values.
     pub fn len(&self) -> usize {
         self.values.len()
