@@ -113,6 +113,7 @@ impl Waiting {
             let crossing = seam.crossing(k, &seam.spot(&pose, k), lead, sight.s_mm + lead)?;
             seam.exists_at(crossing.s, SEEN_BEYOND_END_MM)
                 .then(|| SideMeasurement {
+                    along_mm: 0.0,
                     delta_u_mm: crossing.u - slides[2 * k] + self.noise[2 * k],
                     delta_v_mm: crossing.v - slides[2 * k + 1] + self.noise[2 * k + 1],
                 })

@@ -106,6 +106,8 @@ pub struct Measurement {
 /// Where one camera saw the seam, relative to its head's working point moved ahead by the lead.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct SideMeasurement {
+    /// Along T, positive ahead: how far the seen point lies beyond the plane of the lead \[mm\].
+    pub along_mm: f64,
     /// Along U \[mm\].
     pub delta_u_mm: f64,
     /// Along V \[mm\].

@@ -4,6 +4,7 @@ use super::HeadConfig;
 use crate::geometry::Pose;
 use crate::io::SIDES;
 use crate::parameter::{ParameterError, check, positive};
+use crate::protocol::SideMeasurement;
 use nalgebra::Vector3;
 
 /// Frame of one head's working point with its slides at zero, in the world (SPEC 0.7).
@@ -95,10 +96,14 @@ impl Heads {
         SpotFrame::new(origin, pose.tangent, normal)
     }
 
-    /// World point of the seam that the camera of a head at `spot` saw (`delta_u`, `delta_v`) \[mm\] beside its
-    /// centre, with the slides at `u`, `v` \[mm\].
-    pub fn seam_point(&self, spot: &SpotFrame, u: f64, v: f64, delta_u: f64, delta_v: f64) -> Vector3<f64> {
-        spot.point(self.camera_lead, u + delta_u, v + delta_v)
+    /// World point of the seam that the camera of a head at `spot` saw beside its centre, with the slides at `u`,
+    /// `v` \[mm\].
+    pub fn seam_point(&self, spot: &SpotFrame, u: f64, v: f64, seen: &SideMeasurement) -> Vector3<f64> {
+        spot.point(
+            self.camera_lead + seen.along_mm,
+            u + seen.delta_u_mm,
+            v + seen.delta_v_mm,
+        )
     }
 }
 
@@ -164,12 +169,17 @@ mod tests {
     }
 
     #[test]
-    fn on_a_straight_path_a_measurement_belongs_a_lead_further_on() {
+    fn on_a_straight_path_a_measurement_belongs_a_lead_and_what_is_beyond_it_further_on() {
         let heads = heads();
         let spot = heads.spot(&straight(50.0), 1);
-        let point = heads.seam_point(&spot, 0.3, -0.2, 0.05, 0.01);
+        let seen = SideMeasurement {
+            along_mm: 0.2,
+            delta_u_mm: 0.05,
+            delta_v_mm: 0.01,
+        };
+        let point = heads.seam_point(&spot, 0.3, -0.2, &seen);
         let meeting = meet(&point, 55.0, |s| Some(heads.spot(&straight(s), 1))).unwrap();
-        assert!((meeting.sigma - 60.0).abs() < 1e-9);
+        assert!((meeting.sigma - 60.2).abs() < 1e-9);
         assert!((meeting.u - 0.35).abs() < 1e-12 && (meeting.v + 0.19).abs() < 1e-12);
     }
 

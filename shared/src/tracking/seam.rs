@@ -75,8 +75,8 @@ impl Seam {
         let heads = &parameters.heads;
         let (u, v) = (u_slide(side), u_slide(side) + 1);
         let spot = heads.spot(&place.pose, side);
-        let point = heads.seam_point(&spot, slides[u], slides[v], seen.delta_u_mm, seen.delta_v_mm);
-        let start = place.s + heads.camera_lead();
+        let point = heads.seam_point(&spot, slides[u], slides[v], seen);
+        let start = place.s + heads.camera_lead() + seen.along_mm;
         let Some(meeting) = meet(&point, start, |s| planned_spot(heads, path, side, s)) else {
             self.rejected[side] = self.rejected[side].saturating_add(1);
             return;

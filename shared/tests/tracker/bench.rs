@@ -115,6 +115,8 @@ pub struct Bench {
     pub seam: SeamFn,
     /// Whether the camera of a side sees the seam at s.
     pub visible: fn(usize, f64) -> bool,
+    /// How far beyond the plane of the lead a camera sees at its n-th strobe \[mm\].
+    pub along: fn(u32) -> f64,
     /// The six axes stand this far beside the plan \[mm\] at s, to the left.
     pub pose_error: fn(f64) -> f64,
     /// Noise of the cameras, 1σ \[mm\].
@@ -151,6 +153,7 @@ impl Bench {
             shape,
             seam,
             visible: |_, _| true,
+            along: |_| 0.0,
             pose_error: |_| 0.0,
             noise: 0.0,
             linked: true,
@@ -317,12 +320,14 @@ impl Bench {
     }
 
     fn look(&mut self, side: usize, slides: &[f64; SLIDES]) -> Option<SideMeasurement> {
-        let lead = self.heads.camera_lead();
+        let along_mm = (self.along)(self.captures);
+        let lead = self.heads.camera_lead() + along_mm;
         if !(self.visible)(side, self.s_now() + lead) {
             return None;
         }
         let (u, v) = self.seen_from(side, lead);
         Some(SideMeasurement {
+            along_mm,
             delta_u_mm: u - slides[2 * side] + self.gauss(),
             delta_v_mm: v - slides[2 * side + 1] + self.gauss(),
         })
