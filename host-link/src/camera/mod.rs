@@ -1,0 +1,68 @@
+//! Cameras: pictures that belong to the captures of the tracker board.
+//!
+//! The tracker board strobes its cameras and offers a capture for each strobe. A [`Camera`] is told of the captures as they
+//! come, and gives for each of them, in their order, either its picture or the word that it is lost.
+
+mod png;
+
+pub use png::{PngError, read_grey, write_grey, write_rgb};
+
+use std::time::Duration;
+use thiserror::Error;
+use vision::{Image, ImageError};
+
+/// A picture of one camera, 8 bits a pixel, taken at a strobe of the tracker board.
+///
+/// One that is handed to [`Camera::next`] again and again keeps its room: nothing is allocated from the second picture on.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Picture {
+    /// Number of the capture.
+    pub capture: u32,
+    /// Time of the strobe, of the clock that [`Camera::strobed`] was told \[µs\].
+    pub time_us: u64,
+    /// Rows of pixels, from the top.
+    pub rows: usize,
+    /// Pixels a row.
+    pub columns: usize,
+    /// The pixels, row after row.
+    pub pixels: Vec<u8>,
+}
+
+impl Picture {
+    /// The picture as it is measured.
+    pub fn image(&self) -> Result<Image<'_>, ImageError> {
+        Image::new(&self.pixels, self.rows, self.columns)
+    }
+}
+
+/// What a camera gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrival {
+    /// The picture that was filled.
+    Picture,
+    /// There will be no picture of this capture.
+    Lost {
+        /// Number of the capture.
+        capture: u32,
+    },
+    /// No answer within the time given.
+    Nothing,
+}
+
+/// A source of pictures.
+pub trait Camera: Send {
+    /// The tracker board has strobed the camera for this capture; `time_us` is when, on any one clock.
+    fn strobed(&mut self, capture: u32, time_us: u64);
+
+    /// The next answer to a strobe, in the order of the captures; waits at most `timeout` for it. `picture` is overwritten
+    /// only by a picture that has arrived.
+    fn next(&mut self, timeout: Duration, picture: &mut Picture) -> Result<Arrival, CameraError>;
+}
+
+/// Why there are no more pictures from a camera. Reads as one sentence.
+#[derive(Debug, Error)]
+pub enum CameraError {
+    /// A file of a picture cannot be used.
+    #[error(transparent)]
+    Png(#[from] PngError),
+}
