@@ -6,6 +6,8 @@
 
 mod blur;
 mod fast_renderer;
+mod grid;
+mod parallel;
 mod protocol;
 mod random;
 mod row;
@@ -13,6 +15,7 @@ mod scene;
 mod sharp;
 mod sketch;
 mod source;
+mod sums;
 mod surface;
 mod texture;
 mod tile;

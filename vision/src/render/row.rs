@@ -29,6 +29,18 @@ fn smooth(t: f32) -> f32 {
     0.5 + t * (0.75 - 0.25 * t * t)
 }
 
+/// Height of a disc of so many half widths of its blur, such that it keeps its light: blurred with the profile
+/// [`smooth`] it covers π(radius² + 0.2) if the radius is above 1, and this polynomial below.
+fn flattened(radius: f64) -> f64 {
+    let square = radius * radius;
+    let covered = if radius < 1.0 {
+        0.1 + 0.375 * radius + 0.5 * square + 0.25 * square * radius - 0.025 * square * square * radius
+    } else {
+        square + 0.2
+    };
+    square / covered
+}
+
 /// A blurred strip across a row: its edges \[columns\], and how far to each side they are soft.
 struct Strip {
     edges: [f64; 2],
@@ -192,6 +204,7 @@ impl Row {
             .min(sketch.columns - 1);
         let softness = self.softness(sketch, middle as f64) * sketch.lens.pixel_mm;
         let reach = blob.radius_mm + softness;
+        let height = flattened(blob.radius_mm / softness) as f32;
         let split = sketch.seam_column(r).ceil();
         let side = |column: usize| usize::from(column as f64 >= split);
         // A surface gains no more along travel than it is wide, up to walls of 45°.
@@ -202,7 +215,7 @@ impl Row {
         for column in bound(u - reach)..bound(u + reach) {
             let along = sketch.along(r, column, side(column)) - a;
             let far = along.hypot(f64::from(sketch.across[column]) - u);
-            let share = smooth(((blob.radius_mm - far) / softness) as f32);
+            let share = height * smooth(((blob.radius_mm - far) / softness) as f32);
             let brightness = &mut self.brightness[column];
             *brightness += (blob.brightness as f32 - *brightness) * share;
         }
@@ -230,6 +243,24 @@ impl Row {
             let mean = mean.max(0.0);
             let value = mean + gauss * (mean * step + read).sqrt();
             *pixel = (value.clamp(0.0, 255.0) + WHOLE).to_bits() as u8;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{flattened, smooth};
+
+    #[test]
+    fn a_blurred_disc_keeps_its_light() {
+        for radius in [0.05, 0.3, 0.99, 1.01, 2.5] {
+            let step = 1e-3;
+            let rings = (0..4000).map(|k| (f64::from(k) + 0.5) * step);
+            let light: f64 = rings
+                .map(|far| 2.0 * far * step * f64::from(smooth((radius - far) as f32)))
+                .sum();
+            let kept = flattened(radius) * light / (radius * radius);
+            assert!((kept - 1.0).abs() < 1e-3, "{radius}: {kept}");
         }
     }
 }

@@ -1,8 +1,9 @@
 //! A scene, prepared column by column for rows to be rendered.
 
 use super::blur::Lens;
+use super::grid::Grid;
 use super::scene::{Joint, Scene};
-use super::tile::{Grid, Tile};
+use super::tile::Tile;
 use std::sync::Arc;
 
 /// What rows of a picture have in common. Lengths are millimetres.
@@ -43,8 +44,9 @@ pub(super) struct Sketch {
     tilt: [f64; 2],
     /// Row of the optical axis.
     middle_row: f64,
-    /// How the tiles left and right repeat, and dn/du of their surfaces.
+    /// How the tiles left and right repeat, their rows and columns for one of the picture, and dn/du of their surfaces.
     grids: [Grid; 2],
+    scales: [[f64; 2]; 2],
     slopes: [f64; 2],
 }
 
@@ -78,6 +80,7 @@ impl Sketch {
             tilt: [sin, cos],
             middle_row,
             grids: tiles.each_ref().map(|tile| tile.grid()),
+            scales: tiles.each_ref().map(|tile| tile.scale()),
             slopes: tiles.each_ref().map(|tile| tile.slope()),
         }
     }
@@ -143,8 +146,9 @@ impl Sketch {
             let across = (scene.position_mm[1] + lateral) / slope.hypot(1.0);
             let along = scene.position_mm[0] * cos - height * sin + slope * sin * across;
             let part = part * side as f64;
-            let row = along / g - self.middle_row + part * grid.size[0] as f64;
-            let column = (across - lateral) / g - self.middle + part * grid.size[1] as f64;
+            let scale = self.scales[side];
+            let row = along / g * scale[0] - self.middle_row + part * grid.size[0] as f64;
+            let column = across / g * scale[1] - lateral / g - self.middle + part * grid.size[1] as f64;
             let [row, column] = [row, column].map(|x| x.round() as i64);
             let columns = grid.size[1] as i64;
             let periods = column.div_euclid(columns);

@@ -1,6 +1,9 @@
 //! A piece of textured work as the camera sees it, at many blurs.
 
-use super::blur::{Discs, Kernel, Lens};
+use super::blur::{Kernel, Lens};
+use super::grid::Grid;
+use super::parallel::in_parallel;
+use super::sums::Sums;
 use super::texture::{Field, PERIOD_MM, Texture};
 use crate::optics::{Optics, OpticsError};
 
@@ -10,11 +13,14 @@ const LEVELS: usize = 16;
 /// The largest blur is that of this part of the depth between top and bottom of a picture of a level plate.
 const DEEPEST: f64 = 0.6;
 
-/// Samples a pixel in each direction, odd.
+/// Samples a pixel, odd.
 const SAMPLES: usize = 3;
 
-/// Up to this radius \[pixels\] a disc is taken from the samples, beyond from the pixels.
-const FINE: f64 = 3.0;
+/// Up to this radius \[pixels\] a disc is taken from the samples, beyond from every second pixel.
+const FINE: f64 = 6.0;
+
+/// What taking every second pixel and going straight between them blurs by, as the square of a disc's radius \[pixels²\].
+const HALVING: f64 = 4.0;
 
 /// A period of a texture in pixels of a camera's picture: seen at the tilt, on a plate or a wall, smeared by travel,
 /// blurred by diffraction and pixels, and at each level by a disc. Cameras of the same make may share it.
@@ -24,6 +30,8 @@ pub struct Tile {
     optics: Optics,
     slope: f64,
     grid: Grid,
+    /// Pixels of the tile for one of the picture: a period is a whole number of them.
+    scale: [f64; 2],
     levels: Vec<Level>,
 }
 
@@ -41,81 +49,42 @@ pub(super) struct Level {
     length: usize,
 }
 
-/// Values that repeat.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Grid {
-    /// After how many they do along rows and columns of the picture.
-    pub size: [usize; 2],
-    /// How many rows lower the surface of a wall is one period of columns further right.
-    pub lower: i64,
-}
-
-impl Grid {
-    fn finer(self, times: usize) -> Self {
-        Self {
-            size: self.size.map(|count| count * times),
-            lower: self.lower * times as i64,
-        }
-    }
-
-    /// The row of values in which a row goes on so many periods of columns further right.
-    pub fn row(&self, row: i64, periods: i64) -> usize {
-        (row - periods * self.lower).rem_euclid(self.size[0] as i64) as usize
-    }
-
-    /// A row of values and some more to its left and right.
-    fn stretch<'a, T>(&self, values: &'a [T], row: usize, more: [usize; 2]) -> impl Iterator<Item = &'a T> {
-        let (this, columns) = (*self, self.size[1] as i64);
-        let mut at = -(more[0] as i64);
-        let end = columns + more[1] as i64;
-        std::iter::from_fn(move || {
-            let (periods, column) = (at.div_euclid(columns), at.rem_euclid(columns));
-            let count = (columns - column).min(end - at);
-            let from = this.row(row as i64, periods) as i64 * columns + column;
-            at += count;
-            (count > 0).then(|| &values[from as usize..(from + count) as usize])
-        })
-        .flatten()
-    }
-}
-
 impl Tile {
     /// Makes the tile of a texture for a camera. `slope` is dn/du of the surface, 0 of a plate (roll up to 10° does no
-    /// harm); `smear_mm` how far the work travels during an exposure. It takes some seconds.
+    /// harm); `smear_mm` how far the work travels during an exposure. It takes a part of a second on
+    /// every core.
     pub fn new(texture: Texture, optics: Optics, slope: f64, smear_mm: f64) -> Result<Self, OpticsError> {
         optics.check()?;
         let lens = Lens::new(&optics);
         let (sin, cos) = optics.tilt_rad.sin_cos();
         let pixels =
             [PERIOD_MM[0] * cos, PERIOD_MM[1] / slope.hypot(1.0)].map(|period| period / lens.pixel_mm);
-        let size = pixels.map(|count| (count.round() as usize).max(1));
-        let lower = (slope * sin * size[1] as f64).round() as i64;
+        let even = |count: f64| 2 * (count / 2.0).round().max(1.0) as usize;
+        let size = pixels.map(even);
+        let lower = 2 * (slope * sin * size[1] as f64 / 2.0).round() as i64;
         let grid = Grid { size, lower };
-        let fine = grid.finer(SAMPLES);
-        let samples = sampled(texture, fine);
-        let per_pixel = SAMPLES as f64;
-        let diffraction = lens.diffraction_mm / lens.pixel_mm * per_pixel;
-        let smear = smear_mm * cos / lens.pixel_mm * per_pixel;
-        let across = Kernel::new(diffraction, &[per_pixel]);
-        let along = Kernel::new(diffraction, &[per_pixel, smear]);
         let deepest = DEEPEST * optics.rows as f64 * optics.tilt_rad.tan() * lens.spread;
-        let fine = Sums::new(&smeared(&samples, fine, &across, &along), fine, FINE * per_pixel);
-        let coarse = Sums::new(&fine.discs(0.0, SAMPLES), grid, deepest);
-        let level = |k: usize| {
+        let sharp = sharp(texture, grid, &lens, smear_mm * cos);
+        let fine = Sums::new(&sharp, grid.finer(SAMPLES), SAMPLES, FINE.min(deepest));
+        let half = grid.halved();
+        let coarse = Sums::new(&grid.means(&fine.discs(0.0)), half, 1, deepest / 2.0);
+        let levels = in_parallel(LEVELS, |k| {
             let radius = deepest * (k as f64 / (LEVELS - 1) as f64).powf(1.6);
             let seen = if radius <= FINE {
-                fine.discs(radius * per_pixel, SAMPLES)
+                fine.discs(radius)
             } else {
-                coarse.discs(radius, 1)
+                let disc = (radius * radius - HALVING).sqrt();
+                half.doubled(&coarse.discs(disc / 2.0))
             };
             Level::new(radius, &seen, grid, optics.columns)
-        };
+        });
         Ok(Self {
             texture,
             optics,
             slope,
             grid,
-            levels: (0..LEVELS).map(level).collect(),
+            levels,
+            scale: [0, 1].map(|k| size[k] as f64 / pixels[k]),
         })
     }
 
@@ -143,6 +112,11 @@ impl Tile {
     pub(super) fn grid(&self) -> Grid {
         self.grid
     }
+
+    /// Its rows and columns for one of the picture.
+    pub(super) fn scale(&self) -> [f64; 2] {
+        self.scale
+    }
 }
 
 impl Level {
@@ -151,10 +125,11 @@ impl Level {
         let high = seen.iter().fold(f32::MIN, |m, &x| m.max(x));
         let step = ((high - low) / 255.0).max(1e-6);
         let length = grid.size[1] + columns;
+        let one = 1.0 / step;
+        let period: Vec<u8> = seen.iter().map(|x| ((x - low) * one + 0.5) as u8).collect();
         let mut codes = Vec::with_capacity(grid.size[0] * length);
         for row in 0..grid.size[0] {
-            let row = grid.stretch(seen, row, [0, columns]);
-            codes.extend(row.map(|x| ((x - low) / step).round() as u8));
+            grid.stretch(&period, row, [0, columns], &mut codes);
         }
         Self {
             radius_squared: (radius * radius) as f32,
@@ -171,99 +146,47 @@ impl Level {
     }
 }
 
-/// A period of the texture as the rows and columns of a picture see it.
-fn sampled(texture: Texture, grid: Grid) -> Vec<f32> {
+/// A period of the texture as a camera sees it that is all in focus: smeared by travel, diffraction and pixels. A row
+/// has [`SAMPLES`] values a pixel.
+fn sharp(texture: Texture, grid: Grid, lens: &Lens, smear_mm: f64) -> Vec<f32> {
     let field = Field::new(texture);
+    let per_pixel = SAMPLES as f64;
+    let diffraction = lens.diffraction_mm / lens.pixel_mm * per_pixel;
+    let across = Kernel::new(diffraction, &[per_pixel]);
+    let along = Kernel::new(diffraction, &[per_pixel, smear_mm / lens.pixel_mm * per_pixel]);
     let [rows, columns] = grid.size;
-    let step = [PERIOD_MM[0] / rows as f64, PERIOD_MM[1] / columns as f64];
+    let fine = grid.finer(SAMPLES);
+    let step = [
+        PERIOD_MM[0] / (rows * SAMPLES) as f64,
+        PERIOD_MM[1] / fine.size[1] as f64,
+    ];
     let lower = grid.lower as f64 / columns as f64;
-    let at = |row: usize, column: usize| {
-        let column = column as f64;
-        field.at((row as f64 - lower * column) * step[0], column * step[1])
-    };
-    (0..rows * columns)
-        .map(|i| at(i / columns, i % columns))
-        .collect()
-}
-
-/// Convolved with `across` in rows and `along` in columns, all around the period.
-fn smeared(samples: &[f32], grid: Grid, across: &Kernel, along: &Kernel) -> Vec<f32> {
-    let [rows, columns] = grid.size;
-    let mut lines = vec![0.0; rows * columns];
-    for (row, line) in lines.chunks_exact_mut(columns).enumerate() {
-        for (k, &weight) in along.0.iter().enumerate() {
-            let from = (row + k) as i64 - along.reach() as i64;
-            add(line, weight, &samples[grid.row(from, 0) * columns..][..columns]);
-        }
+    // Columns first: along them a wall is not skewed, and of the rows not all are needed.
+    let seen = in_parallel(fine.size[1], |column| {
+        let column = column as f64 - (SAMPLES / 2) as f64;
+        let first = -lower * column - along.reach() as f64;
+        let mut places = vec![0.0; (rows - 1) * SAMPLES + along.0.len()];
+        field.along(first * step[0], step[0], column * step[1], &mut places);
+        let line = places.windows(along.0.len()).step_by(SAMPLES);
+        line.map(|places| places.iter().zip(&along.0).map(|(x, weight)| x * weight).sum())
+            .collect::<Vec<f32>>()
+    });
+    let mut lines = vec![0.0; rows * fine.size[1]];
+    for (row, line) in lines.chunks_exact_mut(fine.size[1]).enumerate() {
+        line.iter_mut()
+            .zip(&seen)
+            .for_each(|(to, column)| *to = column[row]);
     }
-    let mut out = vec![0.0; rows * columns];
-    let mut line = Vec::new();
-    for (row, out) in out.chunks_exact_mut(columns).enumerate() {
-        line.clear();
-        line.extend(grid.stretch(&lines, row, [across.reach(); 2]));
+    let rows = in_parallel(rows, |row| {
+        let mut line = Vec::with_capacity(fine.size[1] + across.0.len());
+        fine.stretch(&lines, row, [across.reach(); 2], &mut line);
+        let mut out = vec![0.0; fine.size[1]];
         for (k, &weight) in across.0.iter().enumerate() {
-            add(out, weight, &line[k..]);
+            out.iter_mut()
+                .zip(&line[k..])
+                .for_each(|(out, x)| *out += weight * x);
         }
-    }
-    out
-}
-
-fn add(out: &mut [f32], weight: f32, values: &[f32]) {
-    out.iter_mut().zip(values).for_each(|(out, x)| *out += weight * x);
-}
-
-/// Sums along the rows of a period and a bit more on both sides.
-struct Sums {
-    /// Of what the values are above 1, so that they stay small and f32 will do.
-    sums: Vec<f32>,
-    grid: Grid,
-    margin: usize,
-}
-
-impl Sums {
-    /// Sums that discs up to `radius` can be taken from.
-    fn new(values: &[f32], grid: Grid, radius: f64) -> Self {
-        let [rows, columns] = grid.size;
-        let margin = radius.ceil() as usize + 2;
-        let mut sums = Vec::with_capacity(rows * (columns + 2 * margin + 1));
-        for row in 0..rows {
-            let mut sum = 0.0;
-            sums.push(sum);
-            sums.extend(grid.stretch(values, row, [margin; 2]).map(|x| {
-                sum += x - 1.0;
-                sum
-            }));
-        }
-        Self { sums, grid, margin }
-    }
-
-    /// Means over discs around every `stride`-th sample in both directions, the middle one of each square.
-    fn discs(&self, radius: f64, stride: usize) -> Vec<f32> {
-        let mut discs = Discs::default();
-        discs.provide(radius);
-        let halves = discs.of(radius);
-        let area: f64 = 2.0 * (2.0 * halves.iter().sum::<f64>() - halves[0]);
-        let [rows, columns] = self.grid.size;
-        let length = columns + 2 * self.margin + 1;
-        let mut line = vec![0.0; columns / stride];
-        let mut means = Vec::with_capacity(rows / stride * line.len());
-        for row in (stride / 2..rows).step_by(stride) {
-            line.fill(0.0);
-            for k in 1 - halves.len() as i64..halves.len() as i64 {
-                let from = self.grid.row(row as i64 + k, 0);
-                let half = halves[k.unsigned_abs() as usize];
-                let start = (self.margin + stride / 2) as f64 + 0.5;
-                // The ends lie the same way between two samples in every column.
-                for (end, sign) in [(start + half, 1.0), (start - half, -1.0)] {
-                    let (whole, part) = (end as usize, end.fract() as f32);
-                    let sums = &self.sums[from * length + whole..(from + 1) * length];
-                    for (out, sums) in line.iter_mut().zip(sums.windows(2).step_by(stride)) {
-                        *out += sign * (sums[0] + (sums[1] - sums[0]) * part);
-                    }
-                }
-            }
-            means.extend(line.iter().map(|sum| 1.0 + sum / area as f32));
-        }
-        means
-    }
+        out
+    });
+    rows.concat()
 }
