@@ -2,6 +2,7 @@
 
 pub mod boards;
 pub mod camera;
+pub mod calibration;
 pub mod cli;
 pub mod curve;
 pub mod dry_run;

@@ -1,6 +1,6 @@
 //! Checks of a machine file that the boards cannot do: that it is complete, and what only the PC uses.
 
-use super::{MachineFile, Mistake, PlanningConfig};
+use super::{CameraConfig, MachineFile, Mistake, PlanningConfig};
 use shared::io::{AXES, AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 
 /// The second motor of X, which only a gantry has.
@@ -12,9 +12,7 @@ pub fn machine(machine: &MachineFile) -> Result<(), Mistake> {
     planning(&machine.planning)?;
     park(machine)?;
     if let Some(unit) = &machine.tracking {
-        let cameras = &unit.cameras;
-        at_least_0("cameras.processing_ms", cameras.processing_ms)?;
-        at_least_0("cameras.noise_3sigma_mm", cameras.noise_3sigma_mm)?;
+        cameras(&unit.cameras)?;
     }
     if let Some(probe) = &machine.probe {
         probe.build().map_err(|error| Mistake::Value {
@@ -56,6 +54,27 @@ fn same(machine: &MachineFile, key: &str, told: bool, fitted: bool) -> Result<()
         (true, false) => Err(Mistake::NoSuchAxis { key, machine }),
         (true, true) | (false, false) => Ok(()),
     }
+}
+
+fn cameras(cameras: &CameraConfig) -> Result<(), Mistake> {
+    at_least_0("cameras.processing_ms", cameras.processing_ms)?;
+    at_least_0("cameras.noise_3sigma_mm", cameras.noise_3sigma_mm)?;
+    for mount in cameras.mount_deg {
+        let sensible = mount.abs() <= 90.0;
+        value("cameras.mount_deg", mount, sensible, "between -90 and 90")?;
+    }
+    cameras
+        .optics
+        .check()
+        .map_err(|reason| Mistake::Optics { reason })?;
+    above_0(
+        "cameras.photon_transfer.full_well",
+        cameras.photon_transfer.full_well,
+    )?;
+    at_least_0(
+        "cameras.photon_transfer.read_noise",
+        cameras.photon_transfer.read_noise,
+    )
 }
 
 fn planning(planning: &PlanningConfig) -> Result<(), Mistake> {

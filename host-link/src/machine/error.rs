@@ -71,6 +71,12 @@ pub enum Mistake {
         /// Name of the kinematics.
         machine: &'static str,
     },
+    /// A figure of the cameras' optics.
+    #[error("cameras.optics: {reason}")]
+    Optics {
+        /// Which, and what it has to be.
+        reason: vision::OpticsError,
+    },
     /// Some of the tables of a tracker, but not all.
     #[error("[{table}] is missing; what follows a seam has [head], [slides], [tracking] and [cameras]")]
     TrackerIncomplete {

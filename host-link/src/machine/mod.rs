@@ -1,9 +1,11 @@
 //! The machine file: everything that is true of one machine, in TOML, mm and degrees.
 
+mod cameras;
 mod check;
 mod document;
 mod error;
 
+pub use cameras::{CameraConfig, JointForm};
 pub use error::{MachineError, Mistake};
 
 use crate::table::line_of;
@@ -37,7 +39,7 @@ pub struct MachineFile {
 pub struct TrackingUnit {
     /// Parameters of the tracker board.
     pub board: TrackerConfig,
-    /// Cameras, for simulated worlds.
+    /// The two cameras.
     pub cameras: CameraConfig,
 }
 
@@ -106,16 +108,6 @@ impl<T> ByAxis<T> {
     pub fn into_array(self) -> [Option<T>; AXES] {
         [self.X, self.Y, self.Z, self.A, self.B, self.C]
     }
-}
-
-/// Cameras, for simulated worlds; lead and frame period are parameters of the tracker board.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CameraConfig {
-    /// From the strobe to the measurement \[ms\].
-    pub processing_ms: f64,
-    /// Noise of a measurement, three standard deviations \[mm\].
-    pub noise_3sigma_mm: f64,
 }
 
 impl MachineFile {

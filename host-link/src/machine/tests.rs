@@ -1,4 +1,5 @@
 use super::*;
+use crate::calibration::Calibration;
 use shared::kinematics::{AXIS_UNIT, AxisLimits, KinematicsConfig, violations};
 
 const SHIPPED: &str = include_str!("../../../machines/dual-beam-gantry.toml");
@@ -184,9 +185,7 @@ fn axes_that_the_machine_has_not_are_named_and_so_are_those_that_are_missing() {
 
 #[test]
 fn half_a_tracker_is_none() {
-    let text = SHIPPED.replace("[cameras]\nprocessing_ms = 10.0\nnoise_3sigma_mm = 0.02", "");
-    assert_ne!(text, SHIPPED);
-    let error = error_of(&text);
+    let error = error_of(&SHIPPED[..SHIPPED.find("[cameras]").unwrap()]);
     assert!(error.contains("[cameras] is missing"), "{error}");
 }
 
@@ -200,4 +199,81 @@ fn a_process_window_is_open() {
         error,
         "machine file m.toml: process.max_speed_mm_s is 4, but must be above min_speed_mm_s"
     );
+}
+
+/// The text of the shipped machine with something else in it.
+fn shipped_with(right: &str, wrong: &str) -> String {
+    assert!(SHIPPED.contains(right), "{right}");
+    SHIPPED.replace(right, wrong)
+}
+
+#[test]
+fn cameras_are_as_drawn_until_they_are_calibrated() {
+    let cameras = |text: &str| {
+        MachineFile::parse("m.toml", text)
+            .unwrap()
+            .tracking
+            .unwrap()
+            .cameras
+    };
+    let drawn = cameras(SHIPPED);
+    assert_eq!(drawn.joint, JointForm::Gap);
+    assert!((drawn.optics.object_pixel_mm() - 0.00345).abs() < 1e-12);
+    let [first, second] = drawn.calibrations(Path::new("none")).unwrap();
+    assert_eq!((first, second), (drawn.nominal(0), drawn.nominal(1)));
+    // Both look along the normal of the skin: what is across for one is across for the other, mirrored in the heads.
+    let lateral = |camera: &Calibration| camera.side_measurement(1.0, 0.0, 0.0);
+    let (left, right) = (lateral(&first), lateral(&second));
+    assert!((left.delta_u_mm - right.delta_u_mm).abs() < 1e-12);
+    assert!((left.delta_v_mm + right.delta_v_mm).abs() < 1e-12);
+
+    let folder = std::env::temp_dir().join(format!("seamwright-cameras-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let measured = Calibration {
+        corner_offset_mm: Some([0.001, 0.005]),
+        ..first
+    };
+    std::fs::write(folder.join("camera-1.toml"), measured.to_toml()).unwrap();
+    std::fs::write(folder.join("camera-2.toml"), second.to_toml()).unwrap();
+    let files = shipped_with("# calibration = ", "calibration = ");
+    let read = cameras(&files).calibrations(&folder);
+    let missing = cameras(&files).calibrations(&folder.join("none"));
+    std::fs::remove_dir_all(&folder).unwrap();
+    let [read, _] = read.unwrap();
+    assert_eq!(read.corner_offset_mm, Some([0.001, 0.005]));
+    assert_eq!(read.to_toml(), measured.to_toml());
+    let error = missing.unwrap_err().to_string();
+    assert!(error.contains("camera-1.toml"), "{error}");
+}
+
+#[test]
+fn a_figure_of_a_camera_that_makes_no_sense_is_named() {
+    let cases = [
+        (
+            "mount_deg = [-30.0, 30.0]",
+            "mount_deg = [-130.0, 30.0]",
+            "cameras.mount_deg is -130",
+        ),
+        (
+            "tilt_deg = 45.0",
+            "tilt_deg = 0.0",
+            "cameras.optics: the camera's tilt of 0°",
+        ),
+        (
+            "full_well = 20000.0",
+            "full_well = 0.0",
+            "cameras.photon_transfer.full_well is 0",
+        ),
+        (
+            "read_noise = 15.0",
+            "read_noise = -1.0",
+            "cameras.photon_transfer.read_noise is -1",
+        ),
+        ("joint = \"gap\"", "joint = \"butt\"", "butt"),
+        ("aperture = 0.10", "aperture = 0.10\nmirror = 1", "mirror"),
+    ];
+    for (right, wrong, says) in cases {
+        let error = error_of(&shipped_with(right, wrong));
+        assert!(error.contains(says), "{error}");
+    }
 }

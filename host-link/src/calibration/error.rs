@@ -1,0 +1,36 @@
+//! What is wrong with a calibration file.
+
+use thiserror::Error;
+
+/// Why a calibration cannot be used. Reads as one sentence.
+#[derive(Debug, Error)]
+pub enum CalibrationError {
+    /// The file cannot be read.
+    #[error("cannot read calibration {path}: {source}; `host-link calibrate` writes one")]
+    Read {
+        /// The file.
+        path: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Not TOML, or a key is missing, unknown or of the wrong type.
+    #[error("calibration {path}, line {line}: {message}")]
+    Content {
+        /// The file.
+        path: String,
+        /// First line is 1.
+        line: usize,
+        /// What is wrong.
+        message: String,
+    },
+    /// A value makes no sense.
+    #[error("calibration {path}, line {line}: {reason}")]
+    Value {
+        /// The file.
+        path: String,
+        /// First line is 1.
+        line: usize,
+        /// What is wrong, and what to do.
+        reason: String,
+    },
+}

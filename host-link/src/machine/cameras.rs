@@ -1,0 +1,70 @@
+//! The cameras of a machine: what the drawing says of them, and where their calibrations are.
+
+use crate::calibration::{Calibration, CalibrationError, OpticsTable, PhotonTransferTable};
+use serde::{Deserialize, Deserializer};
+use shared::io::SIDES;
+use std::path::{Path, PathBuf};
+use vision::{Optics, PhotonTransfer};
+
+/// Both cameras; lead and frame period are parameters of the tracker board.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraConfig {
+    /// From the strobe to the measurement, of simulated cameras \[ms\].
+    pub processing_ms: f64,
+    /// Noise of a measurement of cameras without pictures, three standard deviations \[mm\].
+    pub noise_3sigma_mm: f64,
+    /// What the joint looks like to them.
+    pub joint: JointForm,
+    /// How each camera is turned about T against its head: n = Rot(T, mount)·N_k \[°\].
+    pub mount_deg: [f64; SIDES],
+    /// Lens and sensor by the drawing.
+    #[serde(deserialize_with = "optics")]
+    pub optics: Optics,
+    /// Noise of the sensor by its data sheet.
+    #[serde(deserialize_with = "photon_transfer")]
+    pub photon_transfer: PhotonTransfer,
+    /// Calibration files of camera 1 and 2, beside the machine file; without them both are as drawn.
+    pub calibration: Option<[PathBuf; SIDES]>,
+}
+
+/// What a joint looks like to a camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum JointForm {
+    /// An open gap in a plate, seen along the plate's normal.
+    Gap,
+    /// The closed corner of two walls.
+    Corner,
+}
+
+impl CameraConfig {
+    /// What is known of camera 1 and 2: their calibration files, whose names are relative to the machine file's
+    /// `folder`, or what the drawing says.
+    pub fn calibrations(&self, folder: &Path) -> Result<[Calibration; SIDES], CalibrationError> {
+        match &self.calibration {
+            Some([first, second]) => {
+                let read = |file: &PathBuf| Calibration::read(&folder.join(file));
+                Ok([read(first)?, read(second)?])
+            }
+            None => Ok(std::array::from_fn(|side| self.nominal(side))),
+        }
+    }
+
+    /// What the drawing says of the camera of `side` (0 or 1).
+    pub fn nominal(&self, side: usize) -> Calibration {
+        Calibration::nominal(
+            self.optics,
+            self.photon_transfer,
+            self.mount_deg[side].to_radians(),
+        )
+    }
+}
+
+fn optics<'de, D: Deserializer<'de>>(table: D) -> Result<Optics, D::Error> {
+    OpticsTable::deserialize(table).map(Optics::from)
+}
+
+fn photon_transfer<'de, D: Deserializer<'de>>(table: D) -> Result<PhotonTransfer, D::Error> {
+    PhotonTransferTable::deserialize(table).map(PhotonTransfer::from)
+}
