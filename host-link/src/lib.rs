@@ -1,8 +1,8 @@
 //! The PC's part of Seamwright: programs, planning, sessions with the boards, reports.
 
 pub mod boards;
-pub mod camera;
 pub mod calibration;
+pub mod camera;
 pub mod cli;
 pub mod curve;
 pub mod dry_run;
