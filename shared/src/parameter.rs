@@ -100,6 +100,8 @@ const FIELDS: &[&str] = &[
     "dead_band_mm",
     "stale_path_ms",
     "saturation_trip_ms",
+    "search_mm",
+    "search_speed_mm_s",
     "link_timeout_ms",
     "period_s",
 ];

@@ -74,4 +74,8 @@ pub struct TrackingConfig {
     pub stale_path_ms: u32,
     /// Time in saturation that is reported as a fault \[ms\].
     pub saturation_trip_ms: u32,
+    /// While the seam was not seen yet, the U slide looks for it this far to either side \[mm\]; 0 for not at all.
+    pub search_mm: f64,
+    /// Speed of that \[mm/s\].
+    pub search_speed_mm_s: f64,
 }

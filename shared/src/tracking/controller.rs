@@ -15,6 +15,7 @@ use super::history::{CaptureHistory, CaptureRecord, PathHistory, Place, Pushed};
 use super::law::LawState;
 use super::parameters::TrackerParameters;
 use super::seam::Seam;
+use super::search::SeamSearch;
 use super::{TrackerFault, TrackerState};
 use crate::control::{SearchInput, SearchProgress, SearchState};
 use crate::io::{Bits, Command, DacCode, SIDES, SLIDES, SlideCommand, SlideFeedback};
@@ -65,6 +66,7 @@ pub struct TrackerController<const KNOTS: usize> {
     captures: CaptureHistory,
     clock: ClockRelation,
     seam: Seam,
+    seam_searches: [SeamSearch; SIDES],
     slides: [Slide; SLIDES],
     /// One a slide, once homing has begun.
     searches: Vec<SearchState<1>, SLIDES>,
@@ -116,6 +118,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             captures: CaptureHistory::new(),
             clock: ClockRelation::new(),
             seam: Seam::new(),
+            seam_searches: [SeamSearch::new(); SIDES],
             slides: [SLIDE; SLIDES],
             searches: Vec::new(),
             feedback: SlideFeedback {

@@ -80,6 +80,13 @@ impl SeamMap {
         self.samples.first().is_some_and(|first| sigma < first.sigma)
     }
 
+    /// Slide position \[mm\] that meets the seam at the next sample ahead of `sigma` \[mm\], however far that is.
+    pub fn next_after(&self, law: &MapLaw, sigma: f64) -> Option<f64> {
+        let next = self.samples.partition_point(|s| s.sigma <= sigma);
+        let next = self.samples.get(next)?;
+        Some(self.estimate(law, next.sigma)?.value)
+    }
+
     /// Forgets all samples.
     pub fn clear(&mut self) {
         self.samples.clear();
@@ -270,6 +277,10 @@ mod tests {
             assert_eq!(map.add_going_back(&LAW, sigma, y(sigma)), expected, "{sigma}");
         }
         assert!(!map.begins_after(10.0) && map.estimate(&LAW, 40.0).is_none());
+        assert!(map.begins_after(9.9) && map.next_after(&LAW, 40.0).is_none());
+        for (sigma, next) in [(-50.0, 10.0), (10.0, 10.5)] {
+            assert!((map.next_after(&LAW, sigma).unwrap() - y(next)).abs() < 1e-12);
+        }
         assert_eq!(map.add_going_back(&LAW, 9.5, 3.0), Added::Outlier);
         for i in 20..100 {
             let sigma = 0.5 * f64::from(i);

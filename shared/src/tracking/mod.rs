@@ -11,6 +11,7 @@ pub mod law;
 pub mod map;
 pub mod parameters;
 mod seam;
+pub mod search;
 
 pub use config::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
 pub use controller::{TickInput, TickOutput, TrackerController};

@@ -4,6 +4,7 @@ use super::frames::Heads;
 use super::gain::crossover;
 use super::law::SlideLaw;
 use super::map::{MAP_CAPACITY, MapLaw};
+use super::search::SearchLaw;
 use super::{SlideConfig, TrackerConfig, TrackingConfig};
 use crate::control::ReferenceSearch;
 use crate::io::{SLIDE_NAMES, SLIDES};
@@ -21,6 +22,8 @@ pub struct TrackerParameters {
     pub slides: [SlideParameters; SLIDES],
     /// How the maps take and read samples.
     pub map: MapLaw,
+    /// How U slides look for a seam that was not seen yet.
+    pub search: SearchLaw,
     /// Preview time \[s\].
     pub preview: f64,
     /// Control ticks between two strobes.
@@ -59,6 +62,18 @@ impl TrackerConfig {
         for (i, slide) in slides.iter_mut().enumerate().skip(1) {
             *slide = self.slides[i].build(SLIDE_NAMES[i], tracking)?;
         }
+        let preview = positive("tracking", "preview_s", tracking.preview_s)?;
+        // A sweep at the slides' full speed is as fast as it can be.
+        let slowest = slides.iter().step_by(2).map(|u| u.law.max_velocity);
+        let fastest = slowest.fold(f64::INFINITY, f64::min);
+        let search_speed = tracking.search_speed_mm_s;
+        let search = SearchLaw {
+            amplitude: not_negative("tracking", "search_mm", tracking.search_mm)?,
+            speed: check("tracking", "search_speed_mm_s", search_speed, |v| {
+                v > 0.0 && v <= fastest
+            })?,
+            preview,
+        };
         // Spaced so that the map reaches from behind the beam to the camera at any path speed.
         let reach = heads.camera_lead() + 2.0 * window + hold;
         Ok(TrackerParameters {
@@ -71,7 +86,8 @@ impl TrackerConfig {
                 spacing: reach / MAP_CAPACITY as f64,
                 keep: MAP_CAPACITY,
             },
-            preview: positive("tracking", "preview_s", tracking.preview_s)?,
+            search,
+            preview,
             frame_ticks: tracking.frame_period_ms,
             stale_path_us: u64::from(tracking.stale_path_ms) * 1000,
             saturation_ticks: tracking.saturation_trip_ms,

@@ -18,8 +18,8 @@ const fn u_slide(side: usize) -> usize {
 #[derive(Clone, Debug, Default)]
 pub struct Seam {
     maps: [SeamMap; SLIDES],
-    /// The channel had an estimate since tracking began.
-    seen: [bool; SLIDES],
+    /// Where each slide last met the seam since tracking began \[mm\].
+    met: [Option<f64>; SLIDES],
     accepted: [u32; SIDES],
     rejected: [u32; SIDES],
 }
@@ -29,9 +29,11 @@ pub struct Seam {
 pub enum Sight {
     /// The seam, in the frame of the planned path.
     Seam(SlideTarget),
-    /// The seam was not seen there yet, or is forgotten already: follow the plan.
-    NotYet,
-    /// The seam was seen, but for longer than the map reaches not any more.
+    /// The seam was seen further ahead only: be where that is, so that the camera keeps it in sight.
+    Ahead(SlideTarget),
+    /// The seam was not seen, here or ahead: stay where it was met last, or follow the plan if it never was.
+    Nowhere(Option<SlideTarget>),
+    /// The beam is on, and the seam was seen, but for longer than the map reaches not any more.
     Lost,
 }
 
@@ -40,7 +42,7 @@ impl Seam {
     pub const fn new() -> Self {
         Self {
             maps: [const { SeamMap::new() }; SLIDES],
-            seen: [false; SLIDES],
+            met: [None; SLIDES],
             accepted: [0; SIDES],
             rejected: [0; SIDES],
         }
@@ -54,7 +56,7 @@ impl Seam {
 
     /// Tracking begins: until the seam comes into sight the plan is followed.
     pub fn begin(&mut self) {
-        self.seen = [false; SLIDES];
+        self.met = [None; SLIDES];
     }
 
     /// Measurements used and refused as outliers, per side.
@@ -95,18 +97,22 @@ impl Seam {
         }
     }
 
-    /// Where `slide` should be at path position `s` \[mm\] and path speed `speed` \[mm/s\].
-    pub fn sight(&mut self, parameters: &TrackerParameters, slide: usize, s: f64, speed: f64) -> Sight {
+    /// Where `slide` should be when the machine is at `place`.
+    pub fn sight(&mut self, parameters: &TrackerParameters, slide: usize, place: &Place) -> Sight {
+        let (law, s, speed) = (&parameters.map, place.s, place.speed);
         let map = &self.maps[slide];
-        match map.estimate(&parameters.map, s) {
-            Some(now) => {
-                self.seen[slide] = true;
-                let ahead = map.estimate(&parameters.map, s + speed * parameters.preview);
-                Sight::Seam(SlideTarget::seam(now, ahead, speed))
-            }
-            // Back along the path after a hold, the map ends behind.
-            None if self.seen[slide] && !map.begins_after(s) => Sight::Lost,
-            None => Sight::NotYet,
+        if let Some(now) = map.estimate(law, s) {
+            self.met[slide] = Some(now.value);
+            let ahead = map.estimate(law, s + speed * parameters.preview);
+            return Sight::Seam(SlideTarget::seam(now, ahead, speed));
+        }
+        // Back along the path after a hold, the map begins ahead.
+        if place.beams[slide / 2] && self.met[slide].is_some() && !map.begins_after(s) {
+            return Sight::Lost;
+        }
+        match map.next_after(law, s) {
+            Some(position) => Sight::Ahead(SlideTarget::rest(position)),
+            None => Sight::Nowhere(self.met[slide].map(SlideTarget::rest)),
         }
     }
 }

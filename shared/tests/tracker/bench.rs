@@ -55,6 +55,8 @@ pub fn config() -> TrackerConfig {
             dead_band_mm: 0.0,
             stale_path_ms: 20,
             saturation_trip_ms: 50,
+            search_mm: 0.0,
+            search_speed_mm_s: 40.0,
         },
     }
 }
@@ -115,6 +117,10 @@ pub struct Bench {
     pub seam: SeamFn,
     /// Whether the camera of a side sees the seam at s.
     pub visible: fn(usize, f64) -> bool,
+    /// How far from its centre a camera sees, along U and V \[mm\].
+    pub field: f64,
+    /// Pictures in a row that a camera must see the seam in before it says so.
+    pub pictures_to_acquire: u32,
     /// How far beyond the plane of the lead a camera sees at its n-th strobe \[mm\].
     pub along: fn(u32) -> f64,
     /// The six axes stand this far beside the plan \[mm\] at s, to the left.
@@ -132,6 +138,8 @@ pub struct Bench {
     pub captures: u32,
     heads: Heads,
     command: SlideCommand,
+    /// Pictures in a row that showed the seam.
+    in_sight: [u32; SIDES],
     millisecond: u64,
     measurements: VecDeque<(u64, Measurement)>,
     random: u64,
@@ -153,6 +161,8 @@ impl Bench {
             shape,
             seam,
             visible: |_, _| true,
+            field: f64::INFINITY,
+            pictures_to_acquire: 1,
             along: |_| 0.0,
             pose_error: |_| 0.0,
             noise: 0.0,
@@ -166,6 +176,7 @@ impl Bench {
             captures: 0,
             heads: config().head.build().expect("head"),
             command: SlideCommand::SAFE,
+            in_sight: [0; SIDES],
             millisecond: 0,
             measurements: VecDeque::new(),
             random: 1,
@@ -322,14 +333,18 @@ impl Bench {
     fn look(&mut self, side: usize, slides: &[f64; SLIDES]) -> Option<SideMeasurement> {
         let along_mm = (self.along)(self.captures);
         let lead = self.heads.camera_lead() + along_mm;
-        if !(self.visible)(side, self.s_now() + lead) {
+        let (u, v) = self.seen_from(side, lead);
+        let (u, v) = (u - slides[2 * side], v - slides[2 * side + 1]);
+        let in_field = u.abs() <= self.field && v.abs() <= self.field;
+        if !in_field || !(self.visible)(side, self.s_now() + lead) {
+            self.in_sight[side] = 0;
             return None;
         }
-        let (u, v) = self.seen_from(side, lead);
-        Some(SideMeasurement {
+        self.in_sight[side] += 1;
+        (self.in_sight[side] >= self.pictures_to_acquire).then(|| SideMeasurement {
             along_mm,
-            delta_u_mm: u - slides[2 * side] + self.gauss(),
-            delta_v_mm: v - slides[2 * side + 1] + self.gauss(),
+            delta_u_mm: u + self.gauss(),
+            delta_v_mm: v + self.gauss(),
         })
     }
 

@@ -2,4 +2,5 @@
 
 mod bench;
 mod following;
+mod searching;
 mod states;

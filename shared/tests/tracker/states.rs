@@ -209,6 +209,10 @@ fn a_lost_seam_is_reported_where_the_map_ends_and_only_that_side_stops() {
     bench.visible = |side, s| side == 0 || s < 100.0;
     bench.tracking = true;
     bench.speed = 100.0;
+    while bench.s < 50.0 {
+        bench.tick();
+    }
+    bench.beams = [true; 2];
     while bench.s < 103.0 {
         bench.tick();
         assert_eq!(bench.last.sample.fault, None, "s = {}", bench.s);

@@ -26,6 +26,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         }
         if tracking && self.state == TrackerState::Ready {
             self.seam.begin();
+            self.seam_searches = Default::default();
             for slide in &mut self.slides {
                 slide.arrived = false;
             }
@@ -55,8 +56,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         command
     }
 
-    /// Targets while tracking: the seam where it is known, the plan where it was not seen yet, none where it
-    /// was lost; all relative to where the heads really are.
+    /// Targets while tracking: the seam where it is known, the next place that is where it is not; a search about the
+    /// last place or the plan where there is none; no target where it was lost. All relative to where the heads
+    /// really are.
     fn seam_targets(
         &mut self,
         parameters: &TrackerParameters,
@@ -72,21 +74,28 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         let mut targets = [None; SLIDES];
         for (i, target) in targets.iter_mut().enumerate() {
             let slide = &mut self.slides[i];
-            let in_plan = match self.seam.sight(parameters, i, place.s, place.speed) {
+            let in_plan = match self.seam.sight(parameters, i, place) {
                 Sight::Seam(target) => {
                     let away = libm::fabs(target.position - off[i] - slide.position);
                     slide.arrived |= away <= parameters.map.gate;
                     target
                 }
-                Sight::NotYet => {
-                    if place.beams[i / 2] {
-                        self.report(TrackerFault::SeamNotSeen {
-                            side: i as u8 / 2,
-                            s_mm: place.s as f32,
-                        });
+                Sight::Ahead(beginning) => {
+                    self.not_there_yet(i, place);
+                    beginning
+                }
+                Sight::Nowhere(last) => {
+                    self.not_there_yet(i, place);
+                    let about = last.unwrap_or(plan[i]);
+                    let goes = place.speed > 0.0 && !place.beams[i / 2];
+                    if i % 2 == 0 {
+                        // As the plan, the travel seen from where the planned path would have the head.
+                        let (min, max) = parameters.slides[i].law.travel;
+                        let travel = (min + off[i], max + off[i]);
+                        self.seam_searches[i / 2].step(&parameters.search, about, travel, goes)
+                    } else {
+                        about
                     }
-                    self.slides[i].arrived = false;
-                    plan[i]
                 }
                 Sight::Lost => {
                     self.report(TrackerFault::LostSeam {
@@ -102,6 +111,17 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             });
         }
         targets
+    }
+
+    /// Slide `i` is on its way to a seam that was not seen where its spot is.
+    fn not_there_yet(&mut self, i: usize, place: &Place) {
+        if place.beams[i / 2] {
+            self.report(TrackerFault::SeamNotSeen {
+                side: i as u8 / 2,
+                s_mm: place.s as f32,
+            });
+        }
+        self.slides[i].arrived = false;
     }
 
     /// One tick of the control law of slide `i`.
