@@ -3,10 +3,15 @@
 //! The tracker board strobes its cameras and offers a capture for each strobe. A [`Camera`] is told of the captures as they
 //! come, and gives for each of them, in their order, either its picture or the word that it is lost.
 
+mod folder;
 mod png;
+mod recorder;
 
+pub use folder::{Folder, Recorded};
 pub use png::{PngError, read_grey, write_grey, write_rgb};
+pub use recorder::Recorder;
 
+use crate::table::TableError;
 use std::time::Duration;
 use thiserror::Error;
 use vision::{Image, ImageError};
@@ -65,4 +70,15 @@ pub enum CameraError {
     /// A file of a picture cannot be used.
     #[error(transparent)]
     Png(#[from] PngError),
+    /// The list of captures in a folder cannot be used.
+    #[error(transparent)]
+    Captures(#[from] TableError),
+    /// Pictures cannot be kept.
+    #[error("cannot keep pictures in {file}: {source}; choose another folder")]
+    Record {
+        /// The list of captures.
+        file: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
 }

@@ -1,7 +1,7 @@
 //! Pictures in PNG files.
 
 use super::Picture;
-use ::png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError};
+use ::png::{BitDepth, ColorType, Compression, Decoder, DecodingError, Encoder, EncodingError};
 use std::fs::File;
 use std::io::{BufReader, BufWriter};
 use std::path::Path;
@@ -89,6 +89,7 @@ fn write(path: &Path, colour: ColorType, [rows, columns]: [usize; 2], pixels: &[
             let mut encoder = Encoder::new(BufWriter::new(file), columns as u32, rows as u32);
             encoder.set_color(colour);
             encoder.set_depth(BitDepth::Eight);
+            encoder.set_compression(Compression::Fast);
             let mut writer = encoder.write_header()?;
             writer.write_image_data(pixels)?;
             writer.finish()
