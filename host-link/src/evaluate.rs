@@ -7,7 +7,7 @@ use crate::path::{Course, PlannedPath};
 use crate::record::Record;
 use crate::report::Load;
 use crate::seam::OVERHANG_MM;
-use crate::world::{Machine, TrueSeam};
+use crate::world::{Machine, TrueSeams};
 use nalgebra::Vector3;
 use shared::io::{MOTORS, SIDES, SLIDES};
 use shared::motion::{PATH_PERIOD_S, State};
@@ -71,8 +71,8 @@ pub struct Evaluation {
 /// The seams that were followed.
 #[derive(Clone, Copy)]
 pub struct Followed<'a> {
-    /// By path number.
-    pub seams: &'a BTreeMap<u32, TrueSeam>,
+    /// As they really are.
+    pub seams: &'a TrueSeams,
     /// How far the tracker's clock is ahead of the motion board's \[µs\].
     pub tracker_ahead_us: i64,
 }
@@ -84,6 +84,7 @@ pub fn evaluate(
     paths: &BTreeMap<u32, PlannedPath>,
     followed: Option<Followed>,
 ) -> Evaluation {
+    let followed = followed.filter(|followed| !followed.seams.is_empty());
     let working = working(paths);
     let any_beam = on_paths(record).any(|s| working.contains_key(&s.path_id) && s.beams.contains(&true));
     let mut result = Evaluation::default();
@@ -105,8 +106,7 @@ pub fn evaluate(
         let Some(work) = working.get(&sample.path_id) else {
             continue;
         };
-        let seam = followed.and_then(|f| Some((f.seams.get(&sample.path_id)?, f.tracker_ahead_us)));
-        let tick = work_tick(sample, record, machine, work, seam);
+        let tick = work_tick(sample, record, machine, work, followed);
         if any_beam && !sample.beams.contains(&true) {
             welded_to = None;
         } else {
@@ -115,7 +115,7 @@ pub fn evaluate(
             welded_to = Some(sample);
             result.weld_ticks += 1;
             let unseen = |i: usize| sample.beams[i / 2] && tick.deviation_mm[i].is_none();
-            let unknown = tick.contour_error_mm.is_none() || seam.is_some() && (0..SLIDES).any(unseen);
+            let unknown = tick.contour_error_mm.is_none() || followed.is_some() && (0..SLIDES).any(unseen);
             result.unknown_ticks += u32::from(unknown);
             contour.add(tick.contour_error_mm);
         }
@@ -195,23 +195,25 @@ fn working(paths: &BTreeMap<u32, PlannedPath>) -> BTreeMap<u32, Work> {
         .collect()
 }
 
-/// `seam`: the one beside the path, and how far the tracker's clock is ahead.
 fn work_tick(
     sample: &MotionSample,
     record: &Record,
     machine: &Machine,
     work: &Work,
-    seam: Option<(&TrueSeam, i64)>,
+    followed: Option<Followed>,
 ) -> WorkTick {
     let pose = record
         .machine_at(sample.time_us)
         .map(|(position, _)| machine.pose(&position));
-    let slides_mm = seam.and_then(|(_, ahead)| record.slides_at(sample.time_us.checked_add_signed(ahead)?));
+    let slides_mm =
+        followed.and_then(|f| record.slides_at(sample.time_us.checked_add_signed(f.tracker_ahead_us)?));
     let mut deviation_mm = [None; SLIDES];
-    if let (Some(pose), Some(slides), Some((seam, _))) = (pose, slides_mm, seam) {
+    if let (Some(pose), Some(slides), Some(followed)) = (pose, slides_mm, followed) {
+        let seams = followed.seams;
         for side in 0..SIDES {
-            let crossing = seam.crossing(side, &seam.spot(&pose, side), 0.0, sample.s_mm);
-            if let Some(crossing) = crossing.filter(|crossing| seam.exists_at(crossing.s, OVERHANG_MM)) {
+            let facing = seams.facing(side, &seams.heads().spot(&pose, side), 0.0);
+            let facing = facing.filter(|(seam, crossing)| seam.exists_at(crossing.s, OVERHANG_MM));
+            if let Some((_, crossing)) = facing {
                 deviation_mm[2 * side] = Some(slides[2 * side] - crossing.u);
                 deviation_mm[2 * side + 1] = Some(slides[2 * side + 1] - crossing.v);
             }
@@ -286,7 +288,8 @@ mod tests {
     use super::*;
     use crate::record::MachinePosition;
     use crate::record::tests::{motion_sample, tracker_sample};
-    use crate::world::truth::tests::{bent_path, machine, wavy_seam};
+    use crate::world::machine::tests::machine;
+    use crate::world::seams::tests::{bent_path, heads, wavy_seam};
     use shared::protocol::{PathAction, PathEvent};
     use shared::trajectory::{PathSpace, SpeedLimits};
 
@@ -306,7 +309,7 @@ mod tests {
         let mut slides = off;
         for side in 0..SIDES {
             let pose = machine.pose(&MachinePosition::Axes(axes));
-            let crossing = seam.crossing(side, &seam.spot(&pose, side), 0.0, s).unwrap();
+            let crossing = seam.crossing(side, &heads().spot(&pose, side), 0.0).unwrap();
             slides[2 * side] += crossing.u;
             slides[2 * side + 1] += crossing.v;
         }
@@ -332,7 +335,7 @@ mod tests {
     }
 
     fn evaluated(record: &Record, tracker_ahead_us: i64) -> Evaluation {
-        let seams = BTreeMap::from([(7, wavy_seam())]);
+        let seams = TrueSeams::of([wavy_seam()]);
         let followed = Followed {
             seams: &seams,
             tracker_ahead_us,

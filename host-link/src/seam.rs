@@ -1,10 +1,11 @@
 //! Seams in files: how a real seam deviates from the programmed one, and the curves that are planned from.
 
-use crate::machine::MachineFile;
+use crate::machine::{MachineFile, TrackingUnit};
 use crate::path::PlannedPath;
 use crate::table::{self, TableError};
+use crate::world::TrueSeams;
 use nalgebra::Vector3;
-use shared::io::{SLIDE_NAMES, SLIDES};
+use shared::io::{SIDES, SLIDE_NAMES, SLIDES};
 use std::path::Path;
 use thiserror::Error;
 
@@ -50,6 +51,16 @@ pub enum SeamError {
         last: f64,
         /// Length of the weld \[mm\].
         length: f64,
+    },
+    /// The seam of the drawing lies elsewhere.
+    #[error(
+        "side {side}: at s = {s:.1} mm of the weld there is no seam: the seam file and the drawing it belongs to (--seam-of) describe another place"
+    )]
+    Elsewhere {
+        /// 1 or 2.
+        side: usize,
+        /// Path length from where the first beam goes on \[mm\].
+        s: f64,
     },
     /// Beyond the reach of a slide.
     #[error(
@@ -144,27 +155,55 @@ impl Deviation {
             let follow = knots.at(s).map_or([0.0; 2], |point| point.v_follow());
             let deviation = self.at(s - start);
             for slide in 0..SLIDES {
-                let limits = &unit.board.slides[slide];
                 let planned = if slide % 2 == 1 { follow[slide / 2] } else { 0.0 };
-                let position = planned + deviation[slide];
-                let (min, max) = (limits.travel_min_mm, limits.travel_max_mm);
-                let beyond = (position - max).max(min - position);
-                if beyond > worst.as_ref().map_or(0.0, |(b, _)| *b) {
-                    let error = SeamError::Reach {
-                        side: slide / 2 + 1,
-                        s: s - start,
-                        slide: SLIDE_NAMES[slide],
-                        position,
-                        beyond,
-                        min,
-                        max,
-                    };
-                    worst = Some((beyond, error));
-                }
+                reach(unit, slide, planned + deviation[slide], s - start, &mut worst);
             }
         }
         worst.map_or(Ok(()), |(_, error)| Err(error))
     }
+}
+
+/// Notes in `worst` if `slide` cannot reach `position` \[mm\] by more than what was noted before.
+fn reach(unit: &TrackingUnit, slide: usize, position: f64, s: f64, worst: &mut Option<(f64, SeamError)>) {
+    let limits = &unit.board.slides[slide];
+    let (min, max) = (limits.travel_min_mm, limits.travel_max_mm);
+    let beyond = (position - max).max(min - position);
+    if beyond > worst.as_ref().map_or(0.0, |(b, _)| *b) {
+        let error = SeamError::Reach {
+            side: slide / 2 + 1,
+            s,
+            slide: SLIDE_NAMES[slide],
+            position,
+            beyond,
+            min,
+            max,
+        };
+        *worst = Some((beyond, error));
+    }
+}
+
+/// Whether `seams`, of another program's drawing, lie beside the weld of `path` and the slides reach them there.
+pub fn check_facing(seams: &TrueSeams, path: &PlannedPath, machine: &MachineFile) -> Result<(), SeamError> {
+    let unit = machine.tracking.as_ref().ok_or(SeamError::NoTracking)?;
+    let (start, end) = path.weld().unwrap_or((0.0, path.length_mm()));
+    let knots = path.knot_path();
+    let count = ((end - start) / CHECK_STEP).ceil().max(1.0) as usize;
+    let mut worst = None;
+    for i in 0..=count {
+        let along = (end - start) * i as f64 / count as f64;
+        let pose = knots.at(start + along).and_then(|point| point.pose().ok());
+        for side in 0..SIDES {
+            let facing = pose.and_then(|pose| seams.facing(side, &seams.heads().spot(&pose, side), 0.0));
+            let Some((_, crossing)) = facing else {
+                let (side, s) = (side + 1, along);
+                return Err(SeamError::Elsewhere { side, s });
+            };
+            for (slide, position) in [(2 * side, crossing.u), (2 * side + 1, crossing.v)] {
+                reach(unit, slide, position, along, &mut worst);
+            }
+        }
+    }
+    worst.map_or(Ok(()), |(_, error)| Err(error))
 }
 
 /// A point of a seam that is planned from.

@@ -11,7 +11,7 @@ use host_link::nc::{Options, Program, interpret};
 use host_link::part::PartFile;
 use host_link::report::Report;
 use host_link::seam::Deviation;
-use host_link::weld::{Ended, Job, Names, Work};
+use host_link::weld::{Ended, Job, Names, Surroundings, Work};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -123,8 +123,10 @@ fn with_job<R>(
             seam: seam.as_ref().map(|_| "seam".into()),
             boards: "test".into(),
         },
-        seam: seam.map(Rc::new),
-        seed: 1,
+        surroundings: Surroundings {
+            seam: seam.map(Rc::new),
+            ..Surroundings::default()
+        },
     })
 }
 
@@ -153,8 +155,7 @@ pub fn weld_job(boards: &mut dyn Boards, machine: &str, job: &str) -> Ended {
         part: part.as_ref(),
         speed_m_per_min: None,
         from_line: None,
-        seam: None,
-        seed: 1,
+        surroundings: Default::default(),
         names: Names {
             program: job.into(),
             machine: machine.into(),

@@ -4,7 +4,7 @@ use super::boards::{BoardChoice, exit_code};
 use crate::machine::MachineFile;
 use crate::part::PartFile;
 use crate::teach::write_points;
-use crate::weld::{Job, Names, Terminal, Work, check_teaching, run};
+use crate::weld::{Job, Names, Surroundings, Terminal, Work, check_teaching, run};
 use anyhow::Context;
 use clap::Args;
 use emulator::MACHINE_VARIABLE;
@@ -46,8 +46,10 @@ impl Teach {
             part: Some(&part),
             speed_m_per_min: None,
             from_line: None,
-            seam: None,
-            seed: self.seed,
+            surroundings: Surroundings {
+                seed: self.seed,
+                ..Surroundings::default()
+            },
             names: Names {
                 program: self.part.display().to_string(),
                 machine: self.machine.display().to_string(),

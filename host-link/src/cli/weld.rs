@@ -9,7 +9,9 @@ use crate::path::Planner;
 use crate::report::{self, Report};
 use crate::seam::{Deviation, SeamError};
 use crate::teach::write_points;
-use crate::weld::{Job, JobError, Names, NoTeaching, Taught, Terminal, Work, check_teaching, run};
+use crate::weld::{
+    Job, JobError, Names, NoTeaching, Surroundings, Taught, Terminal, Work, check_teaching, run,
+};
 use anyhow::{Context, bail};
 use clap::Args;
 use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
@@ -45,6 +47,9 @@ pub struct Weld {
     /// Deviation of the real seams (CSV), for programs that follow them
     #[arg(long, env = SEAM_VARIABLE, hide_env = true)]
     seam: Option<PathBuf>,
+    /// Program planned from the drawing, from whose seams --seam deviates [default: JOB itself]
+    #[arg(long, value_name = "DRAWING", requires = "seam")]
+    seam_of: Option<PathBuf>,
     /// Speed of the weld in place of the programmed feed [m/min]
     #[arg(long, value_name = "M_PER_MIN", value_parser = speed, allow_negative_numbers = true)]
     speed: Option<f64>,
@@ -99,6 +104,10 @@ impl Weld {
             part = None;
         }
         let seam = self.seam.as_deref().map(Deviation::read).transpose()?;
+        let drawing = match &self.seam_of {
+            Some(file) => Some(read_program(file, self.block_delete)?),
+            None => None,
+        };
         let name = |path: &Path| path.display().to_string();
         let job = Job {
             machine: &machine,
@@ -109,8 +118,11 @@ impl Weld {
             part: part.as_ref(),
             speed_m_per_min: self.speed,
             from_line: self.from_line,
-            seam: seam.map(Rc::new),
-            seed: self.seed,
+            surroundings: Surroundings {
+                seam: seam.map(Rc::new),
+                drawing: drawing.as_ref(),
+                seed: self.seed,
+            },
             names: Names {
                 program: match (&task, self.from_line) {
                     (Task::Program(file, _), None) => name(file),
@@ -206,7 +218,13 @@ impl Weld {
         };
         let planned = job.plan(program, &planner, &job.machine.planning.park_axes());
         let owner = match (&planned, &self.seam) {
-            (Err(JobError::Seam(SeamError::TooShort { .. } | SeamError::Reach { .. })), Some(seam)) => {
+            (Err(JobError::Drawing(_)), _) => "--seam-of".to_owned(),
+            (
+                Err(JobError::Seam(
+                    SeamError::TooShort { .. } | SeamError::Elsewhere { .. } | SeamError::Reach { .. },
+                )),
+                Some(seam),
+            ) => {
                 format!("seam {}", seam.display())
             }
             _ => format!("program {}", job.names.program),

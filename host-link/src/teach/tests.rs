@@ -7,16 +7,16 @@ mod routine;
 
 use super::ring::{DIRECTIONS, NEIGHBOURS};
 use super::*;
-use crate::world::SplitMix64;
 use nalgebra::Vector3;
 use shared::geometry::angle;
+use vision::render::SplitMix64;
 
 /// A surface through the origin: height \[mm\] over x and y.
 type Surface<'a> = &'a dyn Fn(f64, f64) -> f64;
 
 /// Heights of a ring on `surface`, each with noise of standard deviation `noise` \[mm\].
 fn heights(surface: Surface, radius: f64, noise: f64, random: &mut SplitMix64) -> [f64; NEIGHBOURS] {
-    DIRECTIONS.map(|[cos, sin]| surface(radius * cos, radius * sin) + noise * random.gauss())
+    DIRECTIONS.map(|[cos, sin]| surface(radius * cos, radius * sin) + noise * random.gauss()[0])
 }
 
 fn noisy(surface: Surface, radius: f64, noise: f64, random: &mut SplitMix64) -> Ring {

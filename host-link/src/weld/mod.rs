@@ -6,6 +6,7 @@ mod operator;
 mod outcome;
 mod progress;
 mod session;
+mod surroundings;
 mod teaching;
 mod terminal;
 #[cfg(test)]
@@ -14,6 +15,7 @@ mod tracking;
 
 pub use outcome::Ended;
 pub use progress::{Progress, Silent, Word};
+pub use surroundings::{Planned, Surroundings, check_seam};
 pub use teaching::{NoTeaching, Taught, check_teaching};
 pub use terminal::Terminal;
 
@@ -22,17 +24,15 @@ use crate::machine::MachineFile;
 use crate::nc::Program;
 use crate::part::PartFile;
 use crate::path::{FromLineError, PathError, PlannedPath, Planner};
-use crate::seam::{Deviation, SeamError};
+use crate::seam::SeamError;
 use feeding::Feeding;
 use following::follow;
 use session::Session;
-use shared::io::AXES;
 use shared::motion::{Fault, State};
 use shared::parameter::ParameterError;
-use shared::protocol::{LOAD_BATCH, PathAction, PathEvent, Request, Role};
+use shared::protocol::{LOAD_BATCH, Request, Role};
 use shared::tracking::{TrackerFault, TrackerState};
 use std::collections::BTreeMap;
-use std::rc::Rc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use thiserror::Error;
@@ -59,10 +59,8 @@ pub struct Job<'a> {
     pub speed_m_per_min: Option<f64>,
     /// Line of the program to start at, in place of its beginning.
     pub from_line: Option<u32>,
-    /// How the true seams deviate, if there are any.
-    pub seam: Option<Rc<Deviation>>,
-    /// Start of the cameras' noise.
-    pub seed: u64,
+    /// What is around the machine.
+    pub surroundings: Surroundings<'a>,
     /// What the report calls everything.
     pub names: Names,
 }
@@ -86,51 +84,6 @@ impl Job<'_> {
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned()
-    }
-
-    /// Plans `program` from where the axes stand at `from` (mm, degrees), and checks that the machine can do
-    /// all of it.
-    ///
-    /// # Errors
-    /// [`JobError::Path`], [`JobError::FromLine`] or [`JobError::Seam`].
-    pub fn plan(
-        &self,
-        program: &Program,
-        planner: &Planner,
-        from: &[f64; AXES],
-    ) -> Result<Vec<PlannedPath>, JobError> {
-        let speed = self
-            .speed_m_per_min
-            .map(|speed| speed * shared::units::MM_S_PER_M_MIN);
-        let paths = planner.program(program, from, speed)?;
-        check_seam(&paths, self.machine, self.seam.as_deref())?;
-        match self.from_line {
-            Some(line) => Ok(planner.from_line(program, paths, line, from)?),
-            None => Ok(paths),
-        }
-    }
-}
-
-/// Whether the machine can follow the seams that the program asks it to: there is a tracker, a seam, and the
-/// slides reach it.
-pub fn check_seam(
-    paths: &[PlannedPath],
-    machine: &MachineFile,
-    seam: Option<&Deviation>,
-) -> Result<(), SeamError> {
-    let tracks = |path: &PlannedPath| {
-        let on = |event: &PathEvent| event.action == PathAction::Tracking { on: true };
-        path.events.iter().any(on)
-    };
-    let tracked = paths.iter().any(tracks);
-    match (&machine.tracking, seam) {
-        (None, Some(_)) => Err(SeamError::NoTracking),
-        (Some(_), None) if tracked => Err(SeamError::NoSeam),
-        (_, None) => Ok(()),
-        (Some(_), Some(seam)) => paths
-            .iter()
-            .filter(|path| path.weld().is_some())
-            .try_for_each(|path| seam.check(path, machine)),
     }
 }
 
@@ -197,6 +150,9 @@ pub enum JobError {
     /// The seam cannot be followed.
     #[error(transparent)]
     Seam(#[from] SeamError),
+    /// The drawing that the seam belongs to cannot be planned.
+    #[error("the program of the drawing, to which the seam belongs, cannot be planned: {0}")]
+    Drawing(#[source] PathError),
     /// There is nothing to teach with.
     #[error(transparent)]
     NoTeaching(#[from] NoTeaching),
@@ -222,7 +178,7 @@ pub fn run(
     progress: &mut dyn Progress,
 ) -> Result<Ended, JobError> {
     let planner = Planner::build(job.machine)?;
-    let mut session = Session::begin(boards, job.machine, job.seed, interrupted, progress)?;
+    let mut session = Session::begin(boards, job.machine, job.surroundings.seed, interrupted, progress)?;
     let mut weld = Weld {
         planner,
         paths: BTreeMap::new(),
@@ -257,7 +213,7 @@ impl Weld {
         }
         session.wait_before("parking")?;
         for path in self.planner.park(&session.motion.reference)? {
-            self.path(session, job, path, "parking")?;
+            self.path(session, path, "parking")?;
         }
         Ok(())
     }
@@ -265,8 +221,11 @@ impl Weld {
     /// Runs a program from where the axes stand.
     fn program(&mut self, session: &mut Session, job: &Job, program: &Program) -> Result<(), JobError> {
         let mut elsewhere = "approaching";
-        let paths = job.plan(program, &self.planner, &session.motion.reference)?;
-        for (index, path) in paths.into_iter().enumerate() {
+        let planned = job.plan(program, &self.planner, &session.motion.reference)?;
+        if let (Some(tracking), Some(seams)) = (&mut session.tracking, planned.seams) {
+            tracking.seams = seams;
+        }
+        for (index, path) in planned.paths.into_iter().enumerate() {
             if index > 0 {
                 let next = match path.first_and_last_line().0 {
                     0 => "the next way of the approach".to_owned(),
@@ -280,26 +239,15 @@ impl Weld {
             } else {
                 elsewhere
             };
-            self.path(session, job, path, what)?;
+            self.path(session, path, what)?;
         }
         Ok(())
     }
 
     /// Loads and runs one path; the machine stands afterwards, on an error too.
-    fn path(
-        &mut self,
-        session: &mut Session,
-        job: &Job,
-        path: PlannedPath,
-        what: &str,
-    ) -> Result<(), JobError> {
+    fn path(&mut self, session: &mut Session, path: PlannedPath, what: &str) -> Result<(), JobError> {
         let id = self.paths.len() as u32 + 1;
         let feeding = load(session, &path, id)?;
-        if let (Some((start_s, _)), Some(seam), Some(tracking)) =
-            (path.weld(), &job.seam, &mut session.tracking)
-        {
-            tracking.add_seam(id, &path, start_s, seam.clone());
-        }
         if path.dwell_before_s > 0.0 {
             session.progress.phase("dwelling");
             session.dwell(path.dwell_before_s)?;

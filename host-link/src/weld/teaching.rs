@@ -116,8 +116,7 @@ impl Weld {
         let mut arm = BoardArm {
             weld: self,
             session,
-            job,
-            probe: SimulatedProbe::new(surface.clone(), output, unit, job.seed),
+            probe: SimulatedProbe::new(surface.clone(), output, unit, job.surroundings.seed),
             settle_ms: unit.settle_ms.ceil() as u32,
             count: guides.len(),
         };
@@ -142,7 +141,6 @@ fn read(text: &str) -> Result<Program, JobError> {
 struct BoardArm<'w, 's, 'b> {
     weld: &'w mut Weld,
     session: &'s mut Session<'b>,
-    job: &'w Job<'w>,
     probe: SimulatedProbe,
     settle_ms: u32,
     /// Points to teach.
@@ -162,8 +160,7 @@ impl Arm for BoardArm<'_, '_, '_> {
             self.session.dwell(1e-3 * f64::from(self.settle_ms))?;
         }
         for path in self.weld.planner.program(&program, &from, None)? {
-            self.weld
-                .path(self.session, self.job, path.slower(slower), &what)?;
+            self.weld.path(self.session, path.slower(slower), &what)?;
         }
         Ok(())
     }

@@ -5,15 +5,10 @@ use super::session::{begin_with, unexpected};
 use crate::boards::{Boards, LinkError};
 use crate::evaluate::Followed;
 use crate::machine::TrackingUnit;
-use crate::path::PlannedPath;
 use crate::record::Record;
-use crate::seam::Deviation;
-use crate::world::{BoardClocks, Cameras, Machine, Sight, TrueSeam};
+use crate::world::{BoardClocks, GeometricCameras, Machine, TrueSeams};
 use shared::protocol::{Capture, ClockReply, ClockRequest, Datagram, Request, Response, Role, TrackerStatus};
-use shared::tracking::frames::Heads;
 use shared::tracking::{TrackerFault, TrackerState};
-use std::collections::BTreeMap;
-use std::rc::Rc;
 use std::time::Duration;
 
 /// How often the boards are asked for their clock.
@@ -24,13 +19,13 @@ const SIGMAS: f64 = 3.0;
 /// What a session knows of the tracker board.
 pub(super) struct Tracking {
     pub status: TrackerStatus,
-    pub cameras: Cameras,
+    pub cameras: GeometricCameras,
     /// Largest residual that the tracker told while welding \[µs\].
     pub clock_residual_us: Option<f64>,
     /// Largest difference of its relation from the PC's while welding \[µs\].
     pub clock_difference_us: Option<f64>,
-    heads: Heads,
-    seams: BTreeMap<u32, TrueSeam>,
+    /// The seams as they really are.
+    pub seams: TrueSeams,
     clocks: BoardClocks,
     lost_before: u32,
     next_clock: Duration,
@@ -45,15 +40,14 @@ impl Tracking {
         Ok(Self {
             lost_before: status.lost,
             status,
-            cameras: Cameras::new(
+            cameras: GeometricCameras::new(
                 (unit.cameras.processing_ms * 1e3) as u64,
                 unit.cameras.noise_3sigma_mm / SIGMAS,
                 seed,
             ),
             clock_residual_us: None,
             clock_difference_us: None,
-            heads,
-            seams: BTreeMap::new(),
+            seams: TrueSeams::none(heads),
             clocks: BoardClocks::default(),
             next_clock: boards.now(),
         })
@@ -86,12 +80,6 @@ impl Tracking {
             .filter(|sample| sample.state == TrackerState::Tracking)
             .and_then(|sample| sample.fault);
         self.status.fault.or(told)
-    }
-
-    /// From now on there is a seam beside path `id`, from `start_s` \[mm\] on.
-    pub fn add_seam(&mut self, id: u32, path: &PlannedPath, start_s: f64, deviation: Rc<Deviation>) {
-        let seam = TrueSeam::new(self.heads, path.knot_path(), start_s, deviation);
-        self.seams.insert(id, seam);
     }
 
     /// The seams, and what their evaluation needs.
@@ -156,16 +144,8 @@ impl Tracking {
             }
         }
         while let Some(now_us) = self.clocks.motion_now_us(boards.now().as_micros() as u64) {
-            let seams = &self.seams;
-            let sight = |time_us| {
-                let (position, sample) = record.machine_at(time_us)?;
-                Some(Sight {
-                    position,
-                    s_mm: sample.s_mm,
-                    seam: seams.get(&sample.path_id),
-                })
-            };
-            let Some(measurement) = self.cameras.answer(machine, now_us, sight) else {
+            let position = |time_us| Some(record.machine_at(time_us)?.0);
+            let Some(measurement) = self.cameras.answer(machine, &self.seams, now_us, position) else {
                 break;
             };
             boards.send(Role::Tracker, &Datagram::Measurement(measurement))?;

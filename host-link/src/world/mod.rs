@@ -4,16 +4,16 @@
 //! wall clock, never in the latest state. So the world is the same for emulated boards, which run in real
 //! time, and for simulated ones, which do not.
 
-mod camera;
 mod clock;
-mod noise;
+mod geometric;
+pub(crate) mod machine;
 mod probe;
+pub(crate) mod seams;
 mod surface;
-pub(crate) mod truth;
 
-pub use camera::{Cameras, Sight};
 pub use clock::BoardClocks;
-pub use noise::SplitMix64;
+pub use geometric::GeometricCameras;
+pub use machine::Machine;
 pub use probe::SimulatedProbe;
+pub use seams::{Crossing, TrueSeam, TrueSeams};
 pub use surface::Surface;
-pub use truth::{Crossing, Machine, TrueSeam};

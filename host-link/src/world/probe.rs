@@ -1,8 +1,9 @@
 //! A ranging probe as it really is, in front of a panel as it really is.
 
-use super::{SplitMix64, Surface};
+use super::Surface;
 use crate::teach::{Probe, ProbeUnit, Reading};
 use shared::geometry::{Pose, angle};
+use vision::render::SplitMix64;
 
 /// Largest false distance of an outlier \[mm\].
 const OUTLIER: f64 = 2.0;
@@ -44,7 +45,7 @@ impl SimulatedProbe {
             return silent;
         }
         let simulated = &self.unit.simulated;
-        let mut seen = distance + simulated.noise_mm * self.noise.gauss();
+        let mut seen = distance + simulated.noise_mm * self.noise.gauss()[0];
         if self.noise.uniform() < simulated.outlier_share {
             seen += OUTLIER * (2.0 * self.noise.uniform() - 1.0);
         }

@@ -84,7 +84,7 @@ fn nine_readings_suffice_and_few_of_them_are_lost() {
     let mut random = SplitMix64::new(11);
     let (mut used, mut said) = (0, 0.0);
     let seen = rms(5000, || {
-        let readings = [(); 9].map(|()| at(80.0 + 0.02 * random.gauss()));
+        let readings = [(); 9].map(|()| at(80.0 + 0.02 * random.gauss()[0]));
         let ranging = probe().range(&readings).expect("a distance");
         used += ranging.used;
         said += ranging.scatter_mm.powi(2) / 5000.0;
@@ -160,8 +160,8 @@ fn normals_from_noisy_readings_are_within_half_a_degree_up_to_45_degrees() {
         for _ in 0..20 {
             let mut range = |height: f64| {
                 let readings = [(); 9].map(|()| {
-                    let wild = if random.gauss() > 1.83 { 1.0 } else { 0.0 };
-                    at(80.0 - height + 0.02 * random.gauss() + wild)
+                    let wild = if random.gauss()[0] > 1.83 { 1.0 } else { 0.0 };
+                    at(80.0 - height + 0.02 * random.gauss()[0] + wild)
                 });
                 Ok(probe().range(&readings)?.distance_mm)
             };

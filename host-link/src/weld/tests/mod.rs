@@ -2,6 +2,7 @@
 
 mod changed;
 mod corners;
+mod drawing;
 mod from_line;
 mod holds;
 mod machines;
@@ -12,7 +13,9 @@ use crate::boards::command;
 use crate::boards::simulated::SimulatedBoards;
 use crate::nc::{Options, interpret};
 use crate::report::{Outcome, Report, SeamFigures};
+use crate::seam::Deviation;
 use shared::protocol::{Datagram, Identity, Response};
+use std::rc::Rc;
 use std::sync::atomic::Ordering;
 
 const PROGRAM: &str = "\
@@ -77,8 +80,10 @@ fn job<'a>(machine: &'a MachineFile, program: &'a Program, seam: Option<Rc<Devia
         part: None,
         speed_m_per_min: None,
         from_line: None,
-        seed: 1,
-        seam,
+        surroundings: Surroundings {
+            seam,
+            ..Surroundings::default()
+        },
         names: Names {
             program: "job.ngc".into(),
             machine: "m.toml".into(),

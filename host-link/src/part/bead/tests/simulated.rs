@@ -17,8 +17,7 @@ fn welded(text: &str, machine: &MachineFile) -> Report {
         part: Some(&part),
         speed_m_per_min: None,
         from_line: None,
-        seed: 1,
-        seam: None,
+        surroundings: Default::default(),
         names: Names {
             program: "leaf.ngc".into(),
             machine: "wire-arc.toml".into(),

@@ -26,8 +26,7 @@ fn made(part: &PartFile, work: Work, interrupted: &AtomicBool, progress: &mut dy
         part: Some(part),
         speed_m_per_min: None,
         from_line: None,
-        seed: 1,
-        seam: None,
+        surroundings: Default::default(),
         names: Names {
             program: "panel.toml".into(),
             machine: "ac-head.toml".into(),

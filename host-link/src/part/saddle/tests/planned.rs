@@ -190,8 +190,7 @@ fn the_shipped_job_stays_on_the_saddle_with_drives_and_gratings() {
         speed_m_per_min: None,
         from_line: None,
         part: Some(&part),
-        seam: None,
-        seed: 1,
+        surroundings: Default::default(),
         names: Names {
             program: "saddle".to_owned(),
             machine: "pipe-welder".to_owned(),

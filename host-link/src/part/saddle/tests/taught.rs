@@ -3,10 +3,10 @@
 use super::*;
 use crate::part::saddle::fit::{Fit, fit};
 use crate::part::saddle::least_squares::{Values, height};
-use crate::world::SplitMix64;
 use nalgebra::Vector3;
 use shared::io::AXES;
 use shared::units::wrap;
+use vision::render::SplitMix64;
 
 /// Where the machine of these tests is clamped.
 const CLAMPED: Placement = Placement {
@@ -26,8 +26,8 @@ fn joints(seam: &Seam, waists: &[f64], noise: f64, seed: u64) -> Vec<[f64; 4]> {
             let station = seam
                 .at_length(length, &Offset::default(), waist.to_radians())
                 .unwrap();
-            let tilt = station.tilt + 0.1 * source.gauss();
-            let mut off = || noise * source.gauss();
+            let tilt = station.tilt + 0.1 * source.gauss()[0];
+            let mut off = || noise * source.gauss()[0];
             let (x, z, along) = (off(), off(), off());
             [
                 station.tip.xy().norm() + torch * tilt.cos() + x,

@@ -17,8 +17,7 @@ fn welded(program: &str, part: &PartFile) -> Report {
         part: Some(part),
         speed_m_per_min: None,
         from_line: None,
-        seed: 1,
-        seam: None,
+        surroundings: Default::default(),
         names: Names {
             program: "stir.ngc".into(),
             machine: "stir-gantry.toml".into(),
