@@ -32,7 +32,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install what is missing: the Arm target of Rust, QEMU
+    /// Install what is missing: the Arm target of Rust, QEMU, Aravis
     Setup,
     /// Weld on two emulated boards: set up, build, boot, and run `host-link weld` with the flags given
     #[command(disable_help_flag = true)]

@@ -17,10 +17,12 @@ pub enum Tool {
     Qemu,
     /// What counts instructions on the PC.
     Valgrind,
+    /// The library of GigE Vision cameras, and its simulated camera.
+    Aravis,
 }
 
 /// For everything but counting.
-pub const ALL: [Tool; 3] = [Tool::ArmTarget, Tool::Components, Tool::Qemu];
+pub const ALL: [Tool; 4] = [Tool::ArmTarget, Tool::Components, Tool::Qemu, Tool::Aravis];
 /// For emulated boards.
 pub const EMULATION: [Tool; 2] = [Tool::ArmTarget, Tool::Qemu];
 /// For counting instructions.
@@ -33,10 +35,24 @@ pub fn run(wants: &[Tool]) -> Result<()> {
             Tool::ArmTarget => arm_target()?,
             Tool::Components => components()?,
             Tool::Qemu => debian(
-                "qemu-system-arm",
+                &["qemu-system-arm"],
+                || runs("qemu-system-arm", &["--version"]),
                 "install QEMU for Arm by hand, version 7.2 or later with plugins",
             )?,
-            Tool::Valgrind => debian("valgrind", "install valgrind by hand")?,
+            Tool::Valgrind => debian(
+                &["valgrind"],
+                || runs("valgrind", &["--version"]),
+                "install valgrind by hand",
+            )?,
+            // The library is there if a build finds it; libaravis-dev needs libusb to be found and does not ask for it.
+            Tool::Aravis => debian(
+                &["pkg-config", "libaravis-dev", "libusb-1.0-0-dev", "aravis-tools"],
+                || {
+                    runs("pkg-config", &["--cflags", "aravis-0.8 >= 0.8.25"])
+                        && runs("arv-fake-gv-camera-0.8", &["--help"])
+                },
+                "install Aravis 0.8.25 or later by hand, with its tools",
+            )?,
         }
     }
     Ok(())
@@ -68,27 +84,26 @@ fn components() -> Result<()> {
     rustup(&[&["component", "add"], &missing[..]].concat())
 }
 
-/// Installs the program of Debian's package of the same name; `by_hand` says what else to do.
-fn debian(program: &str, by_hand: &str) -> Result<()> {
-    if runs(program, &["--version"]) {
+/// Installs `packages` of Debian unless what they bring is `present`; `by_hand` says what else to do.
+fn debian(packages: &[&str], present: impl Fn() -> bool, by_hand: &str) -> Result<()> {
+    if present() {
         return Ok(());
     }
+    let names = packages.join(" ");
     ensure!(
         Path::new("/etc/debian_version").exists(),
-        "{program} is missing and this is not Debian: {by_hand}"
+        "{names} is missing and this is not Debian: {by_hand}"
     );
     let mut prefix = Vec::new();
     if !is_root() {
         ensure!(
             runs("sudo", &["--version"]),
-            "{program} is missing, and installing it needs root or sudo: {by_hand}"
+            "{names} is missing, and installing it needs root or sudo: {by_hand}"
         );
         prefix.push("sudo");
     }
-    for step in [
-        &["update"][..],
-        &["install", "--yes", "--no-install-recommends", program],
-    ] {
+    let install = [&["install", "--yes", "--no-install-recommends"], packages].concat();
+    for step in [&["update"][..], &install] {
         let words = [&prefix[..], &["apt-get"], step].concat();
         let line = words.join(" ");
         eprintln!("set-up: {line}");
@@ -99,10 +114,7 @@ fn debian(program: &str, by_hand: &str) -> Result<()> {
             .stdout(Stdio::null());
         run_command(command, &line)?;
     }
-    ensure!(
-        runs(program, &["--version"]),
-        "the Debian package {program} is installed, but {program} does not run"
-    );
+    ensure!(present(), "{names} is installed, but does not work: {by_hand}");
     Ok(())
 }
 

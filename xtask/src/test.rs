@@ -55,6 +55,16 @@ pub fn run() -> Result<ExitCode> {
         "--no-fail-fast",
     ])?;
     tally.test("tests of the host", host);
+    tally.check("lints with real cameras", || {
+        let clippy = ["clippy", "--quiet", "--package", "host-link", "--all-targets"];
+        cargo::run(&[&clippy[..], &CAMERAS, &["--", "-D", "warnings"]].concat())
+    });
+    let cameras = [
+        &["test", "--package", "host-link", "--test", "aravis"][..],
+        &CAMERAS,
+    ]
+    .concat();
+    tally.test("tests of real cameras", cargo(&cameras)?);
     for (firmware, board) in firmware::ALL {
         let (package, board) = (firmware.package(), board.to_string());
         tally.check(&format!("lints of {package} on {board}"), || {
@@ -96,6 +106,9 @@ pub fn run() -> Result<ExitCode> {
     }
     Ok(tally.close())
 }
+
+/// Feature of the PC that needs the library of real cameras; the tests take the simulated one that it comes with.
+const CAMERAS: [&str; 2] = ["--features", "aravis"];
 
 /// Feature of the tests that need emulated boards.
 const EMULATED: &str = "system-tests/emulated";

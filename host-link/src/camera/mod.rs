@@ -3,11 +3,19 @@
 //! The tracker board strobes its cameras and offers a capture for each strobe. A [`Camera`] is told of the captures as they
 //! come, and gives for each of them, in their order, either its picture or the word that it is lost.
 
+#[cfg(feature = "aravis")]
+mod aravis;
 mod folder;
+mod gige;
+#[cfg(any(feature = "aravis", test))]
+mod matching;
 mod png;
 mod recorder;
 
+#[cfg(feature = "aravis")]
+pub use aravis::GigeCamera;
 pub use folder::{Folder, Recorded};
+pub use gige::{GigeConfig, open};
 pub use png::{PngError, read_grey, write_grey, write_rgb};
 pub use recorder::Recorder;
 
@@ -80,5 +88,56 @@ pub enum CameraError {
         file: String,
         /// What the system said.
         source: std::io::Error,
+    },
+    /// The machine file names no cameras.
+    #[error(
+        "the machine file has no [cameras.gige]: name the two GigE Vision cameras there, or take simulated boards"
+    )]
+    NotTold,
+    /// This program cannot talk to cameras.
+    #[error(
+        "camera {camera} cannot be opened: this host-link was built without GigE Vision; build it with `--features aravis`"
+    )]
+    NotBuilt {
+        /// The camera as it was told.
+        camera: String,
+    },
+    /// There is no such camera.
+    #[error(
+        "camera {camera} cannot be opened: {reason}; is it powered and in this network? `arv-tool-0.8` lists all cameras"
+    )]
+    NotFound {
+        /// The camera as it was told.
+        camera: String,
+        /// What Aravis said.
+        reason: String,
+    },
+    /// A camera does not take a setting.
+    #[error("camera {camera} refuses {what}: {reason}; change [cameras] in the machine file")]
+    Refused {
+        /// The camera as it was told.
+        camera: String,
+        /// The setting.
+        what: String,
+        /// What Aravis said.
+        reason: String,
+    },
+    /// It was there and is not any more.
+    #[error("camera {camera} is gone: {reason}; check its power and its cable, then start the job anew")]
+    Gone {
+        /// The camera as it was told.
+        camera: String,
+        /// What Aravis said.
+        reason: String,
+    },
+    /// It answers, but gives no pictures.
+    #[error(
+        "camera {camera} has given no picture for {strobes} strobes; check the wire from the strobe of the tracker board to its trigger, and the trigger in the machine file"
+    )]
+    NoPictures {
+        /// The camera as it was told.
+        camera: String,
+        /// Strobes since its last picture.
+        strobes: usize,
     },
 }

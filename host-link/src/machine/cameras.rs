@@ -1,6 +1,7 @@
 //! The cameras of a machine: what the drawing says of them, and where their calibrations are.
 
 use crate::calibration::{Calibration, CalibrationError, OpticsTable, PhotonTransferTable};
+use crate::camera::GigeConfig;
 use serde::{Deserialize, Deserializer};
 use shared::io::SIDES;
 use std::path::{Path, PathBuf};
@@ -26,6 +27,8 @@ pub struct CameraConfig {
     pub photon_transfer: PhotonTransfer,
     /// Calibration files of camera 1 and 2, beside the machine file; without them both are as drawn.
     pub calibration: Option<[PathBuf; SIDES]>,
+    /// The real cameras, if they are GigE Vision.
+    pub gige: Option<GigeConfig>,
 }
 
 /// What a joint looks like to a camera.

@@ -63,6 +63,10 @@ fn cameras(cameras: &CameraConfig) -> Result<(), Mistake> {
         let sensible = mount.abs() <= 90.0;
         value("cameras.mount_deg", mount, sensible, "between -90 and 90")?;
     }
+    if let Some(gige) = &cameras.gige {
+        above_0("cameras.gige.exposure_us", gige.exposure_us)?;
+        above_0("cameras.gige.binning", f64::from(gige.binning))?;
+    }
     cameras
         .optics
         .check()
