@@ -25,6 +25,7 @@ mod report;
 mod surface;
 
 pub use detector::{Detector, DetectorError};
+pub use gap::EDGE_ROWS_MM;
 pub use geometry::{Corner, CornerFeatures, GeometryError, PlateFeatures, PlateSeam};
 pub use image::{Image, ImageError};
 pub use noise::PhotonTransfer;
@@ -33,4 +34,4 @@ pub use optics::{Optics, OpticsError};
 pub use precision::{Precision, Readings};
 pub use prior::{Joint, Prior, Track, Walls};
 pub use profile::Profile;
-pub use report::{Form, Measured, Report, Second, Sigma, Status};
+pub use report::{Criterion, Form, Measured, Report, Second, Sigma, Status};

@@ -3,7 +3,7 @@
 use crate::band::{Knowledge, SMALLEST_GAIN};
 use crate::detector::Detector;
 use crate::prior::{Prior, Walls};
-use crate::report::{Form, Measured, Report, Sigma, Status, ramp};
+use crate::report::{Criterion, Form, Measured, Report, Sigma, Status, least, ramp};
 use crate::surface::Corner;
 
 /// Scatter of height and lateral position while tracking, and in an unknown picture \[mm\].
@@ -54,13 +54,12 @@ impl Detector {
         let [height, lateral, left, right, focus] = at;
         let sigmas: [f64; 5] = std::array::from_fn(|k| HONEST * fitness.covariance[(k, k)].max(0.0).sqrt());
         let visible = self.visible(&at);
-        let quality = [
-            ramp(sigmas[1], 0.012, 0.004),
-            ramp(sigmas[0], 0.012, 0.004),
-            ramp(fitness.gain, 0.02, 0.08),
-            ramp(visible[0].min(visible[1]), 0.15, 0.35),
-        ];
-        let quality = quality.into_iter().fold(1.0, f64::min);
+        let (quality, weakest) = least(&[
+            (Criterion::Lateral, ramp(sigmas[1], 0.012, 0.004)),
+            (Criterion::Height, ramp(sigmas[0], 0.012, 0.004)),
+            (Criterion::Gain, ramp(fitness.gain, 0.02, 0.08)),
+            (Criterion::Walls, ramp(visible[0].min(visible[1]), 0.15, 0.35)),
+        ]);
         Report {
             status: if quality >= 0.5 {
                 Status::Seam
@@ -79,6 +78,7 @@ impl Detector {
                 yaw_rad: 0.0,
                 focus,
                 quality,
+                weakest,
                 gain: fitness.gain,
                 contrast: fitness.contrast,
                 sigma: Sigma {

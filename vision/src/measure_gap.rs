@@ -4,7 +4,7 @@ use crate::band::{Fitness, Knowledge, SMALLEST_GAIN};
 use crate::detector::Detector;
 use crate::gap::{BandLine, Candidate, Edges, fit_edges};
 use crate::prior::Prior;
-use crate::report::{Form, Measured, Report, Second, Sigma, Status, ramp};
+use crate::report::{Criterion, Form, Measured, Report, Second, Sigma, Status, least, ramp};
 use crate::surface::Plate;
 
 /// Scatter of parameters while tracking: height \[mm\], roll.
@@ -196,6 +196,7 @@ impl Detector {
             yaw_rad: 0.0,
             focus,
             quality: 0.0,
+            weakest: None,
             gain: fitness.gain,
             contrast: fitness.contrast,
             sigma: Sigma {
@@ -261,21 +262,31 @@ impl Detector {
             (middle - edges.width / 2.0).min(layer.columns as f64 - 1.0 - middle - edges.width / 2.0);
         let half_view_mm = layer.rows as f64 * g / 2.0;
         let others = [
-            ramp(best.depth, 0.5, 0.8),
-            ramp(edges.inliers, 0.45, 0.75),
-            ramp(edges.residual * g, 0.010_f64.max(0.8 * g), 0.004_f64.max(0.4 * g)),
-            ramp(best.continuity, 0.45, 0.75),
-            ramp(measured.sigma.height_mm, 0.028, 0.010),
-            ramp(edges.width * g, 0.006, 0.012),
-            ramp(from_border * g, 0.010, 0.030),
-            ramp(
-                half_view_mm - (measured.height_mm / sin).abs(),
-                BORDER_MM[0],
-                BORDER_MM[1],
+            (Criterion::Depth, ramp(best.depth, 0.5, 0.8)),
+            (Criterion::Straightness, ramp(edges.inliers, 0.45, 0.75)),
+            (
+                Criterion::Scatter,
+                ramp(edges.residual * g, 0.010_f64.max(0.8 * g), 0.004_f64.max(0.4 * g)),
+            ),
+            (Criterion::Continuity, ramp(best.continuity, 0.45, 0.75)),
+            (Criterion::Height, ramp(measured.sigma.height_mm, 0.028, 0.010)),
+            (Criterion::Width, ramp(edges.width * g, 0.006, 0.012)),
+            (Criterion::Border, ramp(from_border * g, 0.010, 0.030)),
+            (
+                Criterion::Band,
+                ramp(
+                    half_view_mm - (measured.height_mm / sin).abs(),
+                    BORDER_MM[0],
+                    BORDER_MM[1],
+                ),
             ),
         ];
-        let other = others.into_iter().fold(1.0, f64::min);
-        measured.quality = other.min(unambiguous);
+        let (other, weakest) = least(&others);
+        (measured.quality, measured.weakest) = if unambiguous < other {
+            (unambiguous, Some(Criterion::Ambiguity))
+        } else {
+            (other, weakest)
+        };
         let status = if measured.quality >= 0.5 {
             Status::Seam
         } else if other >= 0.5 {

@@ -67,6 +67,8 @@ pub struct Measured {
     pub focus: f64,
     /// How far it can be trusted: 0 to 1, used from 0.5.
     pub quality: f64,
+    /// What holds the quality down most; nothing if it is 1, or if there is no seam to judge.
+    pub weakest: Option<Criterion>,
     /// Gain of the band: logarithm of the likelihood a cell over a picture that is equally sharp everywhere.
     pub gain: f64,
     /// Energy of the sharp texture over the noise; low values make heights uncertain.
@@ -75,6 +77,35 @@ pub struct Measured {
     pub sigma: Sigma,
     /// The next best thing that may be the seam.
     pub second: Option<Second>,
+}
+
+/// By what a measured seam is judged; each gives 0 to 1, and the least of them is the quality.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Criterion {
+    /// How dark the gap is against the plate.
+    Depth,
+    /// How many readings of the edges lie on straight lines.
+    Straightness,
+    /// How far the readings scatter about those lines.
+    Scatter,
+    /// Whether the dark line goes on, blurred, outside the sharp band.
+    Continuity,
+    /// How well the height is known.
+    Height,
+    /// Whether it is wide enough.
+    Width,
+    /// Distance from the left and right border of the picture.
+    Border,
+    /// Distance of the band from the upper and lower border of the picture.
+    Band,
+    /// How much better it is than the next best.
+    Ambiguity,
+    /// How well the lateral position is known.
+    Lateral,
+    /// How much of the picture the band explains.
+    Gain,
+    /// How much of each wall is in the picture.
+    Walls,
 }
 
 /// Standard deviations of a measurement.
@@ -130,6 +161,17 @@ impl Measured {
     pub fn lateral_on_axis_mm(&self) -> f64 {
         self.lateral_mm - self.travel_mm * self.yaw_rad.tan()
     }
+}
+
+/// The least of what the criteria give, and which it is unless it is 1.
+pub(crate) fn least(judged: &[(Criterion, f64)]) -> (f64, Option<Criterion>) {
+    let mut least = (1.0, None);
+    for &(criterion, value) in judged {
+        if value < least.0 {
+            least = (value, Some(criterion));
+        }
+    }
+    least
 }
 
 /// 0 at `from` and before, 1 at `to` and beyond.

@@ -8,6 +8,7 @@ mod strip;
 pub(crate) use candidate::{Candidate, Candidates};
 pub(crate) use continuity::Continuity;
 pub(crate) use edges::{Edges, fit_edges};
+pub use strip::EDGE_ROWS_MM;
 pub(crate) use strip::{BandLine, Strip};
 
 /// Value between the two of `ends` where `share` of the way is gone.

@@ -3,8 +3,8 @@
 use super::{between, quantile};
 use crate::layer::Layer;
 
-/// Half the height of the strip \[mm along the rows\].
-const HALF_MM: f64 = 0.08;
+/// Half the height of the strip along the band in which a gap's edges are read \[mm along the rows\].
+pub const EDGE_ROWS_MM: f64 = 0.08;
 
 /// Height of a group of rows \[mm\].
 const GROUP_MM: f64 = 0.0104;
@@ -74,7 +74,7 @@ impl Strip {
     /// Room for strips of a layer.
     pub fn new(layer: &Layer) -> Self {
         let rows = ((GROUP_MM / layer.pitch_mm).round() as usize).max(1);
-        let groups = (2.0 * HALF_MM / layer.pitch_mm / rows as f64).round() as usize;
+        let groups = (2.0 * EDGE_ROWS_MM / layer.pitch_mm / rows as f64).round() as usize;
         let columns = layer.columns;
         Self {
             groups: groups.clamp(3, GROUPS),
