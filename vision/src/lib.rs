@@ -4,6 +4,7 @@
 //! surface. Where that band is tells the height, its slope the roll, and the dark gap in it the seam (SPEC 0.12).
 
 mod band;
+pub mod calibrate;
 mod cells;
 mod coarse;
 mod detector;
