@@ -2,9 +2,13 @@
 
 mod error;
 mod file;
+mod pictures;
+pub mod procedure;
 
 pub use error::CalibrationError;
 pub use file::{OpticsTable, PhotonTransferTable};
+pub use pictures::PICTURES;
+pub use procedure::CalibrateError;
 
 use shared::protocol::SideMeasurement;
 use std::path::Path;

@@ -1,6 +1,7 @@
 //! The command line: one file for each command.
 
 mod boards;
+mod calibrate;
 mod check;
 mod dry_run;
 mod plan;
@@ -24,6 +25,7 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Calibrate(calibrate::Calibrate),
     Check(check::Check),
     DryRun(dry_run::DryRun),
     Plan(plan::Plan),
@@ -35,6 +37,7 @@ impl Cli {
     /// Does what was asked; an error reads as one sentence.
     pub fn run(self) -> anyhow::Result<ExitCode> {
         match self.command {
+            Command::Calibrate(command) => command.run().map(|()| ExitCode::SUCCESS),
             Command::Check(command) => command.run().map(|()| ExitCode::SUCCESS),
             Command::DryRun(command) => command.run(),
             Command::Plan(command) => command.run().map(|()| ExitCode::SUCCESS),
