@@ -7,7 +7,7 @@ pub mod procedure;
 
 pub use error::CalibrationError;
 pub use file::{OpticsTable, PhotonTransferTable};
-pub use pictures::PICTURES;
+pub use pictures::{Known, PICTURES, read_pictures};
 pub use procedure::CalibrateError;
 
 use shared::protocol::SideMeasurement;

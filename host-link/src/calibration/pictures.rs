@@ -11,7 +11,7 @@ pub const PICTURES: &str = "calibration.csv";
 /// A picture and N numbers known of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Known<const N: usize> {
-    /// Its file.
+    /// Its file, for messages.
     pub file: PathBuf,
     /// The picture.
     pub picture: Picture,
@@ -20,7 +20,10 @@ pub struct Known<const N: usize> {
 }
 
 /// The pictures of `folder`, with the numbers that its list has in `columns` after the file's name.
-pub fn read<const N: usize>(folder: &Path, columns: [&str; N]) -> Result<Vec<Known<N>>, CalibrateError> {
+pub fn read_pictures<const N: usize>(
+    folder: &Path,
+    columns: [&str; N],
+) -> Result<Vec<Known<N>>, CalibrateError> {
     let list = folder.join(PICTURES);
     let text = table::read(&list)?;
     let known = |(file, values)| {

@@ -1,9 +1,8 @@
 //! What is found from pictures of which something is known, told beside what was believed before.
 
-use super::{Calibration, pictures, pictures::Known};
+use super::{Calibration, Known};
 use crate::camera::PngError;
 use crate::table::TableError;
-use std::path::Path;
 use thiserror::Error;
 use vision::calibrate::{
     CornerError, CornerPair, DepthError, DepthStep, SlideError, SlideReading, TransferError, corner_offset,
@@ -92,11 +91,13 @@ impl Figure {
     }
 }
 
-/// Photon transfer from pairs of equal pictures; columns `pair`.
-pub fn noise(folder: &Path, before: &Calibration) -> Result<Found, CalibrateError> {
-    let listed = pictures::read(folder, ["pair"])?;
+/// What is known of a picture for [`noise`].
+pub const NOISE: [&str; 1] = ["pair"];
+
+/// Photon transfer from pairs of equal pictures.
+pub fn noise(listed: &[Known<1>], before: &Calibration) -> Result<Found, CalibrateError> {
     let mut numbers: Vec<f64> = Vec::new();
-    for known in &listed {
+    for known in listed {
         if !numbers.contains(&known.values[0]) {
             numbers.push(known.values[0]);
         }
@@ -142,11 +143,13 @@ pub fn noise(folder: &Path, before: &Calibration) -> Result<Found, CalibrateErro
     Ok(Found { calibration, figures })
 }
 
-/// Depth profile from pictures of a plate that the slides stepped through focus; columns `u_mm`, `v_mm`.
-pub fn profile(folder: &Path, before: &Calibration) -> Result<Found, CalibrateError> {
-    let listed = pictures::read(folder, ["u_mm", "v_mm"])?;
+/// What is known of a picture for [`profile`]: where the slides are.
+pub const PROFILE: [&str; 2] = ["u_mm", "v_mm"];
+
+/// Depth profile from pictures of a plate that the slides stepped through focus.
+pub fn profile(listed: &[Known<2>], before: &Calibration) -> Result<Found, CalibrateError> {
     let mut steps = Vec::new();
-    for known in &listed {
+    for known in listed {
         let [u, v] = known.values;
         // A camera that goes out sees the plate go down.
         let height_mm = -before.camera_step(u, v)[1];
@@ -195,16 +198,18 @@ pub fn profile(folder: &Path, before: &Calibration) -> Result<Found, CalibrateEr
     Ok(Found { calibration, figures })
 }
 
-/// Camera–slide matrix from pictures of a seam at rest; columns `place`, `u_mm`, `v_mm`, in the order they were taken. With
-/// `meets_mm`, the slides at which the beam meets that seam, the offset between beam and camera too.
+/// What is known of a picture for [`slides`]: which place of the seam it shows, where the slides are.
+pub const SLIDES: [&str; 3] = ["place", "u_mm", "v_mm"];
+
+/// Camera–slide matrix from pictures of a seam at rest, in the order they were taken. With `meets_mm`, the slides at which
+/// the beam meets that seam, the offset between beam and camera too.
 pub fn slides(
-    folder: &Path,
+    listed: &[Known<3>],
     before: &Calibration,
     meets_mm: Option<[f64; 2]>,
 ) -> Result<Found, CalibrateError> {
-    let listed = pictures::read(folder, ["place", "u_mm", "v_mm"])?;
     let mut seen = Vec::new();
-    for known in &listed {
+    for known in listed {
         if let Some(measured) = seam(before, known, Joint::Gap)? {
             let [place, u, v] = known.values;
             seen.push((place as u32, [u, v], measured));
@@ -273,22 +278,23 @@ pub fn slides(
     Ok(Found { calibration, figures })
 }
 
-/// Offset of a corner from pictures of a coupon whose walls have the slopes `walls`; columns `corner` (1 where it is closed,
-/// 0 where the same line is an open gap), `u_mm`, `v_mm`. Where the corner is comes from the open pictures, or from
-/// `meets_mm`, the slides at which the beam meets it.
+/// What is known of a picture for [`corner`]: 1 where it is closed, 0 where the same line is an open gap; the slides.
+pub const CORNER: [&str; 3] = ["corner", "u_mm", "v_mm"];
+
+/// Offset of a corner from pictures of a coupon whose walls have the slopes `walls`. Where the corner is comes from the
+/// open pictures, or from `meets_mm`, the slides at which the beam meets it.
 pub fn corner(
-    folder: &Path,
+    listed: &[Known<3>],
     before: &Calibration,
     walls: [f64; 2],
     meets_mm: Option<[f64; 2]>,
 ) -> Result<Found, CalibrateError> {
-    let listed = pictures::read(folder, ["corner", "u_mm", "v_mm"])?;
     let closed = Joint::Corner(Walls {
         slopes: walls,
         sigma: WALL_SIGMA,
     });
     let (mut open, mut reads) = (Vec::new(), Vec::new());
-    for known in &listed {
+    for known in listed {
         let [corner, u, v] = known.values;
         if corner == 0.0 {
             open.extend(seam(before, known, Joint::Gap)?.map(|measured| (0, [u, v], measured)));

@@ -1,7 +1,7 @@
 //! `host-link calibrate`: what a camera is, from pictures of which something is known.
 
 use crate::calibration::procedure::{self, Found};
-use crate::calibration::{Calibration, PICTURES};
+use crate::calibration::{CalibrateError, Calibration, PICTURES, read_pictures};
 use crate::machine::MachineFile;
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
@@ -74,18 +74,7 @@ impl Calibrate {
         }
         let before = self.before()?;
         let folder = self.pictures.as_path();
-        let found = match self.what {
-            What::Noise => procedure::noise(folder, &before),
-            What::Profile => procedure::profile(folder, &before),
-            What::Slides => procedure::slides(folder, &before, self.meets),
-            What::Corner => {
-                let walls = self
-                    .walls
-                    .unwrap_or_default()
-                    .map(|angle| angle.to_radians().tan());
-                procedure::corner(folder, &before, walls, self.meets)
-            }
-        };
+        let found = self.find(folder, &before);
         let found = found.with_context(|| format!("{} is not written", self.output.display()))?;
         print!("{}", table(&found));
         write_whole(&self.output, &found.calibration.to_toml())?;
@@ -95,6 +84,25 @@ impl Calibrate {
             folder.join(PICTURES).display()
         );
         Ok(())
+    }
+
+    fn find(&self, folder: &Path, before: &Calibration) -> Result<Found, CalibrateError> {
+        match self.what {
+            What::Noise => procedure::noise(&read_pictures(folder, procedure::NOISE)?, before),
+            What::Profile => procedure::profile(&read_pictures(folder, procedure::PROFILE)?, before),
+            What::Slides => {
+                let listed = read_pictures(folder, procedure::SLIDES)?;
+                procedure::slides(&listed, before, self.meets)
+            }
+            What::Corner => {
+                let walls = self
+                    .walls
+                    .unwrap_or_default()
+                    .map(|angle| angle.to_radians().tan());
+                let listed = read_pictures(folder, procedure::CORNER)?;
+                procedure::corner(&listed, before, walls, self.meets)
+            }
+        }
     }
 
     /// What is known before.
