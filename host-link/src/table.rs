@@ -15,10 +15,12 @@ pub enum TableError {
         source: std::io::Error,
     },
     /// Other columns.
-    #[error("{path}, line 1: the header must be {wanted}")]
+    #[error("{path}, line {line}: the header must be {wanted}")]
     Header {
         /// The file.
         path: String,
+        /// First line is 1.
+        line: usize,
         /// The header.
         wanted: String,
     },
@@ -83,17 +85,24 @@ pub fn read(path: &Path) -> Result<String, TableError> {
     })
 }
 
-/// The rows of `text`, which starts with the names of the `columns`; empty lines are left out. `path` is used
-/// in messages only.
+/// The rows of `text`, which starts with the names of the `columns`; empty lines and comments, which begin with #,
+/// are left out. `path` is used in messages only.
 pub fn parse<const N: usize>(path: &str, text: &str, columns: [&str; N]) -> Result<Vec<Row<N>>, TableError> {
     let path = || path.to_owned();
-    let mut lines = text.lines().enumerate();
-    let header = lines
-        .next()
-        .map_or("", |(_, line)| line.trim_start_matches('\u{feff}'));
+    let mut lines = text
+        .lines()
+        .enumerate()
+        .filter(|(_, line)| !line.starts_with('#'));
+    let (index, header) = lines.next().map_or((0, ""), |(index, line)| {
+        (index, line.trim_start_matches('\u{feff}'))
+    });
     if !header.split(',').map(str::trim).eq(columns) {
-        let wanted = columns.join(",");
-        return Err(TableError::Header { path: path(), wanted });
+        let (line, wanted) = (index + 1, columns.join(","));
+        return Err(TableError::Header {
+            path: path(),
+            line,
+            wanted,
+        });
     }
     let mut rows = Vec::new();
     for (index, content) in lines.filter(|(_, line)| !line.trim().is_empty()) {

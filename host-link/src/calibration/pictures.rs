@@ -51,7 +51,11 @@ fn parse<'a, const N: usize>(
     let header = lines.next().map_or("", |(_, line)| line.trim());
     if header.split(',').map(str::trim).ne(wanted.split(',')) {
         let path = name.to_owned();
-        return Err(TableError::Header { path, wanted });
+        return Err(TableError::Header {
+            path,
+            line: 1,
+            wanted,
+        });
     }
     let mut rows = Vec::new();
     for (index, content) in lines.filter(|(_, line)| !line.trim().is_empty()) {

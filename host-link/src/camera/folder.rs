@@ -87,6 +87,7 @@ fn parse(name: &str, folder: &Path, text: &str) -> Result<Vec<Recorded>, TableEr
     if lines.next().map(|(_, header)| header.trim()) != Some(HEADER) {
         return Err(TableError::Header {
             path: name.to_owned(),
+            line: 1,
             wanted: HEADER.to_owned(),
         });
     }

@@ -2,12 +2,15 @@
 //!
 //! Everything is in the frame of the probe: Z against its beam (from the surface to the probe), the centre of the
 //! ring at the origin. What is measured there has to be turned into the work frame with the probe's attitude.
+//!
+//! Teaching by cameras, for seams that can be seen, is in [`seam`].
 
 mod halving;
 mod points;
 mod probe;
 mod ring;
 mod routine;
+pub mod seam;
 mod triples;
 mod unit;
 
