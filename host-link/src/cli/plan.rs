@@ -3,16 +3,17 @@
 use crate::machine::MachineFile;
 use crate::nc::{Options, interpret};
 use crate::part::PartFile;
-use crate::path::Planner;
+use crate::path::{PlannedPath, Planner};
 use anyhow::Context;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Write the program of a part
 ///
 /// A part file says what is to be made and how; programs/ has one of each kind:
 ///
-///   [t-seam]  two seam curves at the feet of a rib, for the dual-beam gantry
+///   [t-seam]  two seam curves at the feet of a rib, drawn or as `host-link teach` writes them, for the dual-beam
+///             gantry
 ///   [saddle]  two pipes by their dimensions, or by points taught on their seam, for the pipe welder
 ///   [panel]   points on a curved panel, as `host-link teach` writes them, for the A/C head
 ///   [stir]    lines and arcs on a plate, for the friction-stir gantry
@@ -37,34 +38,36 @@ pub struct Plan {
     /// Program to write
     #[arg(short, long)]
     output: PathBuf,
+    /// Plan from these taught seams (CSV), and not from the drawing
+    #[arg(long, value_name = "FILE")]
+    taught: Option<PathBuf>,
+    /// Program for the measuring heads to write as well: the cameras pass along both seams, beams off
+    #[arg(long, value_name = "FILE")]
+    measuring_head: Option<PathBuf>,
 }
 
 impl Plan {
     /// Plans, checks and writes the program.
     pub fn run(self) -> anyhow::Result<()> {
         let machine = MachineFile::read(&self.machine)?;
-        let part = PartFile::read(&self.part)?;
-        let title = self
-            .output
-            .file_stem()
-            .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        let name = self.part.display();
-        let plan = part
-            .plan(&machine, &title)
-            .with_context(|| format!("part {name}"))?;
-
-        // What is written has been read and checked as the weld will.
-        let program = interpret(&plan.program, Options::default()).context("the planned program")?;
+        let mut part = PartFile::read(&self.part)?;
+        if let Some(taught) = &self.taught {
+            part = part.with_taught_seams(taught)?;
+        }
+        let of_part = || format!("part {}", self.part.display());
+        let plan = part.plan(&machine, &title(&self.output)).with_context(of_part)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
-        let from = machine.planning.park_axes();
-        let paths = planner
-            .program(&program, &from, None)
-            .context("the planned program")?;
-        let output = self.output.display();
-        std::fs::write(&self.output, &plan.program)
-            .map_err(|error| anyhow::anyhow!("cannot write {output}: {error}"))?;
-
-        println!("{output}:");
+        let measuring = self.measuring_head.as_deref().map(|output| {
+            let program = part
+                .plan_measuring(&machine, &title(output))
+                .with_context(of_part)?;
+            let paths = checked(&program, &planner, &machine)?;
+            anyhow::Ok((output, program, paths))
+        });
+        let measuring = measuring.transpose()?;
+        let paths = checked(&plan.program, &planner, &machine)?;
+        write(&self.output, &plan.program)?;
+        println!("{}:", self.output.display());
         for note in &plan.notes {
             println!("  {note}");
         }
@@ -78,6 +81,31 @@ impl Plan {
                 println!("  speed along the path exact to {:.1e}", path.speed_error);
             }
         }
+        if let Some((output, program, paths)) = measuring {
+            write(output, &program)?;
+            let length: f64 = paths.iter().map(PlannedPath::length_mm).fold(0.0, f64::max);
+            println!("{}:", output.display());
+            println!("  the cameras pass along both seams on {length:.2} mm, beams off");
+        }
         Ok(())
     }
+}
+
+/// What a program is called after its file.
+fn title(output: &Path) -> String {
+    let stem = output.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+/// What is written has been read and checked as the weld will.
+fn checked(program: &str, planner: &Planner, machine: &MachineFile) -> anyhow::Result<Vec<PlannedPath>> {
+    let program = interpret(program, Options::default()).context("the planned program")?;
+    let from = machine.planning.park_axes();
+    planner
+        .program(&program, &from, None)
+        .context("the planned program")
+}
+
+fn write(output: &Path, program: &str) -> anyhow::Result<()> {
+    std::fs::write(output, program).with_context(|| format!("cannot write {}", output.display()))
 }

@@ -19,6 +19,7 @@ pub use stir::Stir;
 pub use t_seam::TSeam;
 
 use crate::machine::MachineFile;
+use crate::plan::DualBeamPlan;
 use crate::table::line_of;
 use crate::teach::TaughtPoint;
 use serde::Deserialize;
@@ -155,6 +156,45 @@ impl PartFile {
         match &self.part {
             Part::Panel(panel) if panel.is_untaught() => Some(panel),
             _ => None,
+        }
+    }
+
+    /// The seams of a rib, if the part has any.
+    pub fn t_seam(&self) -> Option<&TSeam> {
+        match &self.part {
+            Part::TSeam(seam) => Some(seam),
+            _ => None,
+        }
+    }
+
+    /// The weld of both feet of a rib as it is drawn, if it is one and has a drawing.
+    pub fn drawn(&self, machine: &MachineFile) -> anyhow::Result<Option<DualBeamPlan>> {
+        match self.t_seam() {
+            Some(seam) => seam.drawn(&self.place(machine, "drawing")),
+            None => Ok(None),
+        }
+    }
+
+    /// The part, planned from the seams taught in `file`.
+    ///
+    /// # Errors
+    /// The part has no seams.
+    pub fn with_taught_seams(mut self, file: &Path) -> anyhow::Result<Self> {
+        let file = std::path::absolute(file)?;
+        match &mut self.part {
+            Part::TSeam(seam) => seam.set_taught(file),
+            _ => anyhow::bail!(
+                "--taught is for parts with seams ([t-seam]); name other taught points in the part file"
+            ),
+        }
+        Ok(self)
+    }
+
+    /// Plans the pass of the measuring heads along both seams of a rib, beams off.
+    pub fn plan_measuring(&self, machine: &MachineFile, title: &str) -> anyhow::Result<String> {
+        match self.t_seam() {
+            Some(seam) => seam.plan_measuring(&self.place(machine, title)),
+            None => anyhow::bail!("only a part with seams ([t-seam]) has a program for the measuring heads"),
         }
     }
 

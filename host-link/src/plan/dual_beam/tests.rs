@@ -170,3 +170,52 @@ fn the_power_of_beam_2_follows_its_speed_on_the_longer_seam() {
     assert!((2..=3).contains(&scaled.len()), "{scaled:?}");
     assert!((scaled[1] / 2000.0 - 1.03).abs() < 0.005, "{scaled:?}");
 }
+
+#[test]
+fn on_the_pass_of_the_measuring_heads_the_cameras_are_on_both_seams_and_the_beams_off() {
+    let (main, other) = seams();
+    let machine = machine();
+    let plan = plan_dual_beam(&main, &other, &machine, &options()).unwrap();
+    let text = plan.measuring_program(&machine, "measuring", 5.0).unwrap();
+    assert!(!text.contains("M62") && !text.contains("M67"), "{text}");
+    let program = interpret(&text, Options::default()).unwrap();
+    let from = machine.planning.park_axes();
+    let paths = Planner::build(&machine)
+        .unwrap()
+        .program(&program, &from, None)
+        .unwrap();
+    let pass = paths
+        .iter()
+        .max_by(|a, b| a.length_mm().total_cmp(&b.length_mm()))
+        .unwrap();
+    let heads = machine.tracking.as_ref().unwrap().board.head.build().unwrap();
+    let first: Vec<Vector3<f64>> = main.iter().map(|p| p.position).collect();
+    let seams = [
+        SmoothSeam::through(&first).unwrap(),
+        SmoothSeam::through(&other).unwrap(),
+    ];
+    let path = pass.knot_path();
+    let (begin, end) = (path.start_s().unwrap(), path.end_s().unwrap());
+    let lead = heads.camera_lead();
+    // The whole seam passes below the cameras.
+    let seen = |s: f64| {
+        let pose = path.at(s).unwrap().pose().unwrap();
+        pose.position + pose.tangent * lead
+    };
+    let [start, finish] = [plan.points[plan.seam.0], plan.points[plan.seam.1]];
+    assert!((seen(begin) - start.pose.position).dot(&start.pose.tangent) < 0.0);
+    assert!((seen(end) - finish.pose.position).dot(&finish.pose.tangent) > 0.0);
+    let mut worst: f64 = 0.0;
+    for i in 0..=1000 {
+        let point = path.at(begin + (end - begin) * f64::from(i) / 1000.0).unwrap();
+        let pose = point.pose().unwrap();
+        for (side, seam) in seams.iter().enumerate() {
+            let camera = heads.spot(&pose, side).point(lead, 0.0, point.v_follow()[side]);
+            let Ok(near) = seam.cut(&camera, &pose.tangent, 5.0, None) else {
+                continue;
+            };
+            worst = worst.max((near.point - camera).norm());
+        }
+    }
+    assert!(worst < 0.01, "a camera is {worst} mm off its seam");
+}
