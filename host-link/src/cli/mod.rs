@@ -6,6 +6,7 @@ mod check;
 mod dry_run;
 mod plan;
 mod teach;
+mod teach_seam;
 mod weld;
 
 use crate::nc::{Options, Program, interpret_file};

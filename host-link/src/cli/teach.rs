@@ -1,6 +1,7 @@
-//! `host-link teach`: points and normals of a surface, by the machine's probe.
+//! `host-link teach`: points and normals of a surface, by the machine's probe, or of seams, by its cameras.
 
 use super::boards::{BoardChoice, exit_code};
+use super::teach_seam::SeamArgs;
 use crate::machine::MachineFile;
 use crate::part::PartFile;
 use crate::teach::write_points;
@@ -11,24 +12,32 @@ use emulator::MACHINE_VARIABLE;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Teach a panel: measure its points and normals with the ranging probe
+/// Teach a part: seams with the cameras, a panel with the ranging probe
 ///
-/// The machine homes, goes from guide point to guide point, measures rings of eight neighbours around each, turns the
-/// probe to the normal they show, and parks. With taught = "taught.csv" in its part file the panel can be planned.
+/// Seams ([t-seam]): the machine homes, goes to where the seams are drawn to begin, searches them around there, brings
+/// both to the middle of the cameras' bands, and goes on along their tangent from point to point, farther where they
+/// are straight. Every point is written at once: the same command goes on after the last one. done and Enter ends.
+/// With --jog the operator drives; help lists the words. `host-link plan PART --taught FILE` makes a program of it.
+///
+/// Panels ([panel]): the machine homes, goes from guide point to guide point, measures rings of eight neighbours around
+/// each, turns the probe to the normal they show, and parks. With taught = "taught.csv" in its part file the panel can
+/// be planned.
 #[derive(Debug, Args)]
 pub struct Teach {
-    /// Part file of a panel
+    /// Part file of seams or of a panel
     part: PathBuf,
     /// Machine file
     #[arg(long, env = MACHINE_VARIABLE, hide_env = true)]
     machine: PathBuf,
-    /// emulated or simulated; no real board has an input for the probe yet
+    /// emulated, simulated, or for seams the addresses of real boards: MOTION,TRACKER; none has an input for a probe
     #[arg(long, default_value = "emulated")]
     boards: BoardChoice,
-    /// Where the points go (CSV), those up to a trouble too
+    /// Where the points go (CSV), those up to a trouble too [default: where the part file expects taught seams]
     #[arg(short, long)]
-    output: PathBuf,
-    /// Start of the simulated probe's noise
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    seams: SeamArgs,
+    /// Start of the noise of simulated cameras and probes
     #[arg(long, default_value_t = 1)]
     seed: u64,
 }
@@ -39,6 +48,14 @@ impl Teach {
         let machine = MachineFile::read(&self.machine)?;
         self.boards.check(&machine)?;
         let part = PartFile::read(&self.part)?;
+        if part.t_seam().is_some() {
+            let machine = (&machine, self.machine.as_path());
+            return self
+                .seams
+                .teach(&self.boards, machine, &part, self.output.as_deref(), self.seed);
+        }
+        self.seams.refuse()?;
+        let output = self.output.context("say where the points go: --output FILE")?;
         check_teaching(&machine, &part).with_context(|| format!("part {}", self.part.display()))?;
         let job = Job {
             machine: &machine,
@@ -69,9 +86,9 @@ impl Teach {
         )?;
         let points = &ended.taught.points;
         if !points.is_empty() {
-            let output = self.output.display();
-            std::fs::write(&self.output, write_points(points))
-                .with_context(|| format!("cannot write {output}"))?;
+            let file = &output;
+            let output = file.display();
+            std::fs::write(file, write_points(points)).with_context(|| format!("cannot write {output}"))?;
             println!("{output}: {} points", points.len());
             for figure in &ended.report.figures {
                 println!("  {} {:.4} {}", figure.text, figure.value, figure.unit);

@@ -215,6 +215,7 @@ impl Weld {
                     .with_context(|| format!("part {}", self.job.display()));
             }
             (Work::Teach | Work::TeachAndMake, None) => return Err(NoTeaching::Part.into()),
+            (Work::TeachSeam(_), _) => return Ok(()),
         };
         let planned = job.plan(program, &planner, &job.machine.planning.park_axes());
         let owner = match (&planned, &self.seam) {

@@ -109,8 +109,22 @@ impl Planner {
         from: &[f64; AXES],
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
+        self.program_from(program, from, [0.0; SIDES], speed_mm_s)
+    }
+
+    /// Like [`Self::program`], with the V slides at `extension_mm` where it starts.
+    pub fn program_from(
+        &self,
+        program: &Program,
+        from: &[f64; AXES],
+        extension_mm: [f64; SIDES],
+        speed_mm_s: Option<f64>,
+    ) -> Result<Vec<PlannedPath>, PathError> {
         let mut stand = Stand {
-            tip: self.tip(from),
+            tip: Tip {
+                extension_mm,
+                ..self.tip(from)
+            },
             axes: inner(from),
             placed: false,
             switched: Switched::default(),

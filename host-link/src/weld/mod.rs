@@ -5,6 +5,7 @@ mod following;
 mod operator;
 mod outcome;
 mod progress;
+mod seam_teaching;
 mod session;
 mod surroundings;
 mod teaching;
@@ -14,7 +15,8 @@ mod tests;
 mod tracking;
 
 pub use outcome::Ended;
-pub use progress::{Progress, Silent, Word};
+pub use progress::{Line, Progress, Silent, Word};
+pub use seam_teaching::{SeamLesson, TaughtSeam};
 pub use surroundings::{Planned, Surroundings, check_seam};
 pub use teaching::{NoTeaching, Taught, check_teaching};
 pub use terminal::Terminal;
@@ -74,6 +76,8 @@ pub enum Work<'a> {
     Teach,
     /// To teach it, and then to make it.
     TeachAndMake,
+    /// To teach both seams of a rib.
+    TeachSeam(&'a SeamLesson),
 }
 
 impl Job<'_> {
@@ -205,6 +209,7 @@ impl Weld {
         match job.work {
             Work::Program(program) => self.program(session, job, program)?,
             Work::Teach => drop(self.teach(session, job)?),
+            Work::TeachSeam(lesson) => self.teach_seam(session, job, lesson)?,
             Work::TeachAndMake => {
                 let part = self.teach(session, job)?;
                 let program = self.plan_taught(job, &part)?;

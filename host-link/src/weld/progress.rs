@@ -13,6 +13,14 @@ pub trait Progress {
         None
     }
 
+    /// A line that the operator entered, in jobs that are led by lines and not by words; asked often.
+    fn line(&mut self) -> Option<Line> {
+        None
+    }
+
+    /// Tells the operator something that they asked for.
+    fn say(&mut self, _text: &str) {}
+
     /// Whether the machine shall wait after every block of the program.
     fn single_block(&self) -> bool {
         false
@@ -32,6 +40,15 @@ pub enum Word {
     Override(f64),
     /// There is nobody any more who could ask.
     Gone,
+}
+
+/// A line that an operator enters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Line {
+    /// What it says.
+    Said(String),
+    /// There will be no more.
+    Over,
 }
 
 /// Tells nobody.

@@ -4,7 +4,7 @@
 //! the tool truly is; on a real machine there is nothing to teach with.
 
 use super::session::Session;
-use super::{Job, JobError, Weld};
+use super::{Job, JobError, TaughtSeam, Weld};
 use crate::machine::MachineFile;
 use crate::nc::{Options, Program, interpret};
 use crate::part::{Panel, PartFile};
@@ -30,6 +30,8 @@ pub struct Taught {
     pub program: Option<String>,
     /// What a person should know of it, a sentence each.
     pub notes: Vec<String>,
+    /// The seams of a rib.
+    pub seam: Option<TaughtSeam>,
 }
 
 /// Why nothing can be taught. Reads as one sentence.

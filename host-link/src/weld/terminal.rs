@@ -1,6 +1,6 @@
 //! The operator at a terminal: a bar on standard error, and lines on standard input.
 
-use super::{Progress, Word};
+use super::{Line, Progress, Word};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -45,12 +45,22 @@ impl Terminal {
         terminal.single_block = single_block;
         if single_block || std::io::stdin().is_terminal() {
             terminal.lines = Some(read_lines());
-            terminal.say(KEYS);
+            terminal.print(KEYS);
         }
         terminal
     }
 
-    fn say(&self, text: &str) {
+    /// For an operator who leads a job by lines, if standard input is a terminal; with `always` they are read
+    /// wherever they come from.
+    pub fn with_lines(always: bool) -> Self {
+        let mut terminal = Self::new();
+        if always || std::io::stdin().is_terminal() {
+            terminal.lines = Some(read_lines());
+        }
+        terminal
+    }
+
+    fn print(&self, text: &str) {
         match &self.bar {
             Some(bar) => bar.suspend(|| eprintln!("{text}")),
             None => eprintln!("{text}"),
@@ -120,6 +130,18 @@ impl Progress for Terminal {
         }
     }
 
+    fn line(&mut self) -> Option<Line> {
+        match self.lines.as_ref()?.try_recv() {
+            Ok(line) => Some(Line::Said(line)),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some(Line::Over),
+        }
+    }
+
+    fn say(&mut self, text: &str) {
+        self.print(text);
+    }
+
     fn word(&mut self) -> Option<Word> {
         let line = match self.lines.as_ref()?.try_recv() {
             Ok(line) => line,
@@ -130,13 +152,13 @@ impl Progress for Terminal {
             Some(Said::Word(word)) => return Some(word),
             Some(Said::SingleBlock) => {
                 self.single_block = !self.single_block;
-                self.say(if self.single_block {
+                self.print(if self.single_block {
                     "single block: on, from the next block that has not gone to the board"
                 } else {
                     "single block: off"
                 });
             }
-            None => self.say(KEYS),
+            None => self.print(KEYS),
         }
         None
     }

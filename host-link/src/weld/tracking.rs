@@ -6,15 +6,38 @@ use crate::boards::{Boards, LinkError};
 use crate::evaluate::Followed;
 use crate::machine::TrackingUnit;
 use crate::record::Record;
+use crate::teach::seam::Seen;
 use crate::world::{BoardClocks, GeometricCameras, Machine, TrueSeams};
-use shared::protocol::{Capture, ClockReply, ClockRequest, Datagram, Request, Response, Role, TrackerStatus};
+use shared::io::{SIDES, SLIDES};
+use shared::protocol::{
+    Capture, ClockReply, ClockRequest, Datagram, Measurement, Request, Response, Role, SideMeasurement,
+    TrackerStatus,
+};
 use shared::tracking::{TrackerFault, TrackerState};
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// How often the boards are asked for their clock.
 const CLOCK_PERIOD: Duration = Duration::from_millis(50);
 /// Standard deviations in the noise of the machine file.
 const SIGMAS: f64 = 3.0;
+
+/// A picture of both cameras that somebody watches for.
+#[derive(Clone, Debug)]
+pub(super) struct Watched {
+    /// U1, V1, U2, V2 at the strobe \[mm\].
+    pub slides_mm: [f64; SLIDES],
+    /// What is seen of each seam.
+    pub sides: [Option<Seen>; SIDES],
+}
+
+/// Pictures while somebody watches.
+#[derive(Clone, Debug, Default)]
+struct Watch {
+    /// Strobed, and not yet answered.
+    strobed: BTreeMap<u32, [f64; SLIDES]>,
+    answered: Vec<Watched>,
+}
 
 /// What a session knows of the tracker board.
 pub(super) struct Tracking {
@@ -26,6 +49,7 @@ pub(super) struct Tracking {
     pub clock_difference_us: Option<f64>,
     /// The seams as they really are.
     pub seams: TrueSeams,
+    watch: Option<Watch>,
     clocks: BoardClocks,
     lost_before: u32,
     next_clock: Duration,
@@ -48,6 +72,7 @@ impl Tracking {
             clock_residual_us: None,
             clock_difference_us: None,
             seams: TrueSeams::none(heads),
+            watch: None,
             clocks: BoardClocks::default(),
             next_clock: boards.now(),
         })
@@ -111,7 +136,25 @@ impl Tracking {
             let difference = capture.motion_time_us as f64 - on_motion as f64;
             raise(&mut self.clock_difference_us, difference.abs());
         }
+        if let Some(watch) = &mut self.watch {
+            watch.strobed.insert(capture.number, capture.slides_mm);
+        }
         self.cameras.strobe(capture, on_motion);
+    }
+
+    /// From now on the pictures are kept, those strobed from now on.
+    pub fn watch(&mut self) {
+        self.watch = Some(Watch::default());
+    }
+
+    /// Pictures kept so far.
+    pub fn watched(&self) -> usize {
+        self.watch.as_ref().map_or(0, |watch| watch.answered.len())
+    }
+
+    /// Gives the pictures that were kept.
+    pub fn end_watch(&mut self) -> Vec<Watched> {
+        self.watch.take().map_or_else(Vec::new, |watch| watch.answered)
     }
 
     /// When the next question or answer is due, by the PC's clock.
@@ -148,9 +191,36 @@ impl Tracking {
             let Some(measurement) = self.cameras.answer(machine, &self.seams, now_us, position) else {
                 break;
             };
+            if let Some(watch) = &mut self.watch {
+                watch.add(&measurement);
+            }
             boards.send(Role::Tracker, &Datagram::Measurement(measurement))?;
         }
         Ok(())
+    }
+}
+
+impl Watch {
+    fn add(&mut self, measurement: &Measurement) {
+        if let Some(slides_mm) = self.strobed.remove(&measurement.capture) {
+            self.answered.push(Watched {
+                slides_mm,
+                sides: measurement.sides.map(|side| side.as_ref().map(seen)),
+            });
+        }
+    }
+}
+
+/// What is known of one picture by its measurement alone.
+fn seen(side: &SideMeasurement) -> Seen {
+    Seen {
+        along_mm: side.along_mm,
+        offset_mm: [side.delta_u_mm, side.delta_v_mm],
+        roll: None,
+        width_mm: None,
+        quality: 1.0,
+        scatter_mm: 0.0,
+        pictures: 1,
     }
 }
 

@@ -7,6 +7,7 @@ mod from_line;
 mod holds;
 mod machines;
 mod single_block;
+mod taught_seam;
 
 use super::*;
 use crate::boards::command;
