@@ -34,6 +34,8 @@ pub(crate) const SMALLEST_GAIN: f64 = 0.003;
 pub(crate) struct Fitness<const N: usize> {
     /// Covariance of the parameters as the scores scatter.
     pub covariance: SMatrix<f64, N, N>,
+    /// Covariance as the likelihood is curved, what was known before included.
+    pub curved: SMatrix<f64, N, N>,
     /// How much likelier it is a cell than a picture that is equally sharp everywhere, as a logarithm.
     pub gain: f64,
     /// Largest amplitude of the texture over the noise.
@@ -129,6 +131,7 @@ impl Band {
         let coarse = &mut self.levels[1];
         Some(Fitness {
             covariance: inverse * scatter * inverse,
+            curved: inverse,
             gain: coarse.gain(surface, at),
             contrast: coarse.contrast(),
         })

@@ -18,6 +18,9 @@ const NOISE_FACTOR: f64 = 1.25;
 /// Share of a pixel's variance in the squared difference: (1, 2, 1)/4 over rows, two columns.
 const FILTERED: f64 = 0.75;
 
+/// Half the way over which the fall of the light is taken \[mm\].
+const LIGHT_MM: f32 = 0.0276;
+
 /// Energies of one level, column after column.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
@@ -47,6 +50,8 @@ pub(crate) struct Cells {
     levels: Vec<u32>,
     /// A row after the (1, 2, 1) filter.
     smooth: Vec<i16>,
+    /// Sum of the levels of the usable cells in a column, and their number.
+    columns_light: Vec<[f32; 2]>,
 }
 
 impl Cells {
@@ -76,6 +81,7 @@ impl Cells {
             squares: vec![0; layer.columns],
             levels: vec![0; layer.columns],
             smooth: vec![0; layer.columns],
+            columns_light: vec![[0.0; 2]; columns],
         }
     }
 
@@ -93,6 +99,7 @@ impl Cells {
     /// Measures the energies.
     pub fn fill(&mut self, layer: &Layer) {
         let side = self.side;
+        self.columns_light.fill([0.0; 2]);
         for cell_row in 0..self.rows {
             self.squares.fill(0);
             self.levels.fill(0);
@@ -111,12 +118,32 @@ impl Cells {
                 if level > self.usable[0] && level < self.usable[1] {
                     let one = 1.0 / (level * level);
                     let variance = level * self.slope + self.offset;
+                    let light = &mut self.columns_light[column];
+                    *light = [light[0] + level, light[1] + 1.0];
                     self.energy[place] = square * one;
                     self.noise[place] = (NOISE_FACTOR * FILTERED) as f32 * variance * one;
                 } else {
                     self.energy[place] = 0.0;
                     self.noise[place] = SILENT;
                 }
+            }
+        }
+        self.allow_for_light();
+    }
+
+    /// Adds to the noise what light that changes across the picture makes of a surface without texture: near the root of
+    /// a corner it falls steeply, in all depths, and on faint texture that looks like being sharp.
+    fn allow_for_light(&mut self) {
+        let reach = (LIGHT_MM / self.pitch_mm).round().max(1.0) as usize;
+        let per_difference = 2.0 / (2 * reach * self.side) as f32;
+        for column in reach..self.columns.saturating_sub(reach) {
+            let light = [column - reach, column, column + reach].map(|column| {
+                let [sum, count] = self.columns_light[column];
+                sum / count.max(1.0)
+            });
+            let slope = (light[2] - light[0]) * per_difference / light[1].max(1.0);
+            for noise in &mut self.noise[column * self.stride..][..self.rows] {
+                *noise += slope * slope;
             }
         }
     }

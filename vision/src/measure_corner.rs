@@ -53,6 +53,7 @@ impl Detector {
         }
         let [height, lateral, left, right, focus] = at;
         let sigmas: [f64; 5] = std::array::from_fn(|k| HONEST * fitness.covariance[(k, k)].max(0.0).sqrt());
+        let walls = [2, 3].map(|k: usize| fitness.curved[(k, k)].sqrt());
         let visible = self.visible(&at);
         let (quality, weakest) = least(&[
             (Criterion::Lateral, ramp(sigmas[1], 0.012, 0.004)),
@@ -85,8 +86,8 @@ impl Detector {
                     lateral_mm: sigmas[1],
                     height_mm: sigmas[0],
                     width_mm: f64::INFINITY,
-                    roll: sigmas[2].hypot(sigmas[3]) / 2.0,
-                    walls: [sigmas[2], sigmas[3]],
+                    roll: walls[0].hypot(walls[1]) / 2.0,
+                    walls,
                     yaw_rad: f64::INFINITY,
                 },
                 second: None,

@@ -3,7 +3,8 @@
 mod common;
 
 use common::{NOISE, OPTICS, detector};
-use vision::render::{TruthRenderer, random_corner, random_gap};
+use std::sync::Arc;
+use vision::render::{FastRenderer, Tile, TruthRenderer, random_corner, random_gap};
 use vision::{Image, Joint, Moved, Observer, ObserverConfig, Prior, Track, Walls};
 
 /// Gap and corner, tracked and unknown, by the detector and by an observer.
@@ -50,5 +51,29 @@ fn measuring_allocates_nothing_after_the_first_picture() {
     };
     measure();
     let allocations = allocation_counter::measure(&mut measure);
+    assert_eq!(allocations.count_total, 0, "{allocations:?}");
+}
+
+/// Neither does the fast renderer, whatever the scene.
+#[test]
+fn rendering_fast_allocates_nothing_after_the_first_picture() {
+    let mut scenes = [
+        random_gap(3, &OPTICS),
+        random_corner(3, &OPTICS),
+        random_gap(8, &OPTICS),
+    ];
+    let texture = scenes[0].texture;
+    let tile = Arc::new(Tile::new(texture, OPTICS, 0.0, 0.006).expect("a tile"));
+    let mut renderer = FastRenderer::new([tile.clone(), tile], NOISE).expect("a renderer");
+    for scene in &mut scenes {
+        scene.texture = texture;
+    }
+    let mut render = || {
+        for scene in &scenes {
+            renderer.render(scene, 5).expect("a picture");
+        }
+    };
+    render();
+    let allocations = allocation_counter::measure(&mut render);
     assert_eq!(allocations.count_total, 0, "{allocations:?}");
 }

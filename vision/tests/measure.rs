@@ -1,22 +1,12 @@
 //! Random pictures with a known truth, measured.
 
 mod common;
+mod figures;
 
 use common::{NOISE, OPTICS, detector};
+use figures::{quantile, rms};
 use vision::render::{Finish, Shown, SplitMix64, Truth, TruthRenderer, random_corner, random_gap};
 use vision::{Image, Joint, Measured, Prior, Status, Track, Walls};
-
-/// Root of the mean square.
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
-}
-
-/// The value that `share` of the magnitudes do not pass.
-fn quantile(values: &[f64], share: f64) -> f64 {
-    let mut sorted: Vec<f64> = values.iter().map(|value| value.abs()).collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted[((sorted.len() - 1) as f64 * share).round() as usize]
-}
 
 /// What tracking knows of a seam: where it is to 20 µm, its roll to a degree.
 fn tracked(truth: &Truth, seed: u64) -> Track {

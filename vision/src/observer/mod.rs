@@ -26,9 +26,8 @@ const PITCH_FRAMES: usize = 16;
 /// Share of a picture's focus that goes into the running one.
 const FOCUS_SHARE: f64 = 0.05;
 
-/// Share by which the walls' slopes follow a picture. It is fitted with those slopes as prior and moves off them by a
-/// tenth or two of the truth, so they settle in some 50 pictures.
-const WALL_SHARE: f64 = 0.125;
+/// How well the slopes of walls are known at best: then they are means of some hundred pictures, and follow a bend.
+const WALL_SIGMA: f64 = 0.003;
 
 /// Equal votes for "too high" or "too low" before it is said.
 const VOTES: u32 = 3;
@@ -252,17 +251,17 @@ impl Observer {
 
 /// What pictures do to what is remembered.
 impl Observer {
-    /// Moves the walls' slopes a little towards what a corner showed.
+    /// What a corner showed of the walls, with what was known before, is known from now on.
     fn learn_walls(&mut self, measured: &Measured) {
-        let (Joint::Corner(Walls { slopes, .. }) | Joint::GapOrCorner(Walls { slopes, .. })) =
-            &mut self.joint
-        else {
+        let (Joint::Corner(walls) | Joint::GapOrCorner(walls)) = &mut self.joint else {
             return;
         };
         if measured.form == Form::Corner {
-            for (slope, seen) in slopes.iter_mut().zip(measured.walls) {
-                *slope += WALL_SHARE * (seen - *slope);
-            }
+            let [left, right] = measured.sigma.walls;
+            *walls = Walls {
+                slopes: measured.walls,
+                sigma: left.max(right).clamp(WALL_SIGMA.min(walls.sigma), walls.sigma),
+            };
         }
     }
 

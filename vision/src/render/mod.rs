@@ -5,12 +5,14 @@
 //! camera, from a [`Tile`] of textured work that was blurred beforehand.
 
 mod blur;
+mod errors;
 mod fast_renderer;
 mod grid;
 mod parallel;
 mod protocol;
 mod random;
 mod row;
+mod run;
 mod scene;
 mod sharp;
 mod sketch;
@@ -22,9 +24,11 @@ mod tile;
 mod truth;
 mod truth_renderer;
 
+pub use errors::Errors;
 pub use fast_renderer::{FastRenderer, RenderError};
 pub use protocol::{random_corner, random_gap};
 pub use random::SplitMix64;
+pub use run::RandomRun;
 pub use scene::{Blob, Gap, Joint, Light, Root, Scene, Stripe};
 pub use texture::{Finish, PERIOD_MM, Texture};
 pub use tile::Tile;

@@ -7,21 +7,22 @@ use crate::geometry::{Corner, PlateSeam};
 use crate::optics::Optics;
 
 /// Exposure of the cameras \[s\].
-const EXPOSURE_S: f64 = 50e-6;
+pub(super) const EXPOSURE_S: f64 = 50e-6;
 
 /// Speeds of 5 and 9 m/min \[mm/s\].
 const SPEEDS_MM_S: [f64; 2] = [5000.0 / 60.0, 9000.0 / 60.0];
 
 /// What lies in sight of a camera to each side of its axis \[mm\].
-struct Sight {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight {
     /// Along u.
-    lateral: f64,
+    pub lateral: f64,
     /// Heights whose band is in the picture, on the axis.
-    height: f64,
+    pub height: f64,
 }
 
 impl Sight {
-    fn new(optics: &Optics) -> Self {
+    pub fn new(optics: &Optics) -> Self {
         let half = optics.object_pixel_mm() / 2.0;
         Self {
             lateral: optics.columns as f64 * half,
@@ -186,7 +187,7 @@ fn scratches(scene: &mut Scene, gap_mm: f64, random: &mut SplitMix64) {
 }
 
 /// One to six blobs in the picture; in every second picture the first lies on the seam, close to the band.
-fn spatter(scene: &mut Scene, plate: &PlateSeam, sight: &Sight, random: &mut SplitMix64) {
+pub(super) fn spatter(scene: &mut Scene, plate: &PlateSeam, sight: &Sight, random: &mut SplitMix64) {
     let on_seam = random.chance(0.5);
     let count = 1 + (6.0 * random.uniform()) as usize;
     for k in 0..count {

@@ -136,15 +136,25 @@ impl TruthRenderer {
             }
         }
         self.sums.clear();
+        let (mut wide, mut blurred) = (Vec::new(), vec![0.0; columns]);
         for line in self.smeared.chunks_exact(columns) {
+            wide.clear();
+            wide.extend(
+                (0..columns + 2 * across.reach()).map(|k| line[clamped(0, k, across.reach(), columns)]),
+            );
+            blurred.fill(0.0);
+            for (k, &weight) in across.0.iter().enumerate() {
+                blurred
+                    .iter_mut()
+                    .zip(&wide[k..])
+                    .for_each(|(o, x)| *o += weight * x);
+            }
             let mut sum = 0.0;
             self.sums.push(sum);
-            for column in 0..columns {
-                for (k, &weight) in across.0.iter().enumerate() {
-                    sum += f64::from(weight * line[clamped(column, k, across.reach(), columns)]);
-                }
-                self.sums.push(sum);
-            }
+            self.sums.extend(blurred.iter().map(|&x| {
+                sum += f64::from(x);
+                sum
+            }));
         }
     }
 
