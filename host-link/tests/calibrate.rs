@@ -370,7 +370,7 @@ fn what_belongs_to_another_task_is_said() {
         "1,2",
     ]);
     assert!(
-        said(&ran).contains("--meets belongs to slides and corner"),
+        said(&ran).contains("unexpected argument '--meets'"),
         "{}",
         said(&ran)
     );

@@ -1,57 +1,83 @@
 //! `host-link calibrate`: what a camera is, from pictures of which something is known.
 
 use crate::calibration::procedure::{self, Found};
-use crate::calibration::{CalibrateError, Calibration, PICTURES, read_pictures};
+use crate::calibration::{CalibrateError, Calibration, read_pictures};
 use crate::machine::MachineFile;
 use anyhow::{Context, bail};
-use clap::{Args, ValueEnum};
+use clap::{Args, Subcommand};
+use emulator::MACHINE_VARIABLE;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Calibrate a camera from pictures in a folder
 ///
-/// The folder holds PNG files and calibration.csv, a row for each of them: file,pair of noise; file,u_mm,v_mm of profile;
-/// file,place,u_mm,v_mm of slides; file,corner,u_mm,v_mm of corner (U and V are the slides). What was found is told beside
-/// what was believed before. A poor fit is refused with the reason, and the file is then left as it was.
+/// What was found is told beside what was believed before. A poor fit is refused with the reason, and the file is then left
+/// as it was.
 #[derive(Debug, Args)]
 pub struct Calibrate {
-    /// What to find
-    #[arg(value_enum)]
+    #[command(subcommand)]
     what: What,
-    /// Folder of the pictures
+}
+
+/// What to find.
+#[derive(Debug, Subcommand)]
+enum What {
+    /// Full well and read noise, from pairs of equal pictures at several levels of light: file,pair
+    Noise(Folder),
+    /// Width of the sharp band, from a textured plate that the slides step through focus: file,u_mm,v_mm
+    Profile(Folder),
+    /// How the picture lies to the slides, from a seam at rest while they step there and back: file,place,u_mm,v_mm
+    Slides {
+        #[command(flatten)]
+        folder: Folder,
+        #[command(flatten)]
+        meets: Meets,
+    },
+    /// What a closed corner reads beside where it is, from a coupon: file,corner,u_mm,v_mm
+    Corner {
+        #[command(flatten)]
+        folder: Folder,
+        #[command(flatten)]
+        meets: Meets,
+        /// Angles of the coupon's walls left and right against level, in degrees
+        #[arg(long, value_parser = two, allow_hyphen_values = true)]
+        walls: [f64; 2],
+    },
+}
+
+/// Pictures in a folder.
+#[derive(Debug, Args)]
+struct Folder {
+    /// Folder of PNG files and calibration.csv, whose columns stand above
     #[arg(long)]
     pictures: PathBuf,
+    #[command(flatten)]
+    camera: Camera,
+}
+
+/// The camera, and where its calibration goes.
+#[derive(Debug, Args)]
+struct Camera {
     /// Calibration to begin with; without it the machine file says what the camera is
-    #[arg(long, conflicts_with_all = ["machine", "side"])]
+    #[arg(long)]
     calibration: Option<PathBuf>,
     /// Machine file
-    #[arg(long, requires = "side")]
+    #[arg(long, env = MACHINE_VARIABLE, hide_env = true)]
     machine: Option<PathBuf>,
     /// Side of the camera, 1 or 2
-    #[arg(long, requires = "machine", value_parser = clap::value_parser!(u8).range(1..=2))]
+    #[arg(long, value_parser = clap::value_parser!(u8).range(1..=2))]
     side: Option<u8>,
     /// Where the calibration goes (TOML); it may be the one it begins with
     #[arg(short, long)]
     output: PathBuf,
-    /// U,V of the slides at which the beam meets the seam in the pictures (slides, corner)
-    #[arg(long, value_parser = two, allow_hyphen_values = true)]
-    meets: Option<[f64; 2]>,
-    /// Angles of the walls left and right of a coupon's corner against level, in degrees (corner)
-    #[arg(long, value_parser = two, allow_hyphen_values = true, required_if_eq("what", "corner"))]
-    walls: Option<[f64; 2]>,
 }
 
-/// What to find.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum What {
-    /// Full well and read noise, from pairs of equal pictures at several levels of light
-    Noise,
-    /// Width of the sharp band, from a textured plate that the slides stepped through focus
-    Profile,
-    /// How the picture lies to the slides, from a seam at rest while the slides step there and back
-    Slides,
-    /// What a closed corner reads beside where it is, from a coupon
-    Corner,
+/// The offset between beam and camera.
+#[derive(Debug, Args)]
+struct Meets {
+    /// U,V of the slides at which the beam meets the seam in the pictures
+    #[arg(long, value_parser = two, allow_hyphen_values = true)]
+    meets: Option<[f64; 2]>,
 }
 
 /// Two numbers, separated by a comma.
@@ -66,45 +92,41 @@ fn two(text: &str) -> Result<[f64; 2], &'static str> {
 impl Calibrate {
     /// Finds it, tells it and writes the file.
     pub fn run(self) -> anyhow::Result<()> {
-        if self.meets.is_some() && !matches!(self.what, What::Slides | What::Corner) {
-            bail!("--meets belongs to slides and corner");
-        }
-        if self.walls.is_some() && self.what != What::Corner {
-            bail!("--walls belongs to corner");
-        }
-        let before = self.before()?;
-        let folder = self.pictures.as_path();
-        let found = self.find(folder, &before);
-        let found = found.with_context(|| format!("{} is not written", self.output.display()))?;
+        let (camera, found) = match &self.what {
+            What::Noise(folder) => folder.find(|pictures, before| {
+                procedure::noise(&read_pictures(pictures, procedure::NOISE)?, before)
+            })?,
+            What::Profile(folder) => folder.find(|pictures, before| {
+                procedure::profile(&read_pictures(pictures, procedure::PROFILE)?, before)
+            })?,
+            What::Slides { folder, meets } => folder.find(|pictures, before| {
+                let listed = read_pictures(pictures, procedure::SLIDES)?;
+                procedure::slides(&listed, before, meets.meets)
+            })?,
+            What::Corner { folder, meets, walls } => folder.find(|pictures, before| {
+                let listed = read_pictures(pictures, procedure::CORNER)?;
+                let walls = walls.map(|angle| angle.to_radians().tan());
+                procedure::corner(&listed, before, walls, meets.meets)
+            })?,
+        };
         print!("{}", table(&found));
-        write_whole(&self.output, &found.calibration.to_toml())?;
-        println!(
-            "{}: written from {}",
-            self.output.display(),
-            folder.join(PICTURES).display()
-        );
+        write_whole(&camera.output, &found.calibration.to_toml())?;
+        println!("{}: written", camera.output.display());
         Ok(())
     }
+}
 
-    fn find(&self, folder: &Path, before: &Calibration) -> Result<Found, CalibrateError> {
-        match self.what {
-            What::Noise => procedure::noise(&read_pictures(folder, procedure::NOISE)?, before),
-            What::Profile => procedure::profile(&read_pictures(folder, procedure::PROFILE)?, before),
-            What::Slides => {
-                let listed = read_pictures(folder, procedure::SLIDES)?;
-                procedure::slides(&listed, before, self.meets)
-            }
-            What::Corner => {
-                let walls = self
-                    .walls
-                    .unwrap_or_default()
-                    .map(|angle| angle.to_radians().tan());
-                let listed = read_pictures(folder, procedure::CORNER)?;
-                procedure::corner(&listed, before, walls, self.meets)
-            }
-        }
+impl Folder {
+    fn find(
+        &self,
+        procedure: impl Fn(&Path, &Calibration) -> Result<Found, CalibrateError>,
+    ) -> anyhow::Result<(&Camera, Found)> {
+        let found = procedure(&self.pictures, &self.camera.before()?);
+        Ok((&self.camera, found.with_context(|| self.camera.not_written())?))
     }
+}
 
+impl Camera {
     /// What is known before.
     fn before(&self) -> anyhow::Result<Calibration> {
         if let Some(file) = &self.calibration {
@@ -117,6 +139,10 @@ impl Calibrate {
             bail!("machine file {}: it has no cameras", machine.display());
         };
         Ok(unit.cameras.nominal(usize::from(side) - 1))
+    }
+
+    fn not_written(&self) -> String {
+        format!("{} is not written", self.output.display())
     }
 }
 
