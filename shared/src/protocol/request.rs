@@ -1,7 +1,7 @@
 //! Requests of the PC and the answers of the boards.
 
 use super::element::{BadElement, PathElement};
-use crate::io::{AXES, MOTORS, SLIDES};
+use crate::io::{AXES, MOTORS, SLIDE_NAMES, SLIDES};
 use crate::motion::{Fault, MotionConfig, State};
 use crate::parameter::ParameterError;
 use crate::tracking::{TrackerConfig, TrackerFault, TrackerState};
@@ -64,6 +64,12 @@ pub enum Request {
     },
     /// Append knots of the path that is tracked, `s_mm` strictly increasing; tracker board.
     LoadKnots(Vec<Knot, LOAD_BATCH>),
+    /// Move the slides there and keep them there, until another path begins or tracking does; tracker board, state
+    /// ready.
+    MoveSlides {
+        /// U1, V1, U2, V2, inside their travel \[mm\].
+        target_mm: [f64; SLIDES],
+    },
     /// Begin a path where the axes stand, which are homed; motion board, state idle. Forgets the last one.
     BeginPath {
         /// Number of the new path, repeated in [`super::PathState`].
@@ -269,6 +275,18 @@ pub enum Refusal {
     /// The override is not from 0 to 2.
     #[error("the override must be from 0 to 200 %")]
     BadOverride,
+    /// A slide cannot go there.
+    #[error("slide {} cannot go to {target_mm:.3} mm: its travel is {min_mm:.3} to {max_mm:.3} mm", SLIDE_NAMES[*slide as usize])]
+    BeyondTravel {
+        /// Index of the slide.
+        slide: u8,
+        /// Where it was asked to go.
+        target_mm: f32,
+        /// Travel.
+        min_mm: f32,
+        /// Travel.
+        max_mm: f32,
+    },
     /// No elements.
     #[error("no path to run: begin one and load its elements")]
     NoPath,

@@ -67,6 +67,10 @@ pub struct TrackerController<const KNOTS: usize> {
     clock: ClockRelation,
     seam: Seam,
     seam_searches: [SeamSearch; SIDES],
+    /// Where the PC wants the slides \[mm\].
+    jog: Option<[f64; SLIDES]>,
+    /// The machine was on the loaded path at the last tick.
+    on_path: bool,
     slides: [Slide; SLIDES],
     /// One a slide, once homing has begun.
     searches: Vec<SearchState<1>, SLIDES>,
@@ -119,6 +123,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             clock: ClockRelation::new(),
             seam: Seam::new(),
             seam_searches: [SeamSearch::new(); SIDES],
+            jog: None,
+            on_path: false,
             slides: [SLIDE; SLIDES],
             searches: Vec::new(),
             feedback: SlideFeedback {
@@ -280,6 +286,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
 
     /// Drives off.
     fn rest(&mut self) -> SlideCommand {
+        self.jog = None;
         for slide in &mut self.slides {
             slide.law.reset();
             slide.target = slide.position;

@@ -2,5 +2,6 @@
 
 mod bench;
 mod following;
+mod jog;
 mod searching;
 mod states;

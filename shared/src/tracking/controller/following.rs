@@ -17,6 +17,10 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         place: Option<&Place>,
     ) -> SlideCommand {
         let on_path = place.filter(|p| p.path_id == self.path.id());
+        if on_path.is_some() && !self.on_path {
+            self.jog = None;
+        }
+        self.on_path = on_path.is_some();
         let tracking = on_path.is_some_and(|p| p.tracking) && self.path.len() >= 2;
         if self.state == TrackerState::Tracking && place.is_none() {
             let silent_ms = motion_now.map_or(u64::MAX, |now| self.silent_us(now)) / 1000;
@@ -25,6 +29,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             });
         }
         if tracking && self.state == TrackerState::Ready {
+            self.jog = None;
             self.seam.begin();
             self.seam_searches = Default::default();
             for slide in &mut self.slides {
@@ -43,10 +48,11 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             TrackerState::Ready
         };
         let plan = on_path.and_then(|p| plan(parameters, &self.path, p.s, p.speed));
-        let targets = match (plan, on_path) {
-            (Some(plan), Some(place)) if tracking => self.seam_targets(parameters, place, &plan),
-            (Some(plan), _) => plan.map(Some),
-            (None, _) => self.slides.map(|slide| Some(SlideTarget::rest(slide.target))),
+        let targets = match (plan, on_path, self.jog) {
+            (Some(plan), Some(place), _) if tracking => self.seam_targets(parameters, place, &plan),
+            (_, _, Some(jog)) => jog.map(|position| Some(SlideTarget::rest(position))),
+            (Some(plan), ..) => plan.map(Some),
+            (None, ..) => self.slides.map(|slide| Some(SlideTarget::rest(slide.target))),
         };
         let mut command = Command::SAFE;
         command.enable = true;

@@ -1,6 +1,7 @@
 //! What the PC may ask of the tracker board, and what it is told.
 
 use super::TrackerController;
+use crate::io::SLIDES;
 use crate::protocol::{Refusal, Request, Response, TrackerStatus};
 use crate::tracking::TrackerState;
 use crate::trajectory::PathSpace;
@@ -28,8 +29,10 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             Request::Reset => self.reset(),
             Request::ClearPath { id, space } => self.allow_all_but_tracking().map(|()| {
                 self.path.clear(*id, *space);
+                self.jog = None;
                 self.forget_seam();
             }),
+            Request::MoveSlides { target_mm } => self.move_slides(target_mm),
             Request::LoadKnots(knots) => self
                 .allow_all_but_tracking()
                 .and_then(|()| Ok(self.path.append(knots)?)),
@@ -67,7 +70,26 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             slide.offset = None;
         }
         self.state = TrackerState::Homing;
+        self.jog = None;
         self.forget_seam();
+        Ok(())
+    }
+
+    fn move_slides(&mut self, target_mm: &[f64; SLIDES]) -> Result<(), Refusal> {
+        self.allow(&[TrackerState::Ready])?;
+        let parameters = self.parameters.as_ref().ok_or(Refusal::NotConfigured)?;
+        for (slide, (target, of)) in (0..).zip(target_mm.iter().zip(&parameters.slides)) {
+            let (min, max) = of.law.travel;
+            if !(min..=max).contains(target) {
+                return Err(Refusal::BeyondTravel {
+                    slide,
+                    target_mm: *target as f32,
+                    min_mm: min as f32,
+                    max_mm: max as f32,
+                });
+            }
+        }
+        self.jog = Some(*target_mm);
         Ok(())
     }
 

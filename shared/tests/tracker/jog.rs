@@ -1,0 +1,145 @@
+//! Slides that the PC moves.
+
+use crate::bench::{Bench, PATH_ID, Shape, config};
+use shared::protocol::{Refusal, Request, Response};
+use shared::tracking::TrackerState;
+use shared::trajectory::PathSpace;
+
+const PLACE: [f64; 4] = [3.0, -1.5, -11.9, 0.25];
+
+fn ready() -> Bench {
+    let mut bench = Bench::new(Shape::Straight, |_, _| (0.2, 0.1));
+    bench.path_id = 0;
+    bench.prepare();
+    bench
+}
+
+fn move_to(target_mm: [f64; 4]) -> Request {
+    Request::MoveSlides { target_mm }
+}
+
+#[track_caller]
+fn at(bench: &Bench, place: [f64; 4]) {
+    for (truth, place) in bench.plant.truth().iter().zip(place) {
+        assert!((truth - place).abs() < 0.002, "{truth} instead of {place} mm");
+    }
+}
+
+#[test]
+fn slides_go_where_they_are_asked_to_within_their_limits_and_stay() {
+    let mut bench = ready();
+    bench.accept(move_to(PLACE));
+    let limits = config().slides[0].clone();
+    let mut before = bench.plant.truth();
+    let mut speed = [0.0f64; 4];
+    for _ in 0..800 {
+        bench.tick();
+        let truth = bench.plant.truth();
+        for i in 0..4 {
+            let now = (truth[i] - before[i]) * 1e3;
+            assert!(now.abs() <= limits.max_velocity_mm_s + 0.01);
+            assert!((now - speed[i]).abs() <= limits.max_acceleration_mm_s2 * 1.1e-3);
+            speed[i] = now;
+        }
+        before = truth;
+    }
+    at(&bench, PLACE);
+    bench.run_ms(2000);
+    at(&bench, PLACE);
+    assert_eq!(
+        bench.status().slides_mm.map(|s| s.signum()),
+        PLACE.map(f64::signum)
+    );
+    bench.accept(move_to([0.0; 4]));
+    bench.run_ms(1000);
+    at(&bench, [0.0; 4]);
+}
+
+#[test]
+fn another_path_or_tracking_takes_the_slides_back() {
+    let plan = |s: f64| [0.0, 0.3 * (s / 80.0).sin(), 0.0, 0.3 * (s / 80.0).sin()];
+    // The loaded path begins.
+    let mut bench = ready();
+    bench.s = 40.0;
+    bench.accept(move_to(PLACE));
+    bench.run_ms(1000);
+    at(&bench, PLACE);
+    bench.path_id = PATH_ID;
+    bench.run_ms(1000);
+    at(&bench, plan(40.0));
+    // On it, without tracking, they may be moved again; tracking ends that.
+    bench.accept(move_to(PLACE));
+    bench.run_ms(1000);
+    at(&bench, PLACE);
+    bench.tracking = true;
+    bench.speed = 20.0;
+    bench.run_ms(1500);
+    assert!(bench.spot_errors().iter().all(|e| e.abs() < 0.01));
+    // Another path is loaded: they stay where they are, and its plan is theirs.
+    let mut bench = ready();
+    bench.accept(move_to(PLACE));
+    bench.run_ms(1000);
+    bench.accept(Request::ClearPath {
+        id: 1,
+        space: PathSpace::Tool,
+    });
+    bench.run_ms(500);
+    at(&bench, PLACE);
+    bench.accept(move_to([0.0; 4]));
+    bench.run_ms(1000);
+    at(&bench, [0.0; 4]);
+}
+
+#[test]
+fn what_is_beyond_the_travel_or_not_a_number_is_refused_and_moves_nothing() {
+    let mut bench = ready();
+    let mut target = PLACE;
+    target[2] = 12.01;
+    let refusal = Refusal::BeyondTravel {
+        slide: 2,
+        target_mm: 12.01,
+        min_mm: -12.0,
+        max_mm: 12.0,
+    };
+    assert_eq!(bench.ask(move_to(target)), Response::Refused(refusal));
+    assert_eq!(
+        refusal.to_string(),
+        "slide U2 cannot go to 12.010 mm: its travel is -12.000 to 12.000 mm"
+    );
+    target[2] = f64::NAN;
+    assert!(matches!(
+        bench.ask(move_to(target)),
+        Response::Refused(Refusal::BeyondTravel { slide: 2, .. })
+    ));
+    let before = bench.plant.truth();
+    bench.run_ms(300);
+    at(&bench, before);
+}
+
+#[test]
+fn only_a_ready_tracker_moves_its_slides() {
+    let mut off = Bench::new(Shape::Straight, |_, _| (0.0, 0.0));
+    let wrong = |state| Response::Refused(Refusal::WrongTrackerState { state });
+    assert_eq!(off.ask(move_to(PLACE)), wrong(TrackerState::Off));
+    let mut bench = ready();
+    bench.accept(Request::Home);
+    assert_eq!(bench.ask(move_to(PLACE)), wrong(TrackerState::Homing));
+    let mut bench = ready();
+    bench.path_id = PATH_ID;
+    bench.tracking = true;
+    bench.run_ms(5);
+    assert_eq!(bench.ask(move_to(PLACE)), wrong(TrackerState::Tracking));
+    // Switched off, they are not driven, and where they were asked to be is forgotten.
+    let mut bench = ready();
+    bench.accept(move_to(PLACE));
+    bench.run_ms(1000);
+    bench.accept(Request::Disable);
+    bench.run_ms(5);
+    assert_eq!(bench.ask(move_to(PLACE)), wrong(TrackerState::Off));
+    bench.accept(Request::Home);
+    bench.run_ms(3000);
+    assert!(
+        bench.plant.truth().iter().all(|slide| slide.abs() < 0.05),
+        "they stay near their marks"
+    );
+}
