@@ -113,6 +113,29 @@ pub struct SeamFigures {
     pub clock_residual_us: Option<f64>,
     /// Largest difference between the tracker's relation to the motion clock and the PC's while welding.
     pub clock_difference_us: Option<f64>,
+    /// Where the six axes took over from slides that had gone far.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub recentred: Vec<Recentred>,
+}
+
+/// A re-centring of the pose.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Recentred {
+    /// Place on the path.
+    pub s_mm: f64,
+    /// The slide that asked for it.
+    pub slide: &'static str,
+    /// Where that was.
+    pub slide_mm: f64,
+    /// Where the pose was sent beside the path, to the left of travel.
+    pub lateral_mm: f64,
+    /// The same, away from the work.
+    pub normal_mm: f64,
+    /// The same, about the direction of travel.
+    pub turn_deg: f64,
+    /// Why the motion board did not do it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refused: Option<String>,
 }
 
 /// How a job ended.
@@ -314,6 +337,15 @@ pub(crate) mod tests {
                 measurements: Measurements::default(),
                 clock_residual_us: Some(12.0),
                 clock_difference_us: None,
+                recentred: vec![Recentred {
+                    s_mm: 120.0,
+                    slide: "U1",
+                    slide_mm: 8.41,
+                    lateral_mm: -7.5,
+                    normal_mm: 0.1,
+                    turn_deg: 2.86,
+                    refused: None,
+                }],
             }),
             figures: Vec::new(),
             planned_motion_s: 20.0,

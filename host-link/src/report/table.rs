@@ -83,6 +83,20 @@ fn spots(f: &mut Formatter, seam: &SeamFigures) -> Result {
     ] {
         writeln!(f, "  {name:<28}{} {} mm", known(max, 4), known(rms, 4))?;
     }
+    for at in &seam.recentred {
+        let what = match &at.refused {
+            None => format!(
+                "pose {:.2} mm to the left, {:.2} mm up, turned {:.2}°",
+                at.lateral_mm, at.normal_mm, at.turn_deg
+            ),
+            Some(reason) => format!("pose not moved: {reason}"),
+        };
+        let (s, slide, slide_mm) = (at.s_mm, at.slide, at.slide_mm);
+        writeln!(
+            f,
+            "  re-centred at s = {s:.1} mm, {slide} at {slide_mm:.2} mm: {what}"
+        )?;
+    }
     Ok(())
 }
 

@@ -1,8 +1,8 @@
 //! A path while the motion board runs it: the rest of it is given, and the machine is watched.
 
-use super::JobError;
 use super::feeding::{EndedBlock, Feeding};
 use super::session::{Session, on_path};
+use super::{JobError, recentring};
 use shared::motion::State;
 use shared::protocol::{MotionSample, MotionStatus, Request, Role};
 
@@ -33,6 +33,7 @@ pub(super) fn follow(
     session.go_on_until(|s| {
         feeding.go_on(s)?;
         advance.watch(&s.motion)?;
+        recentring::watch(s, id)?;
         let mut stands = false;
         let here = s.record.motion().last().filter(|here| here.tick > begun).copied();
         if let Some(here) = &here {

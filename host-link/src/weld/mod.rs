@@ -5,6 +5,7 @@ mod following;
 mod operator;
 mod outcome;
 mod progress;
+mod recentring;
 mod seam_teaching;
 mod session;
 mod surroundings;

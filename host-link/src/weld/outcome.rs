@@ -103,7 +103,7 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
         seam: session
             .tracking
             .as_ref()
-            .map(|tracking| seam_figures(tracking, job, &evaluation)),
+            .map(|tracking| seam_figures(tracking, session, job, &evaluation)),
         figures: judgement.figures,
         planned_motion_s: planned_motion_s.unwrap_or(f64::NAN),
         motion_s: evaluation.motion_s,
@@ -151,7 +151,8 @@ fn truth(session: &Session) -> Truth {
     }
 }
 
-fn seam_figures(tracking: &Tracking, job: &Job, evaluation: &Evaluation) -> SeamFigures {
+fn seam_figures(tracking: &Tracking, session: &Session, job: &Job, evaluation: &Evaluation) -> SeamFigures {
+    let recentred = session.recentring.as_ref().map(|watch| watch.done.clone());
     SeamFigures {
         seam: job.names.seam.clone(),
         max_deviation_mm: evaluation.max_deviation_mm.into(),
@@ -164,6 +165,7 @@ fn seam_figures(tracking: &Tracking, job: &Job, evaluation: &Evaluation) -> Seam
         },
         clock_residual_us: tracking.clock_residual_us,
         clock_difference_us: tracking.clock_difference_us,
+        recentred: recentred.unwrap_or_default(),
     }
 }
 

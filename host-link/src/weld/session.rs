@@ -1,5 +1,6 @@
 //! A session with the boards while a job runs: takes what they send and asks for their state.
 
+use super::recentring::Recentring;
 use super::{JobError, Progress, Tracking};
 use crate::boards::{Boards, LinkError, command};
 use crate::machine::MachineFile;
@@ -27,6 +28,8 @@ pub(super) struct Session<'a> {
     pub machine: Machine,
     /// The tracker board, if the machine has one.
     pub tracking: Option<Tracking>,
+    /// What watches its slides.
+    pub recentring: Option<Recentring>,
     pub record: Record,
     pub motion: MotionStatus,
     pub began: Duration,
@@ -57,6 +60,7 @@ impl<'a> Session<'a> {
             progress,
             machine: geometry,
             tracking,
+            recentring: unit.map(Recentring::new).transpose()?,
             record: Record::default(),
             lost_before: lost(&motion),
             motion,

@@ -5,6 +5,7 @@ mod attitude;
 mod line;
 mod motion;
 pub mod nurbs;
+mod offset;
 mod pose;
 mod saddle;
 mod spline;
@@ -13,6 +14,7 @@ pub use arc::{Arc, ArcError, Turn};
 pub use attitude::{AttitudeError, angle, interpolate, rotate};
 pub use line::{Line, LineError};
 pub use motion::{Moving, PoseMotion, pose_in_motion};
+pub use offset::PoseOffset;
 pub use pose::{Pose, PoseError};
 pub use saddle::{
     CurvePoint, MachineCoordinates, Meeting, Nearest, PipePair, PipePairConfig, SaddleCurve, SaddleError,

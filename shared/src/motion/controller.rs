@@ -8,6 +8,7 @@ mod loading;
 mod path;
 mod requests;
 
+use super::aside::Aside;
 use super::beams::Beams;
 use super::homing::{Homing, HomingStep};
 use super::machine::Machine;
@@ -62,6 +63,8 @@ pub struct MotionController {
     homed: bool,
     planner: BoardPlanner,
     path: LoadedPath,
+    /// The pose beside it.
+    aside: Aside,
     /// Part of the programmed speed that is asked for.
     factor: f64,
     beams: Beams,
@@ -105,6 +108,7 @@ impl MotionController {
             homed: false,
             planner: BoardPlanner::new(),
             path: LoadedPath::NONE,
+            aside: Aside::NONE,
             factor: 1.0,
             beams: Beams::NONE,
             along: [SpeedState::at_rest(0.0); 3],
@@ -196,6 +200,7 @@ impl MotionController {
                 // On a path that is given up nobody looks for the seam any more.
                 tracking: on_path && self.state != State::Stopping && self.beams.tracking(),
                 beams: self.gates[0].gate,
+                aside: self.aside.rate(),
             },
             sample: MotionSample {
                 tick: self.tick as u32,
@@ -278,6 +283,7 @@ impl MotionController {
     fn leave_path(&mut self) {
         self.along = [SpeedState::at_rest(self.along[0].s); 3];
         self.path.forget();
+        self.aside = Aside::NONE;
         self.homing = None;
         self.pending = None;
         self.beams = Beams::NONE;

@@ -1,5 +1,6 @@
 //! A machine's parameters, checked and in the units the ticks use.
 
+use super::aside::Aside;
 use super::beams::BeamLimits;
 use super::homing::HomingPlan;
 use super::segment::PATH_PERIOD_S;
@@ -7,7 +8,7 @@ use super::servo::ServoSetup;
 use super::{MotionConfig, SERVO_PERIOD_S};
 use crate::control::{Gantry, Pid};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
-use crate::kinematics::{AXIS_OWNERS, AxisLimits, Kinematics};
+use crate::kinematics::{AXIS_OWNERS, AxisLimits, AxisMotion, Kinematics, KinematicsError};
 use crate::parameter::ParameterError;
 use crate::protocol::PathLimits;
 use crate::trajectory::PlanLimits;
@@ -80,6 +81,17 @@ impl Machine {
             gantry.ram([motors[0], motors[1]], motors[2]).x
         });
         [x, motors[2], motors[3], motors[4], motors[5], motors[6]]
+    }
+
+    /// The axes for the pose beside the one of `planned`; a tick of `aside`, which goes on only where the machine
+    /// `goes` along its path.
+    pub fn aside(
+        &self,
+        aside: &mut Aside,
+        planned: &AxisMotion,
+        goes: bool,
+    ) -> Result<AxisMotion, KinematicsError> {
+        aside.step(&self.kinematics, &self.limits, planned, goes)
     }
 
     /// First axis that would go from one path tick to the next further than twice its speed allows, if any: no

@@ -4,6 +4,7 @@
 //! between them pass one [`ServoOrder`] and one [`ServoReport`] a millisecond. Firmware, simulation and
 //! tests use the same two structs.
 
+mod aside;
 mod beams;
 mod config;
 mod controller;

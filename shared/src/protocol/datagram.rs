@@ -73,6 +73,8 @@ pub struct PathState {
     pub tracking: bool,
     /// Gates that are open.
     pub beams: [bool; SIDES],
+    /// How fast the pose moves beside the planned one on purpose: along M and N \[mm/s\], about T \[rad/s\].
+    pub aside: [f64; 3],
 }
 
 /// A strobe: both cameras were triggered, the slides latched.

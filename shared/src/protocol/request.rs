@@ -1,6 +1,7 @@
 //! Requests of the PC and the answers of the boards.
 
 use super::element::{BadElement, PathElement};
+use crate::geometry::PoseOffset;
 use crate::io::{AXES, MOTORS, SLIDE_NAMES, SLIDES};
 use crate::motion::{Fault, MotionConfig, State};
 use crate::parameter::ParameterError;
@@ -70,6 +71,9 @@ pub enum Request {
         /// U1, V1, U2, V2, inside their travel \[mm\].
         target_mm: [f64; SLIDES],
     },
+    /// Move the pose so far beside the planned one, slowly, for as long as the path asks for tracking; motion board,
+    /// on a path that does. Takes the place of the last offset.
+    OffsetPose(PoseOffset),
     /// Begin a path where the axes stand, which are homed; motion board, state idle. Forgets the last one.
     BeginPath {
         /// Number of the new path, repeated in [`super::PathState`].
@@ -287,6 +291,28 @@ pub enum Refusal {
         /// Travel.
         max_mm: f32,
     },
+    /// The path does not ask for tracking.
+    #[error("the pose can be moved beside the path only where that asks for tracking")]
+    NotTracking,
+    /// An offset that is not finite, or more than slides could ever ask for.
+    #[error("the pose can be moved beside the path by {most_mm} mm and {most_deg}° at most")]
+    OffsetTooFar {
+        /// Along M and N.
+        most_mm: f32,
+        /// About T.
+        most_deg: f32,
+    },
+    /// The machine has no axes for the pose beside the path.
+    #[error("the machine cannot take the pose beside the path")]
+    OffsetUnreachable,
+    /// An axis would leave its travel.
+    #[error("beside the path, axis {} would be at {position:.3} mm (or °), beyond its travel", crate::io::AXIS_NAMES[*axis as usize])]
+    OffsetBeyondTravel {
+        /// Index of the axis.
+        axis: u8,
+        /// Where it would be.
+        position: f32,
+    },
     /// No elements.
     #[error("no path to run: begin one and load its elements")]
     NoPath,
@@ -396,6 +422,8 @@ pub struct MotionStatus {
     pub room: Room,
     /// Part of the programmed speed that is asked for.
     pub speed_override: f64,
+    /// Where the pose stands beside the planned one.
+    pub aside: PoseOffset,
     /// Servo ticks since boot, and how many came too late to be served.
     pub servo_ticks: u32,
     /// Servo ticks lost.

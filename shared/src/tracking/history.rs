@@ -1,6 +1,6 @@
 //! What was a moment ago: path states of the motion board, and captures.
 
-use crate::geometry::Pose;
+use crate::geometry::{Pose, PoseOffset};
 use crate::io::{SIDES, SLIDES};
 use crate::protocol::PathState;
 use heapless::{Deque, Vec};
@@ -28,6 +28,8 @@ pub struct Place {
     pub tracking: bool,
     /// Gates that are open.
     pub beams: [bool; SIDES],
+    /// How fast the pose moves beside the planned one on purpose \[mm/s, rad/s\].
+    pub aside: PoseOffset,
 }
 
 /// The last path states, in order of their time.
@@ -137,7 +139,10 @@ fn place(state: &PathState) -> Option<Place> {
         Vector3::new(p[3], p[4], p[5]),
         Vector3::new(p[6], p[7], p[8]),
     );
-    let finite = state.s_mm.is_finite() && state.speed_mm_s.is_finite();
+    let finite = [state.s_mm, state.speed_mm_s]
+        .iter()
+        .chain(&state.aside)
+        .all(|x| x.is_finite());
     Some(Place {
         path_id: state.path_id,
         s: state.s_mm,
@@ -145,6 +150,7 @@ fn place(state: &PathState) -> Option<Place> {
         pose: pose.ok().filter(|_| finite)?,
         tracking: state.tracking,
         beams: state.beams,
+        aside: PoseOffset::of(state.aside),
     })
 }
 
@@ -233,6 +239,7 @@ mod tests {
             pose: [s_mm, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
             tracking: true,
             beams: [false; SIDES],
+            aside: [0.0; 3],
         }
     }
 

@@ -10,6 +10,7 @@ pub mod history;
 pub mod law;
 pub mod map;
 pub mod parameters;
+pub mod recentre;
 mod seam;
 pub mod search;
 

@@ -5,6 +5,7 @@ use super::history::Place;
 use super::law::SlideTarget;
 use super::map::{Added, SeamMap};
 use super::parameters::TrackerParameters;
+use crate::geometry::{Pose, PoseOffset};
 use crate::io::{SIDES, SLIDES};
 use crate::protocol::SideMeasurement;
 use crate::trajectory::Path;
@@ -145,15 +146,48 @@ pub fn plan<const N: usize>(
     Some(targets)
 }
 
-/// How far each slide's spot is off its planned place because the six axes are: to be subtracted from targets
-/// in the frame of the plan (SPEC 0.7: every six-axis deviation is fed forward to both trackers).
-pub fn deviation<const N: usize>(heads: &Heads, path: &Path<N>, place: &Place) -> Option<[f64; SLIDES]> {
-    let mut off = [0.0; SLIDES];
-    for side in 0..SIDES {
-        let planned = planned_spot(heads, path, side, place.s)?;
-        let (_, u, v) = planned.coordinates(&heads.spot(&place.pose, side).origin);
-        off[u_slide(side)] = u;
-        off[u_slide(side) + 1] = v;
+/// A head where it really is, beside where the planned path would have it: every six-axis deviation is fed forward to
+/// both trackers (SPEC 0.7).
+#[derive(Clone, Copy, Debug)]
+pub struct RealHead {
+    planned: SpotFrame,
+    real: SpotFrame,
+    pose: Pose,
+    /// How fast the pose moves beside the planned one on purpose.
+    aside: PoseOffset,
+}
+
+impl RealHead {
+    /// Of `side`, with the machine at `place`.
+    pub fn new<const N: usize>(heads: &Heads, path: &Path<N>, place: &Place, side: usize) -> Option<Self> {
+        Some(Self {
+            planned: planned_spot(heads, path, side, place.s)?,
+            real: heads.spot(&place.pose, side),
+            pose: place.pose,
+            aside: place.aside,
+        })
     }
-    Some(off)
+
+    /// How far the spot is off its planned place, along U and V \[mm\].
+    pub fn off(&self) -> [f64; 2] {
+        let (_, u, v) = self.planned.coordinates(&self.real.origin);
+        [u, v]
+    }
+
+    /// Targets of U and V in the frame of the plan, for the head as it is.
+    pub fn targets(&self, in_plan: [SlideTarget; 2]) -> [SlideTarget; 2] {
+        let point = self.planned.point(0.0, in_plan[0].position, in_plan[1].position);
+        let (_, u, v) = self.real.coordinates(&point);
+        let moves = self.aside.velocity_at(&self.pose, &(point - self.pose.position));
+        [
+            SlideTarget {
+                position: u,
+                velocity: in_plan[0].velocity - moves.dot(&self.real.u),
+            },
+            SlideTarget {
+                position: v,
+                velocity: in_plan[1].velocity - moves.dot(&self.real.v),
+            },
+        ]
+    }
 }

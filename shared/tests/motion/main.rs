@@ -1,5 +1,6 @@
 //! The motion board's controller with ideal drives: every stop, trip and way back.
 
+mod aside;
 mod bench;
 mod holds;
 mod homing;

@@ -246,6 +246,7 @@ impl Bench {
                     pose: core::array::from_fn(|i| flat[i / 3][i % 3]),
                     tracking: self.tracking,
                     beams: self.beams,
+                    aside: [0.0; 3],
                 }),
                 t + 370 + TRACKER_CLOCK,
             );

@@ -1,8 +1,10 @@
 //! On the path: from the planner's output to references, beams, and the ways of a hold.
 
 use super::MotionController;
+use crate::geometry::PoseOffset;
 use crate::io::{AXES, SIDES};
 use crate::kinematics::AXIS_UNIT;
+use crate::motion::aside::Aside;
 use crate::motion::beams::{Activity, Beams, EventQueue};
 use crate::motion::overlap::Overlap;
 use crate::motion::segment::{BeamOutput, MotorReference};
@@ -93,7 +95,7 @@ impl MotionController {
     /// Moves the references on along the path.
     pub(super) fn travel(&mut self) {
         let Some(machine) = &self.machine else { return };
-        let output = match self.planner.tick(&machine.kinematics) {
+        let mut output = match self.planner.tick(&machine.kinematics) {
             Ok(output) => output,
             // The machine stands before a place that was looked at ahead; only one that shows between two such
             // places is met in motion.
@@ -107,6 +109,21 @@ impl MotionController {
         };
         self.along = [self.along[1], self.along[2], output.along];
         self.path.line = output.line;
+        let running = self.state == State::Running;
+        let ends = output.at_rest && self.path.complete && output.along.s >= self.path.end_s - AT_END;
+        if running && (ends || !self.beams.tracking()) {
+            // Back on the path before it ends: the next one goes on there.
+            self.aside.want(PoseOffset::NONE);
+        }
+        let goes = running && (ends || !output.at_rest);
+        match machine.aside(&mut self.aside, &output.axes, goes) {
+            Ok(axes) => output.axes = axes,
+            Err(_) => {
+                let (line, s_mm) = (output.line, output.along.s as f32);
+                self.trip(Fault::NoSolution { line, s_mm });
+                return;
+            }
+        }
         if let Some(axis) = machine.jump(&self.axes, &output.axes.position) {
             let distance = (output.axes.position[axis] - self.axes[axis]) / AXIS_UNIT[axis];
             self.trip(Fault::Jump {
@@ -124,7 +141,12 @@ impl MotionController {
             });
         }
         self.follow(&output);
-        self.path.resting = if output.at_rest {
+        let still = if ends && running {
+            self.aside.is_none()
+        } else {
+            !self.aside.moves()
+        };
+        self.path.resting = if output.at_rest && still {
             self.path.resting.saturating_add(1)
         } else {
             0
@@ -166,6 +188,8 @@ impl MotionController {
             }
             State::Stopping => {
                 self.path.forget();
+                // The axes stay where they are, and that is where a path begins.
+                self.aside = Aside::NONE;
                 self.beams = Beams::NONE;
                 match self.pending.take() {
                     Some(fault) => self.trip(fault),

@@ -2,6 +2,7 @@
 
 use super::MotionController;
 use super::path::LoadedPath;
+use crate::geometry::PoseOffset;
 use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::homing::Homing;
@@ -9,7 +10,11 @@ use crate::motion::machine::Machine;
 use crate::motion::state::Event;
 use crate::motion::{MotionConfig, State};
 use crate::protocol::{MotionStatus, Refusal, Request, Response};
+use crate::units::DEG_PER_RAD;
 
+/// How far the pose may be moved beside the path \[mm\] and turned about T \[rad\].
+const MOST_ASIDE_MM: f64 = 25.0;
+const MOST_ASIDE_RAD: f64 = 0.1;
 /// Highest override.
 const MOST_OVERRIDE: f64 = 2.0;
 
@@ -44,6 +49,7 @@ impl MotionController {
             Request::Hold => self.hold(),
             Request::Resume => self.resume(),
             Request::Stop => self.stop(),
+            Request::OffsetPose(offset) => self.offset_pose(offset),
             _ => Err(Refusal::NotMine),
         };
         match done {
@@ -142,6 +148,38 @@ impl MotionController {
         Ok(())
     }
 
+    /// Moves the pose beside the path that is tracked.
+    fn offset_pose(&mut self, offset: &PoseOffset) -> Result<(), Refusal> {
+        if self.state != State::Running {
+            return Err(Refusal::WrongState { state: self.state });
+        }
+        if !self.beams.tracking() {
+            return Err(Refusal::NotTracking);
+        }
+        let [lateral, normal, turn] = offset.numbers().map(libm::fabs);
+        if !(lateral <= MOST_ASIDE_MM && normal <= MOST_ASIDE_MM && turn <= MOST_ASIDE_RAD) {
+            return Err(Refusal::OffsetTooFar {
+                most_mm: MOST_ASIDE_MM as f32,
+                most_deg: (MOST_ASIDE_RAD * DEG_PER_RAD) as f32,
+            });
+        }
+        let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
+        let planned = self.aside.planned(&self.axes);
+        let pose = offset.beside(&machine.kinematics.forward(&planned));
+        let axes = machine
+            .kinematics
+            .inverse(&pose, &planned)
+            .map_err(|_| Refusal::OffsetUnreachable)?;
+        if let Some(axis) = machine.beyond_travel(&axes) {
+            return Err(Refusal::OffsetBeyondTravel {
+                axis: axis as u8,
+                position: (axes[axis] / AXIS_UNIT[axis]) as f32,
+            });
+        }
+        self.aside.want(*offset);
+        Ok(())
+    }
+
     pub(super) fn stop(&mut self) -> Result<(), Refusal> {
         let state = self.allowed(Event::Stop)?;
         match self.state {
@@ -168,6 +206,7 @@ impl MotionController {
             elements: self.path.elements,
             room: self.room(),
             speed_override: self.factor,
+            aside: self.aside.now(),
             servo_ticks,
             servo_lost,
             path_ticks: self.tick as u32,

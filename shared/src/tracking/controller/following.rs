@@ -1,11 +1,11 @@
 //! Ready and tracking: where the slides should be, and one tick towards it.
 
 use super::TrackerController;
-use crate::io::{Command, DacCode, SLIDES, SlideCommand};
+use crate::io::{Command, DacCode, SIDES, SLIDES, SlideCommand};
 use crate::tracking::history::Place;
 use crate::tracking::law::{LawFlag, SlideTarget};
 use crate::tracking::parameters::TrackerParameters;
-use crate::tracking::seam::{Sight, deviation, plan};
+use crate::tracking::seam::{RealHead, Sight, plan};
 use crate::tracking::{TrackerFault, TrackerState};
 
 impl<const KNOTS: usize> TrackerController<KNOTS> {
@@ -72,51 +72,70 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         plan: &[SlideTarget; SLIDES],
     ) -> [Option<SlideTarget>; SLIDES] {
         // Of the newest state as it was: an extrapolated pose would show a bend of the path as a deviation.
-        let off = self
-            .history
-            .newest()
-            .and_then(|(newest, _)| deviation(&parameters.heads, &self.path, &newest))
-            .unwrap_or([0.0; SLIDES]);
+        let newest = self.history.newest();
         let mut targets = [None; SLIDES];
-        for (i, target) in targets.iter_mut().enumerate() {
-            let slide = &mut self.slides[i];
-            let in_plan = match self.seam.sight(parameters, i, place) {
-                Sight::Seam(target) => {
-                    let away = libm::fabs(target.position - off[i] - slide.position);
-                    slide.arrived |= away <= parameters.map.gate;
-                    target
+        for side in 0..SIDES {
+            let (u, v) = (2 * side, 2 * side + 1);
+            let head = newest
+                .as_ref()
+                .and_then(|(newest, _)| RealHead::new(&parameters.heads, &self.path, newest, side));
+            let off = head.map_or([0.0; 2], |head| head.off());
+            let sights = [u, v].map(|slide| self.seam.sight(parameters, slide, place));
+            let mut in_plan =
+                [u, v].map(|slide| SlideTarget::rest(self.slides[slide].position + off[slide - u]));
+            for (i, sight) in sights.iter().enumerate() {
+                if let Some(target) = self.in_plan(parameters, place, (u + i, off[i]), sight, &plan[u + i]) {
+                    in_plan[i] = target;
                 }
-                Sight::Ahead(beginning) => {
-                    self.not_there_yet(i, place);
-                    beginning
-                }
-                Sight::Nowhere(last) => {
-                    self.not_there_yet(i, place);
-                    let about = last.unwrap_or(plan[i]);
-                    let goes = place.speed > 0.0 && !place.beams[i / 2];
-                    if i % 2 == 0 {
-                        // As the plan, the travel seen from where the planned path would have the head.
-                        let (min, max) = parameters.slides[i].law.travel;
-                        let travel = (min + off[i], max + off[i]);
-                        self.seam_searches[i / 2].step(&parameters.search, about, travel, goes)
-                    } else {
-                        about
-                    }
-                }
-                Sight::Lost => {
-                    self.report(TrackerFault::LostSeam {
-                        side: i as u8 / 2,
-                        s_mm: place.s as f32,
-                    });
-                    continue;
-                }
-            };
-            *target = Some(SlideTarget {
-                position: in_plan.position - off[i],
-                ..in_plan
-            });
+            }
+            let real = head.map_or(in_plan, |head| head.targets(in_plan));
+            for (i, sight) in sights.into_iter().enumerate() {
+                let slide = &mut self.slides[u + i];
+                let away = libm::fabs(real[i].position - slide.position);
+                slide.arrived |= matches!(sight, Sight::Seam(_)) && away <= parameters.map.gate;
+                targets[u + i] = (!matches!(sight, Sight::Lost)).then_some(real[i]);
+            }
         }
         targets
+    }
+
+    /// Where a slide should be in the frame of the plan, by what its camera saw; `off` is how far its spot is off the
+    /// planned place \[mm\]. `None` where the seam was lost.
+    fn in_plan(
+        &mut self,
+        parameters: &TrackerParameters,
+        place: &Place,
+        (slide, off): (usize, f64),
+        sight: &Sight,
+        plan: &SlideTarget,
+    ) -> Option<SlideTarget> {
+        let side = slide / 2;
+        match sight {
+            Sight::Seam(seam) => Some(*seam),
+            Sight::Ahead(beginning) => {
+                self.not_there_yet(slide, place);
+                Some(*beginning)
+            }
+            Sight::Nowhere(last) => {
+                self.not_there_yet(slide, place);
+                let about = last.unwrap_or(*plan);
+                if slide % 2 == 1 {
+                    return Some(about);
+                }
+                let goes = place.speed > 0.0 && !place.beams[side];
+                // Its travel, seen from where the planned path would have the head.
+                let (min, max) = parameters.slides[slide].law.travel;
+                let travel = (min + off, max + off);
+                Some(self.seam_searches[side].step(&parameters.search, about, travel, goes))
+            }
+            Sight::Lost => {
+                self.report(TrackerFault::LostSeam {
+                    side: side as u8,
+                    s_mm: place.s as f32,
+                });
+                None
+            }
+        }
     }
 
     /// Slide `i` is on its way to a seam that was not seen where its spot is.

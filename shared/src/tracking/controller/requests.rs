@@ -49,7 +49,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             | Request::Back
             | Request::Hold
             | Request::Resume
-            | Request::Stop => Err(Refusal::NotMine),
+            | Request::Stop
+            | Request::OffsetPose(_) => Err(Refusal::NotMine),
         };
         match result {
             Ok(()) => Response::Done,
