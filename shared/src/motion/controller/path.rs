@@ -100,6 +100,14 @@ impl MotionController {
             // The machine stands before a place that was looked at ahead; only one that shows between two such
             // places is met in motion.
             Err(place) => {
+                let [_, after, last] = self.along;
+                let stands = SpeedState::at_rest(last.s);
+                if self.planner.rested() && self.along != [stands; PUBLISHED as usize + 1] {
+                    // What is published has yet to come to rest there too.
+                    self.along = [after, last, stands];
+                    self.reference = MotorReference::at_rest(self.reference.position);
+                    return;
+                }
                 self.trip(Fault::NoSolution {
                     line: place.line,
                     s_mm: place.s as f32,

@@ -310,7 +310,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     }
 
     /// The output has come to rest.
-    fn rested(&self) -> bool {
+    pub fn rested(&self) -> bool {
         self.resting >= self.bounds.filter_ticks as u32
     }
 
