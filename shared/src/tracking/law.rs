@@ -18,8 +18,10 @@ pub struct SlideLaw {
     pub max_acceleration: f64,
     /// Soft limits \[mm\].
     pub travel: (f64, f64),
-    /// Deviation below which the slide is left alone \[mm\].
+    /// Deviation below which the slide is left alone, now and a preview time ahead \[mm\]; 0 for none.
     pub dead_band: f64,
+    /// Preview time \[s\].
+    pub preview: f64,
     /// Speed at +10 V \[mm/s\]; negative if the drive turns backwards.
     pub full_scale: f64,
 }
@@ -99,13 +101,16 @@ impl LawState {
         let mut velocity = 0.0;
         if let Some(target) = finite {
             let error = target.position - position;
-            let error = if libm::fabs(error) <= law.dead_band {
-                0.0
-            } else {
-                error
+            // Near the seam and staying there, the slide is left alone; near one that leads away, it goes along.
+            let soon = error + target.velocity * law.preview;
+            let near = |error: f64| libm::fabs(error) <= law.dead_band;
+            let (error, along) = match (near(error), near(soon)) {
+                (true, true) => (0.0, 0.0),
+                (true, false) => (0.0, target.velocity),
+                (false, _) => (error, target.velocity),
             };
             let integral = self.integral + law.ki * error * law.dt;
-            let wanted = target.velocity + law.kp * error + integral;
+            let wanted = along + law.kp * error + integral;
             velocity = wanted.clamp(-law.max_velocity, law.max_velocity);
             if velocity == wanted {
                 self.integral = integral;
@@ -149,6 +154,7 @@ mod tests {
         max_acceleration: 5000.0,
         travel: (-12.0, 12.0),
         dead_band: 0.0,
+        preview: 0.01,
         full_scale: 100.0,
     };
 
@@ -193,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn inside_the_dead_band_only_the_feed_forward_remains() {
+    fn inside_the_dead_band_a_slide_goes_along_with_the_seam_or_rests() {
         let law = SlideLaw {
             dead_band: 0.01,
             ..LAW
@@ -203,5 +209,12 @@ mod tests {
             velocity: 2.0,
         };
         assert_eq!(LawState::default().step(&law, Some(target), 0.0).velocity, 2.0);
+        // 0.5 µm in a preview time: noise, or nothing worth going after.
+        let target = SlideTarget {
+            velocity: 0.05,
+            ..target
+        };
+        assert_eq!(LawState::default().step(&law, Some(target), 0.0).velocity, 0.0);
+        assert_ne!(LawState::default().step(&LAW, Some(target), 0.0).velocity, 0.0);
     }
 }

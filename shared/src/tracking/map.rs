@@ -87,6 +87,16 @@ impl SeamMap {
         Some(self.estimate(law, next.sigma)?.value)
     }
 
+    /// Nothing is known.
+    pub fn is_empty(&self) -> bool {
+        self.samples.is_empty()
+    }
+
+    /// The seam is believed to have jumped: the next sample takes the place of all others.
+    pub fn relocks(&self) -> bool {
+        self.consecutive_outliers >= OUTLIERS_TO_RELOCK
+    }
+
     /// Forgets all samples.
     pub fn clear(&mut self) {
         self.samples.clear();
@@ -137,7 +147,7 @@ impl SeamMap {
 
     /// Whether a sample is an outlier; if the seam has jumped, all samples are given up.
     fn judge(&mut self, law: &MapLaw, sigma: f64, y: f64) -> Added {
-        let added = if self.consecutive_outliers >= OUTLIERS_TO_RELOCK {
+        let added = if self.relocks() {
             self.samples.clear();
             Added::Relocked
         } else if self

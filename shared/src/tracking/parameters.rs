@@ -114,6 +114,7 @@ impl SlideConfig {
                 max_acceleration,
                 travel: (min, max),
                 dead_band: not_negative("tracking", "dead_band_mm", tracking.dead_band_mm)?,
+                preview,
                 full_scale: not_zero("velocity_at_10v_mm_s", self.velocity_at_10v_mm_s)?,
             },
             counts_per_mm: not_zero("counts_per_mm", self.counts_per_mm)?,

@@ -19,6 +19,8 @@ const fn u_slide(side: usize) -> usize {
 #[derive(Clone, Debug, Default)]
 pub struct Seam {
     maps: [SeamMap; SLIDES],
+    /// What the maps held before they locked on to the seam anew: the spot has yet to pass that.
+    before: [SeamMap; SLIDES],
     /// Where each slide last met the seam since tracking began \[mm\].
     met: [Option<f64>; SLIDES],
     accepted: [u32; SIDES],
@@ -30,6 +32,8 @@ pub struct Seam {
 pub enum Sight {
     /// The seam, in the frame of the planned path.
     Seam(SlideTarget),
+    /// The same, where the seam has just jumped to.
+    Jump(SlideTarget),
     /// The seam was seen further ahead only: be where that is, so that the camera keeps it in sight.
     Ahead(SlideTarget),
     /// The seam was not seen, here or ahead: stay where it was met last, or follow the plan if it never was.
@@ -43,6 +47,7 @@ impl Seam {
     pub const fn new() -> Self {
         Self {
             maps: [const { SeamMap::new() }; SLIDES],
+            before: [const { SeamMap::new() }; SLIDES],
             met: [None; SLIDES],
             accepted: [0; SIDES],
             rejected: [0; SIDES],
@@ -51,7 +56,8 @@ impl Seam {
 
     /// Forgets the seam, for another path or a new run of the same.
     pub fn forget(&mut self) {
-        self.maps.iter_mut().for_each(SeamMap::clear);
+        let all = self.maps.iter_mut().chain(&mut self.before);
+        all.for_each(SeamMap::clear);
         self.begin();
     }
 
@@ -89,8 +95,13 @@ impl Seam {
         } else {
             SeamMap::add
         };
-        let added = [(u, meeting.u), (v, meeting.v)]
-            .map(|(slide, y)| add(&mut self.maps[slide], &parameters.map, meeting.sigma, y));
+        let added = [(u, meeting.u), (v, meeting.v)].map(|(slide, y)| {
+            let map = &mut self.maps[slide];
+            if map.relocks() {
+                self.before[slide].clone_from(map);
+            }
+            add(map, &parameters.map, meeting.sigma, y)
+        });
         if added.contains(&Added::Outlier) {
             self.rejected[side] = self.rejected[side].saturating_add(1);
         } else if added != [Added::TooClose; 2] {
@@ -101,11 +112,23 @@ impl Seam {
     /// Where `slide` should be when the machine is at `place`.
     pub fn sight(&mut self, parameters: &TrackerParameters, slide: usize, place: &Place) -> Sight {
         let (law, s, speed) = (&parameters.map, place.s, place.speed);
-        let map = &self.maps[slide];
+        let before = &mut self.before[slide];
+        // It has jumped ahead, but not where the spot is.
+        let behind = self.maps[slide].begins_after(s) && before.estimate(law, s).is_some();
+        let jumps = !behind && !before.is_empty();
+        if jumps {
+            before.clear();
+        }
+        let map = if behind { before } else { &self.maps[slide] };
         if let Some(now) = map.estimate(law, s) {
             self.met[slide] = Some(now.value);
             let ahead = map.estimate(law, s + speed * parameters.preview);
-            return Sight::Seam(SlideTarget::seam(now, ahead, speed));
+            let target = SlideTarget::seam(now, ahead, speed);
+            return if jumps {
+                Sight::Jump(target)
+            } else {
+                Sight::Seam(target)
+            };
         }
         // Back along the path after a hold, the map begins ahead.
         if place.beams[slide / 2] && self.met[slide].is_some() && !map.begins_after(s) {

@@ -1,8 +1,9 @@
 //! How near the spots stay to the seam.
 
-use crate::bench::{Bench, SeamFn, Shape};
+use crate::bench::{Bench, SeamFn, Shape, config};
 use shared::tracking::TrackerState;
 
+const FIVE_M_MIN: f64 = 5000.0 / 60.0;
 const NINE_M_MIN: f64 = 150.0;
 /// Noise of the cameras: 0.02 mm as 3σ.
 const NOISE: f64 = 0.02 / 3.0;
@@ -60,6 +61,66 @@ fn and_from_points_seen_before_and_beyond_the_plane_of_the_lead() {
     bench.along = |capture| if capture % 80 < 40 { 0.5 } else { -0.5 };
     let worst = weld(&mut bench, NINE_M_MIN);
     assert!(worst.iter().all(|w| *w <= 0.02), "{worst:?} mm");
+}
+
+/// Follows a seam with a dead band of 0.03 mm; largest error, and how far U1 moved over the last 300 mm.
+fn with_a_dead_band(seam: SeamFn, speed: f64) -> (f64, f64) {
+    let mut config = config();
+    config.tracking.dead_band_mm = 0.03;
+    let mut bench = Bench::new(Shape::Straight, seam);
+    bench.noise = NOISE;
+    bench.prepare_with(config);
+    bench.tracking = true;
+    bench.speed = speed;
+    let (mut worst, mut range) = (0.0f64, [f64::INFINITY, f64::NEG_INFINITY]);
+    while bench.s < 440.0 {
+        bench.tick();
+        if bench.s > 140.0 {
+            worst = worst.max(bench.spot_errors()[0].abs());
+            let u = bench.plant.truth()[0];
+            range = [range[0].min(u), range[1].max(u)];
+        }
+    }
+    assert_eq!(bench.last.sample.fault, None);
+    (worst, range[1] - range[0])
+}
+
+#[test]
+fn inside_the_dead_band_slides_rest_and_a_seam_that_leads_away_is_followed() {
+    let (worst, moved) = with_a_dead_band(|_, _| (0.4, 0.0), NINE_M_MIN);
+    assert!(
+        worst <= 0.045 && moved <= 0.002,
+        "{worst} mm, moved by {moved} mm"
+    );
+    let (worst, moved) = with_a_dead_band(|_, s| (0.02 * s - 5.0, 0.0), NINE_M_MIN);
+    assert!(worst <= 0.045 && moved > 5.9, "{worst} mm, moved by {moved} mm");
+}
+
+#[test]
+fn a_seam_that_jumps_is_followed_to_the_jump_and_locked_on_to_anew_behind_it() {
+    for to in [2.0, -3.0] {
+        let seam: SeamFn = if to > 0.0 {
+            |_, s| (if s < 200.0 { 0.3 } else { 2.0 }, 0.1)
+        } else {
+            |_, s| (if s < 200.0 { 0.3 } else { -3.0 }, 0.1)
+        };
+        let mut bench = Bench::new(Shape::Straight, seam);
+        bench.noise = NOISE;
+        bench.prepare();
+        bench.tracking = true;
+        bench.speed = FIVE_M_MIN;
+        while bench.s < 300.0 {
+            bench.beams = [bench.s > 40.0; 2];
+            bench.tick();
+            assert_eq!(bench.last.sample.fault, None, "{} mm", bench.s);
+            let s = bench.s_now();
+            if (60.0..199.9).contains(&s) || s > 212.0 {
+                let errors = bench.spot_errors();
+                assert!(errors.iter().all(|e| e.abs() <= 0.03), "{errors:?} mm at {s} mm");
+            }
+        }
+        assert_eq!(bench.status().rejected, [3, 3]);
+    }
 }
 
 #[test]

@@ -39,6 +39,7 @@ impl Tracker {
                 max_acceleration: p("amax"),
                 travel: (p("umin"), p("umax")),
                 dead_band: 0.0,
+                preview: p("tpre"),
                 full_scale: p("vfull"),
             },
             preview: p("tpre"),

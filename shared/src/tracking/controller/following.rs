@@ -112,6 +112,10 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         let side = slide / 2;
         match sight {
             Sight::Seam(seam) => Some(*seam),
+            Sight::Jump(seam) => {
+                self.slides[slide].arrived = false;
+                Some(*seam)
+            }
             Sight::Ahead(beginning) => {
                 self.not_there_yet(slide, place);
                 Some(*beginning)
