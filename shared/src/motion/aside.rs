@@ -60,6 +60,11 @@ impl Aside {
         self.now == PoseOffset::NONE && self.to == PoseOffset::NONE && self.wanted.is_none()
     }
 
+    /// A tick of it changes something: the pose is beside the plan, or just was.
+    pub fn acts(&self) -> bool {
+        !self.is_none() || self.added_rate != [0.0; AXES]
+    }
+
     /// Where it is.
     pub fn now(&self) -> PoseOffset {
         self.now
@@ -100,9 +105,6 @@ impl Aside {
         planned: &AxisMotion,
         goes: bool,
     ) -> Result<AxisMotion, KinematicsError> {
-        if self.is_none() && self.added == [0.0; AXES] {
-            return Ok(*planned);
-        }
         let pose = kinematics.forward(&planned.position);
         let at = |offset: &PoseOffset| kinematics.inverse(&offset.beside(&pose), &planned.position);
         if !self.moves()

@@ -124,12 +124,14 @@ impl MotionController {
             self.aside.want(PoseOffset::NONE);
         }
         let goes = running && (ends || !output.at_rest);
-        match machine.aside(&mut self.aside, &output.axes, goes) {
-            Ok(axes) => output.axes = axes,
-            Err(_) => {
-                let (line, s_mm) = (output.line, output.along.s as f32);
-                self.trip(Fault::NoSolution { line, s_mm });
-                return;
+        if self.aside.acts() {
+            match machine.aside(&mut self.aside, &output.axes, goes) {
+                Ok(axes) => output.axes = axes,
+                Err(_) => {
+                    let (line, s_mm) = (output.line, output.along.s as f32);
+                    self.trip(Fault::NoSolution { line, s_mm });
+                    return;
+                }
             }
         }
         if let Some(axis) = machine.jump(&self.axes, &output.axes.position) {
