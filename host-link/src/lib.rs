@@ -8,6 +8,7 @@ pub mod curve;
 pub mod dry_run;
 pub mod evaluate;
 pub mod machine;
+pub mod measure;
 pub mod metrics;
 pub mod nc;
 pub mod part;

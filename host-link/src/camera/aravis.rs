@@ -3,7 +3,7 @@
 use super::matching::{Match, Matching, Strobe};
 use super::{Arrival, Camera, CameraError, GigeConfig, Picture};
 use ::aravis::prelude::*;
-use ::aravis::{AcquisitionMode, Buffer, BufferStatus, PixelFormat, RangeCheckPolicy, Stream, glib};
+use ::aravis::{AcquisitionMode, Auto, Buffer, BufferStatus, PixelFormat, RangeCheckPolicy, Stream, glib};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -79,6 +79,16 @@ impl GigeCamera {
                 what: size,
                 reason: format!("it set {set_size:?}"),
             });
+        }
+        // A picture that the camera has adjusted measures something else.
+        if matches!(camera.is_exposure_auto_available(), Ok(true)) {
+            set(
+                "a fixed exposure".to_owned(),
+                camera.set_exposure_time_auto(Auto::Off),
+            )?;
+        }
+        if matches!(camera.is_gain_auto_available(), Ok(true)) {
+            set("a fixed gain".to_owned(), camera.set_gain_auto(Auto::Off))?;
         }
         set(
             format!("an exposure of {} µs", config.exposure_us),

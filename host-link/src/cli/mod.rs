@@ -4,6 +4,7 @@ mod boards;
 mod calibrate;
 mod check;
 mod dry_run;
+mod measure;
 mod plan;
 mod teach;
 mod teach_seam;
@@ -29,6 +30,7 @@ enum Command {
     Calibrate(calibrate::Calibrate),
     Check(check::Check),
     DryRun(dry_run::DryRun),
+    Measure(measure::Measure),
     Plan(plan::Plan),
     Teach(teach::Teach),
     Weld(weld::Weld),
@@ -41,6 +43,7 @@ impl Cli {
             Command::Calibrate(command) => command.run().map(|()| ExitCode::SUCCESS),
             Command::Check(command) => command.run().map(|()| ExitCode::SUCCESS),
             Command::DryRun(command) => command.run(),
+            Command::Measure(command) => command.run(),
             Command::Plan(command) => command.run().map(|()| ExitCode::SUCCESS),
             Command::Teach(command) => command.run(),
             Command::Weld(command) => command.run(),
@@ -53,4 +56,38 @@ fn read_program(path: &Path, block_delete: bool) -> anyhow::Result<Program> {
     let name = path.display();
     let file = File::open(path).with_context(|| format!("cannot read program {name}"))?;
     interpret_file(file, Options { block_delete }).with_context(|| format!("program {name}"))
+}
+
+/// The error and its causes in one line; a cause that its effect has already quoted is not said again.
+pub fn sentence(error: &anyhow::Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if text.contains(&cause) {
+            continue;
+        }
+        if !text.is_empty() {
+            text.push_str(": ");
+        }
+        text.push_str(&cause);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::MachineFile;
+    use anyhow::Context;
+
+    #[test]
+    fn a_cause_is_said_once() {
+        let missing = std::path::Path::new("none.toml");
+        let error = MachineFile::read(missing).context("weld").unwrap_err();
+        let text = sentence(&error);
+        assert!(
+            text.starts_with("weld: cannot read machine file none.toml: "),
+            "{text}"
+        );
+        assert_eq!(text.matches("os error").count(), 1, "{text}");
+    }
 }

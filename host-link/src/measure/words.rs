@@ -1,0 +1,75 @@
+//! What measurements say, in words.
+
+use vision::{Criterion, Doubt, Measured, Report, State, Status};
+
+/// Quality from which a measurement is used.
+const NEEDED: f64 = 0.5;
+
+/// A status in a word or two.
+pub fn status(status: Status) -> &'static str {
+    match status {
+        Status::Seam => "seam",
+        Status::Dark => "dark",
+        Status::Overexposed => "overexposed",
+        Status::TooHigh => "too high",
+        Status::TooLow => "too low",
+        Status::NoBand => "no band",
+        Status::NoSeam => "no seam",
+        Status::Ambiguous => "ambiguous",
+    }
+}
+
+/// Why a picture is of no use; nothing of one that is.
+pub fn why(report: &Report) -> Option<String> {
+    let plain = match report.status {
+        Status::Seam => return None,
+        Status::Dark => "most pixels are nearly black: is the light on?",
+        Status::Overexposed => "much of the picture is saturated: less light or a shorter exposure",
+        Status::TooHigh => "the work is higher than the picture reaches: move the camera away from it",
+        Status::TooLow => "the work is lower than the picture reaches: move the camera towards it",
+        Status::NoBand => "nothing in the picture is sharp",
+        Status::Ambiguous => "two things may be the seam",
+        Status::NoSeam => return Some(report.measured.as_ref().map_or_else(String::new, weakness)),
+    };
+    Some(plain.to_owned())
+}
+
+/// What speaks against a measured seam.
+fn weakness(measured: &Measured) -> String {
+    let Some(weakest) = measured.weakest else {
+        return "there is a sharp band, but no dark line across it".to_owned();
+    };
+    let what = match weakest {
+        Criterion::Depth => "the line is not dark enough against the plate",
+        Criterion::Straightness => "too little of the edges lies on straight lines",
+        Criterion::Scatter => "the edges are too rough",
+        Criterion::Continuity => "the line does not go on outside the sharp band: a spot or a scratch?",
+        Criterion::Height => "the height is not known well enough: too little texture?",
+        Criterion::Width => "the line is too narrow",
+        Criterion::Border => "it is too close to the left or right border",
+        Criterion::Band => "the band is too close to the upper or lower border",
+        Criterion::Ambiguity => "something else may as well be the seam",
+        Criterion::Lateral => "the place across is not known well enough: too little texture?",
+        Criterion::Gain => "the band explains too little of the picture",
+        Criterion::Walls => "too little of one wall is in the picture",
+    };
+    format!("{what} (quality {:.2}, {NEEDED} needed)", measured.quality)
+}
+
+/// What an observer is doing.
+pub fn state(state: State) -> &'static str {
+    match state {
+        State::Acquiring => "acquiring",
+        State::Tracking => "tracking",
+        State::Lost => "lost",
+    }
+}
+
+/// Why an observer does not believe a seam.
+pub fn doubt(doubt: Doubt) -> &'static str {
+    match doubt {
+        Doubt::New => "not yet believed: three pictures in a row have to agree",
+        Doubt::Position => "not believed: it is not where the seam was",
+        Doubt::Width => "not believed: it is not as wide as the seam was",
+    }
+}
