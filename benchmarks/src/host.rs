@@ -7,6 +7,7 @@ use benchmarks::meter::{Meter, measured};
 use benchmarks::trajectories::of_file;
 use shared::trajectory::BoardPlanner;
 use std::path::Path;
+use std::time::Instant;
 
 struct Outside;
 
@@ -17,11 +18,31 @@ impl Meter for Outside {
     }
 }
 
+struct Clock;
+
+impl Meter for Clock {
+    /// Nanoseconds.
+    fn count(&mut self, call: &mut dyn FnMut()) -> u32 {
+        let begin = Instant::now();
+        measured(call);
+        u32::try_from(begin.elapsed().as_nanos()).unwrap_or(u32::MAX)
+    }
+}
+
 /// Runs the benchmark that the command line names: `trajectory` with the file of a program, and its feed if
 /// that is a free-form curve, or one of those that run on the board too.
 pub fn run() -> Result<()> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().context("which benchmark? give its name")?;
+    match name.as_str() {
+        "vision-cost" => return benchmarks::vision::cost::run(&mut Outside),
+        "vision-time" => return benchmarks::vision::cost::run(&mut Clock),
+        "vision-accuracy" => {
+            let pictures = arguments.next().context("how many pictures?")?.parse()?;
+            return benchmarks::vision::accuracy::run(pictures);
+        }
+        _ => {}
+    }
     let file = MACHINES_FILE.to_str()?;
     let file = std::fs::read(file)
         .with_context(|| format!("cannot read {file}, which `cargo xtask bench` writes"))?;

@@ -15,6 +15,8 @@ mod random;
 pub mod record;
 #[cfg(not(target_os = "none"))]
 pub mod trajectories;
+#[cfg(not(target_os = "none"))]
+pub mod vision;
 
 use core::ffi::CStr;
 use machine::Unreadable;

@@ -10,6 +10,7 @@ mod report;
 mod row;
 mod table;
 mod trajectories;
+mod vision;
 
 use crate::cargo::{cargo, root, run_command, target_directory};
 use crate::firmware::{PROFILE, TARGET};
@@ -43,6 +44,15 @@ pub enum Benchmark {
         #[arg(long)]
         record: bool,
     },
+    /// Time and count the measurement of pictures, and hold it against rendered truth
+    Vision {
+        /// Pictures of gaps to measure; each takes a fifth of a second of a core
+        #[arg(long, value_name = "N", default_value_t = 2000)]
+        frames: u64,
+        /// Put the tables into docs/benchmarks.md too
+        #[arg(long)]
+        record: bool,
+    },
     /// Run every program (.seg) of a folder through the trajectory planner; fails if a limit is not kept
     Trajectories {
         /// Folder of the programs, and of baseline.csv with what another planner took, if there is one
@@ -61,13 +71,15 @@ pub enum Benchmark {
 const KINEMATICS: &str = "kinematics";
 const PLANNER: &str = "planner";
 const TRAJECTORIES: &str = "trajectories";
+const VISION: &str = "vision";
 
 impl Benchmark {
     /// What must be installed for it.
     pub fn wants(&self) -> &'static [Tool] {
         match self {
             Self::Kinematics { .. } | Self::Planner { .. } => &setup::COUNTING,
-            Self::Trajectories {
+            Self::Vision { .. }
+            | Self::Trajectories {
                 instructions: true, ..
             } => &[Tool::Valgrind],
             Self::Trajectories { .. } => &[],
@@ -79,6 +91,7 @@ impl Benchmark {
         match self {
             Self::Kinematics { record } => kinematics(record),
             Self::Planner { record } => planner::run(record),
+            Self::Vision { frames, record } => vision::run(frames, record),
             Self::Trajectories {
                 programs,
                 instructions,
@@ -147,16 +160,21 @@ fn publish(name: &str, table: &str, record: bool) -> Result<()> {
 
 /// Builds the program as firmware is built, for the boards' processor or for the PC.
 fn build(target: Option<&str>) -> Result<PathBuf> {
+    build_as(PROFILE, target)
+}
+
+/// The same in another profile.
+fn build_as(profile: &str, target: Option<&str>) -> Result<PathBuf> {
     let what = format!("the benchmarks for {}", target.unwrap_or("the PC"));
     eprintln!("building {what}");
-    let mut command = cargo(&["build", "--quiet", "--package", PACKAGE, "--profile", PROFILE])?;
+    let mut command = cargo(&["build", "--quiet", "--package", PACKAGE, "--profile", profile])?;
     let mut folder = target_directory()?;
     if let Some(target) = target {
         command.args(["--target", target]);
         folder.push(target);
     }
     run_command(command, &format!("building {what}"))?;
-    Ok(folder.join(PROFILE).join(PROGRAM))
+    Ok(folder.join(profile).join(PROGRAM))
 }
 
 impl Counts {

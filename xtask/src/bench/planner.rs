@@ -22,15 +22,15 @@ const HEAD: [&str; 11] = [
 
 /// The calls of one function in one program.
 #[derive(Debug, PartialEq, Eq)]
-struct Calls {
-    program: String,
-    function: String,
-    instructions: Vec<u32>,
+pub(super) struct Calls {
+    pub program: String,
+    pub function: String,
+    pub instructions: Vec<u32>,
 }
 
 /// Everything that was called, in the order of the calls.
 #[derive(Debug, PartialEq, Eq)]
-struct Log {
+pub(super) struct Log {
     calls: Vec<(String, String, u32)>,
     checksum: u64,
 }
@@ -61,7 +61,7 @@ pub fn run(record: bool) -> Result<ExitCode> {
 
 impl Log {
     /// Reads what a program printed. Other lines may stand between.
-    fn read(text: &str) -> Result<Self> {
+    pub fn read(text: &str) -> Result<Self> {
         let mut calls = Vec::new();
         for record in text.lines().filter_map(Record::parse) {
             match record {
@@ -80,7 +80,7 @@ impl Log {
     }
 
     /// The same with what was counted from outside.
-    fn with_counts(mut self, counted: &[u32]) -> Result<Self> {
+    pub fn with_counts(mut self, counted: &[u32]) -> Result<Self> {
         ensure!(
             counted.len() == self.calls.len(),
             "callgrind saw {} calls of the {} made",
@@ -95,7 +95,7 @@ impl Log {
 
     /// By program and function, less what counting itself costs, which is what the first call of each program,
     /// that does nothing, costs.
-    fn by_function(&self) -> Result<Vec<Calls>> {
+    pub fn by_function(&self) -> Result<Vec<Calls>> {
         let mut all: Vec<Calls> = Vec::new();
         let mut nothing = None;
         for (program, function, instructions) in &self.calls {
@@ -121,6 +121,12 @@ impl Log {
 }
 
 impl Calls {
+    /// Of the average call.
+    pub fn mean(&self) -> f64 {
+        let sum: f64 = self.instructions.iter().copied().map(f64::from).sum();
+        sum / self.instructions.len() as f64
+    }
+
     /// At most so many instructions in 10 %, in the mean, in 99 %, in all of the calls.
     fn figures(&self) -> [String; 4] {
         let mut sorted = self.instructions.clone();
