@@ -245,6 +245,30 @@ fn a_seam_and_boards_that_do_not_suit_the_machine_are_told_with_the_remedy() {
 }
 
 #[test]
+fn cameras_and_scenes_that_do_not_suit_are_told_with_the_remedy() {
+    let said = |more: Vec<&'static str>| {
+        Attempt {
+            more,
+            ..Attempt::new()
+        }
+        .refusal()
+    };
+    let real = said(vec!["--boards", "192.0.2.1,192.0.2.2"]);
+    assert_says(&real, &["no real cameras", "--camera geometric"]);
+    let blind = said(vec![
+        "--boards",
+        "simulated",
+        "--camera",
+        "geometric",
+        "--scene",
+        "x.toml",
+    ]);
+    assert_says(&blind, &["leave --scene out", "--camera images"]);
+    let none = said(vec!["--boards", "simulated", "--scene", "no-scene.toml"]);
+    assert_says(&none, &["cannot read no-scene.toml"]);
+}
+
+#[test]
 fn a_part_that_cannot_be_planned_or_read_is_named() {
     let part = written("boat.toml", "[boat]\nlength = 3\n");
     let said = Attempt {
@@ -375,7 +399,7 @@ fn a_speed_out_of_reach_is_named_with_the_drive_and_the_possible_one() {
 
 #[test]
 fn a_board_that_is_not_there_is_named() {
-    let more = vec!["--boards", "no such host,no such host"];
+    let more = vec!["--camera", "geometric", "--boards", "no such host,no such host"];
     let said = Attempt {
         more,
         ..Attempt::new()

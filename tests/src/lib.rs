@@ -11,7 +11,8 @@ use host_link::nc::{Options, Program, interpret};
 use host_link::part::PartFile;
 use host_link::report::Report;
 use host_link::seam::Deviation;
-use host_link::weld::{Ended, Job, Names, Surroundings, Work};
+use host_link::weld::{CameraChoice, Ended, ImageCameras, Job, Names, PictureSource, Surroundings, Work};
+use host_link::world::SceneFile;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -84,6 +85,25 @@ pub fn weld(boards: &mut dyn Boards, seam: Deviation, speed_m_per_min: f64) -> E
     with_weld(seam, speed_m_per_min, |job| prediction::run(boards, job))
 }
 
+/// Welds the shipped program along `seam` by what cameras see of it in pictures of `scene`.
+pub fn weld_in_scene(
+    boards: &mut dyn Boards,
+    seam: Deviation,
+    scene: SceneFile,
+    speed_m_per_min: f64,
+) -> Ended {
+    let machine = machine();
+    let cameras = &machine.tracking.as_ref().expect("a tracker").cameras;
+    let images = ImageCameras {
+        calibrations: std::array::from_fn(|side| cameras.nominal(side)),
+        source: PictureSource::Rendered(scene),
+    };
+    let program = program();
+    let mut job = job(&machine, &program, Some(seam), Some(speed_m_per_min));
+    job.surroundings.cameras = CameraChoice::Images(Box::new(images));
+    prediction::run(boards, &job)
+}
+
 /// Goes along 500 lines of 0.5 mm on a wave while the head turns, at 6 m/min: most of what a planner can be asked for.
 /// It takes as long as predicted.
 pub fn short_lines(boards: &mut dyn Boards) -> Ended {
@@ -111,8 +131,17 @@ fn with_job<R>(
     speed_m_per_min: Option<f64>,
     act: impl FnOnce(&Job) -> R,
 ) -> R {
-    act(&Job {
-        machine: &machine(),
+    act(&job(&machine(), program, seam, speed_m_per_min))
+}
+
+fn job<'a>(
+    machine: &'a MachineFile,
+    program: &'a Program,
+    seam: Option<Deviation>,
+    speed_m_per_min: Option<f64>,
+) -> Job<'a> {
+    Job {
+        machine,
         work: Work::Program(program),
         speed_m_per_min,
         from_line: None,
@@ -127,7 +156,7 @@ fn with_job<R>(
             seam: seam.map(Rc::new),
             ..Surroundings::default()
         },
-    })
+    }
 }
 
 /// The machines without a tracker and their shipped jobs.

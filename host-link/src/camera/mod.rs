@@ -22,7 +22,8 @@ pub use recorder::Recorder;
 use crate::table::TableError;
 use std::time::Duration;
 use thiserror::Error;
-use vision::{Image, ImageError};
+use vision::render::RenderError;
+use vision::{Image, ImageError, OpticsError};
 
 /// A picture of one camera, 8 bits a pixel, taken at a strobe of the tracker board.
 ///
@@ -75,6 +76,12 @@ pub trait Camera: Send {
 /// Why there are no more pictures from a camera. Reads as one sentence.
 #[derive(Debug, Error)]
 pub enum CameraError {
+    /// A picture cannot be rendered.
+    #[error("a picture cannot be rendered: {0}")]
+    Render(#[from] RenderError),
+    /// Textured work cannot be made for a camera like that.
+    #[error(transparent)]
+    Optics(#[from] OpticsError),
     /// A file of a picture cannot be used.
     #[error(transparent)]
     Png(#[from] PngError),

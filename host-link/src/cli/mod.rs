@@ -2,6 +2,7 @@
 
 mod boards;
 mod calibrate;
+mod cameras;
 mod check;
 mod dry_run;
 mod measure;

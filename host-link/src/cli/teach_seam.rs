@@ -1,6 +1,7 @@
 //! `host-link teach` for the seams of a rib: by the cameras.
 
 use super::boards::{BoardChoice, exit_code};
+use super::cameras::CameraArgs;
 use super::read_program;
 use crate::machine::MachineFile;
 use crate::nc::{Options, Program, interpret};
@@ -40,6 +41,8 @@ pub struct SeamArgs {
     /// Seams: the program planned from the drawing, from which --seam deviates [default: that of the part]
     #[arg(long, value_name = "DRAWING", requires = "seam")]
     seam_of: Option<PathBuf>,
+    #[command(flatten)]
+    eyes: CameraArgs,
 }
 
 /// X Y Z \[mm\] A B C \[deg\] of the tip.
@@ -77,6 +80,7 @@ impl SeamArgs {
             (self.jog, "--jog"),
             (self.restart, "--restart"),
             (self.seam.is_some(), "--seam"),
+            (self.eyes.scene(), "--scene"),
         ];
         match told.into_iter().find(|(told, _)| *told) {
             Some((_, name)) => bail!("{name} is for parts with seams ([t-seam]), and this part has none"),
@@ -139,6 +143,7 @@ impl SeamArgs {
             surroundings: Surroundings {
                 seam: deviation.map(Rc::new),
                 drawing: prepared.drawn.as_ref(),
+                cameras: self.eyes.choose(machine, machine_path, boards)?,
                 seed,
             },
             names: Names {

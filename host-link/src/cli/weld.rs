@@ -1,6 +1,7 @@
 //! `host-link weld`: the job.
 
 use super::boards::{BoardChoice, exit_code};
+use super::cameras::CameraArgs;
 use super::read_program;
 use crate::machine::MachineFile;
 use crate::nc::Program;
@@ -56,6 +57,8 @@ pub struct Weld {
     /// emulated, simulated, or the addresses of real boards: MOTION,TRACKER, or MOTION without a tracker
     #[arg(long, default_value = "emulated")]
     boards: BoardChoice,
+    #[command(flatten)]
+    cameras: CameraArgs,
     /// Where report.json, log.csv and the plots go, the program planned from a part, and taught points
     #[arg(long, value_name = "DIR", default_value = "report")]
     report: PathBuf,
@@ -108,6 +111,7 @@ impl Weld {
             Some(file) => Some(read_program(file, self.block_delete)?),
             None => None,
         };
+        let cameras = self.cameras.choose(&machine, &self.machine, &self.boards)?;
         let name = |path: &Path| path.display().to_string();
         let job = Job {
             machine: &machine,
@@ -121,6 +125,7 @@ impl Weld {
             surroundings: Surroundings {
                 seam: seam.map(Rc::new),
                 drawing: drawing.as_ref(),
+                cameras,
                 seed: self.seed,
             },
             names: Names {

@@ -109,6 +109,9 @@ pub struct SeamFigures {
     pub rms_deviation_mm: BySlide,
     /// Measurements of the cameras as the tracker board took them.
     pub measurements: Measurements,
+    /// What became of the pictures of camera 1 and 2, if there were any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pictures: Option<[CameraFigures; 2]>,
     /// Largest residual of the tracker's relation to the motion clock while welding.
     pub clock_residual_us: Option<f64>,
     /// Largest difference between the tracker's relation to the motion clock and the PC's while welding.
@@ -245,6 +248,23 @@ pub struct Measurements {
     pub given_up: u32,
 }
 
+/// What became of the pictures of a camera.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct CameraFigures {
+    /// Strobes.
+    pub pictures: u32,
+    /// Pictures with a seam that was believed.
+    pub measured: u32,
+    /// Pictures with a seam that was not where or as it should be.
+    pub refused: u32,
+    /// Pictures that never arrived.
+    pub lost: u32,
+    /// Pictures that arrived late.
+    pub late: u32,
+    /// Times that the seam was believed at another place or width from then on.
+    pub relocked: u32,
+}
+
 /// The report cannot be written.
 #[derive(Debug, Error)]
 #[error("cannot write {}: {reason}", path.display())]
@@ -335,6 +355,16 @@ pub(crate) mod tests {
                 max_deviation_mm: [Some(0.0123), Some(0.011), Some(0.009), None].into(),
                 rms_deviation_mm: [Some(0.003), Some(0.002), Some(0.002), None].into(),
                 measurements: Measurements::default(),
+                pictures: Some(
+                    [CameraFigures {
+                        pictures: 900,
+                        measured: 880,
+                        refused: 9,
+                        lost: 7,
+                        late: 4,
+                        relocked: 1,
+                    }; 2],
+                ),
                 clock_residual_us: Some(12.0),
                 clock_difference_us: None,
                 recentred: vec![Recentred {

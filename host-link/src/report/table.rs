@@ -154,6 +154,24 @@ fn boards_served(f: &mut Formatter, r: &Report) -> Result {
             m.given_up
         )?;
     }
+    for (side, p) in r
+        .seam
+        .iter()
+        .flat_map(|seam| seam.pictures.iter().flatten())
+        .enumerate()
+    {
+        writeln!(
+            f,
+            "  {:<28}{} taken, {} measured, {} refused, {} lost, {} late, re-locked {} times",
+            format!("pictures of camera {}", side + 1),
+            p.pictures,
+            p.measured,
+            p.refused,
+            p.lost,
+            p.late,
+            p.relocked
+        )?;
+    }
     if r.weld_ticks.unknown > 0 {
         writeln!(
             f,
@@ -218,6 +236,7 @@ mod tests {
                 "side 2, along the beam (V)         –        – mm",
                 "following error C             0.1719 °",
                 "gantry skew                      4.2 µm",
+                "pictures of camera 2        900 taken, 880 measured, 9 refused, 7 lost, 4 late, re-locked 1 times",
                 "fault: laser 1 reports",
             ],
         );

@@ -1,7 +1,9 @@
 //! The weld job: from boards that are off to a report, and the machine at rest whatever happens.
 
+mod cameras;
 mod feeding;
 mod following;
+mod images;
 mod operator;
 mod outcome;
 mod progress;
@@ -15,10 +17,13 @@ mod terminal;
 mod tests;
 mod tracking;
 
+pub use images::{ImagesError, WorkerError};
 pub use outcome::Ended;
 pub use progress::{Line, Progress, Silent, Word};
 pub use seam_teaching::{SeamLesson, TaughtSeam};
-pub use surroundings::{Planned, Surroundings, check_seam};
+pub use surroundings::{
+    CameraChoice, ImageCameras, OpenCamera, PictureSource, Planned, Surroundings, check_seam,
+};
 pub use teaching::{NoTeaching, Taught, check_teaching};
 pub use terminal::Terminal;
 
@@ -117,6 +122,9 @@ pub enum JobError {
     /// The tracker board stopped, or wanted the beams off.
     #[error("the tracker board stopped the weld: {0}")]
     Tracker(TrackerFault),
+    /// A camera gives no pictures, or none that can be measured.
+    #[error(transparent)]
+    Camera(#[from] ImagesError),
     /// The operator stopped it.
     #[error("stopped by the operator; beams are off and the machine stands")]
     Interrupted,
@@ -183,15 +191,15 @@ pub fn run(
     progress: &mut dyn Progress,
 ) -> Result<Ended, JobError> {
     let planner = Planner::build(job.machine)?;
-    let mut session = Session::begin(boards, job.machine, job.surroundings.seed, interrupted, progress)?;
+    let mut session = Session::begin(boards, job.machine, &job.surroundings, interrupted, progress)?;
     let mut weld = Weld {
         planner,
         paths: BTreeMap::new(),
         taught: Taught::default(),
     };
     let mut error = weld.all(&mut session, job).err();
-    if let Err(link) = switch_off(&mut session) {
-        error.get_or_insert(link.into());
+    if let Err(late) = switch_off(&mut session) {
+        error.get_or_insert(late);
     }
     Ok(outcome::end(&session, job, weld, error))
 }
@@ -254,6 +262,9 @@ impl Weld {
     fn path(&mut self, session: &mut Session, path: PlannedPath, what: &str) -> Result<(), JobError> {
         let id = self.paths.len() as u32 + 1;
         let feeding = load(session, &path, id)?;
+        if let Some(tracking) = &mut session.tracking {
+            tracking.add_path(id, &path);
+        }
         if path.dwell_before_s > 0.0 {
             session.progress.phase("dwelling");
             session.dwell(path.dwell_before_s)?;
@@ -340,15 +351,16 @@ fn set_up(session: &mut Session, job: &Job) -> Result<(), JobError> {
 }
 
 /// Takes the last telemetry and switches the drives of all boards off, of each even if the other one is lost.
-fn switch_off(session: &mut Session) -> Result<(), LinkError> {
+fn switch_off(session: &mut Session) -> Result<(), JobError> {
     let drained = drain(session);
-    drained.and(session.command_all(&Request::Disable))
+    let off = session.command_all(&Request::Disable);
+    drained.and(off.map_err(JobError::from))
 }
 
-fn drain(session: &mut Session) -> Result<(), LinkError> {
+fn drain(session: &mut Session) -> Result<(), JobError> {
     let end = session.boards.now() + DRAIN;
     while session.boards.now() < end {
         session.turn()?;
     }
-    session.refresh()
+    Ok(session.refresh()?)
 }

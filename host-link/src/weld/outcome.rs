@@ -163,6 +163,7 @@ fn seam_figures(tracking: &Tracking, session: &Session, job: &Job, evaluation: &
             too_old: tracking.status.too_old,
             given_up: tracking.cameras.given_up(),
         },
+        pictures: tracking.cameras.figures(),
         clock_residual_us: tracking.clock_residual_us,
         clock_difference_us: tracking.clock_difference_us,
         recentred: recentred.unwrap_or_default(),

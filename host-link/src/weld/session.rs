@@ -1,7 +1,7 @@
 //! A session with the boards while a job runs: takes what they send and asks for their state.
 
 use super::recentring::Recentring;
-use super::{JobError, Progress, Tracking};
+use super::{JobError, Progress, Surroundings, Tracking};
 use crate::boards::{Boards, LinkError, command};
 use crate::machine::MachineFile;
 use crate::record::Record;
@@ -40,11 +40,11 @@ pub(super) struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Begins with the boards as they are. `seed` starts the cameras' noise.
+    /// Begins with the boards as they are, before the cameras of `around`.
     pub fn begin(
         boards: &'a mut dyn Boards,
         machine: &MachineFile,
-        seed: u64,
+        around: &Surroundings,
         interrupted: &'a AtomicBool,
         progress: &'a mut dyn Progress,
     ) -> Result<Self, JobError> {
@@ -52,7 +52,9 @@ impl<'a> Session<'a> {
         let began = boards.now();
         begin_with(boards, Role::Motion)?;
         let unit = machine.tracking.as_ref();
-        let tracking = unit.map(|unit| Tracking::begin(boards, unit, seed)).transpose()?;
+        let tracking = unit
+            .map(|unit| Tracking::begin(boards, unit, around))
+            .transpose()?;
         let motion = motion_status(boards)?;
         Ok(Self {
             boards,
@@ -212,7 +214,7 @@ impl<'a> Session<'a> {
     }
 
     /// One turn: at most one datagram, and whatever is due.
-    pub fn turn(&mut self) -> Result<(), LinkError> {
+    pub fn turn(&mut self) -> Result<(), JobError> {
         let now = self.boards.now();
         let tracking_due = self.tracking.as_ref().map(|tracking| tracking.next_due(now));
         let due = tracking_due.map_or(self.next_status, |due| due.min(self.next_status));
@@ -241,7 +243,7 @@ impl<'a> Session<'a> {
             }
             (Datagram::TrackerTelemetry(telemetry), _) => self.record.add_tracker(&telemetry.samples),
             (Datagram::ClockReply(reply), Some(tracking)) => tracking.clock_reply(role, &reply, arrived_us),
-            (Datagram::Capture(capture), Some(tracking)) => tracking.strobe(capture, welding),
+            (Datagram::Capture(capture), Some(tracking)) => tracking.strobe(&self.machine, capture, welding),
             // Left over from another session, or what boards send to each other only.
             (Datagram::ClockReply(_) | Datagram::Capture(_), None)
             | (Datagram::PathState(_) | Datagram::Measurement(_) | Datagram::ClockRequest(_), _) => {}

@@ -1,31 +1,67 @@
 //! What is around the machine: the seams as they really are.
 
 use super::{Job, JobError};
+use crate::calibration::Calibration;
+use crate::camera::{Camera, CameraError};
 use crate::machine::MachineFile;
 use crate::nc::Program;
 use crate::path::{PlannedPath, Planner};
 use crate::seam::{Deviation, SeamError, check_facing};
-use crate::world::TrueSeams;
-use shared::io::AXES;
+use crate::world::{SceneFile, TrueSeams};
+use shared::io::{AXES, SIDES};
 use shared::protocol::{PathAction, PathEvent};
 use std::rc::Rc;
 
 /// What is around the machine.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Surroundings<'a> {
     /// How the true seams deviate from the drawing, if there are any.
     pub seam: Option<Rc<Deviation>>,
     /// The program that is planned from the drawing, where the job runs another one.
     pub drawing: Option<&'a Program>,
+    /// How the seams are seen.
+    pub cameras: CameraChoice,
     /// Start of all noise.
     pub seed: u64,
 }
+
+/// How the seams are seen.
+#[derive(Clone, Default)]
+pub enum CameraChoice {
+    /// By geometry, without pictures.
+    #[default]
+    Geometric,
+    /// In pictures.
+    Images(Box<ImageCameras>),
+}
+
+/// Cameras that give pictures.
+#[derive(Clone)]
+pub struct ImageCameras {
+    /// What is known of camera 1 and 2.
+    pub calibrations: [Calibration; SIDES],
+    /// Where their pictures come from.
+    pub source: PictureSource,
+}
+
+/// Where pictures come from.
+#[derive(Clone)]
+pub enum PictureSource {
+    /// Rendered, of seams that look like this.
+    Rendered(SceneFile),
+    /// From real cameras: opens that of a side (0 or 1).
+    Real(OpenCamera),
+}
+
+/// Opens the camera of a side (0 or 1).
+pub type OpenCamera = Rc<dyn Fn(usize) -> Result<Box<dyn Camera>, CameraError>>;
 
 impl Default for Surroundings<'_> {
     fn default() -> Self {
         Self {
             seam: None,
             drawing: None,
+            cameras: CameraChoice::default(),
             seed: 1,
         }
     }

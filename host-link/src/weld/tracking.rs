@@ -1,26 +1,30 @@
 //! The tracker board's part of a session: its state, its clock, and the cameras that answer its captures.
 
-use super::JobError;
+use super::cameras::{Answer, Cameras};
 use super::session::{begin_with, unexpected};
+use super::{JobError, Surroundings};
 use crate::boards::{Boards, LinkError};
 use crate::evaluate::Followed;
 use crate::machine::TrackingUnit;
+use crate::path::{CAPACITY, PlannedPath};
 use crate::record::Record;
 use crate::teach::seam::Seen;
-use crate::world::{BoardClocks, GeometricCameras, Machine, TrueSeams};
+use crate::world::{BoardClocks, Machine, TrueSeams};
+use shared::geometry::Pose;
 use shared::io::{SIDES, SLIDES};
 use shared::protocol::{
-    Capture, ClockReply, ClockRequest, Datagram, Measurement, Request, Response, Role, SideMeasurement,
-    TrackerStatus,
+    Capture, ClockReply, ClockRequest, Datagram, Request, Response, Role, SideMeasurement, TrackerStatus,
 };
 use shared::tracking::{TrackerFault, TrackerState};
-use std::collections::BTreeMap;
+use shared::trajectory::{Path, PathSpace};
+use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
+use vision::{Form, Seam};
 
 /// How often the boards are asked for their clock.
 const CLOCK_PERIOD: Duration = Duration::from_millis(50);
-/// Standard deviations in the noise of the machine file.
-const SIGMAS: f64 = 3.0;
+/// Paths that are remembered.
+const PATHS: usize = 4;
 
 /// A picture of both cameras that somebody watches for.
 #[derive(Clone, Debug)]
@@ -42,7 +46,7 @@ struct Watch {
 /// What a session knows of the tracker board.
 pub(super) struct Tracking {
     pub status: TrackerStatus,
-    pub cameras: GeometricCameras,
+    pub cameras: Cameras,
     /// Largest residual that the tracker told while welding \[µs\].
     pub clock_residual_us: Option<f64>,
     /// Largest difference of its relation from the PC's while welding \[µs\].
@@ -50,25 +54,28 @@ pub(super) struct Tracking {
     /// The seams as they really are.
     pub seams: TrueSeams,
     watch: Option<Watch>,
+    /// The latest paths, by their numbers.
+    paths: VecDeque<(u32, PathSpace, Box<Path<CAPACITY>>)>,
     clocks: BoardClocks,
     lost_before: u32,
     next_clock: Duration,
 }
 
 impl Tracking {
-    /// Begins with the board as it is. `seed` starts the cameras' noise.
-    pub fn begin(boards: &mut dyn Boards, unit: &TrackingUnit, seed: u64) -> Result<Self, JobError> {
+    /// Begins with the board as it is, before the cameras of `around`.
+    pub fn begin(
+        boards: &mut dyn Boards,
+        unit: &TrackingUnit,
+        around: &Surroundings,
+    ) -> Result<Self, JobError> {
         let heads = unit.board.head.build()?;
         begin_with(boards, Role::Tracker)?;
         let status = status(boards)?;
         Ok(Self {
             lost_before: status.lost,
             status,
-            cameras: GeometricCameras::new(
-                (unit.cameras.processing_ms * 1e3) as u64,
-                unit.cameras.noise_3sigma_mm / SIGMAS,
-                seed,
-            ),
+            cameras: Cameras::begin(unit, heads, around)?,
+            paths: VecDeque::new(),
             clock_residual_us: None,
             clock_difference_us: None,
             seams: TrueSeams::none(heads),
@@ -125,9 +132,28 @@ impl Tracking {
         self.clocks.add(role, reply, arrived_us);
     }
 
+    /// From now on there is a path of that number.
+    pub fn add_path(&mut self, id: u32, path: &PlannedPath) {
+        if self.paths.len() == PATHS {
+            self.paths.pop_front();
+        }
+        self.paths.push_back((id, path.space, path.knot_path()));
+    }
+
+    /// The planned pose of a capture.
+    fn planned(&self, machine: &Machine, capture: &Capture) -> Option<Pose> {
+        let (_, space, path) = self.paths.iter().rev().find(|(id, ..)| *id == capture.path_id)?;
+        let (start, end) = (path.start_s()?, path.end_s()?);
+        let point = path.at(capture.s_mm.clamp(start, end))?;
+        match space {
+            PathSpace::Tool => point.pose().ok(),
+            PathSpace::Axes => Some(machine.kinematics().forward(&point.axes().position)),
+        }
+    }
+
     /// Gives a capture to the cameras. The time of the strobe is what the PC found, not what the tracker
     /// believes: a wrong belief must show.
-    pub fn strobe(&mut self, capture: Capture, welding: bool) {
+    pub fn strobe(&mut self, machine: &Machine, capture: Capture, welding: bool) {
         let Some(ahead) = self.clocks.tracker_ahead_us() else {
             return;
         };
@@ -139,7 +165,8 @@ impl Tracking {
         if let Some(watch) = &mut self.watch {
             watch.strobed.insert(capture.number, capture.slides_mm);
         }
-        self.cameras.strobe(capture, on_motion);
+        let pose = self.planned(machine, &capture);
+        self.cameras.strobe(capture, on_motion, pose);
     }
 
     /// From now on the pictures are kept, those strobed from now on.
@@ -175,7 +202,7 @@ impl Tracking {
         boards: &mut dyn Boards,
         machine: &Machine,
         record: &Record,
-    ) -> Result<(), LinkError> {
+    ) -> Result<(), JobError> {
         let now = boards.now();
         if now >= self.next_clock {
             self.next_clock = now + CLOCK_PERIOD;
@@ -188,37 +215,40 @@ impl Tracking {
         }
         while let Some(now_us) = self.clocks.motion_now_us(boards.now().as_micros() as u64) {
             let position = |time_us| Some(record.machine_at(time_us)?.0);
-            let Some(measurement) = self.cameras.answer(machine, &self.seams, now_us, position) else {
+            let answer = self.cameras.answer(machine, &self.seams, now_us, position)?;
+            let Some(answer) = answer else {
                 break;
             };
             if let Some(watch) = &mut self.watch {
-                watch.add(&measurement);
+                watch.add(&answer);
             }
-            boards.send(Role::Tracker, &Datagram::Measurement(measurement))?;
+            boards.send(Role::Tracker, &Datagram::Measurement(answer.measurement))?;
         }
         Ok(())
     }
 }
 
 impl Watch {
-    fn add(&mut self, measurement: &Measurement) {
-        if let Some(slides_mm) = self.strobed.remove(&measurement.capture) {
+    fn add(&mut self, answer: &Answer) {
+        if let Some(slides_mm) = self.strobed.remove(&answer.measurement.capture) {
+            let sides = &answer.measurement.sides;
             self.answered.push(Watched {
                 slides_mm,
-                sides: measurement.sides.map(|side| side.as_ref().map(seen)),
+                sides: std::array::from_fn(|k| Some(seen(sides[k].as_ref()?, answer.seams[k].as_ref()))),
             });
         }
     }
 }
 
-/// What is known of one picture by its measurement alone.
-fn seen(side: &SideMeasurement) -> Seen {
+/// What is known of one picture.
+fn seen(side: &SideMeasurement, seam: Option<&Seam>) -> Seen {
+    let gap = seam.filter(|seam| seam.form == Form::Gap);
     Seen {
         along_mm: side.along_mm,
         offset_mm: [side.delta_u_mm, side.delta_v_mm],
-        roll: None,
-        width_mm: None,
-        quality: 1.0,
+        roll: gap.map(|seam| seam.roll),
+        width_mm: gap.map(|seam| seam.width_mm),
+        quality: seam.map_or(1.0, |seam| seam.quality),
         scatter_mm: 0.0,
         pictures: 1,
     }

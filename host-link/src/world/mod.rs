@@ -5,15 +5,22 @@
 //! time, and for simulated ones, which do not.
 
 mod clock;
+mod frame;
 mod geometric;
 pub(crate) mod machine;
 mod probe;
+mod rendered;
 pub(crate) mod seams;
 mod surface;
 
 pub use clock::BoardClocks;
+pub use frame::CameraFrame;
 pub use geometric::GeometricCameras;
 pub use machine::Machine;
 pub use probe::SimulatedProbe;
+pub use rendered::{
+    Dark, Prospect, RenderedCamera, RenderedWorld, SceneError, SceneFile, Scratch, Surface as Texture, View,
+    ViewForm, nominal_slopes,
+};
 pub use seams::{Crossing, TrueSeam, TrueSeams};
 pub use surface::Surface;

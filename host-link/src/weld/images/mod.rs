@@ -1,0 +1,324 @@
+//! Cameras that give pictures: from the strobe to the measurement.
+//!
+//! A thread a side takes the pictures of its camera and measures them. Rendered pictures are told what stands before
+//! their camera as soon as the boards have told where the machine was; the answer is due after the time that a real
+//! camera and computer would take, and is then waited for: meanwhile the time of simulated boards stands still, and
+//! emulated boards wait for the PC. Pictures of real cameras are answered when they come, and never waited for.
+
+mod worker;
+
+pub use worker::{Seen, WorkerError};
+
+use super::cameras::Answer;
+use super::surroundings::{ImageCameras, PictureSource};
+use crate::machine::{CameraConfig, JointForm, TrackingUnit};
+use crate::record::MachinePosition;
+use crate::report::CameraFigures;
+use crate::world::{CameraFrame, Machine, Prospect, RenderedWorld, TrueSeams, View, nominal_slopes};
+use nalgebra::Vector3;
+use shared::geometry::Pose;
+use shared::io::SIDES;
+use shared::protocol::{Capture, Measurement};
+use shared::tracking::frames::Heads;
+use std::collections::VecDeque;
+use std::sync::mpsc::Sender;
+use std::time::Duration;
+use vision::{Detector, Joint, Moved, Observer, ObserverConfig, Walls};
+use worker::{Strobe, Worker};
+
+/// A capture whose place is still unknown this long after its answer was due is given up \[µs\].
+const GIVE_UP_US: u64 = 200_000;
+/// Longest time that a rendered picture is waited for; tiles have to be made first.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// A camera that went further between two pictures has another place before it \[mm\].
+const FURTHEST_MM: f64 = 5.0;
+/// What the walls of a corner are off their nominal slopes, standard deviation.
+const WALL_SIGMA: f64 = 0.01;
+
+/// Both cameras.
+pub(super) struct Images {
+    sides: [Side; SIDES],
+    cameras: CameraConfig,
+    heads: Heads,
+    calibrations: [crate::calibration::Calibration; SIDES],
+    /// The simulated world; none before real cameras.
+    world: Option<RenderedWorld>,
+    /// Of the last capture.
+    last: Option<(Pose, Capture)>,
+    given_up: u32,
+}
+
+/// One camera.
+struct Side {
+    worker: Worker,
+    /// Where a rendered camera is told what stands before it.
+    tell: Option<Sender<Prospect>>,
+    waiting: VecDeque<Waiting>,
+    figures: CameraFigures,
+    /// An answer that is ready for the tracker.
+    held: Option<Seen>,
+}
+
+/// A capture without an answer.
+struct Waiting {
+    capture: Capture,
+    /// By the motion board's clock \[µs\].
+    strobe_us: u64,
+    due_us: u64,
+    /// Whether its camera was told what stands before it.
+    told: bool,
+}
+
+/// Trouble with a camera.
+#[derive(Debug, thiserror::Error)]
+#[error("camera {}: {source}", side + 1)]
+pub struct ImagesError {
+    /// 0 or 1.
+    pub side: usize,
+    /// What it is.
+    pub source: WorkerError,
+}
+
+impl Images {
+    /// Opens the cameras of a machine and starts their threads. `seed` starts the noise of a simulated world.
+    pub fn begin(
+        of: &ImageCameras,
+        unit: &TrackingUnit,
+        heads: Heads,
+        seed: u64,
+    ) -> Result<Self, ImagesError> {
+        let cameras = &unit.cameras;
+        let world = match &of.source {
+            PictureSource::Rendered(scene) => Some(RenderedWorld::new(scene, cameras, &heads, seed)),
+            PictureSource::Real(_) => None,
+        };
+        let begin = |side: usize| -> Result<Side, WorkerError> {
+            let calibration = of.calibrations[side];
+            let (camera, tell): (Box<dyn crate::camera::Camera>, _) = match (&of.source, &world) {
+                (PictureSource::Real(open), _) => (open(side)?, None),
+                (PictureSource::Rendered(_), world) => {
+                    let (camera, tell) = world.as_ref().ok_or(WorkerError::Gone)?.camera(side);
+                    (Box::new(camera), Some(tell))
+                }
+            };
+            let (optics, noise) = (calibration.optics, calibration.photon_transfer);
+            let detector = Detector::new(optics, noise, calibration.profile)?;
+            let config = ObserverConfig {
+                corner_offset_mm: calibration.corner_offset_mm,
+                ..ObserverConfig::default()
+            };
+            let joint = match cameras.joint {
+                JointForm::Gap => Joint::Gap,
+                JointForm::Corner => Joint::Corner(Walls {
+                    slopes: nominal_slopes(cameras, &heads, side),
+                    sigma: WALL_SIGMA,
+                }),
+            };
+            Ok(Side {
+                worker: Worker::start(camera, Observer::new(detector, config, joint), calibration),
+                tell,
+                waiting: VecDeque::new(),
+                figures: CameraFigures::default(),
+                held: None,
+            })
+        };
+        let begin = |side| begin(side).map_err(|source| ImagesError { side, source });
+        Ok(Self {
+            sides: [begin(0)?, begin(1)?],
+            cameras: cameras.clone(),
+            heads,
+            calibrations: of.calibrations,
+            world,
+            last: None,
+            given_up: 0,
+        })
+    }
+
+    /// Takes a capture that was strobed at `strobe_us` of the motion clock, with the machine as planned at `pose`, if
+    /// that is known.
+    pub fn strobe(&mut self, capture: Capture, strobe_us: u64, pose: Option<Pose>) {
+        for side in 0..SIDES {
+            let moved = pose.and_then(|pose| self.moved(side, &pose, &capture));
+            let late = self
+                .world
+                .as_ref()
+                .map_or(0, |world| world.late_us(capture.number, side));
+            let this = &mut self.sides[side];
+            let before = this.waiting.back().map_or(0, |before| before.due_us);
+            let due_us = strobe_us + (self.cameras.processing_ms * 1e3) as u64 + late;
+            this.figures.pictures += 1;
+            this.figures.late += u32::from(late > 0);
+            this.waiting.push_back(Waiting {
+                capture,
+                strobe_us,
+                // One after the other.
+                due_us: due_us.max(before),
+                told: false,
+            });
+            this.worker.strobe(Strobe {
+                capture: capture.number,
+                time_us: strobe_us,
+                moved,
+            });
+        }
+        self.last = pose.map(|pose| (pose, capture));
+    }
+
+    /// How far a camera moved since the last capture; `None` if that is not known, or too far to see the same place.
+    fn moved(&self, side: usize, pose: &Pose, capture: &Capture) -> Option<Moved> {
+        let (last_pose, last) = self.last.as_ref()?;
+        let (u, v) = (2 * side, 2 * side + 1);
+        let (lead, mount) = (
+            self.heads.camera_lead(),
+            self.cameras.mount_deg[side].to_radians(),
+        );
+        let frame = |pose: &Pose| {
+            let slides = capture.slides_mm;
+            CameraFrame::new(&self.heads.spot(pose, side), mount, lead, slides[u], slides[v])
+        };
+        let now = frame(pose);
+        let way: Vector3<f64> = now.origin - frame(last_pose).origin;
+        let [along, across, up] = now.turned(&way);
+        let slide = |i: usize| capture.slides_mm[i] - last.slides_mm[i];
+        let [lateral, height] = self.calibrations[side].camera_step(slide(u), slide(v));
+        let moved = Moved {
+            travel_mm: along,
+            lateral_mm: across + lateral,
+            height_mm: up + height,
+        };
+        let far = Vector3::new(moved.travel_mm, moved.lateral_mm, moved.height_mm).norm();
+        (far < FURTHEST_MM).then_some(moved)
+    }
+
+    /// When the next answer is due on the motion clock \[µs\]; nobody knows that of real cameras.
+    pub fn next_due_us(&self) -> Option<u64> {
+        self.world.as_ref()?;
+        let due = |side: &Side| Some(side.waiting.front()?.due_us);
+        self.sides.iter().filter_map(due).min()
+    }
+
+    /// The next answer that is there at `now_us` of the motion clock. `position` says where the machine was at a time of
+    /// the motion clock, `None` if that is not known (yet).
+    pub fn answer(
+        &mut self,
+        machine: &Machine,
+        seams: &TrueSeams,
+        now_us: u64,
+        position: impl Fn(u64) -> Option<MachinePosition>,
+    ) -> Result<Option<Answer>, ImagesError> {
+        if self.world.is_some() {
+            self.tell(machine, seams, now_us, position);
+        }
+        loop {
+            for (side, camera) in self.sides.iter_mut().enumerate() {
+                let got = match &self.world {
+                    Some(_) => camera.wait(now_us),
+                    None => camera.poll(),
+                };
+                got.map_err(|source| ImagesError { side, source })?;
+            }
+            let numbers = self
+                .sides
+                .each_ref()
+                .map(|side| Some(side.held.as_ref()?.capture));
+            let capture = match numbers {
+                // Numbers begin anew after 2³².
+                [Some(a), Some(b)] if (a.wrapping_sub(b) as i32) < 0 => a,
+                [_, Some(b)] => b,
+                [Some(a), None] => a,
+                [None, None] => return Ok(None),
+            };
+            let seen = self.sides.each_mut().map(|side| side.give(capture));
+            let sides = seen.map(|seen| seen?.measurement);
+            if sides != [None; SIDES] {
+                let measurement = Measurement { capture, sides };
+                let seams = seen.map(|seen| seen?.observation?.seam);
+                return Ok(Some(Answer { measurement, seams }));
+            }
+        }
+    }
+
+    /// Tells rendered cameras what stands before them, as far as that is known.
+    fn tell(
+        &mut self,
+        machine: &Machine,
+        seams: &TrueSeams,
+        now_us: u64,
+        position: impl Fn(u64) -> Option<MachinePosition>,
+    ) {
+        for (k, side) in self.sides.iter_mut().enumerate() {
+            for waiting in side.waiting.iter_mut().filter(|waiting| !waiting.told) {
+                let prospect = match position(waiting.strobe_us) {
+                    Some(position) => {
+                        let slides = waiting.capture.truth_mm.unwrap_or(waiting.capture.slides_mm);
+                        View::of(&self.cameras, machine, seams, &position, &slides, k)
+                            .map_or(Prospect::Nothing, Prospect::Seam)
+                    }
+                    None if now_us > waiting.due_us + GIVE_UP_US => {
+                        self.given_up += 1;
+                        Prospect::Unknown
+                    }
+                    None => break,
+                };
+                waiting.told = true;
+                if let Some(tell) = &side.tell {
+                    // A camera that is gone has told why.
+                    let _ = tell.send(prospect);
+                }
+            }
+        }
+    }
+
+    /// Captures that got no answer since nothing was known of their time, of both sides.
+    pub fn given_up(&self) -> u32 {
+        self.given_up
+    }
+
+    /// What became of the pictures of each side.
+    pub fn figures(&self) -> [CameraFigures; SIDES] {
+        self.sides.each_ref().map(|side| side.figures)
+    }
+}
+
+impl Side {
+    /// Holds the next answer if it is due, and waits for it then.
+    fn wait(&mut self, now_us: u64) -> Result<(), WorkerError> {
+        let due = |waiting: &Waiting| waiting.told && waiting.due_us <= now_us;
+        if self.held.is_none() && self.waiting.front().is_some_and(due) {
+            let seen = self.worker.wait(PATIENCE)?;
+            self.hold(seen);
+        }
+        Ok(())
+    }
+
+    /// Holds the next answer if there is one.
+    fn poll(&mut self) -> Result<(), WorkerError> {
+        if self.held.is_none()
+            && let Some(seen) = self.worker.poll()?
+        {
+            self.hold(seen);
+        }
+        Ok(())
+    }
+
+    fn hold(&mut self, seen: Seen) {
+        self.waiting.pop_front();
+        count(&mut self.figures, &seen);
+        self.held = Some(seen);
+    }
+
+    /// The answer to a capture, if it is held.
+    fn give(&mut self, capture: u32) -> Option<Seen> {
+        self.held.take_if(|seen| seen.capture == capture)
+    }
+}
+
+fn count(figures: &mut CameraFigures, seen: &Seen) {
+    let Some(observation) = &seen.observation else {
+        figures.lost += 1;
+        return;
+    };
+    figures.measured += u32::from(observation.seam.is_some());
+    figures.refused += u32::from(observation.doubt.is_some());
+    figures.relocked += u32::from(observation.relocked);
+}

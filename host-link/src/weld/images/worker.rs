@@ -1,0 +1,227 @@
+//! The thread that turns the pictures of one camera into measurements.
+
+use crate::calibration::Calibration;
+use crate::camera::{Arrival, Camera, CameraError, Picture};
+use shared::protocol::SideMeasurement;
+use std::collections::VecDeque;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+use vision::{DetectorError, ImageError, Moved, Observation, Observer, State};
+
+/// How long a camera is waited for before new captures are looked for.
+const PATIENCE: Duration = Duration::from_millis(2);
+
+/// A strobe of the camera.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strobe {
+    pub capture: u32,
+    /// By the motion board's clock \[µs\].
+    pub time_us: u64,
+    /// How far the camera moved since the strobe before; `None` if what was seen before tells nothing any more.
+    pub moved: Option<Moved>,
+}
+
+/// What came of a strobe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// Number of the capture.
+    pub capture: u32,
+    /// What the picture says; `None` if it was lost.
+    pub observation: Option<Observation>,
+    /// What the tracker is told: the mean of the latest pictures, or the first pictures of a seam just found.
+    pub measurement: Option<SideMeasurement>,
+}
+
+/// Why there are no more measurements. Reads as one sentence.
+#[derive(Debug, thiserror::Error)]
+pub enum WorkerError {
+    /// The camera has trouble.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// Its pictures cannot be measured.
+    #[error(transparent)]
+    Detector(#[from] DetectorError),
+    /// Its pictures are none.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// The thread is gone, or hangs.
+    #[error("its pictures are not measured any more: please report this, with the command line")]
+    Gone,
+}
+
+/// A camera, its observer, and a thread for both.
+pub(super) struct Worker {
+    strobes: Option<Sender<Strobe>>,
+    answers: Receiver<Result<Seen, WorkerError>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Worker {
+    /// Starts the thread.
+    pub fn start(camera: Box<dyn Camera>, observer: Observer, calibration: Calibration) -> Self {
+        let (strobes, told) = channel();
+        let (answer, answers) = channel();
+        let mut work = Work {
+            camera,
+            observer,
+            calibration,
+            waiting: VecDeque::new(),
+            moved: Some(Moved::default()),
+            picture: Picture::default(),
+            settled: false,
+        };
+        let thread = std::thread::spawn(move || {
+            // The end of the session is no error.
+            if let Err(error) = work.run(&told, &answer) {
+                drop(answer.send(Err(error)));
+            }
+        });
+        Self {
+            strobes: Some(strobes),
+            answers,
+            thread: Some(thread),
+        }
+    }
+
+    /// Tells of a strobe. If the thread has ended, its error is the next answer.
+    pub fn strobe(&self, strobe: Strobe) {
+        if let Some(strobes) = &self.strobes {
+            let _ = strobes.send(strobe);
+        }
+    }
+
+    /// The next answer, which there is exactly one of for every strobe, in their order.
+    pub fn wait(&self, timeout: Duration) -> Result<Seen, WorkerError> {
+        self.answers
+            .recv_timeout(timeout)
+            .unwrap_or(Err(WorkerError::Gone))
+    }
+
+    /// The next answer, if it is there.
+    pub fn poll(&self) -> Result<Option<Seen>, WorkerError> {
+        match self.answers.try_recv() {
+            Ok(answer) => answer.map(Some),
+            Err(TryRecvError::Empty) => Ok(None),
+            Err(TryRecvError::Disconnected) => Err(WorkerError::Gone),
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.strobes = None;
+        if let Some(thread) = self.thread.take() {
+            // A panic in it was told there.
+            drop(thread.join());
+        }
+    }
+}
+
+/// What the thread has.
+struct Work {
+    camera: Box<dyn Camera>,
+    observer: Observer,
+    calibration: Calibration,
+    /// Strobes without an answer.
+    waiting: VecDeque<Strobe>,
+    /// Since the last picture that arrived.
+    moved: Option<Moved>,
+    picture: Picture,
+    /// Means have been told since the seam was found.
+    settled: bool,
+}
+
+impl Work {
+    /// Goes on until nobody strobes or listens any more.
+    fn run(
+        &mut self,
+        strobes: &Receiver<Strobe>,
+        answer: &Sender<Result<Seen, WorkerError>>,
+    ) -> Result<(), WorkerError> {
+        loop {
+            let next = if self.waiting.is_empty() {
+                strobes.recv().map_err(|_| RecvTimeoutError::Disconnected)
+            } else {
+                strobes.recv_timeout(Duration::ZERO)
+            };
+            match next {
+                Ok(strobe) => {
+                    self.camera.strobed(strobe.capture, strobe.time_us);
+                    self.waiting.push_back(strobe);
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+            }
+            let arrival = self.camera.next(PATIENCE, &mut self.picture)?;
+            let capture = match arrival {
+                Arrival::Nothing => continue,
+                Arrival::Picture => self.picture.capture,
+                Arrival::Lost { capture } => capture,
+            };
+            // A camera that never answered a strobe has lost its picture.
+            while let Some(strobe) = self.waiting.pop_front() {
+                self.note(strobe.moved);
+                let arrived = strobe.capture == capture && arrival == Arrival::Picture;
+                let seen = if arrived {
+                    self.look()?
+                } else {
+                    Seen {
+                        capture: strobe.capture,
+                        observation: None,
+                        measurement: None,
+                    }
+                };
+                if answer.send(Ok(seen)).is_err() {
+                    return Ok(());
+                }
+                if strobe.capture == capture {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Sums up how far the camera moved.
+    fn note(&mut self, moved: Option<Moved>) {
+        self.moved = match (self.moved, moved) {
+            (Some(sum), Some(more)) => Some(Moved {
+                travel_mm: sum.travel_mm + more.travel_mm,
+                lateral_mm: sum.lateral_mm + more.lateral_mm,
+                height_mm: sum.height_mm + more.height_mm,
+            }),
+            (None, _) | (_, None) => None,
+        };
+    }
+
+    /// Measures the picture.
+    fn look(&mut self) -> Result<Seen, WorkerError> {
+        let moved = self.moved.replace(Moved::default());
+        if moved.is_none() {
+            self.observer.forget();
+        }
+        let observation = self
+            .observer
+            .observe(&self.picture.image()?, moved.unwrap_or_default())?;
+        self.settled &= observation.state == State::Tracking;
+        let place = observation
+            .seam
+            .and_then(|seam| match (seam.mean, observation.report.measured) {
+                (Some(mean), _) => {
+                    self.settled = true;
+                    Some((mean.lateral_mm, mean.travel_mm, mean.height_mm))
+                }
+                // Who looks for the seam has to know where it is at once, a little less exactly.
+                (None, Some(seen)) if !self.settled => {
+                    Some((seam.lateral_mm, seam.travel_mm, seen.height_mm))
+                }
+                (None, _) => None,
+            });
+        Ok(Seen {
+            capture: self.picture.capture,
+            observation: Some(observation),
+            measurement: place
+                .map(|(lateral, travel, height)| self.calibration.side_measurement(lateral, travel, height)),
+        })
+    }
+}

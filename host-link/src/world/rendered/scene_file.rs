@@ -1,0 +1,278 @@
+//! The scene file: what the seams of a simulated world look like, and what disturbs their pictures.
+
+use crate::table::line_of;
+use serde::Deserialize;
+use shared::io::SIDES;
+use std::path::Path;
+use thiserror::Error;
+use vision::render::Finish;
+
+/// What the seams look like, and what disturbs their pictures.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SceneFile {
+    /// How the work beside seam 1 and 2 was made.
+    pub texture: [Surface; SIDES],
+    /// Mean brightness of the work, 0…1 of full scale.
+    pub light: f64,
+    /// How far the work travels during an exposure: 7.5 µm are 50 µs at 9 m/min.
+    pub smear_um: f64,
+    /// Width of the gaps \[mm\], and by how much it goes up and down over which length of seam.
+    pub gap_mm: f64,
+    /// See `gap_mm`.
+    pub gap_wave_mm: f64,
+    /// See `gap_mm`.
+    pub gap_wave_length_mm: f64,
+    /// By how much the skin rolls to and fro about the seam \[°\], over which length of it \[mm\].
+    pub roll_wave_deg: f64,
+    /// See `roll_wave_deg`.
+    pub roll_wave_length_mm: f64,
+    /// By how much the work lies higher or lower than the seam in a picture, standard deviation \[µm\].
+    pub height_noise_um: f64,
+    /// Share of the pictures with spatter in them.
+    pub spatter_share: f64,
+    /// Share of the pictures that never arrive.
+    pub lost_share: f64,
+    /// Share of the pictures that arrive late, by `late_ms`.
+    pub late_share: f64,
+    /// See `late_share`.
+    pub late_ms: f64,
+    /// Scratches along the seams.
+    pub scratch: Vec<Scratch>,
+    /// Lights that fail.
+    pub dark: Vec<Dark>,
+}
+
+/// How a surface was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Surface {
+    /// Ground.
+    Ground,
+    /// Rolled, with streaks along the seam.
+    Rolled,
+    /// Blasted, with glints.
+    Blasted,
+    /// Specular.
+    Specular,
+    /// With hardly any contrast.
+    Faint,
+    /// Coarse.
+    Coarse,
+}
+
+impl Surface {
+    /// What renders it.
+    pub fn finish(self) -> Finish {
+        match self {
+            Self::Ground => Finish::Plain,
+            Self::Rolled => Finish::Rolled,
+            Self::Blasted => Finish::Blasted,
+            Self::Specular => Finish::Specular,
+            Self::Faint => Finish::Faint,
+            Self::Coarse => Finish::Coarse,
+        }
+    }
+}
+
+/// A scratch along a seam.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scratch {
+    /// 1 or 2.
+    pub side: u8,
+    /// How far beside the middle of the seam \[mm\].
+    pub offset_mm: f64,
+    /// Its width \[mm\].
+    pub width_mm: f64,
+    /// How bright it is, the work being 1.
+    pub brightness: f64,
+    /// Where it begins and ends on the seam, from where the first beam goes on \[mm\].
+    pub from_s_mm: Option<f64>,
+    /// See `from_s_mm`.
+    pub to_s_mm: Option<f64>,
+}
+
+/// A light that fails.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Dark {
+    /// 1 or 2.
+    pub side: u8,
+    /// When the camera is there on the seam, from where the first beam goes on \[mm\].
+    pub from_s_mm: f64,
+    /// For how long \[ms\]; without it for good.
+    pub for_ms: Option<f64>,
+}
+
+impl Default for SceneFile {
+    /// Ground plates, gaps of 0.10 to 0.15 mm, nothing that disturbs.
+    fn default() -> Self {
+        Self {
+            texture: [Surface::Ground; SIDES],
+            light: 0.5,
+            smear_um: 7.5,
+            gap_mm: 0.125,
+            gap_wave_mm: 0.025,
+            gap_wave_length_mm: 90.0,
+            roll_wave_deg: 0.0,
+            roll_wave_length_mm: 150.0,
+            height_noise_um: 0.0,
+            spatter_share: 0.0,
+            lost_share: 0.0,
+            late_share: 0.0,
+            late_ms: 0.0,
+            scratch: Vec::new(),
+            dark: Vec::new(),
+        }
+    }
+}
+
+/// Why a scene file cannot be used. Reads as one sentence.
+#[derive(Debug, Error)]
+pub enum SceneError {
+    /// It cannot be read.
+    #[error("cannot read {path}: {source}")]
+    Read {
+        /// The file.
+        path: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// It is no scene.
+    #[error("{path}, line {line}: {message}")]
+    Content {
+        /// The file.
+        path: String,
+        /// Where.
+        line: usize,
+        /// What is wrong.
+        message: String,
+    },
+    /// A value makes no sense.
+    #[error("{path}: {key} = {value}: it has to be {requirement}")]
+    Value {
+        /// The file.
+        path: String,
+        /// Which one.
+        key: String,
+        /// What it is.
+        value: f64,
+        /// What it may be.
+        requirement: &'static str,
+    },
+}
+
+impl SceneFile {
+    /// Reads the file at `path`.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let name = path.display().to_string();
+        match std::fs::read_to_string(path) {
+            Ok(text) => Self::parse(&name, &text),
+            Err(source) => Err(SceneError::Read { path: name, source }),
+        }
+    }
+
+    /// Understands `text`; `path` is used in messages only.
+    pub fn parse(path: &str, text: &str) -> Result<Self, SceneError> {
+        let scene: Self = toml::from_str(text).map_err(|error| SceneError::Content {
+            path: path.to_owned(),
+            line: line_of(text, error.span().map_or(0, |span| span.start)),
+            message: error.message().replace('\n', ", "),
+        })?;
+        let wrong = scene
+            .values()
+            .into_iter()
+            .find(|(_, value, range)| !range.holds(*value));
+        match wrong {
+            Some((key, value, range)) => Err(SceneError::Value {
+                path: path.to_owned(),
+                key,
+                value,
+                requirement: range.requirement(),
+            }),
+            None => Ok(scene),
+        }
+    }
+
+    /// Everything that has a range.
+    fn values(&self) -> Vec<(String, f64, Range)> {
+        let mut values: Vec<(String, f64, Range)> = [
+            ("light", self.light, Range::Light),
+            ("smear_um", self.smear_um, Range::AtLeast0),
+            ("gap_mm", self.gap_mm, Range::Gap),
+            ("gap_wave_mm", self.gap_wave_mm, Range::Gap),
+            ("gap_mm - gap_wave_mm", self.gap_mm - self.gap_wave_mm, Range::Gap),
+            ("gap_wave_length_mm", self.gap_wave_length_mm, Range::Above0),
+            ("roll_wave_deg", self.roll_wave_deg, Range::Roll),
+            ("roll_wave_length_mm", self.roll_wave_length_mm, Range::Above0),
+            ("height_noise_um", self.height_noise_um, Range::AtLeast0),
+            ("spatter_share", self.spatter_share, Range::Share),
+            ("lost_share", self.lost_share, Range::Share),
+            ("late_share", self.late_share, Range::Share),
+            ("late_ms", self.late_ms, Range::AtLeast0),
+        ]
+        .map(|(key, value, range)| (key.to_owned(), value, range))
+        .into();
+        for (i, scratch) in self.scratch.iter().enumerate() {
+            let key = |name| format!("{name} of scratch {}", i + 1);
+            values.extend([
+                (key("side"), f64::from(scratch.side), Range::Side),
+                (key("offset_mm"), scratch.offset_mm, Range::Finite),
+                (key("width_mm"), scratch.width_mm, Range::Above0),
+                (key("brightness"), scratch.brightness, Range::AtLeast0),
+            ]);
+        }
+        for (i, dark) in self.dark.iter().enumerate() {
+            let key = |name| format!("{name} of dark {}", i + 1);
+            values.extend([
+                (key("side"), f64::from(dark.side), Range::Side),
+                (key("from_s_mm"), dark.from_s_mm, Range::Finite),
+                (key("for_ms"), dark.for_ms.unwrap_or(0.0), Range::AtLeast0),
+            ]);
+        }
+        values
+    }
+}
+
+/// What a value may be.
+#[derive(Clone, Copy)]
+enum Range {
+    Finite,
+    AtLeast0,
+    Above0,
+    Share,
+    Light,
+    Gap,
+    Roll,
+    Side,
+}
+
+impl Range {
+    fn holds(self, value: f64) -> bool {
+        value.is_finite()
+            && match self {
+                Self::Finite => true,
+                Self::AtLeast0 => value >= 0.0,
+                Self::Above0 => value > 0.0,
+                Self::Share => (0.0..=1.0).contains(&value),
+                Self::Light => (0.0..=2.0).contains(&value),
+                Self::Gap => (0.0..=1.0).contains(&value),
+                Self::Roll => (0.0..=15.0).contains(&value),
+                Self::Side => value == 1.0 || value == 2.0,
+            }
+    }
+
+    fn requirement(self) -> &'static str {
+        match self {
+            Self::Finite => "a finite number",
+            Self::AtLeast0 => "0 or more",
+            Self::Above0 => "above 0",
+            Self::Share => "from 0 to 1",
+            Self::Light => "from 0 to 2",
+            Self::Gap => "from 0 to 1 mm",
+            Self::Roll => "from 0 to 15 degrees",
+            Self::Side => "1 or 2",
+        }
+    }
+}
