@@ -123,7 +123,7 @@ fn beside<'a>(machine: &'a MachineFile, program: &'a Program, drawing: &'a Progr
         surroundings: Surroundings {
             seam: Some(real()),
             drawing: Some(drawing),
-            seed: 1,
+            ..Surroundings::default()
         },
         ..job(machine, program, None)
     }
