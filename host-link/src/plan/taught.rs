@@ -18,8 +18,8 @@ const BESIDE_AT_ENDS: f64 = 1.5;
 const BEND: f64 = 0.5;
 /// Chords of seam 1 are as long as s_mm says, to this much \[mm\].
 const CHORD: f64 = 0.05;
-/// Slopes of the skin count as exact below \[1\].
-const EXACT_SLOPE: f64 = 1e-6;
+/// The head may stand so far from the normal of the skin, if it turns more evenly then: half a degree \[rad\].
+const HEAD: f64 = 0.009;
 
 /// Why a curve cannot be made of taught points. Reads as one sentence.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -239,7 +239,7 @@ fn smoothed(points: &[(usize, TaughtPoint)], side: usize) -> Vec<Vector3<f64>> {
     scattered.smoothed().into_iter().map(Vector3::from).collect()
 }
 
-/// The normals of the skin, the mean of both sides, as smooth as they scatter from point to point.
+/// The normals of the skin, the mean of both sides, smoother than they scatter from point to point.
 fn normals(points: &[(usize, TaughtPoint)]) -> Vec<Vector3<f64>> {
     let x = chords(points, 0);
     let mean = |point: &TaughtPoint| (point.feet[0].normal + point.feet[1].normal).normalize();
@@ -253,14 +253,21 @@ fn normals(points: &[(usize, TaughtPoint)]) -> Vec<Vector3<f64>> {
             (0..3).map(|c| libm::pow(y[i][c] - y[i - 1][c] * (1.0 - part) - y[i + 1][c] * part, 2.0));
         sum += squares.sum::<f64>() / (3.0 * variances);
     }
-    let scatter = libm::sqrt(sum / (x.len() - 2) as f64);
+    let scatter = libm::sqrt(sum / (x.len() - 2) as f64).max(HEAD);
+    // Mirrored at both ends, so that the head does not turn where the straight runs begin.
+    let (count, length) = (x.len(), x[x.len() - 1]);
+    let before = (1..count).rev().map(|i| (-x[i], y[i]));
+    let inside = (0..count).map(|i| (x[i], y[i]));
+    let after = (0..count - 1).rev().map(|i| (2.0 * length - x[i], y[i]));
+    let (x, y): (Vec<f64>, Vec<[f64; 3]>) = before.chain(inside).chain(after).unzip();
     let scattered = Scattered {
         x: &x,
         y: &y,
-        sigma: &vec![if scatter < EXACT_SLOPE { 0.0 } else { scatter }; x.len()],
+        sigma: &vec![scatter; x.len()],
     };
     let smooth = scattered.smoothed().into_iter().map(Vector3::from);
-    smooth.map(|normal| normal.normalize()).collect()
+    let inside = smooth.skip(count - 1).take(count);
+    inside.map(|normal| normal.normalize()).collect()
 }
 
 impl Deviations {

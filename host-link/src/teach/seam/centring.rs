@@ -2,20 +2,15 @@
 //! bands.
 
 use super::{Foot, Seen, View};
-use nalgebra::{Matrix4, SMatrix, Vector3, Vector4};
+use nalgebra::{Matrix4, Vector3, Vector4};
 use shared::geometry::{Pose, rotate};
 use shared::io::SIDES;
 use shared::tracking::frames::Heads;
 
-/// Unknowns of a stance: across, up, about T, V1, V2.
-const UNKNOWNS: usize = 5;
-/// How readily each is used, of squares. The pose does what it can (SPEC 0.7), the slides take the rest.
-const WEIGHT: [f64; UNKNOWNS] = [1.0, 1.0, 0.01, 0.01, 0.01];
-/// A stance needs so many rounds at most, and the pose turns by no more in one \[rad\].
-const ROUNDS: usize = 20;
-const MOST_TURN: f64 = 0.1;
-/// Change of the last round \[mm\].
-const SETTLED: f64 = 1e-7;
+/// Unknowns of a stance: across, up, V1, V2.
+const UNKNOWNS: usize = 4;
+/// How readily each is used, of squares: while one seam only is seen the pose does it.
+const WEIGHT: [f64; UNKNOWNS] = [1.0, 1.0, 0.01, 0.01];
 
 /// Where the machine stands to look.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,53 +58,37 @@ impl Cameras {
         (axis - axis.cross(&tangent) * roll).normalize()
     }
 
-    /// The stance that has the `points` in the middle of both bands, as far as they are known; from `stance`, the
-    /// tangent stays.
-    pub fn centred(&self, stance: &Stance, points: [Option<Vector3<f64>>; SIDES]) -> Stance {
-        let mut stance = *stance;
-        for _ in 0..ROUNDS {
-            let Some(change) = self.step(&stance, points) else {
-                break;
-            };
-            let Pose {
-                position,
-                tangent,
-                normal,
-            } = stance.pose;
-            let across = normal.cross(&tangent);
-            let turn = change[2].clamp(-MOST_TURN, MOST_TURN);
-            let extension = [3, 4].map(|i| change[i].clamp(-self.reach_mm, self.reach_mm));
-            let moved = [
-                change[0],
-                change[1],
-                change[2],
-                extension[0] - stance.extension_mm[0],
-                extension[1] - stance.extension_mm[1],
-            ];
-            stance = Stance {
-                pose: Pose {
-                    position: position + across * change[0] + normal * change[1],
-                    tangent,
-                    normal: rotate(&tangent, turn, &normal),
-                },
-                extension_mm: extension,
-            };
-            if moved.iter().all(|m| m.abs() < SETTLED) {
-                break;
-            }
+    /// The stance with its head along `normal`, across the tangent as it is, that has the `points` in the middle of
+    /// both bands, as far as they are known: the pose moves across and up, the V slides take what it cannot.
+    ///
+    /// SPEC 0.7 turns the head about T as well, by both feet. They are a few mm apart, and a rib that is not straight
+    /// would turn the head by degrees; the skin says better how the head shall stand.
+    pub fn centred(
+        &self,
+        stance: &Stance,
+        normal: &Vector3<f64>,
+        points: [Option<Vector3<f64>>; SIDES],
+    ) -> Stance {
+        let old = stance.pose;
+        // A skin along the tangent is none.
+        let pose = Pose::new(old.position, old.tangent, *normal).unwrap_or(old);
+        let Some(change) = self.change(&pose, points) else {
+            return *stance;
+        };
+        let across = pose.normal.cross(&pose.tangent);
+        Stance {
+            pose: Pose {
+                position: pose.position + across * change[0] + pose.normal * change[1],
+                ..pose
+            },
+            extension_mm: [2, 3].map(|i| change[i].clamp(-self.reach_mm, self.reach_mm)),
         }
-        stance
     }
 
-    /// The least change of the pose (across, up, about T) and the V positions that centre the `points`, weighted.
-    fn step(&self, stance: &Stance, points: [Option<Vector3<f64>>; SIDES]) -> Option<[f64; UNKNOWNS]> {
-        let Pose {
-            position,
-            tangent,
-            normal,
-        } = stance.pose;
-        let across = normal.cross(&tangent);
-        let mut g = SMatrix::<f64, 4, UNKNOWNS>::zeros();
+    /// The least change of the place (across, up) and the V positions that centre the `points`, weighted.
+    fn change(&self, pose: &Pose, points: [Option<Vector3<f64>>; SIDES]) -> Option<[f64; UNKNOWNS]> {
+        let across = pose.normal.cross(&pose.tangent);
+        let mut g = Matrix4::zeros();
         let mut wanted = Vector4::zeros();
         let mut unknown = Matrix4::zeros();
         for (side, point) in points.iter().enumerate() {
@@ -119,20 +98,17 @@ impl Cameras {
                 unknown[(2 * side + 1, 2 * side + 1)] = 1.0;
                 continue;
             };
-            let spot = self.heads.spot(&stance.pose, side);
+            let spot = self.heads.spot(pose, side);
             let (_, u, v) = spot.coordinates(point);
-            let turning = tangent.cross(&(spot.origin - position));
             for (i, e) in [spot.u, spot.v].iter().enumerate() {
-                let row = [e.dot(&across), e.dot(&normal), e.dot(&turning)];
-                for (j, value) in row.into_iter().enumerate() {
-                    g[(2 * side + i, j)] = value;
-                }
+                g[(2 * side + i, 0)] = e.dot(&across);
+                g[(2 * side + i, 1)] = e.dot(&pose.normal);
             }
-            g[(2 * side + 1, 3 + side)] = 1.0;
+            g[(2 * side + 1, 2 + side)] = 1.0;
             wanted[2 * side] = u;
             wanted[2 * side + 1] = v;
         }
-        let weighted = SMatrix::<f64, UNKNOWNS, 4>::from_fn(|i, j| WEIGHT[i] * g[(j, i)]);
+        let weighted = Matrix4::from_diagonal(&WEIGHT.into()) * g.transpose();
         let factors = (g * weighted + unknown).lu().solve(&wanted)?;
         Some((weighted * factors).into())
     }

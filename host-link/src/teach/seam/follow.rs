@@ -184,9 +184,9 @@ impl<'a> Follower<'a> {
             if self.is_centred(&view) || feet.iter().all(Option::is_none) {
                 break;
             }
-            stance = self
-                .cameras
-                .centred(&stance, feet.map(|foot| foot.map(|foot| foot.position)));
+            let normal = feet.iter().flatten().map(|foot| foot.normal).sum();
+            let places = feet.map(|foot| foot.map(|foot| foot.position));
+            stance = self.cameras.centred(&stance, &normal, places);
             rig.go(&stance)?;
         }
         Ok(centred)
@@ -217,7 +217,7 @@ impl<'a> Follower<'a> {
                 *known = known.or(seen.map(|foot| foot.position));
             }
             if found.iter().all(Option::is_some) {
-                let stance = self.cameras.centred(stance, found);
+                let stance = self.cameras.centred(stance, &normal, found);
                 rig.go(&stance)?;
                 if let Some(centred) = self.centre(rig, &stance)? {
                     return Ok(centred);
@@ -363,7 +363,7 @@ impl<'a> Follower<'a> {
             pose: Pose::new(position, local.tangent, normal).unwrap_or(start.pose),
             extension_mm: [0.0; SIDES],
         };
-        self.cameras
-            .centred(&there, last.feet.map(|foot| Some(foot.position)))
+        let places = last.feet.map(|foot| Some(foot.position));
+        self.cameras.centred(&there, &normal, places)
     }
 }

@@ -370,7 +370,7 @@ fn slides_take_what_no_pose_can() {
     let stance = start(straight, [0.0; 3]);
     // A rib of 6 mm in place of 4.
     let points = [-3.0, 3.0].map(|y| Some(Vector3::new(500.0, 800.0 + y, 100.0)));
-    let centred = cameras.centred(&stance, points);
+    let centred = cameras.centred(&stance, &Vector3::z(), points);
     for (side, point) in points.iter().enumerate() {
         let (ahead, u, v) = cameras
             .heads
