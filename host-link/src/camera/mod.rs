@@ -7,6 +7,7 @@
 mod aravis;
 mod folder;
 mod gige;
+mod keeping;
 #[cfg(any(feature = "aravis", test))]
 mod matching;
 mod png;
@@ -16,6 +17,7 @@ mod recorder;
 pub use aravis::GigeCamera;
 pub use folder::{Folder, Recorded};
 pub use gige::{GigeConfig, open};
+pub use keeping::{Keeping, Shelf};
 pub use png::{PngError, read_grey, write_grey, write_rgb};
 pub use recorder::Recorder;
 

@@ -60,6 +60,7 @@ impl CameraArgs {
                 Ok(CameraChoice::Images(Box::new(ImageCameras {
                     calibrations: unit.cameras.calibrations(folder)?,
                     source: PictureSource::Rendered(scene.unwrap_or_default()),
+                    kept: None,
                 })))
             }
         }

@@ -41,7 +41,7 @@ impl Cli {
     /// Does what was asked; an error reads as one sentence.
     pub fn run(self) -> anyhow::Result<ExitCode> {
         match self.command {
-            Command::Calibrate(command) => command.run().map(|()| ExitCode::SUCCESS),
+            Command::Calibrate(command) => command.run(),
             Command::Check(command) => command.run().map(|()| ExitCode::SUCCESS),
             Command::DryRun(command) => command.run(),
             Command::Measure(command) => command.run(),

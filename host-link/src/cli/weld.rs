@@ -219,6 +219,7 @@ impl Weld {
                 return check_teaching(job.machine, part)
                     .with_context(|| format!("part {}", self.job.display()));
             }
+            (Work::Pictures(run), _) => run.program,
             (Work::Teach | Work::TeachAndMake, None) => return Err(NoTeaching::Part.into()),
             (Work::TeachSeam(_), _) => return Ok(()),
         };

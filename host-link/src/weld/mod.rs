@@ -1,5 +1,6 @@
 //! The weld job: from boards that are off to a report, and the machine at rest whatever happens.
 
+mod calibrating;
 mod cameras;
 mod feeding;
 mod following;
@@ -17,6 +18,7 @@ mod terminal;
 mod tests;
 mod tracking;
 
+pub use calibrating::{CameraPictures, PictureRun};
 pub use images::{ImagesError, WorkerError};
 pub use outcome::Ended;
 pub use progress::{Line, Progress, Silent, Word};
@@ -82,6 +84,8 @@ pub enum Work<'a> {
     Teach,
     /// To teach it, and then to make it.
     TeachAndMake,
+    /// To take pictures to calibrate a camera from.
+    Pictures(&'a PictureRun<'a>),
     /// To teach both seams of a rib.
     TeachSeam(&'a SeamLesson),
 }
@@ -175,6 +179,9 @@ pub enum JobError {
     /// What was taught cannot be made.
     #[error("the taught part cannot be made: {0}")]
     Plan(String),
+    /// No pictures to calibrate a camera from.
+    #[error("the camera is not calibrated: {0}")]
+    Calibrate(String),
     /// It came to its end, but nobody can tell how good it is.
     #[error("the run cannot be judged: {0}")]
     Judge(String),
@@ -217,6 +224,7 @@ impl Weld {
         make_ready(session, job)?;
         match job.work {
             Work::Program(program) => self.program(session, job, program)?,
+            Work::Pictures(run) => self.taught.pictures = self.take_pictures(session, job, run)?,
             Work::Teach => drop(self.teach(session, job)?),
             Work::TeachSeam(lesson) => self.teach_seam(session, job, lesson)?,
             Work::TeachAndMake => {

@@ -2,7 +2,7 @@
 
 use super::{Job, JobError};
 use crate::calibration::Calibration;
-use crate::camera::{Camera, CameraError};
+use crate::camera::{Camera, CameraError, Shelf};
 use crate::machine::MachineFile;
 use crate::nc::Program;
 use crate::path::{PlannedPath, Planner};
@@ -42,6 +42,8 @@ pub struct ImageCameras {
     pub calibrations: [Calibration; SIDES],
     /// Where their pictures come from.
     pub source: PictureSource,
+    /// Where copies of the pictures of a side (0 or 1) go, if anywhere.
+    pub kept: Option<(usize, Shelf)>,
 }
 
 /// Where pictures come from.

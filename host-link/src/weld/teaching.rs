@@ -4,7 +4,7 @@
 //! the tool truly is; on a real machine there is nothing to teach with.
 
 use super::session::Session;
-use super::{Job, JobError, TaughtSeam, Weld};
+use super::{CameraPictures, Job, JobError, TaughtSeam, Weld};
 use crate::machine::MachineFile;
 use crate::nc::{Options, Program, interpret};
 use crate::part::{Panel, PartFile};
@@ -28,6 +28,8 @@ pub struct Taught {
     pub part: Option<PartFile>,
     /// The program planned from them.
     pub program: Option<String>,
+    /// Pictures to calibrate a camera from.
+    pub pictures: CameraPictures,
     /// What a person should know of it, a sentence each.
     pub notes: Vec<String>,
     /// The seams of a rib.

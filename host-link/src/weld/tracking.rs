@@ -54,6 +54,8 @@ pub(super) struct Tracking {
     /// The seams as they really are.
     pub seams: TrueSeams,
     watch: Option<Watch>,
+    /// Where the slides were at the strobe of each capture, while somebody asks for that \[mm\].
+    pub strobed: Option<BTreeMap<u32, [f64; SLIDES]>>,
     /// The latest paths, by their numbers.
     paths: VecDeque<(u32, PathSpace, Box<Path<CAPACITY>>)>,
     clocks: BoardClocks,
@@ -75,6 +77,7 @@ impl Tracking {
             lost_before: status.lost,
             status,
             cameras: Cameras::begin(unit, heads, around)?,
+            strobed: None,
             paths: VecDeque::new(),
             clock_residual_us: None,
             clock_difference_us: None,
@@ -164,6 +167,9 @@ impl Tracking {
         }
         if let Some(watch) = &mut self.watch {
             watch.strobed.insert(capture.number, capture.slides_mm);
+        }
+        if let Some(strobed) = &mut self.strobed {
+            strobed.insert(capture.number, capture.slides_mm);
         }
         let pose = self.planned(machine, &capture);
         self.cameras.strobe(capture, on_motion, pose);

@@ -11,6 +11,7 @@ pub use worker::{Seen, WorkerError};
 
 use super::cameras::Answer;
 use super::surroundings::{ImageCameras, PictureSource};
+use crate::camera::Keeping;
 use crate::machine::{CameraConfig, JointForm, TrackingUnit};
 use crate::record::MachinePosition;
 use crate::report::CameraFigures;
@@ -100,6 +101,10 @@ impl Images {
                     let (camera, tell) = world.as_ref().ok_or(WorkerError::Gone)?.camera(side);
                     (Box::new(camera), Some(tell))
                 }
+            };
+            let camera = match &of.kept {
+                Some((kept, shelf)) if *kept == side => Box::new(Keeping::new(camera, shelf.clone())),
+                _ => camera,
             };
             let (optics, noise) = (calibration.optics, calibration.photon_transfer);
             let detector = Detector::new(optics, noise, calibration.profile)?;

@@ -1,4 +1,6 @@
-//! `host-link calibrate`: what a camera is, from pictures of which something is known.
+//! `host-link calibrate`: what a camera is, with the machine or from pictures of which something is known.
+
+mod live;
 
 use crate::calibration::procedure::{self, Found};
 use crate::calibration::{CalibrateError, Calibration, read_pictures};
@@ -8,8 +10,9 @@ use clap::{Args, Subcommand};
 use emulator::MACHINE_VARIABLE;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
-/// Calibrate a camera from pictures in a folder
+/// Calibrate a camera, with the machine or from pictures in a folder
 ///
 /// What was found is told beside what was believed before. A poor fit is refused with the reason, and the file is then left
 /// as it was.
@@ -22,6 +25,8 @@ pub struct Calibrate {
 /// What to find.
 #[derive(Debug, Subcommand)]
 enum What {
+    /// Profile and slides in one go, with the machine before a straight seam
+    Camera(Box<live::Live>),
     /// Full well and read noise, from pairs of equal pictures at several levels of light: file,pair
     Noise(Folder),
     /// Width of the sharp band, from a textured plate that the slides step through focus: file,u_mm,v_mm
@@ -91,8 +96,12 @@ fn two(text: &str) -> Result<[f64; 2], &'static str> {
 
 impl Calibrate {
     /// Finds it, tells it and writes the file.
-    pub fn run(self) -> anyhow::Result<()> {
+    pub fn run(self) -> anyhow::Result<ExitCode> {
         let (camera, found) = match &self.what {
+            What::Camera(live) => match live.find()? {
+                Ok(found) => (live.camera(), found),
+                Err(code) => return Ok(code),
+            },
             What::Noise(folder) => folder.find(|pictures, before| {
                 procedure::noise(&read_pictures(pictures, procedure::NOISE)?, before)
             })?,
@@ -112,7 +121,7 @@ impl Calibrate {
         print!("{}", table(&found));
         write_whole(&camera.output, &found.calibration.to_toml())?;
         println!("{}: written", camera.output.display());
-        Ok(())
+        Ok(ExitCode::SUCCESS)
     }
 }
 

@@ -1,0 +1,131 @@
+//! `host-link calibrate camera`: with the machine.
+
+use super::super::boards::{BoardChoice, exit_code};
+use super::super::read_program;
+use super::{Camera, Meets};
+use crate::calibration::procedure::{self, Found};
+use crate::camera::Shelf;
+use crate::machine::MachineFile;
+use crate::seam::Deviation;
+use crate::weld::{
+    CameraChoice, ImageCameras, Job, Names, PictureRun, PictureSource, Surroundings, Terminal, Work, run,
+};
+use crate::world::SceneFile;
+use anyhow::{Context, bail};
+use clap::Args;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::rc::Rc;
+
+/// Seams of a simulated coupon: straight, and where they are drawn.
+const COUPON: &str = "s_mm,u1_mm,v1_mm,u2_mm,v2_mm\n0,0,0,0,0\n100000,0,0,0,0\n";
+
+/// The machine homes, goes to where PROGRAM begins to weld and looks at the seam before it, with the beams off: a straight
+/// gap along travel, level, in sight of the camera. Its slides step through focus, then there and back at every place along
+/// it. With --calibration the camera is what that file says, else what the machine file says.
+#[derive(Debug, Args)]
+pub struct Live {
+    #[command(flatten)]
+    camera: Camera,
+    #[command(flatten)]
+    meets: Meets,
+    /// Program that begins to weld where the seam is
+    #[arg(long, value_name = "PROGRAM")]
+    at: PathBuf,
+    /// Places along the seam; more of them even out its texture
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=9))]
+    places: u32,
+    /// emulated or simulated
+    #[arg(long, default_value = "emulated")]
+    boards: BoardChoice,
+    /// Deviation of the seams of a simulated world (CSV) [default: none, a straight coupon]
+    #[arg(long, value_name = "FILE")]
+    seam: Option<PathBuf>,
+    /// What the seams of a simulated world look like (TOML) [default: ground plates]
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// Start of the noise of simulated cameras
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+impl Live {
+    /// The camera.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// Takes the pictures and finds what they tell; an exit code if it was interrupted.
+    pub fn find(&self) -> anyhow::Result<Result<Found, ExitCode>> {
+        let (Some(machine_file), Some(side)) = (&self.camera.machine, self.camera.side) else {
+            bail!("say which camera: --machine FILE --side 1|2");
+        };
+        let machine = MachineFile::read(machine_file)?;
+        self.boards.check(&machine)?;
+        if matches!(self.boards, BoardChoice::At { .. }) {
+            bail!(
+                "real cameras are calibrated from folders of pictures as yet: calibrate profile, calibrate slides"
+            );
+        }
+        let before = self.camera.before()?;
+        let program = read_program(&self.at, false)?;
+        let seam = match &self.seam {
+            Some(file) => Deviation::read(file)?,
+            None => Deviation::parse("coupon", COUPON)?,
+        };
+        let scene = self.scene.as_deref().map(SceneFile::read).transpose()?;
+        let picture_run = PictureRun {
+            program: &program,
+            side: usize::from(side) - 1,
+            before,
+            places: self.places,
+            shelf: Shelf::default(),
+        };
+        let name = |path: &Path| path.display().to_string();
+        let job = Job {
+            machine: &machine,
+            work: Work::Pictures(&picture_run),
+            part: None,
+            speed_m_per_min: None,
+            from_line: None,
+            surroundings: Surroundings {
+                seam: Some(Rc::new(seam)),
+                drawing: None,
+                cameras: CameraChoice::Images(Box::new(ImageCameras {
+                    calibrations: [before; 2],
+                    source: PictureSource::Rendered(scene.unwrap_or_default()),
+                    kept: Some((picture_run.side, picture_run.shelf.clone())),
+                })),
+                seed: self.seed,
+            },
+            names: Names {
+                program: name(&self.at),
+                machine: name(machine_file),
+                seam: self.seam.as_deref().map(name),
+                boards: self.boards.name(),
+            },
+        };
+        let mut connected = match self.boards.connect_for(&machine)? {
+            Ok(connected) => connected,
+            Err(code) => return Ok(Err(code)),
+        };
+        let ended = run(
+            connected.boards.as_mut(),
+            &job,
+            &connected.interrupted,
+            &mut Terminal::new(),
+        )?;
+        if ended.error.is_some() {
+            return exit_code(ended.error).map(Err);
+        }
+        let pictures = &ended.taught.pictures;
+        let not_written = || self.camera.not_written();
+        let profile = procedure::profile(&pictures.profile, &before).with_context(not_written)?;
+        let slides = procedure::slides(&pictures.slides, &profile.calibration, self.meets.meets)
+            .with_context(not_written)?;
+        Ok(Ok(Found {
+            calibration: slides.calibration,
+            figures: [profile.figures, slides.figures].concat(),
+        }))
+    }
+}

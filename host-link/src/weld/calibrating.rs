@@ -1,0 +1,235 @@
+//! Pictures to calibrate a camera from: the machine stands, its slides step, the camera looks.
+
+use super::session::Session;
+use super::{Job, JobError, Weld};
+use crate::calibration::{Calibration, Known};
+use crate::camera::{Picture, Shelf};
+use crate::nc::{Options, Program, interpret};
+use crate::plan::text::tip_words;
+use shared::io::{AXES, SLIDES};
+use shared::protocol::{Request, Role};
+use shared::units::DEG_PER_RAD;
+use std::path::PathBuf;
+use std::time::Duration;
+use vision::{Detector, Joint, Prior};
+
+/// Distance of the places along the seam \[mm\]: each has a texture of its own.
+const PLACE_STEP_MM: f64 = 4.0;
+/// Steps of the camera out and in through focus, to each side \[mm\].
+const DEPTH_STEPS: i32 = 5;
+const DEPTH_STEP_MM: f64 = 0.05;
+/// Positions of one slide, there and back, in steps of the second figure \[mm\].
+const WAY: [f64; 9] = [0.0, 1.0, 2.0, 1.0, 0.0, -1.0, -2.0, -1.0, 0.0];
+const WAY_STEP_MM: f64 = 0.075;
+/// Slides are there when they are that near \[mm\].
+const THERE_MM: f64 = 0.005;
+/// Longest time for a step of the slides, and for a picture.
+const LIMIT: Duration = Duration::from_secs(10);
+/// Time for the slides to come to rest \[s\].
+const SETTLE_S: f64 = 0.1;
+
+/// Which pictures to take.
+#[derive(Debug)]
+pub struct PictureRun<'a> {
+    /// Program to whose weld the machine goes; the seam before it is looked at.
+    pub program: &'a Program,
+    /// Side of the camera, 0 or 1.
+    pub side: usize,
+    /// What is believed of it.
+    pub before: Calibration,
+    /// Places along the seam.
+    pub places: u32,
+    /// Where its pictures are.
+    pub shelf: Shelf,
+}
+
+/// Pictures of a camera and where the slides were.
+#[derive(Clone, Debug, Default)]
+pub struct CameraPictures {
+    /// Through focus: U, V.
+    pub profile: Vec<Known<2>>,
+    /// Steps of the slides: place, U, V.
+    pub slides: Vec<Known<3>>,
+}
+
+impl Weld {
+    /// Takes the pictures of `run`.
+    pub(super) fn take_pictures(
+        &mut self,
+        session: &mut Session,
+        job: &Job,
+        run: &PictureRun,
+    ) -> Result<CameraPictures, JobError> {
+        let planned = job.plan(run.program, &self.planner, &session.motion.reference)?;
+        if let (Some(tracking), Some(seams)) = (&mut session.tracking, planned.seams) {
+            tracking.seams = seams;
+        }
+        let mut weld = None;
+        for path in planned.paths {
+            if path.weld().is_some() {
+                weld = Some(path);
+                break;
+            }
+            self.path(session, path, "approaching")?;
+        }
+        let nothing = || JobError::Calibrate("the program has no weld before which to look".to_owned());
+        let weld = weld.ok_or_else(nothing)?;
+        let (path, (begin, _)) = (weld.knot_path(), weld.weld().ok_or_else(nothing)?);
+        let lead = session
+            .tracking
+            .as_ref()
+            .map_or(0.0, |tracking| tracking.seams.heads().camera_lead());
+        let mut pictures = CameraPictures::default();
+        for place in 0..run.places {
+            let s = (begin - lead - PLACE_STEP_MM * f64::from(place)).max(weld.start_s);
+            let pose = path
+                .at(s)
+                .and_then(|point| point.pose().ok())
+                .ok_or_else(nothing)?;
+            let what = format!("place {} of {}", place + 1, run.places);
+            let axes = self
+                .planner
+                .kinematics()
+                .inverse(&pose, &[0.0; AXES])
+                .map_err(|error| JobError::Calibrate(format!("{what} cannot be reached: {error}")))?;
+            let angles = [axes[3], axes[4], axes[5]].map(|angle| angle * DEG_PER_RAD);
+            self.go(
+                session,
+                &tip_words(&pose.position.into(), &angles, &[0.0; 2]),
+                &what,
+            )?;
+            session.progress.phase(&what);
+            let middle = centred(session, run)?;
+            if place == 0 {
+                for k in -DEPTH_STEPS..=DEPTH_STEPS {
+                    // The camera moves along its own n.
+                    let [[_, u], [_, v]] = run.before.slides.matrix;
+                    let n = DEPTH_STEP_MM * f64::from(k);
+                    let (file, picture, [u, v]) = look(session, run, [middle[0] + u * n, middle[1] + v * n])?;
+                    let values = [u, v];
+                    pictures.profile.push(Known {
+                        file,
+                        picture,
+                        values,
+                    });
+                }
+            }
+            for axis in 0..2 {
+                for step in WAY {
+                    let mut slides = middle;
+                    slides[axis] += WAY_STEP_MM * step;
+                    let (file, picture, [u, v]) = look(session, run, slides)?;
+                    let values = [f64::from(place), u, v];
+                    pictures.slides.push(Known {
+                        file,
+                        picture,
+                        values,
+                    });
+                }
+            }
+        }
+        Ok(pictures)
+    }
+
+    /// A rapid to `words`.
+    fn go(&mut self, session: &mut Session, words: &str, what: &str) -> Result<(), JobError> {
+        let text = format!("G43.4\nG0 {words}\nM2\n");
+        let program =
+            interpret(&text, Options::default()).map_err(|error| JobError::Plan(error.to_string()))?;
+        for path in self.planner.program(&program, &session.motion.reference, None)? {
+            self.path(session, path, what)?;
+        }
+        Ok(())
+    }
+}
+
+/// Slides at which the seam is in the middle of the camera, as far as it is known.
+fn centred(session: &mut Session, run: &PictureRun) -> Result<[f64; 2], JobError> {
+    let wrong = |reason: String| JobError::Calibrate(format!("side {}: {reason}", run.side + 1));
+    let start = session
+        .tracking
+        .as_ref()
+        .map_or([0.0; SLIDES], |tracking| tracking.status.slides_mm);
+    let here = [start[2 * run.side], start[2 * run.side + 1]];
+    let (_, picture, [u, v]) = look(session, run, here)?;
+    let Calibration {
+        optics,
+        photon_transfer,
+        profile,
+        slides,
+        ..
+    } = run.before;
+    let mut detector =
+        Detector::new(optics, photon_transfer, profile).map_err(|error| wrong(error.to_string()))?;
+    let prior = Prior {
+        joint: Joint::Gap,
+        track: None,
+        focus: 0.0,
+    };
+    let image = picture.image().map_err(|error| wrong(error.to_string()))?;
+    let report = detector
+        .measure(&image, &prior)
+        .map_err(|error| wrong(error.to_string()))?;
+    let seen = report.seam().ok_or_else(|| {
+        wrong(format!(
+            "the camera sees no seam with U at {u:.3} and V at {v:.3} mm ({:?}): bring the coupon before it, or let \
+             the program begin there",
+            report.status
+        ))
+    })?;
+    let moved = slides.deltas(seen.lateral_mm, seen.height_mm);
+    Ok([0, 1].map(|k| here[k] + moved[k] - slides.offset_mm[k]))
+}
+
+/// A picture with the slides of the side at `target`, a name for it, and where the slides were.
+fn look(
+    session: &mut Session,
+    run: &PictureRun,
+    target: [f64; 2],
+) -> Result<(PathBuf, Picture, [f64; 2]), JobError> {
+    let status = |session: &Session| {
+        let tracking = session.tracking.as_ref();
+        tracking.map_or([0.0; SLIDES], |tracking| tracking.status.slides_mm)
+    };
+    let mut target_mm = status(session);
+    let own = [2 * run.side, 2 * run.side + 1];
+    for (slide, target) in own.into_iter().zip(target) {
+        target_mm[slide] = target;
+    }
+    session.command(Role::Tracker, &Request::MoveSlides { target_mm })?;
+    session.wait_until("a step of the slides", LIMIT, |session| {
+        session.refresh()?;
+        let at = status(session);
+        Ok(own
+            .into_iter()
+            .all(|slide| (at[slide] - target_mm[slide]).abs() < THERE_MM))
+    })?;
+    session.dwell(SETTLE_S)?;
+    if let Some(tracking) = &mut session.tracking {
+        tracking.strobed = Some(Default::default());
+    }
+    run.shelf.take();
+    let mut taken = None;
+    let looked = session.wait_until("a picture of the seam", LIMIT, |session| {
+        let strobed = session
+            .tracking
+            .as_ref()
+            .and_then(|tracking| tracking.strobed.as_ref());
+        for picture in run.shelf.take() {
+            if let Some(slides) = strobed.and_then(|strobed| strobed.get(&picture.capture)) {
+                taken = Some((picture, own.map(|slide| slides[slide])));
+            }
+        }
+        Ok(taken.is_some())
+    });
+    if let Some(tracking) = &mut session.tracking {
+        tracking.strobed = None;
+    }
+    looked?;
+    let (picture, slides) = taken.ok_or(JobError::TooLong {
+        what: "a picture of the seam",
+        seconds: LIMIT.as_secs(),
+    })?;
+    let file = PathBuf::from(format!("capture-{:08}.png", picture.capture));
+    Ok((file, picture, slides))
+}
