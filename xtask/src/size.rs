@@ -31,7 +31,7 @@ fn budget(firmware: Firmware, board: Board) -> Budget {
         (Firmware::Tracker, Board::Mps2An500 | Board::NucleoH723zg) => Budget {
             flash: [120, 300],
             ram: [120, 260],
-            controller: [60, 160],
+            controller: [60, 170],
         },
     }
 }
