@@ -20,12 +20,20 @@ impl Meter for Outside {
 
 struct Clock;
 
+/// Calls of which the clock takes the shortest: the others waited for other programs.
+const CALLS: usize = 15;
+
 impl Meter for Clock {
     /// Nanoseconds.
     fn count(&mut self, call: &mut dyn FnMut()) -> u32 {
-        let begin = Instant::now();
-        measured(call);
-        u32::try_from(begin.elapsed().as_nanos()).unwrap_or(u32::MAX)
+        let mut shortest = u32::MAX;
+        for _ in 0..CALLS {
+            let begin = Instant::now();
+            measured(call);
+            let took = u32::try_from(begin.elapsed().as_nanos()).unwrap_or(u32::MAX);
+            shortest = shortest.min(took);
+        }
+        shortest
     }
 }
 

@@ -51,11 +51,17 @@ pub(crate) struct Band {
 impl Band {
     /// Finds the amplitudes of a new picture, from the band where it is thought to be.
     pub fn start<const N: usize>(&mut self, surface: &impl Surface<N>, at: &[f64; N]) {
-        for level in &mut self.levels {
-            level.reset();
-            for _ in 0..WARM_UP {
-                level.pass(surface, at);
-            }
+        for level in 0..self.levels.len() {
+            self.start_level(level, surface, at);
+        }
+    }
+
+    /// The same on one level.
+    pub fn start_level<const N: usize>(&mut self, level: usize, surface: &impl Surface<N>, at: &[f64; N]) {
+        let level = &mut self.levels[level];
+        level.reset();
+        for _ in 0..WARM_UP {
+            level.pass(surface, at);
         }
     }
 

@@ -23,8 +23,9 @@ const HONEST: f64 = 1.3;
 const ITERATIONS: [usize; 2] = [5, 6];
 
 impl Detector {
-    /// Measures a corner.
-    pub(crate) fn measure_corner(&mut self, prior: &Prior, walls: &Walls) -> Report {
+    /// Measures a corner. Gives up once half the resolution shows that it does not gain more than `least_gain`, if there is one: then the
+    /// picture shows something else.
+    pub(crate) fn measure_corner(&mut self, prior: &Prior, walls: &Walls, least_gain: Option<f64>) -> Report {
         let [left, right] = walls.slopes;
         let (height, lateral, scatter) = match prior.track {
             Some(track) => (track.height_mm, track.lateral_mm, TRACKED),
@@ -39,10 +40,14 @@ impl Detector {
         let sigma = [scatter, scatter, walls.sigma, walls.sigma, FOCUS];
         let knowledge = Knowledge { mean, sigma };
         let mut at = mean;
-        self.band.start(&surface, &at);
-        let found = self.band.fit(&surface, &mut at, &knowledge, 1, ITERATIONS[0])
-            && self.band.fit(&surface, &mut at, &knowledge, 0, ITERATIONS[1]);
-        if !found {
+        self.band.start_level(1, &surface, &at);
+        let found = self.band.fit(&surface, &mut at, &knowledge, 1, ITERATIONS[0]);
+        let explains = |least| self.band.levels[1].gain(&surface, &at) > least;
+        if !found || !least_gain.is_none_or(explains) {
+            return Report::without(Status::NoBand);
+        }
+        self.band.start_level(0, &surface, &at);
+        if !self.band.fit(&surface, &mut at, &knowledge, 0, ITERATIONS[1]) {
             return Report::without(Status::NoBand);
         }
         let Some(fitness) = self.band.fitness(&surface, &at, &knowledge) else {
