@@ -47,10 +47,10 @@ pub(crate) struct Coarse {
 }
 
 /// A band on the grid.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Found<const N: usize> {
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Found {
     /// Its parameters: (h, q) of a plate or (h, u0) of a corner.
-    pub at: [f64; N],
+    pub at: [f64; 2],
     /// Root of the variance it explains.
     pub score: f64,
 }
@@ -58,12 +58,37 @@ pub(crate) struct Found<const N: usize> {
 /// Parts of the view, each of which has its best band.
 pub(crate) const PARTS: usize = 4;
 
-/// The best bands of a plate: in parts of the view, and out of it to either side.
-#[derive(Clone, Copy, Debug)]
+/// The best bands: in parts of the view, and out of it to either side.
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Sides {
-    pub inside: [Found<2>; PARTS],
-    pub below: Found<2>,
-    pub above: Found<2>,
+    pub inside: [Found; PARTS],
+    pub below: Found,
+    pub above: Found,
+}
+
+impl Sides {
+    /// The best of all.
+    pub fn best(&self) -> Found {
+        let others = self.inside.into_iter().chain([self.above]);
+        others.fold(
+            self.below,
+            |best, found| if found.score > best.score { found } else { best },
+        )
+    }
+
+    /// Takes a band at this part of the view, if it is better than those before.
+    fn take(&mut self, part: f64, found: Found) {
+        let side = if part < 0.0 {
+            &mut self.below
+        } else if part < 1.0 {
+            &mut self.inside[(part * PARTS as f64) as usize]
+        } else {
+            &mut self.above
+        };
+        if found.score > side.score {
+            *side = found;
+        }
+    }
 }
 
 impl Coarse {
@@ -145,40 +170,22 @@ impl Coarse {
 
     /// The best plates.
     pub fn plates(&self) -> Sides {
-        let none = Found {
-            at: [0.0, 0.0],
-            score: 0.0,
-        };
-        let (mut inside, mut below, mut above) = ([none; PARTS], none, none);
-        let first = self.first_mm + BEYOND_MM;
+        let mut sides = Sides::default();
         for step in 0..self.grid {
             let row_mm = self.first_mm + step as f64 * STEP_MM;
             for roll in 0..=2 * ROLL.0 {
                 let q = (roll as f64 - ROLL.0 as f64) * ROLL.1;
                 let score = self.score(|lateral| row_mm + q * lateral / self.sin);
-                let part = (row_mm - first) / (2.0 * self.half_view_mm);
-                let side = if part < 0.0 {
-                    &mut below
-                } else if part < 1.0 {
-                    &mut inside[(part * PARTS as f64) as usize]
-                } else {
-                    &mut above
-                };
-                if score > side.score {
-                    let at = [row_mm * self.sin, q];
-                    *side = Found { at, score };
-                }
+                let at = [row_mm * self.sin, q];
+                sides.take(self.part(row_mm), Found { at, score });
             }
         }
-        Sides { inside, below, above }
+        sides
     }
 
-    /// The best corner of walls with these slopes.
-    pub fn corner(&self, walls: [f64; 2]) -> Found<2> {
-        let mut best = Found {
-            at: [0.0, 0.0],
-            score: 0.0,
-        };
+    /// The best corners of walls with these slopes, by where their roots are.
+    pub fn corners(&self, walls: [f64; 2]) -> Sides {
+        let mut sides = Sides::default();
         let half = self.columns as f64 * self.pitch_mm / 2.0 * CORNER_VIEW;
         let steps = (half / LATERAL_MM) as isize;
         for step in 0..self.grid {
@@ -190,13 +197,16 @@ impl Coarse {
                     let wall = if from < 0.0 { walls[0] } else { walls[1] };
                     row_mm + wall * from / self.sin
                 });
-                if score > best.score {
-                    let at = [row_mm * self.sin, u0];
-                    best = Found { at, score };
-                }
+                let at = [row_mm * self.sin, u0];
+                sides.take(self.part(row_mm), Found { at, score });
             }
         }
-        best
+        sides
+    }
+
+    /// Where a row is in the view: from 0 at its first to 1 at its last.
+    fn part(&self, row_mm: f64) -> f64 {
+        (row_mm - self.first_mm - BEYOND_MM) / (2.0 * self.half_view_mm)
     }
 
     /// Root of the variance that a band explains, 0 if it has the wrong sign.

@@ -161,7 +161,13 @@ impl Detector {
                 let gap = self.measure_gap(prior);
                 let gain = |report: &Report| report.measured.map_or(0.0, |measured| measured.gain);
                 let corner = self.measure_corner(prior, &walls, Some(gain(&gap)));
-                if gain(&corner) > gain(&gap) { corner } else { gap }
+                let lost = matches!(gap.status, Status::NoBand | Status::NoSeam);
+                let directed = matches!(corner.status, Status::TooHigh | Status::TooLow);
+                if gain(&corner) > gain(&gap) || lost && directed {
+                    corner
+                } else {
+                    gap
+                }
             }
         })
     }

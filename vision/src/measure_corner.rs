@@ -2,6 +2,7 @@
 
 use crate::band::{Knowledge, SMALLEST_GAIN};
 use crate::detector::Detector;
+use crate::measure_gap::BORDER_MM;
 use crate::prior::{Prior, Walls};
 use crate::report::{Criterion, Form, Measured, Report, Sigma, Status, least, ramp};
 use crate::surface::Corner;
@@ -31,7 +32,7 @@ impl Detector {
             Some(track) => (track.height_mm, track.lateral_mm, TRACKED),
             None => {
                 self.correlate();
-                let [height, lateral] = self.coarse.corner(walls.slopes).at;
+                let [height, lateral] = self.coarse.corners(walls.slopes).best().at;
                 (height, lateral, UNKNOWN)
             }
         };
@@ -43,27 +44,33 @@ impl Detector {
         self.band.start_level(1, &surface, &at);
         let found = self.band.fit(&surface, &mut at, &knowledge, 1, ITERATIONS[0]);
         let explains = |least| self.band.levels[1].gain(&surface, &at) > least;
-        if !found || !least_gain.is_none_or(explains) {
+        if found && !least_gain.is_none_or(explains) {
             return Report::without(Status::NoBand);
+        }
+        if !found {
+            return self.without_corner(walls.slopes);
         }
         self.band.start_level(0, &surface, &at);
         if !self.band.fit(&surface, &mut at, &knowledge, 0, ITERATIONS[1]) {
-            return Report::without(Status::NoBand);
+            return self.without_corner(walls.slopes);
         }
         let Some(fitness) = self.band.fitness(&surface, &at, &knowledge) else {
-            return Report::without(Status::NoBand);
+            return self.without_corner(walls.slopes);
         };
-        if fitness.gain < SMALLEST_GAIN {
-            return Report::without(Status::NoBand);
+        let half_view_mm = self.layer().rows as f64 * self.layer().pitch_mm / 2.0;
+        let from_border = half_view_mm - (at[0] / self.optics.tilt_rad.sin()).abs();
+        if fitness.gain < SMALLEST_GAIN || from_border < 0.0 {
+            return self.without_corner(walls.slopes);
         }
         let [height, lateral, left, right, focus] = at;
         let sigmas: [f64; 5] = std::array::from_fn(|k| HONEST * fitness.covariance[(k, k)].max(0.0).sqrt());
-        let walls = [2, 3].map(|k: usize| fitness.curved[(k, k)].sqrt());
+        let wall_sigmas = [2, 3].map(|k: usize| fitness.curved[(k, k)].sqrt());
         let visible = self.visible(&at);
         let (quality, weakest) = least(&[
             (Criterion::Lateral, ramp(sigmas[1], 0.012, 0.004)),
             (Criterion::Height, ramp(sigmas[0], 0.012, 0.004)),
             (Criterion::Gain, ramp(fitness.gain, 0.02, 0.08)),
+            (Criterion::Band, ramp(from_border, BORDER_MM[0], BORDER_MM[1])),
             (Criterion::Walls, ramp(visible[0].min(visible[1]), 0.15, 0.35)),
         ]);
         Report {
@@ -91,13 +98,20 @@ impl Detector {
                     lateral_mm: sigmas[1],
                     height_mm: sigmas[0],
                     width_mm: f64::INFINITY,
-                    roll: walls[0].hypot(walls[1]) / 2.0,
-                    walls,
+                    roll: wall_sigmas[0].hypot(wall_sigmas[1]) / 2.0,
+                    walls: wall_sigmas,
                     yaw_rad: f64::INFINITY,
                 },
                 second: None,
             }),
         }
+    }
+
+    /// A picture in which no corner can be trusted: what the coarse grid says.
+    fn without_corner(&mut self, walls: [f64; 2]) -> Report {
+        self.correlate();
+        let sides = self.coarse.corners(walls);
+        Report::without(self.missing(&sides))
     }
 
     /// How much of the left and the right wall the band crosses in the picture, the root left out \[mm\].

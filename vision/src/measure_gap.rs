@@ -21,7 +21,7 @@ const FOCUS: f64 = 0.3;
 const WIDEST: f64 = 1.2;
 
 /// Distance of the band from the picture's border at which it is not trusted, and is \[mm along the rows\].
-const BORDER_MM: [f64; 2] = [0.05, 0.15];
+pub(crate) const BORDER_MM: [f64; 2] = [0.05, 0.15];
 
 /// What a gap spoils beyond its edges \[mm\].
 const SPOILT_MM: f64 = 0.06;

@@ -5,8 +5,11 @@ mod figures;
 
 use common::{NOISE, OPTICS, detector};
 use figures::{quantile, rms};
-use vision::render::{Finish, Shown, SplitMix64, Truth, TruthRenderer, random_corner, random_gap};
-use vision::{Image, Joint, Measured, Prior, Status, Track, Walls};
+use vision::render::{
+    Finish, Gap, Joint as Work, Scene, Shown, SplitMix64, Stripe, Texture, Truth, TruthRenderer,
+    random_corner, random_gap,
+};
+use vision::{Image, Joint, Measured, PlateSeam, Prior, Status, Track, Walls};
 
 /// What tracking knows of a seam: where it is to 20 µm, its roll to a degree.
 fn tracked(truth: &Truth, seed: u64) -> Track {
@@ -158,4 +161,83 @@ fn bad_light_and_wrong_sizes_are_told() {
     let image = Image::new(&pixels, 200, 200).expect("a picture");
     let error = detector.measure(&image, &prior).expect_err("another size");
     assert!(error.to_string().contains("200 × 200"), "{error}");
+}
+
+/// Corners whose root lies above or below the view: none is accepted, and where a direction is said it is the right one,
+/// which it is of most of those below, whose walls reach into the picture.
+#[test]
+fn corners_out_of_view_are_told() {
+    let mut detector = detector();
+    let mut renderer = TruthRenderer::new(OPTICS, NOISE, 1).expect("a renderer");
+    let half_view_mm = OPTICS.rows as f64 * OPTICS.object_pixel_mm() / 2.0 * OPTICS.tilt_rad.sin();
+    let mut said = 0;
+    for seed in 0..12 {
+        let (side, right) = if seed % 2 == 0 {
+            (1.0, Status::TooHigh)
+        } else {
+            (-1.0, Status::TooLow)
+        };
+        let mut scene = random_corner(seed, &OPTICS);
+        let Work::Corner(root) = &mut scene.joint else {
+            panic!("another joint");
+        };
+        root.corner.height_mm = side * (half_view_mm + 0.03 + 0.01 * seed as f64);
+        let walls = Walls {
+            slopes: root.corner.walls,
+            sigma: 0.01,
+        };
+        let pixels = renderer.render(&scene, seed);
+        let image = Image::new(&pixels, OPTICS.rows, OPTICS.columns).expect("a picture");
+        let prior = Prior {
+            joint: Joint::Corner(walls),
+            track: None,
+            focus: 0.0,
+        };
+        let status = detector.measure(&image, &prior).expect("a measurement").status;
+        assert_ne!(status, Status::Seam, "picture {seed}");
+        if matches!(status, Status::TooHigh | Status::TooLow) {
+            assert_eq!(status, right, "picture {seed}");
+            said += 1;
+        }
+    }
+    assert!(said >= 5, "{said}");
+}
+
+/// Two gaps alike in a plate: neither is believed, and the other one is told with a rank near 1.
+#[test]
+fn two_equal_gaps_are_ambiguous() {
+    let plate = PlateSeam {
+        height_mm: 0.02,
+        pitch: 0.0,
+        roll: 0.0,
+        lateral_mm: -0.15,
+        yaw_rad: 0.0,
+        width_mm: 0.1,
+    };
+    let gap = Gap::new(plate);
+    let mut scene = Scene::new(Work::Gap(gap), Texture::new(Finish::Plain, 4));
+    scene.stripes.push(Stripe {
+        offset_mm: 0.3,
+        width_mm: 0.1,
+        factor: gap.brightness,
+    });
+    let pixels = TruthRenderer::new(OPTICS, NOISE, 1)
+        .expect("a renderer")
+        .render(&scene, 1);
+    let image = Image::new(&pixels, OPTICS.rows, OPTICS.columns).expect("a picture");
+    let prior = Prior {
+        joint: Joint::Gap,
+        track: None,
+        focus: 0.0,
+    };
+    let report = detector().measure(&image, &prior).expect("a measurement");
+    assert_eq!((report.status, report.seam()), (Status::Ambiguous, None));
+    let measured = report.measured.expect("a band");
+    let second = measured.second.expect("another gap");
+    assert!(second.rank > 0.85, "{second:?}");
+    let off = (measured.lateral_mm + second.lateral_mm).abs();
+    assert!(
+        off < 0.02 && (measured.lateral_mm - second.lateral_mm).abs() > 0.28,
+        "{measured:?}"
+    );
 }

@@ -313,3 +313,51 @@ fn wall_slopes_are_learnt() {
         .collect();
     assert!(rms(&means) < 0.003, "{}", rms(&means));
 }
+
+/// A gap that closes to a corner and opens again: with the calibrated offset its place agrees in both forms from the first
+/// picture on; without it the corner is not mixed in.
+#[test]
+fn a_corner_agrees_with_the_gap_by_its_offset() {
+    let offset = [0.040, -0.030];
+    let (lateral_mm, height_mm) = (0.1, 0.05);
+    let corner = Corner {
+        height_mm: height_mm - offset[1],
+        lateral_mm: lateral_mm - offset[0],
+        walls: [-0.8, 0.7],
+    };
+    let walls = Walls {
+        slopes: corner.walls,
+        sigma: 0.01,
+    };
+    let plate = gap(lateral_mm, 0.12, height_mm - 0.05 * lateral_mm);
+    let closed = Scene::new(Work::Corner(Root::new(corner)), Texture::new(Finish::Plain, 7));
+    for corner_offset_mm in [Some(offset), None] {
+        let mut bench = Bench::new(Joint::GapOrCorner(walls));
+        let config = ObserverConfig {
+            corner_offset_mm,
+            ..ObserverConfig::default()
+        };
+        bench.observer = Observer::new(detector(), config, Joint::GapOrCorner(walls));
+        for picture in 0..15 {
+            let (scene, form) = match picture {
+                5..10 => (&closed, Form::Corner),
+                _ => (&plate, Form::Gap),
+            };
+            let seam = bench.observe(scene).seam;
+            if picture < 2 || (form == Form::Corner && corner_offset_mm.is_none()) {
+                assert_eq!(seam, None, "{picture}");
+                continue;
+            }
+            let seam = seam.expect("a seam");
+            assert_eq!(seam.form, form, "{picture}");
+            // Four standard deviations of a corner in one picture.
+            assert!(
+                (seam.lateral_mm - lateral_mm).abs() < 0.016,
+                "{picture}: {seam:?}"
+            );
+            if let Some(mean) = seam.mean {
+                assert!((mean.height_mm - height_mm).abs() < 0.008, "{picture}: {mean:?}");
+            }
+        }
+    }
+}
