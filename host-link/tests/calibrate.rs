@@ -378,8 +378,9 @@ fn what_belongs_to_another_task_is_said() {
     assert!(said(&ran).contains("--walls"), "{}", said(&ran));
 }
 
-/// With the machine: the camera of a simulated one that is turned by 0.7° more than believed steps its own slides, at two
-/// places of a coupon. The turn to 0.25°, scales to the 2 % that the texture of two places leaves.
+/// With the machine: the camera of a simulated one that is turned by 0.7° more than believed steps its own slides, at four
+/// places of a coupon. The turn to 0.25°, lateral scale to 0.3 %; heights to 2 %, for the texture of four places leaves
+/// 0.8 % rms.
 #[test]
 fn a_machine_calibrates_its_own_camera() {
     let folder = Folder::new("machine");
@@ -406,7 +407,7 @@ fn a_machine_calibrates_its_own_camera() {
         "--at",
         path(&program),
         "--places",
-        "2",
+        "4",
         "--output",
         path(&output),
     ];
@@ -417,8 +418,8 @@ fn a_machine_calibrates_its_own_camera() {
     let turn = |i: usize, j: usize| found[i][0] * drawn[j][0] + found[i][1] * drawn[j][1];
     let degrees = f64::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1)).to_degrees();
     assert!((degrees - 0.7).abs() < 0.25, "turned by {degrees}°");
-    for k in 0..2 {
+    for (k, bound) in [0.003, 0.02].into_iter().enumerate() {
         let scale = found[0][k].hypot(found[1][k]);
-        assert!((scale - 1.0).abs() < 0.02, "scale {scale}: {found:?}");
+        assert!((scale - 1.0).abs() < bound, "scale {scale}: {found:?}");
     }
 }

@@ -20,7 +20,7 @@ const DEPTH_STEPS: i32 = 5;
 const DEPTH_STEP_MM: f64 = 0.05;
 /// Positions of one slide, there and back, in steps of the second figure \[mm\].
 const WAY: [f64; 9] = [0.0, 1.0, 2.0, 1.0, 0.0, -1.0, -2.0, -1.0, 0.0];
-const WAY_STEP_MM: f64 = 0.075;
+const WAY_STEP_MM: f64 = 0.10;
 /// Slides are there when they are that near \[mm\].
 const THERE_MM: f64 = 0.005;
 /// Longest time for a step of the slides, and for a picture.

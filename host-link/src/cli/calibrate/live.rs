@@ -33,7 +33,7 @@ pub struct Live {
     #[arg(long, value_name = "PROGRAM")]
     at: PathBuf,
     /// Places along the seam; more of them even out its texture
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=9))]
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=9))]
     places: u32,
     /// emulated or simulated
     #[arg(long, default_value = "emulated")]
