@@ -18,6 +18,8 @@ pub struct Terminal {
     /// Lines that the operator enters.
     lines: Option<Receiver<String>>,
     single_block: bool,
+    /// Lines are no words: whoever leads the job reads them, when the machine stands.
+    led_by_lines: bool,
 }
 
 /// What a line means.
@@ -35,6 +37,7 @@ impl Terminal {
             told: String::new(),
             lines: None,
             single_block: false,
+            led_by_lines: false,
         }
     }
 
@@ -54,6 +57,7 @@ impl Terminal {
     /// wherever they come from.
     pub fn with_lines(always: bool) -> Self {
         let mut terminal = Self::new();
+        terminal.led_by_lines = true;
         if always || std::io::stdin().is_terminal() {
             terminal.lines = Some(read_lines());
         }
@@ -143,6 +147,9 @@ impl Progress for Terminal {
     }
 
     fn word(&mut self) -> Option<Word> {
+        if self.led_by_lines {
+            return None;
+        }
         let line = match self.lines.as_ref()?.try_recv() {
             Ok(line) => line,
             Err(TryRecvError::Empty) => return None,
