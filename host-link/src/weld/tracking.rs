@@ -54,6 +54,8 @@ pub(super) struct Tracking {
     /// The seams as they really are.
     pub seams: TrueSeams,
     watch: Option<Watch>,
+    /// Planned pose of the newest capture.
+    stands: Option<Pose>,
     /// Where the slides were at the strobe of each capture, while somebody asks for that \[mm\].
     pub strobed: Option<BTreeMap<u32, [f64; SLIDES]>>,
     /// The latest paths, by their numbers.
@@ -83,6 +85,7 @@ impl Tracking {
             clock_difference_us: None,
             seams: TrueSeams::none(heads),
             watch: None,
+            stands: None,
             clocks: BoardClocks::default(),
             next_clock: boards.now(),
         })
@@ -171,7 +174,12 @@ impl Tracking {
         if let Some(strobed) = &mut self.strobed {
             strobed.insert(capture.number, capture.slides_mm);
         }
-        let pose = self.planned(machine, &capture);
+        // At rest a capture names no path: the machine stands where it was seen last on one.
+        self.stands = match capture.path_id {
+            0 => self.stands,
+            _ => self.planned(machine, &capture),
+        };
+        let pose = self.stands;
         self.cameras.strobe(capture, on_motion, pose);
     }
 
