@@ -97,6 +97,7 @@ pub fn weld_in_scene(
     let images = ImageCameras {
         calibrations: std::array::from_fn(|side| cameras.nominal(side)),
         source: PictureSource::Rendered(scene),
+        kept: None,
     };
     let program = program();
     let mut job = job(&machine, &program, Some(seam), Some(speed_m_per_min));
