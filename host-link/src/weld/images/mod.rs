@@ -327,3 +327,6 @@ fn count(figures: &mut CameraFigures, seen: &Seen) {
     figures.refused += u32::from(observation.doubt.is_some());
     figures.relocked += u32::from(observation.relocked);
 }
+
+#[cfg(test)]
+mod tests;
