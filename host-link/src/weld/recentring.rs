@@ -11,12 +11,14 @@ use shared::parameter::ParameterError;
 use shared::protocol::{Request, Role};
 use shared::tracking::TrackerState;
 use shared::tracking::frames::Heads;
-use shared::tracking::recentre::recentre;
+use shared::tracking::recentre::{recentre, slides_after};
 use shared::units::DEG_PER_RAD;
 
 /// Part of its stroke beyond which a slide asks for it, and within which all are before one may ask again.
 const FAR: f64 = 0.7;
 const NEAR: f64 = 0.6;
+/// Part of its stroke by which the farthest slide has to come nearer, for a move of the pose to be worth it.
+const WORTH: f64 = 0.05;
 /// How far the pose may turn about T \[rad\]: the beams' angles to the plates matter to the weld,
 /// and spots near D gain little by it.
 const MOST_TURN: f64 = 0.02;
@@ -50,6 +52,11 @@ impl Recentring {
         })
     }
 
+    /// Parts of their strokes that slides at `slides` \[mm\] have gone to their sides.
+    fn all_used(&self, slides: &[f64; SLIDES]) -> [f64; SLIDES] {
+        std::array::from_fn(|slide| self.used(slide, slides[slide]))
+    }
+
     /// Part of its stroke that a slide has gone to its side.
     fn used(&self, slide: usize, position: f64) -> f64 {
         let (min, max) = self.travel[slide];
@@ -71,7 +78,7 @@ impl Recentring {
         if path_id != self.path_id {
             (self.path_id, self.armed, self.offset) = (path_id, true, PoseOffset::NONE);
         }
-        let used: [f64; SLIDES] = std::array::from_fn(|slide| self.used(slide, slides[slide]));
+        let used = self.all_used(slides);
         self.armed |= used.iter().all(|used| *used < NEAR);
         // While it is on its way, what the slides show is not what will be left.
         let (aside, wanted) = (aside.numbers(), self.offset.numbers());
@@ -80,9 +87,15 @@ impl Recentring {
         if !self.armed || !there {
             return None;
         }
-        self.armed = false;
         let turned = self.offset.about_tangent_rad;
         let move_on = recentre(&self.heads, slides, (-MOST_TURN - turned, MOST_TURN - turned))?;
+        // Where slides pull against each other, the least sum of squares may send one of them to its end.
+        let rest = self.all_used(&slides_after(&self.heads, slides, &move_on));
+        let farthest = |used: [f64; SLIDES]| used.into_iter().fold(0.0, f64::max);
+        if farthest(rest) > farthest(used) - WORTH {
+            return None;
+        }
+        self.armed = false;
         Some((slide, self.offset.then(&move_on)))
     }
 }
@@ -162,5 +175,13 @@ mod tests {
         assert_eq!(r.look(3, &[0.0, 0.0, -8.5, 0.0], &further), None);
         // Another path begins on its plan.
         assert!(r.look(4, &[0.0, 0.0, -8.5, 0.0], &none).is_some());
+    }
+
+    #[test]
+    fn slides_that_pull_against_each_other_are_left_alone() {
+        assert_eq!(
+            recentring().look(3, &[-10.0, 10.0, 10.0, -10.0], &PoseOffset::NONE),
+            None
+        );
     }
 }

@@ -8,12 +8,7 @@ use nalgebra::{Matrix4x3, Vector2, Vector3, Vector4};
 /// What the slides would have to move for the spots to stay, for each unit along M, along N and about T: the negative
 /// of C_1 and C_2 of SPEC 0.7, rows U1 V1 U2 V2, for slides at `slides` \[mm\].
 fn response(heads: &Heads, slides: &[f64; SLIDES]) -> Matrix4x3<f64> {
-    // The frame of the tool itself.
-    let pose = Pose {
-        position: Vector3::zeros(),
-        tangent: Vector3::x(),
-        normal: Vector3::z(),
-    };
+    let pose = tool();
     let mut rows = Matrix4x3::zeros();
     for side in 0..SIDES {
         let (u, v) = (2 * side, 2 * side + 1);
@@ -28,6 +23,28 @@ fn response(heads: &Heads, slides: &[f64; SLIDES]) -> Matrix4x3<f64> {
         }
     }
     rows
+}
+
+/// Pose of the tool in its own frame.
+fn tool() -> Pose {
+    Pose {
+        position: Vector3::zeros(),
+        tangent: Vector3::x(),
+        normal: Vector3::z(),
+    }
+}
+
+/// Where slides that stand at `slides` (U1, V1, U2, V2) and keep their spots stand after the pose has moved by
+/// `offset` \[mm\].
+pub fn slides_after(heads: &Heads, slides: &[f64; SLIDES], offset: &PoseOffset) -> [f64; SLIDES] {
+    let (before, after) = (tool(), offset.beside(&tool()));
+    let mut moved = [0.0; SLIDES];
+    for side in 0..SIDES {
+        let (u, v) = (2 * side, 2 * side + 1);
+        let spot = heads.spot(&before, side).point(0.0, slides[u], slides[v]);
+        (_, moved[u], moved[v]) = heads.spot(&after, side).coordinates(&spot);
+    }
+    moved
 }
 
 /// The move of the pose after which slides that stand at `slides` (U1, V1, U2, V2) \[mm\] and keep their spots are as
@@ -72,23 +89,8 @@ mod tests {
         .unwrap()
     }
 
-    fn pose() -> Pose {
-        let (t, n) = (Vector3::new(1.0, 0.3, 0.0), Vector3::new(0.0, 0.2, 1.0));
-        Pose::new(Vector3::new(5.0, 6.0, 7.0), t, n).unwrap()
-    }
-
-    /// Where slides that keep their spots stand after the pose has moved by `offset`.
     fn after(slides: &[f64; SLIDES], offset: &PoseOffset) -> [f64; SLIDES] {
-        let heads = heads();
-        let mut moved = [0.0; SLIDES];
-        for side in 0..SIDES {
-            let spot = heads
-                .spot(&pose(), side)
-                .point(0.0, slides[2 * side], slides[2 * side + 1]);
-            let (_, u, v) = heads.spot(&offset.beside(&pose()), side).coordinates(&spot);
-            (moved[2 * side], moved[2 * side + 1]) = (u, v);
-        }
-        moved
+        slides_after(&heads(), slides, offset)
     }
 
     fn sum(slides: &[f64; SLIDES]) -> f64 {
