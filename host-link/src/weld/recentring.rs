@@ -110,7 +110,8 @@ pub(super) fn watch(session: &mut Session, id: u32) -> Result<(), JobError> {
     let (Some((slides, place)), Some(recentring)) = (newest, &mut session.recentring) else {
         return Ok(());
     };
-    if slides.state != TrackerState::Tracking || place.path_id != id {
+    // Before the beams go on the slides are still on their way to the seams.
+    if slides.state != TrackerState::Tracking || place.path_id != id || !place.beams.contains(&true) {
         return Ok(());
     }
     let (slides_mm, s_mm) = (slides.slides_mm, place.s_mm);
