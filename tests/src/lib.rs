@@ -1,9 +1,11 @@
 //! What whole-system runs share: the shipped jobs, other seams for them, and welds on any boards.
 
 mod hold;
+mod pictures;
 mod prediction;
 
 pub use hold::assert_held_weld_goes_on;
+pub use pictures::{assert_stops_in_the_dark, weld_disturbed, weld_through_pictures};
 
 use host_link::boards::Boards;
 use host_link::machine::MachineFile;
@@ -11,8 +13,7 @@ use host_link::nc::{Options, Program, interpret};
 use host_link::part::PartFile;
 use host_link::report::Report;
 use host_link::seam::Deviation;
-use host_link::weld::{CameraChoice, Ended, ImageCameras, Job, Names, PictureSource, Surroundings, Work};
-use host_link::world::SceneFile;
+use host_link::weld::{Ended, Job, Names, Surroundings, Work};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -83,26 +84,6 @@ fn machine() -> MachineFile {
 /// Welds the shipped program along `seam`; if nothing ends that early, it takes as long as predicted.
 pub fn weld(boards: &mut dyn Boards, seam: Deviation, speed_m_per_min: f64) -> Ended {
     with_weld(seam, speed_m_per_min, |job| prediction::run(boards, job))
-}
-
-/// Welds the shipped program along `seam` by what cameras see of it in pictures of `scene`.
-pub fn weld_in_scene(
-    boards: &mut dyn Boards,
-    seam: Deviation,
-    scene: SceneFile,
-    speed_m_per_min: f64,
-) -> Ended {
-    let machine = machine();
-    let cameras = &machine.tracking.as_ref().expect("a tracker").cameras;
-    let images = ImageCameras {
-        calibrations: std::array::from_fn(|side| cameras.nominal(side)),
-        source: PictureSource::Rendered(scene),
-        kept: None,
-    };
-    let program = program();
-    let mut job = job(&machine, &program, Some(seam), Some(speed_m_per_min));
-    job.surroundings.cameras = CameraChoice::Images(Box::new(images));
-    prediction::run(boards, &job)
 }
 
 /// Goes along 500 lines of 0.5 mm on a wave while the head turns, at 6 m/min: most of what a planner can be asked for.

@@ -52,14 +52,7 @@ impl Pair {
     pub fn host_link(&self, seam: Option<&Path>) -> Command {
         let mut command = bound_to_parent(program(PROGRAM_VARIABLES[0]));
         command
-            .args([
-                "weld",
-                "--boards",
-                "emulated",
-                "--camera",
-                "geometric",
-                "--machine",
-            ])
+            .args(["weld", "--boards", "emulated", "--machine"])
             .arg(shipped(MACHINE))
             .arg("--seam")
             .arg(seam.map_or_else(|| shipped(SEAM), Path::to_owned))

@@ -1,21 +1,24 @@
 //! Jobs that come to their end.
 
 use crate::pair::{Pair, assert_served};
+use host_link::boards::Boards;
 use host_link::boards::simulated::SimulatedBoards;
-use host_link::seam::Deviation;
+use host_link::weld::Ended;
+use host_link::world::SceneFile;
 use system_tests::{
-    assert_held_weld_goes_on, assert_on_seam, deviations, seam, shipped_seam, short_lines, sines, weld,
+    assert_held_weld_goes_on, assert_on_seam, assert_stops_in_the_dark, deviations, seam, short_lines, sines,
+    weld, weld_disturbed, weld_through_pictures,
 };
 
-/// Welds along `seam` on emulated and on simulated boards: no spot leaves its seam, and both agree.
-fn assert_welds(name: &str, seam: &Deviation, speed_m_per_min: f64) {
+/// Does `job` on emulated and on simulated boards: no spot is ever further than `limit_mm` from its seam, and both agree.
+fn assert_welds(name: &str, limit_mm: f64, job: impl Fn(&mut dyn Boards) -> Ended) {
     let mut pair = Pair::boot(name);
-    let ended = weld(&mut pair.connect(), seam.clone(), speed_m_per_min);
-    assert_on_seam(&ended, 0.05);
+    let ended = job(&mut pair.connect());
+    assert_on_seam(&ended, limit_mm);
     assert_served(&ended.report);
     let figures = ended.report.seam.as_ref().expect("a tracker");
     assert_eq!(figures.measurements.given_up, 0);
-    let simulated = weld(&mut SimulatedBoards::default(), seam.clone(), speed_m_per_min);
+    let simulated = job(&mut SimulatedBoards::default());
     let both = deviations(&ended.report)
         .into_iter()
         .zip(deviations(&simulated.report));
@@ -30,12 +33,28 @@ fn assert_welds(name: &str, seam: &Deviation, speed_m_per_min: f64) {
 
 #[test]
 fn the_shipped_job_at_5_m_per_min() {
-    assert_welds("weld-5", &shipped_seam(), 5.0);
+    assert_welds("weld-5", 0.03, |boards| {
+        weld_through_pictures(boards, SceneFile::default(), 5.0)
+    });
 }
 
 #[test]
 fn the_shipped_job_at_9_m_per_min() {
-    assert_welds("weld-9", &shipped_seam(), 9.0);
+    assert_welds("weld-9", 0.03, |boards| {
+        weld_through_pictures(boards, SceneFile::default(), 9.0)
+    });
+}
+
+#[test]
+fn the_disturbed_job_at_9_m_per_min() {
+    assert_welds("weld-disturbed", 0.05, |boards| weld_disturbed(boards, 9.0));
+}
+
+#[test]
+fn a_light_that_fails_for_good_ends_the_weld() {
+    let mut pair = Pair::boot("dark");
+    assert_stops_in_the_dark(&mut pair.connect(), 9.0);
+    pair.boards.check().unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]
@@ -48,7 +67,7 @@ fn a_held_weld_goes_on_over_the_place() {
 
 #[test]
 fn sines_of_1_mm_at_9_m_per_min() {
-    assert_welds("weld-sines", &seam(sines), 9.0);
+    assert_welds("weld-sines", 0.05, |boards| weld(boards, seam(sines), 9.0));
 }
 
 #[test]

@@ -1,0 +1,84 @@
+//! The shipped weld by what cameras see in rendered pictures.
+
+use crate::{job, machine, prediction, program, shipped, shipped_seam};
+use host_link::boards::Boards;
+use host_link::weld::{CameraChoice, Ended, ImageCameras, JobError, PictureSource};
+use host_link::world::{Dark, SceneFile};
+use shared::io::SIDES;
+use shared::tracking::TrackerFault;
+
+/// Where the light of side 2 fails \[mm\], and how far the map may reach beyond what was seen last.
+const DARK_FROM_MM: f64 = 200.0;
+const BLIND_MM: f64 = 8.0;
+/// Largest deviation of the blind spot while its beam is on \[mm\].
+const BLIND_DEVIATION_MM: f64 = 0.1;
+
+/// Welds the shipped program along the shipped seam by pictures of `scene`.
+pub fn weld_through_pictures(boards: &mut dyn Boards, scene: SceneFile, speed_m_per_min: f64) -> Ended {
+    let machine = machine();
+    let cameras = &machine.tracking.as_ref().expect("a tracker").cameras;
+    let images = ImageCameras {
+        calibrations: std::array::from_fn(|side| cameras.nominal(side)),
+        source: PictureSource::Rendered(scene),
+        kept: None,
+    };
+    let program = program();
+    let mut job = job(&machine, &program, Some(shipped_seam()), Some(speed_m_per_min));
+    job.surroundings.cameras = CameraChoice::Images(Box::new(images));
+    prediction::run(boards, &job)
+}
+
+/// The same with spatter, scratches, roll, lost and late pictures and a dark spell, as the shipped scene tells.
+///
+/// # Panics
+/// If no picture was lost or none was late on a side.
+pub fn weld_disturbed(boards: &mut dyn Boards, speed_m_per_min: f64) -> Ended {
+    let file = shipped("programs/t-seam-400-disturbed.toml");
+    let scene = SceneFile::read(&file).unwrap_or_else(|error| panic!("{error}"));
+    let ended = weld_through_pictures(boards, scene, speed_m_per_min);
+    let seam = ended.report.seam.as_ref().expect("a tracker");
+    for figures in seam.pictures.expect("pictures") {
+        assert!(figures.lost > 0 && figures.late > 0, "{figures:?}");
+    }
+    ended
+}
+
+/// Checks that a weld in which the light of side 2 fails for good ends with its side named, its beam off a few
+/// millimetres later, and the machine at rest.
+///
+/// # Panics
+/// Where it is not so.
+pub fn assert_stops_in_the_dark(boards: &mut dyn Boards, speed_m_per_min: f64) {
+    let dark = Dark {
+        side: 2,
+        from_s_mm: DARK_FROM_MM,
+        for_ms: None,
+    };
+    let scene = SceneFile {
+        dark: vec![dark],
+        ..SceneFile::default()
+    };
+    let ended = weld_through_pictures(boards, scene, speed_m_per_min);
+    let Some(error @ JobError::Tracker(TrackerFault::LostSeam { side: 1, .. })) = &ended.error else {
+        panic!("{:?}", ended.error);
+    };
+    assert!(error.to_string().contains("side 2"), "{error}");
+    let ticks = &ended.evaluation.ticks;
+    let welded = || ticks.iter().filter(|tick| tick.beams[1]);
+    let off_mm = welded().next_back().expect("a weld").along_mm;
+    println!("beam 2 off at {off_mm:.1} mm");
+    assert!(
+        (DARK_FROM_MM..DARK_FROM_MM + BLIND_MM).contains(&off_mm),
+        "beam 2 on to {off_mm} mm"
+    );
+    let last = ticks.last().expect("ticks");
+    assert_eq!(last.beams, [false; SIDES]);
+    assert!(last.speed_mm_s < 1.0, "{}", last.speed_mm_s);
+    let deviation = welded()
+        .filter_map(|tick| tick.deviation_mm[2])
+        .fold(0.0, |max: f64, mm| max.max(mm.abs()));
+    assert!(
+        deviation < BLIND_DEVIATION_MM,
+        "spot 2 was {deviation} mm off with its beam on"
+    );
+}
