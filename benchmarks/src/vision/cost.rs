@@ -37,53 +37,31 @@ pub fn run(meter: &mut impl Meter) -> Result<()> {
         };
         print(NOTHING, meter.count(&mut || {}));
         let mut detector = Detector::new(optics, NOISE, Profile::expected(&optics))?;
+        let mut measure = |mode: &str, image: &Image, joint: Joint, track: Option<Track>| -> Result<()> {
+            let prior = Prior {
+                joint,
+                track,
+                focus: 0.0,
+            };
+            let mut report = None;
+            let cost = meter.count(&mut || report = Some(detector.measure(image, &prior)));
+            print(&mode.replace(' ', "_"), cost);
+            let measured = report.transpose()?.and_then(|report| report.measured);
+            sum.add(measured.map_or(0.0, |seen| seen.lateral_mm));
+            Ok(())
+        };
         for (scene, pixels) in pictures(optics, random_gap)? {
             let (track, walls) = known(&scene, &optics);
             let image = Image::new(&pixels, optics.rows, optics.columns)?;
-            for (mode, joint, track) in [
-                ("gap, acquiring", Joint::Gap, None),
-                ("gap, tracking", Joint::Gap, Some(track)),
-                ("either, tracking", Joint::GapOrCorner(walls), Some(track)),
-            ] {
-                let prior = Prior {
-                    joint,
-                    track,
-                    focus: 0.0,
-                };
-                let mut report = None;
-                print(
-                    &mode.replace(' ', "_"),
-                    meter.count(&mut || report = Some(detector.measure(&image, &prior))),
-                );
-                sum.add(
-                    report
-                        .transpose()?
-                        .and_then(|report| report.measured)
-                        .map_or(0.0, |seen| seen.lateral_mm),
-                );
-            }
+            measure("gap, acquiring", &image, Joint::Gap, None)?;
+            measure("gap, tracking", &image, Joint::Gap, Some(track))?;
+            measure("either, tracking", &image, Joint::GapOrCorner(walls), Some(track))?;
         }
         for (scene, pixels) in pictures(optics, random_corner)? {
             let (track, walls) = known(&scene, &optics);
             let image = Image::new(&pixels, optics.rows, optics.columns)?;
-            for (mode, track) in [("corner, acquiring", None), ("corner, tracking", Some(track))] {
-                let prior = Prior {
-                    joint: Joint::Corner(walls),
-                    track,
-                    focus: 0.0,
-                };
-                let mut report = None;
-                print(
-                    &mode.replace(' ', "_"),
-                    meter.count(&mut || report = Some(detector.measure(&image, &prior))),
-                );
-                sum.add(
-                    report
-                        .transpose()?
-                        .and_then(|report| report.measured)
-                        .map_or(0.0, |seen| seen.lateral_mm),
-                );
-            }
+            measure("corner, acquiring", &image, Joint::Corner(walls), None)?;
+            measure("corner, tracking", &image, Joint::Corner(walls), Some(track))?;
         }
         if columns <= RENDERED {
             let mut scenes = scenes(optics, random_gap);
