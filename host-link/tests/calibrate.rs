@@ -141,6 +141,21 @@ fn calibrate(arguments: &[&str]) -> Output {
         .expect("the program")
 }
 
+/// Runs it for `what` on the pictures in `folder`; what is known before is in `file`, and what is found goes there.
+fn refine(what: &str, file: &Path, folder: &Folder, more: &[&str]) -> Output {
+    let (file, folder) = (path(file), path(&folder.0));
+    let arguments = [
+        what,
+        "--calibration",
+        file,
+        "--output",
+        file,
+        "--pictures",
+        folder,
+    ];
+    calibrate(&[&arguments[..], more].concat())
+}
+
 fn path(file: &Path) -> &str {
     file.to_str().expect("a name in UTF-8")
 }
@@ -190,17 +205,7 @@ fn a_calibrated_camera_measures_what_is_true() {
     );
 
     let go_on = |what: &str, folder: &Folder, more: &[&str]| {
-        let same = path(&output);
-        let arguments = [
-            what,
-            "--calibration",
-            same,
-            "--output",
-            same,
-            "--pictures",
-            path(&folder.0),
-        ];
-        let ran = calibrate(&[&arguments[..], more].concat());
+        let ran = refine(what, &output, folder, more);
         assert!(ran.status.success(), "{what}: {}", said(&ran));
     };
     let folder = Folder::new("profile");
@@ -291,24 +296,19 @@ fn a_corner_is_calibrated_on_a_coupon() {
         let scene = Scene::new(Joint::Corner(root), Texture::new(Finish::Plain, place));
         album.add(&bench.shoot(&scene), &[1.0, slides[0], slides[1]]);
     }
-    let same = path(&known);
-    let arguments = [
-        "corner",
-        "--calibration",
-        same,
-        "--output",
-        same,
-        "--pictures",
-        path(&folder.0),
-    ];
     let walls = ["--walls", "-36.87,36.87"];
-    let ran = calibrate(&[&arguments[..], &walls].concat());
+    let ran = refine("corner", &known, &folder, &walls);
     assert!(
         !ran.status.success() && said(&ran).contains("say --meets U,V"),
         "{}",
         said(&ran)
     );
-    let ran = calibrate(&[&arguments[..], &walls, &["--meets", "0.05,0.1"]].concat());
+    let ran = refine(
+        "corner",
+        &known,
+        &folder,
+        &[&walls[..], &["--meets", "0.05,0.1"]].concat(),
+    );
     assert!(ran.status.success(), "{}", said(&ran));
     let [u, n] = Calibration::read(&known)
         .expect("a calibration")
@@ -330,23 +330,14 @@ fn a_poor_fit_leaves_the_file_as_it_was() {
         let seen = bench.sees([0.0, 0.0], slides);
         album.add(&bench.gap(seen, 1, 0.12, 0.5), &[0.0, slides[0], slides[1]]);
     }
-    let same = path(&known);
-    let arguments = [
-        "--calibration",
-        same,
-        "--output",
-        same,
-        "--pictures",
-        path(&folder.0),
-    ];
-    let ran = calibrate(&[&["slides"][..], &arguments].concat());
+    let ran = refine("slides", &known, &folder, &[]);
     assert!(!ran.status.success());
     let error = said(&ran);
     assert!(
         error.contains("camera-1.toml is not written: slide U moved by 0.080 mm only"),
         "{error}"
     );
-    let ran = calibrate(&[&["profile"][..], &arguments].concat());
+    let ran = refine("profile", &known, &folder, &[]);
     assert!(
         said(&ran).contains("line 1: the header must be file,u_mm,v_mm"),
         "{}",

@@ -2,10 +2,11 @@
 
 use host_link::calibration::Calibration;
 use host_link::camera::{Picture, Recorder, read_grey, write_grey, write_rgb};
+use host_link::machine::MachineFile;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use vision::render::{Finish, Gap, Joint, Light, Root, Scene, Stripe, Texture, TruthRenderer};
-use vision::{Corner, Optics, PhotonTransfer, PlateSeam};
+use vision::{Corner, PlateSeam};
 
 const ROWS: usize = 300;
 const COLUMNS: usize = 400;
@@ -14,23 +15,12 @@ const COLUMNS: usize = 400;
 const LATERAL_MM: f64 = 0.005;
 const HEIGHT_MM: f64 = 0.01;
 
-fn optics() -> Optics {
-    Optics {
-        magnification: 4.0,
-        pixel_mm: 0.0138,
-        tilt_rad: 45f64.to_radians(),
-        aperture: 0.10,
-        wavelength_mm: 0.000_53,
-        rows: ROWS,
-        columns: COLUMNS,
-    }
-}
-
-fn noise() -> PhotonTransfer {
-    PhotonTransfer {
-        full_well: 20_000.0,
-        read_noise: 15.0,
-    }
+/// A camera of the shipped machine as it is drawn, along the normal of its head.
+fn drawn() -> Calibration {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../machines/dual-beam-gantry.toml");
+    let machine = MachineFile::read(&file).expect("the shipped machine");
+    let cameras = machine.tracking.expect("a tracker").cameras;
+    Calibration::nominal(cameras.optics, cameras.photon_transfer, 0.0)
 }
 
 /// A folder of its own for each test, empty.
@@ -42,7 +32,7 @@ impl Scratch {
         // What an earlier run has left.
         std::fs::remove_dir_all(&folder).ok();
         std::fs::create_dir_all(&folder).expect("a scratch folder");
-        let calibration = Calibration::nominal(optics(), noise(), 0.0);
+        let calibration = drawn();
         std::fs::write(folder.join("camera.toml"), calibration.to_toml()).expect("written");
         Self(folder)
     }
@@ -84,7 +74,8 @@ impl Scratch {
 }
 
 fn rendered(scene: &Scene) -> Picture {
-    let mut renderer = TruthRenderer::new(optics(), noise(), 1).expect("a camera");
+    let camera = drawn();
+    let mut renderer = TruthRenderer::new(camera.optics, camera.photon_transfer, 1).expect("a camera");
     Picture {
         rows: ROWS,
         columns: COLUMNS,
@@ -129,7 +120,7 @@ fn a_gap_is_measured_and_drawn() {
     let scratch = Scratch::new("gap");
     let scene = gap(plate());
     scratch.picture("seam.png", &scene);
-    let truth = scene.truth(&optics()).expect("it can be seen");
+    let truth = scene.truth(&drawn().optics).expect("it can be seen");
     let record = scratch.json(&["seam.png"]);
     assert_eq!(
         (&record["status"], &record["measured"]["joint"]),
@@ -303,7 +294,8 @@ fn an_overlay_overwrites_no_picture() {
 fn a_folder_of_captures_is_followed_as_a_camera_would() {
     let scratch = Scratch::new("folder");
     let mut recorder = Recorder::new(&scratch.path("kept")).expect("a folder");
-    let mut renderer = TruthRenderer::new(optics(), noise(), 1).expect("a camera");
+    let camera = drawn();
+    let mut renderer = TruthRenderer::new(camera.optics, camera.photon_transfer, 1).expect("a camera");
     for capture in 1..=8 {
         // The last but one shows another seam.
         let lateral_mm = if capture == 7 { -0.2 } else { 0.08 };
