@@ -254,7 +254,9 @@ fn cameras_and_scenes_that_do_not_suit_are_told_with_the_remedy() {
         .refusal()
     };
     let real = said(vec!["--boards", "192.0.2.1,192.0.2.2"]);
-    assert_says(&real, &["no real cameras", "--camera geometric"]);
+    assert_says(&real, &["no [cameras.gige]", "--camera geometric"]);
+    let seen = said(vec!["--boards", "192.0.2.1,192.0.2.2", "--scene", "x.toml"]);
+    assert_says(&seen, &["real cameras", "leave --scene out"]);
     let blind = said(vec![
         "--boards",
         "simulated",
@@ -264,8 +266,46 @@ fn cameras_and_scenes_that_do_not_suit_are_told_with_the_remedy() {
         "x.toml",
     ]);
     assert_says(&blind, &["leave --scene out", "--camera images"]);
+    let kept = said(vec![
+        "--boards",
+        "simulated",
+        "--camera",
+        "geometric",
+        "--keep-pictures",
+        "x",
+    ]);
+    assert_says(&kept, &["leave --keep-pictures out", "--camera images"]);
     let none = said(vec!["--boards", "simulated", "--scene", "no-scene.toml"]);
     assert_says(&none, &["cannot read no-scene.toml"]);
+}
+
+#[test]
+fn pictures_are_not_kept_among_others() {
+    let side = scratch("kept-before").join("side-2");
+    std::fs::create_dir_all(&side).expect("a folder");
+    std::fs::write(side.join("capture-00000001.png"), "a picture").expect("a file");
+    let folder = scratch("kept-before").display().to_string();
+    let said = Attempt {
+        more: vec!["--boards", "simulated", "--keep-pictures", folder.leak()],
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(&said, &["side-2 holds pictures already", "another folder"]);
+}
+
+#[cfg(not(feature = "aravis"))]
+#[test]
+fn real_cameras_are_told_to_need_another_build() {
+    let cameras =
+        "[cameras.gige]\ndevices = [\"camera-1\", \"camera-2\"]\nexposure_us = 50.0\ntrigger = \"Line1\"\n";
+    let machine = text_of(MACHINE) + "\n" + cameras;
+    let said = Attempt {
+        machine: written("real-cameras.toml", &machine),
+        more: vec!["--boards", "192.0.2.1,192.0.2.2"],
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(&said, &["camera camera-1", "--features aravis"]);
 }
 
 #[test]

@@ -4,6 +4,8 @@ use super::{Camera, CameraError};
 use crate::machine::CameraConfig;
 use serde::Deserialize;
 use shared::io::SIDES;
+use std::rc::Rc;
+use vision::Optics;
 
 /// GigE Vision cameras that the tracker board strobes.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -21,24 +23,30 @@ pub struct GigeConfig {
     pub trigger: String,
 }
 
-/// Opens the cameras of a machine; the tracker board must not strobe yet.
-pub fn open(config: &CameraConfig) -> Result<[Box<dyn Camera>; SIDES], CameraError> {
-    let gige = config.gige.as_ref().ok_or(CameraError::NotTold)?;
-    let [first, second] = &gige.devices;
-    Ok([one_of(config, gige, first)?, one_of(config, gige, second)?])
+/// Opens the camera of a side (0 or 1); the tracker board must not strobe yet.
+pub type OpenCamera = Rc<dyn Fn(usize) -> Result<Box<dyn Camera>, CameraError>>;
+
+/// What opens the real cameras of a machine.
+///
+/// # Errors
+/// [`CameraError::NotTold`] and [`CameraError::NotBuilt`], before a board is asked for anything.
+pub fn real(config: &CameraConfig) -> Result<OpenCamera, CameraError> {
+    let gige = config.gige.clone().ok_or(CameraError::NotTold)?;
+    opener(gige, config.optics)
 }
 
 #[cfg(feature = "aravis")]
-fn one_of(config: &CameraConfig, gige: &GigeConfig, device: &str) -> Result<Box<dyn Camera>, CameraError> {
-    let camera = super::GigeCamera::open(device, gige, config.optics.rows, config.optics.columns)?;
-    Ok(Box::new(camera))
+fn opener(gige: GigeConfig, optics: Optics) -> Result<OpenCamera, CameraError> {
+    Ok(Rc::new(move |side| {
+        let camera = super::GigeCamera::open(&gige.devices[side], &gige, optics.rows, optics.columns)?;
+        Ok(Box::new(camera))
+    }))
 }
 
 #[cfg(not(feature = "aravis"))]
-fn one_of(_: &CameraConfig, _: &GigeConfig, device: &str) -> Result<Box<dyn Camera>, CameraError> {
-    Err(CameraError::NotBuilt {
-        camera: device.to_owned(),
-    })
+fn opener(gige: GigeConfig, _: Optics) -> Result<OpenCamera, CameraError> {
+    let [camera, _] = gige.devices;
+    Err(CameraError::NotBuilt { camera })
 }
 
 fn one() -> u32 {

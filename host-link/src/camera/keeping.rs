@@ -1,31 +1,64 @@
-//! A camera whose pictures somebody else wants to see too.
+//! A camera whose pictures somebody else wants too.
 
 use super::{Arrival, Camera, CameraError, Picture};
 use std::collections::VecDeque;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Pictures that are kept until the oldest is dropped.
-const ROOM: usize = 64;
+/// Pictures that are kept until the oldest is dropped: more than a second of them.
+const ROOM: usize = 256;
 
 /// The newest pictures of a camera, for whoever has a clone of it.
 #[derive(Clone, Debug, Default)]
-pub struct Shelf(Arc<Mutex<VecDeque<Picture>>>);
+pub struct Shelf(Arc<(Mutex<Shelved>, Condvar)>);
+
+/// What is on a shelf.
+#[derive(Debug, Default)]
+struct Shelved {
+    pictures: VecDeque<Picture>,
+    dropped: u32,
+    closed: bool,
+}
 
 impl Shelf {
     /// Takes all pictures, the oldest first.
     pub fn take(&self) -> Vec<Picture> {
-        // A picture is put there whole or not at all.
-        let mut pictures = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        pictures.drain(..).collect()
+        self.lock().pictures.drain(..).collect()
+    }
+
+    /// Waits for pictures and takes them, the oldest first; nothing once the shelf is closed and empty.
+    pub fn wait(&self) -> Option<Vec<Picture>> {
+        let waiting = |shelved: &mut Shelved| shelved.pictures.is_empty() && !shelved.closed;
+        let waited = self.0.1.wait_while(self.lock(), waiting);
+        let mut shelved = waited.unwrap_or_else(PoisonError::into_inner);
+        let pictures: Vec<_> = shelved.pictures.drain(..).collect();
+        (!pictures.is_empty()).then_some(pictures)
+    }
+
+    /// Nobody waits for more pictures.
+    pub fn close(&self) {
+        self.lock().closed = true;
+        self.0.1.notify_all();
+    }
+
+    /// Pictures that nobody took in time.
+    pub fn dropped(&self) -> u32 {
+        self.lock().dropped
     }
 
     fn put(&self, picture: &Picture) {
-        let mut pictures = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if pictures.len() == ROOM {
-            pictures.pop_front();
+        let mut shelved = self.lock();
+        if shelved.pictures.len() == ROOM {
+            shelved.pictures.pop_front();
+            shelved.dropped += 1;
         }
-        pictures.push_back(picture.clone());
+        shelved.pictures.push_back(picture.clone());
+        self.0.1.notify_all();
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Shelved> {
+        // A picture is put there whole or not at all.
+        self.0.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -53,5 +86,44 @@ impl Camera for Keeping {
             self.shelf.put(picture);
         }
         Ok(arrival)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(capture: u32) -> Picture {
+        Picture {
+            capture,
+            ..Picture::default()
+        }
+    }
+
+    #[test]
+    fn a_full_shelf_drops_the_oldest_and_counts_them() {
+        let shelf = Shelf::default();
+        let room = ROOM as u32;
+        (0..room + 3).for_each(|capture| shelf.put(&picture(capture)));
+        let numbers: Vec<u32> = shelf.take().iter().map(|picture| picture.capture).collect();
+        assert_eq!(numbers, (3..room + 3).collect::<Vec<_>>());
+        assert_eq!(shelf.dropped(), 3);
+    }
+
+    #[test]
+    fn who_waits_gets_what_is_there_and_hears_of_the_end() {
+        let shelf = Shelf::default();
+        let waiting = shelf.clone();
+        let thread = std::thread::spawn(move || {
+            let mut numbers = Vec::new();
+            while let Some(pictures) = waiting.wait() {
+                numbers.extend(pictures.iter().map(|picture| picture.capture));
+            }
+            numbers
+        });
+        (0..5).for_each(|capture| shelf.put(&picture(capture)));
+        shelf.close();
+        assert_eq!(thread.join().expect("it ends"), [0, 1, 2, 3, 4]);
+        assert_eq!(shelf.wait(), None);
     }
 }

@@ -20,14 +20,14 @@ const HIGHEST_16_BIT: u64 = 0xffff;
 
 /// A strobe that was told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Strobe {
+pub(crate) struct Strobe {
     pub capture: u32,
     pub time_us: u64,
 }
 
 /// What is known of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Match {
+pub(crate) enum Match {
     /// It is that of this strobe.
     Of(Strobe),
     /// It comes after this capture, which is lost; it is asked about again.
@@ -47,7 +47,7 @@ struct Last {
 
 /// Matches the frames of one camera with the strobes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Matching {
+pub(crate) struct Matching {
     waiting: VecDeque<Strobe>,
     lost: VecDeque<u32>,
     newest: Option<Strobe>,

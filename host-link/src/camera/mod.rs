@@ -7,6 +7,7 @@
 mod aravis;
 mod folder;
 mod gige;
+mod keeper;
 mod keeping;
 #[cfg(any(feature = "aravis", test))]
 mod matching;
@@ -16,8 +17,11 @@ mod recorder;
 #[cfg(feature = "aravis")]
 pub use aravis::GigeCamera;
 pub use folder::{Folder, Recorded};
-pub use gige::{GigeConfig, open};
+pub use gige::{GigeConfig, OpenCamera, real};
+pub use keeper::{Keeper, Kept};
 pub use keeping::{Keeping, Shelf};
+#[cfg(test)]
+pub(crate) use matching::{Match, Matching, Strobe};
 pub use png::{PngError, read_grey, write_grey, write_rgb};
 pub use recorder::Recorder;
 
@@ -98,9 +102,15 @@ pub enum CameraError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// Pictures are not kept among others.
+    #[error("{folder} holds pictures already; choose another folder")]
+    Holds {
+        /// The folder.
+        folder: String,
+    },
     /// The machine file names no cameras.
     #[error(
-        "the machine file has no [cameras.gige]: name the two GigE Vision cameras there, or take simulated boards"
+        "the machine file has no [cameras.gige]: name the two GigE Vision cameras there, or say --camera geometric to try the boards without pictures"
     )]
     NotTold,
     /// This program cannot talk to cameras.

@@ -3,7 +3,7 @@
 use super::folder::{CAPTURES, HEADER};
 use super::{CameraError, Picture, write_grey};
 use std::fs::File;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Writes pictures into a folder as [`Folder`](super::Folder) reads them.
@@ -14,7 +14,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Makes the folder; one that already holds captures is refused, so that no two recordings mix.
+    /// Makes the folder; one that holds pictures already is refused, so that no two recordings mix.
     pub fn new(folder: &Path) -> Result<Self, CameraError> {
         let list = folder.join(CAPTURES);
         let failed = |source| CameraError::Record {
@@ -22,7 +22,11 @@ impl Recorder {
             source,
         };
         std::fs::create_dir_all(folder).map_err(failed)?;
-        let mut captures = File::create_new(&list).map_err(failed)?;
+        if holds_pictures(folder, &list).map_err(failed)? {
+            let folder = folder.display().to_string();
+            return Err(CameraError::Holds { folder });
+        }
+        let mut captures = File::create(&list).map_err(failed)?;
         writeln!(captures, "{HEADER}").map_err(failed)?;
         Ok(Self {
             folder: folder.to_owned(),
@@ -40,6 +44,20 @@ impl Recorder {
                 source,
             }
         })
+    }
+}
+
+/// Whether a folder has pictures, or a list of some; that of a recording which never got one is none.
+fn holds_pictures(folder: &Path, list: &Path) -> std::io::Result<bool> {
+    for entry in std::fs::read_dir(folder)? {
+        if Path::new(&entry?.file_name()).extension() == Some("png".as_ref()) {
+            return Ok(true);
+        }
+    }
+    match std::fs::read_to_string(list) {
+        Ok(text) => Ok(text.trim() != HEADER),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
     }
 }
 
@@ -62,13 +80,14 @@ mod tests {
     #[test]
     fn what_was_kept_comes_back_to_its_captures_and_what_was_not_is_lost() {
         let path = std::env::temp_dir().join(format!("seamwright-recorder-{}/deep", std::process::id()));
-        let mut recorder = Recorder::new(&path).expect("a new folder");
+        drop(Recorder::new(&path).expect("a new folder"));
+        let mut recorder = Recorder::new(&path).expect("a folder without pictures");
         for capture in [3, 4, 6] {
             recorder.add(&picture(capture)).expect("kept");
         }
         let again = Recorder::new(&path).expect_err("a second recording").to_string();
         assert!(
-            again.contains("captures.csv") && again.contains("another folder"),
+            again.contains("deep holds pictures already") && again.contains("another folder"),
             "{again}"
         );
 

@@ -80,10 +80,10 @@ impl SeamArgs {
             (self.jog, "--jog"),
             (self.restart, "--restart"),
             (self.seam.is_some(), "--seam"),
-            (self.eyes.scene(), "--scene"),
         ];
-        match told.into_iter().find(|(told, _)| *told) {
-            Some((_, name)) => bail!("{name} is for parts with seams ([t-seam]), and this part has none"),
+        let told = told.into_iter().find_map(|(told, name)| told.then_some(name));
+        match told.or(self.eyes.of_pictures()) {
+            Some(name) => bail!("{name} is for parts with seams ([t-seam]), and this part has none"),
             None => Ok(()),
         }
     }
@@ -153,6 +153,7 @@ impl SeamArgs {
                 boards: boards.name(),
             },
         };
+        let keepers = self.eyes.keep(&job.surroundings.cameras)?;
         let mut connected = match boards.connect_for(machine)? {
             Ok(connected) => connected,
             Err(code) => return Ok(code),
@@ -165,6 +166,7 @@ impl SeamArgs {
             &mut terminal,
         )?;
         drop(terminal);
+        keepers.end();
         match (ended.taught.seam, ended.error) {
             (Some(taught), None) => tell(&output, &taught),
             (_, error) => {

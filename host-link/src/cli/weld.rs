@@ -141,6 +141,7 @@ impl Weld {
         };
         self.check(&job)?;
         report::prepare(&self.report)?;
+        let keepers = self.cameras.keep(&job.surroundings.cameras)?;
         let mut connected = match self.boards.connect_for(&machine)? {
             Ok(connected) => connected,
             Err(code) => return Ok(code),
@@ -151,6 +152,7 @@ impl Weld {
             &connected.interrupted,
             &mut Terminal::with_words(self.single_block),
         )?;
+        keepers.end();
         self.write_taught(&ended.taught)?;
         if ended.began {
             report::write(&self.report, &ended.report, &ended.evaluation, &ended.plots)?;

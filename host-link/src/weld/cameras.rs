@@ -1,12 +1,12 @@
 //! The cameras of a session, whatever they are: captures in, measurements out.
 
 use super::images::{Images, ImagesError};
-use super::surroundings::CameraChoice;
 use super::{JobError, Surroundings};
+use crate::calibration::Calibration;
+use crate::camera::{OpenCamera, Shelf};
 use crate::machine::TrackingUnit;
-use crate::record::MachinePosition;
 use crate::report::CameraFigures;
-use crate::world::{GeometricCameras, Machine, TrueSeams};
+use crate::world::{GeometricCameras, Moment, SceneFile};
 use shared::geometry::Pose;
 use shared::io::SIDES;
 use shared::protocol::{Capture, Measurement};
@@ -15,6 +15,43 @@ use vision::Seam;
 
 /// Standard deviations in the noise of the machine file.
 const SIGMAS: f64 = 3.0;
+
+/// How the seams are seen.
+#[derive(Clone, Default)]
+pub enum CameraChoice {
+    /// By geometry, without pictures.
+    #[default]
+    Geometric,
+    /// In pictures.
+    Images(Box<ImageCameras>),
+}
+
+impl CameraChoice {
+    /// Whether they are real ones.
+    pub fn real(&self) -> bool {
+        matches!(self, Self::Images(images) if matches!(images.source, PictureSource::Real(_)))
+    }
+}
+
+/// Cameras that give pictures.
+#[derive(Clone)]
+pub struct ImageCameras {
+    /// What is known of camera 1 and 2.
+    pub calibrations: [Calibration; SIDES],
+    /// Where their pictures come from.
+    pub source: PictureSource,
+    /// Where copies of the pictures of each side go, if anywhere.
+    pub kept: Option<[Shelf; SIDES]>,
+}
+
+/// Where pictures come from.
+#[derive(Clone)]
+pub enum PictureSource {
+    /// Rendered, of seams that look like this.
+    Rendered(SceneFile),
+    /// From real cameras.
+    Real(OpenCamera),
+}
 
 /// Both cameras of a machine.
 pub(super) enum Cameras {
@@ -72,21 +109,11 @@ impl Cameras {
         }
     }
 
-    /// The next answer that is there at `now_us` of the motion clock. `position` says where the machine was at a time of
-    /// the motion clock, `None` if that is not known (yet).
-    pub fn answer(
-        &mut self,
-        machine: &Machine,
-        seams: &TrueSeams,
-        now_us: u64,
-        position: impl Fn(u64) -> Option<MachinePosition>,
-    ) -> Result<Option<Answer>, ImagesError> {
+    /// The next answer that is there.
+    pub fn answer(&mut self, at: Moment) -> Result<Option<Answer>, ImagesError> {
         match self {
-            Self::Geometric(cameras) => {
-                let seams = cameras.answer(machine, seams, now_us, position);
-                Ok(seams.map(Answer::from))
-            }
-            Self::Images(images) => images.answer(machine, seams, now_us, position),
+            Self::Geometric(cameras) => Ok(cameras.answer(at).map(Answer::from)),
+            Self::Images(images) => images.answer(at),
         }
     }
 

@@ -7,6 +7,7 @@ mod following;
 mod images;
 mod operator;
 mod outcome;
+mod planned;
 mod progress;
 mod recentring;
 mod seam_teaching;
@@ -19,13 +20,13 @@ mod tests;
 mod tracking;
 
 pub use calibrating::{CameraPictures, PictureRun};
+pub use cameras::{CameraChoice, ImageCameras, PictureSource};
 pub use images::{ImagesError, WorkerError};
 pub use outcome::Ended;
+pub use planned::{Planned, check_seam};
 pub use progress::{Line, Progress, Silent, Word};
 pub use seam_teaching::{SeamLesson, TaughtSeam};
-pub use surroundings::{
-    CameraChoice, ImageCameras, OpenCamera, PictureSource, Planned, Surroundings, check_seam,
-};
+pub use surroundings::Surroundings;
 pub use teaching::{NoTeaching, Taught, check_teaching};
 pub use terminal::Terminal;
 

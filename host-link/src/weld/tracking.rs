@@ -9,11 +9,12 @@ use crate::machine::TrackingUnit;
 use crate::path::{CAPACITY, PlannedPath};
 use crate::record::Record;
 use crate::teach::seam::Seen;
-use crate::world::{BoardClocks, Machine, TrueSeams};
+use crate::world::{BoardClocks, Machine, Moment, TrueSeams};
 use shared::geometry::Pose;
 use shared::io::{SIDES, SLIDES};
 use shared::protocol::{
-    Capture, ClockReply, ClockRequest, Datagram, Request, Response, Role, SideMeasurement, TrackerStatus,
+    Capture, ClockReply, ClockRequest, Datagram, Measurement, Request, Response, Role, SideMeasurement,
+    TrackerStatus,
 };
 use shared::tracking::{TrackerFault, TrackerState};
 use shared::trajectory::{Path, PathSpace};
@@ -38,9 +39,9 @@ pub(super) struct Watched {
 /// Pictures while somebody watches.
 #[derive(Clone, Debug, Default)]
 struct Watch {
-    /// Strobed, and not yet answered.
+    /// By the number of the capture.
     strobed: BTreeMap<u32, [f64; SLIDES]>,
-    answered: Vec<Watched>,
+    answered: BTreeMap<u32, Watched>,
 }
 
 /// What a session knows of the tracker board.
@@ -157,13 +158,13 @@ impl Tracking {
         }
     }
 
-    /// Gives a capture to the cameras. The time of the strobe is what the PC found, not what the tracker
-    /// believes: a wrong belief must show.
+    /// Gives a capture to the cameras. The time of the strobe is what the PC found, as soon as it has, not what the
+    /// tracker believes: a wrong belief must show. No capture is left out, for real cameras count them.
     pub fn strobe(&mut self, machine: &Machine, capture: Capture, welding: bool) {
-        let Some(ahead) = self.clocks.tracker_ahead_us() else {
-            return;
-        };
-        let on_motion = capture.time_us.saturating_add_signed(-ahead);
+        let found = self.clocks.tracker_ahead_us();
+        let on_motion = found.map_or(capture.motion_time_us, |ahead| {
+            capture.time_us.saturating_add_signed(-ahead)
+        });
         if welding {
             let difference = capture.motion_time_us as f64 - on_motion as f64;
             raise(&mut self.clock_difference_us, difference.abs());
@@ -195,7 +196,8 @@ impl Tracking {
 
     /// Gives the pictures that were kept.
     pub fn end_watch(&mut self) -> Vec<Watched> {
-        self.watch.take().map_or_else(Vec::new, |watch| watch.answered)
+        let answered = self.watch.take().map(|watch| watch.answered);
+        answered.unwrap_or_default().into_values().collect()
     }
 
     /// When the next question or answer is due, by the PC's clock.
@@ -228,9 +230,13 @@ impl Tracking {
             }
         }
         while let Some(now_us) = self.clocks.motion_now_us(boards.now().as_micros() as u64) {
-            let position = |time_us| Some(record.machine_at(time_us)?.0);
-            let answer = self.cameras.answer(machine, &self.seams, now_us, position)?;
-            let Some(answer) = answer else {
+            let moment = Moment {
+                machine,
+                seams: &self.seams,
+                now_us,
+                position: &|time_us| Some(record.machine_at(time_us)?.0),
+            };
+            let Some(answer) = self.cameras.answer(moment)? else {
                 break;
             };
             if let Some(watch) = &mut self.watch {
@@ -243,13 +249,20 @@ impl Tracking {
 }
 
 impl Watch {
+    /// Real cameras answer a capture each by itself.
     fn add(&mut self, answer: &Answer) {
-        if let Some(slides_mm) = self.strobed.remove(&answer.measurement.capture) {
-            let sides = &answer.measurement.sides;
-            self.answered.push(Watched {
-                slides_mm,
-                sides: std::array::from_fn(|k| Some(seen(sides[k].as_ref()?, answer.seams[k].as_ref()))),
-            });
+        let Measurement { capture, sides } = &answer.measurement;
+        let Some(slides_mm) = self.strobed.get(capture) else {
+            return;
+        };
+        let watched = self.answered.entry(*capture).or_insert(Watched {
+            slides_mm: *slides_mm,
+            sides: [None; SIDES],
+        });
+        for (k, side) in sides.iter().enumerate() {
+            if let Some(side) = side {
+                watched.sides[k] = Some(seen(side, answer.seams[k].as_ref()));
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Cameras that measure by geometry: no images, but lead, delay and noise.
 
-use super::{Machine, TrueSeams};
+use super::{Machine, Moment, TrueSeams};
 use crate::record::MachinePosition;
 use shared::io::SIDES;
 use shared::protocol::{Capture, Measurement, SideMeasurement};
@@ -64,29 +64,22 @@ impl GeometricCameras {
         self.given_up
     }
 
-    /// The next answer that is due at `now_us` of the motion clock. `position` says where the machine was at a time of
-    /// the motion clock, `None` if that is not known (yet): the answer then waits for a while.
-    pub fn answer(
-        &mut self,
-        machine: &Machine,
-        seams: &TrueSeams,
-        now_us: u64,
-        position: impl Fn(u64) -> Option<MachinePosition>,
-    ) -> Option<Measurement> {
+    /// The next answer that is due; it waits for a while to know where the machine was.
+    pub fn answer(&mut self, at: Moment) -> Option<Measurement> {
         loop {
             let next = self.waiting.front()?;
-            if next.due_us > now_us {
+            if next.due_us > at.now_us {
                 return None;
             }
-            match position(next.strobe_us) {
+            match (at.position)(next.strobe_us) {
                 Some(position) => {
-                    let measurement = next.measure(machine, &position, seams);
+                    let measurement = next.measure(at.machine, &position, at.seams);
                     self.waiting.pop_front();
                     if measurement.sides != [None; SIDES] {
                         return Some(measurement);
                     }
                 }
-                None if now_us > next.due_us + GIVE_UP_US => {
+                None if at.now_us > next.due_us + GIVE_UP_US => {
                     self.waiting.pop_front();
                     self.given_up += 1;
                 }
@@ -146,9 +139,23 @@ mod tests {
         MachinePosition::Axes(machine().inverse(&pose))
     }
 
+    fn answer(
+        cameras: &mut GeometricCameras,
+        seams: &TrueSeams,
+        now_us: u64,
+        position: impl Fn(u64) -> Option<MachinePosition>,
+    ) -> Option<Measurement> {
+        cameras.answer(Moment {
+            machine: &machine(),
+            seams,
+            now_us,
+            position: &position,
+        })
+    }
+
     fn seen(cameras: &mut GeometricCameras, now_us: u64, s: f64) -> Option<Measurement> {
         let seams = TrueSeams::of([wavy_seam()]);
-        cameras.answer(&machine(), &seams, now_us, |_| Some(position(s)))
+        answer(cameras, &seams, now_us, |_| Some(position(s)))
     }
 
     #[test]
@@ -174,16 +181,16 @@ mod tests {
 
     #[test]
     fn an_answer_waits_for_its_time_and_for_knowledge_and_is_given_up_at_last() {
-        let (machine, seams) = (machine(), TrueSeams::of([wavy_seam()]));
+        let seams = TrueSeams::of([wavy_seam()]);
         let mut cameras = GeometricCameras::new(10_000, 0.0, 1);
         cameras.strobe(capture(1), 1_000);
         cameras.strobe(capture(2), 6_000);
         assert_eq!(cameras.next_due_us(), Some(11_000));
         assert!(seen(&mut cameras, 10_999, 250.0).is_none());
-        assert!(cameras.answer(&machine, &seams, 11_000, |_| None).is_none());
+        assert!(answer(&mut cameras, &seams, 11_000, |_| None).is_none());
         let known_later = |time| (time > 1_000).then(|| position(250.0));
-        let answer = cameras.answer(&machine, &seams, 211_001, known_later).unwrap();
-        assert_eq!(answer.capture, 2);
+        let measurement = answer(&mut cameras, &seams, 211_001, known_later).unwrap();
+        assert_eq!(measurement.capture, 2);
         assert_eq!(cameras.given_up(), 1);
     }
 
@@ -192,8 +199,8 @@ mod tests {
         let mut cameras = GeometricCameras::new(0, 0.0, 1);
         cameras.strobe(capture(1), 0);
         let none = TrueSeams::none(heads());
-        let answer = cameras.answer(&machine(), &none, 0, |_| Some(position(250.0)));
-        assert_eq!(answer, None);
+        let measurement = answer(&mut cameras, &none, 0, |_| Some(position(250.0)));
+        assert_eq!(measurement, None);
         assert_eq!((cameras.next_due_us(), cameras.given_up()), (None, 0));
     }
 
@@ -208,7 +215,7 @@ mod tests {
             cameras.strobe(capture(1), 0);
             let seams = TrueSeams::of([wavy_seam()]);
             let at = MachinePosition::Axes(axes);
-            cameras.answer(&machine(), &seams, 0, |_| Some(at)).is_some()
+            answer(&mut cameras, &seams, 0, |_| Some(at)).is_some()
         };
         // The seam is told from 90 to 400 mm along the path.
         assert!(sees(250.0, 0.0) && sees(45.0, 0.0) && sees(425.0, 0.0));

@@ -8,6 +8,7 @@ mod clock;
 mod frame;
 mod geometric;
 pub(crate) mod machine;
+mod moment;
 mod probe;
 mod rendered;
 pub(crate) mod seams;
@@ -17,6 +18,7 @@ pub use clock::BoardClocks;
 pub use frame::CameraFrame;
 pub use geometric::GeometricCameras;
 pub use machine::Machine;
+pub use moment::Moment;
 pub use probe::SimulatedProbe;
 pub use rendered::{
     Dark, Prospect, RenderedCamera, RenderedWorld, SceneError, SceneFile, Scratch, Surface as Texture, View,

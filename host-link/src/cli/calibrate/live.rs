@@ -1,6 +1,7 @@
 //! `host-link calibrate camera`: with the machine.
 
 use super::super::boards::{BoardChoice, exit_code};
+use super::super::cameras::source;
 use super::super::read_program;
 use super::{Camera, Meets};
 use crate::calibration::procedure::{self, Found};
@@ -10,9 +11,9 @@ use crate::seam::Deviation;
 use crate::weld::{
     CameraChoice, ImageCameras, Job, Names, PictureRun, PictureSource, Surroundings, Terminal, Work, run,
 };
-use crate::world::SceneFile;
 use anyhow::{Context, bail};
 use clap::Args;
+use shared::io::SIDES;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
@@ -35,7 +36,7 @@ pub struct Live {
     /// Places along the seam; more of them even out its texture
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=9))]
     places: u32,
-    /// emulated or simulated
+    /// emulated, simulated, or the addresses of real boards: MOTION,TRACKER
     #[arg(long, default_value = "emulated")]
     boards: BoardChoice,
     /// Deviation of the seams of a simulated world (CSV) [default: none, a straight coupon]
@@ -62,24 +63,29 @@ impl Live {
         };
         let machine = MachineFile::read(machine_file)?;
         self.boards.check(&machine)?;
-        if matches!(self.boards, BoardChoice::At { .. }) {
-            bail!(
-                "real cameras are calibrated from folders of pictures as yet: calibrate profile, calibrate slides"
-            );
-        }
-        let before = self.camera.before()?;
-        let program = read_program(&self.at, false)?;
-        let seam = match &self.seam {
-            Some(file) => Deviation::read(file)?,
-            None => Deviation::parse("coupon", COUPON)?,
+        let Some(unit) = &machine.tracking else {
+            bail!("machine file {}: it has no cameras", machine_file.display());
         };
-        let scene = self.scene.as_deref().map(SceneFile::read).transpose()?;
+        let cameras = &unit.cameras;
+        let before = self.camera.before()?;
+        let mut calibrations = cameras.calibrations(machine_file.parent().unwrap_or(Path::new("")))?;
+        let side = usize::from(side) - 1;
+        calibrations[side] = before;
+        let source = source(&self.boards, cameras, self.scene.as_deref())?;
+        let program = read_program(&self.at, false)?;
+        let seam = match (&self.seam, &source) {
+            (Some(file), _) => Some(Deviation::read(file)?),
+            (None, PictureSource::Rendered(_)) => Some(Deviation::parse("coupon", COUPON)?),
+            // Nobody has to say where it is.
+            (None, PictureSource::Real(_)) => None,
+        };
+        let shelves = <[Shelf; SIDES]>::default();
         let picture_run = PictureRun {
             program: &program,
-            side: usize::from(side) - 1,
+            side,
             before,
             places: self.places,
-            shelf: Shelf::default(),
+            shelf: shelves[side].clone(),
         };
         let name = |path: &Path| path.display().to_string();
         let job = Job {
@@ -89,12 +95,12 @@ impl Live {
             speed_m_per_min: None,
             from_line: None,
             surroundings: Surroundings {
-                seam: Some(Rc::new(seam)),
+                seam: seam.map(Rc::new),
                 drawing: None,
                 cameras: CameraChoice::Images(Box::new(ImageCameras {
-                    calibrations: [before; 2],
-                    source: PictureSource::Rendered(scene.unwrap_or_default()),
-                    kept: Some((picture_run.side, picture_run.shelf.clone())),
+                    calibrations,
+                    source,
+                    kept: Some(shelves),
                 })),
                 seed: self.seed,
             },

@@ -9,13 +9,11 @@ mod worker;
 
 pub use worker::{Seen, WorkerError};
 
-use super::cameras::Answer;
-use super::surroundings::{ImageCameras, PictureSource};
+use super::cameras::{Answer, ImageCameras, PictureSource};
 use crate::camera::Keeping;
 use crate::machine::{CameraConfig, JointForm, TrackingUnit};
-use crate::record::MachinePosition;
 use crate::report::CameraFigures;
-use crate::world::{CameraFrame, Machine, Prospect, RenderedWorld, TrueSeams, View, nominal_slopes};
+use crate::world::{CameraFrame, Moment, Prospect, RenderedWorld, View, nominal_slopes};
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::SIDES;
@@ -103,8 +101,8 @@ impl Images {
                 }
             };
             let camera = match &of.kept {
-                Some((kept, shelf)) if *kept == side => Box::new(Keeping::new(camera, shelf.clone())),
-                _ => camera,
+                Some(shelves) => Box::new(Keeping::new(camera, shelves[side].clone())),
+                None => camera,
             };
             let (optics, noise) = (calibration.optics, calibration.photon_transfer);
             let detector = Detector::new(optics, noise, calibration.profile)?;
@@ -202,22 +200,15 @@ impl Images {
         self.sides.iter().filter_map(due).min()
     }
 
-    /// The next answer that is there at `now_us` of the motion clock. `position` says where the machine was at a time of
-    /// the motion clock, `None` if that is not known (yet).
-    pub fn answer(
-        &mut self,
-        machine: &Machine,
-        seams: &TrueSeams,
-        now_us: u64,
-        position: impl Fn(u64) -> Option<MachinePosition>,
-    ) -> Result<Option<Answer>, ImagesError> {
+    /// The next answer that is there.
+    pub fn answer(&mut self, at: Moment) -> Result<Option<Answer>, ImagesError> {
         if self.world.is_some() {
-            self.tell(machine, seams, now_us, position);
+            self.tell(at);
         }
         loop {
             for (side, camera) in self.sides.iter_mut().enumerate() {
                 let got = match &self.world {
-                    Some(_) => camera.wait(now_us),
+                    Some(_) => camera.wait(at.now_us),
                     None => camera.poll(),
                 };
                 got.map_err(|source| ImagesError { side, source })?;
@@ -244,22 +235,16 @@ impl Images {
     }
 
     /// Tells rendered cameras what stands before them, as far as that is known.
-    fn tell(
-        &mut self,
-        machine: &Machine,
-        seams: &TrueSeams,
-        now_us: u64,
-        position: impl Fn(u64) -> Option<MachinePosition>,
-    ) {
+    fn tell(&mut self, at: Moment) {
         for (k, side) in self.sides.iter_mut().enumerate() {
             for waiting in side.waiting.iter_mut().filter(|waiting| !waiting.told) {
-                let prospect = match position(waiting.strobe_us) {
+                let prospect = match (at.position)(waiting.strobe_us) {
                     Some(position) => {
                         let slides = waiting.capture.truth_mm.unwrap_or(waiting.capture.slides_mm);
-                        View::of(&self.cameras, machine, seams, &position, &slides, k)
+                        View::of(&self.cameras, at.machine, at.seams, &position, &slides, k)
                             .map_or(Prospect::Nothing, Prospect::Seam)
                     }
-                    None if now_us > waiting.due_us + GIVE_UP_US => {
+                    None if at.now_us > waiting.due_us + GIVE_UP_US => {
                         self.given_up += 1;
                         Prospect::Unknown
                     }

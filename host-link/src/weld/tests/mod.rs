@@ -6,6 +6,7 @@ mod drawing;
 mod from_line;
 mod holds;
 mod machines;
+mod real_cameras;
 mod recentring;
 mod single_block;
 mod taught_seam;
