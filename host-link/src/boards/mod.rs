@@ -3,11 +3,9 @@
 mod network;
 mod overheard;
 pub mod simulated;
-mod slides;
 
 pub use network::{Endpoint, NetworkBoards, Patience};
 pub use overheard::Overheard;
-pub use slides::{SlidesError, move_slides};
 
 use shared::protocol::framing::FrameError;
 use shared::protocol::{Datagram, Identity, Refusal, Request, Response, Role};

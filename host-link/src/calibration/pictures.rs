@@ -19,6 +19,20 @@ pub struct Known<const N: usize> {
     pub values: [f64; N],
 }
 
+impl Known<3> {
+    /// The same of a machine that stood still: it had gone 0 mm.
+    pub fn at_rest(self) -> Known<4> {
+        let [a, b, c] = self.values;
+        let (file, picture) = (self.file, self.picture);
+        let values = [a, b, c, 0.0];
+        Known {
+            file,
+            picture,
+            values,
+        }
+    }
+}
+
 /// The pictures of `folder`, with the numbers that its list has in `columns` after the file's name.
 pub fn read_pictures<const N: usize>(
     folder: &Path,

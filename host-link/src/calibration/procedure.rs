@@ -201,18 +201,19 @@ pub fn profile(listed: &[Known<2>], before: &Calibration) -> Result<Found, Calib
 /// What is known of a picture for [`slides`]: which place of the seam it shows, where the slides are.
 pub const SLIDES: [&str; 3] = ["place", "u_mm", "v_mm"];
 
-/// Camera–slide matrix from pictures of a seam at rest, in the order they were taken. With `meets_mm`, the slides at which
-/// the beam meets that seam, the offset between beam and camera too.
+/// Camera–slide matrix from pictures of a seam at rest, in the order they were taken; after place and slides stands how far
+/// the machine had gone along travel \[mm\]. With `meets_mm`, the slides at which the beam meets that seam, the offset between
+/// beam and camera too.
 pub fn slides(
-    listed: &[Known<3>],
+    listed: &[Known<4>],
     before: &Calibration,
     meets_mm: Option<[f64; 2]>,
 ) -> Result<Found, CalibrateError> {
     let mut seen = Vec::new();
     for known in listed {
         if let Some(measured) = seam(before, known, Joint::Gap)? {
-            let [place, u, v] = known.values;
-            seen.push((place as u32, [u, v], measured));
+            let [place, u, v, along_mm] = known.values;
+            seen.push((place as u32, [u, v], along_mm, measured));
         }
     }
     let readings = on_axis(&seen);
@@ -297,7 +298,7 @@ pub fn corner(
     for known in listed {
         let [corner, u, v] = known.values;
         if corner == 0.0 {
-            open.extend(seam(before, known, Joint::Gap)?.map(|measured| (0, [u, v], measured)));
+            open.extend(seam(before, known, Joint::Gap)?.map(|measured| (0, [u, v], 0.0, measured)));
         } else if let Some(measured) = seam(before, known, closed)? {
             reads.push(([u, v], [measured.lateral_mm, measured.height_mm]));
         }
@@ -348,9 +349,12 @@ pub fn corner(
     Ok(Found { calibration, figures })
 }
 
-/// The readings of a straight seam: its angle is the mean of each place's pictures, and takes what a height shifts the
-/// place that is seen along it.
-fn on_axis(seen: &[(u32, [f64; 2], Measured)]) -> Vec<SlideReading> {
+/// A picture of a place of the seam: its number, the slides, how far the machine was along travel, what was measured.
+type Seen = (u32, [f64; 2], f64, Measured);
+
+/// The readings of a straight seam: its angle is the mean of each place's pictures, and takes what a height or the machine
+/// shifts the place that is seen along it.
+fn on_axis(seen: &[Seen]) -> Vec<SlideReading> {
     let yaw = |place: u32| {
         let of = seen
             .iter()
@@ -359,11 +363,11 @@ fn on_axis(seen: &[(u32, [f64; 2], Measured)]) -> Vec<SlideReading> {
         let (sum, count) = of.fold((0.0, 0.0), |(sum, count), yaw| (sum + yaw, count + 1.0));
         sum / count
     };
-    let reading = |&(place, slides_mm, measured): &(u32, [f64; 2], Measured)| SlideReading {
+    let reading = |&(place, slides_mm, along_mm, measured): &Seen| SlideReading {
         place,
         slides_mm,
         seen_mm: [
-            measured.lateral_mm - measured.travel_mm * f64::tan(yaw(place)),
+            measured.lateral_mm - (along_mm + measured.travel_mm) * f64::tan(yaw(place)),
             measured.height_mm,
         ],
     };

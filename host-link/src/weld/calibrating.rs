@@ -1,13 +1,18 @@
 //! Pictures to calibrate a camera from: the machine stands, its slides step, the camera looks.
+//!
+//! Where the camera steps out of the work or into it, the machine goes on along travel by as much as the sharp band would
+//! wander on the work. So the band stays where it is: what its texture does to heights is the same in every picture and
+//! leaves the steps true, and so does work that slopes along travel.
 
 use super::session::Session;
 use super::{Job, JobError, Weld};
 use crate::calibration::{Calibration, Known};
 use crate::camera::{Picture, Shelf};
 use crate::nc::{Options, Program, interpret};
+use crate::path::CAPACITY;
 use crate::plan::text::tip_words;
-use shared::io::{AXES, SLIDES};
-use shared::protocol::{Request, Role};
+use shared::io::AXES;
+use shared::trajectory::Path;
 use shared::units::DEG_PER_RAD;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -21,9 +26,9 @@ const DEPTH_STEP_MM: f64 = 0.05;
 /// Positions of one slide, there and back, in steps of the second figure \[mm\].
 const WAY: [f64; 9] = [0.0, 1.0, 2.0, 1.0, 0.0, -1.0, -2.0, -1.0, 0.0];
 const WAY_STEP_MM: f64 = 0.10;
-/// Slides are there when they are that near \[mm\].
-const THERE_MM: f64 = 0.005;
-/// Longest time for a step of the slides, and for a picture.
+/// Furthest from a place that the machine goes along travel \[mm\].
+const FURTHEST_MM: f64 = 0.5;
+/// Longest time for a picture.
 const LIMIT: Duration = Duration::from_secs(10);
 /// Time for the slides to come to rest \[s\].
 const SETTLE_S: f64 = 0.1;
@@ -48,8 +53,8 @@ pub struct PictureRun<'a> {
 pub struct CameraPictures {
     /// Through focus: U, V.
     pub profile: Vec<Known<2>>,
-    /// Steps of the slides: place, U, V.
-    pub slides: Vec<Known<3>>,
+    /// Steps of the slides: place, U, V, and how far the machine is along travel.
+    pub slides: Vec<Known<4>>,
 }
 
 impl Weld {
@@ -81,32 +86,20 @@ impl Weld {
             .map_or(0.0, |tracking| tracking.seams.heads().camera_lead());
         let mut pictures = CameraPictures::default();
         for place in 0..run.places {
-            let s = (begin - lead - PLACE_STEP_MM * f64::from(place)).max(weld.start_s);
-            let pose = path
-                .at(s)
-                .and_then(|point| point.pose().ok())
-                .ok_or_else(nothing)?;
-            let what = format!("place {} of {}", place + 1, run.places);
-            let axes = self
-                .planner
-                .kinematics()
-                .inverse(&pose, &[0.0; AXES])
-                .map_err(|error| JobError::Calibrate(format!("{what} cannot be reached: {error}")))?;
-            let angles = [axes[3], axes[4], axes[5]].map(|angle| angle * DEG_PER_RAD);
-            self.go(
-                session,
-                &tip_words(&pose.position.into(), &angles, &[0.0; 2]),
-                &what,
-            )?;
-            session.progress.phase(&what);
+            let s = (begin - lead - PLACE_STEP_MM * f64::from(place)).max(weld.start_s + FURTHEST_MM);
+            let standing = Standing {
+                path: &path,
+                s,
+                what: format!("place {} of {}", place + 1, run.places),
+            };
+            standing.go(self, session, 0.0)?;
             let middle = centred(session, run)?;
             if place == 0 {
                 for k in -DEPTH_STEPS..=DEPTH_STEPS {
                     // The camera moves along its own n.
                     let [[_, u], [_, v]] = run.before.slides.matrix;
                     let n = DEPTH_STEP_MM * f64::from(k);
-                    let (file, picture, [u, v]) = look(session, run, [middle[0] + u * n, middle[1] + v * n])?;
-                    let values = [u, v];
+                    let (file, picture, values) = look(session, run, [middle[0] + u * n, middle[1] + v * n])?;
                     pictures.profile.push(Known {
                         file,
                         picture,
@@ -115,29 +108,56 @@ impl Weld {
                 }
             }
             for axis in 0..2 {
+                let mut last = middle;
                 for step in WAY {
                     let mut slides = middle;
                     slides[axis] += WAY_STEP_MM * step;
+                    let [du, dv] = [0, 1].map(|k| slides[k] - middle[k]);
+                    let [_, out_mm] = run.before.camera_step(du, dv);
+                    let along_mm = out_mm / run.before.optics.tilt_rad.tan();
+                    standing.go(self, session, along_mm)?;
+                    // On the way there the slides were elsewhere; what they play depends on where they come from.
+                    send(session, run.side, last)?;
+                    last = slides;
                     let (file, picture, [u, v]) = look(session, run, slides)?;
-                    let values = [f64::from(place), u, v];
                     pictures.slides.push(Known {
                         file,
                         picture,
-                        values,
+                        values: [f64::from(place), u, v, along_mm],
                     });
                 }
             }
         }
         Ok(pictures)
     }
+}
 
-    /// A rapid to `words`.
-    fn go(&mut self, session: &mut Session, words: &str, what: &str) -> Result<(), JobError> {
+/// Where the machine stands before a place of the seam.
+struct Standing<'a> {
+    path: &'a Path<CAPACITY>,
+    /// Its path position \[mm\].
+    s: f64,
+    what: String,
+}
+
+impl Standing<'_> {
+    /// A rapid to `along_mm` beyond the place.
+    fn go(&self, weld: &mut Weld, session: &mut Session, along_mm: f64) -> Result<(), JobError> {
+        let lost = || JobError::Calibrate(format!("{} is beyond the program", self.what));
+        let point = self.path.at(self.s + along_mm).ok_or_else(lost)?;
+        let pose = point.pose().map_err(|_| lost())?;
+        let axes = weld
+            .planner
+            .kinematics()
+            .inverse(&pose, &[0.0; AXES])
+            .map_err(|error| JobError::Calibrate(format!("{} cannot be reached: {error}", self.what)))?;
+        let angles = [axes[3], axes[4], axes[5]].map(|angle| angle * DEG_PER_RAD);
+        let words = tip_words(&pose.position.into(), &angles, &[0.0; 2]);
         let text = format!("G43.4\nG0 {words}\nM2\n");
         let program =
             interpret(&text, Options::default()).map_err(|error| JobError::Plan(error.to_string()))?;
-        for path in self.planner.program(&program, &session.motion.reference, None)? {
-            self.path(session, path, what)?;
+        for path in weld.planner.program(&program, &session.motion.reference, None)? {
+            weld.path(session, path, &self.what)?;
         }
         Ok(())
     }
@@ -146,10 +166,7 @@ impl Weld {
 /// Slides at which the seam is in the middle of the camera, as far as it is known.
 fn centred(session: &mut Session, run: &PictureRun) -> Result<[f64; 2], JobError> {
     let wrong = |reason: String| JobError::Calibrate(format!("side {}: {reason}", run.side + 1));
-    let start = session
-        .tracking
-        .as_ref()
-        .map_or([0.0; SLIDES], |tracking| tracking.status.slides_mm);
+    let start = session.slides_mm();
     let here = [start[2 * run.side], start[2 * run.side + 1]];
     let (_, picture, [u, v]) = look(session, run, here)?;
     let Calibration {
@@ -181,29 +198,20 @@ fn centred(session: &mut Session, run: &PictureRun) -> Result<[f64; 2], JobError
     Ok([0, 1].map(|k| here[k] + moved[k] - slides.offset_mm[k]))
 }
 
+/// Moves the slides of `side` to `target`.
+fn send(session: &mut Session, side: usize, target: [f64; 2]) -> Result<(), JobError> {
+    let mut target_mm = session.slides_mm();
+    target_mm[2 * side..2 * side + 2].copy_from_slice(&target);
+    session.move_slides(target_mm)
+}
+
 /// A picture with the slides of the side at `target`, a name for it, and where the slides were.
 fn look(
     session: &mut Session,
     run: &PictureRun,
     target: [f64; 2],
 ) -> Result<(PathBuf, Picture, [f64; 2]), JobError> {
-    let status = |session: &Session| {
-        let tracking = session.tracking.as_ref();
-        tracking.map_or([0.0; SLIDES], |tracking| tracking.status.slides_mm)
-    };
-    let mut target_mm = status(session);
-    let own = [2 * run.side, 2 * run.side + 1];
-    for (slide, target) in own.into_iter().zip(target) {
-        target_mm[slide] = target;
-    }
-    session.command(Role::Tracker, &Request::MoveSlides { target_mm })?;
-    session.wait_until("a step of the slides", LIMIT, |session| {
-        session.refresh()?;
-        let at = status(session);
-        Ok(own
-            .into_iter()
-            .all(|slide| (at[slide] - target_mm[slide]).abs() < THERE_MM))
-    })?;
+    send(session, run.side, target)?;
     session.dwell(SETTLE_S)?;
     if let Some(tracking) = &mut session.tracking {
         tracking.strobed = Some(Default::default());
@@ -217,7 +225,7 @@ fn look(
             .and_then(|tracking| tracking.strobed.as_ref());
         for picture in run.shelf.take() {
             if let Some(slides) = strobed.and_then(|strobed| strobed.get(&picture.capture)) {
-                taken = Some((picture, own.map(|slide| slides[slide])));
+                taken = Some((picture, [slides[2 * run.side], slides[2 * run.side + 1]]));
             }
         }
         Ok(taken.is_some())

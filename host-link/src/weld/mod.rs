@@ -12,6 +12,7 @@ mod progress;
 mod recentring;
 mod seam_teaching;
 mod session;
+mod slides;
 mod surroundings;
 mod teaching;
 mod terminal;
@@ -145,6 +146,16 @@ pub enum JobError {
         what: &'static str,
         /// How long it may take.
         seconds: u64,
+    },
+    /// A slide came to rest elsewhere, or moves too slowly.
+    #[error(
+        "slide {slide} is still {away_mm:.3} mm away from where it was sent; look at its drive and its dead band"
+    )]
+    SlideAway {
+        /// The slide.
+        slide: &'static str,
+        /// How far it is off \[mm\].
+        away_mm: f64,
     },
     /// The machine should move, and does not.
     #[error(

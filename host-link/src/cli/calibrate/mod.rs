@@ -3,7 +3,7 @@
 mod live;
 
 use crate::calibration::procedure::{self, Found};
-use crate::calibration::{CalibrateError, Calibration, read_pictures};
+use crate::calibration::{CalibrateError, Calibration, Known, read_pictures};
 use crate::machine::MachineFile;
 use anyhow::{Context, bail};
 use clap::{Args, Subcommand};
@@ -109,7 +109,8 @@ impl Calibrate {
                 procedure::profile(&read_pictures(pictures, procedure::PROFILE)?, before)
             })?,
             What::Slides { folder, meets } => folder.find(|pictures, before| {
-                let listed = read_pictures(pictures, procedure::SLIDES)?;
+                let listed = read_pictures(pictures, procedure::SLIDES)?.into_iter();
+                let listed: Vec<_> = listed.map(Known::at_rest).collect();
                 procedure::slides(&listed, before, meets.meets)
             })?,
             What::Corner { folder, meets, walls } => folder.find(|pictures, before| {

@@ -9,6 +9,7 @@ mod machines;
 mod real_cameras;
 mod recentring;
 mod single_block;
+mod slides;
 mod taught_seam;
 
 use super::*;
@@ -114,6 +115,8 @@ enum Trouble {
     EmergencyStop,
     /// The tracker board cannot be reached any more.
     TrackerGone,
+    /// Slides do not go where the PC sends them.
+    SlidesStand,
 }
 
 /// Simulated boards with a trouble.
@@ -171,7 +174,10 @@ impl Boards for Troubled {
         if role == Role::Motion {
             self.motion_disabled = *request == Request::Disable;
         }
-        self.boards.request(role, request)
+        match (&self.trouble, request) {
+            (Trouble::SlidesStand, Request::MoveSlides { .. }) => Ok(Response::Done),
+            _ => self.boards.request(role, request),
+        }
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
@@ -193,7 +199,7 @@ impl Boards for Troubled {
                         seen.delta_u_mm += bias;
                     }
                 }
-                Trouble::EmergencyStop | Trouble::TrackerGone => {}
+                Trouble::EmergencyStop | Trouble::TrackerGone | Trouble::SlidesStand => {}
             }
         }
         self.boards.send(role, &datagram)
