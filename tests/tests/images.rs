@@ -1,6 +1,7 @@
 //! The shipped job through pictures, on simulated boards: accuracy, disturbances, a light that fails, the same bytes.
 
 use host_link::boards::simulated::SimulatedBoards;
+use host_link::machine::JointForm;
 use host_link::weld::Ended;
 use host_link::world::SceneFile;
 use system_tests::{assert_on_seam, assert_stops_in_the_dark, weld_disturbed, weld_through_pictures};
@@ -8,6 +9,7 @@ use system_tests::{assert_on_seam, assert_stops_in_the_dark, weld_disturbed, wel
 fn weld(speed_m_per_min: f64) -> Ended {
     weld_through_pictures(
         &mut SimulatedBoards::default(),
+        JointForm::Gap,
         SceneFile::default(),
         speed_m_per_min,
     )
@@ -29,10 +31,13 @@ fn the_shipped_job_stays_on_both_seams_at_9_m_per_min_and_leaves_the_same_bytes_
 
 #[test]
 fn spatter_scratches_roll_lost_and_late_pictures_and_a_dark_spell_disturb_little() {
-    assert_on_seam(&weld_disturbed(&mut SimulatedBoards::default(), 9.0), 0.05);
+    assert_on_seam(
+        &weld_disturbed(&mut SimulatedBoards::default(), JointForm::Gap, 9.0),
+        0.05,
+    );
 }
 
 #[test]
 fn a_light_that_fails_for_good_ends_the_weld_with_its_side_named_and_the_machine_at_rest() {
-    assert_stops_in_the_dark(&mut SimulatedBoards::default(), 9.0);
+    assert_stops_in_the_dark(&mut SimulatedBoards::default(), JointForm::Gap, 9.0);
 }

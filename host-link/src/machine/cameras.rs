@@ -19,6 +19,8 @@ pub struct CameraConfig {
     pub joint: JointForm,
     /// How each camera is turned about T against its head: n = Rot(T, mount)·N_k \[°\].
     pub mount_deg: [f64; SIDES],
+    /// See [`CameraConfig::focus_above_mm`].
+    focus_above_mm: Option<f64>,
     /// Lens and sensor by the drawing.
     #[serde(deserialize_with = "optics")]
     pub optics: Optics,
@@ -41,7 +43,20 @@ pub enum JointForm {
     Corner,
 }
 
+/// Where the root of a corner stands below the focal point \[mm\]: walls rise from it, so that it may stray about as far
+/// up, until too little of them is in the picture, as down, where the picture ends.
+const ROOT_BELOW_MM: f64 = 0.15;
+
 impl CameraConfig {
+    /// How far the point at which the axis of a camera meets its focal plane stands above the seam, along the camera's n,
+    /// when the beam meets the seam \[mm\]: as the machine file says, else what suits the joint.
+    pub fn focus_above_mm(&self) -> f64 {
+        self.focus_above_mm.unwrap_or(match self.joint {
+            JointForm::Gap => 0.0,
+            JointForm::Corner => ROOT_BELOW_MM,
+        })
+    }
+
     /// What is known of camera 1 and 2: their calibration files, whose names are relative to the machine file's
     /// `folder`, or what the drawing says.
     pub fn calibrations(&self, folder: &Path) -> Result<[Calibration; SIDES], CalibrationError> {
@@ -56,11 +71,10 @@ impl CameraConfig {
 
     /// What the drawing says of the camera of `side` (0 or 1).
     pub fn nominal(&self, side: usize) -> Calibration {
-        Calibration::nominal(
-            self.optics,
-            self.photon_transfer,
-            self.mount_deg[side].to_radians(),
-        )
+        let mount_rad = self.mount_deg[side].to_radians();
+        let mut calibration = Calibration::nominal(self.optics, self.photon_transfer, mount_rad);
+        calibration.slides.offset_mm = calibration.slides.deltas(0.0, self.focus_above_mm());
+        calibration
     }
 }
 

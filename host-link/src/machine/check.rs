@@ -63,6 +63,13 @@ fn cameras(cameras: &CameraConfig) -> Result<(), Mistake> {
         let sensible = mount.abs() <= 90.0;
         value("cameras.mount_deg", mount, sensible, "between -90 and 90")?;
     }
+    let above = cameras.focus_above_mm();
+    value(
+        "cameras.focus_above_mm",
+        above,
+        above.abs() <= 1.0,
+        "between -1 and 1",
+    )?;
     if let Some(gige) = &cameras.gige {
         above_0("cameras.gige.exposure_us", gige.exposure_us)?;
         above_0("cameras.gige.binning", f64::from(gige.binning))?;

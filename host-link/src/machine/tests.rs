@@ -227,6 +227,23 @@ fn cameras_are_as_drawn_until_they_are_calibrated() {
     assert!((left.delta_u_mm - right.delta_u_mm).abs() < 1e-12);
     assert!((left.delta_v_mm + right.delta_v_mm).abs() < 1e-12);
 
+    // The roots of corners stand below the middle of the picture when the beams meet them, seams of gaps in it.
+    let lowered = |change: &str| {
+        let text = shipped_with("joint = \"gap\"", change).replace("[-30.0, 30.0]", "[15.0, -15.0]");
+        let cameras = cameras(&text);
+        [0, 1].map(|side| cameras.nominal(side).slides)
+    };
+    for (change, height_mm) in [
+        ("joint = \"gap\"", 0.0),
+        ("joint = \"corner\"", -0.15),
+        ("joint = \"corner\"\nfocus_above_mm = 0.1", -0.1),
+    ] {
+        for slides in lowered(change) {
+            let [u, v] = slides.deltas(0.0, height_mm);
+            assert!(u.abs() < 1e-12 && v.abs() < 1e-12, "{change}: {u} {v}");
+        }
+    }
+
     let folder = std::env::temp_dir().join(format!("seamwright-cameras-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let measured = Calibration {
@@ -253,6 +270,11 @@ fn a_figure_of_a_camera_that_makes_no_sense_is_named() {
             "mount_deg = [-30.0, 30.0]",
             "mount_deg = [-130.0, 30.0]",
             "cameras.mount_deg is -130",
+        ),
+        (
+            "joint = \"gap\"",
+            "joint = \"gap\"\nfocus_above_mm = 1.5",
+            "cameras.focus_above_mm is 1.5",
         ),
         (
             "tilt_deg = 45.0",

@@ -18,14 +18,14 @@ pub struct CameraFrame {
 }
 
 impl CameraFrame {
-    /// Of the camera that is turned by `mount_rad` about T against the head at `spot` and looks `lead` \[mm\] ahead of it,
-    /// with the slides at `u`, `v` \[mm\].
-    pub fn new(spot: &SpotFrame, mount_rad: f64, lead: f64, u: f64, v: f64) -> Self {
+    /// Of the camera that is turned by `mount_rad` about T against the head at `spot` and looks at what is `lead` ahead
+    /// of that and `above` it along n \[mm\], with the slides at `u`, `v` \[mm\].
+    pub fn new(spot: &SpotFrame, mount_rad: f64, [lead, above]: [f64; 2], u: f64, v: f64) -> Self {
         let (sin, cos) = mount_rad.sin_cos();
         let (along, head) = (spot.tangent, -spot.v);
         let normal = head * cos + along.cross(&head) * sin;
         Self {
-            origin: spot.point(lead, u, v),
+            origin: spot.point(lead, u, v) + normal * above,
             along,
             across: normal.cross(&along),
             normal,

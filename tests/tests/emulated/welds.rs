@@ -3,6 +3,7 @@
 use crate::pair::{Pair, assert_served};
 use host_link::boards::Boards;
 use host_link::boards::simulated::SimulatedBoards;
+use host_link::machine::JointForm;
 use host_link::weld::Ended;
 use host_link::world::SceneFile;
 use system_tests::{
@@ -34,26 +35,28 @@ fn assert_welds(name: &str, limit_mm: f64, job: impl Fn(&mut dyn Boards) -> Ende
 #[test]
 fn the_shipped_job_at_5_m_per_min() {
     assert_welds("weld-5", 0.03, |boards| {
-        weld_through_pictures(boards, SceneFile::default(), 5.0)
+        weld_through_pictures(boards, JointForm::Gap, SceneFile::default(), 5.0)
     });
 }
 
 #[test]
 fn the_shipped_job_at_9_m_per_min() {
     assert_welds("weld-9", 0.03, |boards| {
-        weld_through_pictures(boards, SceneFile::default(), 9.0)
+        weld_through_pictures(boards, JointForm::Gap, SceneFile::default(), 9.0)
     });
 }
 
 #[test]
 fn the_disturbed_job_at_9_m_per_min() {
-    assert_welds("weld-disturbed", 0.05, |boards| weld_disturbed(boards, 9.0));
+    assert_welds("weld-disturbed", 0.05, |boards| {
+        weld_disturbed(boards, JointForm::Gap, 9.0)
+    });
 }
 
 #[test]
 fn a_light_that_fails_for_good_ends_the_weld() {
     let mut pair = Pair::boot("dark");
-    assert_stops_in_the_dark(&mut pair.connect(), 9.0);
+    assert_stops_in_the_dark(&mut pair.connect(), JointForm::Gap, 9.0);
     pair.boards.check().unwrap_or_else(|error| panic!("{error}"));
 }
 

@@ -171,13 +171,11 @@ impl Images {
     fn moved(&self, side: usize, pose: &Pose, capture: &Capture) -> Option<Moved> {
         let (last_pose, last) = self.last.as_ref()?;
         let (u, v) = (2 * side, 2 * side + 1);
-        let (lead, mount) = (
-            self.heads.camera_lead(),
-            self.cameras.mount_deg[side].to_radians(),
-        );
+        let ahead = [self.heads.camera_lead(), self.cameras.focus_above_mm()];
+        let mount = self.cameras.mount_deg[side].to_radians();
         let frame = |pose: &Pose| {
             let slides = capture.slides_mm;
-            CameraFrame::new(&self.heads.spot(pose, side), mount, lead, slides[u], slides[v])
+            CameraFrame::new(&self.heads.spot(pose, side), mount, ahead, slides[u], slides[v])
         };
         let now = frame(pose);
         let way: Vector3<f64> = now.origin - frame(last_pose).origin;

@@ -23,7 +23,7 @@ pub struct SceneFile {
     pub gap_wave_mm: f64,
     /// See `gap_mm`.
     pub gap_wave_length_mm: f64,
-    /// By how much the skin rolls to and fro about the seam \[°\], over which length of it \[mm\].
+    /// By how much the work rolls to and fro about the seam \[°\], over which length of it \[mm\].
     pub roll_wave_deg: f64,
     /// See `roll_wave_deg`.
     pub roll_wave_length_mm: f64,

@@ -32,10 +32,10 @@ impl Draw<'_> {
         let [noise, _] = random.gauss();
         let height_mm = view.height_mm + 1e-3 * file.height_noise_um * noise;
         let wave = |length: f64| (TAU * (view.along_mm / length + 0.3 * self.side as f64)).sin();
+        let rolls = (file.roll_wave_deg * wave(file.roll_wave_length_mm)).to_radians();
         let joint = match view.form {
             ViewForm::Plate { pitch, roll, yaw_rad } => {
                 let width_mm = file.gap_mm + file.gap_wave_mm * wave(file.gap_wave_length_mm);
-                let rolls = (file.roll_wave_deg * wave(file.roll_wave_length_mm)).to_radians();
                 Joint::Gap(Gap::new(PlateSeam {
                     height_mm: height_mm - (roll + rolls.tan()) * view.lateral_mm,
                     pitch,
@@ -50,7 +50,7 @@ impl Draw<'_> {
                 ..Root::new(Corner {
                     height_mm,
                     lateral_mm: view.lateral_mm,
-                    walls,
+                    walls: walls.map(|slope| (slope.atan() + rolls).tan()),
                 })
             }),
         };

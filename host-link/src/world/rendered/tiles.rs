@@ -89,7 +89,7 @@ pub fn nominal_slopes(cameras: &CameraConfig, heads: &Heads, side: usize) -> [f6
                 normal: Vector3::z(),
             };
             let spot = heads.spot(&pose, side);
-            let frame = CameraFrame::new(&spot, cameras.mount_deg[side].to_radians(), 0.0, 0.0, 0.0);
+            let frame = CameraFrame::new(&spot, cameras.mount_deg[side].to_radians(), [0.0; 2], 0.0, 0.0);
             walls(&frame, heads, &pose, side)
         }
     }

@@ -61,7 +61,8 @@ impl View {
         let spot = heads.spot(&machine.pose(position), side);
         let mount = cameras.mount_deg[side].to_radians();
         let lead = heads.camera_lead();
-        let frame = CameraFrame::new(&spot, mount, lead, slides[2 * side], slides[2 * side + 1]);
+        let ahead = [lead, cameras.focus_above_mm()];
+        let frame = CameraFrame::new(&spot, mount, ahead, slides[2 * side], slides[2 * side + 1]);
         let (seam, crossing) = seams.facing(side, &spot, lead)?;
         let seen = Seen { seam, side, frame };
         match cameras.joint {
