@@ -54,6 +54,13 @@ impl SlideMap {
         }
     }
 
+    /// How the camera is turned about T against its head, as [`SlideMap::nominal`] has it \[rad\]; the turn that is
+    /// nearest to the matrix.
+    pub fn mount_rad(&self) -> f64 {
+        let [[a, b], [c, d]] = self.matrix;
+        (b - c).atan2(-a - d)
+    }
+
     /// ΔU, ΔV of a place in the camera's frame \[mm\].
     pub fn deltas(&self, lateral_mm: f64, height_mm: f64) -> [f64; 2] {
         let [u, v] = self.matrix;

@@ -74,6 +74,16 @@ proptest! {
         prop_assert!((seen.delta_u_mm - delta_u).abs() < 1e-12 && (seen.delta_v_mm - delta_v).abs() < 1e-12);
     }
 
+    /// Errors of scale leave what the slides tell of the mount as it is.
+    #[test]
+    fn the_slides_tell_how_the_camera_is_mounted(
+        mount in -80.0..80.0f64, u in 0.95..1.05f64, n in 0.95..1.05f64,
+    ) {
+        let mut slides = nominal(mount).slides;
+        slides.matrix = slides.matrix.map(|[across, up]| [across * u, up * n]);
+        prop_assert!((slides.mount_rad() - mount.to_radians()).abs() < 1e-12);
+    }
+
     /// Slides that carry the camera by a step carry a resting point the other way through its picture: what is measured
     /// stays the same place.
     #[test]

@@ -113,7 +113,7 @@ impl Images {
             let joint = match cameras.joint {
                 JointForm::Gap => Joint::Gap,
                 JointForm::Corner => Joint::Corner(Walls {
-                    slopes: nominal_slopes(cameras, &heads, side),
+                    slopes: nominal_slopes(cameras.joint, calibration.slides.mount_rad(), &heads, side),
                     sigma: WALL_SIGMA,
                 }),
             };
@@ -172,7 +172,7 @@ impl Images {
         let (last_pose, last) = self.last.as_ref()?;
         let (u, v) = (2 * side, 2 * side + 1);
         let ahead = [self.heads.camera_lead(), self.cameras.focus_above_mm()];
-        let mount = self.cameras.mount_deg[side].to_radians();
+        let mount = self.calibrations[side].slides.mount_rad();
         let frame = |pose: &Pose| {
             let slides = capture.slides_mm;
             CameraFrame::new(&self.heads.spot(pose, side), mount, ahead, slides[u], slides[v])

@@ -95,7 +95,7 @@ fn what_is_measured_in_rendered_pictures_is_where_the_seam_truly_is() {
             let joint = match form {
                 JointForm::Gap => Joint::Gap,
                 JointForm::Corner => Joint::Corner(Walls {
-                    slopes: nominal_slopes(&cameras, &heads(), side),
+                    slopes: nominal_slopes(form, calibration.slides.mount_rad(), &heads(), side),
                     sigma: 0.01,
                 }),
             };

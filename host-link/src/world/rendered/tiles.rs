@@ -35,22 +35,25 @@ impl Tiles {
         let mut made: Vec<(Recipe, Arc<Making>)> = Vec::new();
         let tiles = std::array::from_fn(|side| {
             let texture = texture(scene, side, seed);
-            Self(nominal_slopes(cameras, heads, side).map(|slope| {
-                let recipe = Recipe {
-                    texture,
-                    optics: cameras.optics,
-                    slope,
-                    smear_mm: 1e-3 * scene.smear_um,
-                };
-                match made.iter().find(|(other, _)| *other == recipe) {
-                    Some((_, tile)) => tile.clone(),
-                    None => {
-                        let tile: Arc<Making> = Arc::new(LazyLock::new(Box::new(move || recipe.make())));
-                        made.push((recipe, tile.clone()));
-                        tile
+            let mount_rad = cameras.mount_deg[side].to_radians();
+            Self(
+                nominal_slopes(cameras.joint, mount_rad, heads, side).map(|slope| {
+                    let recipe = Recipe {
+                        texture,
+                        optics: cameras.optics,
+                        slope,
+                        smear_mm: 1e-3 * scene.smear_um,
+                    };
+                    match made.iter().find(|(other, _)| *other == recipe) {
+                        Some((_, tile)) => tile.clone(),
+                        None => {
+                            let tile: Arc<Making> = Arc::new(LazyLock::new(Box::new(move || recipe.make())));
+                            made.push((recipe, tile.clone()));
+                            tile
+                        }
                     }
-                }
-            }))
+                }),
+            )
         });
         std::thread::spawn(move || {
             for (_, tile) in made {
@@ -78,9 +81,10 @@ pub(super) fn texture(scene: &SceneFile, side: usize, seed: u64) -> Texture {
     Texture::new(scene.texture[side].finish(), seed)
 }
 
-/// dn/du left and right of the seam where the machine is as planned.
-pub fn nominal_slopes(cameras: &CameraConfig, heads: &Heads, side: usize) -> [f64; 2] {
-    match cameras.joint {
+/// dn/du left and right of the seam for a camera that is turned by `mount_rad` about T against the head of `side`, where
+/// the machine is as planned.
+pub fn nominal_slopes(joint: JointForm, mount_rad: f64, heads: &Heads, side: usize) -> [f64; 2] {
+    match joint {
         JointForm::Gap => [0.0; 2],
         JointForm::Corner => {
             let pose = Pose {
@@ -89,7 +93,7 @@ pub fn nominal_slopes(cameras: &CameraConfig, heads: &Heads, side: usize) -> [f6
                 normal: Vector3::z(),
             };
             let spot = heads.spot(&pose, side);
-            let frame = CameraFrame::new(&spot, cameras.mount_deg[side].to_radians(), [0.0; 2], 0.0, 0.0);
+            let frame = CameraFrame::new(&spot, mount_rad, [0.0; 2], 0.0, 0.0);
             walls(&frame, heads, &pose, side)
         }
     }
