@@ -13,7 +13,7 @@ use crate::teach::seam::{Cameras, Drawing, Ended, Head, SeamFile, Stance};
 use crate::weld::{Job, JobError, Names, SeamLesson, Surroundings, TaughtSeam, Terminal, Work, run};
 use anyhow::{Context, anyhow, bail};
 use clap::Args;
-use shared::io::SIDES;
+use shared::io::SLIDES;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -217,7 +217,7 @@ impl SeamArgs {
                 };
                 Stance {
                     pose: Planner::build(machine)?.pose(&tip),
-                    extension_mm: [0.0; SIDES],
+                    slides_mm: [0.0; SLIDES],
                 }
             }
             (None, Some(plan)) => Stance::before(plan, cameras),
@@ -244,11 +244,21 @@ fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
     match taught.ended {
         Ended::Drawn => println!("  the seam is taught as far as it is drawn"),
         Ended::Operator => println!("  ended by the operator; the same command goes on after the last point"),
-        Ended::SeamEnds { s_mm, missing_mm } => match missing_mm {
+        Ended::SeamEnds {
+            s_mm,
+            missing_mm,
+            seen,
+        } => match missing_mm {
             Some(missing) if missing > ENDS_EARLY => {
+                let side = match seen {
+                    [true, false] => "on side 2 only",
+                    [false, true] => "on side 1 only",
+                    _ => "on both sides",
+                };
                 return exit_code(Some(JobError::Teach(format!(
-                    "the seam is lost {s_mm:.1} mm from its beginning, {missing:.1} mm before its drawing ends: if it \
-                     does not end there, look what covers it; the same command goes on after the last point"
+                    "the seam is lost {s_mm:.1} mm from its beginning, {side}, {missing:.1} mm before its drawing ends: \
+                     if it does not end there, look what covers it and whether the light works; the same command goes \
+                     on after the last point"
                 ))));
             }
             _ => println!("  the seam ends {s_mm:.1} mm from its beginning"),

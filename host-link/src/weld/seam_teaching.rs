@@ -3,6 +3,7 @@
 use super::session::Session;
 use super::tracking::Watched;
 use super::{Job, JobError, Line, Weld};
+use crate::boards::LinkError;
 use crate::machine::MachineFile;
 use crate::nc::{Options, interpret};
 use crate::plan::text::{decimal, tip_words};
@@ -10,7 +11,8 @@ use crate::teach::seam::{
     Cameras, Drawing, Ended, Follower, Hand, Head, Rig, SeamFile, SeamPoint, SeamTeachError, SeamTeaching,
     Seen, Stance, View,
 };
-use shared::io::{AXES, SIDES};
+use shared::io::{AXES, SIDES, SLIDES};
+use shared::protocol::Refusal;
 use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
 use std::cell::RefCell;
 use std::time::Duration;
@@ -21,8 +23,11 @@ const LOOK_LIMIT: Duration = Duration::from_secs(10);
 const PATIENCE: f64 = 2.0;
 /// Part of the pictures that have to show a seam.
 const ENOUGH: f64 = 0.5;
-/// Moves shorter than this are none \[mm\].
+/// Moves shorter than this are none, of the machine and of its slides \[mm\].
 const NO_MOVE: f64 = 1e-4;
+const NO_SLIDE_MOVE: f64 = 2e-3;
+/// Slides that are there come to rest for so long before a look \[s\].
+const SLIDES_SETTLE_S: f64 = 0.03;
 
 /// What is to be taught, and where it goes.
 #[derive(Debug)]
@@ -64,7 +69,8 @@ impl Weld {
             session,
             machine: job.machine,
             lesson,
-            extension_mm: [0.0; SIDES],
+            slides_mm: [0.0; SLIDES],
+            settle_s: 0.0,
             count: lesson.points.len(),
         };
         let ended = if lesson.by_jog {
@@ -78,7 +84,7 @@ impl Weld {
             ended: match ended {
                 Ok(ended) => ended,
                 Err(SeamTeachError::Machine(error)) => return Err(error),
-                Err(not_found @ SeamTeachError::NotFound { .. }) => {
+                Err(not_found @ SeamTeachError::NotFound(_)) => {
                     return Err(JobError::Teach(not_found.to_string()));
                 }
             },
@@ -102,26 +108,46 @@ struct SeamArm<'w, 's, 'b> {
     session: &'s mut Session<'b>,
     machine: &'w MachineFile,
     lesson: &'w SeamLesson,
-    /// V1 and V2 where the machine stands \[mm\].
-    extension_mm: [f64; SIDES],
+    /// Where the slides were sent \[mm\].
+    slides_mm: [f64; SLIDES],
+    /// What moved last comes to rest for so long \[s\].
+    settle_s: f64,
     /// Points in the file.
     count: usize,
 }
 
 impl SeamArm<'_, '_, '_> {
-    /// Runs rapids from where the machine stands, no faster than `largest_mm_s`.
-    fn run(&mut self, text: &str, what: &str, largest_mm_s: f64) -> Result<(), JobError> {
+    /// Runs rapids from where the machine stands, no faster than `largest_mm_s`, which end with the slides at
+    /// `slides_mm`.
+    fn run(
+        &mut self,
+        text: &str,
+        what: &str,
+        largest_mm_s: f64,
+        slides_mm: &[f64; SLIDES],
+    ) -> Result<(), JobError> {
         let program =
             interpret(text, Options::default()).map_err(|error| JobError::Plan(error.to_string()))?;
         let from = self.session.motion.reference;
         let planned = self
             .weld
             .planner
-            .program_from(&program, &from, self.extension_mm, None)?;
+            .program_from(&program, &from, extensions(&self.slides_mm), None)?;
         for mut path in planned {
             path.limits.velocity = path.limits.velocity.min(largest_mm_s);
             self.weld.path(self.session, path, what)?;
         }
+        // Along a path the U slides stand in the middle.
+        self.move_slides(slides_mm)?;
+        self.settle_s = self.lesson.config.settle_s;
+        Ok(())
+    }
+
+    /// Moves the slides, where the machine stands.
+    fn move_slides(&mut self, slides_mm: &[f64; SLIDES]) -> Result<(), JobError> {
+        self.session.move_slides(*slides_mm)?;
+        self.slides_mm = *slides_mm;
+        self.settle_s = SLIDES_SETTLE_S;
         Ok(())
     }
 
@@ -156,32 +182,30 @@ impl Rig for SeamArm<'_, '_, '_> {
     fn approach(&mut self, stance: &Stance) -> Result<(), JobError> {
         let position = stance.pose.position;
         let above = [position.x, position.y, self.machine.planning.safe_height_mm];
-        let words = tip_words(&above, &self.angles(stance)?, &stance.extension_mm);
+        let words = tip_words(&above, &self.angles(stance)?, &extensions(&stance.slides_mm));
         let text = format!("G43.4\nG0 {words}\nG0 Z{}\nM2\n", decimal(position.z, 5));
-        self.run(&text, "approaching", f64::INFINITY)?;
-        self.extension_mm = stance.extension_mm;
-        Ok(())
+        self.run(&text, "approaching", f64::INFINITY, &stance.slides_mm)
     }
 
     fn go(&mut self, stance: &Stance) -> Result<(), JobError> {
         let angles = self.angles(stance)?;
         let position: [f64; 3] = stance.pose.position.into();
         let here = self.weld.planner.tip(&self.session.motion.reference);
-        let moves = |a: &[f64], b: &[f64]| a.iter().zip(b).any(|(a, b)| (a - b).abs() > NO_MOVE);
-        if moves(&position, &here.position_mm)
-            || moves(&angles, &here.angles_deg)
-            || moves(&stance.extension_mm, &self.extension_mm)
-        {
-            let words = tip_words(&position, &angles, &stance.extension_mm);
+        let moves = |a: &[f64], b: &[f64], least: f64| a.iter().zip(b).any(|(a, b)| (a - b).abs() > least);
+        if moves(&position, &here.position_mm, NO_MOVE) || moves(&angles, &here.angles_deg, NO_MOVE) {
+            let words = tip_words(&position, &angles, &extensions(&stance.slides_mm));
             let speed = self.lesson.config.speed_m_min * MM_S_PER_M_MIN;
-            self.run(&format!("G43.4\nG0 {words}\nM2\n"), &self.what(), speed)?;
-            self.extension_mm = stance.extension_mm;
+            let text = format!("G43.4\nG0 {words}\nM2\n");
+            self.run(&text, &self.what(), speed, &stance.slides_mm)
+        } else if moves(&stance.slides_mm, &self.slides_mm, NO_SLIDE_MOVE) {
+            self.move_slides(&stance.slides_mm)
+        } else {
+            Ok(())
         }
-        Ok(())
     }
 
     fn look(&mut self, pictures: usize) -> Result<View, JobError> {
-        self.session.dwell(self.lesson.config.settle_s)?;
+        self.session.dwell(std::mem::take(&mut self.settle_s))?;
         let rests = self.session.tick();
         let end = rests.wrapping_add(self.patience_ticks(pictures));
         if let Some(tracking) = &mut self.session.tracking {
@@ -210,12 +234,17 @@ impl Rig for SeamArm<'_, '_, '_> {
             }
         }
         let slides = watched.iter().map(|picture| picture.slides_mm);
-        let count = watched.len().max(1) as f64;
+        let count = watched.len() as f64;
+        let slides_mm = if watched.is_empty() {
+            self.session.slides_mm()
+        } else {
+            slides.fold([0.0; SLIDES], |mean, slides| {
+                std::array::from_fn(|i| mean[i] + slides[i] / count)
+            })
+        };
         Ok(View {
             pose: self.session.machine.kinematics().forward(&axes),
-            slides_mm: slides.fold([0.0; 2 * SIDES], |mean, slides| {
-                std::array::from_fn(|i| mean[i] + slides[i] / count)
-            }),
+            slides_mm,
             sides: std::array::from_fn(|side| mean(&watched, side, pictures)),
         })
     }
@@ -272,8 +301,18 @@ impl Hand for SeamArm<'_, '_, '_> {
     }
 
     fn is_refusal(&self, error: &JobError) -> bool {
-        matches!(error, JobError::Path(_) | JobError::Teach(_))
+        let beyond = |refusal: &Refusal| matches!(refusal, Refusal::BeyondTravel { .. });
+        match error {
+            JobError::Path(_) | JobError::Teach(_) => true,
+            JobError::Link(LinkError::Refused { refusal, .. }) => beyond(refusal),
+            _ => false,
+        }
     }
+}
+
+/// V1 and V2 of `slides_mm` \[mm\].
+fn extensions(slides_mm: &[f64; SLIDES]) -> [f64; SIDES] {
+    [slides_mm[1], slides_mm[3]]
 }
 
 /// The mean of what the pictures show of `side`, if there are enough of them that show it.

@@ -2,23 +2,23 @@
 //! bands.
 
 use super::{Foot, Seen, View};
-use nalgebra::{Matrix4, Vector3, Vector4};
-use shared::geometry::{Pose, rotate};
-use shared::io::SIDES;
+use nalgebra::Vector3;
+use shared::geometry::{Pose, angle, rotate};
+use shared::io::{SIDES, SLIDES};
 use shared::tracking::frames::Heads;
 
-/// Unknowns of a stance: across, up, V1, V2.
-const UNKNOWNS: usize = 4;
-/// How readily each is used, of squares: while one seam only is seen the pose does it.
-const WEIGHT: [f64; UNKNOWNS] = [1.0, 1.0, 0.01, 0.01];
+/// Part of its travel to a side beyond which no slide goes where the pose can take over (SPEC 0.7).
+const ROOM: f64 = 0.7;
+/// The head turns to the skin only where it leans more than this from it \[rad\]: a picture shows its slope to 0.02.
+const LEAN: f64 = 0.05;
 
 /// Where the machine stands to look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stance {
     /// Of the tip.
     pub pose: Pose,
-    /// V1 and V2 \[mm\].
-    pub extension_mm: [f64; SIDES],
+    /// U1, V1, U2, V2 \[mm\].
+    pub slides_mm: [f64; SLIDES],
 }
 
 /// Where the two cameras look.
@@ -28,8 +28,8 @@ pub struct Cameras {
     pub heads: Heads,
     /// From the axis of each head to that of its camera, about T \[rad\].
     pub mount: [f64; SIDES],
-    /// The V slides reach so far to both sides \[mm\].
-    pub reach_mm: f64,
+    /// How far the slides reach, lowest and highest \[mm\].
+    pub travel_mm: [(f64, f64); SLIDES],
 }
 
 impl Cameras {
@@ -52,64 +52,77 @@ impl Cameras {
         let Some(roll) = roll else {
             return view.pose.normal;
         };
-        let tangent = view.pose.tangent;
-        let head = -self.heads.spot(&view.pose, side).v;
-        let axis = rotate(&tangent, self.mount[side], &head);
-        (axis - axis.cross(&tangent) * roll).normalize()
+        let axis = self.axis(&view.pose, side);
+        (axis - axis.cross(&view.pose.tangent) * roll).normalize()
     }
 
-    /// The stance with its head along `normal`, across the tangent as it is, that has the `points` in the middle of
-    /// both bands, as far as they are known: the pose moves across and up, the V slides take what it cannot.
+    /// Axis n of the camera of `side`, up from the work.
+    pub fn axis(&self, pose: &Pose, side: usize) -> Vector3<f64> {
+        let head = -self.heads.spot(pose, side).v;
+        rotate(&pose.tangent, self.mount[side], &head)
+    }
+
+    /// Where the camera of `side` looks: the middle of its band \[mm\].
+    pub fn looks_at(&self, stance: &Stance, side: usize) -> Vector3<f64> {
+        let [u, v] = [0, 1].map(|i| stance.slides_mm[2 * side + i]);
+        let spot = self.heads.spot(&stance.pose, side);
+        spot.point(self.heads.camera_lead(), u, v)
+    }
+
+    /// The stance in which both cameras look at their `points`: each goes there by its own slides. The pose moves, as
+    /// in [`Self::centred`], only where a slide would go too far or the head leans from `normal`, that of the skin.
+    pub fn aimed(&self, stance: &Stance, normal: &Vector3<f64>, points: [Vector3<f64>; SIDES]) -> Stance {
+        let aimed = self.with_slides(&stance.pose, &points);
+        let too_far = |(at, (min, max)): (&f64, (f64, f64))| *at < ROOM * min || *at > ROOM * max;
+        let leans = angle(&stance.pose.normal, &turned(&stance.pose, normal).normal) > LEAN;
+        if leans || aimed.slides_mm.iter().zip(self.travel_mm).any(too_far) {
+            self.centred(&stance.pose, normal, points)
+        } else {
+            aimed
+        }
+    }
+
+    /// The stance with its head along `normal`, in which both cameras look at their `points` and the slides are as near
+    /// to zero as a move of `pose` across and up can bring them: Σ(u² + v²) is least.
     ///
     /// SPEC 0.7 turns the head about T as well, by both feet. They are a few mm apart, and a rib that is not straight
     /// would turn the head by degrees; the skin says better how the head shall stand.
-    pub fn centred(
-        &self,
-        stance: &Stance,
-        normal: &Vector3<f64>,
-        points: [Option<Vector3<f64>>; SIDES],
-    ) -> Stance {
-        let old = stance.pose;
-        // A skin along the tangent is none.
-        let pose = Pose::new(old.position, old.tangent, *normal).unwrap_or(old);
-        let Some(change) = self.change(&pose, points) else {
-            return *stance;
+    pub fn centred(&self, pose: &Pose, normal: &Vector3<f64>, points: [Vector3<f64>; SIDES]) -> Stance {
+        let pose = turned(pose, normal);
+        let zero = Stance {
+            pose,
+            slides_mm: [0.0; SLIDES],
         };
-        let across = pose.normal.cross(&pose.tangent);
-        Stance {
-            pose: Pose {
-                position: pose.position + across * change[0] + pose.normal * change[1],
-                ..pose
-            },
-            extension_mm: [2, 3].map(|i| change[i].clamp(-self.reach_mm, self.reach_mm)),
-        }
+        // U and V of both sides are square to T and to each other: the best move is the mean of what each side wants.
+        let wanted = (0..SIDES).map(|side| (points[side] - self.looks_at(&zero, side)) / SIDES as f64);
+        let wanted: Vector3<f64> = wanted.sum();
+        let beside = wanted - pose.tangent * wanted.dot(&pose.tangent);
+        let pose = Pose {
+            position: pose.position + beside,
+            ..pose
+        };
+        self.with_slides(&pose, &points)
     }
 
-    /// The least change of the place (across, up) and the V positions that centre the `points`, weighted.
-    fn change(&self, pose: &Pose, points: [Option<Vector3<f64>>; SIDES]) -> Option<[f64; UNKNOWNS]> {
-        let across = pose.normal.cross(&pose.tangent);
-        let mut g = Matrix4::zeros();
-        let mut wanted = Vector4::zeros();
-        let mut unknown = Matrix4::zeros();
-        for (side, point) in points.iter().enumerate() {
-            let Some(point) = point else {
-                // Two equations that say nothing.
-                unknown[(2 * side, 2 * side)] = 1.0;
-                unknown[(2 * side + 1, 2 * side + 1)] = 1.0;
-                continue;
-            };
-            let spot = self.heads.spot(pose, side);
-            let (_, u, v) = spot.coordinates(point);
-            for (i, e) in [spot.u, spot.v].iter().enumerate() {
-                g[(2 * side + i, 0)] = e.dot(&across);
-                g[(2 * side + i, 1)] = e.dot(&pose.normal);
+    /// The slides that have both cameras look at their `points`, as far as they reach.
+    fn with_slides(&self, pose: &Pose, points: &[Vector3<f64>; SIDES]) -> Stance {
+        let mut slides_mm = [0.0; SLIDES];
+        for side in 0..SIDES {
+            let (_, u, v) = self.heads.spot(pose, side).coordinates(&points[side]);
+            for (slide, at) in [(2 * side, u), (2 * side + 1, v)] {
+                let (min, max) = self.travel_mm[slide];
+                slides_mm[slide] = at.clamp(min, max);
             }
-            g[(2 * side + 1, 2 + side)] = 1.0;
-            wanted[2 * side] = u;
-            wanted[2 * side + 1] = v;
         }
-        let weighted = Matrix4::from_diagonal(&WEIGHT.into()) * g.transpose();
-        let factors = (g * weighted + unknown).lu().solve(&wanted)?;
-        Some((weighted * factors).into())
+        Stance {
+            pose: *pose,
+            slides_mm,
+        }
     }
+}
+
+/// `pose` with its head along `normal`, across the tangent as it is.
+fn turned(pose: &Pose, normal: &Vector3<f64>) -> Pose {
+    // A skin along the tangent is none.
+    Pose::new(pose.position, pose.tangent, *normal).unwrap_or(*pose)
 }

@@ -44,7 +44,7 @@ impl Default for SeamTeaching {
             search_mm: 4.0,
             search_step_mm: [0.8, 0.35],
             settle_s: 0.2,
-            speed_m_min: 1.0,
+            speed_m_min: 3.0,
         }
     }
 }

@@ -52,7 +52,42 @@ impl SeamPoint {
     }
 }
 
-/// The line between the seams around its newest point.
+/// Both seams around their newest points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Course([Local; SIDES]);
+
+impl Course {
+    /// Around the end of `points`; `None` if there is none. `tangent` counts while there is no second one.
+    pub fn of(points: &[SeamPoint], tangent: &Vector3<f64>) -> Option<Self> {
+        let side = |k: usize| {
+            let recent = &points[points.len().saturating_sub(RECENT)..];
+            let feet: Vec<_> = recent.iter().map(|point| point.feet[k].position).collect();
+            Local::of(&feet, tangent)
+        };
+        Some(Self([side(0)?, side(1)?]))
+    }
+
+    /// Where both seams are expected `step` \[mm\] further on, and the unit tangent between them.
+    pub fn ahead(&self, step: f64) -> ([Vector3<f64>; SIDES], Vector3<f64>) {
+        let [(first, t1), (second, t2)] = self.0.map(|side| side.ahead(step));
+        ([first, second], (t1 + t2).normalize())
+    }
+
+    /// See [`Local::chord_distance`]: that of the seam that bends more.
+    pub fn chord_distance(&self, step: f64, found: &[Foot; SIDES]) -> f64 {
+        let sides = self.0.iter().zip(found);
+        let distances = sides.map(|(side, foot)| side.chord_distance(step, &foot.position));
+        distances.fold(0.0, f64::max)
+    }
+
+    /// See [`Local::step`]: that of the seam that bends more.
+    pub fn step(&self, config: &SeamTeaching, before: Option<f64>) -> f64 {
+        let steps = self.0.iter().map(|side| side.step(config, before));
+        steps.fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// A seam around its newest point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Local {
     /// The newest point \[mm\].
@@ -64,19 +99,19 @@ pub struct Local {
 }
 
 impl Local {
-    /// Around the end of `points`, of which there is one at least; `tangent` counts while there is no second one.
+    /// Through the latest `points`, of which there is one at least, to their end; `tangent` counts while there is no
+    /// second one.
     pub fn of(points: &[Vector3<f64>], tangent: &Vector3<f64>) -> Option<Self> {
         let at = *points.last()?;
-        let recent = &points[points.len().saturating_sub(RECENT)..];
         let straight = |tangent: Vector3<f64>| Self {
             at,
             tangent,
             curvature: Vector3::zeros(),
         };
-        Some(match recent {
+        Some(match points {
             [_] => straight(*tangent),
             [before, _] => straight((at - before).normalize()),
-            _ => Self::bent(recent)?,
+            _ => Self::bent(points)?,
         })
     }
 
@@ -104,7 +139,7 @@ impl Local {
         })
     }
 
-    /// Where the line is expected `step` \[mm\] further on, and its tangent there.
+    /// Where the seam is expected `step` \[mm\] further on, and its tangent there.
     pub fn ahead(&self, step: f64) -> (Vector3<f64>, Vector3<f64>) {
         (
             self.at + self.tangent * step + self.curvature * (step * step / 2.0),
@@ -112,7 +147,7 @@ impl Local {
         )
     }
 
-    /// Distance of the line from the chord to `found`, which is about `step` further on \[mm\]: that of the
+    /// Distance of the seam from the chord to `found`, which is about `step` further on \[mm\]: that of the
     /// curvature so far, and as much as a bend that begins on the way can add.
     pub fn chord_distance(&self, step: f64, found: &Vector3<f64>) -> f64 {
         let (expected, tangent) = self.ahead(step);

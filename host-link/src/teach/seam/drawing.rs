@@ -44,7 +44,7 @@ impl Stance {
                 position: pose.position - pose.tangent * cameras.heads.camera_lead(),
                 ..pose
             },
-            extension_mm: first.extension,
+            slides_mm: [0.0, first.extension[0], 0.0, first.extension[1]],
         }
     }
 }
@@ -55,15 +55,13 @@ impl Cameras {
     /// # Errors
     /// Names the parameter of the heads that makes no sense.
     pub fn of(unit: &TrackingUnit) -> Result<Self, ParameterError> {
-        let reach = unit
-            .board
-            .slides
-            .iter()
-            .map(|slide| slide.travel_max_mm.min(-slide.travel_min_mm));
         Ok(Self {
             heads: unit.board.head.build()?,
             mount: unit.cameras.mount_deg.map(f64::to_radians),
-            reach_mm: reach.fold(f64::INFINITY, f64::min),
+            travel_mm: std::array::from_fn(|i| {
+                let slide = &unit.board.slides[i];
+                (slide.travel_min_mm, slide.travel_max_mm)
+            }),
         })
     }
 }

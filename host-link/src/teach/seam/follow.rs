@@ -1,10 +1,8 @@
 //! Following a seam: centre, take down, step along the tangent, to the end of the seam.
 
-use super::course::Local;
-use super::search::places;
-use super::{Cameras, Drawing, Foot, Rig, SeamPoint, SeamTeaching, Stance, View};
+use super::course::Course;
+use super::{Cameras, Drawing, Foot, NotFound, Rig, SeamPoint, SeamTeaching, Stance, View};
 use crate::teach::TeachParameterError;
-use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::SIDES;
 use std::error::Error as StdError;
@@ -30,6 +28,8 @@ pub enum Ended {
         s_mm: f64,
         /// Still to come by the drawing \[mm\].
         missing_mm: Option<f64>,
+        /// Which side is seen further on, if one is.
+        seen: [bool; SIDES],
     },
     /// The operator said so.
     Operator,
@@ -42,22 +42,8 @@ pub enum SeamTeachError<E: StdError + 'static> {
     #[error(transparent)]
     Machine(#[from] E),
     /// There is no seam where there should be one.
-    #[error(
-        "no seam is seen within {search_mm} mm of X{x:.1} Y{y:.1} Z{z:.1}{other}: begin nearer to it (--from), or look \
-         whether lights and cameras work"
-    )]
-    NotFound {
-        /// How far was searched \[mm\].
-        search_mm: f64,
-        /// Tip \[mm\].
-        x: f64,
-        /// Tip \[mm\].
-        y: f64,
-        /// Tip \[mm\].
-        z: f64,
-        /// What is seen of the other side.
-        other: &'static str,
-    },
+    #[error(transparent)]
+    NotFound(NotFound),
 }
 
 /// A place where both seams are seen, in the middle of their bands as far as it goes.
@@ -67,6 +53,35 @@ pub(super) struct Centred {
     pub stance: Stance,
     /// What it saw there.
     pub feet: [Foot; SIDES],
+}
+
+/// What is seen where the machine stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight {
+    /// Where it stands.
+    pub stance: Stance,
+    /// What it sees there.
+    pub feet: [Option<Foot>; SIDES],
+}
+
+impl Sight {
+    /// If it is both seams.
+    pub fn both(&self) -> Option<Centred> {
+        let [Some(first), Some(second)] = self.feet else {
+            return None;
+        };
+        Some(Centred {
+            stance: self.stance,
+            feet: [first, second],
+        })
+    }
+}
+
+/// What comes after a point.
+enum Next {
+    Point(Centred),
+    /// One seam or both are not seen further on.
+    Ends([bool; SIDES]),
 }
 
 /// Takes down what is seen `here`.
@@ -80,8 +95,8 @@ pub(super) fn take<R: Rig>(rig: &mut R, points: &mut Vec<SeamPoint>, here: &Cent
 /// Teaches by following.
 #[derive(Clone, Copy, Debug)]
 pub struct Follower<'a> {
-    cameras: &'a Cameras,
-    config: &'a SeamTeaching,
+    pub(super) cameras: &'a Cameras,
+    pub(super) config: &'a SeamTeaching,
     drawing: Option<Drawing>,
 }
 
@@ -126,10 +141,16 @@ impl<'a> Follower<'a> {
                 return Ok(Ended::Drawn);
             }
             let at = points.last().map_or(0.0, |last| last.s_mm);
-            let Some(next) = self.advance(rig, &here.stance, &points, before, missing_mm)? else {
-                return Ok(Ended::SeamEnds { s_mm: at, missing_mm });
+            here = match self.advance(rig, &here.stance, &points, before, missing_mm)? {
+                Next::Point(next) => next,
+                Next::Ends(seen) => {
+                    return Ok(Ended::SeamEnds {
+                        s_mm: at,
+                        missing_mm,
+                        seen,
+                    });
+                }
             };
-            here = next;
             take(rig, &mut points, &here)?;
             before = points.last().map(|last| last.s_mm - at);
         }
@@ -151,7 +172,7 @@ impl<'a> Follower<'a> {
     }
 
     /// What is seen surely.
-    fn sure(&self, mut view: View) -> View {
+    pub(super) fn sure(&self, mut view: View) -> View {
         for side in &mut view.sides {
             *side = side.filter(|seen| seen.quality >= self.config.least_quality);
         }
@@ -170,71 +191,34 @@ impl<'a> Follower<'a> {
             .all(|side| side.is_some_and(|seen| !seen.offset_mm.iter().any(far)))
     }
 
-    /// Centres what is seen until both seams are in the middle; `None` if one side is never seen.
-    pub(super) fn centre<R: Rig>(&self, rig: &mut R, stance: &Stance) -> Result<Option<Centred>, R::Error> {
+    /// Brings both seams to the middle of their bands, as long as both are seen; what is seen at last.
+    pub(super) fn centre<R: Rig>(&self, rig: &mut R, stance: &Stance) -> Result<Sight, R::Error> {
         let mut stance = *stance;
-        let mut centred = None;
+        let mut before: Option<Sight> = None;
         for _ in 0..MOVES {
             let view = self.look(rig)?;
-            let feet = self.feet(&view);
-            if let [Some(first), Some(second)] = feet {
-                let feet = [first, second];
-                centred = Some(Centred { stance, feet });
-            }
-            if self.is_centred(&view) || feet.iter().all(Option::is_none) {
+            let sight = Sight {
+                stance,
+                feet: self.feet(&view),
+            };
+            let Some(Centred { feet, .. }) = sight.both() else {
+                return Ok(before.unwrap_or(sight));
+            };
+            before = Some(sight);
+            if self.is_centred(&view) {
                 break;
             }
-            let normal = feet.iter().flatten().map(|foot| foot.normal).sum();
-            let places = feet.map(|foot| foot.map(|foot| foot.position));
-            stance = self.cameras.centred(&stance, &normal, places);
+            let normal = feet[0].normal + feet[1].normal;
+            stance = self
+                .cameras
+                .aimed(&stance, &normal, feet.map(|foot| foot.position));
             rig.go(&stance)?;
         }
-        Ok(centred)
-    }
-
-    /// Centres the seams at `stance`, where the machine stands, after a search if they are not seen.
-    pub(super) fn find<R: Rig>(
-        &self,
-        rig: &mut R,
-        stance: &Stance,
-    ) -> Result<Centred, SeamTeachError<R::Error>> {
-        if let Some(centred) = self.centre(rig, stance)? {
-            return Ok(centred);
-        }
-        let Pose {
-            position,
-            tangent,
-            normal,
-        } = stance.pose;
-        let across = normal.cross(&tangent);
-        let mut found = [None; SIDES];
-        for [x, y] in places(self.config) {
-            let mut there = *stance;
-            there.pose.position = position + across * x + normal * y;
-            rig.go(&there)?;
-            let view = self.sure(rig.look(self.config.pictures)?);
-            for (known, seen) in found.iter_mut().zip(self.feet(&view)) {
-                *known = known.or(seen.map(|foot| foot.position));
-            }
-            if found.iter().all(Option::is_some) {
-                let stance = self.cameras.centred(stance, &normal, found);
-                rig.go(&stance)?;
-                if let Some(centred) = self.centre(rig, &stance)? {
-                    return Ok(centred);
-                }
-            }
-        }
-        Err(SeamTeachError::NotFound {
-            search_mm: self.config.search_mm,
-            x: position.x,
-            y: position.y,
-            z: position.z,
-            other: match found {
-                [Some(_), None] => ", on side 2 (side 1 is seen)",
-                [None, Some(_)] => ", on side 1 (side 2 is seen)",
-                _ => "",
-            },
-        })
+        let nothing = Sight {
+            stance,
+            feet: [None; SIDES],
+        };
+        Ok(before.unwrap_or(nothing))
     }
 
     /// Goes along the seam to where the drawing begins, if that is near.
@@ -251,8 +235,8 @@ impl<'a> Follower<'a> {
         };
         let stance = here.stance;
         let tangent = stance.pose.tangent;
-        let looks_at = stance.pose.position + tangent * self.cameras.heads.camera_lead();
-        let away = (at - looks_at).dot(&along) / tangent.dot(&along);
+        let [first, second] = [0, 1].map(|side| self.cameras.looks_at(&stance, side));
+        let away = (at - (first + second) / 2.0).dot(&along) / tangent.dot(&along);
         if away.abs() < SAME_PLACE || away.abs() > self.config.search_mm {
             return Ok(here);
         }
@@ -274,13 +258,12 @@ impl<'a> Follower<'a> {
         })
     }
 
-    fn local(points: &[SeamPoint], stance: &Stance) -> Option<Local> {
-        let middles: Vec<Vector3<f64>> = points.iter().map(SeamPoint::middle).collect();
-        Local::of(&middles, &stance.pose.tangent)
+    fn course(points: &[SeamPoint], stance: &Stance) -> Option<Course> {
+        Course::of(points, &stance.pose.tangent)
     }
 
     /// Goes on to the next point, as far as the course so far allows and nearer if the seam bends more than was
-    /// foreseen. `None` where the seam ends.
+    /// foreseen, or to where the seam ends.
     fn advance<R: Rig>(
         &self,
         rig: &mut R,
@@ -288,12 +271,12 @@ impl<'a> Follower<'a> {
         points: &[SeamPoint],
         before: Option<f64>,
         missing_mm: Option<f64>,
-    ) -> Result<Option<Centred>, R::Error> {
-        let Some(local) = Self::local(points, stance) else {
-            return Ok(None);
+    ) -> Result<Next, R::Error> {
+        let (Some(course), Some(last)) = (Self::course(points, stance), points.last()) else {
+            return Ok(Next::Ends([false; SIDES]));
         };
         let smallest = self.config.smallest_step_mm;
-        let mut step = local.step(self.config, before);
+        let mut step = course.step(self.config, before);
         if let Some(missing) = missing_mm {
             if step >= missing {
                 step = missing;
@@ -302,68 +285,52 @@ impl<'a> Follower<'a> {
             }
         }
         loop {
-            let there = self.ahead(stance, &local, step);
+            let there = self.ahead(stance, &course, last, step);
             rig.go(&there)?;
-            let Some(centred) = self.centre(rig, &there)? else {
+            let sight = self.centre(rig, &there)?;
+            let Some(centred) = sight.both() else {
                 if step <= smallest {
-                    return Ok(None);
+                    return Ok(Next::Ends(sight.feet.map(|foot| foot.is_some())));
                 }
                 step = (step / 2.0).max(smallest);
                 continue;
             };
-            let [first, second] = centred.feet.map(|foot| foot.position);
-            let distance = local.chord_distance(step, &((first + second) / 2.0));
+            let distance = course.chord_distance(step, &centred.feet);
             if distance > self.config.chord_mm && step > smallest {
                 let factor = 0.9 * libm::sqrt(self.config.chord_mm / distance);
                 step = (step * factor.clamp(SHORTER[0], SHORTER[1])).max(smallest);
                 continue;
             }
-            return Ok(Some(centred));
+            return Ok(Next::Point(centred));
         }
     }
 
     /// Where a step from the last of the `points` leads, `by` so much or by the spacing rule; `None` if there is no
     /// point yet.
     pub(super) fn stepped(&self, stance: &Stance, points: &[SeamPoint], by: Option<f64>) -> Option<Stance> {
-        let local = Self::local(points, stance)?;
-        let last = points.windows(2).last().map(|pair| pair[1].s_mm - pair[0].s_mm);
-        let step = by.unwrap_or_else(|| local.step(self.config, last));
-        Some(self.ahead(&self.start(stance, points), &local, step))
+        let course = Self::course(points, stance)?;
+        let before = points.windows(2).last().map(|pair| pair[1].s_mm - pair[0].s_mm);
+        let step = by.unwrap_or_else(|| course.step(self.config, before));
+        Some(self.ahead(stance, &course, points.last()?, step))
     }
 
-    /// `stance`, which looks at the end of the course, moved to look `step` further on.
-    fn ahead(&self, stance: &Stance, local: &Local, step: f64) -> Stance {
-        let (at, tangent) = local.ahead(step);
+    /// The stance that looks where the course leads, `step` \[mm\] after its `last` point, with the head along the skin
+    /// there; it stands as `stance` does where that is not possible.
+    fn ahead(&self, stance: &Stance, course: &Course, last: &SeamPoint, step: f64) -> Stance {
+        let (points, tangent) = course.ahead(step);
         let old = stance.pose;
+        let position = (points[0] + points[1]) / 2.0 - tangent * self.cameras.heads.camera_lead();
         // A course does not turn so much that the head would lie along it.
-        let turned = Pose::new(old.position, tangent, old.normal).unwrap_or(old);
-        // The tip stands beside the seams as before, and a lead behind.
-        let beside = old.position - local.at;
-        let (across, up) = (
-            beside.dot(&old.normal.cross(&old.tangent)),
-            beside.dot(&old.normal),
-        );
-        let position = at - turned.tangent * self.cameras.heads.camera_lead()
-            + turned.normal.cross(&turned.tangent) * across
-            + turned.normal * up;
-        Stance {
-            pose: Pose { position, ..turned },
-            extension_mm: stance.extension_mm,
-        }
+        let pose = Pose::new(position, tangent, old.normal).unwrap_or(old);
+        let normal = last.feet[0].normal + last.feet[1].normal;
+        self.cameras.centred(&pose, &normal, points)
     }
 
     /// The stance that looks at the last of the `points`; `start` if there is none.
     pub(super) fn start(&self, start: &Stance, points: &[SeamPoint]) -> Stance {
-        let (Some(local), Some(last)) = (Self::local(points, start), points.last()) else {
-            return *start;
-        };
-        let normal = last.feet[0].normal + last.feet[1].normal;
-        let position = last.middle() - local.tangent * self.cameras.heads.camera_lead();
-        let there = Stance {
-            pose: Pose::new(position, local.tangent, normal).unwrap_or(start.pose),
-            extension_mm: [0.0; SIDES],
-        };
-        let places = last.feet.map(|foot| Some(foot.position));
-        self.cameras.centred(&there, &normal, places)
+        match (Self::course(points, start), points.last()) {
+            (Some(course), Some(last)) => self.ahead(start, &course, last, 0.0),
+            _ => *start,
+        }
     }
 }

@@ -11,6 +11,7 @@ pub const JOG_WORDS: &str = "\
 x y z DISTANCE     moves along an axis of the work [mm]
 a b c ANGLE        turns the head about the tip [deg]
 across up along D  moves by the head: to the left of travel, away from the work, ahead [mm]
+u1 v1 u2 v2 D      moves a slide of one side, v toward the work [mm]
 step [D]           goes on along the seam, by D [mm] or by the spacing rule
 centre             brings both seams to the middle of their bands
 search             looks for them around here
@@ -47,6 +48,8 @@ pub enum Jog {
     Turn(usize, f64),
     /// To move by the head: across, up or along \[mm\].
     Head(usize, f64),
+    /// To move a slide \[mm\].
+    Slide(usize, f64),
     /// To go on along the seam \[mm\].
     Step(Option<f64>),
     /// To centre both seams.
@@ -83,15 +86,18 @@ impl Jog {
                 Err(format!("{number} {unit} is more than {most} {unit} at once"))
             }
         };
-        let place = |names: [&str; 3]| names.iter().position(|name| *name == word);
-        if let Some(axis) = place(["x", "y", "z"]) {
+        let place = |names: &[&str]| names.iter().position(|name| *name == word);
+        if let Some(axis) = place(&["x", "y", "z"]) {
             return Ok(Self::Axis(axis, number(FARTHEST, "mm")?));
         }
-        if let Some(axis) = place(["a", "b", "c"]) {
+        if let Some(axis) = place(&["a", "b", "c"]) {
             return Ok(Self::Turn(axis, number(WIDEST, "deg")?.to_radians()));
         }
-        if let Some(way) = place(["across", "up", "along"]) {
+        if let Some(way) = place(&["across", "up", "along"]) {
             return Ok(Self::Head(way, number(FARTHEST, "mm")?));
+        }
+        if let Some(slide) = place(&["u1", "v1", "u2", "v2"]) {
+            return Ok(Self::Slide(slide, number(FARTHEST, "mm")?));
         }
         if word == "step" {
             let by = value.map(|_| number(FARTHEST, "mm")).transpose()?;
@@ -111,7 +117,7 @@ impl Jog {
         }
     }
 
-    /// Where a move leads from `stance`; `None` if it is no move of the head.
+    /// Where a move leads from `stance`; `None` if it is no move of machine or slides.
     fn moved(self, stance: &Stance) -> Option<Stance> {
         let Pose {
             position,
@@ -139,6 +145,11 @@ impl Jog {
                     tangent: rotate(&about, by, &tangent),
                     normal: rotate(&about, by, &normal),
                 }
+            }
+            Self::Slide(slide, by) => {
+                let mut there = *stance;
+                there.slides_mm[slide] += by;
+                return Some(there);
             }
             Self::Step(_)
             | Self::Centre
@@ -179,7 +190,7 @@ impl Follower<'_> {
                 Ok(there) => stance = there,
                 Err(SeamTeachError::Machine(error)) if rig.is_refusal(&error) => rig.say(&error.to_string()),
                 Err(SeamTeachError::Machine(error)) => return Err(error.into()),
-                Err(not_found @ SeamTeachError::NotFound { .. }) => {
+                Err(not_found @ SeamTeachError::NotFound(_)) => {
                     rig.go(&stance)?;
                     rig.say(&not_found.to_string());
                 }
@@ -211,10 +222,9 @@ impl Follower<'_> {
                 there
             }
             Jog::Search => self.find(rig, stance)?.stance,
-            Jog::Centre => match self.centre(rig, stance)? {
+            Jog::Centre => match self.centre(rig, stance)?.both() {
                 Some(centred) => centred.stance,
                 None => {
-                    rig.go(stance)?;
                     rig.say("both seams have to be seen to be centred: move nearer, or say search");
                     *stance
                 }

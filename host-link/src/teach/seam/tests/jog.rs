@@ -76,8 +76,8 @@ fn jog(lines: impl Into<Vec<&'static str>>, before: &[SeamPoint]) -> World {
 fn points_are_taken_where_the_operator_leads_the_head() {
     let world = jog(
         [
-            "take", "centre", "take", "step 5", "take", "x 10", "y -0.2", "a 1", "up 0.1", "take", "done",
-            "take",
+            "take", "centre", "take", "step 5", "take", "x 10", "y -0.2", "a 1", "up 0.1", "u1 0.1",
+            "v2 0.1", "take", "done", "take",
         ],
         &[],
     );
@@ -101,8 +101,8 @@ fn points_are_taken_where_the_operator_leads_the_head() {
 fn what_cannot_be_done_is_said_and_nothing_is_lost() {
     let world = jog(
         [
-            "undo", "centre", "take", "fly", "x", "y 300", "y 99", "y 5", "take", "search", "y -5", "step 4",
-            "take", "take", "step 3", "take", "undo", "x 1 2", "take 3",
+            "undo", "centre", "take", "fly", "x", "y 300", "y 99", "y 5", "take", "search", "y -5", "u3",
+            "step 4", "take", "take", "step 3", "take", "undo", "x 1 2", "take 3",
         ],
         &[],
     );
@@ -115,7 +115,8 @@ fn what_cannot_be_done_is_said_and_nothing_is_lost() {
         "300 mm is more than 100 mm at once",
         "out of reach",
         "both seams have to be seen to be taken",
-        "no seam is seen within 4 mm",
+        "no seam is seen on either side",
+        "u3 means nothing here",
         "not beyond the last point",
         "2 points",
         "2 is too much",

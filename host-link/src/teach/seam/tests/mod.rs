@@ -7,12 +7,13 @@ use super::course::Local;
 use super::*;
 use nalgebra::Vector3;
 use shared::geometry::{Pose, angle};
+use shared::io::SLIDES;
 use shared::tracking::HeadConfig;
 use std::convert::Infallible;
 use vision::render::SplitMix64;
 
 /// What a camera sees to each side of its centre, across and along its axis \[mm\].
-const VIEW: [f64; 2] = [0.55, 0.3];
+const VIEW: [f64; 2] = [0.55, 0.2];
 const LENGTH: f64 = 300.0;
 const SIGMA: f64 = 0.0067;
 
@@ -34,6 +35,10 @@ fn straight(s: f64) -> (Vector3<f64>, Vector3<f64>) {
 
 struct World {
     shape: Shape,
+    /// How much further from the middle each seam lies.
+    beside: [f64; 2],
+    /// No seam on this side.
+    missing: Option<usize>,
     end: f64,
     cameras: Cameras,
     stance: Option<Stance>,
@@ -60,7 +65,7 @@ fn cameras() -> Cameras {
     Cameras {
         heads: head.build().unwrap(),
         mount: [-30f64, 30.0].map(f64::to_radians),
-        reach_mm: 12.0,
+        travel_mm: [(-12.0, 12.0); SLIDES],
     }
 }
 
@@ -68,6 +73,8 @@ impl World {
     fn new(shape: Shape, sigma: f64) -> Self {
         Self {
             shape,
+            beside: [0.0; 2],
+            missing: None,
             end: 1e9,
             cameras: cameras(),
             stance: None,
@@ -87,7 +94,8 @@ impl World {
     fn foot(&self, side: usize, s: f64) -> Vector3<f64> {
         let (at, along) = (self.shape)(s);
         let left = Vector3::z().cross(&along).normalize();
-        at + left * if side == 0 { -2.0 } else { 2.0 }
+        let beside = 2.0 + self.beside[side];
+        at + left * if side == 0 { -beside } else { beside }
     }
 
     /// What camera `side` sees with the machine in `stance`.
@@ -101,15 +109,17 @@ impl World {
         }
         let point = self.foot(side, s);
         let (_, u, v) = spot.coordinates(&point);
-        let offset = [u, v - stance.extension_mm[side]];
+        let [u0, v0] = [0, 1].map(|i| stance.slides_mm[2 * side + i]);
+        let offset = [u - u0, v - v0];
         let mean = self.sigma / 8f64.sqrt();
         let offset_mm = offset.map(|x| x + mean * self.noise.gauss()[0]);
-        let head = -spot.v;
-        let axis = shared::geometry::rotate(&stance.pose.tangent, self.cameras.mount[side], &head);
+        let axis = self.cameras.axis(&stance.pose, side);
         let skin = Vector3::z();
         let roll = -skin.dot(&axis.cross(&stance.pose.tangent)) / skin.dot(&axis);
-        let inside = offset[0].abs() < VIEW[0] && offset[1].abs() < VIEW[1];
-        (inside && s <= self.end).then_some(Seen {
+        let away = spot.u * offset[0] + spot.v * offset[1];
+        let across = away.dot(&axis.cross(&stance.pose.tangent));
+        let inside = across.abs() < VIEW[0] && away.dot(&axis).abs() < VIEW[1];
+        (inside && self.missing != Some(side) && s <= self.end).then_some(Seen {
             along_mm: 0.0,
             offset_mm,
             roll: Some(roll),
@@ -139,10 +149,9 @@ impl Rig for World {
         self.looks += 1;
         let dark = self.looks.is_multiple_of(self.lost_every);
         let sides = [0, 1].map(|side| self.seen(&stance, side).filter(|_| !dark));
-        let [v1, v2] = stance.extension_mm;
         Ok(View {
             pose: stance.pose,
-            slides_mm: [0.0, v1, 0.0, v2],
+            slides_mm: stance.slides_mm,
             sides,
         })
     }
@@ -180,7 +189,7 @@ fn start(shape: Shape, beside: [f64; 3]) -> Stance {
             position: pose.position - tangent * 10.0 - pose.normal * depth,
             ..pose
         },
-        extension_mm: [0.0; 2],
+        slides_mm: [0.0; SLIDES],
     }
 }
 
@@ -305,13 +314,89 @@ fn where_there_is_no_seam_it_is_said_and_the_machine_has_not_gone_far() {
     let (cameras, config) = (cameras(), SeamTeaching::default());
     let follower = Follower::build(&cameras, &config, None).unwrap();
     let far = start(straight, [0.0, 9.0, 0.0]);
-    let error = follower
-        .teach(&mut world, &far, &[])
-        .map(|_| ())
-        .unwrap_err()
-        .to_string();
-    assert!(error.contains("no seam is seen within 4 mm"), "{error}");
-    assert!(world.taught.is_empty() && world.moves < 300, "{}", world.moves);
+    let fails = |world: &mut World, from: &Stance| {
+        let taught = follower.teach(world, from, &[]).map(|_| ());
+        assert!(world.taught.is_empty() && world.moves < 300, "{}", world.moves);
+        taught.unwrap_err().to_string()
+    };
+    let error = fails(&mut world, &far);
+    assert!(
+        error.contains(
+            "camera 1 looked for it within 4 mm of X500.0 Y807.0 Z100.0, camera 2 of X500.0 Y811.0"
+        ),
+        "{error}"
+    );
+    // One side only: it is named, and where the other one is.
+    for missing in [0, 1] {
+        let mut world = World::new(straight, 0.0);
+        world.missing = Some(missing);
+        let error = fails(&mut world, &start(straight, [0.0, 1.0, 0.0]));
+        let y = [798.0, 802.0];
+        let said = format!(
+            "no seam is seen on side {}: its camera looked for it within 4 mm of X500.0 Y{:.1} Z100.0, across and in \
+             height, while side {} is seen at X500.0 Y{:.1} Z100.0",
+            missing + 1,
+            y[missing] + 1.0,
+            2 - missing,
+            y[1 - missing]
+        );
+        assert!(error.contains(&said), "{error}");
+    }
+}
+
+/// The feet of another rib, or of one that leans: no place of the machine has both seams before their cameras.
+#[test]
+fn each_side_is_searched_and_followed_by_its_own_slides() {
+    for beside in [[0.0, 1.5], [-1.3, 1.1], [2.0, 2.0], [0.2, -2.4]] {
+        let mut world = World::new(straight_then_bent, SIGMA);
+        world.beside = beside;
+        let ended = teach(&mut world, &start(straight_then_bent, [0.0; 3]), &[]);
+        assert_eq!(ended, Ended::Drawn, "{beside:?}");
+        let (chord, off) = distances(&world);
+        assert!(
+            chord <= 0.03 + 2.0 * SIGMA && off <= 2.0 * SIGMA + 1e-6,
+            "{beside:?}: {chord} {off}"
+        );
+        // The pose stands where the slides are nearest to their middle.
+        let [u1, v1, u2, v2] = world.stance.unwrap().slides_mm;
+        let (sin, cos) = 30f64.to_radians().sin_cos();
+        let half = (beside[0] + beside[1]) / 2.0;
+        for (slide, wanted) in [
+            (u1, half * cos),
+            (u2, -half * cos),
+            (v1, -half * sin),
+            (v2, -half * sin),
+        ] {
+            assert!(
+                (slide - wanted).abs() < 0.06,
+                "{beside:?}: {slide} is not {wanted}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_machine_takes_what_slides_cannot() {
+    let mut cameras = cameras();
+    let stance = start(straight, [0.0; 3]);
+    let looks_at = [0, 1].map(|side| cameras.looks_at(&stance, side));
+    let points = looks_at.map(|point| point + Vector3::y() * 3.0);
+    let same = |cameras: &Cameras, stance: &Stance| {
+        (0..2).all(|side| (cameras.looks_at(stance, side) - points[side]).norm() < 1e-9)
+    };
+    let near = cameras.aimed(&stance, &Vector3::z(), points);
+    assert_eq!(near.pose, stance.pose);
+    assert!(same(&cameras, &near));
+    cameras.travel_mm = [(-3.0, 3.0); SLIDES];
+    let far = cameras.aimed(&stance, &Vector3::z(), points);
+    assert!((far.pose.position - stance.pose.position - Vector3::y() * 3.0).norm() < 1e-9);
+    assert!(same(&cameras, &far) && far.slides_mm.iter().all(|slide| slide.abs() < 1e-9));
+    // A skin that leans turns the head, a picture's doubt does not.
+    for (lean, turns) in [(0.02, false), (0.1, true)] {
+        let normal = Vector3::new(0.0, lean, 1.0).normalize();
+        let there = cameras.aimed(&stance, &normal, looks_at);
+        assert_eq!(angle(&there.pose.normal, &normal) < 1e-9, turns, "{lean}");
+    }
 }
 
 #[test]
@@ -321,6 +406,7 @@ fn the_end_of_the_seam_is_found_and_what_is_missing_is_told() {
     let Ended::SeamEnds {
         s_mm,
         missing_mm: Some(missing),
+        seen: [false, false],
     } = teach(&mut world, &start(straight, [0.0; 3]), &[])
     else {
         panic!("the seam ends before the drawing")
@@ -369,18 +455,16 @@ fn slides_take_what_no_pose_can() {
     let cameras = cameras();
     let stance = start(straight, [0.0; 3]);
     // A rib of 6 mm in place of 4.
-    let points = [-3.0, 3.0].map(|y| Some(Vector3::new(500.0, 800.0 + y, 100.0)));
-    let centred = cameras.centred(&stance, &Vector3::z(), points);
+    let points = [-3.0, 3.0].map(|y| Vector3::new(500.0, 800.0 + y, 100.0));
+    let centred = cameras.centred(&stance.pose, &Vector3::z(), points);
     for (side, point) in points.iter().enumerate() {
-        let (ahead, u, v) = cameras
-            .heads
-            .spot(&centred.pose, side)
-            .coordinates(&point.unwrap());
-        assert!((ahead - 10.0).abs() < 1e-9 && u.abs() < 1e-5);
-        assert!((v - centred.extension_mm[side]).abs() < 1e-5);
+        assert!((cameras.looks_at(&centred, side) - point).norm() < 1e-9);
     }
-    let [v1, v2] = centred.extension_mm;
-    assert!((v1 - v2).abs() < 1e-3 && (v1 + 2.0).abs() < 0.05, "{v1} {v2}");
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    for (slide, wanted) in centred.slides_mm.iter().zip([cos, -sin, -cos, -sin]) {
+        assert!((slide - wanted).abs() < 1e-9, "{:?}", centred.slides_mm);
+    }
+    assert!((centred.pose.position - stance.pose.position).norm() < 1e-9);
     assert!(angle(&centred.pose.normal, &Vector3::z()) < 1e-6);
 }
 
@@ -391,7 +475,7 @@ fn tangent_curvature_and_step_of_a_circle_are_its_own() {
         .map(|i| 5.0 * f64::from(i) / radius)
         .map(|phi| Vector3::new(radius * phi.sin(), radius * (1.0 - phi.cos()), 0.0))
         .collect();
-    let local = Local::of(&points, &Vector3::z()).unwrap();
+    let local = Local::of(&points[2..], &Vector3::z()).unwrap();
     let phi = 25.0 / radius;
     assert!(angle(&local.tangent, &Vector3::new(phi.cos(), phi.sin(), 0.0)) < 5e-4);
     assert!((local.curvature.norm() * radius - 1.0).abs() < 0.01);
