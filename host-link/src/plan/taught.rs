@@ -18,6 +18,8 @@ const BESIDE_AT_ENDS: f64 = 1.5;
 const BEND: f64 = 0.5;
 /// Chords of seam 1 are as long as s_mm says, to this much \[mm\].
 const CHORD: f64 = 0.05;
+/// What all pictures of a place have in common, such as its texture: they do not scatter by it \[mm\].
+const IN_COMMON: f64 = 0.003;
 /// The head may stand so far from the normal of the skin, if it turns more evenly then: half a degree \[rad\].
 const HEAD: f64 = 0.009;
 
@@ -222,9 +224,9 @@ fn chords(points: &[(usize, TaughtPoint)], side: usize) -> Vec<f64> {
     sums
 }
 
-/// Standard deviation of the mean of the pictures.
+/// Standard deviation of a point.
 fn sigma(foot: &Foot) -> f64 {
-    foot.scatter_mm / libm::sqrt(foot.pictures as f64)
+    (foot.scatter_mm / libm::sqrt(foot.pictures as f64)).hypot(IN_COMMON)
 }
 
 /// The places of `side`, as smooth as their scatter asks for.
@@ -332,9 +334,9 @@ mod tests {
     }
 
     #[test]
-    fn exact_points_are_on_the_curve_and_noisy_ones_as_near_as_they_scatter() {
+    fn points_are_as_near_to_the_curve_as_they_scatter() {
         let exact = TaughtSeams::through(&taught(0.0), 0.5).unwrap();
-        assert!(exact.fit.iter().all(|fit| fit.largest_mm == 0.0));
+        assert!(exact.fit.iter().all(|fit| fit.rms_mm < IN_COMMON * 3f64.sqrt()));
         let noisy = TaughtSeams::through(&taught(0.007), 0.5).unwrap();
         let off = |seams: &TaughtSeams| {
             let radii = seams.main.iter().map(|p| p.position.xy().norm() - 598.0);
@@ -342,9 +344,9 @@ mod tests {
         };
         assert!(off(&noisy) < 0.006, "{}", off(&noisy));
         for fit in noisy.fit {
-            // Half the variance of three channels with 0.0025 mm.
+            // Half the variance of three channels with 0.0039 mm.
             assert!(
-                (0.002..0.004).contains(&fit.rms_mm) && fit.largest_mm < 0.015,
+                (0.003..0.006).contains(&fit.rms_mm) && fit.largest_mm < 0.015,
                 "{fit:?}"
             );
         }

@@ -77,19 +77,18 @@ impl Sight {
     }
 }
 
-/// What comes after a point.
-enum Next {
-    Point(Centred),
-    /// One seam or both are not seen further on.
-    Ends([bool; SIDES]),
-}
-
 /// Takes down what is seen `here`.
 pub(super) fn take<R: Rig>(rig: &mut R, points: &mut Vec<SeamPoint>, here: &Centred) -> Result<(), R::Error> {
     let point = SeamPoint::after(points.last(), here.feet);
     rig.taught(&point)?;
     points.push(point);
     Ok(())
+}
+
+/// Distance of the last two points \[mm\].
+fn last_step(points: &[SeamPoint]) -> Option<f64> {
+    let pair = points.windows(2).last()?;
+    Some(pair[1].s_mm - pair[0].s_mm)
 }
 
 /// Teaches by following.
@@ -131,7 +130,7 @@ impl<'a> Follower<'a> {
             here = self.begin_as_drawn(rig, here)?;
             take(rig, &mut points, &here)?;
         }
-        let mut before: Option<f64> = None;
+        let mut before = last_step(&points);
         loop {
             if rig.enough() {
                 return Ok(Ended::Operator);
@@ -142,8 +141,8 @@ impl<'a> Follower<'a> {
             }
             let at = points.last().map_or(0.0, |last| last.s_mm);
             here = match self.advance(rig, &here.stance, &points, before, missing_mm)? {
-                Next::Point(next) => next,
-                Next::Ends(seen) => {
+                Ok(next) => next,
+                Err(seen) => {
                     return Ok(Ended::SeamEnds {
                         s_mm: at,
                         missing_mm,
@@ -152,7 +151,7 @@ impl<'a> Follower<'a> {
                 }
             };
             take(rig, &mut points, &here)?;
-            before = points.last().map(|last| last.s_mm - at);
+            before = last_step(&points);
         }
     }
 
@@ -263,7 +262,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Goes on to the next point, as far as the course so far allows and nearer if the seam bends more than was
-    /// foreseen, or to where the seam ends.
+    /// foreseen. Where the seams end: which of them is seen further on.
     fn advance<R: Rig>(
         &self,
         rig: &mut R,
@@ -271,16 +270,17 @@ impl<'a> Follower<'a> {
         points: &[SeamPoint],
         before: Option<f64>,
         missing_mm: Option<f64>,
-    ) -> Result<Next, R::Error> {
+    ) -> Result<Result<Centred, [bool; SIDES]>, R::Error> {
         let (Some(course), Some(last)) = (Self::course(points, stance), points.last()) else {
-            return Ok(Next::Ends([false; SIDES]));
+            return Ok(Err([false; SIDES]));
         };
         let smallest = self.config.smallest_step_mm;
         let mut step = course.step(self.config, before);
         if let Some(missing) = missing_mm {
             if step >= missing {
                 step = missing;
-            } else if step + smallest > missing {
+            } else if 2.0 * step > missing {
+                // The last two of the same length: short ones show the direction badly.
                 step = missing / 2.0;
             }
         }
@@ -290,7 +290,7 @@ impl<'a> Follower<'a> {
             let sight = self.centre(rig, &there)?;
             let Some(centred) = sight.both() else {
                 if step <= smallest {
-                    return Ok(Next::Ends(sight.feet.map(|foot| foot.is_some())));
+                    return Ok(Err(sight.feet.map(|foot| foot.is_some())));
                 }
                 step = (step / 2.0).max(smallest);
                 continue;
@@ -301,7 +301,7 @@ impl<'a> Follower<'a> {
                 step = (step * factor.clamp(SHORTER[0], SHORTER[1])).max(smallest);
                 continue;
             }
-            return Ok(Next::Point(centred));
+            return Ok(Ok(centred));
         }
     }
 
@@ -309,8 +309,7 @@ impl<'a> Follower<'a> {
     /// point yet.
     pub(super) fn stepped(&self, stance: &Stance, points: &[SeamPoint], by: Option<f64>) -> Option<Stance> {
         let course = Self::course(points, stance)?;
-        let before = points.windows(2).last().map(|pair| pair[1].s_mm - pair[0].s_mm);
-        let step = by.unwrap_or_else(|| course.step(self.config, before));
+        let step = by.unwrap_or_else(|| course.step(self.config, last_step(points)));
         Some(self.ahead(stance, &course, points.last()?, step))
     }
 
