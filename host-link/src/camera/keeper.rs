@@ -15,7 +15,7 @@ pub struct Kept {
     pub error: Option<CameraError>,
 }
 
-/// A thread that writes what comes onto a shelf; a camera never waits for it.
+/// A thread that writes what comes onto a shelf.
 pub struct Keeper {
     shelf: Shelf,
     thread: Option<JoinHandle<Kept>>,

@@ -16,22 +16,36 @@ pub struct Shelf(Arc<(Mutex<Shelved>, Condvar)>);
 #[derive(Debug, Default)]
 struct Shelved {
     pictures: VecDeque<Picture>,
+    /// The camera waits for room.
+    patient: bool,
     dropped: u32,
     closed: bool,
 }
 
 impl Shelf {
+    /// A shelf that drops no picture: a camera that finds it full waits. Only a camera that is waited for may do so.
+    pub fn patient() -> Self {
+        let shelf = Self::default();
+        shelf.lock().patient = true;
+        shelf
+    }
+
     /// Takes all pictures, the oldest first.
     pub fn take(&self) -> Vec<Picture> {
-        self.lock().pictures.drain(..).collect()
+        self.taken(self.lock())
+    }
+
+    fn taken(&self, mut shelved: MutexGuard<Shelved>) -> Vec<Picture> {
+        let pictures = shelved.pictures.drain(..).collect();
+        self.0.1.notify_all();
+        pictures
     }
 
     /// Waits for pictures and takes them, the oldest first; nothing once the shelf is closed and empty.
     pub fn wait(&self) -> Option<Vec<Picture>> {
         let waiting = |shelved: &mut Shelved| shelved.pictures.is_empty() && !shelved.closed;
         let waited = self.0.1.wait_while(self.lock(), waiting);
-        let mut shelved = waited.unwrap_or_else(PoisonError::into_inner);
-        let pictures: Vec<_> = shelved.pictures.drain(..).collect();
+        let pictures = self.taken(waited.unwrap_or_else(PoisonError::into_inner));
         (!pictures.is_empty()).then_some(pictures)
     }
 
@@ -47,8 +61,11 @@ impl Shelf {
     }
 
     fn put(&self, picture: &Picture) {
-        let mut shelved = self.lock();
-        if shelved.pictures.len() == ROOM {
+        let full = |shelved: &mut Shelved| shelved.pictures.len() == ROOM;
+        let waits = |shelved: &mut Shelved| full(shelved) && shelved.patient && !shelved.closed;
+        let waited = self.0.1.wait_while(self.lock(), waits);
+        let mut shelved = waited.unwrap_or_else(PoisonError::into_inner);
+        if full(&mut shelved) {
             shelved.pictures.pop_front();
             shelved.dropped += 1;
         }
@@ -108,6 +125,21 @@ mod tests {
         let numbers: Vec<u32> = shelf.take().iter().map(|picture| picture.capture).collect();
         assert_eq!(numbers, (3..room + 3).collect::<Vec<_>>());
         assert_eq!(shelf.dropped(), 3);
+    }
+
+    #[test]
+    fn a_patient_camera_waits_until_there_is_room() {
+        let shelf = Shelf::patient();
+        let all = 3 * ROOM as u32;
+        let taker = shelf.clone();
+        let thread = std::thread::spawn(move || {
+            let all = std::iter::from_fn(|| taker.wait()).flatten();
+            all.map(|picture| picture.capture).collect::<Vec<_>>()
+        });
+        (0..all).for_each(|capture| shelf.put(&picture(capture)));
+        shelf.close();
+        assert_eq!(thread.join().expect("it ends"), (0..all).collect::<Vec<_>>());
+        assert_eq!(shelf.dropped(), 0);
     }
 
     #[test]

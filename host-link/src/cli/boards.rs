@@ -3,7 +3,7 @@
 use crate::boards::simulated::SimulatedBoards;
 use crate::boards::{Boards, Endpoint, LinkError, NetworkBoards, Patience};
 use crate::machine::MachineFile;
-use crate::weld::JobError;
+use crate::weld::{Ended, Job, JobError, Terminal, run};
 use anyhow::{Context, bail};
 use emulator::{SESSION_VARIABLE, Session};
 use std::path::Path;
@@ -89,21 +89,24 @@ impl BoardChoice {
         }
     }
 
-    /// Connects while Ctrl-C is watched, which sets the flag from now on; the exit code if it was pressed before.
-    pub fn connect_for(&self, machine: &MachineFile) -> anyhow::Result<Result<Connected, ExitCode>> {
+    /// Connects and does `job` before `terminal`, while Ctrl-C is watched; the exit code if it was pressed before anything
+    /// was asked of the boards.
+    pub fn run(
+        &self,
+        job: &Job,
+        terminal: impl FnOnce() -> Terminal,
+    ) -> anyhow::Result<Result<Ended, ExitCode>> {
         let interrupted = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&interrupted);
         ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot watch for Ctrl-C")?;
-        let (choice, wanted) = (self.clone(), machine.motion.kinematics.name());
-        let tracked = machine.tracking.is_some();
+        let (choice, wanted) = (self.clone(), job.machine.motion.kinematics.name());
+        let tracked = job.machine.tracking.is_some();
         let connect = move || choice.connect(wanted, tracked);
-        Ok(match unless_interrupted(connect, &interrupted)? {
-            Some(boards) => Ok(Connected { boards, interrupted }),
-            None => {
-                eprintln!("host-link: stopped by the operator; the boards were not asked for anything");
-                Err(ExitCode::from(INTERRUPTED))
-            }
-        })
+        let Some(mut boards) = unless_interrupted(connect, &interrupted)? else {
+            eprintln!("host-link: stopped by the operator; the boards were not asked for anything");
+            return Ok(Err(ExitCode::from(INTERRUPTED)));
+        };
+        Ok(Ok(run(boards.as_mut(), job, &interrupted, &mut terminal())?))
     }
 
     /// Connects; simulated boards become the machine whose kinematics are `wanted`, emulated ones must have been
@@ -158,14 +161,6 @@ pub fn exit_code(error: Option<JobError>) -> anyhow::Result<ExitCode> {
         }
         Some(error) => Err(error.into()),
     }
-}
-
-/// Boards, and the operator's wish to stop.
-pub struct Connected {
-    /// The boards.
-    pub boards: Box<dyn Boards + Send>,
-    /// Set by Ctrl-C.
-    pub interrupted: Arc<AtomicBool>,
 }
 
 #[cfg(test)]

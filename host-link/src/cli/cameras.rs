@@ -1,7 +1,7 @@
 //! Which cameras a command uses.
 
 use super::boards::BoardChoice;
-use crate::camera::{self, CameraError, Keeper};
+use crate::camera::{self, CameraError, Keeper, Shelf};
 use crate::machine::{CameraConfig, MachineFile};
 use crate::weld::{CameraChoice, ImageCameras, PictureSource};
 use crate::world::SceneFile;
@@ -60,7 +60,12 @@ impl CameraArgs {
             (Camera::Geometric, None) => Ok(CameraChoice::Geometric),
             (Camera::Images, _) => {
                 let folder = path.parent().unwrap_or(Path::new(""));
-                let kept = self.keep_pictures.is_some().then(Default::default);
+                // The time of simulated boards stands still meanwhile.
+                let shelf = || match boards {
+                    BoardChoice::Simulated => Shelf::patient(),
+                    BoardChoice::Emulated | BoardChoice::At { .. } => Shelf::default(),
+                };
+                let kept = self.keep_pictures.is_some().then(|| [shelf(), shelf()]);
                 Ok(CameraChoice::Images(Box::new(ImageCameras {
                     calibrations: unit.cameras.calibrations(folder)?,
                     source: source(boards, &unit.cameras, self.scene.as_deref())?,

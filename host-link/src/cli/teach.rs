@@ -5,7 +5,7 @@ use super::teach_seam::SeamArgs;
 use crate::machine::MachineFile;
 use crate::part::PartFile;
 use crate::teach::write_points;
-use crate::weld::{Job, Names, Surroundings, Terminal, Work, check_teaching, run};
+use crate::weld::{Job, Names, Surroundings, Terminal, Work, check_teaching};
 use anyhow::Context;
 use clap::Args;
 use emulator::MACHINE_VARIABLE;
@@ -74,16 +74,10 @@ impl Teach {
                 boards: self.boards.name(),
             },
         };
-        let mut connected = match self.boards.connect_for(&machine)? {
-            Ok(connected) => connected,
+        let ended = match self.boards.run(&job, Terminal::new)? {
+            Ok(ended) => ended,
             Err(code) => return Ok(code),
         };
-        let ended = run(
-            connected.boards.as_mut(),
-            &job,
-            &connected.interrupted,
-            &mut Terminal::new(),
-        )?;
         let points = &ended.taught.points;
         if !points.is_empty() {
             let file = &output;

@@ -10,7 +10,7 @@ use crate::path::{Planner, Tip};
 use crate::plan::DualBeamPlan;
 use crate::seam::Deviation;
 use crate::teach::seam::{Cameras, Drawing, Ended, Head, SeamFile, Stance};
-use crate::weld::{Job, JobError, Names, SeamLesson, Surroundings, TaughtSeam, Terminal, Work, run};
+use crate::weld::{Job, JobError, Names, SeamLesson, Surroundings, TaughtSeam, Terminal, Work};
 use anyhow::{Context, anyhow, bail};
 use clap::Args;
 use shared::io::SLIDES;
@@ -154,18 +154,10 @@ impl SeamArgs {
             },
         };
         let keepers = self.eyes.keep(&job.surroundings.cameras)?;
-        let mut connected = match boards.connect_for(machine)? {
-            Ok(connected) => connected,
+        let ended = match boards.run(&job, || Terminal::with_lines(self.jog))? {
+            Ok(ended) => ended,
             Err(code) => return Ok(code),
         };
-        let mut terminal = Terminal::with_lines(self.jog);
-        let ended = run(
-            connected.boards.as_mut(),
-            &job,
-            &connected.interrupted,
-            &mut terminal,
-        )?;
-        drop(terminal);
         keepers.end();
         match (ended.taught.seam, ended.error) {
             (Some(taught), None) => tell(&output, &taught),

@@ -10,9 +10,7 @@ use crate::path::Planner;
 use crate::report::{self, Report};
 use crate::seam::{Deviation, SeamError};
 use crate::teach::write_points;
-use crate::weld::{
-    Job, JobError, Names, NoTeaching, Surroundings, Taught, Terminal, Work, check_teaching, run,
-};
+use crate::weld::{Job, JobError, Names, NoTeaching, Surroundings, Taught, Terminal, Work, check_teaching};
 use anyhow::{Context, bail};
 use clap::Args;
 use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
@@ -142,16 +140,11 @@ impl Weld {
         self.check(&job)?;
         report::prepare(&self.report)?;
         let keepers = self.cameras.keep(&job.surroundings.cameras)?;
-        let mut connected = match self.boards.connect_for(&machine)? {
-            Ok(connected) => connected,
+        let terminal = || Terminal::with_words(self.single_block);
+        let ended = match self.boards.run(&job, terminal)? {
+            Ok(ended) => ended,
             Err(code) => return Ok(code),
         };
-        let ended = run(
-            connected.boards.as_mut(),
-            &job,
-            &connected.interrupted,
-            &mut Terminal::with_words(self.single_block),
-        )?;
         keepers.end();
         self.write_taught(&ended.taught)?;
         if ended.began {

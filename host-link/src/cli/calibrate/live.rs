@@ -9,7 +9,7 @@ use crate::camera::Shelf;
 use crate::machine::MachineFile;
 use crate::seam::Deviation;
 use crate::weld::{
-    CameraChoice, ImageCameras, Job, Names, PictureRun, PictureSource, Surroundings, Terminal, Work, run,
+    CameraChoice, ImageCameras, Job, Names, PictureRun, PictureSource, Surroundings, Terminal, Work,
 };
 use anyhow::{Context, bail};
 use clap::Args;
@@ -111,16 +111,10 @@ impl Live {
                 boards: self.boards.name(),
             },
         };
-        let mut connected = match self.boards.connect_for(&machine)? {
-            Ok(connected) => connected,
+        let ended = match self.boards.run(&job, Terminal::new)? {
+            Ok(ended) => ended,
             Err(code) => return Ok(Err(code)),
         };
-        let ended = run(
-            connected.boards.as_mut(),
-            &job,
-            &connected.interrupted,
-            &mut Terminal::new(),
-        )?;
         if ended.error.is_some() {
             return exit_code(ended.error).map(Err);
         }
