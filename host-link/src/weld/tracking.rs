@@ -291,3 +291,49 @@ fn status(boards: &mut dyn Boards) -> Result<TrackerStatus, LinkError> {
 fn raise(largest: &mut Option<f64>, value: f64) {
     *largest = Some(largest.map_or(value, |before| before.max(value)));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_watches_gets_both_sides_of_a_capture_whenever_each_is_answered() {
+        let mut watch = Watch::default();
+        let slides = |number: u32| [f64::from(number); SLIDES];
+        watch
+            .strobed
+            .extend((3..6).map(|number| (number, slides(number))));
+        let answer = |capture: u32, side: usize, delta_u_mm: f64| {
+            let mut sides = [None; SIDES];
+            sides[side] = Some(SideMeasurement {
+                along_mm: 0.0,
+                delta_u_mm,
+                delta_v_mm: 0.0,
+            });
+            Answer::from(Measurement { capture, sides })
+        };
+        // Side 2 is late, and has lost capture 4; capture 2 was strobed before anybody watched.
+        for (capture, side, u) in [
+            (2, 1, 0.9),
+            (3, 0, 0.1),
+            (4, 0, 0.2),
+            (3, 1, 0.3),
+            (5, 1, 0.4),
+            (5, 0, 0.5),
+        ] {
+            watch.add(&answer(capture, side, u));
+        }
+        let u = |watched: &Watched| watched.sides.map(|side| Some(side?.offset_mm[0]));
+        let seen: Vec<_> = watch
+            .answered
+            .values()
+            .map(|watched| (watched.slides_mm, u(watched)))
+            .collect();
+        let wanted = [
+            (slides(3), [Some(0.1), Some(0.3)]),
+            (slides(4), [Some(0.2), None]),
+            (slides(5), [Some(0.5), Some(0.4)]),
+        ];
+        assert_eq!(seen, wanted);
+    }
+}
