@@ -80,12 +80,27 @@ fn convolved(a: &[f64], b: &[f64]) -> Vec<f64> {
     out
 }
 
-/// How wide discs of many radii are in the rows they cover.
+/// How wide discs of many radii are in the rows they cover, for radii in steps of an eighth.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Discs {
-    /// For each radius, in steps of an eighth: half the width in the middle row, the next one and so on, such that the
-    /// disc's area is kept.
-    half_widths: Vec<Vec<f64>>,
+pub(super) struct Discs(Vec<Disc>);
+
+/// A disc around the middle of a value.
+#[derive(Clone, Debug)]
+pub(super) struct Disc {
+    /// Half the width in the middle row, the next one and so on, such that the disc's area is kept.
+    pub half_widths: Vec<f64>,
+    /// The same, as [`Part`]s.
+    pub parts: Vec<Part>,
+    /// Sum of the widths in all rows.
+    pub area: f64,
+}
+
+/// How far a row of a disc reaches from the border of its middle value to either side: over whole values and a
+/// fraction of one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub whole: usize,
+    pub fraction: f64,
 }
 
 const RADII_A_STEP: f64 = 8.0;
@@ -94,27 +109,38 @@ impl Discs {
     /// Sees to it that there are discs up to `radius`.
     pub fn provide(&mut self, radius: f64) {
         let count = (radius * RADII_A_STEP).round() as usize + 1;
-        for k in self.half_widths.len()..count {
-            self.half_widths.push(disc((k as f64 / RADII_A_STEP).max(0.02)));
+        for k in self.0.len()..count {
+            self.0.push(Disc::new((k as f64 / RADII_A_STEP).max(0.02)));
         }
     }
 
-    /// Half widths of a disc of `radius`, from its middle row down.
-    pub fn of(&self, radius: f64) -> &[f64] {
-        &self.half_widths[((radius * RADII_A_STEP).round() as usize).min(self.half_widths.len() - 1)]
+    /// The disc of `radius`.
+    pub fn of(&self, radius: f64) -> &Disc {
+        &self.0[((radius * RADII_A_STEP).round() as usize).min(self.0.len() - 1)]
     }
 }
 
-fn disc(radius: f64) -> Vec<f64> {
-    // Area of a half disc between its middle and y.
-    let area = |y: f64| {
-        let y = y.clamp(-radius, radius);
-        (y * (radius * radius - y * y).max(0.0).sqrt() + radius * radius * (y / radius).asin()) / 2.0
-    };
-    let rows = (radius - 0.5).max(0.0).ceil() as usize;
-    (0..=rows)
-        .map(|k| area(k as f64 + 0.5) - area(k as f64 - 0.5))
-        .collect()
+impl Disc {
+    fn new(radius: f64) -> Self {
+        // Area of a half disc between its middle and y.
+        let area = |y: f64| {
+            let y = y.clamp(-radius, radius);
+            (y * (radius * radius - y * y).max(0.0).sqrt() + radius * radius * (y / radius).asin()) / 2.0
+        };
+        let rows = (radius - 0.5).max(0.0).ceil() as usize;
+        let half_widths: Vec<f64> = (0..=rows)
+            .map(|k| area(k as f64 + 0.5) - area(k as f64 - 0.5))
+            .collect();
+        let part = |half: &f64| Part {
+            whole: (half + 0.5) as usize,
+            fraction: (half + 0.5).fract(),
+        };
+        Self {
+            parts: half_widths.iter().map(part).collect(),
+            area: 2.0 * (2.0 * half_widths.iter().sum::<f64>() - half_widths[0]),
+            half_widths,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -151,7 +177,7 @@ mod tests {
         let mut discs = Discs::default();
         discs.provide(40.0);
         for radius in [0.5, 1.0, 3.25, 17.5, 40.0] {
-            let half = discs.of(radius);
+            let half = &discs.of(radius).half_widths;
             let rows = |k: usize| if k == 0 { 1.0 } else { 2.0 };
             let area: f64 = half.iter().enumerate().map(|(k, h)| rows(k) * 2.0 * h).sum();
             let disc = std::f64::consts::PI * radius * radius;

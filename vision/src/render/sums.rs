@@ -50,9 +50,10 @@ impl Sums {
     pub fn discs(&self, radius: f64) -> Vec<f32> {
         let mut discs = Discs::default();
         discs.provide(radius);
-        let halves = discs.of(radius);
+        let disc = discs.of(radius);
+        let halves = &disc.half_widths;
         let samples = self.samples as f64;
-        let area: f64 = 2.0 * (2.0 * halves.iter().sum::<f64>() - halves[0]) * samples;
+        let area = disc.area * samples;
         let [rows, columns] = self.grid.size;
         let columns = columns / self.samples;
         let mut means = vec![0.0; rows * columns];

@@ -1,6 +1,6 @@
 //! The renderer whose pictures tests believe.
 
-use super::blur::{Discs, Kernel, Lens};
+use super::blur::{Discs, Kernel, Lens, Part};
 use super::random::SplitMix64;
 use super::scene::Scene;
 use super::sharp::Sharp;
@@ -38,13 +38,13 @@ struct Stretch {
 }
 
 impl TruthRenderer {
-    /// A renderer for a camera. `samples` a pixel in each direction, an odd number: 1 is quick, 3 is good.
+    /// A renderer for a camera. `samples` a pixel in each direction, one of them in its middle: 1 is quick, 3 is good.
     pub fn new(optics: Optics, noise: PhotonTransfer, samples: usize) -> Result<Self, OpticsError> {
         optics.check()?;
         Ok(Self {
             optics,
             noise,
-            samples: samples | 1,
+            samples: samples.max(1),
             sharp: Sharp::default(),
             discs: Discs::default(),
             samples_of_work: Vec::new(),
@@ -97,8 +97,8 @@ impl TruthRenderer {
         let along = Kernel::new(diffraction, &[pixel, smear]);
         let margin = largest.ceil() as usize + 2 + across.reach().max(along.reach());
         let stretch = Stretch {
-            rows: rows * self.samples + 2 * margin,
-            columns: columns * self.samples + 2 * margin,
+            rows: (rows - 1) * self.samples + 1 + 2 * margin,
+            columns: (columns - 1) * self.samples + 1 + 2 * margin,
             margin,
         };
         self.sample(scene, &surface, stretch, sample);
@@ -163,33 +163,28 @@ impl TruthRenderer {
         let Optics { rows, columns, .. } = self.optics;
         let [r0, c0] = self.optics.centre();
         let line = stretch.columns + 1;
-        let middle = stretch.margin + self.samples / 2;
         let haze = scene.light.haze;
         let mut picture = Vec::with_capacity(rows * columns);
         for row in 0..rows {
             for column in 0..columns {
                 let radius = f64::from(self.depths[row * columns + column].abs()) * spread;
-                let (i, j) = (middle + row * self.samples, middle + column * self.samples);
-                let centre = j as f64 + 0.5;
-                let within = |i: usize, half: f64| {
+                let [i, j] = [row, column].map(|at| stretch.margin + at * self.samples);
+                let within = |i: usize, part: &Part| {
                     let sums = &self.sums[i * line..][..line];
-                    let up_to = |x: f64| {
-                        let k = x as usize;
-                        sums[k] + (sums[k + 1] - sums[k]) * (x - k as f64)
-                    };
-                    up_to(centre + half) - up_to(centre - half)
+                    let right = [sums[j + part.whole], sums[j + part.whole + 1]];
+                    let left = [sums[j + 1 - part.whole], sums[j - part.whole]];
+                    right[0] - left[0] + (right[1] - right[0] - (left[1] - left[0])) * part.fraction
                 };
-                let halves = self.discs.of(radius);
-                let (mut sum, mut area) = (within(i, halves[0]), 2.0 * halves[0]);
-                for (k, &half) in halves.iter().enumerate().skip(1) {
-                    sum += within(i - k, half) + within(i + k, half);
-                    area += 4.0 * half;
+                let disc = self.discs.of(radius);
+                let mut sum = within(i, &disc.parts[0]);
+                for (k, part) in disc.parts.iter().enumerate().skip(1) {
+                    sum += within(i - k, part) + within(i + k, part);
                 }
                 let light = scene.light.at(
                     (column as f64 - c0) / c0.max(1.0),
                     (row as f64 - r0) / r0.max(1.0),
                 );
-                picture.push((light * ((1.0 - haze) * sum / area + haze)) as f32);
+                picture.push((light * ((1.0 - haze) * sum / disc.area + haze)) as f32);
             }
         }
         picture
