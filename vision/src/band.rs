@@ -7,9 +7,6 @@ use crate::level::{Level, Sums};
 use crate::surface::Surface;
 use nalgebra::{SMatrix, SVector};
 
-/// Neighbouring cells see the same texture: what their likelihood counts against priors.
-const TEMPER: f64 = 0.35;
-
 /// Curvature of a cell's likelihood over the square of dlnP.
 const CURVATURE: f64 = 0.45;
 
@@ -91,9 +88,9 @@ impl Band {
     }
 
     /// How likely a fit is against no band at all, as a logarithm; what is known before counts too.
-    pub fn evidence<const N: usize>(
+    pub fn evidence<const N: usize, S: Surface<N>>(
         &self,
-        surface: &impl Surface<N>,
+        surface: &S,
         at: &[f64; N],
         prior: &Knowledge<N>,
     ) -> f64 {
@@ -104,7 +101,7 @@ impl Band {
             .map(|level| cells(level) * level.gain(surface, at))
             .sum();
         let off = (0..N).map(|k| ((at[k] - prior.mean[k]) / prior.sigma[k]).powi(2));
-        TEMPER * gained - off.sum::<f64>() / 2.0
+        S::TEMPER * gained - off.sum::<f64>() / 2.0
     }
 
     /// How sure the fit is, and how much better than no band at all.
@@ -122,13 +119,13 @@ impl Band {
         for bin in 0..bins {
             // Both levels see the same texture: their scores of a bin belong together.
             let mut score = SVector::<f64, N>::zeros();
-            for level in &self.levels {
+            for (level, weight) in self.levels.iter().zip([1.0, S::COARSER]) {
                 let count = level.cells.columns;
                 for column in bin * count / bins..(bin + 1) * count / bins {
-                    score += parameters(level, column, surface, at).0;
+                    score += weight * parameters(level, column, surface, at).0;
                 }
             }
-            score *= TEMPER;
+            score *= S::TEMPER;
             scatter += score * score.transpose();
         }
         for k in 0..N {
@@ -153,16 +150,16 @@ impl Band {
     ) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
         let mut score = SVector::<f64, N>::zeros();
         let mut information = SMatrix::<f64, N, N>::zeros();
-        for level in &mut self.levels[finest..] {
+        for (level, weight) in self.levels[finest..].iter_mut().zip([1.0, S::COARSER]) {
             level.pass(surface, at);
             for column in 0..level.cells.columns {
                 let (own_score, own_information) = parameters(level, column, surface, at);
-                score += own_score;
-                information += own_information;
+                score += weight * own_score;
+                information += weight * own_information;
             }
         }
-        score *= TEMPER;
-        information *= TEMPER * CURVATURE;
+        score *= S::TEMPER;
+        information *= S::TEMPER * CURVATURE;
         for k in 0..N {
             let weight = prior.sigma[k].powi(-2);
             score[k] -= weight * (at[k] - prior.mean[k]);

@@ -82,7 +82,12 @@ impl Level {
     }
 
     /// Compares all cells with `surface`, then moves the amplitudes.
-    pub fn pass<const N: usize>(&mut self, surface: &impl Surface<N>, at: &[f64; N]) {
+    pub fn pass<const N: usize, S: Surface<N>>(&mut self, surface: &S, at: &[f64; N]) {
+        let compare = if S::SHARPEST {
+            compare::<true>
+        } else {
+            compare::<false>
+        };
         let cells = &self.cells;
         for group in 0..self.amplitudes.len() {
             let amplitude = self.amplitudes[group];
@@ -154,7 +159,7 @@ fn flat_amplitude(cells: &Cells, columns: std::ops::Range<usize>, amplitude: f32
         let mut moved = [0.0, 0.0];
         for column in columns.clone() {
             let (energy, noise) = cells.column(column);
-            let sums = compare(
+            let sums = compare::<false>(
                 energy,
                 noise,
                 flat,
@@ -191,8 +196,8 @@ impl Sums {
     }
 }
 
-/// Sums over a column of cells.
-fn compare(energy: &[f32], noise: &[f32], amplitude: f32, depths: Depths) -> Sums {
+/// Sums over a column of cells. If the sharpest count most, each counts √T.
+fn compare<const SHARPEST: bool>(energy: &[f32], noise: &[f32], amplitude: f32, depths: Depths) -> Sums {
     let mut sums = [[0.0_f32; LANES]; 7];
     let mut x: [f32; LANES] = std::array::from_fn(|lane| depths.first + depths.step * lane as f32);
     let step = depths.step * LANES as f32;
@@ -207,13 +212,15 @@ fn compare(energy: &[f32], noise: &[f32], amplitude: f32, depths: Depths) -> Sum
             let psi = (energy[lane] - expected) * expected * one;
             let share = signal * both * one;
             let g = -3.0 * x[lane] * share * (square.sqrt() * profile);
-            let gx = g * x[lane];
+            let counted = if SHARPEST { profile.sqrt() } else { 1.0 };
+            let counted_g = counted * g;
+            let counted_gx = counted_g * x[lane];
             let w = share * profile;
-            sums[0][lane] += psi * g;
-            sums[1][lane] += psi * gx;
-            sums[2][lane] += g * g;
-            sums[3][lane] += g * gx;
-            sums[4][lane] += gx * gx;
+            sums[0][lane] += psi * counted_g;
+            sums[1][lane] += psi * counted_gx;
+            sums[2][lane] += g * counted_g;
+            sums[3][lane] += g * counted_gx;
+            sums[4][lane] += g * x[lane] * counted_gx;
             sums[5][lane] += w * psi;
             sums[6][lane] += w;
             x[lane] += step;

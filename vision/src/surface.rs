@@ -5,6 +5,16 @@ pub(crate) trait Surface<const N: usize> {
     /// Longest step of each parameter in one iteration.
     const STEP: [f64; N];
 
+    /// Whether cells count the more the sharper they are. Streaks along the seam are not equally bright from end to end:
+    /// far off the band that pulls it more than it tells.
+    const SHARPEST: bool;
+
+    /// What cells of half the resolution count beside those of the full one.
+    const COARSER: f64;
+
+    /// What the likelihood counts against priors: neighbouring cells see the same texture.
+    const TEMPER: f64;
+
     /// Height at u and its derivatives.
     fn height(&self, at: &[f64; N], lateral: f64) -> (f64, [f64; N]);
 
@@ -26,6 +36,13 @@ pub(crate) struct Plate {
 
 impl Surface<4> for Plate {
     const STEP: [f64; 4] = [STEP_MM, STEP_SLOPE, STEP_MM, STEP_FOCUS];
+
+    /// A plate's roll and focus need the whole picture.
+    const SHARPEST: bool = false;
+
+    const COARSER: f64 = 1.0;
+
+    const TEMPER: f64 = 0.35;
 
     fn height(&self, at: &[f64; 4], lateral: f64) -> (f64, [f64; 4]) {
         let side = match self.gap {
@@ -52,6 +69,14 @@ pub(crate) struct Corner {
 
 impl Surface<5> for Corner {
     const STEP: [f64; 5] = [STEP_MM, STEP_MM, STEP_SLOPE, STEP_SLOPE, STEP_FOCUS];
+
+    const SHARPEST: bool = true;
+
+    /// The less: of streaks they see next to nothing.
+    const COARSER: f64 = 0.5;
+
+    /// The more: cells do not count in full.
+    const TEMPER: f64 = 0.6;
 
     fn height(&self, at: &[f64; 5], lateral: f64) -> (f64, [f64; 5]) {
         let [h, u0, left, right, _] = *at;

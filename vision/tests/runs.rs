@@ -78,37 +78,40 @@ fn seams_are_followed_to_micrometres() {
     assert!(quantile(&heights, 0.99) < 0.012, "{}", quantile(&heights, 0.99));
 }
 
-/// Corners whose walls are told wrong by 0.015 and learnt over 48 pictures: in the next 24 the centre is found to 6 µm rms on
-/// normal textures, by means of eight to 3 µm, and the height has no bias above 2 µm, on faint texture neither.
+/// A corner whose walls are told wrong by 0.015 and learnt over 48 pictures: errors in those of the next 24 that are
+/// believed, which 18 are at least.
+fn errors_of_corner(finish: Finish, seed: u64) -> Vec<Errors> {
+    let mut scene = random_corner(seed, &OPTICS);
+    let truth = scene.truth(&OPTICS).expect("a truth");
+    let off = SplitMix64::new(seed).gauss().map(|off| 0.015 * off.signum());
+    let walls = Walls {
+        slopes: [truth.walls[0] + off[0], truth.walls[1] + off[1]],
+        sigma: 0.01,
+    };
+    let mut bench = Bench::new(Joint::Corner(walls));
+    let mut errors = Vec::new();
+    for k in 0..72 {
+        // A texture repeats after nine pictures; the next is another piece.
+        scene.texture = Texture::new(finish, 100 * seed + k / 9);
+        scene.position_mm[0] += 0.75;
+        let moved = Moved {
+            travel_mm: 0.75,
+            ..Moved::default()
+        };
+        let seen = bench.observe(&scene, moved, 1000 * seed + k);
+        errors.extend(scene.errors(&seen, &OPTICS).filter(|_| k >= 48));
+    }
+    assert!(errors.len() >= 18, "{finish:?}: {} of 24 believed", errors.len());
+    errors
+}
+
+/// The centre of a corner is found to 6 µm rms on normal textures, by means of eight to 3 µm, and the height has no bias
+/// above 2 µm, on faint texture neither.
 #[test]
 fn corners_are_followed_to_micrometres() {
     let (mut single, mut means, mut heights) = (Vec::new(), Vec::new(), Vec::new());
-    for (seed, finish) in [Finish::Plain, Finish::Rolled, Finish::Specular, Finish::Faint]
-        .into_iter()
-        .enumerate()
-    {
-        let seed = seed as u64 + 3;
-        let mut scene = random_corner(seed, &OPTICS);
-        let truth = scene.truth(&OPTICS).expect("a truth");
-        let off = SplitMix64::new(seed).gauss().map(|off| 0.015 * off.signum());
-        let walls = Walls {
-            slopes: [truth.walls[0] + off[0], truth.walls[1] + off[1]],
-            sigma: 0.01,
-        };
-        let mut bench = Bench::new(Joint::Corner(walls));
-        let mut seen = Vec::new();
-        for k in 0..72 {
-            // A texture repeats after nine pictures; the next is another piece.
-            scene.texture = Texture::new(finish, 100 * seed + k / 9);
-            scene.position_mm[0] += 0.75;
-            let moved = Moved {
-                travel_mm: 0.75,
-                ..Moved::default()
-            };
-            let observation = bench.observe(&scene, moved, 1000 * seed + k);
-            seen.extend(scene.errors(&observation, &OPTICS).filter(|_| k >= 48));
-        }
-        assert!(seen.len() >= 18, "{finish:?}: {} of 24 believed", seen.len());
+    for (seed, finish) in (3..).zip([Finish::Plain, Finish::Rolled, Finish::Specular, Finish::Faint]) {
+        let seen = errors_of_corner(finish, seed);
         let height: Vec<f64> = seen.iter().map(|errors| errors.height_mm).collect();
         if finish == Finish::Faint {
             assert!(mean(&height).abs() < 0.002, "{}", mean(&height));
@@ -121,4 +124,18 @@ fn corners_are_followed_to_micrometres() {
     assert!(rms(&single) < 0.006, "{}", rms(&single));
     assert!(rms(&means) < 0.003, "{}", rms(&means));
     assert!(mean(&heights).abs() < 0.002, "{}", mean(&heights));
+}
+
+/// Streaks along the seam are not equally bright from end to end, which pulls cells far off the band: two corners of rolled
+/// metal are found to 5.5 µm rms, by means of eight to 2.5 µm.
+#[test]
+fn streaks_do_not_pull_corners() {
+    let (mut single, mut means) = (Vec::new(), Vec::new());
+    for seed in [8, 11] {
+        let lateral = lateral(&errors_of_corner(Finish::Rolled, seed));
+        means.extend(lateral.chunks_exact(8).map(mean));
+        single.extend(lateral);
+    }
+    assert!(rms(&single) < 0.0055, "{}", rms(&single));
+    assert!(rms(&means) < 0.0025, "{}", rms(&means));
 }
