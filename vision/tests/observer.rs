@@ -122,7 +122,8 @@ const SLANT: f64 = 0.05;
 const LEAN: f64 = 0.04;
 
 /// The mean point lies on the true line, though the camera goes on and the slides move in between, and though a picture
-/// shows another seam, another one none at all. It lies behind what the last picture shows.
+/// shows another seam, another one none at all. It lies behind what the last picture shows. The pitch of 16 pictures is that
+/// of the line, to 0.002.
 #[test]
 fn the_mean_point_lies_on_the_seam() {
     let mut bench = Bench::new(Joint::Gap);
@@ -156,6 +157,11 @@ fn the_mean_point_lies_on_the_seam() {
         let Some(seam) = seen.seam else { continue };
         seams += 1;
         assert_eq!(seam.mean.is_some(), seams >= 4, "{frame}");
+        assert_eq!(seam.pitch.is_some(), seams >= 16, "{frame}");
+        if let Some(pitch) = seam.pitch {
+            let off = pitch - (CLIMB + LEAN * SLANT);
+            assert!(off.abs() < 0.002, "{frame}: the pitch is off by {off}");
+        }
         let Some(mean) = seam.mean else { continue };
         assert!(
             mean.travel_mm < seam.travel_mm - 0.4,

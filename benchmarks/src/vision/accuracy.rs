@@ -1,29 +1,28 @@
 //! How far measured seams are off, against the truth renderer.
 
+use super::corners::corner;
+use super::figures::{mean, micrometres, quantile, rms};
+use super::groups::{GROUPS, is_normal};
+use super::limits::Limit;
+use super::seeds::of_seeds;
 use super::{NOISE, camera};
 use anyhow::Result;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread;
-use vision::render::{
-    Errors, Finish, Joint as Work, RandomRun, Scene, Shown, Texture, TruthRenderer, random_corner,
-};
-use vision::{
-    Detector, Doubt, Image, Joint, Moved, Observation, Observer, ObserverConfig, Optics, Profile, Walls,
-};
+use vision::render::{Errors, Finish, RandomRun, Scene, Shown, TruthRenderer};
+use vision::{Detector, Doubt, Image, Joint, Observation, Observer, ObserverConfig, Optics, Profile};
 
 /// Pictures of one seam; the first of them acquire it.
 const RUN: u64 = 10;
 
-/// Pictures of a corner in which its walls are learnt, and those that count.
-const LEARNING: u64 = 48;
-const LEARNT: u64 = 24;
-
-/// Samples a pixel of the truth.
-const SAMPLES: usize = 3;
+/// Samples a pixel of the truth: centres then are off by 0.1 µm from those of seven, heights by 0.2 µm.
+pub(super) const SAMPLES: usize = 2;
 
 /// Share of the pictures that is taken for each other aperture.
 const APERTURES: [f64; 2] = [0.07, 0.13];
 const FEWER: u64 = 8;
+
+/// Corners of a finish for 2000 pictures of gaps, and at least.
+const CORNERS: u64 = 8;
+const FEWEST_CORNERS: u64 = 2;
 
 /// One picture that was observed.
 struct Taken {
@@ -32,106 +31,42 @@ struct Taken {
     errors: Option<Errors>,
 }
 
-/// A group of pictures, and whether one belongs to it.
-type Group = (&'static str, fn(&Scene) -> bool);
-
-/// The groups of gaps.
-const GROUPS: [Group; 18] = [
-    ("all", |_| true),
-    ("normal textures", |scene| {
-        !matches!(scene.texture.finish, Finish::Faint | Finish::Coarse)
-    }),
-    ("plain", |scene| scene.texture.finish == Finish::Plain),
-    ("rolled", |scene| scene.texture.finish == Finish::Rolled),
-    ("blasted", |scene| scene.texture.finish == Finish::Blasted),
-    ("specular", |scene| scene.texture.finish == Finish::Specular),
-    ("faint", |scene| scene.texture.finish == Finish::Faint),
-    ("coarse", |scene| scene.texture.finish == Finish::Coarse),
-    ("width below 0.05 mm", |scene| width(scene) < 0.05),
-    ("width 0.05–0.12 mm", |scene| {
-        (0.05..0.12).contains(&width(scene))
-    }),
-    ("width above 0.12 mm", |scene| width(scene) >= 0.12),
-    ("below 7 m/min", |scene| scene.smear_mm < 0.00583),
-    ("above 7 m/min", |scene| scene.smear_mm >= 0.00583),
-    ("roll below 5°", |scene| roll(scene).abs() < 0.0875),
-    ("roll above 5°", |scene| roll(scene).abs() >= 0.0875),
-    ("height within ±0.1 mm", |scene| height(scene).abs() < 0.1),
-    ("height beyond ±0.1 mm", |scene| height(scene).abs() >= 0.1),
-    ("spatter", |scene| !scene.blobs.is_empty()),
-];
-
-fn width(scene: &Scene) -> f64 {
-    match &scene.joint {
-        Work::Gap(gap) => gap.plate.width_mm,
-        Work::Corner(_) => 0.0,
-    }
-}
-
-fn roll(scene: &Scene) -> f64 {
-    match &scene.joint {
-        Work::Gap(gap) => gap.plate.roll,
-        Work::Corner(_) => 0.0,
-    }
-}
-
-fn height(scene: &Scene) -> f64 {
-    match &scene.joint {
-        Work::Gap(gap) => gap.plate.height_mm,
-        Work::Corner(root) => root.corner.height_mm,
-    }
-}
-
 /// Renders and observes about that many pictures of gaps, and a part of that of corners; prints a line of cells, parted by
-/// tabs, for every group of pictures: first "gap" or "corner".
+/// tabs, for every group of pictures: first "gap", "corner" or, how they keep the limits, "limit".
 pub fn run(pictures: u64) -> Result<()> {
     let optics = camera(400);
-    let taken = gaps(optics, pictures)?;
+    let mut limits = Vec::new();
+    let taken = gaps("seams", optics, pictures)?;
     for (name, belongs) in GROUPS {
-        print_gaps(name, taken.iter().filter(|taken| belongs(&taken.scene)), &optics);
+        let group = Gaps::of(taken.iter().filter(|taken| belongs(&taken.scene)), &optics);
+        group.print(name);
+        match name {
+            "all" => limits.extend(group.limits()),
+            "normal textures" => limits.push(group.height_limit()),
+            _ => {}
+        }
     }
     for aperture in APERTURES {
         let optics = Optics { aperture, ..optics };
-        let taken = gaps(optics, pictures / FEWER)?;
-        print_gaps(&format!("aperture {aperture:.2}"), taken.iter(), &optics);
+        let name = format!("aperture {aperture:.2}");
+        Gaps::of(gaps(&name, optics, pictures / FEWER)?.iter(), &optics).print(&name);
     }
+    let corners = (pictures * CORNERS / 2000).max(FEWEST_CORNERS);
     for finish in Finish::ALL {
-        print_corners(finish, optics, pictures.div_ceil(2000) * 4)?;
+        let seen = corner(finish, optics, corners)?;
+        seen.print();
+        if is_normal(finish) {
+            limits.extend(seen.limits());
+        }
+    }
+    for limit in limits {
+        println!("{limit}");
     }
     Ok(())
 }
 
-/// What `task` makes of seeds, on all cores.
-fn of_seeds<T: Send>(count: u64, task: impl Fn(u64) -> Result<Vec<T>> + Sync) -> Result<Vec<T>> {
-    let next = AtomicU64::new(0);
-    let threads = thread::available_parallelism().map_or(1, usize::from);
-    let results: Vec<Result<Vec<T>>> = thread::scope(|scope| {
-        let worker = || {
-            let mut all = Vec::new();
-            loop {
-                let seed = next.fetch_add(1, Ordering::Relaxed);
-                if seed >= count {
-                    return Ok(all);
-                }
-                all.extend(task(seed)?);
-            }
-        };
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
-        let joined = workers.into_iter().map(|worker| worker.join());
-        joined
-            .map(|result| result.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .collect()
-    });
-    Ok(results
-        .into_iter()
-        .collect::<Result<Vec<_>>>()?
-        .into_iter()
-        .flatten()
-        .collect())
-}
-
-fn gaps(optics: Optics, pictures: u64) -> Result<Vec<Taken>> {
-    of_seeds(pictures.div_ceil(RUN), |seed| {
+fn gaps(what: &str, optics: Optics, pictures: u64) -> Result<Vec<Taken>> {
+    of_seeds(what, pictures.div_ceil(RUN), |seed| {
         let mut renderer = TruthRenderer::new(optics, NOISE, SAMPLES)?;
         let detector = Detector::new(optics, NOISE, Profile::expected(&optics))?;
         let mut observer = Observer::new(detector, ObserverConfig::default(), Joint::Gap);
@@ -146,123 +81,104 @@ fn gaps(optics: Optics, pictures: u64) -> Result<Vec<Taken>> {
     })
 }
 
-fn print_gaps<'a>(name: &str, taken: impl Iterator<Item = &'a Taken>, optics: &Optics) {
-    let (mut pictures, mut shown, mut believed, mut wrong) = (0, 0, 0, 0);
-    let mut errors = Vec::new();
-    for taken in taken {
-        pictures += 1;
-        let truth = taken.scene.truth(optics);
-        if truth.is_none_or(|truth| truth.shown != Shown::Seam) {
-            wrong += usize::from(taken.seen.seam.is_some());
-        } else if taken.seen.doubt != Some(Doubt::New) {
-            shown += 1;
-            believed += usize::from(taken.errors.is_some());
-            errors.extend(taken.errors);
+/// What became of a group of pictures of gaps.
+#[derive(Default)]
+struct Gaps {
+    pictures: u32,
+    /// Those that show the seam.
+    shown: u32,
+    /// Those of them that say so, whatever the observer makes of it.
+    measured: u32,
+    /// Those in which the observer still waits for three that agree.
+    waiting: u32,
+    /// Those that show no seam and in which one was believed.
+    wrong: u32,
+    /// Errors of the seams that were believed.
+    errors: Vec<Errors>,
+}
+
+impl Gaps {
+    fn of<'a>(all: impl Iterator<Item = &'a Taken>, optics: &Optics) -> Self {
+        let mut gaps = Self::default();
+        for Taken { scene, seen, errors } in all {
+            gaps.pictures += 1;
+            if scene.truth(optics).is_none_or(|truth| truth.shown != Shown::Seam) {
+                gaps.wrong += u32::from(seen.seam.is_some());
+                continue;
+            }
+            gaps.shown += 1;
+            gaps.measured += u32::from(seen.report.seam().is_some());
+            gaps.waiting += u32::from(seen.doubt == Some(Doubt::New));
+            gaps.errors.extend(*errors);
         }
+        gaps
     }
-    let of = |figure: fn(&Errors) -> f64| errors.iter().map(figure).collect::<Vec<f64>>();
-    let (lateral, height) = (of(|errors| errors.lateral_mm), of(|errors| errors.height_mm));
-    let means: Vec<f64> = errors
-        .iter()
-        .filter_map(|errors| errors.mean_mm)
-        .map(|[_, height]| height)
-        .collect();
-    let share = 100.0 * f64::from(believed as u32) / f64::from(shown.max(1) as u32);
-    let cells = [
-        "gap".to_owned(),
-        name.to_owned(),
-        pictures.to_string(),
-        format!("{share:.1}"),
-        wrong.to_string(),
-        micrometres(rms(&lateral)),
-        micrometres(quantile(&lateral, 0.99)),
-        micrometres(quantile(&lateral, 1.0)),
-        micrometres(rms(&height)),
-        micrometres(quantile(&means, 0.99)),
-        micrometres(mean(&height)),
-        micrometres(rms(&of(|errors| errors.width_mm))),
-        format!("{:.3}", rms(&of(|errors| errors.roll))),
-    ];
-    println!("{}", cells.join("\t"));
-}
 
-/// Corners of a finish whose walls are told wrong by 0.015 and learnt.
-fn print_corners(finish: Finish, optics: Optics, corners: u64) -> Result<()> {
-    let runs: Vec<Vec<Errors>> = of_seeds(corners, |seed| {
-        let mut renderer = TruthRenderer::new(optics, NOISE, 1)?;
-        let detector = Detector::new(optics, NOISE, Profile::expected(&optics))?;
-        let mut scene = random_corner(seed, &optics);
-        let walls = scene.truth(&optics).map_or([0.0; 2], |truth| truth.walls);
-        let off = [0.015, if seed % 2 == 0 { 0.015 } else { -0.015 }];
-        let walls = Walls {
-            slopes: [walls[0] + off[0], walls[1] + off[1]],
-            sigma: 0.01,
-        };
-        let mut observer = Observer::new(detector, ObserverConfig::default(), Joint::Corner(walls));
-        let mut errors = Vec::new();
-        for k in 0..LEARNING + LEARNT {
-            // A texture repeats after nine pictures; the next is another piece.
-            scene.texture = Texture::new(finish, 100 * seed + k / 9);
-            scene.position_mm[0] += 0.75;
-            let moved = Moved {
-                travel_mm: 0.75,
-                ..Moved::default()
-            };
-            let pixels = renderer.render(&scene, 1000 * seed + k);
-            let seen = observer.observe(&Image::new(&pixels, optics.rows, optics.columns)?, moved)?;
-            errors.extend(scene.errors(&seen, &optics).filter(|_| k >= LEARNING));
-        }
-        Ok(vec![errors])
-    })?;
-    let all: Vec<&Errors> = runs.iter().flatten().collect();
-    let eights = |figure: fn(&Errors) -> f64| {
-        let chunks = runs.iter().flat_map(|run| run.chunks_exact(8));
-        chunks
-            .map(|chunk| chunk.iter().map(figure).sum::<f64>() / 8.0)
-            .collect::<Vec<f64>>()
-    };
-    let of = |figure: fn(&Errors) -> f64| all.iter().map(|errors| figure(errors)).collect::<Vec<f64>>();
-    let (lateral, height) = (of(|errors| errors.lateral_mm), of(|errors| errors.height_mm));
-    let taken = corners * LEARNT;
-    let cells = [
-        "corner".to_owned(),
-        format!("{finish:?}").to_lowercase(),
-        taken.to_string(),
-        format!("{:.1}", 100.0 * all.len() as f64 / taken as f64),
-        micrometres(rms(&lateral)),
-        micrometres(quantile(&lateral, 1.0)),
-        micrometres(rms(&eights(|errors| errors.lateral_mm))),
-        micrometres(rms(&height)),
-        micrometres(mean(&height)),
-        micrometres(rms(&eights(|errors| errors.height_mm))),
-    ];
-    println!("{}", cells.join("\t"));
-    Ok(())
-}
-
-fn micrometres(mm: f64) -> String {
-    if mm.is_finite() {
-        format!("{:.1}", 1000.0 * mm)
-    } else {
-        "–".to_owned()
+    /// Share of the pictures with a seam that say so \[%\].
+    fn measured(&self) -> f64 {
+        100.0 * f64::from(self.measured) / f64::from(self.shown.max(1))
     }
-}
 
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
+    /// Share of those in which it is believed, where the observer does not wait \[%\].
+    fn believed(&self) -> f64 {
+        let ready = self.shown - self.waiting;
+        100.0 * self.errors.len() as f64 / f64::from(ready.max(1))
+    }
 
-fn rms(values: &[f64]) -> f64 {
-    mean(&values.iter().map(|value| value * value).collect::<Vec<f64>>()).sqrt()
-}
+    fn every(&self, figure: fn(&Errors) -> f64) -> Vec<f64> {
+        self.errors.iter().map(figure).collect()
+    }
 
-/// The magnitude that `share` of the values do not pass; not a number of none.
-fn quantile(values: &[f64], share: f64) -> f64 {
-    let mut sorted: Vec<f64> = values.iter().map(|value| value.abs()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let last = sorted.len().saturating_sub(1) as f64;
-    sorted
-        .get((last * share).round() as usize)
-        .copied()
-        .unwrap_or(f64::NAN)
+    /// What 99 % of the heights of means of four are off by at most \[mm\].
+    fn mean_height_mm(&self) -> f64 {
+        let means = self.errors.iter().filter_map(|errors| errors.mean_mm);
+        quantile(&means.map(|[_, height]| height).collect::<Vec<f64>>(), 0.99)
+    }
+
+    fn print(&self, name: &str) {
+        let (lateral, height) = (
+            self.every(|errors| errors.lateral_mm),
+            self.every(|errors| errors.height_mm),
+        );
+        let cells = [
+            "gap".to_owned(),
+            name.to_owned(),
+            self.pictures.to_string(),
+            self.shown.to_string(),
+            format!("{:.1}", self.measured()),
+            self.waiting.to_string(),
+            format!("{:.1}", self.believed()),
+            self.wrong.to_string(),
+            micrometres(rms(&lateral)),
+            micrometres(quantile(&lateral, 0.99)),
+            micrometres(quantile(&lateral, 1.0)),
+            micrometres(rms(&height)),
+            micrometres(self.mean_height_mm()),
+            micrometres(mean(&height)),
+            micrometres(rms(&self.every(|errors| errors.width_mm))),
+            format!("{:.3}", rms(&self.every(|errors| errors.roll))),
+        ];
+        println!("{}", cells.join("\t"));
+    }
+
+    fn limits(&self) -> [Limit; 5] {
+        let lateral = self.every(|errors| errors.lateral_mm);
+        [
+            Limit::at_least(
+                "seams believed, those that wait left out",
+                "%",
+                self.believed(),
+                88.0,
+            ),
+            Limit::at_least("seams measured, those that wait too", "%", self.measured(), 88.0),
+            Limit::at_most("centre, 99 %", "µm", 1000.0 * quantile(&lateral, 0.99), 5.0),
+            Limit::at_most("centre, worst", "µm", 1000.0 * quantile(&lateral, 1.0), 50.0),
+            Limit::at_most("believed without a seam", "", f64::from(self.wrong), 0.0),
+        ]
+    }
+
+    fn height_limit(&self) -> Limit {
+        let off = 1000.0 * self.mean_height_mm();
+        Limit::at_most("height of means of 4, 99 %, normal textures", "µm", off, 12.0)
+    }
 }

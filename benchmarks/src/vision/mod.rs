@@ -1,7 +1,12 @@
 //! The measurement of pictures: what a picture costs, and how far it is off. On the PC only.
 
 pub mod accuracy;
+mod corners;
 pub mod cost;
+mod figures;
+mod groups;
+mod limits;
+mod seeds;
 
 use vision::{Optics, PhotonTransfer};
 

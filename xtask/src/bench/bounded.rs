@@ -17,6 +17,37 @@ pub fn run(
     console: &str,
     limit: Duration,
 ) -> Result<String> {
+    watched(program, arguments, folder, console, limit, |_| {})
+}
+
+/// The same, and says to standard error what the program says, when it does.
+pub fn run_aloud(
+    program: &str,
+    arguments: &[String],
+    folder: &Path,
+    console: &str,
+    limit: Duration,
+) -> Result<String> {
+    let mut said = 0;
+    watched(program, arguments, folder, console, limit, |console| {
+        // What cannot be read now, in the middle of a letter perhaps, is read later.
+        let all = fs::read_to_string(console).unwrap_or_default();
+        if let Some((lines, _)) = all.get(said..).and_then(|new| new.rsplit_once('\n')) {
+            eprintln!("{lines}");
+            said += lines.len() + 1;
+        }
+    })
+}
+
+/// Runs a program; calls `watch` with the file of what it says from time to time, and at its end.
+fn watched(
+    program: &str,
+    arguments: &[String],
+    folder: &Path,
+    console: &str,
+    limit: Duration,
+    mut watch: impl FnMut(&Path),
+) -> Result<String> {
     let console = folder.join(console);
     let output = File::create(&console).with_context(|| format!("cannot write {}", console.display()))?;
     let mut child = bound_to_parent(program)
@@ -41,9 +72,11 @@ pub fn run(
                 console.display()
             );
         }
+        watch(&console);
         thread::sleep(Duration::from_millis(20));
     };
     let said = fs::read_to_string(&console).with_context(|| format!("cannot read {}", console.display()))?;
+    watch(&console);
     if !status.success() {
         bail!("{program} failed ({status}):\n{said}");
     }

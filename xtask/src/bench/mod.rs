@@ -46,7 +46,7 @@ pub enum Benchmark {
     },
     /// Time and count the measurement of pictures, and hold it against rendered truth
     Vision {
-        /// Pictures of gaps to measure; each takes a fifth of a second of a core
+        /// Pictures of gaps to measure; each takes a tenth of a second of a core. 0: only what a picture costs
         #[arg(long, value_name = "N", default_value_t = 2000)]
         frames: u64,
         /// Put the tables into docs/benchmarks.md too
@@ -72,6 +72,7 @@ const KINEMATICS: &str = "kinematics";
 const PLANNER: &str = "planner";
 const TRAJECTORIES: &str = "trajectories";
 const VISION: &str = "vision";
+const VISION_COST: &str = "vision cost";
 
 impl Benchmark {
     /// What must be installed for it.
