@@ -367,6 +367,22 @@ fn what_belongs_to_another_task_is_said() {
     );
     let ran = calibrate(&["corner", "--pictures", "none", "--output", "none.toml"]);
     assert!(said(&ran).contains("--walls"), "{}", said(&ran));
+
+    let folder = Folder::new("corners");
+    let machine = folder.file("machine.toml");
+    let text = std::fs::read_to_string(machine_file()).expect("the shipped machine");
+    std::fs::write(&machine, text.replace("joint = \"gap\"", "joint = \"corner\"")).expect("a file");
+    let arguments = ["camera", "--machine", path(&machine), "--side", "1"];
+    let more = [
+        "--boards",
+        "simulated",
+        "--at",
+        "none.ngc",
+        "--output",
+        "none.toml",
+    ];
+    let ran = calibrate(&[&arguments[..], &more].concat());
+    assert!(said(&ran).contains("a coupon is a gap"), "{}", said(&ran));
 }
 
 /// With the machine: the camera of a simulated one that is turned by 0.7° more than believed steps its own slides, at four

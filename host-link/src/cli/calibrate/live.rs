@@ -6,7 +6,7 @@ use super::super::read_program;
 use super::{Camera, Meets};
 use crate::calibration::procedure::{self, Found};
 use crate::camera::Shelf;
-use crate::machine::MachineFile;
+use crate::machine::{JointForm, MachineFile};
 use crate::seam::Deviation;
 use crate::weld::{
     CameraChoice, ImageCameras, Job, Names, PictureRun, PictureSource, Surroundings, Terminal, Work,
@@ -72,6 +72,13 @@ impl Live {
         let side = usize::from(side) - 1;
         calibrations[side] = before;
         let source = source(&self.boards, cameras, self.scene.as_deref())?;
+        if let (PictureSource::Rendered(_), JointForm::Corner) = (&source, cameras.joint) {
+            bail!(
+                "machine file {}: its simulated seams are closed corners, and a coupon is a gap; calibrate a machine with \
+                 joint = \"gap\" here, or the real camera",
+                machine_file.display()
+            );
+        }
         let program = read_program(&self.at, false)?;
         let seam = match (&self.seam, &source) {
             (Some(file), _) => Some(Deviation::read(file)?),
