@@ -21,7 +21,7 @@ const APERTURES: [f64; 2] = [0.07, 0.13];
 const FEWER: u64 = 8;
 
 /// Corners of a finish for 2000 pictures of gaps, and at least.
-const CORNERS: u64 = 8;
+const CORNERS: u64 = 24;
 const FEWEST_CORNERS: u64 = 2;
 
 /// One picture that was observed.

@@ -62,7 +62,12 @@ pub fn run(meter: &mut impl Meter) -> Result<()> {
             let image = Image::new(&pixels, optics.rows, optics.columns)?;
             measure("corner, acquiring", &image, Joint::Corner(walls), None)?;
             measure("corner, tracking", &image, Joint::Corner(walls), Some(track))?;
-            measure("either, of a corner", &image, Joint::GapOrCorner(walls), Some(track))?;
+            measure(
+                "either, of a corner",
+                &image,
+                Joint::GapOrCorner(walls),
+                Some(track),
+            )?;
         }
         if columns <= RENDERED {
             let mut scenes = scenes(optics, random_gap);
