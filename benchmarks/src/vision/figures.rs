@@ -1,4 +1,4 @@
-//! Figures of what was measured.
+//! Mean, rms and quantile of many errors, and how they are printed.
 
 /// In µm; a dash if it is of nothing.
 pub(super) fn micrometres(mm: f64) -> String {

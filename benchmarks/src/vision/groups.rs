@@ -1,4 +1,4 @@
-//! Groups of pictures.
+//! Groups of pictures of gaps: by finish, width, smear, roll, height.
 
 use vision::render::{Finish, Joint as Work, Scene};
 
