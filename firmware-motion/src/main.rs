@@ -103,7 +103,11 @@ mod app {
 
     #[task(binds = ETHERNET, priority = 1, shared = [servo, controller], local = [network])]
     fn network(mut cx: network::Context) {
-        if cx.local.network.run(&mut cx.shared.controller) {
+        if cx
+            .local
+            .network
+            .run(&mut cx.shared.controller, &mut cx.shared.servo)
+        {
             rtic::pend(board::device::Interrupt::ETHERNET);
         }
         cx.shared

@@ -2,9 +2,9 @@
 //!
 //! A [`Link`] holds one session with a PC at a time. It does by itself what no firmware should do
 //! differently: it compares the schema at [`Request::Hello`](shared::protocol::Request::Hello) and refuses
-//! everything before, remembers the subscriber, answers clock requests, counts what goes wrong, gives up
-//! sessions whose PC has vanished, and announces the board by ARP until the first session. Everything else
-//! goes to a [`Node`].
+//! everything before, gives the session a number and a lease that every request renews, tells the [`Node`] when it
+//! ends, takes datagrams of its PC and of the other board only, answers clock requests, counts what goes wrong, and
+//! announces the board by ARP until the first session. Everything else goes to the [`Node`].
 //!
 //! A network task is then a few lines. It runs on the Ethernet interrupt and at least every 10 ms, because
 //! retransmissions and keep-alives fall due without a frame:
@@ -18,7 +18,7 @@
 //!     // …
 //! }
 //!
-//! /// Under RTIC it holds the shared resource and locks it in each of the two functions.
+//! /// Under RTIC it holds the shared resource and locks it in each of the functions.
 //! struct Proxy<'a>(&'a mut Controller);
 //!
 //! impl Node for Proxy<'_> {
@@ -28,6 +28,9 @@
 //!     }
 //!     fn datagram(&mut self, datagram: &Datagram, from: Source, arrived_us: u64) {
 //!         // self.0.lock(|controller| controller.datagram(datagram, arrived_us))
+//!     }
+//!     fn session_ended(&mut self) {
+//!         // self.0.lock(|controller| controller.session_ended())
 //!     }
 //! }
 //!
@@ -41,10 +44,8 @@
 //!         // pend the Ethernet interrupt again
 //!     }
 //!     // Whoever sends:
-//!     if let Some(subscriber) = link.subscriber() {
-//!         link.send(telemetry, subscriber);
-//!         link.flush(device, clock());
-//!     }
+//!     link.send_to_pc(telemetry);
+//!     link.flush(device, clock());
 //! }
 //! ```
 //!
@@ -60,5 +61,5 @@ mod stack;
 mod storage;
 
 pub use session::Node;
-pub use stack::{Address, Counters, Link, Source};
+pub use stack::{Address, Counters, Link, Partner, Source};
 pub use storage::Storage;

@@ -1,11 +1,11 @@
 //! The sockets of a board and their service.
 
 use crate::announce::announce;
-use crate::session::{Node, Session};
+use crate::session::{Node, Session, number};
 use crate::storage::{FRAME, Storage};
 use shared::protocol::framing::{self, FrameError, MAX_MESSAGE};
 use shared::protocol::{
-    ClockReply, DATAGRAM_PORT, Datagram, Identity, REQUEST_PORT, Refusal, Request, Response,
+    ClockReply, DATAGRAM_PORT, Datagram, Identity, REQUEST_PORT, Refusal, Request, Response, Role,
 };
 use smoltcp::iface::{Config, Interface, PollIngressSingleResult, PollResult, SocketHandle, SocketSet};
 use smoltcp::phy::Device;
@@ -17,6 +17,8 @@ use smoltcp::wire::{EthernetAddress, IpAddress, IpCidr, IpEndpoint, Ipv4Address}
 const TIMEOUT: Duration = Duration::from_secs(5);
 /// A silent PC is probed this often.
 const KEEP_ALIVE: Duration = Duration::from_millis(500);
+/// A connection must be complete after so long \[µs\].
+const HALF_OPEN_US: u64 = 500_000;
 /// The board announces itself this often until the first session \[µs\].
 const ANNOUNCE_US: u64 = 1_000_000;
 /// Most frames taken, and most sent, in one call.
@@ -44,6 +46,16 @@ pub struct Source {
     pub port: u16,
 }
 
+/// The other board: where it is, and the number that the datagrams between the two carry, which is that of the tracker
+/// board's session.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Partner {
+    /// Where its datagrams come from, and where those for it go.
+    pub source: Source,
+    /// Number of the session.
+    pub session: u32,
+}
+
 /// What has happened since boot; all counters wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
@@ -55,8 +67,12 @@ pub struct Counters {
     pub malformed_requests: u32,
     /// Sessions ended because the stream announced an impossible message.
     pub broken_streams: u32,
+    /// Sessions given up because nothing was asked for too long.
+    pub silent_sessions: u32,
     /// Datagrams received and understood.
     pub datagrams: u32,
+    /// Datagrams that were neither of the PC of this session nor of the other board.
+    pub strange_datagrams: u32,
     /// Datagrams of another version of the protocol.
     pub foreign_datagrams: u32,
     /// Datagrams that could not be decoded.
@@ -74,14 +90,16 @@ pub struct Link<'a> {
     interface: Interface,
     sockets: SocketSet<'a>,
     stream: SocketHandle,
-    /// Receives everything, sends to the subscriber.
-    datagrams: SocketHandle,
-    /// Sends to everyone else: a host that does not answer ARP must not hold up the telemetry.
-    others: SocketHandle,
+    /// Receives everything, sends to the PC.
+    to_pc: SocketHandle,
+    /// Sends to the other board. Each has its own: nothing waits behind a host that does not answer ARP.
+    to_partner: SocketHandle,
     frame: &'a mut [u8; FRAME],
     address: Address,
     identity: Identity,
     session: Option<Session>,
+    partner: Option<Partner>,
+    half_open_since_us: Option<u64>,
     announce_at_us: Option<u64>,
     counters: Counters,
 }
@@ -116,8 +134,8 @@ impl<'a> Link<'a> {
             requests,
             responses,
             incoming,
-            to_subscriber,
-            to_others,
+            to_pc,
+            to_partner,
             nothing,
             frame,
         } = storage;
@@ -128,30 +146,32 @@ impl<'a> Link<'a> {
         stream.set_nagle_enabled(false);
         stream.set_timeout(Some(TIMEOUT));
         stream.set_keep_alive(Some(KEEP_ALIVE));
-        let datagrams = udp_socket(
+        let to_pc = udp_socket(
             packets(&mut incoming.0, &mut incoming.1),
-            packets(&mut to_subscriber.0, &mut to_subscriber.1),
+            packets(&mut to_pc.0, &mut to_pc.1),
         );
-        let others = udp_socket(
+        let to_partner = udp_socket(
             packets(&mut nothing.0, &mut nothing.1),
-            packets(&mut to_others.0, &mut to_others.1),
+            packets(&mut to_partner.0, &mut to_partner.1),
         );
 
         let mut sockets = SocketSet::new(&mut sockets[..]);
         // The first of the two UDP sockets gets what arrives.
-        let datagrams = sockets.add(datagrams);
-        let others = sockets.add(others);
+        let to_pc = sockets.add(to_pc);
+        let to_partner = sockets.add(to_partner);
         let stream = sockets.add(stream);
         let mut link = Self {
             interface,
             sockets,
             stream,
-            datagrams,
-            others,
+            to_pc,
+            to_partner,
             frame,
             address,
             identity,
             session: None,
+            partner: None,
+            half_open_since_us: None,
             announce_at_us: Some(now_us),
             counters: Counters::default(),
         };
@@ -187,19 +207,40 @@ impl<'a> Link<'a> {
         more
     }
 
-    /// Queues a datagram; [`Link::flush`] or the next [`Link::poll`] sends it. False, and counted, if there is
-    /// no room.
-    pub fn send(&mut self, datagram: &Datagram, to: Source) -> bool {
-        let subscribed = self.session.is_some_and(|session| session.peer == to.address);
-        let socket = if subscribed { self.datagrams } else { self.others };
+    /// Queues a datagram for the PC; [`Link::flush`] or the next [`Link::poll`] sends it. False if no PC wants any, or,
+    /// counted, if there is no room.
+    pub fn send_to_pc(&mut self, datagram: &Datagram) -> bool {
+        let to = self
+            .session
+            .and_then(|session| Some((session.subscriber?, session.number)));
+        to.is_some_and(|(to, number)| self.queue(self.to_pc, datagram, to, number))
+    }
+
+    /// The same for the other board, once it is known.
+    pub fn send_to_partner(&mut self, datagram: &Datagram) -> bool {
+        self.partner
+            .is_some_and(|partner| self.queue(self.to_partner, datagram, partner.source, partner.session))
+    }
+
+    fn queue(&mut self, socket: SocketHandle, datagram: &Datagram, to: Source, number: u32) -> bool {
         let endpoint = IpEndpoint::new(IpAddress::Ipv4(Ipv4Address::from(to.address)), to.port);
         let socket = self.sockets.get_mut::<udp::Socket>(socket);
-        let queued = framing::encode_datagram(datagram, &mut self.frame[..])
+        let queued = framing::encode_datagram(number, datagram, &mut self.frame[..])
             .is_ok_and(|bytes| socket.send_slice(bytes, endpoint).is_ok());
         if !queued {
             count(&mut self.counters.unsent);
         }
         queued
+    }
+
+    /// Where the other board is. The tracker board needs not be told: it finds it by the first path state that carries
+    /// the number of its session.
+    pub fn set_partner(&mut self, partner: Partner) {
+        if self.partner != Some(partner) {
+            // What waits for the old one must not hold up the new one.
+            empty(self.sockets.get_mut(self.to_partner));
+            self.partner = Some(partner);
+        }
     }
 
     /// Sends what is queued, as far as `device` has room.
@@ -214,9 +255,9 @@ impl<'a> Link<'a> {
         }
     }
 
-    /// Where the PC of this session wants telemetry and captures, once it has subscribed.
-    pub fn subscriber(&self) -> Option<Source> {
-        self.session.and_then(|session| session.subscriber)
+    /// The PC of this session wants telemetry and captures.
+    pub fn is_subscribed(&self) -> bool {
+        self.session.is_some_and(|session| session.subscriber.is_some())
     }
 
     /// IPv4 address of the PC of this session.
@@ -247,27 +288,34 @@ impl<'a> Link<'a> {
         clock: &impl Fn() -> u64,
         node: &mut impl Node,
     ) {
-        while let Ok((bytes, metadata)) = self.sockets.get_mut::<udp::Socket>(self.datagrams).recv() {
+        while let Ok((bytes, metadata)) = self.sockets.get_mut::<udp::Socket>(self.to_pc).recv() {
             let IpAddress::Ipv4(address) = metadata.endpoint.addr;
             let from = Source {
                 address: address.octets(),
                 port: metadata.endpoint.port,
             };
             match framing::decode_datagram(bytes) {
-                Ok(Datagram::ClockRequest(request)) => {
+                Ok((session, datagram)) => {
                     count(&mut self.counters.datagrams);
+                    let Some(sender) = self.sender(from, session, &datagram) else {
+                        count(&mut self.counters.strange_datagrams);
+                        continue;
+                    };
+                    let Datagram::ClockRequest(request) = datagram else {
+                        node.datagram(&datagram, from, arrived_us);
+                        continue;
+                    };
                     let now_us = clock();
-                    let reply = ClockReply {
+                    let reply = Datagram::ClockReply(ClockReply {
                         asked_us: request.asked_us,
                         received_us: arrived_us,
                         replied_us: now_us,
+                    });
+                    match sender {
+                        Sender::Pc => self.send_to_pc(&reply),
+                        Sender::Partner => self.send_to_partner(&reply),
                     };
-                    self.send(&Datagram::ClockReply(reply), from);
                     self.flush(device, now_us);
-                }
-                Ok(datagram) => {
-                    count(&mut self.counters.datagrams);
-                    node.datagram(&datagram, from, arrived_us);
                 }
                 Err(FrameError::WrongSchema) => count(&mut self.counters.foreign_datagrams),
                 Err(FrameError::Malformed | FrameError::TooLong) => {
@@ -277,24 +325,64 @@ impl<'a> Link<'a> {
         }
     }
 
+    /// Who sent a datagram, if that is somebody who may: by address, port and number of the session.
+    fn sender(&mut self, from: Source, number: u32, datagram: &Datagram) -> Option<Sender> {
+        let session = self.session?;
+        let finds_partner = self.identity.role == Role::Tracker
+            && self.partner.is_none()
+            && number == session.number
+            && matches!(datagram, Datagram::PathState(_));
+        if finds_partner {
+            self.set_partner(Partner {
+                source: from,
+                session: number,
+            });
+        }
+        let of_pc = session.subscriber == Some(from) && session.number == number;
+        let of_partner = self.partner
+            == Some(Partner {
+                source: from,
+                session: number,
+            });
+        match datagram {
+            Datagram::Measurement(_) => of_pc.then_some(Sender::Pc),
+            Datagram::PathState(_) | Datagram::Permit(_) | Datagram::ClockReply(_) => {
+                of_partner.then_some(Sender::Partner)
+            }
+            Datagram::ClockRequest(_) if of_pc => Some(Sender::Pc),
+            Datagram::ClockRequest(_) => of_partner.then_some(Sender::Partner),
+            Datagram::Capture(_) | Datagram::MotionTelemetry(_) | Datagram::TrackerTelemetry(_) => None,
+        }
+    }
+
     /// Begins and ends sessions and answers the requests that are complete, as long as an answer of any
     /// length fits.
     fn serve(&mut self, device: &mut (impl Device + ?Sized), clock: &impl Fn() -> u64, node: &mut impl Node) {
         if !self.sockets.get::<tcp::Socket>(self.stream).is_open() {
             // A reset that is still to be sent would be forgotten.
             self.flush(device, clock());
+            self.end_session(node);
             self.listen();
             return;
         }
+        let now_us = clock();
         let stream = self.sockets.get_mut::<tcp::Socket>(self.stream);
         if self.session.is_none()
             && stream.may_recv()
             && let Some(IpAddress::Ipv4(peer)) = stream.remote_endpoint().map(|peer| peer.addr)
         {
             count(&mut self.counters.sessions);
-            self.session = Some(Session::new(peer.octets()));
+            let number = number(self.address.mac, self.counters.sessions, now_us);
+            self.session = Some(Session::new(peer.octets(), number, now_us));
         }
+        self.give_up_half_open(now_us);
+        let stream = self.sockets.get_mut::<tcp::Socket>(self.stream);
         let Some(session) = &mut self.session else { return };
+        let subscriber = session.subscriber;
+        if session.is_over(now_us) {
+            count(&mut self.counters.silent_sessions);
+            stream.abort();
+        }
 
         while stream.send_capacity() - stream.send_queue() >= FRAME {
             let mut prefix = [0; 2];
@@ -316,7 +404,7 @@ impl<'a> Link<'a> {
             let _ = stream.recv_slice(&mut self.frame[..message.end]);
             count(&mut self.counters.requests);
             let response = match framing::decode_message::<Request>(&self.frame[message]) {
-                Ok(request) => session.answer(&request, &self.identity, &self.counters, node),
+                Ok(request) => session.answer(&request, &self.identity, &self.counters, now_us, node),
                 Err(_) => {
                     count(&mut self.counters.malformed_requests);
                     Response::Refused(Refusal::Malformed)
@@ -329,19 +417,56 @@ impl<'a> Link<'a> {
                 Err(_) => stream.abort(),
             }
         }
-        if !stream.may_recv() {
+        let ended = !stream.may_recv();
+        if ended {
             // The PC has finished, or the stream is broken.
             stream.close();
-            self.session = None;
+        }
+        if session.subscriber != subscriber {
+            // What waits for the old subscriber must not hold up the new one.
+            empty(self.sockets.get_mut(self.to_pc));
+        }
+        if ended {
+            self.end_session(node);
+        }
+    }
+
+    /// A connection that is never completed must not keep the place.
+    fn give_up_half_open(&mut self, now_us: u64) {
+        let stream = self.sockets.get_mut::<tcp::Socket>(self.stream);
+        if stream.state() != tcp::State::SynReceived {
+            self.half_open_since_us = None;
+        } else if now_us.saturating_sub(*self.half_open_since_us.get_or_insert(now_us)) > HALF_OPEN_US {
+            stream.abort();
+        }
+    }
+
+    fn end_session(&mut self, node: &mut impl Node) {
+        if self.session.take().is_some() {
+            self.partner = None;
+            node.session_ended();
         }
     }
 
     fn listen(&mut self) {
-        self.session = None;
         let stream = self.sockets.get_mut::<tcp::Socket>(self.stream);
         // Fails only for port 0 or an open socket.
         let _ = stream.listen(REQUEST_PORT);
     }
+}
+
+/// Who sent a datagram.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sender {
+    Pc,
+    Partner,
+}
+
+/// Forgets what waits in a socket.
+fn empty(socket: &mut udp::Socket) {
+    socket.close();
+    // Fails only for port 0 or an open socket.
+    let _ = socket.bind(DATAGRAM_PORT);
 }
 
 fn packets<'a>(metadata: &'a mut [udp::PacketMetadata], payload: &'a mut [u8]) -> udp::PacketBuffer<'a> {
@@ -350,8 +475,7 @@ fn packets<'a>(metadata: &'a mut [udp::PacketMetadata], payload: &'a mut [u8]) -
 
 fn udp_socket<'a>(incoming: udp::PacketBuffer<'a>, outgoing: udp::PacketBuffer<'a>) -> udp::Socket<'a> {
     let mut socket = udp::Socket::new(incoming, outgoing);
-    // Fails only for port 0 or an open socket.
-    let _ = socket.bind(DATAGRAM_PORT);
+    empty(&mut socket);
     socket
 }
 

@@ -8,9 +8,9 @@ use smoltcp::socket::udp::PacketMetadata;
 pub(crate) const FRAME: usize = MAX_MESSAGE + 2;
 /// Longest UDP payload of an Ethernet frame: what is too long for a datagram is still seen and counted.
 const LONGEST_PAYLOAD: usize = 1472;
-/// Datagrams that wait for the subscriber.
+/// Datagrams that wait for the PC.
 const OUTGOING: usize = 8;
-/// Short datagrams that wait for others: path states and clock requests, of at most 256 bytes.
+/// Short datagrams that wait for the other board: path states, permits and clock requests, of at most 256 bytes.
 const OUTGOING_SHORT: usize = 8;
 
 /// Buffers of a [`Link`](crate::Link), about 28 kB, best in a static.
@@ -19,8 +19,8 @@ pub struct Storage<'a> {
     pub(crate) requests: [u8; 2 * FRAME],
     pub(crate) responses: [u8; 2 * FRAME],
     pub(crate) incoming: ([PacketMetadata; 2], [u8; 2 * LONGEST_PAYLOAD]),
-    pub(crate) to_subscriber: ([PacketMetadata; OUTGOING], [u8; OUTGOING * MAX_DATAGRAM]),
-    pub(crate) to_others: ([PacketMetadata; OUTGOING_SHORT], [u8; OUTGOING_SHORT * 256]),
+    pub(crate) to_pc: ([PacketMetadata; OUTGOING], [u8; OUTGOING * MAX_DATAGRAM]),
+    pub(crate) to_partner: ([PacketMetadata; OUTGOING_SHORT], [u8; OUTGOING_SHORT * 256]),
     pub(crate) nothing: ([PacketMetadata; 1], [u8; 1]),
     pub(crate) frame: [u8; FRAME],
 }
@@ -33,8 +33,8 @@ impl Storage<'_> {
             requests: [0; 2 * FRAME],
             responses: [0; 2 * FRAME],
             incoming: ([PacketMetadata::EMPTY; 2], [0; 2 * LONGEST_PAYLOAD]),
-            to_subscriber: ([PacketMetadata::EMPTY; OUTGOING], [0; OUTGOING * MAX_DATAGRAM]),
-            to_others: ([PacketMetadata::EMPTY; OUTGOING_SHORT], [0; OUTGOING_SHORT * 256]),
+            to_pc: ([PacketMetadata::EMPTY; OUTGOING], [0; OUTGOING * MAX_DATAGRAM]),
+            to_partner: ([PacketMetadata::EMPTY; OUTGOING_SHORT], [0; OUTGOING_SHORT * 256]),
             nothing: ([PacketMetadata::EMPTY; 1], [0; 1]),
             frame: [0; FRAME],
         }

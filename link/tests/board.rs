@@ -1,12 +1,12 @@
 //! A board's link against a PC, both on smoltcp, joined by a line in memory and a virtual clock.
 
-use link::{Address, Counters, Link, Node, Source, Storage};
+use link::{Address, Counters, Link, Node, Partner, Source, Storage};
 use shared::protocol::framing::{
     MAX_MESSAGE, decode_datagram, decode_message, encode_datagram, encode_message,
 };
 use shared::protocol::{
-    ClockReply, ClockRequest, DATAGRAM_PORT, Datagram, Identity, Measurement, REQUEST_PORT, Refusal, Request,
-    Response, Role, SCHEMA_HASH,
+    BeamPermit, ClockReply, ClockRequest, DATAGRAM_PORT, Datagram, Identity, Measurement, PathState, Permit,
+    REQUEST_PORT, Refusal, Request, Response, Role, SCHEMA_HASH,
 };
 use smoltcp::iface::{Config, Interface, SocketHandle, SocketSet};
 use smoltcp::phy::{Device, DeviceCapabilities, Medium, RxToken, TxToken};
@@ -80,6 +80,7 @@ impl Device for End {
 struct Firmware {
     requests: Vec<Request>,
     datagrams: Vec<(Datagram, Source, u64)>,
+    sessions_ended: u32,
 }
 
 impl Node for Firmware {
@@ -93,6 +94,10 @@ impl Node for Firmware {
 
     fn datagram(&mut self, datagram: &Datagram, from: Source, arrived_us: u64) {
         self.datagrams.push((datagram.clone(), from, arrived_us));
+    }
+
+    fn session_ended(&mut self) {
+        self.sessions_ended += 1;
     }
 }
 
@@ -108,6 +113,8 @@ struct Bench {
     datagrams: SocketHandle,
     next_port: u16,
     received: Vec<u8>,
+    /// Number of the session, once subscribed.
+    number: u32,
 }
 
 fn identity() -> Identity {
@@ -129,6 +136,10 @@ fn client() -> tcp::Socket<'static> {
 
 impl Bench {
     fn new() -> Self {
+        Self::of(identity())
+    }
+
+    fn of(identity: Identity) -> Self {
         let (a, b) = (Line::default(), Line::default());
         let end = |incoming: &Line, outgoing: &Line| End {
             incoming: incoming.clone(),
@@ -144,7 +155,7 @@ impl Bench {
             gateway: PC,
         };
         let storage = Box::leak(Box::new(Storage::new()));
-        let link = Link::new(&mut board_end, storage, address, identity(), 0);
+        let link = Link::new(&mut board_end, storage, address, identity, 0);
 
         let config = Config::new(EthernetAddress([2, 0, 0, 0, 0, 1]).into());
         let mut pc = Interface::new(config, &mut pc_end, Instant::ZERO);
@@ -171,6 +182,7 @@ impl Bench {
             datagrams,
             next_port: 40_000,
             received: Vec::new(),
+            number: 0,
         }
     }
 
@@ -183,6 +195,20 @@ impl Bench {
         });
         assert_eq!(hello, Some(Response::Identity(identity())));
         bench
+    }
+
+    /// A bench with a session whose PC wants datagrams.
+    fn subscribed() -> Self {
+        let mut bench = Self::greeted();
+        bench.subscribe();
+        bench
+    }
+
+    fn subscribe(&mut self) {
+        match self.request(&Request::Subscribe { port: PC_PORT }) {
+            Some(Response::Session { number }) => self.number = number,
+            other => panic!("{other:?}"),
+        }
     }
 
     fn stream(&mut self) -> &mut tcp::Socket<'static> {
@@ -270,11 +296,21 @@ impl Bench {
         self.udp().send_slice(bytes, board).unwrap();
     }
 
-    /// Datagrams that have arrived at the PC.
+    /// Sends a datagram of the session `number` to the board.
+    fn say(&mut self, number: u32, datagram: &Datagram) {
+        let mut buffer = [0; 256];
+        let bytes = encode_datagram(number, datagram, &mut buffer).unwrap().to_vec();
+        self.send_datagram(&bytes);
+    }
+
+    /// Datagrams that have arrived at the PC, all of its session.
     fn datagrams(&mut self) -> Vec<Datagram> {
         let mut all = Vec::new();
+        let number = self.number;
         while let Ok((bytes, _)) = self.udp().recv() {
-            all.push(decode_datagram(bytes).unwrap());
+            let (session, datagram) = decode_datagram(bytes).unwrap();
+            assert_eq!(session, number);
+            all.push(datagram);
         }
         all
     }
@@ -318,6 +354,7 @@ fn a_request_may_come_byte_by_byte() {
         &Request::PathStatesTo {
             address: BOARD,
             port: 7,
+            session: 9,
         },
         &mut buffer,
     )
@@ -327,6 +364,7 @@ fn a_request_may_come_byte_by_byte() {
         bench.stream().send_slice(&[*byte]).unwrap();
         bench.steps(3);
     }
+    bench.steps(20);
     assert_eq!(bench.answer(), Some(Response::Refused(Refusal::NotMine)));
 }
 
@@ -363,7 +401,7 @@ fn nothing_but_hello_is_answered_before_a_hello_of_the_same_schema() {
     assert_eq!(bench.request(&other), Some(Response::Identity(identity())));
     assert_eq!(bench.request(&Request::Status), refused);
     assert_eq!(bench.request(&Request::Subscribe { port: PC_PORT }), refused);
-    assert_eq!(bench.link.subscriber(), None);
+    assert!(!bench.link.is_subscribed());
     assert!(bench.firmware.requests.is_empty());
 }
 
@@ -388,12 +426,8 @@ fn an_impossible_length_ends_the_session_and_the_board_listens_again() {
 
 #[test]
 fn after_a_session_the_next_one_starts_from_hello_without_subscriber() {
-    let mut bench = Bench::greeted();
-    assert_eq!(
-        bench.request(&Request::Subscribe { port: PC_PORT }),
-        Some(Response::Done)
-    );
-    assert_eq!(bench.link.subscriber(), Some(SUBSCRIBER));
+    let mut bench = Bench::subscribed();
+    assert!(bench.link.is_subscribed());
     // An orderly end, then an abrupt one.
     for abrupt in [false, true] {
         if abrupt {
@@ -402,7 +436,8 @@ fn after_a_session_the_next_one_starts_from_hello_without_subscriber() {
             bench.stream().close();
         }
         bench.steps(20);
-        assert_eq!((bench.link.session(), bench.link.subscriber()), (None, None));
+        assert_eq!((bench.link.session(), bench.link.is_subscribed()), (None, false));
+        assert_eq!(bench.firmware.sessions_ended, 1 + u32::from(abrupt));
         bench.sockets.remove(bench.stream);
         bench.stream = bench.sockets.add(client());
         bench.connect();
@@ -426,16 +461,59 @@ fn a_second_pc_is_turned_away_and_the_first_does_not_notice() {
 }
 
 #[test]
-fn a_pc_that_vanishes_is_given_up_and_a_silent_one_is_not() {
+fn a_pc_that_vanishes_or_falls_silent_is_given_up() {
     let mut bench = Bench::greeted();
-    bench.steps(10_000);
-    assert_eq!(bench.request(&Request::Status), Some(Response::Done));
-    // The cable is cut: every frame of the PC is lost.
-    bench.pc_end.lossy = 1;
-    bench.steps(4400);
-    assert!(bench.link.session().is_some());
-    bench.steps(1500);
+    // A request every 4 s renews the lease of 5 s.
+    for _ in 0..3 {
+        bench.steps(4000);
+        assert_eq!(bench.request(&Request::Status), Some(Response::Done));
+    }
+    for cut in [false, true] {
+        // The cable is cut: every frame of the PC is lost. Else its TCP acknowledges what it is asked.
+        bench.pc_end.lossy = u32::from(cut);
+        bench.steps(4400);
+        assert!(bench.link.session().is_some());
+        bench.steps(1500);
+        assert_eq!(bench.link.session(), None);
+        assert_eq!(bench.firmware.sessions_ended, 1 + u32::from(cut));
+        bench.pc_end.lossy = 0;
+        bench.sockets.remove(bench.stream);
+        bench.stream = bench.sockets.add(client());
+        bench.connect();
+        assert_eq!(bench.link.session(), Some(PC));
+        let hello = Request::Hello {
+            schema_hash: SCHEMA_HASH,
+        };
+        assert!(bench.request(&hello).is_some());
+    }
+}
+
+#[test]
+fn who_connects_and_says_no_hello_loses_the_place() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.steps(400);
+    assert_eq!(bench.link.session(), Some(PC));
+    bench.steps(200);
     assert_eq!(bench.link.session(), None);
+    assert_eq!(bench.link.counters().silent_sessions, 1);
+}
+
+#[test]
+fn a_connection_that_is_never_completed_loses_the_place() {
+    let mut bench = Bench::new();
+    bench.step();
+    // The first frame of a connection gets through, and nothing after it.
+    let (port, handle) = (39_999, bench.stream);
+    let board = IpEndpoint::new(Ipv4Address::from(BOARD).into(), REQUEST_PORT);
+    bench
+        .sockets
+        .get_mut::<tcp::Socket>(handle)
+        .connect(bench.pc.context(), board, port)
+        .unwrap();
+    bench.steps(1);
+    bench.pc_end.lossy = 1;
+    bench.steps(800);
     bench.pc_end.lossy = 0;
     bench.sockets.remove(bench.stream);
     bench.stream = bench.sockets.add(client());
@@ -456,9 +534,11 @@ fn requests_come_through_a_line_that_loses_frames() {
 
 #[test]
 fn datagrams_come_with_their_source_and_arrival_and_bad_ones_are_counted() {
-    let mut bench = Bench::greeted();
+    let mut bench = Bench::subscribed();
     let mut buffer = [0; 256];
-    let good = encode_datagram(&measurement(7), &mut buffer).unwrap().to_vec();
+    let good = encode_datagram(bench.number, &measurement(7), &mut buffer)
+        .unwrap()
+        .to_vec();
     let mut foreign = good.clone();
     foreign[0] ^= 1;
     let mut malformed = good.clone();
@@ -480,11 +560,9 @@ fn datagrams_come_with_their_source_and_arrival_and_bad_ones_are_counted() {
 
 #[test]
 fn a_burst_of_datagrams_is_taken_without_loss() {
-    let mut bench = Bench::greeted();
-    let mut buffer = [0; 256];
+    let mut bench = Bench::subscribed();
     for k in 0..15 {
-        let bytes = encode_datagram(&measurement(k), &mut buffer).unwrap().to_vec();
-        bench.send_datagram(&bytes);
+        bench.say(bench.number, &measurement(k));
     }
     bench.step();
     let numbers: Vec<_> = bench
@@ -498,11 +576,9 @@ fn a_burst_of_datagrams_is_taken_without_loss() {
 
 #[test]
 fn the_board_tells_its_clock() {
-    let mut bench = Bench::greeted();
-    let mut buffer = [0; 64];
+    let mut bench = Bench::subscribed();
     let request = Datagram::ClockRequest(ClockRequest { asked_us: 123 });
-    let bytes = encode_datagram(&request, &mut buffer).unwrap().to_vec();
-    bench.send_datagram(&bytes);
+    bench.say(bench.number, &request);
     bench.step();
     let now = bench.now.get();
     let expected = ClockReply {
@@ -515,34 +591,171 @@ fn the_board_tells_its_clock() {
 
 #[test]
 fn datagrams_leave_with_flush_and_those_without_room_are_counted() {
-    let mut bench = Bench::greeted();
-    assert!(bench.link.send(&measurement(1), SUBSCRIBER));
+    let mut bench = Bench::subscribed();
+    assert!(bench.link.send_to_pc(&measurement(1)));
     bench.link.flush(&mut bench.board_end, bench.now.get());
     bench.step();
     assert_eq!(bench.datagrams(), [measurement(1)]);
 
     let accepted = (0..100)
-        .filter(|k| bench.link.send(&measurement(*k), SUBSCRIBER))
+        .filter(|k| bench.link.send_to_pc(&measurement(*k)))
         .count();
     bench.steps(3);
     assert_eq!(bench.datagrams().len(), accepted);
     assert_eq!(bench.link.counters().unsent as usize, 100 - accepted);
 }
 
+/// Somebody on the line who is neither the PC nor the other board, as the address of a partner.
+const NOBODY: Source = Source {
+    address: [192, 168, 7, 99],
+    port: 7101,
+};
+
 #[test]
-fn a_host_that_is_not_there_does_not_hold_up_the_subscriber() {
-    let mut bench = Bench::greeted();
-    let nobody = Source {
-        address: [192, 168, 7, 99],
-        port: 7101,
-    };
+fn another_board_that_is_not_there_does_not_hold_up_the_pc() {
+    let mut bench = Bench::subscribed();
+    bench.link.set_partner(Partner {
+        source: NOBODY,
+        session: 5,
+    });
     for k in 0..12 {
-        bench.link.send(&measurement(1000), nobody);
-        bench.link.send(&measurement(k), SUBSCRIBER);
+        bench.link.send_to_partner(&measurement(1000));
+        bench.link.send_to_pc(&measurement(k));
         bench.step();
     }
     bench.step();
     assert_eq!(bench.datagrams(), (0..12).map(measurement).collect::<Vec<_>>());
+
+    // Nor does what waits for it hold up the board that is found later.
+    bench.link.set_partner(Partner {
+        source: SUBSCRIBER,
+        session: bench.number,
+    });
+    bench.link.send_to_partner(&measurement(50));
+    // The socket asks for a missing neighbour once a second.
+    bench.steps(1000);
+    assert_eq!(bench.datagrams(), [measurement(50)]);
+}
+
+fn permit() -> Datagram {
+    Datagram::Permit(Permit {
+        tick: 1,
+        path_id: 1,
+        sides: [BeamPermit::Open; 2],
+    })
+}
+
+fn path_state() -> Datagram {
+    Datagram::PathState(PathState {
+        tick: 1,
+        time_us: 1000,
+        sent_us: 1000,
+        path_id: 1,
+        s_mm: 0.0,
+        speed_mm_s: 0.0,
+        pose: [0.0; 9],
+        tracking: false,
+        beams: [false; 2],
+        aside: [0.0; 3],
+    })
+}
+
+fn heard(bench: &mut Bench) -> Vec<Datagram> {
+    bench.steps(2);
+    bench
+        .firmware
+        .datagrams
+        .drain(..)
+        .map(|(datagram, ..)| datagram)
+        .collect()
+}
+
+#[test]
+fn datagrams_are_taken_of_the_pc_and_the_other_board_only_and_with_their_number() {
+    let clock = Datagram::ClockRequest(ClockRequest { asked_us: 1 });
+    let mut bench = Bench::greeted();
+    // Nobody has subscribed: nobody is believed, whatever number is guessed.
+    for number in [0, 1] {
+        bench.say(number, &measurement(1));
+        bench.say(number, &clock);
+    }
+    assert!(heard(&mut bench).is_empty() && bench.datagrams().is_empty());
+    bench.subscribe();
+    let (number, stranger) = (
+        bench.number,
+        Source {
+            port: PC_PORT + 1,
+            ..SUBSCRIBER
+        },
+    );
+    bench.say(number ^ 1, &measurement(2));
+    bench.say(number ^ 1, &clock);
+    bench.say(number, &permit());
+    assert!(heard(&mut bench).is_empty() && bench.datagrams().is_empty());
+    bench.say(number, &measurement(3));
+    assert_eq!(heard(&mut bench), [measurement(3)]);
+
+    // Another port of the same host is not the other board, nor is another number.
+    for (source, session, taken) in [
+        (stranger, 77, false),
+        (SUBSCRIBER, 78, false),
+        (SUBSCRIBER, 77, true),
+    ] {
+        bench.link.set_partner(Partner { source, session });
+        bench.say(77, &permit());
+        assert_eq!(
+            heard(&mut bench).len(),
+            usize::from(taken),
+            "{source:?} {session}"
+        );
+    }
+    assert_eq!(bench.link.counters().strange_datagrams, 9);
+}
+
+#[test]
+fn the_tracker_board_finds_the_motion_board_by_the_number_of_its_session() {
+    let mut bench = Bench::of(Identity {
+        role: Role::Tracker,
+        ..identity()
+    });
+    bench.connect();
+    let hello = Request::Hello {
+        schema_hash: SCHEMA_HASH,
+    };
+    assert!(bench.request(&hello).is_some());
+    bench.subscribe();
+    bench.say(bench.number ^ 1, &path_state());
+    assert!(heard(&mut bench).is_empty() && !bench.link.send_to_partner(&permit()));
+    bench.say(bench.number, &path_state());
+    assert_eq!(heard(&mut bench), [path_state()]);
+    assert!(bench.link.send_to_partner(&permit()));
+    bench.steps(2);
+    assert_eq!(bench.datagrams(), [permit()]);
+    // With the session the other board is forgotten.
+    bench.stream().close();
+    bench.steps(20);
+    bench.say(bench.number, &path_state());
+    assert!(heard(&mut bench).is_empty() && !bench.link.send_to_partner(&permit()));
+}
+
+#[test]
+fn no_two_sessions_have_the_same_number() {
+    let mut bench = Bench::subscribed();
+    let mut numbers = vec![bench.number];
+    for _ in 0..20 {
+        bench.stream().abort();
+        bench.steps(20);
+        bench.sockets.remove(bench.stream);
+        bench.stream = bench.sockets.add(client());
+        bench.connect();
+        let hello = Request::Hello {
+            schema_hash: SCHEMA_HASH,
+        };
+        assert!(bench.request(&hello).is_some());
+        bench.subscribe();
+        assert!(bench.number != 0 && !numbers.contains(&bench.number));
+        numbers.push(bench.number);
+    }
 }
 
 #[test]

@@ -95,6 +95,7 @@ const FIELDS: &[&str] = &[
     "window_mm",
     "hold_mm",
     "gate_mm",
+    "lock_mm",
     "preview_s",
     "frame_period_ms",
     "dead_band_mm",

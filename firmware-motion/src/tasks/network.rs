@@ -1,8 +1,8 @@
-//! The network task: requests of the PC, path states to the tracker board, telemetry to the PC.
+//! The network task: requests of the PC, path states to the tracker board and its permits, telemetry to the PC.
 
-use super::{Controller, OutboxReader};
+use super::{Controller, OutboxReader, Servo};
 use crate::board;
-use link::{Address, Counters, Link, Node, Source, Storage};
+use link::{Address, Counters, Link, Node, Partner, Source, Storage};
 use rtic::Mutex;
 use shared::protocol::{
     Batch, Datagram, Identity, MotionSample, MotionTelemetry, PathState, Request, Response, Role,
@@ -13,7 +13,6 @@ pub struct Network {
     link: Link<'static>,
     device: board::Network,
     outbox: OutboxReader,
-    tracker: Option<Source>,
     telemetry: Batch<MotionSample>,
 }
 
@@ -40,58 +39,74 @@ impl Network {
             link: Link::new(&mut device, storage, address, identity, board::now_us()),
             device,
             outbox,
-            tracker: None,
             telemetry: Batch::default(),
         }
     }
 
     /// Serves everything that waits; true if frames may be left.
-    pub fn run(&mut self, controller: &mut impl Mutex<T = &'static mut Controller>) -> bool {
+    pub fn run(
+        &mut self,
+        controller: &mut impl Mutex<T = &'static mut Controller>,
+        servo: &mut impl Mutex<T = Servo>,
+    ) -> bool {
         self.device.acknowledge();
         self.publish();
         let mut proxy = Proxy {
             controller,
-            tracker: &mut self.tracker,
+            servo,
+            tracker: None,
         };
-        self.link.poll(
+        let more = self.link.poll(
             &mut self.device,
             board::Network::last_arrival_us,
             board::now_us,
             &mut proxy,
-        )
+        );
+        if let Some(tracker) = proxy.tracker {
+            self.link.set_partner(tracker);
+        }
+        more
     }
 
     /// Sends what the path ticks published since the last run.
     fn publish(&mut self) {
         while let Some((path_state, sample)) = self.outbox.dequeue() {
-            if let Some(tracker) = self.tracker {
-                let path_state = PathState {
-                    sent_us: board::now_us(),
-                    ..path_state
-                };
-                self.link.send(&Datagram::PathState(path_state), tracker);
-                self.link.flush(&mut self.device, board::now_us());
-            }
-            if let Some((samples, subscriber)) = self.telemetry.push(sample).zip(self.link.subscriber()) {
+            let path_state = PathState {
+                sent_us: board::now_us(),
+                ..path_state
+            };
+            self.link.send_to_partner(&Datagram::PathState(path_state));
+            self.link.flush(&mut self.device, board::now_us());
+            if let Some(samples) = self.telemetry.push(sample) {
                 let telemetry = Datagram::MotionTelemetry(MotionTelemetry { samples });
-                self.link.send(&telemetry, subscriber);
+                self.link.send_to_pc(&telemetry);
             }
         }
     }
 }
 
-/// The controller behind its lock, as the link wants to see it.
-struct Proxy<'a, M> {
+/// The controller and the servo loops behind their locks, as the link wants to see them.
+struct Proxy<'a, M, S> {
     controller: &'a mut M,
-    tracker: &'a mut Option<Source>,
+    servo: &'a mut S,
+    /// Told by the PC in this run.
+    tracker: Option<Partner>,
 }
 
-impl<M: Mutex<T = &'static mut Controller>> Node for Proxy<'_, M> {
+impl<M: Mutex<T = &'static mut Controller>, S: Mutex<T = Servo>> Node for Proxy<'_, M, S> {
     fn handle(&mut self, request: &Request, counters: &Counters) -> Response {
-        if let Request::PathStatesTo { address, port } = request {
-            *self.tracker = Some(Source {
-                address: *address,
-                port: *port,
+        if let Request::PathStatesTo {
+            address,
+            port,
+            session,
+        } = request
+        {
+            self.tracker = Some(Partner {
+                source: Source {
+                    address: *address,
+                    port: *port,
+                },
+                session: *session,
             });
             return Response::Done;
         }
@@ -99,6 +114,17 @@ impl<M: Mutex<T = &'static mut Controller>> Node for Proxy<'_, M> {
             .lock(|controller| controller.handle(request, counters.unsent))
     }
 
-    /// The motion board takes no datagrams but clock requests, which the link answers.
-    fn datagram(&mut self, _: &Datagram, _: Source, _: u64) {}
+    /// Permits of the tracker; they take effect at the next servo tick.
+    fn datagram(&mut self, datagram: &Datagram, _: Source, arrived_us: u64) {
+        let lease = self
+            .controller
+            .lock(|controller| controller.datagram(datagram, arrived_us));
+        if let Some(lease) = lease {
+            self.servo.lock(|servo| servo.loops.renew(lease));
+        }
+    }
+
+    fn session_ended(&mut self) {
+        self.controller.lock(|controller| controller.session_ended());
+    }
 }

@@ -20,6 +20,7 @@ pub fn tick(controller: &mut Controller, slides: &mut Slides, periods: u32) -> P
     Published {
         sample: output.sample,
         capture: output.capture,
+        permit: output.permit,
         clock_request: output.clock_request,
     }
 }

@@ -4,7 +4,7 @@ pub mod control;
 mod network;
 
 use heapless::spsc::{Consumer, Producer};
-use shared::protocol::{Capture, ClockRequest, TrackerSample};
+use shared::protocol::{Capture, ClockRequest, Permit, TrackerSample};
 use shared::roll_call::RollCall;
 use shared::tracking::TrackerController;
 
@@ -30,6 +30,8 @@ pub struct Published {
     pub sample: TrackerSample,
     /// To offer to the PC.
     pub capture: Option<Capture>,
+    /// For the motion board.
+    pub permit: Option<Permit>,
     /// To ask the motion board.
     pub clock_request: Option<ClockRequest>,
 }

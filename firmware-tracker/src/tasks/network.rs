@@ -1,4 +1,5 @@
-//! The network task: requests of the PC, path states of the motion board, captures and measurements, telemetry.
+//! The network task: requests of the PC, path states of the motion board and permits for it, captures and measurements,
+//! telemetry.
 
 use super::{Controller, OutboxReader};
 use crate::board;
@@ -13,8 +14,6 @@ pub struct Network {
     link: Link<'static>,
     device: board::Network,
     outbox: OutboxReader,
-    /// Whence the path states come.
-    motion: Option<Source>,
     telemetry: Batch<TrackerSample>,
 }
 
@@ -41,7 +40,6 @@ impl Network {
             link: Link::new(&mut device, storage, address, identity, board::now_us()),
             device,
             outbox,
-            motion: None,
             telemetry: Batch::default(),
         }
     }
@@ -50,35 +48,33 @@ impl Network {
     pub fn run(&mut self, controller: &mut impl Mutex<T = &'static mut Controller>) -> bool {
         self.device.acknowledge();
         self.publish();
-        let mut proxy = Proxy {
-            controller,
-            motion: &mut self.motion,
-        };
         self.link.poll(
             &mut self.device,
             board::Network::last_arrival_us,
             board::now_us,
-            &mut proxy,
+            &mut Proxy { controller },
         )
     }
 
     /// Sends what the control ticks published since the last run.
     fn publish(&mut self) {
         while let Some(published) = self.outbox.dequeue() {
-            let subscriber = self.link.subscriber();
-            if let Some((capture, subscriber)) = published.capture.zip(subscriber) {
-                self.link.send(&Datagram::Capture(capture), subscriber);
+            if let Some(permit) = published.permit {
+                self.link.send_to_partner(&Datagram::Permit(permit));
             }
-            if let Some(motion) = self.motion.filter(|_| published.clock_request.is_some()) {
+            if let Some(capture) = published.capture {
+                self.link.send_to_pc(&Datagram::Capture(capture));
+            }
+            if published.clock_request.is_some() {
                 // The round trip begins now, not at the tick.
                 let asked_us = board::now_us();
                 self.link
-                    .send(&Datagram::ClockRequest(ClockRequest { asked_us }), motion);
+                    .send_to_partner(&Datagram::ClockRequest(ClockRequest { asked_us }));
             }
             self.link.flush(&mut self.device, board::now_us());
-            if let Some((samples, subscriber)) = self.telemetry.push(published.sample).zip(subscriber) {
+            if let Some(samples) = self.telemetry.push(published.sample) {
                 let telemetry = Datagram::TrackerTelemetry(TrackerTelemetry { samples });
-                self.link.send(&telemetry, subscriber);
+                self.link.send_to_pc(&telemetry);
             }
         }
     }
@@ -87,7 +83,6 @@ impl Network {
 /// The controller behind its lock, as the link wants to see it.
 struct Proxy<'a, M> {
     controller: &'a mut M,
-    motion: &'a mut Option<Source>,
 }
 
 impl<M: Mutex<T = &'static mut Controller>> Node for Proxy<'_, M> {
@@ -96,11 +91,12 @@ impl<M: Mutex<T = &'static mut Controller>> Node for Proxy<'_, M> {
             .lock(|controller| controller.handle(request, counters.unsent))
     }
 
-    fn datagram(&mut self, datagram: &Datagram, from: Source, arrived_us: u64) {
-        if let Datagram::PathState(_) = datagram {
-            *self.motion = Some(from);
-        }
+    fn datagram(&mut self, datagram: &Datagram, _: Source, arrived_us: u64) {
         self.controller
             .lock(|controller| controller.datagram(datagram, arrived_us));
+    }
+
+    fn session_ended(&mut self) {
+        self.controller.lock(|controller| controller.session_ended());
     }
 }

@@ -14,7 +14,7 @@ use thiserror::Error;
 
 /// A session with a motion board and, where the machine has one, a tracker board.
 ///
-/// Whoever makes one has said Hello to each and compared the schema hashes. A job that uses nothing but
+/// Whoever makes one has said Hello to each, compared the schema hashes, and subscribed to what they send. A job that uses nothing but
 /// this trait for time and data is deterministic on simulated boards.
 pub trait Boards {
     /// Sends `request` and waits for the answer.
@@ -33,12 +33,8 @@ pub trait Boards {
     /// Who the board says it is; `None` if it is not in this session.
     fn identity(&self, role: Role) -> Option<&Identity>;
 
-    /// Address and UDP port under which the motion board reaches the tracker board; `None` without one.
-    fn path_states_target(&self) -> Option<([u8; 4], u16)>;
-
-    /// UDP port of the PC to which the board shall send its datagrams ([`Request::Subscribe`]); `None` if it
-    /// is not in this session.
-    fn datagram_port(&self, role: Role) -> Option<u16>;
+    /// How the motion board is told where the tracker board is ([`Request::PathStatesTo`]); `None` without one.
+    fn path_states_target(&self) -> Option<Request>;
 }
 
 /// As [`Boards::request`], for requests that are answered by [`Response::Done`].

@@ -39,11 +39,7 @@ impl<F: FnMut(&mut dyn Boards, &MotionSample)> Boards for Overheard<'_, F> {
         self.boards.identity(role)
     }
 
-    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
+    fn path_states_target(&self) -> Option<Request> {
         self.boards.path_states_target()
-    }
-
-    fn datagram_port(&self, role: Role) -> Option<u16> {
-        self.boards.datagram_port(role)
     }
 }

@@ -364,8 +364,8 @@ fn set_up(session: &mut Session, job: &Job) -> Result<(), JobError> {
         }
         session.command(role, &Request::ConfigureTracker(unit.board.clone()))?;
         let target = session.boards.path_states_target();
-        let (address, port) = target.ok_or(LinkError::Absent { role })?;
-        session.command(Role::Motion, &Request::PathStatesTo { address, port })?;
+        let target = target.ok_or(LinkError::Absent { role })?;
+        session.command(Role::Motion, &target)?;
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use crate::machine::MachineFile;
 use crate::record::Record;
 use crate::report::ByBoard;
 use crate::world::Machine;
-use shared::motion::State;
+use shared::motion::{Fault, State};
 use shared::protocol::{Datagram, MotionStatus, Request, Response, Role};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -50,7 +50,6 @@ impl<'a> Session<'a> {
     ) -> Result<Self, JobError> {
         let geometry = Machine::build(&machine.motion)?;
         let began = boards.now();
-        begin_with(boards, Role::Motion)?;
         let unit = machine.tracking.as_ref();
         let tracking = unit
             .map(|unit| Tracking::begin(boards, unit, around))
@@ -163,12 +162,15 @@ impl<'a> Session<'a> {
 
     /// The first reason not to go on.
     pub fn check(&self) -> Result<(), JobError> {
-        if let Some(fault) = self.motion.fault {
-            return Err(JobError::Motion(fault));
-        }
         let tracking = self.tracking.as_ref();
-        if let Some(fault) = tracking.and_then(|tracking| tracking.fault(&self.record)) {
-            return Err(JobError::Tracker(fault));
+        let of_tracker = tracking.and_then(|tracking| tracking.fault(&self.record));
+        match (self.motion.fault, of_tracker) {
+            // The tracker knows why it gave no permit.
+            (Some(Fault::PermitLost { .. } | Fault::NotLocked { .. }) | None, Some(fault)) => {
+                return Err(JobError::Tracker(fault));
+            }
+            (Some(fault), _) => return Err(JobError::Motion(fault)),
+            (None, None) => {}
         }
         if self.interrupted.load(Ordering::Relaxed) {
             return Err(JobError::Interrupted);
@@ -246,7 +248,13 @@ impl<'a> Session<'a> {
             (Datagram::Capture(capture), Some(tracking)) => tracking.strobe(&self.machine, capture, welding),
             // Left over from another session, or what boards send to each other only.
             (Datagram::ClockReply(_) | Datagram::Capture(_), None)
-            | (Datagram::PathState(_) | Datagram::Measurement(_) | Datagram::ClockRequest(_), _) => {}
+            | (
+                Datagram::PathState(_)
+                | Datagram::Permit(_)
+                | Datagram::Measurement(_)
+                | Datagram::ClockRequest(_),
+                _,
+            ) => {}
         }
     }
 
@@ -261,12 +269,6 @@ impl<'a> Session<'a> {
 /// Whether the machine is moving along a path, or may be.
 pub(super) fn on_path(state: State) -> bool {
     matches!(state, State::Running | State::Holding | State::Stopping)
-}
-
-/// Lets a board send its telemetry.
-pub(super) fn begin_with(boards: &mut dyn Boards, role: Role) -> Result<(), LinkError> {
-    let port = boards.datagram_port(role).ok_or(LinkError::Absent { role })?;
-    command(boards, role, &Request::Subscribe { port })
 }
 
 fn motion_status(boards: &mut dyn Boards) -> Result<MotionStatus, LinkError> {

@@ -1,7 +1,7 @@
 //! The tracker board's part of a session: its state, its clock, and the cameras that answer its captures.
 
 use super::cameras::{Answer, Cameras};
-use super::session::{begin_with, unexpected};
+use super::session::unexpected;
 use super::{JobError, Surroundings};
 use crate::boards::{Boards, LinkError};
 use crate::evaluate::Followed;
@@ -74,7 +74,6 @@ impl Tracking {
         around: &Surroundings,
     ) -> Result<Self, JobError> {
         let heads = unit.board.head.build()?;
-        begin_with(boards, Role::Tracker)?;
         let status = status(boards)?;
         Ok(Self {
             lost_before: status.lost,

@@ -59,6 +59,15 @@ impl BeamLimits {
             .map(|beam| beam.overlap_mm)
     }
 
+    /// Whether the beam of `side` may be on at all while the machine does that.
+    pub fn allows(&self, side: usize, activity: Activity) -> bool {
+        match activity {
+            Activity::Running => true,
+            Activity::Waiting => self.stays_on(side),
+            Activity::Off => false,
+        }
+    }
+
     fn stays_on(&self, side: usize) -> bool {
         self.beams[side].is_some_and(|beam| beam.stays_on_at_rest)
     }

@@ -12,17 +12,21 @@ use super::aside::Aside;
 use super::beams::Beams;
 use super::homing::{Homing, HomingStep};
 use super::machine::Machine;
+use super::permit::{BeamLease, Permits};
 use super::segment::{BeamOutput, MotorReference, PATH_PERIOD_S, Segment};
 use super::servo::{ServoOrder, ServoReport, ServoSetup};
 use super::state::Event;
 use super::{Fault, State, Vibration};
 use crate::io::{AXES, MOTORS};
-use crate::protocol::{MotionSample, PathState};
+use crate::protocol::{Datagram, MotionSample, PathState};
 use crate::trajectory::{BoardPlanner, SpeedState};
 use path::LoadedPath;
 
 /// Lost path ticks that are made up for at once; more are too late anyway.
 const MAX_CATCH_UP: u32 = 4;
+
+/// Drives are on for so long with nobody in charge \[s\]: time for a PC to come back after a short loss.
+const UNATTENDED_S: u8 = 2;
 
 /// What the path tick is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -72,6 +76,8 @@ pub struct MotionController {
     along: [SpeedState; 3],
     /// Gates given to the servo ticks for the millisecond from k, and from k + 1.
     gates: [BeamOutput; 2],
+    /// What the tracker permits.
+    permits: Permits,
     /// Of the motors at k + 2.
     reference: MotorReference,
     /// Of the axes at k + 2, where a path begins.
@@ -83,6 +89,11 @@ pub struct MotionController {
     first_tick_us: Option<u64>,
     heard: bool,
     heard_us: u64,
+    /// A session of a PC is there.
+    attended: bool,
+    attended_us: u64,
+    /// Time of the last tick.
+    tick_us: u64,
     servo_ticks: (u32, u32, u32),
     vibration: [Vibration; MOTORS],
 }
@@ -113,6 +124,7 @@ impl MotionController {
             beams: Beams::NONE,
             along: [SpeedState::at_rest(0.0); 3],
             gates: [BeamOutput::OFF; 2],
+            permits: Permits::NONE,
             reference: MotorReference::ZERO,
             axes: [0.0; AXES],
             measured: [0.0; AXES],
@@ -121,6 +133,9 @@ impl MotionController {
             first_tick_us: None,
             heard: false,
             heard_us: 0,
+            attended: false,
+            attended_us: 0,
+            tick_us: 0,
             servo_ticks: (0, 0, 0),
             vibration: [Vibration::NONE; MOTORS],
         }
@@ -142,6 +157,7 @@ impl MotionController {
     pub fn tick(&mut self, input: &PathTickInput) -> PathTickOutput {
         let report = &input.report;
         let time_us = self.count(input);
+        self.tick_us = time_us;
         self.servo_ticks = (report.ticks, report.lost, report.late);
         for (vibration, error) in self.vibration.iter_mut().zip(report.peak_error) {
             vibration.add(error);
@@ -166,8 +182,13 @@ impl MotionController {
             State::Running | State::Holding | State::Stopping => self.travel(),
         }
         let on_path = self.state.on_path();
-        let beams = self.beam_output(report.laser_fault);
+        let mut beams = self.beam_output(report.laser_fault);
+        if let Some(fault) = self.not_permitted(&beams, report) {
+            self.stop_for(fault);
+            beams = self.beam_output(report.laser_fault);
+        }
         self.gates = [self.gates[1], beams];
+        let lease = self.beam_lease(input.now_us);
         if !self.state.drives_on() {
             from = self.reference;
         }
@@ -184,6 +205,7 @@ impl MotionController {
             coupled: self.homed && self.enabled && self.homing.is_none(),
             homing: self.homing.is_some(),
             segment: Segment::between(&from, &self.reference, beams),
+            lease,
             offset: step.offset,
         };
         let now = self.along[0];
@@ -219,6 +241,27 @@ impl MotionController {
         }
     }
 
+    /// Takes a datagram of the tracker that arrived at `arrived_us` of this board's clock: for how long gates may stay
+    /// open from then on, where it says so.
+    pub fn datagram(&mut self, datagram: &Datagram, arrived_us: u64) -> Option<BeamLease> {
+        let Datagram::Permit(permit) = datagram else {
+            return None;
+        };
+        self.permits.take(permit, self.tick as u32, self.tick_us);
+        Some(self.beam_lease(arrived_us))
+    }
+
+    /// The PC's session has ended, however that came.
+    pub fn session_ended(&mut self) {
+        self.attended = false;
+        let on_at_rest = |machine: &Machine| self.beams.stay_on(&machine.beams);
+        if self.state.on_path() {
+            self.stop_for(Fault::SessionEnded);
+        } else if self.state == State::Homing || self.machine.as_ref().is_some_and(on_at_rest) {
+            self.trip(Fault::SessionEnded);
+        }
+    }
+
     /// Counts the tick; returns its time. Ticks are hardware periods, so their times are exact multiples.
     fn count(&mut self, input: &PathTickInput) -> u64 {
         self.ticks_lost = self.ticks_lost.wrapping_add(input.elapsed.saturating_sub(1));
@@ -237,6 +280,13 @@ impl MotionController {
             self.state.on_path() || self.state == State::Homing || self.machine.as_ref().is_some_and(stay_on);
         if core::mem::take(&mut self.heard) || !moves {
             self.heard_us = input.now_us;
+        }
+        if self.attended || !self.state.drives_on() {
+            self.attended_us = input.now_us;
+        } else if input.now_us.saturating_sub(self.attended_us) > u64::from(UNATTENDED_S) * 1_000_000 {
+            self.trip(Fault::Unattended {
+                seconds: UNATTENDED_S,
+            });
         }
         self.cause_remains = input.report.estop || input.report.drive_fault.any();
         if let (true, Some(fault)) = (self.state.drives_on(), input.report.trip) {
@@ -287,6 +337,7 @@ impl MotionController {
         self.homing = None;
         self.pending = None;
         self.beams = Beams::NONE;
+        self.permits = Permits::NONE;
     }
 
     /// References follow the position while the drives are off.

@@ -107,10 +107,57 @@ pub enum Fault {
         /// How long.
         silent_ms: u32,
     },
+    /// The session of the PC ended while a path was running, or while homing.
+    #[error(
+        "the PC's session ended while the machine moved, which was stopped; look at the PC and its cable, then reset"
+    )]
+    SessionEnded,
+    /// The session of the PC ended and no other one began.
+    #[error("nobody was in charge for {seconds} s: the drives were switched off; connect, then reset")]
+    Unattended {
+        /// How long.
+        seconds: u8,
+    },
+    /// A beam should go on where the tracker does not let it.
+    #[error(
+        "beam {} should go on at s = {s_mm:.1} mm, but {why}: look at camera and lights, or give the path a longer run-in", side + 1
+    )]
+    NotLocked {
+        /// 0 or 1.
+        side: u8,
+        /// Path position.
+        s_mm: f32,
+        /// What was missing.
+        why: NoPermit,
+    },
+    /// The tracker took back the permit of a beam that was on, or was not heard any more.
+    #[error("beam {} was shut at s = {s_mm:.1} mm and the machine stopped, for {why}", side + 1)]
+    PermitLost {
+        /// 0 or 1.
+        side: u8,
+        /// Path position.
+        s_mm: f32,
+        /// What was missing.
+        why: NoPermit,
+    },
     /// A control law got a value that is not a number.
     #[error("a control law got a value that is not a number; check the machine parameters")]
     NotANumber,
     /// The path task did not deliver references in time, twice in a row.
     #[error("the path task was late twice in a row; the references ran dry")]
     ReferencesLate,
+}
+
+/// Why a beam may not burn where the path tracks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema, Error)]
+pub enum NoPermit {
+    /// No permit came in time.
+    #[error("the tracker board is not heard")]
+    Silent,
+    /// The tracker refuses.
+    #[error("the tracker board does not permit it")]
+    Refused,
+    /// The seam is followed, but the spot is not on it.
+    #[error("its slides are not on the seam yet")]
+    NotOnSeam,
 }

@@ -1,5 +1,6 @@
 //! The servo tick: gratings in, velocity commands out, for seven motors, with the trips that must not wait.
 
+use super::permit::BeamLease;
 use super::segment::{SERVO_TICKS_PER_PATH_TICK, Segment};
 use super::{Fault, MotorConfig, SERVO_PERIOD_S};
 use crate::control::{EncoderCheck, FollowingTrip, Gantry, GantryState, Pid, PidState, Setpoint};
@@ -91,6 +92,8 @@ pub struct ServoOrder {
     pub homing: bool,
     /// References of the next millisecond.
     pub segment: Segment,
+    /// How long gates may stay open, from now on.
+    pub lease: BeamLease,
     /// Position at count 0 of the motors whose reference was just found; the segment is in the new frame.
     pub offset: [Option<f64>; MOTORS],
 }
@@ -120,6 +123,8 @@ pub struct ServoReport {
     pub trip: Option<Fault>,
     /// Laser sources that reported a fault since the last report, however short.
     pub laser_fault: [bool; SIDES],
+    /// Gates that were shut since the last report because their lease had run out.
+    pub lapsed: [bool; SIDES],
     /// Emergency stop is pressed now.
     pub estop: bool,
     /// Drives that report a fault now.
@@ -144,6 +149,7 @@ pub struct ServoLoops {
     homing: bool,
     current: Segment,
     next: Option<Segment>,
+    lease: BeamLease,
     last_counts: Option<[i64; MOTORS]>,
     late_in_a_row: u32,
     report: ServoReport,
@@ -183,6 +189,7 @@ impl ServoLoops {
             self.report.truth = truth;
             self.take_next();
         }
+        self.lease.count(elapsed);
         if !self.enabled {
             return MotionCommand::SAFE;
         }
@@ -197,6 +204,7 @@ impl ServoLoops {
         let report = self.report;
         self.report.mark = [None; MOTORS];
         self.report.laser_fault = [false; SIDES];
+        self.report.lapsed = [false; SIDES];
         self.report.peak_error = [0.0; MOTORS];
         self.report.peak_skew = 0.0;
         report
@@ -222,6 +230,12 @@ impl ServoLoops {
             }
         }
         self.next = Some(order.segment);
+        self.lease = order.lease;
+    }
+
+    /// How long gates may stay open, from now on: between two orders, when a permit has come.
+    pub fn renew(&mut self, lease: BeamLease) {
+        self.lease = lease;
     }
 
     /// Positions at `counts`, zero before the parameters are known.
@@ -354,7 +368,8 @@ impl ServoLoops {
         let beams = &mut self.current.beams;
         for side in 0..SIDES {
             // Once shut it stays shut for the millisecond: the path tick then knows of the fault.
-            beams.gate[side] &= !report.laser_fault[side];
+            report.lapsed[side] |= beams.gate[side] && self.lease.0[side] == 0;
+            beams.gate[side] &= !report.laser_fault[side] && !report.lapsed[side];
             if beams.gate[side] {
                 command.beam_gate[side] = true;
                 command.beam_power[side] = beams.power[side];

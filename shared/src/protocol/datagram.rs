@@ -38,6 +38,8 @@ impl<T> Batch<T> {
 pub enum Datagram {
     /// Motion → tracker, every ms.
     PathState(PathState),
+    /// Tracker → motion, every ms.
+    Permit(Permit),
     /// Tracker → PC, at every strobe.
     Capture(Capture),
     /// PC → tracker, the answer to a capture.
@@ -75,6 +77,33 @@ pub struct PathState {
     pub beams: [bool; SIDES],
     /// How fast the pose moves beside the planned one on purpose: along M and N \[mm/s\], about T \[rad/s\].
     pub aside: [f64; 3],
+}
+
+/// Whether the tracker lets the beams burn. Where the path tracks, the motion board opens a gate only on this, and
+/// closes it [`PERMIT_US`] after the path state that the last one answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Permit {
+    /// [`PathState::tick`] of the newest path state that the tracker had: the permit is as old as that.
+    pub tick: u32,
+    /// [`PathState::path_id`] of it.
+    pub path_id: u32,
+    /// Of beam 1 and 2.
+    pub sides: [BeamPermit; SIDES],
+}
+
+/// A permit is this long valid after the tick of the path state that it answers \[µs\].
+pub const PERMIT_US: u32 = 5000;
+
+/// What a beam may do where the path tracks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum BeamPermit {
+    /// Nothing: the slides do not follow the seam, or the tracker has a fault.
+    #[default]
+    No,
+    /// Stay on, but not go on: the seam is followed, but the spot is not on it yet, or not known to be.
+    Keep,
+    /// Go on: the seam was seen where the spot is, and both slides of the side are on it.
+    Open,
 }
 
 /// A strobe: both cameras were triggered, the slides latched.

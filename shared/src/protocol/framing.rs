@@ -1,7 +1,8 @@
 //! Bytes of requests, responses and datagrams.
 //!
 //! On the stream a message is its length (u16, little endian) and its postcard bytes. A datagram is the low
-//! half of [`super::SCHEMA_HASH`] (u32, little endian) and its postcard bytes.
+//! half of [`super::SCHEMA_HASH`], the number of the session it belongs to (both u32, little endian) and its
+//! postcard bytes.
 
 use super::{Datagram, SCHEMA_HASH};
 use serde::{Serialize, de::DeserializeOwned};
@@ -50,21 +51,30 @@ pub fn decode_message<T: DeserializeOwned>(body: &[u8]) -> Result<T, FrameError>
     }
 }
 
-/// Writes a datagram into `buffer`; returns the bytes to send.
-pub fn encode_datagram<'b>(datagram: &Datagram, buffer: &'b mut [u8]) -> Result<&'b [u8], FrameError> {
-    let body = buffer.get_mut(4..).ok_or(FrameError::TooLong)?;
+/// Bytes before the body of a datagram.
+const HEAD: usize = 8;
+
+/// Writes a datagram of the session with number `session` into `buffer`; returns the bytes to send.
+pub fn encode_datagram<'b>(
+    session: u32,
+    datagram: &Datagram,
+    buffer: &'b mut [u8],
+) -> Result<&'b [u8], FrameError> {
+    let body = buffer.get_mut(HEAD..).ok_or(FrameError::TooLong)?;
     let length = postcard::to_slice(datagram, body)
         .map_err(|_| FrameError::TooLong)?
         .len();
     buffer[..4].copy_from_slice(&(SCHEMA_HASH as u32).to_le_bytes());
-    Ok(&buffer[..4 + length])
+    buffer[4..HEAD].copy_from_slice(&session.to_le_bytes());
+    Ok(&buffer[..HEAD + length])
 }
 
-/// Reads a datagram.
-pub fn decode_datagram(bytes: &[u8]) -> Result<Datagram, FrameError> {
-    let (hash, body) = bytes.split_first_chunk::<4>().ok_or(FrameError::Malformed)?;
+/// Reads a datagram and the number of its session.
+pub fn decode_datagram(bytes: &[u8]) -> Result<(u32, Datagram), FrameError> {
+    let (hash, rest) = bytes.split_first_chunk::<4>().ok_or(FrameError::Malformed)?;
     if u32::from_le_bytes(*hash) != SCHEMA_HASH as u32 {
         return Err(FrameError::WrongSchema);
     }
-    decode_message(body)
+    let (session, body) = rest.split_first_chunk::<4>().ok_or(FrameError::Malformed)?;
+    Ok((u32::from_le_bytes(*session), decode_message(body)?))
 }

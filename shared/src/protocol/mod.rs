@@ -10,8 +10,9 @@ pub mod framing;
 mod request;
 
 pub use datagram::{
-    Batch, BoardLoad, Capture, ClockReply, ClockRequest, Datagram, Measurement, MotionSample,
-    MotionTelemetry, PathState, SideMeasurement, TELEMETRY_BATCH, TrackerSample, TrackerTelemetry,
+    Batch, BeamPermit, BoardLoad, Capture, ClockReply, ClockRequest, Datagram, Measurement, MotionSample,
+    MotionTelemetry, PERMIT_US, PathState, Permit, SideMeasurement, TELEMETRY_BATCH, TrackerSample,
+    TrackerTelemetry,
 };
 pub use element::{BadElement, PathChannel, PathElement, PathJoin, PathShape};
 pub use request::{

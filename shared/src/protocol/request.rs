@@ -32,23 +32,27 @@ pub enum Request {
         /// [`super::SCHEMA_HASH`] of the PC.
         schema_hash: u64,
     },
-    /// Send telemetry and captures to this UDP port of the PC (its address is the one it connected from).
+    /// Send telemetry and captures to this UDP port of the PC (its address is the one it connected from), and take
+    /// datagrams from there; answered by [`Response::Session`].
     Subscribe {
         /// UDP port of the PC.
         port: u16,
     },
-    /// Answered by [`Response::MotionStatus`] or [`Response::TrackerStatus`]; also keeps the session alive.
+    /// Answered by [`Response::MotionStatus`] or [`Response::TrackerStatus`]; as any request it renews the lease of
+    /// the session.
     Status,
     /// Parameters of the machine; motion board, only in state off.
     ConfigureMotion(MotionConfig),
     /// Parameters of the machine; tracker board, only in state off.
     ConfigureTracker(TrackerConfig),
-    /// Send path states to the tracker board at this address.
+    /// Send path states to the tracker board at this address, and take permits from there.
     PathStatesTo {
         /// IPv4 address.
         address: [u8; 4],
         /// UDP port.
         port: u16,
+        /// Number of the tracker board's session, which the datagrams of both boards carry.
+        session: u32,
     },
     /// Switch the drives on and find the reference marks.
     Home,
@@ -126,6 +130,11 @@ pub enum Response {
     Room(Room),
     /// Who answers.
     Identity(Identity),
+    /// Accepted; the number of this session, which all its datagrams carry.
+    Session {
+        /// Never 0.
+        number: u32,
+    },
     /// State of the motion board.
     MotionStatus(MotionStatus),
     /// State of the tracker board.

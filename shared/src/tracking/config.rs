@@ -64,6 +64,8 @@ pub struct TrackingConfig {
     pub hold_mm: f64,
     /// A sample further than this from the estimate is an outlier \[mm\].
     pub gate_mm: f64,
+    /// A beam may go on while both slides of its side are no further than this from the seam \[mm\].
+    pub lock_mm: f64,
     /// Preview time t_pre: lag and dead time of the slide drives \[s\].
     pub preview_s: f64,
     /// Time between two strobes \[ms\].

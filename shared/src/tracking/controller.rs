@@ -5,9 +5,10 @@
 //! and holds the slides where they are otherwise. *Tracking* begins and ends with the path's own tracking flag.
 //!
 //! Lost seam, saturation, a soft limit and a silent motion board do not switch the drives off: they are kept as
-//! the fault for status and telemetry, the PC stops the beams, and the slides go on as well as they can.
+//! the fault for status and telemetry, the permit of the beams ends, and the slides go on as well as they can.
 
 mod following;
+mod permit;
 mod requests;
 
 use super::clock::ClockRelation;
@@ -19,12 +20,16 @@ use super::search::SeamSearch;
 use super::{TrackerFault, TrackerState};
 use crate::control::{SearchInput, SearchProgress, SearchState};
 use crate::io::{Bits, Command, DacCode, SIDES, SLIDES, SlideCommand, SlideFeedback};
-use crate::protocol::{Capture, ClockRequest, Datagram, Measurement, TrackerSample};
+use crate::protocol::{BeamPermit, Capture, ClockRequest, Datagram, Measurement, Permit, TrackerSample};
 use crate::trajectory::Path;
 use heapless::Vec;
 
 /// Control ticks between two clock requests: 10 Hz.
 const CLOCK_REQUEST_TICKS: u32 = 100;
+/// Drives are on for so long with nobody in charge \[s\], as on the motion board.
+const UNATTENDED_S: u8 = 2;
+/// The same \[ticks\].
+const UNATTENDED_TICKS: u32 = UNATTENDED_S as u32 * 1000;
 
 /// What one control tick reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +51,8 @@ pub struct TickOutput {
     pub command: SlideCommand,
     /// Trigger both cameras now, and offer this capture to the PC.
     pub capture: Option<Capture>,
+    /// For the motion board, once it is heard.
+    pub permit: Option<Permit>,
     /// For telemetry.
     pub sample: TrackerSample,
     /// Ask the motion board for its clock; set the time anew when it is really sent.
@@ -81,6 +88,9 @@ pub struct TrackerController<const KNOTS: usize> {
     ticks_to_strobe: u32,
     ticks_to_clock_request: u32,
     too_old: u32,
+    /// A session of a PC is there.
+    attended: bool,
+    unattended_ticks: u32,
 }
 
 /// State of one slide.
@@ -94,6 +104,8 @@ struct Slide {
     saturated_ticks: u32,
     /// Has been near the seam since tracking began.
     arrived: bool,
+    /// The seam is known where the spot is, and the slide is on it.
+    on_seam: bool,
 }
 
 impl<const KNOTS: usize> Default for TrackerController<KNOTS> {
@@ -112,6 +124,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             target: 0.0,
             saturated_ticks: 0,
             arrived: false,
+            on_seam: false,
         };
         Self {
             parameters: None,
@@ -141,6 +154,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             ticks_to_strobe: 0,
             ticks_to_clock_request: 0,
             too_old: 0,
+            attended: false,
+            unattended_ticks: 0,
         }
     }
 
@@ -172,6 +187,10 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             }
         }
         self.parameters = parameters;
+        let permit = self.permit();
+        if let Some(permit) = &permit {
+            command.beam_gate = permit.sides.map(|side| side != BeamPermit::No);
+        }
         let request = due(
             &mut self.ticks_to_clock_request,
             input.periods,
@@ -181,6 +200,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             sample: self.sample(input, &command),
             command,
             capture,
+            permit,
             clock_request: request.then_some(ClockRequest {
                 asked_us: input.now_us,
             }),
@@ -202,10 +222,24 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                     .add_round_trip(reply.asked_us, reply.received_us, reply.replied_us, arrived_us)
             }
             // What only this board or the motion board sends to the PC; clock requests are answered below.
-            Datagram::Capture(_)
+            Datagram::Permit(_)
+            | Datagram::Capture(_)
             | Datagram::MotionTelemetry(_)
             | Datagram::TrackerTelemetry(_)
             | Datagram::ClockRequest(_) => {}
+        }
+    }
+
+    /// The PC's session has ended, however that came: no beam has a permit any more, and a search for the marks ends.
+    pub fn session_ended(&mut self) {
+        self.attended = false;
+        match self.state {
+            TrackerState::Tracking => self.report(TrackerFault::SessionEnded),
+            TrackerState::Homing => {
+                self.report(TrackerFault::SessionEnded);
+                self.state = TrackerState::Fault;
+            }
+            TrackerState::Off | TrackerState::Ready | TrackerState::Fault => {}
         }
     }
 
@@ -245,6 +279,10 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         place: Option<&Place>,
     ) -> SlideCommand {
         let on = !matches!(self.state, TrackerState::Off | TrackerState::Fault);
+        self.unattended_ticks = match on && !self.attended {
+            true => self.unattended_ticks.saturating_add(1),
+            false => 0,
+        };
         if on && let Some(fault) = self.trip() {
             self.report(fault);
             self.state = TrackerState::Fault;
@@ -261,6 +299,11 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         let feedback = &self.feedback;
         if feedback.estop {
             return Some(TrackerFault::EmergencyStop);
+        }
+        if self.unattended_ticks > UNATTENDED_TICKS {
+            return Some(TrackerFault::Unattended {
+                seconds: UNATTENDED_S,
+            });
         }
         (0..SLIDES).find_map(|i| {
             let slide = i as u8;

@@ -79,6 +79,15 @@ pub enum TrackerFault {
         /// Where it stands.
         position_mm: f32,
     },
+    /// The session of the PC ended while a path was tracked, or while homing.
+    #[error("the PC's session ended while the slides moved; look at the PC and its cable, then reset")]
+    SessionEnded,
+    /// The session of the PC ended and no other one began.
+    #[error("nobody was in charge for {seconds} s: the slide drives were switched off; connect, then reset")]
+    Unattended {
+        /// How long.
+        seconds: u8,
+    },
     /// The motion board was not heard while tracking.
     #[error("the motion board was silent for {silent_ms} ms while tracking")]
     PathStale {

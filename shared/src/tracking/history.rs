@@ -100,6 +100,11 @@ impl PathHistory {
         Some((place(last)?, last.time_us))
     }
 
+    /// Tick and path number of the newest path state.
+    pub fn newest_tick(&self) -> Option<(u32, u32)> {
+        self.states.back().map(|state| (state.tick, state.path_id))
+    }
+
     /// The place at the motion board's time `time_us`: between two states interpolated, after the newest one
     /// moved on with its speed. `None` before the oldest.
     pub fn at(&self, time_us: u64) -> Option<Place> {

@@ -24,6 +24,8 @@ pub struct TrackerParameters {
     pub map: MapLaw,
     /// How U slides look for a seam that was not seen yet.
     pub search: SearchLaw,
+    /// A beam may go on while both slides of its side are no further than this from the seam \[mm\].
+    pub lock: f64,
     /// Preview time \[s\].
     pub preview: f64,
     /// Control ticks between two strobes.
@@ -76,17 +78,20 @@ impl TrackerConfig {
         };
         // Spaced so that the map reaches from behind the beam to the camera at any path speed.
         let reach = heads.camera_lead() + 2.0 * window + hold;
+        let gate = positive("tracking", "gate_mm", tracking.gate_mm)?;
+        let lock = check("tracking", "lock_mm", tracking.lock_mm, |v| v > 0.0 && v <= gate)?;
         Ok(TrackerParameters {
             heads,
             slides,
             map: MapLaw {
                 window,
                 hold,
-                gate: positive("tracking", "gate_mm", tracking.gate_mm)?,
+                gate,
                 spacing: reach / MAP_CAPACITY as f64,
                 keep: MAP_CAPACITY,
             },
             search,
+            lock,
             preview,
             frame_ticks: tracking.frame_period_ms,
             stale_path_us: u64::from(tracking.stale_path_ms) * 1000,

@@ -50,6 +50,7 @@ pub fn config() -> TrackerConfig {
             window_mm: 3.0,
             hold_mm: 2.0,
             gate_mm: 1.0,
+            lock_mm: 0.1,
             preview_s: 0.01,
             frame_period_ms: 5,
             dead_band_mm: 0.0,

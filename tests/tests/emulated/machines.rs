@@ -19,12 +19,7 @@ fn the_pipe_welder_homes_to_its_own_marks() {
         MachineFile::read(&shipped("machines/pipe-welder.toml")).unwrap_or_else(|error| panic!("{error}"));
     let mut pair = Pair::boot_as("pipe-welder", machine.motion.kinematics.name());
     let mut boards = pair.connect();
-    let port = boards.datagram_port(Role::Motion).expect("a motion board");
-    for request in [
-        Request::Subscribe { port },
-        Request::ConfigureMotion(machine.motion.clone()),
-        Request::Home,
-    ] {
+    for request in [Request::ConfigureMotion(machine.motion.clone()), Request::Home] {
         command(&mut boards, Role::Motion, &request).unwrap_or_else(|error| panic!("{error}"));
     }
 

@@ -4,12 +4,12 @@
 use crate::pair::{Pair, program, scratch, status};
 use crate::process::{Process, runs, wait_until};
 use emulator::PROGRAM_VARIABLES;
-use host_link::boards::{Boards, command};
+use host_link::boards::Boards;
 use host_link::weld::JobError;
 use nix::sys::signal::Signal;
 use serde_json::Value;
 use shared::motion::{Fault, State};
-use shared::protocol::{Datagram, MotionSample, Request, Role};
+use shared::protocol::{Datagram, MotionSample};
 use shared::tracking::TrackerState;
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -95,8 +95,6 @@ fn without_the_pc_the_machine_stops_on_its_path_and_welds_again_later() {
 
     // Saying Hello and listening to telemetry does not count as the PC that started the path.
     let mut boards = pair.connect();
-    let port = boards.datagram_port(Role::Motion).expect("a motion board");
-    command(&mut boards, Role::Motion, &Request::Subscribe { port }).expect("a board that answers");
     let mut samples: Vec<MotionSample> = Vec::new();
     let end = Instant::now() + Duration::from_secs(30);
     while samples.last().is_none_or(|last| last.state != State::Fault) {

@@ -4,7 +4,7 @@ use super::stream::Stream;
 use super::{Endpoint, Incoming, Patience, waits};
 use crate::boards::LinkError;
 use shared::protocol::framing;
-use shared::protocol::{Datagram, Identity, Role, SCHEMA_HASH};
+use shared::protocol::{Datagram, Identity, Request, Response, Role, SCHEMA_HASH};
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::sync::Arc;
@@ -20,7 +20,8 @@ const READER_WAKES: Duration = Duration::from_millis(50);
 pub(super) struct Connection {
     pub(super) stream: Stream,
     pub(super) datagrams: UdpSocket,
-    pub(super) datagram_port: u16,
+    /// Number of the session, which its datagrams carry.
+    pub(super) session: u32,
     pub(super) board: SocketAddrV4,
     pub(super) identity: Identity,
     reader: Option<JoinHandle<()>>,
@@ -40,7 +41,7 @@ impl Connection {
             address: endpoint.to_string(),
             source,
         };
-        let (stream, identity) = Stream::open(role, endpoint, patience)?;
+        let (mut stream, identity) = Stream::open(role, endpoint, patience)?;
         if identity.schema_hash != SCHEMA_HASH {
             return Err(LinkError::WrongSchema {
                 role,
@@ -64,11 +65,17 @@ impl Connection {
         datagrams
             .set_read_timeout(Some(READER_WAKES))
             .map_err(unreachable)?;
-        let datagram_port = datagrams.local_addr().map_err(unreachable)?.port();
+        let port = datagrams.local_addr().map_err(unreachable)?.port();
+        let session = match stream.request(&Request::Subscribe { port })? {
+            Response::Session { number } => number,
+            Response::Refused(refusal) => return Err(LinkError::Refused { role, refusal }),
+            _ => return Err(LinkError::Unexpected { role }),
+        };
         let unwanted = Arc::new(AtomicBool::new(false));
         let reader = Reader {
             role,
             board: *board.ip(),
+            session,
             datagrams: datagrams.try_clone().map_err(unreachable)?,
             sender: sender.clone(),
             bad: Arc::clone(bad),
@@ -77,7 +84,7 @@ impl Connection {
         Ok(Self {
             stream,
             datagrams,
-            datagram_port,
+            session,
             board,
             identity,
             reader: Some(std::thread::spawn(|| reader.run())),
@@ -101,6 +108,7 @@ impl Drop for Connection {
 struct Reader {
     role: Role,
     board: Ipv4Addr,
+    session: u32,
     datagrams: UdpSocket,
     sender: SyncSender<Incoming>,
     bad: Arc<AtomicU32>,
@@ -134,7 +142,8 @@ impl Reader {
     fn decode(&self, bytes: &[u8], from: SocketAddr) -> Option<Datagram> {
         let datagram = framing::decode_datagram(bytes)
             .ok()
-            .filter(|_| from.ip() == IpAddr::V4(self.board));
+            .filter(|(session, _)| *session == self.session && from.ip() == IpAddr::V4(self.board))
+            .map(|(_, datagram)| datagram);
         if datagram.is_none() {
             self.bad.fetch_add(1, Ordering::Relaxed);
         }

@@ -208,9 +208,9 @@ impl Boards for NetworkBoards {
 
     fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
         let mut buffer = [0; framing::MAX_DATAGRAM];
-        let bytes = framing::encode_datagram(datagram, &mut buffer)
-            .map_err(|source| LinkError::Frame { role, source })?;
         let connection = self.connection(role).ok_or(LinkError::Absent { role })?;
+        let bytes = framing::encode_datagram(connection.session, datagram, &mut buffer)
+            .map_err(|source| LinkError::Frame { role, source })?;
         connection
             .datagrams
             .send_to(bytes, connection.board)
@@ -226,12 +226,13 @@ impl Boards for NetworkBoards {
         self.connection(role).map(|connection| &connection.identity)
     }
 
-    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
-        self.path_states_target
-    }
-
-    fn datagram_port(&self, role: Role) -> Option<u16> {
-        self.connection(role).map(|connection| connection.datagram_port)
+    fn path_states_target(&self) -> Option<Request> {
+        let (address, port) = self.path_states_target?;
+        Some(Request::PathStatesTo {
+            address,
+            port,
+            session: self.tracker.as_ref()?.session,
+        })
     }
 }
 

@@ -78,7 +78,7 @@ impl Stream {
         let identity = match stream.request(&hello)? {
             Response::Identity(identity) => identity,
             Response::Refused(refusal) => return Err(LinkError::Refused { role, refusal }),
-            Response::Done | Response::Room(_) | Response::MotionStatus(_) | Response::TrackerStatus(_) => {
+            _ => {
                 return Err(LinkError::Unexpected { role });
             }
         };

@@ -10,6 +10,8 @@ const BRIEF: Patience = Patience {
     connect: Duration::from_millis(500),
     answer: Duration::from_millis(300),
 };
+/// Number of the sessions of all fakes.
+const SESSION: u32 = 0x0102_0304;
 const AMPLE: Duration = Duration::from_secs(10);
 
 /// A board on this machine that takes one session and answers with `answer`; the thread ends with the
@@ -17,6 +19,8 @@ const AMPLE: Duration = Duration::from_secs(10);
 struct Fake {
     endpoint: Endpoint,
     datagrams: UdpSocket,
+    /// Where the PC wants its datagrams, once it has said so.
+    subscriber: Arc<AtomicU32>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -52,16 +56,36 @@ impl Fake {
         Self {
             endpoint,
             datagrams,
+            subscriber: Arc::default(),
             thread: Some(thread),
         }
     }
 
-    /// A board of `role` that answers Hello, and everything else with `answer`.
+    /// A board of `role` that answers Hello and Subscribe, and everything else with `answer`.
     fn board(role: Role, mut answer: impl FnMut(Request) -> Option<Vec<u8>> + Send + 'static) -> Self {
-        Self::new(move |request| match request {
+        let subscriber = Arc::new(AtomicU32::new(0));
+        let told = Arc::clone(&subscriber);
+        let mut fake = Self::new(move |request| match request {
             Request::Hello { .. } => Some(bytes(&Response::Identity(identity(role)))),
+            Request::Subscribe { port } => {
+                told.store(u32::from(port), Ordering::Relaxed);
+                Some(bytes(&Response::Session { number: SESSION }))
+            }
             request => answer(request),
-        })
+        });
+        fake.subscriber = subscriber;
+        fake
+    }
+
+    /// Sends a datagram of the session `session` to the PC.
+    fn send(&self, session: u32, datagram: &Datagram) {
+        let mut buffer = [0; 64];
+        self.send_bytes(framing::encode_datagram(session, datagram, &mut buffer).unwrap());
+    }
+
+    fn send_bytes(&self, bytes: &[u8]) {
+        let port = self.subscriber.load(Ordering::Relaxed) as u16;
+        self.datagrams.send_to(bytes, ("127.0.0.1", port)).unwrap();
     }
 
     fn silent(role: Role) -> Self {
@@ -134,26 +158,12 @@ fn datagrams_come_from_both_boards_in_order_and_bad_ones_are_counted() {
     let (motion, tracker) = (Fake::silent(Role::Motion), Fake::silent(Role::Tracker));
     let mut boards = connect(&motion, &tracker).unwrap();
     let datagram = |asked_us| Datagram::ClockRequest(ClockRequest { asked_us });
-    let send = |board: &Fake, port, bytes: &[u8]| {
-        board.datagrams.send_to(bytes, ("127.0.0.1", port)).unwrap();
-    };
-    let mut buffer = [0; 64];
-    let ports = (
-        boards.datagram_port(Role::Motion).unwrap(),
-        boards.datagram_port(Role::Tracker).unwrap(),
-    );
-    send(&motion, ports.0, &[1, 2, 3, 4, 5]);
+    motion.send_bytes(&[1, 2, 3, 4, 5]);
+    // Left over from another session.
+    motion.send(SESSION + 1, &datagram(7));
     for k in 0..20 {
-        send(
-            &motion,
-            ports.0,
-            framing::encode_datagram(&datagram(k), &mut buffer).unwrap(),
-        );
-        send(
-            &tracker,
-            ports.1,
-            framing::encode_datagram(&datagram(100 + k), &mut buffer).unwrap(),
-        );
+        motion.send(SESSION, &datagram(k));
+        tracker.send(SESSION, &datagram(100 + k));
     }
     let (mut from_motion, mut from_tracker) = (0, 100);
     for _ in 0..40 {
@@ -166,7 +176,7 @@ fn datagrams_come_from_both_boards_in_order_and_bad_ones_are_counted() {
         *next += 1;
     }
     assert_eq!(boards.receive(Duration::ZERO).unwrap(), None);
-    assert_eq!(boards.bad_datagrams(), 1);
+    assert_eq!(boards.bad_datagrams(), 2);
 }
 
 #[test]
@@ -177,11 +187,18 @@ fn datagrams_reach_the_board() {
     boards.send(Role::Tracker, &datagram).unwrap();
     let mut buffer = [0; 64];
     let (length, from) = tracker.datagrams.recv_from(&mut buffer).unwrap();
-    assert_eq!(framing::decode_datagram(&buffer[..length]), Ok(datagram));
-    assert_eq!(Some(from.port()), boards.datagram_port(Role::Tracker));
+    assert_eq!(
+        framing::decode_datagram(&buffer[..length]),
+        Ok((SESSION, datagram))
+    );
+    assert_eq!(u32::from(from.port()), tracker.subscriber.load(Ordering::Relaxed));
     assert_eq!(
         boards.path_states_target(),
-        Some(([127, 0, 0, 1], tracker.endpoint.datagram_port))
+        Some(Request::PathStatesTo {
+            address: [127, 0, 0, 1],
+            port: tracker.endpoint.datagram_port,
+            session: SESSION,
+        })
     );
 }
 
@@ -191,7 +208,6 @@ fn a_session_without_a_tracker_board_leaves_it_alone() {
     let mut boards = NetworkBoards::connect(&motion.endpoint, None, None, BRIEF).unwrap();
     assert!(boards.identity(Role::Motion).is_some());
     assert_eq!(boards.identity(Role::Tracker), None);
-    assert_eq!(boards.datagram_port(Role::Tracker), None);
     assert_eq!(boards.path_states_target(), None);
     let error = boards.request(Role::Tracker, &Request::Status).unwrap_err();
     assert!(error.to_string().contains("no tracker board"), "{error}");

@@ -178,16 +178,16 @@ impl SimulatedBoards {
     fn control_tick(&mut self) {
         self.enter(self.now_us + CONTROL_US, Happening::ControlTick);
         let tracker = Node::Board(Role::Tracker);
-        let (capture, request) = self.tracker.tick(self.now_us + TRACKER_CLOCK_US);
-        if let Some(capture) = capture {
+        let output = self.tracker.tick(self.now_us + TRACKER_CLOCK_US);
+        let motion = Node::Board(Role::Motion);
+        if let Some(permit) = output.permit {
+            self.post(tracker, motion, Datagram::Permit(permit));
+        }
+        if let Some(capture) = output.capture {
             self.post(tracker, Node::Pc, Datagram::Capture(capture));
         }
-        if let Some(request) = request {
-            self.post(
-                tracker,
-                Node::Board(Role::Motion),
-                Datagram::ClockRequest(request),
-            );
+        if let Some(request) = output.clock_request {
+            self.post(tracker, motion, Datagram::ClockRequest(request));
         }
         if let Some(telemetry) = self.tracker.telemetry() {
             self.post(tracker, Node::Pc, Datagram::TrackerTelemetry(telemetry));
@@ -212,9 +212,10 @@ impl SimulatedBoards {
             (Node::Board(Role::Tracker), _, datagram) => {
                 self.tracker.controller.datagram(&datagram, clock_us)
             }
+            (Node::Board(Role::Motion), _, datagram) => self.motion.datagram(&datagram, clock_us),
             (Node::Pc, Node::Board(role), datagram) => self.inbox.push_back((role, datagram)),
-            // The motion board takes no other datagrams, and the PC does not write to itself.
-            (Node::Board(Role::Motion) | Node::Pc, _, _) => {}
+            // The PC does not write to itself.
+            (Node::Pc, Node::Pc, _) => {}
         }
     }
 }
@@ -227,7 +228,8 @@ impl Boards for SimulatedBoards {
             (_, Request::Hello { .. }) => {
                 Response::Identity(self.identities[usize::from(role == Role::Tracker)].clone())
             }
-            (_, Request::Subscribe { .. }) | (Role::Motion, Request::PathStatesTo { .. }) => Response::Done,
+            (_, Request::Subscribe { .. }) => Response::Session { number: 1 },
+            (Role::Motion, Request::PathStatesTo { .. }) => Response::Done,
             (Role::Motion, request) => self.motion.handle(request),
             (Role::Tracker, request) => self.tracker.controller.handle(request, 0),
         })
@@ -252,11 +254,11 @@ impl Boards for SimulatedBoards {
         Some(&self.identities[usize::from(role == Role::Tracker)])
     }
 
-    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
-        Some(([0; 4], 0))
-    }
-
-    fn datagram_port(&self, _role: Role) -> Option<u16> {
-        Some(0)
+    fn path_states_target(&self) -> Option<Request> {
+        Some(Request::PathStatesTo {
+            address: [0; 4],
+            port: 0,
+            session: 1,
+        })
     }
 }

@@ -3,7 +3,7 @@
 use plant::MotionPlant;
 use shared::io::MotionCommand;
 use shared::motion::{MotionController, PathTickInput, SERVO_TICKS_PER_PATH_TICK, ServoLoops};
-use shared::protocol::{Batch, MotionSample, MotionTelemetry, PathState, Request, Response};
+use shared::protocol::{Batch, Datagram, MotionSample, MotionTelemetry, PathState, Request, Response};
 
 pub struct MotionBoard {
     plant: MotionPlant,
@@ -64,6 +64,13 @@ impl MotionBoard {
 
     pub fn handle(&mut self, request: &Request) -> Response {
         self.controller.handle(request, 0)
+    }
+
+    /// A datagram of the tracker board that arrived at `arrived_us`.
+    pub fn datagram(&mut self, datagram: &Datagram, arrived_us: u64) {
+        if let Some(lease) = self.controller.datagram(datagram, arrived_us) {
+            self.servo.renew(lease);
+        }
     }
 }
 

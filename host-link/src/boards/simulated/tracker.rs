@@ -3,8 +3,8 @@
 use super::KNOTS;
 use plant::SlidePlant;
 use shared::io::SlideCommand;
-use shared::protocol::{Batch, Capture, ClockRequest, TrackerSample, TrackerTelemetry};
-use shared::tracking::{TickInput, TrackerController};
+use shared::protocol::{Batch, TrackerSample, TrackerTelemetry};
+use shared::tracking::{TickInput, TickOutput, TrackerController};
 
 pub struct TrackerBoard {
     plant: SlidePlant,
@@ -27,8 +27,8 @@ impl TrackerBoard {
         }
     }
 
-    /// One control tick at `now_us` of the board's clock; the capture and the clock request to send.
-    pub fn tick(&mut self, now_us: u64) -> (Option<Capture>, Option<ClockRequest>) {
+    /// One control tick at `now_us` of the board's clock; what there is to send.
+    pub fn tick(&mut self, now_us: u64) -> TickOutput {
         let mut feedback = self.plant.advance(&self.command);
         feedback.estop = self.estop;
         let truth = Some(self.plant.truth());
@@ -41,7 +41,7 @@ impl TrackerBoard {
         self.command = output.command;
         let full = self.batch.push(output.sample);
         self.telemetry = full.map(|samples| TrackerTelemetry { samples });
-        (output.capture, output.clock_request)
+        output
     }
 
     /// Telemetry to send since the last call.

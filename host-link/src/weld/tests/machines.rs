@@ -31,12 +31,8 @@ impl Boards for MotionOnly {
         self.0.identity(role).filter(|_| role == Role::Motion)
     }
 
-    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
+    fn path_states_target(&self) -> Option<Request> {
         None
-    }
-
-    fn datagram_port(&self, role: Role) -> Option<u16> {
-        self.0.datagram_port(role).filter(|_| role == Role::Motion)
     }
 }
 

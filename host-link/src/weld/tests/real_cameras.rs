@@ -286,12 +286,8 @@ impl Boards for World {
         self.boards.identity(role)
     }
 
-    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
+    fn path_states_target(&self) -> Option<Request> {
         self.boards.path_states_target()
-    }
-
-    fn datagram_port(&self, role: Role) -> Option<u16> {
-        self.boards.datagram_port(role)
     }
 }
 

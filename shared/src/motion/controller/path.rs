@@ -7,9 +7,11 @@ use crate::kinematics::AXIS_UNIT;
 use crate::motion::aside::Aside;
 use crate::motion::beams::{Activity, Beams, EventQueue};
 use crate::motion::overlap::Overlap;
+use crate::motion::permit::BeamLease;
 use crate::motion::segment::{BeamOutput, MotorReference};
+use crate::motion::servo::ServoReport;
 use crate::motion::state::Event;
-use crate::motion::{Fault, State};
+use crate::motion::{Fault, NoPermit, State};
 use crate::trajectory::{Output, PathSpace, SpeedLimits, SpeedState, Way};
 
 /// What is published has caught up with the references after so many ticks.
@@ -256,14 +258,57 @@ impl MotionController {
         }
     }
 
-    /// Beams of the millisecond from k + 1; events count where the path position is then.
-    pub(super) fn beam_output(&mut self, laser_fault: [bool; SIDES]) -> BeamOutput {
-        let then = self.along[1];
-        let activity = match self.state {
+    fn activity(&self) -> Activity {
+        match self.state {
             State::Running => Activity::Running,
             State::Idle | State::Holding | State::Stopping => Activity::Waiting,
             State::Off | State::Homing | State::Fault => Activity::Off,
+        }
+    }
+
+    /// Why one of the gates that `beams` opens, or that were open, must be shut; a beam needs no permit where the
+    /// path does not track.
+    pub(super) fn not_permitted(&self, beams: &BeamOutput, report: &ServoReport) -> Option<Fault> {
+        if self.state != State::Running || !self.beams.tracking() {
+            return None;
+        }
+        let s_mm = self.along[1].s as f32;
+        (0..SIDES).filter(|side| beams.gate[*side]).find_map(|side| {
+            let is_on = self.gates[1].gate[side];
+            let lease = self.permits.lease(self.path.id, side, is_on, self.tick_us);
+            let lapsed = report.lapsed[side].then_some(NoPermit::Silent);
+            let (why, side) = (lapsed.or(lease.err())?, side as u8);
+            Some(match is_on {
+                true => Fault::PermitLost { side, s_mm, why },
+                false => Fault::NotLocked { side, s_mm, why },
+            })
+        })
+    }
+
+    /// How long gates may stay open from `now_us` on; those that must be shut are published as shut.
+    pub(super) fn beam_lease(&mut self, now_us: u64) -> BeamLease {
+        let mut lease = BeamLease([0; SIDES]);
+        let Some(machine) = &self.machine else {
+            return lease;
         };
+        let activity = self.activity();
+        for side in 0..SIDES {
+            if !machine.beams.allows(side, activity) {
+                self.gates.iter_mut().for_each(|gates| gates.gate[side] = false);
+            } else if activity == Activity::Running && self.beams.tracking() {
+                let permitted = self.permits.lease(self.path.id, side, true, now_us);
+                lease.0[side] = permitted.unwrap_or(0);
+            } else {
+                lease.0[side] = BeamLease::ALWAYS;
+            }
+        }
+        lease
+    }
+
+    /// Beams of the millisecond from k + 1; events count where the path position is then.
+    pub(super) fn beam_output(&mut self, laser_fault: [bool; SIDES]) -> BeamOutput {
+        let then = self.along[1];
+        let activity = self.activity();
         let mut closed = laser_fault;
         if activity == Activity::Running {
             // Rounding must not keep one from coming at a stop that stands just there.

@@ -23,6 +23,7 @@ impl MotionController {
     /// why not; nothing changes on a refusal.
     pub fn handle(&mut self, request: &Request, unsent: u32) -> Response {
         self.heard = true;
+        self.attended = true;
         let done = match request {
             Request::Status => return Response::MotionStatus(self.status(unsent)),
             Request::ConfigureMotion(config) => self.configure(config),

@@ -34,6 +34,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             self.seam_searches = Default::default();
             for slide in &mut self.slides {
                 slide.arrived = false;
+                slide.on_seam = false;
             }
         }
         if !tracking && self.state == TrackerState::Tracking {
@@ -92,7 +93,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             for (i, sight) in sights.into_iter().enumerate() {
                 let slide = &mut self.slides[u + i];
                 let away = libm::fabs(real[i].position - slide.position);
-                slide.arrived |= matches!(sight, Sight::Seam(_)) && away <= parameters.map.gate;
+                let seen = matches!(sight, Sight::Seam(_));
+                slide.arrived |= seen && away <= parameters.map.gate;
+                slide.on_seam = seen && away <= parameters.lock;
                 targets[u + i] = (!matches!(sight, Sight::Lost)).then_some(real[i]);
             }
         }

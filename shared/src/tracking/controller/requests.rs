@@ -9,6 +9,7 @@ use crate::trajectory::PathSpace;
 impl<const KNOTS: usize> TrackerController<KNOTS> {
     /// Answers a request of the PC; `unsent` datagrams could not be sent so far.
     pub fn handle(&mut self, request: &Request, unsent: u32) -> Response {
+        self.attended = true;
         let result = match request {
             Request::Status => return Response::TrackerStatus(self.status(unsent)),
             Request::ConfigureTracker(config) => self.allow(&[TrackerState::Off]).and_then(|()| {

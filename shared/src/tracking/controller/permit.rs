@@ -1,0 +1,23 @@
+//! Whether the beams may burn.
+
+use super::TrackerController;
+use crate::protocol::{BeamPermit, Permit};
+use crate::tracking::TrackerState;
+
+impl<const KNOTS: usize> TrackerController<KNOTS> {
+    /// The permit of this tick; `None` until the motion board was heard. No beam burns on a tracked path unless the
+    /// slides follow the seam and nothing is wrong; none goes on unless its slides are on the seam.
+    pub(super) fn permit(&self) -> Option<Permit> {
+        let (tick, path_id) = self.history.newest_tick()?;
+        let follows = self.state == TrackerState::Tracking && self.faults.is_empty();
+        let sides = core::array::from_fn(|side: usize| {
+            let slides = &self.slides[2 * side..2 * side + 2];
+            match (follows, slides.iter().all(|slide| slide.on_seam)) {
+                (false, _) => BeamPermit::No,
+                (true, false) => BeamPermit::Keep,
+                (true, true) => BeamPermit::Open,
+            }
+        });
+        Some(Permit { tick, path_id, sides })
+    }
+}
