@@ -74,6 +74,8 @@ impl Tracking {
         around: &Surroundings,
     ) -> Result<Self, JobError> {
         let heads = unit.board.head.build()?;
+        let role = Role::Tracker;
+        boards.identity(role).ok_or(LinkError::Absent { role })?;
         let status = status(boards)?;
         Ok(Self {
             lost_before: status.lost,

@@ -4,6 +4,7 @@ mod aside;
 mod bench;
 mod holds;
 mod homing;
+mod permits;
 mod steps;
 mod stops;
 mod streaming;

@@ -3,5 +3,6 @@
 mod bench;
 mod following;
 mod jog;
+mod permits;
 mod searching;
 mod states;
