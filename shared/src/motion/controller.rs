@@ -13,11 +13,11 @@ use super::beams::Beams;
 use super::homing::{Homing, HomingStep};
 use super::machine::Machine;
 use super::permit::{BeamLease, Permits};
-use super::segment::{BeamOutput, MotorReference, PATH_PERIOD_S, Segment};
+use super::segment::{MotorReference, PATH_PERIOD_S, Segment};
 use super::servo::{ServoOrder, ServoReport, ServoSetup};
 use super::state::Event;
 use super::{Fault, State, Vibration};
-use crate::io::{AXES, MOTORS};
+use crate::io::{AXES, MOTORS, SIDES};
 use crate::protocol::{Datagram, MotionSample, PathState};
 use crate::trajectory::{BoardPlanner, SpeedState};
 use path::LoadedPath;
@@ -74,8 +74,8 @@ pub struct MotionController {
     beams: Beams,
     /// Along the path at k, k + 1, k + 2.
     along: [SpeedState; 3],
-    /// Gates given to the servo ticks for the millisecond from k, and from k + 1.
-    gates: [BeamOutput; 2],
+    /// Gates given to the servo ticks for the millisecond from k + 1.
+    gates: [bool; SIDES],
     /// What the tracker permits.
     permits: Permits,
     /// Of the motors at k + 2.
@@ -123,7 +123,7 @@ impl MotionController {
             factor: 1.0,
             beams: Beams::NONE,
             along: [SpeedState::at_rest(0.0); 3],
-            gates: [BeamOutput::OFF; 2],
+            gates: [false; SIDES],
             permits: Permits::NONE,
             reference: MotorReference::ZERO,
             axes: [0.0; AXES],
@@ -187,7 +187,7 @@ impl MotionController {
             self.stop_for(fault);
             beams = self.beam_output(report.laser_fault);
         }
-        self.gates = [self.gates[1], beams];
+        self.gates = beams.gate;
         let lease = self.beam_lease(input.now_us);
         if !self.state.drives_on() {
             from = self.reference;
@@ -221,7 +221,7 @@ impl MotionController {
                 pose: self.measured_pose(),
                 // On a path that is given up nobody looks for the seam any more.
                 tracking: on_path && self.state != State::Stopping && self.beams.tracking(),
-                beams: self.gates[0].gate,
+                beams: report.gate,
                 aside: self.aside.rate(),
             },
             sample: MotionSample {
@@ -231,7 +231,7 @@ impl MotionController {
                 path_id: if on_path { self.path.id } else { 0 },
                 s_mm: now.s,
                 speed_mm_s: now.v,
-                beams: self.gates[0].gate,
+                beams: report.gate,
                 axes: self.measured,
                 truth: report.truth,
                 following_error: report.peak_error.map(|error| error as f32),

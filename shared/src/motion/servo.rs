@@ -123,6 +123,8 @@ pub struct ServoReport {
     pub trip: Option<Fault>,
     /// Laser sources that reported a fault since the last report, however short.
     pub laser_fault: [bool; SIDES],
+    /// Gates that are open.
+    pub gate: [bool; SIDES],
     /// Gates that were shut since the last report because their lease had run out.
     pub lapsed: [bool; SIDES],
     /// Emergency stop is pressed now.
@@ -190,13 +192,16 @@ impl ServoLoops {
             self.take_next();
         }
         self.lease.count(elapsed);
-        if !self.enabled {
-            return MotionCommand::SAFE;
-        }
-        self.control(&position).unwrap_or_else(|fault| {
-            self.trip(fault);
+        let command = if self.enabled {
+            self.control(&position).unwrap_or_else(|fault| {
+                self.trip(fault);
+                MotionCommand::SAFE
+            })
+        } else {
             MotionCommand::SAFE
-        })
+        };
+        self.report.gate = command.beam_gate;
+        command
     }
 
     /// What happened since the last call.

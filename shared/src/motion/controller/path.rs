@@ -274,7 +274,7 @@ impl MotionController {
         }
         let s_mm = self.along[1].s as f32;
         (0..SIDES).filter(|side| beams.gate[*side]).find_map(|side| {
-            let is_on = self.gates[1].gate[side];
+            let is_on = self.gates[side];
             let lease = self.permits.lease(self.path.id, side, is_on, self.tick_us);
             let lapsed = report.lapsed[side].then_some(NoPermit::Silent);
             let (why, side) = (lapsed.or(lease.err())?, side as u8);
@@ -285,24 +285,23 @@ impl MotionController {
         })
     }
 
-    /// How long gates may stay open from `now_us` on; those that must be shut are published as shut.
-    pub(super) fn beam_lease(&mut self, now_us: u64) -> BeamLease {
-        let mut lease = BeamLease([0; SIDES]);
+    /// How long gates may stay open from `now_us` on.
+    pub(super) fn beam_lease(&self, now_us: u64) -> BeamLease {
         let Some(machine) = &self.machine else {
-            return lease;
+            return BeamLease::default();
         };
         let activity = self.activity();
-        for side in 0..SIDES {
+        let tracked = activity == Activity::Running && self.beams.tracking();
+        BeamLease(core::array::from_fn(|side| {
             if !machine.beams.allows(side, activity) {
-                self.gates.iter_mut().for_each(|gates| gates.gate[side] = false);
-            } else if activity == Activity::Running && self.beams.tracking() {
+                0
+            } else if tracked {
                 let permitted = self.permits.lease(self.path.id, side, true, now_us);
-                lease.0[side] = permitted.unwrap_or(0);
+                permitted.unwrap_or(0)
             } else {
-                lease.0[side] = BeamLease::ALWAYS;
+                BeamLease::ALWAYS
             }
-        }
-        lease
+        }))
     }
 
     /// Beams of the millisecond from k + 1; events count where the path position is then.
