@@ -2,6 +2,7 @@
 
 use crate::hello;
 use crate::qemu::{Board, PROGRAM, Setup};
+use crate::qmp::Meddling;
 use crate::session::{Endpoint, PathStatesTo, Session};
 use plant::{DEFAULT_MACHINE, MotionPlant};
 use shared::protocol::{Role, SCHEMA_HASH};
@@ -243,6 +244,22 @@ impl Boards {
             }
         }
         Ok(())
+    }
+
+    /// Does something to a board from outside.
+    pub fn meddle(&self, role: Role, meddling: Meddling) -> io::Result<()> {
+        match role {
+            Role::Motion => self.motion.meddle(meddling),
+            Role::Tracker => self.tracker.meddle(meddling),
+        }
+    }
+
+    /// Cuts the power of a board for good.
+    pub fn kill(&mut self, role: Role) -> io::Result<()> {
+        match role {
+            Role::Motion => self.motion.kill(),
+            Role::Tracker => self.tracker.kill(),
+        }
     }
 
     fn wait_for(&mut self, role: Role, deadline: Instant) -> Result<(), BootError> {

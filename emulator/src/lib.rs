@@ -10,11 +10,13 @@ mod boot;
 mod hello;
 mod pace;
 mod qemu;
+mod qmp;
 mod session;
 
 pub use boot::{BOOT_VARIABLES, Boards, BootError, Options, PROGRAM_VARIABLES};
 pub use pace::Pace;
 pub use qemu::{INSTRUCTIONS_PER_US, bound_to_parent};
+pub use qmp::Meddling;
 pub use session::{
     Endpoint, JOB_VARIABLE, MACHINE_VARIABLE, PathStatesTo, SEAM_VARIABLE, SESSION_VARIABLE, Session,
     SessionError,

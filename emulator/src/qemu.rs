@@ -1,5 +1,6 @@
 //! One board: a QEMU process.
 
+use crate::qmp::{self, ADAPTER, Meddling};
 use crate::session::Endpoint;
 use shared::protocol::{DATAGRAM_PORT, REQUEST_PORT};
 use std::ffi::OsStr;
@@ -51,6 +52,7 @@ pub struct Board {
     pub name: &'static str,
     child: Child,
     console: PathBuf,
+    directory: PathBuf,
 }
 
 impl Board {
@@ -78,10 +80,11 @@ impl Board {
             ))
             .arg("-nic")
             .arg(format!(
-                "user,model=lan9118,mac={},hostfwd=tcp:{host}:{tcp}-{BOARD_ADDRESS}:{REQUEST_PORT},\
+                "user,id={ADAPTER},model=lan9118,mac={},hostfwd=tcp:{host}:{tcp}-{BOARD_ADDRESS}:{REQUEST_PORT},\
                  hostfwd=udp:{host}:{udp}-{BOARD_ADDRESS}:{DATAGRAM_PORT}",
                 setup.mac
             ))
+            .args(["-qmp", &format!("unix:{}.qmp,server=on,wait=off", setup.name)])
             .current_dir(setup.directory)
             .stdin(Stdio::null())
             .stdout(output.try_clone()?)
@@ -91,7 +94,19 @@ impl Board {
             name: setup.name,
             child,
             console,
+            directory: setup.directory.to_owned(),
         })
+    }
+
+    /// Does something to the board from outside.
+    pub fn meddle(&self, meddling: Meddling) -> io::Result<()> {
+        qmp::meddle(&self.directory, &format!("{}.qmp", self.name), meddling)
+    }
+
+    /// Cuts its power for good.
+    pub fn kill(&mut self) -> io::Result<()> {
+        self.child.kill()?;
+        self.child.wait().map(drop)
     }
 
     /// How the process ended, if it did.

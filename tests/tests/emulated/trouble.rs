@@ -93,8 +93,9 @@ fn without_the_pc_the_machine_stops_on_its_path_and_welds_again_later() {
     host_link.signal(Signal::SIGKILL);
     host_link.end();
 
-    // Saying Hello and listening to telemetry does not count as the PC that started the path.
+    // A stranger who connects, says Hello, and asks for the state does not take the path over.
     let mut boards = pair.connect();
+    status(&mut boards);
     let mut samples: Vec<MotionSample> = Vec::new();
     let end = Instant::now() + Duration::from_secs(30);
     while samples.last().is_none_or(|last| last.state != State::Fault) {
@@ -104,25 +105,13 @@ fn without_the_pc_the_machine_stops_on_its_path_and_welds_again_later() {
             samples.extend(telemetry.samples);
         }
     }
-    let stopping: Vec<_> = samples.iter().filter(|s| s.state == State::Stopping).collect();
-    let (first, last) = (
-        stopping.first().expect("a stop"),
-        stopping.last().expect("a stop"),
-    );
-    assert!(
-        first.speed_mm_s > 80.0 && last.speed_mm_s < 1.0,
-        "{first:?} {last:?}"
-    );
-    assert!(last.s_mm - first.s_mm > 1.0, "{first:?} {last:?}");
-    // What was given to the drives and gates before the stop lasts for two more ticks.
-    for sample in samples.iter().skip_while(|s| s.state != State::Stopping).skip(2) {
-        assert_eq!(sample.beams, [false, false], "{sample:?}");
+    // The end of its session shut the beams and began the stop before anybody else could connect.
+    for sample in &samples {
+        assert_eq!(sample.beams, [false; 2], "{sample:?}");
+        assert!(matches!(sample.state, State::Stopping | State::Fault), "{sample:?}");
     }
     let (motion, tracker) = status(&mut boards);
-    let Some(Fault::LinkLost { silent_ms }) = motion.fault else {
-        panic!("{:?}", motion.fault);
-    };
-    assert!((500..600).contains(&silent_ms), "{silent_ms} ms");
+    assert_eq!(motion.fault, Some(Fault::SessionEnded));
     assert_ne!(tracker.state, TrackerState::Tracking);
 
     assert_on_seam(&weld(&mut boards, shipped_seam(), 9.0), 0.05);

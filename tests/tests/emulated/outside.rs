@@ -1,0 +1,258 @@
+//! What happens to boards from outside during a weld: a board that freezes, dies or is reset, a cable that is out, a PC
+//! that dies or is paused, and a crowd on the network. Beams are off in time, the machine stops on its path, and who is
+//! blamed is who it was.
+
+use crate::pair::{Pair, assert_served, status};
+use emulator::{Meddling, Session};
+use host_link::boards::{Boards, Overheard};
+use host_link::weld::Ended;
+use shared::motion::{Fault, State};
+use shared::protocol::framing::{MAX_DATAGRAM, encode_datagram};
+use shared::protocol::{
+    BeamPermit, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, PERMIT_US, PathState, Permit,
+    Role, SideMeasurement,
+};
+use std::net::{Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+use system_tests::{assert_on_seam, shipped_seam, weld};
+
+/// No crowd lasts longer than this.
+const LONGEST: Duration = Duration::from_secs(180);
+/// Speed of the welds \[m/min\].
+const FAST: f64 = 9.0;
+/// Way into the weld at which something happens \[mm\].
+const AFTER_MM: f64 = 150.0;
+/// A permit is valid for so long \[ms\].
+const PERMIT_MS: u32 = PERMIT_US / 1000;
+
+/// What the motion board told from the moment that something happened.
+struct Heard {
+    samples: Vec<MotionSample>,
+}
+
+/// Welds, and does `act` once the beams have been on for a while; what was told from then on.
+fn weld_and(pair: &mut Pair, mut act: impl FnMut(&mut Pair)) -> (Ended, Heard) {
+    let mut boards = pair.connect();
+    let mut on_mm = None;
+    let mut samples = Vec::new();
+    let mut overheard = Overheard {
+        boards: &mut boards as &mut dyn Boards,
+        hear: |_: &mut dyn Boards, sample: &MotionSample| {
+            if sample.beams == [true; 2] {
+                on_mm.get_or_insert(sample.s_mm);
+            }
+            let now = on_mm.is_some_and(|on| sample.s_mm >= on + AFTER_MM);
+            if samples.is_empty() && now {
+                act(pair);
+            }
+            if now {
+                samples.push(*sample);
+            }
+        },
+    };
+    let ended = weld(&mut overheard, shipped_seam(), FAST);
+    (ended, Heard { samples })
+}
+
+impl Heard {
+    /// Ticks from the moment that something happened until both beams were off \[ms\].
+    #[track_caller]
+    fn beams_off_after(&self) -> u32 {
+        let first = self.samples.first().expect("a weld");
+        let off = self.samples.iter().find(|sample| sample.beams == [false; 2]);
+        let off = off.unwrap_or_else(|| panic!("beams stay on: {:?}", self.samples.last()));
+        assert!(
+            self.samples
+                .iter()
+                .skip_while(|sample| sample.tick < off.tick)
+                .all(|sample| sample.beams == [false; 2]),
+            "a beam went on again"
+        );
+        println!(
+            "beams off {} ms and {:.2} mm after",
+            off.tick - first.tick,
+            off.s_mm - first.s_mm
+        );
+        off.tick - first.tick
+    }
+}
+
+/// A batch of telemetry, and how far emulated boards may be ahead of what the PC has handled: by so much later than the
+/// sample that the test acts on, something happens on the boards \[ms\].
+const LATE_MS: u32 = 25 + PERMIT_MS;
+
+fn assert_blamed(ended: &Ended, whom: &str) {
+    let error = ended.error.as_ref().expect("an error").to_string();
+    assert!(error.contains(whom), "{error}");
+}
+
+#[test]
+fn a_tracker_that_freezes_is_reset_dies_or_is_cut_off_shuts_the_beams_in_time() {
+    for meddling in [
+        Some(Meddling::Freeze),
+        Some(Meddling::Reset),
+        Some(Meddling::CableOut),
+        None,
+    ] {
+        let mut pair = Pair::boot("tracker-fails");
+        let (ended, heard) = weld_and(&mut pair, |pair| match meddling {
+            Some(meddling) => pair.boards.meddle(Role::Tracker, meddling).expect("a board"),
+            None => pair.boards.kill(Role::Tracker).expect("a board"),
+        });
+        println!("{meddling:?}: {}", ended.error.as_ref().expect("an error"));
+        assert!(heard.beams_off_after() <= LATE_MS, "{meddling:?}");
+        assert_blamed(&ended, "tracker");
+        let last = heard.samples.last().expect("telemetry");
+        assert!(last.speed_mm_s < 1e-6, "{last:?}");
+    }
+}
+
+#[test]
+fn a_motion_board_that_is_cut_off_stops_by_itself() {
+    let mut pair = Pair::boot("motion-cut-off");
+    let (ended, heard) = weld_and(&mut pair, |pair| {
+        pair.boards
+            .meddle(Role::Motion, Meddling::CableOut)
+            .expect("a board");
+    });
+    assert_blamed(&ended, "motion");
+    pair.boards
+        .meddle(Role::Motion, Meddling::CableIn)
+        .expect("a board");
+    // The session that was cut off keeps its place until its lease has run out.
+    let mut boards = pair.connect();
+    let (motion, _) = status(&mut boards);
+    assert_eq!(motion.state, State::Fault, "{motion:?}");
+    let Some(Fault::PermitLost { s_mm, .. }) = motion.fault else {
+        panic!("{:?}", motion.fault);
+    };
+    let told = heard.samples.last().expect("a weld");
+    let way = f64::from(s_mm) - told.s_mm;
+    println!("beams off {way:.2} mm after the last telemetry");
+    assert!(way <= told.speed_mm_s * 1e-3 * f64::from(LATE_MS), "{way} mm");
+}
+
+/// A crowd that sends frames of every kind to both boards, until dropped: 10⁴ a second in all, and 100 connections.
+struct Crowd {
+    over: Arc<AtomicBool>,
+    threads: Vec<JoinHandle<u32>>,
+}
+
+impl Crowd {
+    fn on(session: &Session) -> Self {
+        let over = Arc::new(AtomicBool::new(false));
+        let boards = [session.motion, session.tracker];
+        let mut threads = Vec::new();
+        for board in boards {
+            let stop = Arc::clone(&over);
+            threads.push(thread::spawn(move || send(&stop, board.datagrams())));
+            let stop = Arc::clone(&over);
+            threads.push(thread::spawn(move || connect(&stop, board.requests())));
+        }
+        Self { over, threads }
+    }
+
+    /// Frames and connections.
+    fn end(self) -> u32 {
+        self.over.store(true, Ordering::Relaxed);
+        self.threads
+            .into_iter()
+            .map(|thread| thread.join().expect("no panic"))
+            .sum()
+    }
+}
+
+/// Frames to one board: what is no datagram, what is of another version, and datagrams of every kind with the numbers of
+/// other sessions.
+fn send(over: &AtomicBool, board: SocketAddr) -> u32 {
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port");
+    let frames = forged();
+    let mut sent = 0;
+    let begin = Instant::now();
+    while !over.load(Ordering::Relaxed) && begin.elapsed() < LONGEST {
+        // A system that has no room drops them.
+        let _ = socket.send_to(&frames[sent as usize % frames.len()], board);
+        sent += 1;
+        if sent % 10 == 0 {
+            let due = Duration::from_micros(u64::from(sent) * 200);
+            thread::sleep(due.saturating_sub(begin.elapsed()));
+        }
+    }
+    sent
+}
+
+fn connect(over: &AtomicBool, board: SocketAddr) -> u32 {
+    let begin = Instant::now();
+    let mut made = 0;
+    while !over.load(Ordering::Relaxed) && begin.elapsed() < LONGEST {
+        drop(TcpStream::connect_timeout(&board, Duration::from_millis(100)));
+        made += 1;
+        thread::sleep((Duration::from_millis(20) * made).saturating_sub(begin.elapsed()));
+    }
+    made
+}
+
+fn forged() -> Vec<Vec<u8>> {
+    let pose = [1000.0, 1000.0, 100.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let side = SideMeasurement {
+        along_mm: 0.0,
+        delta_u_mm: 0.5,
+        delta_v_mm: 0.5,
+    };
+    let datagrams = [
+        Datagram::PathState(PathState {
+            tick: 1_000_000,
+            time_us: 1 << 40,
+            sent_us: 1 << 40,
+            path_id: 1,
+            s_mm: 10.0,
+            speed_mm_s: 150.0,
+            pose,
+            tracking: true,
+            beams: [true; 2],
+            aside: [0.0; 3],
+        }),
+        Datagram::Permit(Permit {
+            tick: 1_000_000,
+            path_id: 1,
+            sides: [BeamPermit::No; 2],
+        }),
+        Datagram::Measurement(Measurement {
+            capture: 100,
+            sides: [Some(side); 2],
+        }),
+        Datagram::ClockRequest(ClockRequest { asked_us: 5 }),
+        Datagram::ClockReply(ClockReply {
+            asked_us: 5,
+            received_us: 30_000,
+            replied_us: 30_000,
+        }),
+    ];
+    let mut frames = vec![vec![], vec![0; 3], vec![0xEE; 1400]];
+    let mut buffer = [0; MAX_DATAGRAM];
+    for (number, datagram) in (0..).zip(&datagrams) {
+        let bytes = encode_datagram(number, datagram, &mut buffer).expect("fits");
+        frames.push(bytes.to_vec());
+        let mut foreign = bytes.to_vec();
+        foreign[0] ^= 1;
+        frames.push(foreign);
+    }
+    frames
+}
+
+#[test]
+fn a_crowd_on_the_network_changes_nothing() {
+    let mut pair = Pair::boot("crowd");
+    let crowd = Crowd::on(pair.boards.session());
+    let begin = Instant::now();
+    let ended = weld(&mut pair.connect(), shipped_seam(), FAST);
+    let seconds = begin.elapsed().as_secs_f64();
+    let sent = crowd.end();
+    println!("{:.0} frames and connections a second", f64::from(sent) / seconds);
+    assert_on_seam(&ended, 0.03);
+    assert_served(&ended.report);
+    pair.assert_off();
+}
