@@ -98,6 +98,7 @@ fn findings(image: &Image, regions: &[Region]) -> Vec<String> {
         }
     }
     overlaps(image, &mut findings);
+    guard(image, regions, &mut findings);
     handlers(image, &mut findings);
     findings
 }
@@ -117,14 +118,54 @@ fn overlaps(image: &Image, findings: &mut Vec<String>) {
     }
 }
 
-/// The vector table holds the stack's top, and what Reset and faults enter.
+/// Entries of the vector table: the stack's top, what Reset enters, and one way for all faults.
+const VECTORS: [(usize, &str); 6] = [
+    (0, "_stack_start"),
+    (1, "Reset"),
+    (3, "HardFault"),
+    (4, "HardFault"),
+    (5, "HardFault"),
+    (6, "HardFault"),
+];
+
+/// `cpsid i`: how the entry of faults begins that pushes nothing on the stack it may have lost.
+const FAULT_ENTRY: u16 = 0xb672;
+
 fn handlers(image: &Image, findings: &mut Vec<String>) {
-    let expected = [(0, "_stack_start"), (1, "Reset")];
-    for (index, name) in expected {
+    for (index, name) in VECTORS {
         let symbol = image.symbols.get(name);
         if symbol.is_none() || image.vectors.get(index) != symbol {
             findings.push(format!("entry {index} of the vector table is not {name}"));
         }
+    }
+    if image.fault_entry != Some(FAULT_ENTRY) {
+        findings.push("HardFault is not the entry that pushes nothing (boards/faults)".to_string());
+    }
+    // Alike on all boards where there is none.
+    let pre_init = image.symbols.get("__pre_init");
+    if image.symbols.contains_key("PVD_AVD") && pre_init == image.symbols.get("DefaultPreInit") {
+        findings.push("outputs are not switched off before memory is set up: no __pre_init".to_string());
+    }
+}
+
+/// What lies below the stack is inaccessible while the firmware runs: no memory of the board may.
+fn guard(image: &Image, regions: &[Region], findings: &mut Vec<String>) {
+    let symbols = image
+        .symbols
+        .get("_stack_guard")
+        .zip(image.symbols.get("_stack_end"));
+    let Some((&begin, &end)) = symbols.filter(|(begin, end)| begin < end) else {
+        findings.push("there is no guard below the stack".to_string());
+        return;
+    };
+    for region in regions
+        .iter()
+        .filter(|region| region.begin < end && begin < region.end)
+    {
+        findings.push(format!(
+            "the guard below the stack takes memory of {}",
+            region.name
+        ));
     }
 }
 
@@ -142,7 +183,12 @@ mod tests {
         let symbols = [
             ("_stack_start", 0x2002_0000),
             ("_stack_end", 0x2000_0000),
+            ("_stack_guard", 0x1ff8_0000),
             ("Reset", 0x0800_02d1),
+            ("HardFault", 0x0800_03b5),
+            ("PVD_AVD", 0x0801_5691),
+            ("__pre_init", 0x0800_0401),
+            ("DefaultPreInit", 0x0801_e7e9),
             ("__sdata", 0x2400_0000),
             ("__edata", 0x2404_1df0),
             ("__sbss", 0x2404_1df0),
@@ -161,7 +207,12 @@ mod tests {
             ],
             loads: vec![part("the segment for 0x24000000", 0x0804_be08, 0x0808_dbf8)],
             symbols: symbols.map(|(name, value)| (name.to_string(), value)).into(),
-            vectors: vec![0x2002_0000, 0x0800_02d1],
+            vectors: [
+                [0x2002_0000, 0x0800_02d1, 0x0801_5671].as_slice(),
+                &[0x0800_03b5; 4],
+            ]
+            .concat(),
+            fault_entry: Some(FAULT_ENTRY),
         }
     }
 
@@ -225,5 +276,36 @@ mod tests {
     fn a_vector_table_that_leads_elsewhere_is_found() {
         let findings = found(|image| image.vectors[0] = 0x2405_0000);
         assert_eq!(findings, ["entry 0 of the vector table is not _stack_start"]);
+        let findings = found(|image| image.vectors[4] = 0x0801_55f9);
+        assert_eq!(findings, ["entry 4 of the vector table is not HardFault"]);
+    }
+
+    #[test]
+    fn a_fault_handler_that_pushes_and_a_start_that_leaves_outputs_floating_are_found() {
+        // push {r7, lr}
+        let findings = found(|image| image.fault_entry = Some(0xb580));
+        assert_eq!(
+            findings,
+            ["HardFault is not the entry that pushes nothing (boards/faults)"]
+        );
+        let findings = found(|image| {
+            image.symbols.insert("__pre_init".to_string(), 0x0801_e7e9);
+        });
+        assert_eq!(
+            findings,
+            ["outputs are not switched off before memory is set up: no __pre_init"]
+        );
+    }
+
+    #[test]
+    fn a_guard_over_memory_is_found() {
+        let findings = found(|image| {
+            image.symbols.insert("_stack_guard".to_string(), 0x2000_0000);
+        });
+        assert_eq!(findings, ["there is no guard below the stack"]);
+        let findings = found(|image| {
+            image.symbols.insert("_stack_guard".to_string(), 0x0808_0000);
+        });
+        assert_eq!(findings, ["the guard below the stack takes memory of FLASH"]);
     }
 }

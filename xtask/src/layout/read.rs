@@ -28,8 +28,10 @@ pub struct Image {
     /// What is flashed, by segments.
     pub loads: Vec<Part>,
     pub symbols: BTreeMap<String, u64>,
-    /// The first words of the vector table: initial stack pointer, then handlers.
+    /// The vector table: initial stack pointer, then handlers.
     pub vectors: Vec<u64>,
+    /// First instruction of the handler of faults.
+    pub fault_entry: Option<u16>,
 }
 
 /// The regions of a linker script's `MEMORY`.
@@ -112,6 +114,12 @@ pub fn image(bytes: &[u8]) -> Result<Image> {
         }
     }
     image.loads = loads(&file)?;
+    if let Some(entry) = image.symbols.get("HardFault") {
+        // The lowest bit of a function's address is the instruction set's.
+        let text = file.section_by_name(".text").context("there is no .text")?;
+        let code = text.data_range(entry & !1, 2)?;
+        image.fault_entry = code.map(|code| u16::from_le_bytes([code[0], code[1]]));
+    }
     Ok(image)
 }
 
