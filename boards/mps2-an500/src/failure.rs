@@ -4,7 +4,7 @@
 //! interrupts are: nothing more reaches the plant. Then the message is logged and QEMU ends with exit code
 //! [`EXIT_CODE`], so that no failure passes for an orderly end.
 
-use crate::semihosting::exit;
+use crate::semihosting::{exit, say};
 use board_faults::Fault;
 use core::panic::PanicInfo;
 use cortex_m_rt::exception;
@@ -32,6 +32,8 @@ fn defmt_panic() -> ! {
 extern "Rust" fn board_fault(fault: &Fault) -> ! {
     crate::logger::abandon();
     if fault.stack_overflow() {
+        // To the console too, which programs without a logger have.
+        say("the stack ran over its end\n");
         defmt::error!("the stack ran over its end");
     }
     defmt::error!(

@@ -78,5 +78,6 @@ fn outputs_get_the_mode_of_an_output_and_no_other_pin_is_touched() {
         );
     }
     // Out of reset all pins are analog: 0b11.
-    assert_eq!(!0 & !clear | set, 0x5fd5_557f);
+    let out_of_reset = u32::MAX;
+    assert_eq!(out_of_reset & !clear | set, 0x5fd5_557f);
 }

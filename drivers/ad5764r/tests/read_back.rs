@@ -110,11 +110,11 @@ fn codes(tick: i16) -> [(Output, i16); 5] {
     })
 }
 
+/// What was told: the tick, the chip, and what was seen.
+type Told = (i16, usize, u16);
+
 /// The result of `ticks` updates with a reading in every fourth; `happens` changes the chips before each.
-fn run(
-    ticks: i16,
-    mut happens: impl FnMut(i16, &mut Chips),
-) -> (Result<(), (i16, usize, u16)>, Rc<RefCell<Chips>>) {
+fn run(ticks: i16, mut happens: impl FnMut(i16, &mut Chips)) -> (Result<(), Told>, Rc<RefCell<Chips>>) {
     let chips = Rc::new(RefCell::new(Chips::default()));
     let wire = |sync| Wire(chips.clone(), sync);
     let mut bank = Bank::new(
