@@ -28,12 +28,31 @@ fn run(planner: &mut BoardPlanner) -> Result<(), Stopped> {
     let mut buffer = [0; LONGEST];
     let line = benchmark::command_line(&mut line).ok_or(Stopped::NoName)?;
     let name = line.split(' ').nth(1).ok_or(Stopped::NoName)?;
+    if name == STACK_OVERFLOW {
+        overflow(0);
+        return Err(Stopped::NoEnd);
+    }
     let file = benchmark::read_file(MACHINES_FILE, &mut buffer).ok_or(Stopped::NoFile)?;
     Ok(benchmarks::run(name, file, &mut Timer, &mut Console, planner)?)
 }
 
+/// Not a benchmark: runs the stack over its end, which is to end the board in its handler of faults.
+const STACK_OVERFLOW: &str = "stack-overflow";
+
+/// Calls itself until the stack has no end any more, or 128 KB and more are used.
+#[inline(never)]
+fn overflow(depth: u32) -> u32 {
+    let frame = core::hint::black_box([depth; 64]);
+    if depth > 4096 {
+        return depth;
+    }
+    overflow(depth + 1) + core::hint::black_box(frame)[0]
+}
+
 #[derive(Debug, Error)]
 enum Stopped {
+    #[error("the stack did not run over its end")]
+    NoEnd,
     #[error("QEMU was told no benchmark")]
     NoName,
     #[error("the file of machines is missing or too long")]

@@ -6,6 +6,7 @@ mod emulate;
 mod firmware;
 mod flash;
 mod interrupt;
+mod layout;
 mod machine;
 mod setup;
 mod size;

@@ -1,9 +1,10 @@
-//! Flash and RAM of the firmwares against declared budgets.
+//! Flash and RAM of the firmwares against declared budgets, and whether each part of an image lies in its memory.
 //!
 //! A budget has a ceiling, so that growth is seen, and a floor, because a firmware that panics early can be
 //! optimised to next to nothing and still link.
 
 use crate::firmware::{self, Board, Firmware};
+use crate::layout;
 use anyhow::{Context, Result};
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind, elf};
 use std::fs;
@@ -50,11 +51,15 @@ const CONTROLLER: &str = "local_init_controller";
 /// Addresses of data memory on both boards; below it is code memory.
 const RAM_BEGINS: u64 = 0x2000_0000;
 
-/// Builds all firmwares and prints the table; fails when one is outside its budget.
+/// Builds all firmwares and prints the table; fails when one is outside its budget, or not where its board has memory.
 pub fn run() -> Result<ExitCode> {
     let mut rows = Vec::new();
+    let mut misplaced = Vec::new();
     for (firmware, board) in firmware::ALL {
-        rows.push((firmware, board, measure(&firmware::build(firmware, board)?)?));
+        let image = firmware::build(firmware, board)?;
+        rows.push((firmware, board, measure(&image)?));
+        let findings = layout::check(&image, board)?.into_iter();
+        misplaced.extend(findings.map(|finding| format!("{} on {board}: {finding}", firmware.package())));
     }
     println!(
         "{:<18} {:<14} {:>9} {:>9}  {:>9} {:>9}  {:>16} {:>9}",
@@ -81,7 +86,10 @@ pub fn run() -> Result<ExitCode> {
         );
         inside &= ok;
     }
-    Ok(if inside {
+    for finding in &misplaced {
+        println!("MISPLACED: {finding}");
+    }
+    Ok(if inside && misplaced.is_empty() {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE

@@ -100,6 +100,7 @@ pub fn run() -> Result<ExitCode> {
         ExitCode::SUCCESS => Ok(()),
         _ => bail!("a firmware is outside its budget"),
     });
+    tally.check("stack that runs over on mps2-an500", bench::stack_overflow);
     match emulated_tests() {
         Ok(command) => tally.test("system tests", command),
         Err(error) => tally.failed("system tests", &error),

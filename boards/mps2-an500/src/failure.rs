@@ -4,9 +4,10 @@
 //! interrupts are: nothing more reaches the plant. Then the message is logged and QEMU ends with exit code
 //! [`EXIT_CODE`], so that no failure passes for an orderly end.
 
-use crate::semihosting::exit;
+use crate::semihosting::{exit, say};
+use board_faults::Fault;
 use core::panic::PanicInfo;
-use cortex_m_rt::{ExceptionFrame, exception};
+use cortex_m_rt::exception;
 
 /// Exit code of QEMU after a panic or a fault.
 const EXIT_CODE: usize = 101;
@@ -26,14 +27,19 @@ fn defmt_panic() -> ! {
     exit(EXIT_CODE)
 }
 
-#[exception]
-unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    cortex_m::interrupt::disable();
+/// Entered from `board_faults`, on a stack that begins anew.
+#[unsafe(no_mangle)]
+extern "Rust" fn board_fault(fault: &Fault) -> ! {
     crate::logger::abandon();
+    if fault.stack_overflow() {
+        // To the console too, which programs without a logger have.
+        say("the stack ran over its end\n");
+        defmt::error!("the stack ran over its end");
+    }
     defmt::error!(
         "hard fault at {=u32:#010x}, called from {=u32:#010x}",
-        frame.pc(),
-        frame.lr()
+        fault.at,
+        fault.from
     );
     exit(EXIT_CODE)
 }

@@ -33,6 +33,7 @@ pub struct Board {
 
 /// Sets the board up. Both timers run when it returns.
 pub fn init(mut core: cortex_m::Peripherals) -> Board {
+    board_faults::guard_stack(&mut core);
     time::start();
     logger::start();
     let axes = Axes {

@@ -29,6 +29,7 @@ pub struct Board {
 
 /// Sets the board up. The timer runs when it returns.
 pub fn init(mut core: cortex_m::Peripherals) -> Board {
+    board_faults::guard_stack(&mut core);
     time::start();
     logger::start();
     let slides = Slides {

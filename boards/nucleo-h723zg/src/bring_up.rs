@@ -1,22 +1,27 @@
 //! What both boards start alike.
 
 use crate::ethernet::Parts;
-use crate::outputs::{self, Bus};
-use crate::{Network, Watchdog, clocks, handlers, timebase};
+use crate::spi::Bus;
+use crate::{Watchdog, clocks, handlers, outputs, supply, timebase};
 use defmt_rtt as _;
-use embassy_stm32::spi::Spi;
 use embassy_stm32::{peripherals, rcc};
 
-/// Starts watchdog, clocks, time, network and the bus of the converters, and clocks the tick timers.
-pub(crate) fn start(mut core: cortex_m::Peripherals) -> (Watchdog, Network, Bus) {
-    // First of all: should anything below hang, the board starts anew.
+/// Starts watchdog, clocks, time and the bus of the converters, and clocks the tick timers. All outputs are off
+/// since reset; the network, which may take half a second, is left to be started when nothing else is.
+pub(crate) fn start(mut core: cortex_m::Peripherals) -> (Watchdog, Bus, Parts) {
+    outputs::kill();
+    board_faults::guard_stack(&mut core);
+    // Should anything below hang, the board starts anew.
     let watchdog = Watchdog::start();
+    supply::start();
     let p = clocks::start(&mut core);
+    supply::watch(&mut core);
     timebase::start(&mut core);
     handlers::report_last();
     rcc::enable_and_reset::<peripherals::TIM6>();
     rcc::enable_and_reset::<peripherals::TIM7>();
-    let network = Network::start(Parts {
+    let bus = Bus::start(p.SPI3, p.PC10, p.PC12, p.PC11);
+    let parts = Parts {
         controller: p.ETH,
         management: p.ETH_SMA,
         clock: p.PA1,
@@ -28,7 +33,6 @@ pub(crate) fn start(mut core: cortex_m::Peripherals) -> (Watchdog, Network, Bus)
         rx1: p.PC5,
         tx_enable: p.PG11,
         tx0: p.PG13,
-    });
-    let bus = Spi::new_blocking(p.SPI3, p.PC10, p.PC12, p.PC11, outputs::bus_config());
-    (watchdog, network, bus)
+    };
+    (watchdog, bus, parts)
 }

@@ -4,6 +4,7 @@
 //! reset does not clear, and logged at the next start.
 
 use crate::{outputs, watchdog};
+use board_faults::Fault;
 use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -12,14 +13,17 @@ use embassy_stm32::pac::RCC;
 
 /// Words that tell a record from what memory holds at power-up.
 const PANIC: u32 = 0x70616e69;
-const HARD_FAULT: u32 = 0x66617568;
+const FAULT: u32 = 0x66617568;
+const STACK: u32 = 0x73746163;
+const SUPPLY: u32 = 0x73757070;
+const CLOCK: u32 = 0x636c6f63;
 const UNHANDLED: u32 = 0x756e6861;
 
 /// The last failure.
 #[repr(C, align(8))]
 struct Failure {
     kind: AtomicU32,
-    /// Line of a panic, number of an exception.
+    /// Line of a panic, place of a fault, number of an exception.
     detail: AtomicU32,
     /// The memory keeps the last word written in a buffer that a reset loses: this one may be lost.
     flush: AtomicU32,
@@ -39,7 +43,15 @@ pub(crate) fn report_last() {
     let detail = last.detail.load(Ordering::Relaxed);
     match last.kind.swap(0, Ordering::Relaxed) {
         PANIC => defmt::error!("the last run ended in a panic, at line {} of its file", detail),
-        HARD_FAULT => defmt::error!("the last run ended in a hard fault"),
+        FAULT => defmt::error!("the last run ended in a fault at {=u32:#010x}", detail),
+        STACK => defmt::error!(
+            "the last run ended when the stack ran over its end, at {=u32:#010x}",
+            detail
+        ),
+        SUPPLY => {
+            defmt::error!("the last run ended when the supply fell below 2.85 V: check the board's 3.3 V")
+        }
+        CLOCK => defmt::error!("the last run ended when the clock from the ST-LINK failed"),
         UNHANDLED => defmt::error!(
             "the last run ended in exception {} without handler",
             detail as i32
@@ -69,9 +81,22 @@ fn panic(info: &PanicInfo) -> ! {
     stop(PANIC, info.location().map_or(0, |location| location.line()))
 }
 
-#[exception(trampoline = false)]
-unsafe fn HardFault() -> ! {
-    stop(HARD_FAULT, 0)
+/// Entered from `board_faults`, on a stack that begins anew.
+#[unsafe(no_mangle)]
+extern "Rust" fn board_fault(fault: &Fault) -> ! {
+    stop(if fault.stack_overflow() { STACK } else { FAULT }, fault.at)
+}
+
+/// The voltage detector, see `supply`.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn PVD_AVD() -> ! {
+    stop(SUPPLY, 0)
+}
+
+/// The clock security system, see `supply`. Nothing else raises it.
+#[exception]
+unsafe fn NonMaskableInt() -> ! {
+    stop(CLOCK, 0)
 }
 
 /// Any exception or interrupt that nothing handles.

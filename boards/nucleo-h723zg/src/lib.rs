@@ -5,7 +5,8 @@
 //!
 //! What is wired where stands in [`pins`] as data: the same tables set the pins up here and are checked on the
 //! host against the manufacturer's own description of the chip. On a host nothing else of this crate exists but the
-//! arithmetic in [`counting`] and [`schedule`].
+//! arithmetic in [`counting`] and [`schedule`], the bound on the converters' bus in [`exchange`], and the constants of
+//! [`reset`].
 #![cfg_attr(target_os = "none", no_std)]
 // Registers, vectors and fault handlers are reached here and nowhere else.
 #![cfg_attr(target_os = "none", allow(unsafe_code))]
@@ -14,7 +15,9 @@
 use board_copy as _;
 
 pub mod counting;
+pub mod exchange;
 pub mod pins;
+pub mod reset;
 pub mod schedule;
 
 #[cfg(target_os = "none")]
@@ -39,6 +42,10 @@ pub mod motion;
 mod outputs;
 #[cfg(target_os = "none")]
 mod phy;
+#[cfg(target_os = "none")]
+mod spi;
+#[cfg(target_os = "none")]
+mod supply;
 #[cfg(target_os = "none")]
 mod ticks;
 #[cfg(target_os = "none")]

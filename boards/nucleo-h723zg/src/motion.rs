@@ -20,6 +20,9 @@ const SERVO_PERIOD_US: u32 = 250;
 /// Period of the path tick \[µs\].
 const PATH_PERIOD_US: u32 = 1000;
 
+/// Servo ticks from one reading back of a converter's output to the next: a millisecond.
+const READ_BACK_EVERY: u32 = PATH_PERIOD_US / SERVO_PERIOD_US;
+
 /// Converters: seven velocities on the first two, beam powers on the third.
 const CHIPS: usize = 3;
 /// First output of the third converter.
@@ -45,14 +48,15 @@ pub struct Board {
 
 /// Sets the board up, outputs off. Both timers run when it returns.
 pub fn init(core: cortex_m::Peripherals) -> Board {
-    let (watchdog, network, bus) = bring_up::start(core);
+    let (watchdog, bus, parts) = bring_up::start(core);
     inputs::start(&MOTION, &LASERS_READY);
     let [gate_1, gate_2] = BEAM_GATES;
     let [x1, x2, y, z, a, b, c] = MOTION.enable;
     let axes = Axes {
-        outputs: Outputs::start(bus, &[x1, x2, y, z, a, b, c, gate_1, gate_2]),
+        outputs: Outputs::start(bus, &[x1, x2, y, z, a, b, c, gate_1, gate_2], READ_BACK_EVERY),
         encoders: core::array::from_fn(|motor| Encoder::start(&MOTION.encoders[motor])),
     };
+    let network = Network::start(parts);
     let [servo_tick, path_tick] = Tick::start([(pac::TIM6, SERVO_PERIOD_US), (pac::TIM7, PATH_PERIOD_US)]);
     Board {
         servo_tick,

@@ -1,26 +1,12 @@
 //! Converters, enables, gates and heartbeat.
 
-use crate::clocks::{SPI_HZ, Wait};
+use crate::clocks::Wait;
 use crate::gpio::{self, Output as Line};
 use crate::pins::{DAC_CLEAR, DAC_LOAD, DAC_SYNC, HEARTBEAT, OUTPUT_MASK, OUTPUT_PORT, Pin, mask};
-use ad5764r::{Bank, Channel, Output};
+use crate::spi::Bus;
+use ad5764r::{Bank, Channel, Output, ReadBack};
 use defmt::Display2Format;
-use embassy_stm32::mode::Blocking;
 use embassy_stm32::pac::gpio::regs::Bsrr;
-use embassy_stm32::spi::{self, Spi, mode::Master};
-use embassy_stm32::time::Hertz;
-
-/// The bus of the converters.
-pub(crate) type Bus = Spi<'static, Blocking, Master>;
-
-/// How the bus is set.
-pub(crate) fn bus_config() -> spi::Config {
-    let mut config = spi::Config::default();
-    // ad5764r::MODE in the HAL's own type.
-    config.mode = spi::MODE_1;
-    config.frequency = Hertz(SPI_HZ);
-    config
-}
 
 /// Enables, gates, triggers and heartbeat low with one store, then all converters to 0 V.
 pub(crate) fn kill() {
@@ -50,34 +36,32 @@ pub(crate) const fn output(index: usize) -> Output {
 pub(crate) struct Outputs<const CHIPS: usize> {
     /// `None` once a converter has failed: then everything stays off until the next reset.
     bank: Option<Bank<Bus, Line, Wait, CHIPS>>,
+    read_back: ReadBack,
     beat: bool,
 }
 
 impl<const CHIPS: usize> Outputs<CHIPS> {
     /// Sets up the lines of `switched` and the heartbeat, all low, and the converters, all at 0 V.
-    pub(crate) fn start(bus: Bus, switched: &[Pin]) -> Self {
+    /// One output is read back in every `read_back_every`-th tick.
+    pub(crate) fn start(bus: Bus, switched: &[Pin], read_back_every: u32) -> Self {
         for &pin in switched.iter().chain(&[HEARTBEAT]) {
             Line::new(pin, false);
         }
         let sync = core::array::from_fn(|chip| Line::new(DAC_SYNC[chip], true));
         let clear = Line::new(DAC_CLEAR, false);
         let bank = Bank::new(bus, sync, Line::new(DAC_LOAD, true), clear, Wait);
-        match bank.and_then(|mut bank| bank.self_test().map(|()| bank)) {
-            Ok(bank) => Self {
-                bank: Some(bank),
-                beat: false,
-            },
-            Err(error) => {
-                defmt::error!(
-                    "{}; outputs stay off until the board is reset",
-                    Display2Format(&error)
-                );
-                kill();
-                Self {
-                    bank: None,
-                    beat: false,
-                }
-            }
+        let tested = bank.and_then(|mut bank| bank.self_test().map(|()| bank));
+        if let Err(error) = &tested {
+            kill();
+            defmt::error!(
+                "{}; outputs stay off until the board is reset",
+                Display2Format(error)
+            );
+        }
+        Self {
+            bank: tested.ok(),
+            read_back: ReadBack::new(read_back_every),
+            beat: false,
         }
     }
 
@@ -92,7 +76,11 @@ impl<const CHIPS: usize> Outputs<CHIPS> {
         let Some(bank) = &mut self.bank else { return };
         let port = gpio::port(OUTPUT_PORT);
         port.bsrr().write_value(Bsrr(u32::from(all & !on) << 16));
-        if let Err(error) = bank.update(codes) {
+        let read_back = &mut self.read_back;
+        if let Err(error) = bank
+            .update(codes)
+            .and_then(|()| read_back.after_update(bank, codes))
+        {
             kill();
             defmt::error!(
                 "{}; outputs stay off until the board is reset",

@@ -18,6 +18,9 @@ pub const GATEWAY: [u8; 4] = [192, 168, 71, 1];
 /// Period of the control tick \[µs\].
 const CONTROL_PERIOD_US: u32 = 1000;
 
+/// Control ticks from one reading back of a converter's output to the next: a millisecond.
+const READ_BACK_EVERY: u32 = 1;
+
 /// One converter, a channel for each slide.
 const CHIPS: usize = 1;
 /// Enable lines.
@@ -39,14 +42,15 @@ pub struct Board {
 
 /// Sets the board up, outputs off. The timer runs when it returns.
 pub fn init(core: cortex_m::Peripherals) -> Board {
-    let (watchdog, network, bus) = bring_up::start(core);
+    let (watchdog, bus, parts) = bring_up::start(core);
     inputs::start(&TRACKER, &[]);
     let [camera_1, camera_2] = CAMERA_TRIGGERS;
     let [u1, v1, u2, v2] = TRACKER.enable;
     let slides = Slides {
-        outputs: Outputs::start(bus, &[u1, v1, u2, v2, camera_1, camera_2]),
+        outputs: Outputs::start(bus, &[u1, v1, u2, v2, camera_1, camera_2], READ_BACK_EVERY),
         encoders: core::array::from_fn(|slide| Encoder::start(&TRACKER.encoders[slide])),
     };
+    let network = Network::start(parts);
     let [tick] = Tick::start([(pac::TIM6, CONTROL_PERIOD_US)]);
     Board {
         tick,

@@ -29,7 +29,7 @@ pub struct Bank<B, P, D, const CHIPS: usize> {
 }
 
 /// What fails on a bank with bus `B` and pins `P`.
-type BankError<B, P> =
+pub type BankError<B, P> =
     Error<<B as embedded_hal::spi::ErrorType>::Error, <P as embedded_hal::digital::ErrorType>::Error>;
 
 impl<B: SpiBus, P: OutputPin, D: DelayNs, const CHIPS: usize> Bank<B, P, D, CHIPS> {

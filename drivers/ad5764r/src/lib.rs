@@ -14,10 +14,12 @@
 mod bank;
 mod error;
 mod frame;
+mod read_back;
 
-pub use bank::{Bank, LOAD_SETUP_NS, LOAD_WIDTH_NS, Output};
+pub use bank::{Bank, BankError, LOAD_SETUP_NS, LOAD_WIDTH_NS, Output};
 pub use error::Error;
 pub use frame::{Channel, CoarseGain, FRAME_BYTES, Register};
+pub use read_back::{ReadBack, TOLERATED};
 
 use embedded_hal::spi;
 

@@ -1,7 +1,7 @@
 //! The board's program in QEMU, with an instruction taking the same time always.
 
 use super::{Counts, bounded};
-use anyhow::Result;
+use anyhow::{Result, bail};
 use benchmarks::SHIFT;
 use std::path::Path;
 use std::time::Duration;
@@ -9,6 +9,22 @@ use std::time::Duration;
 const EMULATOR: &str = "qemu-system-arm";
 /// It takes seconds.
 const LIMIT: Duration = Duration::from_secs(300);
+
+/// What the board says, and QEMU ends with, when its handler of faults runs although the stack ran over.
+const OVERFLOW_SAID: &str = "the stack ran over its end";
+const OVERFLOW_STATUS: &str = "exit status: 101";
+
+/// Runs the stack over its end: the handler of faults has to run all the same.
+pub fn overflow_stack(image: &Path, folder: &Path) -> Result<()> {
+    let Err(end) = say(image, "stack-overflow", folder) else {
+        bail!("the board went on without a stack");
+    };
+    let end = end.to_string();
+    if end.contains(OVERFLOW_SAID) && end.contains(OVERFLOW_STATUS) {
+        return Ok(());
+    }
+    bail!("the handler of faults did not run: {end}")
+}
 
 /// Runs the benchmark called `name` in `folder`.
 pub fn run(image: &Path, name: &str, folder: &Path) -> Result<Counts> {

@@ -164,6 +164,12 @@ fn build(target: Option<&str>) -> Result<PathBuf> {
     build_as(PROFILE, target)
 }
 
+/// Whether a stack that runs over its end leads to the handler of faults, on the emulated board.
+pub fn stack_overflow() -> Result<()> {
+    let image = build(Some(TARGET))?;
+    board::overflow_stack(&image, &folder()?)
+}
+
 /// The same in another profile.
 fn build_as(profile: &str, target: Option<&str>) -> Result<PathBuf> {
     let what = format!("the benchmarks for {}", target.unwrap_or("the PC"));
