@@ -49,7 +49,7 @@ impl Network {
     /// Serves everything that waits; true if frames may be left.
     pub fn run(&mut self, controller: &mut impl Mutex<T = &'static mut Controller>) -> bool {
         self.device.acknowledge();
-        self.publish();
+        self.publish(controller);
         let mut proxy = Proxy {
             controller,
             motion: &mut self.motion,
@@ -63,7 +63,7 @@ impl Network {
     }
 
     /// Sends what the control ticks published since the last run.
-    fn publish(&mut self) {
+    fn publish(&mut self, controller: &mut impl Mutex<T = &'static mut Controller>) {
         while let Some(published) = self.outbox.dequeue() {
             let subscriber = self.link.subscriber();
             if let Some((capture, subscriber)) = published.capture.zip(subscriber) {
@@ -72,6 +72,7 @@ impl Network {
             if let Some(motion) = self.motion.filter(|_| published.clock_request.is_some()) {
                 // The round trip begins now, not at the tick.
                 let asked_us = board::now_us();
+                controller.lock(|controller| controller.asks_clock(asked_us));
                 self.link
                     .send(&Datagram::ClockRequest(ClockRequest { asked_us }), motion);
             }

@@ -2,6 +2,8 @@
 
 mod bench;
 mod following;
+mod forged;
 mod jog;
 mod searching;
 mod states;
+mod supervision;

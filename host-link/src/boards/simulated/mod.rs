@@ -183,6 +183,7 @@ impl SimulatedBoards {
             self.post(tracker, Node::Pc, Datagram::Capture(capture));
         }
         if let Some(request) = request {
+            self.tracker.controller.asks_clock(request.asked_us);
             self.post(
                 tracker,
                 Node::Board(Role::Motion),
