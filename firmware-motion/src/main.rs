@@ -94,8 +94,9 @@ mod app {
     #[task(binds = PATH_TICK, priority = 3, shared = [servo, controller], local = [path_tick, path])]
     fn path_tick(mut cx: path_tick::Context) {
         let elapsed = cx.local.path_tick.acknowledge();
+        let began_us = cx.local.path_tick.began_us();
         let path = cx.local.path;
-        if !path.tick(&mut cx.shared.servo, &mut cx.shared.controller, elapsed) {
+        if !path.tick(&mut cx.shared.servo, &mut cx.shared.controller, began_us, elapsed) {
             defmt::warn!("the network task does not keep up: a path state was dropped");
         }
         rtic::pend(board::device::Interrupt::ETHERNET);

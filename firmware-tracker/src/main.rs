@@ -83,10 +83,11 @@ mod app {
     #[task(binds = CONTROL_TICK, priority = 3, shared = [controller, alive], local = [tick, slides, watchdog, outbox])]
     fn control_tick(mut cx: control_tick::Context) {
         let periods = cx.local.tick.acknowledge();
+        let began_us = cx.local.tick.began_us();
         let published = cx
             .shared
             .controller
-            .lock(|controller| tasks::control::tick(controller, cx.local.slides, periods));
+            .lock(|controller| tasks::control::tick(controller, cx.local.slides, began_us, periods));
         if cx.local.outbox.enqueue(published).is_err() {
             defmt::warn!("the network task does not keep up: a sample was dropped");
         }

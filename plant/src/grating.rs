@@ -20,6 +20,25 @@ pub struct Grating {
     power_up_line: i32,
     mark_line: i32,
     beyond_mark: bool,
+    /// Counts at the last reading.
+    counts: i64,
+    fault: Option<Failed>,
+}
+
+/// What can be wrong with a grating.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GratingFault {
+    /// It counts no more: no light, a broken cable.
+    Dead,
+    /// It counts only this part of the way, and sees no mark: dirt, a loose scale.
+    Slipping(f64),
+}
+
+/// A fault, and the counts at which it began.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Failed {
+    fault: GratingFault,
+    from: i64,
 }
 
 /// What a grating and its switches tell at one tick.
@@ -43,7 +62,17 @@ impl Grating {
             power_up_line: line(config.counts_per_unit, position),
             mark_line: line(config.counts_per_unit, config.mark),
             beyond_mark: position >= config.mark,
+            counts: 0,
+            fault: None,
         }
+    }
+
+    /// Has `fault` from the last reading on.
+    pub fn fail(&mut self, fault: GratingFault) {
+        self.fault = Some(Failed {
+            fault,
+            from: self.counts,
+        });
     }
 
     /// Reads with the load at `position`. The latched count is that of the mark itself, from either side.
@@ -51,9 +80,10 @@ impl Grating {
         let beyond_mark = position >= self.config.mark;
         let passed = beyond_mark != self.beyond_mark;
         self.beyond_mark = beyond_mark;
+        self.counts = self.since_power_up(line(self.config.counts_per_unit, position));
         Reading {
-            counts: self.since_power_up(line(self.config.counts_per_unit, position)),
-            mark: passed.then(|| self.since_power_up(self.mark_line)),
+            counts: self.fault.map_or(self.counts, |failed| failed.tells(self.counts)),
+            mark: (passed && self.fault.is_none()).then(|| self.since_power_up(self.mark_line)),
             limit_minus: position < self.config.switch_minus,
             limit_plus: position > self.config.switch_plus,
         }
@@ -61,6 +91,16 @@ impl Grating {
 
     fn since_power_up(&self, line: i32) -> i64 {
         i64::from(line) - i64::from(self.power_up_line)
+    }
+}
+
+impl Failed {
+    /// What is told where a sound grating would tell `counts`.
+    fn tells(&self, counts: i64) -> i64 {
+        match self.fault {
+            GratingFault::Dead => self.from,
+            GratingFault::Slipping(part) => self.from + ((counts - self.from) as f64 * part) as i64,
+        }
     }
 }
 

@@ -15,6 +15,6 @@ mod motor;
 mod slides;
 
 pub use drive::{Drive, DriveConfig};
-pub use grating::{Grating, GratingConfig, Reading};
+pub use grating::{Grating, GratingConfig, GratingFault, Reading};
 pub use motion::{DEFAULT_MACHINE, MotionPlant};
-pub use slides::{Slide, SlidePlant};
+pub use slides::{Slide, SlideFault, SlidePlant};

@@ -1,6 +1,6 @@
 //! The four slides of the tracker (SPEC 0.9).
 
-use crate::{Grating, GratingConfig};
+use crate::{Grating, GratingConfig, GratingFault};
 use shared::io::{Feedback, SLIDES, SlideCommand, SlideFeedback};
 
 /// Control tick \[s\].
@@ -34,6 +34,17 @@ pub struct Slide {
     oldest: usize,
     velocity: f64,
     position: f64,
+    /// Where the drive goes whatever it is told \[mm/s\].
+    runaway: Option<f64>,
+}
+
+/// What can be wrong with a slide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SlideFault {
+    /// Its encoder.
+    Encoder(GratingFault),
+    /// Its drive goes at this speed \[mm/s\], whatever it is told, until it is disabled.
+    Runaway(f64),
 }
 
 impl Slide {
@@ -47,12 +58,14 @@ impl Slide {
             oldest: 0,
             velocity: 0.0,
             position,
+            runaway: None,
         }
     }
 
     /// One control tick of 1 ms with the velocity `command` \[mm/s\]; `None` is a disabled drive, whose brake
     /// closes and which forgets the commands on their way.
     pub fn advance(&mut self, command: Option<f64>) {
+        let command = command.map(|told| self.runaway.unwrap_or(told));
         let coefficient = match command {
             Some(_) => self.lag,
             None => {
@@ -90,6 +103,14 @@ impl SlidePlant {
         Self {
             slides: POWER_UP.map(Slide::new),
             encoders: POWER_UP.map(|position| Grating::new(ENCODER, position)),
+        }
+    }
+
+    /// Has a fault from now on.
+    pub fn fail(&mut self, slide: usize, fault: SlideFault) {
+        match fault {
+            SlideFault::Encoder(fault) => self.encoders[slide].fail(fault),
+            SlideFault::Runaway(velocity) => self.slides[slide].runaway = Some(velocity),
         }
     }
 

@@ -105,6 +105,10 @@ const FIELDS: &[&str] = &[
     "search_speed_mm_s",
     "link_timeout_ms",
     "period_s",
+    "following_error_mm",
+    "max_path_speed_mm_s",
+    "max_seam_deviation_mm",
+    "max_seam_slope",
 ];
 
 impl ParameterError {

@@ -46,4 +46,9 @@ impl Tick {
         self.seen = ended;
         u32::try_from(periods).unwrap_or(u32::MAX)
     }
+
+    /// When the period began that was acknowledged last \[µs\].
+    pub fn began_us(&self) -> u64 {
+        (self.start + self.seen * self.period) / TICKS_PER_US
+    }
 }

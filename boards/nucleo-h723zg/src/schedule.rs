@@ -28,6 +28,11 @@ impl Schedule {
         self.due_us += periods * self.period_us;
         periods as u32
     }
+
+    /// When the period began that was counted last: that is where the hardware's is, however late it was served.
+    pub fn began_us(&self) -> u64 {
+        self.due_us - self.period_us
+    }
 }
 
 #[cfg(test)]
@@ -41,6 +46,7 @@ mod tests {
             // Up to 1 µs early by rounding, up to 249 µs late by other tasks.
             let late = (tick * 97) % 251;
             assert_eq!(schedule.passed(1000 + tick * 250 + late - 1), 1, "tick {tick}");
+            assert_eq!(schedule.began_us(), 1000 + tick * 250);
         }
     }
 

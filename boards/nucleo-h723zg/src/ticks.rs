@@ -47,4 +47,9 @@ impl Tick {
         self.timer.sr().modify(|w| w.set_uif(false));
         self.schedule.passed(now_us())
     }
+
+    /// When the period began that was acknowledged last \[µs\].
+    pub fn began_us(&self) -> u64 {
+        self.schedule.began_us()
+    }
 }

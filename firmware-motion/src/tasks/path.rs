@@ -19,11 +19,12 @@ impl PathTask {
         Self { outbox, took: 0 }
     }
 
-    /// One path tick; false if the network does not keep up and what it publishes is dropped.
+    /// One path tick, whose period began at `began_us`, `elapsed` after the last; false if the network does not keep up and what it publishes is dropped.
     pub fn tick(
         &mut self,
         servo: &mut impl Mutex<T = Servo>,
         controller: &mut impl Mutex<T = &'static mut Controller>,
+        began_us: u64,
         elapsed: u32,
     ) -> bool {
         let (span, servo_tick) = servo.lock(|servo| {
@@ -32,7 +33,7 @@ impl PathTask {
         });
         // What is large is made where it stays: moving it costs as much as using it.
         let input = servo.lock(|servo| PathTickInput {
-            now_us: board::now_us(),
+            now_us: began_us,
             elapsed,
             report: servo.loops.take_report(),
         });

@@ -47,7 +47,7 @@ impl Network {
     /// Serves everything that waits; true if frames may be left.
     pub fn run(&mut self, controller: &mut impl Mutex<T = &'static mut Controller>) -> bool {
         self.device.acknowledge();
-        self.publish();
+        self.publish(controller);
         self.link.poll(
             &mut self.device,
             board::Network::last_arrival_us,
@@ -57,7 +57,7 @@ impl Network {
     }
 
     /// Sends what the control ticks published since the last run.
-    fn publish(&mut self) {
+    fn publish(&mut self, controller: &mut impl Mutex<T = &'static mut Controller>) {
         while let Some(published) = self.outbox.dequeue() {
             if let Some(permit) = published.permit {
                 self.link.send_to_partner(&Datagram::Permit(permit));
@@ -68,6 +68,7 @@ impl Network {
             if published.clock_request.is_some() {
                 // The round trip begins now, not at the tick.
                 let asked_us = board::now_us();
+                controller.lock(|controller| controller.asks_clock(asked_us));
                 self.link
                     .send_to_partner(&Datagram::ClockRequest(ClockRequest { asked_us }));
             }

@@ -5,11 +5,13 @@
 
 mod derivative;
 mod gantry;
+mod movement;
 mod pid;
 mod reference_search;
 mod trip;
 
 pub use gantry::{Gantry, GantryOutput, GantryState, Ram};
+pub use movement::{MovementCheck, MovementState};
 pub use pid::{Pid, PidState, Setpoint};
 pub use reference_search::{ReferenceSearch, SearchInput, SearchProgress, SearchState};
 pub use trip::{EncoderCheck, FollowingTrip};

@@ -31,7 +31,7 @@ const UNATTENDED_S: u8 = 2;
 /// What the path tick is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathTickInput {
-    /// The board's clock at the tick \[µs\].
+    /// The board's clock when the tick's period began \[µs\]: by the hardware's period, not by when it was served.
     pub now_us: u64,
     /// Path tick periods since the last call, 1 when none was lost.
     pub elapsed: u32,

@@ -146,6 +146,14 @@ pub enum Fault {
     /// The path task did not deliver references in time, twice in a row.
     #[error("the path task was late twice in a row; the references ran dry")]
     ReferencesLate,
+    /// A motor was told to go, and its grating stood still.
+    #[error("the drive of {} was told to go {commanded_um:.0} µm (or m°) and its grating stands still: check grating and its cable, drive and brake, and the offset of the drive", MOTOR_NAMES[*motor as usize])]
+    NoMovement {
+        /// Index of the motor.
+        motor: u8,
+        /// The way that was commanded meanwhile (µm or millidegrees).
+        commanded_um: f32,
+    },
 }
 
 /// Why a beam may not burn where the path tracks.

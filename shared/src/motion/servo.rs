@@ -3,7 +3,9 @@
 use super::permit::BeamLease;
 use super::segment::{SERVO_TICKS_PER_PATH_TICK, Segment};
 use super::{Fault, MotorConfig, SERVO_PERIOD_S};
-use crate::control::{EncoderCheck, FollowingTrip, Gantry, GantryState, Pid, PidState, Setpoint};
+use crate::control::{
+    EncoderCheck, FollowingTrip, Gantry, GantryState, MovementCheck, MovementState, Pid, PidState, Setpoint,
+};
 use crate::io::{Bits, DacCode, MOTOR_NAMES, MOTORS, MotionCommand, MotionFeedback, SIDES};
 use crate::kinematics::AXIS_UNIT;
 use crate::parameter::{ParameterError, check};
@@ -26,6 +28,7 @@ struct Motor {
     velocity_at_10v: f64,
     following: FollowingTrip,
     encoder: EncoderCheck,
+    movement: MovementCheck,
 }
 
 impl Motor {
@@ -33,12 +36,33 @@ impl Motor {
         let (owner, unit) = (MOTOR_NAMES[index], UNIT[index]);
         let counts = check(owner, "counts_per_unit", config.counts_per_unit, |x| x != 0.0)?;
         let full_scale = check(owner, "velocity_at_10v", config.velocity_at_10v, |x| x != 0.0)?;
+        // At rest a motor has no following error for more than that.
+        let rest = config.following_error_base * unit;
         Ok(Self {
+            movement: MovementCheck::new(full_scale * unit, rest),
             pitch: unit / counts,
             velocity_at_10v: full_scale * unit,
             following: FollowingTrip::build(index as u8, owner, config, unit)?,
             encoder: EncoderCheck::build(index as u8, owner, config, SERVO_PERIOD_S)?,
         })
+    }
+
+    /// The fault if motor number `index` is told to go at `velocity` and its grating has not moved for long.
+    fn moves(
+        &self,
+        index: usize,
+        state: &mut MovementState,
+        counts: Option<[i64; MOTORS]>,
+        velocity: f64,
+    ) -> Result<(), Fault> {
+        let counts = counts.map_or(0, |counts| counts[index]);
+        match self.movement.step(state, counts, velocity, SERVO_PERIOD_S) {
+            None => Ok(()),
+            Some(commanded) => Err(Fault::NoMovement {
+                motor: index as u8,
+                commanded_um: (commanded * 1e3 / UNIT[index]) as f32,
+            }),
+        }
     }
 }
 
@@ -146,6 +170,7 @@ pub struct ServoLoops {
     setup: Option<ServoSetup>,
     gantry: GantryState,
     pids: [PidState; MOTORS],
+    movements: [MovementState; MOTORS],
     enabled: bool,
     coupled: bool,
     homing: bool,
@@ -222,6 +247,7 @@ impl ServoLoops {
         } else if !self.enabled && self.report.trip.is_none() {
             self.pids = Default::default();
             self.gantry = GantryState::default();
+            self.movements = Default::default();
             self.current = order.segment;
             self.late_in_a_row = 0;
         }
@@ -368,6 +394,7 @@ impl ServoLoops {
             ..MotionCommand::SAFE
         };
         for (index, motor) in setup.fitted() {
+            motor.moves(index, &mut self.movements[index], self.last_counts, output[index])?;
             command.dac[index] = DacCode::from_ratio(output[index], motor.velocity_at_10v);
         }
         let beams = &mut self.current.beams;

@@ -482,4 +482,12 @@ pub struct TrackerStatus {
     pub too_old: u32,
     /// Datagrams that could not be sent.
     pub unsent: u32,
+    /// Path states that cannot be, and were dropped.
+    pub implausible_path_states: u32,
+    /// Measurements that cannot be, and were dropped, per side.
+    pub implausible_measurements: [u32; 2],
+    /// Clock replies that cannot be, and were dropped.
+    pub implausible_clock_replies: u32,
+    /// How long after its due time the cameras were triggered, at least and at most since boot \[µs\]: the difference is the jitter.
+    pub strobe_late_us: [u32; 2],
 }

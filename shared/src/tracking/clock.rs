@@ -30,6 +30,10 @@ const MAX_STEP: f64 = 0.1;
 const RESIDUAL_TIME: f64 = 1.0;
 /// Slower round trips say nothing about the transit \[µs\].
 const SLOWEST_ROUND_TRIP: i64 = 50_000;
+/// What the filter may wander by while round trips are remembered \[µs\].
+const WANDER: f64 = 200.0;
+/// Questions that may be under way.
+const ASKED: usize = 4;
 /// Samples and round trips after which the relation is settled.
 const SETTLED_SAMPLES: u32 = 1000;
 const SETTLED_ROUND_TRIPS: usize = 5;
@@ -40,9 +44,11 @@ pub struct ClockRelation {
     /// Received − sent, until there are enough to start, or to start again.
     seed: Vec<i64, SEED>,
     filter: Option<Filter>,
-    /// Transits found by round trips \[µs\].
-    transits: HistoryBuf<f64, ROUND_TRIPS>,
+    /// Transits found by round trips, and by how much they may be wrong \[µs\].
+    transits: HistoryBuf<(f64, f64), ROUND_TRIPS>,
     transit: f64,
+    /// Questions that were not answered yet, by the local time they were asked at, oldest first.
+    asked: Vec<u64, ASKED>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +80,15 @@ impl ClockRelation {
             filter: None,
             transits: HistoryBuf::new(),
             transit: 0.0,
+            asked: Vec::new(),
         }
+    }
+
+    /// How much later than usual a datagram arrived \[µs\] that the other board sent at `sent_us` of its clock, at
+    /// `received_us` of this one's; `None` until enough have arrived.
+    pub fn lateness_us(&self, sent_us: u64, received_us: u64) -> Option<f64> {
+        let filter = self.filter.as_ref()?;
+        Some(filter.error(received_us.wrapping_sub(sent_us) as i64))
     }
 
     /// A datagram the other board sent at `sent_us` of its clock arrived at `received_us` of this one's.
@@ -93,25 +107,58 @@ impl ClockRelation {
             let (_, median, _) = self.seed.select_nth_unstable(SEED / 2);
             self.filter = Some(Filter::start(*median, sent_us));
             self.seed.clear();
+            // Found with the clock as it was before; the median of them stays until there are others.
+            self.transits = HistoryBuf::new();
         }
     }
 
+    /// This board asks the other for its clock at `asked_us` of its own: only what was asked is answered.
+    pub fn ask(&mut self, asked_us: u64) {
+        if self.asked.is_full() {
+            self.asked.remove(0);
+        }
+        // There is room: the oldest was just removed if there was none.
+        let stored = self.asked.push(asked_us).is_ok();
+        debug_assert!(stored);
+    }
+
     /// This board asked at `asked_us` of its clock, the other received it at `received_us` and replied at
-    /// `replied_us` of its own, and the reply was back at `back_us`.
-    pub fn add_round_trip(&mut self, asked_us: u64, received_us: u64, replied_us: u64, back_us: u64) {
-        let Some(filter) = &self.filter else { return };
+    /// `replied_us` of its own, and the reply was back at `back_us`. False if that cannot be: nobody asked, it took too
+    /// long or less than no time, or the two ways took longer than both together, which is how far a round trip may
+    /// be wrong.
+    pub fn add_round_trip(&mut self, asked_us: u64, received_us: u64, replied_us: u64, back_us: u64) -> bool {
+        let Some(question) = self.asked.iter().position(|asked| *asked == asked_us) else {
+            return false;
+        };
+        self.asked.remove(question);
+        // What was asked before the relation is known is answered in vain.
+        let Some(filter) = &self.filter else { return true };
         let there = received_us.wrapping_sub(asked_us) as i64;
         let back = back_us.wrapping_sub(replied_us) as i64;
         let travelled = there.wrapping_add(back);
         if !(0..=SLOWEST_ROUND_TRIP).contains(&travelled) {
-            return;
+            return false;
         }
         // Local − remote by the round trip, which takes both ways for equally long.
         let two_way = 0.5 * (back.wrapping_sub(filter.base) as f64 - there.wrapping_add(filter.base) as f64);
-        self.transits.write(filter.offset - two_way);
-        let mut sorted: Vec<f64, ROUND_TRIPS> = self.transits.oldest_ordered().copied().collect();
+        let transit = filter.offset - two_way;
+        let wrong_by = 0.5 * travelled as f64;
+        // Nothing arrives before it was sent, and other datagrams come the way that this one came.
+        if transit < -wrong_by - WANDER || transit > 2.0 * wrong_by + FAR {
+            return false;
+        }
+        if self.transits.len() >= SETTLED_ROUND_TRIPS {
+            let others = self.transits.as_slice().iter().map(|(_, wrong_by)| *wrong_by);
+            let most = others.fold(wrong_by, f64::max);
+            if libm::fabs(transit - self.transit) > wrong_by + most + WANDER {
+                return false;
+            }
+        }
+        self.transits.write((transit, wrong_by));
+        let mut sorted: Vec<f64, ROUND_TRIPS> = self.transits.oldest_ordered().map(|(t, _)| *t).collect();
         sorted.sort_unstable_by(f64::total_cmp);
         self.transit = sorted[sorted.len() / 2];
+        true
     }
 
     /// Remote time at the local time `local_us`; `None` until enough datagrams have arrived.
@@ -150,14 +197,22 @@ impl Filter {
         }
     }
 
+    /// How far `difference`, received − sent, is from what it should be \[µs\].
+    fn error(&self, difference: i64) -> f64 {
+        difference.wrapping_sub(self.base) as f64 - self.offset
+    }
+
     fn add(&mut self, difference: i64, sent_us: u64) {
+        if libm::fabs(self.error(difference)) > FAR {
+            self.far += 1;
+            return;
+        }
+        self.far = 0;
         // A datagram that was overtaken tells nothing new about time passed.
         let dt = (sent_us.saturating_sub(self.last_sent_us) as f64 * 1e-6).min(MAX_STEP);
         self.last_sent_us = self.last_sent_us.max(sent_us);
         self.offset += self.rate * dt;
-        let error = difference.wrapping_sub(self.base) as f64 - self.offset;
-        self.far = if libm::fabs(error) > FAR { self.far + 1 } else { 0 };
-        let error = error.clamp(-ERROR_CLAMP, ERROR_CLAMP);
+        let error = self.error(difference).clamp(-ERROR_CLAMP, ERROR_CLAMP);
         let omega = 2.0 * PI * BANDWIDTH;
         self.offset += 2.0 * DAMPING * omega * error * dt;
         self.rate += omega * omega * error * dt;
@@ -197,7 +252,8 @@ mod tests {
             if ms % 100 == 50 {
                 let there = now + network.transit();
                 let back = there + 30 + network.transit();
-                clock.add_round_trip(now, remote(there), remote(there + 30), back);
+                clock.ask(now);
+                assert!(clock.add_round_trip(now, remote(there), remote(there + 30), back));
             }
             if let Some(seen) = clock.to_remote(now) {
                 worst = f64::max(worst, seen.abs_diff(remote(now)) as f64);
@@ -226,7 +282,8 @@ mod tests {
         assert_eq!(clock.to_remote(10_000_000), Some(10_000_000 + 77 - 300));
         assert!(!clock.settled());
         // A round trip that took as long there as back shows the transit of 300 µs.
-        clock.add_round_trip(0, 377, 377, 600);
+        clock.ask(0);
+        assert!(clock.add_round_trip(0, 377, 377, 600));
         assert_eq!(clock.to_remote(10_000_000), Some(10_000_077));
     }
 
@@ -245,5 +302,45 @@ mod tests {
         }
         assert!(clock.to_remote(4_100_000).unwrap().abs_diff(1_000_000) <= 1);
         assert!(!clock.settled());
+    }
+
+    #[test]
+    fn replies_that_nobody_asked_for_or_that_jump_are_not_believed() {
+        let (mut clock, mut network) = (ClockRelation::new(), Network(3));
+        run(&mut clock, &mut network, 0, 3000);
+        let before = clock.to_remote(3_000_000).unwrap();
+        for k in 0..20 {
+            let now = 3_000_000 + k;
+            // Asked by another.
+            assert!(!clock.add_round_trip(now, remote(now + 250), remote(now + 280), now + 530));
+            // 30 ms off, in either direction, and one that takes two ways for 2 ms.
+            for off in [30_000, -30_000i64, 2_000] {
+                clock.ask(now);
+                let at = |us: u64| remote(us).wrapping_add_signed(off);
+                assert!(
+                    !clock.add_round_trip(now, at(now + 250), at(now + 280), now + 530),
+                    "{off}"
+                );
+            }
+            clock.ask(now);
+            assert!(clock.add_round_trip(now, remote(now + 250), remote(now + 280), now + 530));
+            assert!(
+                !clock.add_round_trip(now, remote(now + 250), remote(now + 280), now + 530),
+                "once"
+            );
+        }
+        assert!(clock.to_remote(3_000_000).unwrap().abs_diff(before) <= 40);
+    }
+
+    #[test]
+    fn one_datagram_from_the_future_changes_nothing() {
+        let (mut clock, mut network) = (ClockRelation::new(), Network(4));
+        run(&mut clock, &mut network, 0, 3000);
+        let before = clock.to_remote(3_000_000).unwrap();
+        clock.add(remote(100_000_000), 3_000_000);
+        assert_eq!(clock.to_remote(3_000_000), Some(before));
+        assert!(clock.lateness_us(remote(100_000_000), 3_000_000).unwrap() < -1e7);
+        let worst = run(&mut clock, &mut network, 3000, 10_000);
+        assert!(worst <= 80.0, "{worst} µs");
     }
 }

@@ -46,6 +46,8 @@ pub struct SlideConfig {
     pub max_velocity_mm_s: f64,
     /// Largest change of the command \[mm/s²\].
     pub max_acceleration_mm_s2: f64,
+    /// Trip: how far the slide may be from where its commands lead \[mm\].
+    pub following_error_mm: f64,
     /// How the slide finds its reference mark.
     pub home: HomeConfig,
 }
@@ -80,4 +82,10 @@ pub struct TrackingConfig {
     pub search_mm: f64,
     /// Speed of that \[mm/s\].
     pub search_speed_mm_s: f64,
+    /// Fastest that any path goes \[mm/s\]; path states that tell of more are not believed.
+    pub max_path_speed_mm_s: f64,
+    /// How far a seam may lie from its plan, along U and V \[mm\]; what is seen further away is not believed.
+    pub max_seam_deviation_mm: f64,
+    /// Steepest that a seam may lead away from its plan; what was measured on a steeper one is an outlier.
+    pub max_seam_slope: f64,
 }

@@ -10,17 +10,22 @@
 mod following;
 mod permit;
 mod requests;
+mod supervising;
 
 use super::clock::ClockRelation;
 use super::history::{CaptureHistory, CaptureRecord, PathHistory, Place, Pushed};
 use super::law::LawState;
 use super::parameters::TrackerParameters;
+use super::plausible::{Arrival, PathStateGate};
 use super::seam::Seam;
 use super::search::SeamSearch;
+use super::supervision::SlideWatch;
 use super::{TrackerFault, TrackerState};
 use crate::control::{SearchInput, SearchProgress, SearchState};
 use crate::io::{Bits, Command, DacCode, SIDES, SLIDES, SlideCommand, SlideFeedback};
-use crate::protocol::{BeamPermit, Capture, ClockRequest, Datagram, Measurement, Permit, TrackerSample};
+use crate::protocol::{
+    BeamPermit, Capture, ClockRequest, Datagram, Measurement, PathState, Permit, TrackerSample,
+};
 use crate::trajectory::Path;
 use heapless::Vec;
 
@@ -30,15 +35,19 @@ const CLOCK_REQUEST_TICKS: u32 = 100;
 const UNATTENDED_S: u8 = 2;
 /// The same \[ticks\].
 const UNATTENDED_TICKS: u32 = UNATTENDED_S as u32 * 1000;
+/// Period of the control tick \[µs\].
+const TICK_US: u64 = 1000;
 
 /// What one control tick reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickInput {
-    /// This board's clock at the tick \[µs\].
+    /// This board's clock when the tick's period began \[µs\]: by the hardware's period, not by when it was served.
     pub now_us: u64,
     /// Ticks since the last call, 1 when on time.
     pub periods: u32,
-    /// Slides.
+    /// This board's clock when the cameras were triggered \[µs\], if [`TrackerController::strobe`] asked for it.
+    pub strobed_us: Option<u64>,
+    /// Slides, latched with that.
     pub feedback: SlideFeedback,
     /// Slides as only a simulated machine can know \[mm\].
     pub truth: Option<[f64; SLIDES]>,
@@ -49,13 +58,14 @@ pub struct TickInput {
 pub struct TickOutput {
     /// For the slide drives.
     pub command: SlideCommand,
-    /// Trigger both cameras now, and offer this capture to the PC.
+    /// Both cameras were triggered: offer this capture to the PC.
     pub capture: Option<Capture>,
     /// For the motion board, once it is heard.
     pub permit: Option<Permit>,
     /// For telemetry.
     pub sample: TrackerSample,
-    /// Ask the motion board for its clock; set the time anew when it is really sent.
+    /// Ask the motion board for its clock; set the time anew when it is really sent, and say so:
+    /// [`TrackerController::asks_clock`].
     pub clock_request: Option<ClockRequest>,
 }
 
@@ -70,6 +80,7 @@ pub struct TrackerController<const KNOTS: usize> {
     faults: Vec<TrackerFault, 1>,
     path: Path<KNOTS>,
     history: PathHistory,
+    gate: PathStateGate,
     captures: CaptureHistory,
     clock: ClockRelation,
     seam: Seam,
@@ -91,6 +102,21 @@ pub struct TrackerController<const KNOTS: usize> {
     /// A session of a PC is there.
     attended: bool,
     unattended_ticks: u32,
+    disbelieved_replies: u32,
+    strobes: Strobes,
+}
+
+/// When the cameras are triggered.
+#[derive(Clone, Copy, Debug, Default)]
+struct Strobes {
+    /// At the last tick it was known where on the path the machine is, and where the slides are.
+    armed: bool,
+    /// How long before the present tick the strobe was due, because ticks were lost \[µs\].
+    overdue_us: u64,
+    any: bool,
+    /// How late they were \[µs\].
+    least_late_us: u32,
+    most_late_us: u32,
 }
 
 /// State of one slide.
@@ -106,6 +132,8 @@ struct Slide {
     arrived: bool,
     /// The seam is known where the spot is, and the slide is on it.
     on_seam: bool,
+    /// What its trips need to remember.
+    watch: SlideWatch,
 }
 
 impl<const KNOTS: usize> Default for TrackerController<KNOTS> {
@@ -125,6 +153,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             saturated_ticks: 0,
             arrived: false,
             on_seam: false,
+            watch: SlideWatch::new(),
         };
         Self {
             parameters: None,
@@ -132,6 +161,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             faults: Vec::new(),
             path: Path::new(),
             history: PathHistory::new(),
+            gate: PathStateGate::new(),
             captures: CaptureHistory::new(),
             clock: ClockRelation::new(),
             seam: Seam::new(),
@@ -156,12 +186,32 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             too_old: 0,
             attended: false,
             unattended_ticks: 0,
+            disbelieved_replies: 0,
+            strobes: Strobes {
+                armed: false,
+                overdue_us: 0,
+                any: false,
+                least_late_us: 0,
+                most_late_us: 0,
+            },
         }
     }
 
     /// What the board is doing.
     pub fn state(&self) -> TrackerState {
         self.state
+    }
+
+    /// Whether the cameras are to be triggered in the tick that begins now, `periods` after the last: before anything
+    /// that takes time, and once a tick. Tell [`Self::tick`] when that was.
+    pub fn strobe(&mut self, periods: u32) -> bool {
+        let Some(parameters) = &self.parameters else {
+            return false;
+        };
+        let overdue = periods.saturating_sub(self.ticks_to_strobe.max(1));
+        let due = due(&mut self.ticks_to_strobe, periods, parameters.frame_ticks);
+        self.strobes.overdue_us = u64::from(overdue) * TICK_US;
+        due && self.strobes.armed
     }
 
     /// One control tick.
@@ -177,15 +227,14 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         let mut capture = None;
         if let Some(parameters) = &parameters {
             self.read_slides(parameters);
-            command = self.control(parameters, motion_now, place.as_ref());
-            if due(&mut self.ticks_to_strobe, input.periods, parameters.frame_ticks) {
-                // A capture needs to know where the slides are, and where on the path the machine is.
-                capture = place
-                    .zip(motion_now)
-                    .filter(|_| self.homed())
-                    .map(|(place, motion_now)| self.strobe(input, motion_now, place));
-            }
+            command = self.control(parameters, input.periods, motion_now, place.as_ref());
+            self.told(parameters, &command);
         }
+        if let Some(strobed_us) = input.strobed_us {
+            capture = self.capture(input, strobed_us);
+        }
+        // A capture needs to know where the slides are, and where on the path the machine is.
+        self.strobes.armed = place.is_some() && self.homed();
         self.parameters = parameters;
         let permit = self.permit();
         if let Some(permit) = &permit {
@@ -210,16 +259,16 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     /// Takes a datagram that arrived at `arrived_us` of this board's clock.
     pub fn datagram(&mut self, datagram: &Datagram, arrived_us: u64) {
         match datagram {
-            Datagram::PathState(state) => {
-                self.clock.add(state.sent_us, arrived_us);
-                if self.history.push(state) == Pushed::Restarted {
-                    self.forget_seam();
-                }
-            }
-            Datagram::Measurement(measurement) => self.measure(measurement),
+            Datagram::PathState(state) => self.path_state(state, arrived_us),
+            Datagram::Measurement(measurement) => self.measure(measurement, arrived_us),
             Datagram::ClockReply(reply) => {
-                self.clock
-                    .add_round_trip(reply.asked_us, reply.received_us, reply.replied_us, arrived_us)
+                let (asked, received) = (reply.asked_us, reply.received_us);
+                if !self
+                    .clock
+                    .add_round_trip(asked, received, reply.replied_us, arrived_us)
+                {
+                    self.disbelieved_replies = self.disbelieved_replies.saturating_add(1);
+                }
             }
             // What only this board or the motion board sends to the PC; clock requests are answered below.
             Datagram::Permit(_)
@@ -240,6 +289,30 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 self.state = TrackerState::Fault;
             }
             TrackerState::Off | TrackerState::Ready | TrackerState::Fault => {}
+        }
+    }
+
+    /// The motion board is asked for its clock at `asked_us` of this board's clock.
+    pub fn asks_clock(&mut self, asked_us: u64) {
+        self.clock.ask(asked_us);
+    }
+
+    /// Takes a path state if it can be.
+    fn path_state(&mut self, state: &PathState, arrived_us: u64) {
+        let arrival = Arrival {
+            parameters: self.parameters.as_ref(),
+            path: &self.path,
+            lateness_us: self.clock.lateness_us(state.sent_us, arrived_us),
+            arrived_us,
+        };
+        if !self.gate.sound(&arrival, state) {
+            return;
+        }
+        self.clock.add(state.sent_us, arrived_us);
+        for state in self.gate.pass(&arrival, state) {
+            if self.history.push(&state) == Pushed::Restarted {
+                self.forget_seam();
+            }
         }
     }
 
@@ -275,6 +348,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     fn control(
         &mut self,
         parameters: &TrackerParameters,
+        periods: u32,
         motion_now: Option<u64>,
         place: Option<&Place>,
     ) -> SlideCommand {
@@ -283,7 +357,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             true => self.unattended_ticks.saturating_add(1),
             false => 0,
         };
-        if on && let Some(fault) = self.trip() {
+        if on && let Some(fault) = self.trip().or_else(|| self.supervise(parameters, periods)) {
             self.report(fault);
             self.state = TrackerState::Fault;
         }
@@ -381,27 +455,34 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         self.slides.iter().all(|slide| slide.offset.is_some())
     }
 
-    /// Latches a capture.
-    fn strobe(&mut self, input: &TickInput, motion_time_us: u64, place: Place) -> Capture {
+    /// Keeps what was latched when the cameras were triggered.
+    fn capture(&mut self, input: &TickInput, strobed_us: u64) -> Option<Capture> {
+        let late_us = strobed_us.saturating_sub(input.now_us) + self.strobes.overdue_us;
+        self.strobes.was(u32::try_from(late_us).unwrap_or(u32::MAX));
+        let motion_time_us = self.clock.to_remote(strobed_us)?;
+        let newest = || self.history.newest().map(|(place, _)| place);
+        let place = self.history.at(motion_time_us).or_else(newest)?;
         let slides = self.slides.map(|slide| slide.position);
         let number = self.captures.push(CaptureRecord {
             motion_time_us,
             place,
+            time_us: strobed_us,
             slides,
+            answered: false,
         });
-        Capture {
+        Some(Capture {
             number,
-            time_us: input.now_us,
+            time_us: strobed_us,
             motion_time_us,
             s_mm: place.s,
             path_id: place.path_id,
             slides_mm: slides,
             truth_mm: input.truth,
-        }
+        })
     }
 
     /// Enters a measurement into the map; refuses one whose capture, or its path, is gone.
-    fn measure(&mut self, measurement: &Measurement) {
+    fn measure(&mut self, measurement: &Measurement, arrived_us: u64) {
         let capture = self
             .captures
             .get(measurement.capture)
@@ -410,6 +491,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             self.too_old = self.too_old.saturating_add(1);
             return;
         };
+        // Seen before it was there to see, or a second time.
+        let believed = arrived_us >= capture.time_us && !capture.answered;
         // By now the path states around the strobe are there.
         let place = self
             .history
@@ -417,9 +500,16 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             .unwrap_or(capture.place);
         for (side, seen) in measurement.sides.iter().enumerate() {
             if let Some(seen) = seen {
+                if !believed {
+                    self.seam.disbelieve(side);
+                    continue;
+                }
                 self.seam
                     .add(parameters, &self.path, side, &place, &capture.slides, seen);
             }
+        }
+        if believed {
+            self.captures.answer(measurement.capture);
         }
     }
 
@@ -434,6 +524,19 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             target_mm: self.slides.map(|slide| slide.target),
             dac: command.dac.map(|code| code.0),
         }
+    }
+}
+
+impl Strobes {
+    /// A strobe was `late_us` late.
+    fn was(&mut self, late_us: u32) {
+        self.least_late_us = if self.any {
+            self.least_late_us.min(late_us)
+        } else {
+            late_us
+        };
+        self.most_late_us = self.most_late_us.max(late_us);
+        self.any = true;
     }
 }
 

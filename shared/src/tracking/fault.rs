@@ -94,4 +94,42 @@ pub enum TrackerFault {
         /// How long.
         silent_ms: u32,
     },
+    /// A slide did not go where its commands lead.
+    #[error("slide {} is {seen_um:.0} µm away from where its commands lead, the limit is {limit_um:.0}: check encoder, drive and slide, and preview_s; then reset and home", SLIDE_NAMES[*slide as usize])]
+    FollowingError {
+        /// Index of the slide.
+        slide: u8,
+        /// What was seen.
+        seen_um: f32,
+        /// The trip.
+        limit_um: f32,
+    },
+    /// An encoder counted further in one tick than its slide can go.
+    #[error("the encoder of slide {} jumped by {seen} counts in one tick, at most {limit} are possible: check its cable and reading head; then reset and home", SLIDE_NAMES[*slide as usize])]
+    EncoderStep {
+        /// Index of the slide.
+        slide: u8,
+        /// Counts in the tick.
+        seen: i32,
+        /// Largest believable step.
+        limit: i32,
+    },
+    /// A slide went faster than it is ever told to.
+    #[error("slide {} went at {seen_mm_s:.0} mm/s, the limit is {limit_mm_s:.0}: check its drive and the encoder's scale; then reset and home", SLIDE_NAMES[*slide as usize])]
+    Overspeed {
+        /// Index of the slide.
+        slide: u8,
+        /// What was seen.
+        seen_mm_s: f32,
+        /// The trip.
+        limit_mm_s: f32,
+    },
+    /// A slide was told to go, and its encoder stood still.
+    #[error("slide {} was told to go {commanded_um:.0} µm and its encoder stands still: check encoder and its cable, drive and brake, and the offset of the drive; then reset and home", SLIDE_NAMES[*slide as usize])]
+    NoMovement {
+        /// Index of the slide.
+        slide: u8,
+        /// The way that was commanded meanwhile.
+        commanded_um: f32,
+    },
 }

@@ -11,7 +11,7 @@ const PATH_STATES: usize = 64;
 /// Captures kept.
 pub const CAPTURES: usize = 256;
 /// A path state this much older than the newest is not late: the motion board was restarted \[µs\].
-const RESTARTED: u64 = 1_000_000;
+pub(super) const RESTARTED: u64 = 1_000_000;
 
 /// Where the machine is or was on its path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -180,8 +180,12 @@ pub struct CaptureRecord {
     pub motion_time_us: u64,
     /// Place as known at the strobe; a little extrapolated.
     pub place: Place,
+    /// This board's time \[µs\].
+    pub time_us: u64,
     /// Slide positions \[mm\].
     pub slides: [f64; SLIDES],
+    /// Its measurement has come.
+    pub answered: bool,
 }
 
 /// The last captures by number.
@@ -226,6 +230,13 @@ impl CaptureHistory {
     pub fn get(&self, number: u32) -> Option<&CaptureRecord> {
         let known = number.wrapping_sub(self.first) < self.next.wrapping_sub(self.first);
         self.records.get(number as usize % CAPTURES).filter(|_| known)
+    }
+
+    /// The measurement of that capture has come.
+    pub fn answer(&mut self, number: u32) {
+        if let Some(record) = self.records.get_mut(number as usize % CAPTURES) {
+            record.answered = true;
+        }
     }
 }
 
@@ -300,7 +311,9 @@ mod tests {
             let record = CaptureRecord {
                 motion_time_us: u64::from(number),
                 place,
+                time_us: 0,
                 slides: [0.0; SLIDES],
+                answered: false,
             };
             assert_eq!(captures.push(record), number);
         }

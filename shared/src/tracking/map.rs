@@ -7,6 +7,8 @@ pub const MAP_CAPACITY: usize = 128;
 
 /// Consecutive outliers after which the seam is believed to have jumped.
 const OUTLIERS_TO_RELOCK: u8 = 3;
+/// Part of the gate that samples on the steepest seam may be off by.
+const STEEP_MARGIN: f64 = 0.25;
 /// Fewest samples the window should hold before the nearest ones around it are taken instead.
 const FEW: usize = 4;
 
@@ -19,6 +21,8 @@ pub struct MapLaw {
     pub hold: f64,
     /// A sample further than this from the estimate is an outlier \[mm\].
     pub gate: f64,
+    /// Steepest that the seam may lead away: a sample on a steeper one is an outlier.
+    pub slope: f64,
     /// Samples closer together than this are not stored \[mm\].
     pub spacing: f64,
     /// Samples kept, at most [`MAP_CAPACITY`].
@@ -28,6 +32,12 @@ pub struct MapLaw {
 impl MapLaw {
     /// Closest spacing of the golden sequences \[mm\].
     pub const MIN_SPACING: f64 = 1e-6;
+
+    /// No seam leads from one sample to the other.
+    fn too_steep(&self, one: &Sample, other: &Sample) -> bool {
+        let way = libm::fabs(one.sigma - other.sigma);
+        libm::fabs(one.y - other.y) > self.slope * way + STEEP_MARGIN * self.gate
+    }
 }
 
 /// What became of a sample.
@@ -63,7 +73,9 @@ struct Sample {
 pub struct SeamMap {
     /// σ strictly increasing.
     samples: Vec<Sample, MAP_CAPACITY>,
+    /// Outliers in a row that agree with the first of them.
     consecutive_outliers: u8,
+    first_outlier: Option<Sample>,
 }
 
 impl SeamMap {
@@ -72,6 +84,7 @@ impl SeamMap {
         Self {
             samples: Vec::new(),
             consecutive_outliers: 0,
+            first_outlier: None,
         }
     }
 
@@ -101,6 +114,7 @@ impl SeamMap {
     pub fn clear(&mut self) {
         self.samples.clear();
         self.consecutive_outliers = 0;
+        self.first_outlier = None;
     }
 
     /// Stores that slide position `y` \[mm\] meets the seam at path position `sigma` \[mm\].
@@ -145,34 +159,58 @@ impl SeamMap {
         added
     }
 
-    /// Whether a sample is an outlier; if the seam has jumped, all samples are given up.
+    /// Whether a sample is an outlier; if the seam has jumped, all samples are given up. Outliers that do not lie on one
+    /// seam are no jump.
     fn judge(&mut self, law: &MapLaw, sigma: f64, y: f64) -> Added {
-        let added = if self.relocks() {
-            self.samples.clear();
-            Added::Relocked
-        } else if self
+        let sample = Sample { sigma, y };
+        let outlier = self
             .estimate(law, sigma)
             .is_some_and(|seam| libm::fabs(y - seam.value) > law.gate)
-        {
-            self.consecutive_outliers += 1;
+            || self.disagrees(law, &sample);
+        let agrees = self
+            .first_outlier
+            .is_none_or(|other| !law.too_steep(&other, &sample));
+        let added = if self.relocks() && agrees {
+            self.samples.clear();
+            Added::Relocked
+        } else if outlier {
+            if !agrees {
+                self.consecutive_outliers = 0;
+                self.first_outlier = None;
+            }
+            self.consecutive_outliers = (self.consecutive_outliers + 1).min(OUTLIERS_TO_RELOCK);
+            self.first_outlier.get_or_insert(sample);
             return Added::Outlier;
         } else {
             Added::Accepted
         };
         self.consecutive_outliers = 0;
+        self.first_outlier = None;
         added
+    }
+
+    /// No seam leads from most of the samples within the window to this one. One sample that is wrong has no say.
+    fn disagrees(&self, law: &MapLaw, sample: &Sample) -> bool {
+        let samples = self.within(law, sample.sigma);
+        let steep = samples.iter().filter(|other| law.too_steep(other, sample));
+        2 * steep.count() > samples.len()
+    }
+
+    /// The samples within the window about `sigma`.
+    fn within(&self, law: &MapLaw, sigma: f64) -> &[Sample] {
+        let from = self.samples.partition_point(|s| s.sigma < sigma - law.window);
+        let to = self.samples.partition_point(|s| s.sigma <= sigma + law.window);
+        self.samples.get(from..to).unwrap_or(&[])
     }
 
     /// The seam at path position `sigma` \[mm\]: a straight line fitted to the samples within the window, or to
     /// the nearest few around it; `None` if there is none within window and hold.
     pub fn estimate(&self, law: &MapLaw, sigma: f64) -> Option<Estimate> {
-        let from = self.samples.partition_point(|s| s.sigma < sigma - law.window);
-        let to = self.samples.partition_point(|s| s.sigma <= sigma + law.window);
-        let samples = self.samples.get(from..to).unwrap_or(&[]);
+        let samples = self.within(law, sigma);
         if samples.len() >= FEW {
-            fit(samples, sigma, law.window)
+            fit(samples, sigma, law)
         } else {
-            fit(self.nearest(sigma, law.window + law.hold), sigma, law.window)
+            fit(self.nearest(sigma, law.window + law.hold), sigma, law)
         }
     }
 
@@ -196,8 +234,9 @@ impl SeamMap {
     }
 }
 
-/// Straight line through `samples`, read at `sigma`; level if they lie too close together for a slope.
-fn fit(samples: &[Sample], sigma: f64, window: f64) -> Option<Estimate> {
+/// Straight line through `samples`, read at `sigma`, no steeper than a seam; level if they lie too close together for
+/// a slope.
+fn fit(samples: &[Sample], sigma: f64, law: &MapLaw) -> Option<Estimate> {
     if samples.is_empty() {
         return None;
     }
@@ -211,14 +250,14 @@ fn fit(samples: &[Sample], sigma: f64, window: f64) -> Option<Estimate> {
         sxx += d * d;
         sxy += d * (sample.y - mean_y);
     }
-    let spread = window / 8.0;
+    let spread = law.window / 8.0;
     if samples.len() < 2 || sxx < n * spread * spread {
         return Some(Estimate {
             value: mean_y,
             slope: 0.0,
         });
     }
-    let slope = sxy / sxx;
+    let slope = (sxy / sxx).clamp(-law.slope, law.slope);
     Some(Estimate {
         value: mean_y + slope * (sigma - mean_sigma),
         slope,
@@ -233,6 +272,7 @@ mod tests {
         window: 3.0,
         hold: 2.0,
         gate: 0.5,
+        slope: 1.0,
         spacing: MapLaw::MIN_SPACING,
         keep: 24,
     };
@@ -315,5 +355,39 @@ mod tests {
         }
         // The newest sample lies near 100 mm; 20 mm behind it the seam is still known.
         assert!(map.estimate(&law, 80.0).is_some());
+    }
+
+    #[test]
+    fn a_chain_that_drifts_is_followed_no_faster_than_a_seam_may_lead_away() {
+        let law = MapLaw { slope: 0.1, ..LAW };
+        for drift in [0.05, 0.2, 0.45, 0.9, 5.0] {
+            let mut map = SeamMap::new();
+            line(&mut map, 0, 40);
+            let from = map.estimate(&law, 19.5).unwrap().value;
+            for i in 1..200 {
+                let sigma = 19.5 + 0.5 * f64::from(i);
+                if map.estimate(&law, sigma).is_none() {
+                    // Too far from the last that was believed: the seam is lost.
+                    break;
+                }
+                map.add(&law, sigma, from + drift * f64::from(i));
+            }
+            let last = map.samples.last().unwrap();
+            let moved = last.y - from;
+            // Most samples lie 1.5 mm away, as do three that make a jump: 0.15 mm, and a quarter of the gate.
+            let most = (0.15 + 0.125) / 1.5 * (last.sigma - 19.5) + 0.125;
+            assert!(moved <= most, "{drift}: {moved} mm in {} mm", last.sigma - 19.5);
+        }
+    }
+
+    #[test]
+    fn outliers_here_and_there_are_no_jump() {
+        let mut map = SeamMap::new();
+        line(&mut map, 0, 21);
+        for i in 0..50 {
+            let y = if i % 2 == 0 { 3.0 } else { -3.0 };
+            assert_eq!(map.add(&LAW, 10.5 + 0.01 * f64::from(i), y), Added::Outlier);
+        }
+        assert_eq!(map.add(&LAW, 11.5, 1.23), Added::Accepted);
     }
 }

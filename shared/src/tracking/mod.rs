@@ -10,9 +10,11 @@ pub mod history;
 pub mod law;
 pub mod map;
 pub mod parameters;
+pub mod plausible;
 pub mod recentre;
 mod seam;
 pub mod search;
+pub mod supervision;
 
 pub use config::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
 pub use controller::{TickInput, TickOutput, TrackerController};

@@ -4,7 +4,9 @@ use super::frames::Heads;
 use super::gain::crossover;
 use super::law::SlideLaw;
 use super::map::{MAP_CAPACITY, MapLaw};
+use super::plausible::Belief;
 use super::search::SearchLaw;
+use super::supervision::{Supervised, Supervision};
 use super::{SlideConfig, TrackerConfig, TrackingConfig};
 use crate::control::ReferenceSearch;
 use crate::io::{SLIDE_NAMES, SLIDES};
@@ -12,6 +14,9 @@ use crate::parameter::{ParameterError, check, not_negative, positive};
 
 /// Period of the control tick \[s\].
 pub const TICK_S: f64 = 1e-3;
+
+/// Steeper than this, U would have to be faster than the path.
+const STEEPEST: f64 = 1.0;
 
 /// Everything the tracker's tick needs to know of its machine.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +27,8 @@ pub struct TrackerParameters {
     pub slides: [SlideParameters; SLIDES],
     /// How the maps take and read samples.
     pub map: MapLaw,
+    /// What is believed of what others say.
+    pub belief: Belief,
     /// How U slides look for a seam that was not seen yet.
     pub search: SearchLaw,
     /// A beam may go on while both slides of its side are no further than this from the seam \[mm\].
@@ -47,6 +54,8 @@ pub struct SlideParameters {
     pub travel_ticks: u32,
     /// Search for its reference mark.
     pub search: ReferenceSearch<1>,
+    /// Trips.
+    pub supervision: Supervision,
 }
 
 impl TrackerConfig {
@@ -60,9 +69,9 @@ impl TrackerConfig {
         at_least_one("frame_period_ms", tracking.frame_period_ms)?;
         at_least_one("stale_path_ms", tracking.stale_path_ms)?;
         at_least_one("saturation_trip_ms", tracking.saturation_trip_ms)?;
-        let mut slides = [self.slides[0].build(SLIDE_NAMES[0], tracking)?; SLIDES];
+        let mut slides = [self.slides[0].build(0, tracking)?; SLIDES];
         for (i, slide) in slides.iter_mut().enumerate().skip(1) {
-            *slide = self.slides[i].build(SLIDE_NAMES[i], tracking)?;
+            *slide = self.slides[i].build(i, tracking)?;
         }
         let preview = positive("tracking", "preview_s", tracking.preview_s)?;
         // A sweep at the slides' full speed is as fast as it can be.
@@ -80,6 +89,32 @@ impl TrackerConfig {
         let reach = heads.camera_lead() + 2.0 * window + hold;
         let gate = positive("tracking", "gate_mm", tracking.gate_mm)?;
         let lock = check("tracking", "lock_mm", tracking.lock_mm, |v| v > 0.0 && v <= gate)?;
+        let ends = slides.iter().map(|slide| slide.law.travel);
+        let furthest = ends.fold(0.0, |most: f64, (min, max)| most.max(-min).max(max));
+        // Faster, and no picture would lie within reach of the map.
+        let fastest_path = (window + hold) / (f64::from(tracking.frame_period_ms) * TICK_S);
+        let slowest_slide = slides.iter().map(|slide| slide.law.max_velocity);
+        let belief = Belief {
+            path_speed: check(
+                "tracking",
+                "max_path_speed_mm_s",
+                tracking.max_path_speed_mm_s,
+                |v| v > 0.0 && v <= fastest_path,
+            )?,
+            // The slides reach so far, and the pose beside the plan as far again.
+            deviation: check(
+                "tracking",
+                "max_seam_deviation_mm",
+                tracking.max_seam_deviation_mm,
+                |v| v >= gate && v <= 2.0 * furthest,
+            )?,
+            // A camera sees as far along travel as across it, and that is what the gate goes by.
+            along: gate.min(heads.camera_lead()),
+            gate,
+            pose_speed: slowest_slide.fold(f64::INFINITY, f64::min),
+            lever: heads.camera_lead() + furthest,
+            stale_us: u64::from(tracking.stale_path_ms) * 1000,
+        };
         Ok(TrackerParameters {
             heads,
             slides,
@@ -87,11 +122,15 @@ impl TrackerConfig {
                 window,
                 hold,
                 gate,
+                slope: check("tracking", "max_seam_slope", tracking.max_seam_slope, |v| {
+                    v > 0.0 && v <= STEEPEST
+                })?,
                 spacing: reach / MAP_CAPACITY as f64,
                 keep: MAP_CAPACITY,
             },
             search,
             lock,
+            belief,
             preview,
             frame_ticks: tracking.frame_period_ms,
             stale_path_us: u64::from(tracking.stale_path_ms) * 1000,
@@ -101,7 +140,8 @@ impl TrackerConfig {
 }
 
 impl SlideConfig {
-    fn build(&self, name: &str, tracking: &TrackingConfig) -> Result<SlideParameters, ParameterError> {
+    fn build(&self, index: usize, tracking: &TrackingConfig) -> Result<SlideParameters, ParameterError> {
+        let name = SLIDE_NAMES[index];
         let not_zero = |field, value| check(name, field, value, |v| v != 0.0);
         let min = check(name, "travel_min_mm", self.travel_min_mm, |_| true)?;
         let max = check(name, "travel_max_mm", self.travel_max_mm, |v| v > min)?;
@@ -110,6 +150,16 @@ impl SlideConfig {
         let limit = crossover(preview, 0.0, 0.0).gain;
         let max_acceleration = positive(name, "max_acceleration_mm_s2", self.max_acceleration_mm_s2)?;
         let max_velocity = positive(name, "max_velocity_mm_s", self.max_velocity_mm_s)?;
+        let full_scale = not_zero("velocity_at_10v_mm_s", self.velocity_at_10v_mm_s)?;
+        let counts_per_mm = not_zero("counts_per_mm", self.counts_per_mm)?;
+        let supervised = Supervised {
+            slide: index as u8,
+            counts_per_mm,
+            full_scale,
+            max_velocity,
+            travel: max - min,
+            preview,
+        };
         Ok(SlideParameters {
             law: SlideLaw {
                 kp: check("tracking", "kp", tracking.kp, |v| v > 0.0 && v < limit)?,
@@ -120,9 +170,9 @@ impl SlideConfig {
                 travel: (min, max),
                 dead_band: not_negative("tracking", "dead_band_mm", tracking.dead_band_mm)?,
                 preview,
-                full_scale: not_zero("velocity_at_10v_mm_s", self.velocity_at_10v_mm_s)?,
+                full_scale,
             },
-            counts_per_mm: not_zero("counts_per_mm", self.counts_per_mm)?,
+            counts_per_mm,
             travel_ticks: libm::ceil((max - min) / max_velocity / TICK_S) as u32,
             search: ReferenceSearch::build(
                 [name],
@@ -132,6 +182,7 @@ impl SlideConfig {
                 max_acceleration,
                 TICK_S,
             )?,
+            supervision: Supervision::build(name, &supervised, self.following_error_mm)?,
         })
     }
 }

@@ -25,6 +25,7 @@ pub struct Seam {
     met: [Option<f64>; SLIDES],
     accepted: [u32; SIDES],
     rejected: [u32; SIDES],
+    implausible: [u32; SIDES],
 }
 
 /// Where a slide should be, as far as the seam tells.
@@ -51,6 +52,7 @@ impl Seam {
             met: [None; SLIDES],
             accepted: [0; SIDES],
             rejected: [0; SIDES],
+            implausible: [0; SIDES],
         }
     }
 
@@ -71,6 +73,16 @@ impl Seam {
         (self.accepted, self.rejected)
     }
 
+    /// Measurements that cannot be, per side.
+    pub fn implausible(&self) -> [u32; SIDES] {
+        self.implausible
+    }
+
+    /// Counts a measurement of `side` that cannot be.
+    pub fn disbelieve(&mut self, side: usize) {
+        self.implausible[side] = self.implausible[side].saturating_add(1);
+    }
+
     /// Enters what the camera of `side` saw when the machine was at `place` and the slides at `slides` \[mm\].
     pub fn add<const N: usize>(
         &mut self,
@@ -83,6 +95,9 @@ impl Seam {
     ) {
         let heads = &parameters.heads;
         let (u, v) = (u_slide(side), u_slide(side) + 1);
+        if !parameters.believes(side, slides, seen) {
+            return self.disbelieve(side);
+        }
         let spot = heads.spot(&place.pose, side);
         let point = heads.seam_point(&spot, slides[u], slides[v], seen);
         let start = place.s + heads.camera_lead() + seen.along_mm;
@@ -90,6 +105,11 @@ impl Seam {
             self.rejected[side] = self.rejected[side].saturating_add(1);
             return;
         };
+        // U is planned at zero.
+        let planned = plan(parameters, path, meeting.sigma, 0.0).map_or(0.0, |plan| plan[v].position);
+        if libm::fabs(meeting.u).max(libm::fabs(meeting.v - planned)) > parameters.belief.deviation {
+            return self.disbelieve(side);
+        }
         let add = if place.speed < 0.0 {
             SeamMap::add_going_back
         } else {
@@ -97,10 +117,12 @@ impl Seam {
         };
         let added = [(u, meeting.u), (v, meeting.v)].map(|(slide, y)| {
             let map = &mut self.maps[slide];
-            if map.relocks() {
-                self.before[slide].clone_from(map);
+            let before = map.relocks().then(|| map.clone());
+            let added = add(map, &parameters.map, meeting.sigma, y);
+            if let (Added::Relocked, Some(before)) = (added, before) {
+                self.before[slide] = before;
             }
-            add(map, &parameters.map, meeting.sigma, y)
+            added
         });
         if added.contains(&Added::Outlier) {
             self.rejected[side] = self.rejected[side].saturating_add(1);

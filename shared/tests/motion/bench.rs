@@ -127,6 +127,8 @@ pub struct Bench {
     pub marks: [Option<f64>; MOTORS],
     /// What a grating counts beside the position.
     pub slipped: [i64; MOTORS],
+    /// What a grating counts that counts no more.
+    pub dead: [Option<i64>; MOTORS],
     /// The motor does not turn.
     pub blocked: [bool; MOTORS],
     /// Switches and faults as the next ticks read them, beside the limit switches at [`LOW_END`].
@@ -147,6 +149,7 @@ impl Bench {
             position: [0.0; MOTORS],
             marks: [Some(-2.0); MOTORS],
             slipped: [0; MOTORS],
+            dead: [None; MOTORS],
             blocked: [false; MOTORS],
             inputs: MotionFeedback::default(),
             command: MotionCommand::SAFE,
@@ -192,7 +195,7 @@ impl Bench {
                 self.position[motor] += speed * SERVO_PERIOD_S * f64::from(elapsed);
             }
             let now = self.position[motor];
-            feedback.counts[motor] = counts(now) + self.slipped[motor];
+            feedback.counts[motor] = self.dead[motor].unwrap_or(counts(now) + self.slipped[motor]);
             feedback.mark[motor] = self.marks[motor]
                 .filter(|mark| (before - mark) * (now - mark) < 0.0)
                 .map(|mark| counts(mark) + self.slipped[motor]);

@@ -38,11 +38,13 @@ fn a_gantry_out_of_square_switches_both_drives_off() {
 }
 
 #[test]
-fn a_blocked_axis_trips_at_its_following_error() {
+fn a_slow_axis_trips_at_its_following_error() {
     let mut bench = Bench::welding();
-    bench.blocked[Y] = true;
     for _ in 0..400 {
+        // Of ten counts it loses nine.
+        let before = bench.position[Y];
         bench.servo_tick();
+        bench.slipped[Y] -= (0.9 * SCALE * (bench.position[Y] - before)) as i64;
     }
     assert_eq!(bench.command, MotionCommand::SAFE);
     // 0.5 mm and 50 ms of 150 mm/s.
@@ -52,6 +54,56 @@ fn a_blocked_axis_trips_at_its_following_error() {
             if (8000.0 - limit_um).abs() < 1.0 && seen_um > limit_um && seen_um < limit_um + 40.0),
         "{fault:?}"
     );
+}
+
+#[test]
+fn a_blocked_axis_trips_once_it_was_told_to_go_its_following_error() {
+    let mut bench = Bench::welding();
+    bench.blocked[Y] = true;
+    let ticks = (1..400).find(|_| {
+        bench.servo_tick();
+        !bench.command.enable
+    });
+    bench.run_ms(2);
+    // 0.5 mm at 150 mm/s and rising.
+    assert!(matches!(ticks, Some(8..=14)), "{ticks:?}");
+    let fault = bench.fault();
+    assert!(
+        matches!(fault, Some(Fault::NoMovement { motor: 2, commanded_um }) if (500.0..600.0).contains(&commanded_um)),
+        "{fault:?}"
+    );
+}
+
+/// The loop takes an error of some counts away for ever; its following error never grows.
+#[test]
+fn a_grating_that_dies_at_rest_trips_before_its_axis_has_gone_far() {
+    for (error, ki) in [(3, 1000.0), (-10, 1000.0), (-100, 0.0), (1000, 0.0)] {
+        let mut config = config();
+        let y = config.motors[Y].as_mut().unwrap();
+        (y.ki, y.integral_limit, y.anti_windup_time_s) = (ki, 20.0, 0.05);
+        let mut bench = Bench::new();
+        bench.done(&Request::ConfigureMotion(config));
+        bench.run_ms(3);
+        bench.done(&Request::Home);
+        bench.until(State::Idle, 5000);
+        bench.run_ms(500);
+        let (from, at) = (bench.position[Y], (bench.position[Y] * SCALE).round() as i64);
+        bench.dead[Y] = Some(at + error);
+        for _ in 0..20_000 {
+            bench.run_ms(1);
+            if bench.controller.state() == State::Fault {
+                break;
+            }
+        }
+        let gone = (bench.position[Y] - from).abs();
+        println!("{error} counts: {gone:.3} mm");
+        assert!(
+            matches!(bench.fault(), Some(Fault::NoMovement { motor: 2, .. })),
+            "{error} counts: {:?}",
+            bench.fault()
+        );
+        assert!(gone <= 1.5, "{error} counts: {gone} mm");
+    }
 }
 
 #[test]

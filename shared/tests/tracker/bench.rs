@@ -31,6 +31,7 @@ pub fn config() -> TrackerConfig {
         travel_max_mm: 12.0,
         max_velocity_mm_s: 50.0,
         max_acceleration_mm_s2: 5000.0,
+        following_error_mm: 0.5,
         home: HomeConfig {
             velocity,
             mark_position: 0.0,
@@ -58,6 +59,9 @@ pub fn config() -> TrackerConfig {
             saturation_trip_ms: 50,
             search_mm: 0.0,
             search_speed_mm_s: 40.0,
+            max_path_speed_mm_s: 500.0,
+            max_seam_deviation_mm: 24.0,
+            max_seam_slope: 1.0,
         },
     }
 }
@@ -109,6 +113,7 @@ impl Shape {
 /// Where the real seam is beside the planned one: (side, s) → (u, v) \[mm\].
 pub type SeamFn = fn(usize, f64) -> (f64, f64);
 
+#[derive(Clone)]
 pub struct Bench {
     pub controller: Box<TrackerController<KNOTS>>,
     pub plant: SlidePlant,
@@ -137,12 +142,17 @@ pub struct Bench {
     pub path_id: u32,
     pub last: TickOutput,
     pub captures: u32,
+    /// How long after its tick a strobe is triggered \[µs\].
+    pub strobe_late: u64,
+    /// The last that the motion board sent.
+    pub path_state: Option<PathState>,
     heads: Heads,
     command: SlideCommand,
     /// Pictures in a row that showed the seam.
     in_sight: [u32; SIDES],
     millisecond: u64,
-    measurements: VecDeque<(u64, Measurement)>,
+    /// Under way, with the time they arrive at.
+    pub measurements: VecDeque<(u64, Measurement)>,
     random: u64,
 }
 
@@ -152,6 +162,7 @@ impl Bench {
         let last = controller.tick(&TickInput {
             now_us: 0,
             periods: 1,
+            strobed_us: None,
             feedback: SlideFeedback::default(),
             truth: None,
         });
@@ -175,6 +186,8 @@ impl Bench {
             path_id: PATH_ID,
             last,
             captures: 0,
+            strobe_late: 0,
+            path_state: None,
             heads: config().head.build().expect("head"),
             command: SlideCommand::SAFE,
             in_sight: [0; SIDES],
@@ -236,21 +249,21 @@ impl Bench {
         if self.linked {
             let pose = self.measured_pose(self.s);
             let flat = [pose.position, pose.tangent, pose.normal];
-            self.controller.datagram(
-                &Datagram::PathState(PathState {
-                    tick: self.millisecond as u32,
-                    time_us: t + MOTION_CLOCK,
-                    sent_us: t + 120 + MOTION_CLOCK,
-                    path_id: self.path_id,
-                    s_mm: self.s,
-                    speed_mm_s: self.speed,
-                    pose: core::array::from_fn(|i| flat[i / 3][i % 3]),
-                    tracking: self.tracking,
-                    beams: self.beams,
-                    aside: [0.0; 3],
-                }),
-                t + 370 + TRACKER_CLOCK,
-            );
+            let state = PathState {
+                tick: self.millisecond as u32,
+                time_us: t + MOTION_CLOCK,
+                sent_us: t + 120 + MOTION_CLOCK,
+                path_id: self.path_id,
+                s_mm: self.s,
+                speed_mm_s: self.speed,
+                pose: core::array::from_fn(|i| flat[i / 3][i % 3]),
+                tracking: self.tracking,
+                beams: self.beams,
+                aside: [0.0; 3],
+            };
+            self.controller
+                .datagram(&Datagram::PathState(state), t + 370 + TRACKER_CLOCK);
+            self.path_state = Some(state);
         }
         let now = t + PHASE;
         while self.measurements.front().is_some_and(|m| m.0 <= now) {
@@ -261,12 +274,8 @@ impl Bench {
         let mut feedback = self.plant.advance(&self.command);
         (self.meddle)(&mut feedback);
         let truth = self.plant.truth();
-        self.last = self.controller.tick(&TickInput {
-            now_us: now + TRACKER_CLOCK,
-            periods: 1,
-            feedback,
-            truth: Some(truth),
-        });
+        let input = self.input(feedback);
+        self.last = self.controller.tick(&input);
         self.command = self.last.command;
         if let Some(capture) = self.last.capture {
             self.captures += 1;
@@ -278,6 +287,7 @@ impl Bench {
             self.measurements.push_back((now + 10_000, measurement));
         }
         if let Some(request) = self.last.clock_request {
+            self.controller.asks_clock(request.asked_us);
             self.controller.datagram(
                 &Datagram::ClockReply(ClockReply {
                     asked_us: request.asked_us,
@@ -287,6 +297,23 @@ impl Bench {
                 now + 530 + TRACKER_CLOCK,
             );
         }
+    }
+
+    /// What a tick now reads, the cameras triggered if they are due.
+    pub fn input(&mut self, feedback: SlideFeedback) -> TickInput {
+        let now_us = self.now_us();
+        TickInput {
+            now_us,
+            periods: 1,
+            strobed_us: self.controller.strobe(1).then_some(now_us + self.strobe_late),
+            feedback,
+            truth: Some(self.plant.truth()),
+        }
+    }
+
+    /// The tracker's clock at its last tick \[µs\].
+    pub fn now_us(&self) -> u64 {
+        (self.millisecond - 1) * 1000 + PHASE + TRACKER_CLOCK
     }
 
     /// Path position at the tracker's last tick.

@@ -2,7 +2,9 @@
 
 mod bench;
 mod following;
+mod forged;
 mod jog;
 mod permits;
 mod searching;
 mod states;
+mod supervision;

@@ -462,6 +462,7 @@ fn lost_ticks_are_counted_and_status_answers_for_the_session() {
     bench.controller.tick(&TickInput {
         now_us: 0,
         periods: 3,
+        strobed_us: None,
         feedback: Default::default(),
         truth: None,
     });
@@ -497,4 +498,68 @@ fn a_saturation_trip_that_never_comes_is_no_overflow() {
     bench.run_ms(50);
     assert_eq!(bench.controller.state(), TrackerState::Tracking);
     assert_eq!(bench.last.sample.fault, None);
+}
+
+#[test]
+fn a_strobe_is_asked_for_before_the_law_and_what_it_was_late_is_told() {
+    let mut bench = tracking();
+    assert_eq!(bench.status().strobe_late_us, [0, 0]);
+    for late in [7, 3, 30] {
+        bench.strobe_late = late;
+        bench.run_ms(1);
+        while bench.last.capture.is_none() {
+            bench.run_ms(1);
+        }
+        let capture = bench.last.capture.unwrap();
+        assert_eq!(capture.time_us, bench.now_us() + late);
+        // 100 mm/s, and a clock error of 30 µs.
+        let s = bench.s_now() + late as f64 * 1e-4;
+        assert!((capture.s_mm - s).abs() < 0.003, "{} {s}", capture.s_mm);
+    }
+    assert_eq!(bench.status().strobe_late_us, [0, 30]);
+    // Due two ticks before the one that was served.
+    bench.strobe_late = 5;
+    bench.run_ms(2);
+    assert!(bench.last.capture.is_none());
+    assert!(bench.controller.strobe(5));
+    let feedback = bench.plant.advance(&bench.last.command);
+    let now_us = bench.now_us() + 5000;
+    let output = bench.controller.tick(&TickInput {
+        now_us,
+        periods: 5,
+        strobed_us: Some(now_us + 5),
+        feedback,
+        truth: None,
+    });
+    assert_eq!(output.capture.unwrap().time_us, now_us + 5);
+    assert_eq!(bench.status().strobe_late_us, [0, 2005]);
+}
+
+#[test]
+fn what_is_believed_has_bounds() {
+    type Change = fn(&mut shared::tracking::TrackingConfig, f64);
+    let path_speed: Change = |tracking, value| tracking.max_path_speed_mm_s = value;
+    let deviation: Change = |tracking, value| tracking.max_seam_deviation_mm = value;
+    let slope: Change = |tracking, value| tracking.max_seam_slope = value;
+    for (field, change, good, bad) in [
+        // A picture every 5 ms within 5 mm.
+        ("max_path_speed_mm_s", path_speed, [1.0, 1000.0], [0.0, 1001.0]),
+        ("max_seam_deviation_mm", deviation, [1.0, 24.0], [0.9, 24.1]),
+        ("max_seam_slope", slope, [0.01, 1.0], [0.0, 1.01]),
+    ] {
+        for (value, good) in good.map(|v| (v, true)).into_iter().chain(bad.map(|v| (v, false))) {
+            let mut config = config();
+            change(&mut config.tracking, value);
+            let expected = if good {
+                Response::Done
+            } else {
+                Response::Refused(Refusal::Parameter(ParameterError::new("tracking", field, value)))
+            };
+            assert_eq!(
+                bench().ask(Request::ConfigureTracker(config)),
+                expected,
+                "{field} {value}"
+            );
+        }
+    }
 }

@@ -108,7 +108,10 @@ fn without_the_pc_the_machine_stops_on_its_path_and_welds_again_later() {
     // The end of its session shut the beams and began the stop before anybody else could connect.
     for sample in &samples {
         assert_eq!(sample.beams, [false; 2], "{sample:?}");
-        assert!(matches!(sample.state, State::Stopping | State::Fault), "{sample:?}");
+        assert!(
+            matches!(sample.state, State::Stopping | State::Fault),
+            "{sample:?}"
+        );
     }
     let (motion, tracker) = status(&mut boards);
     assert_eq!(motion.fault, Some(Fault::SessionEnded));

@@ -28,6 +28,7 @@ impl Tracker {
                 window: p("w"),
                 hold: p("hold"),
                 gate: p("gate"),
+                slope: f64::INFINITY,
                 spacing: MapLaw::MIN_SPACING,
                 keep: p("keep") as usize,
             },

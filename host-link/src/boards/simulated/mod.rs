@@ -187,6 +187,7 @@ impl SimulatedBoards {
             self.post(tracker, Node::Pc, Datagram::Capture(capture));
         }
         if let Some(request) = output.clock_request {
+            self.tracker.controller.asks_clock(request.asked_us);
             self.post(tracker, motion, Datagram::ClockRequest(request));
         }
         if let Some(telemetry) = self.tracker.telemetry() {

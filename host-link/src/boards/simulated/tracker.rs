@@ -29,12 +29,14 @@ impl TrackerBoard {
 
     /// One control tick at `now_us` of the board's clock; what there is to send.
     pub fn tick(&mut self, now_us: u64) -> TickOutput {
+        let strobes = self.controller.strobe(1);
         let mut feedback = self.plant.advance(&self.command);
         feedback.estop = self.estop;
         let truth = Some(self.plant.truth());
         let output = self.controller.tick(&TickInput {
             now_us,
             periods: 1,
+            strobed_us: strobes.then_some(now_us),
             feedback,
             truth,
         });

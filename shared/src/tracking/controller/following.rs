@@ -8,6 +8,9 @@ use crate::tracking::parameters::TrackerParameters;
 use crate::tracking::seam::{RealHead, Sight, plan};
 use crate::tracking::{TrackerFault, TrackerState};
 
+/// A slide that should go beyond its travel and is as near as this to the end has gone as far as it can \[mm\].
+const AT_THE_END: f64 = 0.1;
+
 impl<const KNOTS: usize> TrackerController<KNOTS> {
     /// Ready and tracking: one tick of the control law toward seam, plan or rest.
     pub(super) fn follow(
@@ -159,7 +162,15 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     /// One tick of the control law of slide `i`.
     fn drive(&mut self, parameters: &TrackerParameters, i: usize, target: Option<SlideTarget>) -> DacCode {
         let slide = &mut self.slides[i];
+        // What lies beyond the travel is not gone after.
+        let (min, max) = parameters.slides[i].law.travel;
+        let beyond = target.is_some_and(|t| t.position < min || t.position > max);
+        let target = target.map(|t| SlideTarget {
+            position: t.position.clamp(min, max),
+            ..t
+        });
         slide.target = target.map_or(slide.position, |t| t.position);
+        let at_the_end = beyond && libm::fabs(slide.position - slide.target) <= AT_THE_END;
         let output = slide.law.step(&parameters.slides[i].law, target, slide.position);
         slide.saturated_ticks = match output.flag {
             LawFlag::Saturated => slide.saturated_ticks.saturating_add(1),
@@ -177,7 +188,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             if ms > parameters.saturation_ticks.saturating_add(first_way) {
                 self.report(TrackerFault::Saturated { slide, ms });
             }
-            if output.flag == LawFlag::SoftLimit {
+            if at_the_end || output.flag == LawFlag::SoftLimit {
                 self.report(TrackerFault::SoftLimit { slide, position_mm });
             }
         }

@@ -144,6 +144,10 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             rejected,
             too_old: self.too_old,
             unsent,
+            implausible_path_states: self.gate.dropped(),
+            implausible_measurements: self.seam.implausible(),
+            implausible_clock_replies: self.disbelieved_replies,
+            strobe_late_us: [self.strobes.least_late_us, self.strobes.most_late_us],
         }
     }
 }

@@ -1,0 +1,32 @@
+//! Slides that do not do what they are told.
+
+use super::TrackerController;
+use crate::io::SlideCommand;
+use crate::tracking::TrackerFault;
+use crate::tracking::parameters::TrackerParameters;
+
+impl<const KNOTS: usize> TrackerController<KNOTS> {
+    /// A slide that does not do what it was told since the last call, `periods` ticks ago, with the drives on. Where
+    /// it stands nobody knows then, until it is homed.
+    pub(super) fn supervise(&mut self, parameters: &TrackerParameters, periods: u32) -> Option<TrackerFault> {
+        let counts = self.feedback.counts;
+        for (i, (slide, of)) in self.slides.iter_mut().zip(&parameters.slides).enumerate() {
+            if let Err(fault) = slide.watch.check(&of.supervision, counts[i], periods) {
+                slide.offset = None;
+                return Some(fault);
+            }
+        }
+        None
+    }
+
+    /// What the slides are told now.
+    pub(super) fn told(&mut self, parameters: &TrackerParameters, command: &SlideCommand) {
+        for (i, (slide, of)) in self.slides.iter_mut().zip(&parameters.slides).enumerate() {
+            if command.enable {
+                slide.watch.command(command.dac[i].ratio() * of.law.full_scale);
+            } else {
+                slide.watch.rest(self.feedback.counts[i]);
+            }
+        }
+    }
+}
