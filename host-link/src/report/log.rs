@@ -77,8 +77,12 @@ pub(crate) mod tests {
     pub(crate) fn tick(tick: u32) -> WorkTick {
         WorkTick {
             tick,
+            path_id: 1,
+            s_mm: 0.1 * f64::from(tick),
             along_mm: 0.1 * f64::from(tick),
             speed_mm_s: 5.0 * MM_S_PER_M_MIN,
+            feed_mm_s: 5.0 * MM_S_PER_M_MIN,
+            true_speed_mm_s: Some(4.9 * MM_S_PER_M_MIN),
             beams: [true, false],
             slides_mm: None,
             deviation_mm: [Some(0.012), Some(-0.003), None, None],

@@ -249,6 +249,8 @@ mod tests {
             x: "length [mm]",
             y: "height [mm]",
             lines: vec![("bead", vec![(0.0, 1.0), (1.0, f64::NAN), (2.0, 1.2)])],
+            limits: vec![1.5],
+            to_scale: false,
         };
         draw_more(&directory, &without_tracker(), &[plot]).unwrap();
         let words = ["Height of the bead, job.ngc", "length [mm]", "height [mm]"];

@@ -54,6 +54,7 @@ fn judged(
         kinematics: &kinematics,
         paths: &paths,
         samples: &samples,
+        evaluation: &Default::default(),
     };
     part.kind().judge(&place, &run)
 }
@@ -173,6 +174,7 @@ fn a_run_without_arc_or_of_another_program_is_no_bead() {
             kinematics: &kinematics,
             paths: &paths,
             samples,
+            evaluation: &Default::default(),
         };
         let directory = shipped("programs");
         let place = Place {

@@ -183,7 +183,7 @@ fn what_the_limits_forbid_is_named_with_its_point() {
     fast.speed_m_min = 20.0;
     let text = refused(&fast, shipped(&fast));
     assert!(
-        text.contains("axis C allows") && text.contains("near taught point"),
+        text.contains("of C near taught point"),
         "{text}"
     );
     let mut points = shipped(&panel());

@@ -76,6 +76,7 @@ fn judge(paths: &BTreeMap<u32, PlannedPath>, samples: &[RunSample]) -> anyhow::R
         kinematics: &machine.motion.kinematics().unwrap(),
         paths,
         samples,
+        evaluation: &Default::default(),
     })
 }
 
