@@ -24,7 +24,7 @@ const STEPS: usize = 50;
 const HALF: usize = 4;
 /// Slow processes are looked at over at least so much before and after \[mm\]: what is shorter does not show in a seam,
 /// and a drive that sticks for a micrometre is no change of speed.
-const HALF_MM: f64 = 0.05;
+pub(crate) const HALF_MM: f64 = 0.05;
 
 /// A tick of the motion board on a path that works: one of G1, or with a beam.
 #[derive(Clone, Copy, Debug, PartialEq)]

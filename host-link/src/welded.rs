@@ -1,7 +1,7 @@
 //! What was welded of what is programmed, and how fast: by where the tip truly was while a gate was open.
 
 use crate::along::Along;
-use crate::evaluate::WorkTick;
+use crate::evaluate::{HALF_MM, WorkTick};
 use crate::nc::Motion;
 use crate::path::PlannedPath;
 use serde::Serialize;
@@ -80,10 +80,11 @@ fn near_rest(path: &PlannedPath, tick: &WorkTick) -> bool {
         ..path.limits
     };
     let from_end = (tick.s_mm - path.start_s).min(path.length_mm() - tick.s_mm);
-    from_end < NEAR_REST * ramp.ramp()
+    from_end < NEAR_REST * ramp.ramp() + 2.0 * HALF_MM
 }
 
-/// So many lengths of its ramp a path may take to its feed: the planner's output filter, and drives that lag behind.
+/// So many lengths of its ramp a path may take to its feed: the planner's output filter, and drives that lag behind. What
+/// the true speed is told from reaches a little further.
 const NEAR_REST: f64 = 2.0;
 
 /// What one side welded of the stretches where its gate is programmed to be open.
