@@ -209,7 +209,9 @@ fn add_true_speeds(ticks: &mut [WorkTick], tips: &[Option<Vector3<f64>>]) {
     let (mut way, mut unknown) = (vec![0.0; ticks.len()], vec![0_u32; ticks.len()]);
     let mut path = vec![0..0; ticks.len()];
     for i in 1..ticks.len() {
-        let step = tips[i].zip(tips[i - 1]).map(|(tip, before)| (tip - before).norm());
+        let step = tips[i]
+            .zip(tips[i - 1])
+            .map(|(tip, before)| (tip - before).norm());
         way[i] = way[i - 1] + step.unwrap_or(0.0);
         unknown[i] = unknown[i - 1] + u32::from(step.is_none());
     }

@@ -3,7 +3,7 @@
 use crate::along::Along;
 use crate::evaluate::{HALF_MM, WorkTick};
 use crate::nc::Motion;
-use crate::path::PlannedPath;
+use crate::path::{PlannedPath, Programmed};
 use serde::Serialize;
 use shared::io::SIDES;
 use shared::motion::BeamConfig;
@@ -16,7 +16,8 @@ const LONGEST_GAP_TICKS: u32 = 10;
 /// Speeds with a beam on, as shares of the programmed feed at the same place, and where they were.
 ///
 /// Places that a beam goes over again after a hold count as they were the first time. A beam that stays on at rest, as
-/// a spindle does, is not counted where the path leaves rest or comes to it.
+/// a spindle does, is not counted where the path leaves rest or comes to it. Where the feed changes, what lies between both
+/// is neither low nor high.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SpeedShares {
     /// Lowest \[%\].
@@ -42,9 +43,11 @@ impl SpeedShares {
         let mut shares: Option<Self> = None;
         // How far each beam has come on the path.
         let (mut path_id, mut farthest) = (0, [f64::NEG_INFINITY; SIDES]);
+        let mut programmed = Programmed::default();
         for tick in ticks {
             if tick.path_id != path_id {
                 (path_id, farthest) = (tick.path_id, [f64::NEG_INFINITY; SIDES]);
+                programmed = paths[&path_id].programmed();
             }
             let mut counts = false;
             for side in (0..SIDES).filter(|side| tick.beams[*side]) {
@@ -54,18 +57,19 @@ impl SpeedShares {
                 counts |= new && path.motion == Motion::Feed && !(rests[side] && near_rest(path, tick));
             }
             if let (true, Some(speed)) = (counts && tick.feed_mm_s > 0.0, tick.true_speed_mm_s) {
-                let share = 100.0 * speed / tick.feed_mm_s;
+                let (slow, fast) = programmed.feeds_around(tick.s_mm, transition(&paths[&path_id], tick));
+                let (low, high) = (100.0 * speed / slow, 100.0 * speed / fast);
                 let shares = shares.get_or_insert(Self {
-                    lowest_percent: share,
+                    lowest_percent: low,
                     lowest_at_mm: tick.along_mm,
-                    highest_percent: share,
+                    highest_percent: high,
                     highest_at_mm: tick.along_mm,
                 });
-                if share < shares.lowest_percent {
-                    (shares.lowest_percent, shares.lowest_at_mm) = (share, tick.along_mm);
+                if low < shares.lowest_percent {
+                    (shares.lowest_percent, shares.lowest_at_mm) = (low, tick.along_mm);
                 }
-                if share > shares.highest_percent {
-                    (shares.highest_percent, shares.highest_at_mm) = (share, tick.along_mm);
+                if high > shares.highest_percent {
+                    (shares.highest_percent, shares.highest_at_mm) = (high, tick.along_mm);
                 }
             }
         }
@@ -75,17 +79,22 @@ impl SpeedShares {
 
 /// Whether a path gets up to the feed at the place of a tick, or comes to rest from it.
 fn near_rest(path: &PlannedPath, tick: &WorkTick) -> bool {
+    let from_end = (tick.s_mm - path.start_s).min(path.length_mm() - tick.s_mm);
+    from_end < transition(path, tick)
+}
+
+/// Length of path that a change of the feed may take \[mm\].
+fn transition(path: &PlannedPath, tick: &WorkTick) -> f64 {
     let ramp = SpeedLimits {
         velocity: tick.feed_mm_s,
         ..path.limits
     };
-    let from_end = (tick.s_mm - path.start_s).min(path.length_mm() - tick.s_mm);
-    from_end < NEAR_REST * ramp.ramp() + 2.0 * HALF_MM
+    RAMPS * ramp.ramp() + 2.0 * HALF_MM
 }
 
-/// So many lengths of its ramp a path may take to its feed: the planner's output filter, and drives that lag behind. What
+/// So many times the length of the way from rest to the feed: the planner's output filter, and drives that lag behind. What
 /// the true speed is told from reaches a little further.
-const NEAR_REST: f64 = 2.0;
+const RAMPS: f64 = 2.0;
 
 /// What one side welded of the stretches where its gate is programmed to be open.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -52,7 +52,8 @@ fn a_weld_beyond_the_limits_of_its_part_ends_with_exit_code_3() {
     assert_eq!(code, Some(3), "{text}");
     let verdict = text.lines().last().unwrap_or_default();
     assert!(
-        verdict.starts_with("host-link: the weld is outside its limits: side 1, spot beside seam, across (U)")
+        verdict
+            .starts_with("host-link: the weld is outside its limits: side 1, spot beside seam, across (U)")
             && verdict.contains("may be 0.0010 mm"),
         "{text}"
     );

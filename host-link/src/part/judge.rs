@@ -137,4 +137,3 @@ pub const ALONG: &str = "path from where the first beam goes on [mm]";
 
 /// A point that leaves a gap in the line of a plot.
 pub const GAP: (f64, f64) = (f64::NAN, f64::NAN);
-

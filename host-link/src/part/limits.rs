@@ -55,7 +55,9 @@ impl TryFrom<f64> for Percent {
         if (0.0..=100.0).contains(&value) {
             Ok(Self(value))
         } else {
-            Err(format!("a limit in percent is a number from 0 to 100, not {value}"))
+            Err(format!(
+                "a limit in percent is a number from 0 to 100, not {value}"
+            ))
         }
     }
 }

@@ -129,7 +129,10 @@ fn longest_unknown(ticks: &[WorkTick], side: usize) -> (f64, f64) {
     let ways = unknown.map(|chunk| {
         // A tick stands for its own way.
         let own = chunk[0].speed_mm_s * shared::motion::PATH_PERIOD_S;
-        (chunk[chunk.len() - 1].s_mm - chunk[0].s_mm + own, chunk[0].along_mm)
+        (
+            chunk[chunk.len() - 1].s_mm - chunk[0].s_mm + own,
+            chunk[0].along_mm,
+        )
     });
     ways.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0))
 }

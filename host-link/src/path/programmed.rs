@@ -71,10 +71,15 @@ impl Programmed {
         feed.map_or(0.0, |(_, feed)| *feed)
     }
 
-    /// Lengths of path on which a gate is to be open, of each side \[mm\].
-    pub fn beam_lengths(&self) -> [f64; SIDES] {
-        let length = |stretches: &Vec<(f64, f64)>| stretches.iter().map(|(from, to)| to - from).sum();
-        self.beams.each_ref().map(length)
+    /// Lowest and highest feed from `reach` \[mm\] before `s` to as much behind it \[mm/s\].
+    pub fn feeds_around(&self, s: f64, reach: f64) -> (f64, f64) {
+        let first = self.feeds.partition_point(|(from, _)| *from <= s - reach);
+        let end = self.feeds.partition_point(|(from, _)| *from <= s + reach);
+        let feeds = &self.feeds[first.saturating_sub(1)..end];
+        let here = self.feed_at(s);
+        feeds.iter().fold((here, here), |(low, high), (_, feed)| {
+            (low.min(*feed), high.max(*feed))
+        })
     }
 }
 
@@ -86,21 +91,22 @@ mod tests {
     use std::path::Path;
 
     fn paths(machine: &str, program: &str) -> Vec<PlannedPath> {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../machines").join(machine);
+        let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../machines")
+            .join(machine);
         let machine = MachineFile::read(&file).unwrap();
         let program = interpret(program, Options::default()).unwrap();
         let planner = Planner::build(&machine).unwrap();
         planner.program(&program, &machine.homed_axes(), None).unwrap()
     }
 
-    /// By knots on the machine that follows seams, by blocks on the other one.
     #[test]
     fn beams_and_feeds_are_where_the_program_has_them() {
         let gantry = "G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nF5000\nM62 P2\nG1 X940\nM62 P0\nX960\nM62 P1\nX1000\n\
                       M63 P0\nX1010\nM63 P1\nM63 P2\nX1050\nM2";
         let path = &paths("dual-beam-gantry.toml", gantry)[1];
         let programmed = path.programmed();
-        assert!(programmed.tracked && path.blocks.is_none());
+        assert!(programmed.tracked);
         for (stretches, (from, to)) in programmed.beams.iter().zip([(40.0, 100.0), (60.0, 110.0)]) {
             assert_eq!(stretches.len(), 1, "{stretches:?}");
             assert!((stretches[0].0 - from).abs() < 1e-6 && (stretches[0].1 - to).abs() < 1e-6);
@@ -109,9 +115,10 @@ mod tests {
 
         let head = "G43.4\nG0 X500 Y500 Z100 A0 C0\nM67 E0 Q1000\nF1200\nG1 X510\nM62 P0\nX530\nF600\nX540\nM63 P0\n\
                     X545\nM62 P0\nX550\nM2";
-        let path = &paths("ac-head.toml", head)[1];
+        let paths = paths("ac-head.toml", head);
+        let path = paths.iter().find(|path| path.weld().is_some()).unwrap();
         let programmed = path.programmed();
-        assert!(!programmed.tracked && path.blocks.is_some());
+        assert!(!programmed.tracked);
         let [first, second] = programmed.beams;
         assert!(second.is_empty());
         let near = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).abs() < 1e-6 && (a.1 - b.1).abs() < 1e-6;
@@ -120,6 +127,12 @@ mod tests {
             "{first:?}"
         );
         let programmed = path.programmed();
-        assert_eq!([5.0, 29.0, 31.0, 50.0].map(|s| programmed.feed_at(s)), [20.0, 20.0, 10.0, 10.0]);
+        assert_eq!(
+            [5.0, 29.0, 31.0, 50.0].map(|s| programmed.feed_at(s)),
+            [20.0, 20.0, 10.0, 10.0]
+        );
+        let around =
+            [(29.0, 0.5), (29.0, 2.0), (31.0, 2.0)].map(|(s, reach)| programmed.feeds_around(s, reach));
+        assert_eq!(around, [(20.0, 20.0), (10.0, 20.0), (10.0, 20.0)]);
     }
 }

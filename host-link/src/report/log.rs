@@ -8,7 +8,8 @@ use std::fmt::Write;
 
 /// The log with its heading; unknown values are empty. There are columns for what the machine has.
 pub(super) fn csv(report: &Report, ticks: &[WorkTick]) -> String {
-    let mut text = String::from("tick,along_mm,speed_m_per_min,feed_m_per_min,true_speed_m_per_min,beam_1,beam_2");
+    let mut text =
+        String::from("tick,along_mm,speed_m_per_min,feed_m_per_min,true_speed_m_per_min,beam_1,beam_2");
     let slides = if report.seam.is_some() {
         &SLIDE_NAMES[..]
     } else {

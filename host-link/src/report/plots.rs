@@ -154,8 +154,13 @@ fn deviation_panel(side: usize, report: &Report, ticks: &[WorkTick]) -> Panel {
                 .map(|deviation| deviation * 1e3)
         }),
     };
-    let judged = report.figures.iter().find(|figure| figure.key.starts_with("deviation_"));
-    let limit = judged.and_then(|figure| figure.limit).map_or(GOAL_UM, |mm| 1e3 * mm);
+    let judged = report
+        .figures
+        .iter()
+        .find(|figure| figure.key.starts_with("deviation_"));
+    let limit = judged
+        .and_then(|figure| figure.limit)
+        .map_or(GOAL_UM, |mm| 1e3 * mm);
     Panel {
         title: format!("Side {}, beam on (dashed: ±{limit:.0} µm)", side + 1),
         x: ALONG,
@@ -175,7 +180,10 @@ fn contour_panel(ticks: &[WorkTick]) -> Panel {
     let beams = ticks.iter().any(|tick| tick.beams.contains(&true));
     let counts = |tick: &WorkTick| !beams || tick.beams.contains(&true);
     Panel {
-        title: format!("True tip from programmed path{}", if beams { ", beam on" } else { "" }),
+        title: format!(
+            "True tip from programmed path{}",
+            if beams { ", beam on" } else { "" }
+        ),
         x: ALONG,
         y: "µm",
         curves: vec![Curve {
@@ -233,20 +241,28 @@ fn speed_panel(report: &Report, ticks: &[WorkTick]) -> Panel {
         ("m/min", 1.0)
     };
     let told = |mm_s: f64| scale * mm_s / MM_S_PER_M_MIN;
-    let judged = report.figures.iter().find(|figure| figure.key == "speed_dip_percent");
+    let judged = report
+        .figures
+        .iter()
+        .find(|figure| figure.key == "speed_dip_percent");
     let limit = judged.and_then(|figure| figure.limit);
     let level = |tick: &WorkTick| (tick.path_id, tick.feed_mm_s, tick.beams.contains(&true));
     let dashed = |share: f64| {
         let chunks = ticks.chunk_by(|a, b| level(a) == level(b));
         let lowest = move |chunk: &[WorkTick]| {
             let lowest = told(chunk[0].feed_mm_s) * share;
-            vec![(chunk[0].along_mm, lowest), (chunk[chunk.len() - 1].along_mm, lowest)]
+            vec![
+                (chunk[0].along_mm, lowest),
+                (chunk[chunk.len() - 1].along_mm, lowest),
+            ]
         };
         chunks.filter(|chunk| level(&chunk[0]).2).map(lowest).collect()
     };
     Panel {
         title: match limit {
-            Some(limit) => format!("Speed of the tip (dashed: limit with a beam on, {limit} % below the feed)"),
+            Some(limit) => {
+                format!("Speed of the tip (dashed: limit with a beam on, {limit} % below the feed)")
+            }
             None => "Speed of the tip".to_owned(),
         },
         x: ALONG,

@@ -19,7 +19,10 @@ pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
         writeln!(f, "  part            {part}")?;
     }
     if r.judged_by == Some(JudgedBy::ShippedSeamLimits) {
-        writeln!(f, "  part            none: judged by the limits that are shipped for seams")?;
+        writeln!(
+            f,
+            "  part            none: judged by the limits that are shipped for seams"
+        )?;
     }
     let boards: Vec<&str> = [Some(r.boards.motion.as_str()), r.boards.tracker.as_deref()]
         .into_iter()

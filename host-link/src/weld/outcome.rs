@@ -2,8 +2,8 @@
 
 use super::session::{Session, on_path};
 use super::{Job, JobError, Taught, Tracking, Weld};
-use crate::dry_run::{self, DryRunError};
 use crate::along::{Along, works};
+use crate::dry_run::{self, DryRunError};
 use crate::evaluate::{Evaluation, evaluate, run_samples};
 use crate::part::{Judgement, PartFile, Plot, Run, SeamLimits};
 use crate::path::{PathError, PlannedPath};
@@ -44,7 +44,13 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
     evaluation.speed = SpeedShares::of(&evaluation.ticks, paths, &job.machine.motion.beams);
     let mut judgement = Judgement::default();
     let mut judged_by = None;
-    match judge(session, job, paths, &evaluation, taught.part.as_ref().or(job.part)) {
+    match judge(
+        session,
+        job,
+        paths,
+        &evaluation,
+        taught.part.as_ref().or(job.part),
+    ) {
         Ok((by, judged)) => (judged_by, judgement) = (by, judged),
         // What ended early is judged as far as it came, where that can be.
         Err(_) if error.is_some() => {}
@@ -184,7 +190,11 @@ fn placed(fault: TrackerFault, here: &impl Fn(f64) -> f64) -> TrackerFault {
 
 /// A place of the path that was run last, as path length through all paths.
 fn here(session: &Session, along: &Along, s_mm: f64) -> f64 {
-    let last = session.record.motion().iter().rfind(|sample| on_path(sample.state));
+    let last = session
+        .record
+        .motion()
+        .iter()
+        .rfind(|sample| on_path(sample.state));
     last.and_then(|last| along.at(last.path_id, s_mm)).unwrap_or(s_mm)
 }
 

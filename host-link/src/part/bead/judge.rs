@@ -1,7 +1,7 @@
 //! What a run made of a bead: true speed against the process window, true tip against the exact NURBS.
 
-use super::{BeadLimits, Layer};
 use super::route::Route;
+use super::{BeadLimits, Layer};
 use crate::part::{ALONG, Figure, GAP, Judgement, Plot, Run, RunSample};
 use anyhow::ensure;
 use nalgebra::Vector3;

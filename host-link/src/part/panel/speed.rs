@@ -43,7 +43,12 @@ impl Panel {
         if self.speed_m_min > GUIDES * largest {
             return Err(too_fast());
         }
-        let unsure = || format!("{}; whether that is so of the panel shows when it is taught", too_fast());
+        let unsure = || {
+            format!(
+                "{}; whether that is so of the panel shows when it is taught",
+                too_fast()
+            )
+        };
         Ok((self.speed_m_min > largest).then(unsure))
     }
 
@@ -74,7 +79,10 @@ impl Panel {
         }
         // The line begins a lead before the first point.
         let off = |way: &f64| (way + self.lead_mm - bound.s_mm).abs();
-        let nearest = ways.iter().enumerate().min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+        let nearest = ways
+            .iter()
+            .enumerate()
+            .min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
         PanelError::Speed {
             whose,
             point: nearest.map_or(1, |(index, _)| index + 1),

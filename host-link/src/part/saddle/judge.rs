@@ -56,7 +56,9 @@ pub(super) fn judge(part: &Saddle, seam: &Seam, run: &Run) -> anyhow::Result<Jud
             .samples
             .iter()
             .filter(|sample| sample.path_id == id && sample.beams[ARC]);
-        worth.add(pass, seam, &burning.collect::<Vec<_>>(), |s| run.along().at(id, s))?;
+        worth.add(pass, seam, &burning.collect::<Vec<_>>(), |s| {
+            run.along().at(id, s)
+        })?;
     }
     Ok(worth.judgement(&part.limits))
 }

@@ -67,9 +67,15 @@ fn an_undisturbed_weld_is_within_the_shipped_limits() {
     }
     assert!((figure(report, "programmed_1_mm").value - 200.0).abs() < 1e-3);
     let text = report.to_string();
-    assert!(text.contains("none: judged by the limits that are shipped"), "{text}");
+    assert!(
+        text.contains("none: judged by the limits that are shipped"),
+        "{text}"
+    );
     let speed = report.speed.expect("beams");
-    assert!(speed.lowest_percent > 95.0 && speed.highest_percent < 105.0, "{speed:?}");
+    assert!(
+        speed.lowest_percent > 95.0 && speed.highest_percent < 105.0,
+        "{speed:?}"
+    );
 }
 
 #[test]
@@ -79,7 +85,10 @@ fn a_spot_beside_its_seam_is_beyond_its_limit_and_is_named_with_its_place() {
     assert_eq!(exceeded(&ended.report), ["deviation_u1_mm"], "{}", ended.report);
     let figure = figure(&ended.report, "deviation_u1_mm");
     assert!((figure.value - 0.091).abs() < 0.02, "{figure:?}");
-    assert!(figure.at_mm.is_some_and(|at| (0.0..200.0).contains(&at)), "{figure:?}");
+    assert!(
+        figure.at_mm.is_some_and(|at| (0.0..200.0).contains(&at)),
+        "{figure:?}"
+    );
     let told = sentence(figure);
     assert!(
         told.contains("side 1") && told.contains("at s = ") && told.contains("(may be 0.0500 mm)"),
@@ -97,7 +106,12 @@ fn what_stays_unwelded_is_beyond_its_limit_and_is_named_with_side_and_place() {
     };
     let ended = undisturbed(&mut boards);
     assert!(ended.error.is_none(), "{:?}", ended.error);
-    assert_eq!(exceeded(&ended.report), ["unwelded_2_mm", "gap_2_mm"], "{}", ended.report);
+    assert_eq!(
+        exceeded(&ended.report),
+        ["unwelded_2_mm", "gap_2_mm"],
+        "{}",
+        ended.report
+    );
     let gap = figure(&ended.report, "gap_2_mm");
     assert!((gap.value - 20.0).abs() < 0.3, "{gap:?}");
     assert!(gap.at_mm.is_some_and(|at| (at - 100.0).abs() < 0.2), "{gap:?}");
@@ -113,10 +127,16 @@ fn a_weld_that_ends_early_is_judged_as_far_as_it_came() {
     };
     assert_eq!(ended.report.outcome, Outcome::Failed);
     let keys = exceeded(&ended.report);
-    assert!(keys.contains(&"unwelded_1_mm") && keys.contains(&"gap_2_mm"), "{keys:?}");
+    assert!(
+        keys.contains(&"unwelded_1_mm") && keys.contains(&"gap_2_mm"),
+        "{keys:?}"
+    );
     let burnt = ended.evaluation.ticks.iter().filter(|tick| tick.beams[0]);
     let off_mm = burnt.map(|tick| tick.along_mm).fold(0.0, f64::max);
-    assert!((f64::from(s_mm) - off_mm).abs() < 1.0, "{s_mm} mm, beam off at {off_mm} mm");
+    assert!(
+        (f64::from(s_mm) - off_mm).abs() < 1.0,
+        "{s_mm} mm, beam off at {off_mm} mm"
+    );
     let gap = figure(&ended.report, "gap_1_mm");
     assert!(gap.at_mm.is_some_and(|at| (at - off_mm).abs() < 0.5), "{gap:?}");
 }

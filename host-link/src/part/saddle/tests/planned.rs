@@ -205,7 +205,7 @@ fn the_shipped_job_stays_on_the_saddle_with_drives_and_gratings() {
     assert!(ended.error.is_none(), "{:?}", ended.error);
     println!("{}", ended.report);
     let figures = &ended.report.figures;
-    assert_eq!(figures.len(), 6);
+    assert_eq!(figures.len(), 7);
     for figure in figures {
         assert!(
             figure.limit.is_none_or(|limit| figure.value <= limit),
