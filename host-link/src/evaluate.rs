@@ -1,12 +1,13 @@
 //! How well it went, tick by tick: the true tool against the programmed path, and the true spots against the
 //! true seams.
 
-use crate::nc::Motion;
+use crate::along::Along;
 use crate::part::RunSample;
-use crate::path::{Course, PlannedPath};
+use crate::path::{Course, PlannedPath, Programmed};
 use crate::record::Record;
 use crate::report::Load;
 use crate::seam::OVERHANG_MM;
+use crate::welded::SpeedShares;
 use crate::world::{Machine, TrueSeams};
 use nalgebra::Vector3;
 use shared::io::{MOTORS, SIDES, SLIDES};
@@ -18,17 +19,30 @@ use std::collections::BTreeMap;
 const NEAREST: f64 = 1e-9;
 /// Steps of the search for it.
 const STEPS: usize = 50;
+/// The true speed is that of the way over so many ticks before and after, 8 ms in all: a grating of 0.1 µm then makes
+/// less than 0.02 mm/s of noise.
+const HALF: usize = 4;
+/// Slow processes are looked at over at least so much before and after \[mm\]: what is shorter does not show in a seam,
+/// and a drive that sticks for a micrometre is no change of speed.
+pub(crate) const HALF_MM: f64 = 0.05;
 
 /// A tick of the motion board on a path that works: one of G1, or with a beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorkTick {
     /// Path tick.
     pub tick: u32,
-    /// Distance from where the first beam goes on (without beams, from where the first such path begins), over
-    /// all such paths \[mm\].
+    /// Number of the path.
+    pub path_id: u32,
+    /// Place of the path nearest to the true tip; where that is not known, the programmed one \[mm\].
+    pub s_mm: f64,
+    /// Programmed position as a length through all such paths: see [`Along`] \[mm\].
     pub along_mm: f64,
-    /// Path speed \[mm/s\].
+    /// Path speed, as the motion board planned it \[mm/s\].
     pub speed_mm_s: f64,
+    /// Programmed feed at that place \[mm/s\].
+    pub feed_mm_s: f64,
+    /// True speed of the tip \[mm/s\]; `None` in a gap of the telemetry.
+    pub true_speed_mm_s: Option<f64>,
     /// Gates that are open.
     pub beams: [bool; SIDES],
     /// Slides at that time (the truth if there is one) \[mm\]; `None` in a gap of the telemetry.
@@ -50,6 +64,10 @@ pub struct Evaluation {
     pub weld_ticks: u32,
     /// Length of path between them \[mm\].
     pub weld_length_mm: f64,
+    /// Whether the true seams are known, and deviations with them.
+    pub seams_known: bool,
+    /// Speeds with a beam on, beside the feed; `None` without beams.
+    pub speed: Option<SpeedShares>,
     /// Of these, ticks whose deviation is not known, since telemetry is missing or the seam ended.
     pub unknown_ticks: u32,
     /// Largest |deviation| with the beam of that side on \[mm\].
@@ -85,9 +103,14 @@ pub fn evaluate(
     followed: Option<Followed>,
 ) -> Evaluation {
     let followed = followed.filter(|followed| !followed.seams.is_empty());
-    let working = working(paths);
+    let along = Along::of(paths);
+    let working = working(paths, &along);
+    let mut tips: Vec<Option<Vector3<f64>>> = Vec::new();
     let any_beam = on_paths(record).any(|s| working.contains_key(&s.path_id) && s.beams.contains(&true));
-    let mut result = Evaluation::default();
+    let mut result = Evaluation {
+        seams_known: followed.is_some(),
+        ..Evaluation::default()
+    };
     let mut deviation = [Peak::default(); SLIDES];
     let mut contour = Peak::default();
     let mut welded_to: Option<&MotionSample> = None;
@@ -106,7 +129,8 @@ pub fn evaluate(
         let Some(work) = working.get(&sample.path_id) else {
             continue;
         };
-        let tick = work_tick(sample, record, machine, work, followed);
+        let (tick, tip) = work_tick(sample, record, machine, work, followed);
+        tips.push(tip);
         if any_beam && !sample.beams.contains(&true) {
             welded_to = None;
         } else {
@@ -126,6 +150,7 @@ pub fn evaluate(
         }
         result.ticks.push(tick);
     }
+    add_true_speeds(&mut result.ticks, &tips);
     result.max_deviation_mm = deviation.map(|peak| peak.max());
     result.rms_deviation_mm = deviation.map(|peak| peak.rms());
     result.max_contour_error_mm = contour.max();
@@ -161,38 +186,50 @@ fn on_paths(record: &Record) -> impl Iterator<Item = &MotionSample> {
 /// A path that works.
 struct Work {
     path: Course,
+    programmed: Programmed,
     /// `along_mm` at its beginning.
     along_mm: f64,
 }
 
-/// Whether a path is one that works: a feed, or with a beam.
-pub fn works(path: &PlannedPath) -> bool {
-    path.weld().is_some() || path.motion == Motion::Feed
+fn working(paths: &BTreeMap<u32, PlannedPath>, along: &Along) -> BTreeMap<u32, Work> {
+    let work = |(id, path): (&u32, &PlannedPath)| {
+        let work = Work {
+            path: path.path(),
+            programmed: path.programmed(),
+            along_mm: along.at(*id, 0.0)?,
+        };
+        Some((*id, work))
+    };
+    paths.iter().filter_map(work).collect()
 }
 
-fn working(paths: &BTreeMap<u32, PlannedPath>) -> BTreeMap<u32, Work> {
-    let chosen = || paths.iter().filter(|(_, path)| works(path));
-    // Up to the first beam it counts backwards.
-    let mut before = 0.0;
-    for (_, path) in chosen() {
-        if let Some((start, _)) = path.weld() {
-            before += start;
-            break;
-        }
-        before += path.length_mm();
+/// Gives each tick the true speed, from where the tips were before and after it on the same path.
+fn add_true_speeds(ticks: &mut [WorkTick], tips: &[Option<Vector3<f64>>]) {
+    // Way from the beginning, and ticks without a known tip; a path goes on from tick to tick.
+    let (mut way, mut unknown) = (vec![0.0; ticks.len()], vec![0_u32; ticks.len()]);
+    let mut path = vec![0..0; ticks.len()];
+    for i in 1..ticks.len() {
+        let step = tips[i]
+            .zip(tips[i - 1])
+            .map(|(tip, before)| (tip - before).norm());
+        way[i] = way[i - 1] + step.unwrap_or(0.0);
+        unknown[i] = unknown[i - 1] + u32::from(step.is_none());
     }
-    let any_beam = chosen().any(|(_, path)| path.weld().is_some());
-    let mut along_mm = if any_beam { -before } else { 0.0 };
-    chosen()
-        .map(|(id, path)| {
-            let work = Work {
-                path: path.path(),
-                along_mm,
-            };
-            along_mm += path.length_mm();
-            (*id, work)
-        })
-        .collect()
+    let mut start = 0;
+    for chunk in ticks.chunk_by(|a, b| a.path_id == b.path_id) {
+        let end = start + chunk.len();
+        path[start..end].fill(start..end);
+        start = end;
+    }
+    for i in 0..ticks.len() {
+        let slow = HALF_MM / (ticks[i].feed_mm_s * PATH_PERIOD_S);
+        let half = HALF.max(if slow.is_finite() { slow.ceil() as usize } else { 0 });
+        let from = i.saturating_sub(half).max(path[i].start);
+        let to = (i + half).min(path[i].end - 1);
+        let time = f64::from(ticks[to].tick - ticks[from].tick) * PATH_PERIOD_S;
+        let known = unknown[to] == unknown[from] && time > 0.0;
+        ticks[i].true_speed_mm_s = known.then_some((way[to] - way[from]) / time);
+    }
 }
 
 fn work_tick(
@@ -201,7 +238,7 @@ fn work_tick(
     machine: &Machine,
     work: &Work,
     followed: Option<Followed>,
-) -> WorkTick {
+) -> (WorkTick, Option<Vector3<f64>>) {
     let pose = record
         .machine_at(sample.time_us)
         .map(|(position, _)| machine.pose(&position));
@@ -219,29 +256,54 @@ fn work_tick(
             }
         }
     }
-    WorkTick {
+    let tip = pose.map(|pose| pose.position);
+    let nearest = tip.and_then(|tip| nearest(&work.path, &tip, sample.s_mm));
+    let tick = WorkTick {
         tick: sample.tick,
+        path_id: sample.path_id,
+        s_mm: nearest.map_or(sample.s_mm, |nearest| nearest.s_mm),
         along_mm: work.along_mm + sample.s_mm,
         speed_mm_s: sample.speed_mm_s,
+        feed_mm_s: work.programmed.feed_at(sample.s_mm),
+        true_speed_mm_s: None,
         beams: sample.beams,
         slides_mm,
         deviation_mm,
-        contour_error_mm: pose.and_then(|pose| contour_error(&work.path, &pose.position, sample.s_mm)),
+        contour_error_mm: nearest.map(|nearest| nearest.distance_mm),
         following_error: sample.following_error,
-    }
+    };
+    (tick, tip)
 }
 
-/// Distance of `tip` from `path`, searched from path position `s` on \[mm\]. Beyond its ends a path has no points.
-fn contour_error(path: &Course, tip: &Vector3<f64>, s: f64) -> Option<f64> {
+/// A place of a path.
+#[derive(Clone, Copy, Debug)]
+struct Nearest {
+    s_mm: f64,
+    distance_mm: f64,
+}
+
+/// The place of `path` nearest to `tip`, searched from path position `s` on \[mm\]. Beyond its ends a path has no
+/// points.
+fn nearest(path: &Course, tip: &Vector3<f64>, s: f64) -> Option<Nearest> {
     let (start, end) = (path.start_s()?, path.end_s()?);
     let mut s = s.clamp(start, end);
     // Outside of a corner the search goes to and fro between its sides.
-    let (mut damped, mut last, mut nearest) = (1.0, 0.0, f64::INFINITY);
+    let (mut damped, mut last) = (1.0, 0.0);
+    let mut nearest = Nearest {
+        s_mm: s,
+        distance_mm: f64::INFINITY,
+    };
     for _ in 0..STEPS {
         let point = path.at(s)?;
         let place = |channels: &[f64]| Vector3::from_column_slice(&channels[..3]);
         let (apart, slope) = (tip - place(&point.value), place(&point.first));
-        nearest = nearest.min(apart.norm());
+        let here = Nearest {
+            s_mm: s,
+            distance_mm: apart.norm(),
+        };
+        if here.distance_mm < nearest.distance_mm {
+            nearest = here;
+        }
         let mut step = damped * apart.dot(&slope) / slope.norm_squared();
         if step * last < 0.0 {
             damped *= 0.5;
@@ -250,7 +312,7 @@ fn contour_error(path: &Course, tip: &Vector3<f64>, s: f64) -> Option<f64> {
         last = step;
         let next = (s + step).clamp(start, end);
         if next.is_nan() || (next - s).abs() < NEAREST {
-            return Some(apart.norm());
+            return Some(here);
         }
         s = next;
     }
@@ -286,6 +348,7 @@ impl Peak {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::nc::Motion;
     use crate::record::MachinePosition;
     use crate::record::tests::{motion_sample, tracker_sample};
     use crate::world::machine::tests::machine;
@@ -479,12 +542,12 @@ mod tests {
         let along = Vector3::new(slope[0], slope[1], slope[2]).normalize();
         let across = along.cross(&Vector3::z()).normalize();
         let tip = pose.position + across * 0.03 + along.cross(&across) * 0.04;
-        let error = contour_error(&path, &tip, 203.0).unwrap();
+        let error = nearest(&path, &tip, 203.0).unwrap().distance_mm;
         assert!((error - 0.05).abs() < 1e-6, "{error}");
         let (end, _) = seam.planned(500.0).unwrap();
         let slope = path.at(500.0).unwrap().first;
         let beyond = end.position + Vector3::new(slope[0], slope[1], slope[2]).normalize() * 0.07;
-        let error = contour_error(&path, &beyond, 500.0).unwrap();
+        let error = nearest(&path, &beyond, 500.0).unwrap().distance_mm;
         assert!((error - 0.07).abs() < 1e-6, "{error}");
     }
 }

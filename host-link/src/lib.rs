@@ -1,5 +1,6 @@
 //! The PC's part of Seamwright: programs, planning, sessions with the boards, reports.
 
+pub mod along;
 pub mod boards;
 pub mod calibration;
 pub mod camera;
@@ -20,4 +21,5 @@ pub mod seam;
 pub mod table;
 pub mod teach;
 pub mod weld;
+pub mod welded;
 pub mod world;

@@ -56,7 +56,11 @@ impl Teach {
         }
         self.seams.refuse()?;
         let output = self.output.context("say where the points go: --output FILE")?;
-        check_teaching(&machine, &part).with_context(|| format!("part {}", self.part.display()))?;
+        let note =
+            check_teaching(&machine, &part).with_context(|| format!("part {}", self.part.display()))?;
+        if let Some(note) = note {
+            eprintln!("host-link: part {}: {note}", self.part.display());
+        }
         let job = Job {
             machine: &machine,
             work: Work::Teach,

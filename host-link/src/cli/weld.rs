@@ -69,7 +69,7 @@ pub struct Weld {
     /// Wait after every block of the program until the operator goes on
     #[arg(long)]
     single_block: bool,
-    /// Start at this line of the program (its first motion in or after it); the part is not judged then
+    /// Start at this line of the program (its first motion in or after it); no part but a seam is judged then
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "part")]
     from_line: Option<u32>,
 }
@@ -101,8 +101,8 @@ impl Weld {
             if matches!(task, Task::Panel) {
                 bail!("--from-line needs a program, and a panel is taught before there is one");
             }
-            // A part is judged as a whole.
-            part = None;
+            // Of a seam what is programmed from there on is judged; every other part is judged as a whole.
+            part = part.filter(|part| part.t_seam().is_some());
         }
         let seam = self.seam.as_deref().map(Deviation::read).transpose()?;
         let drawing = match &self.seam_of {
@@ -211,8 +211,12 @@ impl Weld {
         let program = match (job.work, job.part) {
             (Work::Program(program), _) => program,
             (Work::Teach | Work::TeachAndMake, Some(part)) => {
-                return check_teaching(job.machine, part)
-                    .with_context(|| format!("part {}", self.job.display()));
+                let note = check_teaching(job.machine, part)
+                    .with_context(|| format!("part {}", self.job.display()))?;
+                if let Some(note) = note {
+                    eprintln!("host-link: part {}: {note}", self.job.display());
+                }
+                return Ok(());
             }
             (Work::Pictures(run), _) => run.program,
             (Work::Teach | Work::TeachAndMake, None) => return Err(NoTeaching::Part.into()),

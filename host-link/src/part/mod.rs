@@ -6,15 +6,19 @@
 
 mod bead;
 mod judge;
+mod limits;
 mod panel;
 mod saddle;
+mod seam_limits;
 mod stir;
 mod t_seam;
 
 pub use bead::Bead;
-pub use judge::{Figure, Judgement, Plot, Run, RunSample};
+pub use judge::{ALONG, Figure, GAP, Judgement, Plot, Run, RunSample};
+pub use limits::{Limit, Percent};
 pub use panel::{Panel, PanelError};
 pub use saddle::{Saddle, SaddlePartError, TaughtError};
+pub use seam_limits::SeamLimits;
 pub use stir::Stir;
 pub use t_seam::TSeam;
 
@@ -33,6 +37,9 @@ pub trait Kind {
 
     /// Judges a run of the planned program by where the tool truly was.
     fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement>;
+
+    /// Most that the speed may fall below the feed with a beam on.
+    fn speed_dip(&self) -> Percent;
 }
 
 /// What a part is planned and judged with.
@@ -159,6 +166,17 @@ impl PartFile {
         }
     }
 
+    /// What a person should know of the feed of a panel before it is taught.
+    ///
+    /// # Errors
+    /// As of [`Panel::check_before_teaching`].
+    pub fn check_before_teaching(&self, machine: &MachineFile) -> Result<Option<String>, PanelError> {
+        match self.untaught() {
+            Some(panel) => panel.check_before_teaching(&self.place(machine, "")),
+            None => Ok(None),
+        }
+    }
+
     /// The seams of a rib, if the part has any.
     pub fn t_seam(&self) -> Option<&TSeam> {
         match &self.part {
@@ -213,7 +231,10 @@ impl PartFile {
 
     /// Judges a run of the planned program.
     pub fn judge(&self, run: &Run) -> anyhow::Result<Judgement> {
-        self.part.kind().judge(&self.place(run.machine, ""), run)
+        let kind = self.part.kind();
+        let mut judgement = kind.judge(&self.place(run.machine, ""), run)?;
+        judgement.figures.extend(run.speed_dip(kind.speed_dip()));
+        Ok(judgement)
     }
 
     fn place<'a>(&'a self, machine: &'a MachineFile, title: &'a str) -> Place<'a> {

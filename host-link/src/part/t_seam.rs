@@ -1,6 +1,6 @@
 //! Both feet of a rib, for the dual-beam head (SPEC 0.5).
 
-use super::{Judgement, Kind, Place, Plan, Run};
+use super::{Judgement, Kind, Percent, Place, Plan, Run, SeamLimits};
 use crate::plan::{DualBeamPlan, PlanOptions, TaughtSeams, plan_dual_beam};
 use crate::seam::{SeamPoint, read_main_curve, read_other_curve};
 use crate::teach::seam::{SeamTeaching, read_seam_points};
@@ -29,6 +29,9 @@ pub struct TSeam {
     /// Cut both seams by the plane across seam 1, as the published method does.
     #[serde(default)]
     paper: bool,
+    /// What the weld is judged by.
+    #[serde(default)]
+    limits: SeamLimits,
 }
 
 /// Seam 1 with normals, and seam 2.
@@ -119,10 +122,13 @@ impl Kind for TSeam {
         })
     }
 
-    /// The seams as they really are are not the part's: the tracker follows them, and the report has its
-    /// figures of every weld.
-    fn judge(&self, _place: &Place, _run: &Run) -> anyhow::Result<Judgement> {
-        Ok(Judgement::default())
+    /// The seams as they really are are not the part's: a simulated world, or whoever measured them, tells them.
+    fn judge(&self, _place: &Place, run: &Run) -> anyhow::Result<Judgement> {
+        Ok(self.limits.judge(run))
+    }
+
+    fn speed_dip(&self) -> Percent {
+        self.limits.speed_dip()
     }
 }
 

@@ -12,6 +12,7 @@ mod nurbs;
 mod outputs;
 mod pieces;
 mod planned;
+mod programmed;
 mod shape;
 mod targets;
 #[cfg(test)]
@@ -22,6 +23,7 @@ pub use elements::TOLERANCE;
 pub use error::PathError;
 pub use from_line::FromLineError;
 pub use planned::{Bound, PlannedPath, SpeedStep, Speeds};
+pub use programmed::Programmed;
 pub use targets::Tip;
 
 use crate::machine::{MachineFile, PlanningConfig};

@@ -26,7 +26,7 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 pub(super) type DrawError<'a> = DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>;
 
-/// A named curve.
+/// A named curve; a point that is not finite leaves a gap in it.
 pub(super) struct Curve {
     pub name: String,
     pub points: Vec<(f64, f64)>,
@@ -49,7 +49,22 @@ pub(super) struct Panel {
     pub dashed: Vec<Vec<(f64, f64)>>,
     /// Places on the horizontal axis that are marked by a thin line, with what is written there.
     pub places: Vec<(f64, String)>,
+    /// A millimetre is as long on both axes.
+    pub to_scale: bool,
 }
+
+/// Height of title and legend over a panel, and of a line of text in them \[pixels\].
+const HEAD: u32 = 24;
+const TEXT: u32 = 15;
+/// Width of a character in the legend, and of the piece of line before a name, with room after it \[pixels\].
+const CHARACTER: i32 = 7;
+const SAMPLE: i32 = 18;
+const ROOM: i32 = 14;
+/// What is around the plot itself \[pixels\]: labels at the left and below, margins.
+const LEFT: u32 = 62;
+const BELOW: u32 = 38;
+const MARGIN: u32 = 8;
+const RIGHT: u32 = 20;
 
 /// No smallest range: what the curves take up.
 pub(super) const AS_CURVES: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -75,15 +90,25 @@ pub(super) fn figure<'a>(
 
 fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Result<(), DrawError<'a>> {
     let wide = area.dim_in_pixel().0 > 600;
-    let across = range(panel, |p| p.0, AS_CURVES, 0.01);
-    let up = range(panel, |p| p.1, panel.least, 0.05);
+    // Beside each other, so that neither covers a curve.
+    let (head, area) = area.split_vertically(HEAD);
+    draw_head(&head, panel)?;
+    let mut across = range(panel, |p| p.0, AS_CURVES, 0.01);
+    let mut up = range(panel, |p| p.1, panel.least, 0.05);
+    if panel.to_scale {
+        let (width, height) = area.dim_in_pixel();
+        let width = f64::from(width.saturating_sub(LEFT + MARGIN + RIGHT).max(1));
+        let height = f64::from(height.saturating_sub(BELOW + 2 * MARGIN).max(1));
+        let scale = ((across.1 - across.0) / width).max((up.1 - up.0) / height);
+        across = widened(across, scale * width);
+        up = widened(up, scale * height);
+    }
     let decimals = if across.1 - across.0 > 20.0 { 0 } else { 2 };
-    let mut chart = ChartBuilder::on(area)
-        .caption(&panel.title, (FONT, 15))
-        .margin(8)
-        .margin_right(20)
-        .x_label_area_size(38)
-        .y_label_area_size(62)
+    let mut chart = ChartBuilder::on(&area)
+        .margin(MARGIN)
+        .margin_right(RIGHT)
+        .x_label_area_size(BELOW)
+        .y_label_area_size(LEFT)
         .build_cartesian_2d(across.0..across.1, up.0..up.1)?;
     chart
         .configure_mesh()
@@ -120,23 +145,49 @@ fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Result<(), DrawError<'a>> {
     Ok(())
 }
 
-fn draw_curves<'a: 'b, 'b>(chart: &mut Chart<'a, 'b>, panel: &Panel) -> Result<(), DrawError<'a>> {
-    for (curve, colour) in panel.curves.iter().zip(COLOURS) {
-        chart
-            .draw_series(LineSeries::new(thin(&curve.points), colour.stroke_width(1)))?
-            .label(&curve.name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(3)));
+/// The title at the left, and the names of several curves at the right.
+fn draw_head<'a>(area: &Area<'a>, panel: &Panel) -> Result<(), DrawError<'a>> {
+    let top = ((HEAD - TEXT) / 2) as i32;
+    let title = (FONT, TEXT).into_font().color(&BLACK);
+    area.draw(&Text::new(panel.title.clone(), (LEFT as i32, top), title))?;
+    if panel.curves.len() < 2 {
+        return Ok(());
     }
-    if panel.curves.len() > 1 {
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.85))
-            .border_style(BLACK.mix(0.3))
-            .label_font((FONT, 13))
-            .draw()?;
+    let width = |curve: &Curve| SAMPLE + ROOM + CHARACTER * curve.name.chars().count() as i32;
+    let all: i32 = panel.curves.iter().map(width).sum();
+    let mut x = area.dim_in_pixel().0 as i32 - RIGHT as i32 - all;
+    let middle = (HEAD / 2) as i32;
+    for (curve, colour) in panel.curves.iter().zip(COLOURS) {
+        let sample = [(x, middle), (x + SAMPLE, middle)];
+        area.draw(&PathElement::new(sample, colour.stroke_width(3)))?;
+        let name = (FONT, 13).into_font().color(&BLACK);
+        area.draw(&Text::new(curve.name.clone(), (x + SAMPLE + 4, top + 1), name))?;
+        x += width(curve);
     }
     Ok(())
+}
+
+fn draw_curves<'a: 'b, 'b>(chart: &mut Chart<'a, 'b>, panel: &Panel) -> Result<(), DrawError<'a>> {
+    for (curve, colour) in panel.curves.iter().zip(COLOURS) {
+        for piece in pieces(&curve.points) {
+            let line = thin(piece, curve.points.len());
+            chart.draw_series(LineSeries::new(line, colour.stroke_width(1)))?;
+        }
+    }
+    Ok(())
+}
+
+/// The parts of a curve without a gap.
+fn pieces(points: &[(f64, f64)]) -> impl Iterator<Item = &[(f64, f64)]> {
+    let finite = |point: &(f64, f64)| point.0.is_finite() && point.1.is_finite();
+    let parts = points.split(move |point| !finite(point));
+    parts.filter(|part| !part.is_empty())
+}
+
+/// A range of `width` about the same middle.
+fn widened(range: (f64, f64), width: f64) -> (f64, f64) {
+    let middle = (range.0 + range.1) / 2.0;
+    (middle - width / 2.0, middle + width / 2.0)
 }
 
 /// Range of one coordinate of all curves, at least `least`, with a part of its width added on both sides
@@ -144,7 +195,8 @@ fn draw_curves<'a: 'b, 'b>(chart: &mut Chart<'a, 'b>, panel: &Panel) -> Result<(
 fn range(panel: &Panel, pick: impl Fn(&(f64, f64)) -> f64, least: (f64, f64), margin: f64) -> (f64, f64) {
     let (mut low, mut high) = least;
     let curves = panel.curves.iter().map(|curve| &curve.points);
-    for value in curves.chain(&panel.dashed).flatten().map(pick) {
+    let values = curves.chain(&panel.dashed).flatten().map(pick);
+    for value in values.filter(|value| value.is_finite()) {
         low = low.min(value);
         high = high.max(value);
     }
@@ -157,10 +209,11 @@ fn range(panel: &Panel, pick: impl Fn(&(f64, f64)) -> f64, least: (f64, f64), ma
     (low, high)
 }
 
-/// At most [`POINTS`] points that still show every peak: of each group the lowest and the highest.
-fn thin(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let group = (2 * points.len()).div_ceil(POINTS).max(2);
-    if points.len() <= POINTS {
+/// Of a curve of `all` points at most about [`POINTS`], of which these are a part; they still show every peak: of each group
+/// the lowest and the highest.
+fn thin(points: &[(f64, f64)], all: usize) -> Vec<(f64, f64)> {
+    let group = (2 * all).div_ceil(POINTS).max(2);
+    if all <= POINTS {
         return points.to_vec();
     }
     let mut thinned = Vec::with_capacity(POINTS);
@@ -184,10 +237,18 @@ mod tests {
         let mut points: Vec<(f64, f64)> = (0..10_000).map(|i| (f64::from(i), 0.0)).collect();
         points[4321].1 = 7.0;
         points[8765].1 = -3.0;
-        let thinned = thin(&points);
+        let thinned = thin(&points, points.len());
         assert!(thinned.len() <= POINTS + 2, "{}", thinned.len());
         assert!(thinned.contains(&(4321.0, 7.0)) && thinned.contains(&(8765.0, -3.0)));
         assert!(thinned.is_sorted_by(|a, b| a.0 <= b.0));
+    }
+
+    #[test]
+    fn a_curve_is_open_where_a_point_is_not_finite() {
+        let gap = (f64::NAN, f64::NAN);
+        let points = [gap, (0.0, 1.0), (1.0, 1.0), gap, gap, (2.0, f64::NAN), (3.0, 1.0)];
+        let parts: Vec<_> = pieces(&points).collect();
+        assert_eq!(parts, [&[(0.0, 1.0), (1.0, 1.0)][..], &[(3.0, 1.0)]]);
     }
 
     #[test]

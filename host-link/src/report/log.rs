@@ -1,4 +1,4 @@
-//! `log.csv`: one line for each tick on a path that works.
+//! `log.csv`: one line for each tick on a path that works. A tick is a millisecond of the motion board.
 
 use super::Report;
 use crate::evaluate::WorkTick;
@@ -8,7 +8,8 @@ use std::fmt::Write;
 
 /// The log with its heading; unknown values are empty. There are columns for what the machine has.
 pub(super) fn csv(report: &Report, ticks: &[WorkTick]) -> String {
-    let mut text = String::from("tick,along_mm,speed_m_per_min,beam_1,beam_2");
+    let mut text =
+        String::from("tick,along_mm,speed_m_per_min,feed_m_per_min,true_speed_m_per_min,beam_1,beam_2");
     let slides = if report.seam.is_some() {
         &SLIDE_NAMES[..]
     } else {
@@ -41,11 +42,16 @@ fn line(text: &mut String, report: &Report, slides: usize, tick: &WorkTick) -> s
     let [beam_1, beam_2] = tick.beams.map(u8::from);
     write!(
         text,
-        "{},{:.6},{:.6},{beam_1},{beam_2}",
+        "{},{:.6},{:.6},{:.6},",
         tick.tick,
         tick.along_mm,
-        tick.speed_mm_s / MM_S_PER_M_MIN
+        tick.speed_mm_s / MM_S_PER_M_MIN,
+        tick.feed_mm_s / MM_S_PER_M_MIN
     )?;
+    if let Some(speed) = tick.true_speed_mm_s {
+        write!(text, "{:.6}", speed / MM_S_PER_M_MIN)?;
+    }
+    write!(text, ",{beam_1},{beam_2}")?;
     let slides_mm = match tick.slides_mm {
         Some(slides) => slides.map(Some),
         None => [None; 4],
@@ -77,8 +83,12 @@ pub(crate) mod tests {
     pub(crate) fn tick(tick: u32) -> WorkTick {
         WorkTick {
             tick,
+            path_id: 1,
+            s_mm: 0.1 * f64::from(tick),
             along_mm: 0.1 * f64::from(tick),
             speed_mm_s: 5.0 * MM_S_PER_M_MIN,
+            feed_mm_s: 5.0 * MM_S_PER_M_MIN,
+            true_speed_mm_s: Some(4.9 * MM_S_PER_M_MIN),
             beams: [true, false],
             slides_mm: None,
             deviation_mm: [Some(0.012), Some(-0.003), None, None],
@@ -98,6 +108,7 @@ pub(crate) mod tests {
         let value = |name: &str| lines[1][lines[0].iter().position(|n| *n == name).unwrap()];
         assert_eq!(value("tick"), "3");
         assert_eq!(value("speed_m_per_min"), "5.000000");
+        assert_eq!(value("true_speed_m_per_min"), "4.900000");
         assert_eq!((value("beam_1"), value("beam_2")), ("1", "0"));
         assert_eq!(value("deviation_v1_mm"), "-0.0030000");
         assert_eq!(value("deviation_u2_mm"), "");

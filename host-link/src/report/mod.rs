@@ -12,6 +12,7 @@ pub use load::{ExecutionTimes, Load};
 
 use crate::evaluate::Evaluation;
 use crate::part::{Figure, Plot};
+use crate::welded::SpeedShares;
 use serde::{Serialize, Serializer};
 use shared::io::{MOTOR_NAMES, MOTORS, SLIDES};
 use std::fmt;
@@ -27,8 +28,10 @@ pub struct Report {
     pub program: String,
     /// The machine file, as it was named.
     pub machine: String,
-    /// The file of the part that the run was judged by.
+    /// The file of the part that was made.
     pub part: Option<String>,
+    /// Where the limits come from that the run was judged by, if it was.
+    pub judged_by: Option<JudgedBy>,
     /// The boards that were used.
     pub boards: BoardsUsed,
     /// Where the positions come from that count as true.
@@ -37,10 +40,14 @@ pub struct Report {
     pub speed_m_per_min: f64,
     /// Length of path with a beam on; of all feeds if no beam ever was.
     pub weld_length_mm: f64,
+    /// True speed with a beam on, as a share of the programmed feed at the same place, and where that was.
+    pub speed: Option<SpeedShares>,
     /// Largest distance of the tip from the programmed path on the same length.
     pub max_contour_error_mm: Option<f64>,
     /// Largest following error on any path; X1 X2 Y Z in mm, A B C in degrees.
     pub max_following_error: ByMotor,
+    /// Following error at which the motion board trips at standstill; moving, it allows more.
+    pub following_error_trip: ByMotor,
     /// Largest |X1 − X2 − square offset| on any path, where X is a gantry.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_gantry_skew_um: Option<f64>,
@@ -87,9 +94,11 @@ fn is_exceeded(figure: &Figure) -> bool {
 pub fn sentence(figure: &Figure) -> String {
     let Figure { text, unit, .. } = figure;
     let limit = table::number(figure.limit.unwrap_or(f64::NAN));
+    let at = figure.at_mm.map(|at| format!(" at s = {at:.1} mm"));
     format!(
-        "{text} {} {unit} (may be {limit} {unit})",
-        table::number(figure.value)
+        "{text} {} {unit}{} (may be {limit} {unit})",
+        table::number(figure.value),
+        at.unwrap_or_default()
     )
 }
 
@@ -151,6 +160,16 @@ pub enum Outcome {
     Interrupted,
     /// Stopped by a fault.
     Failed,
+}
+
+/// Where the limits come from that a run was judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JudgedBy {
+    /// The part file, and what is shipped for keys that it leaves out.
+    Part,
+    /// There is no part file: what is shipped for seams that are followed.
+    ShippedSeamLimits,
 }
 
 /// Where the positions come from that count as true.
@@ -332,6 +351,7 @@ pub(crate) mod tests {
             program: "job.ngc".into(),
             machine: "machine.toml".into(),
             part: None,
+            judged_by: None,
             boards: BoardsUsed {
                 choice: "simulated".into(),
                 motion: "simulation 0.1.0".into(),
@@ -340,7 +360,14 @@ pub(crate) mod tests {
             truth: Truth::SimulatedMachine,
             speed_m_per_min: 5.0,
             weld_length_mm: 400.0,
+            speed: Some(SpeedShares {
+                lowest_percent: 87.41,
+                lowest_at_mm: 83.2,
+                highest_percent: 100.02,
+                highest_at_mm: 12.0,
+            }),
             max_contour_error_mm: Some(0.004),
+            following_error_trip: ByMotor([0.5; MOTORS].map(Some)),
             max_following_error: ByMotor([0.01, 0.02, 0.03, 0.04, 0.001, 0.002, 0.1719].map(Some)),
             max_gantry_skew_um: Some(4.2),
             weld_ticks: WeldTicks {
@@ -410,11 +437,8 @@ pub(crate) mod tests {
     /// The same of a machine without tracker, judged by its part.
     pub(crate) fn without_tracker() -> Report {
         let figure = |key, text, value, limit| Figure {
-            key,
-            text,
-            value,
-            unit: "mm",
             limit,
+            ..Figure::new(key, text, value, "mm")
         };
         let mut report = report();
         report.seam = None;

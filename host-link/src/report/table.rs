@@ -1,7 +1,7 @@
 //! The table for people.
 
 use super::log::is_rotary;
-use super::{Outcome, Report, SeamFigures, Truth, is_exceeded};
+use super::{JudgedBy, Outcome, Report, SeamFigures, Truth, is_exceeded};
 use std::fmt::{Formatter, Result};
 
 pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
@@ -18,6 +18,12 @@ pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
     if let Some(part) = &r.part {
         writeln!(f, "  part            {part}")?;
     }
+    if r.judged_by == Some(JudgedBy::ShippedSeamLimits) {
+        writeln!(
+            f,
+            "  part            none: judged by the limits that are shipped for seams"
+        )?;
+    }
     let boards: Vec<&str> = [Some(r.boards.motion.as_str()), r.boards.tracker.as_deref()]
         .into_iter()
         .flatten()
@@ -33,6 +39,13 @@ pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
         "  welded          {:.1} mm, {} ticks, job {:.1} s",
         r.weld_length_mm, r.weld_ticks.recorded, r.duration_s
     )?;
+    if let Some(speed) = &r.speed {
+        writeln!(
+            f,
+            "  speed, beam on  {:.1} to {:.1} % of the programmed feed, lowest at s = {:.1} mm",
+            speed.lowest_percent, speed.highest_percent, speed.lowest_at_mm
+        )?;
+    }
     writeln!(
         f,
         "  on the paths    {:.2} s, planned {:.2} s",
@@ -59,12 +72,16 @@ fn part(f: &mut Formatter, r: &Report) -> Result {
     }
     let texts = r.figures.iter().map(|figure| figure.text.chars().count());
     let width = texts.max().unwrap_or(0).max(28);
-    writeln!(f, "\n{:<width$}                  may be", "Part")?;
+    writeln!(f, "\n{:<width$}                  may be", "Verdict")?;
     for figure in &r.figures {
         let (value, unit) = (number(figure.value), figure.unit);
         write!(f, "  {:<width$}{value:>9} ", figure.text)?;
         match figure.limit {
-            Some(limit) if is_exceeded(figure) => writeln!(f, "{unit:<7}{:>7}  EXCEEDED", number(limit))?,
+            Some(limit) if is_exceeded(figure) => {
+                let at = figure.at_mm.map(|at| format!(" at s = {at:.1} mm"));
+                let (limit, at) = (number(limit), at.unwrap_or_default());
+                writeln!(f, "{unit:<7}{limit:>7}  EXCEEDED{at}")?;
+            }
             Some(limit) => writeln!(f, "{unit:<7}{:>7}", number(limit))?,
             None => writeln!(f, "{unit}")?,
         }
@@ -82,6 +99,9 @@ fn spots(f: &mut Formatter, seam: &SeamFigures) -> Result {
         ("side 2, along the beam (V)", max.v2, rms.v2),
     ] {
         writeln!(f, "  {name:<28}{} {} mm", known(max, 4), known(rms, 4))?;
+    }
+    if seam.seam.is_none() && max.u1.is_none() && max.u2.is_none() {
+        writeln!(f, "  not judged: nobody told where the seams truly are (--seam)")?;
     }
     for at in &seam.recentred {
         let what = match &at.refused {

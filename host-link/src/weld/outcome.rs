@@ -1,17 +1,20 @@
 //! What is left of a job after its end.
 
-use super::session::Session;
+use super::session::{Session, on_path};
 use super::{Job, JobError, Taught, Tracking, Weld};
+use crate::along::{Along, works};
 use crate::dry_run::{self, DryRunError};
-use crate::evaluate::{Evaluation, evaluate, run_samples, works};
-use crate::part::{Judgement, PartFile, Plot, Run};
+use crate::evaluate::{Evaluation, evaluate, run_samples};
+use crate::part::{Judgement, PartFile, Plot, Run, SeamLimits};
 use crate::path::{PathError, PlannedPath};
 use crate::report::{
-    BoardsUsed, ByBoard, ByMotor, Measurements, Outcome, Report, SeamFigures, Truth, WeldTicks,
+    BoardsUsed, ByBoard, ByMotor, JudgedBy, Measurements, Outcome, Report, SeamFigures, Truth, WeldTicks,
 };
+use crate::welded::SpeedShares;
 use shared::io::MOTOR_AXIS;
 use shared::kinematics::AXIS_UNIT;
 use shared::protocol::Role;
+use shared::tracking::TrackerFault;
 use shared::units::MM_S_PER_M_MIN;
 use std::collections::BTreeMap;
 
@@ -32,19 +35,30 @@ pub struct Ended {
     pub taught: Taught,
 }
 
-/// Evaluates what the session has learned, and judges a run that came to its end by its part.
+/// Evaluates what the session has learned, and judges the run.
 pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<JobError>) -> Ended {
     let Weld { paths, taught, .. } = weld;
     let paths = &paths;
     let followed = session.tracking.as_ref().map(Tracking::followed);
-    let evaluation = evaluate(&session.record, &session.machine, paths, followed);
+    let mut evaluation = evaluate(&session.record, &session.machine, paths, followed);
+    evaluation.speed = SpeedShares::of(&evaluation.ticks, paths, &job.machine.motion.beams);
     let mut judgement = Judgement::default();
-    if error.is_none() {
-        match judge(session, job, paths, taught.part.as_ref().or(job.part)) {
-            Ok(judged) => judgement = judged,
-            Err(reason) => error = Some(JobError::Judge(format!("{reason:#}"))),
-        }
+    let mut judged_by = None;
+    match judge(
+        session,
+        job,
+        paths,
+        &evaluation,
+        taught.part.as_ref().or(job.part),
+    ) {
+        Ok((by, judged)) => (judged_by, judgement) = (by, judged),
+        // What ended early is judged as far as it came, where that can be.
+        Err(_) if error.is_some() => {}
+        Err(reason) => error = Some(JobError::Judge(format!("{reason:#}"))),
     }
+    let along = Along::of(paths);
+    let error = error.map(|error| along_all_paths(error, session, &along));
+    let mut error = error;
     let planned_motion_s = dry_run::motion_s(job.machine, paths.values());
     // Here, as for all figures above, long programs are read again.
     if let Err(DryRunError::Path(lost @ PathError::Program(_))) = &planned_motion_s {
@@ -71,6 +85,7 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
         program: job.names.program.clone(),
         machine: job.names.machine.clone(),
         part: job.part.map(|part| part.path().display().to_string()),
+        judged_by,
         boards: BoardsUsed {
             choice: job.names.boards.clone(),
             motion: board_name(session, Role::Motion).unwrap_or_default(),
@@ -82,8 +97,12 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
         truth: truth(session),
         speed_m_per_min: speed_mm_s.unwrap_or(0.0) / MM_S_PER_M_MIN,
         weld_length_mm: evaluation.weld_length_mm,
+        speed: evaluation.speed,
         max_contour_error_mm: evaluation.max_contour_error_mm,
         max_following_error: ByMotor(std::array::from_fn(following)),
+        following_error_trip: ByMotor(std::array::from_fn(|motor| {
+            motors[motor].as_ref().map(|motor| motor.following_error_base)
+        })),
         max_gantry_skew_um: job
             .machine
             .motion
@@ -103,11 +122,11 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
         seam: session
             .tracking
             .as_ref()
-            .map(|tracking| seam_figures(tracking, session, job, &evaluation)),
+            .map(|tracking| seam_figures(tracking, session, job, &evaluation, &along)),
         figures: judgement.figures,
         planned_motion_s: planned_motion_s.unwrap_or(f64::NAN),
         motion_s: evaluation.motion_s,
-        faults: faults(session, error.as_ref()),
+        faults: faults(session, error.as_ref(), &along),
         duration_s: (session.boards.now() - session.began).as_secs_f64(),
     };
     Ended {
@@ -120,21 +139,63 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
     }
 }
 
+/// Judges by the part; a seam that was followed without one, by what is shipped for those.
 fn judge(
     session: &Session,
     job: &Job,
     paths: &BTreeMap<u32, PlannedPath>,
+    evaluation: &Evaluation,
     part: Option<&PartFile>,
-) -> anyhow::Result<Judgement> {
-    let Some(part) = part else {
-        return Ok(Judgement::default());
-    };
-    part.judge(&Run {
+) -> anyhow::Result<(Option<JudgedBy>, Judgement)> {
+    let run = Run {
         machine: job.machine,
         kinematics: session.machine.kinematics(),
         paths,
         samples: &run_samples(&session.record, &session.machine, paths),
-    })
+        evaluation,
+    };
+    if let Some(part) = part {
+        return Ok((Some(JudgedBy::Part), part.judge(&run)?));
+    }
+    let welded = |path: &PlannedPath| path.weld().is_some() && path.programmed().tracked;
+    if session.tracking.is_some() && paths.values().any(welded) {
+        let judgement = SeamLimits::default().judge_all(&run);
+        return Ok((Some(JudgedBy::ShippedSeamLimits), judgement));
+    }
+    Ok((None, Judgement::default()))
+}
+
+/// The error with its place as plots and log have it: path length through all paths.
+fn along_all_paths(error: JobError, session: &Session, along: &Along) -> JobError {
+    let here = |s_mm: f64| here(session, along, s_mm);
+    match error {
+        JobError::Tracker(fault) => JobError::Tracker(placed(fault, &here)),
+        JobError::Standstill { line, s_mm, seconds } => JobError::Standstill {
+            line,
+            s_mm: here(s_mm),
+            seconds,
+        },
+        other => other,
+    }
+}
+
+/// A fault of the tracker board with its place as plots and log have it.
+fn placed(fault: TrackerFault, here: &impl Fn(f64) -> f64) -> TrackerFault {
+    let mut fault = fault;
+    if let TrackerFault::LostSeam { s_mm, .. } | TrackerFault::SeamNotSeen { s_mm, .. } = &mut fault {
+        *s_mm = here(f64::from(*s_mm)) as f32;
+    }
+    fault
+}
+
+/// A place of the path that was run last, as path length through all paths.
+fn here(session: &Session, along: &Along, s_mm: f64) -> f64 {
+    let last = session
+        .record
+        .motion()
+        .iter()
+        .rfind(|sample| on_path(sample.state));
+    last.and_then(|last| along.at(last.path_id, s_mm)).unwrap_or(s_mm)
 }
 
 fn board_name(session: &Session, role: Role) -> Option<String> {
@@ -151,8 +212,14 @@ fn truth(session: &Session) -> Truth {
     }
 }
 
-fn seam_figures(tracking: &Tracking, session: &Session, job: &Job, evaluation: &Evaluation) -> SeamFigures {
-    let recentred = session.recentring.as_ref().map(|watch| watch.done.clone());
+fn seam_figures(
+    tracking: &Tracking,
+    session: &Session,
+    job: &Job,
+    evaluation: &Evaluation,
+    along: &Along,
+) -> SeamFigures {
+    let recentred = session.recentring.as_ref().map(|watch| watch.done(along));
     SeamFigures {
         seam: job.names.seam.clone(),
         max_deviation_mm: evaluation.max_deviation_mm.into(),
@@ -171,12 +238,12 @@ fn seam_figures(tracking: &Tracking, session: &Session, job: &Job, evaluation: &
 }
 
 /// Why the job ended early, and the faults that the boards tell, each once.
-fn faults(session: &Session, error: Option<&JobError>) -> Vec<String> {
+fn faults(session: &Session, error: Option<&JobError>, along: &Along) -> Vec<String> {
     let mut faults: Vec<String> = error.iter().map(ToString::to_string).collect();
     let tracker = session.tracking.as_ref().and_then(|t| t.status.fault);
     let told = [
         session.motion.fault.map(|fault| fault.to_string()),
-        tracker.map(|fault| fault.to_string()),
+        tracker.map(|fault| placed(fault, &|s_mm| here(session, along, s_mm)).to_string()),
     ];
     for fault in told.into_iter().flatten() {
         if !faults.iter().any(|known| known.contains(&fault)) {

@@ -2,6 +2,7 @@
 
 use super::JobError;
 use super::session::Session;
+use crate::along::Along;
 use crate::boards::LinkError;
 use crate::machine::TrackingUnit;
 use crate::report::Recentred;
@@ -34,8 +35,8 @@ pub(super) struct Recentring {
     armed: bool,
     /// Where the pose was sent beside the path.
     offset: PoseOffset,
-    /// What was done so far.
-    pub done: Vec<Recentred>,
+    /// What was done so far, and on which path.
+    done: Vec<(u32, Recentred)>,
 }
 
 impl Recentring {
@@ -50,6 +51,15 @@ impl Recentring {
             offset: PoseOffset::NONE,
             done: Vec::new(),
         })
+    }
+
+    /// What was done, with its places as path length through all paths.
+    pub fn done(&self, along: &Along) -> Vec<Recentred> {
+        let placed = |(id, recentred): &(u32, Recentred)| Recentred {
+            s_mm: along.at(*id, recentred.s_mm).unwrap_or(recentred.s_mm),
+            ..recentred.clone()
+        };
+        self.done.iter().map(placed).collect()
     }
 
     /// Parts of their strokes that slides at `slides` \[mm\] have gone to their sides.
@@ -128,7 +138,7 @@ pub(super) fn watch(session: &mut Session, id: u32) -> Result<(), JobError> {
         if refused.is_none() {
             recentring.offset = offset;
         }
-        recentring.done.push(Recentred {
+        let recentred = Recentred {
             s_mm,
             slide: SLIDE_NAMES[slide],
             slide_mm: slides_mm[slide],
@@ -136,7 +146,8 @@ pub(super) fn watch(session: &mut Session, id: u32) -> Result<(), JobError> {
             normal_mm: offset.normal_mm,
             turn_deg: offset.about_tangent_rad * DEG_PER_RAD,
             refused,
-        });
+        };
+        recentring.done.push((id, recentred));
     }
     Ok(())
 }

@@ -57,6 +57,9 @@ pub enum NoTeaching {
     /// Nothing to range.
     #[error("the panel has no table simulated_surface, and a simulated world has nothing else to measure")]
     Surface,
+    /// What is to be made of it cannot be, however it is taught.
+    #[error("{0}")]
+    Panel(String),
     /// A setting makes no sense.
     #[error(transparent)]
     Parameter(#[from] TeachParameterError),
@@ -64,9 +67,11 @@ pub enum NoTeaching {
 
 /// Whether `part` can be taught with `machine`, as far as that can be told without boards.
 ///
+/// Gives back what a person should know of it.
+///
 /// # Errors
 /// [`NoTeaching`].
-pub fn check_teaching(machine: &MachineFile, part: &PartFile) -> Result<(), NoTeaching> {
+pub fn check_teaching(machine: &MachineFile, part: &PartFile) -> Result<Option<String>, NoTeaching> {
     let panel = part.untaught().ok_or(NoTeaching::Part)?;
     let unit = machine.probe.as_ref().ok_or(NoTeaching::Probe)?;
     if panel.guides().is_empty() {
@@ -74,7 +79,8 @@ pub fn check_teaching(machine: &MachineFile, part: &PartFile) -> Result<(), NoTe
     }
     unit.build()?;
     panel.teaching().check(unit)?;
-    Ok(())
+    part.check_before_teaching(machine)
+        .map_err(|error| NoTeaching::Panel(error.to_string()))
 }
 
 impl Weld {

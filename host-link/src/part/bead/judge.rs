@@ -1,8 +1,8 @@
 //! What a run made of a bead: true speed against the process window, true tip against the exact NURBS.
 
-use super::Layer;
 use super::route::Route;
-use crate::part::{Figure, Judgement, Plot, Run, RunSample};
+use super::{BeadLimits, Layer};
+use crate::part::{ALONG, Figure, GAP, Judgement, Plot, Run, RunSample};
 use anyhow::ensure;
 use nalgebra::Vector3;
 use shared::geometry::nurbs::Curve;
@@ -23,16 +23,16 @@ const STEP: f64 = 0.02;
 const REACH: f64 = 1.0;
 /// A path of another length than the part's, by more than this, is another program \[mm\].
 const SAME_LENGTH: f64 = 0.5;
-/// What the tip may be off the curve \[mm\].
-const CONTOUR: f64 = 0.05;
-/// How much of the length may be outside the window \[%\].
-const OUTSIDE: f64 = 1.0;
 
 /// The tip at one tick with the arc burning.
 #[derive(Clone, Copy, Debug)]
 struct Laid {
     /// Bead laid before, all layers together \[mm\].
     along: f64,
+    /// Path length through all paths, for the plots \[mm\].
+    path_mm: f64,
+    /// The arc went on here: nothing is laid between this tick and the one before.
+    begins: bool,
     /// Bead laid in this tick \[mm\], and the time for it \[s\].
     length: f64,
     time: f64,
@@ -50,6 +50,7 @@ pub(super) fn judge(
     route: &Route,
     layers: impl Iterator<Item = Layer>,
     window: &ProcessWindow,
+    limits: &BeadLimits,
     run: &Run,
 ) -> anyhow::Result<Judgement> {
     let burnt: BTreeSet<u32> = run
@@ -75,7 +76,9 @@ pub(super) fn judge(
         }
         let samples: Vec<&RunSample> = run.samples.iter().filter(|s| s.path_id == id).collect();
         let before = laid.last().map_or(0.0, |last| last.along + last.length);
-        add_layer(&mut laid, &samples, before, |s, p| near.find(s, &layer.lower(p)));
+        let along = |s| run.along().at(id, s).unwrap_or(f64::NAN);
+        let nearest = |s: f64, p: &Vector3<f64>| near.find(s, &layer.lower(p));
+        add_layer(&mut laid, &samples, before, along, nearest);
         count += 1.0;
     }
     ensure!(
@@ -83,23 +86,27 @@ pub(super) fn judge(
         "the arc burnt for too short a time to judge a bead"
     );
     Ok(Judgement {
-        figures: figures(&laid, count, window),
-        plots: plots(&laid, window),
+        figures: figures(&laid, count, window, limits),
+        plots: plots(&laid, window, limits),
     })
 }
 
-/// Adds what was laid on one path; `nearest` gives the distance from the curve, and its radius.
+/// Adds what was laid on one path; `path_mm` gives the length through all paths, `nearest` the distance from the curve,
+/// and its radius.
 fn add_layer(
     laid: &mut Vec<Laid>,
     samples: &[&RunSample],
     before: f64,
+    path_mm: impl Fn(f64) -> f64,
     nearest: impl Fn(f64, &Vector3<f64>) -> (f64, f64),
 ) {
     let mut along = before;
+    let mut begins = true;
     for i in HALF..samples.len().saturating_sub(HALF) {
         let around = &samples[i - HALF..=i + HALF];
         let now = samples[i];
         if !now.beams[0] {
+            begins = true;
             continue;
         }
         let seconds = |a: &RunSample, b: &RunSample| (b.time_us - a.time_us) as f64 * 1e-6;
@@ -110,6 +117,8 @@ fn add_layer(
         let (contour, radius) = nearest(now.s_mm, &now.pose.position);
         let entry = Laid {
             along,
+            path_mm: path_mm(now.s_mm),
+            begins: std::mem::take(&mut begins),
             length: step(next),
             time: seconds(next[0], next[1]),
             speed: around.windows(2).map(step).sum::<f64>() / seconds(around[0], around[2 * HALF]),
@@ -150,7 +159,7 @@ impl<'a> Near<'a> {
     }
 }
 
-fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow) -> Vec<Figure> {
+fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow, limits: &BeadLimits) -> Vec<Figure> {
     let outside =
         |laid: &&Laid| laid.speed < window.low * (1.0 - EDGE) || laid.speed > window.high * (1.0 + EDGE);
     let sum = |value: fn(&Laid) -> f64| laid.iter().map(value).sum::<f64>();
@@ -165,11 +174,8 @@ fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow) -> Vec<Figure> {
         libm::sqrt(sum / f64::max(count, 1.0))
     };
     let figure = |key, text, value, unit, limit| Figure {
-        key,
-        text,
-        value,
-        unit,
         limit,
+        ..Figure::new(key, text, value, unit)
     };
     let mut figures = vec![
         figure("bead_length_mm", "bead, each layer", length / layers, "mm", None),
@@ -178,7 +184,7 @@ fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow) -> Vec<Figure> {
             "length laid outside the process window",
             100.0 * sum_outside(|l| l.length) / length,
             "%",
-            Some(OUTSIDE),
+            Some(limits.outside_window_percent.get()),
         ),
         figure(
             "time_outside_window_percent",
@@ -226,7 +232,7 @@ fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow) -> Vec<Figure> {
         "distance of the tip from the NURBS, largest",
         laid.iter().map(|l| l.contour).fold(0.0, f64::max),
         "mm",
-        Some(CONTOUR),
+        Some(limits.contour_mm.get()),
     ));
     figures.push(figure(
         "contour_error_rms_mm",
@@ -238,31 +244,36 @@ fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow) -> Vec<Figure> {
     figures
 }
 
-fn plots(laid: &[Laid], window: &ProcessWindow) -> Vec<Plot> {
-    let line = |value: &dyn Fn(&Laid) -> f64| laid.iter().map(|l| (l.along, value(l))).collect();
-    let level = |speed: f64| {
-        let ends = [&laid[0], &laid[laid.len() - 1]];
-        ends.map(|l| (l.along, speed)).to_vec()
+fn plots(laid: &[Laid], window: &ProcessWindow, limits: &BeadLimits) -> Vec<Plot> {
+    let line = |value: &dyn Fn(&Laid) -> f64| {
+        let mut line = Vec::with_capacity(laid.len());
+        for l in laid {
+            line.extend(l.begins.then_some(GAP));
+            line.push((l.path_mm, value(l)));
+        }
+        line
     };
     vec![
         Plot {
             file: "bead-speed",
-            title: "Speed of the tip over the part",
-            x: "along the bead, mm",
+            title: "Speed of the tip over the part (dashed: the process window)",
+            x: ALONG,
             y: "mm/s",
             lines: vec![
                 ("true", line(&|l| l.speed)),
                 ("programmed", line(&|l| l.programmed)),
-                ("lowest of the window", level(window.low)),
-                ("highest of the window", level(window.high)),
             ],
+            limits: vec![window.low, window.high],
+            to_scale: false,
         },
         Plot {
             file: "bead-contour",
             title: "Distance of the tip from the NURBS",
-            x: "along the bead, mm",
+            x: ALONG,
             y: "µm",
             lines: vec![("contour error", line(&|l| l.contour * 1e3))],
+            limits: vec![1e3 * limits.contour_mm.get()],
+            to_scale: false,
         },
     ]
 }

@@ -17,7 +17,8 @@ mod stations;
 #[cfg(test)]
 mod tests;
 
-use super::{Judgement, Kind, Place, Plan, Run};
+use super::limits::SPEED_DIP;
+use super::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
 use crate::nc::{Motion, Options, interpret};
 use crate::path::{PlannedPath, Planner};
 use curve_file::CurveFile;
@@ -65,6 +66,31 @@ pub struct Bead {
     /// What the turntable does.
     #[serde(default)]
     attitude: Attitude,
+    /// What the bead is judged by.
+    #[serde(default)]
+    limits: BeadLimits,
+}
+
+/// What a run is judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct BeadLimits {
+    /// What the tip may be off the curve \[mm\].
+    contour_mm: Limit,
+    /// How much of the length may be laid outside the process window \[%\].
+    outside_window_percent: Percent,
+    /// Most that the speed may fall below the feed with the beam on \[%\].
+    speed_dip_percent: Percent,
+}
+
+impl Default for BeadLimits {
+    fn default() -> Self {
+        Self {
+            contour_mm: Limit::new(0.05),
+            outside_window_percent: Percent::new(1.0),
+            speed_dip_percent: SPEED_DIP,
+        }
+    }
 }
 
 /// What the turntable does.
@@ -204,7 +230,11 @@ impl Kind for Bead {
         let window = self.window(place)?;
         let (curve, name) = self.curve(place)?;
         let route = Route::build(curve.nurbs(&name)?, &name, self.lead_mm, self.overlap_mm)?;
-        judge::judge(&route, self.layers(), &window, run)
+        judge::judge(&route, self.layers(), &window, &self.limits, run)
+    }
+
+    fn speed_dip(&self) -> Percent {
+        self.limits.speed_dip_percent
     }
 }
 

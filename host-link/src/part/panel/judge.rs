@@ -1,7 +1,7 @@
 //! What a cut on a panel was worth: by where the focus truly was, and in a simulated world by the panel itself.
 
-use super::Panel;
-use crate::part::{Figure, Judgement, Plot, Run, RunSample};
+use super::{Panel, PanelLimits};
+use crate::part::{ALONG, Figure, GAP, Judgement, Plot, Run, RunSample};
 use crate::path::{Course, PlannedPath};
 use crate::teach::TaughtPoint;
 use crate::world::Surface;
@@ -9,12 +9,6 @@ use nalgebra::Vector3;
 use shared::geometry::angle;
 use shared::trajectory::PathSpace;
 
-/// Largest distance of the focus from where it should be \[mm\].
-const FOCUS_LIMIT: f64 = 0.01;
-/// Largest error of a taught normal \[deg\].
-const NORMAL_LIMIT: f64 = 0.5;
-/// Largest angle of the tool with the normal that the process bears \[deg\], as published.
-const PROCESS_LIMIT: f64 = 7.0;
 /// Turning A and C with the focus held: the tip of the plan moves less than this \[mm\], the tool turns more \[rad\].
 const HELD: f64 = 1e-3;
 const TURNED: f64 = 1e-3;
@@ -27,10 +21,10 @@ const THIN: usize = 10;
 impl Panel {
     pub(super) fn figures(&self, run: &Run, points: &[TaughtPoint]) -> Judgement {
         let mut judgement = Judgement::default();
-        focus(run, &mut judgement);
+        focus(run, &self.limits, &mut judgement);
         if let Some(surface) = &self.simulated_surface {
-            tool(run, surface, &mut judgement);
-            normals(points, surface, &mut judgement);
+            tool(run, surface, &self.limits, &mut judgement);
+            normals(points, surface, &self.limits, &mut judgement);
         }
         pace(points, &mut judgement);
         judgement
@@ -38,17 +32,24 @@ impl Panel {
 }
 
 /// Distances of the focus from where it should be, over the length of the cut; and while it is held.
-fn focus(run: &Run, judgement: &mut Judgement) {
+fn focus(run: &Run, limits: &PanelLimits, judgement: &mut Judgement) {
+    let along = run.along();
     let (mut cut, mut held) = (Largest::default(), Largest::default());
     let mut line = Vec::new();
     for (id, path) in run.paths.iter().filter(|(_, path)| path.space == PathSpace::Tool) {
         let samples = || run.samples.iter().filter(|sample| sample.path_id == *id);
         if path.weld().is_some() {
             let course = path.path();
-            for sample in samples().filter(|sample| sample.beams[0]) {
-                if let Some(off) = beside(&course, sample) {
-                    cut.add(off);
-                    line.push((sample.s_mm, off));
+            for (index, sample) in samples().enumerate() {
+                let off = beside(&course, sample).filter(|_| sample.beams[0]);
+                let Some((off, along_mm)) = off.zip(along.at(*id, sample.s_mm)) else {
+                    // Nothing is drawn where nothing is cut.
+                    line.extend((line.last() != Some(&GAP)).then_some(GAP));
+                    continue;
+                };
+                cut.add(off);
+                if index % THIN == 0 {
+                    line.push((along_mm, off));
                 }
             }
         } else if let Some(tip) = held_tip(path) {
@@ -70,25 +71,22 @@ fn focus(run: &Run, judgement: &mut Judgement) {
         ),
     ];
     for (key, text, largest) in figures {
-        judgement.figures.extend(largest.0.map(|value| Figure {
-            key,
-            text,
-            value,
-            unit: "mm",
-            limit: Some(FOCUS_LIMIT),
-        }));
+        let figure = |value| Figure::new(key, text, value, "mm").limited(limits.focus_mm.get());
+        judgement.figures.extend(largest.0.map(figure));
     }
     judgement.plots.push(Plot {
         file: "focus-error",
         title: "Focus beside the programmed path while A and C turn",
-        x: "path length [mm]",
+        x: ALONG,
         y: "distance [mm]",
-        lines: vec![("focus", line.into_iter().step_by(THIN).collect())],
+        lines: vec![("focus", line)],
+        limits: vec![limits.focus_mm.get()],
+        to_scale: false,
     });
 }
 
 /// The focus and the axis of the tool against the true panel while cutting.
-fn tool(run: &Run, surface: &Surface, judgement: &mut Judgement) {
+fn tool(run: &Run, surface: &Surface, limits: &PanelLimits, judgement: &mut Judgement) {
     let (mut distance, mut off) = (Largest::default(), Largest::default());
     for sample in run.samples.iter().filter(|sample| sample.beams[0]) {
         if let Some((foot, normal)) = surface.nearest(&sample.pose.position) {
@@ -96,24 +94,20 @@ fn tool(run: &Run, surface: &Surface, judgement: &mut Judgement) {
             off.add(angle(&normal, &sample.pose.normal).to_degrees());
         }
     }
-    judgement.figures.extend(distance.0.map(|value| Figure {
-        key: "max_focus_off_surface_mm",
-        text: "focus off the true surface while cutting",
-        value,
-        unit: "mm",
-        limit: None,
-    }));
-    judgement.figures.extend(off.0.map(|value| Figure {
-        key: "max_tool_off_normal_deg",
-        text: "tool off the true normal while cutting",
-        value,
-        unit: "°",
-        limit: Some(PROCESS_LIMIT),
-    }));
+    let text = "focus off the true surface while cutting";
+    let distance = distance
+        .0
+        .map(|value| Figure::new("max_focus_off_surface_mm", text, value, "mm"));
+    let text = "tool off the true normal while cutting";
+    let off = off
+        .0
+        .map(|value| Figure::new("max_tool_off_normal_deg", text, value, "°"));
+    let off = off.map(|figure| figure.limited(limits.tool_off_normal_deg.get()));
+    judgement.figures.extend([distance, off].into_iter().flatten());
 }
 
 /// Taught normals against the true ones.
-fn normals(points: &[TaughtPoint], surface: &Surface, judgement: &mut Judgement) {
+fn normals(points: &[TaughtPoint], surface: &Surface, limits: &PanelLimits, judgement: &mut Judgement) {
     let seen: Vec<(f64, f64)> = points
         .iter()
         .filter_map(|point| {
@@ -127,31 +121,24 @@ fn normals(points: &[TaughtPoint], surface: &Surface, judgement: &mut Judgement)
     }
     let largest = |of: fn(&(f64, f64)) -> f64| seen.iter().map(of).fold(0.0, f64::max);
     let squares: f64 = seen.iter().map(|(_, error)| error * error).sum();
-    let figure = |key, text, value, limit| Figure {
-        key,
-        text,
-        value,
-        unit: "°",
-        limit,
-    };
+    let figure = |key, text, value| Figure::new(key, text, value, "°");
+    let limit = limits.normal_deg.get();
     judgement.figures.extend([
         figure(
             "max_normal_error_deg",
             "taught normal off the true one",
             largest(|seen| seen.1),
-            Some(NORMAL_LIMIT),
-        ),
+        )
+        .limited(limit),
         figure(
             "rms_normal_error_deg",
             "taught normal off the true one, rms",
             libm::sqrt(squares / seen.len() as f64),
-            None,
         ),
         figure(
             "max_inclination_deg",
             "steepest taught point",
             largest(|seen| seen.0),
-            None,
         ),
     ]);
     let mut over_inclination = seen;
@@ -162,6 +149,8 @@ fn normals(points: &[TaughtPoint], surface: &Surface, judgement: &mut Judgement)
         x: "inclination [deg]",
         y: "error [deg]",
         lines: vec![("taught", over_inclination)],
+        limits: vec![limit],
+        to_scale: false,
     });
 }
 
@@ -169,13 +158,10 @@ fn normals(points: &[TaughtPoint], surface: &Surface, judgement: &mut Judgement)
 fn pace(points: &[TaughtPoint], judgement: &mut Judgement) {
     let time: f64 = points.iter().map(|point| point.time_s).sum();
     if time > 0.0 {
-        judgement.figures.push(Figure {
-            key: "taught_points_per_min",
-            text: "taught points a minute",
-            value: points.len() as f64 * 60.0 / time,
-            unit: "/min",
-            limit: None,
-        });
+        let value = points.len() as f64 * 60.0 / time;
+        let text = "taught points a minute";
+        let figure = Figure::new("taught_points_per_min", text, value, "/min");
+        judgement.figures.push(figure);
     }
 }
 

@@ -4,10 +4,12 @@ mod attitude;
 mod judge;
 mod line;
 mod program;
+mod speed;
 #[cfg(test)]
 mod tests;
 
-use super::{Judgement, Kind, Place, Plan, Run};
+use super::limits::SPEED_DIP;
+use super::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
 use crate::teach::{Guide, TaughtPoint, TeachingConfig, read_points};
 use crate::world::Surface;
 use nalgebra::Vector3;
@@ -39,11 +41,39 @@ pub struct Panel {
     guide: Vec<[f64; 5]>,
     /// How to teach.
     teaching: TeachingConfig,
+    /// What the cut is judged by.
+    #[serde(default)]
+    limits: PanelLimits,
     /// The panel as it really is. Only simulated worlds look at it, and the judgement of a run in one.
     simulated_surface: Option<Surface>,
     /// Points taught in this session.
     #[serde(skip)]
     points: Option<Vec<TaughtPoint>>,
+}
+
+/// What a run is judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct PanelLimits {
+    /// Largest distance of the focus from where it should be, cutting and while A and C turn \[mm\].
+    focus_mm: Limit,
+    /// Largest error of a taught normal, in a simulated world \[deg\].
+    normal_deg: Limit,
+    /// Largest angle of the tool with the true normal, in a simulated world \[deg\]; published is that the process bears 7.
+    tool_off_normal_deg: Limit,
+    /// Most that the speed may fall below the feed with the beam on \[%\].
+    speed_dip_percent: Percent,
+}
+
+impl Default for PanelLimits {
+    fn default() -> Self {
+        Self {
+            focus_mm: Limit::new(0.01),
+            normal_deg: Limit::new(0.5),
+            tool_off_normal_deg: Limit::new(7.0),
+            speed_dip_percent: SPEED_DIP,
+        }
+    }
 }
 
 /// Why there is no program. Reads as one sentence.
@@ -95,17 +125,23 @@ pub enum PanelError {
         /// The axis.
         axis: &'static str,
     },
-    /// An axis is too slow.
+    /// A drive is too slow somewhere.
     #[error(
-        "near taught point {point} axis {axis} allows {largest:.2} m/min, not {speed} m/min: cut slower{}",
-        if *.upright { ", or let upright_deg be larger" } else { "" }
+        "speed_m_min is {speed}, and may be {:.2} at most: no more allows the {quantity} of {axis} near {whose} point \
+         {point}{}",
+        floor(*.largest),
+        if *.upright { "; a larger upright_deg may let it be more" } else { "" }
     )]
     Speed {
-        /// Its number, from 1.
+        /// "taught", or "guide" before anything is taught.
+        whose: &'static str,
+        /// The number of the point, from 1.
         point: usize,
-        /// The axis.
+        /// The drive.
         axis: &'static str,
-        /// Largest speed \[m/min\].
+        /// Its "speed" or its "acceleration".
+        quantity: &'static str,
+        /// Largest speed on the whole line \[m/min\].
         largest: f64,
         /// Asked for \[m/min\].
         speed: f64,
@@ -120,6 +156,11 @@ pub enum PanelError {
         /// Highest point of the path \[mm\].
         top: f64,
     },
+}
+
+/// Down to two decimals, so that what is told can be cut.
+fn floor(m_min: f64) -> f64 {
+    libm::floor(100.0 * m_min) / 100.0
 }
 
 impl Panel {
@@ -192,10 +233,16 @@ impl Panel {
 impl Kind for Panel {
     fn plan(&self, place: &Place) -> anyhow::Result<Plan> {
         self.check()?;
-        Ok(self.program(place, &self.points(place)?)?)
+        let points = self.points(place)?;
+        self.check_speed(place, &points)?;
+        Ok(self.program(place, &points)?)
     }
 
     fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement> {
         Ok(self.figures(run, &self.points(place)?))
+    }
+
+    fn speed_dip(&self) -> Percent {
+        self.limits.speed_dip_percent
     }
 }

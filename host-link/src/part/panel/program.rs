@@ -14,12 +14,10 @@ use shared::units::MM_S_PER_M_MIN;
 
 const Z: usize = 2;
 const A: usize = 3;
-const C: usize = 5;
+pub(super) const C: usize = 5;
 /// Decimals of lengths \[mm\] and of angles \[deg\].
 const LENGTH_DECIMALS: i32 = 5;
 const ANGLE_DECIMALS: i32 = 6;
-/// Part of an axis' speed that the cut may ask for: the rest is for what lies between the stations.
-const SPEED_SHARE: f64 = 0.98;
 
 /// A point of the program.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +61,6 @@ impl Panel {
                 axes,
             });
         }
-        self.check_speed(&stops, &limits, point)?;
         let lean = (attitudes.lean.0.to_degrees(), point(stations[attitudes.lean.1].s));
         let mut notes = vec![format!(
             "{} taught points, {:.1} mm to cut, {} points of the program",
@@ -124,32 +121,6 @@ impl Panel {
         kinematics
             .inverse(&pose, &near)
             .map_err(|source| PanelError::Attitude { point, source })
-    }
-
-    /// Whether every axis is fast enough between any two points.
-    fn check_speed(
-        &self,
-        stops: &[Stop],
-        limits: &[AxisLimits; AXES],
-        point: impl Fn(f64) -> usize,
-    ) -> Result<(), PanelError> {
-        for pair in stops.windows(2) {
-            let way = pair[1].station.s - pair[0].station.s;
-            for axis in 0..AXES {
-                let rate = (pair[1].axes[axis] - pair[0].axes[axis]).abs() / way;
-                let largest = SPEED_SHARE * limits[axis].velocity / rate / MM_S_PER_M_MIN;
-                if self.speed_m_min > largest {
-                    return Err(PanelError::Speed {
-                        point: point(pair[0].station.s),
-                        axis: AXIS_NAMES[axis],
-                        largest,
-                        speed: self.speed_m_min,
-                        upright: axis == C,
-                    });
-                }
-            }
-        }
-        Ok(())
     }
 
     fn text(

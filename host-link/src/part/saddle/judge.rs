@@ -2,14 +2,12 @@
 
 use super::error::SaddlePartError;
 use super::seam::{Deviation, Seam};
-use super::{Pass, Saddle};
-use crate::part::{Figure, Judgement, Plot, Run, RunSample};
+use super::{Pass, Saddle, SaddleLimits};
+use crate::part::{ALONG, Figure, GAP, Judgement, Plot, Run, RunSample};
 use shared::units::next_to;
 
-/// Largest distance from the exact saddle, servo included \[mm\].
-const DISTANCE_LIMIT: f64 = 0.01;
-/// Largest tilt error against the bisector \[°\].
-const TILT_LIMIT: f64 = 0.1;
+/// Arc off for longer than this leaves a gap in the lines of the plots \[µs\].
+const GAP_US: u64 = 1500;
 /// Speeds are means over so many samples.
 const SPEED_WINDOW: usize = 50;
 /// Names of the lines in plots; passes after these have the last name.
@@ -58,23 +56,37 @@ pub(super) fn judge(part: &Saddle, seam: &Seam, run: &Run) -> anyhow::Result<Jud
             .samples
             .iter()
             .filter(|sample| sample.path_id == id && sample.beams[ARC]);
-        worth.add(pass, seam, &burning.collect::<Vec<_>>())?;
+        worth.add(pass, seam, &burning.collect::<Vec<_>>(), |s| {
+            run.along().at(id, s)
+        })?;
     }
-    Ok(worth.judgement())
+    Ok(worth.judgement(&part.limits))
 }
 
 impl Worth {
-    fn add(&mut self, pass: &Pass, seam: &Seam, burning: &[&RunSample]) -> anyhow::Result<()> {
+    /// `along` gives the path length through all paths of a place of this one.
+    fn add(
+        &mut self,
+        pass: &Pass,
+        seam: &Seam,
+        burning: &[&RunSample],
+        along: impl Fn(f64) -> Option<f64>,
+    ) -> anyhow::Result<()> {
         let [mut distances, mut tilt_errors, mut out_of_plane] = [const { Vec::new() }; 3];
         let mut before: Option<&RunSample> = None;
         for sample in burning {
             if let Some(before) = before.replace(sample) {
+                if sample.time_us.saturating_sub(before.time_us) > GAP_US {
+                    for line in [&mut distances, &mut tilt_errors, &mut out_of_plane] {
+                        line.push(GAP);
+                    }
+                }
                 self.length += (sample.pose.position - before.pose.position).norm();
             }
             let deviation = seam.deviation(&sample.pose, &pass.offset())?;
             self.add_deviation(&deviation);
             let waist = next_to(deviation.station.waist, sample.axes[WAIST]).to_degrees();
-            distances.push((self.length, deviation.distance));
+            distances.push((along(sample.s_mm).unwrap_or(f64::NAN), deviation.distance));
             tilt_errors.push((waist, deviation.tilt_error.to_degrees()));
             out_of_plane.push((waist, deviation.station.out_of_plane.to_degrees()));
         }
@@ -102,13 +114,10 @@ impl Worth {
         self.max_out_of_plane_deg = self.max_out_of_plane_deg.max(out_of_plane);
     }
 
-    fn judgement(self) -> Judgement {
+    fn judgement(self, limits: &SaddleLimits) -> Judgement {
         let figure = |key, text, value, unit, limit| Figure {
-            key,
-            text,
-            value,
-            unit,
             limit,
+            ..Figure::new(key, text, value, unit)
         };
         let length = figure("welded_length_mm", "welded length", self.length, "mm", None);
         if self.samples == 0 {
@@ -124,7 +133,7 @@ impl Worth {
                 "largest distance to saddle",
                 self.max_distance,
                 "mm",
-                Some(DISTANCE_LIMIT),
+                Some(limits.distance_mm.get()),
             ),
             figure(
                 "rms_distance_to_saddle_mm",
@@ -138,7 +147,7 @@ impl Worth {
                 "off bisector, as B tilts",
                 self.max_tilt_error_deg,
                 "°",
-                Some(TILT_LIMIT),
+                Some(limits.bisector_deg.get()),
             ),
             figure(
                 "max_out_of_plane_deg",
@@ -156,20 +165,24 @@ impl Worth {
                 None,
             ),
         ];
-        let plot = |file, title, x, y, lines| Plot {
+        let plot = |file, title, x, y, lines, limits| Plot {
             file,
             title,
             x,
             y,
             lines,
+            limits,
+            to_scale: false,
         };
+        let tilt = limits.bisector_deg.get();
         let plots = vec![
             plot(
                 "saddle-distance",
                 "Tip against the exact saddle",
-                "welded length [mm]",
+                ALONG,
                 "distance [mm]",
                 self.distances,
+                vec![limits.distance_mm.get()],
             ),
             plot(
                 "saddle-tilt",
@@ -177,6 +190,7 @@ impl Worth {
                 "waist [°]",
                 "angle [°]",
                 self.tilt_errors,
+                vec![-tilt, tilt],
             ),
             plot(
                 "saddle-out-of-plane",
@@ -184,6 +198,7 @@ impl Worth {
                 "waist [°]",
                 "angle [°]",
                 self.out_of_plane,
+                Vec::new(),
             ),
         ];
         Judgement { figures, plots }

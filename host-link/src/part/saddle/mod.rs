@@ -17,7 +17,8 @@ mod tests;
 
 pub use error::{SaddlePartError, TaughtError};
 
-use super::{Judgement, Kind, Place, Plan, Run};
+use super::limits::SPEED_DIP;
+use super::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
 use fit::Known;
 use seam::{Offset, Placement, Seam};
 use serde::Deserialize;
@@ -57,6 +58,31 @@ pub struct Saddle {
     overlap_mm: f64,
     /// In the order of welding, each once around.
     passes: Vec<Pass>,
+    /// What the weld is judged by.
+    #[serde(default)]
+    limits: SaddleLimits,
+}
+
+/// What a run is judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct SaddleLimits {
+    /// Largest distance of the tip from the exact saddle, servo included \[mm\].
+    distance_mm: Limit,
+    /// Largest angle of the torch with the bisector of the groove, in the plane of the tilt \[°\].
+    bisector_deg: Limit,
+    /// Most that the speed may fall below the feed with the beam on \[%\].
+    speed_dip_percent: Percent,
+}
+
+impl Default for SaddleLimits {
+    fn default() -> Self {
+        Self {
+            distance_mm: Limit::new(0.01),
+            bisector_deg: Limit::new(0.1),
+            speed_dip_percent: SPEED_DIP,
+        }
+    }
 }
 
 /// Once around the branch.
@@ -212,5 +238,9 @@ impl Kind for Saddle {
     fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement> {
         let (seam, _) = self.seam(place.directory, run.kinematics)?;
         judge::judge(self, &seam, run)
+    }
+
+    fn speed_dip(&self) -> Percent {
+        self.limits.speed_dip_percent
     }
 }

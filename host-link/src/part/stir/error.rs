@@ -17,6 +17,22 @@ pub enum StirError {
         /// What it must be.
         requirement: &'static str,
     },
+    /// C cannot change its rate quickly enough where segments join.
+    #[error(
+        "where an arc begins or ends C would be {off_deg:.3}° off the heading, {limit_deg}° are allowed: travel_mm_min \
+         is {travel_mm_min}, and may be {:.0} at most for these radii",
+        largest_mm_min.floor()
+    )]
+    Joins {
+        /// How far it is off \[°\].
+        off_deg: f64,
+        /// How far it may be \[°\].
+        limit_deg: f64,
+        /// The feed \[mm/min\].
+        travel_mm_min: f64,
+        /// The largest that keeps the limit \[mm/min\].
+        largest_mm_min: f64,
+    },
     /// No segments.
     #[error(
         "contour has no segments: add {{ line_to = [x, y] }} or {{ arc_to = [x, y], centre = [x, y], turn = \"ccw\" }}"

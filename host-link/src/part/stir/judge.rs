@@ -6,22 +6,13 @@
 //! the error relative to the extent of the contour (NMAE) does not.
 
 use super::error::StirError;
-use super::{B, C, Job, SPINDLE, Stir};
+use super::{B, C, Job, SPINDLE, Stir, StirLimits};
 use crate::metrics::compare;
 use crate::nc::Motion;
-use crate::part::{Figure, Judgement, Plot, Run, RunSample};
+use crate::part::{ALONG, Figure, GAP, Judgement, Plot, Run, RunSample};
 use crate::path::{Course, PlannedPath};
 use shared::units::{DEG_PER_RAD, wrap};
 
-/// The heading may be off by this much \[°\].
-const HEADING_LIMIT: f64 = super::program::HEADING_LIMIT;
-/// The tilt may be off by this much \[°\].
-const TILT_LIMIT: f64 = 0.02;
-/// Published bounds of the errors in X and Y: \[mm\], and relative to the coordinate \[%\].
-const AXIS_LIMIT: f64 = 1.0;
-const MAPE_LIMIT: f64 = 5.0;
-/// Preheating may be shorter by this much \[s\]: two ticks.
-const PREHEAT_LIMIT: f64 = 0.002;
 /// The program may stir more or less than the contour by this much \[mm\].
 const SAME_LENGTH: f64 = 0.01;
 /// The nearest place of the contour is looked for so far around the programmed one \[mm\].
@@ -42,13 +33,15 @@ struct Stirring {
 /// What the samples tell.
 #[derive(Default)]
 struct Seen {
+    /// Of the last sample.
+    path_id: u32,
     /// Ticks in which the pin travelled, and those of them with the spindle off.
     travelled: usize,
     off: usize,
-    /// Since the first of them \[s\].
-    time: Vec<f64>,
-    /// Along the contour \[mm\].
-    along: Vec<f64>,
+    /// Path length through all paths, for the plots \[mm\].
+    path_mm: Vec<f64>,
+    /// Numbers of samples of which nothing was seen right before: a gap in the plots.
+    begins: Vec<usize>,
     /// True and programmed tip, X and Y \[mm\].
     tip: [Vec<f64>; 2],
     programmed: [Vec<f64>; 2],
@@ -69,17 +62,19 @@ pub(super) fn judge(part: &Stir, job: &Job, run: &Run) -> anyhow::Result<Judgeme
         return Err(StirError::OtherProgram { run_mm, part_mm }.into());
     }
     let mut seen = Seen::default();
+    let along = run.along();
     for sample in run.samples.iter().filter(|sample| sample.speed_mm_s > 0.0) {
         if let Some(stirring) = stirring.iter().find(|path| path.id == sample.path_id) {
-            seen.add(job, stirring, sample)?;
+            let path_mm = along.at(stirring.id, sample.s_mm);
+            seen.add(job, stirring, sample, path_mm.unwrap_or(f64::NAN))?;
         }
     }
-    if seen.time.is_empty() {
+    if seen.path_mm.is_empty() {
         return Err(StirError::NothingWelded.into());
     }
     let preheat = stirring.iter().map(|path| preheat(run.samples, path.id));
     let preheat_s = preheat.fold(f64::INFINITY, f64::min);
-    let mut figures = seen.figures()?;
+    let mut figures = seen.figures(&part.limits)?;
     figures.extend([
         figure("preheat_s", "preheat", preheat_s, "s", None),
         figure(
@@ -87,12 +82,12 @@ pub(super) fn judge(part: &Stir, job: &Job, run: &Run) -> anyhow::Result<Judgeme
             "preheat too short by",
             (part.preheat_s - preheat_s).max(0.0),
             "s",
-            Some(PREHEAT_LIMIT),
+            Some(part.limits.preheat_short_s.get()),
         ),
     ]);
     Ok(Judgement {
         figures,
-        plots: seen.plots(),
+        plots: seen.plots(&part.limits),
     })
 }
 
@@ -135,11 +130,21 @@ fn preheat(samples: &[RunSample], id: u32) -> f64 {
 }
 
 impl Seen {
-    fn add(&mut self, job: &Job, stirring: &Stirring, sample: &RunSample) -> anyhow::Result<()> {
+    fn add(
+        &mut self,
+        job: &Job,
+        stirring: &Stirring,
+        sample: &RunSample,
+        path_mm: f64,
+    ) -> anyhow::Result<()> {
         self.travelled += 1;
         if !sample.beams[SPINDLE] {
             self.off += 1;
+            self.begins.push(self.path_mm.len());
             return Ok(());
+        }
+        if sample.path_id != std::mem::replace(&mut self.path_id, sample.path_id) {
+            self.begins.push(self.path_mm.len());
         }
         let Some(point) = stirring.path.at(sample.s_mm) else {
             return Ok(());
@@ -150,8 +155,7 @@ impl Seen {
         let (place, heading) = job.contour.at(along);
         // All passes have the same offset, but for whole turns.
         let offset = job.passes[0].offset;
-        self.time.push(sample.time_us as f64 * 1e-6);
-        self.along.push(along);
+        self.path_mm.push(path_mm);
         for i in 0..2 {
             self.tip[i].push(tip[i]);
             self.programmed[i].push(programmed[i]);
@@ -163,8 +167,8 @@ impl Seen {
         Ok(())
     }
 
-    fn figures(&self) -> anyhow::Result<Vec<Figure>> {
-        let zeros = vec![0.0; self.time.len()];
+    fn figures(&self, limits: &StirLimits) -> anyhow::Result<Vec<Figure>> {
+        let zeros = vec![0.0; self.path_mm.len()];
         let [distance, heading, tilt] =
             [&self.distance, &self.heading, &self.tilt].map(|errors| compare(errors, &zeros));
         let (distance, heading, tilt) = (distance?, heading?, tilt?);
@@ -174,7 +178,7 @@ impl Seen {
                 "heading error",
                 heading.max,
                 "°",
-                Some(HEADING_LIMIT),
+                Some(limits.heading_deg.get()),
             ),
             figure(
                 "rms_heading_error_deg",
@@ -188,7 +192,7 @@ impl Seen {
                 "tilt error",
                 tilt.max,
                 "°",
-                Some(TILT_LIMIT),
+                Some(limits.tilt_deg.get()),
             ),
             figure(
                 "max_contour_distance_mm",
@@ -222,12 +226,12 @@ impl Seen {
         for (i, [mae, max, mape, nmae]) in texts.into_iter().enumerate() {
             let errors = compare(&self.tip[i], &self.programmed[i])?;
             let of = |(key, text), value, unit, limit| figure(key, text, value, unit, limit);
-            figures.push(of(mae, errors.mae, "mm", Some(AXIS_LIMIT)));
-            figures.push(of(max, errors.max, "mm", Some(AXIS_LIMIT)));
+            figures.push(of(mae, errors.mae, "mm", Some(limits.axis_mm.get())));
+            figures.push(of(max, errors.max, "mm", Some(limits.axis_mm.get())));
             // Neither is there where the weld lies on an axis of the work, or along one.
             let mape = errors
                 .mape_percent
-                .map(|value| of(mape, value, "%", Some(MAPE_LIMIT)));
+                .map(|value| of(mape, value, "%", Some(limits.axis_mape_percent.get())));
             let nmae = errors.nmae_percent.map(|value| of(nmae, value, "%", None));
             figures.extend([mape, nmae].into_iter().flatten());
         }
@@ -241,37 +245,42 @@ impl Seen {
         Ok(figures)
     }
 
-    fn plots(&self) -> Vec<Plot> {
-        let begin = self.time.first().copied().unwrap_or(0.0);
-        let time = || self.time.iter().map(|time| time - begin);
+    fn plots(&self, limits: &StirLimits) -> Vec<Plot> {
+        let over_path = |values: Vec<f64>| {
+            let line: Vec<_> = self.path_mm.iter().copied().zip(values).collect();
+            self.broken(worst_of_each, &line)
+        };
         let error = |i: usize| {
             let pairs = self.tip[i].iter().zip(&self.programmed[i]);
-            worst_of_each(
-                time()
-                    .zip(pairs.map(|(tip, programmed)| tip - programmed))
-                    .collect(),
-            )
+            over_path(pairs.map(|(tip, programmed)| tip - programmed).collect())
         };
         let plan = |points: &[Vec<f64>; 2]| {
-            let every = points[0].len().div_ceil(PLOTTED);
-            let points = points[0].iter().copied().zip(points[1].iter().copied());
-            points.step_by(every).collect()
+            let line: Vec<_> = points[0].iter().copied().zip(points[1].iter().copied()).collect();
+            let every = |part: &[(f64, f64)], all: usize| {
+                let step = all.div_ceil(PLOTTED).max(1);
+                part.iter().copied().step_by(step).collect()
+            };
+            self.broken(every, &line)
         };
-        let heading = self.along.iter().copied().zip(self.heading.iter().copied());
+        let both = |limit: f64| vec![-limit, limit];
         vec![
             Plot {
                 file: "stir-error",
                 title: "Tip of the pin against the programmed one at the same time",
-                x: "time on the contour [s]",
+                x: ALONG,
                 y: "error [mm]",
                 lines: vec![("X", error(0)), ("Y", error(1))],
+                limits: both(limits.axis_mm.get()),
+                to_scale: false,
             },
             Plot {
                 file: "stir-heading",
                 title: "Heading of the tool against the contour",
-                x: "length of the contour [mm]",
+                x: ALONG,
                 y: "error [°]",
-                lines: vec![("C", worst_of_each(heading.collect()))],
+                lines: vec![("C", over_path(self.heading.clone()))],
+                limits: both(limits.heading_deg.get()),
+                to_scale: false,
             },
             Plot {
                 file: "stir-contour",
@@ -282,14 +291,36 @@ impl Seen {
                     ("programmed", plan(&self.programmed)),
                     ("true tip", plan(&self.tip)),
                 ],
+                limits: Vec::new(),
+                to_scale: true,
             },
         ]
     }
+
+    /// A line that is open where nothing was seen; each of its parts becomes what `few` makes of it, told how many
+    /// points there are in all.
+    fn broken(
+        &self,
+        few: impl Fn(&[(f64, f64)], usize) -> Vec<(f64, f64)>,
+        line: &[(f64, f64)],
+    ) -> Vec<(f64, f64)> {
+        let mut parts = Vec::new();
+        let ends = self.begins.iter().copied().chain([line.len()]);
+        let mut from = 0;
+        for to in ends.filter(|to| *to > 0) {
+            if to > from {
+                parts.extend((!parts.is_empty()).then_some(GAP));
+                parts.extend(few(&line[from..to], line.len()));
+                from = to;
+            }
+        }
+        parts
+    }
 }
 
-/// So few points that a plot can hold them: of each bunch the one with the largest value, whatever its sign.
-fn worst_of_each(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
-    let bunch = points.len().div_ceil(PLOTTED).max(1);
+/// So few points that a plot can hold `all`: of each bunch the one with the largest value, whatever its sign.
+fn worst_of_each(points: &[(f64, f64)], all: usize) -> Vec<(f64, f64)> {
+    let bunch = all.div_ceil(PLOTTED).max(1);
     let worst = points
         .chunks(bunch)
         .filter_map(|bunch| bunch.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())));
@@ -304,10 +335,7 @@ fn figure(
     limit: Option<f64>,
 ) -> Figure {
     Figure {
-        key,
-        text,
-        value,
-        unit,
         limit,
+        ..Figure::new(key, text, value, unit)
     }
 }

@@ -9,7 +9,8 @@ mod program;
 #[cfg(test)]
 mod tests;
 
-use super::{Judgement, Kind, Place, Plan, Run};
+use super::limits::SPEED_DIP;
+use super::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
 use crate::machine::MachineFile;
 use contour::{Contour, SegmentEntry};
 use error::StirError;
@@ -58,6 +59,40 @@ pub struct Stir {
     start: [f64; 2],
     /// Lines and arcs, each from the end of the one before.
     contour: Vec<SegmentEntry>,
+    /// What the weld is judged by.
+    #[serde(default)]
+    limits: StirLimits,
+}
+
+/// What a run is judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct StirLimits {
+    /// The heading may be off by this much \[°\].
+    heading_deg: Limit,
+    /// The tilt may be off by this much \[°\].
+    tilt_deg: Limit,
+    /// Mean and largest error in X and in Y, timing included \[mm\]; as published.
+    axis_mm: Limit,
+    /// The same, relative to the coordinate \[%\]; as published.
+    axis_mape_percent: Percent,
+    /// Preheating may be shorter by this much \[s\]: two ticks.
+    preheat_short_s: Limit,
+    /// Most that the speed may fall below the feed with the beam on \[%\].
+    speed_dip_percent: Percent,
+}
+
+impl Default for StirLimits {
+    fn default() -> Self {
+        Self {
+            heading_deg: Limit::new(0.02),
+            tilt_deg: Limit::new(0.02),
+            axis_mm: Limit::new(1.0),
+            axis_mape_percent: Percent::new(5.0),
+            preheat_short_s: Limit::new(0.002),
+            speed_dip_percent: SPEED_DIP,
+        }
+    }
 }
 
 /// A part that fits a machine.
@@ -74,6 +109,7 @@ struct Job {
 impl Kind for Stir {
     fn plan(&self, place: &Place) -> anyhow::Result<Plan> {
         let job = self.job(place.machine)?;
+        self.check_joins(&job, place.machine)?;
         Ok(Plan {
             program: program::write(self, &job, place),
             notes: program::notes(self, &job, place.machine),
@@ -83,6 +119,10 @@ impl Kind for Stir {
     fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement> {
         let job = self.job(place.machine)?;
         judge::judge(self, &job, run)
+    }
+
+    fn speed_dip(&self) -> Percent {
+        self.limits.speed_dip_percent
     }
 }
 
@@ -175,6 +215,21 @@ impl Stir {
             return Err(StirError::SpindleSpeed { wanted, largest });
         }
         Ok(())
+    }
+
+    /// C follows where segments join, or the weld would be outside its limits.
+    fn check_joins(&self, job: &Job, machine: &MachineFile) -> Result<(), StirError> {
+        let limit_deg = self.limits.heading_deg.get();
+        match program::late_at_joins(self, job, machine) {
+            // What C is late by grows with the square of the feed.
+            Some(off_deg) if off_deg > limit_deg => Err(StirError::Joins {
+                off_deg,
+                limit_deg,
+                travel_mm_min: self.travel_mm_min,
+                largest_mm_min: self.travel_mm_min * libm::sqrt(limit_deg / off_deg),
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// The whole tool stays on the plate.

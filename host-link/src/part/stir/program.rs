@@ -10,8 +10,6 @@ use shared::units::DEG_PER_RAD;
 
 /// Tilts that are usual in the process \[°\] (SPEC 4).
 const USUAL_TILT: [f64; 2] = [2.0, 5.0];
-/// The heading may be off by this much in a weld \[°\].
-pub(super) const HEADING_LIMIT: f64 = 0.02;
 /// Places of the contour nearer than this are one \[mm\]: a program is not written finer.
 const SAME_PLACE: f64 = 1e-6;
 /// The planner lets C change its rate with this part of its acceleration, where a segment begins to turn.
@@ -123,14 +121,9 @@ pub(super) fn notes(part: &Stir, job: &Job, machine: &MachineFile) -> Vec<String
         ));
     }
     if let Some(off) = late_at_joins(part, job, machine).filter(|off| *off > 0.0) {
-        let advice = if off > HEADING_LIMIT {
-            ": too much; travel slower, or take larger radii"
-        } else {
-            ""
-        };
         notes.push(format!(
-            "where an arc begins or ends, C is up to {off:.4}° off the heading while it changes its rate, {HEADING_LIMIT}° \
-             are allowed{advice}"
+            "where an arc begins or ends, C is up to {off:.4}° off the heading while it changes its rate, {}° are allowed",
+            part.limits.heading_deg.get()
         ));
     }
     let widest = contour
@@ -166,7 +159,7 @@ fn range_of_c(job: &Job) -> [f64; 2] {
 
 /// By how much C is off where the curvature changes \[°\]: Δω²/(8α) with the acceleration α that C has for it
 /// (SPEC 4.2, spread to both sides of the join).
-fn late_at_joins(part: &Stir, job: &Job, machine: &MachineFile) -> Option<f64> {
+pub(super) fn late_at_joins(part: &Stir, job: &Job, machine: &MachineFile) -> Option<f64> {
     let acceleration = TURN_SHARE * machine.motion.axes[C].as_ref()?.max_acceleration;
     let speed = part.travel_mm_min / 60.0;
     let steps = job.contour.segments().windows(2).map(|pair| {

@@ -11,6 +11,7 @@ mod recentring;
 mod single_block;
 mod slides;
 mod taught_seam;
+mod verdict;
 
 use super::*;
 use crate::boards::command;

@@ -54,6 +54,7 @@ fn judged(
         kinematics: &kinematics,
         paths: &paths,
         samples: &samples,
+        evaluation: &Default::default(),
     };
     part.kind().judge(&place, &run)
 }
@@ -91,10 +92,17 @@ fn a_perfect_run_of_the_leaf_has_no_errors() {
     let [speed, contour] = &judgement.plots[..] else {
         panic!()
     };
-    assert_eq!((speed.lines.len(), contour.lines.len()), (4, 1));
-    // Both layers, one after the other.
-    let (last, _) = *speed.lines[0].1.last().unwrap();
-    assert!((last - 707.9).abs() < 0.1, "{last}");
+    assert_eq!((speed.lines.len(), contour.lines.len()), (2, 1));
+    assert_eq!((speed.limits.len(), &contour.limits[..]), (2, &[50.0][..]));
+    // Both layers, one after the other on one path length, and nothing drawn between them.
+    let line = &contour.lines[0].1;
+    let laid: Vec<_> = line
+        .split(|point| point.0.is_nan())
+        .filter(|part| !part.is_empty())
+        .collect();
+    assert_eq!(laid.len(), 2);
+    assert!(laid.concat().is_sorted_by(|a, b| a.0 <= b.0));
+    assert!(laid[1][0].0 > 353.9, "{:?}", laid[1][0]);
 }
 
 #[test]
@@ -173,6 +181,7 @@ fn a_run_without_arc_or_of_another_program_is_no_bead() {
             kinematics: &kinematics,
             paths: &paths,
             samples,
+            evaluation: &Default::default(),
         };
         let directory = shipped("programs");
         let place = Place {

@@ -76,6 +76,7 @@ fn judge(paths: &BTreeMap<u32, PlannedPath>, samples: &[RunSample]) -> anyhow::R
         kinematics: &machine.motion.kinematics().unwrap(),
         paths,
         samples,
+        evaluation: &Default::default(),
     })
 }
 
@@ -204,7 +205,7 @@ fn the_shipped_job_stays_on_the_saddle_with_drives_and_gratings() {
     assert!(ended.error.is_none(), "{:?}", ended.error);
     println!("{}", ended.report);
     let figures = &ended.report.figures;
-    assert_eq!(figures.len(), 6);
+    assert_eq!(figures.len(), 7);
     for figure in figures {
         assert!(
             figure.limit.is_none_or(|limit| figure.value <= limit),

@@ -73,6 +73,7 @@ fn judged_on(
         kinematics: &kinematics,
         paths: &paths,
         samples: &samples,
+        evaluation: &Default::default(),
     };
     let judgement = parts[1].judge(&place(machine), &run)?;
     assert_eq!(judgement.plots.len(), 3);
