@@ -1,6 +1,7 @@
 //! `host-link dry-run`: how long a program will take, and what it will ask of the machine.
 
 use super::read_program;
+use crate::console::{out, outln};
 use crate::dry_run;
 use crate::machine::MachineFile;
 use crate::path::Planner;
@@ -76,10 +77,10 @@ impl DryRun {
         if let Some(directory) = &self.report {
             write_dry_run(directory, &title, &ran)?;
         }
-        println!("{title}");
-        print!("{ran}");
+        outln!("{title}");
+        out!("{ran}");
         if let Some(directory) = &self.report {
-            println!("  report in {}", directory.display());
+            outln!("  report in {}", directory.display());
         }
         Ok(match ran.highest.above().next() {
             None => ExitCode::SUCCESS,
