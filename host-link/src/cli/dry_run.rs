@@ -1,6 +1,6 @@
 //! `host-link dry-run`: how long a program will take, and what it will ask of the machine.
 
-use super::read_program;
+use super::{OUTSIDE, read_program};
 use crate::console::{out, outln};
 use crate::dry_run;
 use crate::machine::MachineFile;
@@ -10,9 +10,6 @@ use anyhow::Context;
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
-
-/// Exit code of a run that would break a limit.
-const OUTSIDE: u8 = 3;
 
 /// Run a program through the planner of the motion board, without boards: durations, speeds, accelerations, jerks
 #[derive(Debug, Args)]

@@ -1,6 +1,7 @@
 //! `host-link plan`: from parts to programs.
 
-use crate::console::outln;
+use super::OUTSIDE;
+use crate::console::{errln, outln};
 use crate::machine::MachineFile;
 use crate::nc::{Options, interpret};
 use crate::part::PartFile;
@@ -8,6 +9,7 @@ use crate::path::{PlannedPath, Planner};
 use anyhow::Context;
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 /// Write the program of a part
 ///
@@ -29,7 +31,11 @@ use std::path::{Path, PathBuf};
 ///   4. cargo xtask weld my.ngc --machine machines/MACHINE.toml, on emulated boards: the run is judged by my.toml,
 ///      because it has the name of the program
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment)]
+#[command(
+    verbatim_doc_comment,
+    after_help = "Exit code: 0 if the program is written, 3 if it is written but a run of it is known to be outside the \
+    limits of its part, 1 if there is none."
+)]
 pub struct Plan {
     /// Part file
     part: PathBuf,
@@ -49,7 +55,7 @@ pub struct Plan {
 
 impl Plan {
     /// Plans, checks and writes the program.
-    pub fn run(self) -> anyhow::Result<()> {
+    pub fn run(self) -> anyhow::Result<ExitCode> {
         let machine = MachineFile::read(&self.machine)?;
         let mut part = PartFile::read(&self.part)?;
         if let Some(taught) = &self.taught {
@@ -88,7 +94,14 @@ impl Plan {
             outln!("{}:", output.display());
             outln!("  the cameras pass along both seams on {length:.2} mm, beams off");
         }
-        Ok(())
+        let Some(outside) = plan.outside else {
+            return Ok(ExitCode::SUCCESS);
+        };
+        errln!(
+            "host-link: a run of {} will be outside its limits: {outside}",
+            self.output.display()
+        );
+        Ok(ExitCode::from(OUTSIDE))
     }
 }
 

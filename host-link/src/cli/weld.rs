@@ -2,7 +2,7 @@
 
 use super::boards::{BoardChoice, exit_code};
 use super::cameras::CameraArgs;
-use super::{read_program, sentence};
+use super::{OUTSIDE, read_program, sentence};
 use crate::console::{errln, out, outln};
 use crate::machine::MachineFile;
 use crate::nc::Program;
@@ -18,9 +18,6 @@ use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
-
-/// Exit code of a weld that is outside the limits of its part.
-const OUTSIDE: u8 = 3;
 
 /// Names of the planned program and of the taught points in the report.
 const PROGRAM: &str = "program.ngc";

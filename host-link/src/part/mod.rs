@@ -53,6 +53,8 @@ pub struct Plan {
     pub program: String,
     /// What a person should know of it, a sentence each.
     pub notes: Vec<String>,
+    /// What of a run will be outside the limits of the part, if that is known beforehand; a sentence.
+    pub outside: Option<String>,
 }
 
 macro_rules! kinds {

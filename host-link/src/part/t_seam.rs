@@ -116,6 +116,7 @@ impl Kind for TSeam {
         Ok(Plan {
             program: plan.program,
             notes,
+            outside: None,
         })
     }
 

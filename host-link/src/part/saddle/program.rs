@@ -61,7 +61,11 @@ pub(super) fn plan(
         exact[0],
         exact[1] * DEG_PER_RAD,
     ));
-    Ok(Plan { program, notes })
+    Ok(Plan {
+        program,
+        notes,
+        outside: None,
+    })
 }
 
 /// The column where the waist turns must be above the main pipe.

@@ -77,6 +77,7 @@ impl Kind for Stir {
         Ok(Plan {
             program: program::write(self, &job, place),
             notes: program::notes(self, &job, place.machine),
+            outside: program::outside(self, &job, place.machine),
         })
     }
 

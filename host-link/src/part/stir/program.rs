@@ -150,6 +150,15 @@ pub(super) fn notes(part: &Stir, job: &Job, machine: &MachineFile) -> Vec<String
     notes
 }
 
+/// What the run will be judged outside its limits for.
+pub(super) fn outside(part: &Stir, job: &Job, machine: &MachineFile) -> Option<String> {
+    let off = late_at_joins(part, job, machine).filter(|off| *off > HEADING_LIMIT)?;
+    Some(format!(
+        "C will be {off:.4}° off the heading where an arc begins or ends, {HEADING_LIMIT}° are allowed: travel slower, or take \
+         larger radii"
+    ))
+}
+
 /// Least and largest C \[rad\]: C turns one way on every segment.
 fn range_of_c(job: &Job) -> [f64; 2] {
     let of_pass = |pass: &Pass| {
