@@ -298,6 +298,12 @@ fn numbers_out_of_all_proportion_are_named() {
             "Z999999999",
             "no machine goes farther than 100000 mm",
         ),
+        (
+            "programs/stir-contour.ngc",
+            "P2.500",
+            "P999999",
+            "a day (86400 s) at most",
+        ),
         ("programs/leaf.json", "30.52", "2147483648", "control_points_mm"),
         (
             "machines/stir-gantry.toml",

@@ -6,6 +6,9 @@ use std::time::{Duration, SystemTime};
 /// Shorter ones are nobody's concern.
 const SHORTEST: Duration = Duration::from_millis(100);
 
+/// A longer one counts for so long.
+const RECENT: Duration = Duration::from_secs(1);
+
 /// Finds the times in which this program did nothing: it was stopped, its computer slept, or had no processor for it.
 #[derive(Debug)]
 pub(super) struct Attention {
@@ -35,7 +38,9 @@ impl Attention {
         let by_wall = wall.duration_since(self.last_wall).unwrap_or_default();
         let lasted = (now - self.last).max(by_wall).saturating_sub(waited);
         (self.last, self.last_wall) = (now, wall);
-        if lasted >= SHORTEST {
+        // What was missed shows a moment after a long one, and short ones in between do not matter.
+        let counts = |before: Absence| lasted >= before.lasted || now > before.ended + RECENT;
+        if lasted >= SHORTEST && self.absence.is_none_or(counts) {
             self.absence = Some(Absence { ended: now, lasted });
         }
     }
@@ -68,9 +73,13 @@ mod tests {
         // Stopped for 3 s.
         let stopped = Some((ms(6070), ms(3000)));
         assert_eq!(paid(6070, 6070, 10), stopped);
+        // A short one right after it.
+        assert_eq!(paid(6270, 6270, 0), stopped);
+        assert_eq!(paid(7000, 7000, 800), stopped);
         // The wall's clock is set back: nothing new.
-        assert_eq!(paid(6080, 1000, 10), stopped);
+        assert_eq!(paid(7010, 1000, 10), stopped);
+        assert_eq!(paid(7270, 1260, 100), Some((ms(7270), ms(160))));
         // Asleep for an hour, in which the session's clock stood.
-        assert_eq!(paid(6090, 3_601_010, 10), Some((ms(6090), ms(3_600_000))));
+        assert_eq!(paid(7280, 3_601_270, 10), Some((ms(7280), ms(3_600_000))));
     }
 }
