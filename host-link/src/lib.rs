@@ -1,10 +1,14 @@
 //! The PC's part of Seamwright: programs, planning, sessions with the boards, reports.
 
+// Writers that panic have no place beside a machine that moves: crate::console has others.
+#![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
+
 pub mod along;
 pub mod boards;
 pub mod calibration;
 pub mod camera;
 pub mod cli;
+pub mod console;
 pub mod curve;
 pub mod dry_run;
 pub mod evaluate;

@@ -2,14 +2,13 @@
 
 use clap::Parser;
 use host_link::cli::{Cli, sentence};
+use host_link::console;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match Cli::parse().run() {
-        Ok(code) => code,
-        Err(error) => {
-            eprintln!("host-link: {}", sentence(&error));
-            ExitCode::FAILURE
-        }
-    }
+    let code = Cli::parse().run().unwrap_or_else(|error| {
+        console::write_err(format_args!("host-link: {}", sentence(&error)));
+        ExitCode::FAILURE
+    });
+    console::exit(code)
 }

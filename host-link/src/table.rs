@@ -3,6 +3,10 @@
 use std::path::Path;
 use thiserror::Error;
 
+/// Nothing that a machine of this kind works on is larger \[mm\]: what is, is a slip of the pen, and the work of planning
+/// grows with it. A hundred metres, more than the longest gantries have.
+pub const FARTHEST_MM: f64 = 1e5;
+
 /// Why a table cannot be used. Reads as one sentence.
 #[derive(Debug, Error)]
 pub enum TableError {
@@ -48,6 +52,20 @@ pub enum TableError {
         /// What stands there.
         text: String,
     },
+    /// A number that is out of all proportion.
+    #[error(
+        "{path}, line {line}: {value:e} is too large ({column}): at most {FARTHEST_MM} is possible, correct it"
+    )]
+    TooLarge {
+        /// The file.
+        path: String,
+        /// First line is 1.
+        line: usize,
+        /// Name of the column.
+        column: String,
+        /// What stands there.
+        value: f64,
+    },
     /// The rows are not in order, or two are equal.
     #[error("{path}, line {line}: {reason}")]
     Row {
@@ -73,7 +91,7 @@ pub enum TableError {
 pub struct Row<const N: usize> {
     /// First line is 1.
     pub line: usize,
-    /// Values, all finite.
+    /// Values, none beyond [`FARTHEST_MM`].
     pub values: [f64; N],
 }
 
@@ -130,6 +148,14 @@ pub fn parse<const N: usize>(path: &str, text: &str, columns: [&str; N]) -> Resu
                     column: column.to_owned(),
                     text: (*text).to_owned(),
                 })?;
+            if value.abs() > FARTHEST_MM {
+                return Err(TableError::TooLarge {
+                    path: path(),
+                    line,
+                    column: column.to_owned(),
+                    value: *value,
+                });
+            }
         }
         rows.push(Row { line, values });
     }

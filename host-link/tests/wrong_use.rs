@@ -587,3 +587,61 @@ fn lines_that_a_program_cannot_be_started_at_are_answered_before_the_machine_mov
     .refusal();
     assert_says(&said, &["--from-line needs a program", "taught"]);
 }
+
+/// Exit code and message of `host-link` with `words`.
+fn said(words: &[&str]) -> (Option<i32>, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_host-link")).args(words).output();
+    let output = output.expect("host-link runs");
+    (
+        output.status.code(),
+        String::from_utf8(output.stderr).expect("text"),
+    )
+}
+
+#[test]
+fn a_part_file_is_no_program_and_plan_is_named() {
+    let (part, machine) = (shipped("programs/leaf.toml"), shipped("machines/wire-arc.toml"));
+    let [part, machine] = [&part, &machine].map(|path| path.to_str().expect("text"));
+    for command in ["dry-run", "check"] {
+        let (code, said) = said(&[command, part, "--machine", machine]);
+        assert_eq!(code, Some(1), "{said}");
+        assert_says(
+            &said,
+            &["leaf.toml is a part file, and not a program", "host-link plan"],
+        );
+    }
+}
+
+#[test]
+fn subroutines_are_refused_by_their_name() {
+    let program = written("subroutine.ngc", "G43.4\no100 call\nM2\n");
+    let machine = shipped("machines/wire-arc.toml");
+    let [program, machine] = [&program, &machine].map(|path| path.to_str().expect("text"));
+    let (code, said) = said(&["dry-run", program, "--machine", machine]);
+    assert_eq!(code, Some(1), "{said}");
+    assert_says(
+        &said,
+        &["line 2, column 1: O words (subroutines, loops, conditions) are not supported"],
+    );
+}
+
+#[test]
+fn a_plan_that_the_machine_cannot_follow_is_refused_with_the_largest_feed() {
+    let machine = shipped("machines/stir-gantry.toml");
+    let machine = machine.to_str().expect("text");
+    for (feed, wanted) in [("60.0", 0), ("1200.0", 1)] {
+        let key = |feed: &str| format!("travel_mm_min = {feed}");
+        let part = changed(
+            &format!("stir-{feed}.toml"),
+            "programs/stir-contour.toml",
+            &key("60.0"),
+            &key(feed),
+        );
+        let output = scratch(&format!("stir-{feed}.ngc"));
+        let [part, output] = [&part, &output].map(|path| path.to_str().expect("text"));
+        let (code, said) = said(&["plan", part, "--machine", machine, "-o", output]);
+        assert_eq!(code, Some(wanted), "{said}");
+        assert_eq!(Path::new(output).exists(), wanted == 0);
+        assert_eq!(said.contains("travel_mm_min"), wanted == 1, "{said}");
+    }
+}

@@ -20,6 +20,13 @@ pub trait Boards {
     /// Sends `request` and waits for the answer.
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError>;
 
+    /// As [`Self::request`], but waits for nothing: `None` until the answer is there. To be asked for with the same
+    /// request until then; whatever else is requested of the board meanwhile leaves nobody to take this answer.
+    /// Simulated boards answer at once.
+    fn poll(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
+        self.request(role, request).map(Some)
+    }
+
     /// The next datagram of either board, in the order of arrival; `None` if none came within `timeout`.
     /// Simulated boards advance their time here, by at most `timeout`.
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError>;
@@ -35,6 +42,21 @@ pub trait Boards {
 
     /// How the motion board is told where the tracker board is ([`Request::PathStatesTo`]); `None` without one.
     fn path_states_target(&self) -> Option<Request>;
+
+    /// The last time in which this program did nothing, if there was one. The time of simulated boards stands still
+    /// meanwhile.
+    fn absence(&self) -> Option<Absence> {
+        None
+    }
+}
+
+/// A time in which this program did nothing: it was stopped, its computer slept, or was busy with something else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Absence {
+    /// When it ended, by [`Boards::now`].
+    pub ended: Duration,
+    /// How long it was.
+    pub lasted: Duration,
 }
 
 /// As [`Boards::request`], for requests that are answered by [`Response::Done`].

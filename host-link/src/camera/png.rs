@@ -7,6 +7,10 @@ use std::io::{BufReader, BufWriter};
 use std::path::Path;
 use thiserror::Error;
 
+/// Most pixels of a picture: twice those of the largest sensors of machine cameras. What says that it has more is refused
+/// before there is any memory for it.
+pub const MOST_PIXELS: u64 = 1 << 28;
+
 /// Why a file gives no picture, or takes none. Reads as one sentence.
 #[derive(Debug, Error)]
 pub enum PngError {
@@ -36,6 +40,19 @@ pub enum PngError {
         /// What its pixels are.
         kind: String,
     },
+    /// It says that it is larger than any camera's.
+    #[error(
+        "picture {file} has {columns} × {rows} pixels; at most {} million in all are read: cut it",
+        MOST_PIXELS / 1_000_000
+    )]
+    TooLarge {
+        /// The file.
+        file: String,
+        /// Its width.
+        columns: u32,
+        /// Its height.
+        rows: u32,
+    },
     /// The file cannot be written.
     #[error("cannot write picture {file}: {source}")]
     Write {
@@ -59,6 +76,13 @@ pub fn read_grey(path: &Path, picture: &mut Picture) -> Result<(), PngError> {
     if (info.color_type, info.bit_depth) != (ColorType::Grayscale, BitDepth::Eight) {
         let kind = kind(info.color_type, info.bit_depth);
         return Err(PngError::Kind { file: file(), kind });
+    }
+    if u64::from(info.width) * u64::from(info.height) > MOST_PIXELS {
+        return Err(PngError::TooLarge {
+            file: file(),
+            columns: info.width,
+            rows: info.height,
+        });
     }
     let (rows, columns) = (info.height as usize, info.width as usize);
     (picture.rows, picture.columns) = (rows, columns);
@@ -138,6 +162,29 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("seamwright-png-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a scratch folder");
         folder.join(name)
+    }
+
+    /// A PNG file that says that it has a side of 200,000 pixels, and has none.
+    #[test]
+    fn a_picture_larger_than_any_camera_s_is_refused_by_its_header() {
+        let folder = std::env::temp_dir().join(format!("seamwright-png-large-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a scratch folder");
+        let path = folder.join("large.png");
+        let mut encoder = Encoder::new(File::create(&path).expect("a file"), 200_000, 200_000);
+        encoder.set_color(ColorType::Grayscale);
+        encoder.set_depth(BitDepth::Eight);
+        // Not finished: the header is written, no pixel is.
+        drop(encoder.write_header().expect("a header"));
+        let mut read = Picture::default();
+        let error = read_grey(&path, &mut read)
+            .expect_err("it is too large")
+            .to_string();
+        assert!(
+            error.contains("200000 × 200000 pixels; at most 268 million"),
+            "{error}"
+        );
+        assert!(read.pixels.is_empty());
+        std::fs::remove_dir_all(&folder).expect("removed");
     }
 
     #[test]

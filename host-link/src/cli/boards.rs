@@ -2,6 +2,7 @@
 
 use crate::boards::simulated::SimulatedBoards;
 use crate::boards::{Boards, Endpoint, LinkError, NetworkBoards, Patience};
+use crate::console::errln;
 use crate::machine::MachineFile;
 use crate::weld::{Ended, Job, JobError, Terminal, run};
 use anyhow::{Context, bail};
@@ -14,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// Exit code after Ctrl-C, as shells have it.
+/// Exit code after Ctrl-C, as shells have it; after SIGTERM and SIGHUP, which are treated alike, too.
 const INTERRUPTED: u8 = 130;
 /// How often Ctrl-C is looked for while the boards are connected.
 const POLL: Duration = Duration::from_millis(20);
@@ -89,8 +90,8 @@ impl BoardChoice {
         }
     }
 
-    /// Connects and does `job` before `terminal`, while Ctrl-C is watched; the exit code if it was pressed before anything
-    /// was asked of the boards.
+    /// Connects and does `job` before `terminal`, while Ctrl-C, SIGTERM and SIGHUP are watched, which stop the machine and
+    /// never this program, however often they come; the exit code if that was before anything was asked of the boards.
     pub fn run(
         &self,
         job: &Job,
@@ -101,9 +102,10 @@ impl BoardChoice {
         ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot watch for Ctrl-C")?;
         let (choice, wanted) = (self.clone(), job.machine.motion.kinematics.name());
         let tracked = job.machine.tracking.is_some();
-        let connect = move || choice.connect(wanted, tracked);
+        let stop = Arc::clone(&interrupted);
+        let connect = move || choice.connect(wanted, tracked, stop);
         let Some(mut boards) = unless_interrupted(connect, &interrupted)? else {
-            eprintln!("host-link: stopped by the operator; the boards were not asked for anything");
+            errln!("host-link: stopped by the operator; the boards were not asked for anything");
             return Ok(Err(ExitCode::from(INTERRUPTED)));
         };
         Ok(Ok(run(boards.as_mut(), job, &interrupted, &mut terminal())?))
@@ -111,7 +113,13 @@ impl BoardChoice {
 
     /// Connects; simulated boards become the machine whose kinematics are `wanted`, emulated ones must have been
     /// booted as it. The tracker board is left alone unless the machine is `tracked`.
-    fn connect(&self, wanted: &'static str, tracked: bool) -> Result<Box<dyn Boards + Send>, LinkError> {
+    /// `interrupted` stops the machine.
+    fn connect(
+        &self,
+        wanted: &'static str,
+        tracked: bool,
+        interrupted: Arc<AtomicBool>,
+    ) -> Result<Box<dyn Boards + Send>, LinkError> {
         let patience = Patience::default();
         match self {
             Self::Simulated => Ok(Box::new(SimulatedBoards::new(wanted)?)),
@@ -119,7 +127,7 @@ impl BoardChoice {
                 let motion = Endpoint::board(motion);
                 let tracker = tracker.as_deref().map(Endpoint::board);
                 let boards = NetworkBoards::connect(&motion, tracker.as_ref(), None, patience)?;
-                Ok(Box::new(boards))
+                Ok(Box::new(boards.stopped_by(interrupted)))
             }
             Self::Emulated => {
                 let path = std::env::var_os(SESSION_VARIABLE).ok_or(LinkError::NoEmulator)?;
@@ -128,7 +136,8 @@ impl BoardChoice {
                     let wired = session.machine;
                     return Err(LinkError::WrongMachine { wired, wanted });
                 }
-                Ok(Box::new(NetworkBoards::emulated(&session, tracked, patience)?))
+                let boards = NetworkBoards::emulated(&session, tracked, patience)?;
+                Ok(Box::new(boards.stopped_by(interrupted)))
             }
         }
     }
@@ -156,7 +165,7 @@ pub fn exit_code(error: Option<JobError>) -> anyhow::Result<ExitCode> {
     match error {
         None => Ok(ExitCode::SUCCESS),
         Some(JobError::Interrupted) => {
-            eprintln!("host-link: {}", JobError::Interrupted);
+            errln!("host-link: {}", JobError::Interrupted);
             Ok(ExitCode::from(INTERRUPTED))
         }
         Some(error) => Err(error.into()),

@@ -2,6 +2,7 @@
 
 use super::boards::BoardChoice;
 use crate::camera::{self, CameraError, Keeper, Shelf};
+use crate::console::{errln, outln};
 use crate::machine::{CameraConfig, MachineFile};
 use crate::weld::{CameraChoice, ImageCameras, PictureSource};
 use crate::world::SceneFile;
@@ -103,13 +104,13 @@ impl Keepers {
                 (dropped, Some(_)) => format!(", {dropped} dropped"),
                 (dropped, None) => format!(", {dropped} dropped: writing them could not keep pace"),
             };
-            println!(
+            outln!(
                 "  {} pictures kept in {}{dropped}",
                 kept.pictures,
                 folder.display()
             );
             if let Some(error) = kept.error {
-                eprintln!("host-link: {error}");
+                errln!("host-link: {error}");
             }
         }
     }

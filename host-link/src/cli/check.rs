@@ -1,6 +1,7 @@
 //! `host-link check`: can this machine run this program?
 
 use super::read_program;
+use crate::console::{out, outln};
 use crate::dry_run::{self, DryRun};
 use crate::machine::MachineFile;
 use crate::nc::Motion;
@@ -55,7 +56,7 @@ impl Check {
 }
 
 fn print(paths: &[PlannedPath], ran: &DryRun) {
-    println!(" path            length      time     speed  pieces");
+    outln!(" path            length      time     speed  pieces");
     for (index, (path, times)) in paths.iter().zip(&ran.paths).enumerate() {
         let kind = match path.motion {
             Motion::Rapid => "rapid",
@@ -64,7 +65,7 @@ fn print(paths: &[PlannedPath], ran: &DryRun) {
         };
         let m_min = |speed: f64| speed / shared::units::MM_S_PER_M_MIN;
         let speeds = path.speeds();
-        println!(
+        outln!(
             "{:5} {kind:<6} {:9.1} mm {:7.2} s {:6.2} m/min {:7}",
             index + 1,
             path.length_mm(),
@@ -73,7 +74,7 @@ fn print(paths: &[PlannedPath], ran: &DryRun) {
             path.pieces(),
         );
         if speeds.changes > 0 {
-            println!(
+            outln!(
                 "      changes its feed {} times, down to {:.2} m/min",
                 speeds.changes,
                 m_min(speeds.slowest_mm_s)
@@ -81,20 +82,20 @@ fn print(paths: &[PlannedPath], ran: &DryRun) {
         }
         let summary = path.blocks.as_ref().map(Blocks::summary);
         if let Some(summary) = summary.filter(|summary| summary.stops > 0) {
-            print!("      stops {} times on the way", summary.stops);
+            out!("      stops {} times on the way", summary.stops);
             match summary.corners {
-                0 => println!(),
-                corners => println!(
+                0 => outln!(),
+                corners => outln!(
                     ", {corners} times at a corner, of {:.1}° at most",
                     summary.sharpest.to_degrees()
                 ),
             }
         }
         if let Some(tolerance) = summary.and_then(|summary| summary.tolerance_mm) {
-            println!("      rounds corners by {tolerance} mm at most, at the closest");
+            outln!("      rounds corners by {tolerance} mm at most, at the closest");
         }
         if let Some(bound) = path.bound {
-            println!(
+            outln!(
                 "      {} of {} allows {:.2} m/min (at {:.1} mm)",
                 bound.quantity,
                 bound.axis,
@@ -103,19 +104,19 @@ fn print(paths: &[PlannedPath], ran: &DryRun) {
             );
         }
         if let Some(corner) = path.corner_deg {
-            println!("      begins at a corner of {corner:.1}°, where the machine stops");
+            outln!("      begins at a corner of {corner:.1}°, where the machine stops");
         }
         if path.dwell_before_s > 0.0 {
-            println!("      after {:.2} s at rest", path.dwell_before_s);
+            outln!("      after {:.2} s at rest", path.dwell_before_s);
         }
         if let Some((start, end)) = path.weld() {
-            println!(
+            outln!(
                 "      weld from {start:.1} to {end:.1} mm, {:.1} mm long",
                 end - start
             );
         }
     }
-    println!(
+    outln!(
         "total {:.2} s from the end of homing to the park position",
         ran.duration_s
     );

@@ -1,6 +1,7 @@
 //! `host-link dry-run`: how long a program will take, and what it will ask of the machine.
 
-use super::read_program;
+use super::{OUTSIDE, read_program};
+use crate::console::{out, outln};
 use crate::dry_run;
 use crate::machine::MachineFile;
 use crate::path::Planner;
@@ -9,9 +10,6 @@ use anyhow::Context;
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
-
-/// Exit code of a run that would break a limit.
-const OUTSIDE: u8 = 3;
 
 /// Run a program through the planner of the motion board, without boards: durations, speeds, accelerations, jerks
 #[derive(Debug, Args)]
@@ -76,10 +74,10 @@ impl DryRun {
         if let Some(directory) = &self.report {
             write_dry_run(directory, &title, &ran)?;
         }
-        println!("{title}");
-        print!("{ran}");
+        outln!("{title}");
+        out!("{ran}");
         if let Some(directory) = &self.report {
-            println!("  report in {}", directory.display());
+            outln!("  report in {}", directory.display());
         }
         Ok(match ran.highest.above().next() {
             None => ExitCode::SUCCESS,

@@ -3,6 +3,7 @@
 use super::sentence;
 use crate::calibration::Calibration;
 use crate::camera::Picture;
+use crate::console::{errln, outln};
 use crate::machine::{JointForm, MachineFile};
 use crate::measure::{Measuring, Outcome, Record, Table, draw};
 use anyhow::{Context, bail, ensure};
@@ -183,7 +184,7 @@ struct Output<'a> {
 impl Output<'_> {
     fn begin(&self) {
         if !self.json {
-            println!("{}", self.table.head());
+            outln!("{}", self.table.head());
         }
     }
 
@@ -196,7 +197,7 @@ impl Output<'_> {
         if self.json {
             self.records.push(record);
         } else {
-            println!("{}", self.table.lines(&name(&outcome.file), &record));
+            outln!("{}", self.table.lines(&name(&outcome.file), &record));
         }
         if let Err(error) = self.draw(&outcome, picture, calibration) {
             self.fail(&error);
@@ -232,13 +233,13 @@ impl Output<'_> {
     }
 
     fn fail(&mut self, error: &anyhow::Error) {
-        eprintln!("host-link: {}", sentence(error));
+        errln!("host-link: {}", sentence(error));
         self.failed += 1;
     }
 
     fn end(self) -> anyhow::Result<ExitCode> {
         if self.json {
-            println!("{}", serde_json::to_string_pretty(&self.records)?);
+            outln!("{}", serde_json::to_string_pretty(&self.records)?);
         }
         Ok(if self.failed == 0 {
             ExitCode::SUCCESS

@@ -12,7 +12,7 @@ mod teach_seam;
 mod weld;
 
 use crate::nc::{Options, Program, interpret_file};
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clap::{Parser, Subcommand};
 use std::fs::File;
 use std::path::Path;
@@ -52,9 +52,17 @@ impl Cli {
     }
 }
 
+/// Exit code of what is outside its limits.
+const OUTSIDE: u8 = 3;
+
 /// Reads the NC program in a file.
 fn read_program(path: &Path, block_delete: bool) -> anyhow::Result<Program> {
     let name = path.display();
+    if path.extension().is_some_and(|extension| extension == "toml") {
+        bail!(
+            "{name} is a part file, and not a program: make one of it with host-link plan {name} --machine FILE -o PROGRAM.ngc"
+        );
+    }
     let file = File::open(path).with_context(|| format!("cannot read program {name}"))?;
     interpret_file(file, Options { block_delete }).with_context(|| format!("program {name}"))
 }

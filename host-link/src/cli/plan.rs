@@ -1,5 +1,6 @@
 //! `host-link plan`: from parts to programs.
 
+use crate::console::outln;
 use crate::machine::MachineFile;
 use crate::nc::{Options, interpret};
 use crate::part::PartFile;
@@ -67,25 +68,25 @@ impl Plan {
         let measuring = measuring.transpose()?;
         let paths = checked(&plan.program, &planner, &machine)?;
         write(&self.output, &plan.program)?;
-        println!("{}:", self.output.display());
+        outln!("{}:", self.output.display());
         for note in &plan.notes {
-            println!("  {note}");
+            outln!("  {note}");
         }
         for path in &paths {
             if let Some((start, end)) = path.weld() {
-                println!(
+                outln!(
                     "  run-in {start:.2} mm, weld {:.2} mm, run-out {:.2} mm",
                     end - start,
                     path.length_mm() - end
                 );
-                println!("  speed along the path exact to {:.1e}", path.speed_error);
+                outln!("  speed along the path exact to {:.1e}", path.speed_error);
             }
         }
         if let Some((output, program, paths)) = measuring {
             write(output, &program)?;
             let length: f64 = paths.iter().map(PlannedPath::length_mm).fold(0.0, f64::max);
-            println!("{}:", output.display());
-            println!("  the cameras pass along both seams on {length:.2} mm, beams off");
+            outln!("{}:", output.display());
+            outln!("  the cameras pass along both seams on {length:.2} mm, beams off");
         }
         Ok(())
     }

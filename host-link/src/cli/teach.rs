@@ -2,6 +2,7 @@
 
 use super::boards::{BoardChoice, exit_code};
 use super::teach_seam::SeamArgs;
+use crate::console::outln;
 use crate::machine::MachineFile;
 use crate::part::PartFile;
 use crate::teach::write_points;
@@ -87,9 +88,9 @@ impl Teach {
             let file = &output;
             let output = file.display();
             std::fs::write(file, write_points(points)).with_context(|| format!("cannot write {output}"))?;
-            println!("{output}: {} points", points.len());
+            outln!("{output}: {} points", points.len());
             for figure in &ended.report.figures {
-                println!("  {} {:.4} {}", figure.text, figure.value, figure.unit);
+                outln!("  {} {:.4} {}", figure.text, figure.value, figure.unit);
             }
         }
         exit_code(ended.error)

@@ -3,6 +3,7 @@
 use super::boards::{BoardChoice, exit_code};
 use super::cameras::CameraArgs;
 use super::read_program;
+use crate::console::outln;
 use crate::machine::MachineFile;
 use crate::nc::{Options, Program, interpret};
 use crate::part::{PartFile, TSeam};
@@ -116,9 +117,9 @@ impl SeamArgs {
                 .into_owned(),
         };
         let opened = SeamFile::open(&output, &head, self.restart)?;
-        opened.notes.iter().for_each(|note| println!("{note}"));
+        opened.notes.iter().for_each(|note| outln!("{note}"));
         if !opened.points.is_empty() {
-            println!(
+            outln!(
                 "{}: goes on after point {}",
                 output.display(),
                 opened.points.len()
@@ -162,7 +163,7 @@ impl SeamArgs {
         match (ended.taught.seam, ended.error) {
             (Some(taught), None) => tell(&output, &taught),
             (_, error) => {
-                println!(
+                outln!(
                     "{}: what is taught so far; the same command goes on after it",
                     output.display()
                 );
@@ -232,10 +233,10 @@ fn output_of(told: Option<&Path>, part: &PartFile, seam: &TSeam) -> anyhow::Resu
 
 /// Tells how a lesson ended.
 fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
-    println!("{}: {} points", output.display(), taught.points);
+    outln!("{}: {} points", output.display(), taught.points);
     match taught.ended {
-        Ended::Drawn => println!("  the seam is taught as far as it is drawn"),
-        Ended::Operator => println!("  ended by the operator; the same command goes on after the last point"),
+        Ended::Drawn => outln!("  the seam is taught as far as it is drawn"),
+        Ended::Operator => outln!("  ended by the operator; the same command goes on after the last point"),
         Ended::SeamEnds {
             s_mm,
             missing_mm,
@@ -253,7 +254,7 @@ fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
                      on after the last point"
                 ))));
             }
-            _ => println!("  the seam ends {s_mm:.1} mm from its beginning"),
+            _ => outln!("  the seam ends {s_mm:.1} mm from its beginning"),
         },
     }
     Ok(ExitCode::SUCCESS)

@@ -2,7 +2,8 @@
 
 use super::boards::{BoardChoice, exit_code};
 use super::cameras::CameraArgs;
-use super::read_program;
+use super::{OUTSIDE, read_program, sentence};
+use crate::console::{errln, out, outln};
 use crate::machine::MachineFile;
 use crate::nc::Program;
 use crate::part::PartFile;
@@ -11,15 +12,12 @@ use crate::report::{self, Report};
 use crate::seam::{Deviation, SeamError};
 use crate::teach::write_points;
 use crate::weld::{Job, JobError, Names, NoTeaching, Surroundings, Taught, Terminal, Work, check_teaching};
-use anyhow::{Context, bail};
+use anyhow::{Context, Error, bail};
 use clap::Args;
 use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
-
-/// Exit code of a weld that is outside the limits of its part.
-const OUTSIDE: u8 = 3;
 
 /// Names of the planned program and of the taught points in the report.
 const PROGRAM: &str = "program.ngc";
@@ -31,7 +29,7 @@ const TAUGHT: &str = "taught.csv";
 #[derive(Debug, Args)]
 #[command(
     after_help = "Exit code: 0 if the weld is done and within its limits, 3 if it is outside them, \
-    1 if it was refused or failed, 130 after Ctrl-C."
+    1 if it was refused or failed, 130 after Ctrl-C, SIGTERM or SIGHUP."
 )]
 pub struct Weld {
     /// NC program, or part file (*.toml) that a program is planned from; a panel is taught first
@@ -146,16 +144,30 @@ impl Weld {
             Err(code) => return Ok(code),
         };
         keepers.end();
-        self.write_taught(&ended.taught)?;
+        let taught = self.write_taught(&ended.taught);
+        let report = || report::write(&self.report, &ended.report, &ended.evaluation, &ended.plots);
+        let report = if ended.began {
+            report().map_err(Error::from)
+        } else {
+            Ok(())
+        };
+        let written = taught.and(report);
         if ended.began {
-            report::write(&self.report, &ended.report, &ended.evaluation, &ended.plots)?;
-            print!("{}", ended.report);
-            println!("  report in {}", self.report.display());
+            out!("{}", ended.report);
+        }
+        if let Err(unwritten) = written {
+            if let Some(error) = ended.error {
+                errln!("host-link: {}", sentence(&error.into()));
+            }
+            return Err(unwritten);
+        }
+        if ended.began {
+            outln!("  report in {}", self.report.display());
         }
         if ended.error.is_none()
             && let Some(outside) = verdict(&ended.report)
         {
-            eprintln!("host-link: {outside}");
+            errln!("host-link: {outside}");
             return Ok(ExitCode::from(OUTSIDE));
         }
         exit_code(ended.error)
@@ -246,9 +258,9 @@ fn write(file: &Path, text: &str) -> anyhow::Result<()> {
 
 /// Tells of a planned program.
 fn told_of(file: &Path, notes: &[String]) {
-    println!("{}:", file.display());
+    outln!("{}:", file.display());
     for note in notes {
-        println!("  {note}");
+        outln!("  {note}");
     }
 }
 

@@ -175,9 +175,10 @@ impl Runner {
     /// Stands for so many ticks.
     fn wait(&mut self, ticks: u32) {
         self.resting += u64::from(ticks);
-        for _ in 0..ticks {
-            self.record(&[[0.0; 3]; ROWS], [0.0; 3]);
-        }
+        let trace = &mut self.result.trace;
+        let envelopes = trace.rows.iter_mut().flatten().chain(&mut trace.path_limits);
+        envelopes.for_each(|envelope| envelope.push_times(0.0, ticks));
+        self.ticks += u64::from(ticks);
     }
 
     fn record(&mut self, rates: &[Rates; ROWS], path: Rates) {

@@ -22,14 +22,14 @@ pub fn ticks_between(path: &PlannedPath, requests: u32, tracker: bool) -> u32 {
     } else {
         0
     };
-    KNOWN + REQUEST * (requests + knots) + dwell_ticks(path)
+    dwell_ticks(path).saturating_add(KNOWN + REQUEST * (requests + knots))
 }
 
 /// Ticks that the PC waits before a path.
 pub fn dwell_ticks(path: &PlannedPath) -> u32 {
     if path.dwell_before_s > 0.0 {
         // It asks for the time first, and telemetry tells it in batches.
-        (path.dwell_before_s * 1e3).ceil() as u32 + REQUEST + TELEMETRY_BATCH as u32 / 2
+        ((path.dwell_before_s * 1e3).ceil() as u32).saturating_add(REQUEST + TELEMETRY_BATCH as u32 / 2)
     } else {
         0
     }

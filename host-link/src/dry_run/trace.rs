@@ -37,23 +37,34 @@ pub struct Envelope {
 impl Envelope {
     /// The value of the next tick.
     pub fn push(&mut self, value: f64) {
+        self.push_times(value, 1);
+    }
+
+    /// The same value for so many ticks, as a machine has that stands: the work does not grow with them.
+    pub fn push_times(&mut self, value: f64, ticks: u32) {
         let value = Bin {
             low: value,
             high: value,
         };
-        let full = 1 << self.doublings;
-        match self.bins.last_mut() {
-            Some(last) if self.ticks < full => {
-                *last = last.join(value);
-                self.ticks += 1;
-            }
-            _ => {
-                if self.bins.len() == BINS {
-                    self.bins = self.bins.chunks(2).map(|two| two[0].join(two[1])).collect();
-                    self.doublings += 1;
+        let mut left = ticks;
+        while left > 0 {
+            let full = 1 << self.doublings;
+            match self.bins.last_mut() {
+                Some(last) if self.ticks < full => {
+                    let taken = left.min(full - self.ticks);
+                    *last = last.join(value);
+                    self.ticks += taken;
+                    left -= taken;
                 }
-                self.bins.push(value);
-                self.ticks = 1;
+                _ => {
+                    if self.bins.len() == BINS {
+                        self.bins = self.bins.chunks(2).map(|two| two[0].join(two[1])).collect();
+                        self.doublings += 1;
+                    }
+                    self.bins.push(value);
+                    self.ticks = 1;
+                    left -= 1;
+                }
             }
         }
     }
@@ -83,6 +94,17 @@ pub struct Trace {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_machine_that_stands_leaves_what_its_ticks_would() {
+        let (mut at_once, mut each) = (Envelope::default(), Envelope::default());
+        let stands = 3 * BINS as u32 + 77;
+        for (value, ticks) in [(1.0, 5), (0.0, stands), (2.0, 1), (0.0, 1), (0.0, stands)] {
+            at_once.push_times(value, ticks);
+            (0..ticks).for_each(|_| each.push(value));
+        }
+        assert_eq!(at_once, each);
+    }
 
     #[test]
     fn an_envelope_keeps_peaks_and_times_in_constant_memory() {

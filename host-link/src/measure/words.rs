@@ -23,10 +23,14 @@ pub fn status(status: Status) -> &'static str {
 pub fn why(report: &Report) -> Option<String> {
     let plain = match report.status {
         Status::Seam => return None,
-        Status::Dark => "most pixels are nearly black: is the light on?",
+        Status::Dark => "most pixels are nearly black: the light is off, or no work lies before the camera",
         Status::Overexposed => "much of the picture is saturated: less light or a shorter exposure",
-        Status::TooHigh => "the work is higher than the picture reaches: move the camera away from it",
-        Status::TooLow => "the work is lower than the picture reaches: move the camera towards it",
+        Status::TooHigh => {
+            "no sharp band; the work is probably higher than the picture reaches: move the camera away from it"
+        }
+        Status::TooLow => {
+            "no sharp band; the work is probably lower than the picture reaches: move the camera towards it"
+        }
         Status::NoBand => "nothing in the picture is sharp",
         Status::Ambiguous => "two things may be the seam",
         Status::NoSeam => return Some(report.measured.as_ref().map_or_else(String::new, weakness)),

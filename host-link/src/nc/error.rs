@@ -52,6 +52,14 @@ pub enum Problem {
     /// `#`, `[`: parameters and expressions.
     #[error("parameters and expressions are not supported")]
     Expression,
+    /// `O`: subroutines, loops and conditions.
+    #[error(
+        "O words (subroutines, loops, conditions) are not supported: write the blocks out, or let what makes the program do so"
+    )]
+    Subroutine,
+    /// A number that is out of all proportion.
+    #[error("the number of {0} has more than nine digits before the point: correct it")]
+    TooLarge(String),
     /// `/` not at the start of a line.
     #[error("block delete must stand at the start of the line")]
     DeleteInside,

@@ -2,6 +2,9 @@
 
 use super::error::{NcError, Place, Problem};
 
+/// Largest number of a program: nine digits before the point. Of more, too few are left behind it.
+const LARGEST: f64 = 999_999_999.999_999_9;
+
 /// What a word is about: a letter, or a name such as `V1` of `V1=2`. Upper case.
 pub type Address = String;
 
@@ -129,6 +132,9 @@ impl Scanner {
             None => {
                 let letter = self.text[self.next].to_ascii_uppercase();
                 self.next += 1;
+                if letter == 'O' {
+                    return Err(Problem::Subroutine.at(place));
+                }
                 (letter.to_string(), false)
             }
         };
@@ -140,6 +146,9 @@ impl Scanner {
             let sign = if named { "=" } else { "" };
             Problem::NoNumber(format!("{address}{sign}")).at(place)
         })?;
+        if value.abs() > LARGEST {
+            return Err(Problem::TooLarge(address).at(place));
+        }
         Ok(Word {
             address,
             value,
@@ -235,6 +244,16 @@ mod tests {
         assert_eq!(problem("G1 X"), (Problem::NoNumber("X".into()), 4));
         assert_eq!(problem("G1 X-."), (Problem::NoNumber("X".into()), 4));
         assert_eq!(problem("G1 ö"), (Problem::Character('ö'), 4));
+        assert_eq!(problem("o100 call"), (Problem::Subroutine, 1));
+        assert_eq!(
+            problem("G1 C99999999999999999999"),
+            (Problem::TooLarge("C".into()), 4)
+        );
+        assert_eq!(
+            problem(&format!("V1=-{}", "9".repeat(400))),
+            (Problem::TooLarge("V1".into()), 1)
+        );
+        assert_eq!(words("X-999999999.9"), [("X".to_owned(), -999_999_999.9, 1)]);
         assert_eq!(problem("G1 / X1"), (Problem::DeleteInside, 4));
     }
 }

@@ -10,6 +10,9 @@ use super::program::{ProgramAction, ProgramEvent};
 use shared::geometry::Turn;
 use shared::protocol::PathAction;
 
+/// Longest dwell \[s\]: a day. A larger number is one of milliseconds, or a slip.
+const LONGEST_DWELL_S: f64 = 86_400.0;
+
 /// An event that waits for its motion.
 #[derive(Clone, Copy)]
 pub(super) struct Pending {
@@ -167,8 +170,11 @@ pub(super) fn dwell(block: &Block, claims: &Claims) -> Result<Option<(f64, Place
         word: "P",
     };
     let p = claims.word(Code::Dwell, "P").ok_or(missing.at(code.place))?;
-    if p.value < 0.0 {
-        return Err(value_error(p, "a time is 0 s or more"));
+    if !(0.0..=LONGEST_DWELL_S).contains(&p.value) {
+        return Err(value_error(
+            p,
+            "a time is 0 s or more, and a day (86400 s) at most",
+        ));
     }
     Ok(Some((p.value, code.place)))
 }

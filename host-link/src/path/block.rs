@@ -5,6 +5,7 @@ use super::shape::{SHORTEST, channels};
 use super::targets::arc;
 use super::{PathError, Planner, Tip};
 use crate::nc::{Motion, Place, Target, Way};
+use crate::table::FARTHEST_MM;
 use nalgebra::Vector3;
 use shared::geometry::{Arc, Moving, Pose, angle, interpolate};
 use shared::io::SIDES;
@@ -109,6 +110,10 @@ impl Block {
                 (BlockWay::Straight(p, q), (q - p).norm())
             }
         };
+        if travel > FARTHEST_MM || travel.is_nan() {
+            let length = travel;
+            return Err(PathError::TooFar { place, length });
+        }
         if motion == Motion::Feed && travel < SHORTEST {
             return Err(PathError::NoTravel { place });
         }

@@ -2,6 +2,7 @@
 
 use super::{CAPACITY, MAX_EVENTS};
 use crate::nc::{NcError, Place};
+use crate::table::FARTHEST_MM;
 use shared::geometry::nurbs::NurbsError;
 use shared::geometry::{ArcError, AttitudeError, PoseError, SplineError};
 use shared::io::AXIS_NAMES;
@@ -14,6 +15,17 @@ pub enum PathError {
     /// The program cannot be read again.
     #[error(transparent)]
     Program(#[from] NcError),
+    /// A motion that is out of all proportion.
+    #[error(
+        "{place}: the way there is {length:.0} mm long, and no machine goes farther than {FARTHEST_MM} mm at once: correct \
+         the word, or the machine file"
+    )]
+    TooFar {
+        /// Where in the program.
+        place: Place,
+        /// How long \[mm\].
+        length: f64,
+    },
     /// A word of an axis or slide that the machine does not have.
     #[error("{place}: {machine} has no {word}; its words are {fitted}, and X Y Z of the tip")]
     NotFitted {

@@ -5,9 +5,11 @@ use super::targets::ROTARY;
 use super::{Bound, PathError, PlannedPath, Planner};
 use crate::machine::MachineFile;
 use crate::nc::Place;
+use crate::table::FARTHEST_MM;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
 use shared::parameter::ParameterError;
+use shared::protocol::Knot;
 use shared::tracking::SlideConfig;
 use shared::trajectory::{CHANNELS, PathPoint, PathSpace, SpeedLimits};
 
@@ -115,6 +117,7 @@ impl Planner {
         shape: &Shape,
         from: &[f64; AXES],
     ) -> Result<Vec<Demand>, PathError> {
+        check_length(shape)?;
         let path = planned.path();
         let mut near = *from;
         let mut demands = Vec::new();
@@ -319,6 +322,17 @@ pub(super) fn check_continuous(from: &Demand, to: &Demand, place: Place) -> Resu
         }
     }
     Ok(())
+}
+
+/// What is longer would be looked at for ever, and what has no length that is a number cannot be looked at.
+fn check_length(shape: &Shape) -> Result<(), PathError> {
+    let length = shape.knots.last().map_or(0.0, |knot| knot.s_mm);
+    let finite = |knot: &Knot| knot.value.iter().chain(&knot.slope).all(|x| x.is_finite());
+    if length <= FARTHEST_MM && shape.knots.iter().all(finite) {
+        return Ok(());
+    }
+    let place = shape.place(length);
+    Err(PathError::TooFar { place, length })
 }
 
 /// Where a path is looked at: evenly, in the middle of every span, and at every target, in order.

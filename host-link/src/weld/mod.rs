@@ -128,6 +128,16 @@ pub enum JobError {
     /// The tracker board stopped, or wanted the beams off.
     #[error("the tracker board stopped the weld: {0}")]
     Tracker(TrackerFault),
+    /// The boards had to do without this program.
+    #[error(
+        "this PC did nothing for {seconds:.1} s (paused, asleep or too busy), and the boards do not go on without it: {source}"
+    )]
+    Absent {
+        /// For how long.
+        seconds: f64,
+        /// What the boards told.
+        source: Box<JobError>,
+    },
     /// A camera gives no pictures, or none that can be measured.
     #[error(transparent)]
     Camera(#[from] ImagesError),
@@ -217,7 +227,8 @@ pub fn run(
         taught: Taught::default(),
     };
     let mut error = weld.all(&mut session, job).err();
-    if let Err(late) = switch_off(&mut session) {
+    let early = error.is_some();
+    if let Err(late) = switch_off(&mut session, early) {
         error.get_or_insert(late);
     }
     Ok(outcome::end(&session, job, weld, error))
@@ -370,11 +381,20 @@ fn set_up(session: &mut Session, job: &Job) -> Result<(), JobError> {
     Ok(())
 }
 
-/// Takes the last telemetry and switches the drives of all boards off, of each even if the other one is lost.
-fn switch_off(session: &mut Session) -> Result<(), JobError> {
+/// Takes the last telemetry and switches the drives of all boards off, of each even if the other one is lost. A job that
+/// ended `early` may have left the machine homing.
+fn switch_off(session: &mut Session, early: bool) -> Result<(), JobError> {
+    let stopped = if early {
+        session.ask(&Request::Stop)
+    } else {
+        Ok(())
+    };
     let drained = drain(session);
     let off = session.command_all(&Request::Disable);
-    drained.and(off.map_err(JobError::from))
+    stopped
+        .map_err(JobError::from)
+        .and(drained)
+        .and(off.map_err(JobError::from))
 }
 
 fn drain(session: &mut Session) -> Result<(), JobError> {

@@ -2,7 +2,7 @@
 
 use super::recentring::Recentring;
 use super::{JobError, Progress, Surroundings, Tracking};
-use crate::boards::{Boards, LinkError, command};
+use crate::boards::{Absence, Boards, LinkError, command};
 use crate::machine::MachineFile;
 use crate::record::Record;
 use crate::report::ByBoard;
@@ -16,6 +16,9 @@ use std::time::Duration;
 const STATUS_PERIOD: Duration = Duration::from_millis(100);
 /// A motion board whose clock has stood still for so long is broken.
 const STANDSTILL: Duration = Duration::from_secs(10);
+/// What the boards told is due to an absence of this program that ended no longer ago: their state is asked for at once
+/// after it, and comes in a few turns.
+const JUST_BEFORE: Duration = Duration::from_secs(1);
 /// Longest and shortest wait for a datagram.
 const LONGEST_WAIT: Duration = Duration::from_millis(10);
 const SHORTEST_WAIT: Duration = Duration::from_micros(200);
@@ -37,6 +40,8 @@ pub(super) struct Session<'a> {
     next_status: Duration,
     /// When the motion board's clock was last seen to go on.
     ticked: Duration,
+    /// A PC that does nothing for so long is missed by the motion board.
+    missed: Duration,
 }
 
 impl<'a> Session<'a> {
@@ -68,6 +73,8 @@ impl<'a> Session<'a> {
             began,
             next_status: began,
             ticked: began,
+            missed: Duration::from_millis(machine.motion.link_timeout_ms.into())
+                .saturating_sub(STATUS_PERIOD),
         })
     }
 
@@ -93,18 +100,40 @@ impl<'a> Session<'a> {
         result
     }
 
-    /// Asks the boards for their state now.
+    /// Asks the boards for their state now, and waits for both.
     pub fn refresh(&mut self) -> Result<(), LinkError> {
-        let ticks = self.motion.path_ticks;
-        self.motion = motion_status(self.boards)?;
-        if self.motion.path_ticks != ticks {
-            self.ticked = self.boards.now();
-        }
+        self.refresh_motion()?;
         let welding = self.welding();
         if let Some(tracking) = &mut self.tracking {
             tracking.refresh(self.boards, welding)?;
         }
         self.next_status = self.boards.now() + STATUS_PERIOD;
+        Ok(())
+    }
+
+    fn refresh_motion(&mut self) -> Result<(), LinkError> {
+        let ticks = self.motion.path_ticks;
+        self.motion = motion_status(self.boards)?;
+        if self.motion.path_ticks != ticks {
+            self.ticked = self.boards.now();
+        }
+        Ok(())
+    }
+
+    /// Asks for the states that are due. The motion board is never left waiting for the tracker board, whose answer is
+    /// taken when it comes.
+    fn poll(&mut self) -> Result<(), LinkError> {
+        let due = self.boards.now() >= self.next_status;
+        if due {
+            self.refresh_motion()?;
+        }
+        let welding = self.welding();
+        if let Some(tracking) = &mut self.tracking {
+            tracking.poll(self.boards, due, welding)?;
+        }
+        if due {
+            self.next_status = self.boards.now() + STATUS_PERIOD;
+        }
         Ok(())
     }
 
@@ -127,11 +156,34 @@ impl<'a> Session<'a> {
         &mut self,
         mut done: impl FnMut(&mut Self) -> Result<bool, JobError>,
     ) -> Result<(), JobError> {
-        while !done(self)? {
-            self.turn()?;
-            self.check()?;
+        let mut go_on = || {
+            while !done(self)? {
+                self.turn()?;
+                self.check()?;
+            }
+            Ok(())
+        };
+        let ended = go_on();
+        ended.map_err(|error| self.explained(error))
+    }
+
+    /// An error of the boards, with the reason if this program was not there for them just before.
+    fn explained(&self, error: JobError) -> JobError {
+        let of_boards = matches!(
+            error,
+            JobError::Link(_) | JobError::Motion(_) | JobError::Tracker(_) | JobError::TooLong { .. }
+        );
+        match self.boards.absence() {
+            Some(Absence { ended, lasted })
+                if of_boards && lasted >= self.missed && self.boards.now() < ended + JUST_BEFORE =>
+            {
+                JobError::Absent {
+                    seconds: lasted.as_secs_f64(),
+                    source: Box::new(error),
+                }
+            }
+            _ => error,
         }
-        Ok(())
     }
 
     /// Goes on until `done`, at most for `limit` by the motion board's clock; a fault or the operator end it
@@ -227,10 +279,7 @@ impl<'a> Session<'a> {
         if let Some(tracking) = &mut self.tracking {
             tracking.turn(self.boards, &self.machine, &self.record)?;
         }
-        if self.boards.now() >= self.next_status {
-            self.refresh()?;
-        }
-        Ok(())
+        Ok(self.poll()?)
     }
 
     fn take(&mut self, role: Role, datagram: Datagram) {

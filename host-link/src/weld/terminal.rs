@@ -1,6 +1,7 @@
 //! The operator at a terminal: a bar on standard error, and lines on standard input.
 
 use super::{Line, Progress, Word};
+use crate::console::errln;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -66,8 +67,8 @@ impl Terminal {
 
     fn print(&self, text: &str) {
         match &self.bar {
-            Some(bar) => bar.suspend(|| eprintln!("{text}")),
-            None => eprintln!("{text}"),
+            Some(bar) => bar.suspend(|| errln!("{text}")),
+            None => errln!("{text}"),
         }
     }
 }
@@ -122,7 +123,7 @@ impl Progress for Terminal {
                 bar.set_style(style("{msg:24} {spinner}"));
                 bar.set_message(text.to_owned());
             }
-            None => eprintln!("{text}"),
+            None => errln!("{text}"),
         }
     }
 

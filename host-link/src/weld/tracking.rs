@@ -64,6 +64,8 @@ pub(super) struct Tracking {
     clocks: BoardClocks,
     lost_before: u32,
     next_clock: Duration,
+    /// The board was asked for its state, and has not answered yet.
+    asked: bool,
 }
 
 impl Tracking {
@@ -90,17 +92,36 @@ impl Tracking {
             stands: None,
             clocks: BoardClocks::default(),
             next_clock: boards.now(),
+            asked: false,
         })
     }
 
     /// Asks the board for its state now.
     pub fn refresh(&mut self, boards: &mut dyn Boards, welding: bool) -> Result<(), LinkError> {
-        self.status = status(boards)?;
+        self.told(status(boards)?, welding);
+        Ok(())
+    }
+
+    /// Asks the board for its state if that is `due`, and takes its answer if that is there.
+    pub fn poll(&mut self, boards: &mut dyn Boards, due: bool, welding: bool) -> Result<(), LinkError> {
+        if !due && !self.asked {
+            return Ok(());
+        }
+        let answer = boards.poll(Role::Tracker, &Request::Status)?;
+        self.asked = answer.is_none();
+        if let Some(answer) = answer {
+            self.told(of(answer)?, welding);
+        }
+        Ok(())
+    }
+
+    fn told(&mut self, status: TrackerStatus, welding: bool) {
+        self.asked = false;
+        self.status = status;
         if welding {
             let residual = f64::from(self.status.clock_residual_us);
             raise(&mut self.clock_residual_us, residual);
         }
-        Ok(())
     }
 
     /// Control ticks lost since the session began.
@@ -283,7 +304,11 @@ fn seen(side: &SideMeasurement, seam: Option<&Seam>) -> Seen {
 }
 
 fn status(boards: &mut dyn Boards) -> Result<TrackerStatus, LinkError> {
-    match boards.request(Role::Tracker, &Request::Status)? {
+    of(boards.request(Role::Tracker, &Request::Status)?)
+}
+
+fn of(answer: Response) -> Result<TrackerStatus, LinkError> {
+    match answer {
         Response::TrackerStatus(status) => Ok(status),
         other => Err(unexpected(Role::Tracker, &other)),
     }

@@ -66,7 +66,7 @@ impl Connection {
             .set_read_timeout(Some(READER_WAKES))
             .map_err(unreachable)?;
         let port = datagrams.local_addr().map_err(unreachable)?.port();
-        let session = match stream.request(&Request::Subscribe { port })? {
+        let session = match stream.exchange(&Request::Subscribe { port })? {
             Response::Session { number } => number,
             Response::Refused(refusal) => return Err(LinkError::Refused { role, refusal }),
             _ => return Err(LinkError::Unexpected { role }),

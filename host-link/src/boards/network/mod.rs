@@ -1,11 +1,13 @@
 //! Boards in a network, real or emulated: requests over TCP, datagrams over UDP.
 
+mod attention;
 mod connection;
 mod stream;
 #[cfg(test)]
 mod tests;
 
-use super::{Boards, LinkError};
+use super::{Absence, Boards, LinkError};
+use attention::Attention;
 use connection::Connection;
 use shared::protocol::framing;
 use shared::protocol::{DATAGRAM_PORT, Datagram, Identity, REQUEST_PORT, Request, Response, Role};
@@ -13,12 +15,16 @@ use std::fmt;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, ToSocketAddrs};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
+use stream::Stream;
 
 /// Datagrams that wait for [`Boards::receive`]; about ten seconds of both boards. More are dropped and counted.
 const WAITING: usize = 4096;
+
+/// How often somebody who waits for an answer looks whether the machine is to stop.
+const LOOK: Duration = Duration::from_millis(10);
 
 /// Where a board is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -96,6 +102,11 @@ pub struct NetworkBoards {
     began: Instant,
     /// Of emulated boards.
     pace: Option<emulator::Pace>,
+    /// Set by whoever wants the machine to stop.
+    interrupted: Arc<AtomicBool>,
+    /// The motion board was told to, while an answer was waited for.
+    stopped: bool,
+    attention: Attention,
 }
 
 /// What a reader passes on.
@@ -133,7 +144,16 @@ impl NetworkBoards {
             bad,
             began: Instant::now(),
             pace: None,
+            interrupted: Arc::default(),
+            stopped: false,
+            attention: Attention::new(),
         })
+    }
+
+    /// As soon as `interrupted` is set the motion board is told to stop, whatever else is being waited for.
+    #[must_use]
+    pub fn stopped_by(self, interrupted: Arc<AtomicBool>) -> Self {
+        Self { interrupted, ..self }
     }
 
     /// Connects to emulated boards, and takes part in their pace: they wait while this program has no
@@ -177,6 +197,24 @@ impl NetworkBoards {
         self.bad.load(Ordering::Relaxed)
     }
 
+    /// A stop waits for no answer of any board.
+    fn stop_if_interrupted(&mut self) {
+        if self.interrupted.load(Ordering::Relaxed) && !self.stopped {
+            self.stopped = true;
+            // Where it fails the next request says why.
+            let _ = self.motion.stream.tell(&Request::Stop);
+        }
+    }
+
+    fn stream(&mut self, role: Role) -> Result<&mut Stream, LinkError> {
+        let connection = match role {
+            Role::Motion => Some(&mut self.motion),
+            Role::Tracker => self.tracker.as_mut(),
+        };
+        let connection = connection.ok_or(LinkError::Absent { role })?;
+        Ok(&mut connection.stream)
+    }
+
     fn connection(&self, role: Role) -> Option<&Connection> {
         match role {
             Role::Motion => Some(&self.motion),
@@ -188,17 +226,38 @@ impl NetworkBoards {
 impl Boards for NetworkBoards {
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         self.keep_pace();
-        let connection = match role {
-            Role::Motion => Some(&mut self.motion),
-            Role::Tracker => self.tracker.as_mut(),
-        };
-        let connection = connection.ok_or(LinkError::Absent { role })?;
-        connection.stream.request(request)
+        self.attention.paid(self.began.elapsed(), Duration::ZERO);
+        self.stream(role)?.ask(request)?;
+        loop {
+            let answer = self.stream(role)?.answer(LOOK)?;
+            self.attention.paid(self.began.elapsed(), LOOK);
+            if let Some(answer) = answer {
+                return Ok(answer);
+            }
+            self.stop_if_interrupted();
+        }
+    }
+
+    fn poll(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
+        self.keep_pace();
+        self.attention.paid(self.began.elapsed(), Duration::ZERO);
+        let stream = self.stream(role)?;
+        if !stream.owes() {
+            stream.ask(request)?;
+        }
+        stream.answer(Duration::ZERO)
+    }
+
+    fn absence(&self) -> Option<Absence> {
+        self.attention.absence()
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
+        self.attention.paid(self.began.elapsed(), Duration::ZERO);
         let waiting = self.incoming.try_recv().map_err(|_| self.keep_pace());
-        match waiting.or_else(|()| self.incoming.recv_timeout(timeout)) {
+        let received = waiting.or_else(|()| self.incoming.recv_timeout(timeout));
+        self.attention.paid(self.began.elapsed(), timeout);
+        match received {
             Ok((role, Ok(datagram))) => Ok(Some((role, datagram))),
             Ok((role, Err(source))) => Err(LinkError::Lost { role, source }),
             // All readers have ended, each after an error that was returned before.

@@ -322,3 +322,111 @@ fn an_answer_that_is_no_message_is_an_error_not_a_panic() {
         );
     }
 }
+
+/// Longer than any test waits on purpose, shorter than for ever.
+const LONG: Patience = Patience {
+    connect: Duration::from_secs(2),
+    answer: Duration::from_secs(2),
+};
+
+/// Sets a flag of the operator's a moment later.
+fn interrupts(after: Duration) -> Arc<AtomicBool> {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupted);
+    std::thread::spawn(move || {
+        std::thread::sleep(after);
+        flag.store(true, Ordering::Relaxed);
+    });
+    interrupted
+}
+
+#[test]
+fn a_stop_does_not_wait_for_a_board_that_does_not_answer() {
+    let given_up = Arc::new(AtomicBool::new(false));
+    let (after, (told, stops)) = (Arc::clone(&given_up), sync_channel(8));
+    let motion = Fake::board(Role::Motion, move |request| {
+        if request == Request::Stop {
+            told.send(after.load(Ordering::Relaxed)).unwrap();
+        }
+        Some(bytes(&Response::Done))
+    });
+    let tracker = Fake::silent(Role::Tracker);
+    let boards = NetworkBoards::connect(&motion.endpoint, Some(&tracker.endpoint), None, LONG).unwrap();
+    let mut boards = boards.stopped_by(interrupts(Duration::from_millis(50)));
+    let asked = boards.request(Role::Tracker, &Request::Status);
+    given_up.store(true, Ordering::Relaxed);
+    assert!(matches!(
+        asked,
+        Err(LinkError::Lost {
+            role: Role::Tracker,
+            ..
+        })
+    ));
+    assert_eq!(stops.recv_timeout(AMPLE), Ok(false));
+    // The answer to the stop is nobody's: the next one is that of the next request.
+    let refused = Response::Refused(Refusal::NotHomed);
+    drop((boards, motion));
+    let motion = Fake::board(Role::Motion, {
+        let refused = bytes(&refused);
+        move |request| match request {
+            // Answered together with the stop only.
+            Request::Status => None,
+            Request::Stop => Some([refused.as_slice(), &bytes(&Response::Done)].concat()),
+            _ => Some(bytes(&Response::Refused(Refusal::NoPath))),
+        }
+    });
+    let boards = NetworkBoards::connect(&motion.endpoint, None, None, LONG).unwrap();
+    let mut boards = boards.stopped_by(interrupts(Duration::from_millis(50)));
+    assert_eq!(boards.request(Role::Motion, &Request::Status).unwrap(), refused);
+    assert_eq!(
+        boards.request(Role::Motion, &Request::Run).unwrap(),
+        Response::Refused(Refusal::NoPath)
+    );
+    // One stop is enough.
+    assert!(stops.try_recv().is_err());
+}
+
+#[test]
+fn what_is_polled_is_waited_for_by_nobody_and_taken_when_it_comes() {
+    let (answers, held) = sync_channel::<()>(8);
+    let motion = Fake::silent(Role::Motion);
+    let tracker = Fake::board(Role::Tracker, move |request| {
+        held.recv_timeout(AMPLE).unwrap();
+        Some(bytes(&match request {
+            Request::Status => Response::Refused(Refusal::NotHomed),
+            _ => Response::Done,
+        }))
+    });
+    let mut boards = NetworkBoards::connect(&motion.endpoint, Some(&tracker.endpoint), None, LONG).unwrap();
+    let poll = |boards: &mut NetworkBoards| boards.poll(Role::Tracker, &Request::Status).unwrap();
+    for _ in 0..3 {
+        assert_eq!(poll(&mut boards), None);
+    }
+    answers.send(()).unwrap();
+    let answer = std::iter::repeat_with(|| poll(&mut boards)).find_map(|answer| answer);
+    assert_eq!(answer, Some(Response::Refused(Refusal::NotHomed)));
+    // Another request takes its own answer, and not that of what was polled before.
+    assert_eq!(poll(&mut boards), None);
+    answers.send(()).unwrap();
+    answers.send(()).unwrap();
+    assert_eq!(
+        boards.request(Role::Tracker, &Request::Home).unwrap(),
+        Response::Done
+    );
+}
+
+#[test]
+fn a_program_that_was_paused_takes_the_answer_that_waited_for_it_and_knows_of_its_absence() {
+    let motion = Fake::board(Role::Motion, |_| Some(bytes(&Response::Done)));
+    let mut boards = NetworkBoards::connect(&motion.endpoint, None, None, BRIEF).unwrap();
+    assert_eq!(boards.poll(Role::Motion, &Request::Status).unwrap(), None);
+    let before = boards.now();
+    std::thread::sleep(BRIEF.answer * 2);
+    let answer = boards.poll(Role::Motion, &Request::Status).unwrap();
+    assert_eq!(answer, Some(Response::Done));
+    let absence = boards.absence().expect("it did nothing for a while");
+    assert!(
+        absence.ended >= before && absence.lasted >= BRIEF.answer * 2,
+        "{absence:?}"
+    );
+}

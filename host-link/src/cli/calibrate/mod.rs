@@ -4,6 +4,7 @@ mod live;
 
 use crate::calibration::procedure::{self, Found};
 use crate::calibration::{CalibrateError, Calibration, Known, read_pictures};
+use crate::console::{out, outln};
 use crate::machine::MachineFile;
 use anyhow::{Context, bail};
 use clap::{Args, Subcommand};
@@ -119,9 +120,9 @@ impl Calibrate {
                 procedure::corner(&listed, before, walls, meets.meets)
             })?,
         };
-        print!("{}", table(&found));
+        out!("{}", table(&found));
         write_whole(&camera.output, &found.calibration.to_toml())?;
-        println!("{}: written", camera.output.display());
+        outln!("{}: written", camera.output.display());
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -45,6 +45,11 @@ pub(super) enum BeadError {
         y: f64,
         z: f64,
     },
+    #[error(
+        "{place}: the curve is {length:.0} mm long, and a path of {CAPACITY} points takes {most:.0} mm at most; correct \
+         control_points_mm, or make several beads"
+    )]
+    TooLong { place: String, length: f64, most: f64 },
     #[error("{key} is {value}, but must be {must}")]
     Value {
         key: &'static str,

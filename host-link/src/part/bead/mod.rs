@@ -24,6 +24,7 @@ use crate::path::{PlannedPath, Planner};
 use curve_file::CurveFile;
 use error::BeadError;
 use nalgebra::Vector3;
+use points::LONGEST;
 use program::Pass;
 use route::Route;
 use serde::Deserialize;
@@ -37,6 +38,8 @@ use std::path::PathBuf;
 const CLEARANCE: f64 = 10.0;
 /// The path of the boards is this near to the NURBS \[mm\], or there is no program.
 const EXACT: f64 = 2e-3;
+/// Most layers of one program.
+const MOST_LAYERS: u32 = 1000;
 /// A feed that any machine can follow, to see what a path asks of it \[mm/min\].
 const CREEP: f64 = 0.1;
 
@@ -161,14 +164,24 @@ impl Bead {
         let several = self.layers > 1;
         let checks = [
             ("power_w", self.power_w, self.power_w > 0.0, "above 0"),
-            ("layers", f64::from(self.layers), self.layers > 0, "at least 1"),
+            (
+                "layers",
+                f64::from(self.layers),
+                (1..=MOST_LAYERS).contains(&self.layers),
+                "at least 1, and at most 1000 in one program",
+            ),
             (
                 "layer_height_mm",
                 self.layer_height_mm,
                 !several || self.layer_height_mm > 0.0,
                 "above 0 where there are several layers",
             ),
-            ("lead_mm", self.lead_mm, self.lead_mm > 0.0, "above 0"),
+            (
+                "lead_mm",
+                self.lead_mm,
+                self.lead_mm > 0.0 && self.lead_mm <= LONGEST,
+                "above 0, and no longer than a bead can be",
+            ),
             ("overlap_mm", self.overlap_mm, self.overlap_mm >= 0.0, "0 or more"),
         ];
         for (key, value, ok, must) in checks {

@@ -24,6 +24,8 @@ const FIRST: Discretisation = Discretisation {
     max_turn: MAX_TURN,
     max_chord: 10.0,
 };
+/// A path has no more points than boards hold, and they are no further apart than at first: no bead is longer \[mm\].
+pub(super) const LONGEST: f64 = CAPACITY as f64 * FIRST.max_chord;
 /// Places in each span where the spline is compared.
 const LOOKS: usize = 6;
 

@@ -2,8 +2,9 @@
 
 use super::error::BeadError;
 use super::length_table::LengthTable;
+use super::points::LONGEST;
 use nalgebra::Vector3;
-use shared::geometry::nurbs::{Curve, Nurbs};
+use shared::geometry::nurbs::{self, Curve, Nurbs};
 use shared::geometry::{Moving, angle};
 
 /// A change of direction that the spline through the points makes nothing of \[rad\].
@@ -50,6 +51,14 @@ impl<'a> Route<'a> {
         }
         let [start, end] = nurbs.domain().map(|u| nurbs.at(u));
         let closed = (end.value - start.value).norm() <= CLOSED && angle(&end.first, &start.first) <= KINK;
+        let exact = nurbs::length(&nurbs);
+        if exact > LONGEST || exact.is_nan() {
+            return Err(BeadError::TooLong {
+                place: place.to_owned(),
+                length: exact,
+                most: LONGEST,
+            });
+        }
         let table = LengthTable::build(&nurbs);
         let (ends, length) = (lead + overlap, table.length());
         if closed && ends > length / 2.0 {

@@ -10,6 +10,7 @@ mod tests;
 
 use super::limits::SPEED_DIP;
 use super::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
+use crate::table::FARTHEST_MM;
 use crate::teach::{Guide, TaughtPoint, TeachingConfig, read_points};
 use crate::world::Surface;
 use nalgebra::Vector3;
@@ -18,6 +19,9 @@ use shared::kinematics::KinematicsError;
 use std::borrow::Cow;
 use std::path::PathBuf;
 use thiserror::Error;
+
+/// Points of a program that are nearer to each other say nothing more \[mm\].
+const CLOSEST_MM: f64 = 0.1;
 
 /// A cut on a curved panel.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -204,11 +208,7 @@ impl Panel {
 
     /// Checks the numbers of the cut.
     fn check(&self) -> Result<(), PanelError> {
-        let above_0 = [
-            ("speed_m_min", self.speed_m_min),
-            ("power_w", self.power_w),
-            ("spacing_mm", self.spacing_mm),
-        ];
+        let above_0 = [("speed_m_min", self.speed_m_min), ("power_w", self.power_w)];
         for (key, value) in above_0 {
             if !(value.is_finite() && value > 0.0) {
                 let requirement = "above 0";
@@ -219,12 +219,19 @@ impl Panel {
                 });
             }
         }
-        if !(self.lead_mm.is_finite() && self.lead_mm >= 0.0) {
-            return Err(PanelError::Value {
-                key: "lead_mm",
-                value: self.lead_mm,
-                requirement: "0 or more",
-            });
+        // Otherwise there is no end of points.
+        let more = [
+            ("spacing_mm", self.spacing_mm, CLOSEST_MM, "at least 0.1"),
+            ("lead_mm", self.lead_mm, 0.0, "0 or more, and no more than 100000"),
+        ];
+        for (key, value, least, requirement) in more {
+            if !(least..=FARTHEST_MM).contains(&value) {
+                return Err(PanelError::Value {
+                    key,
+                    value,
+                    requirement,
+                });
+            }
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ use super::line::{Line, Station};
 use super::{Panel, PanelError};
 use crate::part::{Place, Plan};
 use crate::plan::{NcText, decimal, speed_up_length};
+use crate::table::FARTHEST_MM;
 use crate::teach::TaughtPoint;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
@@ -39,7 +40,7 @@ impl Panel {
             _ => return Err(PanelError::NoHead),
         };
         let line = Line::through(points, self.closed)?;
-        let stations = self.stations(&line, place);
+        let stations = self.stations(&line, place)?;
         let near = self.guide.first().map_or(0.0, |guide| guide[4].to_radians());
         let upright = self.teaching.upright_deg.to_radians();
         let attitudes = Attitudes::along(&stations, upright, near, &limits[C])?;
@@ -82,10 +83,17 @@ impl Panel {
     }
 
     /// Places on the line from the lead-in to the lead-out, among them the ends of the cut.
-    fn stations(&self, line: &Line, place: &Place) -> Vec<Station> {
+    fn stations(&self, line: &Line, place: &Place) -> Result<Vec<Station>, PanelError> {
         let planning = &place.machine.planning;
         let velocity = self.speed_m_min * MM_S_PER_M_MIN;
         let lead = self.lead_mm.max(speed_up_length(planning, velocity));
+        if lead > FARTHEST_MM || lead.is_nan() {
+            return Err(PanelError::Value {
+                key: "lead_mm",
+                value: lead,
+                requirement: "shorter: correct speed_m_min, or path_acceleration_mm_s2 and path_jerk_mm_s3 of the machine",
+            });
+        }
         let length = line.length();
         let pieces = [(-lead, 0.0), (0.0, length), (length, length + lead)];
         let mut stations = vec![line.at(-lead)];
@@ -93,7 +101,7 @@ impl Panel {
             let count = ((to - from) / self.spacing_mm).ceil().max(1.0) as usize;
             stations.extend((1..=count).map(|i| line.at(from + (to - from) * i as f64 / count as f64)));
         }
-        stations
+        Ok(stations)
     }
 
     /// Where the axes stand at `station` with A and C as given.

@@ -41,6 +41,20 @@ impl Saddle {
         let run = RUN_POINTS.max((RUN_MARGIN * ramp / step).ceil());
         let weld = (length + self.overlap_mm) / step;
 
+        // Far more than the waist can turn: the exact ends are told where they can be computed.
+        let [min, max] = travel;
+        let around = TAU * ((weld + 2.0 * run) / POINTS);
+        if around > 2.0 * (max - min) + TAU || around.is_nan() {
+            let [from, to, span, min, max] = [0.0, around, around, min, max].map(f64::to_degrees);
+            return Err(SaddlePartError::Waist {
+                from,
+                to,
+                span,
+                min,
+                max,
+            }
+            .into());
+        }
         let start = match self.start_deg {
             Some(start) => start.to_radians(),
             None => (travel[0] + travel[1] - TAU * (weld / POINTS)) / 2.0,

@@ -13,6 +13,7 @@ use super::locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
 use super::speed_up_length;
 use crate::curve::Curve;
 use crate::machine::{MachineFile, TrackingUnit};
+use crate::path::CAPACITY;
 use crate::seam::SeamPoint;
 use nalgebra::Vector3;
 use shared::geometry::{Pose, PoseError, SplineError, angle};
@@ -128,6 +129,26 @@ pub enum PlanError {
         "the machine file has no tables head, slides, tracking and cameras: it has no second beam to plan for"
     )]
     NoTracking,
+    /// More points than a path has.
+    #[error(
+        "seam 1 takes more than {CAPACITY} points up to {s:.1} of its {length:.1} mm: it is too long, or bends too often \
+         for one path; look for a point that is not on it"
+    )]
+    TooManyPoints {
+        /// Length along seam 1 \[mm\].
+        s: f64,
+        /// All of it \[mm\].
+        length: f64,
+    },
+    /// Runs before and after the seam that are longer than a path.
+    #[error(
+        "the machine takes {run_mm:.0} mm to speed up and to find the seam, and a path of {CAPACITY} points has no room for \
+         that: correct planning, tracking and slides of the machine file"
+    )]
+    LongRun {
+        /// How long \[mm\].
+        run_mm: f64,
+    },
     /// An option makes no sense.
     #[error("{name} is {value}, but must be above 0")]
     Option {
@@ -178,7 +199,7 @@ pub fn plan_dual_beam(
     let mut max_gap: f64 = 0.0;
     let mut sigma: Option<(f64, f64)> = None;
     let mut max_speed_difference: f64 = 0.0;
-    for s in divide(&first) {
+    for s in divide(&first)? {
         let (place, at) = locate_at(
             &first,
             &second,
@@ -206,6 +227,12 @@ pub fn plan_dual_beam(
     }
 
     let (run_in, run_out) = run_lengths(machine, unit);
+    if let Some(run_mm) = [run_in, run_out]
+        .into_iter()
+        .find(|run| run / RUN_SPACING > CAPACITY as f64)
+    {
+        return Err(PlanError::LongRun { run_mm });
+    }
     let start = weld[0];
     let end = weld[weld.len() - 1];
     let in_steps = steps(run_in);
@@ -268,7 +295,7 @@ fn locate_at(
 
 /// Lengths of seam 1 at which the head is located: pieces are halved until chord, turn and distance from the
 /// chord are small enough (SPEC 3.6).
-fn divide(curve: &Curve<6>) -> Vec<f64> {
+fn divide(curve: &Curve<6>) -> Result<Vec<f64>, PlanError> {
     let position = |s: f64| {
         let [value, slope, _] = curve.at(s);
         let vector = |c: [f64; 6]| Vector3::new(c[0], c[1], c[2]);
@@ -293,13 +320,19 @@ fn divide(curve: &Curve<6>) -> Vec<f64> {
     while let Some((x, y)) = open.pop() {
         if y - x <= SHORTEST || fine(x, y) {
             places.push(y);
+            if places.len() > CAPACITY {
+                return Err(PlanError::TooManyPoints {
+                    s: y,
+                    length: curve.end(),
+                });
+            }
         } else {
             let middle = (x + y) / 2.0;
             open.push((middle, y));
             open.push((x, middle));
         }
     }
-    places
+    Ok(places)
 }
 
 /// Lengths of the straight runs before and after the seam \[mm\]: at 9 m/min the tip reaches its speed,

@@ -8,6 +8,7 @@ mod holds;
 mod machines;
 mod real_cameras;
 mod recentring;
+mod silence;
 mod single_block;
 mod slides;
 mod taught_seam;

@@ -37,12 +37,8 @@ impl Boards for Shut {
         self.boards.identity(role)
     }
 
-    fn path_states_target(&self) -> Option<([u8; 4], u16)> {
+    fn path_states_target(&self) -> Option<Request> {
         self.boards.path_states_target()
-    }
-
-    fn datagram_port(&self, role: Role) -> Option<u16> {
-        self.boards.datagram_port(role)
     }
 }
 
