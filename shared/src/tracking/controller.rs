@@ -468,7 +468,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             place,
             time_us: strobed_us,
             slides,
-            answered: false,
+            answered: [false; SIDES],
         });
         Some(Capture {
             number,
@@ -492,7 +492,10 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             return;
         };
         // Seen before it was there to see, or a second time.
-        let believed = arrived_us >= capture.time_us && !capture.answered;
+        let believed = capture
+            .answered
+            .map(|answered| arrived_us >= capture.time_us && !answered);
+        let slides = capture.slides;
         // By now the path states around the strobe are there.
         let place = self
             .history
@@ -500,16 +503,13 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             .unwrap_or(capture.place);
         for (side, seen) in measurement.sides.iter().enumerate() {
             if let Some(seen) = seen {
-                if !believed {
+                if !believed[side] {
                     self.seam.disbelieve(side);
                     continue;
                 }
-                self.seam
-                    .add(parameters, &self.path, side, &place, &capture.slides, seen);
+                self.captures.answer(measurement.capture, side);
+                self.seam.add(parameters, &self.path, side, &place, &slides, seen);
             }
-        }
-        if believed {
-            self.captures.answer(measurement.capture);
         }
     }
 

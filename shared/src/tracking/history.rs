@@ -184,8 +184,8 @@ pub struct CaptureRecord {
     pub time_us: u64,
     /// Slide positions \[mm\].
     pub slides: [f64; SLIDES],
-    /// Its measurement has come.
-    pub answered: bool,
+    /// Sides whose measurement has come: cameras answer each by itself.
+    pub answered: [bool; SIDES],
 }
 
 /// The last captures by number.
@@ -232,10 +232,10 @@ impl CaptureHistory {
         self.records.get(number as usize % CAPTURES).filter(|_| known)
     }
 
-    /// The measurement of that capture has come.
-    pub fn answer(&mut self, number: u32) {
+    /// The measurement of that capture's `side` has come.
+    pub fn answer(&mut self, number: u32, side: usize) {
         if let Some(record) = self.records.get_mut(number as usize % CAPTURES) {
-            record.answered = true;
+            record.answered[side] = true;
         }
     }
 }
@@ -313,7 +313,7 @@ mod tests {
                 place,
                 time_us: 0,
                 slides: [0.0; SLIDES],
-                answered: false,
+                answered: [false; SIDES],
             };
             assert_eq!(captures.push(record), number);
         }

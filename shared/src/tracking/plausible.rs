@@ -124,7 +124,7 @@ impl PathStateGate {
             .parameters
             .is_none_or(|parameters| is_sound(&parameters.belief, arrival, state));
         if !sound {
-            self.drop();
+            self.count_dropped();
         }
         sound
     }
@@ -143,7 +143,7 @@ impl PathStateGate {
             .lateness_us
             .is_none_or(|late| late >= -EARLY && late <= belief.stale_us as f64);
         if !in_time {
-            self.drop();
+            self.count_dropped();
             return pass;
         }
         let off = off_plan(arrival.path, state);
@@ -165,7 +165,7 @@ impl PathStateGate {
             } else {
                 let since = *self.misfits_since_us.get_or_insert(arrival.arrived_us);
                 if arrival.arrived_us.saturating_sub(since) < belief.stale_us / 4 {
-                    self.drop();
+                    self.count_dropped();
                     return pass;
                 }
                 self.misfits_since_us = None;
@@ -184,7 +184,7 @@ impl PathStateGate {
         held.is_some_and(|held| flags(held) == flags(state) && held.time_us < state.time_us)
     }
 
-    fn drop(&mut self) {
+    fn count_dropped(&mut self) {
         self.dropped = self.dropped.saturating_add(1);
     }
 }

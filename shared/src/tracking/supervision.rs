@@ -145,7 +145,7 @@ impl SlideWatch {
                 limit: by.step,
             });
         }
-        if !(libm::fabs(self.speed) <= by.speed) {
+        if libm::fabs(self.speed) > by.speed {
             return Err(TrackerFault::Overspeed {
                 slide,
                 seen_mm_s: libm::fabs(self.speed) as f32,
@@ -158,7 +158,7 @@ impl SlideWatch {
                 commanded_um: (commanded * 1e3) as f32,
             });
         }
-        if !(libm::fabs(self.error) <= by.following_error) {
+        if libm::fabs(self.error) > by.following_error {
             return Err(TrackerFault::FollowingError {
                 slide,
                 seen_um: (libm::fabs(self.error) * 1e3) as f32,

@@ -563,3 +563,29 @@ fn what_is_believed_has_bounds() {
         }
     }
 }
+
+#[test]
+fn cameras_that_answer_each_by_itself_are_believed_once_each() {
+    let mut bench = tracking();
+    let before = bench.status().accepted;
+    for _ in 0..100 {
+        let captures = bench.captures;
+        bench.tick();
+        if bench.captures == captures {
+            continue;
+        }
+        let (at, both) = bench.measurements.pop_back().unwrap();
+        let (mut first, mut second) = (both, both);
+        (first.sides[1], second.sides[0]) = (None, None);
+        bench
+            .measurements
+            .extend([(at, first), (at, second), (at, first)]);
+    }
+    let status = bench.status();
+    assert!(
+        (0..2).all(|side| status.accepted[side] - before[side] >= 10),
+        "{status:?}"
+    );
+    assert_eq!(status.implausible_measurements[1], 0);
+    assert!(status.implausible_measurements[0] >= 10, "{status:?}");
+}
