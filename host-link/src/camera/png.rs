@@ -173,8 +173,12 @@ mod tests {
         let mut encoder = Encoder::new(File::create(&path).expect("a file"), 200_000, 200_000);
         encoder.set_color(ColorType::Grayscale);
         encoder.set_depth(BitDepth::Eight);
-        // Not finished: the header is written, no pixel is.
-        drop(encoder.write_header().expect("a header"));
+        let mut writer = encoder.write_header().expect("a header");
+        // The beginning of pixels, of which there are no more.
+        writer
+            .write_chunk(::png::chunk::IDAT, &[0x78, 0x01])
+            .expect("a chunk");
+        drop(writer);
         let mut read = Picture::default();
         let error = read_grey(&path, &mut read)
             .expect_err("it is too large")
