@@ -9,3 +9,4 @@ mod stops;
 mod streaming;
 mod ticks;
 mod trips;
+mod words;
