@@ -19,5 +19,6 @@ pub mod report;
 pub mod seam;
 pub mod table;
 pub mod teach;
+pub mod unwelded;
 pub mod weld;
 pub mod world;

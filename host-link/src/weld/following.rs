@@ -2,7 +2,7 @@
 
 use super::feeding::{EndedBlock, Feeding};
 use super::session::{Session, on_path};
-use super::{JobError, recentring};
+use super::{JobError, Word, recentring};
 use shared::motion::State;
 use shared::protocol::{MotionSample, MotionStatus, Request, Role};
 
@@ -10,6 +10,9 @@ use shared::protocol::{MotionSample, MotionStatus, Request, Role};
 const STANDSTILL_S: u32 = 10;
 /// A path tick is a millisecond.
 const TICKS_PER_S: u32 = 1000;
+
+/// What the operator is told of a hold that nobody asked for.
+const TOO_SLOW: &str = "held: the feed is too low for the beam; raise it, then Enter goes on";
 
 /// A place on the path is reached, to this much \[mm\]; and what is slower stands \[mm/s\].
 const REACHED: f64 = 1e-3;
@@ -30,6 +33,7 @@ pub(super) fn follow(
     let mut advance = Advance::new(&session.motion);
     // Line of the next block, while the machine waits before that.
     let mut waits: Option<u32> = None;
+    let mut standing = Standing::default();
     session.go_on_until(|s| {
         feeding.go_on(s)?;
         advance.watch(&s.motion)?;
@@ -55,7 +59,17 @@ pub(super) fn follow(
                 waits = Some(block.next_line);
             }
         }
-        if s.obey(waits.is_some())? {
+        standing.watch(&s.motion);
+        if standing.held_by_board && waits.is_none() {
+            s.progress.phase(TOO_SLOW);
+            welding = false;
+        }
+        let word = s.obey(waits.is_some() || standing.for_somebody)?;
+        if word.is_some_and(|word| standing.hear(word)) {
+            // What was told before is of another state.
+            s.refresh()?;
+        }
+        if word == Some(Word::GoOn) {
             if let Some(line) = waits.take() {
                 welding = false;
                 s.progress.phase(&format!("line {line}"));
@@ -73,6 +87,39 @@ pub(super) fn follow(
 fn rests_after(block: &EndedBlock, here: &MotionSample) -> bool {
     let reached = (here.s_mm - block.end_s).abs() < REACHED;
     reached && here.speed_mm_s.abs() < STILL && here.state == State::Running
+}
+
+/// Whether the machine stands until somebody says something.
+#[derive(Default)]
+struct Standing {
+    /// It does.
+    for_somebody: bool,
+    /// In a hold that nobody asked for.
+    held_by_board: bool,
+    /// What was said last of hold, back and going on, if the board has not been seen to run since.
+    said: Option<Word>,
+}
+
+impl Standing {
+    /// Takes what the board says; a hold lasts while the machine goes back before it goes on.
+    fn watch(&mut self, motion: &MotionStatus) {
+        let held = motion.state == State::Holding;
+        if motion.state == State::Running {
+            self.said = None;
+        }
+        self.held_by_board = held && self.said.is_none();
+        let stopped = motion.state == State::Running && motion.speed_override <= 0.0;
+        self.for_somebody = stopped || held && self.said != Some(Word::GoOn);
+    }
+
+    /// Whether the board is in another state after `word`.
+    fn hear(&mut self, word: Word) -> bool {
+        let changes = matches!(word, Word::Hold | Word::Back | Word::GoOn);
+        if changes {
+            self.said = Some(word);
+        }
+        changes
+    }
 }
 
 /// When the machine was last seen to go on, or to have a reason not to.

@@ -9,6 +9,7 @@ use crate::path::{PathError, PlannedPath};
 use crate::report::{
     BoardsUsed, ByBoard, ByMotor, Measurements, Outcome, Report, SeamFigures, Truth, WeldTicks,
 };
+use crate::unwelded::unwelded;
 use shared::io::MOTOR_AXIS;
 use shared::kinematics::AXIS_UNIT;
 use shared::protocol::Role;
@@ -50,6 +51,10 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
     if let Err(DryRunError::Path(lost @ PathError::Program(_))) = &planned_motion_s {
         error.get_or_insert(JobError::Judge(lost.to_string()));
     }
+    let unwelded = unwelded(&session.record, job.machine, paths).unwrap_or_else(|lost| {
+        error.get_or_insert(JobError::Judge(lost.to_string()));
+        Vec::new()
+    });
     let outcome = match &error {
         None => Outcome::Finished,
         Some(JobError::Interrupted) => Outcome::Interrupted,
@@ -105,6 +110,7 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
             .as_ref()
             .map(|tracking| seam_figures(tracking, session, job, &evaluation)),
         figures: judgement.figures,
+        unwelded,
         planned_motion_s: planned_motion_s.unwrap_or(f64::NAN),
         motion_s: evaluation.motion_s,
         faults: faults(session, error.as_ref()),
