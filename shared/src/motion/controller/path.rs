@@ -7,7 +7,7 @@ use crate::kinematics::AXIS_UNIT;
 use crate::motion::aside::Aside;
 use crate::motion::beams::{Activity, Beams, EventQueue};
 use crate::motion::overlap::Overlap;
-use crate::motion::segment::{BeamOutput, MotorReference};
+use crate::motion::segment::{BeamOutput, MotorReference, PATH_PERIOD_S};
 use crate::motion::state::Event;
 use crate::motion::{Fault, State};
 use crate::trajectory::{Output, PathSpace, SpeedLimits, SpeedState, Way};
@@ -251,6 +251,15 @@ impl MotionController {
         }
         self.path.resume = Resume::No;
         self.go(Way::Hold);
+    }
+
+    /// From now on the machine has so long to come to rest.
+    pub(super) fn limit_stop(&mut self) {
+        if let Some(machine) = &self.machine {
+            let (motors, along) = (&self.reference.velocity, self.along[2].v);
+            let ms = (machine.stop_time(motors, along, &self.path.limits) / PATH_PERIOD_S) as u32;
+            self.stop_by = (self.tick + u64::from(ms), ms);
+        }
     }
 
     /// Goes back along the path, from rest.

@@ -185,7 +185,10 @@ impl MotionController {
     pub(super) fn stop(&mut self) -> Result<(), Refusal> {
         let state = self.allowed(Event::Stop)?;
         match self.state {
-            State::Running | State::Holding => self.slow_down(),
+            State::Running | State::Holding => {
+                self.slow_down();
+                self.limit_stop();
+            }
             State::Homing => self.leave_path(),
             _ => {}
         }
