@@ -65,10 +65,7 @@ pub(super) fn follow(
             welding = false;
         }
         let word = s.obey(waits.is_some() || standing.for_somebody)?;
-        if word.is_some_and(|word| standing.hear(word)) {
-            // What was told before is of another state.
-            s.refresh()?;
-        }
+        standing.hear(word, s.tick());
         if word == Some(Word::GoOn) {
             if let Some(line) = waits.take() {
                 welding = false;
@@ -96,15 +93,17 @@ struct Standing {
     for_somebody: bool,
     /// In a hold that nobody asked for.
     held_by_board: bool,
-    /// What was said last of hold, back and going on, if the board has not been seen to run since.
+    /// What was said last of hold, back and going on, if the board has not been seen to run since; and when.
     said: Option<Word>,
+    said_at: u32,
 }
 
 impl Standing {
     /// Takes what the board says; a hold lasts while the machine goes back before it goes on.
     fn watch(&mut self, motion: &MotionStatus) {
         let held = motion.state == State::Holding;
-        if motion.state == State::Running {
+        // What was told before the word is of another state.
+        if motion.state == State::Running && motion.path_ticks > self.said_at {
             self.said = None;
         }
         self.held_by_board = held && self.said.is_none();
@@ -112,13 +111,11 @@ impl Standing {
         self.for_somebody = stopped || held && self.said != Some(Word::GoOn);
     }
 
-    /// Whether the board is in another state after `word`.
-    fn hear(&mut self, word: Word) -> bool {
-        let changes = matches!(word, Word::Hold | Word::Back | Word::GoOn);
-        if changes {
-            self.said = Some(word);
+    /// Takes what was said at path tick `tick`.
+    fn hear(&mut self, word: Option<Word>, tick: u32) {
+        if let Some(Word::Hold | Word::Back | Word::GoOn) = word {
+            (self.said, self.said_at) = (word, tick);
         }
-        changes
     }
 }
 
@@ -206,5 +203,30 @@ mod tests {
                 "{given_up:?}"
             );
         }
+    }
+
+    #[test]
+    fn whoever_is_held_waits_for_somebody_until_it_goes_on() {
+        use State::{Holding, Running};
+        let mut standing = Standing::default();
+        let mut told = |tick: u32, state, factor, word: Option<Word>| {
+            let mut motion = status(0, state, factor, 0.0);
+            motion.path_ticks = tick;
+            standing.watch(&motion);
+            standing.hear(word, tick);
+            (standing.for_somebody, standing.held_by_board)
+        };
+        assert_eq!(told(10, Running, 1.0, Some(Word::Hold)), (false, false));
+        // As it was told before the word, and after it.
+        assert_eq!(told(10, Running, 1.0, None), (false, false));
+        assert_eq!(told(12, Holding, 1.0, None), (true, false));
+        assert_eq!(told(13, Holding, 1.0, Some(Word::Back)), (true, false));
+        assert_eq!(told(14, Holding, 1.0, Some(Word::GoOn)), (true, false));
+        // It goes back before it goes on.
+        assert_eq!(told(15, Holding, 1.0, None), (false, false));
+        assert_eq!(told(16, Running, 1.0, None), (false, false));
+        // And nobody asked for this hold, nor for it to end.
+        assert_eq!(told(17, Holding, 0.01, None), (true, true));
+        assert_eq!(told(18, Running, 0.0, None), (true, false));
     }
 }

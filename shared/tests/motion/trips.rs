@@ -418,7 +418,10 @@ fn a_fault_stop_that_is_not_at_rest_in_time_switches_the_drives_off() {
         Some(Fault::StopTooLong { limit_ms }) => limit_ms,
         fault => panic!("{fault:?}"),
     };
-    assert!((1390..=1410).contains(&limit_ms) && ms.abs_diff(limit_ms) < 40, "{limit_ms} {ms}");
+    assert!(
+        (1390..=1410).contains(&limit_ms) && ms.abs_diff(limit_ms) < 40,
+        "{limit_ms} {ms}"
+    );
 }
 
 /// Drives that run away slower than the following error tells of.
@@ -444,7 +447,10 @@ fn an_axis_beyond_its_travel_and_the_way_of_a_stop_trips() {
     let beyond = slipped - (TRAVEL_MAX - MARK);
     assert!((beyond - 105.0).abs() < 3.0, "{beyond} mm beyond");
     let fault = bench.fault();
-    assert!(matches!(fault, Some(Fault::BeyondTravel { axis: 1, .. })), "{fault:?}");
+    assert!(
+        matches!(fault, Some(Fault::BeyondTravel { axis: 1, .. })),
+        "{fault:?}"
+    );
     bench.servo_tick();
     assert_eq!(bench.command, MotionCommand::SAFE);
 }
