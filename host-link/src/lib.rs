@@ -24,6 +24,7 @@ pub mod report;
 pub mod seam;
 pub mod table;
 pub mod teach;
+pub mod unwelded;
 pub mod weld;
 pub mod welded;
 pub mod world;

@@ -3,9 +3,11 @@
 mod hold;
 mod pictures;
 mod prediction;
+mod words;
 
 pub use hold::assert_held_weld_goes_on;
 pub use pictures::{assert_stops_in_the_dark, weld_disturbed, weld_through_pictures};
+pub use words::{Fate, Meddled, meddled};
 
 use host_link::boards::Boards;
 use host_link::machine::MachineFile;
@@ -191,6 +193,7 @@ pub fn assert_within_limits(ended: &Ended) {
     );
     let exceeded: Vec<_> = report.exceeded().map(|figure| figure.key).collect();
     assert!(exceeded.is_empty(), "{exceeded:?}\n{report}");
+    assert_eq!(report.unwelded, [], "{report}");
     assert_eq!((report.lost_ticks.total(), report.telemetry_gaps.total()), (0, 0));
     assert_eq!(report.weld_ticks.unknown, 0, "{report}");
     let late = (report.motion_s - report.planned_motion_s).abs();
@@ -224,6 +227,7 @@ fn assert_welded(ended: &Ended, length_mm: f64, limit_mm: f64) {
     let report = &ended.report;
     assert!(ended.error.is_none(), "{:?}", ended.error);
     assert_eq!(report.faults, [""; 0]);
+    assert_eq!(report.unwelded, [], "{report}");
     assert_eq!((report.lost_ticks.total(), report.telemetry_gaps.total()), (0, 0));
     assert!((report.weld_length_mm - length_mm).abs() < 0.5, "{report}");
     let deviations = deviations(report);

@@ -267,12 +267,17 @@ fn told_of(file: &Path, notes: &[String]) {
 /// What is outside its limits, if anything is.
 fn verdict(report: &Report) -> Option<String> {
     let exceeded: Vec<String> = report.exceeded().map(report::sentence).collect();
-    (!exceeded.is_empty()).then(|| format!("the weld is outside its limits: {}", exceeded.join(", ")))
+    let limits =
+        (!exceeded.is_empty()).then(|| format!("the weld is outside its limits: {}", exceeded.join(", ")));
+    let left_out = report.unwelded.iter().map(ToString::to_string);
+    let told: Vec<String> = limits.into_iter().chain(left_out).collect();
+    (!told.is_empty()).then(|| told.join("; "))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::unwelded::Unwelded;
 
     #[test]
     fn a_weld_outside_its_limits_is_told_with_figure_and_limit() {
@@ -283,6 +288,17 @@ mod tests {
         );
         report.figures.remove(1);
         assert_eq!(verdict(&report), None);
+        report.unwelded.push(Unwelded {
+            line: 7,
+            beam: 1,
+            path_id: 2,
+            from_mm: 10.0,
+            to_mm: 25.0,
+        });
+        assert_eq!(
+            verdict(&report).as_deref(),
+            Some("line 7, s = 10.00…25.00 mm was not welded by beam 1")
+        );
     }
 
     #[test]

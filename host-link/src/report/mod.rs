@@ -12,6 +12,7 @@ pub use load::{ExecutionTimes, Load};
 
 use crate::evaluate::Evaluation;
 use crate::part::{Figure, Plot};
+use crate::unwelded::Unwelded;
 use crate::welded::SpeedShares;
 use serde::{Serialize, Serializer};
 use shared::io::{MOTOR_NAMES, MOTORS, SLIDES};
@@ -66,6 +67,8 @@ pub struct Report {
     /// What the part says of the run, by key.
     #[serde(serialize_with = "by_key")]
     pub figures: Vec<Figure>,
+    /// Places where the program has a beam on that were not gone over with it.
+    pub unwelded: Vec<Unwelded>,
     /// Time that the paths should take by a dry run, without the dwells between them.
     pub planned_motion_s: f64,
     /// Time that they took by the motion board's clock.
@@ -405,6 +408,7 @@ pub(crate) mod tests {
                 }],
             }),
             figures: Vec::new(),
+            unwelded: Vec::new(),
             planned_motion_s: 20.0,
             motion_s: 20.1,
             faults: vec!["laser 1 reports a fault; look at the source's own display".into()],

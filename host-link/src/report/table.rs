@@ -51,6 +51,9 @@ pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
         "  on the paths    {:.2} s, planned {:.2} s",
         r.motion_s, r.planned_motion_s
     )?;
+    for place in &r.unwelded {
+        writeln!(f, "  LEFT OUT        {place}")?;
+    }
     part(f, r)?;
     if let Some(seam) = &r.seam {
         spots(f, seam)?;
@@ -239,6 +242,7 @@ pub(super) fn number(value: f64) -> String {
 mod tests {
     use super::*;
     use crate::report::tests::{report, without_tracker};
+    use crate::unwelded::Unwelded;
 
     fn assert_says(text: &str, parts: &[&str]) {
         for part in parts {
@@ -278,6 +282,20 @@ mod tests {
         for absent in ["seam", "Spot", "X2", "skew", "tracker", "measurements", "clock"] {
             assert!(!text.contains(absent), "{absent} in\n{text}");
         }
+    }
+
+    #[test]
+    fn the_table_names_what_was_left_out() {
+        let mut report = without_tracker();
+        report.unwelded.push(Unwelded {
+            line: 12,
+            beam: 2,
+            path_id: 3,
+            from_mm: 118.5,
+            to_mm: 133.25,
+        });
+        let told = "  LEFT OUT        line 12, s = 118.50…133.25 mm was not welded by beam 2\n";
+        assert_says(&report.to_string(), &[told]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::feeding::{EndedBlock, Feeding};
 use super::session::{Session, on_path};
-use super::{JobError, recentring};
+use super::{JobError, Word, recentring};
 use shared::motion::State;
 use shared::protocol::{MotionSample, MotionStatus, Request, Role};
 
@@ -10,6 +10,9 @@ use shared::protocol::{MotionSample, MotionStatus, Request, Role};
 const STANDSTILL_S: u32 = 10;
 /// A path tick is a millisecond.
 const TICKS_PER_S: u32 = 1000;
+
+/// What the operator is told of a hold that nobody asked for.
+const TOO_SLOW: &str = "held: the feed is too low for the beam; raise it, then Enter goes on";
 
 /// A place on the path is reached, to this much \[mm\]; and what is slower stands \[mm/s\].
 const REACHED: f64 = 1e-3;
@@ -30,6 +33,7 @@ pub(super) fn follow(
     let mut advance = Advance::new(&session.motion);
     // Line of the next block, while the machine waits before that.
     let mut waits: Option<u32> = None;
+    let mut standing = Standing::default();
     session.go_on_until(|s| {
         feeding.go_on(s)?;
         advance.watch(&s.motion)?;
@@ -55,7 +59,14 @@ pub(super) fn follow(
                 waits = Some(block.next_line);
             }
         }
-        if s.obey(waits.is_some())? {
+        standing.watch(&s.motion);
+        if standing.held_by_board && waits.is_none() {
+            s.progress.phase(TOO_SLOW);
+            welding = false;
+        }
+        let word = s.obey(waits.is_some() || standing.for_somebody)?;
+        standing.hear(word, s.tick());
+        if word == Some(Word::GoOn) {
             if let Some(line) = waits.take() {
                 welding = false;
                 s.progress.phase(&format!("line {line}"));
@@ -73,6 +84,39 @@ pub(super) fn follow(
 fn rests_after(block: &EndedBlock, here: &MotionSample) -> bool {
     let reached = (here.s_mm - block.end_s).abs() < REACHED;
     reached && here.speed_mm_s.abs() < STILL && here.state == State::Running
+}
+
+/// Whether the machine stands until somebody says something.
+#[derive(Default)]
+struct Standing {
+    /// It does.
+    for_somebody: bool,
+    /// In a hold that nobody asked for.
+    held_by_board: bool,
+    /// What was said last of hold, back and going on, if the board has not been seen to run since; and when.
+    said: Option<Word>,
+    said_at: u32,
+}
+
+impl Standing {
+    /// Takes what the board says; a hold lasts while the machine goes back before it goes on.
+    fn watch(&mut self, motion: &MotionStatus) {
+        let held = motion.state == State::Holding;
+        // What was told before the word is of another state.
+        if motion.state == State::Running && motion.path_ticks > self.said_at {
+            self.said = None;
+        }
+        self.held_by_board = held && self.said.is_none();
+        let stopped = motion.state == State::Running && motion.speed_override <= 0.0;
+        self.for_somebody = stopped || held && self.said != Some(Word::GoOn);
+    }
+
+    /// Takes what was said at path tick `tick`.
+    fn hear(&mut self, word: Option<Word>, tick: u32) {
+        if let Some(Word::Hold | Word::Back | Word::GoOn) = word {
+            (self.said, self.said_at) = (word, tick);
+        }
+    }
 }
 
 /// When the machine was last seen to go on, or to have a reason not to.
@@ -159,5 +203,30 @@ mod tests {
                 "{given_up:?}"
             );
         }
+    }
+
+    #[test]
+    fn whoever_is_held_waits_for_somebody_until_it_goes_on() {
+        use State::{Holding, Running};
+        let mut standing = Standing::default();
+        let mut told = |tick: u32, state, factor, word: Option<Word>| {
+            let mut motion = status(0, state, factor, 0.0);
+            motion.path_ticks = tick;
+            standing.watch(&motion);
+            standing.hear(word, tick);
+            (standing.for_somebody, standing.held_by_board)
+        };
+        assert_eq!(told(10, Running, 1.0, Some(Word::Hold)), (false, false));
+        // As it was told before the word, and after it.
+        assert_eq!(told(10, Running, 1.0, None), (false, false));
+        assert_eq!(told(12, Holding, 1.0, None), (true, false));
+        assert_eq!(told(13, Holding, 1.0, Some(Word::Back)), (true, false));
+        assert_eq!(told(14, Holding, 1.0, Some(Word::GoOn)), (true, false));
+        // It goes back before it goes on.
+        assert_eq!(told(15, Holding, 1.0, None), (false, false));
+        assert_eq!(told(16, Running, 1.0, None), (false, false));
+        // And nobody asked for this hold, nor for it to end.
+        assert_eq!(told(17, Holding, 0.01, None), (true, true));
+        assert_eq!(told(18, Running, 0.0, None), (true, false));
     }
 }

@@ -144,9 +144,9 @@ pub enum JobError {
     /// The operator stopped it.
     #[error("stopped by the operator; beams are off and the machine stands")]
     Interrupted,
-    /// Nobody can say that the next block may begin.
+    /// Nobody can say that the next block may begin, or that a hold is over.
     #[error(
-        "single block waits for the operator, and the input has ended; run host-link in a terminal, or without it"
+        "the machine waits for the operator, and the input has ended; run host-link in a terminal, or without single block"
     )]
     NoOperator,
     /// Something does not come to an end.

@@ -6,22 +6,22 @@ use crate::boards::LinkError;
 use shared::protocol::{Request, Role};
 
 impl Session<'_> {
-    /// Does what the operator asks for now; whether that is to go on. Somebody must be there who could ask if the
-    /// machine is `waiting` for them.
+    /// Does what the operator asks for now, but to go on, which is for the caller to do; what it was. Somebody must be
+    /// there who could ask if the machine is `waiting` for them.
     ///
     /// # Errors
     /// [`JobError::NoOperator`], and what the connection has.
-    pub fn obey(&mut self, waiting: bool) -> Result<bool, JobError> {
-        match self.progress.word() {
-            None => {}
-            Some(Word::GoOn) => return Ok(true),
+    pub fn obey(&mut self, waiting: bool) -> Result<Option<Word>, JobError> {
+        let word = self.progress.word();
+        match word {
+            None | Some(Word::GoOn) => {}
             Some(Word::Hold) => self.ask(&Request::Hold)?,
             Some(Word::Back) => self.ask(&Request::Back)?,
             Some(Word::Override(factor)) => self.ask(&Request::Override { factor })?,
             Some(Word::Gone) if waiting => return Err(JobError::NoOperator),
             Some(Word::Gone) => {}
         }
-        Ok(false)
+        Ok(word)
     }
 
     /// A request to the motion board that means nothing in another state, as one that the operator makes a moment
@@ -46,6 +46,6 @@ impl Session<'_> {
         }
         self.progress
             .phase(&format!("waiting before {what}: Enter goes on"));
-        self.go_on_until(|session| session.obey(true))
+        self.go_on_until(|session| Ok(session.obey(true)? == Some(Word::GoOn)))
     }
 }

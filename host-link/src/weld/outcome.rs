@@ -10,6 +10,7 @@ use crate::path::{PathError, PlannedPath};
 use crate::report::{
     BoardsUsed, ByBoard, ByMotor, JudgedBy, Measurements, Outcome, Report, SeamFigures, Truth, WeldTicks,
 };
+use crate::unwelded::unwelded;
 use crate::welded::SpeedShares;
 use shared::io::MOTOR_AXIS;
 use shared::kinematics::AXIS_UNIT;
@@ -64,6 +65,10 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
     if let Err(DryRunError::Path(lost @ PathError::Program(_))) = &planned_motion_s {
         error.get_or_insert(JobError::Judge(lost.to_string()));
     }
+    let unwelded = unwelded(&session.record, job.machine, paths).unwrap_or_else(|lost| {
+        error.get_or_insert(JobError::Judge(lost.to_string()));
+        Vec::new()
+    });
     let outcome = match &error {
         None => Outcome::Finished,
         Some(JobError::Interrupted) => Outcome::Interrupted,
@@ -124,6 +129,7 @@ pub(super) fn end(session: &Session, job: &Job, weld: Weld, mut error: Option<Jo
             .as_ref()
             .map(|tracking| seam_figures(tracking, session, job, &evaluation, &along)),
         figures: judgement.figures,
+        unwelded,
         planned_motion_s: planned_motion_s.unwrap_or(f64::NAN),
         motion_s: evaluation.motion_s,
         faults: faults(session, error.as_ref(), &along),

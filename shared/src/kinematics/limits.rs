@@ -3,6 +3,7 @@
 use crate::io::{AXES, Bits};
 use crate::motion::AxisConfig;
 use crate::parameter::{ParameterError, check, positive};
+use crate::trajectory::SpeedLimits;
 use crate::units::DEG_PER_RAD;
 
 /// Internal units (mm, rad) in one unit of the machine file (mm, degrees), for X Y Z A B C.
@@ -52,6 +53,16 @@ impl AxisLimits {
             jerk: positive(owner, "max_jerk", config.max_jerk)? * unit,
             tolerance: TOLERANCE * unit,
         })
+    }
+
+    /// Way to a stop from the highest speed (mm, rad).
+    pub fn full_stop(&self) -> f64 {
+        let limits = SpeedLimits {
+            velocity: self.velocity,
+            acceleration: self.acceleration,
+            jerk: self.jerk,
+        };
+        limits.ramp()
     }
 
     /// Of an axis that the machine does not have: it stands at 0, and limits no other.

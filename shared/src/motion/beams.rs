@@ -5,6 +5,7 @@ use super::segment::BeamOutput;
 use crate::io::{DacCode, SIDES};
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::protocol::{PathAction, PathEvent};
+use crate::trajectory::SpeedState;
 use heapless::Deque;
 
 /// Events of a path that the board holds: more may come when some have been passed.
@@ -12,6 +13,9 @@ pub const EVENTS: usize = 128;
 
 /// Speed that counts as none \[mm/s\]: what rounding leaves.
 const STILL: f64 = 1e-9;
+
+/// An override is obeyed no later than this, even if it is changed again: the planner finishes a plan that it has begun.
+const OBEYED_TICKS: u16 = 400;
 
 /// Events that the path has not come to yet, in order of s.
 pub type EventQueue = Deque<PathEvent, EVENTS>;
@@ -68,6 +72,11 @@ impl BeamLimits {
         }
     }
 
+    /// Whether the beam of `side` may be on at a path speed \[mm/s\].
+    pub fn fast_enough(&self, side: usize, speed_mm_s: f64) -> bool {
+        self.beams[side].is_some_and(|beam| speed_mm_s >= beam.min_speed_mm_s - STILL)
+    }
+
     fn stays_on(&self, side: usize) -> bool {
         self.beams[side].is_some_and(|beam| beam.stays_on_at_rest)
     }
@@ -89,6 +98,10 @@ pub enum Activity {
 pub struct Beams {
     /// Where each went on \[mm\], of those that are on.
     on: [Option<f64>; SIDES],
+    /// Where each of these was open last.
+    open: [Option<SpeedState>; SIDES],
+    /// The override has made the machine slower than it may be with the beam on, or may still do so for so many ticks.
+    held_back: [u16; SIDES],
     power_w: [f64; SIDES],
     tracking: bool,
 }
@@ -97,6 +110,8 @@ impl Beams {
     /// Before the first event: everything off.
     pub const NONE: Self = Self {
         on: [None; SIDES],
+        open: [None; SIDES],
+        held_back: [0; SIDES],
         power_w: [0.0; SIDES],
         tracking: false,
     };
@@ -120,7 +135,13 @@ impl Beams {
     pub fn pass(&mut self, events: &mut EventQueue, s_mm: f64) {
         while let Some(event) = events.front().filter(|event| event.s_mm <= s_mm) {
             match event.action {
-                PathAction::Beam { side, on } => self.on[usize::from(side)] = on.then_some(event.s_mm),
+                PathAction::Beam { side, on: true } => {
+                    self.on[usize::from(side)].get_or_insert(event.s_mm);
+                }
+                PathAction::Beam { side, on: false } => {
+                    self.on[usize::from(side)] = None;
+                    self.open[usize::from(side)] = None;
+                }
                 PathAction::Power { side, watt } => self.power_w[usize::from(side)] = watt,
                 PathAction::Tracking { on } => self.tracking = on,
             }
@@ -131,6 +152,47 @@ impl Beams {
     /// Where the beam of `side` went on \[mm\], if it is.
     pub fn on_since(&self, side: usize) -> Option<f64> {
         self.on[side]
+    }
+
+    /// Where the beam of `side` was open last since it went on, and how fast the machine was.
+    pub fn open_last(&self, side: usize) -> Option<SpeedState> {
+        self.open[side]
+    }
+
+    /// Takes note of the gates that are open at `now`.
+    pub fn note(&mut self, gate: [bool; SIDES], now: &SpeedState) {
+        for (open, _) in self.open.iter_mut().zip(gate).filter(|(_, gate)| *gate) {
+            *open = Some(*now);
+        }
+    }
+
+    /// Whether a beam is on and closed because the feed override makes the machine slower than its least speed, with the
+    /// machine at `now`, where `asked_mm_s` is asked for in place of the programmed `feed_mm_s`; those of `beside` are
+    /// none of it. A raised override counts when the machine has ceased to slow down for the lower one.
+    pub fn held_back(
+        &mut self,
+        limits: &BeamLimits,
+        now: &SpeedState,
+        [asked_mm_s, feed_mm_s]: [f64; 2],
+        beside: [bool; SIDES],
+    ) -> bool {
+        let mut closed = false;
+        for side in (0..SIDES).filter(|side| !limits.stays_on(*side)) {
+            let fast_enough = |speed_mm_s| limits.fast_enough(side, speed_mm_s);
+            let slow = !fast_enough(now.v);
+            if !fast_enough(asked_mm_s) && fast_enough(feed_mm_s) {
+                self.held_back[side] = OBEYED_TICKS;
+            } else if !slow && now.a >= 0.0 {
+                self.held_back[side] = self.held_back[side].saturating_sub(1);
+            }
+            closed |= self.held_back[side] > 0 && slow && self.on[side].is_some() && !beside[side];
+        }
+        closed
+    }
+
+    /// The path is held: the next run begins from rest.
+    pub fn hold(&mut self) {
+        self.held_back = [0; SIDES];
     }
 
     /// The path asks for tracking.
@@ -152,7 +214,7 @@ impl Beams {
         for (side, beam) in limits.beams.iter().enumerate() {
             let Some(beam) = beam else { continue };
             let allowed = match activity {
-                Activity::Running => speed_mm_s >= beam.min_speed_mm_s - STILL,
+                Activity::Running => limits.fast_enough(side, speed_mm_s),
                 Activity::Waiting => beam.stays_on_at_rest,
                 Activity::Off => false,
             };

@@ -18,6 +18,7 @@ use super::servo::{ServoOrder, ServoReport, ServoSetup};
 use super::state::Event;
 use super::{Fault, State, Vibration};
 use crate::io::{AXES, MOTORS, SIDES};
+use crate::kinematics::AXIS_UNIT;
 use crate::protocol::{Datagram, MotionSample, PathState};
 use crate::trajectory::{BoardPlanner, SpeedState};
 use path::LoadedPath;
@@ -57,6 +58,8 @@ pub struct MotionController {
     fault: Option<Fault>,
     /// Fault that becomes one when the machine has come to rest.
     pending: Option<Fault>,
+    /// Tick by which a stop on the path is at rest, and how long that is \[ms\].
+    stop_by: (u64, u32),
     /// The emergency stop is pressed, or a drive reports a fault.
     cause_remains: bool,
     machine: Option<Machine>,
@@ -111,6 +114,7 @@ impl MotionController {
             state: State::Off,
             fault: None,
             pending: None,
+            stop_by: (0, 0),
             cause_remains: false,
             machine: None,
             servo_setup: None,
@@ -204,6 +208,7 @@ impl MotionController {
             enable: self.enabled,
             coupled: self.homed && self.enabled && self.homing.is_none(),
             homing: self.homing.is_some(),
+            tick: self.tick as u32,
             segment: Segment::between(&from, &self.reference, beams),
             lease,
             offset: step.offset,
@@ -292,7 +297,20 @@ impl MotionController {
         if let (true, Some(fault)) = (self.state.drives_on(), input.report.trip) {
             self.trip(fault);
         }
+        if let (State::Stopping, true) = (self.state, self.tick > self.stop_by.0) {
+            self.trip(Fault::StopTooLong {
+                limit_ms: self.stop_by.1,
+            });
+        }
         let Some(machine) = &self.machine else { return };
+        let placed = self.homed && self.enabled && self.homing.is_none();
+        if let (true, Some(axis)) = (placed, machine.overrun(&self.measured)) {
+            let position = (self.measured[axis] / AXIS_UNIT[axis]) as f32;
+            return self.trip(Fault::BeyondTravel {
+                axis: axis as u8,
+                position,
+            });
+        }
         // The input of a beam that the machine does not have is an open wire, which reads as a fault.
         let faulty = (0..)
             .zip(input.report.laser_fault)

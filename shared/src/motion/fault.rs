@@ -143,8 +143,8 @@ pub enum Fault {
     /// A control law got a value that is not a number.
     #[error("a control law got a value that is not a number; check the machine parameters")]
     NotANumber,
-    /// The path task did not deliver references in time, twice in a row.
-    #[error("the path task was late twice in a row; the references ran dry")]
+    /// The path task did not deliver references in time, twice in a row or three times within 100 ms.
+    #[error("the path task was late twice in a row, or three times within 100 ms; the references ran dry")]
     ReferencesLate,
     /// A motor was told to go, and its grating stood still.
     #[error("the drive of {} was told to go {commanded_um:.0} µm (or m°) and its grating stands still: check grating and its cable, drive and brake, and the offset of the drive", MOTOR_NAMES[*motor as usize])]
@@ -153,6 +153,22 @@ pub enum Fault {
         motor: u8,
         /// The way that was commanded meanwhile (µm or millidegrees).
         commanded_um: f32,
+    },
+    /// A stop on the path took longer than any can.
+    #[error(
+        "the machine was not at rest {limit_ms} ms after it was told to stop: the drives were switched off; report it"
+    )]
+    StopTooLong {
+        /// How long it may have taken.
+        limit_ms: u32,
+    },
+    /// An axis is further beyond its travel than a stop on the path takes it.
+    #[error("{} stands at {position:.3}, beyond its travel and the way of a stop; look at its drive and its grating", AXIS_NAMES[*axis as usize])]
+    BeyondTravel {
+        /// Index of the axis.
+        axis: u8,
+        /// Where it is (mm or degrees).
+        position: f32,
     },
 }
 

@@ -11,8 +11,14 @@ use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use crate::kinematics::{AXIS_OWNERS, AxisLimits, AxisMotion, Kinematics, KinematicsError};
 use crate::parameter::ParameterError;
 use crate::protocol::PathLimits;
-use crate::trajectory::PlanLimits;
+use crate::trajectory::{PlanLimits, SpeedLimits};
 
+/// A stop is at rest after 0.4 s and four times what the slowest axis needs to slow down at its constant acceleration, to
+/// which the planner is held; twice the first, for the pose beside the path comes to rest too.
+const STOP_LATENCY_S: f64 = 0.8;
+const STOP_TIMES: f64 = 4.0;
+/// How far beyond its travel an axis may be, in ways to a stop: a path may slow down less than the axis alone could.
+const OVERRUN: f64 = 2.0;
 /// The second motor of a gantry.
 const X2: usize = 1;
 
@@ -28,6 +34,8 @@ pub struct Machine {
     /// The PC may be silent for so long while a path runs \[µs\].
     pub link_timeout_us: u64,
     limits: [AxisLimits; AXES],
+    /// How far beyond its travel an axis may be: twice its way to a stop from its highest speed (mm, rad).
+    overrun: [f64; AXES],
     gantry: Option<Gantry>,
 }
 
@@ -45,6 +53,7 @@ impl Machine {
             homing: HomingPlan::build(config)?,
             beams: BeamLimits::build(&config.beams)?,
             link_timeout_us: u64::from(config.link_timeout_ms) * 1000,
+            overrun: limits.map(|axis| OVERRUN * axis.full_stop()),
             limits,
             gantry,
         };
@@ -102,6 +111,23 @@ impl Machine {
             step > 2.0 * self.limits[*axis].velocity * PATH_PERIOD_S
         };
         (0..AXES).find(too_far)
+    }
+
+    /// Time in which the machine is at rest after a stop at these speeds of the motors, and along a path with these
+    /// limits \[s\].
+    pub fn stop_time(&self, motors: &[f64; MOTORS], along: f64, limits: &SpeedLimits) -> f64 {
+        let slowing = |motor: usize| libm::fabs(motors[motor]) / self.limits[MOTOR_AXIS[motor]].acceleration;
+        let along = libm::fabs(along) / limits.acceleration;
+        STOP_LATENCY_S + STOP_TIMES * (0..MOTORS).map(slowing).fold(along, libm::fmax)
+    }
+
+    /// First axis further beyond its travel than a stop takes it, if any.
+    pub fn overrun(&self, axes: &[f64; AXES]) -> Option<usize> {
+        (0..AXES).find(|axis| {
+            let AxisLimits { min, max, .. } = self.limits[*axis];
+            let over = self.overrun[*axis];
+            !(min - over..=max + over).contains(&axes[*axis])
+        })
     }
 
     /// First axis beyond its travel, if any.

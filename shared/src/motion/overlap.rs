@@ -1,62 +1,119 @@
 //! Beams after a hold: where they went off, and from where on they may be open again.
 //!
 //! A seam has a gap where a beam goes off and on again at the same place. So the machine goes back before it goes
-//! on, and the beam opens somewhat before the place where it went off, once the machine is at speed again.
+//! on, and the beam opens somewhat before the place where it went off, once the machine is at speed again. A beam that
+//! waits for its place goes on waiting through further holds, until it has been open there.
 
 use super::beams::{BeamLimits, Beams};
+use super::segment::PATH_PERIOD_S;
 use crate::io::SIDES;
 use crate::trajectory::{SpeedLimits, SpeedState};
 
-/// Part of the speed at which a beam went off that it needs to go on again.
+/// Part of its speed that a beam needs to go on again.
 const AT_SPEED: f64 = 0.95;
 /// How much longer the run-up is than the way that the machine needs at least.
 const AMPLE: f64 = 1.25;
 
-/// Beams that wait for their place.
+/// A hold, and the beams that wait for their place after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
-    /// Where and how fast the machine was when they went off.
+    /// Where and how fast the machine was: events up to there have happened.
+    held: SpeedState,
+    waits: [Option<Wait>; SIDES],
+}
+
+/// A beam that waits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wait {
+    /// Where it was open last, and how fast the machine was.
     off: SpeedState,
-    /// Where each that waits may open again \[mm\].
-    reopen: [Option<f64>; SIDES],
+    /// Where it may open again \[mm\].
+    reopen: f64,
+}
+
+/// Time that the planner and its output filter take at most before the machine begins to slow down \[s\].
+const REACTION_S: f64 = 0.1;
+
+/// How far the machine may have to go back after a hold at the speed of `limits` \[mm\].
+pub fn way_back(limits: &SpeedLimits, beams: &BeamLimits) -> f64 {
+    let overlap = (0..SIDES).filter_map(|side| beams.overlap(side));
+    let slowing = limits.ramp() + REACTION_S * limits.velocity;
+    overlap.fold(0.0, libm::fmax) + (1.0 + AMPLE) * slowing
 }
 
 impl Overlap {
-    /// For the beams that are on at `off` and do not stay on at rest, if there are any. None reopens before it
-    /// went on at all.
-    pub fn at(off: SpeedState, beams: &Beams, limits: &BeamLimits) -> Option<Self> {
-        let reopen = core::array::from_fn(|side| {
+    /// For a hold at `held`: the beams that are on and do not stay on at rest wait, and those that waited `before`.
+    /// None reopens before it went on at all.
+    pub fn at(held: SpeedState, before: Option<&Self>, beams: &Beams, limits: &BeamLimits) -> Self {
+        let waits = core::array::from_fn(|side| {
             let since = beams.on_since(side)?;
-            Some(libm::fmax(off.s - limits.overlap(side)?, since))
+            let overlap = limits.overlap(side)?;
+            let waited = before.and_then(|before| before.waits[side]);
+            waited.or_else(|| {
+                let off = beams.open_last(side).unwrap_or(SpeedState { s: since, ..held });
+                let reopen = libm::fmax(off.s - overlap, since);
+                Some(Wait { off, reopen })
+            })
         });
-        let some = reopen.iter().any(Option::is_some);
-        some.then_some(Self { off, reopen })
+        Self { held, waits }
     }
 
-    /// Where to begin from, so that the machine is at speed in time; it stands at `stands` \[mm\], and `limits` are
-    /// those along the path.
-    pub fn run_up_from(&self, stands: f64, limits: &SpeedLimits) -> f64 {
-        let limits = SpeedLimits {
-            velocity: self.off.v,
-            ..*limits
-        };
+    /// Where to begin from, so that the machine is at speed in time for every beam that waits, and for what happens at
+    /// `next_event` \[mm\]; it stands at `stands` \[mm\], and `limits` are those along the path. `None` if it can
+    /// go on from where it stands.
+    pub fn run_up_from(&self, stands: f64, next_event: Option<f64>, limits: &SpeedLimits) -> Option<f64> {
         // It took so long to stop, and takes about that long to start.
-        let way = libm::fmax(stands - self.off.s, limits.ramp());
-        let reopen = self.reopen.iter().flatten();
-        reopen.fold(self.off.s, |first, s| libm::fmin(first, *s)) - AMPLE * way
+        let before = |place: f64, off: &SpeedState| {
+            let limits = SpeedLimits {
+                velocity: off.v,
+                ..*limits
+            };
+            place - AMPLE * libm::fmax(stands - off.s, limits.ramp())
+        };
+        let waits = self.waits.iter().flatten();
+        let waits = waits.map(|wait| before(wait.reopen, &wait.off));
+        // What lies between the hold and the place of rest has not happened yet, and shall happen at its place.
+        let event = next_event
+            .filter(|event| *event <= stands)
+            .map(|event| before(event, &self.held));
+        waits.chain(event).reduce(libm::fmin)
     }
 
-    /// Takes the next position and speed; which beams are still to be kept off.
-    pub fn pass(&mut self, now: &SpeedState) -> [bool; SIDES] {
-        let at_speed = now.v >= AT_SPEED * self.off.v;
-        for reopen in &mut self.reopen {
-            *reopen = reopen.filter(|s| now.s < *s || (!at_speed && now.s < self.off.s));
+    /// Takes the next position and speed, and the one that is asked for there \[mm/s\]; which beams are still to be
+    /// kept off. One that may open and is too slow to goes on waiting.
+    pub fn pass(
+        &mut self,
+        now: &SpeedState,
+        asked: f64,
+        beams: &Beams,
+        limits: &BeamLimits,
+    ) -> [bool; SIDES] {
+        for (side, wait) in self.waits.iter_mut().enumerate() {
+            let on = beams.on_since(side).is_some();
+            *wait = wait.filter(|wait| on && !(wait.is_over(now, asked) && limits.fast_enough(side, now.v)));
         }
-        self.reopen.map(|reopen| reopen.is_some())
+        self.waits.map(|wait| wait.is_some())
+    }
+
+    /// Whether the beam of `side` still has to come to where it was open last, with the machine at `now`.
+    pub fn is_before(&self, side: usize, now: &SpeedState) -> bool {
+        self.waits[side].is_some_and(|wait| !wait.reaches(now))
     }
 
     /// No beam waits any more.
     pub fn is_over(&self) -> bool {
-        self.reopen == [None; SIDES]
+        self.waits == [None; SIDES]
+    }
+}
+
+impl Wait {
+    fn is_over(&self, now: &SpeedState, asked: f64) -> bool {
+        let at_speed = now.v >= AT_SPEED * libm::fmin(self.off.v, asked);
+        now.s >= self.reopen && (at_speed || self.reaches(now))
+    }
+
+    /// It is there before the next millisecond is over.
+    fn reaches(&self, now: &SpeedState) -> bool {
+        now.s + now.v * PATH_PERIOD_S >= self.off.s
     }
 }

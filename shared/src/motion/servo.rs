@@ -16,6 +16,10 @@ pub const UNIT: [f64; MOTORS] = {
     [x, x, y, z, a, b, c]
 };
 
+/// Three milliseconds with wrong references within so many trip. Each that is bridged is wrong by half the
+/// acceleration times 1 ms², a micrometre or less; as often as this, the path task has no time to spare.
+const WRONG_MS: u32 = 100;
+
 /// Motors that are coupled as a gantry; the others have loops of their own.
 const GANTRY: usize = 2;
 
@@ -114,7 +118,9 @@ pub struct ServoOrder {
     pub coupled: bool,
     /// Limit switches are part of the search, not a fault.
     pub homing: bool,
-    /// References of the next millisecond.
+    /// Path tick that it is of.
+    pub tick: u32,
+    /// References of the millisecond after that tick's.
     pub segment: Segment,
     /// How long gates may stay open, from now on.
     pub lease: BeamLease,
@@ -159,7 +165,7 @@ pub struct ServoReport {
     pub ticks: u32,
     /// Servo ticks that were never served (mod 2³²).
     pub lost: u32,
-    /// Milliseconds that began without references (mod 2³²).
+    /// Milliseconds that began without their references, and references that came twice (mod 2³²).
     pub late: u32,
 }
 
@@ -175,8 +181,14 @@ pub struct ServoLoops {
     coupled: bool,
     homing: bool,
     current: Segment,
-    next: Option<Segment>,
     lease: BeamLease,
+    /// References, and the path tick that they are of.
+    next: Option<(u32, Segment)>,
+    /// Milliseconds since boot (mod 2³²), and by how much they are ahead of the path ticks.
+    millisecond: u32,
+    ahead: u32,
+    /// When the references of the last milliseconds were wrong.
+    wrong: [Option<u32>; 2],
     last_counts: Option<[i64; MOTORS]>,
     late_in_a_row: u32,
     report: ServoReport,
@@ -210,7 +222,11 @@ impl ServoLoops {
         if let Err(fault) = self.watch(feedback, elapsed) {
             self.trip(fault);
         }
-        if self.report.ticks / SERVO_TICKS_PER_PATH_TICK != before {
+        // Their counter wraps at a whole millisecond.
+        let begun = (self.report.ticks / SERVO_TICKS_PER_PATH_TICK).wrapping_sub(before);
+        let begun = begun & (u32::MAX / SERVO_TICKS_PER_PATH_TICK);
+        self.millisecond = self.millisecond.wrapping_add(begun);
+        if begun != 0 {
             self.report.position = position;
             self.report.counts = feedback.counts;
             self.report.truth = truth;
@@ -250,6 +266,12 @@ impl ServoLoops {
             self.movements = Default::default();
             self.current = order.segment;
             self.late_in_a_row = 0;
+            self.wrong = [None; 2];
+        }
+        let ahead = self.millisecond.wrapping_sub(order.tick);
+        if !self.enabled || (ahead.wrapping_sub(self.ahead) as i32) < 0 {
+            // No order comes before its tick: what was thought to be in time was late.
+            self.ahead = ahead;
         }
         self.enabled = order.enable && self.report.trip.is_none() && self.setup.is_some();
         self.coupled = order.coupled;
@@ -260,7 +282,10 @@ impl ServoLoops {
                 self.report.offset[index] = offset;
             }
         }
-        self.next = Some(order.segment);
+        if self.enabled && self.next.is_some_and(|(tick, _)| self.is_due(tick, 0)) {
+            self.count_wrong();
+        }
+        self.next = Some((order.tick, order.segment));
         self.lease = order.lease;
     }
 
@@ -329,23 +354,40 @@ impl ServoLoops {
         Ok(())
     }
 
-    /// Starts the next millisecond; without references it goes on at constant speed, once.
+    /// Starts the next millisecond; without references of its own it goes on at constant speed, once.
     fn take_next(&mut self) {
         match self.next.take() {
-            Some(segment) => {
+            Some((tick, segment)) if !self.enabled || self.is_due(tick, 1) => {
                 self.current = segment;
                 self.late_in_a_row = 0;
             }
-            None if self.enabled => {
+            _ if self.enabled => {
                 self.current = self.current.continued();
                 self.late_in_a_row += 1;
-                self.report.late = self.report.late.wrapping_add(1);
+                self.count_wrong();
                 if self.late_in_a_row > 1 {
                     self.trip(Fault::ReferencesLate);
                 }
             }
-            None => {}
+            _ => {}
         }
+    }
+
+    /// The references of path tick `tick` are those of the millisecond that began so many after that tick.
+    fn is_due(&self, tick: u32, after: u32) -> bool {
+        self.millisecond == tick.wrapping_add(self.ahead).wrapping_add(after)
+    }
+
+    /// References were missing, too old, or there twice: one such millisecond is bridged, three within
+    /// [`WRONG_MS`] are no accident.
+    fn count_wrong(&mut self) {
+        self.report.late = self.report.late.wrapping_add(1);
+        let [before_last, last] = self.wrong;
+        let now = self.millisecond;
+        if before_last.is_some_and(|first| now.wrapping_sub(first) <= WRONG_MS) {
+            self.trip(Fault::ReferencesLate);
+        }
+        self.wrong = [last, Some(now)];
     }
 
     fn control(&mut self, position: &[f64; MOTORS]) -> Result<MotionCommand, Fault> {

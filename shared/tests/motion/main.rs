@@ -10,3 +10,4 @@ mod stops;
 mod streaming;
 mod ticks;
 mod trips;
+mod words;

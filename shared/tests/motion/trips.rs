@@ -2,7 +2,7 @@
 
 use super::bench::{BLEND, Bench, MARK, SCALE, TRAVEL_MAX, Y, config, load};
 use shared::io::MotionCommand;
-use shared::motion::{Fault, State};
+use shared::motion::{Fault, PathTickInput, SERVO_TICKS_PER_PATH_TICK, State};
 use shared::protocol::{MotionSample, PathAction, PathChannel, PathEvent, PathJoin, Refusal, Request};
 use shared::trajectory::PathSpace;
 
@@ -387,5 +387,122 @@ fn a_place_that_cannot_be_taken_stops_the_path_before_it() {
     assert!(last.speed_mm_s.abs() < 0.01 && !last.beams[0], "{last:?}");
     // The corner at 200 mm is rounded.
     assert!((195.0..200.5).contains(&last.s_mm), "{} mm", last.s_mm);
+    assert_eq!(bench.command, MotionCommand::SAFE);
+}
+
+/// Each is bridged; the third within 100 ms trips.
+#[test]
+fn references_late_now_and_then_are_bridged_and_three_in_a_tenth_of_a_second_are_not() {
+    for (apart, trips) in [(20, true), (80, false)] {
+        let mut bench = Bench::welding();
+        for time in 1..=3 {
+            bench.run_ms(apart);
+            bench.ms_without_path_tick();
+            bench.ms_without_path_tick();
+            bench.path_tick_after(2);
+            bench.run_ms(2);
+            let tripped = trips && time == 3;
+            assert_eq!(bench.command.enable, !tripped, "after {time}, {apart} ms apart");
+        }
+        assert_eq!(bench.fault(), trips.then_some(Fault::ReferencesLate));
+        assert!(bench.status().path_lost >= 6);
+    }
+}
+
+/// References of a millisecond that is over are not those of the next one: the path task that overran twice gives them.
+#[test]
+fn references_of_a_millisecond_that_is_over_are_not_played_again() {
+    let mut bench = Bench::welding();
+    // This path tick begins in time and ends more than a millisecond late.
+    let input = PathTickInput {
+        now_us: bench.now_us,
+        elapsed: 1,
+        report: bench.servo.take_report(),
+    };
+    (0..SERVO_TICKS_PER_PATH_TICK).for_each(|_| bench.servo_tick_after(1));
+    let late = bench.controller.tick(&input).order;
+    (0..SERVO_TICKS_PER_PATH_TICK + 1).for_each(|_| bench.servo_tick_after(1));
+    bench.servo.give(&late);
+    let before = bench.servo.take_report();
+    // 150 mm/s are 0.15 mm in a millisecond: so far would the old references be behind.
+    (0..2).for_each(|_| bench.servo_tick_after(1));
+    let report = bench.servo.take_report();
+    assert!(report.peak_error[Y] < before.peak_error[Y] + 0.01, "{report:?}");
+    (0..SERVO_TICKS_PER_PATH_TICK).for_each(|_| bench.servo_tick_after(1));
+    assert_eq!(bench.servo.take_report().trip, Some(Fault::ReferencesLate));
+    assert_eq!(bench.command, MotionCommand::SAFE);
+}
+
+#[test]
+fn references_that_come_twice_are_counted_and_the_third_time_trips() {
+    let mut bench = Bench::welding();
+    let before = bench.status().path_lost;
+    for time in 1..=3 {
+        bench.run_ms(10);
+        let input = PathTickInput {
+            now_us: bench.now_us,
+            elapsed: 0,
+            report: bench.servo.take_report(),
+        };
+        let order = bench.controller.tick(&input).order;
+        bench.servo.give(&order);
+        bench.run_ms(2);
+        assert_eq!(bench.status().path_lost, before + time);
+    }
+    assert_eq!(bench.fault(), Some(Fault::ReferencesLate));
+}
+
+/// The board is so slow that its references take five times as long to come to rest.
+#[test]
+fn a_fault_stop_that_is_not_at_rest_in_time_switches_the_drives_off() {
+    let mut bench = Bench::welding();
+    bench.inputs.laser_fault[0] = true;
+    bench.run_ms(2);
+    assert_eq!(bench.controller.state(), State::Stopping);
+    let mut ms: u32 = 0;
+    while bench.controller.state() == State::Stopping && ms < 5000 {
+        bench.path_tick_after(20);
+        ms += 20;
+    }
+    assert_eq!(bench.controller.state(), State::Fault);
+    // 0.8 s, and four times 150 mm/s at 1000 mm/s².
+    let limit_ms = match bench.fault() {
+        Some(Fault::StopTooLong { limit_ms }) => limit_ms,
+        fault => panic!("{fault:?}"),
+    };
+    assert!(
+        (1390..=1410).contains(&limit_ms) && ms.abs_diff(limit_ms) < 40,
+        "{limit_ms} {ms}"
+    );
+}
+
+/// Drives that run away slower than the following error tells of.
+#[test]
+fn an_axis_beyond_its_travel_and_the_way_of_a_stop_trips() {
+    let mut config = config();
+    let y = config.motors[Y].as_mut().unwrap();
+    y.following_error_base = 2000.0;
+    let mut bench = Bench::new();
+    bench.done(&Request::ConfigureMotion(config));
+    bench.run_ms(3);
+    bench.done(&Request::Home);
+    bench.until(State::Idle, 5000);
+    bench.blocked[Y] = true;
+    // 0.1 mm in a tick, from 500 mm of 1000.
+    let mut slipped = 0.0;
+    while bench.controller.state() == State::Idle && slipped < 2000.0 {
+        bench.slipped[Y] += (0.1 * SCALE) as i64;
+        slipped += 0.1;
+        bench.servo_tick();
+    }
+    // Twice 300 mm/s · (300 / 1000 + 1000 / 20000) s / 2.
+    let beyond = slipped - (TRAVEL_MAX - MARK);
+    assert!((beyond - 105.0).abs() < 3.0, "{beyond} mm beyond");
+    let fault = bench.fault();
+    assert!(
+        matches!(fault, Some(Fault::BeyondTravel { axis: 1, .. })),
+        "{fault:?}"
+    );
+    bench.servo_tick();
     assert_eq!(bench.command, MotionCommand::SAFE);
 }

@@ -6,6 +6,7 @@ use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::State;
 use crate::motion::beams::EVENTS;
+use crate::motion::overlap::way_back;
 use crate::protocol::{PathAction, PathElement, PathEvent, PathLimits, Refusal, Room};
 use crate::trajectory::{Element, Join, PathSpace, SpeedLimits, axes_at};
 
@@ -76,8 +77,12 @@ impl MotionController {
                 return Err(Refusal::NoEnd { line: element.line });
             }
             self.check_start(&element)?;
-            let length = element.length;
+            let (length, feed) = (element.length, element.feed);
             self.planner.push(element)?;
+            if let (true, Some(machine)) = (feed > self.path.limits.velocity, &self.machine) {
+                self.path.limits.velocity = feed;
+                self.planner.keep(way_back(&self.path.limits, &machine.beams));
+            }
             self.path.elements += 1;
             self.path.end_s += length;
             self.path.complete = ends;

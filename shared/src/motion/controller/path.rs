@@ -8,7 +8,7 @@ use crate::motion::aside::Aside;
 use crate::motion::beams::{Activity, Beams, EventQueue};
 use crate::motion::overlap::Overlap;
 use crate::motion::permit::BeamLease;
-use crate::motion::segment::{BeamOutput, MotorReference};
+use crate::motion::segment::{BeamOutput, MotorReference, PATH_PERIOD_S};
 use crate::motion::servo::ServoReport;
 use crate::motion::state::Event;
 use crate::motion::{Fault, NoPermit, State};
@@ -25,7 +25,7 @@ pub(super) struct LoadedPath {
     /// Its number.
     pub id: u32,
     pub space: PathSpace,
-    /// Limits along it, for run-ups.
+    /// Limits along it, for run-ups, and the highest feed so far.
     pub limits: SpeedLimits,
     /// Where it begins: the planner was started there, and nobody moved since.
     pub start: Option<[f64; AXES]>,
@@ -40,8 +40,9 @@ pub(super) struct LoadedPath {
     pub event_count: u32,
     /// Path length of the last one.
     pub last_event_s: f64,
-    /// Line of the program.
+    /// Line of the program, and the feed there \[mm/s\].
     pub line: u32,
+    pub feed: f64,
     /// Ticks since the references came to rest.
     pub resting: u32,
     /// Beams that wait for their place after a hold.
@@ -79,6 +80,7 @@ impl LoadedPath {
         event_count: 0,
         last_event_s: f64::NEG_INFINITY,
         line: 0,
+        feed: 0.0,
         resting: 0,
         overlap: None,
         resume: Resume::No,
@@ -118,7 +120,7 @@ impl MotionController {
             }
         };
         self.along = [self.along[1], self.along[2], output.along];
-        self.path.line = output.line;
+        (self.path.line, self.path.feed) = (output.line, output.feed);
         let running = self.state == State::Running;
         let ends = output.at_rest && self.path.complete && output.along.s >= self.path.end_s - AT_END;
         if running && (ends || !self.beams.tracking()) {
@@ -208,14 +210,14 @@ impl MotionController {
                     None => self.state = self.state.after(Event::AtRest).unwrap_or(self.state),
                 }
             }
-            State::Holding => match (self.path.resume, &self.path.overlap) {
+            State::Holding => match (self.path.resume, self.run_up()) {
                 (Resume::No, _) => {}
-                (Resume::Wanted, Some(overlap)) => {
-                    let here = self.along[0].s;
-                    let to = overlap.run_up_from(here, &self.path.limits);
+                (Resume::Wanted, Some(to)) => {
                     self.path.resume = Resume::Back(to);
                     self.go(Way::Back);
                 }
+                // It stands for the override, not because it is there.
+                (Resume::Back(_), _) if self.factor <= 0.0 => {}
                 // As far back as the planner keeps the path, or as was asked for.
                 (Resume::Wanted, None) | (Resume::Back(_) | Resume::Turning, _) => {
                     self.path.resume = Resume::No;
@@ -225,6 +227,13 @@ impl MotionController {
             },
             _ => {}
         }
+    }
+
+    /// How far to go back before the path goes on, if it has to be at all \[mm\].
+    fn run_up(&self) -> Option<f64> {
+        let next = self.path.events.front().map(|event| event.s_mm);
+        let overlap = self.path.overlap.as_ref()?;
+        overlap.run_up_from(self.along[0].s, next, &self.path.limits)
     }
 
     /// Begins to run the path that is loaded.
@@ -237,11 +246,22 @@ impl MotionController {
 
     /// Beams off, and down to a stop on the path; they will wait for their place.
     pub(super) fn slow_down(&mut self) {
-        if let (State::Running, None, Some(machine)) = (self.state, &self.path.overlap, &self.machine) {
-            self.path.overlap = Overlap::at(self.along[1], &self.beams, &machine.beams);
+        if let (State::Running, Some(machine)) = (self.state, &self.machine) {
+            let before = self.path.overlap.as_ref();
+            self.path.overlap = Some(Overlap::at(self.along[1], before, &self.beams, &machine.beams));
+            self.beams.hold();
         }
         self.path.resume = Resume::No;
         self.go(Way::Hold);
+    }
+
+    /// From now on the machine has so long to come to rest.
+    pub(super) fn limit_stop(&mut self) {
+        if let Some(machine) = &self.machine {
+            let (motors, along) = (&self.reference.velocity, self.along[2].v);
+            let ms = (machine.stop_time(motors, along, &self.path.limits) / PATH_PERIOD_S) as u32;
+            self.stop_by = (self.tick + u64::from(ms), ms);
+        }
     }
 
     /// Goes back along the path, from rest.
@@ -308,22 +328,36 @@ impl MotionController {
     pub(super) fn beam_output(&mut self, laser_fault: [bool; SIDES]) -> BeamOutput {
         let then = self.along[1];
         let activity = self.activity();
+        let Some(machine) = &self.machine else {
+            return BeamOutput::OFF;
+        };
+        let limits = &machine.beams;
         let mut closed = laser_fault;
+        let mut held_back = false;
         if activity == Activity::Running {
             // Rounding must not keep one from coming at a stop that stands just there.
             self.beams.pass(&mut self.path.events, then.s + AT_END);
+            let asked = self.factor * self.path.feed;
+            let mut before = [false; SIDES];
             if let Some(overlap) = &mut self.path.overlap {
-                let waiting = overlap.pass(&then);
+                let waiting = overlap.pass(&then, asked, &self.beams, limits);
                 closed = core::array::from_fn(|side| closed[side] || waiting[side]);
+                before = core::array::from_fn(|side| overlap.is_before(side, &then));
                 if overlap.is_over() {
                     self.path.overlap = None;
                 }
             }
+            let speeds = [asked, self.path.feed];
+            held_back = self.beams.held_back(limits, &then, speeds, before);
         }
-        match &self.machine {
-            Some(machine) => self.beams.output(&machine.beams, activity, then.v, closed),
-            None => BeamOutput::OFF,
+        let output = self.beams.output(limits, activity, then.v, closed);
+        self.beams.note(output.gate, &then);
+        if held_back {
+            self.slow_down();
+            self.state = self.state.after(Event::Hold).unwrap_or(self.state);
+            return BeamOutput::OFF;
         }
+        output
     }
 
     /// Takes note of a path position at rest: the path begins there.

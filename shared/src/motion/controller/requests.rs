@@ -15,8 +15,10 @@ use crate::units::DEG_PER_RAD;
 /// How far the pose may be moved beside the path \[mm\] and turned about T \[rad\].
 const MOST_ASIDE_MM: f64 = 25.0;
 const MOST_ASIDE_RAD: f64 = 0.1;
-/// Highest override.
+/// Highest override, and the lowest that is not taken as 0: slower than that, the machine would take longer from one
+/// place at which the planner can change its mind to the next than a hold may last.
 const MOST_OVERRIDE: f64 = 2.0;
+const LEAST_OVERRIDE: f64 = 0.01;
 
 impl MotionController {
     /// One request of the PC; `unsent` datagrams could not be sent so far. The answer says what was done or
@@ -123,8 +125,8 @@ impl MotionController {
         if !(0.0..=MOST_OVERRIDE).contains(&factor) {
             return Err(Refusal::BadOverride);
         }
-        self.factor = factor;
-        self.planner.set_override(factor);
+        self.factor = if factor < LEAST_OVERRIDE { 0.0 } else { factor };
+        self.planner.set_override(self.factor);
         Ok(())
     }
 
@@ -184,7 +186,10 @@ impl MotionController {
     pub(super) fn stop(&mut self) -> Result<(), Refusal> {
         let state = self.allowed(Event::Stop)?;
         match self.state {
-            State::Running | State::Holding => self.slow_down(),
+            State::Running | State::Holding => {
+                self.slow_down();
+                self.limit_stop();
+            }
             State::Homing => self.leave_path(),
             _ => {}
         }

@@ -74,6 +74,8 @@ pub struct Planner<const ELEMENTS: usize, const NODES: usize> {
     axes: [f64; AXES],
     planned_hint: u32,
     output_hint: u32,
+    /// So much behind the machine is kept, if it is no more than a quarter of the elements \[mm\].
+    keep: f64,
     /// Ticks since the plan has come to rest.
     resting: u32,
     /// There was nothing to plan at the last tick.
@@ -105,6 +107,8 @@ pub struct Output {
     pub along: SpeedState,
     /// Line of the program of the element there.
     pub line: u32,
+    /// Its programmed feed \[mm/s\].
+    pub feed: f64,
     /// Nothing moves, and nothing will before another element comes, or another way or override is asked for.
     pub at_rest: bool,
 }
@@ -153,6 +157,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             axes: [0.0; AXES],
             planned_hint: 0,
             output_hint: 0,
+            keep: 0.0,
             resting: 0,
             idle: false,
             laid: false,
@@ -171,6 +176,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.horizon = Horizon::at(self.nodes.first);
         self.player = Player::at(self.nodes.first);
         self.way = Way::Forward;
+        self.keep = 0.0;
         self.planned = SpeedState { s, v: 0.0, a: 0.0 };
         self.axes = *axes;
         (self.planned_hint, self.output_hint) = (0, 0);
@@ -189,6 +195,12 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     pub fn push(&mut self, element: Element) -> Result<(), PushError> {
         self.laid = false;
         self.track.push(element)
+    }
+
+    /// Keeps `distance` \[mm\] of the path behind the machine from now on, so that it can go back so far whenever it
+    /// comes to rest, as long as that is no more than a quarter of the elements.
+    pub fn keep(&mut self, distance: f64) {
+        self.keep = distance;
     }
 
     /// Goes another way from now on, inside all limits.
@@ -381,13 +393,21 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             }
             self.nodes.first = oldest;
         }
+        if self.way != Way::Forward {
+            // All that is passed on the way to a stop may have to be gone back over.
+            return;
+        }
         // What lies further behind than this cannot be gone back to.
-        let elements = if self.track.room() > ELEMENTS / 2 {
-            ELEMENTS / 4
-        } else {
-            0
-        };
-        let oldest = self.planned_hint.saturating_sub(track::REACH + elements as u32);
+        let most = track::REACH + ELEMENTS as u32 / 4;
+        let mut oldest = self.planned_hint.saturating_sub(most).max(self.track.first);
+        if self.track.room() <= ELEMENTS / 2 {
+            let newest = self.planned_hint.saturating_sub(track::REACH);
+            let place = self.planned.s - self.keep;
+            let beyond = |oldest: u32| self.track.ends_before(oldest + track::REACH, place);
+            while oldest < newest && beyond(oldest) {
+                oldest += 1;
+            }
+        }
         self.track.release(oldest);
     }
 
@@ -417,6 +437,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
             axes: self.filter.axes(),
             along,
             line: piece.map_or(0, |piece| piece.element.line),
+            feed: piece.map_or(0.0, |piece| piece.element.feed),
             at_rest: self.resting >= ticks && self.stays(),
         })
     }

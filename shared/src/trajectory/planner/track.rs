@@ -203,6 +203,11 @@ impl<const E: usize> Track<E> {
         self.get(sound).map_or(self.end_s, |piece| piece.start)
     }
 
+    /// Element `serial` is kept, and ends at or before path length `s`.
+    pub fn ends_before(&self, serial: u32, s: f64) -> bool {
+        self.get(serial).is_some_and(|piece| piece.end() <= s)
+    }
+
     /// Lets go of the oldest elements, up to but not including `serial`.
     pub fn release(&mut self, serial: u32) {
         self.first = self.first.max(serial.min(self.end));

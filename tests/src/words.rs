@@ -1,0 +1,353 @@
+//! An operator who says anything at any time, and what has become of the weld.
+
+use host_link::boards::simulated::SimulatedBoards;
+use host_link::boards::{Boards, Overheard};
+use host_link::machine::MachineFile;
+use host_link::nc::{Options, interpret};
+use host_link::weld::{self, Ended, Job, JobError, Names, Progress, Surroundings, Word, Work};
+use shared::io::SIDES;
+use shared::protocol::MotionSample;
+use std::cell::RefCell;
+use std::fmt::Write;
+use std::rc::Rc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Two machines that weld a straight line along X: with two beams, and with one.
+const MACHINES: [(&str, &str, usize); 2] = [
+    ("dual-beam-gantry", "G0 X900 Y900 Z100 A0 B0 C0", 2),
+    ("ac-head", "G0 X900 Y500 Z100 A0 C0", 1),
+];
+/// Where the line begins \[mm\].
+const BEGINS: f64 = 900.0;
+/// Longest pause of the operator \[ms\], of several kinds.
+const PAUSES: [u64; 5] = [2, 40, 300, 1000, 3000];
+/// Once the operator has nothing more on their mind they let the machine go on, so often \[ms\].
+const GOES_ON: u32 = 400;
+/// Where a hold or its end are known: gates have a tick of their own at either end, and the least speed of a beam is
+/// reached in less than 0.04 mm.
+const EDGE: f64 = 0.04;
+const TICK_S: f64 = 1e-3;
+/// A gate goes off so many ticks after the hold was asked for.
+const TOLD: f64 = 3.0;
+
+/// Numbers that look random, and are the same in every run.
+struct Random(u64);
+
+impl Random {
+    /// SplitMix64.
+    fn below(&mut self, end: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = self.0;
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (x ^ (x >> 31)) % end
+    }
+
+    fn one_of<T: Copy>(&mut self, things: &[T]) -> T {
+        things[self.below(things.len() as u64) as usize]
+    }
+}
+
+/// A weld that an operator meddled with.
+pub struct Meddled {
+    /// What they said, and when \[ms since the boards were switched on\].
+    pub said: Vec<String>,
+    /// What has become of it.
+    pub ended: Ended,
+    /// They ended it.
+    pub stopped: bool,
+    /// Where beams were on and should be, by side \[mm\].
+    programmed: Vec<(usize, f64, f64)>,
+    feed_mm_s: f64,
+    samples: Vec<MotionSample>,
+    overlap_mm: f64,
+}
+
+/// What can become of a weld.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Fate {
+    /// Every place was welded once.
+    Welded,
+    /// The report names what was not, and the exit code is 3.
+    Named,
+    /// The operator ended it, and the exit code is 130.
+    Stopped,
+}
+
+/// What the operator shares with the board's telemetry.
+struct Hand {
+    random: Random,
+    /// Newest tick of the motion board, and the one at which they speak again.
+    tick: u32,
+    next: u32,
+    words_left: u64,
+    single_block: bool,
+    said: Vec<String>,
+    samples: Vec<MotionSample>,
+}
+
+struct Operator<'a> {
+    hand: Rc<RefCell<Hand>>,
+    interrupted: &'a AtomicBool,
+}
+
+impl Progress for Operator<'_> {
+    fn phase(&mut self, _text: &str) {}
+
+    fn travel(&mut self, _done_mm: f64, _length_mm: f64) {}
+
+    fn word(&mut self) -> Option<Word> {
+        let mut hand = self.hand.borrow_mut();
+        if hand.tick < hand.next {
+            return None;
+        }
+        let tick = hand.tick;
+        if hand.words_left == 0 {
+            let raised = hand
+                .said
+                .last()
+                .is_some_and(|said| said.ends_with("Override(1.0)"));
+            hand.next = tick + GOES_ON;
+            hand.single_block = false;
+            let word = if raised { Word::GoOn } else { Word::Override(1.0) };
+            if !raised {
+                hand.said.push(format!("{tick}: {word:?}"));
+            }
+            return Some(word);
+        }
+        hand.words_left -= 1;
+        let longest = hand.random.one_of(&PAUSES);
+        hand.next = tick + hand.random.below(longest) as u32;
+        let word = match hand.random.below(40) {
+            0..10 => Word::Hold,
+            10..18 => Word::Back,
+            18..28 => Word::GoOn,
+            28..36 => {
+                let percent = hand
+                    .random
+                    .one_of(&[0.0, 1e-6, 1.0, 3.0, 8.0, 30.0, 80.0, 100.0, 200.0]);
+                Word::Override(percent / 100.0)
+            }
+            36..39 => {
+                hand.single_block = !hand.single_block;
+                let word = format!("{tick}: single block {}", hand.single_block);
+                hand.said.push(word);
+                return None;
+            }
+            _ => {
+                self.interrupted.store(true, Ordering::Relaxed);
+                hand.said.push(format!("{tick}: stop"));
+                return None;
+            }
+        };
+        hand.said.push(format!("{tick}: {word:?}"));
+        Some(word)
+    }
+
+    fn single_block(&self) -> bool {
+        self.hand.borrow().single_block
+    }
+}
+
+/// A weld in some stretches along a line, with an operator who says something else for every `seed`.
+///
+/// # Panics
+/// Where the job cannot be begun.
+pub fn meddled(seed: u64) -> Meddled {
+    let mut random = Random(seed);
+    let (name, approach, beams) = random.one_of(&MACHINES);
+    let machine = MachineFile::read(&crate::shipped(&format!("machines/{name}.toml")));
+    let mut machine = machine.unwrap_or_else(|error| panic!("{error}"));
+    machine.tracking = None;
+    let feed_mm_s = random.one_of(&[20.0, 60.0, 120.0]);
+    let (text, programmed) = program(&mut random, approach, beams, feed_mm_s);
+    let program = interpret(&text, Options::default()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let job = Job {
+        machine: &machine,
+        work: Work::Program(&program),
+        speed_m_per_min: None,
+        from_line: None,
+        part: None,
+        names: Names {
+            program: "words.ngc".into(),
+            machine: name.into(),
+            seam: None,
+            boards: "simulated".into(),
+        },
+        surroundings: Surroundings::default(),
+    };
+    let words_left = 1 + random.below(14);
+    let hand = Rc::new(RefCell::new(Hand {
+        random,
+        tick: 0,
+        next: u32::MAX,
+        words_left,
+        single_block: false,
+        said: Vec::new(),
+        samples: Vec::new(),
+    }));
+    let interrupted = AtomicBool::new(false);
+    let mut operator = Operator {
+        hand: hand.clone(),
+        interrupted: &interrupted,
+    };
+    let mut boards = SimulatedBoards::new(machine.motion.kinematics.name()).expect("a plant");
+    let mut overheard = Overheard {
+        boards: &mut boards,
+        hear: |_: &mut dyn Boards, sample: &MotionSample| {
+            let mut hand = hand.borrow_mut();
+            hand.tick = sample.tick;
+            if sample.path_id == 2 && hand.next == u32::MAX {
+                let first = hand.random.below(1500) as u32;
+                hand.next = sample.tick + first;
+            }
+            if sample.path_id == 2 || hand.samples.last().is_some_and(|last| last.path_id == 2) {
+                hand.samples.push(*sample);
+            }
+        },
+    };
+    let ended = weld::run(&mut overheard, &job, &interrupted, &mut operator);
+    let ended = ended.unwrap_or_else(|error| panic!("{error}"));
+    let overlap = machine.motion.beams.iter().flatten().map(|beam| beam.overlap_mm);
+    let overlap_mm = overlap.fold(0.0, f64::max);
+    let mut hand = hand.borrow_mut();
+    Meddled {
+        said: std::mem::take(&mut hand.said),
+        ended,
+        stopped: interrupted.load(Ordering::Relaxed),
+        programmed,
+        feed_mm_s,
+        samples: std::mem::take(&mut hand.samples),
+        overlap_mm,
+    }
+}
+
+/// A line in pieces, with stretches of either beam; these stretches from its beginning, by side \[mm\].
+fn program(
+    random: &mut Random,
+    approach: &str,
+    beams: usize,
+    feed_mm_s: f64,
+) -> (String, Vec<(usize, f64, f64)>) {
+    let piece: f64 = random.one_of(&[0.5, 2.0, 10.0]);
+    let mut text = format!("G21 G90 G94 G64\nG43.4\n{approach}\nF{}\n", feed_mm_s * 60.0);
+    let mut on: [Option<f64>; SIDES] = [None; SIDES];
+    let mut programmed = Vec::new();
+    let count = (80.0 / piece) as u64;
+    // A stretch takes some 8 to 40 mm.
+    let changes = (4.0 / piece).ceil() as u64;
+    for k in 0..=count {
+        let here = k as f64 * piece;
+        for side in 0..beams {
+            if k == count || k.is_multiple_of(changes) && random.below(3) == 0 {
+                let ends = on[side].take();
+                if let Some(from) = ends {
+                    programmed.push((side, from, here));
+                    let _ = writeln!(text, "M63 P{side}");
+                } else if k < count {
+                    on[side] = Some(here);
+                    let _ = writeln!(text, "M62 P{side}");
+                }
+            }
+        }
+        // The last piece is one without beams.
+        let _ = writeln!(text, "G1 X{:.3}", BEGINS + here + piece);
+    }
+    (text + "M2\n", programmed)
+}
+
+impl Meddled {
+    /// What has become of the weld, by the board's own telemetry.
+    ///
+    /// # Errors
+    /// What is not as it should be, with everything that was said.
+    pub fn fate(&self) -> Result<Fate, String> {
+        self.judged().map_err(|wrong| {
+            let programmed = &self.programmed;
+            format!("{wrong}\nprogrammed: {programmed:?}, said: {:#?}", self.said)
+        })
+    }
+
+    fn judged(&self) -> Result<Fate, String> {
+        self.nothing_beside()?;
+        match &self.ended.error {
+            None => {}
+            Some(JobError::Interrupted) if self.stopped => return Ok(Fate::Stopped),
+            Some(error) => return Err(error.to_string()),
+        }
+        let named = &self.ended.report.unwelded;
+        let mut left_out = 0;
+        for &(side, from, to) in &self.programmed {
+            for gap in self.gaps(side, from, to) {
+                left_out += 1;
+                let told = named.iter().any(|told| {
+                    usize::from(told.beam) == side + 1 && told.from_mm < gap.1 && told.to_mm > gap.0
+                });
+                if !told {
+                    return Err(format!("beam {} left out {gap:?}, and nobody says so", side + 1));
+                }
+            }
+        }
+        match (left_out, named.is_empty()) {
+            (0, true) => Ok(Fate::Welded),
+            (0, false) => Err(format!("welded, and the report says {named:?}")),
+            _ => Ok(Fate::Named),
+        }
+    }
+
+    /// Way in a tick at the highest override \[mm\].
+    fn tick_mm(&self) -> f64 {
+        2.0 * self.feed_mm_s * TICK_S
+    }
+
+    /// Pieces of the path with the beam of `side` open \[mm\].
+    fn open(&self, side: usize) -> impl Iterator<Item = (f64, f64)> {
+        let open = self.samples.windows(2).filter(move |pair| pair[0].beams[side]);
+        open.map(|pair| (pair[0].s_mm, pair[1].s_mm))
+    }
+
+    /// What is not covered of a stretch.
+    fn gaps(&self, side: usize, from: f64, to: f64) -> Vec<(f64, f64)> {
+        let edge = self.tick_mm() + 2.0 * EDGE;
+        let mut open: Vec<(f64, f64)> = self.open(side).collect();
+        open.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut here = from;
+        let mut gaps = Vec::new();
+        for (begun, ended) in open.into_iter().chain([(to, to)]) {
+            let begun = begun.min(to);
+            if begun - here > edge {
+                gaps.push((here, begun));
+            }
+            here = here.max(ended);
+        }
+        gaps
+    }
+
+    /// No beam is open beside its stretches, below its least speed, backwards, or longer than the overlaps make it.
+    fn nothing_beside(&self) -> Result<(), String> {
+        let edge = TOLD * self.tick_mm();
+        for side in 0..SIDES {
+            let stretches = || self.programmed.iter().filter(move |stretch| stretch.0 == side);
+            let mut opened = 0.0;
+            let mut total = 0.0;
+            let mut last_end = f64::NAN;
+            for (begun, ended) in self.open(side) {
+                let inside =
+                    |&&(_, from, to): &&(usize, f64, f64)| from - 1e-6 <= begun && ended <= to + edge;
+                if !stretches().any(|stretch| inside(&stretch)) || ended < begun {
+                    return Err(format!("beam {} open from {begun} to {ended} mm", side + 1));
+                }
+                opened += f64::from(u8::from(begun != last_end));
+                total += ended - begun;
+                last_end = ended;
+            }
+            let programmed: f64 = stretches().map(|(_, from, to)| to - from).sum();
+            // Every opening but the first of a stretch may be one after a hold.
+            let most = programmed + opened * (self.overlap_mm + edge + 2.0 * EDGE);
+            if total > most {
+                return Err(format!("beam {} on for {total} mm, not {most} mm", side + 1));
+            }
+        }
+        Ok(())
+    }
+}
