@@ -13,6 +13,7 @@ mod homing;
 mod machine;
 mod overlap;
 mod segment;
+pub(crate) mod sensible;
 mod servo;
 mod state;
 mod vibration;

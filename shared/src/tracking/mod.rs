@@ -13,6 +13,7 @@ pub mod parameters;
 pub mod recentre;
 mod seam;
 pub mod search;
+mod sensible;
 
 pub use config::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
 pub use controller::{TickInput, TickOutput, TrackerController};

@@ -3,5 +3,6 @@
 mod bench;
 mod following;
 mod jog;
+mod parameters;
 mod searching;
 mod states;
