@@ -6,12 +6,15 @@ use shared::io::SlideCommand;
 use shared::protocol::{Batch, Capture, ClockRequest, TrackerSample, TrackerTelemetry};
 use shared::tracking::{TickInput, TrackerController};
 
+#[derive(Clone)]
 pub struct TrackerBoard {
-    plant: SlidePlant,
-    command: SlideCommand,
+    pub plant: SlidePlant,
+    pub command: SlideCommand,
     pub controller: Box<TrackerController<KNOTS>>,
     batch: Batch<TrackerSample>,
     telemetry: Option<TrackerTelemetry>,
+    /// Of the last control tick.
+    pub published: Option<(Option<Capture>, TrackerSample)>,
     pub estop: bool,
 }
 
@@ -23,6 +26,7 @@ impl TrackerBoard {
             controller: Box::new(TrackerController::new()),
             batch: Batch::default(),
             telemetry: None,
+            published: None,
             estop: false,
         }
     }
@@ -39,6 +43,7 @@ impl TrackerBoard {
             truth,
         });
         self.command = output.command;
+        self.published = Some((output.capture, output.sample));
         let full = self.batch.push(output.sample);
         self.telemetry = full.map(|samples| TrackerTelemetry { samples });
         (output.capture, output.clock_request)
