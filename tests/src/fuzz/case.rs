@@ -235,13 +235,12 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// The fewest of its steps with which something is still wrong, and what that is.
-    pub fn shrink(&self) -> (Vec<Step>, String) {
+    /// The fewest of its steps with which something is still wrong, and what that is; `None` if nothing is when they
+    /// are done again: the PC was busy, and not the boards.
+    pub fn shrink(&self) -> Option<(Vec<Step>, String)> {
         let wrong = |steps: &[Step]| self.run_steps(steps, &mut Tally::default()).err();
         let mut steps = self.steps.clone();
-        let Some((last, mut what)) = wrong(&steps) else {
-            return (steps, "it did not happen again".to_owned());
-        };
+        let (last, mut what) = wrong(&steps)?;
         steps.truncate(last + 1);
         let mut chunk = steps.len() / 2;
         while chunk > 0 {
@@ -259,7 +258,7 @@ impl<'a> Case<'a> {
             }
             chunk /= 2;
         }
-        (steps, what)
+        Some((steps, what))
     }
 }
 

@@ -25,6 +25,11 @@ const SLIDE: f64 = 1.0 + 0.01 * 50.0 + 0.002 * 50.0 + 0.2;
 pub struct Judge {
     wire: Wire,
     motion: Option<MotionConfig>,
+    /// The ones before, which count until that time \[µs\].
+    before: Option<MotionConfig>,
+    before_us: u64,
+    tracker_before_us: u64,
+    now_us: u64,
     /// Those are the parameters of the machine that is there.
     true_motion: bool,
     tracker: Option<TrackerConfig>,
@@ -67,12 +72,15 @@ impl Judge {
         match (role, request) {
             (Role::Motion, Request::ConfigureMotion(config)) => {
                 self.true_motion = config == shipped.0;
-                self.motion = Some(config.clone());
+                // Until the servo ticks have the new ones they keep to the old ones.
+                self.before = self.motion.replace(config.clone());
+                self.before_us = self.now_us + TOLD_US;
                 self.events.clear();
             }
             (Role::Tracker, Request::ConfigureTracker(config)) => {
                 self.true_tracker = Some(config) == shipped.1;
                 self.tracker = Some(config.clone());
+                self.tracker_before_us = self.now_us + TOLD_US;
             }
             (Role::Motion, Request::BeginPath { start_s_mm, .. }) => {
                 // What stays on between two paths was switched on by the one before.
@@ -96,6 +104,10 @@ impl Judge {
 
     /// Judges a tick.
     pub fn look(&mut self, outputs: &Outputs) -> Result<(), String> {
+        self.now_us = outputs.now_us;
+        if self.now_us > self.before_us {
+            self.before = None;
+        }
         self.finite(outputs)?;
         self.drives(outputs)?;
         self.beams(outputs)?;
@@ -172,10 +184,7 @@ impl Judge {
             if !outputs.motion.beam_gate[side] {
                 continue;
             }
-            let beam = self
-                .motion
-                .as_ref()
-                .and_then(|config| config.beams[side].as_ref());
+            let beam = self.in_force().find_map(|config| config.beams[side].as_ref());
             let Some(beam) = beam else {
                 return Err(format!("gate {side} is open, and there is no such beam"));
             };
@@ -214,21 +223,30 @@ impl Judge {
         on
     }
 
+    /// Parameters that the servo ticks may have.
+    fn in_force(&self) -> impl Iterator<Item = &MotionConfig> {
+        self.motion.iter().chain(&self.before)
+    }
+
     /// No command is higher than the parameters say.
     fn commands(&self, outputs: &Outputs) -> Result<(), String> {
         for motor in 0..MOTORS {
-            let config = self
-                .motion
-                .as_ref()
-                .and_then(|config| config.motors[motor].as_ref());
-            let most = config.map_or(0.0, |config| config.max_command / config.velocity_at_10v.abs());
+            let motors = self.in_force().filter_map(|config| config.motors[motor].as_ref());
+            let most = motors.map(|motor| motor.max_command / motor.velocity_at_10v.abs());
+            let most = most.fold(0.0, f64::max);
             let ratio = outputs.motion.dac[motor].ratio().abs();
             if ratio > most + CODE {
                 let name = MOTOR_NAMES[motor];
                 return Err(format!("{name} is told {ratio} of 10 V, at most {most}"));
             }
         }
-        for slide in 0..SLIDES {
+        // The last command to the slides stands until the next control tick.
+        let slides = if self.now_us > self.tracker_before_us {
+            0..SLIDES
+        } else {
+            0..0
+        };
+        for slide in slides {
             let config = self.tracker.as_ref().map(|config| &config.slides[slide]);
             let most = config.map_or(0.0, |config| {
                 config.max_velocity_mm_s / config.velocity_at_10v_mm_s.abs()

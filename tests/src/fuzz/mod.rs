@@ -56,7 +56,9 @@ pub fn run_case(sessions: &[Session], seed: u64, case: u64, tally: &mut Tally) -
     if this.run(tally).is_ok() {
         return Ok(());
     }
-    let (steps, what) = this.shrink();
+    let Some((steps, what)) = this.shrink() else {
+        return Ok(());
+    };
     let (session, moment) = (&this.session.name, this.moment);
     let mut text = format!("{what}\n  from moment {moment} of {session}:\n");
     for step in steps {
