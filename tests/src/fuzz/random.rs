@@ -10,12 +10,12 @@ impl Random {
     /// Of a seed, and of a case of it.
     pub fn new(seed: u64, case: u64) -> Self {
         let mut random = Self(seed ^ case.wrapping_mul(0x9e37_79b9_7f4a_7c15));
-        random.next();
+        random.bits();
         random
     }
 
     /// 64 bits.
-    pub fn next(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -25,7 +25,7 @@ impl Random {
 
     /// 0 to `below` − 1, `below` being above 0.
     pub fn below(&mut self, below: usize) -> usize {
-        (self.next() % below as u64) as usize
+        (self.bits() % below as u64) as usize
     }
 
     /// True so many times in a hundred.
@@ -114,7 +114,7 @@ fn number(random: &mut Random, wire: &Wire, bytes: &mut Vec<u8>) {
             let after = match random.below(6) {
                 0 => before * [0.0, -1.0, 2.0, 0.5, 1e-6, 1e6, 1e12][random.below(7)],
                 1 => before + [1e-9, -1e-9, 1e-3, 1.0, -1.0, 1e3][random.below(6)],
-                2 => f64::from_bits(random.next()),
+                2 => f64::from_bits(random.bits()),
                 _ => *random.of(&DOUBLES),
             };
             bytes[at..at + 8].copy_from_slice(&after.to_le_bytes());
@@ -137,8 +137,8 @@ fn raw(random: &mut Random, bytes: &mut Vec<u8>) {
     let length = bytes.len();
     match random.below(4) {
         0 if length > 0 => bytes[random.below(length)] ^= 1 << random.below(8),
-        1 if length > 0 => bytes[random.below(length)] = random.next() as u8,
+        1 if length > 0 => bytes[random.below(length)] = random.bits() as u8,
         2 => bytes.truncate(random.below(length + 1)),
-        _ => bytes.insert(random.below(length + 1), random.next() as u8),
+        _ => bytes.insert(random.below(length + 1), random.bits() as u8),
     }
 }
