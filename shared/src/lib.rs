@@ -21,3 +21,4 @@ pub mod roll_call;
 pub mod tracking;
 pub mod trajectory;
 pub mod units;
+pub mod weakened;

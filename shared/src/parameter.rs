@@ -1,13 +1,17 @@
 //! Validation of machine parameters: every `build` names the field it refuses.
 
+use core::fmt;
+use core::ops::RangeInclusive;
 use nalgebra::Vector3;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// A parameter that makes no sense, by the name it has in the machine file.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema, Error)]
-#[error("{} of {} is {value}", FIELDS.get(*.field as usize).unwrap_or(&"a field"), OWNERS.get(*.owner as usize).unwrap_or(&"the machine"))]
+///
+/// Two are equal where owner, field and value are.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, Schema, Error)]
+#[error("{} of {} is {value}{allowed}", FIELDS.get(*.field as usize).unwrap_or(&"a field"), OWNERS.get(*.owner as usize).unwrap_or(&"the machine"))]
 pub struct ParameterError {
     /// Index into the names of owners.
     owner: u8,
@@ -15,6 +19,39 @@ pub struct ParameterError {
     field: u8,
     /// What was given.
     value: f32,
+    /// What may be.
+    allowed: Allowed,
+}
+
+impl PartialEq for ParameterError {
+    fn eq(&self, other: &Self) -> bool {
+        (self.owner, self.field) == (other.owner, other.field)
+            && (self.value == other.value || self.value.is_nan() && other.value.is_nan())
+    }
+}
+
+/// What a parameter may be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+enum Allowed {
+    /// Something else.
+    Unsaid,
+    /// Above 0.
+    Positive,
+    /// 0 or above.
+    NotNegative,
+    /// From the first to the second.
+    Within(f32, f32),
+}
+
+impl fmt::Display for Allowed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unsaid => Ok(()),
+            Self::Positive => write!(f, ", and must be above 0"),
+            Self::NotNegative => write!(f, ", and must not be below 0"),
+            Self::Within(min, max) => write!(f, ", and must be from {min} to {max}"),
+        }
+    }
 }
 
 const OWNERS: &[&str] = &[
@@ -109,19 +146,28 @@ const FIELDS: &[&str] = &[
     "max_path_speed_mm_s",
     "max_seam_deviation_mm",
     "max_seam_slope",
+    "overlap_mm",
 ];
 
 impl ParameterError {
     /// The error for `field` of `owner`; both must be in the tables of this file, or they are reported as
     /// "a field" of "the machine".
     pub fn new(owner: &str, field: &str, value: f64) -> Self {
-        let place =
-            |names: &[&str], name: &str| names.iter().position(|n| *n == name).map_or(u8::MAX, |i| i as u8);
+        let place = |names: &[&str], name: &str| {
+            let place = names.iter().position(|n| *n == name);
+            debug_assert!(place.is_some(), "{name} is not in the tables");
+            place.map_or(u8::MAX, |i| i as u8)
+        };
         Self {
             owner: place(OWNERS, owner),
             field: place(FIELDS, field),
             value: value as f32,
+            allowed: Allowed::Unsaid,
         }
+    }
+
+    fn allowing(self, allowed: Allowed) -> Self {
+        Self { allowed, ..self }
     }
 }
 
@@ -134,22 +180,40 @@ pub fn check(owner: &str, field: &str, value: f64, ok: impl Fn(f64) -> bool) -> 
     }
 }
 
-/// `vector` if all its numbers are finite.
-pub fn finite(owner: &str, field: &str, vector: &[f64; 3]) -> Result<Vector3<f64>, ParameterError> {
+/// No part of a machine is longer, and no axis farther from its zero \[mm\]: 100 m.
+pub const LARGEST_MACHINE_MM: f64 = 1e5;
+
+/// `vector` \[mm\] if it is one of a machine: none of its numbers beyond [`LARGEST_MACHINE_MM`].
+pub fn length_of_machine(
+    owner: &str,
+    field: &str,
+    vector: &[f64; 3],
+) -> Result<Vector3<f64>, ParameterError> {
     for &x in vector {
-        check(owner, field, x, |_| true)?;
+        within(owner, field, x, -LARGEST_MACHINE_MM..=LARGEST_MACHINE_MM)?;
     }
     Ok(Vector3::from(*vector))
 }
 
 /// As [`check`], for a value that must be above zero.
 pub fn positive(owner: &str, field: &str, value: f64) -> Result<f64, ParameterError> {
-    check(owner, field, value, |x| x > 0.0)
+    check(owner, field, value, |x| x > 0.0).map_err(|error| error.allowing(Allowed::Positive))
 }
 
 /// As [`check`], for a value that must not be below zero.
 pub fn not_negative(owner: &str, field: &str, value: f64) -> Result<f64, ParameterError> {
-    check(owner, field, value, |x| x >= 0.0)
+    check(owner, field, value, |x| x >= 0.0).map_err(|error| error.allowing(Allowed::NotNegative))
+}
+
+/// As [`check`], for a value that must be in a range, which the error tells.
+pub fn within(
+    owner: &str,
+    field: &str,
+    value: f64,
+    range: RangeInclusive<f64>,
+) -> Result<f64, ParameterError> {
+    let allowed = Allowed::Within(*range.start() as f32, *range.end() as f32);
+    check(owner, field, value, |x| range.contains(&x)).map_err(|error| error.allowing(allowed))
 }
 
 #[cfg(test)]
@@ -161,7 +225,14 @@ mod tests {
     #[test]
     fn a_bad_value_is_named_as_in_the_machine_file() {
         let error = positive("Y", "kp", -3.0).unwrap_err();
-        assert_eq!(error.to_string(), "kp of Y is -3");
+        assert_eq!(error.to_string(), "kp of Y is -3, and must be above 0");
+        let error = within("axis X", "travel_max", 1e6, 0.0..=5e3).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "travel_max of axis X is 1000000, and must be from 0 to 5000"
+        );
+        assert_eq!(error, ParameterError::new("axis X", "travel_max", 1e6));
+        assert_ne!(error, ParameterError::new("axis Y", "travel_max", 1e6));
         assert!(positive("Y", "kp", f64::NAN).is_err());
         assert_eq!(not_negative("Y", "ki", 0.0), Ok(0.0));
     }

@@ -5,6 +5,7 @@ mod cargo;
 mod emulate;
 mod firmware;
 mod flash;
+mod fuzz;
 mod interrupt;
 mod layout;
 mod machine;
@@ -53,6 +54,8 @@ enum Task {
     /// Count instructions, on the PC by valgrind and on the emulated Cortex-M7; run programs through the planner
     #[command(subcommand)]
     Bench(bench::Benchmark),
+    /// Tell both controllers what nobody should: random and mutated requests and datagrams, with overflow checks
+    Fuzz(fuzz::Fuzz),
     /// Flash and RAM of all four firmwares against their budgets
     Size,
     /// Write a firmware to a board by probe-rs
@@ -85,6 +88,7 @@ fn main() -> ExitCode {
         }),
         Task::Test => set_up(&setup::ALL).and_then(|()| test::run()),
         Task::Bench(benchmark) => set_up(benchmark.wants()).and_then(|()| benchmark.run()),
+        Task::Fuzz(arguments) => fuzz::run(&arguments),
         Task::Size => set_up(&[setup::Tool::ArmTarget]).and_then(|()| size::run()),
         Task::Flash { firmware, board } => {
             set_up(&[setup::Tool::ArmTarget]).and_then(|()| flash::run(firmware, board))

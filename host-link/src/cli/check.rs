@@ -51,7 +51,17 @@ impl Check {
         }
         let ran = dry_run::run(&machine, &planner, &paths, 1.0).with_context(|| format!("program {name}"))?;
         print(&paths, &ran);
+        print_weakened(&machine);
         Ok(())
+    }
+}
+
+/// Protections that the machine file leaves weaker than usual.
+fn print_weakened(machine: &MachineFile) {
+    let motion = machine.motion.weakened();
+    let tracker = machine.tracking.as_ref().map(|unit| unit.board.weakened());
+    for weakened in motion.iter().chain(tracker.iter().flatten()) {
+        println!("weak protection: {weakened}");
     }
 }
 

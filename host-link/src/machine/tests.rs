@@ -39,6 +39,45 @@ fn the_shipped_machine_has_the_published_travel_and_speeds() {
 }
 
 #[test]
+fn no_shipped_machine_weakens_a_protection_and_a_late_one_is_named() {
+    for name in [
+        "dual-beam-gantry",
+        "pipe-welder",
+        "ac-head",
+        "wire-arc",
+        "stir-gantry",
+    ] {
+        let machine = shipped(name);
+        assert!(machine.motion.weakened().is_empty(), "{name}");
+        assert!(
+            machine
+                .tracking
+                .is_none_or(|unit| unit.board.weakened().is_empty()),
+            "{name}"
+        );
+    }
+    let text = SHIPPED
+        .replace("link_timeout_ms = 500", "link_timeout_ms = 3000")
+        .replace("hold_mm = 2.0", "hold_mm = 20.0");
+    let machine = MachineFile::parse("m.toml", &text).unwrap();
+    let (motion, tracker) = (
+        machine.motion.weakened(),
+        machine.tracking.unwrap().board.weakened(),
+    );
+    let told: Vec<String> = motion.iter().chain(&tracker).map(ToString::to_string).collect();
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told[0].starts_with("link_timeout_ms is 3000"), "{told:?}");
+    assert!(told[1].contains("23 mm together"), "{told:?}");
+}
+
+#[test]
+fn a_value_out_of_its_range_is_told_with_the_range() {
+    let error = error_of(&SHIPPED.replacen("power_at_10v_w = 4000.0", "power_at_10v_w = 1e300", 1));
+    assert!(error.contains("power_at_10v_w of beam 1"), "{error}");
+    assert!(error.contains("must be from 1 to 100000"), "{error}");
+}
+
+#[test]
 fn an_unknown_key_is_named_with_its_line() {
     let line = 1 + SHIPPED.lines().position(|l| l == "[head]").unwrap();
     let text = SHIPPED.replace("[head]", "[head]\nwobble = 3.0");

@@ -11,7 +11,7 @@ use super::tool_axis::{POLE, Tilt, TiltMotion, axis_in_motion};
 use super::{AxisLimits, AxisMotion, Chain, KinematicsError};
 use crate::geometry::{Pose, PoseMotion};
 use crate::io::AXES;
-use crate::parameter::{ParameterError, check, finite};
+use crate::parameter::{ParameterError, check, length_of_machine};
 use crate::units::{next_to, round_half_away};
 use core::f64::consts::PI;
 use nalgebra::Vector3;
@@ -32,13 +32,13 @@ pub struct AcHeadConfig {
 }
 
 impl AcHeadConfig {
-    /// Checks the geometry: every number finite, and the focus below the A axis. The travel of A and C in `limits`
+    /// Checks the geometry: every number one of a machine, and the focus below the A axis. The travel of A and C in `limits`
     /// decides which solutions there are.
     pub fn build(&self, limits: &[AxisLimits; AXES]) -> Result<AcHead, ParameterError> {
         check("kinematics", "o2_mm", self.o2_mm[2], |z| z < 0.0)?;
         Ok(AcHead {
-            o1: finite("kinematics", "o1_mm", &self.o1_mm)?,
-            o2: finite("kinematics", "o2_mm", &self.o2_mm)?,
+            o1: length_of_machine("kinematics", "o1_mm", &self.o1_mm)?,
+            o2: length_of_machine("kinematics", "o2_mm", &self.o2_mm)?,
             limits_a: limits[A],
             limits_c: limits[C],
         })

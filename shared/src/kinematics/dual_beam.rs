@@ -8,7 +8,7 @@ use super::rpy::{RollPitchYaw, across_z};
 use super::{AxisLimits, AxisMotion, Chain, KinematicsError};
 use crate::geometry::{Pose, PoseMotion};
 use crate::io::AXES;
-use crate::parameter::{ParameterError, check, finite};
+use crate::parameter::{ParameterError, check, length_of_machine};
 use nalgebra::Vector3;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -26,14 +26,14 @@ pub struct DualBeamConfig {
 }
 
 impl DualBeamConfig {
-    /// Checks the geometry: every number finite, and the tip below the A axis. The solution is unique within
+    /// Checks the geometry: every number one of a machine, and the tip below the A axis. The solution is unique within
     /// any travel, so the limits of the axes do not matter.
     pub fn build(&self, _limits: &[AxisLimits; AXES]) -> Result<DualBeam, ParameterError> {
         check("kinematics", "o3_mm", self.o3_mm[2], |z| z < 0.0)?;
         Ok(DualBeam {
-            o1: finite("kinematics", "o1_mm", &self.o1_mm)?,
-            o2: finite("kinematics", "o2_mm", &self.o2_mm)?,
-            o3: finite("kinematics", "o3_mm", &self.o3_mm)?,
+            o1: length_of_machine("kinematics", "o1_mm", &self.o1_mm)?,
+            o2: length_of_machine("kinematics", "o2_mm", &self.o2_mm)?,
+            o3: length_of_machine("kinematics", "o3_mm", &self.o3_mm)?,
         })
     }
 }

@@ -68,6 +68,12 @@ impl AxisMotion {
         }
     }
 
+    /// No number of it is infinite, or none at all.
+    pub fn is_finite(&self) -> bool {
+        let all = [&self.position, &self.velocity, &self.acceleration];
+        all.into_iter().flatten().all(|x| x.is_finite())
+    }
+
     /// From derivatives over path length to derivatives over time, at path speed `v` \[mm/s\] and path
     /// acceleration `a` \[mm/s²\].
     pub fn at_speed(&self, v: f64, a: f64) -> Self {

@@ -13,7 +13,7 @@ use super::tool_axis::{POLE, POLE_RATE, axis_in_motion};
 use super::{AxisLimits, AxisMotion, Chain, KinematicsError};
 use crate::geometry::{Pose, PoseMotion};
 use crate::io::AXES;
-use crate::parameter::{ParameterError, not_negative};
+use crate::parameter::{LARGEST_MACHINE_MM, ParameterError, within};
 use crate::units::next_to;
 use nalgebra::Vector3;
 use postcard_schema::Schema;
@@ -34,7 +34,7 @@ impl PipeWelderConfig {
     /// Checks the geometry. There is no branch to choose, so the limits of the axes do not matter.
     pub fn build(&self, _limits: &[AxisLimits; AXES]) -> Result<PipeWelder, ParameterError> {
         Ok(PipeWelder {
-            torch: not_negative("kinematics", "torch_mm", self.torch_mm)?,
+            torch: within("kinematics", "torch_mm", self.torch_mm, 0.0..=LARGEST_MACHINE_MM)?,
         })
     }
 }

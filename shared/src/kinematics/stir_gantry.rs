@@ -14,7 +14,7 @@ use super::tool_axis::{POLE, Tilt, axis_in_motion};
 use super::{AxisLimits, AxisMotion, Chain, KinematicsError};
 use crate::geometry::{Pose, PoseMotion};
 use crate::io::AXES;
-use crate::parameter::{ParameterError, check};
+use crate::parameter::{LARGEST_MACHINE_MM, ParameterError, check};
 use crate::units::next_to;
 use nalgebra::Vector3;
 use postcard_schema::Schema;
@@ -48,7 +48,9 @@ impl StirGantryConfig {
     /// Checks the geometry: the pin hangs. The travel of B in `limits` decides which tilts there are.
     pub fn build(&self, limits: &[AxisLimits; AXES]) -> Result<StirGantry, ParameterError> {
         Ok(StirGantry {
-            l4: check("kinematics", "l4_mm", self.l4_mm, |l4| l4 < 0.0)?,
+            l4: check("kinematics", "l4_mm", self.l4_mm, |l4| {
+                (-LARGEST_MACHINE_MM..0.0).contains(&l4)
+            })?,
             sign: match self.tilt {
                 StirTilt::Positive => 1.0,
                 StirTilt::Negative => -1.0,

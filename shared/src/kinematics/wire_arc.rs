@@ -33,7 +33,7 @@ use super::rpy::RollPitchYaw;
 use super::{AxisLimits, AxisMotion, Chain, KinematicsError};
 use crate::geometry::{Pose, PoseMotion};
 use crate::io::AXES;
-use crate::parameter::{ParameterError, check, finite};
+use crate::parameter::{ParameterError, check, length_of_machine};
 use crate::units::next_to;
 use nalgebra::Vector3;
 use postcard_schema::Schema;
@@ -54,14 +54,14 @@ pub struct WireArcConfig {
 }
 
 impl WireArcConfig {
-    /// Checks the geometry: every number finite, and the wire below the A axis. The solution is unique but for
+    /// Checks the geometry: every number one of a machine, and the wire below the A axis. The solution is unique but for
     /// whole turns of C, so the limits of the axes do not matter.
     pub fn build(&self, _limits: &[AxisLimits; AXES]) -> Result<WireArc, ParameterError> {
         check("kinematics", "torch_mm", self.torch_mm[2], |z| z < 0.0)?;
         Ok(WireArc {
-            torch: finite("kinematics", "torch_mm", &self.torch_mm)?,
-            tilt_axis: finite("kinematics", "tilt_axis_mm", &self.tilt_axis_mm)?,
-            turntable: finite("kinematics", "turntable_mm", &self.turntable_mm)?,
+            torch: length_of_machine("kinematics", "torch_mm", &self.torch_mm)?,
+            tilt_axis: length_of_machine("kinematics", "tilt_axis_mm", &self.tilt_axis_mm)?,
+            turntable: length_of_machine("kinematics", "turntable_mm", &self.turntable_mm)?,
         })
     }
 }

@@ -56,6 +56,12 @@ impl BeamLimits {
         self.beams.get(usize::from(side)).is_some_and(Option::is_some)
     }
 
+    /// Power of the beam of `side` at +10 V \[W\], if the machine has it.
+    pub fn most_power_w(&self, side: u8) -> Option<f64> {
+        let beam = self.beams.get(usize::from(side))?.as_ref()?;
+        Some(beam.power_at_10v_w)
+    }
+
     /// How far the beam of `side` goes over again after a hold \[mm\]; `None` if it stays on in a hold.
     pub fn overlap(&self, side: usize) -> Option<f64> {
         self.beams[side]

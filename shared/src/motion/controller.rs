@@ -66,6 +66,8 @@ pub struct MotionController {
     servo_setup: Option<ServoSetup>,
     /// Drives were ordered on at the last tick.
     enabled: bool,
+    /// They have to go off since then, whatever was asked for after that.
+    released: bool,
     homing: Option<Homing>,
     homed: bool,
     planner: BoardPlanner,
@@ -119,6 +121,7 @@ impl MotionController {
             machine: None,
             servo_setup: None,
             enabled: false,
+            released: false,
             homing: None,
             homed: false,
             planner: BoardPlanner::new(),
@@ -178,8 +181,9 @@ impl MotionController {
         }
         let mut from = self.reference;
         let mut step = HomingStep::default();
-        // With new parameters under way to the servo ticks, this report is still of the old ones.
-        let ready = self.servo_setup.is_none();
+        // With new parameters under way to the servo ticks, this report is still of the old ones; and drives that have
+        // to go off do so before a search begins.
+        let ready = self.servo_setup.is_none() && !core::mem::take(&mut self.released);
         match self.state {
             State::Homing if ready => step = self.home(report),
             State::Off | State::Homing | State::Idle | State::Fault => {}
@@ -349,6 +353,7 @@ impl MotionController {
     }
 
     fn leave_path(&mut self) {
+        self.released = true;
         self.along = [SpeedState::at_rest(self.along[0].s); 3];
         self.path.forget();
         self.aside = Aside::NONE;

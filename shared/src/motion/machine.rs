@@ -5,7 +5,7 @@ use super::beams::BeamLimits;
 use super::homing::HomingPlan;
 use super::segment::PATH_PERIOD_S;
 use super::servo::ServoSetup;
-use super::{MotionConfig, SERVO_PERIOD_S};
+use super::{MotionConfig, SERVO_PERIOD_S, sensible};
 use crate::control::{Gantry, Pid};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use crate::kinematics::{AXIS_OWNERS, AxisLimits, AxisMotion, Kinematics, KinematicsError};
@@ -42,9 +42,6 @@ pub struct Machine {
 impl Machine {
     /// Checks the parameters; those of the servo loops are returned beside the rest, because they live in another task.
     pub fn build(config: &MotionConfig) -> Result<(Self, ServoSetup), ParameterError> {
-        if config.link_timeout_ms == 0 {
-            return Err(ParameterError::new("link", "link_timeout_ms", 0.0));
-        }
         check_fitted(config)?;
         let limits = AxisLimits::build_all(&config.axes)?;
         let gantry = build_gantry(config)?;
@@ -57,7 +54,9 @@ impl Machine {
             limits,
             gantry,
         };
-        Ok((machine, ServoSetup::build(&config.motors, gantry)?))
+        let servo = ServoSetup::build(&config.motors, gantry)?;
+        sensible::check(config)?;
+        Ok((machine, servo))
     }
 
     /// Limits of a path whose own are `path`.

@@ -14,6 +14,7 @@ mod machine;
 mod overlap;
 mod permit;
 mod segment;
+pub(crate) mod sensible;
 mod servo;
 mod state;
 mod vibration;

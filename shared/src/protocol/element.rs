@@ -129,7 +129,7 @@ impl PathElement {
                 (Shape::Arc(arc), arc.length())
             }
             PathShape::Curve(numbers) => {
-                let curve = ArcLengthCurve::from(numbers);
+                let curve = ArcLengthCurve::try_from(numbers).map_err(|_| bad)?;
                 (Shape::Curve(curve), curve.length())
             }
         };
@@ -281,6 +281,33 @@ mod tests {
         }
         elements.last_mut().unwrap().join = Join::Stop;
         elements
+    }
+
+    /// A degree of 0 has no highest term, and a curve that is not as long as it says would be a jump of speed.
+    #[test]
+    fn numbers_that_are_no_curve_are_refused() {
+        let all = elements();
+        let curve = all
+            .iter()
+            .find(|element| matches!(element.shape, Shape::Curve(_)));
+        let sent = PathElement::from(curve.unwrap());
+        let mut buffer = [0; 1024];
+        let length = postcard::to_slice(&sent, &mut buffer).unwrap().len();
+        // Line, which shape, middle: then the number of terms of four numbers each.
+        let line = postcard::to_slice(&sent.line, &mut [0; 8]).unwrap().len();
+        let at = line + 1 + 3 * 8;
+        assert_eq!(buffer[at], 3);
+        let mut none = [0; 1024];
+        none[..at].copy_from_slice(&buffer[..at]);
+        none[at + 1..length - 96].copy_from_slice(&buffer[at + 1 + 96..length]);
+        let none: PathElement = postcard::from_bytes(&none).unwrap();
+        assert_eq!(none.build(), Err(BadElement { line: sent.line }));
+        for bad in [f64::NAN, f64::INFINITY, 1e300, 0.0] {
+            let mut wrong = buffer;
+            wrong[at + 1..at + 9].copy_from_slice(&bad.to_le_bytes());
+            let wrong: PathElement = postcard::from_bytes(&wrong).unwrap();
+            assert_eq!(wrong.build(), Err(BadElement { line: sent.line }), "{bad}");
+        }
     }
 
     #[test]

@@ -14,6 +14,7 @@ pub mod plausible;
 pub mod recentre;
 mod seam;
 pub mod search;
+mod sensible;
 pub mod supervision;
 
 pub use config::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};

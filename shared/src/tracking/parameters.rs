@@ -7,7 +7,7 @@ use super::map::{MAP_CAPACITY, MapLaw};
 use super::plausible::Belief;
 use super::search::SearchLaw;
 use super::supervision::{Supervised, Supervision};
-use super::{SlideConfig, TrackerConfig, TrackingConfig};
+use super::{SlideConfig, TrackerConfig, TrackingConfig, sensible};
 use crate::control::ReferenceSearch;
 use crate::io::{SLIDE_NAMES, SLIDES};
 use crate::parameter::{ParameterError, check, not_negative, positive};
@@ -85,6 +85,7 @@ impl TrackerConfig {
             })?,
             preview,
         };
+        sensible::check(self)?;
         // Spaced so that the map reaches from behind the beam to the camera at any path speed.
         let reach = heads.camera_lead() + 2.0 * window + hold;
         let gate = positive("tracking", "gate_mm", tracking.gate_mm)?;

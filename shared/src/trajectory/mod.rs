@@ -16,12 +16,12 @@ mod trapezoid;
 mod window;
 
 pub use curve::{
-    ArcLengthCurve, ArcLengthPiece, ArcLengthPieces, CurveNumbers, Cusp, FLUCTUATION, TooUneven,
+    ArcLengthCurve, ArcLengthPiece, ArcLengthPieces, CurveNumbers, Cusp, FLUCTUATION, NoCurve, TooUneven,
 };
 pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
 pub use matched_turn::MatchedTurn;
 pub use path::{Path, PathError, PathPoint, PathSpace};
-pub use planner::{Output, PlanLimits, Planner, PushError, Way};
+pub use planner::{LONGEST_PATH, Output, PlanLimits, Planner, PushError, Way};
 pub use reference::{ReferenceError, Unreachable, at_unit_speed, axes_at};
 pub use rest_to_rest::RestToRest;
 pub use speed::{SpeedLimits, SpeedState};

@@ -4,6 +4,8 @@ mod aside;
 mod bench;
 mod holds;
 mod homing;
+mod numbers;
+mod parameters;
 mod permits;
 mod steps;
 mod stops;

@@ -4,6 +4,7 @@ mod bench;
 mod following;
 mod forged;
 mod jog;
+mod parameters;
 mod permits;
 mod searching;
 mod states;

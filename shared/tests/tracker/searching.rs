@@ -139,7 +139,7 @@ fn the_search_stops_while_the_machine_stands_or_the_beam_is_on() {
 
 #[test]
 fn a_search_as_wide_as_the_travel_never_reaches_its_ends() {
-    let mut config = search(30.0);
+    let mut config = search(14.0);
     for slide in &mut config.slides {
         slide.travel_min_mm = -2.0;
     }

@@ -488,10 +488,20 @@ fn every_fifth_tick_is_a_capture_of_that_moment() {
 }
 
 #[test]
-fn a_saturation_trip_that_never_comes_is_no_overflow() {
+fn a_saturation_trip_that_never_comes_is_refused_and_the_longest_is_no_overflow() {
     let mut config = config();
     config.tracking.saturation_trip_ms = u32::MAX;
     let mut bench = bench();
+    let refusal = Refusal::Parameter(ParameterError::new(
+        "tracking",
+        "saturation_trip_ms",
+        f64::from(u32::MAX),
+    ));
+    assert_eq!(
+        bench.ask(Request::ConfigureTracker(config.clone())),
+        Response::Refused(refusal)
+    );
+    config.tracking.saturation_trip_ms = 5000;
     bench.prepare_with(config);
     bench.tracking = true;
     bench.speed = 100.0;

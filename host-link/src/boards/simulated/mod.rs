@@ -6,7 +6,10 @@
 //! from the motion board's, as on real boards, so that the relation of the clocks has to be found here too.
 
 mod motion;
+mod outputs;
 mod tracker;
+
+pub use outputs::Outputs;
 
 use super::{Boards, LinkError};
 use motion::MotionBoard;
@@ -34,7 +37,7 @@ const CONTROL_PHASE_US: u64 = 637;
 const TRACKER_CLOCK_US: u64 = 40_123_456;
 
 /// Something that happens at a time.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Happening {
     ServoTick,
     ControlTick,
@@ -53,6 +56,7 @@ enum Node {
 }
 
 /// Sorted by time, then by order of entry.
+#[derive(Clone)]
 struct Entry(Reverse<(u64, u64)>, Happening);
 
 impl PartialEq for Entry {
@@ -76,6 +80,7 @@ impl Ord for Entry {
 }
 
 /// Two simulated boards with their machine.
+#[derive(Clone)]
 pub struct SimulatedBoards {
     now_us: u64,
     entered: u64,
@@ -195,6 +200,19 @@ impl SimulatedBoards {
         }
     }
 
+    /// What a board answers, in no time.
+    fn answer(&mut self, role: Role, request: &Request) -> Response {
+        match (role, request) {
+            (_, Request::Hello { .. }) => {
+                Response::Identity(self.identities[usize::from(role == Role::Tracker)].clone())
+            }
+            (_, Request::Subscribe { .. }) => Response::Session { number: 1 },
+            (Role::Motion, Request::PathStatesTo { .. }) => Response::Done,
+            (Role::Motion, request) => self.motion.handle(request),
+            (Role::Tracker, request) => self.tracker.controller.handle(request, 0),
+        }
+    }
+
     /// A datagram has arrived; clock requests are answered as the boards' network does.
     fn arrive(&mut self, from: Node, to: Node, datagram: Datagram) {
         let clock_us = match to {
@@ -225,15 +243,7 @@ impl Boards for SimulatedBoards {
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         let end_us = self.now_us + REQUEST_US;
         while self.step(end_us) {}
-        Ok(match (role, request) {
-            (_, Request::Hello { .. }) => {
-                Response::Identity(self.identities[usize::from(role == Role::Tracker)].clone())
-            }
-            (_, Request::Subscribe { .. }) => Response::Session { number: 1 },
-            (Role::Motion, Request::PathStatesTo { .. }) => Response::Done,
-            (Role::Motion, request) => self.motion.handle(request),
-            (Role::Tracker, request) => self.tracker.controller.handle(request, 0),
-        })
+        Ok(self.answer(role, request))
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {

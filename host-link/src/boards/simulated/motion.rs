@@ -5,14 +5,17 @@ use shared::io::MotionCommand;
 use shared::motion::{MotionController, PathTickInput, SERVO_TICKS_PER_PATH_TICK, ServoLoops};
 use shared::protocol::{Batch, Datagram, MotionSample, MotionTelemetry, PathState, Request, Response};
 
+#[derive(Clone)]
 pub struct MotionBoard {
-    plant: MotionPlant,
-    command: MotionCommand,
+    pub plant: MotionPlant,
+    pub command: MotionCommand,
     servo: ServoLoops,
-    controller: Box<MotionController>,
+    pub controller: Box<MotionController>,
     ticks: u32,
     batch: Batch<MotionSample>,
     telemetry: Option<MotionTelemetry>,
+    /// Of the last path tick.
+    pub published: Option<(PathState, MotionSample)>,
     pub estop: bool,
 }
 
@@ -26,6 +29,7 @@ impl MotionBoard {
             ticks: 0,
             batch: Batch::default(),
             telemetry: None,
+            published: None,
             estop: false,
         }
     }
@@ -52,6 +56,7 @@ impl MotionBoard {
             self.servo.configure(setup);
         }
         self.servo.give(&output.order);
+        self.published = Some((output.path_state, output.sample));
         let full = self.batch.push(output.sample);
         self.telemetry = full.map(|samples| MotionTelemetry { samples });
         output.path_state

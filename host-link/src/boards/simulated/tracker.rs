@@ -3,15 +3,18 @@
 use super::KNOTS;
 use plant::SlidePlant;
 use shared::io::SlideCommand;
-use shared::protocol::{Batch, TrackerSample, TrackerTelemetry};
+use shared::protocol::{Batch, Capture, TrackerSample, TrackerTelemetry};
 use shared::tracking::{TickInput, TickOutput, TrackerController};
 
+#[derive(Clone)]
 pub struct TrackerBoard {
-    plant: SlidePlant,
-    command: SlideCommand,
+    pub plant: SlidePlant,
+    pub command: SlideCommand,
     pub controller: Box<TrackerController<KNOTS>>,
     batch: Batch<TrackerSample>,
     telemetry: Option<TrackerTelemetry>,
+    /// Of the last control tick.
+    pub published: Option<(Option<Capture>, TrackerSample)>,
     pub estop: bool,
 }
 
@@ -23,6 +26,7 @@ impl TrackerBoard {
             controller: Box::new(TrackerController::new()),
             batch: Batch::default(),
             telemetry: None,
+            published: None,
             estop: false,
         }
     }
@@ -41,6 +45,7 @@ impl TrackerBoard {
             truth,
         });
         self.command = output.command;
+        self.published = Some((output.capture, output.sample));
         let full = self.batch.push(output.sample);
         self.telemetry = full.map(|samples| TrackerTelemetry { samples });
         output

@@ -51,16 +51,17 @@ impl PowerBasis {
         (self.middle, &self.terms[..self.degree])
     }
 
-    /// A curve of these [parts](Self::parts); terms beyond the highest degree are left out.
-    pub fn of_parts(middle: Vector3<f64>, terms: &[Vector4<f64>]) -> Self {
+    /// A curve of these [parts](Self::parts); terms beyond the highest degree are left out. `None` without terms: a
+    /// point is no curve.
+    pub fn of_parts(middle: Vector3<f64>, terms: &[Vector4<f64>]) -> Option<Self> {
         let degree = terms.len().min(MAX_DEGREE);
         let mut all = [Vector4::zeros(); MAX_DEGREE];
         all[..degree].copy_from_slice(&terms[..degree]);
-        Self {
+        (degree > 0).then_some(Self {
             middle,
             terms: all,
             degree,
-        }
+        })
     }
 
     /// Point \[mm\], first and second derivative over `v`, by Horner's rule. Outside −1 to 1 the curve goes on by

@@ -8,8 +8,16 @@ use crate::motion::State;
 use crate::motion::beams::EVENTS;
 use crate::motion::overlap::way_back;
 use crate::protocol::{PathAction, PathElement, PathEvent, PathLimits, Refusal, Room};
-use crate::trajectory::{Element, Join, PathSpace, SpeedLimits, axes_at};
+use crate::trajectory::{Element, Join, LONGEST_PATH, PathSpace, SpeedLimits, axes_at};
+use core::ops::RangeInclusive;
 
+/// Accelerations of a path \[mm/s²\]: with less a stop from 1 m/min takes more than 17 s, and more than a thousand times
+/// that of gravity no machine has.
+const ACCELERATION: RangeInclusive<f64> = 1.0..=1e7;
+/// Jerks \[mm/s³\]: from none to the full acceleration within a second at least, and within a servo tick at most.
+const JERK: RangeInclusive<f64> = 1.0..=4e10;
+/// Tolerances \[mm\]: less than a grating tells, and more than a machine is long, is a mistake.
+const TOLERANCE: RangeInclusive<f64> = 1e-6..=1e4;
 /// A path begins where the axes stand, to this much (mm or rad).
 const START_TOLERANCE: f64 = 2e-6;
 
@@ -36,11 +44,10 @@ impl MotionController {
         if self.state != State::Idle {
             return Err(Refusal::WrongState { state: self.state });
         }
-        let positive = |x: f64| x.is_finite() && x > 0.0;
-        let sound = positive(limits.acceleration_mm_s2)
-            && positive(limits.jerk_mm_s3)
-            && positive(limits.tolerance_mm)
-            && start_s.is_finite();
+        let sound = ACCELERATION.contains(&limits.acceleration_mm_s2)
+            && JERK.contains(&limits.jerk_mm_s3)
+            && TOLERANCE.contains(&limits.tolerance_mm)
+            && libm::fabs(start_s) <= LONGEST_PATH;
         if !sound {
             return Err(Refusal::BadLimits);
         }
@@ -151,10 +158,11 @@ impl MotionController {
         let Some(machine) = &self.machine else {
             return false;
         };
+        let most = |side| machine.beams.most_power_w(side);
         let in_tool_space = self.path.space == PathSpace::Tool;
         let sound = match event.action {
             PathAction::Beam { side, on } => machine.beams.has(side) && (in_tool_space || !on),
-            PathAction::Power { side, watt } => machine.beams.has(side) && watt.is_finite() && watt >= 0.0,
+            PathAction::Power { side, watt } => most(side).is_some_and(|most| (0.0..=most).contains(&watt)),
             PathAction::Tracking { on } => in_tool_space || !on,
         };
         sound && event.s_mm.is_finite()

@@ -138,6 +138,10 @@ impl MotionController {
                 }
             }
         }
+        if !output.axes.is_finite() {
+            self.trip(Fault::NotANumber);
+            return;
+        }
         if let Some(axis) = machine.jump(&self.axes, &output.axes.position) {
             let distance = (output.axes.position[axis] - self.axes[axis]) / AXIS_UNIT[axis];
             self.trip(Fault::Jump {

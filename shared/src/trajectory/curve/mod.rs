@@ -9,7 +9,7 @@ mod numbers;
 mod pieces;
 
 pub use arc_length::TooUneven;
-pub use numbers::CurveNumbers;
+pub use numbers::{CurveNumbers, NoCurve};
 pub use pieces::{ArcLengthPiece, ArcLengthPieces, Cusp};
 
 use crate::geometry::Moving;

@@ -282,7 +282,8 @@ impl Horizon {
             }
             let affordable = (until / (MARGIN * time_of(work_of_node))) as u32;
             let beyond = affordable.saturating_sub(self.in_force - slowing);
-            last = ends(last.min(self.in_force + LEAST_WINDOW.max(beyond)));
+            // Where the machine creeps there is time for any number.
+            last = ends(last.min(self.in_force.saturating_add(LEAST_WINDOW.max(beyond))));
         }
         let work = match wish.stop {
             true => f64::from(self.patience) * WORK_OF_STOP,

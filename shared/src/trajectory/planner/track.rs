@@ -2,6 +2,7 @@
 
 use super::PushError;
 use super::corner::Corner;
+use super::grid::SAME;
 use super::rounding::ATTITUDE;
 use crate::trajectory::{CHANNELS, Cubic, Element, Join, PathPoint, SHAPED, Shape};
 use nalgebra::Vector3;
@@ -10,6 +11,15 @@ use nalgebra::Vector3;
 const GAP: f64 = 1e-5;
 /// A change of direction below this is none.
 pub(super) const SMOOTH: f64 = 1e-9;
+/// No path is longer than this \[mm\], 1000 km, and no channel farther from 0: single micrometres are still told apart
+/// there.
+pub const LONGEST: f64 = 1e9;
+/// No channel changes by more than this for each mm of path length: a turn of some degrees about a tip that stands may be
+/// a short path.
+const STEEPEST: f64 = 1e6;
+/// Nobody goes so fast \[mm/s\], or so slowly: beyond that squares are none that single precision tells from others.
+const FASTEST: f64 = 1e6;
+const SLOWEST: f64 = 1e-6;
 /// Elements that are kept behind the one that the machine is on.
 pub(super) const REACH: u32 = 8;
 
@@ -129,12 +139,8 @@ impl<const E: usize> Track<E> {
         }
         let start = element.at(0.0);
         let end = element.at(element.length);
-        let positive = |x: f64| x.is_finite() && x > 0.0;
-        let finite = |point: &PathPoint| {
-            let all = point.value.iter().chain(&point.first).chain(&point.second);
-            all.copied().all(f64::is_finite)
-        };
-        if !(positive(element.length) && positive(element.feed) && finite(&start) && finite(&end)) {
+        let far = self.end_s + element.length;
+        if !(is_sound(&element, [&start, &end]) && libm::fabs(far) <= LONGEST) {
             return Err(PushError::Unsound { line });
         }
         let mut corner = Corner::NONE;
@@ -266,6 +272,33 @@ impl<const E: usize> Track<E> {
         }
         Some(point)
     }
+}
+
+/// Whether an element with these `ends` can be planned: its numbers, which may come from anywhere, are so that no sum or
+/// square of them runs over.
+fn is_sound(element: &Element, ends: [&PathPoint; 2]) -> bool {
+    let within = |x: f64, most: f64| libm::fabs(x) <= most;
+    let length = element.length;
+    let calm = |Cubic([c0, c1, c2, c3]): &Cubic| {
+        within(*c0, LONGEST)
+            && [*c1, c2 * length, c3 * length * length]
+                .into_iter()
+                .all(|slope| within(slope, STEEPEST))
+    };
+    let place = |point: &PathPoint| {
+        let close = point.value.iter().all(|x| within(*x, LONGEST));
+        close && point.first.iter().all(|x| within(*x, STEEPEST))
+    };
+    let spans = match &element.shape {
+        Shape::Span(cubics) => cubics.iter().all(calm),
+        Shape::Arc(_) | Shape::Curve(_) | Shape::Line(_) | Shape::Point(_) => true,
+    };
+    length > SAME
+        && length <= LONGEST
+        && (SLOWEST..=FASTEST).contains(&element.feed)
+        && spans
+        && element.rest.iter().all(calm)
+        && ends.into_iter().all(place)
 }
 
 /// By how much the direction of `element` turns in all, of which `ends` are the ends.

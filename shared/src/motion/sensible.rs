@@ -1,0 +1,248 @@
+//! What the motion board's parameters may be, by what they mean: a protection that is set to never act is refused, and
+//! so is what no machine has.
+
+use super::segment::SERVO_PERIOD_S;
+use super::{AxisConfig, BeamConfig, GantryConfig, HomeConfig, MotionConfig, MotorConfig};
+use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES};
+use crate::kinematics::AXIS_OWNERS;
+use crate::parameter::{LARGEST_MACHINE_MM, ParameterError, within};
+use core::f64::consts::FRAC_PI_2;
+use core::ops::RangeInclusive;
+
+/// A hundred turns \[°\].
+const MOST_TURNS: f64 = 36_000.0;
+/// Linear axes of an X Y Z A B C.
+const LINEAR: usize = 3;
+/// Shortest travel (mm or °).
+const SHORTEST_TRAVEL: f64 = 0.1;
+/// Speeds of axes and drives: linear motors go 10 m/s at most.
+const SPEEDS: RangeInclusive<f64> = 0.1..=1e4;
+/// Accelerations: up to ten times that of gravity.
+const ACCELERATIONS: RangeInclusive<f64> = 1.0..=1e5;
+/// Longest time from no acceleration to the full one \[s\]; the shortest is a servo tick.
+const LONGEST_RAMP_S: f64 = 10.0;
+/// Counts in one mm or °: from one to ten million, a tenth of a nanometre.
+pub(crate) const SCALES: RangeInclusive<f64> = 1.0..=1e7;
+/// Counters of 16 bits must not go half their way round between two looks, or nobody can tell which way it was.
+pub(crate) const MOST_COUNTS: f64 = 32_767.0;
+/// A trip needs some counts, or the grating's own noise sets it off.
+const FEWEST_COUNTS: f64 = 10.0;
+/// Servo loops have a delay of one and a half ticks at least \[s\]: sampled, computed, held.
+const LEAST_DELAY_S: f64 = 1.5 * SERVO_PERIOD_S;
+/// Part of the travel that a following error may have at rest, and no more than this (mm or °).
+const ERROR_AT_REST: f64 = 0.05;
+const MOST_ERROR_AT_REST: f64 = 10.0;
+/// Part of the travel that it may have at full speed, and longest time of lag \[s\].
+const ERROR_AT_SPEED: f64 = 0.2;
+const LONGEST_LAG_S: f64 = 0.2;
+/// Reference marks may stand beside the travel by this part of it.
+pub(crate) const BESIDE: f64 = 0.1;
+/// A search goes over the travel there, back, and over the mark again.
+pub(crate) const SEARCHES: f64 = 3.0;
+/// Yaw that the guides of a gantry bear \[rad\]: the skew trip is this times the width, at most.
+const MOST_YAW: f64 = 1e-3;
+/// Off square by construction: a hundredth of the width.
+const OFF_SQUARE: f64 = 0.01;
+/// Narrowest gantry \[mm\].
+const NARROWEST_MM: f64 = 10.0;
+/// Derivative parts: one of 1 turns the loop's own speed round.
+const MOST_DERIVATIVE: f64 = 0.5;
+const LONGEST_FILTER_S: f64 = 0.1;
+/// Powers at 10 V: 100 kW, the strongest lasers there are; or 100 000 turns a minute of a spindle.
+const POWERS_W: RangeInclusive<f64> = 1.0..=1e5;
+/// A beam goes over at most so much again \[mm\].
+const MOST_OVERLAP_MM: f64 = 50.0;
+/// Time that the PC may be silent \[ms\]: shorter than its own pauses, or longer than a weld of half a metre, is a
+/// mistake.
+const SILENCES_MS: RangeInclusive<f64> = 50.0..=5000.0;
+
+/// Checks all of a configuration that can be built.
+pub fn check(config: &MotionConfig) -> Result<(), ParameterError> {
+    let mut fastest: f64 = 0.0;
+    for number in 0..AXES {
+        let Some(axis) = &config.axes[number] else {
+            continue;
+        };
+        check_axis(number, axis)?;
+        if number < LINEAR {
+            fastest = fastest.max(axis.max_velocity);
+        }
+    }
+    for (number, motor) in config.motors.iter().enumerate() {
+        if let (Some(motor), Some(axis)) = (motor, &config.axes[MOTOR_AXIS[number]]) {
+            check_motor(MOTOR_NAMES[number], motor, axis)?;
+        }
+    }
+    if let (Some(gantry), Some(motor)) = (&config.gantry, &config.motors[0]) {
+        check_gantry(gantry, motor)?;
+    }
+    for (owner, beam) in ["beam 1", "beam 2"].into_iter().zip(&config.beams) {
+        if let Some(beam) = beam {
+            check_beam(owner, beam, fastest)?;
+        }
+    }
+    within(
+        "link",
+        "link_timeout_ms",
+        f64::from(config.link_timeout_ms),
+        SILENCES_MS,
+    )?;
+    Ok(())
+}
+
+fn check_axis(number: usize, axis: &AxisConfig) -> Result<(), ParameterError> {
+    let owner = AXIS_OWNERS[number];
+    let far = if number < LINEAR {
+        LARGEST_MACHINE_MM
+    } else {
+        MOST_TURNS
+    };
+    within(owner, "travel_min", axis.travel_min, -far..=far)?;
+    let least = axis.travel_min + SHORTEST_TRAVEL;
+    within(owner, "travel_max", axis.travel_max, least..=far)?;
+    within(owner, "max_velocity", axis.max_velocity, SPEEDS)?;
+    let acceleration = within(owner, "max_acceleration", axis.max_acceleration, ACCELERATIONS)?;
+    let jerks = acceleration / LONGEST_RAMP_S..=acceleration / SERVO_PERIOD_S;
+    within(owner, "max_jerk", axis.max_jerk, jerks)?;
+    Ok(())
+}
+
+/// Highest gain of a loop with a delay: with more it swings by itself.
+fn most_gain(delay_s: f64) -> f64 {
+    FRAC_PI_2 / libm::fmax(delay_s, LEAST_DELAY_S)
+}
+
+fn check_motor(owner: &str, motor: &MotorConfig, axis: &AxisConfig) -> Result<(), ParameterError> {
+    let of = |field, value, range| within(owner, field, value, range);
+    let travel = axis.travel_max - axis.travel_min;
+    let full_scale = within_either_sign(owner, "velocity_at_10v", motor.velocity_at_10v, SPEEDS)?;
+    let command = of("max_command", motor.max_command, axis.max_velocity..=full_scale)?;
+    let most = libm::fmin(*SCALES.end(), MOST_COUNTS / (command * SERVO_PERIOD_S));
+    let scale = within_either_sign(
+        owner,
+        "counts_per_unit",
+        motor.counts_per_unit,
+        *SCALES.start()..=most,
+    )?;
+
+    of(
+        "acceleration_feed_forward_s",
+        motor.acceleration_feed_forward_s,
+        0.0..=LONGEST_FILTER_S,
+    )?;
+    let most = most_gain(motor.acceleration_feed_forward_s);
+    let kp = of("kp", motor.kp, 1.0..=most)?;
+    // A damping of 0.7 at least.
+    of("ki", motor.ki, 0.0..=0.5 * kp * kp)?;
+    of("integral_limit", motor.integral_limit, 0.0..=command)?;
+    if motor.anti_windup_time_s != 0.0 {
+        of(
+            "anti_windup_time_s",
+            motor.anti_windup_time_s,
+            SERVO_PERIOD_S..=LONGEST_RAMP_S,
+        )?;
+    }
+    of("kd", motor.kd, 0.0..=MOST_DERIVATIVE)?;
+    of(
+        "derivative_filter_s",
+        motor.derivative_filter_s,
+        0.0..=LONGEST_FILTER_S,
+    )?;
+    of("velocity_feed_forward", motor.velocity_feed_forward, 0.0..=1.5)?;
+
+    let most = libm::fmin(ERROR_AT_REST * travel, MOST_ERROR_AT_REST);
+    let base = of(
+        "following_error_base",
+        motor.following_error_base,
+        FEWEST_COUNTS / scale..=most,
+    )?;
+    let room = (ERROR_AT_SPEED * travel - base) / axis.max_velocity;
+    of(
+        "following_error_time_s",
+        motor.following_error_time_s,
+        0.0..=libm::fmin(room, LONGEST_LAG_S),
+    )?;
+    check_home(
+        owner,
+        &motor.home,
+        (axis.travel_min, axis.travel_max),
+        axis.max_velocity,
+    )
+}
+
+/// A search inside `travel`, no faster than `fastest`.
+pub(crate) fn check_home(
+    owner: &str,
+    home: &HomeConfig,
+    (min, max): (f64, f64),
+    fastest: f64,
+) -> Result<(), ParameterError> {
+    let travel = max - min;
+    let beside = BESIDE * travel;
+    within_either_sign(owner, "home.velocity", home.velocity, 1e-3..=fastest)?;
+    within(
+        owner,
+        "home.mark_position",
+        home.mark_position,
+        min - beside..=max + beside,
+    )?;
+    within(
+        owner,
+        "home.max_travel",
+        home.max_travel,
+        SHORTEST_TRAVEL..=SEARCHES * travel,
+    )?;
+    Ok(())
+}
+
+/// As [`within`], of the size of a value that may be negative; gives the size.
+pub(crate) fn within_either_sign(
+    owner: &str,
+    field: &str,
+    value: f64,
+    range: RangeInclusive<f64>,
+) -> Result<f64, ParameterError> {
+    let signed = if value < 0.0 {
+        -*range.end()..=-*range.start()
+    } else {
+        range
+    };
+    Ok(libm::fabs(within(owner, field, value, signed)?))
+}
+
+fn check_gantry(gantry: &GantryConfig, motor: &MotorConfig) -> Result<(), ParameterError> {
+    let of = |field, value, range| within("gantry", field, value, range);
+    let everywhere = -LARGEST_MACHINE_MM..=LARGEST_MACHINE_MM;
+    let y1 = of("y1_mm", gantry.y1_mm, everywhere.clone())?;
+    let y2 = of("y2_mm", gantry.y2_mm, everywhere)?;
+    let width = libm::fabs(y2 - y1);
+    if width < NARROWEST_MM {
+        of("y2_mm", y2, y1 + NARROWEST_MM..=LARGEST_MACHINE_MM)?;
+    }
+    // Both motors answer to a skew, each to its own error besides.
+    let most = 0.5 * (most_gain(motor.acceleration_feed_forward_s) - motor.kp);
+    of("coupling", gantry.coupling, 0.0..=libm::fmax(most, 0.0))?;
+    of(
+        "coupling_derivative",
+        gantry.coupling_derivative,
+        0.0..=MOST_DERIVATIVE,
+    )?;
+    of(
+        "derivative_filter_s",
+        gantry.derivative_filter_s,
+        0.0..=LONGEST_FILTER_S,
+    )?;
+    let off = OFF_SQUARE * width;
+    of("square_offset_mm", gantry.square_offset_mm, -off..=off)?;
+    let least = FEWEST_COUNTS / libm::fabs(motor.counts_per_unit);
+    of("skew_trip_mm", gantry.skew_trip_mm, least..=MOST_YAW * width)?;
+    Ok(())
+}
+
+fn check_beam(owner: &str, beam: &BeamConfig, fastest: f64) -> Result<(), ParameterError> {
+    within(owner, "power_at_10v_w", beam.power_at_10v_w, POWERS_W)?;
+    // Faster than that it never opens.
+    within(owner, "min_speed_mm_s", beam.min_speed_mm_s, 0.0..=fastest)?;
+    within(owner, "overlap_mm", beam.overlap_mm, 0.0..=MOST_OVERLAP_MM)?;
+    Ok(())
+}

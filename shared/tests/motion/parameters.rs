@@ -1,0 +1,101 @@
+//! Parameters have floors and ceilings by what they mean.
+
+use super::bench::{Bench, config};
+use shared::motion::{AxisConfig, BeamConfig, GantryConfig, MotionConfig, MotorConfig};
+use shared::parameter::ParameterError;
+use shared::protocol::{Refusal, Request};
+
+fn refused(owner: &str, field: &str, value: f64, change: impl FnOnce(&mut MotionConfig)) {
+    let mut config = config();
+    change(&mut config);
+    let refusal = Bench::new().refused(&Request::ConfigureMotion(config));
+    let expected = Refusal::Parameter(ParameterError::new(owner, field, value));
+    assert_eq!(refusal, expected);
+    let text = refusal.to_string();
+    assert!(text.contains("must"), "{text}");
+}
+
+fn motor(field: &str, value: f64, place: fn(&mut MotorConfig) -> &mut f64) {
+    refused("Y", field, value, |config| {
+        *place(config.motors[2].as_mut().unwrap()) = value;
+    });
+}
+
+fn axis(field: &str, value: f64, place: fn(&mut AxisConfig) -> &mut f64) {
+    refused("axis Y", field, value, |config| {
+        *place(config.axes[1].as_mut().unwrap()) = value;
+    });
+}
+
+fn gantry(field: &str, value: f64, place: fn(&mut GantryConfig) -> &mut f64) {
+    refused("gantry", field, value, |config| {
+        *place(config.gantry.as_mut().unwrap()) = value;
+    });
+}
+
+fn beam(field: &str, value: f64, place: fn(&mut BeamConfig) -> &mut f64) {
+    refused("beam 2", field, value, |config| {
+        *place(config.beams[1].as_mut().unwrap()) = value;
+    });
+}
+
+#[test]
+fn a_protection_that_never_acts_is_refused() {
+    // 5 % of a travel of 1000 mm, but no more than 10 mm.
+    motor("following_error_base", 1e9, |m| &mut m.following_error_base);
+    motor("following_error_base", 10.1, |m| &mut m.following_error_base);
+    motor("following_error_time_s", 0.3, |m| &mut m.following_error_time_s);
+    // 1 mrad of 3500 mm.
+    gantry("skew_trip_mm", 1e9, |g| &mut g.skew_trip_mm);
+    gantry("skew_trip_mm", 3.6, |g| &mut g.skew_trip_mm);
+    for ms in [0, 20, 6000, u32::MAX] {
+        refused("link", "link_timeout_ms", f64::from(ms), |config| {
+            config.link_timeout_ms = ms
+        });
+    }
+    // One that the grating's own noise sets off.
+    motor("following_error_base", 1e-4, |m| &mut m.following_error_base);
+    gantry("skew_trip_mm", 1e-4, |g| &mut g.skew_trip_mm);
+}
+
+#[test]
+fn what_no_machine_has_is_refused() {
+    beam("power_at_10v_w", 1e300, |b| &mut b.power_at_10v_w);
+    beam("overlap_mm", 1e3, |b| &mut b.overlap_mm);
+    beam("min_speed_mm_s", 301.0, |b| &mut b.min_speed_mm_s);
+    axis("travel_max", 1e300, |a| &mut a.travel_max);
+    axis("max_velocity", 1e-3, |a| &mut a.max_velocity);
+    axis("max_velocity", 1e300, |a| &mut a.max_velocity);
+    axis("max_acceleration", 1e-300, |a| &mut a.max_acceleration);
+    axis("max_jerk", 1e-300, |a| &mut a.max_jerk);
+    axis("max_jerk", 1e300, |a| &mut a.max_jerk);
+    gantry("square_offset_mm", -40.0, |g| &mut g.square_offset_mm);
+    gantry("y2_mm", -249.0, |g| &mut g.y2_mm);
+    gantry("coupling", 1e5, |g| &mut g.coupling);
+}
+
+#[test]
+fn loops_that_swing_and_drives_that_cannot_are_refused() {
+    // π/2 over one and a half servo ticks.
+    motor("kp", 4200.0, |m| &mut m.kp);
+    motor("kp", 0.0, |m| &mut m.kp);
+    motor("ki", 5001.0, |m| &mut m.ki);
+    motor("kd", 1.0, |m| &mut m.kd);
+    motor("derivative_filter_s", 1.0, |m| &mut m.derivative_filter_s);
+    motor("integral_limit", 401.0, |m| &mut m.integral_limit);
+    motor("velocity_feed_forward", 2.0, |m| &mut m.velocity_feed_forward);
+    motor("acceleration_feed_forward_s", 1.0, |m| {
+        &mut m.acceleration_feed_forward_s
+    });
+    motor("anti_windup_time_s", 1e-9, |m| &mut m.anti_windup_time_s);
+    // Slower than its axis, and faster than its drive.
+    motor("max_command", 299.0, |m| &mut m.max_command);
+    motor("max_command", 401.0, |m| &mut m.max_command);
+    motor("velocity_at_10v", -1e300, |m| &mut m.velocity_at_10v);
+    // Half way round a counter of 16 bits in a servo tick.
+    motor("counts_per_unit", 330_000.0, |m| &mut m.counts_per_unit);
+    motor("counts_per_unit", -1e-9, |m| &mut m.counts_per_unit);
+    motor("home.velocity", -301.0, |m| &mut m.home.velocity);
+    motor("home.mark_position", 1200.0, |m| &mut m.home.mark_position);
+    motor("home.max_travel", 1e9, |m| &mut m.home.max_travel);
+}
