@@ -46,10 +46,10 @@ enum Allowed {
 impl fmt::Display for Allowed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Unsaid => Ok(()),
-            Self::Positive => write!(f, ", and must be above 0"),
-            Self::NotNegative => write!(f, ", and must not be below 0"),
-            Self::Within(min, max) => write!(f, ", and must be from {min} to {max}"),
+            Self::Unsaid => f.write_str(", which is out of range"),
+            Self::Positive => write!(f, ", but must be above 0"),
+            Self::NotNegative => write!(f, ", but must not be below 0"),
+            Self::Within(min, max) => write!(f, ", but must be from {min} to {max}"),
         }
     }
 }
@@ -225,11 +225,11 @@ mod tests {
     #[test]
     fn a_bad_value_is_named_as_in_the_machine_file() {
         let error = positive("Y", "kp", -3.0).unwrap_err();
-        assert_eq!(error.to_string(), "kp of Y is -3, and must be above 0");
+        assert_eq!(error.to_string(), "kp of Y is -3, but must be above 0");
         let error = within("axis X", "travel_max", 1e6, 0.0..=5e3).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "travel_max of axis X is 1000000, and must be from 0 to 5000"
+            "travel_max of axis X is 1000000, but must be from 0 to 5000"
         );
         assert_eq!(error, ParameterError::new("axis X", "travel_max", 1e6));
         assert_ne!(error, ParameterError::new("axis Y", "travel_max", 1e6));

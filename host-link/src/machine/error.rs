@@ -25,7 +25,7 @@ pub enum MachineError {
         message: String,
     },
     /// A parameter of a board makes no sense.
-    #[error("machine file {path}: {parameter}, which is out of range")]
+    #[error("machine file {path}: {parameter}")]
     Parameter {
         /// The file.
         path: String,

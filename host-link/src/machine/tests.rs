@@ -105,12 +105,12 @@ fn a_value_that_makes_no_sense_is_named() {
     let error = error_of(&SHIPPED.replace("gate_mm = 1.0", "gate_mm = -1.0"));
     assert_eq!(
         error,
-        "machine file m.toml: gate_mm of tracking is -1, which is out of range"
+        "machine file m.toml: gate_mm of tracking is -1, but must be above 0"
     );
     let error = error_of(&SHIPPED.replacen("kp = 120.0", "kp = -120.0", 1));
     assert_eq!(
         error,
-        "machine file m.toml: kp of X1 is -120, which is out of range"
+        "machine file m.toml: kp of X1 is -120, but must not be below 0"
     );
 }
 
