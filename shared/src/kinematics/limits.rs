@@ -55,8 +55,11 @@ impl AxisLimits {
         })
     }
 
-    /// Way to a stop from the highest speed (mm, rad).
+    /// Way to a stop from the highest speed (mm, rad); of an axis that the machine does not have it has no end.
     pub fn full_stop(&self) -> f64 {
+        if !self.velocity.is_finite() {
+            return f64::INFINITY;
+        }
         let limits = SpeedLimits {
             velocity: self.velocity,
             acceleration: self.acceleration,
