@@ -116,3 +116,13 @@ pub fn feed_limit(q_prime: &[f64; AXES], limits: &[AxisLimits; AXES]) -> (f64, u
     }
     lowest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_that_is_not_there_never_needs_to_stop() {
+        assert_eq!(AxisLimits::NOT_FITTED.full_stop(), f64::INFINITY);
+    }
+}
