@@ -55,8 +55,11 @@ impl AxisLimits {
         })
     }
 
-    /// Way to a stop from the highest speed (mm, rad).
+    /// Way to a stop from the highest speed (mm, rad); of an axis that the machine does not have it has no end.
     pub fn full_stop(&self) -> f64 {
+        if !self.velocity.is_finite() {
+            return f64::INFINITY;
+        }
         let limits = SpeedLimits {
             velocity: self.velocity,
             acceleration: self.acceleration,
@@ -112,4 +115,14 @@ pub fn feed_limit(q_prime: &[f64; AXES], limits: &[AxisLimits; AXES]) -> (f64, u
         }
     }
     lowest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_that_is_not_there_never_needs_to_stop() {
+        assert_eq!(AxisLimits::NOT_FITTED.full_stop(), f64::INFINITY);
+    }
 }
