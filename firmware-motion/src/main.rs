@@ -68,9 +68,11 @@ mod app {
             board::NAME,
             env!("CARGO_PKG_VERSION")
         );
+        let controller = cx.local.controller;
+        controller.set_permit_us(board::PERMIT_US);
         let shared = Shared {
             servo: Servo::new(),
-            controller: cx.local.controller,
+            controller,
         };
         let local = Local {
             axes: board.axes,

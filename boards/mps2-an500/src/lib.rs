@@ -35,6 +35,9 @@ pub use watchdog::Watchdog;
 pub const NAME: &str = "mps2-an500";
 /// The machine behind the axes is simulated on the board.
 pub const SIMULATED_MACHINE: bool = true;
+/// A permit of the tracker board is valid for so long \[µs\]: twice as long as on real boards. Between two emulated
+/// boards a datagram takes the time of the computer that they run on, which is not theirs: seldom 3 ms on a busy one.
+pub const PERMIT_US: u32 = 10_000;
 
 /// One turn of the idle loop. It spins, because time advances by instructions only; a long straight run costs
 /// the host less than a short loop.

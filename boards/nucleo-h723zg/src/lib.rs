@@ -67,6 +67,8 @@ pub use {
 pub const NAME: &str = "nucleo-h723zg";
 /// A real machine hangs on the axes.
 pub const SIMULATED_MACHINE: bool = false;
+/// A permit of the tracker board is valid for so long \[µs\].
+pub const PERMIT_US: u32 = 5000;
 
 /// One turn of the idle loop: sleeps until the next interrupt.
 #[cfg(target_os = "none")]

@@ -13,11 +13,12 @@ use crate::shared::Shared;
 /// Board time between two looks at the clock \[ns\].
 pub const QUANTUM_NS: u64 = 250_000;
 /// Common time a board may be ahead of its peer \[ns\].
-const LEAD_NS: i64 = 500_000;
+const LEAD_NS: i64 = 250_000;
 /// Common time a board may be ahead of what the PC has handled \[ns\].
 const PC_LEAD_NS: i64 = 20_000_000;
-/// Delay against the wall clock that is caught up; more is forgiven \[ns\].
-const LATE_NS: i64 = 3_000_000;
+/// Delay against the wall clock that is caught up; more is forgiven \[ns\]: a board that races meanwhile lets the datagrams
+/// under way to it grow old.
+const LATE_NS: i64 = 250_000;
 /// Common time behind the peer that only a stopped board shows \[ns\].
 const REJOIN_NS: i64 = 10_000_000;
 /// Wall time after which a silent peer is not waited for \[ns\].

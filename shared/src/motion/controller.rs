@@ -148,6 +148,12 @@ impl MotionController {
         }
     }
 
+    /// Permits of the tracker are valid for so long \[µs\], in place of [`PERMIT_US`](crate::protocol::PERMIT_US): where
+    /// the network between emulated boards does not keep to their time.
+    pub fn set_permit_us(&mut self, valid_us: u32) {
+        self.permits.set_valid(valid_us);
+    }
+
     /// Newly accepted parameters for the servo loops, once; to be taken after every tick.
     pub fn take_servo_setup(&mut self) -> Option<ServoSetup> {
         // It is large, and mostly there is none: then nothing is moved.
@@ -360,7 +366,7 @@ impl MotionController {
         self.homing = None;
         self.pending = None;
         self.beams = Beams::NONE;
-        self.permits = Permits::NONE;
+        self.permits.forget();
     }
 
     /// References follow the position while the drives are off.

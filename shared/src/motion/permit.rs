@@ -28,6 +28,8 @@ impl BeamLease {
 /// The newest permit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Permits {
+    /// How long each is valid after the tick of the path state that it answers \[µs\].
+    valid_us: u32,
     newest: Option<Newest>,
 }
 
@@ -40,7 +42,20 @@ struct Newest {
 
 impl Permits {
     /// None came yet.
-    pub const NONE: Self = Self { newest: None };
+    pub const NONE: Self = Self {
+        valid_us: PERMIT_US,
+        newest: None,
+    };
+
+    /// From now on each is valid for so long \[µs\].
+    pub fn set_valid(&mut self, valid_us: u32) {
+        self.valid_us = valid_us;
+    }
+
+    /// Forgets the newest.
+    pub fn forget(&mut self) {
+        self.newest = None;
+    }
 
     /// Takes a permit that has arrived after path tick `tick`, which was at `tick_us` of this board's clock. One
     /// that answers an older path state than the last one, or a tick that has not been, is left.
@@ -56,7 +71,7 @@ impl Permits {
         let answers_us = tick_us.saturating_sub(u64::from(age) * PATH_US);
         self.newest = Some(Newest {
             permit: *permit,
-            ends_us: answers_us + u64::from(PERMIT_US),
+            ends_us: answers_us + u64::from(self.valid_us),
         });
     }
 

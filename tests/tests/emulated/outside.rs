@@ -9,8 +9,8 @@ use host_link::weld::Ended;
 use shared::motion::{Fault, State};
 use shared::protocol::framing::{MAX_DATAGRAM, encode_datagram};
 use shared::protocol::{
-    BeamPermit, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, PERMIT_US, PathState, Permit,
-    Role, SideMeasurement,
+    BeamPermit, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, PathState, Permit, Role,
+    SideMeasurement,
 };
 use std::net::{Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
@@ -25,8 +25,8 @@ const LONGEST: Duration = Duration::from_secs(180);
 const FAST: f64 = 9.0;
 /// Way into the weld at which something happens \[mm\].
 const AFTER_MM: f64 = 150.0;
-/// A permit is valid for so long \[ms\].
-const PERMIT_MS: u32 = PERMIT_US / 1000;
+/// A permit is valid for so long on emulated boards \[ms\].
+const PERMIT_MS: u32 = 10;
 
 /// What the motion board told from the moment that something happened.
 struct Heard {
