@@ -11,6 +11,8 @@ use std::path::Path;
 /// Bytes of the page: epoch, then (reached, seen) of both boards and of the PC, each a native i64.
 const BOARDS_AT: u64 = 8;
 const PC_AT: u64 = 40;
+/// Wall time after which a board that is not heard of has died \[ns\], as the boards' plugins see it.
+const PATIENCE_NS: i64 = 1_000_000_000;
 
 /// A program's part in the pace of the boards; it ends when this is dropped.
 #[derive(Debug)]
@@ -34,7 +36,12 @@ impl Pace {
             let bytes = bytes[8 * index..8 * index + 8].try_into();
             i64::from_ne_bytes(bytes.expect("eight bytes of 32"))
         };
-        self.write(number(0).min(number(2)), number(1).max(number(3)))
+        let boards = [(number(0), number(1)), (number(2), number(3))];
+        let now = boards[0].1.max(boards[1].1);
+        // A board that has died is waited for no more.
+        let alive = boards.iter().filter(|(_, seen)| now - seen <= PATIENCE_NS);
+        let slowest = alive.map(|(reached, _)| *reached).min();
+        self.write(slowest.unwrap_or(0), now)
     }
 
     fn write(&self, reached: i64, seen: i64) -> io::Result<()> {

@@ -2,15 +2,15 @@
 //! that dies or is paused, and a crowd on the network. Beams are off in time, the machine stops on its path, and who is
 //! blamed is who it was.
 
-use crate::pair::{Pair, assert_served, status};
+use crate::pair::{Pair, assert_served};
 use emulator::{Meddling, Session};
 use host_link::boards::{Boards, Overheard};
 use host_link::weld::Ended;
 use shared::motion::{Fault, State};
 use shared::protocol::framing::{MAX_DATAGRAM, encode_datagram};
 use shared::protocol::{
-    BeamPermit, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, PathState, Permit, Role,
-    SideMeasurement,
+    BeamPermit, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, PathState, Permit, Request,
+    Response, Role, SideMeasurement,
 };
 use std::net::{Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
@@ -28,64 +28,51 @@ const AFTER_MM: f64 = 150.0;
 /// A permit is valid for so long on emulated boards \[ms\].
 const PERMIT_MS: u32 = 10;
 
-/// What the motion board told from the moment that something happened.
-struct Heard {
-    samples: Vec<MotionSample>,
-}
-
-/// Welds, and does `act` once the beams have been on for a while; what was told from then on.
-fn weld_and(pair: &mut Pair, mut act: impl FnMut(&mut Pair)) -> (Ended, Heard) {
+/// Welds, and does `act` once the beams have been on for a while; what the motion board had told last before.
+fn weld_and(pair: &mut Pair, act: impl FnOnce(&mut Pair)) -> (Ended, MotionSample) {
     let mut boards = pair.connect();
-    let mut on_mm = None;
-    let mut samples = Vec::new();
+    let (mut on_mm, mut last, mut act) = (None, None, Some(act));
     let mut overheard = Overheard {
         boards: &mut boards as &mut dyn Boards,
         hear: |_: &mut dyn Boards, sample: &MotionSample| {
             if sample.beams == [true; 2] {
                 on_mm.get_or_insert(sample.s_mm);
             }
-            let now = on_mm.is_some_and(|on| sample.s_mm >= on + AFTER_MM);
-            if samples.is_empty() && now {
+            if on_mm.is_some_and(|on| sample.s_mm >= on + AFTER_MM)
+                && let Some(act) = act.take()
+            {
+                last = Some(*sample);
                 act(pair);
-            }
-            if now {
-                samples.push(*sample);
             }
         },
     };
     let ended = weld(&mut overheard, shipped_seam(), FAST);
-    (ended, Heard { samples })
-}
-
-impl Heard {
-    /// Ticks from the moment that something happened until both beams were off \[ms\].
-    #[track_caller]
-    fn beams_off_after(&self) -> u32 {
-        let first = self.samples.first().expect("a weld");
-        let off = self.samples.iter().find(|sample| sample.beams == [false; 2]);
-        let off = off.unwrap_or_else(|| panic!("beams stay on: {:?}", self.samples.last()));
-        assert!(
-            self.samples
-                .iter()
-                .skip_while(|sample| sample.tick < off.tick)
-                .all(|sample| sample.beams == [false; 2]),
-            "a beam went on again"
-        );
-        println!(
-            "beams off {} ms and {:.2} mm after",
-            off.tick - first.tick,
-            off.s_mm - first.s_mm
-        );
-        off.tick - first.tick
-    }
+    (ended, last.expect("a weld"))
 }
 
 /// A batch of telemetry, and how far emulated boards may be ahead of what the PC has handled: by so much later than the
 /// sample that the test acts on, something happens on the boards \[ms\].
 const LATE_MS: u32 = 25 + PERMIT_MS;
 
-fn assert_blamed(ended: &Ended, whom: &str) {
+/// Checks that the machine was stopped by a beam's lost permit, in time after `last`, and stands with its drives off, and
+/// that `whom` is blamed.
+#[track_caller]
+fn assert_shut_in_time(pair: &Pair, ended: &Ended, last: &MotionSample, whom: &str) {
     let error = ended.error.as_ref().expect("an error").to_string();
+    let motion = match pair.connect_motion().request(Role::Motion, &Request::Status) {
+        Ok(Response::MotionStatus(motion)) => motion,
+        other => panic!("{other:?}"),
+    };
+    match motion.fault {
+        Some(Fault::PermitLost { s_mm, .. }) => {
+            let way = f64::from(s_mm) - last.s_mm;
+            println!("beams off {way:.2} mm after the last telemetry: {error}");
+            assert!(way <= last.speed_mm_s * 1e-3 * f64::from(LATE_MS), "{way} mm");
+            assert_eq!(motion.state, State::Fault);
+        }
+        // The PC heard of it first, and stopped the path.
+        fault => assert_eq!((motion.state, fault), (State::Off, None), "{error}"),
+    }
     assert!(error.contains(whom), "{error}");
 }
 
@@ -97,42 +84,30 @@ fn a_tracker_that_freezes_is_reset_dies_or_is_cut_off_shuts_the_beams_in_time() 
         Some(Meddling::CableOut),
         None,
     ] {
+        println!("{meddling:?}");
         let mut pair = Pair::boot("tracker-fails");
-        let (ended, heard) = weld_and(&mut pair, |pair| match meddling {
+        let (ended, last) = weld_and(&mut pair, |pair| match meddling {
             Some(meddling) => pair.boards.meddle(Role::Tracker, meddling).expect("a board"),
             None => pair.boards.kill(Role::Tracker).expect("a board"),
         });
-        println!("{meddling:?}: {}", ended.error.as_ref().expect("an error"));
-        assert!(heard.beams_off_after() <= LATE_MS, "{meddling:?}");
-        assert_blamed(&ended, "tracker");
-        let last = heard.samples.last().expect("telemetry");
-        assert!(last.speed_mm_s < 1e-6, "{last:?}");
+        assert_shut_in_time(&pair, &ended, &last, "tracker");
     }
 }
 
 #[test]
 fn a_motion_board_that_is_cut_off_stops_by_itself() {
     let mut pair = Pair::boot("motion-cut-off");
-    let (ended, heard) = weld_and(&mut pair, |pair| {
+    let cut = |pair: &mut Pair| {
         pair.boards
             .meddle(Role::Motion, Meddling::CableOut)
             .expect("a board");
-    });
-    assert_blamed(&ended, "motion");
+    };
+    let (ended, last) = weld_and(&mut pair, cut);
     pair.boards
         .meddle(Role::Motion, Meddling::CableIn)
         .expect("a board");
     // The session that was cut off keeps its place until its lease has run out.
-    let mut boards = pair.connect();
-    let (motion, _) = status(&mut boards);
-    assert_eq!(motion.state, State::Fault, "{motion:?}");
-    let Some(Fault::PermitLost { s_mm, .. }) = motion.fault else {
-        panic!("{:?}", motion.fault);
-    };
-    let told = heard.samples.last().expect("a weld");
-    let way = f64::from(s_mm) - told.s_mm;
-    println!("beams off {way:.2} mm after the last telemetry");
-    assert!(way <= told.speed_mm_s * 1e-3 * f64::from(LATE_MS), "{way} mm");
+    assert_shut_in_time(&pair, &ended, &last, "motion");
 }
 
 /// A crowd that sends frames of every kind to both boards, until dropped: 10⁴ a second in all, and 100 connections.
