@@ -112,7 +112,7 @@ pub struct Command<const N: usize> {
     pub enable: bool,
     /// Velocity command to each drive.
     pub dac: [DacCode; N],
-    /// Beam gate open, per side (motion board).
+    /// Beam gate open, per side (motion board); the beam of the side may burn (tracker board).
     pub beam_gate: [bool; SIDES],
     /// Beam power, per side (motion board); only 0…32767.
     pub beam_power: [DacCode; SIDES],

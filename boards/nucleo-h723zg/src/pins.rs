@@ -133,6 +133,9 @@ pub const TRACKER: Drives<4> = Drives {
 
 /// Beam gates of the motion board, high opens. On [`OUTPUT_PORT`].
 pub const BEAM_GATES: [Pin; 2] = pins(["PF10", "PF14"]);
+/// Permits of the tracker board, high lets the beam of the side burn: for a gate outside that needs both boards' word.
+/// On [`OUTPUT_PORT`].
+pub const PERMITS: [Pin; 2] = pins(["PF10", "PF14"]);
 /// Laser sources ready, motion board: high; low is a fault or a broken wire.
 pub const LASERS_READY: [Pin; 2] = pins(["PA4", "PB12"]);
 /// Camera triggers of the tracker board, rising edge exposes. On [`OUTPUT_PORT`].
@@ -147,7 +150,7 @@ pub const EMERGENCY_STOP: [Pin; 2] = pins(["PC0", "PB2"]);
 pub const OUTPUT_PORT: u8 = pin("PF0").port;
 /// The pins of [`OUTPUT_PORT`] that are outputs on either board.
 pub const OUTPUT_MASK: u16 =
-    mask(&MOTION.enable) | mask(&BEAM_GATES) | mask(&CAMERA_TRIGGERS) | mask(&[HEARTBEAT]);
+    mask(&MOTION.enable) | mask(&BEAM_GATES) | mask(&PERMITS) | mask(&CAMERA_TRIGGERS) | mask(&[HEARTBEAT]);
 
 /// Bits of `pins` in their port.
 pub const fn mask(pins: &[Pin]) -> u16 {

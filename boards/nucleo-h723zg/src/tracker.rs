@@ -3,7 +3,7 @@
 use crate::encoders::{self, Encoder};
 use crate::inputs::{self, Snapshot};
 use crate::outputs::{Outputs, output, switch};
-use crate::pins::{CAMERA_TRIGGERS, TRACKER, mask};
+use crate::pins::{CAMERA_TRIGGERS, PERMITS, Pin, TRACKER, mask};
 use crate::{Network, Tick, Watchdog, bring_up};
 use embassy_stm32::pac;
 use shared::io::{Bits, SLIDES, SlideCommand, SlideFeedback};
@@ -46,8 +46,10 @@ pub fn init(core: cortex_m::Peripherals) -> Board {
     inputs::start(&TRACKER, &[]);
     let [camera_1, camera_2] = CAMERA_TRIGGERS;
     let [u1, v1, u2, v2] = TRACKER.enable;
+    let [permit_1, permit_2] = PERMITS;
+    let switched: [Pin; 8] = [u1, v1, u2, v2, camera_1, camera_2, permit_1, permit_2];
     let slides = Slides {
-        outputs: Outputs::start(bus, &[u1, v1, u2, v2, camera_1, camera_2], READ_BACK_EVERY),
+        outputs: Outputs::start(bus, &switched, READ_BACK_EVERY),
         encoders: core::array::from_fn(|slide| Encoder::start(&TRACKER.encoders[slide])),
     };
     let network = Network::start(parts);
@@ -82,12 +84,17 @@ impl Slides {
 
     /// Sets the outputs: what goes off goes off first, then all slides step together, then the rest goes on.
     pub fn write(&mut self, command: &SlideCommand) {
-        let on = if command.enable { ENABLES } else { 0 };
+        let mut on = if command.enable { ENABLES } else { 0 };
+        for (line, permitted) in PERMITS.iter().zip(command.beam_gate) {
+            if permitted {
+                on |= mask(&[*line]);
+            }
+        }
         let mut codes = [(output(0), 0); SLIDES];
         for (slide, code) in command.dac.iter().enumerate() {
             codes[slide] = (output(slide), code.0);
         }
-        self.outputs.apply(ENABLES, on, &codes);
+        self.outputs.apply(ENABLES | mask(&PERMITS), on, &codes);
     }
 
     /// Triggers both cameras: the rising edge exposes; the pulse lasts to the next tick.

@@ -48,7 +48,11 @@ fn boards() -> [Vec<(String, Pin)>; 2] {
             3,
             &[("gate", &BEAM_GATES), ("laser ready", &LASERS_READY)],
         ),
-        used(&TRACKER, 1, &[("trigger", &CAMERA_TRIGGERS)]),
+        used(
+            &TRACKER,
+            1,
+            &[("trigger", &CAMERA_TRIGGERS), ("permit", &PERMITS)],
+        ),
     ]
 }
 
@@ -145,6 +149,7 @@ fn all_that_must_die_together_is_on_one_port_and_in_its_mask() {
         &MOTION.enable[..],
         &TRACKER.enable,
         &BEAM_GATES,
+        &PERMITS,
         &CAMERA_TRIGGERS,
         &[HEARTBEAT],
     ]

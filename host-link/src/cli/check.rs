@@ -61,7 +61,7 @@ fn print_weakened(machine: &MachineFile) {
     let motion = machine.motion.weakened();
     let tracker = machine.tracking.as_ref().map(|unit| unit.board.weakened());
     for weakened in motion.iter().chain(tracker.iter().flatten()) {
-        println!("weak protection: {weakened}");
+        outln!("weak protection: {weakened}");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::boards::{BoardChoice, exit_code};
 use super::teach_seam::SeamArgs;
-use crate::console::outln;
+use crate::console::{errln, outln};
 use crate::machine::MachineFile;
 use crate::part::PartFile;
 use crate::teach::write_points;
@@ -60,7 +60,7 @@ impl Teach {
         let note =
             check_teaching(&machine, &part).with_context(|| format!("part {}", self.part.display()))?;
         if let Some(note) = note {
-            eprintln!("host-link: part {}: {note}", self.part.display());
+            errln!("host-link: part {}: {note}", self.part.display());
         }
         let job = Job {
             machine: &machine,

@@ -226,7 +226,7 @@ impl Weld {
                 let note = check_teaching(job.machine, part)
                     .with_context(|| format!("part {}", self.job.display()))?;
                 if let Some(note) = note {
-                    eprintln!("host-link: part {}: {note}", self.job.display());
+                    errln!("host-link: part {}: {note}", self.job.display());
                 }
                 return Ok(());
             }
