@@ -309,7 +309,7 @@ fn numbers_out_of_all_proportion_are_named() {
             "machines/stir-gantry.toml",
             "-305.0",
             "-1e300",
-            "no machine goes farther",
+            "l4_mm of kinematics",
         ),
         (
             "programs/leaf.toml",

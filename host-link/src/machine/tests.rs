@@ -105,7 +105,7 @@ fn a_value_that_makes_no_sense_is_named() {
     let error = error_of(&SHIPPED.replace("gate_mm = 1.0", "gate_mm = -1.0"));
     assert_eq!(
         error,
-        "machine file m.toml: gate_mm of tracking is -1, but must be above 0"
+        "machine file m.toml: gate_mm of tracking is -1, but must be from 0.01 to 10"
     );
     let error = error_of(&SHIPPED.replacen("kp = 120.0", "kp = -120.0", 1));
     assert_eq!(

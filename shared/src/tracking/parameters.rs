@@ -109,9 +109,8 @@ impl TrackerConfig {
                 tracking.max_seam_deviation_mm,
                 |v| v >= gate && v <= 2.0 * furthest,
             )?,
-            // A camera sees as far along travel as across it, and that is what the gate goes by; the mean of several
-            // pictures lies behind the last one, and means over more than the window would bend the seam.
-            along: (gate + window).min(heads.camera_lead()),
+            // A camera sees as far along travel as across it, and that is what the gate goes by.
+            along: gate.min(heads.camera_lead()),
             gate,
             pose_speed: slowest_slide.fold(f64::INFINITY, f64::min),
             lever: heads.camera_lead() + furthest,

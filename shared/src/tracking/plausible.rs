@@ -51,14 +51,18 @@ pub struct Belief {
 }
 
 impl TrackerParameters {
-    /// Whether the camera of `side` can have seen the seam there, with the slides at `slides` \[mm\].
-    pub fn believes(&self, side: usize, slides: &[f64; SLIDES], seen: &SideMeasurement) -> bool {
+    /// Whether the camera of `side` can have seen the seam there, with the slides at `slides` \[mm\] and the machine going
+    /// at `speed` \[mm/s\]. The mean of several pictures lies behind the last one, and means over more than the window
+    /// would bend the seam.
+    pub fn believes(&self, side: usize, slides: &[f64; SLIDES], speed: f64, seen: &SideMeasurement) -> bool {
+        let ahead = if speed < 0.0 { -seen.along_mm } else { seen.along_mm };
         let reaches = |slide: usize, delta: f64| {
             let (min, max) = self.slides[slide].law.travel;
             (min - self.belief.gate..=max + self.belief.gate).contains(&(slides[slide] + delta))
         };
         // Comparisons with what is not a number are false.
-        libm::fabs(seen.along_mm) <= self.belief.along
+        ahead <= self.belief.along
+            && ahead >= -self.belief.along - self.map.window
             && reaches(2 * side, seen.delta_u_mm)
             && reaches(2 * side + 1, seen.delta_v_mm)
     }

@@ -95,7 +95,7 @@ impl Seam {
     ) {
         let heads = &parameters.heads;
         let (u, v) = (u_slide(side), u_slide(side) + 1);
-        if !parameters.believes(side, slides, seen) {
+        if !parameters.believes(side, slides, place.speed, seen) {
             return self.disbelieve(side);
         }
         let spot = heads.spot(&place.pose, side);

@@ -225,7 +225,7 @@ fn path_states_with_a_pose_beside_the_true_one_move_no_spot() {
 
 #[test]
 fn one_measurement_from_far_ahead_blinds_no_side() {
-    for along_mm in [100.0, 1e6, f64::INFINITY, 2.9, 0.9, -0.9] {
+    for along_mm in [100.0, 1e6, f64::INFINITY, -4.1, 2.9, 0.9, -0.9, -3.9] {
         let (mut bench, mut seen) = (welding(sine), Seen::default());
         let forged = Measurement {
             capture: bench.captures - 1,
@@ -242,7 +242,9 @@ fn one_measurement_from_far_ahead_blinds_no_side() {
         }
         assert_eq!(seen.fault, None, "{along_mm} mm");
         // What a camera can see leaves a gap in the map, and is a point of the seam that is not one.
-        let most = if along_mm.abs() < 1.0 { 0.2 } else { 0.03 };
+        // A mean of several pictures lies behind the last one, by the window at most.
+        let can_be = (-4.0..=1.0).contains(&along_mm);
+        let most = if can_be { 0.2 } else { 0.03 };
         assert!(seen.off <= most, "{along_mm} mm ahead: {} mm", seen.off);
     }
 }

@@ -19,7 +19,11 @@ fn refused(owner: &str, field: &str, value: f64, change: impl FnOnce(&mut Tracke
 }
 
 fn slide(field: &str, value: f64, place: fn(&mut SlideConfig) -> &mut f64) {
-    refused("V1", field, value, |config| *place(&mut config.slides[1]) = value);
+    refused("V1", field, value, |config| {
+        // Room for a faster slide.
+        config.slides[1].following_error_mm = 1.0;
+        *place(&mut config.slides[1]) = value;
+    });
 }
 
 fn tracking(field: &str, value: f64, place: fn(&mut TrackingConfig) -> &mut f64) {

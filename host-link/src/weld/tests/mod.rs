@@ -268,8 +268,12 @@ fn a_job_follows_both_seams_and_switches_everything_off() {
     assert!((report.speed_m_per_min - 5.0).abs() < 1e-9);
     assert_eq!(report.weld_ticks.unknown, 0);
     assert_eq!((report.lost_ticks.total(), report.telemetry_gaps.total()), (0, 0));
-    assert_eq!(seam_of(report).measurements.rejected, [0, 0]);
-    assert_eq!(seam_of(report).measurements.given_up, 0);
+    // On the way there the seams pass below the cameras, at an angle at which no seam leads away.
+    let measurements = &seam_of(report).measurements;
+    for (rejected, accepted) in measurements.rejected.iter().zip(&measurements.accepted) {
+        assert!(rejected * 10 < *accepted, "{measurements:?}");
+    }
+    assert_eq!(measurements.given_up, 0);
     assert_off(&mut boards);
 }
 
