@@ -55,7 +55,11 @@ impl TrackerParameters {
     /// at `speed` \[mm/s\]. The mean of several pictures lies behind the last one, and means over more than the window
     /// would bend the seam.
     pub fn believes(&self, side: usize, slides: &[f64; SLIDES], speed: f64, seen: &SideMeasurement) -> bool {
-        let ahead = if speed < 0.0 { -seen.along_mm } else { seen.along_mm };
+        let ahead = if speed < 0.0 {
+            -seen.along_mm
+        } else {
+            seen.along_mm
+        };
         let reaches = |slide: usize, delta: f64| {
             let (min, max) = self.slides[slide].law.travel;
             (min - self.belief.gate..=max + self.belief.gate).contains(&(slides[slide] + delta))

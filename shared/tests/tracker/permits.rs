@@ -62,7 +62,8 @@ fn a_lock_needs_a_seam_that_was_seen_and_slides_on_it() {
 
 #[test]
 fn every_fault_ends_the_permit_of_both_sides_at_the_next_tick() {
-    let faults: [(fn(&mut Bench), u32); 4] = [
+    type Fails = fn(&mut Bench);
+    let faults: [(Fails, u32); 4] = [
         (
             |bench| bench.meddle = |feedback| feedback.drive_fault.set(1, true),
             1,
