@@ -357,6 +357,10 @@ fn load<'a>(session: &mut Session, path: &'a PlannedPath, id: u32) -> Result<Fee
 
 /// Brings the boards from any state to off, forgets old faults, and sends the machine's parameters.
 fn set_up(session: &mut Session, job: &Job) -> Result<(), JobError> {
+    if session::on_path(session.motion.state) {
+        // What the job before left moving comes to rest first: no search for marks begins while the axes coast.
+        session.stop(STOP_LIMIT)?;
+    }
     session.command_all(&Request::Disable)?;
     session.refresh()?;
     if session.motion.fault.is_some() {
