@@ -131,6 +131,8 @@ impl<'a> Case<'a> {
                 Message::Request(_) => Step::Request(to, bytes.clone()),
                 Message::Datagram(_) => {
                     let mut datagram = (SCHEMA_HASH as u32).to_le_bytes().to_vec();
+                    // Of the one session that simulated boards have.
+                    datagram.extend_from_slice(&1_u32.to_le_bytes());
                     datagram.extend_from_slice(&bytes);
                     Step::Datagram(to, datagram)
                 }
