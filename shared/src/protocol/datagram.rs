@@ -48,7 +48,7 @@ pub enum Datagram {
     MotionTelemetry(MotionTelemetry),
     /// Tracker → PC.
     TrackerTelemetry(TrackerTelemetry),
-    /// Anyone → a board: what time is it there?
+    /// PC or tracker → a board: what time is it there?
     ClockRequest(ClockRequest),
     /// The board's answer.
     ClockReply(ClockReply),
@@ -209,7 +209,7 @@ pub struct TrackerSample {
     pub time_us: u64,
     /// State of the board.
     pub state: TrackerState,
-    /// First fault since the last reset; if it is there while the state is tracking, the beams should go off.
+    /// First fault since the last reset; if it is there while the state is tracking, no beam has a permit.
     pub fault: Option<TrackerFault>,
     /// Slides, from the encoders \[mm\].
     pub slides_mm: [f64; SLIDES],
