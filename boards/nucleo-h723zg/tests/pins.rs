@@ -164,7 +164,7 @@ fn all_that_must_die_together_is_on_one_port_and_in_its_mask() {
         .flatten()
         .filter(|(_, pin)| pin.port == OUTPUT_PORT)
     {
-        let is_output = ["enable", "gate", "trigger", "heartbeat"].contains(&what.as_str());
+        let is_output = ["enable", "gate", "permit", "trigger", "heartbeat"].contains(&what.as_str());
         assert_eq!(
             OUTPUT_MASK & 1 << pin.number != 0,
             is_output,
