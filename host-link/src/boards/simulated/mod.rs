@@ -8,8 +8,10 @@
 mod motion;
 mod outputs;
 mod tracker;
+mod trouble;
 
 pub use outputs::Outputs;
+pub use trouble::Trouble;
 
 use super::{Boards, LinkError};
 use motion::MotionBoard;
@@ -89,6 +91,7 @@ pub struct SimulatedBoards {
     motion: MotionBoard,
     tracker: TrackerBoard,
     identities: [Identity; 2],
+    cut_off: Option<Role>,
 }
 
 impl Default for SimulatedBoards {
@@ -117,6 +120,7 @@ impl SimulatedBoards {
             motion: MotionBoard::new(plant),
             tracker: TrackerBoard::new(),
             identities: [identity(Role::Motion), identity(Role::Tracker)],
+            cut_off: None,
         };
         boards.enter(SERVO_US, Happening::ServoTick);
         boards.enter(CONTROL_PHASE_US, Happening::ControlTick);
@@ -135,6 +139,9 @@ impl SimulatedBoards {
     }
 
     fn post(&mut self, from: Node, to: Node, datagram: Datagram) {
+        if self.cut_off(from) || self.cut_off(to) {
+            return;
+        }
         let arrival = Happening::Arrival {
             from,
             to,
@@ -183,6 +190,10 @@ impl SimulatedBoards {
     fn control_tick(&mut self) {
         self.enter(self.now_us + CONTROL_US, Happening::ControlTick);
         let tracker = Node::Board(Role::Tracker);
+        if self.tracker.frozen {
+            self.tracker.plant.advance(&self.tracker.command);
+            return;
+        }
         let output = self.tracker.tick(self.now_us + TRACKER_CLOCK_US);
         let motion = Node::Board(Role::Motion);
         if let Some(permit) = output.permit {

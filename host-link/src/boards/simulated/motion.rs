@@ -1,7 +1,7 @@
 //! The motion board with its machine.
 
 use plant::MotionPlant;
-use shared::io::MotionCommand;
+use shared::io::{MotionCommand, MotionFeedback};
 use shared::motion::{MotionController, PathTickInput, SERVO_TICKS_PER_PATH_TICK, ServoLoops};
 use shared::protocol::{Batch, Datagram, MotionSample, MotionTelemetry, PathState, Request, Response};
 
@@ -17,6 +17,8 @@ pub struct MotionBoard {
     /// Of the last path tick.
     pub published: Option<(PathState, MotionSample)>,
     pub estop: bool,
+    /// What its inputs read otherwise than its machine is.
+    pub meddle: Option<fn(&mut MotionFeedback)>,
 }
 
 impl MotionBoard {
@@ -31,6 +33,7 @@ impl MotionBoard {
             telemetry: None,
             published: None,
             estop: false,
+            meddle: None,
         }
     }
 
@@ -38,6 +41,9 @@ impl MotionBoard {
     pub fn tick(&mut self, now_us: u64) -> Option<PathState> {
         let mut feedback = self.plant.advance(&self.command);
         feedback.estop = self.estop;
+        if let Some(change) = self.meddle {
+            change(&mut feedback);
+        }
         let truth = Some(self.plant.truth());
         self.command = self.servo.tick(&feedback, truth, 1);
         self.ticks += 1;

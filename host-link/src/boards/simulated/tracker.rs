@@ -2,7 +2,7 @@
 
 use super::KNOTS;
 use plant::SlidePlant;
-use shared::io::SlideCommand;
+use shared::io::{SlideCommand, SlideFeedback};
 use shared::protocol::{Batch, Capture, TrackerSample, TrackerTelemetry};
 use shared::tracking::{TickInput, TickOutput, TrackerController};
 
@@ -16,6 +16,10 @@ pub struct TrackerBoard {
     /// Of the last control tick.
     pub published: Option<(Option<Capture>, TrackerSample)>,
     pub estop: bool,
+    /// What its inputs read otherwise than its machine is.
+    pub meddle: Option<fn(&mut SlideFeedback)>,
+    /// Its processor stands still.
+    pub frozen: bool,
 }
 
 impl TrackerBoard {
@@ -28,6 +32,8 @@ impl TrackerBoard {
             telemetry: None,
             published: None,
             estop: false,
+            meddle: None,
+            frozen: false,
         }
     }
 
@@ -36,6 +42,9 @@ impl TrackerBoard {
         let strobes = self.controller.strobe(1);
         let mut feedback = self.plant.advance(&self.command);
         feedback.estop = self.estop;
+        if let Some(change) = self.meddle {
+            change(&mut feedback);
+        }
         let truth = Some(self.plant.truth());
         let output = self.controller.tick(&TickInput {
             now_us,

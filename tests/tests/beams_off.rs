@@ -1,0 +1,242 @@
+//! From a fault to beams off, at 9 m/min, by the plant's beams and at moments of every phase of both boards' ticks.
+
+use host_link::boards::Boards;
+use host_link::boards::simulated::{SimulatedBoards, Trouble};
+use shared::io::SIDES;
+use shared::protocol::{Request, Response, Role};
+use std::slice::Iter;
+use system_tests::fuzz::{Message, Said, Session};
+
+/// Servo tick of the motion board, control tick of the tracker board, and their time on the network, one way \[µs\].
+const SERVO_US: u64 = 250;
+const CONTROL_US: u64 = 1000;
+const TRANSIT_US: u64 = 300;
+/// A permit is valid for so long \[µs\].
+const PERMIT_US: u64 = 5000;
+/// Moments of a weld lie so far apart that they are in all phases of both ticks \[µs\].
+const APART_US: u64 = 19_937;
+/// Beams are looked at for no longer \[µs\].
+const LONGEST_US: u64 = 100_000;
+/// Speed of the weld \[mm/s\].
+const SPEED: f64 = 150.0;
+
+/// Boards in mid-weld, and what the PC says next.
+#[derive(Clone)]
+struct Moment<'a> {
+    boards: SimulatedBoards,
+    next: Iter<'a, Said>,
+}
+
+impl Moment<'_> {
+    fn now_us(&self) -> u64 {
+        self.boards.outputs().now_us
+    }
+
+    /// The next thing that happens, until `end_us`; whether there was one.
+    fn step(&mut self, end_us: u64) -> bool {
+        match self.next.as_slice().first() {
+            Some(said) if said.at_us <= end_us => {
+                if !self.boards.advance(said.at_us) {
+                    self.next.next();
+                    match &said.message {
+                        Message::Request(request) => {
+                            self.boards.ask(said.to, request);
+                        }
+                        Message::Datagram(datagram) => {
+                            self.boards
+                                .send(said.to, datagram)
+                                .expect("boards of this process");
+                        }
+                    }
+                }
+                true
+            }
+            _ => self.boards.advance(end_us),
+        }
+    }
+
+    fn advance(&mut self, end_us: u64) {
+        while self.step(end_us) {}
+    }
+
+    fn burns(&self) -> bool {
+        let outputs = self.boards.outputs();
+        let speed = outputs.path.map_or(0.0, |(state, _)| state.speed_mm_s);
+        outputs.beams == [true; SIDES] && (speed - SPEED).abs() < 1e-3
+    }
+
+    /// Goes on until `over`; how long that took \[µs\].
+    fn until(&mut self, over: impl Fn(&mut SimulatedBoards) -> bool) -> u64 {
+        let begin_us = self.now_us();
+        while !over(&mut self.boards) {
+            assert!(self.now_us() < begin_us + LONGEST_US, "not after {LONGEST_US} µs");
+            self.step(begin_us + LONGEST_US);
+        }
+        self.now_us() - begin_us
+    }
+
+    /// Goes on until beams `sides` are off; how long they were on \[µs\]. They stay off. What the plant's beams are after a
+    /// servo tick they have been since the tick before.
+    fn until_off(&mut self, sides: &[usize]) -> u64 {
+        let off = |boards: &SimulatedBoards| sides.iter().all(|side| !boards.outputs().beams[*side]);
+        let took_us = self.until(|boards| off(boards));
+        let end_us = self.now_us() + LONGEST_US;
+        while self.step(end_us) {
+            assert!(off(&self.boards), "on again");
+        }
+        took_us.saturating_sub(SERVO_US)
+    }
+}
+
+fn moments(session: &Session) -> Vec<Moment<'_>> {
+    let (boards, first) = &session.moments[0];
+    let mut now = Moment {
+        boards: boards.clone(),
+        next: session.said[*first..].iter(),
+    };
+    let mut found = Vec::new();
+    while !now.next.as_slice().is_empty() {
+        now.advance(now.now_us() + APART_US);
+        // Not when the PC itself is about to end it.
+        let mut later = now.clone();
+        later.advance(now.now_us() + LONGEST_US);
+        if now.burns() && later.burns() {
+            found.push(now.clone());
+        }
+    }
+    found
+}
+
+/// The longest of what `measure` finds at all moments, held to `bound_us`.
+#[track_caller]
+fn hold(moments: &[Moment], what: &str, bound_us: u64, measure: impl Fn(&mut Moment) -> u64) {
+    let longest_us = moments
+        .iter()
+        .map(|moment| measure(&mut moment.clone()))
+        .max()
+        .expect("moments");
+    let way_mm = SPEED * longest_us as f64 * 1e-6;
+    println!("{what:44} {longest_us:6} µs {way_mm:6.3} mm");
+    assert!(longest_us <= bound_us, "{what}: {longest_us} of {bound_us} µs");
+}
+
+fn tracker_faulty(boards: &mut SimulatedBoards) -> bool {
+    match boards.ask(Role::Tracker, &Request::Status) {
+        Response::TrackerStatus(status) => status.fault.is_some(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn beams_are_off_in_time_whatever_fails() {
+    let session = Session::of_weld();
+    let moments = moments(&session);
+    println!("{} moments", moments.len());
+    assert!(moments.len() > 50);
+    let both: &[usize] = &[0, 1];
+
+    // What the motion board sees itself: at its next servo tick.
+    let own: [(&str, &[usize], Trouble); 6] = [
+        ("emergency stop", both, Trouble::MotionInputs(|f| f.estop = true)),
+        (
+            "drive fault",
+            both,
+            Trouble::MotionInputs(|f| f.drive_fault.set(2, true)),
+        ),
+        (
+            "limit switch",
+            both,
+            Trouble::MotionInputs(|f| f.limit_plus.set(0, true)),
+        ),
+        (
+            "encoder jumps",
+            both,
+            Trouble::MotionInputs(|f| f.counts[1] += 1_000_000),
+        ),
+        (
+            "laser fault, its own beam",
+            &[1],
+            Trouble::MotionInputs(|f| f.laser_fault[1] = true),
+        ),
+        ("session ended", both, Trouble::SessionEnded),
+    ];
+    for (what, sides, trouble) in own {
+        // The end of a session is an order of the path tick, a millisecond, to the servo tick after it.
+        let bound_us = match trouble {
+            Trouble::SessionEnded => 4 * SERVO_US + SERVO_US,
+            _ => SERVO_US,
+        };
+        hold(&moments, what, bound_us, |moment| {
+            moment.boards.befall(trouble);
+            moment.until_off(sides)
+        });
+    }
+    hold(
+        &moments,
+        "laser fault, the other beam",
+        2 * CONTROL_US,
+        |moment| {
+            moment
+                .boards
+                .befall(Trouble::MotionInputs(|f| f.laser_fault[1] = true));
+            moment.until_off(&[0])
+        },
+    );
+    for (what, request) in [("stop", Request::Stop), ("hold", Request::Hold)] {
+        hold(&moments, what, 2 * CONTROL_US, |moment| {
+            moment.boards.ask(Role::Motion, &request);
+            // What the PC says of the weld afterwards is of another one.
+            moment.next = [].iter();
+            moment.until_off(both)
+        });
+    }
+
+    // What the tracker sees: at its next control tick, told by its permit.
+    let told_us = CONTROL_US + TRANSIT_US + SERVO_US;
+    for (what, trouble) in [
+        (
+            "tracker: emergency stop",
+            Trouble::TrackerInputs(|f| f.estop = true),
+        ),
+        (
+            "tracker: drive fault",
+            Trouble::TrackerInputs(|f| f.drive_fault.set(0, true)),
+        ),
+        (
+            "tracker: limit switch",
+            Trouble::TrackerInputs(|f| f.limit_minus.set(3, true)),
+        ),
+        (
+            "tracker: encoder jumps",
+            Trouble::TrackerInputs(|f| f.counts[2] += 100_000),
+        ),
+    ] {
+        hold(&moments, what, told_us, |moment| {
+            moment.boards.befall(trouble);
+            moment.until_off(both)
+        });
+    }
+    hold(
+        &moments,
+        "seam lost, from the tracker's fault",
+        told_us,
+        |moment| {
+            // No measurement any more.
+            moment.next = [].iter();
+            moment.until(tracker_faulty);
+            moment.until_off(both)
+        },
+    );
+
+    // What nobody tells: the permit is not renewed.
+    for (what, trouble) in [
+        ("tracker frozen, reset or off", Trouble::TrackerFrozen),
+        ("tracker cut off", Trouble::CutOff(Role::Tracker)),
+        ("motion board cut off", Trouble::CutOff(Role::Motion)),
+    ] {
+        hold(&moments, what, PERMIT_US + SERVO_US, |moment| {
+            moment.boards.befall(trouble);
+            moment.until_off(both)
+        });
+    }
+}
