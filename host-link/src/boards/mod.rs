@@ -89,6 +89,16 @@ pub enum LinkError {
         /// What the network said.
         source: std::io::Error,
     },
+    /// It is there, and does not take the connection.
+    #[error("the {} board at {address} turns the connection away ({source}): another program is connected to it (one that is cut off keeps its place for 5 s), it is booting, or something else has this address", role_name(*.role))]
+    Busy {
+        /// Which board.
+        role: Role,
+        /// Where it was tried.
+        address: String,
+        /// What the network said.
+        source: std::io::Error,
+    },
     /// The session was made without this board.
     #[error("this session has no {} board, which the machine needs; name the addresses of both boards", role_name(*.role))]
     Absent {

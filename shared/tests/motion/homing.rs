@@ -98,3 +98,14 @@ fn home_right_after_new_parameters_waits_for_them() {
     bench.until(State::Idle, 5000);
     agrees(&mut bench);
 }
+
+#[test]
+fn parameters_and_homing_within_one_tick_are_no_fault() {
+    let mut bench = Bench::homed();
+    bench.done(&Request::Disable);
+    bench.run_ms(100);
+    bench.done(&Request::ConfigureMotion(config()));
+    bench.done(&Request::Home);
+    bench.until(State::Idle, 5000);
+    assert_eq!(bench.fault(), None);
+}

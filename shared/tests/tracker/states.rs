@@ -96,6 +96,18 @@ fn homing_finds_all_marks_within_a_count_and_takes_the_plan() {
 }
 
 #[test]
+fn parameters_and_homing_within_one_tick_are_no_jump_of_an_encoder() {
+    let mut bench = ready();
+    bench.accept(Request::Disable);
+    bench.run_ms(100);
+    bench.accept(Request::ConfigureTracker(config()));
+    bench.accept(Request::Home);
+    bench.run_ms(3000);
+    assert_eq!(bench.controller.state(), TrackerState::Ready);
+    assert_eq!(bench.status().fault, None);
+}
+
+#[test]
 fn on_the_loaded_path_without_tracking_the_slides_take_the_plan() {
     let mut bench = ready();
     bench.s = 80.0;

@@ -2,16 +2,20 @@
 //! that dies or is paused, and a crowd on the network. Beams are off in time, the machine stops on its path, and who is
 //! blamed is who it was.
 
-use crate::pair::{Pair, assert_served};
+use crate::pair::{Pair, assert_served, status};
+use crate::process::Process;
 use emulator::{Meddling, Session};
-use host_link::boards::{Boards, Overheard};
+use host_link::boards::{Boards, NetworkBoards, Overheard, Patience};
 use host_link::weld::Ended;
+use nix::sys::signal::Signal;
+use serde_json::Value;
 use shared::motion::{Fault, State};
 use shared::protocol::framing::{MAX_DATAGRAM, encode_datagram};
 use shared::protocol::{
     BeamPermit, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, PathState, Permit, Request,
     Response, Role, SideMeasurement,
 };
+use std::fs;
 use std::net::{Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -92,6 +96,88 @@ fn a_tracker_that_freezes_is_reset_dies_or_is_cut_off_shuts_the_beams_in_time() 
         });
         assert_shut_in_time(&pair, &ended, &last, "tracker");
     }
+}
+
+#[test]
+fn a_motion_board_that_freezes_is_reset_or_dies_is_blamed_and_the_slides_stop() {
+    for meddling in [Some(Meddling::Freeze), Some(Meddling::Reset), None] {
+        println!("{meddling:?}");
+        let mut pair = Pair::boot("motion-fails");
+        let (ended, last) = weld_and(&mut pair, |pair| match meddling {
+            Some(meddling) => pair.boards.meddle(Role::Motion, meddling).expect("a board"),
+            None => pair.boards.kill(Role::Motion).expect("a board"),
+        });
+        let error = ended.error.as_ref().expect("an error").to_string();
+        println!("{error} after {last:?}");
+        assert!(error.contains("motion"), "{error}");
+        match meddling {
+            Some(Meddling::Freeze) => {
+                pair.boards.meddle(Role::Motion, Meddling::GoOn).expect("a board");
+            }
+            Some(_) => {}
+            None => continue,
+        }
+        let (motion, tracker) = status(&mut pair.connect());
+        println!(
+            "{:?} {:?} {:?} {:?}",
+            motion.state, motion.fault, tracker.state, tracker.fault
+        );
+    }
+}
+
+/// A program that welds, paused when its beams have been on for a while.
+fn paused(pair: &Pair) -> Process {
+    let mut command = pair.host_link(None);
+    command.args(["--speed", "9"]);
+    let mut host_link = Process::start(command);
+    host_link.wait_for("welding");
+    thread::sleep(Duration::from_secs(2));
+    host_link.signal(Signal::SIGSTOP);
+    host_link
+}
+
+/// Checks that what was paused says so and ends with an error, and that nothing moves or burns.
+#[track_caller]
+fn assert_blames_itself(host_link: Process, pair: &Pair) {
+    host_link.signal(Signal::SIGCONT);
+    let (status, said) = host_link.end();
+    println!("{said:#?}");
+    assert_eq!(status.code(), Some(1), "{said:#?}");
+    let last = said.last().expect("an error");
+    assert!(last.contains("this PC did nothing for"), "{last}");
+    let report = fs::read_to_string(pair.report().join("report.json")).expect("a report");
+    let report: Value = serde_json::from_str(&report).expect("JSON");
+    let welded = report["weld_length_mm"].as_f64().expect("a number");
+    assert!((10.0..390.0).contains(&welded), "{welded} mm");
+}
+
+#[test]
+fn a_pc_that_is_paused_stops_the_machine_and_blames_itself() {
+    let pair = Pair::boot("pc-paused");
+    let host_link = paused(&pair);
+    thread::sleep(Duration::from_secs(3));
+    assert_blames_itself(host_link, &pair);
+    let (motion, _) = status(&mut pair.connect());
+    assert_eq!(motion.state, State::Fault, "{:?}", motion.fault);
+}
+
+#[test]
+fn a_pc_that_is_started_anew_gets_the_place_of_one_that_is_silent() {
+    let mut pair = Pair::boot("pc-anew");
+    let silent = paused(&pair);
+    // The boards wait for it for a second, which is a matter of emulated boards, and then give it the lease.
+    let patience = Patience {
+        connect: Duration::from_secs(20),
+        ..Patience::default()
+    };
+    let boards = NetworkBoards::emulated(pair.boards.session(), true, patience);
+    let mut boards = boards.unwrap_or_else(|error| panic!("{error}"));
+    let (motion, _) = status(&mut boards);
+    assert_eq!(motion.state, State::Fault, "{:?}", motion.fault);
+    assert_on_seam(&weld(&mut boards, shipped_seam(), FAST), 0.05);
+    drop(boards);
+    pair.assert_off();
+    assert_blames_itself(silent, &pair);
 }
 
 #[test]

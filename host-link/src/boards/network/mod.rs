@@ -120,8 +120,8 @@ impl NetworkBoards {
     /// does (emulated boards).
     ///
     /// # Errors
-    /// [`LinkError::Unreachable`], [`LinkError::WrongSchema`], [`LinkError::WrongRole`], or what goes wrong
-    /// while Hello is answered.
+    /// [`LinkError::Unreachable`], [`LinkError::Busy`], [`LinkError::WrongSchema`], [`LinkError::WrongRole`], or what
+    /// goes wrong while Hello is answered.
     pub fn connect(
         motion: &Endpoint,
         tracker: Option<&Endpoint>,

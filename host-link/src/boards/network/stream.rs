@@ -46,20 +46,28 @@ impl Stream {
                 decided => return decided,
             };
             let left = deadline.saturating_duration_since(Instant::now());
-            let again = matches!(
+            let busy = matches!(
                 error.kind(),
                 io::ErrorKind::ConnectionRefused
                     | io::ErrorKind::ConnectionReset
                     | io::ErrorKind::ConnectionAborted
                     | io::ErrorKind::BrokenPipe
                     | io::ErrorKind::UnexpectedEof
-                    | io::ErrorKind::TimedOut
             );
+            let again = busy || error.kind() == io::ErrorKind::TimedOut;
             if !again || left <= RETRY {
-                return Err(LinkError::Unreachable {
-                    role,
-                    address: endpoint.to_string(),
-                    source: error,
+                let (address, source) = (endpoint.to_string(), error);
+                return Err(match busy {
+                    true => LinkError::Busy {
+                        role,
+                        address,
+                        source,
+                    },
+                    false => LinkError::Unreachable {
+                        role,
+                        address,
+                        source,
+                    },
                 });
             }
             std::thread::sleep(RETRY);

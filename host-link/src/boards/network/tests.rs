@@ -214,7 +214,7 @@ fn a_session_without_a_tracker_board_leaves_it_alone() {
 }
 
 #[test]
-fn a_board_that_is_not_there_is_named_with_its_address() {
+fn a_board_that_takes_no_connection_is_named_with_its_address() {
     // A port that was just free, and is not listened on.
     let port = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))
         .unwrap()
@@ -227,7 +227,9 @@ fn a_board_that_is_not_there_is_named_with_its_address() {
     };
     let error = message(NetworkBoards::connect(&nowhere, Some(&nowhere), None, BRIEF));
     assert!(
-        error.starts_with(&format!("the motion board does not answer at 127.0.0.1:{port}")),
+        error.starts_with(&format!(
+            "the motion board at 127.0.0.1:{port} turns the connection away"
+        )),
         "{error}"
     );
 }

@@ -15,6 +15,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             Request::ConfigureTracker(config) => self.allow(&[TrackerState::Off]).and_then(|()| {
                 self.parameters = Some(config.build().map_err(Refusal::Parameter)?);
                 self.slides = Default::default();
+                for (slide, counts) in self.slides.iter_mut().zip(self.feedback.counts) {
+                    slide.watch.rest(counts);
+                }
                 // A path was planned for the machine it was loaded for.
                 self.path.clear(0, PathSpace::Tool);
                 self.forget_seam();
