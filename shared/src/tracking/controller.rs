@@ -22,7 +22,7 @@ use super::seam::Seam;
 use super::search::SeamSearch;
 use super::supervision::SlideWatch;
 use super::{TrackerFault, TrackerState};
-use crate::control::{SearchInput, SearchProgress, SearchState};
+use crate::control::{SearchInput, SearchProgress, SearchState, UNATTENDED_S};
 use crate::io::{Bits, Command, DacCode, SIDES, SLIDES, SlideCommand, SlideFeedback};
 use crate::protocol::{BeamPermit, Capture, ClockRequest, Datagram, PathState, Permit, TrackerSample};
 use crate::trajectory::Path;
@@ -31,9 +31,7 @@ use heapless::Vec;
 
 /// Control ticks between two clock requests: 10 Hz.
 const CLOCK_REQUEST_TICKS: u32 = 100;
-/// Drives are on for so long with nobody in charge \[s\], as on the motion board.
-const UNATTENDED_S: u8 = 2;
-/// The same \[ticks\].
+/// [`UNATTENDED_S`] in control ticks.
 const UNATTENDED_TICKS: u32 = UNATTENDED_S as u32 * 1000;
 
 /// What one control tick reads.
