@@ -24,7 +24,7 @@ use super::supervision::SlideWatch;
 use super::{TrackerFault, TrackerState};
 use crate::control::{SearchInput, SearchProgress, SearchState, UNATTENDED_S};
 use crate::io::{Bits, Command, DacCode, SIDES, SLIDES, SlideCommand, SlideFeedback};
-use crate::protocol::{BeamPermit, Capture, ClockRequest, Datagram, PathState, Permit, TrackerSample};
+use crate::protocol::{BeamPermit, Capture, Datagram, PathState, Permit, TrackerSample};
 use crate::trajectory::Path;
 use captures::Strobes;
 use heapless::Vec;
@@ -60,9 +60,8 @@ pub struct TickOutput {
     pub permit: Option<Permit>,
     /// For telemetry.
     pub sample: TrackerSample,
-    /// Ask the motion board for its clock; set the time anew when it is really sent, and say so:
-    /// [`TrackerController::asks_clock`].
-    pub clock_request: Option<ClockRequest>,
+    /// Ask the motion board for its clock, and say when that was: [`TrackerController::asks_clock`].
+    pub clock_request: bool,
 }
 
 /// The tracker board's controller, for paths of up to `KNOTS` knots.
@@ -205,7 +204,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         if let Some(permit) = &permit {
             command.beam_gate = permit.sides.map(|side| side != BeamPermit::No);
         }
-        let request = due(
+        let clock_request = due(
             &mut self.ticks_to_clock_request,
             input.periods,
             CLOCK_REQUEST_TICKS,
@@ -215,9 +214,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             command,
             capture,
             permit,
-            clock_request: request.then_some(ClockRequest {
-                asked_us: input.now_us,
-            }),
+            clock_request,
         }
     }
 
