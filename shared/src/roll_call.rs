@@ -16,7 +16,7 @@ impl<const N: usize> RollCall<N> {
         }
     }
 
-    /// Task number `task` ran.
+    /// Task number `task` ran; panics if there is no such task.
     pub fn seen(&mut self, task: usize) {
         self.left[task] = self.patience;
     }

@@ -4,7 +4,7 @@ pub mod control;
 mod network;
 
 use heapless::spsc::{Consumer, Producer};
-use shared::protocol::{Capture, ClockRequest, Permit, TrackerSample};
+use shared::protocol::{Capture, Permit, TrackerSample};
 use shared::roll_call::RollCall;
 use shared::tracking::TrackerController;
 
@@ -32,8 +32,8 @@ pub struct Published {
     pub capture: Option<Capture>,
     /// For the motion board.
     pub permit: Option<Permit>,
-    /// To ask the motion board.
-    pub clock_request: Option<ClockRequest>,
+    /// Whether to ask the motion board for its clock.
+    pub clock_request: bool,
 }
 
 /// The control tick's end of the queue to the network.

@@ -65,7 +65,7 @@ impl Network {
             if let Some(capture) = published.capture {
                 self.link.send_to_pc(&Datagram::Capture(capture));
             }
-            if published.clock_request.is_some() {
+            if published.clock_request {
                 // The round trip begins now, not at the tick.
                 let asked_us = board::now_us();
                 controller.lock(|controller| controller.asks_clock(asked_us));

@@ -2,6 +2,7 @@
 
 mod network;
 mod overheard;
+mod pass_on;
 pub mod simulated;
 
 pub use network::{Endpoint, NetworkBoards, Patience};

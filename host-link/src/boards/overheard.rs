@@ -1,7 +1,8 @@
 //! Boards for tests that listen in on the motion board.
 
 use super::{Boards, LinkError};
-use shared::protocol::{Datagram, Identity, MotionSample, Request, Response, Role};
+use crate::pass_on;
+use shared::protocol::{Datagram, MotionSample, Role};
 use std::time::Duration;
 
 /// Boards, and what is done with every sample of the motion board before the job gets it.
@@ -13,9 +14,7 @@ pub struct Overheard<'a, F> {
 }
 
 impl<F: FnMut(&mut dyn Boards, &MotionSample)> Boards for Overheard<'_, F> {
-    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
-        self.boards.request(role, request)
-    }
+    pass_on!(boards: request, send, now, identity, path_states_target);
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
         let received = self.boards.receive(timeout)?;
@@ -25,21 +24,5 @@ impl<F: FnMut(&mut dyn Boards, &MotionSample)> Boards for Overheard<'_, F> {
             }
         }
         Ok(received)
-    }
-
-    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
-        self.boards.send(role, datagram)
-    }
-
-    fn now(&self) -> Duration {
-        self.boards.now()
-    }
-
-    fn identity(&self, role: Role) -> Option<&Identity> {
-        self.boards.identity(role)
-    }
-
-    fn path_states_target(&self) -> Option<Request> {
-        self.boards.path_states_target()
     }
 }

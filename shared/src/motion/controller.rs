@@ -17,6 +17,7 @@ use super::segment::{MotorReference, PATH_PERIOD_S, Segment};
 use super::servo::{ServoOrder, ServoReport, ServoSetup};
 use super::state::Event;
 use super::{Fault, State, Vibration};
+use crate::control::UNATTENDED_S;
 use crate::io::{AXES, MOTORS, SIDES};
 use crate::kinematics::AXIS_UNIT;
 use crate::protocol::{Datagram, MotionSample, PathState};
@@ -25,9 +26,6 @@ use path::LoadedPath;
 
 /// Lost path ticks that are made up for at once; more are too late anyway.
 const MAX_CATCH_UP: u32 = 4;
-
-/// Drives are on for so long with nobody in charge \[s\]: time for a PC to come back after a short loss.
-const UNATTENDED_S: u8 = 2;
 
 /// What the path tick is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -7,13 +7,14 @@
 //! Lost seam, saturation, a soft limit and a silent motion board do not switch the drives off: they are kept as
 //! the fault for status and telemetry, the permit of the beams ends, and the slides go on as well as they can.
 
+mod captures;
 mod following;
 mod permit;
 mod requests;
 mod supervising;
 
 use super::clock::ClockRelation;
-use super::history::{CaptureHistory, CaptureRecord, PathHistory, Place, Pushed};
+use super::history::{CaptureHistory, PathHistory, Place, Pushed};
 use super::law::LawState;
 use super::parameters::TrackerParameters;
 use super::plausible::{Arrival, PathStateGate};
@@ -21,22 +22,17 @@ use super::seam::Seam;
 use super::search::SeamSearch;
 use super::supervision::SlideWatch;
 use super::{TrackerFault, TrackerState};
-use crate::control::{SearchInput, SearchProgress, SearchState};
+use crate::control::{SearchInput, SearchProgress, SearchState, UNATTENDED_S};
 use crate::io::{Bits, Command, DacCode, SIDES, SLIDES, SlideCommand, SlideFeedback};
-use crate::protocol::{
-    BeamPermit, Capture, ClockRequest, Datagram, Measurement, PathState, Permit, TrackerSample,
-};
+use crate::protocol::{BeamPermit, Capture, Datagram, PathState, Permit, TrackerSample};
 use crate::trajectory::Path;
+use captures::Strobes;
 use heapless::Vec;
 
 /// Control ticks between two clock requests: 10 Hz.
 const CLOCK_REQUEST_TICKS: u32 = 100;
-/// Drives are on for so long with nobody in charge \[s\], as on the motion board.
-const UNATTENDED_S: u8 = 2;
-/// The same \[ticks\].
+/// [`UNATTENDED_S`] in control ticks.
 const UNATTENDED_TICKS: u32 = UNATTENDED_S as u32 * 1000;
-/// Period of the control tick \[µs\].
-const TICK_US: u64 = 1000;
 
 /// What one control tick reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,9 +60,8 @@ pub struct TickOutput {
     pub permit: Option<Permit>,
     /// For telemetry.
     pub sample: TrackerSample,
-    /// Ask the motion board for its clock; set the time anew when it is really sent, and say so:
-    /// [`TrackerController::asks_clock`].
-    pub clock_request: Option<ClockRequest>,
+    /// Ask the motion board for its clock, and say when that was: [`TrackerController::asks_clock`].
+    pub clock_request: bool,
 }
 
 /// The tracker board's controller, for paths of up to `KNOTS` knots.
@@ -104,19 +99,6 @@ pub struct TrackerController<const KNOTS: usize> {
     unattended_ticks: u32,
     disbelieved_replies: u32,
     strobes: Strobes,
-}
-
-/// When the cameras are triggered.
-#[derive(Clone, Copy, Debug, Default)]
-struct Strobes {
-    /// At the last tick it was known where on the path the machine is, and where the slides are.
-    armed: bool,
-    /// How long before the present tick the strobe was due, because ticks were lost \[µs\].
-    overdue_us: u64,
-    any: bool,
-    /// How late they were \[µs\].
-    least_late_us: u32,
-    most_late_us: u32,
 }
 
 /// State of one slide.
@@ -187,31 +169,13 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             attended: false,
             unattended_ticks: 0,
             disbelieved_replies: 0,
-            strobes: Strobes {
-                armed: false,
-                overdue_us: 0,
-                any: false,
-                least_late_us: 0,
-                most_late_us: 0,
-            },
+            strobes: Strobes::new(),
         }
     }
 
     /// What the board is doing.
     pub fn state(&self) -> TrackerState {
         self.state
-    }
-
-    /// Whether the cameras are to be triggered in the tick that begins now, `periods` after the last: before anything
-    /// that takes time, and once a tick. Tell [`Self::tick`] when that was.
-    pub fn strobe(&mut self, periods: u32) -> bool {
-        let Some(parameters) = &self.parameters else {
-            return false;
-        };
-        let overdue = periods.saturating_sub(self.ticks_to_strobe.max(1));
-        let due = due(&mut self.ticks_to_strobe, periods, parameters.frame_ticks);
-        self.strobes.overdue_us = u64::from(overdue) * TICK_US;
-        due && self.strobes.armed
     }
 
     /// One control tick.
@@ -240,7 +204,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         if let Some(permit) = &permit {
             command.beam_gate = permit.sides.map(|side| side != BeamPermit::No);
         }
-        let request = due(
+        let clock_request = due(
             &mut self.ticks_to_clock_request,
             input.periods,
             CLOCK_REQUEST_TICKS,
@@ -250,9 +214,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             command,
             capture,
             permit,
-            clock_request: request.then_some(ClockRequest {
-                asked_us: input.now_us,
-            }),
+            clock_request,
         }
     }
 
@@ -455,64 +417,6 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         self.slides.iter().all(|slide| slide.offset.is_some())
     }
 
-    /// Keeps what was latched when the cameras were triggered.
-    fn capture(&mut self, input: &TickInput, strobed_us: u64) -> Option<Capture> {
-        let late_us = strobed_us.saturating_sub(input.now_us) + self.strobes.overdue_us;
-        self.strobes.was(u32::try_from(late_us).unwrap_or(u32::MAX));
-        let motion_time_us = self.clock.to_remote(strobed_us)?;
-        let newest = || self.history.newest().map(|(place, _)| place);
-        let place = self.history.at(motion_time_us).or_else(newest)?;
-        let slides = self.slides.map(|slide| slide.position);
-        let number = self.captures.push(CaptureRecord {
-            motion_time_us,
-            place,
-            time_us: strobed_us,
-            slides,
-            answered: [false; SIDES],
-        });
-        Some(Capture {
-            number,
-            time_us: strobed_us,
-            motion_time_us,
-            s_mm: place.s,
-            path_id: place.path_id,
-            slides_mm: slides,
-            truth_mm: input.truth,
-        })
-    }
-
-    /// Enters a measurement into the map; refuses one whose capture, or its path, is gone.
-    fn measure(&mut self, measurement: &Measurement, arrived_us: u64) {
-        let capture = self
-            .captures
-            .get(measurement.capture)
-            .filter(|capture| capture.place.path_id == self.path.id());
-        let Some((parameters, capture)) = self.parameters.as_ref().zip(capture) else {
-            self.too_old = self.too_old.saturating_add(1);
-            return;
-        };
-        // Seen before it was there to see, or a second time.
-        let believed = capture
-            .answered
-            .map(|answered| arrived_us >= capture.time_us && !answered);
-        let slides = capture.slides;
-        // By now the path states around the strobe are there.
-        let place = self
-            .history
-            .between(capture.motion_time_us)
-            .unwrap_or(capture.place);
-        for (side, seen) in measurement.sides.iter().enumerate() {
-            if let Some(seen) = seen {
-                if !believed[side] {
-                    self.seam.disbelieve(side);
-                    continue;
-                }
-                self.captures.answer(measurement.capture, side);
-                self.seam.add(parameters, &self.path, side, &place, &slides, seen);
-            }
-        }
-    }
-
     fn sample(&self, input: &TickInput, command: &SlideCommand) -> TrackerSample {
         TrackerSample {
             tick: self.ticks,
@@ -524,19 +428,6 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             target_mm: self.slides.map(|slide| slide.target),
             dac: command.dac.map(|code| code.0),
         }
-    }
-}
-
-impl Strobes {
-    /// A strobe was `late_us` late.
-    fn was(&mut self, late_us: u32) {
-        self.least_late_us = if self.any {
-            self.least_late_us.min(late_us)
-        } else {
-            late_us
-        };
-        self.most_late_us = self.most_late_us.max(late_us);
-        self.any = true;
     }
 }
 

@@ -286,11 +286,12 @@ impl Bench {
             };
             self.measurements.push_back((now + 10_000, measurement));
         }
-        if let Some(request) = self.last.clock_request {
-            self.controller.asks_clock(request.asked_us);
+        if self.last.clock_request {
+            let asked_us = input.now_us;
+            self.controller.asks_clock(asked_us);
             self.controller.datagram(
                 &Datagram::ClockReply(ClockReply {
-                    asked_us: request.asked_us,
+                    asked_us,
                     received_us: now + 250 + MOTION_CLOCK,
                     replied_us: now + 280 + MOTION_CLOCK,
                 }),

@@ -6,12 +6,12 @@ use crate::{JOBS, MACHINE, assert_held_weld_goes_on, shipped, shipped_seam, weld
 use host_link::boards::simulated::SimulatedBoards;
 use host_link::boards::{Boards, LinkError};
 use host_link::machine::MachineFile;
+use host_link::pass_on;
 use shared::geometry::PoseOffset;
 use shared::io::SLIDES;
 use shared::motion::MotionConfig;
-use shared::protocol::{Datagram, Identity, Request, Response, Role};
+use shared::protocol::{Datagram, Request, Response, Role};
 use shared::tracking::TrackerConfig;
-use std::time::Duration;
 
 /// Moments of a job at which its boards are kept.
 const MOMENTS: usize = 24;
@@ -76,6 +76,8 @@ impl Recorder {
 }
 
 impl Boards for Recorder {
+    pass_on!(boards: receive, now, identity, path_states_target);
+
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         let answer = self.boards.request(role, request);
         // After the time that it takes: that is when the board has it.
@@ -83,25 +85,9 @@ impl Boards for Recorder {
         answer
     }
 
-    fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
-        self.boards.receive(timeout)
-    }
-
     fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
         self.keep(role, Message::Datagram(Box::new(datagram.clone())));
         self.boards.send(role, datagram)
-    }
-
-    fn now(&self) -> Duration {
-        self.boards.now()
-    }
-
-    fn identity(&self, role: Role) -> Option<&Identity> {
-        self.boards.identity(role)
-    }
-
-    fn path_states_target(&self) -> Option<Request> {
-        self.boards.path_states_target()
     }
 }
 

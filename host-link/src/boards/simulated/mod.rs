@@ -16,7 +16,7 @@ pub use trouble::Trouble;
 use super::{Boards, LinkError};
 use motion::MotionBoard;
 use plant::MotionPlant;
-use shared::protocol::{ClockReply, Datagram, Identity, Request, Response, Role};
+use shared::protocol::{ClockReply, ClockRequest, Datagram, Identity, Request, Response, Role};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 use std::time::Duration;
@@ -202,8 +202,10 @@ impl SimulatedBoards {
         if let Some(capture) = output.capture {
             self.post(tracker, Node::Pc, Datagram::Capture(capture));
         }
-        if let Some(request) = output.clock_request {
-            self.tracker.controller.asks_clock(request.asked_us);
+        if output.clock_request {
+            let asked_us = output.sample.time_us;
+            self.tracker.controller.asks_clock(asked_us);
+            let request = ClockRequest { asked_us };
             self.post(tracker, motion, Datagram::ClockRequest(request));
         }
         if let Some(telemetry) = self.tracker.telemetry() {

@@ -10,21 +10,15 @@ use std::path::Path;
 struct MotionOnly(SimulatedBoards);
 
 impl Boards for MotionOnly {
+    pass_on!(0: receive, now);
+
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         assert_eq!(role, Role::Motion, "{request:?}");
         self.0.request(role, request)
     }
 
-    fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
-        self.0.receive(timeout)
-    }
-
     fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
         panic!("{datagram:?} to {role:?}")
-    }
-
-    fn now(&self) -> Duration {
-        self.0.now()
     }
 
     fn identity(&self, role: Role) -> Option<&Identity> {

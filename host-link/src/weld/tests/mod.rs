@@ -18,6 +18,7 @@ use super::*;
 use crate::boards::command;
 use crate::boards::simulated::SimulatedBoards;
 use crate::nc::{Options, interpret};
+use crate::pass_on;
 use crate::report::{Outcome, Report, SeamFigures};
 use crate::seam::Deviation;
 use shared::protocol::{Datagram, Identity, Response};
@@ -171,6 +172,8 @@ impl Troubled {
 }
 
 impl Boards for Troubled {
+    pass_on!(boards: now, identity, path_states_target);
+
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         self.reachable(role)?;
         if role == Role::Motion {
@@ -205,18 +208,6 @@ impl Boards for Troubled {
             }
         }
         self.boards.send(role, &datagram)
-    }
-
-    fn now(&self) -> Duration {
-        self.boards.now()
-    }
-
-    fn identity(&self, role: Role) -> Option<&Identity> {
-        self.boards.identity(role)
-    }
-
-    fn path_states_target(&self) -> Option<Request> {
-        self.boards.path_states_target()
     }
 }
 

@@ -256,6 +256,8 @@ impl World {
 }
 
 impl Boards for World {
+    pass_on!(boards: request, send, now, identity, path_states_target);
+
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
         // Time goes on only if the pictures keep pace; the boards are much faster than the cameras.
         for (side, lens) in self.lenses.iter().enumerate() {
@@ -268,26 +270,6 @@ impl Boards for World {
             self.see(datagram);
         }
         Ok(received)
-    }
-
-    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
-        self.boards.request(role, request)
-    }
-
-    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
-        self.boards.send(role, datagram)
-    }
-
-    fn now(&self) -> Duration {
-        self.boards.now()
-    }
-
-    fn identity(&self, role: Role) -> Option<&Identity> {
-        self.boards.identity(role)
-    }
-
-    fn path_states_target(&self) -> Option<Request> {
-        self.boards.path_states_target()
     }
 }
 

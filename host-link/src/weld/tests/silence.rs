@@ -40,6 +40,8 @@ impl<'a> Alone<'a> {
 }
 
 impl Boards for Alone<'_> {
+    pass_on!(boards: send, now, identity, path_states_target);
+
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         if self.begun {
             self.asked.push((role, request.clone()));
@@ -76,22 +78,6 @@ impl Boards for Alone<'_> {
             }
         }
         Ok(received)
-    }
-
-    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
-        self.boards.send(role, datagram)
-    }
-
-    fn now(&self) -> Duration {
-        self.boards.now()
-    }
-
-    fn identity(&self, role: Role) -> Option<&Identity> {
-        self.boards.identity(role)
-    }
-
-    fn path_states_target(&self) -> Option<Request> {
-        self.boards.path_states_target()
     }
 
     fn absence(&self) -> Option<Absence> {

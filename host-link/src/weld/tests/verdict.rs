@@ -11,9 +11,7 @@ struct Shut {
 }
 
 impl Boards for Shut {
-    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
-        self.boards.request(role, request)
-    }
+    pass_on!(boards: request, send, now, identity, path_states_target);
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
         let mut received = self.boards.receive(timeout)?;
@@ -23,22 +21,6 @@ impl Boards for Shut {
             }
         }
         Ok(received)
-    }
-
-    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
-        self.boards.send(role, datagram)
-    }
-
-    fn now(&self) -> Duration {
-        self.boards.now()
-    }
-
-    fn identity(&self, role: Role) -> Option<&Identity> {
-        self.boards.identity(role)
-    }
-
-    fn path_states_target(&self) -> Option<Request> {
-        self.boards.path_states_target()
     }
 }
 

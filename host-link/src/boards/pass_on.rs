@@ -1,0 +1,52 @@
+//! What boards that stand before others do not do themselves.
+
+/// In an `impl Boards`: passes the methods that are named on to the boards in a field.
+///
+/// A `poll` that is neither named nor written asks by `request`, as in every [`Boards`](crate::boards::Boards).
+#[macro_export]
+macro_rules! pass_on {
+    ($boards:tt: $($method:ident),+) => {
+        $($crate::pass_on! { @$method $boards })+
+    };
+    (@request $boards:tt) => {
+        fn request(
+            &mut self,
+            role: ::shared::protocol::Role,
+            request: &::shared::protocol::Request,
+        ) -> Result<::shared::protocol::Response, $crate::boards::LinkError> {
+            self.$boards.request(role, request)
+        }
+    };
+    (@receive $boards:tt) => {
+        fn receive(
+            &mut self,
+            timeout: ::std::time::Duration,
+        ) -> Result<Option<(::shared::protocol::Role, ::shared::protocol::Datagram)>, $crate::boards::LinkError> {
+            self.$boards.receive(timeout)
+        }
+    };
+    (@send $boards:tt) => {
+        fn send(
+            &mut self,
+            role: ::shared::protocol::Role,
+            datagram: &::shared::protocol::Datagram,
+        ) -> Result<(), $crate::boards::LinkError> {
+            self.$boards.send(role, datagram)
+        }
+    };
+    (@now $boards:tt) => {
+        fn now(&self) -> ::std::time::Duration {
+            self.$boards.now()
+        }
+    };
+    (@identity $boards:tt) => {
+        fn identity(&self, role: ::shared::protocol::Role) -> Option<&::shared::protocol::Identity> {
+            self.$boards.identity(role)
+        }
+    };
+    (@path_states_target $boards:tt) => {
+        fn path_states_target(&self) -> Option<::shared::protocol::Request> {
+            self.$boards.path_states_target()
+        }
+    };
+}
