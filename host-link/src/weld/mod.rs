@@ -212,6 +212,17 @@ pub enum JobError {
     Parameter(#[from] ParameterError),
 }
 
+impl JobError {
+    /// Why a job ended that ended with `self` first, and was brought to its end with `late`. The first error says why;
+    /// an operator who ends a job is none, and has to know what went wrong then.
+    fn then(self, late: Result<(), Self>) -> Self {
+        match (self, late) {
+            (Self::Interrupted, Err(late)) => late,
+            (first, _) => first,
+        }
+    }
+}
+
 /// Runs a job on boards that may be in any state. They are off afterwards, if they can be reached at all.
 pub fn run(
     boards: &mut dyn Boards,
@@ -226,11 +237,12 @@ pub fn run(
         paths: BTreeMap::new(),
         taught: Taught::default(),
     };
-    let mut error = weld.all(&mut session, job).err();
-    let early = error.is_some();
-    if let Err(late) = switch_off(&mut session, early) {
-        error.get_or_insert(late);
-    }
+    let error = weld.all(&mut session, job).err();
+    let switched_off = switch_off(&mut session, error.is_some());
+    let error = match error {
+        Some(error) => Some(error.then(switched_off)),
+        None => switched_off.err(),
+    };
     Ok(outcome::end(&session, job, weld, error))
 }
 
@@ -303,11 +315,10 @@ impl Weld {
         session.progress.phase(what);
         let ran = follow(session, feeding, path.length_mm(), id);
         self.paths.insert(id, path);
-        if ran.is_err() {
+        ran.map_err(|error| {
             session.progress.phase("stopping");
-            session.stop(STOP_LIMIT)?;
-        }
-        ran
+            error.then(session.stop(STOP_LIMIT))
+        })
     }
 }
 

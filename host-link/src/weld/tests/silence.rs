@@ -10,6 +10,8 @@ enum Wrong {
     TrackerSilent,
     /// This program is paused.
     Paused,
+    /// It is, and another one has its place on the boards afterwards.
+    Replaced,
 }
 
 const PAUSE: Duration = Duration::from_secs(3);
@@ -45,6 +47,10 @@ impl Boards for Alone<'_> {
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         if self.begun {
             self.asked.push((role, request.clone()));
+            if self.wrong == Wrong::Replaced {
+                let source = std::io::ErrorKind::BrokenPipe.into();
+                return Err(LinkError::Lost { role, source });
+            }
         }
         self.boards.request(role, request)
     }
@@ -56,7 +62,7 @@ impl Boards for Alone<'_> {
             self.interrupted.store(self.polled > 20, Ordering::Relaxed);
             return Ok(None);
         }
-        self.boards.request(role, request).map(Some)
+        self.request(role, request).map(Some)
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
@@ -66,7 +72,7 @@ impl Boards for Alone<'_> {
             && telemetry.samples.iter().any(|sample| sample.beams[0])
         {
             self.begun = true;
-            if self.wrong == Wrong::Paused {
+            if self.wrong != Wrong::TrackerSilent {
                 let end = self.now() + PAUSE;
                 while self.now() < end {
                     self.boards.receive(Duration::from_millis(1))?;
@@ -107,12 +113,10 @@ fn a_tracker_that_does_not_answer_keeps_nobody_from_stopping() {
     assert_off(&mut boards);
 }
 
-#[test]
-fn a_paused_pc_says_that_it_was_paused() {
-    let interrupted = AtomicBool::new(false);
-    let mut boards = Alone::new(Wrong::Paused, &interrupted);
-    let ended = weld(&mut boards, &interrupted, &mut Silent);
-    let told = ended.error.expect("the motion board stopped").to_string();
+/// Welds with a pause.
+fn paused(boards: &mut Alone, interrupted: &AtomicBool) {
+    let ended = weld(boards, interrupted, &mut Silent);
+    let told = ended.error.expect("the boards do not go on").to_string();
     assert!(
         told.starts_with("this PC did nothing for 3.0 s (paused") && told.contains("board"),
         "{told}"
@@ -123,5 +127,18 @@ fn a_paused_pc_says_that_it_was_paused() {
         "{:?}",
         ended.report.faults
     );
+}
+
+#[test]
+fn a_paused_pc_says_that_it_was_paused() {
+    let interrupted = AtomicBool::new(false);
+    let mut boards = Alone::new(Wrong::Paused, &interrupted);
+    paused(&mut boards, &interrupted);
     assert_off(&mut boards);
+}
+
+#[test]
+fn a_pc_that_was_paused_until_another_has_its_place_says_so_too() {
+    let interrupted = AtomicBool::new(false);
+    paused(&mut Alone::new(Wrong::Replaced, &interrupted), &interrupted);
 }
