@@ -40,7 +40,7 @@ impl Panel {
             _ => return Err(PanelError::NoHead),
         };
         let line = Line::through(points, self.closed)?;
-        let stations = self.stations(&line, place)?;
+        let (stations, cut) = self.stations(&line, place)?;
         let near = self.guide.first().map_or(0.0, |guide| guide[4].to_radians());
         let upright = self.teaching.upright_deg.to_radians();
         let attitudes = Attitudes::along(&stations, upright, near, &limits[C])?;
@@ -77,13 +77,13 @@ impl Panel {
             ));
         }
         Ok(Plan {
-            program: self.text(place, &stops, &kinematics, &line, points.len())?,
+            program: self.text(place, &stops, cut, &kinematics, &line, points.len())?,
             notes,
         })
     }
 
-    /// Places on the line from the lead-in to the lead-out, among them the ends of the cut.
-    fn stations(&self, line: &Line, place: &Place) -> Result<Vec<Station>, PanelError> {
+    /// Places on the line from the lead-in to the lead-out, and which of them are the ends of the cut.
+    fn stations(&self, line: &Line, place: &Place) -> Result<(Vec<Station>, [usize; 2]), PanelError> {
         let planning = &place.machine.planning;
         let velocity = self.speed_m_min * MM_S_PER_M_MIN;
         let lead = self.lead_mm.max(speed_up_length(planning, velocity));
@@ -97,11 +97,12 @@ impl Panel {
         let length = line.length();
         let pieces = [(-lead, 0.0), (0.0, length), (length, length + lead)];
         let mut stations = vec![line.at(-lead)];
-        for (from, to) in pieces {
+        let ends = pieces.map(|(from, to)| {
             let count = ((to - from) / self.spacing_mm).ceil().max(1.0) as usize;
             stations.extend((1..=count).map(|i| line.at(from + (to - from) * i as f64 / count as f64)));
-        }
-        Ok(stations)
+            stations.len() - 1
+        });
+        Ok((stations, [ends[0], ends[1]]))
     }
 
     /// Where the axes stand at `station` with A and C as given.
@@ -135,6 +136,7 @@ impl Panel {
         &self,
         place: &Place,
         stops: &[Stop],
+        cut: [usize; 2],
         kinematics: &Kinematics,
         line: &Line,
         count: usize,
@@ -178,14 +180,13 @@ impl Panel {
         nc.comment("lead-in");
         nc.block(&format!("F{}", decimal(self.speed_m_min * 1000.0, 1)));
         let mut named = 0;
-        for pair in stops.windows(2) {
+        for (left, stop) in stops[1..].iter().enumerate() {
             // Outputs change at the start of the motion that leaves the point before.
-            let (left, stop) = (pair[0].station.s, &pair[1]);
-            if left == 0.0 {
+            if left == cut[0] {
                 nc.comment("cut");
                 nc.block("M62 P0");
             }
-            if left == line.length() {
+            if left == cut[1] {
                 nc.comment("lead-out");
                 nc.block("M63 P0");
             }
