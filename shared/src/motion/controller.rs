@@ -62,6 +62,8 @@ pub struct MotionController {
     stop_by: (u64, u32),
     /// The emergency stop is pressed, or a drive reports a fault.
     cause_remains: bool,
+    /// The channels of the emergency stop disagreed, and were not both open since.
+    estop_untested: bool,
     machine: Option<Machine>,
     servo_setup: Option<ServoSetup>,
     /// Drives were ordered on at the last tick.
@@ -118,6 +120,7 @@ impl MotionController {
             pending: None,
             stop_by: (0, 0),
             cause_remains: false,
+            estop_untested: false,
             machine: None,
             servo_setup: None,
             enabled: false,
@@ -303,9 +306,14 @@ impl MotionController {
                 seconds: UNATTENDED_S,
             });
         }
-        self.cause_remains = input.report.estop || input.report.drive_fault.any();
+        let estop = input.report.estop;
+        self.cause_remains = estop.is_pressed() || input.report.drive_fault.any();
+        self.estop_untested = estop.stayed_closed().is_some();
         if let (true, Some(fault)) = (self.state.drives_on(), input.report.trip) {
             self.trip(fault);
+        }
+        if let Some(closed) = estop.stayed_closed() {
+            self.distrust(Fault::EmergencyStopChannels { closed });
         }
         if let (State::Stopping, true) = (self.state, self.tick > self.stop_by.0) {
             self.trip(Fault::StopTooLong {
@@ -348,6 +356,15 @@ impl MotionController {
             self.state = state;
         }
         self.leave_path();
+    }
+
+    /// The emergency stop itself fails: to be told with the drives off too, and in place of that it is pressed.
+    fn distrust(&mut self, fault: Fault) {
+        if self.fault == Some(Fault::EmergencyStop) {
+            self.fault = Some(fault);
+        } else if self.state != State::Fault {
+            self.trip(fault);
+        }
     }
 
     /// Beams off and a controlled stop; then the fault.

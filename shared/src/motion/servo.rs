@@ -4,7 +4,8 @@ use super::permit::BeamLease;
 use super::segment::{SERVO_TICKS_PER_PATH_TICK, Segment};
 use super::{Fault, MotorConfig, SERVO_PERIOD_S};
 use crate::control::{
-    EncoderCheck, FollowingTrip, Gantry, GantryState, MovementCheck, MovementState, Pid, PidState, Setpoint,
+    EmergencyStop, EncoderCheck, FollowingTrip, Gantry, GantryState, MovementCheck, MovementState, Pid,
+    PidState, Setpoint,
 };
 use crate::io::{Bits, DacCode, MOTOR_NAMES, MOTORS, MotionCommand, MotionFeedback, SIDES};
 use crate::kinematics::AXIS_UNIT;
@@ -19,6 +20,9 @@ pub const UNIT: [f64; MOTORS] = {
 /// Three milliseconds with wrong references within so many trip. Each that is bridged is wrong by half the
 /// acceleration times 1 ms², a micrometre or less; as often as this, the path task has no time to spare.
 const WRONG_MS: u32 = 100;
+
+/// Servo tick \[µs\].
+const SERVO_US: u32 = (SERVO_PERIOD_S * 1e6) as u32;
 
 /// Motors that are coupled as a gantry; the others have loops of their own.
 const GANTRY: usize = 2;
@@ -157,8 +161,8 @@ pub struct ServoReport {
     pub gate: [bool; SIDES],
     /// Gates that were shut since the last report because their lease had run out.
     pub lapsed: [bool; SIDES],
-    /// Emergency stop is pressed now.
-    pub estop: bool,
+    /// The emergency stop now.
+    pub estop: EmergencyStop,
     /// Drives that report a fault now.
     pub drive_fault: Bits,
     /// Servo ticks since boot (mod 2³²).
@@ -218,7 +222,7 @@ impl ServoLoops {
         self.report.ticks = self.report.ticks.wrapping_add(elapsed);
         self.report.lost = self.report.lost.wrapping_add(elapsed.saturating_sub(1));
         let position = self.position(&feedback.counts);
-        self.observe(feedback);
+        self.observe(feedback, elapsed);
         if let Err(fault) = self.watch(feedback, elapsed) {
             self.trip(fault);
         }
@@ -307,8 +311,9 @@ impl ServoLoops {
     }
 
     /// Marks and switches.
-    fn observe(&mut self, feedback: &MotionFeedback) {
-        self.report.estop = feedback.estop;
+    fn observe(&mut self, feedback: &MotionFeedback, elapsed: u32) {
+        let elapsed_us = elapsed.saturating_mul(SERVO_US);
+        self.report.estop.step(feedback.estop, elapsed_us);
         self.report.drive_fault = Bits::NONE;
         for (index, _) in self.setup.iter().flat_map(ServoSetup::fitted) {
             let faulty = feedback.drive_fault.get(index);
@@ -330,7 +335,7 @@ impl ServoLoops {
             .last_counts
             .replace(feedback.counts)
             .unwrap_or(feedback.counts);
-        if feedback.estop {
+        if self.report.estop.is_pressed() {
             return Err(Fault::EmergencyStop);
         }
         let Some(setup) = &self.setup else { return Ok(()) };

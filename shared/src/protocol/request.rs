@@ -231,6 +231,11 @@ pub enum Refusal {
         "the cause of the fault is still there: release the emergency stop, clear the drives' faults, then reset"
     )]
     CauseRemains,
+    /// The channels of the emergency stop disagreed, and have not both been open since.
+    #[error(
+        "the channels of the emergency stop disagreed: press it fully, so that both of them open, and release it, then reset"
+    )]
+    EmergencyStopNotTested,
     /// A field of the configuration makes no sense.
     #[error("a machine parameter is out of range: {0}")]
     Parameter(ParameterError),

@@ -2,6 +2,7 @@
 
 mod aside;
 mod bench;
+mod estop;
 mod holds;
 mod homing;
 mod numbers;

@@ -106,6 +106,9 @@ impl MotionController {
         if self.cause_remains {
             return Err(Refusal::CauseRemains);
         }
+        if self.estop_untested {
+            return Err(Refusal::EmergencyStopNotTested);
+        }
         self.state = state;
         self.fault = None;
         Ok(())
