@@ -91,6 +91,9 @@ pub struct Feedback<const N: usize> {
     pub estop: [bool; ESTOP_CHANNELS],
     /// Laser source reports a fault, per side (motion board).
     pub laser_fault: [bool; SIDES],
+    /// Power that the source of each side gives, in the scale of [`Command::beam_power`]; `None` where it is not measured
+    /// (motion board).
+    pub beam_power: [Option<DacCode>; SIDES],
 }
 
 impl<const N: usize> Default for Feedback<N> {
@@ -103,6 +106,7 @@ impl<const N: usize> Default for Feedback<N> {
             drive_fault: Bits::NONE,
             estop: [false; ESTOP_CHANNELS],
             laser_fault: [false; SIDES],
+            beam_power: [None; SIDES],
         }
     }
 }

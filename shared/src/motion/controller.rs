@@ -62,6 +62,10 @@ pub struct MotionController {
     stop_by: (u64, u32),
     /// The emergency stop is pressed, or a drive reports a fault.
     cause_remains: bool,
+    /// Beams whose power the board measures.
+    power_measured: [bool; SIDES],
+    /// The power of a beam was wrong since the machine was last given up: no gate opens.
+    power_wrong: bool,
     /// The channels of the emergency stop disagreed, and were not both open since.
     estop_untested: bool,
     machine: Option<Machine>,
@@ -120,6 +124,8 @@ impl MotionController {
             pending: None,
             stop_by: (0, 0),
             cause_remains: false,
+            power_measured: [false; SIDES],
+            power_wrong: false,
             estop_untested: false,
             machine: None,
             servo_setup: None,
@@ -199,10 +205,11 @@ impl MotionController {
             State::Running | State::Holding | State::Stopping => self.travel(),
         }
         let on_path = self.state.on_path();
-        let mut beams = self.beam_output(report.laser_fault);
+        let unsound = report.laser_fault.map(|fault| fault || self.power_wrong);
+        let mut beams = self.beam_output(unsound);
         if let Some(fault) = self.not_permitted(&beams, report) {
             self.stop_for(fault);
-            beams = self.beam_output(report.laser_fault);
+            beams = self.beam_output(unsound);
         }
         self.gates = beams.gate;
         let lease = self.beam_lease(input.now_us);
@@ -307,14 +314,17 @@ impl MotionController {
             });
         }
         let estop = input.report.estop;
-        self.cause_remains = estop.is_pressed() || input.report.drive_fault.any();
+        let burns = matches!(input.report.power_fault, Some(Fault::BeamNotOff { .. }));
+        self.cause_remains = estop.is_pressed() || input.report.drive_fault.any() || burns;
         self.estop_untested = estop.stayed_closed().is_some();
+        self.power_measured = input.report.power_measured;
         if let (true, Some(fault)) = (self.state.drives_on(), input.report.trip) {
             self.trip(fault);
         }
         if let Some(closed) = estop.stayed_closed() {
             self.distrust(Fault::EmergencyStopChannels { closed });
         }
+        self.watch_power(input.report.power_fault);
         if let (State::Stopping, true) = (self.state, self.tick > self.stop_by.0) {
             self.trip(Fault::StopTooLong {
                 limit_ms: self.stop_by.1,
@@ -346,6 +356,18 @@ impl MotionController {
         }
         if let (State::Running, Some(side)) = (self.state, faulty) {
             self.stop_for(Fault::Laser { side });
+        }
+    }
+
+    /// The power of a beam is wrong: no gate opens any more, and the machine stops, on its path if it is on one.
+    fn watch_power(&mut self, fault: Option<Fault>) {
+        match fault {
+            Some(fault) if self.state.on_path() => {
+                self.power_wrong = true;
+                self.stop_for(fault);
+            }
+            Some(fault) if self.state != State::Fault => self.trip(fault),
+            _ => {}
         }
     }
 
@@ -383,6 +405,7 @@ impl MotionController {
         self.homing = None;
         self.pending = None;
         self.beams = Beams::NONE;
+        self.power_wrong = false;
         self.permits.forget();
     }
 

@@ -30,6 +30,30 @@ pub enum Fault {
         /// 0 or 1.
         side: u8,
     },
+    /// The power of a beam that is on is not the commanded one.
+    #[error("beam {} gives {measured_w:.0} W, and {commanded_w:.0} W are commanded: look at the source, at its interlock, and at the lines of gate, power and readback", side + 1)]
+    BeamPower {
+        /// 0 or 1.
+        side: u8,
+        /// What was commanded.
+        commanded_w: f32,
+        /// What was measured.
+        measured_w: f32,
+    },
+    /// A beam gives power with its gate closed.
+    #[error("beam {} gives {measured_w:.0} W with its gate closed: cut its interlock, then look at the source and at the lines of gate and readback", side + 1)]
+    BeamNotOff {
+        /// 0 or 1.
+        side: u8,
+        /// What was measured.
+        measured_w: f32,
+    },
+    /// The power of a beam is not measured any more.
+    #[error("the power of beam {} is not measured any more: look at its readback and at the converter", side + 1)]
+    BeamPowerUnknown {
+        /// 0 or 1.
+        side: u8,
+    },
     /// |reference − position| above the trip (µm or millidegrees).
     #[error("following error of {} is {seen_um:.0} µm (or m°), the limit there {limit_um:.0}: check for a blocked axis, gains and drive scaling", MOTOR_NAMES[*motor as usize])]
     FollowingError {

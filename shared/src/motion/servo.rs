@@ -1,8 +1,9 @@
 //! The servo tick: gratings in, velocity commands out, for seven motors, with the trips that must not wait.
 
 use super::permit::BeamLease;
+use super::readback::{ReadbackCheck, ReadbackState};
 use super::segment::{SERVO_TICKS_PER_PATH_TICK, Segment};
-use super::{Fault, MotorConfig, SERVO_PERIOD_S};
+use super::{BeamConfig, Fault, MotorConfig, SERVO_PERIOD_S};
 use crate::control::{
     EmergencyStop, EncoderCheck, FollowingTrip, Gantry, GantryState, MovementCheck, MovementState, Pid,
     PidState, Setpoint,
@@ -82,18 +83,22 @@ pub struct ServoSetup {
     gantry: Option<Gantry>,
     /// Loops of the motors that are not coupled as a gantry.
     pids: [Option<Pid>; MOTORS],
+    /// Of the beams whose power is measured.
+    readbacks: [Option<ReadbackCheck>; SIDES],
 }
 
 impl ServoSetup {
     /// Builds the loops of a machine; with a `gantry` it has those of X1 and X2.
     pub fn build(
         configs: &[Option<MotorConfig>; MOTORS],
+        beams: &[Option<BeamConfig>; SIDES],
         gantry: Option<Gantry>,
     ) -> Result<Self, ParameterError> {
         let mut setup = Self {
             motors: [const { None }; MOTORS],
             gantry,
             pids: [None; MOTORS],
+            readbacks: [None; SIDES],
         };
         for (index, config) in configs.iter().enumerate() {
             let Some(config) = config else { continue };
@@ -101,6 +106,12 @@ impl ServoSetup {
             if gantry.is_none() || index >= GANTRY {
                 let pid = Pid::build(MOTOR_NAMES[index], config, UNIT[index], SERVO_PERIOD_S)?;
                 setup.pids[index] = Some(pid);
+            }
+        }
+        for (side, (beam, owner)) in beams.iter().zip(["beam 1", "beam 2"]).enumerate() {
+            if let Some((beam, readback)) = beam.as_ref().and_then(|b| Some((b, b.readback.as_ref()?))) {
+                let check = ReadbackCheck::build(owner, readback, beam.power_at_10v_w)?;
+                setup.readbacks[side] = Some(check);
             }
         }
         Ok(setup)
@@ -157,6 +168,10 @@ pub struct ServoReport {
     pub trip: Option<Fault>,
     /// Laser sources that reported a fault since the last report, however short.
     pub laser_fault: [bool; SIDES],
+    /// Beams whose power is measured now.
+    pub power_measured: [bool; SIDES],
+    /// First beam whose power was wrong since the last report.
+    pub power_fault: Option<Fault>,
     /// Gates that are open.
     pub gate: [bool; SIDES],
     /// Gates that were shut since the last report because their lease had run out.
@@ -181,6 +196,7 @@ pub struct ServoLoops {
     gantry: GantryState,
     pids: [PidState; MOTORS],
     movements: [MovementState; MOTORS],
+    readbacks: [ReadbackState; SIDES],
     enabled: bool,
     coupled: bool,
     homing: bool,
@@ -237,6 +253,7 @@ impl ServoLoops {
             self.take_next();
         }
         self.lease.count(elapsed);
+        self.read_back(feedback, elapsed);
         let command = if self.enabled {
             self.control(&position).unwrap_or_else(|fault| {
                 self.trip(fault);
@@ -246,6 +263,9 @@ impl ServoLoops {
             MotionCommand::SAFE
         };
         self.report.gate = command.beam_gate;
+        for (side, state) in self.readbacks.iter_mut().enumerate() {
+            state.command(command.beam_gate[side], command.beam_power[side]);
+        }
         command
     }
 
@@ -255,6 +275,7 @@ impl ServoLoops {
         self.report.mark = [None; MOTORS];
         self.report.laser_fault = [false; SIDES];
         self.report.lapsed = [false; SIDES];
+        self.report.power_fault = None;
         self.report.peak_error = [0.0; MOTORS];
         self.report.peak_skew = 0.0;
         report
@@ -326,6 +347,18 @@ impl ServoLoops {
         self.report.limit_minus = feedback.limit_minus;
         for (seen, mark) in self.report.mark.iter_mut().zip(feedback.mark) {
             *seen = mark.or(*seen);
+        }
+    }
+
+    /// Measured powers against those commanded at the last tick.
+    fn read_back(&mut self, feedback: &MotionFeedback, elapsed: u32) {
+        self.report.power_measured = feedback.beam_power.map(|power| power.is_some());
+        let Some(setup) = &self.setup else { return };
+        for (side, check) in setup.readbacks.iter().enumerate() {
+            let Some(check) = check else { continue };
+            let (state, power) = (&mut self.readbacks[side], feedback.beam_power[side]);
+            let fault = check.step(state, side, power, self.enabled, elapsed);
+            self.report.power_fault = self.report.power_fault.or(fault);
         }
     }
 
@@ -448,7 +481,8 @@ impl ServoLoops {
         for side in 0..SIDES {
             // Once shut it stays shut for the millisecond: the path tick then knows of the fault.
             report.lapsed[side] |= beams.gate[side] && self.lease.0[side] == 0;
-            beams.gate[side] &= !report.laser_fault[side] && !report.lapsed[side];
+            beams.gate[side] &=
+                !report.laser_fault[side] && !report.lapsed[side] && report.power_fault.is_none();
             if beams.gate[side] {
                 command.beam_gate[side] = true;
                 command.beam_power[side] = beams.power[side];

@@ -179,6 +179,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 drive_fault: Bits::NONE,
                 estop: [false; ESTOP_CHANNELS],
                 laser_fault: [false; SIDES],
+                beam_power: [None; SIDES],
             },
             estop: EmergencyStop::new(),
             ticks: 0,

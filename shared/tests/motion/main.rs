@@ -8,6 +8,7 @@ mod homing;
 mod numbers;
 mod parameters;
 mod permits;
+mod readback;
 mod steps;
 mod stops;
 mod streaming;

@@ -2,6 +2,7 @@
 
 mod bench;
 mod machines;
+mod readback;
 
 use super::*;
 use bench::{Bench, config};
