@@ -35,10 +35,14 @@ struct Welder {
 impl Welder {
     /// Homed, before any path.
     fn homed() -> Self {
+        Self::homed_as(supervised())
+    }
+
+    fn homed_as(config: MotionConfig) -> Self {
         let mut bench = Bench::new();
         bench.inputs.beam_power = [code(0.0); 2];
         bench.run_ms(2);
-        bench.done(&Request::ConfigureMotion(supervised()));
+        bench.done(&Request::ConfigureMotion(config));
         bench.run_ms(3);
         bench.done(&Request::Home);
         bench.until(State::Idle, 5000);
@@ -47,7 +51,11 @@ impl Welder {
 
     /// On a line of 300 mm at full speed, with beam 1 on at half of its power.
     fn welding() -> Self {
-        let mut welder = Self::homed();
+        Self::welding_as(supervised())
+    }
+
+    fn welding_as(config: MotionConfig) -> Self {
+        let mut welder = Self::homed_as(config);
         welder.bench.load_line(300.0);
         welder.bench.run();
         welder.ticks(1600);
@@ -140,6 +148,20 @@ fn a_power_that_is_off_for_a_short_time_again_and_again_is_none() {
         welder.bench.status();
     }
     assert_eq!(welder.bench.fault(), None);
+}
+
+/// One that stays on through holds and stops does not go on again on the way to this one.
+#[test]
+fn a_beam_that_stays_on_at_rest_stays_off_once_its_power_was_wrong() {
+    let mut config = supervised();
+    for beam in config.beams.iter_mut().flatten() {
+        (beam.stays_on_at_rest, beam.min_speed_mm_s) = (true, 0.0);
+    }
+    let mut welder = Welder::welding_as(config);
+    welder.error = -0.5;
+    assert_eq!(welder.ticks_until_closed(1000), Some(TIME_TICKS + 1));
+    welder.bench.inputs.beam_power = [code(0.0); 2];
+    welder.bench.stops_on_the_path_then_faults();
 }
 
 /// Off is told where the tolerance is larger than the power.
