@@ -223,7 +223,8 @@ fn a_beam_that_burns_with_its_gate_closed_stops_the_path_and_keeps_the_reset_awa
 
 #[test]
 fn a_beam_that_burns_is_told_in_every_state() {
-    let states: [(State, fn(&mut Bench)); 4] = [
+    type Reach = fn(&mut Bench);
+    let states: [(State, Reach); 4] = [
         (State::Off, |bench| bench.done(&Request::Disable)),
         (State::Idle, |_| {}),
         (State::Homing, |bench| bench.done(&Request::Home)),
