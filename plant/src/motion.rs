@@ -12,8 +12,10 @@ pub const DEFAULT_MACHINE: &str = MACHINES[0].0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionPlant {
     motors: [Option<RunningMotor>; MOTORS],
-    beams: [bool; SIDES],
+    /// What the sources give, as part of full power.
     power: [f64; SIDES],
+    /// What they give whatever they are told.
+    stuck: [Option<DacCode>; SIDES],
 }
 
 impl Default for MotionPlant {
@@ -39,9 +41,15 @@ impl MotionPlant {
     fn new(motors: &Motors) -> Self {
         Self {
             motors: core::array::from_fn(|i| motors[i].as_ref().map(RunningMotor::new)),
-            beams: [false; SIDES],
             power: [0.0; SIDES],
+            stuck: [None; SIDES],
         }
+    }
+
+    /// From now on the source of `side` gives so much power whatever it is told, until `None`: with a gate whose line is
+    /// bridged, for instance, or at 0 with its interlock open.
+    pub fn stick_beam(&mut self, side: usize, power: Option<DacCode>) {
+        self.stuck[side] = power;
     }
 
     /// One servo tick of 250 µs with `command`, and what the board reads at its end.
@@ -52,10 +60,17 @@ impl MotionPlant {
             beam_gate,
             beam_power,
         } = command;
-        self.beams = *beam_gate;
-        self.power = beam_power.map(DacCode::ratio);
-
         let mut feedback = Feedback::default();
+        for side in 0..SIDES {
+            let told = if beam_gate[side] {
+                beam_power[side]
+            } else {
+                DacCode::ZERO
+            };
+            let gives = self.stuck[side].unwrap_or(told);
+            self.power[side] = gives.ratio();
+            feedback.beam_power[side] = Some(gives);
+        }
         for (i, motor) in self.motors.iter_mut().enumerate() {
             let Some(motor) = motor else { continue };
             let reading = motor.advance(*enable, dac[i]);
@@ -72,9 +87,9 @@ impl MotionPlant {
         core::array::from_fn(|i| self.motors[i].as_ref().map_or(0.0, RunningMotor::position))
     }
 
-    /// Beams that are on: gate open and power above zero.
+    /// Beams that are on: those whose source gives power.
     pub fn beams(&self) -> [bool; SIDES] {
-        core::array::from_fn(|k| self.beams[k] && self.power[k] > 0.0)
+        self.power.map(|power| power > 0.0)
     }
 }
 
@@ -108,7 +123,11 @@ mod tests {
         ignored.enable = false;
         let before = plant.truth();
         let feedback = run(&mut plant, &ignored, 400);
-        assert_eq!(feedback, MotionFeedback::default());
+        let dark = MotionFeedback {
+            beam_power: [Some(DacCode::ZERO); SIDES],
+            ..MotionFeedback::default()
+        };
+        assert_eq!(feedback, dark);
         assert_eq!(plant.truth(), before);
         assert_eq!(before[0], 35.013);
         assert!((before[4] - 3.2_f64.to_radians()).abs() < 1e-12);
@@ -201,10 +220,15 @@ mod tests {
         let mut command = MotionCommand::SAFE;
         command.beam_gate = [true, true];
         command.beam_power = [DacCode(1000), DacCode::ZERO];
-        plant.advance(&command);
+        let feedback = plant.advance(&command);
         assert_eq!(plant.beams(), [true, false]);
+        assert_eq!(feedback.beam_power, command.beam_power.map(Some));
         plant.advance(&MotionCommand::SAFE);
         assert_eq!(plant.beams(), [false, false]);
+        plant.stick_beam(1, Some(DacCode(500)));
+        let feedback = plant.advance(&MotionCommand::SAFE);
+        assert_eq!(plant.beams(), [false, true]);
+        assert_eq!(feedback.beam_power, [DacCode::ZERO, DacCode(500)].map(Some));
     }
 
     #[test]

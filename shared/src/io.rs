@@ -11,6 +11,8 @@ pub const MOTORS: usize = 7;
 pub const AXES: usize = 6;
 /// Slide drives of the tracker board, in this order everywhere: U1, V1, U2, V2.
 pub const SLIDES: usize = 4;
+/// Channels of the emergency stop.
+pub const ESTOP_CHANNELS: usize = 2;
 /// Sides of the seam, each with a beam, a camera and a pair of slides.
 pub const SIDES: usize = 2;
 
@@ -85,10 +87,13 @@ pub struct Feedback<const N: usize> {
     pub limit_minus: Bits,
     /// Drive reports a fault.
     pub drive_fault: Bits,
-    /// Emergency stop is pressed (either channel open).
-    pub estop: bool,
+    /// Channels of the emergency stop that are open: both when it is pressed, and either one stops.
+    pub estop: [bool; ESTOP_CHANNELS],
     /// Laser source reports a fault, per side (motion board).
     pub laser_fault: [bool; SIDES],
+    /// Power that the source of each side gives, in the scale of [`Command::beam_power`]; `None` where it is not measured
+    /// (motion board).
+    pub beam_power: [Option<DacCode>; SIDES],
 }
 
 impl<const N: usize> Default for Feedback<N> {
@@ -99,8 +104,9 @@ impl<const N: usize> Default for Feedback<N> {
             limit_plus: Bits::NONE,
             limit_minus: Bits::NONE,
             drive_fault: Bits::NONE,
-            estop: false,
+            estop: [false; ESTOP_CHANNELS],
             laser_fault: [false; SIDES],
+            beam_power: [None; SIDES],
         }
     }
 }

@@ -147,6 +147,8 @@ const FIELDS: &[&str] = &[
     "max_seam_deviation_mm",
     "max_seam_slope",
     "overlap_mm",
+    "readback.tolerance",
+    "readback.time_ms",
 ];
 
 impl ParameterError {

@@ -13,6 +13,8 @@ const LAG_S: f64 = 0.1;
 const YAW: f64 = 3e-4;
 /// Silence of the PC that stops late \[ms\].
 const SILENCE_MS: u32 = 1000;
+/// Part of full power by which a beam may be off, that is told late.
+const POWER: f64 = 0.2;
 /// Way without sight of the seam that is told late \[mm\].
 const BLIND_MM: f64 = 10.0;
 /// Outliers that are taken for the seam \[mm\], and deviations that are left alone.
@@ -63,6 +65,14 @@ pub enum Weakened {
         /// 0 or 1.
         side: u8,
     },
+    /// A beam may burn with another power than it was told.
+    #[error("readback.tolerance of beam {} is {tolerance}: the power may be off by so much of full power; {POWER} is usual at most", side + 1)]
+    Power {
+        /// 0 or 1.
+        side: u8,
+        /// The tolerance, as part of full power.
+        tolerance: f64,
+    },
     /// A beam goes on for long without sight of its seam.
     #[error(
         "window_mm and hold_mm of tracking are {way_mm} mm together: a beam goes so far without sight of its seam; {BLIND_MM} is usual at most"
@@ -106,7 +116,7 @@ pub enum Weakened {
 }
 
 /// Most that parameters of the motion board can weaken.
-const MOST_OF_MOTION: usize = 2 * MOTORS + SIDES + 2;
+const MOST_OF_MOTION: usize = 2 * MOTORS + 2 * SIDES + 2;
 /// Most that those of the tracker board can.
 const MOST_OF_TRACKER: usize = 5;
 
@@ -143,6 +153,12 @@ impl MotionConfig {
             };
             if beam.as_ref().is_some_and(rests) {
                 weakened.extend([Weakened::BeamAtRest { side }]);
+            }
+            let tolerance = beam
+                .as_ref()
+                .and_then(|beam| Some(beam.readback.as_ref()?.tolerance));
+            if let Some(tolerance) = tolerance.filter(|tolerance| *tolerance > POWER) {
+                weakened.extend([Weakened::Power { side, tolerance }]);
             }
         }
         if self.link_timeout_ms > SILENCE_MS {

@@ -137,7 +137,11 @@ fn beams_are_off_in_time_whatever_fails() {
 
     // What the motion board sees itself: at its next servo tick.
     let own: [(&str, &[usize], Trouble); 6] = [
-        ("emergency stop", both, Trouble::MotionInputs(|f| f.estop = true)),
+        (
+            "emergency stop",
+            both,
+            Trouble::MotionInputs(|f| f.estop = [true; 2]),
+        ),
         (
             "drive fault",
             both,
@@ -196,7 +200,7 @@ fn beams_are_off_in_time_whatever_fails() {
     for (what, trouble) in [
         (
             "tracker: emergency stop",
-            Trouble::TrackerInputs(|f| f.estop = true),
+            Trouble::TrackerInputs(|f| f.estop = [true; 2]),
         ),
         (
             "tracker: drive fault",

@@ -50,6 +50,6 @@ impl Snapshot {
         feedback.limit_plus = self.all_open(&drives.limit_plus);
         feedback.limit_minus = self.all_open(&drives.limit_minus);
         feedback.drive_fault = self.all_open(&drives.ready);
-        feedback.estop = EMERGENCY_STOP.iter().any(|&channel| self.open(channel));
+        feedback.estop = EMERGENCY_STOP.map(|channel| self.open(channel));
     }
 }

@@ -78,6 +78,40 @@ fn a_value_out_of_its_range_is_told_with_the_range() {
 }
 
 #[test]
+fn the_readback_of_a_beam_is_read_bounded_and_none_where_it_is_left_out() {
+    let with = |keys: &str| {
+        let table = format!("[beams.2.readback]\n{keys}\n[head]");
+        SHIPPED.replace("[head]", &table)
+    };
+    let read = |text: &str| {
+        let machine = MachineFile::parse("m.toml", text).unwrap();
+        let [one, two] = machine.motion.beams.clone().map(|beam| beam.unwrap().readback);
+        let told: Vec<String> = machine
+            .motion
+            .weakened()
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        (one.or(two).map(|r| (r.tolerance, r.time_ms)), told)
+    };
+    assert_eq!(read(SHIPPED), (None, vec![]));
+    let text = with("tolerance = 0.1\ntime_ms = 20");
+    assert_eq!(read(&text), (Some((0.1, 20)), vec![]));
+    let (_, told) = read(&with("tolerance = 0.3\ntime_ms = 20"));
+    assert!(
+        told[0].starts_with("readback.tolerance of beam 2 is 0.3"),
+        "{told:?}"
+    );
+    let error = error_of(&with("tolerance = 0.1\ntime_ms = 2000"));
+    assert_eq!(
+        error,
+        "machine file m.toml: readback.time_ms of beam 2 is 2000, but must be from 1 to 100"
+    );
+    let error = error_of(&with("tolerance = 0.1"));
+    assert!(error.contains("time_ms"), "{error}");
+}
+
+#[test]
 fn an_unknown_key_is_named_with_its_line() {
     let line = 1 + SHIPPED.lines().position(|l| l == "[head]").unwrap();
     let text = SHIPPED.replace("[head]", "[head]\nwobble = 3.0");

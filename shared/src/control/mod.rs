@@ -4,12 +4,14 @@
 //! fallible `build`, and a state. Inside everything is mm or rad and seconds.
 
 mod derivative;
+mod emergency_stop;
 mod gantry;
 mod movement;
 mod pid;
 mod reference_search;
 mod trip;
 
+pub use emergency_stop::{DISCREPANCY_US, EmergencyStop};
 pub use gantry::{Gantry, GantryOutput, GantryState, Ram};
 pub use movement::{MovementCheck, MovementState};
 pub use pid::{Pid, PidState, Setpoint};

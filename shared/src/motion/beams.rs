@@ -243,6 +243,7 @@ mod tests {
             min_speed_mm_s: 5.0,
             overlap_mm: 2.0,
             stays_on_at_rest: false,
+            readback: None,
         };
         BeamLimits::build(&[Some(beam.clone()), Some(beam)]).unwrap()
     }
@@ -318,6 +319,7 @@ mod tests {
             min_speed_mm_s: 0.0,
             overlap_mm: 0.0,
             stays_on_at_rest: true,
+            readback: None,
         };
         let limits = BeamLimits::build(&[Some(spindle), None]).unwrap();
         let mut beams = Beams::NONE;
@@ -341,6 +343,7 @@ mod tests {
             min_speed_mm_s: 5.0,
             overlap_mm: 2.0,
             stays_on_at_rest: false,
+            readback: None,
         };
         let bad = BeamConfig {
             power_at_10v_w: 0.0,

@@ -131,6 +131,19 @@ pub struct BeamConfig {
     /// machine stands. Only sensible with a least speed of 0.
     #[serde(default)]
     pub stays_on_at_rest: bool,
+    /// Supervision of the power that the source gives back; none where it is not measured.
+    #[serde(default)]
+    pub readback: Option<ReadbackConfig>,
+}
+
+/// How far and for how long the measured power of a beam may be off the commanded one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct ReadbackConfig {
+    /// By how much, as part of the power at +10 V (0.1 for a tenth).
+    pub tolerance: f64,
+    /// For how long \[ms\]: longer than the source takes to follow its command, and the measurement that.
+    pub time_ms: u32,
 }
 
 impl BeamConfig {

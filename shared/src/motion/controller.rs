@@ -60,6 +60,12 @@ pub struct MotionController {
     stop_by: (u64, u32),
     /// The emergency stop is pressed, or a drive reports a fault.
     cause_remains: bool,
+    /// Beams whose power the board measures.
+    power_measured: [bool; SIDES],
+    /// The power of a beam was wrong since the machine was last given up: no gate opens.
+    power_wrong: bool,
+    /// The channels of the emergency stop disagreed, and were not both open since.
+    estop_untested: bool,
     machine: Option<Machine>,
     servo_setup: Option<ServoSetup>,
     /// Drives were ordered on at the last tick.
@@ -116,6 +122,9 @@ impl MotionController {
             pending: None,
             stop_by: (0, 0),
             cause_remains: false,
+            power_measured: [false; SIDES],
+            power_wrong: false,
+            estop_untested: false,
             machine: None,
             servo_setup: None,
             enabled: false,
@@ -194,10 +203,11 @@ impl MotionController {
             State::Running | State::Holding | State::Stopping => self.travel(),
         }
         let on_path = self.state.on_path();
-        let mut beams = self.beam_output(report.laser_fault);
+        let unsound = report.laser_fault.map(|fault| fault || self.power_wrong);
+        let mut beams = self.beam_output(unsound);
         if let Some(fault) = self.not_permitted(&beams, report) {
             self.stop_for(fault);
-            beams = self.beam_output(report.laser_fault);
+            beams = self.beam_output(unsound);
         }
         self.gates = beams.gate;
         let lease = self.beam_lease(input.now_us);
@@ -301,10 +311,18 @@ impl MotionController {
                 seconds: UNATTENDED_S,
             });
         }
-        self.cause_remains = input.report.estop || input.report.drive_fault.any();
+        let estop = input.report.estop;
+        let burns = matches!(input.report.power_fault, Some(Fault::BeamNotOff { .. }));
+        self.cause_remains = estop.is_pressed() || input.report.drive_fault.any() || burns;
+        self.estop_untested = estop.stayed_closed().is_some();
+        self.power_measured = input.report.power_measured;
         if let (true, Some(fault)) = (self.state.drives_on(), input.report.trip) {
             self.trip(fault);
         }
+        if let Some(closed) = estop.stayed_closed() {
+            self.distrust(Fault::EmergencyStopChannels { closed });
+        }
+        self.watch_power(input.report.power_fault);
         if let (State::Stopping, true) = (self.state, self.tick > self.stop_by.0) {
             self.trip(Fault::StopTooLong {
                 limit_ms: self.stop_by.1,
@@ -339,6 +357,18 @@ impl MotionController {
         }
     }
 
+    /// The power of a beam is wrong: no gate opens any more, and the machine stops, on its path if it is on one.
+    fn watch_power(&mut self, fault: Option<Fault>) {
+        match fault {
+            Some(fault) if self.state.on_path() => {
+                self.power_wrong = true;
+                self.stop_for(fault);
+            }
+            Some(fault) if self.state != State::Fault => self.trip(fault),
+            _ => {}
+        }
+    }
+
     /// Drives off at once.
     fn trip(&mut self, fault: Fault) {
         self.fault.get_or_insert(fault);
@@ -346,6 +376,15 @@ impl MotionController {
             self.state = state;
         }
         self.leave_path();
+    }
+
+    /// The emergency stop itself fails: to be told with the drives off too, and in place of that it is pressed.
+    fn distrust(&mut self, fault: Fault) {
+        if self.fault == Some(Fault::EmergencyStop) {
+            self.fault = Some(fault);
+        } else if self.state != State::Fault {
+            self.trip(fault);
+        }
     }
 
     /// Beams off and a controlled stop; then the fault.
@@ -364,6 +403,7 @@ impl MotionController {
         self.homing = None;
         self.pending = None;
         self.beams = Beams::NONE;
+        self.power_wrong = false;
         self.permits.forget();
     }
 

@@ -12,6 +12,12 @@ pub enum Fault {
     /// The emergency stop is pressed.
     #[error("emergency stop is pressed; release it, then reset")]
     EmergencyStop,
+    /// One channel of the emergency stop was open for long while the other one stayed closed.
+    #[error("emergency-stop channel {} stayed closed while channel {} was open: the wire of the open one is broken, or the contact of the other one welded or bridged; mend it, press the button fully, release it, then reset", closed + 1, 2 - closed)]
+    EmergencyStopChannels {
+        /// The channel that stayed closed, 0 or 1.
+        closed: u8,
+    },
     /// A drive reports a fault.
     #[error("the drive of {} reports a fault; look at the drive's own display", MOTOR_NAMES[*motor as usize])]
     Drive {
@@ -21,6 +27,30 @@ pub enum Fault {
     /// A laser source reports a fault.
     #[error("laser {} reports a fault; look at the source's own display", side + 1)]
     Laser {
+        /// 0 or 1.
+        side: u8,
+    },
+    /// The power of a beam that is on is not the commanded one.
+    #[error("beam {} gives {measured_w:.0} W, and {commanded_w:.0} W are commanded: look at the source, at its interlock, and at the lines of gate, power and readback", side + 1)]
+    BeamPower {
+        /// 0 or 1.
+        side: u8,
+        /// What was commanded.
+        commanded_w: f32,
+        /// What was measured.
+        measured_w: f32,
+    },
+    /// A beam gives power with its gate closed.
+    #[error("beam {} gives {measured_w:.0} W with its gate closed: cut its interlock, then look at the source and at the lines of gate and readback", side + 1)]
+    BeamNotOff {
+        /// 0 or 1.
+        side: u8,
+        /// What was measured.
+        measured_w: f32,
+    },
+    /// The power of a beam is not measured any more.
+    #[error("the power of beam {} is not measured any more: look at its readback and at the converter", side + 1)]
+    BeamPowerUnknown {
         /// 0 or 1.
         side: u8,
     },

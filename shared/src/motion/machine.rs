@@ -54,7 +54,7 @@ impl Machine {
             limits,
             gantry,
         };
-        let servo = ServoSetup::build(&config.motors, gantry)?;
+        let servo = ServoSetup::build(&config.motors, &config.beams, gantry)?;
         sensible::check(config)?;
         Ok((machine, servo))
     }

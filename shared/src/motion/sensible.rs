@@ -1,6 +1,7 @@
 //! What the motion board's parameters may be, by what they mean: a protection that is set to never act is refused, and
 //! so is what no machine has.
 
+use super::readback::DARK;
 use super::segment::SERVO_PERIOD_S;
 use super::{AxisConfig, BeamConfig, GantryConfig, HomeConfig, MotionConfig, MotorConfig};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES};
@@ -52,6 +53,14 @@ const LONGEST_FILTER_S: f64 = 0.1;
 const POWERS_W: RangeInclusive<f64> = 1.0..=1e5;
 /// A beam goes over at most so much again \[mm\].
 const MOST_OVERLAP_MM: f64 = 50.0;
+/// Parts of full power by which a measured power may be off: less than [`DARK`] is the measurement's own noise, and half of
+/// it off is no protection.
+const POWER_TOLERANCES: RangeInclusive<f64> = DARK..=0.5;
+/// Time for which it may \[ms\]: commands change every millisecond, and a laser follows within some; a spindle takes
+/// seconds to run up.
+const SHORTEST_READBACK_MS: f64 = 1.0;
+const LONGEST_READBACK_MS: f64 = 100.0;
+const LONGEST_RUN_UP_MS: f64 = 10_000.0;
 /// Time that the PC may be silent \[ms\]: shorter than its own pauses, or longer than a weld of half a metre, is a
 /// mistake.
 const SILENCES_MS: RangeInclusive<f64> = 50.0..=5000.0;
@@ -244,5 +253,15 @@ fn check_beam(owner: &str, beam: &BeamConfig, fastest: f64) -> Result<(), Parame
     // Faster than that it never opens.
     within(owner, "min_speed_mm_s", beam.min_speed_mm_s, 0.0..=fastest)?;
     within(owner, "overlap_mm", beam.overlap_mm, 0.0..=MOST_OVERLAP_MM)?;
+    if let Some(readback) = &beam.readback {
+        within(owner, "readback.tolerance", readback.tolerance, POWER_TOLERANCES)?;
+        let longest = if beam.stays_on_at_rest {
+            LONGEST_RUN_UP_MS
+        } else {
+            LONGEST_READBACK_MS
+        };
+        let times = SHORTEST_READBACK_MS..=longest;
+        within(owner, "readback.time_ms", f64::from(readback.time_ms), times)?;
+    }
     Ok(())
 }

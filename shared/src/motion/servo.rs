@@ -1,10 +1,12 @@
 //! The servo tick: gratings in, velocity commands out, for seven motors, with the trips that must not wait.
 
 use super::permit::BeamLease;
+use super::readback::{ReadbackCheck, ReadbackState};
 use super::segment::{SERVO_TICKS_PER_PATH_TICK, Segment};
-use super::{Fault, MotorConfig, SERVO_PERIOD_S};
+use super::{BeamConfig, Fault, MotorConfig, SERVO_PERIOD_S};
 use crate::control::{
-    EncoderCheck, FollowingTrip, Gantry, GantryState, MovementCheck, MovementState, Pid, PidState, Setpoint,
+    EmergencyStop, EncoderCheck, FollowingTrip, Gantry, GantryState, MovementCheck, MovementState, Pid,
+    PidState, Setpoint,
 };
 use crate::io::{Bits, DacCode, MOTOR_NAMES, MOTORS, MotionCommand, MotionFeedback, SIDES};
 use crate::kinematics::AXIS_UNIT;
@@ -19,6 +21,9 @@ pub const UNIT: [f64; MOTORS] = {
 /// Three milliseconds with wrong references within so many trip. Each that is bridged is wrong by half the
 /// acceleration times 1 ms², a micrometre or less; as often as this, the path task has no time to spare.
 const WRONG_MS: u32 = 100;
+
+/// Servo tick \[µs\].
+const SERVO_US: u32 = (SERVO_PERIOD_S * 1e6) as u32;
 
 /// Motors that are coupled as a gantry; the others have loops of their own.
 const GANTRY: usize = 2;
@@ -78,18 +83,22 @@ pub struct ServoSetup {
     gantry: Option<Gantry>,
     /// Loops of the motors that are not coupled as a gantry.
     pids: [Option<Pid>; MOTORS],
+    /// Of the beams whose power is measured.
+    readbacks: [Option<ReadbackCheck>; SIDES],
 }
 
 impl ServoSetup {
     /// Builds the loops of a machine; with a `gantry` it has those of X1 and X2.
     pub fn build(
         configs: &[Option<MotorConfig>; MOTORS],
+        beams: &[Option<BeamConfig>; SIDES],
         gantry: Option<Gantry>,
     ) -> Result<Self, ParameterError> {
         let mut setup = Self {
             motors: [const { None }; MOTORS],
             gantry,
             pids: [None; MOTORS],
+            readbacks: [None; SIDES],
         };
         for (index, config) in configs.iter().enumerate() {
             let Some(config) = config else { continue };
@@ -97,6 +106,12 @@ impl ServoSetup {
             if gantry.is_none() || index >= GANTRY {
                 let pid = Pid::build(MOTOR_NAMES[index], config, UNIT[index], SERVO_PERIOD_S)?;
                 setup.pids[index] = Some(pid);
+            }
+        }
+        for (side, (beam, owner)) in beams.iter().zip(["beam 1", "beam 2"]).enumerate() {
+            if let Some((beam, readback)) = beam.as_ref().and_then(|b| Some((b, b.readback.as_ref()?))) {
+                let check = ReadbackCheck::build(owner, readback, beam.power_at_10v_w)?;
+                setup.readbacks[side] = Some(check);
             }
         }
         Ok(setup)
@@ -153,12 +168,16 @@ pub struct ServoReport {
     pub trip: Option<Fault>,
     /// Laser sources that reported a fault since the last report, however short.
     pub laser_fault: [bool; SIDES],
+    /// Beams whose power is measured now.
+    pub power_measured: [bool; SIDES],
+    /// First beam whose power was wrong since the last report.
+    pub power_fault: Option<Fault>,
     /// Gates that are open.
     pub gate: [bool; SIDES],
     /// Gates that were shut since the last report because their lease had run out.
     pub lapsed: [bool; SIDES],
-    /// Emergency stop is pressed now.
-    pub estop: bool,
+    /// The emergency stop now.
+    pub estop: EmergencyStop,
     /// Drives that report a fault now.
     pub drive_fault: Bits,
     /// Servo ticks since boot (mod 2³²).
@@ -177,6 +196,7 @@ pub struct ServoLoops {
     gantry: GantryState,
     pids: [PidState; MOTORS],
     movements: [MovementState; MOTORS],
+    readbacks: [ReadbackState; SIDES],
     enabled: bool,
     coupled: bool,
     homing: bool,
@@ -218,7 +238,7 @@ impl ServoLoops {
         self.report.ticks = self.report.ticks.wrapping_add(elapsed);
         self.report.lost = self.report.lost.wrapping_add(elapsed.saturating_sub(1));
         let position = self.position(&feedback.counts);
-        self.observe(feedback);
+        self.observe(feedback, elapsed);
         if let Err(fault) = self.watch(feedback, elapsed) {
             self.trip(fault);
         }
@@ -233,6 +253,7 @@ impl ServoLoops {
             self.take_next();
         }
         self.lease.count(elapsed);
+        self.read_back(feedback, elapsed);
         let command = if self.enabled {
             self.control(&position).unwrap_or_else(|fault| {
                 self.trip(fault);
@@ -242,6 +263,9 @@ impl ServoLoops {
             MotionCommand::SAFE
         };
         self.report.gate = command.beam_gate;
+        for (side, state) in self.readbacks.iter_mut().enumerate() {
+            state.command(command.beam_gate[side], command.beam_power[side]);
+        }
         command
     }
 
@@ -251,6 +275,7 @@ impl ServoLoops {
         self.report.mark = [None; MOTORS];
         self.report.laser_fault = [false; SIDES];
         self.report.lapsed = [false; SIDES];
+        self.report.power_fault = None;
         self.report.peak_error = [0.0; MOTORS];
         self.report.peak_skew = 0.0;
         report
@@ -307,8 +332,9 @@ impl ServoLoops {
     }
 
     /// Marks and switches.
-    fn observe(&mut self, feedback: &MotionFeedback) {
-        self.report.estop = feedback.estop;
+    fn observe(&mut self, feedback: &MotionFeedback, elapsed: u32) {
+        let elapsed_us = elapsed.saturating_mul(SERVO_US);
+        self.report.estop.step(feedback.estop, elapsed_us);
         self.report.drive_fault = Bits::NONE;
         for (index, _) in self.setup.iter().flat_map(ServoSetup::fitted) {
             let faulty = feedback.drive_fault.get(index);
@@ -324,13 +350,25 @@ impl ServoLoops {
         }
     }
 
+    /// Measured powers against those commanded at the last tick.
+    fn read_back(&mut self, feedback: &MotionFeedback, elapsed: u32) {
+        self.report.power_measured = feedback.beam_power.map(|power| power.is_some());
+        let Some(setup) = &self.setup else { return };
+        for (side, check) in setup.readbacks.iter().enumerate() {
+            let Some(check) = check else { continue };
+            let (state, power) = (&mut self.readbacks[side], feedback.beam_power[side]);
+            let fault = check.step(state, side, power, self.enabled, elapsed);
+            self.report.power_fault = self.report.power_fault.or(fault);
+        }
+    }
+
     /// Everything that switches the drives off at once.
     fn watch(&mut self, feedback: &MotionFeedback, elapsed: u32) -> Result<(), Fault> {
         let last = self
             .last_counts
             .replace(feedback.counts)
             .unwrap_or(feedback.counts);
-        if feedback.estop {
+        if self.report.estop.is_pressed() {
             return Err(Fault::EmergencyStop);
         }
         let Some(setup) = &self.setup else { return Ok(()) };
@@ -443,7 +481,8 @@ impl ServoLoops {
         for side in 0..SIDES {
             // Once shut it stays shut for the millisecond: the path tick then knows of the fault.
             report.lapsed[side] |= beams.gate[side] && self.lease.0[side] == 0;
-            beams.gate[side] &= !report.laser_fault[side] && !report.lapsed[side];
+            beams.gate[side] &=
+                !report.laser_fault[side] && !report.lapsed[side] && report.power_fault.is_none();
             if beams.gate[side] {
                 command.beam_gate[side] = true;
                 command.beam_power[side] = beams.power[side];

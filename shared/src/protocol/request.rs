@@ -226,11 +226,24 @@ pub enum Refusal {
         /// State of the tracker board.
         state: TrackerState,
     },
-    /// The emergency stop is still pressed, or a drive still reports a fault.
+    /// The emergency stop is still pressed, a drive still reports a fault, or a beam gives power with its gate closed.
     #[error(
-        "the cause of the fault is still there: release the emergency stop, clear the drives' faults, then reset"
+        "the cause of the fault is still there: release the emergency stop, clear the drives' faults, cut off a beam that gives power with its gate closed, then reset"
     )]
     CauseRemains,
+    /// The channels of the emergency stop disagreed, and have not both been open since.
+    #[error(
+        "the channels of the emergency stop disagreed: press it fully, so that both of them open, and release it, then reset"
+    )]
+    EmergencyStopNotTested,
+    /// The machine file supervises a power that the board does not measure.
+    #[error(
+        "the machine file has a readback of beam {}, but the board measures no power there: wire it, or leave the key out", side + 1
+    )]
+    NoReadback {
+        /// 0 or 1.
+        side: u8,
+    },
     /// A field of the configuration makes no sense.
     #[error("a machine parameter is out of range: {0}")]
     Parameter(ParameterError),

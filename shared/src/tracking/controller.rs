@@ -22,13 +22,15 @@ use super::seam::Seam;
 use super::search::SeamSearch;
 use super::supervision::SlideWatch;
 use super::{TrackerFault, TrackerState};
-use crate::control::{SearchInput, SearchProgress, SearchState, UNATTENDED_S};
-use crate::io::{Bits, Command, DacCode, SIDES, SLIDES, SlideCommand, SlideFeedback};
+use crate::control::{EmergencyStop, SearchInput, SearchProgress, SearchState, UNATTENDED_S};
+use crate::io::{Bits, Command, DacCode, ESTOP_CHANNELS, SIDES, SLIDES, SlideCommand, SlideFeedback};
 use crate::protocol::{BeamPermit, Capture, Datagram, PathState, Permit, TrackerSample};
 use crate::trajectory::Path;
 use captures::Strobes;
 use heapless::Vec;
 
+/// Period of the control tick \[µs\].
+const TICK_US: u32 = 1000;
 /// Control ticks between two clock requests: 10 Hz.
 const CLOCK_REQUEST_TICKS: u32 = 100;
 /// [`UNATTENDED_S`] in control ticks.
@@ -89,6 +91,7 @@ pub struct TrackerController<const KNOTS: usize> {
     searches: Vec<SearchState<1>, SLIDES>,
     /// Of the last tick.
     feedback: SlideFeedback,
+    estop: EmergencyStop,
     ticks: u32,
     lost: u32,
     ticks_to_strobe: u32,
@@ -158,9 +161,11 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 limit_plus: Bits::NONE,
                 limit_minus: Bits::NONE,
                 drive_fault: Bits::NONE,
-                estop: false,
+                estop: [false; ESTOP_CHANNELS],
                 laser_fault: [false; SIDES],
+                beam_power: [None; SIDES],
             },
+            estop: EmergencyStop::new(),
             ticks: 0,
             lost: 0,
             ticks_to_strobe: 0,
@@ -183,6 +188,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         self.ticks = self.ticks.wrapping_add(input.periods);
         self.lost = self.lost.wrapping_add(input.periods.saturating_sub(1));
         self.feedback = input.feedback;
+        self.watch_estop(input.periods);
         let motion_now = self.clock.to_remote(input.now_us);
         let place = motion_now.and_then(|now| self.place(now));
         // Taken out for the tick, so that it can be read while the rest changes.
@@ -333,7 +339,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     /// A reason to switch the drives off. A limit switch is none while homing, where it turns the search round.
     fn trip(&self) -> Option<TrackerFault> {
         let feedback = &self.feedback;
-        if feedback.estop {
+        if self.estop.is_pressed() {
             return Some(TrackerFault::EmergencyStop);
         }
         if self.unattended_ticks > UNATTENDED_TICKS {
@@ -354,6 +360,22 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 _ => None,
             }
         })
+    }
+
+    /// Compares the channels of the emergency stop. That they disagree is told with the drives off too, and in place of
+    /// that it is pressed.
+    fn watch_estop(&mut self, periods: u32) {
+        let elapsed_us = periods.saturating_mul(TICK_US);
+        self.estop.step(self.feedback.estop, elapsed_us);
+        let Some(closed) = self.estop.stayed_closed() else {
+            return;
+        };
+        let pressed = self.faults.first() == Some(&TrackerFault::EmergencyStop);
+        if pressed || self.state != TrackerState::Fault {
+            self.faults.retain(|_| !pressed);
+            self.report(TrackerFault::EmergencyStopChannels { closed });
+            self.state = TrackerState::Fault;
+        }
     }
 
     /// Keeps the first fault since the last reset.

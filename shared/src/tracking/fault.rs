@@ -27,6 +27,12 @@ pub enum TrackerFault {
     /// The emergency stop is pressed.
     #[error("emergency stop is pressed; release it, then reset")]
     EmergencyStop,
+    /// One channel of the emergency stop was open for long while the other one stayed closed.
+    #[error("emergency-stop channel {} stayed closed while channel {} was open: the wire of the open one is broken, or the contact of the other one welded or bridged; mend it, press the button fully, release it, then reset", closed + 1, 2 - closed)]
+    EmergencyStopChannels {
+        /// The channel that stayed closed, 0 or 1.
+        closed: u8,
+    },
     /// A drive reports a fault.
     #[error("the drive of slide {} reports a fault; look at the drive's own display", SLIDE_NAMES[*slide as usize])]
     Drive {

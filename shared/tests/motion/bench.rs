@@ -83,6 +83,7 @@ pub fn config() -> MotionConfig {
         min_speed_mm_s: 5.0,
         overlap_mm: 2.0,
         stays_on_at_rest: false,
+        readback: None,
     };
     MotionConfig {
         kinematics: KinematicsConfig::DualBeamGantry(DualBeamConfig {

@@ -2,11 +2,13 @@
 
 mod aside;
 mod bench;
+mod estop;
 mod holds;
 mod homing;
 mod numbers;
 mod parameters;
 mod permits;
+mod readback;
 mod steps;
 mod stops;
 mod streaming;

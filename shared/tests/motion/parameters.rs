@@ -1,7 +1,7 @@
 //! Parameters have floors and ceilings by what they mean.
 
 use super::bench::{Bench, config};
-use shared::motion::{AxisConfig, BeamConfig, GantryConfig, MotionConfig, MotorConfig};
+use shared::motion::{AxisConfig, BeamConfig, GantryConfig, MotionConfig, MotorConfig, ReadbackConfig};
 use shared::parameter::ParameterError;
 use shared::protocol::{Refusal, Request};
 
@@ -72,6 +72,21 @@ fn what_no_machine_has_is_refused() {
     gantry("square_offset_mm", -40.0, |g| &mut g.square_offset_mm);
     gantry("y2_mm", -249.0, |g| &mut g.y2_mm);
     gantry("coupling", 1e5, |g| &mut g.coupling);
+}
+
+#[test]
+fn a_readback_that_never_acts_or_acts_on_noise_is_refused() {
+    let readback = |field: &str, value: f64, tolerance: f64, time_ms: u32| {
+        refused("beam 2", field, value, |config| {
+            config.beams[1].as_mut().unwrap().readback = Some(ReadbackConfig { tolerance, time_ms });
+        });
+    };
+    for tolerance in [1.0, 0.51, 0.01, 0.0, -0.1, f64::NAN] {
+        readback("readback.tolerance", tolerance, tolerance, 20);
+    }
+    for time_ms in [0, 101, u32::MAX] {
+        readback("readback.time_ms", f64::from(time_ms), 0.1, time_ms);
+    }
 }
 
 #[test]

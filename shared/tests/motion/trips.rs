@@ -178,7 +178,7 @@ fn a_laser_fault_shuts_the_gate_in_its_tick_for_good_and_stops_on_the_path() {
 #[test]
 fn the_emergency_stop_wins_in_its_tick_and_must_be_released_before_the_reset() {
     let mut bench = Bench::welding();
-    bench.inputs.estop = true;
+    bench.inputs.estop = [true, false];
     bench.servo_tick();
     assert_eq!(bench.command, MotionCommand::SAFE);
     bench.run_ms(2);
@@ -188,7 +188,7 @@ fn the_emergency_stop_wins_in_its_tick_and_must_be_released_before_the_reset() {
         Refusal::WrongState { state: State::Fault }
     ));
     assert_eq!(bench.refused(&Request::Reset), Refusal::CauseRemains);
-    bench.inputs.estop = false;
+    bench.inputs.estop = [false; 2];
     bench.inputs.drive_fault.set(2, true);
     bench.run_ms(1);
     assert_eq!(bench.refused(&Request::Reset), Refusal::CauseRemains);

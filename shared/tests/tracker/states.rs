@@ -338,7 +338,7 @@ fn disable_switches_off_from_every_state() {
 fn estop_drive_and_limit_switch_lead_to_fault_and_reset_leads_out() {
     type Meddle = fn(&mut shared::io::SlideFeedback);
     let causes: [(Meddle, TrackerFault); 3] = [
-        (|f| f.estop = true, TrackerFault::EmergencyStop),
+        (|f| f.estop = [false, true], TrackerFault::EmergencyStop),
         (|f| f.drive_fault.set(3, true), TrackerFault::Drive { slide: 3 }),
         (
             |f| f.limit_minus.set(1, true),
@@ -379,7 +379,7 @@ fn homing_ends_in_fault_by_estop_or_without_a_mark() {
     stopped.accept(Request::ConfigureTracker(config()));
     stopped.accept(Request::Home);
     stopped.run_ms(10);
-    stopped.meddle = |f| f.estop = true;
+    stopped.meddle = |f| f.estop = [false, true];
     stopped.run_ms(1);
     assert_eq!(stopped.last.sample.fault, Some(TrackerFault::EmergencyStop));
     assert_eq!(stopped.controller.state(), TrackerState::Fault);

@@ -16,6 +16,7 @@ pub use trouble::Trouble;
 use super::{Boards, LinkError};
 use motion::MotionBoard;
 use plant::MotionPlant;
+use shared::io::ESTOP_CHANNELS;
 use shared::protocol::{ClockReply, ClockRequest, Datagram, Identity, Request, Response, Role};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
@@ -129,8 +130,8 @@ impl SimulatedBoards {
 
     /// Presses or releases the emergency stop of both boards.
     pub fn set_emergency_stop(&mut self, pressed: bool) {
-        self.motion.estop = pressed;
-        self.tracker.estop = pressed;
+        self.motion.estop = [pressed; ESTOP_CHANNELS];
+        self.tracker.estop = [pressed; ESTOP_CHANNELS];
     }
 
     fn enter(&mut self, at_us: u64, happening: Happening) {

@@ -1,7 +1,7 @@
 //! The motion board with its machine.
 
 use plant::MotionPlant;
-use shared::io::{MotionCommand, MotionFeedback};
+use shared::io::{ESTOP_CHANNELS, MotionCommand, MotionFeedback};
 use shared::motion::{MotionController, PathTickInput, SERVO_TICKS_PER_PATH_TICK, ServoLoops};
 use shared::protocol::{Batch, Datagram, MotionSample, MotionTelemetry, PathState, Request, Response};
 
@@ -16,7 +16,8 @@ pub struct MotionBoard {
     telemetry: Option<MotionTelemetry>,
     /// Of the last path tick.
     pub published: Option<(PathState, MotionSample)>,
-    pub estop: bool,
+    /// Channels of the emergency stop that are open.
+    pub estop: [bool; ESTOP_CHANNELS],
     /// What its inputs read otherwise than its machine is.
     pub meddle: Option<fn(&mut MotionFeedback)>,
 }
@@ -32,7 +33,7 @@ impl MotionBoard {
             batch: Batch::default(),
             telemetry: None,
             published: None,
-            estop: false,
+            estop: [false; ESTOP_CHANNELS],
             meddle: None,
         }
     }

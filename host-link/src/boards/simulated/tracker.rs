@@ -2,7 +2,7 @@
 
 use super::KNOTS;
 use plant::SlidePlant;
-use shared::io::{SlideCommand, SlideFeedback};
+use shared::io::{ESTOP_CHANNELS, SlideCommand, SlideFeedback};
 use shared::protocol::{Batch, Capture, TrackerSample, TrackerTelemetry};
 use shared::tracking::{TickInput, TickOutput, TrackerController};
 
@@ -15,7 +15,8 @@ pub struct TrackerBoard {
     telemetry: Option<TrackerTelemetry>,
     /// Of the last control tick.
     pub published: Option<(Option<Capture>, TrackerSample)>,
-    pub estop: bool,
+    /// Channels of the emergency stop that are open.
+    pub estop: [bool; ESTOP_CHANNELS],
     /// What its inputs read otherwise than its machine is.
     pub meddle: Option<fn(&mut SlideFeedback)>,
     /// Its processor stands still.
@@ -31,7 +32,7 @@ impl TrackerBoard {
             batch: Batch::default(),
             telemetry: None,
             published: None,
-            estop: false,
+            estop: [false; ESTOP_CHANNELS],
             meddle: None,
             frozen: false,
         }

@@ -73,6 +73,11 @@ impl MotionController {
             return Err(Refusal::WrongState { state: self.state });
         }
         let (machine, servo) = Machine::build(config).map_err(Refusal::Parameter)?;
+        for (side, (beam, measured)) in (0..).zip(config.beams.iter().zip(self.power_measured)) {
+            if !measured && beam.as_ref().is_some_and(|beam| beam.readback.is_some()) {
+                return Err(Refusal::NoReadback { side });
+            }
+        }
         self.machine = Some(machine);
         self.servo_setup = Some(servo);
         self.homed = false;
@@ -105,6 +110,9 @@ impl MotionController {
         let state = self.allowed(Event::Reset)?;
         if self.cause_remains {
             return Err(Refusal::CauseRemains);
+        }
+        if self.estop_untested {
+            return Err(Refusal::EmergencyStopNotTested);
         }
         self.state = state;
         self.fault = None;

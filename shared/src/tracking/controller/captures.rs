@@ -1,12 +1,9 @@
 //! Strobes of the cameras, what is latched at them, and what the PC then sees in the pictures.
 
-use super::{TickInput, TrackerController, due};
+use super::{TICK_US, TickInput, TrackerController, due};
 use crate::io::SIDES;
 use crate::protocol::{Capture, Measurement};
 use crate::tracking::history::CaptureRecord;
-
-/// Period of the control tick \[µs\].
-const TICK_US: u64 = 1000;
 
 /// When the cameras are triggered.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +50,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         };
         let overdue = periods.saturating_sub(self.ticks_to_strobe.max(1));
         let due = due(&mut self.ticks_to_strobe, periods, parameters.frame_ticks);
-        self.strobes.overdue_us = u64::from(overdue) * TICK_US;
+        self.strobes.overdue_us = u64::from(overdue) * u64::from(TICK_US);
         due && self.strobes.armed
     }
 

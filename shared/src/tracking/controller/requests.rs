@@ -101,8 +101,11 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     /// Forgets the fault; a board in fault goes off if the cause is gone.
     fn reset(&mut self) -> Result<(), Refusal> {
         if self.state == TrackerState::Fault {
-            if self.feedback.estop || self.feedback.drive_fault.any() {
+            if self.estop.is_pressed() || self.feedback.drive_fault.any() {
                 return Err(Refusal::CauseRemains);
+            }
+            if self.estop.stayed_closed().is_some() {
+                return Err(Refusal::EmergencyStopNotTested);
             }
             self.state = TrackerState::Off;
         }

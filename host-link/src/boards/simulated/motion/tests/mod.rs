@@ -2,6 +2,7 @@
 
 mod bench;
 mod machines;
+mod readback;
 
 use super::*;
 use bench::{Bench, config};
@@ -111,7 +112,7 @@ fn the_emergency_stop_switches_everything_off_in_one_tick() {
     bench.load_line(300.0);
     bench.run();
     bench.run_ms(400);
-    bench.board.estop = true;
+    bench.board.estop = [true; 2];
     bench.now_us += 250;
     bench.board.tick(bench.now_us);
     assert_eq!(bench.board.command, MotionCommand::SAFE);
