@@ -12,11 +12,38 @@ use std::fmt::Write;
 use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Two machines that weld a straight line along X: with two beams, and with one.
-const MACHINES: [(&str, &str, usize); 2] = [
-    ("dual-beam-gantry", "G0 X900 Y900 Z100 A0 B0 C0", 2),
-    ("ac-head", "G0 X900 Y500 Z100 A0 C0", 1),
+/// A machine that welds a straight line along X.
+#[derive(Clone, Copy)]
+struct Machine {
+    name: &'static str,
+    approach: &'static str,
+    beams: usize,
+    /// Its slides follow what the cameras see.
+    tracks: bool,
+}
+
+const MACHINES: [Machine; 3] = [
+    Machine {
+        name: "dual-beam-gantry",
+        approach: "G0 X900 Y900 Z100 A0 B0 C0",
+        beams: 2,
+        tracks: false,
+    },
+    Machine {
+        name: "ac-head",
+        approach: "G0 X900 Y500 Z100 A0 C0",
+        beams: 1,
+        tracks: false,
+    },
+    Machine {
+        name: "dual-beam-gantry",
+        approach: "G0 X900 Y900 Z100 A0 B0 C0",
+        beams: 2,
+        tracks: true,
+    },
 ];
+/// Way without beams before the first stretch where cameras must see the seam first \[mm\].
+const RUN_IN: f64 = 40.0;
 /// Where the line begins \[mm\].
 const BEGINS: f64 = 900.0;
 /// Longest pause of the operator \[ms\], of several kinds.
@@ -155,12 +182,12 @@ impl Progress for Operator<'_> {
 /// Where the job cannot be begun.
 pub fn meddled(seed: u64) -> Meddled {
     let mut random = Random(seed);
-    let (name, approach, beams) = random.one_of(&MACHINES);
-    let machine = MachineFile::read(&crate::shipped(&format!("machines/{name}.toml")));
+    let of = random.one_of(&MACHINES);
+    let machine = MachineFile::read(&crate::shipped(&format!("machines/{}.toml", of.name)));
     let mut machine = machine.unwrap_or_else(|error| panic!("{error}"));
-    machine.tracking = None;
+    machine.tracking = machine.tracking.filter(|_| of.tracks);
     let feed_mm_s = random.one_of(&[20.0, 60.0, 120.0]);
-    let (text, programmed) = program(&mut random, approach, beams, feed_mm_s);
+    let (text, programmed) = program(&mut random, of, feed_mm_s);
     let program = interpret(&text, Options::default()).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let job = Job {
         machine: &machine,
@@ -170,11 +197,14 @@ pub fn meddled(seed: u64) -> Meddled {
         part: None,
         names: Names {
             program: "words.ngc".into(),
-            machine: name.into(),
+            machine: of.name.into(),
             seam: None,
             boards: "simulated".into(),
         },
-        surroundings: Surroundings::default(),
+        surroundings: Surroundings {
+            seam: of.tracks.then(|| Rc::new(crate::seam(crate::sines))),
+            ..Surroundings::default()
+        },
     };
     let words_left = 1 + random.below(14);
     let hand = Rc::new(RefCell::new(Hand {
@@ -223,22 +253,22 @@ pub fn meddled(seed: u64) -> Meddled {
 }
 
 /// A line in pieces, with stretches of either beam; these stretches from its beginning, by side \[mm\].
-fn program(
-    random: &mut Random,
-    approach: &str,
-    beams: usize,
-    feed_mm_s: f64,
-) -> (String, Vec<(usize, f64, f64)>) {
+fn program(random: &mut Random, of: Machine, feed_mm_s: f64) -> (String, Vec<(usize, f64, f64)>) {
     let piece: f64 = random.one_of(&[0.5, 2.0, 10.0]);
-    let mut text = format!("G21 G90 G94 G64\nG43.4\n{approach}\nF{}\n", feed_mm_s * 60.0);
+    let mut text = format!("G21 G90 G94 G64\nG43.4\n{}\nF{}\n", of.approach, feed_mm_s * 60.0);
+    let mut begins = 0.0;
+    if of.tracks {
+        begins = RUN_IN;
+        let _ = writeln!(text, "M62 P2\nG1 X{:.3}", BEGINS + RUN_IN);
+    }
     let mut on: [Option<f64>; SIDES] = [None; SIDES];
     let mut programmed = Vec::new();
     let count = (80.0 / piece) as u64;
     // A stretch takes some 8 to 40 mm.
     let changes = (4.0 / piece).ceil() as u64;
     for k in 0..=count {
-        let here = k as f64 * piece;
-        for side in 0..beams {
+        let here = begins + k as f64 * piece;
+        for side in 0..of.beams {
             if k == count || k.is_multiple_of(changes) && random.below(3) == 0 {
                 let ends = on[side].take();
                 if let Some(from) = ends {
@@ -308,7 +338,7 @@ impl Meddled {
 
     /// What is not covered of a stretch.
     fn gaps(&self, side: usize, from: f64, to: f64) -> Vec<(f64, f64)> {
-        let edge = self.tick_mm() + 2.0 * EDGE;
+        let edge = 2.0 * (self.tick_mm() + EDGE);
         let mut open: Vec<(f64, f64)> = self.open(side).collect();
         open.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut here = from;
