@@ -101,6 +101,26 @@ fn the_shipped_cut_stays_on_the_panel_and_along_its_normals() {
     assert!(plan.notes[1].contains("near the vertical"), "{:?}", plan.notes);
 }
 
+/// Lengths and spacings whose sums round one way or another.
+#[test]
+fn every_cut_opens_its_beam_once_and_shuts_it_where_it_ends() {
+    let (machine, mut panel) = (machine(), panel());
+    let points = shipped(&panel);
+    for every in 1..=5 {
+        let points: Vec<_> = points.iter().copied().step_by(every).collect();
+        for tenths in 18..=40 {
+            panel.spacing_mm = f64::from(tenths) / 10.0;
+            let plan = plan(&panel, points.clone(), &machine).unwrap();
+            let outputs = plan.program.lines().filter_map(|line| {
+                let word = line.split(' ').nth(1)?;
+                word.starts_with("M6").then_some(&line[line.find('M')?..])
+            });
+            let outputs: Vec<_> = outputs.filter(|output| !output.starts_with("M67")).collect();
+            assert_eq!(outputs, ["M62 P0", "M63 P0"], "{every}, {} mm", panel.spacing_mm);
+        }
+    }
+}
+
 #[test]
 fn over_the_crown_a_changes_its_sign_and_c_stays() {
     let (machine, panel) = (machine(), panel());
