@@ -5,7 +5,7 @@
 use crate::pair::{Pair, assert_served, status};
 use crate::process::Process;
 use emulator::{Meddling, Session};
-use host_link::boards::{Boards, NetworkBoards, Overheard, Patience};
+use host_link::boards::{Boards, Overheard};
 use host_link::weld::Ended;
 use nix::sys::signal::Signal;
 use serde_json::Value;
@@ -15,6 +15,7 @@ use shared::protocol::{
     BeamPermit, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, PathState, Permit, Request,
     Response, Role, SideMeasurement,
 };
+use shared::tracking::TrackerFault;
 use std::fs;
 use std::net::{Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
@@ -108,7 +109,7 @@ fn a_motion_board_that_freezes_is_reset_or_dies_is_blamed_and_the_slides_stop() 
             None => pair.boards.kill(Role::Motion).expect("a board"),
         });
         let error = ended.error.as_ref().expect("an error").to_string();
-        println!("{error} after {last:?}");
+        println!("{error}");
         assert!(error.contains("motion"), "{error}");
         match meddling {
             Some(Meddling::Freeze) => {
@@ -118,10 +119,24 @@ fn a_motion_board_that_freezes_is_reset_or_dies_is_blamed_and_the_slides_stop() 
             None => continue,
         }
         let (motion, tracker) = status(&mut pair.connect());
-        println!(
-            "{:?} {:?} {:?} {:?}",
-            motion.state, motion.fault, tracker.state, tracker.fault
+        assert!(
+            matches!(tracker.fault, Some(TrackerFault::PathStale { .. })),
+            "{tracker:?}"
         );
+        match meddling {
+            // The time of its plant stood still with it, so its first tick afterwards is the one in which no permit comes.
+            Some(Meddling::Freeze) => {
+                let Some(Fault::PermitLost { s_mm, .. }) = motion.fault else {
+                    panic!("{:?}", motion.fault);
+                };
+                let way = f64::from(s_mm) - last.s_mm;
+                assert!(way <= last.speed_mm_s * 1e-3 * f64::from(LATE_MS), "{way} mm");
+            }
+            _ => assert_eq!(
+                (motion.state, motion.fault, motion.homed),
+                (State::Off, None, false)
+            ),
+        }
     }
 }
 
@@ -162,22 +177,19 @@ fn a_pc_that_is_paused_stops_the_machine_and_blames_itself() {
 }
 
 #[test]
-fn a_pc_that_is_started_anew_gets_the_place_of_one_that_is_silent() {
+fn a_pc_that_is_started_anew_takes_the_place_of_one_that_is_silent() {
     let mut pair = Pair::boot("pc-anew");
     let silent = paused(&pair);
-    // The boards wait for it for a second, which is a matter of emulated boards, and then give it the lease.
-    let patience = Patience {
-        connect: Duration::from_secs(20),
-        ..Patience::default()
-    };
-    let boards = NetworkBoards::emulated(pair.boards.session(), true, patience);
-    let mut boards = boards.unwrap_or_else(|error| panic!("{error}"));
-    let (motion, _) = status(&mut boards);
-    assert_eq!(motion.state, State::Fault, "{:?}", motion.fault);
-    assert_on_seam(&weld(&mut boards, shipped_seam(), FAST), 0.05);
-    drop(boards);
-    pair.assert_off();
+    // It keeps its place for 5 s, and emulated boards wait for a silent PC for a second before.
+    thread::sleep(Duration::from_secs(4));
+    let mut anew = Process::start(pair.host_link(None));
+    anew.wait_for("searching reference marks");
     assert_blames_itself(silent, &pair);
+    // The marks are a minute away.
+    anew.signal(Signal::SIGINT);
+    let (status, said) = anew.end();
+    assert_eq!(status.code(), Some(130), "{said:#?}");
+    pair.assert_off();
 }
 
 #[test]
