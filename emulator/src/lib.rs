@@ -14,7 +14,7 @@ mod qmp;
 mod session;
 
 pub use boot::{BOOT_VARIABLES, Boards, BootError, Options, PROGRAM_VARIABLES};
-pub use pace::Pace;
+pub use pace::{BoardTime, Pace};
 pub use qemu::{INSTRUCTIONS_PER_US, bound_to_parent};
 pub use qmp::Meddling;
 pub use session::{

@@ -7,6 +7,7 @@ use std::fs::{File, OpenOptions};
 use std::io;
 use std::os::unix::fs::FileExt;
 use std::path::Path;
+use std::time::Duration;
 
 /// Bytes of the page: epoch, then (reached, seen) of both boards and of the PC, each a native i64.
 const BOARDS_AT: u64 = 8;
@@ -30,23 +31,51 @@ impl Pace {
 
     /// Everything that the boards have sent so far has been handled.
     pub fn handled(&self) -> io::Result<()> {
-        let mut bytes = [0; 32];
-        self.page.read_exact_at(&mut bytes, BOARDS_AT)?;
-        let number = |index: usize| {
-            let bytes = bytes[8 * index..8 * index + 8].try_into();
-            i64::from_ne_bytes(bytes.expect("eight bytes of 32"))
-        };
-        let boards = [(number(0), number(1)), (number(2), number(3))];
-        let now = boards[0].1.max(boards[1].1);
-        // A board that has died is waited for no more.
-        let alive = boards.iter().filter(|(_, seen)| now - seen <= PATIENCE_NS);
-        let slowest = alive.map(|(reached, _)| *reached).min();
-        self.write(slowest.unwrap_or(0), now)
+        let (slowest, now) = slowest(&self.page)?;
+        self.write(slowest, now)
     }
 
     fn write(&self, reached: i64, seen: i64) -> io::Result<()> {
         self.page.write_all_at(&reached.to_ne_bytes(), PC_AT)?;
         self.page.write_all_at(&seen.to_ne_bytes(), PC_AT + 8)
+    }
+}
+
+/// How far the slower of the boards that run has come in their common time, and when that was told last \[ns\].
+fn slowest(page: &File) -> io::Result<(i64, i64)> {
+    let mut bytes = [0; 32];
+    page.read_exact_at(&mut bytes, BOARDS_AT)?;
+    let number = |index: usize| {
+        let bytes = bytes[8 * index..8 * index + 8].try_into();
+        i64::from_ne_bytes(bytes.expect("eight bytes of 32"))
+    };
+    let boards = [(number(0), number(1)), (number(2), number(3))];
+    let now = boards[0].1.max(boards[1].1);
+    // A board that has died is waited for no more.
+    let alive = boards.iter().filter(|(_, seen)| now - seen <= PATIENCE_NS);
+    let slowest = alive.map(|(reached, _)| *reached).min();
+    Ok((slowest.unwrap_or(0), now))
+}
+
+/// The time of the boards, which goes slower than that of the wall on a busy computer. Looking at it does not take part
+/// in their pace.
+#[derive(Debug)]
+pub struct BoardTime {
+    page: File,
+}
+
+impl BoardTime {
+    /// The time of the boards of [`crate::Session::pace`].
+    pub fn of(page: &Path) -> io::Result<Self> {
+        Ok(Self {
+            page: File::open(page)?,
+        })
+    }
+
+    /// How far the slower one has come.
+    pub fn now(&self) -> io::Result<Duration> {
+        let (reached, _) = slowest(&self.page)?;
+        Ok(Duration::from_nanos(reached.try_into().unwrap_or(0)))
     }
 }
 
@@ -76,6 +105,8 @@ mod tests {
         let pace = Pace::join(&path).expect("the file");
         pace.handled().expect("the file");
         assert_eq!(pc(), [90, 1_005]);
+        let time = BoardTime::of(&path).expect("the file");
+        assert_eq!(time.now().expect("the file"), Duration::from_nanos(90));
         drop(pace);
         assert_eq!(pc(), [0, 0]);
         std::fs::remove_file(&path).expect("the file");

@@ -4,7 +4,7 @@
 
 use crate::pair::{Pair, assert_served, status};
 use crate::process::Process;
-use emulator::{Meddling, Session};
+use emulator::{BoardTime, Meddling, Session};
 use host_link::boards::{Boards, Overheard};
 use host_link::weld::Ended;
 use nix::sys::signal::Signal;
@@ -26,6 +26,13 @@ use system_tests::{assert_on_seam, shipped_seam, weld};
 
 /// No crowd lasts longer than this.
 const LONGEST: Duration = Duration::from_secs(180);
+/// So many frames go to each board at once, so often.
+const FRAMES: u32 = 10;
+const FRAMES_EVERY: Duration = Duration::from_millis(2);
+/// A connection to each board is begun so often.
+const CONNECTS_EVERY: Duration = Duration::from_millis(20);
+/// So often the time of the boards is looked at.
+const LOOK: Duration = Duration::from_micros(100);
 /// Speed of the welds \[m/min\].
 const FAST: f64 = 9.0;
 /// Way into the weld at which something happens \[mm\].
@@ -208,7 +215,8 @@ fn a_motion_board_that_is_cut_off_stops_by_itself() {
     assert_shut_in_time(&pair, &ended, &last, "motion");
 }
 
-/// A crowd that sends frames of every kind to both boards, until dropped: 10⁴ a second in all, and 100 connections.
+/// A crowd that sends frames of every kind to both boards, until dropped: 10⁴ a second in all, and 100 connections, by the
+/// time of the boards.
 struct Crowd {
     over: Arc<AtomicBool>,
     threads: Vec<JoinHandle<u32>>,
@@ -217,13 +225,17 @@ struct Crowd {
 impl Crowd {
     fn on(session: &Session) -> Self {
         let over = Arc::new(AtomicBool::new(false));
-        let boards = [session.motion, session.tracker];
         let mut threads = Vec::new();
-        for board in boards {
-            let stop = Arc::clone(&over);
-            threads.push(thread::spawn(move || send(&stop, board.datagrams())));
-            let stop = Arc::clone(&over);
-            threads.push(thread::spawn(move || connect(&stop, board.requests())));
+        let mut add = |every, act: Box<dyn FnMut() -> u32 + Send>| {
+            let (over, time) = (
+                Arc::clone(&over),
+                BoardTime::of(&session.pace).expect("boards that run"),
+            );
+            threads.push(thread::spawn(move || again(&over, &time, every, act)));
+        };
+        for board in [session.motion, session.tracker] {
+            add(FRAMES_EVERY, Box::new(frames(board.datagrams())));
+            add(CONNECTS_EVERY, Box::new(move || connect(board.requests())));
         }
         Self { over, threads }
     }
@@ -238,34 +250,44 @@ impl Crowd {
     }
 }
 
-/// Frames to one board: what is no datagram, what is of another version, and datagrams of every kind with the numbers of
-/// other sessions.
-fn send(over: &AtomicBool, board: SocketAddr) -> u32 {
-    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port");
-    let frames = forged();
-    let mut sent = 0;
-    let begin = Instant::now();
+/// Acts every so often, by `time`; how much that was. What came late is not made up for at once: that would be another
+/// crowd.
+fn again(
+    over: &AtomicBool,
+    time: &BoardTime,
+    every: Duration,
+    mut act: Box<dyn FnMut() -> u32 + Send>,
+) -> u32 {
+    let (begin, mut due, mut done) = (Instant::now(), Duration::ZERO, 0);
     while !over.load(Ordering::Relaxed) && begin.elapsed() < LONGEST {
-        // A system that has no room drops them.
-        let _ = socket.send_to(&frames[sent as usize % frames.len()], board);
-        sent += 1;
-        if sent % 10 == 0 {
-            let due = Duration::from_micros(u64::from(sent) * 200);
-            thread::sleep(due.saturating_sub(begin.elapsed()));
+        let now = time.now().expect("boards that run");
+        if now < due {
+            thread::sleep(LOOK);
+            continue;
         }
+        due = (due + every).max(now);
+        done += act();
     }
-    sent
+    done
 }
 
-fn connect(over: &AtomicBool, board: SocketAddr) -> u32 {
-    let begin = Instant::now();
-    let mut made = 0;
-    while !over.load(Ordering::Relaxed) && begin.elapsed() < LONGEST {
-        drop(TcpStream::connect_timeout(&board, Duration::from_millis(100)));
-        made += 1;
-        thread::sleep((Duration::from_millis(20) * made).saturating_sub(begin.elapsed()));
+/// Some frames to one board: what is no datagram, what is of another version, and datagrams of every kind with the numbers
+/// of other sessions.
+fn frames(board: SocketAddr) -> impl FnMut() -> u32 {
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port");
+    let mut frames = forged().into_iter().cycle();
+    move || {
+        for frame in frames.by_ref().take(FRAMES as usize) {
+            // A system that has no room drops them.
+            let _ = socket.send_to(&frame, board);
+        }
+        FRAMES
     }
-    made
+}
+
+fn connect(board: SocketAddr) -> u32 {
+    drop(TcpStream::connect_timeout(&board, Duration::from_millis(100)));
+    1
 }
 
 fn forged() -> Vec<Vec<u8>> {
@@ -319,10 +341,12 @@ fn forged() -> Vec<Vec<u8>> {
 #[test]
 fn a_crowd_on_the_network_changes_nothing() {
     let mut pair = Pair::boot("crowd");
+    let time = BoardTime::of(&pair.boards.session().pace).expect("boards that run");
+    let now = || time.now().expect("boards that run").as_secs_f64();
     let crowd = Crowd::on(pair.boards.session());
-    let begin = Instant::now();
+    let begin = now();
     let ended = weld(&mut pair.connect(), shipped_seam(), FAST);
-    let seconds = begin.elapsed().as_secs_f64();
+    let seconds = now() - begin;
     let sent = crowd.end();
     println!("{:.0} frames and connections a second", f64::from(sent) / seconds);
     assert_on_seam(&ended, 0.03);
