@@ -1,7 +1,7 @@
 //! One path length through all paths of a job: that of its plots, its log and its messages.
 
-use crate::nc::Motion;
 use crate::path::PlannedPath;
+use nc::Motion;
 use std::collections::BTreeMap;
 
 /// Path length through all paths that work, counted from where the first beam goes on; without beams, from where the

@@ -15,7 +15,6 @@ pub mod evaluate;
 pub mod machine;
 pub mod measure;
 pub mod metrics;
-pub mod nc;
 pub mod part;
 pub mod path;
 pub mod plan;

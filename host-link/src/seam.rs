@@ -274,8 +274,8 @@ fn check_points(path: &str, points: impl Iterator<Item = (usize, Vector3<f64>)>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::nc::{Options, interpret};
     use crate::path::Planner;
+    use nc::{Options, interpret};
 
     const HEADER: &str = "s_mm,u1_mm,v1_mm,u2_mm,v2_mm";
 

@@ -2,8 +2,8 @@
 
 use crate::along::Along;
 use crate::evaluate::{HALF_MM, WorkTick};
-use crate::nc::Motion;
 use crate::path::{PlannedPath, Programmed};
+use nc::Motion;
 use serde::Serialize;
 use shared::io::SIDES;
 use shared::motion::BeamConfig;

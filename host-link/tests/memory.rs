@@ -3,8 +3,8 @@
 #![cfg(target_os = "linux")]
 
 use host_link::machine::MachineFile;
-use host_link::nc::{Options, interpret_file};
 use host_link::path::Planner;
+use nc::{Options, interpret_file};
 use std::f64::consts::TAU;
 use std::fs::File;
 use std::io::{BufWriter, Write};

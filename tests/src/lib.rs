@@ -12,11 +12,11 @@ pub use words::{Fate, Meddled, meddled};
 
 use host_link::boards::Boards;
 use host_link::machine::MachineFile;
-use host_link::nc::{Options, Program, interpret};
 use host_link::part::PartFile;
 use host_link::report::Report;
 use host_link::seam::Deviation;
 use host_link::weld::{Ended, Job, Names, Surroundings, Work};
+use nc::{Options, Program, interpret};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;

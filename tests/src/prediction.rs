@@ -2,9 +2,9 @@
 
 use host_link::boards::{Boards, Overheard};
 use host_link::dry_run::{self, DryRun};
-use host_link::nc::Program;
 use host_link::path::Planner;
 use host_link::weld::{self, Ended, Job, Silent, Work};
+use nc::Program;
 use shared::protocol::MotionSample;
 use shared::units::MM_S_PER_M_MIN;
 use std::sync::atomic::AtomicBool;

@@ -3,8 +3,8 @@
 use host_link::boards::simulated::SimulatedBoards;
 use host_link::boards::{Boards, Overheard};
 use host_link::machine::MachineFile;
-use host_link::nc::{Options, interpret};
 use host_link::weld::{self, Ended, Job, JobError, Names, Progress, Surroundings, Word, Work};
+use nc::{Options, interpret};
 use shared::io::SIDES;
 use shared::protocol::MotionSample;
 use std::cell::RefCell;

@@ -4,12 +4,12 @@ use super::read_program;
 use crate::console::{out, outln};
 use crate::dry_run::{self, DryRun};
 use crate::machine::MachineFile;
-use crate::nc::Motion;
 use crate::path::{Blocks, PlannedPath, Planner};
 use crate::seam::{Deviation, SeamError};
 use crate::weld::check_seam;
 use anyhow::Context;
 use clap::Args;
+use nc::Motion;
 use std::path::PathBuf;
 
 /// Check a program against a machine: travel, speeds, and the reach of the slides

@@ -11,9 +11,9 @@ mod teach;
 mod teach_seam;
 mod weld;
 
-use crate::nc::{Options, Program, interpret_file};
 use anyhow::{Context, bail};
 use clap::{Parser, Subcommand};
+use nc::{Options, Program, interpret_file};
 use std::fs::File;
 use std::path::Path;
 use std::process::ExitCode;

@@ -2,11 +2,11 @@
 
 use crate::console::outln;
 use crate::machine::MachineFile;
-use crate::nc::{Options, interpret};
 use crate::part::PartFile;
 use crate::path::{PlannedPath, Planner};
 use anyhow::Context;
 use clap::Args;
+use nc::{Options, interpret};
 use std::path::{Path, PathBuf};
 
 /// Write the program of a part

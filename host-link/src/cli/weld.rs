@@ -5,7 +5,6 @@ use super::cameras::CameraArgs;
 use super::{OUTSIDE, read_program, sentence};
 use crate::console::{errln, out, outln};
 use crate::machine::MachineFile;
-use crate::nc::Program;
 use crate::part::PartFile;
 use crate::path::Planner;
 use crate::report::{self, Report};
@@ -15,6 +14,7 @@ use crate::weld::{Job, JobError, Names, NoTeaching, Surroundings, Taught, Termin
 use anyhow::{Context, Error, bail};
 use clap::Args;
 use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
+use nc::Program;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;

@@ -3,7 +3,7 @@
 use super::differences::Rates;
 use super::trace::Trace;
 use super::{PATH, ROWS};
-use crate::nc::Motion;
+use nc::Motion;
 use serde::Serialize;
 use shared::io::AXES;
 use shared::kinematics::AXIS_UNIT;

@@ -2,7 +2,7 @@
 
 use super::figures::name;
 use super::{DryRun, PATH, PathFigures, Peak, QUANTITIES, ROWS};
-use crate::nc::Motion;
+use nc::Motion;
 use shared::io::AXIS_NAMES;
 use shared::units::MM_S_PER_M_MIN;
 use std::fmt::{Display, Formatter, Result};

@@ -1,11 +1,11 @@
 //! Records of which the figures are known.
 
 use super::*;
-use crate::nc::Motion;
 use crate::record::MachinePosition;
 use crate::record::tests::{motion_sample, tracker_sample};
 use crate::world::machine::tests::machine;
 use crate::world::seams::tests::{bent_path, heads, wavy_seam};
+use nc::Motion;
 use shared::io::SIDES;
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{PathSpace, SpeedLimits};

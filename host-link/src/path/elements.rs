@@ -132,9 +132,9 @@ fn span(from: &Knot, to: &Knot, channel: usize) -> Cubic {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::nc::{Motion, Place};
     use crate::path::SpeedStep;
     use crate::path::shape;
+    use nc::{Motion, Place};
     use shared::trajectory::PathSpace;
 
     /// A path of three spans whose speed steps at a knot, inside a span twice, and next to a knot.

@@ -1,8 +1,8 @@
 //! Why a program path cannot be run on this machine.
 
 use super::{CAPACITY, MAX_EVENTS};
-use crate::nc::{NcError, Place};
 use crate::table::FARTHEST_MM;
+use nc::{NcError, Place};
 use shared::geometry::nurbs::NurbsError;
 use shared::geometry::{ArcError, AttitudeError, PoseError, SplineError};
 use shared::io::AXIS_NAMES;

@@ -1,7 +1,7 @@
 //! How fast the way to each target is to be gone.
 
 use super::PathError;
-use crate::nc::{FeedRate, Place, ProgramPath, Target};
+use nc::{FeedRate, Place, ProgramPath, Target};
 
 /// Feeds of a path.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 use super::outputs::Switched;
 use super::shape::{Shape, channels};
 use super::{Leg, NOWHERE, PathError, PlannedPath, Planner, inner};
-use crate::nc::{Motion, Program, Way};
+use nc::{Motion, Program, Way};
 use shared::io::{AXES, SIDES};
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{CHANNELS, Element, PathSpace, ReferenceError, axes_at};

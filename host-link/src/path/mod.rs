@@ -27,8 +27,8 @@ pub use programmed::Programmed;
 pub use targets::Tip;
 
 use crate::machine::{MachineFile, PlanningConfig};
-use crate::nc::{Place, Program};
 use limits::{DRIVES, DriveLimits};
+use nc::{Place, Program};
 use outputs::Switched;
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};

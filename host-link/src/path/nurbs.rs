@@ -1,8 +1,8 @@
 //! NURBS of a program over their length.
 
 use super::{PathError, Tip};
-use crate::nc::{NurbsWay, Place};
 use nalgebra::Vector3;
+use nc::{NurbsWay, Place};
 use shared::geometry::nurbs::{Curve, Nurbs, RationalBezier, length, parameter_at_length};
 use shared::geometry::{Moving, angle};
 use shared::trajectory::ArcLengthCurve;

@@ -1,7 +1,7 @@
 //! What a program switches, on the machine that is there.
 
 use super::{MAX_EVENTS, PathError, Planner, SpeedStep};
-use crate::nc::{Place, ProgramAction, ProgramEvent};
+use nc::{Place, ProgramAction, ProgramEvent};
 use shared::geometry::Turn;
 use shared::io::SIDES;
 use shared::protocol::{PathAction, PathEvent};

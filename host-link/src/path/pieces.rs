@@ -9,7 +9,7 @@ use super::outputs::{Switched, Switching, on_the_way};
 use super::shape::{Goal, Shape, channels};
 use super::targets::{ROTARY, Stand};
 use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip};
-use crate::nc::{Motion, PathControl, Place, ProgramPath, Target, Way};
+use nc::{Motion, PathControl, Place, ProgramPath, Target, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
 use shared::trajectory::PathSpace;

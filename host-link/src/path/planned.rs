@@ -3,7 +3,7 @@
 use super::blocks::{Blocks, Course, Leg};
 use super::shape::Shape;
 use super::{CAPACITY, PathError};
-use crate::nc::Motion;
+use nc::Motion;
 use shared::protocol::{Knot, PathAction, PathEvent};
 use shared::trajectory::{Path, PathSpace, SpeedLimits};
 

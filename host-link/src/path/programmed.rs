@@ -86,8 +86,8 @@ impl Programmed {
 #[cfg(test)]
 mod tests {
     use crate::machine::MachineFile;
-    use crate::nc::{Options, interpret};
     use crate::path::{PlannedPath, Planner};
+    use nc::{Options, interpret};
     use std::path::Path;
 
     fn paths(machine: &str, program: &str) -> Vec<PlannedPath> {

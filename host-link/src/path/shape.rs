@@ -2,8 +2,8 @@
 
 use super::{PathError, Planner, Tip};
 use crate::curve::{Curve, distance};
-use crate::nc::{Place, Target};
 use nalgebra::Vector3;
+use nc::{Place, Target};
 use shared::geometry::{Pose, angle};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;

@@ -3,8 +3,8 @@
 
 use super::outputs::Switched;
 use super::{PathError, Planner};
-use crate::nc::{ArcForm, ArcWay, Place, ProgramPath, Target, Way};
 use nalgebra::Vector3;
+use nc::{ArcForm, ArcWay, Place, ProgramPath, Target, Way};
 use shared::geometry::{Arc, Turn};
 use shared::io::{AXES, AXIS_NAMES, SIDES};
 use shared::kinematics::AXIS_UNIT;

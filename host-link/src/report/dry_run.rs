@@ -141,8 +141,8 @@ mod tests {
     use super::*;
     use crate::dry_run;
     use crate::machine::MachineFile;
-    use crate::nc::{Options, interpret};
     use crate::path::Planner;
+    use nc::{Options, interpret};
 
     #[test]
     fn plots_name_axes_units_limits_and_paths_and_the_figures_can_be_read_back() {

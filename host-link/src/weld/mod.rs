@@ -33,12 +33,12 @@ pub use terminal::Terminal;
 
 use crate::boards::{Boards, LinkError};
 use crate::machine::MachineFile;
-use crate::nc::Program;
 use crate::part::PartFile;
 use crate::path::{FromLineError, PathError, PlannedPath, Planner};
 use crate::seam::SeamError;
 use feeding::Feeding;
 use following::follow;
+use nc::Program;
 use session::Session;
 use shared::motion::{Fault, State};
 use shared::parameter::ParameterError;

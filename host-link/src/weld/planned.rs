@@ -2,10 +2,10 @@
 
 use super::{Job, JobError};
 use crate::machine::MachineFile;
-use crate::nc::Program;
 use crate::path::{PlannedPath, Planner};
 use crate::seam::{Deviation, SeamError, check_facing};
 use crate::world::TrueSeams;
+use nc::Program;
 use shared::io::AXES;
 use shared::protocol::{PathAction, PathEvent};
 

@@ -5,12 +5,12 @@ use super::tracking::Watched;
 use super::{Job, JobError, Line, Weld};
 use crate::boards::LinkError;
 use crate::machine::MachineFile;
-use crate::nc::{Options, interpret};
 use crate::plan::text::{decimal, tip_words};
 use crate::teach::seam::{
     Cameras, Drawing, Ended, Follower, Hand, Head, Rig, SeamFile, SeamPoint, SeamTeachError, SeamTeaching,
     Seen, Stance, View,
 };
+use nc::{Options, interpret};
 use shared::io::{AXES, SIDES, SLIDES};
 use shared::protocol::Refusal;
 use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};

@@ -2,10 +2,10 @@
 
 use super::{CameraChoice, JobError};
 use crate::machine::MachineFile;
-use crate::nc::Program;
 use crate::path::{PlannedPath, Planner};
 use crate::seam::Deviation;
 use crate::world::TrueSeams;
+use nc::Program;
 use std::rc::Rc;
 
 /// What is around the machine.

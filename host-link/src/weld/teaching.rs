@@ -6,10 +6,10 @@
 use super::session::Session;
 use super::{CameraPictures, Job, JobError, TaughtSeam, Weld};
 use crate::machine::MachineFile;
-use crate::nc::{Options, Program, interpret};
 use crate::part::{Panel, PartFile};
 use crate::teach::{Arm, Look, TaughtPoint, TeachError, TeachParameterError, Teacher};
 use crate::world::SimulatedProbe;
+use nc::{Options, Program, interpret};
 use shared::io::AXES;
 use shared::kinematics::Kinematics;
 use shared::protocol::{MotionSample, Role};

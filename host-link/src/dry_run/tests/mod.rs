@@ -1,5 +1,5 @@
 use super::*;
-use crate::nc::{Motion, Options, interpret};
+use nc::{Motion, Options, interpret};
 use std::path::Path;
 
 /// What programs begin with.

@@ -19,11 +19,11 @@ mod tests;
 
 use super::limits::SPEED_DIP;
 use super::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
-use crate::nc::{Motion, Options, interpret};
 use crate::path::{PlannedPath, Planner};
 use curve_file::CurveFile;
 use error::BeadError;
 use nalgebra::Vector3;
+use nc::{Motion, Options, interpret};
 use points::LONGEST;
 use program::Pass;
 use route::Route;

@@ -8,9 +8,9 @@
 use super::error::StirError;
 use super::{B, C, Job, SPINDLE, Stir, StirLimits};
 use crate::metrics::compare;
-use crate::nc::Motion;
 use crate::part::{ALONG, Figure, GAP, Judgement, Plot, Run, RunSample};
 use crate::path::{Course, PlannedPath};
+use nc::Motion;
 use shared::units::{DEG_PER_RAD, wrap};
 
 /// The program may stir more or less than the contour by this much \[mm\].

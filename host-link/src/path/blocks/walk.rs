@@ -1,12 +1,12 @@
 //! From moves to blocks, and how each of them goes on into the next.
 
 use super::Moves;
-use crate::nc::{Move, PathControl};
 use crate::path::block::Block;
 use crate::path::exact::{Join as Turning, MAX_TURN};
 use crate::path::feeds::Feeds;
 use crate::path::targets::Stand;
 use crate::path::{PathError, Planner, TOLERANCE, Tip};
+use nc::{Move, PathControl};
 use shared::geometry::angle;
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{Element, Join, Tolerance};
@@ -112,7 +112,7 @@ impl Walk {
         let Move { target, events } = from;
         let planner = &self.planner;
         let tip = planner.next_tip(&target, &self.tip, self.placed)?;
-        let block = Block::build(planner, crate::nc::Motion::Feed, &self.tip, &tip, &target)?;
+        let block = Block::build(planner, nc::Motion::Feed, &self.tip, &tip, &target)?;
         let speed = self.feeds.next(&target, block.length)?;
         let mut actions = std::mem::take(&mut self.on);
         for event in &events {

@@ -1,7 +1,7 @@
 //! Paths with arcs: how exact they are, where they stop, and which arcs there are not.
 
 use super::*;
-use crate::nc::Motion;
+use nc::Motion;
 use shared::protocol::PathAction;
 use shared::trajectory::Join;
 

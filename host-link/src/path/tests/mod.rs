@@ -9,8 +9,8 @@ mod nurbs;
 mod outputs;
 
 use super::*;
-use crate::nc::{Options, Place, interpret};
 use nalgebra::Vector3;
+use nc::{Options, Place, interpret};
 use shared::geometry::{angle, interpolate};
 use shared::trajectory::{SpeedLimits, at_unit_speed, axes_at};
 use std::fmt::Write;

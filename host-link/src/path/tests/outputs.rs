@@ -1,7 +1,7 @@
 //! What the words for outputs and spindle do to the paths that the boards run.
 
 use super::*;
-use crate::nc::Motion;
+use nc::Motion;
 use shared::protocol::PathAction;
 use shared::trajectory::PathSpace;
 

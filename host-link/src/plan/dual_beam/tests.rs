@@ -1,10 +1,10 @@
 //! Plans of the shipped seams: the program, where the spots are, and what is refused.
 
 use super::*;
-use crate::nc::{Options, interpret};
 use crate::path::Planner;
 use crate::plan::OtherSeam;
 use crate::seam::{read_main_curve, read_other_curve};
+use nc::{Options, interpret};
 use std::path::Path;
 
 fn shipped(name: &str) -> std::path::PathBuf {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::boards::Overheard;
-use crate::nc::interpret_file;
+use nc::interpret_file;
 use shared::protocol::MotionSample;
 use std::path::PathBuf;
 

@@ -7,9 +7,9 @@ mod speeds;
 mod wrong;
 
 use crate::machine::MachineFile;
-use crate::nc::{Motion, Options, interpret};
 use crate::part::{Part, Place, Plan};
 use crate::path::{PlannedPath, Planner};
+use nc::{Motion, Options, interpret};
 use std::path::{Path, PathBuf};
 
 /// A quarter of a circle of 30 mm about the origin, from X30 to Y30.

@@ -4,9 +4,9 @@ mod run;
 
 use super::*;
 use crate::machine::MachineFile;
-use crate::nc::{Options, interpret};
 use crate::part::Part;
 use crate::path::{PlannedPath, Planner};
+use nc::{Options, interpret};
 use shared::geometry::angle;
 use std::path::Path;
 

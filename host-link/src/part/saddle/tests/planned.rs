@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::boards::simulated::SimulatedBoards;
-use crate::nc::{Options, interpret};
 use crate::part::{Judgement, RunSample};
 use crate::path::{PlannedPath, Planner};
 use crate::weld::{Job, Names, Silent, Work, run};
+use nc::{Options, interpret};
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;

@@ -6,9 +6,9 @@ mod program;
 mod run;
 
 use super::*;
-use crate::nc::{Motion, Options, interpret};
 use crate::part::Part;
 use crate::path::{PlannedPath, Planner};
+use nc::{Motion, Options, interpret};
 use std::path::{Path, PathBuf};
 
 /// A shipped file.

@@ -3,7 +3,6 @@
 use super::claims::Claims;
 use super::codes::{Code, Group};
 use super::error::{NcError, Place, Problem};
-use super::interpreter::{number_below, value_error};
 use super::lexer::Word;
 use super::parser::{Block, CodeWord};
 use super::program::{ProgramAction, ProgramEvent};
@@ -66,7 +65,7 @@ impl Spindle {
         let s = block.word("S");
         if let Some(s) = s {
             if s.value < 0.0 {
-                return Err(value_error(s, "a spindle speed is 0 r/min or more"));
+                return Err(s.value_error("a spindle speed is 0 r/min or more"));
             }
             self.speed = Some(s.value);
         }
@@ -122,25 +121,22 @@ pub(super) fn output(block: &Block, claims: &Claims) -> Result<Option<Pending>, 
         Code::WaitForInput => return Err(Problem::NoInputs.at(code.place)),
         Code::Analog | Code::AnalogNow => {
             let (e, q) = (need("E")?, need("Q")?);
-            let Some(side) = number_below(e.value, 2) else {
-                return Err(value_error(e, "E0 and E1 are the powers of beam 1 and 2"));
+            let Some(side) = e.number_below(2) else {
+                return Err(e.value_error("E0 and E1 are the powers of beam 1 and 2"));
             };
             if q.value < 0.0 {
-                return Err(value_error(q, "a power is 0 W or more"));
+                return Err(q.value_error("a power is 0 W or more"));
             }
             PathAction::Power { side, watt: q.value }
         }
         _ => {
             let p = need("P")?;
             let on = matches!(code.code, Code::OutputOn | Code::OutputOnNow);
-            match number_below(p.value, 3) {
+            match p.number_below(3) {
                 Some(2) => PathAction::Tracking { on },
                 Some(side) => PathAction::Beam { side, on },
                 None => {
-                    return Err(value_error(
-                        p,
-                        "P0 and P1 are the beam gates 1 and 2, P2 is tracking",
-                    ));
+                    return Err(p.value_error("P0 and P1 are the beam gates 1 and 2, P2 is tracking"));
                 }
             }
         }
@@ -171,10 +167,7 @@ pub(super) fn dwell(block: &Block, claims: &Claims) -> Result<Option<(f64, Place
     };
     let p = claims.word(Code::Dwell, "P").ok_or(missing.at(code.place))?;
     if !(0.0..=LONGEST_DWELL_S).contains(&p.value) {
-        return Err(value_error(
-            p,
-            "a time is 0 s or more, and a day (86400 s) at most",
-        ));
+        return Err(p.value_error("a time is 0 s or more, and a day (86400 s) at most"));
     }
     Ok(Some((p.value, code.place)))
 }

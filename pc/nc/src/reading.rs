@@ -92,7 +92,10 @@ impl ProgramPath {
     }
 
     /// The same path with all of its blocks kept.
-    pub(crate) fn whole(&self) -> Result<Self, NcError> {
+    ///
+    /// # Errors
+    /// As for [`Self::moves`].
+    pub fn whole(&self) -> Result<Self, NcError> {
         let mut whole = self.clone();
         if let Some(rest) = whole.rest.take() {
             let count = self.kept_count();

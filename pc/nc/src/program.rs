@@ -1,10 +1,16 @@
 //! A program after reading: motions from rest to rest, as their words say them.
 
 use super::error::Place;
+use super::parser::Block;
 use super::reading::Rest;
 use shared::geometry::Turn;
 use shared::io::{AXES, SIDES};
 use shared::protocol::PathAction;
+
+/// Letters of the six axis words, in the order of [`shared::io::AXIS_NAMES`].
+pub(crate) const AXIS_WORDS: [&str; AXES] = shared::io::AXIS_NAMES;
+/// Names of the extensions.
+pub(crate) const EXTENSION_WORDS: [&str; SIDES] = ["V1", "V2"];
 
 /// What an NC program does.
 #[derive(Clone, Debug, PartialEq)]
@@ -171,6 +177,17 @@ pub struct Words {
     pub axes: [Option<f64>; AXES],
     /// V1 V2: extension that keeps the defocus.
     pub extension: [Option<f64>; SIDES],
+}
+
+impl Words {
+    /// What `block` says of where to.
+    pub(crate) fn of(block: &Block) -> Self {
+        let value = |name: &str| block.word(name).map(|word| word.value);
+        Self {
+            axes: AXIS_WORDS.map(value),
+            extension: EXTENSION_WORDS.map(value),
+        }
+    }
 }
 
 /// Something that happens at the start of a motion.

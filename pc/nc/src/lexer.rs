@@ -27,6 +27,21 @@ impl Word {
         let sign = if self.named { "=" } else { "" };
         format!("{}{sign}", self.address)
     }
+
+    /// Its value, if that is one of 0 … `count` − 1.
+    pub fn number_below(&self, count: u8) -> Option<u8> {
+        (0..count).find(|n| f64::from(*n) == self.value)
+    }
+
+    /// What is wrong with its value.
+    pub fn value_error(&self, reason: &'static str) -> NcError {
+        Problem::Value {
+            word: self.label(),
+            value: self.value,
+            reason,
+        }
+        .at(self.place)
+    }
 }
 
 /// The parts of one line.

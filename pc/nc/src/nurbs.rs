@@ -7,7 +7,6 @@
 use super::claims::Claims;
 use super::codes::{Code, Group};
 use super::error::{NcError, Place, Problem};
-use super::interpreter::{number_below, value_error};
 use super::lexer::Word;
 use super::parser::Block;
 use super::program::{ControlPoint, FeedRate, NurbsWay, Words};
@@ -61,9 +60,10 @@ impl OpenNurbs {
             _ => ("P", KNOT_ORDER),
         };
         let order = match claims.word(code, word) {
-            Some(order) => number_below(order.value, MAX_DEGREE as u8 + 2)
+            Some(order) => order
+                .number_below(MAX_DEGREE as u8 + 2)
                 .filter(|order| *order >= 2)
-                .ok_or_else(|| value_error(order, "the order of a NURBS is 2, 3, 4, 5 or 6"))?
+                .ok_or_else(|| order.value_error("the order of a NURBS is 2, 3, 4, 5 or 6"))?
                 .into(),
             None => default,
         };
@@ -221,7 +221,7 @@ impl OpenNurbs {
         };
         let k = block.word("K").ok_or(missing.at(place_of(block)))?;
         if self.knots.last().is_some_and(|(before, _)| k.value < *before) {
-            return Err(value_error(k, "knots do not decrease"));
+            return Err(k.value_error("knots do not decrease"));
         }
         self.knots.push((k.value, k.place));
         Ok(())
@@ -261,7 +261,7 @@ impl OpenNurbs {
         for (said, now) in self.words.axes.iter_mut().zip(position) {
             *said = now.or(*said);
         }
-        let own = super::interpreter::words(block);
+        let own = Words::of(block);
         self.words.axes[3..].copy_from_slice(&own.axes[3..]);
         self.words.extension = own.extension;
         let other = block.words.iter().find(|w| is_axis(w) && !is_position(w));
@@ -306,7 +306,7 @@ fn is_axis(word: &Word) -> bool {
 
 fn weight(word: Option<&Word>) -> Result<f64, NcError> {
     match word {
-        Some(word) if word.value <= 0.0 => Err(value_error(word, "a weight is above 0")),
+        Some(word) if word.value <= 0.0 => Err(word.value_error("a weight is above 0")),
         Some(word) => Ok(word.value),
         None => Ok(1.0),
     }

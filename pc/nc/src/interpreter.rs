@@ -9,9 +9,9 @@ use super::modal::Modal;
 use super::nurbs::{OpenNurbs, Progress};
 use super::outputs::{Pending, Spindle, dwell, output};
 use super::parser::Block;
-use super::program::{FeedRate, Motion, Plane, ProgramPath, Target, Way, Words};
+use super::program::{AXIS_WORDS, EXTENSION_WORDS, FeedRate, Motion, Plane, ProgramPath, Target, Way, Words};
 use super::reading::Rest;
-use shared::io::{AXES, SIDES};
+use shared::io::AXES;
 
 /// Choices of the operator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,11 +37,6 @@ pub(super) struct Interpreter {
     open: bool,
     pub(super) ended: bool,
 }
-
-/// Letters of the six axis words, in the order of [`shared::io::AXIS_NAMES`].
-const AXIS_WORDS: [&str; AXES] = shared::io::AXIS_NAMES;
-/// Names of the extensions.
-const EXTENSION_WORDS: [&str; SIDES] = ["V1", "V2"];
 
 impl Interpreter {
     /// Carries out a block in the order of RS274/NGC: modes and feed, outputs, spindle, dwell, motion, end.
@@ -167,7 +162,7 @@ impl Interpreter {
         if let Some(word) = EXTENSION_WORDS.iter().find_map(|w| block.word(w)) {
             return Err(Problem::Orphan(word.label()).at(word.place));
         }
-        let words = words(block);
+        let words = Words::of(block);
         if words.axes.iter().all(Option::is_none) {
             let (code, word) = ("G53", "an axis word");
             return Err(Problem::Missing { code, word }.at(place));
@@ -203,7 +198,7 @@ impl Interpreter {
         if !self.modal.tip {
             return Err(Problem::NotTip.at(place));
         }
-        let words = words(block);
+        let words = Words::of(block);
         let rapid = mode == Code::Rapid;
         let places = rapid && words.axes[..3].iter().all(Option::is_some);
         if !(self.placed || places) {
@@ -307,26 +302,4 @@ impl Interpreter {
 
 fn is_nurbs(code: Code) -> bool {
     matches!(code, Code::UniformNurbs | Code::KnotNurbs)
-}
-
-/// What `block` says of where to.
-pub(super) fn words(block: &Block) -> Words {
-    let value = |name: &str| block.word(name).map(|word| word.value);
-    Words {
-        axes: AXIS_WORDS.map(value),
-        extension: EXTENSION_WORDS.map(value),
-    }
-}
-
-pub(super) fn number_below(value: f64, count: u8) -> Option<u8> {
-    (0..count).find(|n| f64::from(*n) == value)
-}
-
-pub(super) fn value_error(word: &Word, reason: &'static str) -> NcError {
-    Problem::Value {
-        word: word.label(),
-        value: word.value,
-        reason,
-    }
-    .at(word.place)
 }

@@ -3,7 +3,6 @@
 use super::claims::Claims;
 use super::codes::Code;
 use super::error::{NcError, Place, Problem};
-use super::interpreter::value_error;
 use super::program::{ArcForm, ArcWay, Plane};
 use shared::geometry::Turn;
 
@@ -21,10 +20,7 @@ pub(super) fn way(claims: &Claims, mode: Code, plane: Plane, place: Place) -> Re
     let more_turns = match claims.word(mode, "P") {
         Some(p) if p.value.fract() == 0.0 && (1.0..=MOST_TURNS).contains(&p.value) => p.value as u32 - 1,
         Some(p) => {
-            return Err(value_error(
-                p,
-                "the turns of an arc are 1, 2, 3 and so on up to 10000",
-            ));
+            return Err(p.value_error("the turns of an arc are 1, 2, 3 and so on up to 10000"));
         }
         None => 0,
     };
@@ -51,7 +47,7 @@ fn form(claims: &Claims, mode: Code, plane: Plane, place: Place) -> Result<ArcFo
     match (any, claims.word(mode, "R")) {
         (true, Some(r)) => Err(Problem::CentreAndRadius.at(r.place)),
         (true, None) => Ok(ArcForm::Centre(centre.map(|word| word.map_or(0.0, |w| w.value)))),
-        (false, Some(r)) if r.value == 0.0 => Err(value_error(r, "a radius is not 0")),
+        (false, Some(r)) if r.value == 0.0 => Err(r.value_error("a radius is not 0")),
         (false, Some(r)) => Ok(ArcForm::Radius(r.value)),
         (false, None) => {
             let (code, word) = (mode.name(), "a centre (I J K) or R");
