@@ -120,6 +120,15 @@ fn hold(moments: &[Moment], what: &str, bound_us: u64, measure: impl Fn(&mut Mom
     assert!(longest_us <= bound_us, "{what}: {longest_us} of {bound_us} µs");
 }
 
+/// As [`hold`], for what goes wrong on the boards: until beams `sides` are off.
+#[track_caller]
+fn hold_off(moments: &[Moment], what: &str, bound_us: u64, trouble: Trouble, sides: &[usize]) {
+    hold(moments, what, bound_us, |moment| {
+        moment.boards.befall(trouble);
+        moment.until_off(sides)
+    });
+}
+
 fn tracker_faulty(boards: &mut SimulatedBoards) -> bool {
     match boards.ask(Role::Tracker, &Request::Status) {
         Response::TrackerStatus(status) => status.fault.is_some(),
@@ -170,21 +179,14 @@ fn beams_are_off_in_time_whatever_fails() {
             Trouble::SessionEnded => 4 * SERVO_US + SERVO_US,
             _ => SERVO_US,
         };
-        hold(&moments, what, bound_us, |moment| {
-            moment.boards.befall(trouble);
-            moment.until_off(sides)
-        });
+        hold_off(&moments, what, bound_us, trouble, sides);
     }
-    hold(
+    hold_off(
         &moments,
         "laser fault, the other beam",
         2 * CONTROL_US,
-        |moment| {
-            moment
-                .boards
-                .befall(Trouble::MotionInputs(|f| f.laser_fault[1] = true));
-            moment.until_off(&[0])
-        },
+        Trouble::MotionInputs(|f| f.laser_fault[1] = true),
+        &[0],
     );
     for (what, request) in [("stop", Request::Stop), ("hold", Request::Hold)] {
         hold(&moments, what, 2 * CONTROL_US, |moment| {
@@ -215,10 +217,7 @@ fn beams_are_off_in_time_whatever_fails() {
             Trouble::TrackerInputs(|f| f.counts[2] += 100_000),
         ),
     ] {
-        hold(&moments, what, told_us, |moment| {
-            moment.boards.befall(trouble);
-            moment.until_off(both)
-        });
+        hold_off(&moments, what, told_us, trouble, both);
     }
     hold(
         &moments,
@@ -238,9 +237,6 @@ fn beams_are_off_in_time_whatever_fails() {
         ("tracker cut off", Trouble::CutOff(Role::Tracker)),
         ("motion board cut off", Trouble::CutOff(Role::Motion)),
     ] {
-        hold(&moments, what, PERMIT_US + SERVO_US, |moment| {
-            moment.boards.befall(trouble);
-            moment.until_off(both)
-        });
+        hold_off(&moments, what, PERMIT_US + SERVO_US, trouble, both);
     }
 }

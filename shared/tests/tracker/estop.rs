@@ -1,6 +1,7 @@
 //! The two channels of the emergency stop: either one stops, and one that is open alone for long is a fault of its own.
 
-use crate::bench::{Bench, Shape, config};
+use crate::bench::{Bench, config};
+use crate::states::{bench, ready};
 use shared::control::DISCREPANCY_US;
 use shared::io::{SlideCommand, SlideFeedback};
 use shared::protocol::{Refusal, Request, Response};
@@ -32,17 +33,6 @@ impl Bench {
         let status = self.status();
         assert_eq!((status.state, status.fault), (TrackerState::Off, None));
     }
-}
-
-fn bench() -> Bench {
-    Bench::new(Shape::Straight, |_, _| (0.2, 0.1))
-}
-
-fn ready() -> Bench {
-    let mut bench = bench();
-    bench.prepare();
-    assert_eq!(bench.controller.state(), TrackerState::Ready);
-    bench
 }
 
 #[test]

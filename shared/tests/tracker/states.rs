@@ -7,12 +7,12 @@ use shared::protocol::{Datagram, Measurement, Refusal, Request, Response};
 use shared::tracking::{TickInput, TrackerController, TrackerFault, TrackerState};
 use shared::trajectory::PathSpace;
 
-fn bench() -> Bench {
+pub fn bench() -> Bench {
     Bench::new(Shape::Straight, |_, _| (0.2, 0.1))
 }
 
 /// A bench in state ready, the path loaded.
-fn ready() -> Bench {
+pub fn ready() -> Bench {
     let mut bench = bench();
     bench.prepare();
     assert_eq!(bench.controller.state(), TrackerState::Ready);
