@@ -1,9 +1,9 @@
 //! Seams in files: how a real seam deviates from the programmed one, and the curves that are planned from.
 
-use crate::machine::{MachineFile, TrackingUnit};
 use crate::path::PlannedPath;
-use crate::table::{self, TableError};
 use crate::world::TrueSeams;
+use config::machine::{MachineFile, TrackingUnit};
+use config::table::{self, TableError};
 use nalgebra::Vector3;
 use shared::io::{SIDES, SLIDE_NAMES, SLIDES};
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! Places where the program has a beam on, and no beam was.
 
-use crate::machine::MachineFile;
 use crate::path::{PathError, PlannedPath};
 use crate::record::Record;
+use config::machine::MachineFile;
 use serde::Serialize;
 use shared::io::SIDES;
 use shared::motion::{BeamConfig, PATH_PERIOD_S, State};

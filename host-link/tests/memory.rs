@@ -2,7 +2,7 @@
 
 #![cfg(target_os = "linux")]
 
-use host_link::machine::MachineFile;
+use config::machine::MachineFile;
 use host_link::path::Planner;
 use nc::{Options, interpret_file};
 use std::f64::consts::TAU;

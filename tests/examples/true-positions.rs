@@ -1,9 +1,9 @@
 //! Digests of the true positions that the shipped job of every machine leaves on simulated boards, to tell whether a change of the PC's
 //! programs changes what machines do: `true-positions` before it and after it has to print the same.
 
+use config::machine::JointForm;
 use host_link::boards::simulated::SimulatedBoards;
 use host_link::boards::{Boards, LinkError};
-use host_link::machine::JointForm;
 use host_link::pass_on;
 use host_link::weld::Ended;
 use host_link::world::SceneFile;

@@ -10,8 +10,8 @@ pub use hold::assert_held_weld_goes_on;
 pub use pictures::{assert_stops_in_the_dark, weld_disturbed, weld_through_pictures};
 pub use words::{Fate, Meddled, meddled};
 
+use config::machine::MachineFile;
 use host_link::boards::Boards;
-use host_link::machine::MachineFile;
 use host_link::part::PartFile;
 use host_link::report::Report;
 use host_link::seam::Deviation;

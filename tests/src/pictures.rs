@@ -1,8 +1,8 @@
 //! The shipped weld by what cameras see in rendered pictures.
 
 use crate::{MACHINE, job, machine, prediction, program, shipped, shipped_seam};
+use config::machine::{JointForm, MachineFile};
 use host_link::boards::Boards;
-use host_link::machine::{JointForm, MachineFile};
 use host_link::weld::{CameraChoice, Ended, ImageCameras, JobError, PictureSource};
 use host_link::world::{Dark, SceneFile};
 use shared::io::SIDES;

@@ -1,8 +1,8 @@
 //! An operator who says anything at any time, and what has become of the weld.
 
+use config::machine::MachineFile;
 use host_link::boards::simulated::SimulatedBoards;
 use host_link::boards::{Boards, Overheard};
-use host_link::machine::MachineFile;
 use host_link::weld::{self, Ended, Job, JobError, Names, Progress, Surroundings, Word, Work};
 use nc::{Options, interpret};
 use shared::io::SIDES;

@@ -1,7 +1,7 @@
 //! The shipped job on closed corners, seen in pictures, on simulated boards.
 
+use config::machine::JointForm;
 use host_link::boards::simulated::SimulatedBoards;
-use host_link::machine::JointForm;
 use host_link::weld::Ended;
 use host_link::world::SceneFile;
 use system_tests::{assert_on_seam, assert_stops_in_the_dark, weld_disturbed, weld_through_pictures};

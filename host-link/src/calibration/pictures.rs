@@ -2,7 +2,7 @@
 
 use super::CalibrateError;
 use crate::camera::{Picture, read_grey};
-use crate::table::{self, TableError};
+use config::table::{self, TableError};
 use std::path::{Path, PathBuf};
 
 /// Name of the list of pictures in a folder.

@@ -1,8 +1,9 @@
 //! What is found from pictures of which something is known, told beside what was believed before.
 
-use super::{Calibration, Known};
+use super::Known;
 use crate::camera::PngError;
-use crate::table::TableError;
+use config::calibration::Calibration;
+use config::table::TableError;
 use thiserror::Error;
 use vision::calibrate::{
     CornerError, CornerPair, DepthError, DepthStep, SlideError, SlideReading, TransferError, corner_offset,

@@ -10,7 +10,7 @@
 //! [`Recorder`](super::Recorder) writes such folders.
 
 use super::{Arrival, Camera, CameraError, Picture, read_grey};
-use crate::table::{self, TableError};
+use config::table::{self, TableError};
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

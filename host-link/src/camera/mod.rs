@@ -25,7 +25,7 @@ pub(crate) use matching::{Match, Matching, Strobe};
 pub use png::{PngError, read_grey, write_grey, write_rgb};
 pub use recorder::Recorder;
 
-use crate::table::TableError;
+use config::table::TableError;
 use std::time::Duration;
 use thiserror::Error;
 use vision::render::RenderError;

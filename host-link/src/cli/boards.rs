@@ -3,9 +3,9 @@
 use crate::boards::simulated::SimulatedBoards;
 use crate::boards::{Boards, Endpoint, LinkError, NetworkBoards, Patience};
 use crate::console::errln;
-use crate::machine::MachineFile;
 use crate::weld::{Ended, Job, JobError, Terminal, run};
 use anyhow::{Context, bail};
+use config::machine::MachineFile;
 use emulator::{SESSION_VARIABLE, Session};
 use std::path::Path;
 use std::process::ExitCode;

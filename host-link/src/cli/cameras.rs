@@ -3,11 +3,11 @@
 use super::boards::BoardChoice;
 use crate::camera::{self, CameraError, Keeper, Shelf};
 use crate::console::{errln, outln};
-use crate::machine::{CameraConfig, MachineFile};
 use crate::weld::{CameraChoice, ImageCameras, PictureSource};
 use crate::world::SceneFile;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
+use config::machine::{CameraConfig, MachineFile};
 use std::path::{Path, PathBuf};
 
 /// Cameras of a machine that follows seams.

@@ -3,12 +3,12 @@
 use super::read_program;
 use crate::console::{out, outln};
 use crate::dry_run::{self, DryRun};
-use crate::machine::MachineFile;
 use crate::path::{Blocks, PlannedPath, Planner};
 use crate::seam::{Deviation, SeamError};
 use crate::weld::check_seam;
 use anyhow::Context;
 use clap::Args;
+use config::machine::MachineFile;
 use nc::Motion;
 use std::path::PathBuf;
 

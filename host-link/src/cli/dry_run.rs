@@ -3,11 +3,11 @@
 use super::{OUTSIDE, read_program};
 use crate::console::{out, outln};
 use crate::dry_run;
-use crate::machine::MachineFile;
 use crate::path::Planner;
 use crate::report::write_dry_run;
 use anyhow::Context;
 use clap::Args;
+use config::machine::MachineFile;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

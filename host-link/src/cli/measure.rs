@@ -1,13 +1,13 @@
 //! `host-link measure`: what a picture says, and why.
 
 use super::sentence;
-use crate::calibration::Calibration;
 use crate::camera::Picture;
 use crate::console::{errln, outln};
-use crate::machine::{JointForm, MachineFile};
 use crate::measure::{Measuring, Outcome, Record, Table, draw};
 use anyhow::{Context, bail, ensure};
 use clap::Args;
+use config::calibration::Calibration;
+use config::machine::{JointForm, MachineFile};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

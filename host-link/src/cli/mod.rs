@@ -85,8 +85,8 @@ pub fn sentence(error: &anyhow::Error) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::MachineFile;
     use anyhow::Context;
+    use config::machine::MachineFile;
 
     #[test]
     fn a_cause_is_said_once() {

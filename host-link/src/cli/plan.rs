@@ -1,11 +1,11 @@
 //! `host-link plan`: from parts to programs.
 
 use crate::console::outln;
-use crate::machine::MachineFile;
 use crate::part::PartFile;
 use crate::path::{PlannedPath, Planner};
 use anyhow::Context;
 use clap::Args;
+use config::machine::MachineFile;
 use nc::{Options, interpret};
 use std::path::{Path, PathBuf};
 

@@ -3,12 +3,12 @@
 use super::boards::{BoardChoice, exit_code};
 use super::teach_seam::SeamArgs;
 use crate::console::{errln, outln};
-use crate::machine::MachineFile;
 use crate::part::PartFile;
 use crate::teach::write_points;
 use crate::weld::{Job, Names, Surroundings, Terminal, Work, check_teaching};
 use anyhow::Context;
 use clap::Args;
+use config::machine::MachineFile;
 use emulator::MACHINE_VARIABLE;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -19,8 +19,8 @@ pub use figures::{DryRun, Highest, PathFigures, Peak, Peaks, QUANTITIES, Ruled, 
 pub(crate) use table::{row_name, unit};
 pub use trace::{Bin, Envelope, Trace};
 
-use crate::machine::MachineFile;
 use crate::path::{PlannedPath, Planner};
+use config::machine::MachineFile;
 use run::Runner;
 use shared::io::AXES;
 

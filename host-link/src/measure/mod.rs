@@ -11,8 +11,8 @@ pub use overlay::draw;
 pub use record::{Figure, MeasuredRecord, ObservedRecord, Record, SecondRecord};
 pub use table::Table;
 
-use crate::calibration::Calibration;
 use crate::camera::{Arrival, Camera, CameraError, Folder, Picture, read_grey};
+use config::calibration::Calibration;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use thiserror::Error;

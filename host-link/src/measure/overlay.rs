@@ -8,8 +8,8 @@
 //! - frame: green where the seam may be used, red where not; bars at the lower or upper border: the work is too high or too low
 
 use super::canvas::{Canvas, Colour, Pen};
-use crate::calibration::Calibration;
 use crate::camera::Picture;
+use config::calibration::Calibration;
 use vision::{
     Corner, CornerFeatures, EDGE_ROWS_MM, Form, GeometryError, Measured, Optics, PlateFeatures, PlateSeam,
     Report, Second, Status,

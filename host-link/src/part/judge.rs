@@ -3,8 +3,8 @@
 use super::limits::Percent;
 use crate::along::Along;
 use crate::evaluate::Evaluation;
-use crate::machine::MachineFile;
 use crate::path::PlannedPath;
+use config::machine::MachineFile;
 use serde::Serialize;
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};

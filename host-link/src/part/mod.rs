@@ -22,10 +22,10 @@ pub use seam_limits::SeamLimits;
 pub use stir::Stir;
 pub use t_seam::TSeam;
 
-use crate::machine::MachineFile;
 use crate::plan::DualBeamPlan;
-use crate::table::line_of;
 use crate::teach::TaughtPoint;
+use config::machine::MachineFile;
+use config::table::line_of;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use thiserror::Error;

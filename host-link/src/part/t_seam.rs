@@ -135,9 +135,9 @@ impl Kind for TSeam {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::MachineFile;
     use crate::part::PartFile;
     use crate::teach::seam::{Foot, Head, SeamFile, SeamPoint as TaughtPoint};
+    use config::machine::MachineFile;
 
     fn shipped(name: &str) -> PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)

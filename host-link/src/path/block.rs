@@ -4,7 +4,7 @@ use super::nurbs::LongCurve;
 use super::shape::{SHORTEST, channels};
 use super::targets::arc;
 use super::{PathError, Planner, Tip};
-use crate::table::FARTHEST_MM;
+use config::table::FARTHEST_MM;
 use nalgebra::Vector3;
 use nc::{Motion, Place, Target, Way};
 use shared::geometry::{Arc, Moving, Pose, angle, interpolate};

@@ -1,7 +1,7 @@
 //! Why a program path cannot be run on this machine.
 
 use super::{CAPACITY, MAX_EVENTS};
-use crate::table::FARTHEST_MM;
+use config::table::FARTHEST_MM;
 use nc::{NcError, Place};
 use shared::geometry::nurbs::NurbsError;
 use shared::geometry::{ArcError, AttitudeError, PoseError, SplineError};

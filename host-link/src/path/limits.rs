@@ -3,8 +3,8 @@
 use super::shape::Shape;
 use super::targets::ROTARY;
 use super::{Bound, PathError, PlannedPath, Planner};
-use crate::machine::MachineFile;
-use crate::table::FARTHEST_MM;
+use config::machine::MachineFile;
+use config::table::FARTHEST_MM;
 use nc::Place;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits};

@@ -26,7 +26,7 @@ pub use planned::{Bound, PlannedPath, SpeedStep, Speeds};
 pub use programmed::Programmed;
 pub use targets::Tip;
 
-use crate::machine::{MachineFile, PlanningConfig};
+use config::machine::{MachineFile, PlanningConfig};
 use limits::{DRIVES, DriveLimits};
 use nc::{Place, Program};
 use outputs::Switched;

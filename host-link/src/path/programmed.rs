@@ -85,8 +85,8 @@ impl Programmed {
 
 #[cfg(test)]
 mod tests {
-    use crate::machine::MachineFile;
     use crate::path::{PlannedPath, Planner};
+    use config::machine::MachineFile;
     use nc::{Options, interpret};
     use std::path::Path;
 

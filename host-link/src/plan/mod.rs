@@ -6,16 +6,14 @@ mod dual_beam;
 mod locate;
 mod smooth;
 mod taught;
-pub mod text;
 
 pub use beams::{Approach, closest_approach, slide_extension};
 pub use cut::{Crossing, OtherSeam, Polyline, SmoothSeam};
 pub use dual_beam::{DualBeamPlan, PlanError, PlanOptions, PlannedPoint, plan_dual_beam};
 pub use locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
 pub use taught::{Deviations, TaughtSeamError, TaughtSeams};
-pub(crate) use text::{NcText, decimal};
 
-use crate::machine::PlanningConfig;
+use config::machine::PlanningConfig;
 
 /// Length that a feed path takes to reach `velocity` \[mm/s\] from rest \[mm\].
 pub(crate) fn speed_up_length(planning: &PlanningConfig, velocity: f64) -> f64 {

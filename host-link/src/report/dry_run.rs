@@ -140,8 +140,8 @@ fn capital(word: &str) -> String {
 mod tests {
     use super::*;
     use crate::dry_run;
-    use crate::machine::MachineFile;
     use crate::path::Planner;
+    use config::machine::MachineFile;
     use nc::{Options, interpret};
 
     #[test]

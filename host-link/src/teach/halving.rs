@@ -7,7 +7,7 @@
 //! alone spreads them by 2σ/S, so halving may make it worse for ever.
 
 use super::ring::{NEIGHBOURS, Ring, RingError, Unsmooth};
-use super::{TeachParameterError, check};
+use config::{RangeError, in_range};
 use serde::{Deserialize, Serialize};
 use shared::geometry::angle;
 use std::error::Error as StdError;
@@ -98,16 +98,16 @@ pub enum HalvingError<E: StdError + 'static> {
 
 impl HalvingConfig {
     /// Checks the values.
-    pub fn build(&self) -> Result<Halving, TeachParameterError> {
+    pub fn build(&self) -> Result<Halving, RangeError> {
         let (start, smallest) = (self.start_radius_mm, self.smallest_radius_mm);
-        check("smallest_radius_mm", smallest, smallest > 0.0, "above 0")?;
+        in_range("smallest_radius_mm", smallest, smallest > 0.0, "above 0")?;
         match self.rule {
             StopRule::Balance => {
                 let requirement = "at least twice the smallest radius: two rings are compared";
-                check("start_radius_mm", start, start >= 2.0 * smallest, requirement)?;
+                in_range("start_radius_mm", start, start >= 2.0 * smallest, requirement)?;
             }
             StopRule::Spread => {
-                check(
+                in_range(
                     "start_radius_mm",
                     start,
                     start >= smallest,
@@ -115,8 +115,8 @@ impl HalvingConfig {
                 )?;
             }
         }
-        check("limit_deg", self.limit_deg, self.limit_deg > 0.0, "above 0")?;
-        check("noise_mm", self.noise_mm, self.noise_mm >= 0.0, "0 or more")?;
+        in_range("limit_deg", self.limit_deg, self.limit_deg > 0.0, "above 0")?;
+        in_range("noise_mm", self.noise_mm, self.noise_mm >= 0.0, "0 or more")?;
         Ok(Halving {
             start,
             smallest,

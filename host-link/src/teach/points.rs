@@ -1,8 +1,8 @@
 //! Taught points in a file that people can read.
 
-use crate::plan::decimal;
-use crate::table::{self, TableError};
+use config::table::{self, TableError};
 use nalgebra::Vector3;
+use nc::text::decimal;
 use std::path::Path;
 
 /// Columns of the file.

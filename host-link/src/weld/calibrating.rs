@@ -6,10 +6,9 @@
 
 use super::session::Session;
 use super::{Job, JobError, Weld};
-use crate::calibration::{Calibration, Known};
 use crate::camera::{Picture, Shelf};
 use crate::path::CAPACITY;
-use crate::plan::text::tip_words;
+use nc::text::tip_words;
 use nc::{Options, Program, interpret};
 use shared::io::AXES;
 use shared::trajectory::Path;
@@ -17,6 +16,7 @@ use shared::units::DEG_PER_RAD;
 use std::path::PathBuf;
 use std::time::Duration;
 use vision::{Detector, Joint, Prior};
+use {crate::calibration::Known, config::calibration::Calibration};
 
 /// Distance of the places along the seam \[mm\]: each has a texture of its own.
 const PLACE_STEP_MM: f64 = 4.0;

@@ -2,11 +2,11 @@
 
 use super::images::{Images, ImagesError};
 use super::{JobError, Surroundings};
-use crate::calibration::Calibration;
 use crate::camera::{OpenCamera, Shelf};
-use crate::machine::TrackingUnit;
 use crate::report::CameraFigures;
 use crate::world::{GeometricCameras, Moment, SceneFile};
+use config::calibration::Calibration;
+use config::machine::TrackingUnit;
 use shared::geometry::Pose;
 use shared::io::SIDES;
 use shared::protocol::{Capture, Measurement};

@@ -32,10 +32,10 @@ pub use teaching::{NoTeaching, Taught, check_teaching};
 pub use terminal::Terminal;
 
 use crate::boards::{Boards, LinkError};
-use crate::machine::MachineFile;
 use crate::part::PartFile;
 use crate::path::{FromLineError, PathError, PlannedPath, Planner};
 use crate::seam::SeamError;
+use config::machine::MachineFile;
 use feeding::Feeding;
 use following::follow;
 use nc::Program;

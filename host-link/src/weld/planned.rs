@@ -1,10 +1,10 @@
 //! A job before it is run: its paths, and whether the machine can do all of them.
 
 use super::{Job, JobError};
-use crate::machine::MachineFile;
 use crate::path::{PlannedPath, Planner};
 use crate::seam::{Deviation, SeamError, check_facing};
 use crate::world::TrueSeams;
+use config::machine::MachineFile;
 use nc::Program;
 use shared::io::AXES;
 use shared::protocol::{PathAction, PathEvent};

@@ -4,8 +4,8 @@ use super::JobError;
 use super::session::Session;
 use crate::along::Along;
 use crate::boards::LinkError;
-use crate::machine::TrackingUnit;
 use crate::report::Recentred;
+use config::machine::TrackingUnit;
 use shared::geometry::PoseOffset;
 use shared::io::{SLIDE_NAMES, SLIDES};
 use shared::parameter::ParameterError;
@@ -155,7 +155,7 @@ pub(super) fn watch(session: &mut Session, id: u32) -> Result<(), JobError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::MachineFile;
+    use config::machine::MachineFile;
 
     fn recentring() -> Recentring {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines/dual-beam-gantry.toml");

@@ -4,12 +4,12 @@ use super::session::Session;
 use super::tracking::Watched;
 use super::{Job, JobError, Line, Weld};
 use crate::boards::LinkError;
-use crate::machine::MachineFile;
-use crate::plan::text::{decimal, tip_words};
 use crate::teach::seam::{
     Cameras, Drawing, Ended, Follower, Hand, Head, Rig, SeamFile, SeamPoint, SeamTeachError, SeamTeaching,
     Seen, Stance, View,
 };
+use config::machine::MachineFile;
+use nc::text::{decimal, tip_words};
 use nc::{Options, interpret};
 use shared::io::{AXES, SIDES, SLIDES};
 use shared::protocol::Refusal;

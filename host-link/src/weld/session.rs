@@ -3,10 +3,10 @@
 use super::recentring::Recentring;
 use super::{JobError, Progress, Surroundings, Tracking};
 use crate::boards::{Absence, Boards, LinkError, command};
-use crate::machine::MachineFile;
 use crate::record::Record;
 use crate::report::ByBoard;
 use crate::world::Machine;
+use config::machine::MachineFile;
 use shared::motion::{Fault, State};
 use shared::protocol::{Datagram, MotionStatus, Request, Response, Role};
 use std::sync::atomic::{AtomicBool, Ordering};

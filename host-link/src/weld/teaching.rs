@@ -5,10 +5,11 @@
 
 use super::session::Session;
 use super::{CameraPictures, Job, JobError, TaughtSeam, Weld};
-use crate::machine::MachineFile;
 use crate::part::{Panel, PartFile};
-use crate::teach::{Arm, Look, TaughtPoint, TeachError, TeachParameterError, Teacher};
+use crate::teach::{Arm, Look, TaughtPoint, TeachError, Teacher};
 use crate::world::SimulatedProbe;
+use config::RangeError;
+use config::machine::MachineFile;
 use nc::{Options, Program, interpret};
 use shared::io::AXES;
 use shared::kinematics::Kinematics;
@@ -62,7 +63,7 @@ pub enum NoTeaching {
     Panel(String),
     /// A setting makes no sense.
     #[error(transparent)]
-    Parameter(#[from] TeachParameterError),
+    Parameter(#[from] RangeError),
 }
 
 /// Whether `part` can be taught with `machine`, as far as that can be told without boards.

@@ -5,11 +5,11 @@ use super::session::unexpected;
 use super::{JobError, Surroundings};
 use crate::boards::{Boards, LinkError};
 use crate::evaluate::Followed;
-use crate::machine::TrackingUnit;
 use crate::path::{CAPACITY, PlannedPath};
 use crate::record::Record;
 use crate::teach::seam::Seen;
 use crate::world::{BoardClocks, Machine, Moment, TrueSeams};
+use config::machine::TrackingUnit;
 use shared::geometry::Pose;
 use shared::io::{SIDES, SLIDES};
 use shared::protocol::{

@@ -1,7 +1,7 @@
 //! A ranging probe as it really is, in front of a panel as it really is.
 
 use super::Surface;
-use crate::teach::{Probe, ProbeUnit, Reading};
+use config::probe::{Probe, ProbeUnit, Reading};
 use shared::geometry::{Pose, angle};
 use vision::render::SplitMix64;
 
@@ -62,8 +62,8 @@ impl SimulatedProbe {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::MachineFile;
-    use crate::teach::Refused;
+    use config::machine::MachineFile;
+    use config::probe::Refused;
     use nalgebra::Vector3;
 
     fn probe() -> (SimulatedProbe, Probe) {

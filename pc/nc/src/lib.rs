@@ -24,6 +24,7 @@ mod reading;
 mod source;
 #[cfg(test)]
 mod tests;
+pub mod text;
 
 pub use error::{NcError, Place, Problem};
 pub use interpreter::Options;

@@ -3,9 +3,9 @@
 use super::random::Random;
 use super::wire::Wire;
 use crate::{JOBS, MACHINE, assert_held_weld_goes_on, shipped, shipped_seam, weld, weld_job};
+use config::machine::MachineFile;
 use host_link::boards::simulated::SimulatedBoards;
 use host_link::boards::{Boards, LinkError};
-use host_link::machine::MachineFile;
 use host_link::pass_on;
 use shared::geometry::PoseOffset;
 use shared::io::SLIDES;

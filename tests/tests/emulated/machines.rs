@@ -1,8 +1,8 @@
 //! Boards wired to another machine than the dual-beam gantry.
 
 use crate::pair::{Pair, assert_served, status};
+use config::machine::MachineFile;
 use host_link::boards::{Boards, command};
-use host_link::machine::MachineFile;
 use shared::io::{AXES, MOTOR_AXIS, MOTORS};
 use shared::kinematics::AXIS_UNIT;
 use shared::motion::State;

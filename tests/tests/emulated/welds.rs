@@ -1,9 +1,9 @@
 //! Jobs that come to their end.
 
 use crate::pair::{Pair, assert_served};
+use config::machine::JointForm;
 use host_link::boards::Boards;
 use host_link::boards::simulated::SimulatedBoards;
-use host_link::machine::JointForm;
 use host_link::weld::Ended;
 use host_link::world::SceneFile;
 use system_tests::{

@@ -1,8 +1,8 @@
 //! The A/C head with its NC line, and the friction-stir gantry (SPEC 2.5, 2.6, 4.1).
 
 use super::file::{Golden, near, near_all, number, numbers, vector};
-use host_link::plan::text::{decimal, machine_block};
 use nalgebra::Vector3;
+use nc::text::{decimal, machine_block};
 use serde_json::Value;
 use shared::geometry::Pose;
 use shared::io::AXES;

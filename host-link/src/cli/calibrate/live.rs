@@ -6,13 +6,13 @@ use super::super::read_program;
 use super::{Camera, Meets};
 use crate::calibration::procedure::{self, Found};
 use crate::camera::Shelf;
-use crate::machine::{JointForm, MachineFile};
 use crate::seam::Deviation;
 use crate::weld::{
     CameraChoice, ImageCameras, Job, Names, PictureRun, PictureSource, Surroundings, Terminal, Work,
 };
 use anyhow::{Context, bail};
 use clap::Args;
+use config::machine::{JointForm, MachineFile};
 use shared::io::SIDES;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -3,11 +3,12 @@
 mod live;
 
 use crate::calibration::procedure::{self, Found};
-use crate::calibration::{CalibrateError, Calibration, Known, read_pictures};
+use crate::calibration::{CalibrateError, Known, read_pictures};
 use crate::console::{out, outln};
-use crate::machine::MachineFile;
 use anyhow::{Context, bail};
 use clap::{Args, Subcommand};
+use config::calibration::Calibration;
+use config::machine::MachineFile;
 use emulator::MACHINE_VARIABLE;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -3,7 +3,7 @@
 use super::Bead;
 use super::route::Route;
 use super::speed::{Limit, SpeedPlan};
-use crate::machine::PlanningConfig;
+use config::machine::PlanningConfig;
 use shared::geometry::nurbs::Curve;
 use shared::trajectory::ProcessWindow;
 

@@ -4,7 +4,7 @@ use super::speed::FeedStep;
 use super::stations::Station;
 use super::{Bead, CLEARANCE};
 use crate::part::Place;
-use crate::plan::text::{NcText, decimal, words};
+use nc::text::{NcText, decimal, words};
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::AXIS_UNIT;
 

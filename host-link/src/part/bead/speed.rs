@@ -1,9 +1,9 @@
 //! How fast the bead can be laid: curve, machine and process window (SPEC 3.3, 3.4).
 
 use super::error::BeadError;
-use crate::machine::MachineFile;
 use crate::path::MAX_EVENTS;
 use crate::path::{NOWHERE, PathError, PlannedPath};
+use config::machine::MachineFile;
 use nalgebra::Vector3;
 use shared::geometry::Moving;
 use shared::geometry::nurbs::curvature;

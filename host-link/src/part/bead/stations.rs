@@ -3,9 +3,9 @@
 use super::error::BeadError;
 use super::route::Route;
 use super::{Attitude, Layer};
-use crate::machine::MachineFile;
 use crate::part::Place;
 use crate::path::Planner;
+use config::machine::MachineFile;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::geometry::nurbs::Curve;

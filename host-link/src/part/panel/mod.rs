@@ -10,9 +10,9 @@ mod tests;
 
 use super::limits::SPEED_DIP;
 use super::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
-use crate::table::FARTHEST_MM;
 use crate::teach::{Guide, TaughtPoint, TeachingConfig, read_points};
 use crate::world::Surface;
+use config::table::FARTHEST_MM;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use shared::kinematics::KinematicsError;

@@ -3,7 +3,7 @@
 use super::error::SaddlePartError;
 use super::seam::{Seam, Station};
 use super::{Pass, Saddle};
-use crate::machine::MachineFile;
+use config::machine::MachineFile;
 use shared::geometry::angle;
 use std::f64::consts::TAU;
 

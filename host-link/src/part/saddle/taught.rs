@@ -3,7 +3,7 @@
 use super::error::{SaddlePartError, TaughtError};
 use super::fit::{Fit, Known, fit};
 use super::seam::Seam;
-use crate::table::{self, TableError};
+use config::table::{self, TableError};
 use nalgebra::Vector3;
 use shared::geometry::PipePair;
 use shared::io::AXES;

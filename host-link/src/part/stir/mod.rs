@@ -11,7 +11,7 @@ mod tests;
 
 use super::limits::SPEED_DIP;
 use super::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
-use crate::machine::MachineFile;
+use config::machine::MachineFile;
 use contour::{Contour, SegmentEntry};
 use error::StirError;
 use passes::{Pass, passes};

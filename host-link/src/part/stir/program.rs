@@ -3,9 +3,9 @@
 use super::contour::{Form, Segment};
 use super::passes::Pass;
 use super::{C, Job, Stir};
-use crate::machine::MachineFile;
 use crate::part::Place;
-use crate::plan::text::{NcText, decimal, words};
+use config::machine::MachineFile;
+use nc::text::{NcText, decimal, words};
 use shared::units::DEG_PER_RAD;
 
 /// Tilts that are usual in the process \[°\] (SPEC 4).

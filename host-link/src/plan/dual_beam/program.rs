@@ -1,8 +1,8 @@
 //! The NC program of a planned weld: approach, run-in, seam, run-out, retract.
 
 use super::{CLEARANCE, DualBeamPlan, PlanError, PlanOptions, PlannedPoint, moved};
-use crate::machine::MachineFile;
-use crate::plan::text::{NcText, decimal, tip_words};
+use config::machine::MachineFile;
+use nc::text::{NcText, decimal, tip_words};
 use shared::io::AXES;
 use shared::kinematics::Kinematics;
 use shared::units::DEG_PER_RAD;

@@ -1,6 +1,7 @@
 //! Why something cannot be taught.
 
-use super::super::{RangingError, RingError, Unsmooth};
+use super::super::{RingError, Unsmooth};
+use config::probe::RangingError;
 use shared::kinematics::KinematicsError;
 use std::error::Error as StdError;
 use thiserror::Error;

@@ -5,8 +5,8 @@ use super::super::ring::{DIRECTIONS, NEIGHBOURS};
 use super::super::{Ring, Taught, TaughtPoint};
 use super::error::{PointError, Seen, Trouble};
 use super::{Arm, Guide, Teacher, aim};
-use crate::plan::NcText;
 use nalgebra::Vector3;
+use nc::text::NcText;
 use shared::geometry::angle;
 use shared::io::AXES;
 

@@ -10,12 +10,14 @@ mod lesson;
 
 pub use error::{PointError, TeachError};
 
-use super::{Halving, HalvingConfig, Probe, ProbeUnit, Reading, TaughtPoint, TeachParameterError, check};
-use crate::machine::MachineFile;
-use crate::plan::decimal;
+use super::{Halving, HalvingConfig, TaughtPoint};
+use config::machine::MachineFile;
+use config::probe::{Probe, ProbeUnit, Reading};
+use config::{RangeError, in_range};
 use error::Trouble;
 use lesson::Lesson;
 use nalgebra::Vector3;
+use nc::text::decimal;
 use serde::Deserialize;
 use shared::geometry::{Pose, angle};
 use shared::io::{AXES, AXIS_NAMES};
@@ -51,30 +53,30 @@ pub struct TeachingConfig {
 
 impl TeachingConfig {
     /// Checks the settings for a probe.
-    pub fn check(&self, unit: &ProbeUnit) -> Result<(), TeachParameterError> {
+    pub fn check(&self, unit: &ProbeUnit) -> Result<(), RangeError> {
         let readings = self.readings as f64;
         let enough = self.readings >= unit.output.least_readings;
-        check(
+        in_range(
             "readings",
             readings,
             enough,
             "least_readings of the probe or more",
         )?;
-        check(
+        in_range(
             "approach_mm",
             self.approach_mm,
             self.approach_mm >= 0.0,
             "0 or more",
         )?;
-        check("aim_deg", self.aim_deg, self.aim_deg > 0.0, "above 0")?;
-        check(
+        in_range("aim_deg", self.aim_deg, self.aim_deg > 0.0, "above 0")?;
+        in_range(
             "upright_deg",
             self.upright_deg,
             self.upright_deg >= 0.0,
             "0 or more",
         )?;
         let steepest = self.steepest_deg;
-        check(
+        in_range(
             "steepest_deg",
             steepest,
             steepest > 0.0 && steepest <= 90.0,
@@ -164,7 +166,7 @@ impl<'a> Teacher<'a> {
         kinematics: &'a Kinematics,
         unit: &ProbeUnit,
         config: &'a TeachingConfig,
-    ) -> Result<Self, TeachParameterError> {
+    ) -> Result<Self, RangeError> {
         let probe = unit.build()?;
         config.check(unit)?;
         Ok(Self {

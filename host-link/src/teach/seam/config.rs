@@ -1,6 +1,6 @@
 //! How seams are taught.
 
-use crate::teach::{TeachParameterError, check};
+use config::{RangeError, in_range};
 use serde::Deserialize;
 
 /// How to teach seams. Every key has a value that suits a thin rib.
@@ -51,7 +51,7 @@ impl Default for SeamTeaching {
 
 impl SeamTeaching {
     /// Checks the settings; errors name the key.
-    pub fn check(&self) -> Result<(), TeachParameterError> {
+    pub fn check(&self) -> Result<(), RangeError> {
         let above_zero = [
             ("smallest_step_mm", self.smallest_step_mm),
             ("chord_mm", self.chord_mm),
@@ -63,24 +63,24 @@ impl SeamTeaching {
             ("speed_m_min", self.speed_m_min),
         ];
         for (key, value) in above_zero {
-            check(key, value, value > 0.0, "above 0")?;
+            in_range(key, value, value > 0.0, "above 0")?;
         }
-        check("settle_s", self.settle_s, self.settle_s >= 0.0, "0 or more")?;
+        in_range("settle_s", self.settle_s, self.settle_s >= 0.0, "0 or more")?;
         let largest = self.largest_step_mm;
-        check(
+        in_range(
             "largest_step_mm",
             largest,
             largest >= self.smallest_step_mm,
             "smallest_step_mm or more",
         )?;
         let quality = self.least_quality;
-        check(
+        in_range(
             "least_quality",
             quality,
             (0.0..=1.0).contains(&quality),
             "between 0 and 1",
         )?;
-        check("pictures", self.pictures as f64, self.pictures >= 1, "1 or more")?;
+        in_range("pictures", self.pictures as f64, self.pictures >= 1, "1 or more")?;
         Ok(())
     }
 }

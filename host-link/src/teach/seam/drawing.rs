@@ -1,8 +1,8 @@
 //! What machine and drawing say of a lesson.
 
 use super::{Cameras, Stance};
-use crate::machine::TrackingUnit;
 use crate::plan::DualBeamPlan;
+use config::machine::TrackingUnit;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::parameter::ParameterError;

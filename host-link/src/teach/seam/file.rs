@@ -1,9 +1,9 @@
 //! Taught seams in a file that people can read, complete after every point.
 
 use super::{Foot, SeamPoint};
-use crate::plan::decimal;
-use crate::table::{self, Row, TableError};
+use config::table::{self, Row, TableError};
 use nalgebra::Vector3;
+use nc::text::decimal;
 use std::fs::{File, OpenOptions};
 use std::io::{Error as IoError, Write};
 use std::path::{Path, PathBuf};

@@ -2,7 +2,7 @@
 
 use super::course::Course;
 use super::{Cameras, Drawing, Foot, NotFound, Rig, SeamPoint, SeamTeaching, Stance, View};
-use crate::teach::TeachParameterError;
+use config::RangeError;
 use shared::geometry::Pose;
 use shared::io::SIDES;
 use std::error::Error as StdError;
@@ -105,7 +105,7 @@ impl<'a> Follower<'a> {
         cameras: &'a Cameras,
         config: &'a SeamTeaching,
         drawing: Option<Drawing>,
-    ) -> Result<Self, TeachParameterError> {
+    ) -> Result<Self, RangeError> {
         config.check()?;
         Ok(Self {
             cameras,

@@ -1,6 +1,7 @@
 //! Readings of the probe, and normals from them.
 
 use super::*;
+use config::probe::{Probe, ProbeConfig, RangingError, Reading, Refused};
 
 fn probe() -> Probe {
     ProbeConfig::default().build().expect("a probe")

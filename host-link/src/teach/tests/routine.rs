@@ -1,8 +1,8 @@
 //! The routine on a machine that goes exactly where it is sent, its probe in front of a curved panel.
 
 use super::super::*;
-use crate::machine::MachineFile;
 use crate::world::{SimulatedProbe, Surface};
+use config::machine::MachineFile;
 use nalgebra::Vector3;
 use shared::geometry::{Pose, angle};
 use shared::io::{AXES, AXIS_NAMES};

@@ -11,9 +11,9 @@ pub use worker::{Seen, WorkerError};
 
 use super::cameras::{Answer, ImageCameras, PictureSource};
 use crate::camera::Keeping;
-use crate::machine::{CameraConfig, JointForm, TrackingUnit};
 use crate::report::CameraFigures;
 use crate::world::{CameraFrame, Moment, Prospect, RenderedWorld, View, nominal_slopes};
+use config::machine::{CameraConfig, JointForm, TrackingUnit};
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::SIDES;
@@ -39,7 +39,7 @@ pub(super) struct Images {
     sides: [Side; SIDES],
     cameras: CameraConfig,
     heads: Heads,
-    calibrations: [crate::calibration::Calibration; SIDES],
+    calibrations: [config::calibration::Calibration; SIDES],
     /// The simulated world; none before real cameras.
     world: Option<RenderedWorld>,
     /// Of the last capture.

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::camera::{Camera, Folder, Keeper, Shelf};
-use crate::machine::MachineFile;
 use crate::world::{SceneFile, ViewForm};
+use config::machine::MachineFile;
 
 fn images() -> Images {
     let text = include_str!("../../../../machines/dual-beam-gantry.toml");

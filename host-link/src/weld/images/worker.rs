@@ -1,7 +1,7 @@
 //! The thread that turns the pictures of one camera into measurements.
 
-use crate::calibration::Calibration;
 use crate::camera::{Arrival, Camera, CameraError, Picture};
+use config::calibration::Calibration;
 use shared::protocol::SideMeasurement;
 use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};

@@ -10,7 +10,7 @@ pub use tiles::nominal_slopes;
 pub use view::{View, ViewForm};
 
 use crate::camera::{Arrival, Camera, CameraError, Picture};
-use crate::machine::CameraConfig;
+use config::machine::CameraConfig;
 use shared::io::SIDES;
 use shared::tracking::frames::Heads;
 use sketch::Draw;

@@ -1,6 +1,6 @@
 //! The scene file: what the seams of a simulated world look like, and what disturbs their pictures.
 
-use crate::table::line_of;
+use config::table::line_of;
 use serde::Deserialize;
 use shared::io::SIDES;
 use std::path::Path;

@@ -1,12 +1,12 @@
 //! What is rendered of a true position measures as where the seam truly is; and what a scene file may say.
 
 use super::*;
-use crate::calibration::Calibration;
-use crate::machine::{JointForm, MachineFile};
 use crate::record::MachinePosition;
 use crate::world::TrueSeams;
 use crate::world::machine::tests::machine;
 use crate::world::seams::tests::{heads, wavy_seam};
+use config::calibration::Calibration;
+use config::machine::{JointForm, MachineFile};
 use nalgebra::Vector3;
 use shared::io::SLIDES;
 use vision::{Detector, Joint, Measured, Prior, Walls};

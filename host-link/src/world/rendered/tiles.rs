@@ -2,8 +2,8 @@
 
 use super::scene_file::SceneFile;
 use super::view::walls;
-use crate::machine::{CameraConfig, JointForm};
 use crate::world::frame::CameraFrame;
+use config::machine::{CameraConfig, JointForm};
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::SIDES;

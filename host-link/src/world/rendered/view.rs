@@ -2,8 +2,8 @@
 
 use super::super::frame::CameraFrame;
 use super::super::{Machine, TrueSeam, TrueSeams};
-use crate::machine::{CameraConfig, JointForm};
 use crate::record::MachinePosition;
+use config::machine::{CameraConfig, JointForm};
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::SLIDES;

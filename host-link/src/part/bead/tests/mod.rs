@@ -6,9 +6,9 @@ mod simulated;
 mod speeds;
 mod wrong;
 
-use crate::machine::MachineFile;
 use crate::part::{Part, Place, Plan};
 use crate::path::{PlannedPath, Planner};
+use config::machine::MachineFile;
 use nc::{Motion, Options, interpret};
 use std::path::{Path, PathBuf};
 

@@ -3,9 +3,9 @@
 mod run;
 
 use super::*;
-use crate::machine::MachineFile;
 use crate::part::Part;
 use crate::path::{PlannedPath, Planner};
+use config::machine::MachineFile;
 use nc::{Options, interpret};
 use shared::geometry::angle;
 use std::path::Path;

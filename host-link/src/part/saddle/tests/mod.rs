@@ -6,8 +6,8 @@ mod taught;
 
 use super::seam::{Placement, Seam};
 use super::*;
-use crate::machine::MachineFile;
 use crate::part::PartFile;
+use config::machine::MachineFile;
 use shared::geometry::Sheet;
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! A motion board with a clock.
 
 use super::super::MotionBoard;
-use crate::machine::MachineFile;
+use config::machine::MachineFile;
 use plant::{DEFAULT_MACHINE, MotionPlant};
 use shared::motion::{MotionConfig, SERVO_TICKS_PER_PATH_TICK, State};
 use shared::protocol::{

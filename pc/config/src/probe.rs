@@ -1,6 +1,6 @@
 //! The ranging probe: from voltage and switches to a distance that can be relied on (SPEC 2, 2.1).
 
-use super::{TeachParameterError, check};
+use crate::{RangeError, in_range};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -109,7 +109,7 @@ pub struct Probe(ProbeConfig);
 
 impl ProbeConfig {
     /// Checks the properties.
-    pub fn build(&self) -> Result<Probe, TeachParameterError> {
+    pub fn build(&self) -> Result<Probe, RangeError> {
         let Self {
             distance_at_0v_mm,
             mm_per_volt,
@@ -117,24 +117,24 @@ impl ProbeConfig {
             least_readings,
             outlier_mad,
         } = *self;
-        check("max_volts", max_volts, max_volts > 0.0, "above 0")?;
-        check("mm_per_volt", mm_per_volt, mm_per_volt != 0.0, "other than 0")?;
+        in_range("max_volts", max_volts, max_volts > 0.0, "above 0")?;
+        in_range("mm_per_volt", mm_per_volt, mm_per_volt != 0.0, "other than 0")?;
         let least = mm_per_volt.abs() * max_volts;
         let ahead = "so large that every voltage is a distance above 0";
-        check(
+        in_range(
             "distance_at_0v_mm",
             distance_at_0v_mm,
             distance_at_0v_mm > least,
             ahead,
         )?;
         // Fewer than three show neither scatter nor an outlier.
-        check(
+        in_range(
             "least_readings",
             least_readings as f64,
             least_readings >= 3,
             "3 or more",
         )?;
-        check("outlier_mad", outlier_mad, outlier_mad >= 1.0, "1 or more")?;
+        in_range("outlier_mad", outlier_mad, outlier_mad >= 1.0, "1 or more")?;
         Ok(Probe(*self))
     }
 }
@@ -211,5 +211,63 @@ fn median(values: &mut [f64]) -> f64 {
         0 => 0.0,
         n if n % 2 == 1 => values[n / 2],
         n => (values[n / 2 - 1] + values[n / 2]) / 2.0,
+    }
+}
+
+/// A ranging probe in the nozzle's place, its beam along the axis of the tool.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProbeUnit {
+    /// Distance that it shows when the focus is on the surface \[mm\].
+    pub reference_distance_mm: f64,
+    /// No light comes back from a surface that is inclined further against the beam \[deg\].
+    pub largest_tilt_deg: f64,
+    /// Time the axes get to come to rest before a reading \[ms\].
+    pub settle_ms: f64,
+    /// Its output.
+    pub output: ProbeConfig,
+    /// What it is in a simulated world.
+    pub simulated: SimulatedProbeConfig,
+}
+
+/// A probe in a simulated world.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SimulatedProbeConfig {
+    /// Standard deviation of one reading \[mm\].
+    pub noise_mm: f64,
+    /// Part of the readings that are nonsense, 0…1.
+    pub outlier_share: f64,
+}
+
+impl ProbeUnit {
+    /// Checks the properties and gives the probe's output.
+    pub fn build(&self) -> Result<Probe, RangeError> {
+        let output = self.output.build()?;
+        let [near, far] = output.range_mm();
+        let reference = self.reference_distance_mm;
+        let inside = reference > near && reference < far;
+        in_range(
+            "reference_distance_mm",
+            reference,
+            inside,
+            "inside the range of the probe",
+        )?;
+        let tilt = self.largest_tilt_deg;
+        in_range(
+            "largest_tilt_deg",
+            tilt,
+            tilt > 0.0 && tilt < 90.0,
+            "above 0 and below 90",
+        )?;
+        in_range("settle_ms", self.settle_ms, self.settle_ms >= 0.0, "0 or more")?;
+        let SimulatedProbeConfig {
+            noise_mm,
+            outlier_share,
+        } = self.simulated;
+        in_range("noise_mm", noise_mm, noise_mm >= 0.0, "0 or more")?;
+        let share = (0.0..=1.0).contains(&outlier_share);
+        in_range("outlier_share", outlier_share, share, "0 to 1")?;
+        Ok(output)
     }
 }

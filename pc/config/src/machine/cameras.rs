@@ -1,7 +1,7 @@
 //! The cameras of a machine: what the drawing says of them, and where their calibrations are.
 
 use crate::calibration::{Calibration, CalibrationError, OpticsTable, PhotonTransferTable};
-use crate::camera::GigeConfig;
+use crate::gige::GigeConfig;
 use serde::{Deserialize, Deserializer};
 use shared::io::SIDES;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! The machine file as it is written.
 
 use super::{ByAxis, CameraConfig, MachineFile, Mistake, PlanningConfig, ProcessConfig, TrackingUnit};
-use crate::teach::ProbeUnit;
+use crate::probe::ProbeUnit;
 use serde::Deserialize;
 use shared::kinematics::KinematicsConfig;
 use shared::motion::{AxisConfig, BeamConfig, GantryConfig, MotionConfig, MotorConfig};

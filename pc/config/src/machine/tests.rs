@@ -2,11 +2,11 @@ use super::*;
 use crate::calibration::Calibration;
 use shared::kinematics::{AXIS_UNIT, AxisLimits, KinematicsConfig, violations};
 
-const SHIPPED: &str = include_str!("../../../machines/dual-beam-gantry.toml");
+const SHIPPED: &str = include_str!("../../../../machines/dual-beam-gantry.toml");
 
 /// The shipped file of a machine.
 fn shipped(name: &str) -> MachineFile {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines");
     let file = Path::new(folder).join(name).with_extension("toml");
     MachineFile::read(&file).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -156,7 +156,7 @@ fn every_machine_ships_with_a_file_called_as_it() {
         assert_eq!(machine.motion.kinematics.name(), *name);
         assert_eq!(machine.tracking.is_some(), *name == "dual-beam-gantry");
     }
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines");
     assert_eq!(
         std::fs::read_dir(folder).unwrap().count(),
         KinematicsConfig::NAMES.len(),
@@ -228,7 +228,7 @@ fn the_stir_gantry_has_the_published_travel() {
 
 #[test]
 fn axes_that_the_machine_has_not_are_named_and_so_are_those_that_are_missing() {
-    let pipe = include_str!("../../../machines/pipe-welder.toml");
+    let pipe = include_str!("../../../../machines/pipe-welder.toml");
     let error = error_of(&pipe.replace("[axes.Z]", "[axes.Y]"));
     assert_eq!(
         error,
@@ -264,7 +264,7 @@ fn half_a_tracker_is_none() {
 
 #[test]
 fn a_process_window_is_open() {
-    let wire = include_str!("../../../machines/wire-arc.toml");
+    let wire = include_str!("../../../../machines/wire-arc.toml");
     let process = shipped("wire-arc").process.unwrap();
     assert_eq!((process.min_speed_mm_s, process.max_speed_mm_s), (4.0, 16.0));
     let error = error_of(&wire.replace("max_speed_mm_s = 16.0", "max_speed_mm_s = 4.0"));

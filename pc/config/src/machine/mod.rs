@@ -8,8 +8,8 @@ mod error;
 pub use cameras::{CameraConfig, JointForm};
 pub use error::{MachineError, Mistake};
 
+use crate::probe::ProbeUnit;
 use crate::table::line_of;
-use crate::teach::ProbeUnit;
 use document::Document;
 use serde::Deserialize;
 use shared::io::{AXES, MOTOR_AXIS};

@@ -1,0 +1,10 @@
+//! Files that describe a machine, and what all files have in common: problems are named by file, line and key.
+
+pub mod calibration;
+pub mod gige;
+pub mod machine;
+pub mod probe;
+mod range;
+pub mod table;
+
+pub use range::{RangeError, in_range};
