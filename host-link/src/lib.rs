@@ -3,19 +3,14 @@
 // Writers that panic have no place beside a machine that moves: crate::console has others.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
-pub mod along;
 pub mod boards;
 pub mod calibration;
 pub mod camera;
 pub mod cli;
 pub mod console;
-pub mod curve;
-pub mod dry_run;
 pub mod evaluate;
 pub mod measure;
-pub mod metrics;
 pub mod part;
-pub mod path;
 pub mod plan;
 pub mod record;
 pub mod report;

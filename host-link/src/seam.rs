@@ -1,7 +1,7 @@
 //! Seams in files: how a real seam deviates from the programmed one, and the curves that are planned from.
 
-use crate::path::PlannedPath;
 use crate::world::TrueSeams;
+use cam::path::PlannedPath;
 use config::machine::{MachineFile, TrackingUnit};
 use config::table::{self, TableError};
 use nalgebra::Vector3;
@@ -274,7 +274,7 @@ fn check_points(path: &str, points: impl Iterator<Item = (usize, Vector3<f64>)>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::path::Planner;
+    use cam::path::Planner;
     use nc::{Options, interpret};
 
     const HEADER: &str = "s_mm,u1_mm,v1_mm,u2_mm,v2_mm";

@@ -1,7 +1,7 @@
 //! Places where the program has a beam on, and no beam was.
 
-use crate::path::{PathError, PlannedPath};
 use crate::record::Record;
+use cam::path::{PathError, PlannedPath};
 use config::machine::MachineFile;
 use serde::Serialize;
 use shared::io::SIDES;

@@ -1,8 +1,8 @@
 //! What was welded of what is programmed, and how fast: by where the tip truly was while a gate was open.
 
-use crate::along::Along;
 use crate::evaluate::{HALF_MM, WorkTick};
-use crate::path::{PlannedPath, Programmed};
+use cam::along::Along;
+use cam::path::{PlannedPath, Programmed};
 use nc::Motion;
 use serde::Serialize;
 use shared::io::SIDES;

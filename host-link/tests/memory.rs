@@ -2,8 +2,8 @@
 
 #![cfg(target_os = "linux")]
 
+use cam::path::Planner;
 use config::machine::MachineFile;
-use host_link::path::Planner;
 use nc::{Options, interpret_file};
 use std::f64::consts::TAU;
 use std::fs::File;

@@ -1,8 +1,9 @@
 //! What a dry run says of a job beside the run itself.
 
+use cam::dry_run;
+use cam::dry_run::DryRun;
+use cam::path::Planner;
 use host_link::boards::{Boards, Overheard};
-use host_link::dry_run::{self, DryRun};
-use host_link::path::Planner;
 use host_link::weld::{self, Ended, Job, Silent, Work};
 use nc::Program;
 use shared::protocol::MotionSample;

@@ -2,11 +2,12 @@
 
 use super::read_program;
 use crate::console::{out, outln};
-use crate::dry_run::{self, DryRun};
-use crate::path::{Blocks, PlannedPath, Planner};
 use crate::seam::{Deviation, SeamError};
 use crate::weld::check_seam;
 use anyhow::Context;
+use cam::dry_run;
+use cam::dry_run::DryRun;
+use cam::path::{Blocks, PlannedPath, Planner};
 use clap::Args;
 use config::machine::MachineFile;
 use nc::Motion;

@@ -2,10 +2,10 @@
 
 use super::{OUTSIDE, read_program};
 use crate::console::{out, outln};
-use crate::dry_run;
-use crate::path::Planner;
 use crate::report::write_dry_run;
 use anyhow::Context;
+use cam::dry_run;
+use cam::path::Planner;
 use clap::Args;
 use config::machine::MachineFile;
 use std::path::PathBuf;

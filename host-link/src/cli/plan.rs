@@ -2,8 +2,8 @@
 
 use crate::console::outln;
 use crate::part::PartFile;
-use crate::path::{PlannedPath, Planner};
 use anyhow::Context;
+use cam::path::{PlannedPath, Planner};
 use clap::Args;
 use config::machine::MachineFile;
 use nc::{Options, interpret};

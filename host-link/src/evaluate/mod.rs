@@ -11,13 +11,13 @@ mod tick;
 pub(crate) use speeds::HALF_MM;
 pub use tick::WorkTick;
 
-use crate::along::Along;
 use crate::part::RunSample;
-use crate::path::PlannedPath;
 use crate::record::Record;
 use crate::report::Load;
 use crate::welded::SpeedShares;
 use crate::world::{Machine, TrueSeams};
+use cam::along::Along;
+use cam::path::PlannedPath;
 use nalgebra::Vector3;
 use peak::Peak;
 use shared::io::{MOTORS, SLIDES};

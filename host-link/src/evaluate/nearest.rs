@@ -1,6 +1,6 @@
 //! The place of a path nearest to the tip.
 
-use crate::path::Course;
+use cam::path::Course;
 use nalgebra::Vector3;
 
 /// The place nearest to the tip is known this well \[mm\].

@@ -2,11 +2,11 @@
 
 use super::Followed;
 use super::nearest::nearest;
-use crate::along::Along;
-use crate::path::{Course, PlannedPath, Programmed};
 use crate::record::Record;
 use crate::seam::OVERHANG_MM;
 use crate::world::Machine;
+use cam::along::Along;
+use cam::path::{Course, PlannedPath, Programmed};
 use nalgebra::Vector3;
 use shared::io::{MOTORS, SIDES, SLIDES};
 use shared::protocol::MotionSample;

@@ -1,9 +1,9 @@
 //! What a run is judged by, and what comes of it.
 
 use super::limits::Percent;
-use crate::along::Along;
 use crate::evaluate::Evaluation;
-use crate::path::PlannedPath;
+use cam::along::Along;
+use cam::path::PlannedPath;
 use config::machine::MachineFile;
 use serde::Serialize;
 use shared::geometry::Pose;

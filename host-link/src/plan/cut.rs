@@ -1,7 +1,7 @@
 //! Where the plane across seam 1 meets seam 2 (SPEC 0.5 (2)).
 
 use super::locate::LocateError;
-use crate::curve::Curve;
+use cam::curve::Curve;
 use nalgebra::Vector3;
 use shared::geometry::SplineError;
 

@@ -2,7 +2,7 @@
 
 use super::ReportError;
 use super::draw::{AS_CURVES, Curve, Panel, figure};
-use crate::dry_run::{DryRun, Envelope, PATH, QUANTITIES, ROWS, row_name, unit};
+use cam::dry_run::{DryRun, Envelope, PATH, QUANTITIES, ROWS, row_name, unit};
 use std::path::Path;
 
 /// Width and height of a panel of the path, and of an axis.
@@ -124,7 +124,7 @@ fn limit_curves(envelope: &Envelope, most: f64, scale: f64) -> Vec<Vec<(f64, f64
     let parts = bins.chunk_by(|a, b| a.1.high == b.1.high);
     let seen = parts.filter(|part| part[0].1.high > 0.0 && part[0].1.high <= most);
     let half = 0.5 * envelope.step_s();
-    let line = |part: &[(f64, crate::dry_run::Bin)]| {
+    let line = |part: &[(f64, cam::dry_run::Bin)]| {
         let value = part[0].1.high / scale;
         vec![(part[0].0 - half, value), (part[part.len() - 1].0 + half, value)]
     };
@@ -139,8 +139,8 @@ fn capital(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dry_run;
-    use crate::path::Planner;
+    use cam::dry_run;
+    use cam::path::Planner;
     use config::machine::MachineFile;
     use nc::{Options, interpret};
 

@@ -7,7 +7,7 @@
 use super::session::Session;
 use super::{Job, JobError, Weld};
 use crate::camera::{Picture, Shelf};
-use crate::path::CAPACITY;
+use cam::path::CAPACITY;
 use nc::text::tip_words;
 use nc::{Options, Program, interpret};
 use shared::io::AXES;

@@ -4,7 +4,7 @@
 use super::JobError;
 use super::session::Session;
 use crate::boards::LinkError;
-use crate::path::{Leg, PathError, PlannedPath};
+use cam::path::{Leg, PathError, PlannedPath};
 use heapless::Vec;
 use shared::protocol::{
     LOAD_ELEMENTS, LOAD_EVENTS, PathElement, PathEvent, Refusal, Request, Response, Role, Room,

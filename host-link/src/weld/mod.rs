@@ -33,8 +33,8 @@ pub use terminal::Terminal;
 
 use crate::boards::{Boards, LinkError};
 use crate::part::PartFile;
-use crate::path::{FromLineError, PathError, PlannedPath, Planner};
 use crate::seam::SeamError;
+use cam::path::{FromLineError, PathError, PlannedPath, Planner};
 use config::machine::MachineFile;
 use feeding::Feeding;
 use following::follow;

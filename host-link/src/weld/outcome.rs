@@ -2,16 +2,17 @@
 
 use super::session::{Session, on_path};
 use super::{Job, JobError, Taught, Tracking, Weld};
-use crate::along::{Along, works};
-use crate::dry_run::{self, DryRunError};
 use crate::evaluate::{Evaluation, evaluate, run_samples};
 use crate::part::{Judgement, PartFile, Plot, Run, SeamLimits};
-use crate::path::{PathError, PlannedPath};
 use crate::report::{
     BoardsUsed, ByBoard, ByMotor, JudgedBy, Measurements, Outcome, Report, SeamFigures, Truth, WeldTicks,
 };
 use crate::unwelded::unwelded;
 use crate::welded::SpeedShares;
+use cam::along::{Along, works};
+use cam::dry_run;
+use cam::dry_run::DryRunError;
+use cam::path::{PathError, PlannedPath};
 use shared::io::MOTOR_AXIS;
 use shared::kinematics::AXIS_UNIT;
 use shared::protocol::Role;

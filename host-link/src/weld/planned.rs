@@ -1,9 +1,9 @@
 //! A job before it is run: its paths, and whether the machine can do all of them.
 
 use super::{Job, JobError};
-use crate::path::{PlannedPath, Planner};
 use crate::seam::{Deviation, SeamError, check_facing};
 use crate::world::TrueSeams;
+use cam::path::{PlannedPath, Planner};
 use config::machine::MachineFile;
 use nc::Program;
 use shared::io::AXES;

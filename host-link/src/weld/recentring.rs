@@ -2,9 +2,9 @@
 
 use super::JobError;
 use super::session::Session;
-use crate::along::Along;
 use crate::boards::LinkError;
 use crate::report::Recentred;
+use cam::along::Along;
 use config::machine::TrackingUnit;
 use shared::geometry::PoseOffset;
 use shared::io::{SLIDE_NAMES, SLIDES};

@@ -1,9 +1,9 @@
 //! What is around the machine: the seams as they really are, and what sees them.
 
 use super::{CameraChoice, JobError};
-use crate::path::{PlannedPath, Planner};
 use crate::seam::Deviation;
 use crate::world::TrueSeams;
+use cam::path::{PlannedPath, Planner};
 use config::machine::MachineFile;
 use nc::Program;
 use std::rc::Rc;

@@ -1,7 +1,7 @@
 //! Where the seams really are: beside the programmed ones of a drawing, whatever path the machine is on.
 
-use crate::path::{CAPACITY, PlannedPath};
 use crate::seam::Deviation;
+use cam::path::{CAPACITY, PlannedPath};
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::SIDES;

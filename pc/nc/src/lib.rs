@@ -7,7 +7,7 @@
 //! What is understood stands in `docs/nc.md`; all else is an error with its line and column, never skipped.
 //!
 //! Reading knows no machine: which axes, beams and spindle it has, and where words that are not said leave the tip,
-//! is the matter of `host_link::path`.
+//! is the matter of `cam::path`.
 
 mod arc;
 mod claims;

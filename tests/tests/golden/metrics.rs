@@ -1,7 +1,7 @@
 //! Errors of runs (SPEC 4.4).
 
 use super::file::{Golden, near, number, numbers, vector};
-use host_link::metrics::{compare, distance_to_polyline};
+use cam::metrics::{compare, distance_to_polyline};
 use serde_json::Value;
 
 /// Checks a number that may be absent.

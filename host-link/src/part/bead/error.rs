@@ -1,6 +1,6 @@
 //! Why no program can be planned for a bead.
 
-use crate::path::CAPACITY;
+use cam::path::CAPACITY;
 use shared::geometry::SplineError;
 use shared::geometry::nurbs::{DiscretiseError, NurbsError};
 use shared::trajectory::WindowError;

@@ -19,7 +19,7 @@ mod tests;
 
 use super::limits::SPEED_DIP;
 use super::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
-use crate::path::{PlannedPath, Planner};
+use cam::path::{PlannedPath, Planner};
 use curve_file::CurveFile;
 use error::BeadError;
 use nalgebra::Vector3;

@@ -3,8 +3,8 @@
 use super::Attitude;
 use super::error::BeadError;
 use super::route::Route;
-use crate::curve::Curve as Spline;
-use crate::path::CAPACITY;
+use cam::curve::Curve as Spline;
+use cam::path::CAPACITY;
 use nalgebra::Vector3;
 use shared::geometry::nurbs::{Curve, Discretisation, discretise};
 use shared::geometry::{Moving, angle};

@@ -1,8 +1,8 @@
 //! How fast the bead can be laid: curve, machine and process window (SPEC 3.3, 3.4).
 
 use super::error::BeadError;
-use crate::path::MAX_EVENTS;
-use crate::path::{NOWHERE, PathError, PlannedPath};
+use cam::path::MAX_EVENTS;
+use cam::path::{NOWHERE, PathError, PlannedPath};
 use config::machine::MachineFile;
 use nalgebra::Vector3;
 use shared::geometry::Moving;

@@ -4,7 +4,7 @@ use super::error::BeadError;
 use super::route::Route;
 use super::{Attitude, Layer};
 use crate::part::Place;
-use crate::path::Planner;
+use cam::path::Planner;
 use config::machine::MachineFile;
 use nalgebra::Vector3;
 use shared::geometry::Pose;

@@ -6,7 +6,7 @@
 
 use super::PanelError;
 use super::line::Station;
-use crate::curve::Curve;
+use cam::curve::Curve;
 use nalgebra::Vector3;
 use shared::geometry::angle;
 use shared::kinematics::AxisLimits;

@@ -2,9 +2,9 @@
 
 use super::{Panel, PanelLimits};
 use crate::part::{ALONG, Figure, GAP, Judgement, Plot, Run, RunSample};
-use crate::path::{Course, PlannedPath};
 use crate::teach::TaughtPoint;
 use crate::world::Surface;
+use cam::path::{Course, PlannedPath};
 use nalgebra::Vector3;
 use shared::geometry::angle;
 use shared::trajectory::PathSpace;

@@ -1,8 +1,8 @@
 //! The smooth line through taught points: where the focus goes, and along which normal.
 
 use super::PanelError;
-use crate::curve::Curve;
 use crate::teach::TaughtPoint;
+use cam::curve::Curve;
 use nalgebra::Vector3;
 
 /// Points put before the first and after the last taught one, so that the ends of the spline lie outside the cut:
@@ -94,7 +94,7 @@ fn channels(point: &TaughtPoint) -> [f64; 6] {
 /// The `steps`-th point before the first of three, on the parabola through them over their chords, steps as long as
 /// the first chord.
 fn beyond(three: &[[f64; 6]; 3], steps: usize) -> [f64; 6] {
-    let chord = |i: usize| crate::curve::distance(&three[i], &three[i + 1]);
+    let chord = |i: usize| cam::curve::distance(&three[i], &three[i + 1]);
     let (x1, x2) = (chord(0), chord(0) + chord(1));
     let x = -(steps as f64) * x1;
     let weights = [

@@ -4,7 +4,6 @@ use super::attitude::{Attitudes, tool_axis};
 use super::line::{Line, Station};
 use super::{Panel, PanelError};
 use crate::part::{Place, Plan};
-use crate::plan::speed_up_length;
 use crate::teach::TaughtPoint;
 use config::table::FARTHEST_MM;
 use nalgebra::Vector3;
@@ -87,7 +86,7 @@ impl Panel {
     fn stations(&self, line: &Line, place: &Place) -> Result<(Vec<Station>, [usize; 2]), PanelError> {
         let planning = &place.machine.planning;
         let velocity = self.speed_m_min * MM_S_PER_M_MIN;
-        let lead = self.lead_mm.max(speed_up_length(planning, velocity));
+        let lead = self.lead_mm.max(planning.speed_up_length(velocity));
         if lead > FARTHEST_MM || lead.is_nan() {
             return Err(PanelError::Value {
                 key: "lead_mm",

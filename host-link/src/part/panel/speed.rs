@@ -3,8 +3,8 @@
 use super::program::C;
 use super::{Panel, PanelError};
 use crate::part::Place;
-use crate::path::{Bound, Planner};
 use crate::teach::TaughtPoint;
+use cam::path::{Bound, Planner};
 use nc::{Options, interpret};
 use shared::io::AXIS_NAMES;
 use shared::units::MM_S_PER_M_MIN;

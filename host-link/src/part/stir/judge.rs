@@ -7,9 +7,9 @@
 
 use super::error::StirError;
 use super::{B, C, Job, SPINDLE, Stir, StirLimits};
-use crate::metrics::compare;
 use crate::part::{ALONG, Figure, GAP, Judgement, Plot, Run, RunSample};
-use crate::path::{Course, PlannedPath};
+use cam::metrics::compare;
+use cam::path::{Course, PlannedPath};
 use nc::Motion;
 use shared::units::{DEG_PER_RAD, wrap};
 

@@ -10,10 +10,9 @@ mod tests;
 use super::beams::slide_extension;
 use super::cut::SmoothSeam;
 use super::locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
-use super::speed_up_length;
-use crate::curve::Curve;
-use crate::path::CAPACITY;
 use crate::seam::SeamPoint;
+use cam::curve::Curve;
+use cam::path::CAPACITY;
 use config::machine::{MachineFile, TrackingUnit};
 use nalgebra::Vector3;
 use shared::geometry::{Pose, PoseError, SplineError, angle};
@@ -339,7 +338,7 @@ fn divide(curve: &Curve<6>) -> Result<Vec<f64>, PlanError> {
 /// v/2·(v/a + a/j), the map of the seam fills, w + hold + v·(T_p + 4 T_f), and the slides cross half their
 /// travel and settle, v·(travel/2/v_slide + 0.1 s); after the seam it only stops. Both are at least 40 mm.
 fn run_lengths(machine: &MachineFile, unit: &TrackingUnit) -> (f64, f64) {
-    let speed_up = speed_up_length(&machine.planning, RUN_SPEED);
+    let speed_up = machine.planning.speed_up_length(RUN_SPEED);
     let tracking = &unit.board.tracking;
     let frame = f64::from(tracking.frame_period_ms) / 1000.0;
     let reach = unit

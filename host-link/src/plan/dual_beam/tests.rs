@@ -1,9 +1,9 @@
 //! Plans of the shipped seams: the program, where the spots are, and what is refused.
 
 use super::*;
-use crate::path::Planner;
 use crate::plan::OtherSeam;
 use crate::seam::{read_main_curve, read_other_curve};
+use cam::path::Planner;
 use nc::{Options, interpret};
 use std::path::Path;
 

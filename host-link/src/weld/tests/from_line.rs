@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::boards::Overheard;
-use crate::path::FromLineError;
+use cam::path::FromLineError;
 use shared::protocol::MotionSample;
 use std::path::Path;
 

@@ -88,6 +88,18 @@ impl PlanningConfig {
     pub fn park_axes(&self) -> [f64; AXES] {
         self.park.into_array().map(Option::unwrap_or_default)
     }
+
+    /// Length that a feed path takes to reach `velocity` \[mm/s\] from rest \[mm\].
+    pub fn speed_up_length(&self, velocity: f64) -> f64 {
+        let (a, j) = (self.path_acceleration_mm_s2, self.path_jerk_mm_s3);
+        // Without constant acceleration in between if a is never reached.
+        let time = if velocity * j > a * a {
+            velocity / a + a / j
+        } else {
+            2.0 * libm::sqrt(velocity / j)
+        };
+        velocity / 2.0 * time
+    }
 }
 
 /// Something of each axis that the machine has.

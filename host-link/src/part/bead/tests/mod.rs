@@ -7,7 +7,7 @@ mod speeds;
 mod wrong;
 
 use crate::part::{Part, Place, Plan};
-use crate::path::{PlannedPath, Planner};
+use cam::path::{PlannedPath, Planner};
 use config::machine::MachineFile;
 use nc::{Motion, Options, interpret};
 use std::path::{Path, PathBuf};

@@ -4,7 +4,7 @@ mod run;
 
 use super::*;
 use crate::part::Part;
-use crate::path::{PlannedPath, Planner};
+use cam::path::{PlannedPath, Planner};
 use config::machine::MachineFile;
 use nc::{Options, interpret};
 use shared::geometry::angle;

@@ -3,8 +3,8 @@
 use super::*;
 use crate::boards::simulated::SimulatedBoards;
 use crate::part::{Judgement, RunSample};
-use crate::path::{PlannedPath, Planner};
 use crate::weld::{Job, Names, Silent, Work, run};
+use cam::path::{PlannedPath, Planner};
 use nc::{Options, interpret};
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};

@@ -7,7 +7,7 @@ mod run;
 
 use super::*;
 use crate::part::Part;
-use crate::path::{PlannedPath, Planner};
+use cam::path::{PlannedPath, Planner};
 use nc::{Motion, Options, interpret};
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,7 @@
 //! Every machine on its board: it homes, and holds its tool on a path as its work asks.
 
 use super::bench::{Bench, config_of};
-use crate::path::TOLERANCE;
+use cam::path::TOLERANCE;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::{AXES, DacCode, MOTOR_AXIS, MOTORS};

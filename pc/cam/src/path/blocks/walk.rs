@@ -1,0 +1,157 @@
+//! From moves to blocks, and how each of them goes on into the next.
+
+use crate::path::block::Block;
+use crate::path::blocks::Moves;
+use crate::path::exact::{Join as Turning, MAX_TURN};
+use crate::path::feeds::Feeds;
+use crate::path::targets::Stand;
+use crate::path::{PathError, Planner, TOLERANCE, Tip};
+use nc::{Move, PathControl};
+use shared::geometry::angle;
+use shared::protocol::{PathAction, PathEvent};
+use shared::trajectory::{Element, Join, Tolerance};
+use std::rc::Rc;
+
+/// A block of a path, and how it goes on.
+pub(super) struct Step {
+    pub(super) block: Block,
+    /// Where it leads.
+    pub(super) tip: Tip,
+    /// Programmed \[mm/s\].
+    pub(super) speed: f64,
+    /// What is switched where it begins.
+    pub(super) actions: Vec<PathAction>,
+    control: PathControl,
+    /// How it joins the next one.
+    pub(super) join: Join,
+    /// The corner at its end, if the machine stops for that \[rad\].
+    pub(super) corner: Option<f64>,
+    /// How its attitude goes over from the block before and into the next one.
+    turns: [Option<Turning>; 2],
+}
+
+impl Step {
+    /// The elements of the block, in order.
+    pub(super) fn elements(&self, planner: &Planner) -> Result<Vec<Element>, PathError> {
+        self.block.elements(planner, self.speed, self.join, &self.turns)
+    }
+
+    /// By how much the rotary axes are off at its end, as their rates change there \[rad\].
+    pub(super) fn slack(&self) -> f64 {
+        self.turns[1].map_or(0.0, |turning| turning.slack)
+    }
+
+    /// What is switched where it begins, at `s` \[mm\].
+    pub(super) fn events(&self, s: f64) -> Vec<PathEvent> {
+        let event = |action: &PathAction| PathEvent {
+            s_mm: s,
+            action: *action,
+        };
+        self.actions.iter().map(event).collect()
+    }
+
+    /// Decides how it goes on into `next`.
+    fn go_on_to(&mut self, next: &mut Step, planner: &Planner) {
+        let direction = self.block.direction(self.block.length);
+        let turn = angle(&direction, &next.block.direction(0.0));
+        let position = match (self.control, next.control) {
+            (PathControl::ExactStop, _) => return,
+            (PathControl::Blend(p), PathControl::Blend(q)) => blend(p).min(blend(q)),
+            _ if turn <= MAX_TURN => TOLERANCE.position,
+            _ => {
+                self.corner = Some(turn);
+                return;
+            }
+        };
+        self.join = Join::Blend(Tolerance {
+            position,
+            ..TOLERANCE
+        });
+        if turn <= MAX_TURN && (self.block.turns() || next.block.turns()) {
+            // At a corner the attitude is rounded with it; here the rotary axes need a length of their own.
+            let (end, speed) = (self.block.length, self.speed.min(next.speed));
+            let turning = planner.join(end, &self.block, &next.block, &self.tip, speed);
+            let turning = turning.of_attitude();
+            self.turns[1] = Some(turning);
+            next.turns[0] = Some(turning.for_the_next());
+        }
+    }
+}
+
+/// The tolerance of G64, with or without a P \[mm\].
+fn blend(p: Option<f64>) -> f64 {
+    p.unwrap_or(TOLERANCE.position)
+}
+
+/// The blocks of a path, one ahead.
+pub(super) struct Walk {
+    planner: Rc<Planner>,
+    moves: Moves,
+    feeds: Feeds,
+    tip: Tip,
+    placed: bool,
+    /// What is on from before.
+    on: Vec<PathAction>,
+    ahead: Option<Step>,
+}
+
+impl Walk {
+    pub(super) fn new(planner: Rc<Planner>, moves: Moves, from: &Stand, feeds: Feeds) -> Self {
+        Self {
+            planner,
+            moves,
+            feeds,
+            tip: from.tip,
+            placed: from.placed,
+            on: from.switched.actions(),
+            ahead: None,
+        }
+    }
+
+    fn step(&mut self, from: Move) -> Result<Step, PathError> {
+        let Move { target, events } = from;
+        let planner = &self.planner;
+        let tip = planner.next_tip(&target, &self.tip, self.placed)?;
+        let block = Block::build(planner, nc::Motion::Feed, &self.tip, &tip, &target)?;
+        let speed = self.feeds.next(&target, block.length)?;
+        let mut actions = std::mem::take(&mut self.on);
+        for event in &events {
+            actions.push(planner.action(event)?);
+        }
+        (self.tip, self.placed) = (tip, true);
+        Ok(Step {
+            block,
+            tip,
+            speed,
+            actions,
+            control: target.control,
+            join: Join::Stop,
+            corner: None,
+            turns: [None; 2],
+        })
+    }
+}
+
+impl Iterator for Walk {
+    type Item = Result<Step, PathError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let Some(next) = self.moves.next() else {
+                return self.ahead.take().map(Ok);
+            };
+            let mut next = match next.and_then(|next| self.step(next)) {
+                Ok(next) => next,
+                Err(error) => return Some(Err(error)),
+            };
+            let before = self.ahead.take().map(|mut before| {
+                before.go_on_to(&mut next, &self.planner);
+                before
+            });
+            self.ahead = Some(next);
+            if before.is_some() {
+                return before.map(Ok);
+            }
+        }
+    }
+}

@@ -1,0 +1,329 @@
+//! Why a program path cannot be run on this machine.
+
+use crate::path::{CAPACITY, MAX_EVENTS};
+use config::table::FARTHEST_MM;
+use nc::{NcError, Place};
+use shared::geometry::nurbs::NurbsError;
+use shared::geometry::{ArcError, AttitudeError, PoseError, SplineError};
+use shared::io::AXIS_NAMES;
+use shared::kinematics::KinematicsError;
+use thiserror::Error;
+
+/// Why a program path cannot be run on this machine.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PathError {
+    /// The program cannot be read again.
+    #[error(transparent)]
+    Program(#[from] NcError),
+    /// A motion that is out of all proportion.
+    #[error(
+        "{place}: the way there is {length:.0} mm long, and no machine goes farther than {FARTHEST_MM} mm at once: correct \
+         the word, or the machine file"
+    )]
+    TooFar {
+        /// Where in the program.
+        place: Place,
+        /// How long \[mm\].
+        length: f64,
+    },
+    /// A word of an axis or slide that the machine does not have.
+    #[error("{place}: {machine} has no {word}; its words are {fitted}, and X Y Z of the tip")]
+    NotFitted {
+        /// Where in the program.
+        place: Place,
+        /// The word.
+        word: &'static str,
+        /// The machine.
+        machine: String,
+        /// What it has.
+        fitted: String,
+    },
+    /// The first motion of the tip leaves something open.
+    #[error(
+        "{place}: the first motion of the tip must say how all axes of {machine} stand: {missing} missing"
+    )]
+    Incomplete {
+        /// Where in the program.
+        place: Place,
+        /// Words that it needs.
+        missing: String,
+        /// The machine.
+        machine: String,
+    },
+    /// A beam that the machine does not have, or tracking.
+    #[error("{place}: {machine} has no {output}")]
+    NoOutput {
+        /// Where in the program.
+        place: Place,
+        /// What is missing.
+        output: String,
+        /// The machine.
+        machine: String,
+    },
+    /// A rotary axis that does not come to stand as the program says.
+    #[error("{place}: {axis} would come to {reached:.3}°, not to {programmed:.3}°: {advice}")]
+    Turned {
+        /// Where in the program.
+        place: Place,
+        /// The axis.
+        axis: &'static str,
+        /// Where it should stand \[°\].
+        programmed: f64,
+        /// Where it would stand \[°\].
+        reached: f64,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// An axis would be here and, at once, there.
+    #[error(
+        "{place}: {axis} would have to jump from {from:.1} to {to:.1} mm (or °): the tool passes a pole or half a turn there; go around it, in smaller pieces, or turn the axis with G53 G0"
+    )]
+    Jump {
+        /// Where in the program.
+        place: Place,
+        /// The axis.
+        axis: &'static str,
+        /// Where it is (mm or °).
+        from: f64,
+        /// Where it would be (mm or °).
+        to: f64,
+    },
+    /// No arc between these ends.
+    #[error("{place}: no arc here: {source}")]
+    Arc {
+        /// Where in the program.
+        place: Place,
+        /// Why.
+        source: ArcError,
+    },
+    /// No curve by these control points, weights and knots.
+    #[error("{place}: no NURBS here: {source}")]
+    Nurbs {
+        /// Where in the program.
+        place: Place,
+        /// Why.
+        source: NurbsError,
+    },
+    /// A NURBS that does not begin where the tip is.
+    #[error(
+        "{place}: the first control point is {distance:.4} mm from where the tip is; move there first, or leave its X Y Z out"
+    )]
+    NurbsStart {
+        /// Where in the program.
+        place: Place,
+        /// How far \[mm\].
+        distance: f64,
+    },
+    /// A NURBS that stands still or turns sharply on its way.
+    #[error(
+        "{place}: the NURBS has a corner of {degrees:.1}° after {s:.3} mm; end it there and write the rest as another one"
+    )]
+    NurbsCorner {
+        /// Where in the program.
+        place: Place,
+        /// The corner \[°\].
+        degrees: f64,
+        /// Where on the curve \[mm\].
+        s: f64,
+    },
+    /// A NURBS with control points at one place.
+    #[error("{place}: the NURBS has no direction after {s:.3} mm: move control points that coincide apart")]
+    NurbsStands {
+        /// Where in the program.
+        place: Place,
+        /// Where on the curve \[mm\].
+        s: f64,
+    },
+    /// R for an arc whose ends are the same.
+    #[error("{place}: R tells no centre for a full circle; use I J K")]
+    CircleByRadius {
+        /// Where in the program.
+        place: Place,
+    },
+    /// R that does not reach.
+    #[error(
+        "{place}: the ends of the arc are {distance:.4} mm apart, so R must be at least half of that, not {radius}"
+    )]
+    SmallRadius {
+        /// Where in the program.
+        place: Place,
+        /// R \[mm\].
+        radius: f64,
+        /// Distance of the ends in the plane of the arc \[mm\].
+        distance: f64,
+    },
+    /// An axis would leave its travel.
+    #[error(
+        "{place}: axis {axis} would have to go to {position:.3}, {beyond:.3} beyond its travel ({min}…{max} {unit})"
+    )]
+    Travel {
+        /// Where in the program.
+        place: Place,
+        /// Axis or V slide.
+        axis: &'static str,
+        /// Where it would go.
+        position: f64,
+        /// By how much too far.
+        beyond: f64,
+        /// Travel.
+        min: f64,
+        /// Travel.
+        max: f64,
+        /// mm or °.
+        unit: &'static str,
+    },
+    /// An axis cannot follow that fast.
+    #[error(
+        "{place}: the feed of {feed:.0} mm/min is too high, the {quantity} of {axis} allows {largest:.0} mm/min"
+    )]
+    Feed {
+        /// Where in the program.
+        place: Place,
+        /// Wanted \[mm/min\].
+        feed: f64,
+        /// Possible \[mm/min\].
+        largest: f64,
+        /// Axis or V slide.
+        axis: &'static str,
+        /// Speed or acceleration.
+        quantity: &'static str,
+    },
+    /// M3, M4, M5 or S on a machine without a spindle.
+    #[error(
+        "{place}: {code} needs a spindle, and {machine} has none: switch its beams with M62 P, M63 P and M67 E Q"
+    )]
+    NoSpindle {
+        /// Where in the program.
+        place: Place,
+        /// The code.
+        code: &'static str,
+        /// The machine.
+        machine: String,
+    },
+    /// M4: spindles only have one sense.
+    #[error("{place}: the spindle of {machine} turns clockwise only: write M3")]
+    SpindleSense {
+        /// Where in the program.
+        place: Place,
+        /// The machine.
+        machine: String,
+    },
+    /// The spindle is not that fast.
+    #[error("{place}: {rpm} r/min are more than the spindle gives, at most {largest} r/min")]
+    SpindleSpeed {
+        /// Where in the program.
+        place: Place,
+        /// Wanted.
+        rpm: f64,
+        /// Speed at +10 V.
+        largest: f64,
+    },
+    /// A beam cannot give that much.
+    #[error("{place}: {watt} W are more than beam {} gives, at most {largest} W", side + 1)]
+    Power {
+        /// Where in the program.
+        place: Place,
+        /// 0 or 1.
+        side: u8,
+        /// Wanted.
+        watt: f64,
+        /// Power at +10 V.
+        largest: f64,
+    },
+    /// The speed must be positive.
+    #[error("a feed of {0} mm/min is not possible")]
+    NoFeed(f64),
+    /// One speed for a path with several feeds.
+    #[error(
+        "{place}: the path has several feeds, one speed cannot take their place; leave the speed out, or write one F"
+    )]
+    SeveralFeeds {
+        /// Where its path begins.
+        place: Place,
+    },
+    /// G1 without travel of the tip.
+    #[error("{place}: G1 must move the tip; turn axes alone with G0")]
+    NoTravel {
+        /// Where in the program.
+        place: Place,
+    },
+    /// A corner within a smooth path.
+    #[error(
+        "{place}: a corner of {degrees:.0}° within a path, which must be smooth; stop at the corner with G61.1"
+    )]
+    Corner {
+        /// Where in the program.
+        place: Place,
+        /// Its angle.
+        degrees: f64,
+    },
+    /// Two points between which the head would turn by half a turn.
+    #[error("{place}: the head cannot turn there: {source}")]
+    Attitude {
+        /// Where in the program.
+        place: Place,
+        /// Why.
+        source: AttitudeError,
+    },
+    /// The pose has no solution.
+    #[error("{place}: the machine cannot take this pose: {source}")]
+    Kinematics {
+        /// Where in the program.
+        place: Place,
+        /// Why.
+        source: KinematicsError,
+    },
+    /// The channels are no pose.
+    #[error("{place}: the path is no pose there: {source}")]
+    Pose {
+        /// Where in the program.
+        place: Place,
+        /// Why.
+        source: PoseError,
+    },
+    /// No spline through the points.
+    #[error("{place}: no smooth curve through these points: {source}")]
+    Spline {
+        /// Where in the program.
+        place: Place,
+        /// Why.
+        source: SplineError,
+    },
+    /// More knots than the boards hold.
+    #[error("{place}: the path has {knots} points, the boards hold {CAPACITY}; use fewer blocks")]
+    TooLong {
+        /// Where its path begins.
+        place: Place,
+        /// How many.
+        knots: usize,
+    },
+    /// More events than the motion board holds.
+    #[error(
+        "{place}: the path has {events} outputs and changes of F, at most {MAX_EVENTS} are possible; use fewer"
+    )]
+    TooManyEvents {
+        /// Where its path begins.
+        place: Place,
+        /// How many.
+        events: usize,
+    },
+}
+
+impl PathError {
+    /// Axis slot `axis` stands at `reached` instead of `programmed` \[°\].
+    pub(super) fn turned(place: Place, axis: usize, programmed: f64, reached: f64) -> Self {
+        let turns = (reached - programmed) / 360.0;
+        let advice = if (turns - turns.round()).abs() < 1e-6 {
+            "a block turns the short way; write it as several blocks of less than 180°"
+        } else {
+            "the tip decides how this axis stands; correct the word, or X Y Z"
+        };
+        Self::Turned {
+            place,
+            axis: AXIS_NAMES[axis],
+            programmed,
+            reached,
+            advice,
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! From program paths to what the boards run: knots, events and limits, checked against the machine.
+
+mod block;
+mod blocks;
+mod elements;
+mod error;
+mod exact;
+mod feeds;
+mod from_line;
+mod limits;
+mod nurbs;
+mod outputs;
+mod pieces;
+mod planned;
+mod programmed;
+mod shape;
+mod targets;
+#[cfg(test)]
+mod tests;
+
+pub use blocks::{Blocks, Course, Leg, Summary};
+pub use elements::TOLERANCE;
+pub use error::PathError;
+pub use from_line::FromLineError;
+pub use planned::{Bound, PlannedPath, SpeedStep, Speeds};
+pub use programmed::Programmed;
+pub use targets::Tip;
+
+use config::machine::{MachineFile, PlanningConfig};
+use limits::{DRIVES, DriveLimits};
+use nc::{Place, Program};
+use outputs::Switched;
+use shared::geometry::Pose;
+use shared::io::{AXES, SIDES};
+use shared::kinematics::{AXIS_UNIT, Kinematics};
+use shared::parameter::ParameterError;
+use targets::Stand;
+
+/// Most knots of one path: what the boards hold.
+pub const CAPACITY: usize = 512;
+/// Most outputs and changes of F of one path.
+pub const MAX_EVENTS: usize = 128;
+
+/// Of a path that no program asks for.
+pub const NOWHERE: Place = Place { line: 0, column: 0 };
+
+/// Plans program paths for one machine.
+#[derive(Clone, Debug)]
+pub struct Planner {
+    /// Of the machine, for messages.
+    name: String,
+    kinematics: Kinematics,
+    fitted: [bool; AXES],
+    drives: [DriveLimits; DRIVES],
+    /// Of each beam that the machine has \[W\].
+    largest_power: [Option<f64>; SIDES],
+    /// The beam that is a spindle.
+    spindle: Option<u8>,
+    /// The machine has slides that follow the seam.
+    tracks: bool,
+    planning: PlanningConfig,
+}
+
+impl Planner {
+    /// A planner for `machine`; errors name the parameter.
+    pub fn build(machine: &MachineFile) -> Result<Self, ParameterError> {
+        let beams = machine.motion.beams.clone();
+        Ok(Self {
+            name: machine.name.clone(),
+            kinematics: machine.motion.kinematics()?,
+            fitted: machine.motion.kinematics.fitted(),
+            drives: DriveLimits::build_all(machine)?,
+            spindle: (0..).zip(&beams).find_map(|(side, beam)| {
+                let stays_on = beam.as_ref().is_some_and(|beam| beam.stays_on_at_rest);
+                stays_on.then_some(side)
+            }),
+            largest_power: beams.map(|beam| beam.map(|beam| beam.power_at_10v_w)),
+            tracks: machine.tracking.is_some(),
+            planning: machine.planning.clone(),
+        })
+    }
+
+    /// Kinematics of the machine.
+    pub fn kinematics(&self) -> &Kinematics {
+        &self.kinematics
+    }
+
+    /// Where the tip is when the axes stand at `axes` (mm, degrees); V slides at zero.
+    pub fn tip(&self, axes: &[f64; AXES]) -> Tip {
+        Tip {
+            position_mm: self.kinematics.forward(&inner(axes)).position.into(),
+            angles_deg: [axes[3], axes[4], axes[5]],
+            extension_mm: [0.0; SIDES],
+        }
+    }
+
+    /// The pose of `tip` (SPEC 0.2).
+    pub fn pose(&self, tip: &Tip) -> Pose {
+        let [a, b, c] = tip.angles_deg.map(f64::to_radians);
+        Pose {
+            position: tip.position_mm.into(),
+            ..self.kinematics.forward(&[0.0, 0.0, 0.0, a, b, c])
+        }
+    }
+
+    /// All paths of a program; the first starts where the axes stand at `from` (mm, degrees). `speed_mm_s`
+    /// replaces the programmed feed.
+    pub fn program(
+        &self,
+        program: &Program,
+        from: &[f64; AXES],
+        speed_mm_s: Option<f64>,
+    ) -> Result<Vec<PlannedPath>, PathError> {
+        self.program_from(program, from, [0.0; SIDES], speed_mm_s)
+    }
+
+    /// Like [`Self::program`], with the V slides at `extension_mm` where it starts.
+    pub fn program_from(
+        &self,
+        program: &Program,
+        from: &[f64; AXES],
+        extension_mm: [f64; SIDES],
+        speed_mm_s: Option<f64>,
+    ) -> Result<Vec<PlannedPath>, PathError> {
+        let mut stand = Stand {
+            tip: Tip {
+                extension_mm,
+                ..self.tip(from)
+            },
+            axes: inner(from),
+            placed: false,
+            switched: Switched::default(),
+        };
+        let mut planned = Vec::new();
+        for path in &program.paths {
+            planned.extend(self.path(path, &mut stand, speed_mm_s)?);
+        }
+        Ok(planned)
+    }
+
+    /// From the axes `from` (mm, degrees) to the park position of the machine, in axis space: first the axes that
+    /// go first, then all.
+    pub fn park(&self, from: &[f64; AXES]) -> Result<Vec<PlannedPath>, PathError> {
+        let park = self.planning.park_axes();
+        let mut first = *from;
+        for axis in &self.planning.park_first {
+            let axis = *axis as usize;
+            first[axis] = park[axis];
+        }
+        [(from, &first), (&first, &park)]
+            .into_iter()
+            .filter(|(from, to)| from != to)
+            .map(|(from, to)| self.axes_path(&inner(from), &inner(to), &[0.0; SIDES], NOWHERE))
+            .collect()
+    }
+}
+
+/// From mm and degrees to mm and rad.
+fn inner(axes: &[f64; AXES]) -> [f64; AXES] {
+    std::array::from_fn(|i| axes[i] * AXIS_UNIT[i])
+}
