@@ -4,18 +4,14 @@
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod boards;
-pub mod calibration;
-pub mod camera;
 pub mod cli;
 pub mod console;
 pub mod evaluate;
-pub mod measure;
 pub mod part;
 pub mod plan;
 pub mod record;
 pub mod report;
 pub mod seam;
-pub mod teach;
 pub mod unwelded;
 pub mod weld;
 pub mod welded;

@@ -1,6 +1,6 @@
 //! GigE Vision cameras, held against the simulated one that comes with Aravis (`arv-fake-gv-camera-0.8`), on loopback.
 
-use host_link::camera::{Arrival, Camera, CameraError, GigeCamera, GigeConfig, Picture};
+use camera::{Arrival, Camera, CameraError, GigeCamera, GigeConfig, Picture};
 use std::net::UdpSocket;
 use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -1,8 +1,8 @@
 //! `host-link calibrate` on pictures of a camera that is not as drawn.
 
+use camera::{Picture, write_grey};
 use config::calibration::Calibration;
 use config::machine::MachineFile;
-use host_link::camera::{Picture, write_grey};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

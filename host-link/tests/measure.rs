@@ -1,8 +1,8 @@
 //! `host-link measure` as a person uses it: pictures with a known truth, and wrong ones.
 
+use camera::{Picture, Recorder, read_grey, write_grey, write_rgb};
 use config::calibration::Calibration;
 use config::machine::MachineFile;
-use host_link::camera::{Picture, Recorder, read_grey, write_grey, write_rgb};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use vision::render::{Finish, Gap, Joint, Light, Root, Scene, Stripe, Texture, TruthRenderer};

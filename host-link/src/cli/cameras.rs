@@ -1,11 +1,12 @@
 //! Which cameras a command uses.
 
 use super::boards::BoardChoice;
-use crate::camera::{self, CameraError, Keeper, Shelf};
 use crate::console::{errln, outln};
 use crate::weld::{CameraChoice, ImageCameras, PictureSource};
 use crate::world::SceneFile;
 use anyhow::bail;
+use camera;
+use camera::{CameraError, Keeper, Shelf};
 use clap::{Args, ValueEnum};
 use config::machine::{CameraConfig, MachineFile};
 use std::path::{Path, PathBuf};

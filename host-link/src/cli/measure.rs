@@ -1,10 +1,10 @@
 //! `host-link measure`: what a picture says, and why.
 
 use super::sentence;
-use crate::camera::Picture;
 use crate::console::{errln, outln};
-use crate::measure::{Measuring, Outcome, Record, Table, draw};
 use anyhow::{Context, bail, ensure};
+use camera::Picture;
+use camera::measure::{Measuring, Outcome, Record, Table, draw};
 use clap::Args;
 use config::calibration::Calibration;
 use config::machine::{JointForm, MachineFile};

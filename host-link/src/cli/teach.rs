@@ -4,7 +4,6 @@ use super::boards::{BoardChoice, exit_code};
 use super::teach_seam::SeamArgs;
 use crate::console::{errln, outln};
 use crate::part::PartFile;
-use crate::teach::write_points;
 use crate::weld::{Job, Names, Surroundings, Terminal, Work, check_teaching};
 use anyhow::Context;
 use clap::Args;
@@ -12,6 +11,7 @@ use config::machine::MachineFile;
 use emulator::MACHINE_VARIABLE;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use teach::write_points;
 
 /// Teach a part: seams with the cameras, a panel with the ranging probe
 ///

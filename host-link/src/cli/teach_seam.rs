@@ -7,7 +7,6 @@ use crate::console::outln;
 use crate::part::{PartFile, TSeam};
 use crate::plan::DualBeamPlan;
 use crate::seam::Deviation;
-use crate::teach::seam::{Cameras, Drawing, Ended, Head, SeamFile, Stance};
 use crate::weld::{Job, JobError, Names, SeamLesson, Surroundings, TaughtSeam, Terminal, Work};
 use anyhow::{Context, anyhow, bail};
 use cam::path::{Planner, Tip};
@@ -20,6 +19,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
 use std::str::FromStr;
+use teach::seam::{Cameras, Drawing, Ended, Head, SeamFile, Stance};
 
 /// A seam that ends more than this before its drawing does was lost \[mm\].
 const ENDS_EARLY: f64 = 5.0;
@@ -200,7 +200,7 @@ impl SeamArgs {
         drawn: Option<&DualBeamPlan>,
         cameras: &Cameras,
     ) -> anyhow::Result<(Stance, Option<Drawing>)> {
-        let drawing = drawn.map(Drawing::of);
+        let drawing = drawn.map(DualBeamPlan::drawing);
         let start = match (self.from, drawn) {
             (Some(Place([x, y, z, a, b, c])), _) => {
                 let tip = Tip {
@@ -213,7 +213,7 @@ impl SeamArgs {
                     slides_mm: [0.0; SLIDES],
                 }
             }
-            (None, Some(plan)) => Stance::before(plan, cameras),
+            (None, Some(plan)) => plan.stance_before(cameras.heads.camera_lead()),
             (None, None) => {
                 bail!("the part has no drawing, so nobody knows where to begin: say it by --from")
             }

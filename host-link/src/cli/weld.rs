@@ -7,7 +7,6 @@ use crate::console::{errln, out, outln};
 use crate::part::PartFile;
 use crate::report::{self, Report};
 use crate::seam::{Deviation, SeamError};
-use crate::teach::write_points;
 use crate::weld::{Job, JobError, Names, NoTeaching, Surroundings, Taught, Terminal, Work, check_teaching};
 use anyhow::{Context, Error, bail};
 use cam::path::Planner;
@@ -18,6 +17,7 @@ use nc::Program;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
+use teach::write_points;
 
 /// Names of the planned program and of the taught points in the report.
 const PROGRAM: &str = "program.ngc";

@@ -23,11 +23,11 @@ pub use stir::Stir;
 pub use t_seam::TSeam;
 
 use crate::plan::DualBeamPlan;
-use crate::teach::TaughtPoint;
 use config::machine::MachineFile;
 use config::table::line_of;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
+use teach::TaughtPoint;
 use thiserror::Error;
 
 /// What every kind of part can do. Errors read as one sentence that names the place and what to do.

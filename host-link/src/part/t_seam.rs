@@ -3,11 +3,11 @@
 use super::{Judgement, Kind, Percent, Place, Plan, Run, SeamLimits};
 use crate::plan::{DualBeamPlan, PlanOptions, TaughtSeams, plan_dual_beam};
 use crate::seam::{SeamPoint, read_main_curve, read_other_curve};
-use crate::teach::seam::{SeamTeaching, read_seam_points};
 use anyhow::{Context, bail};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
+use teach::seam::{SeamTeaching, read_seam_points};
 
 /// Two seams and how to weld them.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -136,8 +136,8 @@ impl Kind for TSeam {
 mod tests {
     use super::*;
     use crate::part::PartFile;
-    use crate::teach::seam::{Foot, Head, SeamFile, SeamPoint as TaughtPoint};
     use config::machine::MachineFile;
+    use teach::seam::{Foot, Head, SeamFile, SeamPoint as TaughtPoint};
 
     fn shipped(name: &str) -> PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)

@@ -2,10 +2,10 @@
 
 use super::smooth::Scattered;
 use crate::seam::SeamPoint;
-use crate::teach::seam::{Foot, SeamPoint as TaughtPoint};
 use nalgebra::Vector3;
 use shared::geometry::angle;
 use shared::io::SIDES;
+use teach::seam::{Foot, SeamPoint as TaughtPoint};
 use thiserror::Error;
 
 /// Points that a curve needs.

@@ -6,8 +6,10 @@
 
 use super::session::Session;
 use super::{Job, JobError, Weld};
-use crate::camera::{Picture, Shelf};
 use cam::path::CAPACITY;
+use camera::calibrate::Known;
+use camera::{Picture, Shelf};
+use config::calibration::Calibration;
 use nc::text::tip_words;
 use nc::{Options, Program, interpret};
 use shared::io::AXES;
@@ -16,7 +18,6 @@ use shared::units::DEG_PER_RAD;
 use std::path::PathBuf;
 use std::time::Duration;
 use vision::{Detector, Joint, Prior};
-use {crate::calibration::Known, config::calibration::Calibration};
 
 /// Distance of the places along the seam \[mm\]: each has a texture of its own.
 const PLACE_STEP_MM: f64 = 4.0;

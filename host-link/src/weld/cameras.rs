@@ -2,9 +2,9 @@
 
 use super::images::{Images, ImagesError};
 use super::{JobError, Surroundings};
-use crate::camera::{OpenCamera, Shelf};
 use crate::report::CameraFigures;
 use crate::world::{GeometricCameras, Moment, SceneFile};
+use camera::{OpenCamera, Shelf};
 use config::calibration::Calibration;
 use config::machine::TrackingUnit;
 use shared::geometry::Pose;

@@ -4,10 +4,6 @@ use super::session::Session;
 use super::tracking::Watched;
 use super::{Job, JobError, Line, Weld};
 use crate::boards::LinkError;
-use crate::teach::seam::{
-    Cameras, Drawing, Ended, Follower, Hand, Head, Rig, SeamFile, SeamPoint, SeamTeachError, SeamTeaching,
-    Seen, Stance, View,
-};
 use config::machine::MachineFile;
 use nc::text::{decimal, tip_words};
 use nc::{Options, interpret};
@@ -16,6 +12,10 @@ use shared::protocol::Refusal;
 use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
 use std::cell::RefCell;
 use std::time::Duration;
+use teach::seam::{
+    Cameras, Drawing, Ended, Follower, Hand, Head, Rig, SeamFile, SeamPoint, SeamTeachError, SeamTeaching,
+    Seen, Stance, View,
+};
 
 /// Longest time for the pictures of a look.
 const LOOK_LIMIT: Duration = Duration::from_secs(10);

@@ -6,7 +6,6 @@
 use super::session::Session;
 use super::{CameraPictures, Job, JobError, TaughtSeam, Weld};
 use crate::part::{Panel, PartFile};
-use crate::teach::{Arm, Look, TaughtPoint, TeachError, Teacher};
 use crate::world::SimulatedProbe;
 use config::RangeError;
 use config::machine::MachineFile;
@@ -15,6 +14,7 @@ use shared::io::AXES;
 use shared::kinematics::Kinematics;
 use shared::protocol::{MotionSample, Role};
 use std::time::Duration;
+use teach::{Arm, Look, TaughtPoint, TeachError, Teacher};
 use thiserror::Error;
 
 /// Longest time for some readings.

@@ -6,7 +6,6 @@ use super::{JobError, Surroundings};
 use crate::boards::{Boards, LinkError};
 use crate::evaluate::Followed;
 use crate::record::Record;
-use crate::teach::seam::Seen;
 use crate::world::{BoardClocks, Machine, Moment, TrueSeams};
 use cam::path::{CAPACITY, PlannedPath};
 use config::machine::TrackingUnit;
@@ -20,6 +19,7 @@ use shared::tracking::{TrackerFault, TrackerState};
 use shared::trajectory::{Path, PathSpace};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
+use teach::seam::Seen;
 use vision::{Form, Seam};
 
 /// How often the boards are asked for their clock.

@@ -5,7 +5,6 @@
 //! time, and for simulated ones, which do not.
 
 mod clock;
-mod frame;
 mod geometric;
 pub(crate) mod machine;
 mod moment;
@@ -15,14 +14,13 @@ pub(crate) mod seams;
 mod surface;
 
 pub use clock::BoardClocks;
-pub use frame::CameraFrame;
 pub use geometric::GeometricCameras;
 pub use machine::Machine;
 pub use moment::Moment;
 pub use probe::SimulatedProbe;
 pub use rendered::{
     Dark, Prospect, RenderedCamera, RenderedWorld, SceneError, SceneFile, Scratch, Surface as Texture, View,
-    ViewForm, nominal_slopes,
+    ViewForm,
 };
 pub use seams::{Crossing, TrueSeam, TrueSeams};
 pub use surface::Surface;

@@ -1,10 +1,10 @@
 //! Normals from ranging rings (SPEC 2.2–2.4).
 
 use super::file::{Golden, near, near_all, number, numbers, vector};
-use host_link::teach::{HalvingConfig, Ring, StopRule};
 use shared::geometry::angle;
 use std::convert::Infallible;
 use std::f64::consts::FRAC_PI_4;
+use teach::{HalvingConfig, Ring, StopRule};
 
 /// Checks the file `normals`.
 pub fn normals(golden: &Golden) {

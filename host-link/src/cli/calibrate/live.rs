@@ -4,13 +4,14 @@ use super::super::boards::{BoardChoice, exit_code};
 use super::super::cameras::source;
 use super::super::read_program;
 use super::{Camera, Meets};
-use crate::calibration::procedure::{self, Found};
-use crate::camera::Shelf;
 use crate::seam::Deviation;
 use crate::weld::{
     CameraChoice, ImageCameras, Job, Names, PictureRun, PictureSource, Surroundings, Terminal, Work,
 };
 use anyhow::{Context, bail};
+use camera::Shelf;
+use camera::calibrate::procedure;
+use camera::calibrate::procedure::Found;
 use clap::Args;
 use config::machine::{JointForm, MachineFile};
 use shared::io::SIDES;

@@ -2,10 +2,11 @@
 
 mod live;
 
-use crate::calibration::procedure::{self, Found};
-use crate::calibration::{CalibrateError, Known, read_pictures};
 use crate::console::{out, outln};
 use anyhow::{Context, bail};
+use camera::calibrate::procedure;
+use camera::calibrate::procedure::Found;
+use camera::calibrate::{CalibrateError, Known, read_pictures};
 use clap::{Args, Subcommand};
 use config::calibration::Calibration;
 use config::machine::MachineFile;

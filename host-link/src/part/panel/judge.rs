@@ -2,12 +2,12 @@
 
 use super::{Panel, PanelLimits};
 use crate::part::{ALONG, Figure, GAP, Judgement, Plot, Run, RunSample};
-use crate::teach::TaughtPoint;
 use crate::world::Surface;
 use cam::path::{Course, PlannedPath};
 use nalgebra::Vector3;
 use shared::geometry::angle;
 use shared::trajectory::PathSpace;
+use teach::TaughtPoint;
 
 /// Turning A and C with the focus held: the tip of the plan moves less than this \[mm\], the tool turns more \[rad\].
 const HELD: f64 = 1e-3;

@@ -1,9 +1,9 @@
 //! The smooth line through taught points: where the focus goes, and along which normal.
 
 use super::PanelError;
-use crate::teach::TaughtPoint;
 use cam::curve::Curve;
 use nalgebra::Vector3;
+use teach::TaughtPoint;
 
 /// Points put before the first and after the last taught one, so that the ends of the spline lie outside the cut:
 /// of what a natural spline gets wrong at its end, less than a tenth is left two points further.

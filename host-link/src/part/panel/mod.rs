@@ -10,7 +10,6 @@ mod tests;
 
 use super::limits::SPEED_DIP;
 use super::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
-use crate::teach::{Guide, TaughtPoint, TeachingConfig, read_points};
 use crate::world::Surface;
 use config::table::FARTHEST_MM;
 use nalgebra::Vector3;
@@ -18,6 +17,7 @@ use serde::Deserialize;
 use shared::kinematics::KinematicsError;
 use std::borrow::Cow;
 use std::path::PathBuf;
+use teach::{Guide, TaughtPoint, TeachingConfig, read_points};
 use thiserror::Error;
 
 /// Points of a program that are nearer to each other say nothing more \[mm\].

@@ -4,7 +4,6 @@ use super::attitude::{Attitudes, tool_axis};
 use super::line::{Line, Station};
 use super::{Panel, PanelError};
 use crate::part::{Place, Plan};
-use crate::teach::TaughtPoint;
 use config::table::FARTHEST_MM;
 use nalgebra::Vector3;
 use nc::text::{NcText, decimal};
@@ -12,6 +11,7 @@ use shared::geometry::Pose;
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits, Kinematics};
 use shared::units::MM_S_PER_M_MIN;
+use teach::TaughtPoint;
 
 const Z: usize = 2;
 const A: usize = 3;

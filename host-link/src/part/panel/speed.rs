@@ -3,11 +3,11 @@
 use super::program::C;
 use super::{Panel, PanelError};
 use crate::part::Place;
-use crate::teach::TaughtPoint;
 use cam::path::{Bound, Planner};
 use nc::{Options, interpret};
 use shared::io::AXIS_NAMES;
 use shared::units::MM_S_PER_M_MIN;
+use teach::TaughtPoint;
 
 /// A feed that every machine can follow, to see what a line asks of it \[m/min\].
 const CREEP: f64 = 1e-3;
@@ -96,7 +96,7 @@ impl Panel {
 }
 
 /// A guide as if the panel were there.
-fn as_taught(guide: &crate::teach::Guide) -> TaughtPoint {
+fn as_taught(guide: &teach::Guide) -> TaughtPoint {
     let [a, _, c] = guide.angles_deg.map(f64::to_radians);
     TaughtPoint {
         position: guide.position,

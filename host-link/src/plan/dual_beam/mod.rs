@@ -20,6 +20,7 @@ use shared::kinematics::KinematicsError;
 use shared::parameter::ParameterError;
 use shared::tracking::HeadConfig;
 use shared::units::DEG_PER_RAD;
+use teach::seam::{Drawing, Stance};
 use thiserror::Error;
 
 /// Largest chord \[mm\], distance of the curve from it \[mm\] and turn over it \[rad\].
@@ -82,6 +83,35 @@ pub struct DualBeamPlan {
     pub max_speed_difference: f64,
     /// The NC program.
     pub program: String,
+}
+
+impl DualBeamPlan {
+    /// What a lesson has to know of the drawing.
+    pub fn drawing(&self) -> Drawing {
+        let weld = &self.points[self.seam.0..=self.seam.1];
+        let place = |i: usize| (weld[i].pose.position, weld[i].pose.tangent);
+        let chords = weld
+            .windows(2)
+            .map(|pair| (pair[1].pose.position - pair[0].pose.position).norm());
+        Drawing {
+            begin: place(0),
+            end: place(weld.len() - 1),
+            length_mm: chords.sum(),
+        }
+    }
+
+    /// The stance in which cameras that look `lead_mm` ahead see the beginning of the weld.
+    pub fn stance_before(&self, lead_mm: f64) -> Stance {
+        let first = self.points[self.seam.0];
+        let pose = first.pose;
+        Stance {
+            pose: Pose {
+                position: pose.position - pose.tangent * lead_mm,
+                ..pose
+            },
+            slides_mm: [0.0, first.extension[0], 0.0, first.extension[1]],
+        }
+    }
 }
 
 /// Why there is no plan. Reads as one sentence.

@@ -10,9 +10,10 @@ mod worker;
 pub use worker::{Seen, WorkerError};
 
 use super::cameras::{Answer, ImageCameras, PictureSource};
-use crate::camera::Keeping;
 use crate::report::CameraFigures;
-use crate::world::{CameraFrame, Moment, Prospect, RenderedWorld, View, nominal_slopes};
+use crate::world::{Moment, Prospect, RenderedWorld, View};
+use camera::Keeping;
+use camera::{CameraFrame, nominal_slopes};
 use config::machine::{CameraConfig, JointForm, TrackingUnit};
 use nalgebra::Vector3;
 use shared::geometry::Pose;
@@ -93,7 +94,7 @@ impl Images {
         };
         let begin = |side: usize| -> Result<Side, WorkerError> {
             let calibration = of.calibrations[side];
-            let (camera, tell): (Box<dyn crate::camera::Camera>, _) = match (&of.source, &world) {
+            let (camera, tell): (Box<dyn camera::Camera>, _) = match (&of.source, &world) {
                 (PictureSource::Real(open), _) => (open(side)?, None),
                 (PictureSource::Rendered(_), world) => {
                     let (camera, tell) = world.as_ref().ok_or(WorkerError::Gone)?.camera(side);

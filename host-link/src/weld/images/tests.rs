@@ -1,8 +1,8 @@
 //! How far a camera moves from capture to capture, and pictures that are measured again.
 
 use super::*;
-use crate::camera::{Camera, Folder, Keeper, Shelf};
 use crate::world::{SceneFile, ViewForm};
+use camera::{Camera, Folder, Keeper, Shelf};
 use config::machine::MachineFile;
 
 fn images() -> Images {

@@ -1,6 +1,6 @@
 //! The thread that turns the pictures of one camera into measurements.
 
-use crate::camera::{Arrival, Camera, CameraError, Picture};
+use camera::{Arrival, Camera, CameraError, Picture};
 use config::calibration::Calibration;
 use shared::protocol::SideMeasurement;
 use std::collections::VecDeque;

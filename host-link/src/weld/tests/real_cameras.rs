@@ -1,10 +1,10 @@
 //! Cameras outside of the session: their frames come late, unasked and numbered by the camera, some never.
 
 use super::*;
-use crate::camera::{Arrival, Camera, CameraError, Match, Matching, Picture, Strobe};
 use crate::record::Record;
 use crate::weld::{CameraChoice, ImageCameras, PictureSource};
 use crate::world::{Machine, Prospect, RenderedCamera, RenderedWorld, SceneFile, TrueSeams, View};
+use camera::{Arrival, Camera, CameraError, Match, Matching, Picture, Strobe};
 use shared::io::SIDES;
 use shared::protocol::Capture;
 use std::collections::VecDeque;

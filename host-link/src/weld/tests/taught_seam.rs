@@ -3,14 +3,13 @@
 use super::*;
 use crate::plan::{DualBeamPlan, PlanOptions, TaughtSeams, plan_dual_beam};
 use crate::seam::SeamPoint;
-use crate::teach::seam::{
-    Cameras, Drawing, Ended as Lesson, Head, SeamFile, SeamPoint as Taught, SeamTeaching, Stance,
-    read_seam_points,
-};
 use crate::world::SceneFile;
 use nalgebra::Vector3;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
+use teach::seam::{
+    Cameras, Ended as Lesson, Head, SeamFile, SeamPoint as Taught, SeamTeaching, read_seam_points,
+};
 
 /// How long the real seam bends to the left, and its radius there \[mm\].
 const BEND: f64 = 100.0;
@@ -92,7 +91,7 @@ impl Case {
     fn teach(&self, output: &Path, interrupted: &AtomicBool, progress: &mut dyn Progress) -> Ended {
         let drawing = self.drawn();
         let cameras = Cameras::of(self.machine.tracking.as_ref().unwrap()).unwrap();
-        let mut start = Stance::before(&drawing, &cameras);
+        let mut start = drawing.stance_before(cameras.heads.camera_lead());
         start.pose = shared::geometry::Pose::new(
             start.pose.position + Vector3::from(self.start),
             Vector3::new(1.0, 0.02, 0.01),
@@ -102,7 +101,7 @@ impl Case {
         let opened = SeamFile::open(output, &head(), false).unwrap();
         let lesson = SeamLesson {
             start,
-            drawing: Some(Drawing::of(&drawing)),
+            drawing: Some(drawing.drawing()),
             config: self.config,
             cameras,
             points: opened.points,

@@ -6,10 +6,9 @@ mod tiles;
 mod view;
 
 pub use scene_file::{Dark, SceneError, SceneFile, Scratch, Surface};
-pub use tiles::nominal_slopes;
 pub use view::{View, ViewForm};
 
-use crate::camera::{Arrival, Camera, CameraError, Picture};
+use camera::{Arrival, Camera, CameraError, Picture};
 use config::machine::CameraConfig;
 use shared::io::SIDES;
 use shared::tracking::frames::Heads;
@@ -20,7 +19,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 use tiles::{Tiles, texture};
 use vision::PhotonTransfer;
-use vision::render::{FastRenderer, SplitMix64};
+use vision::render::{FastRenderer, RenderError, SplitMix64};
 
 /// How far beside and above the seam a camera is blind \[mm\]: its light does not reach the work.
 const REACH_MM: [f64; 2] = [8.0, 1.5];
@@ -117,6 +116,10 @@ fn drawn(seed: u64, capture: u32, side: usize, purpose: Purpose) -> SplitMix64 {
     SplitMix64::new(SplitMix64::new(seed).bits() ^ SplitMix64::new(place).bits())
 }
 
+fn unrendered(error: RenderError) -> CameraError {
+    CameraError::Rendered(Box::new(error))
+}
+
 impl Camera for RenderedCamera {
     fn strobed(&mut self, capture: u32, time_us: u64) {
         self.strobes.push_back((capture, time_us));
@@ -187,10 +190,12 @@ impl RenderedCamera {
             Some(renderer) => renderer,
             None => self
                 .renderer
-                .insert(FastRenderer::new(self.tiles.wait()?, self.noise)?),
+                .insert(FastRenderer::new(self.tiles.wait()?, self.noise).map_err(unrendered)?),
         };
         let noise = drawn(self.seed, picture.capture, self.side, Purpose::Noise).bits();
-        picture.pixels.extend_from_slice(renderer.render(&scene, noise)?);
+        picture
+            .pixels
+            .extend_from_slice(renderer.render(&scene, noise).map_err(unrendered)?);
         Ok(())
     }
 }

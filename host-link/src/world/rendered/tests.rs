@@ -5,6 +5,7 @@ use crate::record::MachinePosition;
 use crate::world::TrueSeams;
 use crate::world::machine::tests::machine;
 use crate::world::seams::tests::{heads, wavy_seam};
+use camera::nominal_slopes;
 use config::calibration::Calibration;
 use config::machine::{JointForm, MachineFile};
 use nalgebra::Vector3;

@@ -1,11 +1,8 @@
 //! Textured work for the renderers of both sides, made in the background.
 
 use super::scene_file::SceneFile;
-use super::view::walls;
-use crate::world::frame::CameraFrame;
-use config::machine::{CameraConfig, JointForm};
-use nalgebra::Vector3;
-use shared::geometry::Pose;
+use camera::nominal_slopes;
+use config::machine::CameraConfig;
 use shared::io::SIDES;
 use shared::tracking::frames::Heads;
 use std::sync::{Arc, LazyLock};
@@ -79,22 +76,4 @@ impl Recipe {
 /// How the work of a side looks close up.
 pub(super) fn texture(scene: &SceneFile, side: usize, seed: u64) -> Texture {
     Texture::new(scene.texture[side].finish(), seed)
-}
-
-/// dn/du left and right of the seam for a camera that is turned by `mount_rad` about T against the head of `side`, where
-/// the machine is as planned.
-pub fn nominal_slopes(joint: JointForm, mount_rad: f64, heads: &Heads, side: usize) -> [f64; 2] {
-    match joint {
-        JointForm::Gap => [0.0; 2],
-        JointForm::Corner => {
-            let pose = Pose {
-                position: Vector3::zeros(),
-                tangent: Vector3::x(),
-                normal: Vector3::z(),
-            };
-            let spot = heads.spot(&pose, side);
-            let frame = CameraFrame::new(&spot, mount_rad, [0.0; 2], 0.0, 0.0);
-            walls(&frame, heads, &pose, side)
-        }
-    }
 }

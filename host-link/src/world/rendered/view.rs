@@ -1,11 +1,9 @@
 //! What truly stands before a camera at a strobe.
 
-use super::super::frame::CameraFrame;
 use super::super::{Machine, TrueSeam, TrueSeams};
 use crate::record::MachinePosition;
+use camera::{CameraFrame, walls};
 use config::machine::{CameraConfig, JointForm};
-use nalgebra::Vector3;
-use shared::geometry::Pose;
 use shared::io::SLIDES;
 use shared::tracking::frames::Heads;
 
@@ -120,22 +118,5 @@ impl Seen<'_> {
                 walls: walls(&self.frame, heads, &pose, self.side),
             },
         })
-    }
-}
-
-/// Slopes dn/du of skin and rib in the frame of a camera, that on the left of the seam first. The skin lies square to
-/// the plate's normal N and reaches out to where the head of `side` stands, the rib stands up along N.
-pub fn walls(frame: &CameraFrame, heads: &Heads, pose: &Pose, side: usize) -> [f64; 2] {
-    let head = -heads.spot(pose, side).v;
-    let out = head - pose.normal * head.dot(&pose.normal);
-    let slope = |wall: &Vector3<f64>| {
-        let [_, across, up] = frame.turned(wall);
-        (across, up / across)
-    };
-    let (skin, rib) = (slope(&out), slope(&pose.normal));
-    if skin.0 < rib.0 {
-        [skin.1, rib.1]
-    } else {
-        [rib.1, skin.1]
     }
 }

@@ -1,0 +1,127 @@
+//! A folder of pictures to calibrate from, and what is known of each.
+
+use crate::calibrate::CalibrateError;
+use crate::{Picture, read_grey};
+use config::table::{self, TableError};
+use std::path::{Path, PathBuf};
+
+/// Name of the list of pictures in a folder.
+pub const PICTURES: &str = "calibration.csv";
+
+/// A picture and N numbers known of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Known<const N: usize> {
+    /// Its file, for messages.
+    pub file: PathBuf,
+    /// The picture.
+    pub picture: Picture,
+    /// The numbers, in the order of their columns.
+    pub values: [f64; N],
+}
+
+impl Known<3> {
+    /// The same of a machine that stood still: it had gone 0 mm.
+    pub fn at_rest(self) -> Known<4> {
+        let [a, b, c] = self.values;
+        let (file, picture) = (self.file, self.picture);
+        let values = [a, b, c, 0.0];
+        Known {
+            file,
+            picture,
+            values,
+        }
+    }
+}
+
+/// The pictures of `folder`, with the numbers that its list has in `columns` after the file's name.
+pub fn read_pictures<const N: usize>(
+    folder: &Path,
+    columns: [&str; N],
+) -> Result<Vec<Known<N>>, CalibrateError> {
+    let list = folder.join(PICTURES);
+    let text = table::read(&list)?;
+    let known = |(file, values)| {
+        let file: PathBuf = folder.join(file);
+        let mut picture = Picture::default();
+        read_grey(&file, &mut picture)?;
+        Ok(Known {
+            file,
+            picture,
+            values,
+        })
+    };
+    let listed = parse(&list.display().to_string(), &text, columns)?;
+    listed.into_iter().map(known).collect()
+}
+
+/// Files and numbers of a list; `name` is used in messages only.
+fn parse<'a, const N: usize>(
+    name: &str,
+    text: &'a str,
+    columns: [&str; N],
+) -> Result<Vec<(&'a str, [f64; N])>, TableError> {
+    let mut lines = text.lines().enumerate();
+    let wanted = format!("file,{}", columns.join(","));
+    let header = lines.next().map_or("", |(_, line)| line.trim());
+    if header.split(',').map(str::trim).ne(wanted.split(',')) {
+        let path = name.to_owned();
+        return Err(TableError::Header {
+            path,
+            line: 1,
+            wanted,
+        });
+    }
+    let mut rows = Vec::new();
+    for (index, content) in lines.filter(|(_, line)| !line.trim().is_empty()) {
+        let (path, line) = (name.to_owned(), index + 1);
+        let mut cells = content.split(',').map(str::trim);
+        let file = cells.next().unwrap_or_default();
+        let numbers: Vec<&str> = cells.collect();
+        if numbers.len() != N {
+            return Err(TableError::Count {
+                path,
+                line,
+                found: numbers.len() + 1,
+                wanted: N + 1,
+            });
+        }
+        let mut values = [0.0; N];
+        for ((value, text), column) in values.iter_mut().zip(&numbers).zip(columns) {
+            let number = text.parse().ok().filter(|x: &f64| x.is_finite());
+            *value = number.ok_or_else(|| TableError::Number {
+                path: name.to_owned(),
+                line,
+                column: column.to_owned(),
+                text: (*text).to_owned(),
+            })?;
+        }
+        rows.push((file, values));
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::calibrate::pictures::*;
+
+    #[test]
+    fn a_list_has_a_file_and_its_numbers_a_row() {
+        let rows = parse(
+            "list",
+            "file, u_mm,v_mm\r\na.png, 0.1,-0.2\n\nb.png,0,1e-1\n",
+            ["u_mm", "v_mm"],
+        );
+        assert_eq!(rows.unwrap(), [("a.png", [0.1, -0.2]), ("b.png", [0.0, 0.1])]);
+    }
+
+    #[test]
+    fn a_wrong_list_is_named_by_its_line() {
+        let said = |text: &str| parse("list", text, ["u_mm"]).unwrap_err().to_string();
+        assert_eq!(said("file,v_mm\n"), "list, line 1: the header must be file,u_mm");
+        assert_eq!(said("file,u_mm\na.png\n"), "list, line 2: 1 values instead of 2");
+        assert_eq!(
+            said("file,u_mm\n\na.png,left\n"),
+            "list, line 3: \"left\" is not a finite number (u_mm)"
+        );
+    }
+}

@@ -1,0 +1,189 @@
+//! Draws into a picture what was measured in it.
+//!
+//! - yellow: the sharp band, its middle and how far it counts as sharp
+//! - green: both edges of the gap over the rows where they were read
+//! - red cross: middle of the gap, or the corner
+//! - cyan, thinner, dashed: the next best thing that may be the seam
+//! - white bar: 0.1 mm
+//! - frame: green where the seam may be used, red where not; bars at the lower or upper border: the work is too high or too low
+
+use crate::Picture;
+use crate::measure::canvas::{Canvas, Colour, Pen};
+use config::calibration::Calibration;
+use vision::{
+    Corner, CornerFeatures, EDGE_ROWS_MM, Form, GeometryError, Measured, Optics, PlateFeatures, PlateSeam,
+    Report, Second, Status,
+};
+
+const YELLOW: Colour = [255, 210, 0];
+const GREEN: Colour = [40, 230, 70];
+const RED: Colour = [255, 50, 50];
+const CYAN: Colour = [60, 220, 255];
+const WHITE: Colour = [255; 3];
+const BLACK: Colour = [0; 3];
+
+/// Length of the scale bar \[mm\].
+const BAR_MM: f64 = 0.1;
+
+/// Half the size of the cross \[pixels of the picture\].
+const CROSS: f64 = 9.0;
+
+/// Draws `report` into `picture`, each pixel as `enlarged` × `enlarged`.
+pub fn draw(
+    picture: &Picture,
+    report: &Report,
+    calibration: &Calibration,
+    enlarged: usize,
+) -> Result<Canvas, GeometryError> {
+    let mut canvas = Canvas::new(picture, enlarged);
+    let optics = &calibration.optics;
+    if let Some(measured) = &report.measured {
+        // Depth z at which the energy of the texture has fallen to a third, as rows: z = (row − band) · tan α.
+        let sharp_mm = calibration.profile.fine_mm * measured.focus.exp() / optics.tilt_rad.tan();
+        let band = Band {
+            columns: optics.columns as f64,
+            sharp: sharp_mm / optics.object_pixel_mm(),
+        };
+        match measured.form {
+            Form::Gap => gap(&mut canvas, measured, optics, &band)?,
+            Form::Corner => corner(&mut canvas, measured, optics, &band),
+        }
+    }
+    let (bottom, right) = (optics.rows as f64 - 1.0, optics.columns as f64 - 1.0);
+    let beyond = match report.status {
+        Status::TooHigh => Some(bottom),
+        Status::TooLow => Some(0.0),
+        _ => None,
+    };
+    if let Some(row) = beyond {
+        canvas.line([row, 0.2 * right], [row, 0.8 * right], Pen::new(YELLOW, 24.0));
+    }
+    scale_bar(&mut canvas, optics);
+    canvas.frame(if report.seam().is_some() { GREEN } else { RED }, 3);
+    Ok(canvas)
+}
+
+/// The sharp band: how long it is, and how many rows beside its middle count as sharp.
+struct Band {
+    columns: f64,
+    sharp: f64,
+}
+
+impl Band {
+    /// Draws its middle, and its borders fainter.
+    fn draw(&self, canvas: &mut Canvas, middle: &[[f64; 2]]) {
+        canvas.lines(middle, Pen::new(YELLOW, 1.5).faint(0.8));
+        for side in [-self.sharp, self.sharp] {
+            let border: Vec<_> = middle.iter().map(|[row, column]| [row + side, *column]).collect();
+            canvas.lines(&border, Pen::new(YELLOW, 1.0).faint(0.7).dashed(10.0));
+        }
+    }
+}
+
+fn gap(canvas: &mut Canvas, measured: &Measured, optics: &Optics, band: &Band) -> Result<(), GeometryError> {
+    let seen = measured.sigma.lateral_mm.is_finite();
+    let seam = PlateSeam {
+        height_mm: measured.plate_height_mm(),
+        pitch: 0.0,
+        roll: measured.roll,
+        lateral_mm: measured.lateral_on_axis_mm(),
+        yaw_rad: measured.yaw_rad,
+        width_mm: measured.width_mm,
+    };
+    let features = seam.features(optics)?;
+    let step = step_rows(measured, optics);
+    let middle = features.seam[1];
+    let ends = [0.0, middle, middle, band.columns - 1.0];
+    let rows = [-step, -step, step, step];
+    let line: Vec<_> = ends
+        .iter()
+        .zip(rows)
+        .map(|(column, step)| [row_on(&features, optics, *column) + step / 2.0, *column])
+        .collect();
+    // Without a gap there is no step that could be seen.
+    let whole = [line[0], line[3]];
+    band.draw(canvas, if seen { &line } else { &whole });
+    let g = optics.object_pixel_mm();
+    if let Some(second) = measured.second {
+        draw_second(canvas, &features, optics, &second);
+    }
+    if seen {
+        let reach = EDGE_ROWS_MM / g;
+        for column in features.edges {
+            let row = row_on(&features, optics, column);
+            edge(
+                canvas,
+                [row, column],
+                features.edge_slope,
+                reach,
+                Pen::new(GREEN, 1.5),
+            );
+        }
+        cross(canvas, features.seam);
+    }
+    Ok(())
+}
+
+fn corner(canvas: &mut Canvas, measured: &Measured, optics: &Optics, band: &Band) {
+    let features: CornerFeatures = Corner {
+        height_mm: measured.height_mm,
+        lateral_mm: measured.lateral_mm,
+        walls: measured.walls,
+    }
+    .features(optics);
+    let [row, column] = features.vertex;
+    let [left, right] = features.band_slopes;
+    let last = band.columns - 1.0;
+    let ends = [
+        [row - left * column, 0.0],
+        features.vertex,
+        [row + right * (last - column), last],
+    ];
+    band.draw(canvas, &ends);
+    cross(canvas, features.vertex);
+}
+
+/// Row of the band at a column.
+fn row_on(features: &PlateFeatures, optics: &Optics, column: f64) -> f64 {
+    features.band_row + features.band_slope * (column - optics.centre()[1])
+}
+
+/// Rows by which the band is higher on the right of the gap.
+fn step_rows(measured: &Measured, optics: &Optics) -> f64 {
+    measured.step_mm / (optics.tilt_rad.sin() * optics.object_pixel_mm())
+}
+
+/// The next best thing, over the same rows.
+fn draw_second(canvas: &mut Canvas, features: &PlateFeatures, optics: &Optics, second: &Second) {
+    let g = optics.object_pixel_mm();
+    let middle = optics.centre()[1] + second.lateral_mm / g;
+    for side in [-0.5, 0.5] {
+        let column = middle + side * second.width_mm / g;
+        let place = [row_on(features, optics, column), column];
+        let pen = Pen::new(CYAN, 1.0).dashed(5.0);
+        edge(canvas, place, features.edge_slope, EDGE_ROWS_MM / g, pen);
+    }
+}
+
+/// A line through `place` that gains `slope` columns a row, `reach` rows up and down.
+fn edge(canvas: &mut Canvas, [row, column]: [f64; 2], slope: f64, reach: f64, pen: Pen) {
+    let end = |rows: f64| [row + rows, column + slope * rows];
+    canvas.line(end(-reach), end(reach), pen);
+}
+
+fn cross(canvas: &mut Canvas, [row, column]: [f64; 2]) {
+    for [down, right] in [[CROSS, 0.0], [0.0, CROSS]] {
+        let from = [row - down, column - right];
+        let to = [row + down, column + right];
+        canvas.line(from, to, Pen::new(BLACK, 3.5).faint(0.6));
+        canvas.line(from, to, Pen::new(RED, 1.5));
+    }
+}
+
+fn scale_bar(canvas: &mut Canvas, optics: &Optics) {
+    let length = BAR_MM / optics.object_pixel_mm();
+    let (row, column) = (optics.rows as f64 - 10.0, 10.0);
+    let end = column + length;
+    canvas.line([row, column - 1.0], [row, end + 1.0], Pen::new(BLACK, 8.0));
+    canvas.line([row, column], [row, end], Pen::new(WHITE, 4.0));
+}

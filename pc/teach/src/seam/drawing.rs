@@ -1,0 +1,34 @@
+//! What machine and drawing say of a lesson.
+
+use crate::seam::Cameras;
+use config::machine::TrackingUnit;
+use nalgebra::Vector3;
+use shared::parameter::ParameterError;
+
+/// What is drawn of the seam: the planes in which it begins and ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawing {
+    /// Where the seams begin, and the direction of travel.
+    pub begin: (Vector3<f64>, Vector3<f64>),
+    /// The same where they end.
+    pub end: (Vector3<f64>, Vector3<f64>),
+    /// Length of the weld \[mm\].
+    pub length_mm: f64,
+}
+
+impl Cameras {
+    /// Those of a machine.
+    ///
+    /// # Errors
+    /// Names the parameter of the heads that makes no sense.
+    pub fn of(unit: &TrackingUnit) -> Result<Self, ParameterError> {
+        Ok(Self {
+            heads: unit.board.head.build()?,
+            mount: unit.cameras.mount_deg.map(f64::to_radians),
+            travel_mm: std::array::from_fn(|i| {
+                let slide = &unit.board.slides[i];
+                (slide.travel_min_mm, slide.travel_max_mm)
+            }),
+        })
+    }
+}

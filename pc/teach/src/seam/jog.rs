@@ -1,0 +1,295 @@
+//! Teaching by hand: the operator says moves and what to take, a line each.
+
+use crate::seam::follow::{Centred, SAME_PLACE, take};
+use crate::seam::{Ended, Follower, Rig, SeamPoint, SeamTeachError, Stance, View};
+use nalgebra::Vector3;
+use shared::geometry::{Pose, rotate};
+use shared::io::SIDES;
+
+/// What may be said.
+pub const JOG_WORDS: &str = "\
+x y z DISTANCE     moves along an axis of the work [mm]
+a b c ANGLE        turns the head about the tip [deg]
+across up along D  moves by the head: to the left of travel, away from the work, ahead [mm]
+u1 v1 u2 v2 D      moves a slide of one side, v toward the work [mm]
+step [D]           goes on along the seam, by D [mm] or by the spacing rule
+centre             brings both seams to the middle of their bands
+search             looks for them around here
+take               takes this point down
+undo               takes the last point out again
+look               tells what the cameras see
+done               ends";
+
+/// Largest move and turn at once \[mm\], \[deg\].
+const FARTHEST: f64 = 100.0;
+const WIDEST: f64 = 15.0;
+
+/// An operator who teaches by hand.
+pub trait Hand: Rig {
+    /// The next line that the operator says; `None` when there are no more.
+    fn line(&mut self) -> Result<Option<String>, Self::Error>;
+
+    /// Tells the operator something.
+    fn say(&mut self, text: &str);
+
+    /// The last point does not count; `points` are those that stay.
+    fn untaught(&mut self, points: &[SeamPoint]) -> Result<(), Self::Error>;
+
+    /// Whether `error` means that the machine has not moved, and can be asked for something else.
+    fn is_refusal(&self, error: &Self::Error) -> bool;
+}
+
+/// A line that the operator said.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Jog {
+    /// To move along X, Y or Z \[mm\].
+    Axis(usize, f64),
+    /// To turn about A, B or C \[rad\].
+    Turn(usize, f64),
+    /// To move by the head: across, up or along \[mm\].
+    Head(usize, f64),
+    /// To move a slide \[mm\].
+    Slide(usize, f64),
+    /// To go on along the seam \[mm\].
+    Step(Option<f64>),
+    /// To centre both seams.
+    Centre,
+    /// To search them.
+    Search,
+    /// To take the point down.
+    Take,
+    /// To take the last one out.
+    Undo,
+    /// To tell what is seen.
+    Look,
+    /// To end.
+    Done,
+}
+
+impl Jog {
+    /// What `line` means; what is wrong with it otherwise.
+    pub fn parse(line: &str) -> Result<Self, String> {
+        let mut words = line.split_whitespace();
+        let Some(word) = words.next() else {
+            return Ok(Self::Look);
+        };
+        let value = words.next();
+        if let Some(rest) = words.next() {
+            return Err(format!("{rest} is too much: a word and a number"));
+        }
+        let number = |most: f64, unit: &str| -> Result<f64, String> {
+            let text = value.ok_or_else(|| format!("{word} needs a number [{unit}]"))?;
+            let number: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
+            if number.abs() <= most {
+                Ok(number)
+            } else {
+                Err(format!("{number} {unit} is more than {most} {unit} at once"))
+            }
+        };
+        let place = |names: &[&str]| names.iter().position(|name| *name == word);
+        if let Some(axis) = place(&["x", "y", "z"]) {
+            return Ok(Self::Axis(axis, number(FARTHEST, "mm")?));
+        }
+        if let Some(axis) = place(&["a", "b", "c"]) {
+            return Ok(Self::Turn(axis, number(WIDEST, "deg")?.to_radians()));
+        }
+        if let Some(way) = place(&["across", "up", "along"]) {
+            return Ok(Self::Head(way, number(FARTHEST, "mm")?));
+        }
+        if let Some(slide) = place(&["u1", "v1", "u2", "v2"]) {
+            return Ok(Self::Slide(slide, number(FARTHEST, "mm")?));
+        }
+        if word == "step" {
+            let by = value.map(|_| number(FARTHEST, "mm")).transpose()?;
+            return Ok(Self::Step(by));
+        }
+        if let Some(value) = value {
+            return Err(format!("{word} takes no number, not {value}"));
+        }
+        match word {
+            "centre" | "center" => Ok(Self::Centre),
+            "search" => Ok(Self::Search),
+            "take" => Ok(Self::Take),
+            "undo" => Ok(Self::Undo),
+            "look" => Ok(Self::Look),
+            "done" => Ok(Self::Done),
+            _ => Err(format!("{word} means nothing here\n{JOG_WORDS}")),
+        }
+    }
+
+    /// Where a move leads from `stance`; `None` if it is no move of machine or slides.
+    fn moved(self, stance: &Stance) -> Option<Stance> {
+        let Pose {
+            position,
+            tangent,
+            normal,
+        } = stance.pose;
+        let pose = match self {
+            Self::Axis(axis, by) => Pose {
+                position: position + Vector3::ith(axis, by),
+                ..stance.pose
+            },
+            Self::Head(way, by) => Pose {
+                position: position + [normal.cross(&tangent), normal, tangent][way] * by,
+                ..stance.pose
+            },
+            Self::Turn(axis, by) => {
+                let heading = libm::atan2(tangent.y, tangent.x);
+                let about = [
+                    tangent,
+                    Vector3::new(-libm::sin(heading), libm::cos(heading), 0.0),
+                    Vector3::z(),
+                ][axis];
+                Pose {
+                    position,
+                    tangent: rotate(&about, by, &tangent),
+                    normal: rotate(&about, by, &normal),
+                }
+            }
+            Self::Slide(slide, by) => {
+                let mut there = *stance;
+                there.slides_mm[slide] += by;
+                return Some(there);
+            }
+            Self::Step(_)
+            | Self::Centre
+            | Self::Search
+            | Self::Take
+            | Self::Undo
+            | Self::Look
+            | Self::Done => {
+                return None;
+            }
+        };
+        Some(Stance { pose, ..*stance })
+    }
+}
+
+impl Follower<'_> {
+    /// Lets the operator teach by hand from `start` on, or from the last of the `points` that are taught already.
+    pub fn jog<R: Hand>(
+        &self,
+        rig: &mut R,
+        start: &Stance,
+        points: &[SeamPoint],
+    ) -> Result<Ended, SeamTeachError<R::Error>> {
+        let mut points = points.to_vec();
+        let mut stance = self.start(start, &points);
+        rig.approach(&stance)?;
+        self.tell(rig)?;
+        while let Some(line) = rig.line()? {
+            let jog = match Jog::parse(&line) {
+                Ok(Jog::Done) => break,
+                Ok(jog) => jog,
+                Err(wrong) => {
+                    rig.say(&wrong);
+                    continue;
+                }
+            };
+            match self.obey(rig, jog, &stance, &mut points) {
+                Ok(there) => stance = there,
+                Err(SeamTeachError::Machine(error)) if rig.is_refusal(&error) => rig.say(&error.to_string()),
+                Err(SeamTeachError::Machine(error)) => return Err(error.into()),
+                Err(not_found @ SeamTeachError::NotFound(_)) => {
+                    rig.go(&stance)?;
+                    rig.say(&not_found.to_string());
+                }
+            }
+        }
+        Ok(Ended::Operator)
+    }
+
+    /// Does what the operator says; where the machine stands then.
+    fn obey<R: Hand>(
+        &self,
+        rig: &mut R,
+        jog: Jog,
+        stance: &Stance,
+        points: &mut Vec<SeamPoint>,
+    ) -> Result<Stance, SeamTeachError<R::Error>> {
+        if let Some(there) = jog.moved(stance) {
+            rig.go(&there)?;
+            self.tell(rig)?;
+            return Ok(there);
+        }
+        let there = match jog {
+            Jog::Step(by) => {
+                let Some(there) = self.stepped(stance, points, by) else {
+                    rig.say("step goes on after the last point that is taken, and there is none yet");
+                    return Ok(*stance);
+                };
+                rig.go(&there)?;
+                there
+            }
+            Jog::Search => self.find(rig, stance)?.stance,
+            Jog::Centre => match self.centre(rig, stance)?.both() {
+                Some(centred) => centred.stance,
+                None => {
+                    rig.say("both seams have to be seen to be centred: move nearer, or say search");
+                    *stance
+                }
+            },
+            Jog::Take => {
+                let view = self.look(rig)?;
+                let [Some(first), Some(second)] = self.feet(&view) else {
+                    rig.say("both seams have to be seen to be taken");
+                    return Ok(*stance);
+                };
+                let here = Centred {
+                    stance: *stance,
+                    feet: [first, second],
+                };
+                let middle = (first.position + second.position) / 2.0;
+                let behind = |last: &SeamPoint| (middle - last.middle()).dot(&view.pose.tangent) < SAME_PLACE;
+                if points.last().is_some_and(behind) {
+                    rig.say("this is not beyond the last point: step goes on, undo takes the last one out");
+                    return Ok(*stance);
+                }
+                take(rig, points, &here)?;
+                let s_mm = points.last().map_or(0.0, |point| point.s_mm);
+                rig.say(&format!("point {} at s {s_mm:.2} mm", points.len()));
+                return Ok(*stance);
+            }
+            Jog::Undo => {
+                match points.pop() {
+                    Some(_) => rig.untaught(points)?,
+                    None => rig.say("no point is taken"),
+                }
+                rig.say(&format!("{} points", points.len()));
+                return Ok(*stance);
+            }
+            _ => *stance,
+        };
+        self.tell(rig)?;
+        Ok(there)
+    }
+
+    /// Tells the operator what the cameras see.
+    fn tell<R: Hand>(&self, rig: &mut R) -> Result<(), R::Error> {
+        let view = self.look(rig)?;
+        let text = described(&view);
+        rig.say(&text);
+        Ok(())
+    }
+}
+
+/// A line for the operator.
+fn described(view: &View) -> String {
+    let sides = (0..SIDES).map(|k| match view.sides[k] {
+        None => format!("side {}: no seam", k + 1),
+        Some(seen) => {
+            let [u, v] = seen.offset_mm;
+            let width = seen
+                .width_mm
+                .map_or_else(String::new, |w| format!(", gap {w:.3} mm"));
+            format!(
+                "side {}: U {u:+.3} V {v:+.3} mm{width}, quality {:.2}",
+                k + 1,
+                seen.quality
+            )
+        }
+    });
+    let p = view.pose.position;
+    let sides: Vec<String> = sides.collect();
+    format!("X{:.2} Y{:.2} Z{:.2}  {}", p.x, p.y, p.z, sides.join("; "))
+}
