@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// Longest machine \[bytes\].
 const LONGEST: usize = 1024;
 
-/// The part of a machine file that is read here; the rest is host-link's.
+/// The part of a machine file that is read here; the rest is seamwright's.
 #[derive(Deserialize)]
 struct Document {
     kinematics: KinematicsConfig,

@@ -43,7 +43,7 @@ pub struct Options {
 /// Environment variables by which a test is told what to boot, in the order of [`Options`].
 pub const BOOT_VARIABLES: [&str; 3] = ["SEAMWRIGHT_MOTION", "SEAMWRIGHT_TRACKER", "SEAMWRIGHT_PACE"];
 
-/// Environment variables by which a test is told the programs it runs: host-link and xtask.
+/// Environment variables by which a test is told the programs it runs: seamwright and xtask.
 pub const PROGRAM_VARIABLES: [&str; 2] = ["SEAMWRIGHT_HOST_LINK", "SEAMWRIGHT_XTASK"];
 
 impl Options {

@@ -8,11 +8,11 @@ use thiserror::Error;
 
 /// Environment variable with the path of the session file.
 pub const SESSION_VARIABLE: &str = "SEAMWRIGHT_EMULATOR";
-/// Environment variable with the machine file that host-link takes where none is told.
+/// Environment variable with the machine file that seamwright takes where none is told.
 pub const MACHINE_VARIABLE: &str = "SEAMWRIGHT_MACHINE";
-/// Environment variable with the job that host-link takes where none is told.
+/// Environment variable with the job that seamwright takes where none is told.
 pub const JOB_VARIABLE: &str = "SEAMWRIGHT_JOB";
-/// Environment variable with the seam that host-link takes where none is told.
+/// Environment variable with the seam that seamwright takes where none is told.
 pub const SEAM_VARIABLE: &str = "SEAMWRIGHT_SEAM";
 
 /// Where a board answers.

@@ -2,14 +2,14 @@
 //! programs changes what machines do: `true-positions` before it and after it has to print the same.
 
 use config::machine::JointForm;
-use host_link::boards::simulated::SimulatedBoards;
 use host_link::boards::{Boards, LinkError};
 use host_link::pass_on;
-use host_link::weld::Ended;
-use host_link::world::SceneFile;
+use report::Ended;
 use shared::protocol::{Datagram, Role};
 use std::time::Duration;
 use system_tests::{JOBS, shipped_seam, weld, weld_job, weld_through_pictures};
+use world::SceneFile;
+use world::simulated::SimulatedBoards;
 
 /// Speed of the seam welds \[m/min\].
 const SPEED: f64 = 5.0;

@@ -3,7 +3,7 @@
 use crate::prediction::run_heard;
 use crate::{assert_welded, machine, shipped_seam, with_weld};
 use host_link::boards::{Boards, command};
-use host_link::weld::Ended;
+use report::Ended;
 use shared::motion::State;
 use shared::protocol::{MotionSample, Request, Role};
 

@@ -10,16 +10,19 @@ pub use hold::assert_held_weld_goes_on;
 pub use pictures::{assert_stops_in_the_dark, weld_disturbed, weld_through_pictures};
 pub use words::{Fate, Meddled, meddled};
 
+use ::job::{Job, JobError, Names, Progress, Work};
 use config::machine::MachineFile;
 use host_link::boards::Boards;
-use host_link::part::PartFile;
-use host_link::report::Report;
-use host_link::seam::Deviation;
-use host_link::weld::{Ended, Job, Names, Surroundings, Work};
 use nc::{Options, Program, interpret};
+use parts::PartFile;
+use report::Ended;
+use report::Report;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use world::Deviation;
+use world::Surroundings;
 
 /// The shipped program, relative to the root of the workspace.
 pub const PROGRAM: &str = "programs/t-seam-400.ngc";
@@ -116,13 +119,13 @@ fn with_job<R>(
     speed_m_per_min: Option<f64>,
     act: impl FnOnce(&Job) -> R,
 ) -> R {
-    act(&job(&machine(), program, seam, speed_m_per_min))
+    act(&job(&machine(), program, with_seam(seam), speed_m_per_min))
 }
 
 fn job<'a>(
     machine: &'a MachineFile,
     program: &'a Program,
-    seam: Option<Deviation>,
+    surroundings: Surroundings,
     speed_m_per_min: Option<f64>,
 ) -> Job<'a> {
     Job {
@@ -134,14 +137,33 @@ fn job<'a>(
         names: Names {
             program: PROGRAM.into(),
             machine: MACHINE.into(),
-            seam: seam.as_ref().map(|_| "seam".into()),
+            seam: surroundings.seam.as_ref().map(|_| "seam".into()),
             boards: "test".into(),
         },
-        surroundings: Surroundings {
-            seam: seam.map(Rc::new),
-            ..Surroundings::default()
-        },
+        surroundings: surroundings.into(),
     }
+}
+
+/// Surroundings with nothing but a seam, which is seen by geometry.
+fn with_seam(seam: Option<Deviation>) -> Surroundings {
+    Surroundings {
+        seam: seam.map(Arc::new),
+        ..Surroundings::default()
+    }
+}
+
+/// Does a job and judges it.
+///
+/// # Errors
+/// As [`job::run`].
+pub fn run(
+    boards: &mut dyn Boards,
+    job: &Job,
+    interrupted: &AtomicBool,
+    progress: &mut dyn Progress,
+) -> Result<Ended, JobError> {
+    let record = ::job::run(boards, job, interrupted, progress)?;
+    Ok(report::ended(job, record))
 }
 
 /// The machines without a tracker and their shipped jobs.
@@ -169,7 +191,7 @@ pub fn weld_job(boards: &mut dyn Boards, machine: &str, job: &str) -> Ended {
         part: part.as_ref(),
         speed_m_per_min: None,
         from_line: None,
-        surroundings: Default::default(),
+        surroundings: Surroundings::default().into(),
         names: Names {
             program: job.into(),
             machine: machine.into(),

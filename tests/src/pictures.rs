@@ -1,12 +1,13 @@
 //! The shipped weld by what cameras see in rendered pictures.
 
-use crate::{MACHINE, job, machine, prediction, program, shipped, shipped_seam};
+use crate::{MACHINE, job, machine, prediction, program, shipped, shipped_seam, with_seam};
 use config::machine::{JointForm, MachineFile};
 use host_link::boards::Boards;
-use host_link::weld::{CameraChoice, Ended, ImageCameras, JobError, PictureSource};
-use host_link::world::{Dark, SceneFile};
+use job::{ImageCameras, JobError};
+use report::Ended;
 use shared::io::SIDES;
 use shared::tracking::TrackerFault;
+use world::{CameraChoice, Dark, PictureChoice, SceneFile, Surroundings};
 
 /// Where the light of side 2 fails \[mm\], and how far the map may reach beyond what was seen last.
 const DARK_FROM_MM: f64 = 200.0;
@@ -46,13 +47,17 @@ pub fn weld_through_pictures(
     let cameras = &machine.tracking.as_ref().expect("a tracker").cameras;
     let images = ImageCameras {
         calibrations: std::array::from_fn(|side| cameras.nominal(side)),
-        source: PictureSource::Rendered(scene),
         kept: None,
     };
     let program = program();
-    let mut job = job(&machine, &program, Some(shipped_seam()), Some(speed_m_per_min));
-    job.surroundings.cameras = CameraChoice::Images(Box::new(images));
-    prediction::run(boards, &job)
+    let surroundings = Surroundings {
+        cameras: CameraChoice::Images(Box::new(images), PictureChoice::Rendered(scene)),
+        ..with_seam(Some(shipped_seam()))
+    };
+    prediction::run(
+        boards,
+        &job(&machine, &program, surroundings, Some(speed_m_per_min)),
+    )
 }
 
 /// The same with spatter, scratches, roll, lost and late pictures and a dark spell, as the shipped scene tells.

@@ -4,8 +4,10 @@ use cam::dry_run;
 use cam::dry_run::DryRun;
 use cam::path::Planner;
 use host_link::boards::{Boards, Overheard};
-use host_link::weld::{self, Ended, Job, Silent, Work};
+use job;
+use job::{Job, Silent, Work};
 use nc::Program;
+use report::Ended;
 use shared::protocol::MotionSample;
 use shared::units::MM_S_PER_M_MIN;
 use std::sync::atomic::AtomicBool;
@@ -35,11 +37,11 @@ pub fn run_heard(
     hear: impl FnMut(&mut dyn Boards, &MotionSample),
 ) -> Ended {
     let mut overheard = Overheard { boards, hear };
-    weld::run(&mut overheard, job, &AtomicBool::new(false), &mut Silent)
+    crate::run(&mut overheard, job, &AtomicBool::new(false), &mut Silent)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What `host-link dry-run` does.
+/// What `seamwright dry-run` does.
 fn dry_run(job: &Job, program: &Program) -> DryRun {
     let machine = job.machine;
     let speed = job.speed_m_per_min.map(|m_min| m_min * MM_S_PER_M_MIN);

@@ -1,16 +1,20 @@
 //! An operator who says anything at any time, and what has become of the weld.
 
 use config::machine::MachineFile;
-use host_link::boards::simulated::SimulatedBoards;
 use host_link::boards::{Boards, Overheard};
-use host_link::weld::{self, Ended, Job, JobError, Names, Progress, Surroundings, Word, Work};
+use job;
+use job::{Job, JobError, Names, Progress, Word, Work};
 use nc::{Options, interpret};
+use report::Ended;
 use shared::io::SIDES;
 use shared::protocol::MotionSample;
 use std::cell::RefCell;
 use std::fmt::Write;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use world::Surroundings;
+use world::simulated::SimulatedBoards;
 
 /// A machine that welds a straight line along X.
 #[derive(Clone, Copy)]
@@ -202,9 +206,10 @@ pub fn meddled(seed: u64) -> Meddled {
             boards: "simulated".into(),
         },
         surroundings: Surroundings {
-            seam: of.tracks.then(|| Rc::new(crate::seam(crate::sines))),
+            seam: of.tracks.then(|| Arc::new(crate::seam(crate::sines))),
             ..Surroundings::default()
-        },
+        }
+        .into(),
     };
     let words_left = 1 + random.below(14);
     let hand = Rc::new(RefCell::new(Hand {
@@ -236,7 +241,7 @@ pub fn meddled(seed: u64) -> Meddled {
             }
         },
     };
-    let ended = weld::run(&mut overheard, &job, &interrupted, &mut operator);
+    let ended = crate::run(&mut overheard, &job, &interrupted, &mut operator);
     let ended = ended.unwrap_or_else(|error| panic!("{error}"));
     let overlap = machine.motion.beams.iter().flatten().map(|beam| beam.overlap_mm);
     let overlap_mm = overlap.fold(0.0, f64::max);

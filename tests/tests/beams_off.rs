@@ -1,11 +1,11 @@
 //! From a fault to beams off, at 9 m/min, by the plant's beams and at moments of every phase of both boards' ticks.
 
 use host_link::boards::Boards;
-use host_link::boards::simulated::{SimulatedBoards, Trouble};
 use shared::io::SIDES;
 use shared::protocol::{Request, Response, Role};
 use std::slice::Iter;
 use system_tests::fuzz::{Message, Said, Session};
+use world::simulated::{SimulatedBoards, Trouble};
 
 /// Servo tick of the motion board, control tick of the tracker board, and their time on the network, one way \[µs\].
 const SERVO_US: u64 = 250;

@@ -1,10 +1,10 @@
 //! The shipped job through pictures, on simulated boards: accuracy, disturbances, a light that fails, the same bytes.
 
 use config::machine::JointForm;
-use host_link::boards::simulated::SimulatedBoards;
-use host_link::weld::Ended;
-use host_link::world::SceneFile;
+use report::Ended;
 use system_tests::{assert_on_seam, assert_stops_in_the_dark, weld_disturbed, weld_through_pictures};
+use world::SceneFile;
+use world::simulated::SimulatedBoards;
 
 fn weld(speed_m_per_min: f64) -> Ended {
     weld_through_pictures(

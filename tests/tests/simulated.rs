@@ -1,13 +1,13 @@
 //! The shipped job and other seams on simulated boards: accuracy, the report's fields, the same bytes in every
 //! run.
 
-use host_link::boards::simulated::SimulatedBoards;
-use host_link::seam::Deviation;
-use host_link::weld::Ended;
+use report::Ended;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use system_tests::{assert_held_weld_goes_on, assert_on_seam, kinks, seam, shipped_seam, sines, slopes};
+use world::Deviation;
+use world::simulated::SimulatedBoards;
 
 fn weld(seam: Deviation, speed_m_per_min: f64) -> Ended {
     system_tests::weld(&mut SimulatedBoards::default(), seam, speed_m_per_min)
@@ -17,7 +17,7 @@ fn weld(seam: Deviation, speed_m_per_min: f64) -> Ended {
 fn report_files(ended: &Ended, name: &str) -> BTreeMap<String, Vec<u8>> {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
-    host_link::report::write(&folder, &ended.report, &ended.evaluation, &ended.plots).expect("a report");
+    report::write(&folder, &ended.report, &ended.evaluation, &ended.plots).expect("a report");
     let files = std::fs::read_dir(&folder).expect("the report's folder");
     files
         .map(|file| {

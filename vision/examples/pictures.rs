@@ -1,4 +1,4 @@
-//! Writes rendered pictures to try `host-link measure` on:
+//! Writes rendered pictures to try `seamwright measure` on:
 //! `cargo run --release -p seamwright-vision --example pictures -- FOLDER`.
 
 use std::path::Path;

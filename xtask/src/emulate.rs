@@ -70,7 +70,7 @@ pub fn run(rate: f64, machine: String) -> Result<ExitCode> {
         session.tracker.requests(),
         session.tracker.datagrams()
     );
-    println!("for host-link in another terminal:");
+    println!("for seamwright in another terminal:");
     println!("    export {SESSION_VARIABLE}={}", session_file.display());
     println!("Ctrl-C ends them.");
     while interrupts.count() == 0 {

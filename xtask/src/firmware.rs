@@ -99,8 +99,8 @@ pub fn build_pace() -> Result<PathBuf> {
 }
 
 /// Builds the PC's program; returns it.
-pub fn build_host_link() -> Result<PathBuf> {
-    eprintln!("building host-link");
-    cargo::run(&["build", "--quiet", "--package", "host-link", "--release"])?;
-    Ok(target_directory()?.join("release").join("host-link"))
+pub fn build_seamwright() -> Result<PathBuf> {
+    eprintln!("building seamwright");
+    cargo::run(&["build", "--quiet", "--package", "seamwright", "--release"])?;
+    Ok(target_directory()?.join("release").join("seamwright"))
 }

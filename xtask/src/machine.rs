@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use std::path::Path;
 
-/// Name of the machine of `file`: that of its kinematics. Whether the rest of the file makes sense is host-link's to
+/// Name of the machine of `file`: that of its kinematics. Whether the rest of the file makes sense is seamwright's to
 /// judge.
 pub fn name(file: &Path) -> Result<String> {
     let text = std::fs::read_to_string(file)

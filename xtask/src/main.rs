@@ -36,10 +36,10 @@ struct Arguments {
 enum Task {
     /// Install what is missing: the Arm target of Rust, QEMU, Aravis
     Setup,
-    /// Weld on two emulated boards: set up, build, boot, and run `host-link weld` with the flags given
+    /// Weld on two emulated boards: set up, build, boot, and run `seamwright weld` with the flags given
     #[command(disable_help_flag = true)]
     Weld {
-        /// Flags of `host-link weld`; the machine defaults to the dual-beam gantry, the job to that of the machine
+        /// Flags of `seamwright weld`; the machine defaults to the dual-beam gantry, the job to that of the machine
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         flags: Vec<String>,
     },

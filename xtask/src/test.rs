@@ -56,11 +56,11 @@ pub fn run() -> Result<ExitCode> {
     ])?;
     tally.test("tests of the host", host);
     tally.check("lints with real cameras", || {
-        let clippy = ["clippy", "--quiet", "--package", "host-link", "--all-targets"];
+        let clippy = ["clippy", "--quiet", "--package", "seamwright", "--all-targets"];
         cargo::run(&[&clippy[..], &CAMERAS, &["--", "-D", "warnings"]].concat())
     });
     let cameras = [
-        &["test", "--package", "host-link", "--test", "aravis"][..],
+        &["test", "--package", "seamwright", "--test", "aravis"][..],
         &CAMERAS,
     ]
     .concat();
@@ -136,7 +136,7 @@ fn emulated_tests() -> Result<Command> {
     command.envs(
         PROGRAM_VARIABLES
             .into_iter()
-            .zip([firmware::build_host_link()?, xtask]),
+            .zip([firmware::build_seamwright()?, xtask]),
     );
     Ok(command)
 }

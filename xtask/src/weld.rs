@@ -1,9 +1,9 @@
-//! `host-link weld` on two emulated boards. Whatever is told on the command line is host-link's to judge; this
+//! `seamwright weld` on two emulated boards. Whatever is told on the command line is seamwright's to judge; this
 //! adds only what is not told.
 
 use crate::cargo::root;
 use crate::emulate::{self, Running};
-use crate::firmware::build_host_link;
+use crate::firmware::build_seamwright;
 use crate::interrupt::Interrupts;
 use crate::machine;
 use crate::setup::{self, Tool};
@@ -29,14 +29,14 @@ const JOBS: [(&str, &str); 5] = [
 /// The real seams of the dual-beam gantry's job.
 const SEAM: &str = "programs/t-seam-400-deviation.csv";
 
-/// Runs host-link with `flags` and the defaults; gives back its exit code. `set_up` installs what is missing.
+/// Runs seamwright with `flags` and the defaults; gives back its exit code. `set_up` installs what is missing.
 pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) -> Result<ExitCode> {
     let told = Told::from(flags);
     let emulated = !told.help && told.boards.as_deref().is_none_or(|boards| boards == "emulated");
     if emulated {
         set_up(&setup::EMULATION)?;
     }
-    let host_link = build_host_link()?;
+    let host_link = build_seamwright()?;
     let interrupts = Interrupts::watch()?;
     let mut running = match told.machine_name() {
         Some(machine) if emulated => Some(emulate::boot(rate, machine)?),
@@ -48,7 +48,7 @@ pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) 
     if let Some(Running { session_file, .. }) = &running {
         command.env(SESSION_VARIABLE, session_file);
     }
-    let mut child = command.spawn().context("cannot run host-link")?;
+    let mut child = command.spawn().context("cannot run seamwright")?;
     let status = wait(&mut child, &interrupts, running.as_mut())?;
     if let Some(Running { boards, .. }) = &mut running {
         boards.check()?;
@@ -59,12 +59,12 @@ pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) 
         .map_or(ExitCode::FAILURE, ExitCode::from))
 }
 
-/// Waits for host-link, and passes every request to end on to it: it stops the machine, this ends the boards.
+/// Waits for seamwright, and passes every request to end on to it: it stops the machine, this ends the boards.
 fn wait(child: &mut Child, interrupts: &Interrupts, mut running: Option<&mut Running>) -> Result<ExitStatus> {
     let pid = Pid::from_raw(i32::try_from(child.id()).context("a process number too large")?);
     let mut passed = 0;
     loop {
-        if let Some(status) = child.try_wait().context("cannot wait for host-link")? {
+        if let Some(status) = child.try_wait().context("cannot wait for seamwright")? {
             return Ok(status);
         }
         while passed < interrupts.count() {
@@ -73,7 +73,7 @@ fn wait(child: &mut Child, interrupts: &Interrupts, mut running: Option<&mut Run
             let _ = kill(pid, Signal::SIGINT);
         }
         if let Some(error) = running.as_mut().and_then(|running| running.boards.check().err()) {
-            // host-link finds the connection lost and ends in its own way; the reason is known here only.
+            // seamwright finds the connection lost and ends in its own way; the reason is known here only.
             eprintln!("error: {error}");
             running = None;
         }
@@ -107,7 +107,7 @@ impl Told {
         }
     }
 
-    /// Name of the machine; of a file that does not tell it none, which host-link will refuse in its own words.
+    /// Name of the machine; of a file that does not tell it none, which seamwright will refuse in its own words.
     fn machine_name(&self) -> Option<String> {
         match &self.machine {
             None => Some(DEFAULT_MACHINE.to_owned()),
@@ -115,7 +115,7 @@ impl Told {
         }
     }
 
-    /// What host-link shall take where its command line says nothing: machine, and job and seam of that machine.
+    /// What seamwright shall take where its command line says nothing: machine, and job and seam of that machine.
     fn defaults(&self) -> Vec<(&'static str, String)> {
         let machine = self.machine_name().unwrap_or_else(|| DEFAULT_MACHINE.to_owned());
         let mut defaults = vec![(

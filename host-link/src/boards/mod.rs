@@ -3,7 +3,6 @@
 mod network;
 mod overheard;
 mod pass_on;
-pub mod simulated;
 
 pub use network::{Endpoint, NetworkBoards, Patience};
 pub use overheard::Overheard;
@@ -161,28 +160,4 @@ pub enum LinkError {
         /// Which board.
         role: Role,
     },
-    /// Simulated boards have no plant of that name.
-    #[error("no plant is known for a machine called {machine}: it runs on real boards only")]
-    NoPlant {
-        /// Name of its kinematics.
-        machine: String,
-    },
-    /// The emulated boards run another machine.
-    #[error(
-        "the emulated boards are wired to a {wired}, but the machine file describes a {wanted}; boot others by `cargo xtask emulate --machine FILE`"
-    )]
-    WrongMachine {
-        /// What they run.
-        wired: String,
-        /// The kinematics of the machine file.
-        wanted: &'static str,
-    },
-    /// No emulated boards on this machine.
-    #[error(
-        "no emulated boards are running: use `cargo xtask weld`, or `cargo xtask emulate` in another terminal"
-    )]
-    NoEmulator,
-    /// The session file of the emulated boards cannot be used.
-    #[error("the emulated boards cannot be found: {0}; start them by `cargo xtask emulate`")]
-    BadSession(#[from] emulator::SessionError),
 }

@@ -124,7 +124,7 @@ fn running_sum(values: impl Iterator<Item = f64>) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use crate::curve::*;
+    use super::*;
 
     #[test]
     fn a_circle_by_length_runs_at_unit_speed() {

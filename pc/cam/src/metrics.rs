@@ -169,7 +169,7 @@ pub fn contour_error(measured: &[Vector3<f64>], path: &[Vector3<f64>]) -> Result
 
 #[cfg(test)]
 mod tests {
-    use crate::metrics::*;
+    use super::*;
 
     #[test]
     fn errors_of_coordinates_contain_timing_and_the_contour_error_does_not() {

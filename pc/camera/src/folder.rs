@@ -133,7 +133,7 @@ fn parse(name: &str, folder: &Path, text: &str) -> Result<Vec<Recorded>, TableEr
 
 #[cfg(test)]
 mod tests {
-    use crate::folder::*;
+    use super::*;
 
     fn said(text: &str) -> String {
         let error = parse("a/captures.csv", Path::new("a"), text).expect_err("refused");

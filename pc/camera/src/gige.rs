@@ -3,11 +3,11 @@
 use crate::{Camera, CameraError};
 pub use config::gige::GigeConfig;
 use config::machine::CameraConfig;
-use std::rc::Rc;
+use std::sync::Arc;
 use vision::Optics;
 
 /// Opens the camera of a side (0 or 1); the tracker board must not strobe yet.
-pub type OpenCamera = Rc<dyn Fn(usize) -> Result<Box<dyn Camera>, CameraError>>;
+pub type OpenCamera = Arc<dyn Fn(usize) -> Result<Box<dyn Camera>, CameraError> + Send + Sync>;
 
 /// What opens the real cameras of a machine.
 ///
@@ -20,7 +20,7 @@ pub fn real(config: &CameraConfig) -> Result<OpenCamera, CameraError> {
 
 #[cfg(feature = "aravis")]
 fn opener(gige: GigeConfig, optics: Optics) -> Result<OpenCamera, CameraError> {
-    Ok(Rc::new(move |side| {
+    Ok(Arc::new(move |side| {
         let camera = crate::GigeCamera::open(&gige.devices[side], &gige, optics.rows, optics.columns)?;
         Ok(Box::new(camera))
     }))

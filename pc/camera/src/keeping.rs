@@ -108,7 +108,7 @@ impl Camera for Keeping {
 
 #[cfg(test)]
 mod tests {
-    use crate::keeping::*;
+    use super::*;
 
     fn picture(capture: u32) -> Picture {
         Picture {

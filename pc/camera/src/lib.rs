@@ -118,7 +118,7 @@ pub enum CameraError {
     NotTold,
     /// This program cannot talk to cameras.
     #[error(
-        "camera {camera} cannot be opened: this host-link was built without GigE Vision; build it with `--features aravis`"
+        "camera {camera} cannot be opened: this seamwright was built without GigE Vision; build it with `--features aravis`"
     )]
     NotBuilt {
         /// The camera as it was told.

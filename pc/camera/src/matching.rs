@@ -122,7 +122,7 @@ fn steps(last: u64, id: u64) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use crate::matching::*;
+    use super::*;
 
     const PERIOD_US: u64 = 5_000;
 

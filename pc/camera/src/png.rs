@@ -146,7 +146,7 @@ fn kind(colour: ColorType, depth: BitDepth) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::png::*;
+    use super::*;
 
     fn picture(rows: usize, columns: usize) -> Picture {
         Picture {

@@ -63,7 +63,7 @@ fn holds_pictures(folder: &Path, list: &Path) -> std::io::Result<bool> {
 
 #[cfg(test)]
 mod tests {
-    use crate::recorder::*;
+    use super::*;
     use crate::{Arrival, Camera, Folder};
     use std::time::Duration;
 

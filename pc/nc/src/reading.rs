@@ -8,7 +8,7 @@ use super::source::{Lines, Source};
 use std::collections::VecDeque;
 use std::fmt;
 use std::fs::File;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Blocks of a path that are kept.
 pub const KEPT: usize = 1024;
@@ -47,7 +47,7 @@ pub(super) fn read(source: &Source, options: Options, kept: usize) -> Result<Pro
             options,
             offset,
             line,
-            state: Rc::new(state),
+            state: Arc::new(state),
         });
     }
     reader.end()
@@ -64,7 +64,7 @@ pub struct Rest {
     offset: u64,
     line: u32,
     /// As it is there.
-    state: Rc<Interpreter>,
+    state: Arc<Interpreter>,
 }
 
 impl fmt::Debug for Rest {
@@ -84,7 +84,7 @@ impl ProgramPath {
     ///
     /// # Errors
     /// What keeps the program from being read again; it is not as it was then.
-    pub fn moves(self: &Rc<Self>) -> impl Iterator<Item = Result<Move, NcError>> + use<> {
+    pub fn moves(self: &Arc<Self>) -> impl Iterator<Item = Result<Move, NcError>> + use<> {
         let path = self.clone();
         let kept = (0..self.kept_count()).map(move |index| Ok(path.kept(index)));
         let rest = self.rest.as_ref().map(Again::new);

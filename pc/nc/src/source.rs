@@ -1,10 +1,9 @@
 //! Where the text of a program is, to be read line by line any number of times.
 
-use std::cell::RefCell;
 use std::fs::File;
 use std::hash::{DefaultHasher, Hasher};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Bytes of a file that are compared at once.
 pub(super) const CHUNK: usize = 1 << 16;
@@ -15,9 +14,9 @@ const KEPT: u64 = 1 << 20;
 #[derive(Clone, Debug)]
 pub(super) enum Source {
     /// In memory.
-    Text(Rc<[u8]>),
+    Text(Arc<[u8]>),
     /// In a file, which stays open: another file of its name is another program.
-    File(Rc<Checked>),
+    File(Arc<Checked>),
 }
 
 impl Source {
@@ -25,7 +24,7 @@ impl Source {
     pub(super) fn of(mut file: File) -> io::Result<Self> {
         let about = file.metadata()?;
         if about.is_file() && about.len() > KEPT {
-            return Ok(Self::File(Rc::new(Checked::new(file))));
+            return Ok(Self::File(Arc::new(Checked::new(file))));
         }
         let mut text = Vec::new();
         file.read_to_end(&mut text)?;
@@ -34,7 +33,7 @@ impl Source {
 
     /// The lines after `offset` bytes.
     pub(super) fn lines(&self, offset: u64) -> Lines {
-        let text: Box<dyn BufRead> = match self {
+        let text: Box<dyn BufRead + Send> = match self {
             Self::Text(text) => {
                 let mut cursor = io::Cursor::new(text.clone());
                 cursor.set_position(offset);
@@ -51,7 +50,7 @@ impl Source {
 
 /// Lines one after the other.
 pub(super) struct Lines {
-    text: Box<dyn BufRead>,
+    text: Box<dyn BufRead + Send>,
     /// Bytes before the next line.
     pub(super) offset: u64,
 }
@@ -80,19 +79,20 @@ impl Lines {
 #[derive(Debug)]
 pub(super) struct Checked {
     file: File,
-    /// Of every chunk that has been read.
-    digests: RefCell<Vec<u64>>,
+    /// Of every chunk that has been read. Whoever reads holds them: the place in the file is one.
+    digests: Mutex<Vec<u64>>,
 }
 
 impl Checked {
     /// A file that nothing has been read of.
     pub(super) fn new(file: File) -> Self {
-        let digests = RefCell::default();
+        let digests = Mutex::default();
         Self { file, digests }
     }
 
     /// The bytes of a chunk, fewer at the end of the file. The first time through they are read in order.
     fn chunk(&self, index: usize) -> io::Result<Vec<u8>> {
+        let mut digests = self.digests.lock().unwrap_or_else(PoisonError::into_inner);
         let mut file = &self.file;
         file.seek(SeekFrom::Start((index * CHUNK) as u64))?;
         let mut chunk = Vec::with_capacity(CHUNK);
@@ -100,7 +100,6 @@ impl Checked {
         let mut hasher = DefaultHasher::new();
         hasher.write(&chunk);
         let digest = hasher.finish();
-        let mut digests = self.digests.borrow_mut();
         match digests.get(index) {
             Some(before) if *before != digest => Err(io::Error::other(
                 "the file has changed since it was checked; begin again with the new one",
@@ -116,7 +115,7 @@ impl Checked {
 
 /// A file from a place of its own.
 struct ReadAt {
-    file: Rc<Checked>,
+    file: Arc<Checked>,
     at: u64,
 }
 

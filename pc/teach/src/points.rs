@@ -85,7 +85,7 @@ pub fn write_points(points: &[TaughtPoint]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::points::*;
+    use super::*;
 
     #[test]
     fn points_come_back_as_they_were_written() {

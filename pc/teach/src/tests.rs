@@ -4,8 +4,8 @@ mod loops;
 mod probe;
 mod rings;
 
+use super::*;
 use crate::ring::{DIRECTIONS, NEIGHBOURS};
-use crate::*;
 use nalgebra::Vector3;
 use shared::geometry::angle;
 use vision::render::SplitMix64;

@@ -5,11 +5,11 @@ use super::judge::Judge;
 use super::random::{Random, mutate};
 use super::wire::Wire;
 use host_link::boards::Boards;
-use host_link::boards::simulated::SimulatedBoards;
 use shared::protocol::framing::{MAX_MESSAGE, decode_datagram, decode_message};
 use shared::protocol::{Request, Role, SCHEMA_HASH};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
+use world::simulated::SimulatedBoards;
 
 /// Messages of a case.
 const MESSAGES: usize = 96;

@@ -4,7 +4,6 @@ use super::random::Random;
 use super::wire::Wire;
 use crate::{JOBS, MACHINE, assert_held_weld_goes_on, shipped, shipped_seam, weld, weld_job};
 use config::machine::MachineFile;
-use host_link::boards::simulated::SimulatedBoards;
 use host_link::boards::{Boards, LinkError};
 use host_link::pass_on;
 use shared::geometry::PoseOffset;
@@ -12,6 +11,7 @@ use shared::io::SLIDES;
 use shared::motion::MotionConfig;
 use shared::protocol::{Datagram, Request, Response, Role};
 use shared::tracking::TrackerConfig;
+use world::simulated::SimulatedBoards;
 
 /// Moments of a job at which its boards are kept.
 const MOMENTS: usize = 24;

@@ -2,8 +2,8 @@
 
 use emulator::{INSTRUCTIONS_PER_US, Options, PROGRAM_VARIABLES, SESSION_VARIABLE, bound_to_parent};
 use host_link::boards::{Boards, NetworkBoards, Patience};
-use host_link::report::Report;
 use plant::DEFAULT_MACHINE;
+use report::Report;
 use shared::motion::State;
 use shared::protocol::{MotionStatus, Request, Response, Role, TrackerStatus};
 use shared::tracking::TrackerState;
@@ -48,7 +48,7 @@ impl Pair {
             .unwrap_or_else(|error| panic!("{error}"))
     }
 
-    /// `host-link weld` with the shipped job on these boards.
+    /// `seamwright weld` with the shipped job on these boards.
     pub fn host_link(&self, seam: Option<&Path>) -> Command {
         let mut command = bound_to_parent(program(PROGRAM_VARIABLES[0]));
         command
@@ -63,7 +63,7 @@ impl Pair {
         command
     }
 
-    /// Where host-link leaves its report.
+    /// Where seamwright leaves its report.
     pub fn report(&self) -> PathBuf {
         self.folder.join("report")
     }

@@ -5,7 +5,7 @@ use crate::pair::{Pair, program, scratch, status};
 use crate::process::{Process, runs, wait_until};
 use emulator::PROGRAM_VARIABLES;
 use host_link::boards::Boards;
-use host_link::weld::JobError;
+use job::JobError;
 use nix::sys::signal::Signal;
 use serde_json::Value;
 use shared::motion::{Fault, State};
@@ -144,7 +144,7 @@ fn xtask_leaves_no_process_whether_it_is_asked_to_end_or_killed() {
         let mut xtask = Process::start(xtask_weld());
         xtask.wait_for("searching reference marks");
         let started = xtask.descendants();
-        assert!(started.len() >= 3, "two boards and host-link: {started:?}");
+        assert!(started.len() >= 3, "two boards and seamwright: {started:?}");
         xtask.signal(signal);
         let (status, said) = xtask.end();
         match signal {

@@ -3,13 +3,13 @@
 use crate::pair::{Pair, assert_served};
 use config::machine::JointForm;
 use host_link::boards::Boards;
-use host_link::boards::simulated::SimulatedBoards;
-use host_link::weld::Ended;
-use host_link::world::SceneFile;
+use report::Ended;
 use system_tests::{
     assert_held_weld_goes_on, assert_on_seam, assert_stops_in_the_dark, deviations, seam, short_lines, sines,
     weld, weld_disturbed, weld_through_pictures,
 };
+use world::SceneFile;
+use world::simulated::SimulatedBoards;
 
 /// Does `job` on emulated and on simulated boards: no spot is ever further than `limit_mm` from its seam, and both agree.
 fn assert_welds(name: &str, limit_mm: f64, job: impl Fn(&mut dyn Boards) -> Ended) {

@@ -2,7 +2,7 @@
 
 use super::file::{Golden, near, near_all, number, vector};
 use super::kinematics::machine;
-use host_link::plan::{
+use parts::plan::{
     LocateError, Location, Polyline, SeamPlace, closest_approach, locate, locate_symmetric, slide_extension,
 };
 use serde_json::Value;

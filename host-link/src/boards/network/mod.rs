@@ -6,7 +6,7 @@ mod stream;
 #[cfg(test)]
 mod tests;
 
-use super::{Absence, Boards, LinkError};
+use crate::boards::{Absence, Boards, LinkError};
 use attention::Attention;
 use connection::Connection;
 use shared::protocol::framing;
@@ -44,15 +44,6 @@ impl Endpoint {
             host: host.to_owned(),
             request_port: REQUEST_PORT,
             datagram_port: DATAGRAM_PORT,
-        }
-    }
-
-    /// An emulated board.
-    fn emulated(board: emulator::Endpoint) -> Self {
-        Self {
-            host: board.host.to_string(),
-            request_port: board.tcp,
-            datagram_port: board.udp,
         }
     }
 
@@ -100,8 +91,8 @@ pub struct NetworkBoards {
     incoming: Receiver<Incoming>,
     bad: Arc<AtomicU32>,
     began: Instant,
-    /// Of emulated boards.
-    pace: Option<emulator::Pace>,
+    /// See [`Self::paced_by`].
+    handled: Option<Box<dyn Fn() + Send>>,
     /// Set by whoever wants the machine to stop.
     interrupted: Arc<AtomicBool>,
     /// The motion board was told to, while an answer was waited for.
@@ -143,7 +134,7 @@ impl NetworkBoards {
             incoming,
             bad,
             began: Instant::now(),
-            pace: None,
+            handled: None,
             interrupted: Arc::default(),
             stopped: false,
             attention: Attention::new(),
@@ -156,39 +147,19 @@ impl NetworkBoards {
         Self { interrupted, ..self }
     }
 
-    /// Connects to emulated boards, and takes part in their pace: they wait while this program has no
-    /// processor. There are always two; the tracker board is left alone unless it is `tracked`.
-    ///
-    /// # Errors
-    /// As [`NetworkBoards::connect`], or [`LinkError::BadSession`] if the boards' page cannot be opened.
-    pub fn emulated(
-        session: &emulator::Session,
-        tracked: bool,
-        patience: Patience,
-    ) -> Result<Self, LinkError> {
-        let target = session.path_states_to;
-        let tracker = Endpoint::emulated(session.tracker);
-        let boards = Self::connect(
-            &Endpoint::emulated(session.motion),
-            tracked.then_some(&tracker),
-            Some((target.host.octets(), target.udp)),
-            patience,
-        )?;
-        let pace = emulator::Pace::join(&session.pace).map_err(|source| emulator::SessionError::File {
-            path: session.pace.clone(),
-            source,
-        })?;
-        Ok(Self {
-            pace: Some(pace),
-            ..boards
-        })
+    /// `handled` is called whenever everything that the boards sent has been taken and this program is about to wait or to ask:
+    /// emulated boards, which wait while this program has no processor, are told so.
+    #[must_use]
+    pub fn paced_by(self, handled: impl Fn() + Send + 'static) -> Self {
+        Self {
+            handled: Some(Box::new(handled)),
+            ..self
+        }
     }
 
-    /// Tells emulated boards that everything they sent was handled. Where that fails they do not wait, which
-    /// costs accuracy on a busy computer and nothing else.
     fn keep_pace(&self) {
-        if let Some(pace) = &self.pace {
-            let _ = pace.handled();
+        if let Some(handled) = &self.handled {
+            handled();
         }
     }
 

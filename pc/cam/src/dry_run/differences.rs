@@ -41,7 +41,7 @@ impl Differences {
 
 #[cfg(test)]
 mod tests {
-    use crate::dry_run::differences::*;
+    use super::*;
 
     #[test]
     fn differences_of_a_cubic_are_its_rates_half_an_order_of_ticks_earlier() {

@@ -93,7 +93,7 @@ pub struct Trace {
 
 #[cfg(test)]
 mod tests {
-    use crate::dry_run::trace::*;
+    use super::*;
 
     #[test]
     fn a_machine_that_stands_leaves_what_its_ticks_would() {

@@ -131,8 +131,8 @@ fn span(from: &Knot, to: &Knot, channel: usize) -> Cubic {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::path::SpeedStep;
-    use crate::path::elements::*;
     use crate::path::shape;
     use nc::{Motion, Place};
     use shared::trajectory::PathSpace;

@@ -7,7 +7,7 @@ use nc::{Motion, Program, Way};
 use shared::io::{AXES, SIDES};
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{CHANNELS, Element, PathSpace, ReferenceError, axes_at};
-use std::rc::Rc;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// The axes are followed in steps of this \[mm\], or degrees where the tip stands.
@@ -289,7 +289,7 @@ fn tracking_at(path: &PlannedPath, s: f64) -> Option<bool> {
 /// A line in the middle of a NURBS is none of its own.
 fn check_whole(program: &Program, line: u32) -> Result<(), FromLineError> {
     for path in &program.paths {
-        for next in Rc::new(path.clone()).moves() {
+        for next in Arc::new(path.clone()).moves() {
             let target = next.map_err(PathError::from)?.target;
             let begins = target.place.line;
             if let Way::Nurbs(curve) = &target.way

@@ -13,7 +13,7 @@ use nc::{Motion, PathControl, Place, ProgramPath, Target, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
 use shared::trajectory::PathSpace;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// A rotary axis stands where it should, to this much \[rad\]: below what anything resolves, and above what the
 /// figures of a program are rounded to, where its tip decides how an axis stands.
@@ -113,9 +113,9 @@ impl Planner {
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
         if path.motion == Motion::Feed && !self.tracks && !self.is_smooth(path, stand)? {
-            let path = Rc::new(path.clone());
+            let path = Arc::new(path.clone());
             let again = move || -> Moves { Box::new(path.moves().map(|next| next.map_err(PathError::from))) };
-            return Ok(vec![self.exact_path(Rc::new(again), stand, speed_mm_s)?]);
+            return Ok(vec![self.exact_path(Arc::new(again), stand, speed_mm_s)?]);
         }
         let tips = self.tips(path, stand)?;
         let feeds = Feeds::of(path, speed_mm_s)?;

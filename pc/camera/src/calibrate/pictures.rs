@@ -102,7 +102,7 @@ fn parse<'a, const N: usize>(
 
 #[cfg(test)]
 mod tests {
-    use crate::calibrate::pictures::*;
+    use super::*;
 
     #[test]
     fn a_list_has_a_file_and_its_numbers_a_row() {

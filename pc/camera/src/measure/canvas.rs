@@ -141,7 +141,7 @@ impl Canvas {
 
 #[cfg(test)]
 mod tests {
-    use crate::measure::canvas::*;
+    use super::*;
 
     const RED: Colour = [255, 0, 0];
 

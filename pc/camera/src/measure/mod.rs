@@ -1,4 +1,4 @@
-//! Measures pictures by themselves, away from a machine: what `host-link measure` does.
+//! Measures pictures by themselves, away from a machine: what `seamwright measure` does.
 
 mod canvas;
 mod overlay;

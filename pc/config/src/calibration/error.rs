@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum CalibrationError {
     /// The file cannot be read.
-    #[error("cannot read calibration {path}: {source}; `host-link calibrate` writes one")]
+    #[error("cannot read calibration {path}: {source}; `seamwright calibrate` writes one")]
     Read {
         /// The file.
         path: String,

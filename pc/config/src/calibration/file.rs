@@ -12,7 +12,7 @@ const UM_PER_MM: f64 = 1e3;
 const DECIMALS: f64 = 1e9;
 
 /// Says at the head of a file what it is.
-const HEAD: &str = "# Calibration of one camera. Written by `host-link calibrate`; what it cannot measure \
+const HEAD: &str = "# Calibration of one camera. Written by `seamwright calibrate`; what it cannot measure \
 comes from the machine file.\n\n";
 
 /// Lens and sensor of a camera, as files have them.

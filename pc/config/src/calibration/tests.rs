@@ -224,5 +224,5 @@ fn a_missing_file_says_how_to_make_one() {
         error.starts_with("cannot read calibration none.toml: "),
         "{error}"
     );
-    assert!(error.ends_with("; `host-link calibrate` writes one"), "{error}");
+    assert!(error.ends_with("; `seamwright calibrate` writes one"), "{error}");
 }

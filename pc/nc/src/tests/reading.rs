@@ -6,7 +6,7 @@ use super::*;
 use std::fmt::Write;
 use std::fs::File;
 use std::path::Path;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Every kind of word that lasts from block to block, on three long paths.
 fn long() -> String {
@@ -37,14 +37,14 @@ fn long() -> String {
 }
 
 fn in_file(name: &Path) -> Source {
-    Source::File(Rc::new(Checked::new(File::open(name).unwrap())))
+    Source::File(Arc::new(Checked::new(File::open(name).unwrap())))
 }
 
 fn all(program: &Program) -> Vec<(Motion, f64, Vec<Move>)> {
     let paths = program.paths.iter();
     paths
         .map(|path| {
-            let moves = Rc::new(path.clone()).moves().map(Result::unwrap).collect();
+            let moves = Arc::new(path.clone()).moves().map(Result::unwrap).collect();
             (path.motion, path.dwell_before_s, moves)
         })
         .collect()
@@ -83,7 +83,7 @@ fn a_file_is_read_as_a_text() {
         3
     );
     // Two at once, from one file.
-    let paths: Vec<_> = program.paths.iter().cloned().map(Rc::new).collect();
+    let paths: Vec<_> = program.paths.iter().cloned().map(Arc::new).collect();
     let mut pair: Vec<_> = paths
         .iter()
         .filter(|path| path.rest.is_some())
@@ -131,7 +131,7 @@ fn a_file_that_changes_is_an_error_and_gives_no_other_block() {
         let name = std::env::temp_dir().join(format!("changed-{}.ngc", std::process::id()));
         std::fs::write(&name, &text).unwrap();
         let program = read(&in_file(&name), Options::default(), KEPT).unwrap();
-        let path = Rc::new(program.paths[1].clone());
+        let path = Arc::new(program.paths[1].clone());
         let before: Vec<_> = path.moves().map(Result::unwrap).collect();
         assert_eq!(before.len(), 20_000);
         std::fs::write(&name, changed).unwrap();

@@ -37,7 +37,7 @@ pub struct Head {
 impl Head {
     fn text(&self) -> String {
         format!(
-            "# Both seams at the feet of a rib, as host-link teach saw them.\n\
+            "# Both seams at the feet of a rib, as seamwright teach saw them.\n\
              # machine: {}\n\
              # part: {}\n\
              # A row a point and side: place and normal of the skin in the frame of the work, width of the gap (0: not\n\
@@ -345,7 +345,7 @@ fn read_foot(row: &Row<13>) -> Result<Foot, &'static str> {
 
 #[cfg(test)]
 mod tests {
-    use crate::seam::file::*;
+    use super::*;
 
     fn head() -> Head {
         Head {

@@ -1,6 +1,6 @@
 //! The search for a radius.
 
-use crate::tests::*;
+use super::*;
 use std::convert::Infallible;
 use std::io;
 

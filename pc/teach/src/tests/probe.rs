@@ -1,6 +1,6 @@
 //! Readings of the probe, and normals from them.
 
-use crate::tests::*;
+use super::*;
 use config::probe::{Probe, ProbeConfig, RangingError, Reading, Refused};
 
 fn probe() -> Probe {

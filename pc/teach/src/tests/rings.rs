@@ -1,6 +1,6 @@
 //! Normal, curvature and warnings of one ring.
 
-use crate::tests::*;
+use super::*;
 
 #[test]
 fn second_order_does_not_disturb_the_normal_and_its_curvature_is_found() {

@@ -1,4 +1,4 @@
-use crate::dry_run::*;
+use super::*;
 use nc::{Motion, Options, interpret};
 use std::path::Path;
 

@@ -20,11 +20,11 @@ use shared::protocol::PathEvent;
 use shared::trajectory::{Element, PathSpace, SpeedLimits};
 use std::collections::VecDeque;
 use std::fmt;
-use std::rc::Rc;
+use std::sync::Arc;
 use walk::Walk;
 
 /// Moves one after the other, as the program has them.
-pub(super) type Moves = Box<dyn Iterator<Item = Result<Move, PathError>>>;
+pub(super) type Moves = Box<dyn Iterator<Item = Result<Move, PathError>> + Send>;
 
 /// An element, and what happens on it.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,8 +38,8 @@ pub struct Leg {
 /// Blocks from rest to rest: how to come by them, and what was seen of them when they were checked.
 #[derive(Clone)]
 pub struct Blocks {
-    planner: Rc<Planner>,
-    moves: Rc<dyn Fn() -> Moves>,
+    planner: Arc<Planner>,
+    moves: Arc<dyn Fn() -> Moves + Send + Sync>,
     from: Stand,
     feeds: Feeds,
     summary: Summary,
@@ -59,11 +59,11 @@ impl Planner {
     /// then at its end. `speed_mm_s` replaces the programmed feed.
     pub(super) fn exact_path(
         &self,
-        moves: Rc<dyn Fn() -> Moves>,
+        moves: Arc<dyn Fn() -> Moves + Send + Sync>,
         stand: &mut Stand,
         speed_mm_s: Option<f64>,
     ) -> Result<PlannedPath, PathError> {
-        let planner = Rc::new(self.clone());
+        let planner = Arc::new(self.clone());
         let feeds = Feeds::replaced_by(speed_mm_s);
         let mut check = Check::new(&planner, stand);
         for step in Walk::new(planner.clone(), moves(), stand, feeds) {
@@ -123,7 +123,7 @@ impl Blocks {
 }
 
 struct Legs {
-    planner: Rc<Planner>,
+    planner: Arc<Planner>,
     walk: Walk,
     waiting: VecDeque<Leg>,
     /// Where the next leg begins \[mm\].

@@ -10,7 +10,7 @@ use nc::{Move, PathControl};
 use shared::geometry::angle;
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{Element, Join, Tolerance};
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// A block of a path, and how it goes on.
 pub(super) struct Step {
@@ -85,7 +85,7 @@ fn blend(p: Option<f64>) -> f64 {
 
 /// The blocks of a path, one ahead.
 pub(super) struct Walk {
-    planner: Rc<Planner>,
+    planner: Arc<Planner>,
     moves: Moves,
     feeds: Feeds,
     tip: Tip,
@@ -96,7 +96,7 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    pub(super) fn new(planner: Rc<Planner>, moves: Moves, from: &Stand, feeds: Feeds) -> Self {
+    pub(super) fn new(planner: Arc<Planner>, moves: Moves, from: &Stand, feeds: Feeds) -> Self {
         Self {
             planner,
             moves,

@@ -1,6 +1,6 @@
 //! Paths with arcs: how exact they are, where they stop, and which arcs there are not.
 
-use crate::path::tests::*;
+use super::*;
 use nc::Motion;
 use shared::protocol::PathAction;
 use shared::trajectory::Join;

@@ -1,6 +1,6 @@
 //! Blocks that are followed exactly: the elements that the motion board is given.
 
-use crate::path::tests::*;
+use super::*;
 use shared::geometry::nurbs::{Curve, Nurbs};
 use shared::trajectory::{CHANNELS, Element, Join, Shape};
 

@@ -1,6 +1,6 @@
 //! G61, G61.1, G64 P and G93; planes and turns of arcs.
 
-use crate::path::tests::*;
+use super::*;
 
 /// The tip along a path of the tool, in steps of 0.05 mm.
 pub(super) fn tips(path: &PlannedPath) -> Vec<Vector3<f64>> {

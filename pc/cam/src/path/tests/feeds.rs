@@ -1,6 +1,6 @@
 //! Several feeds on one path.
 
-use crate::path::tests::*;
+use super::*;
 
 /// Changes of the speed of a path: where, and mm/s.
 fn steps(path: &PlannedPath) -> Vec<(f64, f64)> {

@@ -1,6 +1,6 @@
 //! What differs from machine to machine: words, turns, poles, and moves of the axes.
 
-use crate::path::tests::*;
+use super::*;
 use shared::trajectory::PathSpace;
 
 const PIPE: &str = "G43.4\nG0 X100 Y0 Z240 B0 C0\nG0 X40 Y0 Z100 B60 C0\n";

@@ -8,7 +8,7 @@ mod machines;
 mod nurbs;
 mod outputs;
 
-use crate::path::*;
+use super::*;
 use nalgebra::Vector3;
 use nc::{Options, Place, interpret};
 use shared::geometry::{angle, interpolate};

@@ -1,6 +1,6 @@
 //! What the words for outputs and spindle do to the paths that the boards run.
 
-use crate::path::tests::*;
+use super::*;
 use nc::Motion;
 use shared::protocol::PathAction;
 use shared::trajectory::PathSpace;

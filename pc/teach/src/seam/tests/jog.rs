@@ -1,6 +1,6 @@
 //! An operator who teaches by hand.
 
-use crate::seam::tests::*;
+use super::*;
 
 /// Farther out the machine refuses to go \[mm\].
 const REACH: f64 = 850.0;

@@ -3,8 +3,8 @@
 
 mod jog;
 
+use super::*;
 use crate::seam::course::Local;
-use crate::seam::*;
 use nalgebra::Vector3;
 use shared::geometry::{Pose, angle};
 use shared::io::SLIDES;

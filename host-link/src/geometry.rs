@@ -1,0 +1,85 @@
+//! Where the tool really is.
+
+use crate::record::MachinePosition;
+use shared::geometry::Pose;
+use shared::io::AXES;
+use shared::kinematics::Kinematics;
+use shared::motion::MotionConfig;
+use shared::parameter::ParameterError;
+
+/// Geometry of the machine as it really is.
+#[derive(Clone, Debug)]
+pub struct MachineGeometry {
+    kinematics: Kinematics,
+    /// Cross positions of X1 and X2 \[mm\], where X is a gantry.
+    beam_mm: Option<[f64; 2]>,
+}
+
+impl MachineGeometry {
+    /// Builds the geometry; errors name the parameter.
+    pub fn build(motion: &MotionConfig) -> Result<Self, ParameterError> {
+        Ok(Self {
+            kinematics: motion.kinematics()?,
+            beam_mm: motion.gantry.as_ref().map(|gantry| [gantry.y1_mm, gantry.y2_mm]),
+        })
+    }
+
+    /// Kinematics of the machine.
+    pub fn kinematics(&self) -> &Kinematics {
+        &self.kinematics
+    }
+
+    /// Where the axes stand (mm, rad). The ram of a gantry hangs on the beam between X1 and X2 (SPEC 0.10).
+    pub fn axes(&self, position: &MachinePosition) -> [f64; AXES] {
+        match *position {
+            MachinePosition::Axes(axes) => axes,
+            MachinePosition::Motors([x1, x2, y, z, a, b, c]) => {
+                let across = self.beam_mm.map_or(0.0, |[y1, y2]| (y - y1) / (y2 - y1));
+                [x1 + (x2 - x1) * across, y, z, a, b, c]
+            }
+        }
+    }
+
+    /// Pose of the tool, in the frame of the work.
+    pub fn pose(&self, position: &MachinePosition) -> Pose {
+        self.kinematics.forward(&self.axes(position))
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+    use shared::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
+
+    impl MachineGeometry {
+        /// Axes that realise a pose.
+        pub(crate) fn inverse(&self, pose: &Pose) -> [f64; shared::io::AXES] {
+            self.kinematics.inverse(pose, &[0.0; shared::io::AXES]).unwrap()
+        }
+    }
+
+    pub(crate) fn machine() -> MachineGeometry {
+        MachineGeometry {
+            kinematics: KinematicsConfig::DualBeamGantry(DualBeamConfig {
+                o1_mm: [0.0, 0.0, -120.0],
+                o2_mm: [0.0, 0.0, -80.0],
+                o3_mm: [0.0, 0.0, -450.0],
+            })
+            .build(&[AxisLimits::NOT_FITTED; shared::io::AXES])
+            .unwrap(),
+            beam_mm: Some([-250.0, 3250.0]),
+        }
+    }
+
+    #[test]
+    fn a_crooked_gantry_moves_the_ram_by_its_share() {
+        let machine = machine();
+        let square = MachinePosition::Motors([500.0, 500.0, 1500.0, 800.0, 0.1, 0.05, -0.2]);
+        let crooked = MachinePosition::Motors([500.0, 500.7, 1500.0, 800.0, 0.1, 0.05, -0.2]);
+        let moved = machine.pose(&crooked).position - machine.pose(&square).position;
+        assert!((moved - Vector3::new(0.35, 0.0, 0.0)).norm() < 1e-12);
+        let axes = MachinePosition::Axes([500.0, 1500.0, 800.0, 0.1, 0.05, -0.2]);
+        assert_eq!(machine.pose(&axes), machine.pose(&square));
+    }
+}

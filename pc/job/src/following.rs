@@ -1,0 +1,232 @@
+//! A path while the motion board runs it: the rest of it is given, and the machine is watched.
+
+use crate::feeding::{EndedBlock, Feeding};
+use crate::session::{Session, on_path};
+use crate::{JobError, Word, recentring};
+use shared::motion::State;
+use shared::protocol::{MotionSample, MotionStatus, Request, Role};
+
+/// A machine that shall move and does not for so long never will \[s\]; far longer than a queue runs dry.
+const STANDSTILL_S: u32 = 10;
+/// A path tick is a millisecond.
+const TICKS_PER_S: u32 = 1000;
+
+/// What the operator is told of a hold that nobody asked for.
+const TOO_SLOW: &str = "held: the feed is too low for the beam; raise it, then Enter goes on";
+
+/// A place on the path is reached, to this much \[mm\]; and what is slower stands \[mm/s\].
+const REACHED: f64 = 1e-3;
+const STILL: f64 = 1e-6;
+
+/// Runs a path of `length_mm` that has been begun as `id` to its end, and gives the rest of it meanwhile; in single
+/// block the operator is asked after every block of the program.
+pub(super) fn follow(
+    session: &mut Session,
+    mut feeding: Feeding,
+    length_mm: f64,
+    id: u32,
+) -> Result<(), JobError> {
+    session.command(Role::Motion, &Request::Run)?;
+    session.refresh()?;
+    let begun = session.tick();
+    let mut welding = false;
+    let mut advance = Advance::new(&session.motion);
+    // Line of the next block, while the machine waits before that.
+    let mut waits: Option<u32> = None;
+    let mut standing = Standing::default();
+    session.go_on_until(|s| {
+        feeding.go_on(s)?;
+        advance.watch(&s.motion)?;
+        recentring::watch(s, id)?;
+        let mut stands = false;
+        let here = s.record.motion().last().filter(|here| here.tick > begun).copied();
+        if let Some(here) = &here {
+            // The telemetry tells it sooner than the next status; at rest it names no path.
+            stands = !on_path(here.state);
+        }
+        if let Some(here) = here.filter(|here| here.path_id == id) {
+            if here.beams.contains(&true) && !welding {
+                welding = true;
+                s.progress.phase("welding");
+            }
+            s.progress.travel(here.s_mm, length_mm);
+            if let (None, Some(block)) = (waits, feeding.ended_block())
+                && rests_after(&block, &here)
+            {
+                // Held, the beams stay off, and go over the place again.
+                s.ask(&Request::Hold)?;
+                s.tell_waiting(&format!("line {}", block.next_line));
+                waits = Some(block.next_line);
+            }
+        }
+        standing.watch(&s.motion);
+        if standing.held_by_board && waits.is_none() {
+            s.progress.phase(TOO_SLOW);
+            welding = false;
+        }
+        let word = s.obey(waits.is_some() || standing.for_somebody)?;
+        standing.hear(word, s.tick());
+        if word == Some(Word::GoOn) {
+            if let Some(line) = waits.take() {
+                welding = false;
+                s.progress.phase(&format!("line {line}"));
+                feeding.next_block(s)?;
+            }
+            s.ask(&Request::Resume)?;
+        }
+        Ok(stands || !on_path(s.motion.state))
+    })?;
+    session.refresh()?;
+    session.check()
+}
+
+/// Whether the machine, which is `here`, has come to rest after `block`.
+fn rests_after(block: &EndedBlock, here: &MotionSample) -> bool {
+    let reached = (here.s_mm - block.end_s).abs() < REACHED;
+    reached && here.speed_mm_s.abs() < STILL && here.state == State::Running
+}
+
+/// Whether the machine stands until somebody says something.
+#[derive(Default)]
+struct Standing {
+    /// It does.
+    for_somebody: bool,
+    /// In a hold that nobody asked for.
+    held_by_board: bool,
+    /// What was said last of hold, back and going on, if the board has not been seen to run since; and when.
+    said: Option<Word>,
+    said_at: u32,
+}
+
+impl Standing {
+    /// Takes what the board says; a hold lasts while the machine goes back before it goes on.
+    fn watch(&mut self, motion: &MotionStatus) {
+        let held = motion.state == State::Holding;
+        // What was told before the word is of another state.
+        if motion.state == State::Running && motion.path_ticks > self.said_at {
+            self.said = None;
+        }
+        self.held_by_board = held && self.said.is_none();
+        let stopped = motion.state == State::Running && motion.speed_override <= 0.0;
+        self.for_somebody = stopped || held && self.said != Some(Word::GoOn);
+    }
+
+    /// Takes what was said at path tick `tick`.
+    fn hear(&mut self, word: Option<Word>, tick: u32) {
+        if let Some(Word::Hold | Word::Back | Word::GoOn) = word {
+            (self.said, self.said_at) = (word, tick);
+        }
+    }
+}
+
+/// When the machine was last seen to go on, or to have a reason not to.
+struct Advance {
+    s_mm: f64,
+    tick: u32,
+}
+
+impl Advance {
+    fn new(motion: &MotionStatus) -> Self {
+        Self {
+            s_mm: motion.s_mm,
+            tick: motion.path_ticks,
+        }
+    }
+
+    /// A hold and an override of 0 may last for ever, and a low override takes what it takes.
+    fn watch(&mut self, motion: &MotionStatus) -> Result<(), JobError> {
+        let shall_move = match motion.state {
+            State::Running => motion.speed_override > 0.0,
+            State::Stopping => true,
+            State::Off | State::Homing | State::Idle | State::Holding | State::Fault => false,
+        };
+        if !shall_move || motion.s_mm != self.s_mm {
+            *self = Self::new(motion);
+        }
+        if motion.path_ticks.wrapping_sub(self.tick) > STANDSTILL_S * TICKS_PER_S {
+            return Err(JobError::Standstill {
+                line: motion.line,
+                s_mm: motion.s_mm,
+                seconds: STANDSTILL_S,
+            });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::motion::MotionController;
+    use shared::protocol::Response;
+
+    /// What the board says `seconds` after the path began.
+    fn status(seconds: u32, state: State, speed_override: f64, s_mm: f64) -> MotionStatus {
+        let Response::MotionStatus(any) = MotionController::new().handle(&Request::Status, 0) else {
+            panic!("a board tells its state");
+        };
+        MotionStatus {
+            state,
+            speed_override,
+            s_mm,
+            line: 12,
+            // The counter wraps.
+            path_ticks: (seconds * TICKS_PER_S).wrapping_sub(5000),
+            ..any
+        }
+    }
+
+    #[test]
+    fn only_a_machine_that_shall_move_and_does_not_is_given_up() {
+        use State::{Holding, Running, Stopping};
+        let mut advance = Advance::new(&status(0, Running, 1.0, 0.0));
+        // Slow, held for an hour, on at no feed for another: nothing is wrong with that.
+        for seconds in 1..100 {
+            let s_mm = 1e-4 * f64::from(seconds);
+            advance.watch(&status(seconds, Running, 0.001, s_mm)).unwrap();
+        }
+        advance.watch(&status(3700, Holding, 1.0, 0.01)).unwrap();
+        advance.watch(&status(7300, Running, 0.0, 0.01)).unwrap();
+        for (from, state) in [(7300, Running), (8000, Stopping)] {
+            advance.watch(&status(from, Holding, 1.0, 0.01)).unwrap();
+            advance.watch(&status(from + 10, state, 1.0, 0.01)).unwrap();
+            let given_up = advance.watch(&status(from + 11, state, 1.0, 0.01));
+            assert!(
+                matches!(
+                    given_up,
+                    Err(JobError::Standstill {
+                        line: 12,
+                        seconds: 10,
+                        ..
+                    })
+                ),
+                "{given_up:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn whoever_is_held_waits_for_somebody_until_it_goes_on() {
+        use State::{Holding, Running};
+        let mut standing = Standing::default();
+        let mut told = |tick: u32, state, factor, word: Option<Word>| {
+            let mut motion = status(0, state, factor, 0.0);
+            motion.path_ticks = tick;
+            standing.watch(&motion);
+            standing.hear(word, tick);
+            (standing.for_somebody, standing.held_by_board)
+        };
+        assert_eq!(told(10, Running, 1.0, Some(Word::Hold)), (false, false));
+        // As it was told before the word, and after it.
+        assert_eq!(told(10, Running, 1.0, None), (false, false));
+        assert_eq!(told(12, Holding, 1.0, None), (true, false));
+        assert_eq!(told(13, Holding, 1.0, Some(Word::Back)), (true, false));
+        assert_eq!(told(14, Holding, 1.0, Some(Word::GoOn)), (true, false));
+        // It goes back before it goes on.
+        assert_eq!(told(15, Holding, 1.0, None), (false, false));
+        assert_eq!(told(16, Running, 1.0, None), (false, false));
+        // And nobody asked for this hold, nor for it to end.
+        assert_eq!(told(17, Holding, 0.01, None), (true, true));
+        assert_eq!(told(18, Running, 0.0, None), (true, false));
+    }
+}

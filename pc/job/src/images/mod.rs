@@ -1,0 +1,301 @@
+//! Cameras that give pictures: from the strobe to the measurement.
+//!
+//! A thread a side takes the pictures of its camera and measures them. Rendered pictures are told what stands before
+//! their camera as soon as the boards have told where the machine was; the answer is due after the time that a real
+//! camera and computer would take, and is then waited for: meanwhile the time of simulated boards stands still, and
+//! emulated boards wait for the PC. Pictures of real cameras are answered when they come, and never waited for.
+
+mod worker;
+
+pub use worker::{Seen, WorkerError};
+
+use crate::cameras::{Answer, CameraFigures, Moment, PictureSource, SeamCameras};
+use camera::{CameraFrame, nominal_slopes};
+use camera::{Keeping, Shelf};
+use config::calibration::Calibration;
+use config::machine::{CameraConfig, JointForm, TrackingUnit};
+use nalgebra::Vector3;
+use shared::geometry::Pose;
+use shared::io::SIDES;
+use shared::protocol::{Capture, Measurement};
+use shared::tracking::frames::Heads;
+use std::collections::VecDeque;
+use std::time::Duration;
+use vision::{Detector, Joint, Moved, Observer, ObserverConfig, Walls};
+use worker::{Strobe, Worker};
+
+/// A capture whose place is still unknown this long after its answer was due is given up \[µs\].
+const GIVE_UP_US: u64 = 200_000;
+/// Longest time that a rendered picture is waited for; tiles have to be made first.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// A camera that went further between two pictures has another place before it \[mm\].
+const FURTHEST_MM: f64 = 5.0;
+/// What the walls of a corner are off their nominal slopes, standard deviation.
+const WALL_SIGMA: f64 = 0.01;
+
+/// Cameras with pictures.
+#[derive(Clone)]
+pub struct ImageCameras {
+    /// What is known of camera 1 and 2.
+    pub calibrations: [Calibration; SIDES],
+    /// Where every picture is kept, if it is.
+    pub kept: Option<[Shelf; SIDES]>,
+}
+
+/// Both cameras.
+pub struct Images {
+    sides: [Side; SIDES],
+    cameras: CameraConfig,
+    heads: Heads,
+    calibrations: [Calibration; SIDES],
+    source: Box<dyn PictureSource>,
+    /// Of the last capture.
+    last: Option<(Pose, Capture)>,
+    given_up: u32,
+}
+
+/// One camera.
+struct Side {
+    worker: Worker,
+    waiting: VecDeque<Waiting>,
+    figures: CameraFigures,
+    /// An answer that is ready for the tracker.
+    held: Option<Seen>,
+}
+
+/// A capture without an answer.
+struct Waiting {
+    capture: Capture,
+    /// By the motion board's clock \[µs\].
+    strobe_us: u64,
+    due_us: u64,
+    /// Whether its camera was told what stands before it.
+    told: bool,
+}
+
+/// Trouble with a camera.
+#[derive(Debug, thiserror::Error)]
+#[error("camera {}: {source}", side + 1)]
+pub struct ImagesError {
+    /// 0 or 1.
+    pub side: usize,
+    /// What it is.
+    pub source: WorkerError,
+}
+
+impl Images {
+    /// Opens the cameras of a machine and starts their threads.
+    ///
+    /// # Errors
+    /// [`ImagesError`].
+    pub fn begin(
+        of: &ImageCameras,
+        mut source: Box<dyn PictureSource>,
+        unit: &TrackingUnit,
+        heads: Heads,
+    ) -> Result<Self, ImagesError> {
+        let cameras = &unit.cameras;
+        let mut begin = |side: usize| -> Result<Side, WorkerError> {
+            let calibration = of.calibrations[side];
+            let camera = source.open(side)?;
+            let camera = match &of.kept {
+                Some(shelves) => Box::new(Keeping::new(camera, shelves[side].clone())),
+                None => camera,
+            };
+            let (optics, noise) = (calibration.optics, calibration.photon_transfer);
+            let detector = Detector::new(optics, noise, calibration.profile)?;
+            let config = ObserverConfig {
+                corner_offset_mm: calibration.corner_offset_mm,
+                ..ObserverConfig::default()
+            };
+            let joint = match cameras.joint {
+                JointForm::Gap => Joint::Gap,
+                JointForm::Corner => Joint::Corner(Walls {
+                    slopes: nominal_slopes(cameras.joint, calibration.slides.mount_rad(), &heads, side),
+                    sigma: WALL_SIGMA,
+                }),
+            };
+            Ok(Side {
+                worker: Worker::start(camera, Observer::new(detector, config, joint), calibration),
+                waiting: VecDeque::new(),
+                figures: CameraFigures::default(),
+                held: None,
+            })
+        };
+        let mut begin = |side| begin(side).map_err(|source| ImagesError { side, source });
+        Ok(Self {
+            sides: [begin(0)?, begin(1)?],
+            cameras: cameras.clone(),
+            heads,
+            calibrations: of.calibrations,
+            source,
+            last: None,
+            given_up: 0,
+        })
+    }
+
+    /// How far a camera moved since the last capture; `None` if that is not known, or too far to see the same place.
+    fn moved(&self, side: usize, pose: &Pose, capture: &Capture) -> Option<Moved> {
+        let (last_pose, last) = self.last.as_ref()?;
+        let (u, v) = (2 * side, 2 * side + 1);
+        let ahead = [self.heads.camera_lead(), self.cameras.focus_above_mm()];
+        let mount = self.calibrations[side].slides.mount_rad();
+        let frame = |pose: &Pose| {
+            let slides = capture.slides_mm;
+            CameraFrame::new(&self.heads.spot(pose, side), mount, ahead, slides[u], slides[v])
+        };
+        let now = frame(pose);
+        let way: Vector3<f64> = now.origin - frame(last_pose).origin;
+        let [along, across, up] = now.turned(&way);
+        let slide = |i: usize| capture.slides_mm[i] - last.slides_mm[i];
+        let [lateral, height] = self.calibrations[side].camera_step(slide(u), slide(v));
+        let moved = Moved {
+            travel_mm: along,
+            lateral_mm: across + lateral,
+            height_mm: up + height,
+        };
+        let far = Vector3::new(moved.travel_mm, moved.lateral_mm, moved.height_mm).norm();
+        (far < FURTHEST_MM).then_some(moved)
+    }
+
+    /// Tells simulated cameras where the machine truly was at the strobes that the boards have told about by now.
+    fn tell(&mut self, at: Moment) {
+        for (k, side) in self.sides.iter_mut().enumerate() {
+            for waiting in side.waiting.iter_mut().filter(|waiting| !waiting.told) {
+                let position = (at.position)(waiting.strobe_us);
+                if position.is_none() {
+                    if at.now_us <= waiting.due_us + GIVE_UP_US {
+                        break;
+                    }
+                    self.given_up += 1;
+                }
+                waiting.told = true;
+                let known = position.as_ref().map(|position| (at.machine, position));
+                self.source.tell(k, &waiting.capture, known);
+            }
+        }
+    }
+}
+
+impl SeamCameras for Images {
+    fn strobe(&mut self, capture: Capture, strobe_us: u64, pose: Option<Pose>) {
+        for side in 0..SIDES {
+            let moved = pose.and_then(|pose| self.moved(side, &pose, &capture));
+            let late = self.source.late_us(capture.number, side);
+            let this = &mut self.sides[side];
+            let before = this.waiting.back().map_or(0, |before| before.due_us);
+            let due_us = strobe_us + (self.cameras.processing_ms * 1e3) as u64 + late;
+            this.figures.pictures += 1;
+            this.figures.late += u32::from(late > 0);
+            this.waiting.push_back(Waiting {
+                capture,
+                strobe_us,
+                // One after the other.
+                due_us: due_us.max(before),
+                told: false,
+            });
+            this.worker.strobe(Strobe {
+                capture: capture.number,
+                time_us: strobe_us,
+                moved,
+            });
+        }
+        self.last = pose.map(|pose| (pose, capture));
+    }
+
+    fn next_due_us(&self) -> Option<u64> {
+        if !self.source.is_simulated() {
+            return None;
+        }
+        let due = |side: &Side| Some(side.waiting.front()?.due_us);
+        self.sides.iter().filter_map(due).min()
+    }
+
+    fn answer(&mut self, at: Moment) -> Result<Option<Answer>, ImagesError> {
+        if self.source.is_simulated() {
+            self.tell(at);
+        }
+        loop {
+            for (side, camera) in self.sides.iter_mut().enumerate() {
+                let got = if self.source.is_simulated() {
+                    camera.wait(at.now_us)
+                } else {
+                    camera.poll()
+                };
+                got.map_err(|source| ImagesError { side, source })?;
+            }
+            let numbers = self
+                .sides
+                .each_ref()
+                .map(|side| Some(side.held.as_ref()?.capture));
+            let capture = match numbers {
+                // Numbers begin anew after 2³².
+                [Some(a), Some(b)] if (a.wrapping_sub(b) as i32) < 0 => a,
+                [_, Some(b)] => b,
+                [Some(a), None] => a,
+                [None, None] => return Ok(None),
+            };
+            let seen = self.sides.each_mut().map(|side| side.give(capture));
+            let sides = seen.map(|seen| seen?.measurement);
+            if sides != [None; SIDES] {
+                let measurement = Measurement { capture, sides };
+                let seams = seen.map(|seen| seen?.observation?.seam);
+                return Ok(Some(Answer { measurement, seams }));
+            }
+        }
+    }
+
+    fn given_up(&self) -> u32 {
+        self.given_up
+    }
+
+    fn figures(&self) -> Option<[CameraFigures; SIDES]> {
+        Some(self.sides.each_ref().map(|side| side.figures))
+    }
+}
+
+impl Side {
+    /// Holds the next answer if it is due, and waits for it then.
+    fn wait(&mut self, now_us: u64) -> Result<(), WorkerError> {
+        let due = |waiting: &Waiting| waiting.told && waiting.due_us <= now_us;
+        if self.held.is_none() && self.waiting.front().is_some_and(due) {
+            let seen = self.worker.wait(PATIENCE)?;
+            self.hold(seen);
+        }
+        Ok(())
+    }
+
+    /// Holds the next answer if there is one.
+    fn poll(&mut self) -> Result<(), WorkerError> {
+        if self.held.is_none()
+            && let Some(seen) = self.worker.poll()?
+        {
+            self.hold(seen);
+        }
+        Ok(())
+    }
+
+    fn hold(&mut self, seen: Seen) {
+        self.waiting.pop_front();
+        count(&mut self.figures, &seen);
+        self.held = Some(seen);
+    }
+
+    /// The answer to a capture, if it is held.
+    fn give(&mut self, capture: u32) -> Option<Seen> {
+        self.held.take_if(|seen| seen.capture == capture)
+    }
+}
+
+fn count(figures: &mut CameraFigures, seen: &Seen) {
+    let Some(observation) = &seen.observation else {
+        figures.lost += 1;
+        return;
+    };
+    figures.measured += u32::from(observation.seam.is_some());
+    figures.refused += u32::from(observation.doubt.is_some());
+    figures.relocked += u32::from(observation.relocked);
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,133 @@
+//! How far a camera moves from capture to capture, and pictures that are measured again.
+
+use super::*;
+use camera::{Camera, Folder, Keeper, Shelf};
+use config::machine::MachineFile;
+use world::{SceneFile, ViewForm};
+
+fn images() -> Images {
+    let text = include_str!("../../../../machines/dual-beam-gantry.toml");
+    let unit = MachineFile::parse("m.toml", text).unwrap().tracking.unwrap();
+    let heads = unit.board.head.build().unwrap();
+    let of = ImageCameras {
+        calibrations: std::array::from_fn(|side| unit.cameras.nominal(side)),
+        source: PictureSource::Rendered(SceneFile::default()),
+        kept: Default::default(),
+    };
+    Images::begin(&of, &unit, heads, 1).unwrap()
+}
+
+fn capture(number: u32, s_mm: f64, u1_mm: f64) -> Capture {
+    Capture {
+        number,
+        time_us: 0,
+        motion_time_us: 0,
+        s_mm,
+        path_id: 1,
+        slides_mm: [u1_mm, 0.0, 0.0, 0.0],
+        truth_mm: None,
+    }
+}
+
+/// A bend of 500 mm radius: the camera, 10 mm ahead, swings out.
+fn pose(s: f64) -> Pose {
+    let (sin, cos) = (s / 500.0).sin_cos();
+    Pose {
+        position: Vector3::new(500.0 * sin, 500.0 * (1.0 - cos), 0.0),
+        tangent: Vector3::new(cos, sin, 0.0),
+        normal: Vector3::z(),
+    }
+}
+
+#[test]
+fn a_camera_moves_with_path_bend_and_slides() {
+    let mut images = images();
+    images.strobe(capture(0, 0.0, 0.0), 0, Some(pose(0.0)));
+    let moved = images.moved(0, &pose(0.75), &capture(1, 0.75, 0.2)).unwrap();
+    // Camera 1 looks along the skin's normal, u to the left: the bend swings it left by 10 mm · 0.75 / 500 + 0.0006,
+    // the slide carries it by U, 30° off the skin, to the right and down.
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    assert!((moved.travel_mm - 0.75).abs() < 0.01, "{moved:?}");
+    assert!(
+        (moved.lateral_mm - (0.0144 - 0.2 * cos)).abs() < 1e-3,
+        "{moved:?}"
+    );
+    assert!((moved.height_mm.abs() - 0.2 * sin).abs() < 1e-3, "{moved:?}");
+}
+
+#[test]
+fn nothing_is_known_of_a_way_that_is_too_far_or_begins_nowhere() {
+    let mut images = images();
+    let way = |images: &Images, s: f64| images.moved(0, &pose(s), &capture(2, s, 0.0));
+    images.strobe(capture(0, 30.0, 0.0), 0, None);
+    assert_eq!(way(&images, 30.0), None);
+    images.strobe(capture(1, 30.0, 0.0), 5_000, Some(pose(30.0)));
+    assert!(way(&images, 30.75).is_some());
+    assert_eq!(way(&images, 40.0), None);
+}
+
+/// What comes of 60 strobes of a camera; `tell` is called after each.
+fn seen(camera: Box<dyn Camera>, unit: &TrackingUnit, tell: impl Fn(u32)) -> Vec<Seen> {
+    let calibration = unit.cameras.nominal(0);
+    let (optics, noise) = (calibration.optics, calibration.photon_transfer);
+    let detector = Detector::new(optics, noise, calibration.profile).unwrap();
+    let observer = Observer::new(detector, ObserverConfig::default(), Joint::Gap);
+    let worker = Worker::start(camera, observer, calibration);
+    let strobe = |capture: u32| {
+        let way = Moved {
+            travel_mm: 0.4,
+            ..Moved::default()
+        };
+        worker.strobe(Strobe {
+            capture,
+            time_us: 5_000 * u64::from(capture),
+            moved: Some(way),
+        });
+        tell(capture);
+        worker.wait(PATIENCE).unwrap()
+    };
+    (0..60).map(strobe).collect()
+}
+
+#[test]
+fn what_was_kept_is_measured_again_to_the_same_figures() {
+    let text = include_str!("../../../../machines/dual-beam-gantry.toml");
+    let unit = MachineFile::parse("m.toml", text).unwrap().tracking.unwrap();
+    let heads = unit.board.head.build().unwrap();
+    let scene = SceneFile {
+        lost_share: 0.1,
+        ..SceneFile::default()
+    };
+    let (camera, tell) = RenderedWorld::new(&scene, &unit.cameras, &heads, 1).camera(0);
+    let folder = std::env::temp_dir().join(format!("seamwright-kept-{}", std::process::id()));
+    let shelf = Shelf::default();
+    let keeper = Keeper::start(&folder, shelf.clone()).unwrap();
+    let first = seen(
+        Box::new(Keeping::new(Box::new(camera), shelf)),
+        &unit,
+        |capture| {
+            let along_mm = 0.4 * f64::from(capture);
+            let view = View {
+                along_mm,
+                lateral_mm: 0.1 * (0.3 * along_mm).sin(),
+                height_mm: 0.05,
+                form: ViewForm::Plate {
+                    pitch: 0.0,
+                    roll: 0.01,
+                    yaw_rad: 0.0,
+                },
+            };
+            tell.send(Prospect::Seam(view)).unwrap();
+        },
+    );
+    let kept = keeper.end();
+    assert!(kept.error.is_none() && kept.dropped == 0, "{kept:?}");
+    let arrived = first.iter().filter(|seen| seen.observation.is_some());
+    assert_eq!(kept.pictures, arrived.count() as u32);
+    assert!((40..60).contains(&kept.pictures), "{kept:?}");
+    let again = seen(Box::new(Folder::open(&folder).unwrap()), &unit, |_| {});
+    assert_eq!(first, again);
+    let measured = first.iter().filter(|seen| seen.measurement.is_some()).count();
+    assert!(measured > 40, "{measured}");
+    std::fs::remove_dir_all(&folder).unwrap();
+}

@@ -1,0 +1,416 @@
+//! Jobs on boards: from boards that are off to what came of it, and the machine at rest whatever happens.
+
+mod calibrating;
+mod cameras;
+mod feeding;
+mod following;
+mod images;
+mod operator;
+mod planned;
+mod progress;
+mod recentring;
+mod run_record;
+mod seam_teaching;
+mod session;
+mod slides;
+mod surroundings;
+mod teaching;
+mod tracking;
+
+pub use calibrating::{CameraPictures, PictureRun};
+pub use cameras::{Answer, CameraFigures, Moment, PictureSource, SeamCameras};
+pub use images::{ImageCameras, Images, ImagesError, WorkerError};
+pub use progress::{Line, Progress, Silent, Word};
+pub use run_record::{ByBoard, Recentred, RunRecord, TrackingRecord};
+pub use seam_teaching::{SeamLesson, TaughtSeam};
+pub use surroundings::{RealSurroundings, Surroundings, SurroundingsError};
+pub use teaching::{NoTeaching, RangingProbe, Taught, check_teaching};
+
+use cam::path::{FromLineError, PathError, PlannedPath, Planner};
+use config::machine::MachineFile;
+use feeding::Feeding;
+use following::follow;
+use host_link::boards::{Boards, LinkError};
+use nc::Program;
+use parts::PartFile;
+use session::Session;
+use shared::motion::{Fault, State};
+use shared::parameter::ParameterError;
+use shared::protocol::{LOAD_BATCH, Request, Role};
+use shared::tracking::{TrackerFault, TrackerState};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+use thiserror::Error;
+use tracking::Tracking;
+
+/// Longest time for the search of all reference marks.
+const HOMING_LIMIT: Duration = Duration::from_secs(240);
+/// Longest time for the boards to relate their clocks.
+const CLOCK_LIMIT: Duration = Duration::from_secs(30);
+/// Longest time of a controlled stop.
+const STOP_LIMIT: Duration = Duration::from_secs(10);
+/// Time for the last telemetry to arrive.
+const DRAIN: Duration = Duration::from_millis(100);
+
+/// What is to be done.
+pub struct Job<'a> {
+    /// The machine.
+    pub machine: &'a MachineFile,
+    /// What to do between homing and parking.
+    pub work: Work<'a>,
+    /// The part that the run is judged by.
+    pub part: Option<&'a PartFile>,
+    /// Speed of the weld in place of the programmed feed \[m/min\].
+    pub speed_m_per_min: Option<f64>,
+    /// Line of the program to start at, in place of its beginning.
+    pub from_line: Option<u32>,
+    /// What is around the machine.
+    pub surroundings: Arc<dyn Surroundings>,
+    /// What the report calls everything.
+    pub names: Names,
+}
+
+/// What to do between homing and parking.
+#[derive(Clone, Copy, Debug)]
+pub enum Work<'a> {
+    /// To run a program.
+    Program(&'a Program),
+    /// To teach the part of the job, which is a panel.
+    Teach,
+    /// To teach it, and then to make it.
+    TeachAndMake,
+    /// To take pictures to calibrate a camera from.
+    Pictures(&'a PictureRun<'a>),
+    /// To teach both seams of a rib.
+    TeachSeam(&'a SeamLesson),
+}
+
+impl Job<'_> {
+    /// What the job is called.
+    fn title(&self) -> String {
+        let path = std::path::Path::new(&self.names.program);
+        path.file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    }
+}
+
+/// What the report calls everything.
+#[derive(Clone, Debug)]
+pub struct Names {
+    /// The program.
+    pub program: String,
+    /// The machine file.
+    pub machine: String,
+    /// The seam file.
+    pub seam: Option<String>,
+    /// The choice of boards.
+    pub boards: String,
+}
+
+/// Why a job did not come to its end.
+#[derive(Debug, Error)]
+pub enum JobError {
+    /// A board does not answer, or not as it should.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// The motion board stopped.
+    #[error("the motion board stopped: {0}")]
+    Motion(Fault),
+    /// The tracker board stopped, or wanted the beams off.
+    #[error("the tracker board stopped the weld: {0}")]
+    Tracker(TrackerFault),
+    /// The boards had to do without this program.
+    #[error(
+        "this PC did nothing for {seconds:.1} s (paused, asleep or too busy), and the boards do not go on without it: {source}"
+    )]
+    Absent {
+        /// For how long.
+        seconds: f64,
+        /// What the boards told.
+        source: Box<JobError>,
+    },
+    /// A camera gives no pictures, or none that can be measured.
+    #[error(transparent)]
+    Camera(#[from] ImagesError),
+    /// The operator stopped it.
+    #[error("stopped by the operator; beams are off and the machine stands")]
+    Interrupted,
+    /// Nobody can say that the next block may begin, or that a hold is over.
+    #[error(
+        "the machine waits for the operator, and the input has ended; run seamwright in a terminal, or without single block"
+    )]
+    NoOperator,
+    /// Something does not come to an end.
+    #[error("{what} took longer than {seconds} s; look at the boards' logs")]
+    TooLong {
+        /// What.
+        what: &'static str,
+        /// How long it may take.
+        seconds: u64,
+    },
+    /// A slide came to rest elsewhere, or moves too slowly.
+    #[error(
+        "slide {slide} is still {away_mm:.3} mm away from where it was sent; look at its drive and its dead band"
+    )]
+    SlideAway {
+        /// The slide.
+        slide: &'static str,
+        /// How far it is off \[mm\].
+        away_mm: f64,
+    },
+    /// The machine should move, and does not.
+    #[error(
+        "the machine has stood still for {seconds} s in line {line}, {s_mm:.1} mm along the path, and nothing holds \
+         it; look at the motion board's log"
+    )]
+    Standstill {
+        /// Line of the program.
+        line: u32,
+        /// Path length \[mm\].
+        s_mm: f64,
+        /// For how long.
+        seconds: u32,
+    },
+    /// A path cannot be run.
+    #[error(transparent)]
+    Path(#[from] PathError),
+    /// The program cannot be started at a line.
+    #[error(transparent)]
+    FromLine(#[from] FromLineError),
+    /// What is around the machine cannot be followed.
+    #[error(transparent)]
+    Surroundings(SurroundingsError),
+    /// There is nothing to teach with.
+    #[error(transparent)]
+    NoTeaching(#[from] NoTeaching),
+    /// A point cannot be taught.
+    #[error("teaching ended: {0}")]
+    Teach(String),
+    /// What was taught cannot be made.
+    #[error("the taught part cannot be made: {0}")]
+    Plan(String),
+    /// No pictures to calibrate a camera from.
+    #[error("the camera is not calibrated: {0}")]
+    Calibrate(String),
+    /// It came to its end, but nobody can tell how good it is.
+    #[error("the run cannot be judged: {0}")]
+    Judge(String),
+    /// A machine parameter is out of range.
+    #[error("a machine parameter is out of range: {0}")]
+    Parameter(#[from] ParameterError),
+}
+
+impl JobError {
+    /// Why a job ended that ended with `self` first, and was brought to its end with `late`. The first error says why;
+    /// an operator who ends a job is none, and has to know what went wrong then.
+    fn then(self, late: Result<(), Self>) -> Self {
+        match (self, late) {
+            (Self::Interrupted, Err(late)) => late,
+            (first, _) => first,
+        }
+    }
+}
+
+/// Runs a job on boards that may be in any state. They are off afterwards, if they can be reached at all.
+pub fn run(
+    boards: &mut dyn Boards,
+    job: &Job,
+    interrupted: &AtomicBool,
+    progress: &mut dyn Progress,
+) -> Result<RunRecord, JobError> {
+    let planner = Planner::build(job.machine)?;
+    let mut session = Session::begin(
+        boards,
+        job.machine,
+        job.surroundings.as_ref(),
+        interrupted,
+        progress,
+    )?;
+    let mut weld = Weld {
+        planner,
+        paths: BTreeMap::new(),
+        taught: Taught::default(),
+    };
+    let error = weld.all(&mut session, job).err();
+    let switched_off = switch_off(&mut session, error.is_some());
+    let error = match error {
+        Some(error) => Some(error.then(switched_off)),
+        None => switched_off.err(),
+    };
+    Ok(run_record::run_record(session, weld.paths, weld.taught, error))
+}
+
+/// State of a job.
+struct Weld {
+    planner: Planner,
+    /// Paths begun, by the number that the boards know them by.
+    paths: BTreeMap<u32, PlannedPath>,
+    taught: Taught,
+}
+
+impl Weld {
+    fn all(&mut self, session: &mut Session, job: &Job) -> Result<(), JobError> {
+        make_ready(session, job)?;
+        match job.work {
+            Work::Program(program) => self.program(session, job, program)?,
+            Work::Pictures(run) => self.taught.pictures = self.take_pictures(session, job, run)?,
+            Work::Teach => drop(self.teach(session, job)?),
+            Work::TeachSeam(lesson) => self.teach_seam(session, job, lesson)?,
+            Work::TeachAndMake => {
+                let part = self.teach(session, job)?;
+                let program = self.plan_taught(job, &part)?;
+                self.program(session, job, &program)?;
+            }
+        }
+        session.wait_before("parking")?;
+        for path in self.planner.park(&session.motion.reference)? {
+            self.path(session, path, "parking")?;
+        }
+        Ok(())
+    }
+
+    /// Runs a program from where the axes stand.
+    fn program(&mut self, session: &mut Session, job: &Job, program: &Program) -> Result<(), JobError> {
+        let mut elsewhere = "approaching";
+        let planned = job.plan(program, &self.planner, &session.motion.reference)?;
+        for (index, path) in planned.into_iter().enumerate() {
+            if index > 0 {
+                let next = match path.first_and_last_line().0 {
+                    0 => "the next way of the approach".to_owned(),
+                    line => format!("line {line}"),
+                };
+                session.wait_before(&next)?;
+            }
+            let what = if path.weld().is_some() {
+                elsewhere = "moving on";
+                "running in"
+            } else {
+                elsewhere
+            };
+            self.path(session, path, what)?;
+        }
+        Ok(())
+    }
+
+    /// Loads and runs one path; the machine stands afterwards, on an error too.
+    fn path(&mut self, session: &mut Session, path: PlannedPath, what: &str) -> Result<(), JobError> {
+        let id = self.paths.len() as u32 + 1;
+        let feeding = load(session, &path, id)?;
+        if let Some(tracking) = &mut session.tracking {
+            tracking.add_path(id, &path);
+        }
+        if path.dwell_before_s > 0.0 {
+            session.progress.phase("dwelling");
+            session.dwell(path.dwell_before_s)?;
+        }
+        session.progress.phase(what);
+        let ran = follow(session, feeding, path.length_mm(), id);
+        self.paths.insert(id, path);
+        ran.map_err(|error| {
+            session.progress.phase("stopping");
+            error.then(session.stop(STOP_LIMIT))
+        })
+    }
+}
+
+/// Brings boards and machine from any state to where paths can be run.
+fn make_ready(session: &mut Session, job: &Job) -> Result<(), JobError> {
+    session.progress.phase("setting up the boards");
+    set_up(session, job)?;
+    session.progress.phase("searching reference marks");
+    session.command_all(&Request::Home)?;
+    session.refresh()?;
+    session.wait_until("the search for reference marks", HOMING_LIMIT, |s| {
+        let tracking = s.tracking.as_ref().map(|tracking| &tracking.status);
+        Ok(s.motion.homed
+            && s.motion.state == State::Idle
+            && tracking.is_none_or(|t| t.homed && t.state == TrackerState::Ready))
+    })?;
+    if session.tracking.is_some() {
+        session.progress.phase("relating the clocks");
+        session.wait_until("relating the boards' clocks", CLOCK_LIMIT, |s| {
+            Ok(s.tracking.as_ref().is_none_or(Tracking::clocks_related))
+        })?;
+    }
+    Ok(())
+}
+
+/// Begins a path on the boards: all knots for the tracker board, as many elements as the motion board has room for.
+fn load<'a>(session: &mut Session, path: &'a PlannedPath, id: u32) -> Result<Feeding<'a>, JobError> {
+    let space = path.space;
+    if session.tracking.is_some() {
+        session.command(Role::Tracker, &Request::ClearPath { id, space })?;
+        for knots in path.knots.chunks(LOAD_BATCH) {
+            let knots = knots.iter().copied().collect();
+            session.command(Role::Tracker, &Request::LoadKnots(knots))?;
+        }
+    }
+    let begin = Request::BeginPath {
+        id,
+        space,
+        start_s_mm: path.start_s,
+        limits: path.path_limits(),
+    };
+    session.command(Role::Motion, &begin)?;
+    let mut feeding = Feeding::new(path);
+    feeding.go_on(session)?;
+    Ok(feeding)
+}
+
+/// Brings the boards from any state to off, forgets old faults, and sends the machine's parameters.
+fn set_up(session: &mut Session, job: &Job) -> Result<(), JobError> {
+    if session::on_path(session.motion.state) {
+        // What the job before left moving comes to rest first: no search for marks begins while the axes coast.
+        session.stop(STOP_LIMIT)?;
+    }
+    session.command_all(&Request::Disable)?;
+    session.refresh()?;
+    if session.motion.fault.is_some() {
+        session.command(Role::Motion, &Request::Reset)?;
+    }
+    session.command(
+        Role::Motion,
+        &Request::ConfigureMotion(job.machine.motion.clone()),
+    )?;
+    // An override that an operator left behind is not one for this job.
+    session.command(Role::Motion, &Request::Override { factor: 1.0 })?;
+    if let (Some(tracking), Some(unit)) = (&session.tracking, &job.machine.tracking) {
+        let role = Role::Tracker;
+        if tracking.status.fault.is_some() {
+            session.command(role, &Request::Reset)?;
+        }
+        session.command(role, &Request::ConfigureTracker(unit.board.clone()))?;
+        let target = session.boards.path_states_target();
+        let target = target.ok_or(LinkError::Absent { role })?;
+        session.command(Role::Motion, &target)?;
+    }
+    Ok(())
+}
+
+/// Takes the last telemetry and switches the drives of all boards off, of each even if the other one is lost. A job that
+/// ended `early` may have left the machine homing.
+fn switch_off(session: &mut Session, early: bool) -> Result<(), JobError> {
+    let stopped = if early {
+        session.ask(&Request::Stop)
+    } else {
+        Ok(())
+    };
+    let drained = drain(session);
+    let off = session.command_all(&Request::Disable);
+    stopped
+        .map_err(JobError::from)
+        .and(drained)
+        .and(off.map_err(JobError::from))
+}
+
+fn drain(session: &mut Session) -> Result<(), JobError> {
+    let end = session.boards.now() + DRAIN;
+    while session.boards.now() < end {
+        session.turn()?;
+    }
+    Ok(session.refresh()?)
+}

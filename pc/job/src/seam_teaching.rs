@@ -1,0 +1,346 @@
+//! Teaching both seams of a rib with the machine of a session: it stands, and its cameras look.
+
+use crate::session::Session;
+use crate::tracking::Watched;
+use crate::{Job, JobError, Line, Weld};
+use config::machine::MachineFile;
+use host_link::boards::LinkError;
+use nc::text::{decimal, tip_words};
+use nc::{Options, interpret};
+use shared::io::{AXES, SIDES, SLIDES};
+use shared::protocol::Refusal;
+use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
+use std::cell::RefCell;
+use std::time::Duration;
+use teach::seam::{
+    Cameras, Drawing, Ended, Follower, Hand, Head, Rig, SeamFile, SeamPoint, SeamTeachError, SeamTeaching,
+    Seen, Stance, View,
+};
+
+/// Longest time for the pictures of a look.
+const LOOK_LIMIT: Duration = Duration::from_secs(10);
+/// Pictures may take so many times as long as they should before a look does without them.
+const PATIENCE: f64 = 2.0;
+/// Part of the pictures that have to show a seam.
+const ENOUGH: f64 = 0.5;
+/// Moves shorter than this are none, of the machine and of its slides \[mm\].
+const NO_MOVE: f64 = 1e-4;
+const NO_SLIDE_MOVE: f64 = 2e-3;
+/// Slides that are there come to rest for so long before a look \[s\].
+const SLIDES_SETTLE_S: f64 = 0.03;
+
+/// What is to be taught, and where it goes.
+#[derive(Debug)]
+pub struct SeamLesson {
+    /// Where to begin.
+    pub start: Stance,
+    /// What is drawn.
+    pub drawing: Option<Drawing>,
+    /// How to teach.
+    pub config: SeamTeaching,
+    /// Where the cameras look.
+    pub cameras: Cameras,
+    /// Points taught before.
+    pub points: Vec<SeamPoint>,
+    /// Where new points go.
+    pub file: RefCell<SeamFile>,
+    /// Whose they are.
+    pub head: Head,
+    /// The operator drives.
+    pub by_jog: bool,
+}
+
+impl Weld {
+    /// Teaches the seams of `lesson`.
+    pub(super) fn teach_seam(
+        &mut self,
+        session: &mut Session,
+        job: &Job,
+        lesson: &SeamLesson,
+    ) -> Result<(), JobError> {
+        let around = &job.surroundings;
+        around
+            .planned(job.machine, &self.planner, &[])
+            .map_err(JobError::Surroundings)?;
+        let follower = Follower::build(&lesson.cameras, &lesson.config, lesson.drawing)
+            .map_err(|error| JobError::Teach(error.to_string()))?;
+        let mut arm = SeamArm {
+            weld: self,
+            session,
+            machine: job.machine,
+            lesson,
+            slides_mm: [0.0; SLIDES],
+            settle_s: 0.0,
+            count: lesson.points.len(),
+        };
+        let ended = if lesson.by_jog {
+            follower.jog(&mut arm, &lesson.start, &lesson.points)
+        } else {
+            follower.teach(&mut arm, &lesson.start, &lesson.points)
+        };
+        let count = arm.count;
+        self.taught.seam = Some(TaughtSeam {
+            points: count,
+            ended: match ended {
+                Ok(ended) => ended,
+                Err(SeamTeachError::Machine(error)) => return Err(error),
+                Err(not_found @ SeamTeachError::NotFound(_)) => {
+                    return Err(JobError::Teach(not_found.to_string()));
+                }
+            },
+        });
+        Ok(())
+    }
+}
+
+/// How a lesson came to its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TaughtSeam {
+    /// Points in the file.
+    pub points: usize,
+    /// Why there are no more.
+    pub ended: Ended,
+}
+
+/// The machine of a session.
+struct SeamArm<'w, 's, 'b> {
+    weld: &'w mut Weld,
+    session: &'s mut Session<'b>,
+    machine: &'w MachineFile,
+    lesson: &'w SeamLesson,
+    /// Where the slides were sent \[mm\].
+    slides_mm: [f64; SLIDES],
+    /// What moved last comes to rest for so long \[s\].
+    settle_s: f64,
+    /// Points in the file.
+    count: usize,
+}
+
+impl SeamArm<'_, '_, '_> {
+    /// Runs rapids from where the machine stands, no faster than `largest_mm_s`, which end with the slides at
+    /// `slides_mm`.
+    fn run(
+        &mut self,
+        text: &str,
+        what: &str,
+        largest_mm_s: f64,
+        slides_mm: &[f64; SLIDES],
+    ) -> Result<(), JobError> {
+        let program =
+            interpret(text, Options::default()).map_err(|error| JobError::Plan(error.to_string()))?;
+        let from = self.session.motion.reference;
+        let planned = self
+            .weld
+            .planner
+            .program_from(&program, &from, extensions(&self.slides_mm), None)?;
+        for mut path in planned {
+            path.limits.velocity = path.limits.velocity.min(largest_mm_s);
+            self.weld.path(self.session, path, what)?;
+        }
+        // Along a path the U slides stand in the middle.
+        self.move_slides(slides_mm)?;
+        self.settle_s = self.lesson.config.settle_s;
+        Ok(())
+    }
+
+    /// Moves the slides, where the machine stands.
+    fn move_slides(&mut self, slides_mm: &[f64; SLIDES]) -> Result<(), JobError> {
+        self.session.move_slides(*slides_mm)?;
+        self.slides_mm = *slides_mm;
+        self.settle_s = SLIDES_SETTLE_S;
+        Ok(())
+    }
+
+    /// A B C of a stance \[deg\].
+    fn angles(&self, stance: &Stance) -> Result<[f64; 3], JobError> {
+        let axes = self
+            .weld
+            .planner
+            .kinematics()
+            .inverse(&stance.pose, &[0.0; AXES])
+            .map_err(|error| JobError::Teach(format!("the head cannot stand like that: {error}")))?;
+        Ok([axes[3], axes[4], axes[5]].map(|angle| angle * DEG_PER_RAD))
+    }
+
+    fn what(&self) -> String {
+        format!("teaching point {}", self.count + 1)
+    }
+
+    /// Pictures of a look should have come so many ticks after the first of them.
+    fn patience_ticks(&self, pictures: usize) -> u32 {
+        let Some(unit) = &self.machine.tracking else {
+            return 0;
+        };
+        let frames = pictures as f64 * f64::from(unit.board.tracking.frame_period_ms);
+        (PATIENCE * (frames + unit.cameras.processing_ms)).ceil() as u32
+    }
+}
+
+impl Rig for SeamArm<'_, '_, '_> {
+    type Error = JobError;
+
+    fn approach(&mut self, stance: &Stance) -> Result<(), JobError> {
+        let position = stance.pose.position;
+        let above = [position.x, position.y, self.machine.planning.safe_height_mm];
+        let words = tip_words(&above, &self.angles(stance)?, &extensions(&stance.slides_mm));
+        let text = format!("G43.4\nG0 {words}\nG0 Z{}\nM2\n", decimal(position.z, 5));
+        self.run(&text, "approaching", f64::INFINITY, &stance.slides_mm)
+    }
+
+    fn go(&mut self, stance: &Stance) -> Result<(), JobError> {
+        let angles = self.angles(stance)?;
+        let position: [f64; 3] = stance.pose.position.into();
+        let here = self.weld.planner.tip(&self.session.motion.reference);
+        let moves = |a: &[f64], b: &[f64], least: f64| a.iter().zip(b).any(|(a, b)| (a - b).abs() > least);
+        if moves(&position, &here.position_mm, NO_MOVE) || moves(&angles, &here.angles_deg, NO_MOVE) {
+            let words = tip_words(&position, &angles, &extensions(&stance.slides_mm));
+            let speed = self.lesson.config.speed_m_min * MM_S_PER_M_MIN;
+            let text = format!("G43.4\nG0 {words}\nM2\n");
+            self.run(&text, &self.what(), speed, &stance.slides_mm)
+        } else if moves(&stance.slides_mm, &self.slides_mm, NO_SLIDE_MOVE) {
+            self.move_slides(&stance.slides_mm)
+        } else {
+            Ok(())
+        }
+    }
+
+    fn look(&mut self, pictures: usize) -> Result<View, JobError> {
+        self.session.dwell(std::mem::take(&mut self.settle_s))?;
+        let rests = self.session.tick();
+        let end = rests.wrapping_add(self.patience_ticks(pictures));
+        if let Some(tracking) = &mut self.session.tracking {
+            tracking.watch();
+        }
+        self.session
+            .wait_until("a look at the seam", LOOK_LIMIT, |session| {
+                let seen = session.tracking.as_ref().map_or(0, |tracking| tracking.watched());
+                let stands = session
+                    .record
+                    .motion()
+                    .last()
+                    .is_some_and(|sample| sample.tick > rests);
+                Ok(stands && (seen >= pictures || session.tick() > end))
+            })?;
+        let watched = match &mut self.session.tracking {
+            Some(tracking) => tracking.end_watch(),
+            None => Vec::new(),
+        };
+        let mut axes = [0.0; AXES];
+        let samples = self.session.record.motion().iter().rev();
+        let at_rest: Vec<_> = samples.take_while(|sample| sample.tick > rests).collect();
+        for sample in &at_rest {
+            for (mean, axis) in axes.iter_mut().zip(sample.axes) {
+                *mean += axis / at_rest.len() as f64;
+            }
+        }
+        let slides = watched.iter().map(|picture| picture.slides_mm);
+        let count = watched.len() as f64;
+        let slides_mm = if watched.is_empty() {
+            self.session.slides_mm()
+        } else {
+            slides.fold([0.0; SLIDES], |mean, slides| {
+                std::array::from_fn(|i| mean[i] + slides[i] / count)
+            })
+        };
+        Ok(View {
+            pose: self.session.machine.kinematics().forward(&axes),
+            slides_mm,
+            sides: std::array::from_fn(|side| mean(&watched, side, pictures)),
+        })
+    }
+
+    fn taught(&mut self, point: &SeamPoint) -> Result<(), JobError> {
+        self.lesson
+            .file
+            .borrow_mut()
+            .add(point)
+            .map_err(|error| JobError::Teach(error.to_string()))?;
+        self.count += 1;
+        Ok(())
+    }
+
+    fn enough(&mut self) -> bool {
+        match self.session.progress.line() {
+            None | Some(Line::Over) => false,
+            Some(Line::Said(text)) if text.trim() == "done" => true,
+            Some(Line::Said(_)) => {
+                self.session
+                    .progress
+                    .say("done ends after this point, Ctrl-C at once");
+                false
+            }
+        }
+    }
+}
+
+impl Hand for SeamArm<'_, '_, '_> {
+    fn line(&mut self) -> Result<Option<String>, JobError> {
+        self.session.progress.phase("jog: say what to do");
+        let mut said = None;
+        self.session.go_on_until(|session| {
+            said = session.progress.line();
+            Ok(said.is_some())
+        })?;
+        Ok(match said {
+            Some(Line::Said(text)) => Some(text),
+            Some(Line::Over) | None => None,
+        })
+    }
+
+    fn say(&mut self, text: &str) {
+        self.session.progress.say(text);
+    }
+
+    fn untaught(&mut self, points: &[SeamPoint]) -> Result<(), JobError> {
+        self.count = points.len();
+        self.lesson
+            .file
+            .borrow_mut()
+            .keep(points, &self.lesson.head)
+            .map_err(|error| JobError::Teach(error.to_string()))
+    }
+
+    fn is_refusal(&self, error: &JobError) -> bool {
+        let beyond = |refusal: &Refusal| matches!(refusal, Refusal::BeyondTravel { .. });
+        match error {
+            JobError::Path(_) | JobError::Teach(_) => true,
+            JobError::Link(LinkError::Refused { refusal, .. }) => beyond(refusal),
+            _ => false,
+        }
+    }
+}
+
+/// V1 and V2 of `slides_mm` \[mm\].
+fn extensions(slides_mm: &[f64; SLIDES]) -> [f64; SIDES] {
+    [slides_mm[1], slides_mm[3]]
+}
+
+/// The mean of what the pictures show of `side`, if there are enough of them that show it.
+fn mean(pictures: &[Watched], side: usize, wanted: usize) -> Option<Seen> {
+    let seen: Vec<&Seen> = pictures
+        .iter()
+        .filter_map(|picture| picture.sides[side].as_ref())
+        .collect();
+    if seen.is_empty() || (seen.len() as f64) < ENOUGH * wanted as f64 {
+        return None;
+    }
+    let count = seen.len() as f64;
+    let mean_of = |value: &dyn Fn(&Seen) -> f64| seen.iter().map(|seen| value(seen)).sum::<f64>() / count;
+    // Of those that have it.
+    let mean_if = |value: &dyn Fn(&Seen) -> Option<f64>| {
+        let values: Vec<f64> = seen.iter().filter_map(|seen| value(seen)).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    };
+    let offset_mm = [0, 1].map(|i| mean_of(&|seen| seen.offset_mm[i]));
+    let squares = [0, 1].map(|i| mean_of(&|seen| libm::pow(seen.offset_mm[i] - offset_mm[i], 2.0)));
+    Some(Seen {
+        along_mm: mean_of(&|seen| seen.along_mm),
+        offset_mm,
+        roll: mean_if(&|seen| seen.roll),
+        width_mm: mean_if(&|seen| seen.width_mm),
+        quality: mean_of(&|seen| seen.quality),
+        // Of both offsets, from picture to picture.
+        scatter_mm: libm::sqrt((squares[0] + squares[1]) / 2.0 * count / (count - 1.0).max(1.0)),
+        pictures: seen.len(),
+    })
+}

@@ -1,0 +1,343 @@
+//! A session with the boards while a job runs: takes what they send and asks for their state.
+
+use crate::recentring::Recentring;
+use crate::run_record::ByBoard;
+use crate::surroundings::Surroundings;
+use crate::{JobError, Progress, Tracking};
+use config::machine::MachineFile;
+use host_link::boards::{Absence, Boards, LinkError, command};
+use host_link::geometry::MachineGeometry;
+use host_link::record::Record;
+use shared::motion::{Fault, State};
+use shared::protocol::{Datagram, MotionStatus, Request, Response, Role};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// How often the boards are asked for their state; it also tells them that the PC is there.
+const STATUS_PERIOD: Duration = Duration::from_millis(100);
+/// A motion board whose clock has stood still for so long is broken.
+const STANDSTILL: Duration = Duration::from_secs(10);
+/// What the boards told is due to an absence of this program that ended no longer ago: their state is asked for at once
+/// after it, and comes in a few turns.
+const JUST_BEFORE: Duration = Duration::from_secs(1);
+/// Longest and shortest wait for a datagram.
+const LONGEST_WAIT: Duration = Duration::from_millis(10);
+const SHORTEST_WAIT: Duration = Duration::from_micros(200);
+
+/// A session and everything that was learned in it.
+pub(super) struct Session<'a> {
+    pub boards: &'a mut dyn Boards,
+    pub interrupted: &'a AtomicBool,
+    pub progress: &'a mut dyn Progress,
+    pub machine: MachineGeometry,
+    /// The tracker board, if the machine has one.
+    pub tracking: Option<Tracking>,
+    /// What watches its slides.
+    pub recentring: Option<Recentring>,
+    pub record: Record,
+    pub motion: MotionStatus,
+    pub began: Duration,
+    lost_before: u32,
+    next_status: Duration,
+    /// When the motion board's clock was last seen to go on.
+    ticked: Duration,
+    /// A PC that does nothing for so long is missed by the motion board.
+    missed: Duration,
+}
+
+impl<'a> Session<'a> {
+    /// Begins with the boards as they are, before the cameras of `around`.
+    pub fn begin(
+        boards: &'a mut dyn Boards,
+        machine: &MachineFile,
+        around: &dyn Surroundings,
+        interrupted: &'a AtomicBool,
+        progress: &'a mut dyn Progress,
+    ) -> Result<Self, JobError> {
+        let geometry = MachineGeometry::build(&machine.motion)?;
+        let began = boards.now();
+        let unit = machine.tracking.as_ref();
+        let tracking = unit
+            .map(|unit| Tracking::begin(boards, unit, around))
+            .transpose()?;
+        let motion = motion_status(boards)?;
+        Ok(Self {
+            boards,
+            interrupted,
+            progress,
+            machine: geometry,
+            tracking,
+            recentring: unit.map(Recentring::new).transpose()?,
+            record: Record::default(),
+            lost_before: lost(&motion),
+            motion,
+            began,
+            next_status: began,
+            ticked: began,
+            missed: Duration::from_millis(machine.motion.link_timeout_ms.into())
+                .saturating_sub(STATUS_PERIOD),
+        })
+    }
+
+    /// The boards of the machine.
+    pub fn roles(&self) -> &'static [Role] {
+        match self.tracking {
+            Some(_) => &[Role::Motion, Role::Tracker],
+            None => &[Role::Motion],
+        }
+    }
+
+    /// A request that is answered by "done".
+    pub fn command(&mut self, role: Role, request: &Request) -> Result<(), LinkError> {
+        command(self.boards, role, request)
+    }
+
+    /// The same request to every board of the machine, to each even if the other one is lost.
+    pub fn command_all(&mut self, request: &Request) -> Result<(), LinkError> {
+        let mut result = Ok(());
+        for role in self.roles() {
+            result = result.and(self.command(*role, request));
+        }
+        result
+    }
+
+    /// Asks the boards for their state now, and waits for both.
+    pub fn refresh(&mut self) -> Result<(), LinkError> {
+        self.refresh_motion()?;
+        let welding = self.welding();
+        if let Some(tracking) = &mut self.tracking {
+            tracking.refresh(self.boards, welding)?;
+        }
+        self.next_status = self.boards.now() + STATUS_PERIOD;
+        Ok(())
+    }
+
+    fn refresh_motion(&mut self) -> Result<(), LinkError> {
+        let ticks = self.motion.path_ticks;
+        self.motion = motion_status(self.boards)?;
+        if self.motion.path_ticks != ticks {
+            self.ticked = self.boards.now();
+        }
+        Ok(())
+    }
+
+    /// Asks for the states that are due. The motion board is never left waiting for the tracker board, whose answer is
+    /// taken when it comes.
+    fn poll(&mut self) -> Result<(), LinkError> {
+        let due = self.boards.now() >= self.next_status;
+        if due {
+            self.refresh_motion()?;
+        }
+        let welding = self.welding();
+        if let Some(tracking) = &mut self.tracking {
+            tracking.poll(self.boards, due, welding)?;
+        }
+        if due {
+            self.next_status = self.boards.now() + STATUS_PERIOD;
+        }
+        Ok(())
+    }
+
+    /// Control ticks lost since the session began.
+    pub fn lost_ticks(&self) -> ByBoard {
+        ByBoard {
+            motion: lost(&self.motion).wrapping_sub(self.lost_before),
+            tracker: self.tracking.as_ref().map(Tracking::lost_ticks),
+        }
+    }
+
+    /// Newest known path tick of the motion board, one a millisecond: the clock of the job.
+    pub fn tick(&self) -> u32 {
+        let told = self.record.motion().last().map_or(0, |sample| sample.tick);
+        told.max(self.motion.path_ticks)
+    }
+
+    /// Goes on until `done`; a fault or the operator end it early.
+    pub fn go_on_until(
+        &mut self,
+        mut done: impl FnMut(&mut Self) -> Result<bool, JobError>,
+    ) -> Result<(), JobError> {
+        let mut go_on = || {
+            while !done(self)? {
+                self.turn()?;
+                self.check()?;
+            }
+            Ok(())
+        };
+        let ended = go_on();
+        ended.map_err(|error| self.explained(error))
+    }
+
+    /// An error of the boards, with the reason if this program was not there for them just before.
+    fn explained(&self, error: JobError) -> JobError {
+        let of_boards = matches!(
+            error,
+            JobError::Link(_) | JobError::Motion(_) | JobError::Tracker(_) | JobError::TooLong { .. }
+        );
+        match self.boards.absence() {
+            Some(Absence { ended, lasted })
+                if of_boards && lasted >= self.missed && self.boards.now() < ended + JUST_BEFORE =>
+            {
+                JobError::Absent {
+                    seconds: lasted.as_secs_f64(),
+                    source: Box::new(error),
+                }
+            }
+            _ => error,
+        }
+    }
+
+    /// Goes on until `done`, at most for `limit` by the motion board's clock; a fault or the operator end it
+    /// early.
+    pub fn wait_until(
+        &mut self,
+        what: &'static str,
+        limit: Duration,
+        mut done: impl FnMut(&mut Self) -> Result<bool, JobError>,
+    ) -> Result<(), JobError> {
+        let end = u64::from(self.tick()) + limit.as_millis() as u64;
+        self.go_on_until(|s| {
+            let over = done(s)?;
+            if !over && u64::from(s.tick()) > end {
+                let seconds = limit.as_secs();
+                return Err(JobError::TooLong { what, seconds });
+            }
+            Ok(over)
+        })
+    }
+
+    /// Goes on for `seconds` by the motion board's clock, unless a fault or the operator end it early.
+    pub fn dwell(&mut self, seconds: f64) -> Result<(), JobError> {
+        self.refresh()?;
+        let end = u64::from(self.tick()) + (seconds * 1e3).ceil() as u64;
+        self.go_on_until(|s| Ok(u64::from(s.tick()) >= end))
+    }
+
+    /// The first reason not to go on.
+    pub fn check(&self) -> Result<(), JobError> {
+        let tracking = self.tracking.as_ref();
+        let of_tracker = tracking.and_then(|tracking| tracking.fault(&self.record));
+        match (self.motion.fault, of_tracker) {
+            // The tracker knows why it gave no permit.
+            (Some(Fault::PermitLost { .. } | Fault::NotLocked { .. }) | None, Some(fault)) => {
+                return Err(JobError::Tracker(fault));
+            }
+            (Some(fault), _) => return Err(JobError::Motion(fault)),
+            (None, None) => {}
+        }
+        if self.interrupted.load(Ordering::Relaxed) {
+            return Err(JobError::Interrupted);
+        }
+        if self.boards.now() > self.ticked + STANDSTILL {
+            let seconds = STANDSTILL.as_secs();
+            let what = "the next tick of the motion board";
+            return Err(JobError::TooLong { what, seconds });
+        }
+        Ok(())
+    }
+
+    /// Stops on the path and waits until the machine stands. The tracker board is not needed: it may be what was
+    /// lost.
+    pub fn stop(&mut self, limit: Duration) -> Result<(), JobError> {
+        match self.command(Role::Motion, &Request::Stop) {
+            // Refused: it does not move any more.
+            Ok(()) | Err(LinkError::Refused { .. }) => {}
+            Err(error) => return Err(error.into()),
+        }
+        let end = self.boards.now() + limit;
+        loop {
+            self.motion = motion_status(self.boards)?;
+            if !on_path(self.motion.state) {
+                return Ok(());
+            }
+            if self.boards.now() > end {
+                let seconds = limit.as_secs();
+                return Err(JobError::TooLong {
+                    what: "the controlled stop",
+                    seconds,
+                });
+            }
+            let next = self.boards.now() + STATUS_PERIOD / 4;
+            while self.boards.now() < next {
+                match self.boards.receive(LONGEST_WAIT) {
+                    Ok(Some((role, datagram))) => self.take(role, datagram),
+                    Ok(None) => {}
+                    Err(_) => break,
+                }
+            }
+        }
+    }
+
+    /// One turn: at most one datagram, and whatever is due.
+    pub fn turn(&mut self) -> Result<(), JobError> {
+        let now = self.boards.now();
+        let tracking_due = self.tracking.as_ref().map(|tracking| tracking.next_due(now));
+        let due = tracking_due.map_or(self.next_status, |due| due.min(self.next_status));
+        let wait = due.saturating_sub(now).clamp(SHORTEST_WAIT, LONGEST_WAIT);
+        if let Some((role, datagram)) = self.boards.receive(wait)? {
+            self.take(role, datagram);
+        }
+        if let Some(tracking) = &mut self.tracking {
+            tracking.turn(self.boards, &self.machine, &self.record)?;
+        }
+        Ok(self.poll()?)
+    }
+
+    fn take(&mut self, role: Role, datagram: Datagram) {
+        let arrived_us = self.boards.now().as_micros() as u64;
+        let welding = self.welding();
+        match (datagram, &mut self.tracking) {
+            (Datagram::MotionTelemetry(telemetry), tracking) => {
+                if let (Some(newest), Some(tracking)) = (telemetry.samples.last(), tracking) {
+                    tracking.saw_motion(newest.time_us, arrived_us);
+                }
+                self.record.add_motion(&telemetry.samples);
+            }
+            (Datagram::TrackerTelemetry(telemetry), _) => self.record.add_tracker(&telemetry.samples),
+            (Datagram::ClockReply(reply), Some(tracking)) => tracking.clock_reply(role, &reply, arrived_us),
+            (Datagram::Capture(capture), Some(tracking)) => tracking.strobe(&self.machine, capture, welding),
+            // Left over from another session, or what boards send to each other only.
+            (Datagram::ClockReply(_) | Datagram::Capture(_), None)
+            | (
+                Datagram::PathState(_)
+                | Datagram::Permit(_)
+                | Datagram::Measurement(_)
+                | Datagram::ClockRequest(_),
+                _,
+            ) => {}
+        }
+    }
+
+    fn welding(&self) -> bool {
+        self.record
+            .motion()
+            .last()
+            .is_some_and(|sample| sample.beams.contains(&true))
+    }
+}
+
+/// Whether the machine is moving along a path, or may be.
+pub(super) fn on_path(state: State) -> bool {
+    matches!(state, State::Running | State::Holding | State::Stopping)
+}
+
+fn motion_status(boards: &mut dyn Boards) -> Result<MotionStatus, LinkError> {
+    match boards.request(Role::Motion, &Request::Status)? {
+        Response::MotionStatus(status) => Ok(status),
+        other => Err(unexpected(Role::Motion, &other)),
+    }
+}
+
+pub(super) fn unexpected(role: Role, response: &Response) -> LinkError {
+    match response {
+        Response::Refused(refusal) => LinkError::Refused {
+            role,
+            refusal: *refusal,
+        },
+        _ => LinkError::Unexpected { role },
+    }
+}
+
+fn lost(motion: &MotionStatus) -> u32 {
+    motion.servo_lost.wrapping_add(motion.path_lost)
+}

@@ -1,0 +1,47 @@
+//! Slides that the PC moves while the machine stands.
+
+use crate::JobError;
+use crate::session::Session;
+use shared::io::{SLIDE_NAMES, SLIDES};
+use shared::protocol::{Request, Role};
+use std::time::Duration;
+
+/// Nearer to their targets, slides are there \[mm\].
+const THERE_MM: f64 = 0.005;
+/// Longest time for the longest way.
+const LIMIT: Duration = Duration::from_secs(10);
+
+impl Session<'_> {
+    /// Moves the slides to `target_mm` (U1, V1, U2, V2) and waits until they are there, to 0.005 mm; the tracker board is
+    /// ready, and tracks no path.
+    ///
+    /// # Errors
+    /// [`JobError::SlideAway`]; [`JobError::Link`] of a target beyond the travel, which names the slide.
+    pub fn move_slides(&mut self, target_mm: [f64; SLIDES]) -> Result<(), JobError> {
+        self.command(Role::Tracker, &Request::MoveSlides { target_mm })?;
+        let moved = self.wait_until("a move of the slides", LIMIT, |session| {
+            session.refresh()?;
+            Ok(session.away(&target_mm).is_none())
+        });
+        match (moved, self.away(&target_mm)) {
+            (Err(JobError::TooLong { .. }), Some((slide, away_mm))) => {
+                let slide = SLIDE_NAMES[slide];
+                Err(JobError::SlideAway { slide, away_mm })
+            }
+            (moved, _) => moved,
+        }
+    }
+
+    /// Where the slides are \[mm\].
+    pub fn slides_mm(&self) -> [f64; SLIDES] {
+        let tracking = self.tracking.as_ref();
+        tracking.map_or([0.0; SLIDES], |tracking| tracking.status.slides_mm)
+    }
+
+    /// The first slide that is not at its target, and how far it is off \[mm\].
+    fn away(&self, target_mm: &[f64; SLIDES]) -> Option<(usize, f64)> {
+        let at = self.slides_mm();
+        let away = (0..SLIDES).map(|slide| (slide, (at[slide] - target_mm[slide]).abs()));
+        away.into_iter().find(|(_, away_mm)| *away_mm > THERE_MM)
+    }
+}

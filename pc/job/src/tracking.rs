@@ -1,0 +1,363 @@
+//! The tracker board's part of a session: its state, its clock, and the cameras that answer its captures.
+
+use crate::JobError;
+use crate::cameras::{Answer, Moment, SeamCameras};
+use crate::session::unexpected;
+use crate::surroundings::Surroundings;
+use cam::path::{CAPACITY, PlannedPath};
+use config::machine::TrackingUnit;
+use host_link::boards::{Boards, LinkError};
+use host_link::clock::BoardClocks;
+use host_link::geometry::MachineGeometry;
+use host_link::record::Record;
+use shared::geometry::Pose;
+use shared::io::{SIDES, SLIDES};
+use shared::protocol::{
+    Capture, ClockReply, ClockRequest, Datagram, Measurement, Request, Response, Role, SideMeasurement,
+    TrackerStatus,
+};
+use shared::tracking::frames::Heads;
+use shared::tracking::{TrackerFault, TrackerState};
+use shared::trajectory::{Path, PathSpace};
+use std::collections::{BTreeMap, VecDeque};
+use std::time::Duration;
+use teach::seam::Seen;
+use vision::{Form, Seam};
+
+/// How often the boards are asked for their clock.
+const CLOCK_PERIOD: Duration = Duration::from_millis(50);
+/// Paths that are remembered.
+const PATHS: usize = 4;
+
+/// A picture of both cameras that somebody watches for.
+#[derive(Clone, Debug)]
+pub(super) struct Watched {
+    /// U1, V1, U2, V2 at the strobe \[mm\].
+    pub slides_mm: [f64; SLIDES],
+    /// What is seen of each seam.
+    pub sides: [Option<Seen>; SIDES],
+}
+
+/// Pictures while somebody watches.
+#[derive(Clone, Debug, Default)]
+struct Watch {
+    /// By the number of the capture.
+    strobed: BTreeMap<u32, [f64; SLIDES]>,
+    answered: BTreeMap<u32, Watched>,
+}
+
+/// What a session knows of the tracker board.
+pub(super) struct Tracking {
+    pub status: TrackerStatus,
+    pub cameras: Box<dyn SeamCameras>,
+    /// Largest residual that the tracker told while welding \[µs\].
+    pub clock_residual_us: Option<f64>,
+    /// Largest difference of its relation from the PC's while welding \[µs\].
+    pub clock_difference_us: Option<f64>,
+    /// Where the heads are on the tool.
+    pub heads: Heads,
+    watch: Option<Watch>,
+    /// Planned pose of the newest capture.
+    stands: Option<Pose>,
+    /// Where the slides were at the strobe of each capture, while somebody asks for that \[mm\].
+    pub strobed: Option<BTreeMap<u32, [f64; SLIDES]>>,
+    /// The latest paths, by their numbers.
+    paths: VecDeque<(u32, PathSpace, Box<Path<CAPACITY>>)>,
+    clocks: BoardClocks,
+    lost_before: u32,
+    next_clock: Duration,
+    /// The board was asked for its state, and has not answered yet.
+    asked: bool,
+}
+
+impl Tracking {
+    /// Begins with the board as it is, before the cameras of `around`.
+    pub fn begin(
+        boards: &mut dyn Boards,
+        unit: &TrackingUnit,
+        around: &dyn Surroundings,
+    ) -> Result<Self, JobError> {
+        let heads = unit.board.head.build()?;
+        let role = Role::Tracker;
+        boards.identity(role).ok_or(LinkError::Absent { role })?;
+        let status = status(boards)?;
+        Ok(Self {
+            lost_before: status.lost,
+            status,
+            cameras: around.cameras(unit, heads)?,
+            strobed: None,
+            paths: VecDeque::new(),
+            clock_residual_us: None,
+            clock_difference_us: None,
+            heads,
+            watch: None,
+            stands: None,
+            clocks: BoardClocks::default(),
+            next_clock: boards.now(),
+            asked: false,
+        })
+    }
+
+    /// Asks the board for its state now.
+    pub fn refresh(&mut self, boards: &mut dyn Boards, welding: bool) -> Result<(), LinkError> {
+        self.told(status(boards)?, welding);
+        Ok(())
+    }
+
+    /// Asks the board for its state if that is `due`, and takes its answer if that is there.
+    pub fn poll(&mut self, boards: &mut dyn Boards, due: bool, welding: bool) -> Result<(), LinkError> {
+        if !due && !self.asked {
+            return Ok(());
+        }
+        let answer = boards.poll(Role::Tracker, &Request::Status)?;
+        self.asked = answer.is_none();
+        if let Some(answer) = answer {
+            self.told(of(answer)?, welding);
+        }
+        Ok(())
+    }
+
+    fn told(&mut self, status: TrackerStatus, welding: bool) {
+        self.asked = false;
+        self.status = status;
+        if welding {
+            let residual = f64::from(self.status.clock_residual_us);
+            raise(&mut self.clock_residual_us, residual);
+        }
+    }
+
+    /// Control ticks lost since the session began.
+    pub fn lost_ticks(&self) -> u32 {
+        self.status.lost.wrapping_sub(self.lost_before)
+    }
+
+    /// The boards know each other's clock, and the PC both.
+    pub fn clocks_related(&self) -> bool {
+        self.status.clock_settled && self.clocks.tracker_ahead_us().is_some()
+    }
+
+    /// The first reason not to go on.
+    pub fn fault(&self, record: &Record) -> Option<TrackerFault> {
+        let newest = record.tracker().last();
+        let told = newest
+            .filter(|sample| sample.state == TrackerState::Tracking)
+            .and_then(|sample| sample.fault);
+        self.status.fault.or(told)
+    }
+
+    /// How far the tracker's clock is ahead of the motion board's, if that is known \[µs\].
+    pub fn tracker_ahead_us(&self) -> Option<i64> {
+        self.clocks.tracker_ahead_us()
+    }
+
+    /// Takes a time of the motion clock that arrived just now.
+    pub fn saw_motion(&mut self, time_us: u64, arrived_us: u64) {
+        self.clocks.saw_motion(time_us, arrived_us);
+    }
+
+    /// Takes a reply of either board.
+    pub fn clock_reply(&mut self, role: Role, reply: &ClockReply, arrived_us: u64) {
+        self.clocks.add(role, reply, arrived_us);
+    }
+
+    /// From now on there is a path of that number.
+    pub fn add_path(&mut self, id: u32, path: &PlannedPath) {
+        if self.paths.len() == PATHS {
+            self.paths.pop_front();
+        }
+        self.paths.push_back((id, path.space, path.knot_path()));
+    }
+
+    /// The planned pose of a capture.
+    fn planned(&self, machine: &MachineGeometry, capture: &Capture) -> Option<Pose> {
+        let (_, space, path) = self.paths.iter().rev().find(|(id, ..)| *id == capture.path_id)?;
+        let (start, end) = (path.start_s()?, path.end_s()?);
+        let point = path.at(capture.s_mm.clamp(start, end))?;
+        match space {
+            PathSpace::Tool => point.pose().ok(),
+            PathSpace::Axes => Some(machine.kinematics().forward(&point.axes().position)),
+        }
+    }
+
+    /// Gives a capture to the cameras. The time of the strobe is what the PC found, as soon as it has, not what the
+    /// tracker believes: a wrong belief must show. No capture is left out, for real cameras count them.
+    pub fn strobe(&mut self, machine: &MachineGeometry, capture: Capture, welding: bool) {
+        let found = self.clocks.tracker_ahead_us();
+        let on_motion = found.map_or(capture.motion_time_us, |ahead| {
+            capture.time_us.saturating_add_signed(-ahead)
+        });
+        if welding {
+            let difference = capture.motion_time_us as f64 - on_motion as f64;
+            raise(&mut self.clock_difference_us, difference.abs());
+        }
+        if let Some(watch) = &mut self.watch {
+            watch.strobed.insert(capture.number, capture.slides_mm);
+        }
+        if let Some(strobed) = &mut self.strobed {
+            strobed.insert(capture.number, capture.slides_mm);
+        }
+        // At rest a capture names no path: the machine stands where it was seen last on one.
+        self.stands = match capture.path_id {
+            0 => self.stands,
+            _ => self.planned(machine, &capture),
+        };
+        let pose = self.stands;
+        self.cameras.strobe(capture, on_motion, pose);
+    }
+
+    /// From now on the pictures are kept, those strobed from now on.
+    pub fn watch(&mut self) {
+        self.watch = Some(Watch::default());
+    }
+
+    /// Pictures kept so far.
+    pub fn watched(&self) -> usize {
+        self.watch.as_ref().map_or(0, |watch| watch.answered.len())
+    }
+
+    /// Gives the pictures that were kept.
+    pub fn end_watch(&mut self) -> Vec<Watched> {
+        let answered = self.watch.take().map(|watch| watch.answered);
+        answered.unwrap_or_default().into_values().collect()
+    }
+
+    /// When the next question or answer is due, by the PC's clock.
+    pub fn next_due(&self, now: Duration) -> Duration {
+        let motion_now = self.clocks.motion_now_us(now.as_micros() as u64);
+        match (self.cameras.next_due_us(), motion_now) {
+            (Some(camera), Some(motion)) => {
+                let answer = now + Duration::from_micros(camera.saturating_sub(motion));
+                self.next_clock.min(answer)
+            }
+            _ => self.next_clock,
+        }
+    }
+
+    /// Asks for the clocks and answers the captures, where that is due.
+    pub fn turn(
+        &mut self,
+        boards: &mut dyn Boards,
+        machine: &MachineGeometry,
+        record: &Record,
+    ) -> Result<(), JobError> {
+        let now = boards.now();
+        if now >= self.next_clock {
+            self.next_clock = now + CLOCK_PERIOD;
+            let request = Datagram::ClockRequest(ClockRequest {
+                asked_us: now.as_micros() as u64,
+            });
+            for role in [Role::Motion, Role::Tracker] {
+                boards.send(role, &request)?;
+            }
+        }
+        while let Some(now_us) = self.clocks.motion_now_us(boards.now().as_micros() as u64) {
+            let moment = Moment {
+                machine,
+                now_us,
+                position: &|time_us| Some(record.machine_at(time_us)?.0),
+            };
+            let Some(answer) = self.cameras.answer(moment)? else {
+                break;
+            };
+            if let Some(watch) = &mut self.watch {
+                watch.add(&answer);
+            }
+            boards.send(Role::Tracker, &Datagram::Measurement(answer.measurement))?;
+        }
+        Ok(())
+    }
+}
+
+impl Watch {
+    /// Real cameras answer a capture each by itself.
+    fn add(&mut self, answer: &Answer) {
+        let Measurement { capture, sides } = &answer.measurement;
+        let Some(slides_mm) = self.strobed.get(capture) else {
+            return;
+        };
+        let watched = self.answered.entry(*capture).or_insert(Watched {
+            slides_mm: *slides_mm,
+            sides: [None; SIDES],
+        });
+        for (k, side) in sides.iter().enumerate() {
+            if let Some(side) = side {
+                watched.sides[k] = Some(seen(side, answer.seams[k].as_ref()));
+            }
+        }
+    }
+}
+
+/// What is known of one picture.
+fn seen(side: &SideMeasurement, seam: Option<&Seam>) -> Seen {
+    let gap = seam.filter(|seam| seam.form == Form::Gap);
+    Seen {
+        along_mm: side.along_mm,
+        offset_mm: [side.delta_u_mm, side.delta_v_mm],
+        roll: gap.map(|seam| seam.roll),
+        width_mm: gap.map(|seam| seam.width_mm),
+        quality: seam.map_or(1.0, |seam| seam.quality),
+        scatter_mm: 0.0,
+        pictures: 1,
+    }
+}
+
+fn status(boards: &mut dyn Boards) -> Result<TrackerStatus, LinkError> {
+    of(boards.request(Role::Tracker, &Request::Status)?)
+}
+
+fn of(answer: Response) -> Result<TrackerStatus, LinkError> {
+    match answer {
+        Response::TrackerStatus(status) => Ok(status),
+        other => Err(unexpected(Role::Tracker, &other)),
+    }
+}
+
+fn raise(largest: &mut Option<f64>, value: f64) {
+    *largest = Some(largest.map_or(value, |before| before.max(value)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_watches_gets_both_sides_of_a_capture_whenever_each_is_answered() {
+        let mut watch = Watch::default();
+        let slides = |number: u32| [f64::from(number); SLIDES];
+        watch
+            .strobed
+            .extend((3..6).map(|number| (number, slides(number))));
+        let answer = |capture: u32, side: usize, delta_u_mm: f64| {
+            let mut sides = [None; SIDES];
+            sides[side] = Some(SideMeasurement {
+                along_mm: 0.0,
+                delta_u_mm,
+                delta_v_mm: 0.0,
+            });
+            Answer::from(Measurement { capture, sides })
+        };
+        // Side 2 is late, and has lost capture 4; capture 2 was strobed before anybody watched.
+        for (capture, side, u) in [
+            (2, 1, 0.9),
+            (3, 0, 0.1),
+            (4, 0, 0.2),
+            (3, 1, 0.3),
+            (5, 1, 0.4),
+            (5, 0, 0.5),
+        ] {
+            watch.add(&answer(capture, side, u));
+        }
+        let u = |watched: &Watched| watched.sides.map(|side| Some(side?.offset_mm[0]));
+        let seen: Vec<_> = watch
+            .answered
+            .values()
+            .map(|watched| (watched.slides_mm, u(watched)))
+            .collect();
+        let wanted = [
+            (slides(3), [Some(0.1), Some(0.3)]),
+            (slides(4), [Some(0.2), None]),
+            (slides(5), [Some(0.5), Some(0.4)]),
+        ];
+        assert_eq!(seen, wanted);
+    }
+}

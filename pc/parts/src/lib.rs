@@ -1,0 +1,289 @@
+//! Parts: what is to be made, in a file of its own.
+//!
+//! A part file holds one table, named by its kind: `[t-seam]`, `[saddle]`… From it a program is planned for a
+//! machine, and against it the run of the program is judged. One file a kind; a kind becomes one of
+//! Seamwright's by its line in the list below.
+
+mod bead;
+mod judge;
+mod limits;
+mod panel;
+pub mod plan;
+mod saddle;
+mod seam_curves;
+mod seam_limits;
+mod stir;
+mod surface;
+mod t_seam;
+
+pub use bead::Bead;
+pub use judge::{ALONG, Figure, GAP, Judgement, Plot, Run};
+pub use limits::{Limit, Percent};
+pub use panel::{Panel, PanelError};
+pub use saddle::{Saddle, SaddlePartError, TaughtError};
+pub use seam_curves::{SeamPoint, read_main_curve, read_other_curve};
+pub use seam_limits::SeamLimits;
+pub use stir::Stir;
+pub use surface::Surface;
+pub use t_seam::TSeam;
+
+use crate::plan::DualBeamPlan;
+use config::machine::MachineFile;
+use config::table::line_of;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use teach::TaughtPoint;
+use thiserror::Error;
+
+/// What every kind of part can do. Errors read as one sentence that names the place and what to do.
+pub trait Kind {
+    /// Plans the program.
+    fn plan(&self, place: &Place) -> anyhow::Result<Plan>;
+
+    /// Judges a run of the planned program by where the tool truly was.
+    fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement>;
+
+    /// Most that the speed may fall below the feed with a beam on.
+    fn speed_dip(&self) -> Percent;
+}
+
+/// What a part is planned and judged with.
+#[derive(Clone, Copy, Debug)]
+pub struct Place<'a> {
+    /// The machine.
+    pub machine: &'a MachineFile,
+    /// Where files lie that the part names.
+    pub directory: &'a Path,
+    /// What the program is called.
+    pub title: &'a str,
+}
+
+/// A planned program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// NC text.
+    pub program: String,
+    /// What a person should know of it, a sentence each.
+    pub notes: Vec<String>,
+}
+
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $key:literal $name:ident,)+) => {
+        /// A part of any kind.
+        #[derive(Clone, Debug, PartialEq, Deserialize)]
+        pub enum Part {
+            $($(#[$doc])* #[serde(rename = $key)] $name(Box<$name>),)+
+        }
+
+        impl Part {
+            fn kind(&self) -> &dyn Kind {
+                match self {
+                    $(Self::$name(kind) => kind.as_ref(),)+
+                }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// Two seams at the feet of a rib, for the dual-beam head.
+    "t-seam" TSeam,
+    /// A line on a curved panel, taught and cut by the A/C head.
+    "panel" Panel,
+    /// The saddle of two pipes, for the pipe welder.
+    "saddle" Saddle,
+    /// Friction-stir weld along lines and arcs.
+    "stir" Stir,
+    /// A bead of deposited wire along a NURBS, for the wire-arc robot.
+    "bead" Bead,
+}
+
+/// A part and where it came from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartFile {
+    part: Part,
+    path: PathBuf,
+}
+
+/// Why a part file cannot be used. Reads as one sentence.
+#[derive(Debug, Error)]
+pub enum PartError {
+    /// The file cannot be read.
+    #[error("cannot read part file {path}: {source}")]
+    Read {
+        /// The file.
+        path: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Not TOML, no part of a known kind, or a key is missing, unknown or of the wrong type.
+    #[error("part file {path}, line {line}: {message}")]
+    Content {
+        /// The file.
+        path: String,
+        /// First line is 1.
+        line: usize,
+        /// What is wrong.
+        message: String,
+    },
+}
+
+impl PartFile {
+    /// Reads the file at `path`.
+    pub fn read(path: &Path) -> Result<Self, PartError> {
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|source| PartError::Read {
+            path: name.clone(),
+            source,
+        })?;
+        let part = toml::from_str(&text).map_err(|error| PartError::Content {
+            path: name,
+            line: line_of(&text, error.span().map_or(0, |span| span.start)),
+            message: error.message().replace('\n', ", "),
+        })?;
+        Ok(Self {
+            part,
+            path: path.to_owned(),
+        })
+    }
+
+    /// The part of the program at `path`: the part file of the same name beside it, if there is one.
+    pub fn of_program(path: &Path) -> Result<Option<Self>, PartError> {
+        let path = path.with_extension("toml");
+        path.exists().then(|| Self::read(&path)).transpose()
+    }
+
+    /// Where it came from.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The part.
+    pub fn part(&self) -> &Part {
+        &self.part
+    }
+
+    /// The panel, if it has to be taught before it can be planned.
+    pub fn untaught(&self) -> Option<&Panel> {
+        match &self.part {
+            Part::Panel(panel) if panel.is_untaught() => Some(panel),
+            _ => None,
+        }
+    }
+
+    /// What a person should know of the feed of a panel before it is taught.
+    ///
+    /// # Errors
+    /// As of [`Panel::check_before_teaching`].
+    pub fn check_before_teaching(&self, machine: &MachineFile) -> Result<Option<String>, PanelError> {
+        match self.untaught() {
+            Some(panel) => panel.check_before_teaching(&self.place(machine, "")),
+            None => Ok(None),
+        }
+    }
+
+    /// The seams of a rib, if the part has any.
+    pub fn t_seam(&self) -> Option<&TSeam> {
+        match &self.part {
+            Part::TSeam(seam) => Some(seam),
+            _ => None,
+        }
+    }
+
+    /// The weld of both feet of a rib as it is drawn, if it is one and has a drawing.
+    pub fn drawn(&self, machine: &MachineFile) -> anyhow::Result<Option<DualBeamPlan>> {
+        match self.t_seam() {
+            Some(seam) => seam.drawn(&self.place(machine, "drawing")),
+            None => Ok(None),
+        }
+    }
+
+    /// The part, planned from the seams taught in `file`.
+    ///
+    /// # Errors
+    /// The part has no seams.
+    pub fn with_taught_seams(mut self, file: &Path) -> anyhow::Result<Self> {
+        let file = std::path::absolute(file)?;
+        match &mut self.part {
+            Part::TSeam(seam) => seam.set_taught(file),
+            _ => anyhow::bail!(
+                "--taught is for parts with seams ([t-seam]); name other taught points in the part file"
+            ),
+        }
+        Ok(self)
+    }
+
+    /// Plans the pass of the measuring heads along both seams of a rib, beams off.
+    pub fn plan_measuring(&self, machine: &MachineFile, title: &str) -> anyhow::Result<String> {
+        match self.t_seam() {
+            Some(seam) => seam.plan_measuring(&self.place(machine, title)),
+            None => anyhow::bail!("only a part with seams ([t-seam]) has a program for the measuring heads"),
+        }
+    }
+
+    /// The part with the points that were taught; a part that is no panel stays as it is.
+    pub fn taught(mut self, points: Vec<TaughtPoint>) -> Self {
+        if let Part::Panel(panel) = &mut self.part {
+            panel.set_points(points);
+        }
+        self
+    }
+
+    /// Plans the program for `machine`; `title` names it.
+    pub fn plan(&self, machine: &MachineFile, title: &str) -> anyhow::Result<Plan> {
+        self.part.kind().plan(&self.place(machine, title))
+    }
+
+    /// Judges a run of the planned program.
+    pub fn judge(&self, run: &Run) -> anyhow::Result<Judgement> {
+        let kind = self.part.kind();
+        let mut judgement = kind.judge(&self.place(run.machine, ""), run)?;
+        judgement.figures.extend(run.speed_dip(kind.speed_dip()));
+        Ok(judgement)
+    }
+
+    fn place<'a>(&'a self, machine: &'a MachineFile, title: &'a str) -> Place<'a> {
+        Place {
+            machine,
+            directory: self.path.parent().unwrap_or(Path::new("")),
+            title,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_file_is_one_table_of_a_known_kind() {
+        let part: Part = toml::from_str(
+            "[t-seam]\nseam_1 = \"a.csv\"\nseam_2 = \"b.csv\"\nspeed_m_min = 5.0\npower_w = 2000.0\n",
+        )
+        .unwrap();
+        assert!(matches!(part, Part::TSeam(_)));
+        for wrong in [
+            "",
+            "[boat]\nlength = 3.0\n",
+            "[t-seam]\nseam_1 = \"a.csv\"\nlength = 3\n",
+        ] {
+            assert!(toml::from_str::<Part>(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_line() {
+        let path = std::env::temp_dir().join(format!("seamwright-part-{}.toml", std::process::id()));
+        std::fs::write(&path, "[t-seam]\nseam_1 = \"a.csv\"\nwobble = 1\n").unwrap();
+        let error = PartFile::read(&path).unwrap_err().to_string();
+        std::fs::remove_file(&path).unwrap();
+        assert!(error.contains("line 3") && error.contains("wobble"), "{error}");
+        assert!(
+            PartFile::read(&path)
+                .unwrap_err()
+                .to_string()
+                .contains("cannot read part file")
+        );
+        assert_eq!(PartFile::of_program(&path).unwrap(), None);
+    }
+}

@@ -1,0 +1,127 @@
+//! Panels taught and cut on simulated boards: drives, gratings and servo loops included.
+
+use super::*;
+use crate::PartFile;
+use job::{Job, JobError, Names, Progress, Silent, Work, run};
+use report::Ended;
+use report::Outcome;
+use std::sync::atomic::{AtomicBool, Ordering};
+use world::simulated::SimulatedBoards;
+
+/// The shipped panel with every so many of its guide points, changed by `change`.
+fn part(every: usize, change: impl Fn(&mut Panel)) -> PartFile {
+    let mut panel = panel();
+    panel.guide = panel.guide.into_iter().step_by(every).collect();
+    change(&mut panel);
+    PartFile {
+        part: Part::Panel(Box::new(panel)),
+        path: "panel.toml".into(),
+    }
+}
+
+fn made(part: &PartFile, work: Work, interrupted: &AtomicBool, progress: &mut dyn Progress) -> Ended {
+    let machine = machine();
+    let job = Job {
+        machine: &machine,
+        work,
+        part: Some(part),
+        speed_m_per_min: None,
+        from_line: None,
+        surroundings: Default::default(),
+        names: Names {
+            program: "panel.toml".into(),
+            machine: "ac-head.toml".into(),
+            seam: None,
+            boards: "simulated".into(),
+        },
+    };
+    let mut boards = SimulatedBoards::new("ac-head").unwrap();
+    run(&mut boards, &job, interrupted, progress).unwrap()
+}
+
+fn teach(part: &PartFile) -> Ended {
+    made(part, Work::Teach, &AtomicBool::new(false), &mut Silent)
+}
+
+#[test]
+fn a_panel_is_taught_and_cut_within_its_limits() {
+    let part = part(3, |_| {});
+    let ended = made(&part, Work::TeachAndMake, &AtomicBool::new(false), &mut Silent);
+    let report = &ended.report;
+    assert!(ended.error.is_none(), "{:?}", ended.error);
+    assert_eq!(report.outcome, Outcome::Finished, "{report}");
+    let exceeded: Vec<_> = report.exceeded().map(|figure| figure.key).collect();
+    assert_eq!(exceeded, [""; 0], "{report}");
+    let value = |key: &str| {
+        let figure = report.figures.iter().find(|figure| figure.key == key);
+        figure.unwrap_or_else(|| panic!("no {key}")).value
+    };
+    assert_eq!(ended.taught.points.len(), 6);
+    assert!(value("max_focus_error_cut_mm") < 0.01, "{report}");
+    assert!(value("max_focus_error_turn_mm") < 0.0075, "{report}");
+    assert!(value("max_normal_error_deg") < 0.3, "{report}");
+    assert!(value("max_inclination_deg") > 35.0, "{report}");
+    assert!(value("taught_points_per_min") > 3.0, "{report}");
+    assert!(ended.taught.program.is_some_and(|text| text.contains("M62 P0")));
+}
+
+/// What is said of guide points on the third of which is something wrong; the first two are kept.
+fn told(change: impl Fn(&mut [f64; 5])) -> String {
+    let ended = teach(&part(6, |panel| change(&mut panel.guide[2])));
+    assert_eq!(ended.taught.points.len(), 2);
+    assert_eq!(ended.report.outcome, Outcome::Failed);
+    ended.error.unwrap().to_string()
+}
+
+#[test]
+fn what_ends_teaching_names_its_point() {
+    let text = told(|guide| guide[1] = 860.0);
+    assert!(text.starts_with("teaching ended: point 3 (X"), "{text}");
+    assert!(text.contains("too far"), "{text}");
+    let text = told(|guide| guide[0] = 2990.0);
+    assert!(
+        text.starts_with("teaching ended: point 3") && text.contains('X'),
+        "{text}"
+    );
+}
+
+#[test]
+fn what_cannot_be_taught_at_all_is_said_before_the_machine_moves() {
+    let error = |part: &PartFile| teach(part).error.unwrap().to_string();
+    let text = error(&part(1, |panel| panel.guide.clear()));
+    assert!(text.contains("no guide points"), "{text}");
+    let text = error(&part(1, |panel| panel.taught = Some("taught.csv".into())));
+    assert!(text.contains("nothing to teach"), "{text}");
+    let text = error(&part(1, |panel| panel.teaching.readings = 3));
+    assert!(text.contains("readings is 3"), "{text}");
+    let ended = teach(&part(1, |panel| panel.simulated_surface = None));
+    assert!(ended.error.unwrap().to_string().contains("simulated_surface"));
+    assert!(!ended.began);
+}
+
+/// Presses Ctrl-C on the second point.
+struct Operator<'a>(&'a AtomicBool);
+
+impl Progress for Operator<'_> {
+    fn phase(&mut self, text: &str) {
+        if text.starts_with("teaching point 2") {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+
+    fn travel(&mut self, _done_mm: f64, _length_mm: f64) {}
+}
+
+#[test]
+fn the_operator_ends_teaching_and_keeps_what_was_taught() {
+    let interrupted = AtomicBool::new(false);
+    let ended = made(
+        &part(6, |_| {}),
+        Work::Teach,
+        &interrupted,
+        &mut Operator(&interrupted),
+    );
+    assert!(matches!(ended.error, Some(JobError::Interrupted)));
+    assert_eq!(ended.taught.points.len(), 1);
+    assert!(ended.taught.part.is_none());
+}

@@ -1,0 +1,207 @@
+//! Figures of a run: the torch as it truly was against the exact saddle and the bisector of its groove.
+
+use crate::saddle::error::SaddlePartError;
+use crate::saddle::seam::{Deviation, Seam};
+use crate::saddle::{Pass, Saddle, SaddleLimits};
+use crate::{ALONG, Figure, GAP, Judgement, Plot, Run};
+use evaluate::RunSample;
+use shared::units::next_to;
+
+/// Arc off for longer than this leaves a gap in the lines of the plots \[µs\].
+const GAP_US: u64 = 1500;
+/// Speeds are means over so many samples.
+const SPEED_WINDOW: usize = 50;
+/// Names of the lines in plots; passes after these have the last name.
+const PASSES: [&str; 7] = [
+    "pass 1",
+    "pass 2",
+    "pass 3",
+    "pass 4",
+    "pass 5",
+    "pass 6",
+    "further passes",
+];
+/// The beam that is the arc.
+const ARC: usize = 0;
+/// Slot of C.
+const WAIST: usize = 5;
+
+/// What all passes were worth together.
+#[derive(Default)]
+struct Worth {
+    samples: u32,
+    max_distance: f64,
+    sum_of_squares: f64,
+    max_tilt_error_deg: f64,
+    max_out_of_plane_deg: f64,
+    length: f64,
+    speed_fluctuation: f64,
+    /// One of each pass.
+    distances: Vec<Line>,
+    tilt_errors: Vec<Line>,
+    out_of_plane: Vec<Line>,
+}
+
+type Line = (&'static str, Vec<(f64, f64)>);
+
+pub(super) fn judge(part: &Saddle, seam: &Seam, run: &Run) -> anyhow::Result<Judgement> {
+    let welds = run.paths.iter().filter(|(_, path)| path.weld().is_some());
+    let welds: Vec<u32> = welds.map(|(id, _)| *id).collect();
+    let (paths, passes) = (welds.len(), part.passes.len());
+    if paths != passes {
+        return Err(SaddlePartError::Passes { paths, passes }.into());
+    }
+    let mut worth = Worth::default();
+    for (pass, id) in part.passes.iter().zip(welds) {
+        let burning = run
+            .samples
+            .iter()
+            .filter(|sample| sample.path_id == id && sample.beams[ARC]);
+        worth.add(pass, seam, &burning.collect::<Vec<_>>(), |s| {
+            run.along().at(id, s)
+        })?;
+    }
+    Ok(worth.judgement(&part.limits))
+}
+
+impl Worth {
+    /// `along` gives the path length through all paths of a place of this one.
+    fn add(
+        &mut self,
+        pass: &Pass,
+        seam: &Seam,
+        burning: &[&RunSample],
+        along: impl Fn(f64) -> Option<f64>,
+    ) -> anyhow::Result<()> {
+        let [mut distances, mut tilt_errors, mut out_of_plane] = [const { Vec::new() }; 3];
+        let mut before: Option<&RunSample> = None;
+        for sample in burning {
+            if let Some(before) = before.replace(sample) {
+                if sample.time_us.saturating_sub(before.time_us) > GAP_US {
+                    for line in [&mut distances, &mut tilt_errors, &mut out_of_plane] {
+                        line.push(GAP);
+                    }
+                }
+                self.length += (sample.pose.position - before.pose.position).norm();
+            }
+            let deviation = seam.deviation(&sample.pose, &pass.offset())?;
+            self.add_deviation(&deviation);
+            let waist = next_to(deviation.station.waist, sample.axes[WAIST]).to_degrees();
+            distances.push((along(sample.s_mm).unwrap_or(f64::NAN), deviation.distance));
+            tilt_errors.push((waist, deviation.tilt_error.to_degrees()));
+            out_of_plane.push((waist, deviation.station.out_of_plane.to_degrees()));
+        }
+        let name = PASSES[self.distances.len().min(PASSES.len() - 1)];
+        self.distances.push((name, distances));
+        self.tilt_errors.push((name, tilt_errors));
+        self.out_of_plane.push((name, out_of_plane));
+        for window in burning.windows(SPEED_WINDOW) {
+            let (first, last) = (window[0], window[SPEED_WINDOW - 1]);
+            let time = last.time_us.saturating_sub(first.time_us) as f64 * 1e-6;
+            let speed = (last.pose.position - first.pose.position).norm() / time;
+            let wanted = (first.speed_mm_s + last.speed_mm_s) / 2.0;
+            self.speed_fluctuation = self.speed_fluctuation.max((speed / wanted - 1.0).abs());
+        }
+        Ok(())
+    }
+
+    fn add_deviation(&mut self, deviation: &Deviation) {
+        let tilt_error = deviation.tilt_error.to_degrees().abs();
+        let out_of_plane = deviation.station.out_of_plane.to_degrees().abs();
+        self.samples += 1;
+        self.max_distance = self.max_distance.max(deviation.distance);
+        self.sum_of_squares += deviation.distance * deviation.distance;
+        self.max_tilt_error_deg = self.max_tilt_error_deg.max(tilt_error);
+        self.max_out_of_plane_deg = self.max_out_of_plane_deg.max(out_of_plane);
+    }
+
+    fn judgement(self, limits: &SaddleLimits) -> Judgement {
+        let figure = |key, text, value, unit, limit| Figure {
+            limit,
+            ..Figure::new(key, text, value, unit)
+        };
+        let length = figure("welded_length_mm", "welded length", self.length, "mm", None);
+        if self.samples == 0 {
+            return Judgement {
+                figures: vec![length],
+                plots: Vec::new(),
+            };
+        }
+        let rms = libm::sqrt(self.sum_of_squares / f64::from(self.samples));
+        let figures = vec![
+            figure(
+                "max_distance_to_saddle_mm",
+                "largest distance to saddle",
+                self.max_distance,
+                "mm",
+                Some(limits.distance_mm.get()),
+            ),
+            figure(
+                "rms_distance_to_saddle_mm",
+                "rms distance to saddle",
+                rms,
+                "mm",
+                None,
+            ),
+            figure(
+                "max_bisector_error_deg",
+                "off bisector, as B tilts",
+                self.max_tilt_error_deg,
+                "°",
+                Some(limits.bisector_deg.get()),
+            ),
+            figure(
+                "max_out_of_plane_deg",
+                "off bisector, across that",
+                self.max_out_of_plane_deg,
+                "°",
+                None,
+            ),
+            length,
+            figure(
+                "speed_fluctuation_percent",
+                "largest speed deviation",
+                100.0 * self.speed_fluctuation,
+                "%",
+                None,
+            ),
+        ];
+        let plot = |file, title, x, y, lines, limits| Plot {
+            file,
+            title,
+            x,
+            y,
+            lines,
+            limits,
+            to_scale: false,
+        };
+        let tilt = limits.bisector_deg.get();
+        let plots = vec![
+            plot(
+                "saddle-distance",
+                "Tip against the exact saddle",
+                ALONG,
+                "distance [mm]",
+                self.distances,
+                vec![limits.distance_mm.get()],
+            ),
+            plot(
+                "saddle-tilt",
+                "Torch against the bisector, in the plane of the tilt",
+                "waist [°]",
+                "angle [°]",
+                self.tilt_errors,
+                vec![-tilt, tilt],
+            ),
+            plot(
+                "saddle-out-of-plane",
+                "Torch against the bisector, across the plane of the tilt",
+                "waist [°]",
+                "angle [°]",
+                self.out_of_plane,
+                Vec::new(),
+            ),
+        ];
+        Judgement { figures, plots }
+    }
+}

@@ -1,0 +1,246 @@
+//! The saddle where a branch pipe stands on a main pipe, for a welder that turns about the branch (SPEC 1).
+//!
+//! The torch stands on the bisector of the groove, as near as four axes take it there: their tilt realises the
+//! part of it in the plane of waist and branch axis, the rest is in the notes of the plan and in the figures of
+//! the run.
+
+mod error;
+mod fit;
+mod judge;
+mod least_squares;
+mod program;
+mod round;
+mod seam;
+mod taught;
+#[cfg(test)]
+mod tests;
+
+pub use error::{SaddlePartError, TaughtError};
+
+use crate::limits::SPEED_DIP;
+use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
+use fit::Known;
+use seam::{Offset, Placement, Seam};
+use serde::Deserialize;
+use shared::geometry::PipePair;
+use shared::kinematics::Kinematics;
+use std::path::{Path, PathBuf};
+
+/// Two pipes and how to weld them.
+///
+/// The frame of the work is that of the branch: Z along its axis, away from the main pipe. By dimensions alone, Z
+/// is 0 where that axis passes the main axis, and waist 0 is the side towards which it stands off the main axis.
+///
+/// Taught points say where the machine is clamped instead, and dimensions that are not given are found from them:
+/// from 3 points where it is clamped, from 4 also offset or angle, from 5 both, from 6 the diameter of the main pipe
+/// as well; the diameter of the branch shows in every point. A seam that is still uncertain is refused.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Saddle {
+    /// Outer diameter of the main pipe \[mm\].
+    main_diameter_mm: Option<f64>,
+    /// Outer diameter of the branch \[mm\].
+    branch_diameter_mm: Option<f64>,
+    /// Angle between the axes \[°\], 90 for a square branch. Below 90 the seam is lowest and the groove widest
+    /// at waist 90°, above 90 at waist 270°.
+    angle_deg: Option<f64>,
+    /// Distance of the axes \[mm\], towards waist 0.
+    offset_mm: Option<f64>,
+    /// Points taught with the tip on the seam, in axes of the machine (CSV X_mm,Z_mm,B_deg,C_deg).
+    taught: Option<PathBuf>,
+    /// Farthest that a taught point may lie off the seam, and most that the seam may be uncertain \[mm\].
+    #[serde(default = "default_within")]
+    taught_within_mm: f64,
+    /// Waist where the passes begin \[°\]; where the machine has most travel to either side, if not given.
+    start_deg: Option<f64>,
+    /// How far a pass goes on past its start \[mm of the seam\].
+    #[serde(default = "default_overlap")]
+    overlap_mm: f64,
+    /// In the order of welding, each once around.
+    passes: Vec<Pass>,
+    /// What the weld is judged by.
+    #[serde(default)]
+    limits: SaddleLimits,
+}
+
+/// What a run is judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct SaddleLimits {
+    /// Largest distance of the tip from the exact saddle, servo included \[mm\].
+    distance_mm: Limit,
+    /// Largest angle of the torch with the bisector of the groove, in the plane of the tilt \[°\].
+    bisector_deg: Limit,
+    /// Most that the speed may fall below the feed with the beam on \[%\].
+    speed_dip_percent: Percent,
+}
+
+impl Default for SaddleLimits {
+    fn default() -> Self {
+        Self {
+            distance_mm: Limit::new(0.01),
+            bisector_deg: Limit::new(0.1),
+            speed_dip_percent: SPEED_DIP,
+        }
+    }
+}
+
+/// Once around the branch.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Pass {
+    /// Tip outwards from the saddle, away from the branch axis \[mm\].
+    #[serde(default)]
+    radial_mm: f64,
+    /// Tip from the saddle along the branch, away from the main pipe \[mm\].
+    #[serde(default)]
+    axial_mm: f64,
+    /// Speed of the tip \[mm/s\].
+    speed_mm_s: f64,
+    /// Power of the arc \[W\].
+    power_w: f64,
+}
+
+impl Pass {
+    fn offset(&self) -> Offset {
+        Offset {
+            radial: self.radial_mm,
+            axial: self.axial_mm,
+        }
+    }
+}
+
+fn default_overlap() -> f64 {
+    5.0
+}
+
+fn default_within() -> f64 {
+    0.5
+}
+
+impl Saddle {
+    /// The seam, by the dimensions or by taught points, and what a person should know of it; all keys checked.
+    fn seam(&self, directory: &Path, kinematics: &Kinematics) -> anyhow::Result<(Seam, Vec<String>)> {
+        let (seam, notes) = match &self.taught {
+            Some(file) => {
+                let within = self.taught_within_mm;
+                if !(within.is_finite() && within > 0.0) {
+                    return Err(value_error("taught_within_mm", within, "above 0").into());
+                }
+                taught::seam(&directory.join(file), kinematics, &self.known()?, within)?
+            }
+            None => (self.seam_of_dimensions()?, Vec::new()),
+        };
+        self.check(&seam)?;
+        Ok((seam, notes))
+    }
+
+    fn seam_of_dimensions(&self) -> Result<Seam, SaddlePartError> {
+        let need = |key, value: Option<f64>| value.ok_or(SaddlePartError::Missing { key });
+        let known = self.known()?;
+        let main = need("main_diameter_mm", known.main_radius)?;
+        let branch = need("branch_diameter_mm", known.branch_radius)?;
+        let angle = need("angle_deg", known.angle)?;
+        let offset = need("offset_mm", known.offset)?;
+        let pair = PipePair::new(main, branch, angle, offset).map_err(SaddlePartError::of_pipes)?;
+        Seam::new(pair, offset, Placement::default())
+    }
+
+    /// The dimensions that are given, each for itself checked.
+    fn known(&self) -> Result<Known, SaddlePartError> {
+        let (main, branch) = (self.main_diameter_mm, self.branch_diameter_mm);
+        for (key, value) in [("main_diameter_mm", main), ("branch_diameter_mm", branch)] {
+            if let Some(value) = value.filter(|x| !(x.is_finite() && *x > 0.0)) {
+                return Err(value_error(key, value, "above 0"));
+            }
+        }
+        if let Some(value) = self.angle_deg.filter(|x| !(*x > 0.0 && *x < 180.0)) {
+            return Err(value_error("angle_deg", value, "above 0 and below 180"));
+        }
+        if let Some(value) = self.offset_mm.filter(|x| !x.is_finite()) {
+            return Err(value_error("offset_mm", value, "a finite number"));
+        }
+        Ok(Known {
+            main_radius: main.map(|diameter| diameter / 2.0),
+            branch_radius: branch.map(|diameter| diameter / 2.0),
+            angle: self.angle_deg.map(f64::to_radians),
+            offset: self.offset_mm,
+        })
+    }
+
+    fn check(&self, seam: &Seam) -> Result<(), SaddlePartError> {
+        let branch_radius = seam.pair().branch_radius();
+        if !(0.0..=seam.length() / 4.0).contains(&self.overlap_mm) {
+            let requirement = "0 or more, and at most a quarter of the seam";
+            return Err(value_error("overlap_mm", self.overlap_mm, requirement));
+        }
+        if let Some(value) = self.start_deg.filter(|start| !start.is_finite()) {
+            return Err(value_error("start_deg", value, "a finite number"));
+        }
+        if self.passes.is_empty() {
+            return Err(SaddlePartError::NoPasses);
+        }
+        for (index, pass) in self.passes.iter().enumerate() {
+            let outside = pass.radial_mm.is_finite() && branch_radius + pass.radial_mm > 0.0;
+            let faults = [
+                (
+                    outside,
+                    "radial_mm",
+                    pass.radial_mm,
+                    "a number, and not beyond the branch axis",
+                ),
+                (
+                    pass.axial_mm.is_finite(),
+                    "axial_mm",
+                    pass.axial_mm,
+                    "a finite number",
+                ),
+                (
+                    pass.speed_mm_s.is_finite() && pass.speed_mm_s > 0.0,
+                    "speed_mm_s",
+                    pass.speed_mm_s,
+                    "above 0",
+                ),
+                (
+                    pass.power_w.is_finite() && pass.power_w >= 0.0,
+                    "power_w",
+                    pass.power_w,
+                    "0 or more",
+                ),
+            ];
+            if let Some((_, key, value, requirement)) = faults.into_iter().find(|(good, ..)| !good) {
+                return Err(SaddlePartError::PassValue {
+                    pass: index + 1,
+                    key,
+                    value,
+                    requirement,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn value_error(key: &'static str, value: f64, requirement: &'static str) -> SaddlePartError {
+    SaddlePartError::Value {
+        key,
+        value,
+        requirement,
+    }
+}
+
+impl Kind for Saddle {
+    fn plan(&self, place: &Place) -> anyhow::Result<Plan> {
+        let (seam, notes) = self.seam(place.directory, &place.machine.motion.kinematics()?)?;
+        program::plan(self, &seam, notes, place)
+    }
+
+    fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement> {
+        let (seam, _) = self.seam(place.directory, run.kinematics)?;
+        judge::judge(self, &seam, run)
+    }
+
+    fn speed_dip(&self) -> Percent {
+        self.limits.speed_dip_percent
+    }
+}

@@ -1,0 +1,138 @@
+//! The verdict on a seam that was followed: how far the spots were beside it, what was left unwelded, and how slow
+//! the weld became.
+
+use crate::limits::{Limit, Percent, SPEED_DIP};
+use crate::{Figure, Judgement, Run};
+use evaluate::Welded;
+use evaluate::WorkTick;
+use serde::Deserialize;
+use shared::io::{SIDES, SLIDES};
+
+/// Limits of a weld along a seam: of a part file, or as shipped where there is none.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SeamLimits {
+    /// Largest distance of a spot from its seam, along U and along V, with the beam of that side on \[mm\].
+    deviation_mm: Limit,
+    /// Most that may stay unwelded of what is programmed, each side for itself, all gaps together \[mm\].
+    unwelded_mm: Limit,
+    /// Longest single gap in a weld, and longest stretch whose deviation nobody knows \[mm\].
+    gap_mm: Limit,
+    /// Most that the speed may fall below the feed with a beam on \[%\].
+    speed_dip_percent: Percent,
+}
+
+impl Default for SeamLimits {
+    fn default() -> Self {
+        Self {
+            deviation_mm: Limit::new(0.05),
+            unwelded_mm: Limit::new(1.0),
+            gap_mm: Limit::new(0.5),
+            speed_dip_percent: SPEED_DIP,
+        }
+    }
+}
+
+/// Keys and texts of the figures of each side.
+const DEVIATION: [(&str, &str); SLIDES] = [
+    ("deviation_u1_mm", "side 1, spot beside seam, across (U)"),
+    ("deviation_v1_mm", "side 1, spot beside seam, along beam (V)"),
+    ("deviation_u2_mm", "side 2, spot beside seam, across (U)"),
+    ("deviation_v2_mm", "side 2, spot beside seam, along beam (V)"),
+];
+const UNKNOWN: [(&str, &str); SIDES] = [
+    ("unknown_1_mm", "side 1, longest stretch of unknown deviation"),
+    ("unknown_2_mm", "side 2, longest stretch of unknown deviation"),
+];
+const PROGRAMMED: [(&str, &str); SIDES] = [
+    ("programmed_1_mm", "side 1, length to weld"),
+    ("programmed_2_mm", "side 2, length to weld"),
+];
+const UNWELDED: [(&str, &str); SIDES] = [
+    ("unwelded_1_mm", "side 1, of it not welded"),
+    ("unwelded_2_mm", "side 2, of it not welded"),
+];
+const GAP: [(&str, &str); SIDES] = [
+    ("gap_1_mm", "side 1, longest gap"),
+    ("gap_2_mm", "side 2, longest gap"),
+];
+
+impl SeamLimits {
+    /// Most that the speed may fall below the feed \[%\].
+    pub fn speed_dip(&self) -> Percent {
+        self.speed_dip_percent
+    }
+
+    /// Judges a run that has no part, speed and all.
+    pub fn judge_all(&self, run: &Run) -> Judgement {
+        let mut judgement = self.judge(run);
+        judgement.figures.extend(run.speed_dip(self.speed_dip_percent));
+        judgement
+    }
+
+    /// Judges the paths that were begun. Nothing of a program without beams.
+    pub fn judge(&self, run: &Run) -> Judgement {
+        let mut figures = Vec::new();
+        let ticks = &run.evaluation.ticks;
+        for side in 0..SIDES {
+            let welded = Welded::of(ticks, run.paths, side);
+            if welded.programmed_mm == 0.0 {
+                continue;
+            }
+            if run.evaluation.seams_known {
+                figures.extend(self.deviations(ticks, side));
+            }
+            let [programmed, unwelded, gap] = [PROGRAMMED[side], UNWELDED[side], GAP[side]];
+            let mm = |(key, text), value| Figure::new(key, text, value, "mm");
+            figures.extend([
+                mm(programmed, welded.programmed_mm),
+                mm(unwelded, welded.unwelded_mm).limited(self.unwelded_mm.get()),
+                mm(gap, welded.gap_mm)
+                    .limited(self.gap_mm.get())
+                    .at(welded.gap_at_mm),
+            ]);
+        }
+        Judgement {
+            figures,
+            plots: Vec::new(),
+        }
+    }
+
+    /// Largest deviations of a side with its beam on, and what is not known of them.
+    fn deviations(&self, ticks: &[WorkTick], side: usize) -> Vec<Figure> {
+        let on = || ticks.iter().filter(|tick| tick.beams[side]);
+        let mut figures = Vec::new();
+        for slide in [2 * side, 2 * side + 1] {
+            let seen = on().filter_map(|tick| Some((tick.deviation_mm[slide]?.abs(), tick.along_mm)));
+            if let Some((largest, along_mm)) = seen.max_by(|a, b| a.0.total_cmp(&b.0)) {
+                let (key, text) = DEVIATION[slide];
+                let figure = Figure::new(key, text, largest, "mm");
+                figures.push(figure.limited(self.deviation_mm.get()).at(along_mm));
+            }
+        }
+        let (unknown, at_mm) = longest_unknown(ticks, side);
+        if unknown > 0.0 {
+            let (key, text) = UNKNOWN[side];
+            let figure = Figure::new(key, text, unknown, "mm");
+            figures.push(figure.limited(self.gap_mm.get()).at(at_mm));
+        }
+        figures
+    }
+}
+
+/// The longest way with the beam of `side` on whose deviation is not known, and where it begins \[mm\].
+fn longest_unknown(ticks: &[WorkTick], side: usize) -> (f64, f64) {
+    let known = |tick: &WorkTick| !tick.beams[side] || tick.deviation_mm[2 * side].is_some();
+    let unknown = ticks
+        .chunk_by(|a, b| a.path_id == b.path_id && known(a) == known(b))
+        .filter(|chunk| !known(&chunk[0]));
+    let ways = unknown.map(|chunk| {
+        // A tick stands for its own way.
+        let own = chunk[0].speed_mm_s * shared::motion::PATH_PERIOD_S;
+        (
+            chunk[chunk.len() - 1].s_mm - chunk[0].s_mm + own,
+            chunk[0].along_mm,
+        )
+    });
+    ways.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0))
+}

@@ -1,0 +1,442 @@
+//! What is left of a job: `report.json` and `log.csv` for programs, plots and a table for people.
+
+mod draw;
+mod dry_run;
+mod ended;
+mod log;
+mod plots;
+mod table;
+pub mod unwelded;
+
+pub use dry_run::write_dry_run;
+pub use ended::{Ended, ended};
+
+use crate::unwelded::Unwelded;
+use evaluate::{Evaluation, Load, SpeedShares};
+use job::{ByBoard, CameraFigures, Recentred};
+use parts::{Figure, Plot};
+use serde::{Serialize, Serializer};
+use shared::io::{MOTOR_NAMES, MOTORS, SLIDES};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Contents of `report.json`. Lengths in mm, rotary axes in degrees; a figure that is not known is `null`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// How the job ended.
+    pub outcome: Outcome,
+    /// The program, as it was named.
+    pub program: String,
+    /// The machine file, as it was named.
+    pub machine: String,
+    /// The file of the part that was made.
+    pub part: Option<String>,
+    /// Where the limits come from that the run was judged by, if it was.
+    pub judged_by: Option<JudgedBy>,
+    /// The boards that were used.
+    pub boards: BoardsUsed,
+    /// Where the positions come from that count as true.
+    pub truth: Truth,
+    /// Programmed speed of the longest path that works.
+    pub speed_m_per_min: f64,
+    /// Length of path with a beam on; of all feeds if no beam ever was.
+    pub weld_length_mm: f64,
+    /// True speed with a beam on, as a share of the programmed feed at the same place, and where that was.
+    pub speed: Option<SpeedShares>,
+    /// Largest distance of the tip from the programmed path on the same length.
+    pub max_contour_error_mm: Option<f64>,
+    /// Largest following error on any path; X1 X2 Y Z in mm, A B C in degrees.
+    pub max_following_error: ByMotor,
+    /// Following error at which the motion board trips at standstill; moving, it allows more.
+    pub following_error_trip: ByMotor,
+    /// Largest |X1 − X2 − square offset| on any path, where X is a gantry.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_gantry_skew_um: Option<f64>,
+    /// Path ticks of that length, and how many of them could not be evaluated.
+    pub weld_ticks: WeldTicks,
+    /// Control ticks that a board could not serve in time, during the job.
+    pub lost_ticks: ByBoard,
+    /// CPU load of the motion board; a simulated one has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<Load>,
+    /// Ticks whose telemetry never arrived.
+    pub telemetry_gaps: ByBoard,
+    /// How the seam was followed, where the machine has a tracker.
+    #[serde(flatten)]
+    pub seam: Option<SeamFigures>,
+    /// What the part says of the run, by key.
+    #[serde(serialize_with = "by_key")]
+    pub figures: Vec<Figure>,
+    /// Places where the program has a beam on that were not gone over with it.
+    pub unwelded: Vec<Unwelded>,
+    /// Time that the paths should take by a dry run, without the dwells between them.
+    pub planned_motion_s: f64,
+    /// Time that they took by the motion board's clock.
+    pub motion_s: f64,
+    /// Faults of the boards and whatever else ended the job early, as sentences.
+    pub faults: Vec<String>,
+    /// From the first request to the last answer, by the boards' time if they are simulated.
+    pub duration_s: f64,
+}
+
+impl Report {
+    /// Figures beyond their limit.
+    pub fn exceeded(&self) -> impl Iterator<Item = &Figure> {
+        self.figures.iter().filter(|figure| is_exceeded(figure))
+    }
+}
+
+/// A figure that is no number keeps no limit.
+fn is_exceeded(figure: &Figure) -> bool {
+    figure
+        .limit
+        .is_some_and(|limit| figure.value > limit || figure.value.is_nan())
+}
+
+/// An exceeded figure in words.
+pub fn sentence(figure: &Figure) -> String {
+    let Figure { text, unit, .. } = figure;
+    let limit = table::number(figure.limit.unwrap_or(f64::NAN));
+    let at = figure.at_mm.map(|at| format!(" at s = {at:.1} mm"));
+    format!(
+        "{text} {} {unit}{} (may be {limit} {unit})",
+        table::number(figure.value),
+        at.unwrap_or_default()
+    )
+}
+
+/// A map from the key of each figure to its value, unit and limit.
+fn by_key<S: Serializer>(figures: &[Figure], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(figures.iter().map(|figure| (figure.key, figure)))
+}
+
+/// How the seam was followed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SeamFigures {
+    /// The file of the seam's deviation, as it was named.
+    pub seam: Option<String>,
+    /// Largest distance of the true spot from the true seam, beam on.
+    pub max_deviation_mm: BySlide,
+    /// Root mean square of the same.
+    pub rms_deviation_mm: BySlide,
+    /// Measurements of the cameras as the tracker board took them.
+    pub measurements: Measurements,
+    /// What became of the pictures of camera 1 and 2, if there were any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pictures: Option<[CameraFigures; 2]>,
+    /// Largest residual of the tracker's relation to the motion clock while welding.
+    pub clock_residual_us: Option<f64>,
+    /// Largest difference between the tracker's relation to the motion clock and the PC's while welding.
+    pub clock_difference_us: Option<f64>,
+    /// Where the six axes took over from slides that had gone far.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub recentred: Vec<Recentred>,
+}
+
+/// How a job ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// To its end.
+    Finished,
+    /// Stopped by the operator.
+    Interrupted,
+    /// Stopped by a fault.
+    Failed,
+}
+
+/// Where the limits come from that a run was judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JudgedBy {
+    /// The part file, and what is shipped for keys that it leaves out.
+    Part,
+    /// There is no part file: what is shipped for seams that are followed.
+    ShippedSeamLimits,
+}
+
+/// Where the positions come from that count as true.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Truth {
+    /// The simulated machine knows them.
+    #[serde(rename = "simulated machine")]
+    SimulatedMachine,
+    /// What the real machine measures of itself.
+    #[serde(rename = "gratings and encoders")]
+    GratingsAndEncoders,
+}
+
+/// The boards that were used.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct BoardsUsed {
+    /// As on the command line.
+    pub choice: String,
+    /// Name and firmware of the motion board.
+    pub motion: String,
+    /// Name and firmware of the tracker board, if it was used.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tracker: Option<String>,
+}
+
+/// One figure a slide.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the names of the slides say it")]
+pub struct BySlide {
+    pub u1: Option<f64>,
+    pub v1: Option<f64>,
+    pub u2: Option<f64>,
+    pub v2: Option<f64>,
+}
+
+impl From<[Option<f64>; SLIDES]> for BySlide {
+    fn from([u1, v1, u2, v2]: [Option<f64>; SLIDES]) -> Self {
+        Self { u1, v1, u2, v2 }
+    }
+}
+
+/// One figure for each motor that the machine has, in the order of [`MOTOR_NAMES`] (mm or degrees).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ByMotor(pub [Option<f64>; MOTORS]);
+
+impl ByMotor {
+    /// Number, name and figure of each motor that the machine has.
+    pub fn fitted(&self) -> impl Iterator<Item = (usize, &'static str, f64)> {
+        let named = MOTOR_NAMES.into_iter().zip(self.0).enumerate();
+        named.filter_map(|(motor, (name, figure))| Some((motor, name, figure?)))
+    }
+}
+
+impl Serialize for ByMotor {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.fitted().map(|(_, name, figure)| (name, figure)))
+    }
+}
+
+/// Path ticks with a beam on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct WeldTicks {
+    /// That have telemetry of the motion board.
+    pub recorded: u32,
+    /// Of these, without a known deviation.
+    pub unknown: u32,
+}
+
+/// What became of the cameras' measurements.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Measurements {
+    /// Used, side 1 and 2.
+    pub accepted: [u32; 2],
+    /// Rejected as outliers, side 1 and 2.
+    pub rejected: [u32; 2],
+    /// Too late for the tracker's history.
+    pub too_old: u32,
+    /// Never made, since nothing was known of the time of the capture.
+    pub given_up: u32,
+}
+
+/// The report cannot be written.
+#[derive(Debug, Error)]
+#[error("cannot write {}: {reason}", path.display())]
+pub struct ReportError {
+    path: PathBuf,
+    reason: String,
+}
+
+impl ReportError {
+    fn new(path: &Path, reason: impl fmt::Display) -> Self {
+        Self {
+            path: path.to_owned(),
+            reason: reason.to_string(),
+        }
+    }
+}
+
+/// Writes `report.json`, `log.csv` and, if anything was welded, the plots into `directory`, which is made if it
+/// is missing. `more` are the plots of the part.
+pub fn write(
+    directory: &Path,
+    report: &Report,
+    evaluation: &Evaluation,
+    more: &[Plot],
+) -> Result<(), ReportError> {
+    std::fs::create_dir_all(directory).map_err(|e| ReportError::new(directory, e))?;
+    let save = |name: &str, content: String| {
+        let path = directory.join(name);
+        std::fs::write(&path, content).map_err(|e| ReportError::new(&path, e))
+    };
+    let json = serde_json::to_string_pretty(report).map_err(|e| ReportError::new(directory, e))?;
+    save("report.json", json + "\n")?;
+    save("log.csv", log::csv(report, &evaluation.ticks))?;
+    if !evaluation.ticks.is_empty() {
+        plots::draw(directory, report, &evaluation.ticks)?;
+    }
+    plots::draw_more(directory, report, more)
+}
+
+/// Checks that a report can be written into `directory`, before anything moves.
+pub fn prepare(directory: &Path) -> Result<(), ReportError> {
+    std::fs::create_dir_all(directory).map_err(|e| ReportError::new(directory, e))
+}
+
+impl fmt::Display for Report {
+    /// The table for people.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        table::write(f, self)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    const NONE: ByBoard = ByBoard {
+        motion: 0,
+        tracker: Some(0),
+    };
+
+    /// A weld with everything.
+    pub(crate) fn report() -> Report {
+        Report {
+            outcome: Outcome::Finished,
+            program: "job.ngc".into(),
+            machine: "machine.toml".into(),
+            part: None,
+            judged_by: None,
+            boards: BoardsUsed {
+                choice: "simulated".into(),
+                motion: "simulation 0.1.0".into(),
+                tracker: Some("simulation 0.1.0".into()),
+            },
+            truth: Truth::SimulatedMachine,
+            speed_m_per_min: 5.0,
+            weld_length_mm: 400.0,
+            speed: Some(SpeedShares {
+                lowest_percent: 87.41,
+                lowest_at_mm: 83.2,
+                highest_percent: 100.02,
+                highest_at_mm: 12.0,
+            }),
+            max_contour_error_mm: Some(0.004),
+            following_error_trip: ByMotor([0.5; MOTORS].map(Some)),
+            max_following_error: ByMotor([0.01, 0.02, 0.03, 0.04, 0.001, 0.002, 0.1719].map(Some)),
+            max_gantry_skew_um: Some(4.2),
+            weld_ticks: WeldTicks {
+                recorded: 4800,
+                unknown: 0,
+            },
+            lost_ticks: NONE,
+            load: None,
+            telemetry_gaps: NONE,
+            seam: Some(SeamFigures {
+                seam: Some("seam.csv".into()),
+                max_deviation_mm: [Some(0.0123), Some(0.011), Some(0.009), None].into(),
+                rms_deviation_mm: [Some(0.003), Some(0.002), Some(0.002), None].into(),
+                measurements: Measurements::default(),
+                pictures: Some(
+                    [CameraFigures {
+                        pictures: 900,
+                        measured: 880,
+                        refused: 9,
+                        lost: 7,
+                        late: 4,
+                        relocked: 1,
+                    }; 2],
+                ),
+                clock_residual_us: Some(12.0),
+                clock_difference_us: None,
+                recentred: vec![Recentred {
+                    s_mm: 120.0,
+                    slide: "U1",
+                    slide_mm: 8.41,
+                    lateral_mm: -7.5,
+                    normal_mm: 0.1,
+                    turn_deg: 2.86,
+                    refused: None,
+                }],
+            }),
+            figures: Vec::new(),
+            unwelded: Vec::new(),
+            planned_motion_s: 20.0,
+            motion_s: 20.1,
+            faults: vec!["laser 1 reports a fault; look at the source's own display".into()],
+            duration_s: 42.5,
+        }
+    }
+
+    #[test]
+    fn the_json_has_the_fields_that_programs_read() {
+        let json = serde_json::to_value(report()).unwrap();
+        assert_eq!(json["speed_m_per_min"], 5.0);
+        assert_eq!(json["max_deviation_mm"]["u1"], 0.0123);
+        assert!(json["max_deviation_mm"]["v2"].is_null());
+        assert_eq!(json["rms_deviation_mm"]["v1"], 0.002);
+        assert_eq!(json["max_contour_error_mm"], 0.004);
+        assert_eq!(json["max_following_error"]["X2"], 0.02);
+        assert_eq!(json["max_following_error"]["C"], 0.1719);
+        assert_eq!(json["max_gantry_skew_um"], 4.2);
+        assert_eq!(json["lost_ticks"]["motion"], 0);
+        assert_eq!(json["lost_ticks"]["tracker"], 0);
+        assert_eq!(json["clock_residual_us"], 12.0);
+        assert_eq!(json["faults"].as_array().unwrap().len(), 1);
+        assert_eq!(json["duration_s"], 42.5);
+        assert_eq!(json["outcome"], "finished");
+        assert_eq!(json["truth"], "simulated machine");
+        assert_eq!(json["seam"], "seam.csv");
+        assert_eq!(json["figures"], serde_json::json!({}));
+    }
+
+    /// The same of a machine without tracker, judged by its part.
+    pub(crate) fn without_tracker() -> Report {
+        let figure = |key, text, value, limit| Figure {
+            limit,
+            ..Figure::new(key, text, value, "mm")
+        };
+        let mut report = report();
+        report.seam = None;
+        report.boards.tracker = None;
+        report.lost_ticks.tracker = None;
+        report.telemetry_gaps.tracker = None;
+        report.max_gantry_skew_um = None;
+        report.max_following_error.0[1] = None;
+        report.part = Some("job.toml".into());
+        report.figures = vec![
+            figure("max_distance_mm", "distance to the saddle", 0.0061, Some(0.01)),
+            figure("max_height_error_mm", "height of the torch", 0.25, Some(0.2)),
+            figure("length_mm", "length", 123.4, None),
+        ];
+        report
+    }
+
+    #[test]
+    fn a_machine_without_tracker_has_no_figures_of_one() {
+        let json = serde_json::to_value(without_tracker()).unwrap();
+        for absent in [
+            "/seam",
+            "/max_deviation_mm",
+            "/measurements",
+            "/clock_residual_us",
+            "/boards/tracker",
+            "/lost_ticks/tracker",
+            "/telemetry_gaps/tracker",
+            "/max_gantry_skew_um",
+            "/max_following_error/X2",
+        ] {
+            assert_eq!(json.pointer(absent), None, "{absent}");
+        }
+        assert_eq!(json["max_following_error"]["X1"], 0.01);
+        assert_eq!(json["figures"]["max_distance_mm"]["value"], 0.0061);
+        assert_eq!(json["figures"]["max_distance_mm"]["limit"], 0.01);
+        assert!(json["figures"]["length_mm"]["limit"].is_null());
+    }
+
+    #[test]
+    fn what_is_beyond_its_limit_or_no_number_is_exceeded() {
+        let mut report = without_tracker();
+        let keys = |report: &Report| report.exceeded().map(|f| f.key).collect::<Vec<_>>();
+        assert_eq!(keys(&report), ["max_height_error_mm"]);
+        report.figures[0].value = f64::NAN;
+        report.figures[1].value = 0.2;
+        assert_eq!(keys(&report), ["max_distance_mm"]);
+    }
+}

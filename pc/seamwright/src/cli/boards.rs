@@ -1,0 +1,211 @@
+//! Which boards a command uses, how it connects to them, and what it returns after its job.
+
+use crate::console::errln;
+use crate::terminal::Terminal;
+use anyhow::{Context, bail};
+use config::machine::MachineFile;
+use emulator::{SESSION_VARIABLE, Session};
+use host_link::boards::{Boards, Endpoint, NetworkBoards, Patience};
+use job::{Job, JobError, run};
+use report::{Ended, ended};
+use std::path::Path;
+use std::process::ExitCode;
+use std::str::FromStr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+use world::emulated;
+use world::emulated::BoardsError;
+use world::simulated::SimulatedBoards;
+
+/// Exit code after Ctrl-C, as shells have it; after SIGTERM and SIGHUP, which are treated alike, too.
+const INTERRUPTED: u8 = 130;
+/// How often Ctrl-C is looked for while the boards are connected.
+const POLL: Duration = Duration::from_millis(20);
+
+/// Which boards.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum BoardChoice {
+    /// Of `cargo xtask emulate` or `cargo xtask weld`.
+    Emulated,
+    /// In this program.
+    Simulated,
+    /// In the network.
+    At {
+        /// Address of the motion board.
+        motion: String,
+        /// Address of the tracker board, if there is one.
+        tracker: Option<String>,
+    },
+}
+
+impl FromStr for BoardChoice {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let (motion, tracker) = match text.split_once(',') {
+            Some((motion, tracker)) => (motion, Some(tracker)),
+            None => (text, None),
+        };
+        match text {
+            "emulated" => Ok(Self::Emulated),
+            "simulated" => Ok(Self::Simulated),
+            _ if motion.is_empty() || tracker == Some("") => {
+                Err("say emulated, simulated, or the addresses MOTION,TRACKER (MOTION without a tracker)")
+            }
+            _ => Ok(Self::At {
+                motion: motion.to_owned(),
+                tracker: tracker.map(str::to_owned),
+            }),
+        }
+    }
+}
+
+impl BoardChoice {
+    /// What the report calls it.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Emulated => "emulated".to_owned(),
+            Self::Simulated => "simulated".to_owned(),
+            Self::At {
+                motion,
+                tracker: None,
+            } => motion.clone(),
+            Self::At {
+                motion,
+                tracker: Some(tracker),
+            } => format!("{motion},{tracker}"),
+        }
+    }
+
+    /// Whether these are the boards that the machine needs.
+    pub fn check(&self, machine: &MachineFile) -> anyhow::Result<()> {
+        match (self, &machine.tracking) {
+            (Self::At { tracker: None, .. }, Some(_)) => {
+                bail!("this machine has a tracker: say the addresses of both boards, --boards MOTION,TRACKER")
+            }
+            (Self::At { tracker: Some(_), .. }, None) => {
+                bail!(
+                    "this machine has no tracker: say the address of the motion board only, --boards MOTION"
+                )
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Connects and does `job` before `terminal`, while Ctrl-C, SIGTERM and SIGHUP are watched, which stop the machine and
+    /// never this program, however often they come; the exit code if that was before anything was asked of the boards.
+    pub fn run(
+        &self,
+        job: &Job,
+        terminal: impl FnOnce() -> Terminal,
+    ) -> anyhow::Result<Result<Ended, ExitCode>> {
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&interrupted);
+        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot watch for Ctrl-C")?;
+        let (choice, wanted) = (self.clone(), job.machine.motion.kinematics.name());
+        let tracked = job.machine.tracking.is_some();
+        let stop = Arc::clone(&interrupted);
+        let connect = move || choice.connect(wanted, tracked, stop);
+        let Some(mut boards) = unless_interrupted(connect, &interrupted)? else {
+            errln!("seamwright: stopped by the operator; the boards were not asked for anything");
+            return Ok(Err(ExitCode::from(INTERRUPTED)));
+        };
+        let record = run(boards.as_mut(), job, &interrupted, &mut terminal())?;
+        Ok(Ok(ended(job, record)))
+    }
+
+    /// Connects; simulated boards become the machine whose kinematics are `wanted`, emulated ones must have been
+    /// booted as it. The tracker board is left alone unless the machine is `tracked`.
+    /// `interrupted` stops the machine.
+    fn connect(
+        &self,
+        wanted: &'static str,
+        tracked: bool,
+        interrupted: Arc<AtomicBool>,
+    ) -> Result<Box<dyn Boards + Send>, BoardsError> {
+        let patience = Patience::default();
+        match self {
+            Self::Simulated => Ok(Box::new(SimulatedBoards::new(wanted)?)),
+            Self::At { motion, tracker } => {
+                let motion = Endpoint::board(motion);
+                let tracker = tracker.as_deref().map(Endpoint::board);
+                let boards = NetworkBoards::connect(&motion, tracker.as_ref(), None, patience)?;
+                Ok(Box::new(boards.stopped_by(interrupted)))
+            }
+            Self::Emulated => {
+                let path = std::env::var_os(SESSION_VARIABLE).ok_or(BoardsError::NoEmulator)?;
+                let session = Session::read(Path::new(&path))?;
+                if session.machine != wanted {
+                    let wired = session.machine;
+                    return Err(BoardsError::WrongMachine { wired, wanted });
+                }
+                let boards = emulated::connect(&session, tracked, patience)?;
+                Ok(Box::new(boards.stopped_by(interrupted)))
+            }
+        }
+    }
+}
+
+/// Does `connect`, which may wait for boards that are silent, unless the operator gives up before: `None`.
+fn unless_interrupted<T: Send + 'static>(
+    connect: impl FnOnce() -> Result<T, BoardsError> + Send + 'static,
+    interrupted: &AtomicBool,
+) -> Result<Option<T>, BoardsError> {
+    let (sender, connected) = channel();
+    // An attempt that nobody waits for any more ends with this program.
+    std::thread::spawn(move || sender.send(connect()));
+    loop {
+        match connected.recv_timeout(POLL) {
+            Ok(boards) => return boards.map(Some),
+            Err(RecvTimeoutError::Timeout) if !interrupted.load(Ordering::Relaxed) => {}
+            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => return Ok(None),
+        }
+    }
+}
+
+/// What a command returns whose job ended with `error`, if with any.
+pub fn exit_code(error: Option<JobError>) -> anyhow::Result<ExitCode> {
+    match error {
+        None => Ok(ExitCode::SUCCESS),
+        Some(JobError::Interrupted) => {
+            errln!("seamwright: {}", JobError::Interrupted);
+            Ok(ExitCode::from(INTERRUPTED))
+        }
+        Some(error) => Err(error.into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boards_are_chosen_by_word_or_by_address() {
+        assert_eq!("emulated".parse(), Ok(BoardChoice::Emulated));
+        assert_eq!("simulated".parse(), Ok(BoardChoice::Simulated));
+        let two = "192.168.7.10,192.168.7.11".parse::<BoardChoice>().unwrap();
+        assert_eq!(two.name(), "192.168.7.10,192.168.7.11");
+        let one = "192.168.7.10".parse::<BoardChoice>().unwrap();
+        assert_eq!(one.name(), "192.168.7.10");
+        for wrong in ["", "192.168.7.10,", ",x"] {
+            assert!(wrong.parse::<BoardChoice>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_silent_board_is_not_waited_for_once_the_operator_gives_up() {
+        let (_never, silent) = channel::<()>();
+        let connect = move || {
+            let _ = silent.recv();
+            Ok(())
+        };
+        assert!(matches!(
+            unless_interrupted(connect, &AtomicBool::new(true)),
+            Ok(None)
+        ));
+        let quick = unless_interrupted(|| Ok(7), &AtomicBool::new(false));
+        assert!(matches!(quick, Ok(Some(7))));
+    }
+}

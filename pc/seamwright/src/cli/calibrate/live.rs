@@ -1,0 +1,140 @@
+//! `seamwright calibrate camera`: with the machine.
+
+use super::super::boards::{BoardChoice, exit_code};
+use super::super::cameras::source;
+use super::super::read_program;
+use super::{Camera, Meets};
+use crate::terminal::Terminal;
+use anyhow::{Context, bail};
+use camera::Shelf;
+use camera::calibrate::procedure;
+use camera::calibrate::procedure::Found;
+use clap::Args;
+use config::machine::{JointForm, MachineFile};
+use job::{ImageCameras, Job, Names, PictureRun, Work};
+use shared::io::SIDES;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use world::Deviation;
+use world::{CameraChoice, PictureChoice, Surroundings};
+
+/// Seams of a simulated coupon: straight, and where they are drawn.
+const COUPON: &str = "s_mm,u1_mm,v1_mm,u2_mm,v2_mm\n0,0,0,0,0\n100000,0,0,0,0\n";
+
+/// The machine homes, goes to where PROGRAM begins to weld and looks at the seam before it, with the beams off: a straight
+/// gap along travel, level, in sight of the camera. Its slides step through focus, then there and back at every place along
+/// it. With --calibration the camera is what that file says, else what the machine file says.
+#[derive(Debug, Args)]
+pub struct Live {
+    #[command(flatten)]
+    camera: Camera,
+    #[command(flatten)]
+    meets: Meets,
+    /// Program that begins to weld where the seam is
+    #[arg(long, value_name = "PROGRAM")]
+    at: PathBuf,
+    /// Places along the seam; more of them even out its texture
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=9))]
+    places: u32,
+    /// emulated, simulated, or the addresses of real boards: MOTION,TRACKER
+    #[arg(long, default_value = "emulated")]
+    boards: BoardChoice,
+    /// Deviation of the seams of a simulated world (CSV) [default: none, a straight coupon]
+    #[arg(long, value_name = "FILE")]
+    seam: Option<PathBuf>,
+    /// What the seams of a simulated world look like (TOML) [default: ground plates]
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// Start of the noise of simulated cameras
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+impl Live {
+    /// The camera.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// Takes the pictures and finds what they tell; an exit code if it was interrupted.
+    pub fn find(&self) -> anyhow::Result<Result<Found, ExitCode>> {
+        let (Some(machine_file), Some(side)) = (&self.camera.machine, self.camera.side) else {
+            bail!("say which camera: --machine FILE --side 1|2");
+        };
+        let machine = MachineFile::read(machine_file)?;
+        self.boards.check(&machine)?;
+        let Some(unit) = &machine.tracking else {
+            bail!("machine file {}: it has no cameras", machine_file.display());
+        };
+        let cameras = &unit.cameras;
+        let before = self.camera.before()?;
+        let mut calibrations = cameras.calibrations(machine_file.parent().unwrap_or(Path::new("")))?;
+        let side = usize::from(side) - 1;
+        calibrations[side] = before;
+        let source = source(&self.boards, cameras, self.scene.as_deref())?;
+        if let (PictureChoice::Rendered(_), JointForm::Corner) = (&source, cameras.joint) {
+            bail!(
+                "machine file {}: its simulated seams are closed corners, and a coupon is a gap; calibrate a machine with \
+                 joint = \"gap\" here, or the real camera",
+                machine_file.display()
+            );
+        }
+        let program = read_program(&self.at, false)?;
+        let seam = match (&self.seam, &source) {
+            (Some(file), _) => Some(Deviation::read(file)?),
+            (None, PictureChoice::Rendered(_)) => Some(Deviation::parse("coupon", COUPON)?),
+            // Nobody has to say where it is.
+            (None, PictureChoice::Real(_)) => None,
+        };
+        let shelves = <[Shelf; SIDES]>::default();
+        let picture_run = PictureRun {
+            program: &program,
+            side,
+            before,
+            places: self.places,
+            shelf: shelves[side].clone(),
+        };
+        let images = ImageCameras {
+            calibrations,
+            kept: Some(shelves),
+        };
+        let name = |path: &Path| path.display().to_string();
+        let job = Job {
+            machine: &machine,
+            work: Work::Pictures(&picture_run),
+            part: None,
+            speed_m_per_min: None,
+            from_line: None,
+            surroundings: Surroundings {
+                seam: seam.map(Arc::new),
+                drawing: None,
+                cameras: CameraChoice::Images(Box::new(images), source),
+                seed: self.seed,
+            }
+            .into(),
+            names: Names {
+                program: name(&self.at),
+                machine: name(machine_file),
+                seam: self.seam.as_deref().map(name),
+                boards: self.boards.name(),
+            },
+        };
+        let ended = match self.boards.run(&job, Terminal::new)? {
+            Ok(ended) => ended,
+            Err(code) => return Ok(Err(code)),
+        };
+        if ended.error.is_some() {
+            return exit_code(ended.error).map(Err);
+        }
+        let pictures = &ended.taught.pictures;
+        let not_written = || self.camera.not_written();
+        let profile = procedure::profile(&pictures.profile, &before).with_context(not_written)?;
+        let slides = procedure::slides(&pictures.slides, &profile.calibration, self.meets.meets)
+            .with_context(not_written)?;
+        Ok(Ok(Found {
+            calibration: slides.calibration,
+            figures: [profile.figures, slides.figures].concat(),
+        }))
+    }
+}

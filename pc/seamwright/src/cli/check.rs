@@ -1,0 +1,134 @@
+//! `seamwright check`: can this machine run this program?
+
+use super::read_program;
+use crate::console::{out, outln};
+use anyhow::Context;
+use cam::dry_run;
+use cam::dry_run::DryRun;
+use cam::path::{Blocks, PlannedPath, Planner};
+use clap::Args;
+use config::machine::MachineFile;
+use nc::Motion;
+use std::path::PathBuf;
+use world::check_seam;
+use world::{Deviation, SeamError};
+
+/// Check a program against a machine: travel, speeds, and the reach of the slides
+#[derive(Debug, Args)]
+pub struct Check {
+    /// NC program
+    program: PathBuf,
+    /// Machine file
+    #[arg(long)]
+    machine: PathBuf,
+    /// Seam deviation (CSV) that the slides must reach
+    #[arg(long)]
+    seam: Option<PathBuf>,
+    /// Feed that replaces the programmed one [m/min]
+    #[arg(long, value_name = "M_PER_MIN")]
+    speed: Option<f64>,
+    /// Leave out blocks that start with /
+    #[arg(long)]
+    block_delete: bool,
+}
+
+impl Check {
+    /// Prints every path with its length and time.
+    pub fn run(self) -> anyhow::Result<()> {
+        let machine = MachineFile::read(&self.machine)?;
+        let name = self.program.display();
+        let program = read_program(&self.program, self.block_delete)?;
+        let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
+        let from = machine.homed_axes();
+        let speed = self.speed.map(|m_min| m_min * shared::units::MM_S_PER_M_MIN);
+        let paths = planner
+            .program(&program, &from, speed)
+            .with_context(|| format!("program {name}"))?;
+        let seam = self.seam.as_deref().map(Deviation::read).transpose()?;
+        match check_seam(&paths, &machine, seam.as_ref()) {
+            // Without a seam, what can be said without one is said.
+            Ok(()) | Err(SeamError::NoSeam) => {}
+            Err(error) => return Err(error).with_context(|| format!("program {name}")),
+        }
+        let ran = dry_run::run(&machine, &planner, &paths, 1.0).with_context(|| format!("program {name}"))?;
+        print(&paths, &ran);
+        print_weakened(&machine);
+        Ok(())
+    }
+}
+
+/// Protections that the machine file leaves weaker than usual.
+fn print_weakened(machine: &MachineFile) {
+    let motion = machine.motion.weakened();
+    let tracker = machine.tracking.as_ref().map(|unit| unit.board.weakened());
+    for weakened in motion.iter().chain(tracker.iter().flatten()) {
+        outln!("weak protection: {weakened}");
+    }
+}
+
+fn print(paths: &[PlannedPath], ran: &DryRun) {
+    outln!(" path            length      time     speed  pieces");
+    for (index, (path, times)) in paths.iter().zip(&ran.paths).enumerate() {
+        let kind = match path.motion {
+            Motion::Rapid => "rapid",
+            Motion::Feed => "feed",
+            Motion::Stand => "stand",
+        };
+        let m_min = |speed: f64| speed / shared::units::MM_S_PER_M_MIN;
+        let speeds = path.speeds();
+        outln!(
+            "{:5} {kind:<6} {:9.1} mm {:7.2} s {:6.2} m/min {:7}",
+            index + 1,
+            path.length_mm(),
+            times.duration_s,
+            m_min(speeds.fastest_mm_s),
+            path.pieces(),
+        );
+        if speeds.changes > 0 {
+            outln!(
+                "      changes its feed {} times, down to {:.2} m/min",
+                speeds.changes,
+                m_min(speeds.slowest_mm_s)
+            );
+        }
+        let summary = path.blocks.as_ref().map(Blocks::summary);
+        if let Some(summary) = summary.filter(|summary| summary.stops > 0) {
+            out!("      stops {} times on the way", summary.stops);
+            match summary.corners {
+                0 => outln!(),
+                corners => outln!(
+                    ", {corners} times at a corner, of {:.1}° at most",
+                    summary.sharpest.to_degrees()
+                ),
+            }
+        }
+        if let Some(tolerance) = summary.and_then(|summary| summary.tolerance_mm) {
+            outln!("      rounds corners by {tolerance} mm at most, at the closest");
+        }
+        if let Some(bound) = path.bound {
+            outln!(
+                "      {} of {} allows {:.2} m/min (at {:.1} mm)",
+                bound.quantity,
+                bound.axis,
+                m_min(bound.largest_mm_s),
+                bound.s_mm
+            );
+        }
+        if let Some(corner) = path.corner_deg {
+            outln!("      begins at a corner of {corner:.1}°, where the machine stops");
+        }
+        if path.dwell_before_s > 0.0 {
+            outln!("      after {:.2} s at rest", path.dwell_before_s);
+        }
+        if let Some((start, end)) = path.weld() {
+            outln!(
+                "      weld from {start:.1} to {end:.1} mm, {:.1} mm long",
+                end - start
+            );
+        }
+    }
+    outln!(
+        "total {:.2} s from the end of homing to the park position",
+        ran.duration_s
+    );
+}

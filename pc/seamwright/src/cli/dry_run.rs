@@ -1,0 +1,87 @@
+//! `seamwright dry-run`: how long a program will take, and what it will ask of the machine.
+
+use super::{OUTSIDE, read_program};
+use crate::console::{out, outln};
+use anyhow::Context;
+use cam::dry_run;
+use cam::path::Planner;
+use clap::Args;
+use config::machine::MachineFile;
+use report::write_dry_run;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Run a program through the planner of the motion board, without boards: durations, speeds, accelerations, jerks
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit code: 0 if every limit is kept, 3 if not, 1 if the machine cannot run the program."
+)]
+pub struct DryRun {
+    /// NC program
+    program: PathBuf,
+    /// Machine file
+    #[arg(long)]
+    machine: PathBuf,
+    /// Speed of the weld in place of the programmed feed [m/min]
+    #[arg(long, value_name = "M_PER_MIN", value_parser = super::weld::speed, allow_negative_numbers = true)]
+    speed: Option<f64>,
+    /// Feed override, above 0 to 2
+    #[arg(long = "override", value_name = "F", value_parser = feed_override, default_value_t = 1.0, allow_negative_numbers = true)]
+    factor: f64,
+    /// Where dry-run.json and the plots go [default: none are written]
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+    /// Leave out blocks that start with /
+    #[arg(long)]
+    block_delete: bool,
+    /// Start at this line of the program (its first motion in or after it)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    from_line: Option<u32>,
+}
+
+/// An override with which a program comes to its end.
+fn feed_override(text: &str) -> Result<f64, &'static str> {
+    match text.parse() {
+        Ok(factor) if factor > 0.0 && factor <= 2.0 => Ok(factor),
+        _ => Err("say a factor above 0 and up to 2; 1 is the programmed feed"),
+    }
+}
+
+impl DryRun {
+    /// Prints the figures, and writes the report.
+    pub fn run(self) -> anyhow::Result<ExitCode> {
+        let machine = MachineFile::read(&self.machine)?;
+        let name = self.program.display();
+        let program = read_program(&self.program, self.block_delete)?;
+        let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
+        let speed = self.speed.map(|m_min| m_min * shared::units::MM_S_PER_M_MIN);
+        let from = machine.homed_axes();
+        let mut paths = planner
+            .program(&program, &from, speed)
+            .with_context(|| format!("program {name}"))?;
+        if let Some(line) = self.from_line {
+            let started = planner.from_line(&program, paths, line, &from);
+            paths = started.with_context(|| format!("program {name}"))?;
+        }
+        let ran = dry_run::run(&machine, &planner, &paths, self.factor)
+            .with_context(|| format!("program {name}"))?;
+        let at = match self.factor {
+            1.0 => String::new(),
+            factor => format!(" at {:.0} % feed", 100.0 * factor),
+        };
+        let start = self.from_line.map(|line| format!(" from line {line}"));
+        let title = format!("{name}{} on {}{at}", start.unwrap_or_default(), machine.name);
+        if let Some(directory) = &self.report {
+            write_dry_run(directory, &title, &ran)?;
+        }
+        outln!("{title}");
+        out!("{ran}");
+        if let Some(directory) = &self.report {
+            outln!("  report in {}", directory.display());
+        }
+        Ok(match ran.highest.above().next() {
+            None => ExitCode::SUCCESS,
+            Some(_) => ExitCode::from(OUTSIDE),
+        })
+    }
+}

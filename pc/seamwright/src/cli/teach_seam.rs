@@ -1,0 +1,265 @@
+//! `seamwright teach` for the seams of a rib: by the cameras.
+
+use super::boards::{BoardChoice, exit_code};
+use super::cameras::CameraArgs;
+use super::read_program;
+use crate::console::outln;
+use crate::terminal::Terminal;
+use anyhow::{Context, anyhow, bail};
+use cam::path::{Planner, Tip};
+use clap::Args;
+use config::machine::MachineFile;
+use job::{Job, JobError, Names, SeamLesson, TaughtSeam, Work};
+use nc::{Options, Program, interpret};
+use parts::plan::DualBeamPlan;
+use parts::{PartFile, TSeam};
+use shared::io::SLIDES;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::str::FromStr;
+use std::sync::Arc;
+use teach::seam::{Cameras, Drawing, Ended, Head, SeamFile, Stance};
+use world::Deviation;
+use world::Surroundings;
+
+/// A seam that ends more than this before its drawing does was lost \[mm\].
+const ENDS_EARLY: f64 = 5.0;
+
+/// What only seams are taught with.
+#[derive(Debug, Args)]
+pub struct SeamArgs {
+    /// Seams: where the tip shall begin, a camera lead before the first point, in place of the drawing's beginning
+    #[arg(long, value_name = "X,Y,Z,A,B,C", allow_hyphen_values = true)]
+    from: Option<Place>,
+    /// Seams: the operator drives, by words on standard input
+    #[arg(long)]
+    jog: bool,
+    /// Seams: begin anew; the points taught before stay under another name
+    #[arg(long)]
+    restart: bool,
+    /// Seams: how the real ones deviate from the drawing (CSV), for emulated and simulated boards
+    #[arg(long, value_name = "DEVIATION")]
+    seam: Option<PathBuf>,
+    /// Seams: the program planned from the drawing, from which --seam deviates [default: that of the part]
+    #[arg(long, value_name = "DRAWING", requires = "seam")]
+    seam_of: Option<PathBuf>,
+    #[command(flatten)]
+    eyes: CameraArgs,
+}
+
+/// X Y Z \[mm\] A B C \[deg\] of the tip.
+#[derive(Clone, Copy, Debug)]
+struct Place([f64; 6]);
+
+impl FromStr for Place {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let numbers = text.split(',').map(|number| number.trim().parse::<f64>());
+        let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().map_err(|_| "say six numbers")?;
+        let place: [f64; 6] = numbers
+            .try_into()
+            .map_err(|_| "say six numbers: X,Y,Z in mm and A,B,C in degrees")?;
+        let finite = place.iter().all(|number| number.is_finite());
+        finite.then_some(Self(place)).ok_or("say six numbers")
+    }
+}
+
+/// What the part and its drawing say.
+struct Lesson {
+    start: Stance,
+    drawing: Option<Drawing>,
+    cameras: Cameras,
+    /// The program of the drawing, to which a simulated seam belongs.
+    drawn: Option<Program>,
+}
+
+impl SeamArgs {
+    /// Refuses what a panel is not taught with.
+    pub fn refuse(&self) -> anyhow::Result<()> {
+        let told = [
+            (self.from.is_some(), "--from"),
+            (self.jog, "--jog"),
+            (self.restart, "--restart"),
+            (self.seam.is_some(), "--seam"),
+        ];
+        let told = told.into_iter().find_map(|(told, name)| told.then_some(name));
+        match told.or(self.eyes.of_pictures()) {
+            Some(name) => bail!("{name} is for parts with seams ([t-seam]), and this part has none"),
+            None => Ok(()),
+        }
+    }
+
+    /// Teaches the seams of `part`.
+    pub fn teach(
+        &self,
+        boards: &BoardChoice,
+        (machine, machine_path): (&MachineFile, &Path),
+        part: &PartFile,
+        output: Option<&Path>,
+        seed: u64,
+    ) -> anyhow::Result<ExitCode> {
+        let seam = part
+            .t_seam()
+            .ok_or_else(|| anyhow!("the part has no seams to teach"))?;
+        let name = |path: &Path| path.display().to_string();
+        let prepared = self
+            .prepare(machine, part)
+            .with_context(|| format!("part {}", name(part.path())))?;
+        let deviation = self.seam.as_deref().map(Deviation::read).transpose()?;
+        let output = output_of(output, part, seam)?;
+        let head = Head {
+            machine: machine.name.clone(),
+            part: part
+                .path()
+                .file_stem()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
+        };
+        let opened = SeamFile::open(&output, &head, self.restart)?;
+        opened.notes.iter().for_each(|note| outln!("{note}"));
+        if !opened.points.is_empty() {
+            outln!(
+                "{}: goes on after point {}",
+                output.display(),
+                opened.points.len()
+            );
+        }
+        let lesson = SeamLesson {
+            start: prepared.start,
+            drawing: prepared.drawing,
+            config: *seam.teaching(),
+            cameras: prepared.cameras,
+            points: opened.points,
+            file: RefCell::new(opened.file),
+            head,
+            by_jog: self.jog,
+        };
+        let cameras = self.eyes.choose(machine, machine_path, boards)?;
+        let keepers = self.eyes.keep(&cameras)?;
+        let job = Job {
+            machine,
+            work: Work::TeachSeam(&lesson),
+            part: None,
+            speed_m_per_min: None,
+            from_line: None,
+            surroundings: Surroundings {
+                seam: deviation.map(Arc::new),
+                drawing: prepared.drawn.map(Arc::new),
+                cameras,
+                seed,
+            }
+            .into(),
+            names: Names {
+                program: name(part.path()),
+                machine: name(machine_path),
+                seam: self.seam.as_deref().map(name),
+                boards: boards.name(),
+            },
+        };
+        let ended = match boards.run(&job, || Terminal::with_lines(self.jog))? {
+            Ok(ended) => ended,
+            Err(code) => return Ok(code),
+        };
+        keepers.end();
+        match (ended.taught.seam, ended.error) {
+            (Some(taught), None) => tell(&output, &taught),
+            (_, error) => {
+                outln!(
+                    "{}: what is taught so far; the same command goes on after it",
+                    output.display()
+                );
+                exit_code(error)
+            }
+        }
+    }
+
+    fn prepare(&self, machine: &MachineFile, part: &PartFile) -> anyhow::Result<Lesson> {
+        let unit = machine.tracking.as_ref();
+        let unit = unit.context("the machine has no cameras to teach a seam with")?;
+        let cameras = Cameras::of(unit)?;
+        let drawn = part.drawn(machine)?;
+        let (start, drawing) = self.start(machine, drawn.as_ref(), &cameras)?;
+        let program = match (&self.seam_of, drawn) {
+            (Some(file), _) => Some(read_program(file, false)?),
+            (None, Some(plan)) => Some(interpret(&plan.program, Options::default())?),
+            (None, None) if self.seam.is_some() => {
+                bail!("the part has no drawing that --seam could deviate from: name its program by --seam-of")
+            }
+            (None, None) => None,
+        };
+        Ok(Lesson {
+            start,
+            drawing,
+            cameras,
+            drawn: program,
+        })
+    }
+
+    fn start(
+        &self,
+        machine: &MachineFile,
+        drawn: Option<&DualBeamPlan>,
+        cameras: &Cameras,
+    ) -> anyhow::Result<(Stance, Option<Drawing>)> {
+        let drawing = drawn.map(DualBeamPlan::drawing);
+        let start = match (self.from, drawn) {
+            (Some(Place([x, y, z, a, b, c])), _) => {
+                let tip = Tip {
+                    position_mm: [x, y, z],
+                    angles_deg: [a, b, c],
+                    ..Tip::default()
+                };
+                Stance {
+                    pose: Planner::build(machine)?.pose(&tip),
+                    slides_mm: [0.0; SLIDES],
+                }
+            }
+            (None, Some(plan)) => plan.stance_before(cameras.heads.camera_lead()),
+            (None, None) => {
+                bail!("the part has no drawing, so nobody knows where to begin: say it by --from")
+            }
+        };
+        Ok((start, drawing))
+    }
+}
+
+/// Where the points go: as told, or where the part file expects them.
+fn output_of(told: Option<&Path>, part: &PartFile, seam: &TSeam) -> anyhow::Result<PathBuf> {
+    match (told, seam.taught()) {
+        (Some(told), _) => Ok(told.to_owned()),
+        (None, Some(taught)) => Ok(part.path().parent().unwrap_or(Path::new("")).join(taught)),
+        (None, None) => bail!("say where the points go: --output FILE"),
+    }
+}
+
+/// Tells how a lesson ended.
+fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
+    outln!("{}: {} points", output.display(), taught.points);
+    match taught.ended {
+        Ended::Drawn => outln!("  the seam is taught as far as it is drawn"),
+        Ended::Operator => outln!("  ended by the operator; the same command goes on after the last point"),
+        Ended::SeamEnds {
+            s_mm,
+            missing_mm,
+            seen,
+        } => match missing_mm {
+            Some(missing) if missing > ENDS_EARLY => {
+                let side = match seen {
+                    [true, false] => "on side 2 only",
+                    [false, true] => "on side 1 only",
+                    _ => "on both sides",
+                };
+                return exit_code(Some(JobError::Teach(format!(
+                    "the seam is lost {s_mm:.1} mm from its beginning, {side}, {missing:.1} mm before its drawing ends: \
+                     if it does not end there, look what covers it and whether the light works; the same command goes \
+                     on after the last point"
+                ))));
+            }
+            _ => outln!("  the seam ends {s_mm:.1} mm from its beginning"),
+        },
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,167 @@
+//! `seamwright teach` and `plan` for seams, as a person uses them: by files, and by words on standard input.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+fn shipped(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file)
+}
+
+/// A folder of this test, empty.
+fn scratch(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("teach-{test}"));
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn host_link(folder: &Path, words: &[&str], input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_seamwright"))
+        .current_dir(folder)
+        .args(words)
+        .arg("--machine")
+        .arg(shipped("machines/dual-beam-gantry.toml"))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("seamwright runs");
+    let mut stdin = child.stdin.take().unwrap();
+    // A refusal does not read it.
+    let _ = stdin.write_all(input.as_bytes());
+    drop(stdin);
+    child.wait_with_output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    let [out, error] =
+        [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
+    out + &error
+}
+
+/// A part of the shipped seams in `folder`.
+fn part(folder: &Path) {
+    let curves = [1, 2].map(|side| {
+        shipped(&format!("programs/t-seam-400-seam{side}.csv"))
+            .display()
+            .to_string()
+    });
+    let text = format!(
+        "[t-seam]\nseam_1 = {:?}\nseam_2 = {:?}\nspeed_m_min = 5.0\npower_w = 2000.0\n",
+        curves[0], curves[1]
+    );
+    std::fs::write(folder.join("rib.toml"), text).unwrap();
+}
+
+#[test]
+fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
+    let folder = scratch("hand");
+    part(&folder);
+    let seam = shipped("programs/t-seam-400-deviation.csv").display().to_string();
+    let teach = [
+        "teach",
+        "rib.toml",
+        "--boards",
+        "simulated",
+        "--seam",
+        &seam,
+        "-o",
+        "taught.csv",
+        "--jog",
+        "--camera",
+        "geometric",
+    ];
+    let first = host_link(
+        &folder,
+        &teach,
+        "x 300000\nx -0.5\ncentre\ntake\nstep 8\ncentre\ntake\nstep 5\ntake\nundo\ndone\n",
+    );
+    let told = said(&first);
+    assert!(first.status.success(), "{told}");
+    for words in [
+        "300000 mm is more than 100 mm at once",
+        "side 1: U ",
+        "point 1 at s 0.00 mm",
+        "point 2 at s 8.",
+        "2 points",
+        "taught.csv: 2 points",
+    ] {
+        assert!(told.contains(words), "{words} is not in\n{told}");
+    }
+    // The input ends without a word.
+    let second = host_link(
+        &folder,
+        &teach,
+        "step\ncentre\ntake\nstep\ntake\nstep 15\ncentre\ntake\n",
+    );
+    let told = said(&second);
+    assert!(second.status.success(), "{told}");
+    assert!(
+        told.contains("goes on after point 2") && told.contains("taught.csv: 5 points"),
+        "{told}"
+    );
+
+    let plan = host_link(
+        &folder,
+        &[
+            "plan",
+            "rib.toml",
+            "--taught",
+            "taught.csv",
+            "-o",
+            "rib.ngc",
+            "--measuring-head",
+            "look.ngc",
+        ],
+        "",
+    );
+    let told = said(&plan);
+    assert!(plan.status.success(), "{told}");
+    assert!(
+        told.contains("seam 2: 5 taught points lie within 0.0") && told.contains("beams off"),
+        "{told}"
+    );
+    let program = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    assert!(program("rib.ngc").contains("M62 P0") && !program("look.ngc").contains("M62"));
+}
+
+#[test]
+fn what_cannot_be_taught_is_refused_before_the_machine_moves() {
+    let folder = scratch("refused");
+    part(&folder);
+    std::fs::write(
+        folder.join("bare.toml"),
+        "[t-seam]\nspeed_m_min = 5.0\npower_w = 2000.0\n",
+    )
+    .unwrap();
+    std::fs::write(folder.join("other.csv"), "# machine: gantry\n# part: other\n").unwrap();
+    let teach = |words: &[&str]| {
+        let words = [&["teach", "--boards", "simulated"], words].concat();
+        let output = host_link(&folder, &words, "");
+        assert!(!output.status.success());
+        said(&output)
+    };
+    let panel = shipped("programs/panel.toml").display().to_string();
+    for (words, reason) in [
+        (&["rib.toml"][..], "say where the points go: --output FILE"),
+        (
+            &["bare.toml", "-o", "t.csv"],
+            "nobody knows where to begin: say it by --from",
+        ),
+        (&["rib.toml", "-o", "t.csv", "--from", "1,2,3"], "say six numbers"),
+        (
+            &["rib.toml", "-o", "other.csv"],
+            "other.csv was taught on machine gantry for part other, not on dual-beam-gantry for rib",
+        ),
+        (
+            &[panel.as_str(), "-o", "t.csv", "--jog"],
+            "--jog is for parts with seams",
+        ),
+    ] {
+        let told = teach(words);
+        assert!(told.contains(reason), "{reason} is not in\n{told}");
+    }
+}

@@ -1,0 +1,67 @@
+//! Boards that are emulated on this computer.
+
+use emulator::{Pace, Session};
+use host_link::boards::{Endpoint, LinkError, NetworkBoards, Patience};
+use thiserror::Error;
+
+/// Why emulated or simulated boards cannot be used.
+#[derive(Debug, Error)]
+pub enum BoardsError {
+    /// They are there, and do not answer as they should.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// Simulated boards have no plant of that name.
+    #[error("no plant is known for a machine called {machine}: it runs on real boards only")]
+    NoPlant {
+        /// Name of its kinematics.
+        machine: String,
+    },
+    /// The emulated boards run another machine.
+    #[error(
+        "the emulated boards are wired to a {wired}, but the machine file describes a {wanted}; boot others by `cargo xtask emulate --machine FILE`"
+    )]
+    WrongMachine {
+        /// What they run.
+        wired: String,
+        /// The kinematics of the machine file.
+        wanted: &'static str,
+    },
+    /// No emulated boards on this computer.
+    #[error(
+        "no emulated boards are running: use `cargo xtask weld`, or `cargo xtask emulate` in another terminal"
+    )]
+    NoEmulator,
+    /// The session file of the emulated boards cannot be used.
+    #[error("the emulated boards cannot be found: {0}; start them by `cargo xtask emulate`")]
+    BadSession(#[from] emulator::SessionError),
+}
+
+/// Connects to emulated boards, and takes part in their pace: they wait while this program has no processor. There are
+/// always two; the tracker board is left alone unless it is `tracked`.
+///
+/// # Errors
+/// As [`NetworkBoards::connect`], or [`BoardsError::BadSession`] if the boards' page cannot be opened.
+pub fn connect(session: &Session, tracked: bool, patience: Patience) -> Result<NetworkBoards, BoardsError> {
+    let target = session.path_states_to;
+    let tracker = endpoint(session.tracker);
+    let boards = NetworkBoards::connect(
+        &endpoint(session.motion),
+        tracked.then_some(&tracker),
+        Some((target.host.octets(), target.udp)),
+        patience,
+    )?;
+    let pace = Pace::join(&session.pace).map_err(|source| emulator::SessionError::File {
+        path: session.pace.clone(),
+        source,
+    })?;
+    // Where that fails they do not wait, which costs accuracy on a busy computer and nothing else.
+    Ok(boards.paced_by(move || drop(pace.handled())))
+}
+
+fn endpoint(board: emulator::Endpoint) -> Endpoint {
+    Endpoint {
+        host: board.host.to_string(),
+        request_port: board.tcp,
+        datagram_port: board.udp,
+    }
+}

@@ -1,0 +1,26 @@
+//! Simulated machines and what is around them: boards with plants, where seams and spots really are, what cameras and
+//! probes see.
+//!
+//! Everything around a machine is looked up by the motion board's time, in what the boards told about that time; never by
+//! the wall clock, never in the latest state. So the world is the same for emulated boards, which run in real
+//! time, and for simulated ones, which do not.
+
+pub mod deviation;
+pub mod emulated;
+mod geometric;
+mod probe;
+mod rendered;
+mod seams;
+pub mod simulated;
+mod surroundings;
+
+pub use deviation::{Deviation, SeamError, check_seam};
+pub use emulated::BoardsError;
+pub use geometric::GeometricCameras;
+pub use probe::SimulatedProbe;
+pub use rendered::{
+    Dark, Prospect, RenderedCamera, RenderedPictures, RenderedWorld, SceneError, SceneFile, Scratch,
+    Surface as Texture, View, ViewForm,
+};
+pub use seams::{Crossing, SharedSeams, TrueSeam, TrueSeams};
+pub use surroundings::{CameraChoice, DrawingError, PictureChoice, Surroundings, World};

@@ -1,0 +1,71 @@
+//! Rendered pictures for a job: of where the machine truly was at each strobe.
+
+use super::{Prospect, RenderedWorld, SceneFile, View};
+use crate::SharedSeams;
+use camera::{Camera, CameraError};
+use config::machine::CameraConfig;
+use host_link::geometry::MachineGeometry;
+use host_link::record::MachinePosition;
+use job::PictureSource;
+use shared::io::SIDES;
+use shared::protocol::Capture;
+use shared::tracking::frames::Heads;
+use std::sync::mpsc::Sender;
+
+/// The cameras of a rendered world.
+pub struct RenderedPictures {
+    world: RenderedWorld,
+    cameras: CameraConfig,
+    seams: SharedSeams,
+    /// Where each camera is told what stands before it.
+    tell: [Option<Sender<Prospect>>; SIDES],
+}
+
+impl RenderedPictures {
+    /// Pictures of `seams` that look as `scene` says. `seed` starts all noise.
+    pub fn new(
+        scene: &SceneFile,
+        cameras: &CameraConfig,
+        heads: &Heads,
+        seed: u64,
+        seams: SharedSeams,
+    ) -> Self {
+        Self {
+            world: RenderedWorld::new(scene, cameras, heads, seed),
+            cameras: cameras.clone(),
+            seams,
+            tell: [const { None }; SIDES],
+        }
+    }
+}
+
+impl PictureSource for RenderedPictures {
+    fn open(&mut self, side: usize) -> Result<Box<dyn Camera>, CameraError> {
+        let (camera, tell) = self.world.camera(side);
+        self.tell[side] = Some(tell);
+        Ok(Box::new(camera))
+    }
+
+    fn is_simulated(&self) -> bool {
+        true
+    }
+
+    fn late_us(&self, capture: u32, side: usize) -> u64 {
+        self.world.late_us(capture, side)
+    }
+
+    fn tell(&mut self, side: usize, capture: &Capture, at: Option<(&MachineGeometry, &MachinePosition)>) {
+        let prospect = match at {
+            Some((machine, position)) => {
+                let slides = capture.truth_mm.unwrap_or(capture.slides_mm);
+                View::of(&self.cameras, machine, &self.seams.get(), position, &slides, side)
+                    .map_or(Prospect::Nothing, Prospect::Seam)
+            }
+            None => Prospect::Unknown,
+        };
+        if let Some(tell) = &self.tell[side] {
+            // A camera that is gone has told why.
+            let _ = tell.send(prospect);
+        }
+    }
+}

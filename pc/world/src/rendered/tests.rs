@@ -1,0 +1,239 @@
+//! What is rendered of a true position measures as where the seam truly is; and what a scene file may say.
+
+use super::*;
+use crate::TrueSeams;
+use crate::seams::tests::{heads, wavy_seam};
+use camera::nominal_slopes;
+use config::calibration::Calibration;
+use config::machine::{JointForm, MachineFile};
+use host_link::geometry::tests::machine;
+use host_link::record::MachinePosition;
+use nalgebra::Vector3;
+use shared::io::SLIDES;
+use vision::{Detector, Joint, Measured, Prior, Walls};
+
+fn cameras(joint: JointForm, mount_deg: f64) -> CameraConfig {
+    let text = include_str!("../../../../machines/dual-beam-gantry.toml");
+    let machine = MachineFile::parse("m.toml", text).unwrap();
+    let mut cameras = machine.tracking.unwrap().cameras;
+    cameras.joint = joint;
+    cameras.mount_deg = [mount_deg, -mount_deg];
+    cameras
+}
+
+/// The machine near path position `s` of the bent path, and slides that have the seam in sight, `off` \[mm\] beside it.
+fn standing(seams: &TrueSeams, s: f64, off: [f64; 2]) -> (MachinePosition, [f64; SLIDES]) {
+    let (mut pose, _) = wavy_seam().planned(s).unwrap();
+    pose.position += Vector3::new(0.02, -0.03, 0.05);
+    let mut slides = [0.0; SLIDES];
+    for side in 0..SIDES {
+        let (_, crossing) = seams
+            .facing(side, &heads().spot(&pose, side), heads().camera_lead())
+            .unwrap();
+        slides[2 * side] = crossing.u - off[0];
+        slides[2 * side + 1] = crossing.v - off[1];
+    }
+    (MachinePosition::Axes(machine().inverse(&pose)), slides)
+}
+
+fn picture(
+    camera: &mut RenderedCamera,
+    tell: &Sender<Prospect>,
+    capture: u32,
+    view: View,
+) -> (Arrival, Picture) {
+    let mut picture = Picture::default();
+    camera.strobed(capture, u64::from(capture) * 5_000);
+    tell.send(Prospect::Seam(view)).unwrap();
+    let arrival = camera.next(Duration::from_secs(10), &mut picture).unwrap();
+    (arrival, picture)
+}
+
+fn measured(calibration: &Calibration, joint: Joint, picture: &Picture) -> Measured {
+    let (optics, noise) = (calibration.optics, calibration.photon_transfer);
+    let mut detector = Detector::new(optics, noise, calibration.profile).unwrap();
+    let (track, focus) = (None, 0.0);
+    let prior = Prior { joint, track, focus };
+    let report = detector.measure(&picture.image().unwrap(), &prior).unwrap();
+    *report.seam().unwrap_or_else(|| panic!("{report:?}"))
+}
+
+/// How far what is told of a picture lies beside the true seam, across and along the camera's view \[mm\].
+fn miss(
+    seams: &TrueSeams,
+    calibration: &Calibration,
+    side: usize,
+    at: &MachinePosition,
+    slides: &[f64; SLIDES],
+    seen: &Measured,
+) -> [f64; 2] {
+    let told = calibration.side_measurement(seen.lateral_mm, seen.travel_mm, seen.height_mm);
+    let spot = heads().spot(&machine().pose(at), side);
+    let lead = heads().camera_lead() + told.along_mm;
+    let (_, truth) = seams.facing(side, &spot, lead).unwrap();
+    let u = slides[2 * side] + told.delta_u_mm - truth.u;
+    let v = slides[2 * side + 1] + told.delta_v_mm - truth.v;
+    calibration.camera_step(u, v)
+}
+
+/// For gaps seen along the skin's normal and a little beside it, and for corners along their bisector and beside it. One
+/// picture of a corner without learnt walls is good for 5 µm; the tracker is told means.
+#[test]
+fn what_is_measured_in_rendered_pictures_is_where_the_seam_truly_is() {
+    const PICTURES: u32 = 6;
+    let (machine, seams) = (machine(), TrueSeams::of([wavy_seam()]));
+    let forms = [
+        (JointForm::Gap, -30.0),
+        (JointForm::Gap, -24.0),
+        (JointForm::Corner, 15.0),
+        (JointForm::Corner, 11.0),
+    ];
+    for (form, mount_deg) in forms {
+        let cameras = cameras(form, mount_deg);
+        let world = RenderedWorld::new(&SceneFile::default(), &cameras, &heads(), 1);
+        for side in 0..SIDES {
+            let calibration = cameras.nominal(side);
+            let joint = match form {
+                JointForm::Gap => Joint::Gap,
+                JointForm::Corner => Joint::Corner(Walls {
+                    slopes: nominal_slopes(form, calibration.slides.mount_rad(), &heads(), side),
+                    sigma: 0.01,
+                }),
+            };
+            let offsets = [[0.1, -0.05], [-0.15, 0.1], [0.02, 0.12]];
+            let (mut camera, tell) = world.camera(side);
+            for (off, from) in offsets.into_iter().zip([170.0, 250.0, 330.0]) {
+                let mut sum = [0.0; 2];
+                for i in 0..PICTURES {
+                    let (position, slides) = standing(&seams, from + 0.4 * f64::from(i), off);
+                    let view = View::of(&cameras, &machine, &seams, &position, &slides, side).unwrap();
+                    let (_, picture) = picture(&mut camera, &tell, i, view);
+                    let seen = measured(&calibration, joint, &picture);
+                    let miss = miss(&seams, &calibration, side, &position, &slides, &seen);
+                    sum = [0, 1].map(|k| sum[k] + miss[k] / f64::from(PICTURES));
+                }
+                let at = format!("{form:?} {mount_deg}° side {side} s {from}: {sum:.4?}");
+                assert!(sum[0].abs() < 0.005 && sum[1].abs() < 0.015, "{at}");
+            }
+        }
+    }
+}
+
+/// A view of a seam in sight.
+fn level(along_mm: f64) -> View {
+    View {
+        along_mm,
+        lateral_mm: 0.0,
+        height_mm: 0.0,
+        form: ViewForm::Plate {
+            pitch: 0.0,
+            roll: 0.0,
+            yaw_rad: 0.0,
+        },
+    }
+}
+
+fn scene(text: &str) -> Result<SceneFile, String> {
+    SceneFile::parse("scene.toml", text).map_err(|error| error.to_string())
+}
+
+/// The arrivals of the pictures of captures, and which of them are black.
+fn run(text: &str, seed: u64, captures: impl Iterator<Item = u32>) -> Vec<(Arrival, Picture)> {
+    let cameras = cameras(JointForm::Gap, -30.0);
+    let world = RenderedWorld::new(&scene(text).unwrap(), &cameras, &heads(), seed);
+    let (mut camera, tell) = world.camera(0);
+    captures
+        .map(|number| picture(&mut camera, &tell, number, level(0.4 * f64::from(number))))
+        .collect()
+}
+
+#[test]
+fn a_picture_belongs_to_its_capture_and_seed_whatever_was_before() {
+    let disturbed = "spatter_share = 0.5\nheight_noise_um = 5.0";
+    let all = run(disturbed, 1, 0..6);
+    let last = run(disturbed, 1, 5..6);
+    assert_eq!(all[5], last[0]);
+    assert_ne!(all[5].1.pixels, run(disturbed, 2, 5..6)[0].1.pixels);
+}
+
+#[test]
+fn pictures_are_lost_and_late_by_their_shares() {
+    let lost = run("lost_share = 0.25", 1, 0..80);
+    let count = lost
+        .iter()
+        .filter(|(arrival, _)| matches!(arrival, Arrival::Lost { .. }))
+        .count();
+    assert!((10..30).contains(&count), "{count} of 80");
+    let cameras = cameras(JointForm::Gap, -30.0);
+    let late = scene("late_share = 0.25\nlate_ms = 12").unwrap();
+    let world = RenderedWorld::new(&late, &cameras, &heads(), 1);
+    let late: Vec<u64> = (0..80).map(|capture| world.late_us(capture, 1)).collect();
+    assert!(late.iter().all(|us| *us == 0 || *us == 12_000));
+    assert!((10..30).contains(&late.iter().filter(|us| **us > 0).count()));
+}
+
+#[test]
+fn a_light_fails_where_and_as_long_as_the_file_says() {
+    // A picture every 5 ms and 0.4 mm.
+    let dark = |text: &str| -> Vec<u32> {
+        let pictures = run(text, 1, 0..20);
+        let black = |picture: &Picture| picture.pixels.iter().all(|pixel| *pixel < 7);
+        let dark = pictures.iter().filter(|(_, picture)| black(picture));
+        dark.map(|(_, picture)| picture.capture).collect()
+    };
+    let spell = "[[dark]]\nside = 1\nfrom_s_mm = 2.0\nfor_ms = 20";
+    assert_eq!(dark(spell), [5, 6, 7, 8]);
+    assert_eq!(dark("[[dark]]\nside = 1\nfrom_s_mm = 6.0"), [15, 16, 17, 18, 19]);
+    assert_eq!(dark("[[dark]]\nside = 2\nfrom_s_mm = 2.0"), [0; 0]);
+}
+
+#[test]
+fn far_from_any_seam_it_is_dark_and_without_a_known_place_the_picture_is_lost() {
+    let cameras = cameras(JointForm::Gap, -30.0);
+    let world = RenderedWorld::new(&SceneFile::default(), &cameras, &heads(), 1);
+    let (mut camera, tell) = world.camera(0);
+    let mut picture = Picture::default();
+    camera.strobed(1, 0);
+    let nothing = camera.next(Duration::ZERO, &mut picture).unwrap();
+    assert_eq!(nothing, Arrival::Nothing);
+    tell.send(Prospect::Nothing).unwrap();
+    assert_eq!(
+        camera.next(Duration::ZERO, &mut picture).unwrap(),
+        Arrival::Picture
+    );
+    assert!(picture.pixels.len() == 120_000 && picture.pixels.iter().all(|pixel| *pixel == 0));
+    camera.strobed(2, 0);
+    tell.send(Prospect::Unknown).unwrap();
+    let lost = camera.next(Duration::ZERO, &mut picture).unwrap();
+    assert_eq!(lost, Arrival::Lost { capture: 2 });
+}
+
+#[test]
+fn a_wrong_scene_is_told_by_key_value_and_what_it_may_be() {
+    for (text, said) in [
+        (
+            "spater_share = 0.05",
+            "scene.toml, line 1: unknown field `spater_share`",
+        ),
+        (
+            "\ntexture = [\"ground\", \"wood\"]",
+            "line 2: unknown variant `wood`",
+        ),
+        (
+            "lost_share = 1.5",
+            "scene.toml: lost_share = 1.5: it has to be from 0 to 1",
+        ),
+        ("gap_mm = 0.02\ngap_wave_mm = 0.03", "gap_mm - gap_wave_mm = -0.0"),
+        (
+            "[[dark]]\nside = 3\nfrom_s_mm = 0.0",
+            "side of dark 1 = 3: it has to be 1 or 2",
+        ),
+        (
+            "[[scratch]]\nside = 1\noffset_mm = 0.2\nwidth_mm = 0.0\nbrightness = 0.5",
+            "width_mm of scratch 1 = 0",
+        ),
+    ] {
+        let error = scene(text).unwrap_err();
+        assert!(error.contains(said), "{error}");
+    }
+}

@@ -1,0 +1,144 @@
+//! A tracker board that does not answer, and a PC that was not there.
+
+use host_link::boards::Absence;
+use job::tests::*;
+
+/// What goes wrong once the beam is on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Wrong {
+    /// The tracker board tells its state no more, and the operator stops the job.
+    TrackerSilent,
+    /// This program is paused.
+    Paused,
+    /// It is, and another one has its place on the boards afterwards.
+    Replaced,
+}
+
+const PAUSE: Duration = Duration::from_secs(3);
+
+struct Alone<'a> {
+    boards: SimulatedBoards,
+    wrong: Wrong,
+    interrupted: &'a AtomicBool,
+    begun: bool,
+    absence: Option<Absence>,
+    /// What was asked with an answer waited for, since it went wrong.
+    asked: Vec<(Role, Request)>,
+    polled: usize,
+}
+
+impl<'a> Alone<'a> {
+    fn new(wrong: Wrong, interrupted: &'a AtomicBool) -> Self {
+        Self {
+            boards: SimulatedBoards::default(),
+            wrong,
+            interrupted,
+            begun: false,
+            absence: None,
+            asked: Vec::new(),
+            polled: 0,
+        }
+    }
+}
+
+impl Boards for Alone<'_> {
+    pass_on!(boards: send, now, identity, path_states_target);
+
+    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
+        if self.begun {
+            self.asked.push((role, request.clone()));
+            if self.wrong == Wrong::Replaced {
+                let source = std::io::ErrorKind::BrokenPipe.into();
+                return Err(LinkError::Lost { role, source });
+            }
+        }
+        self.boards.request(role, request)
+    }
+
+    fn poll(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
+        if self.begun && self.wrong == Wrong::TrackerSilent {
+            // The job goes on meanwhile, until the operator has enough.
+            self.polled += 1;
+            self.interrupted.store(self.polled > 20, Ordering::Relaxed);
+            return Ok(None);
+        }
+        self.request(role, request).map(Some)
+    }
+
+    fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
+        let received = self.boards.receive(timeout)?;
+        if let Some((_, Datagram::MotionTelemetry(telemetry))) = &received
+            && !self.begun
+            && telemetry.samples.iter().any(|sample| sample.beams[0])
+        {
+            self.begun = true;
+            if self.wrong != Wrong::TrackerSilent {
+                let end = self.now() + PAUSE;
+                while self.now() < end {
+                    self.boards.receive(Duration::from_millis(1))?;
+                }
+                self.absence = Some(Absence {
+                    ended: self.now(),
+                    lasted: PAUSE,
+                });
+            }
+        }
+        Ok(received)
+    }
+
+    fn absence(&self) -> Option<Absence> {
+        self.absence
+    }
+}
+
+#[test]
+fn a_tracker_that_does_not_answer_keeps_nobody_from_stopping() {
+    let interrupted = AtomicBool::new(false);
+    let mut boards = Alone::new(Wrong::TrackerSilent, &interrupted);
+    let ended = weld(&mut boards, &interrupted, &mut Silent);
+    assert!(
+        matches!(ended.error, Some(JobError::Interrupted)),
+        "{:?}",
+        ended.error
+    );
+    // It was polled while the motion board was asked and fed, and nothing that waits for it came before the stop.
+    let stop = boards
+        .asked
+        .iter()
+        .position(|asked| *asked == (Role::Motion, Request::Stop));
+    let before = &boards.asked[..stop.expect("the machine is stopped")];
+    assert!(boards.polled > 20);
+    assert!(before.contains(&(Role::Motion, Request::Status)), "{before:?}");
+    assert!(before.iter().all(|(role, _)| *role == Role::Motion), "{before:?}");
+    assert_off(&mut boards);
+}
+
+/// Welds with a pause.
+fn paused(boards: &mut Alone, interrupted: &AtomicBool) {
+    let ended = weld(boards, interrupted, &mut Silent);
+    let told = ended.error.expect("the boards do not go on").to_string();
+    assert!(
+        told.starts_with("this PC did nothing for 3.0 s (paused") && told.contains("board"),
+        "{told}"
+    );
+    assert_eq!(ended.report.outcome, Outcome::Failed);
+    assert!(
+        ended.report.faults[0].contains("this PC did nothing"),
+        "{:?}",
+        ended.report.faults
+    );
+}
+
+#[test]
+fn a_paused_pc_says_that_it_was_paused() {
+    let interrupted = AtomicBool::new(false);
+    let mut boards = Alone::new(Wrong::Paused, &interrupted);
+    paused(&mut boards, &interrupted);
+    assert_off(&mut boards);
+}
+
+#[test]
+fn a_pc_that_was_paused_until_another_has_its_place_says_so_too() {
+    let interrupted = AtomicBool::new(false);
+    paused(&mut Alone::new(Wrong::Replaced, &interrupted), &interrupted);
+}
