@@ -16,6 +16,11 @@ pub struct MachineGeometry {
 }
 
 impl MachineGeometry {
+    /// Of `kinematics` and, where X is a gantry, the cross positions of X1 and X2 \[mm\].
+    pub const fn new(kinematics: Kinematics, beam_mm: Option<[f64; 2]>) -> Self {
+        Self { kinematics, beam_mm }
+    }
+
     /// Builds the geometry; errors name the parameter.
     pub fn build(motion: &MotionConfig) -> Result<Self, ParameterError> {
         Ok(Self {
@@ -47,19 +52,12 @@ impl MachineGeometry {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
     use nalgebra::Vector3;
     use shared::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
 
-    impl MachineGeometry {
-        /// Axes that realise a pose.
-        pub(crate) fn inverse(&self, pose: &Pose) -> [f64; shared::io::AXES] {
-            self.kinematics.inverse(pose, &[0.0; shared::io::AXES]).unwrap()
-        }
-    }
-
-    pub(crate) fn machine() -> MachineGeometry {
+    fn machine() -> MachineGeometry {
         MachineGeometry {
             kinematics: KinematicsConfig::DualBeamGantry(DualBeamConfig {
                 o1_mm: [0.0, 0.0, -120.0],

@@ -109,13 +109,13 @@ fn between<const N: usize>(a: &[f64; N], b: &[f64; N], ratio: f64) -> [f64; N] {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
     use shared::motion::State;
     use shared::tracking::TrackerState;
 
     /// A tick of a motion board at rest in the origin.
-    pub(crate) fn motion_sample(tick: u32) -> MotionSample {
+    fn motion_sample(tick: u32) -> MotionSample {
         MotionSample {
             tick,
             time_us: u64::from(tick) * 1000,
@@ -133,7 +133,7 @@ pub(crate) mod tests {
     }
 
     /// A tick of a tracker board at rest.
-    pub(crate) fn tracker_sample(tick: u32) -> TrackerSample {
+    fn tracker_sample(tick: u32) -> TrackerSample {
         TrackerSample {
             tick,
             time_us: u64::from(tick) * 1000,

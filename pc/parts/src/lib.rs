@@ -131,14 +131,18 @@ pub enum PartError {
 impl PartFile {
     /// Reads the file at `path`.
     pub fn read(path: &Path) -> Result<Self, PartError> {
-        let name = path.display().to_string();
         let text = std::fs::read_to_string(path).map_err(|source| PartError::Read {
-            path: name.clone(),
+            path: path.display().to_string(),
             source,
         })?;
-        let part = toml::from_str(&text).map_err(|error| PartError::Content {
-            path: name,
-            line: line_of(&text, error.span().map_or(0, |span| span.start)),
+        Self::parse(path, &text)
+    }
+
+    /// Understands `text` as the file at `path`, which other files are found beside.
+    pub fn parse(path: &Path, text: &str) -> Result<Self, PartError> {
+        let part = toml::from_str(text).map_err(|error| PartError::Content {
+            path: path.display().to_string(),
+            line: line_of(text, error.span().map_or(0, |span| span.start)),
             message: error.message().replace('\n', ", "),
         })?;
         Ok(Self {

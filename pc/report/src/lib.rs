@@ -106,6 +106,16 @@ pub fn sentence(figure: &Figure) -> String {
     )
 }
 
+/// What is outside its limits, if anything is.
+pub fn verdict(report: &Report) -> Option<String> {
+    let exceeded: Vec<String> = report.exceeded().map(sentence).collect();
+    let limits =
+        (!exceeded.is_empty()).then(|| format!("the weld is outside its limits: {}", exceeded.join(", ")));
+    let left_out = report.unwelded.iter().map(ToString::to_string);
+    let told: Vec<String> = limits.into_iter().chain(left_out).collect();
+    (!told.is_empty()).then(|| told.join("; "))
+}
+
 /// A map from the key of each figure to its value, unit and limit.
 fn by_key<S: Serializer>(figures: &[Figure], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(figures.iter().map(|figure| (figure.key, figure)))
@@ -438,5 +448,27 @@ pub(crate) mod tests {
         report.figures[0].value = f64::NAN;
         report.figures[1].value = 0.2;
         assert_eq!(keys(&report), ["max_distance_mm"]);
+    }
+
+    #[test]
+    fn a_weld_outside_its_limits_is_told_with_figure_and_limit() {
+        let mut report = without_tracker();
+        assert_eq!(
+            verdict(&report).as_deref(),
+            Some("the weld is outside its limits: height of the torch 0.2500 mm (may be 0.2000 mm)")
+        );
+        report.figures.remove(1);
+        assert_eq!(verdict(&report), None);
+        report.unwelded.push(Unwelded {
+            line: 7,
+            beam: 1,
+            path_id: 2,
+            from_mm: 10.0,
+            to_mm: 25.0,
+        });
+        assert_eq!(
+            verdict(&report).as_deref(),
+            Some("line 7, s = 10.00…25.00 mm was not welded by beam 1")
+        );
     }
 }

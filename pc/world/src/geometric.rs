@@ -128,7 +128,7 @@ impl Waiting {
 mod tests {
     use super::*;
     use crate::seams::tests::{heads, wavy_seam};
-    use host_link::geometry::tests::machine;
+    use crate::tests::{axes_at, machine};
     use nalgebra::Vector3;
 
     const SLIDES: [f64; 4] = [0.4, -0.3, 0.2, 0.1];
@@ -149,33 +149,37 @@ mod tests {
     fn position(s: f64) -> MachinePosition {
         let (mut pose, _) = wavy_seam().planned(s).unwrap();
         pose.position += Vector3::new(0.02, -0.03, 0.05);
-        MachinePosition::Axes(machine().inverse(&pose))
+        MachinePosition::Axes(axes_at(&pose))
     }
 
     fn answer(
         cameras: &mut GeometricCameras,
-        seams: &TrueSeams,
         now_us: u64,
         position: impl Fn(u64) -> Option<MachinePosition>,
     ) -> Option<Measurement> {
-        cameras.answer(Moment {
+        let answer = cameras.answer(Moment {
             machine: &machine(),
-            seams,
             now_us,
             position: &position,
-        })
+        });
+        Some(answer.unwrap()?.measurement)
     }
 
     fn seen(cameras: &mut GeometricCameras, now_us: u64, s: f64) -> Option<Measurement> {
-        let seams = TrueSeams::of([wavy_seam()]);
-        answer(cameras, &seams, now_us, |_| Some(position(s)))
+        answer(cameras, now_us, |_| Some(position(s)))
+    }
+
+    /// Cameras before a wavy seam.
+    fn cameras(processing_us: u64, sigma_mm: f64, seed: u64) -> GeometricCameras {
+        let seams = SharedSeams::new(TrueSeams::of([wavy_seam()]));
+        GeometricCameras::new(processing_us, sigma_mm, seed, seams)
     }
 
     #[test]
     fn a_measurement_mapped_back_hits_the_seam() {
         let (machine, seam) = (machine(), wavy_seam());
-        let mut cameras = GeometricCameras::new(10_000, 0.0, 1);
-        cameras.strobe(capture(3), 1_000);
+        let mut cameras = cameras(10_000, 0.0, 1);
+        cameras.strobe(capture(3), 1_000, None);
         let measurement = seen(&mut cameras, 11_000, 250.0).unwrap();
         let pose = machine.pose(&position(250.0));
         for side in 0..SIDES {
@@ -194,25 +198,24 @@ mod tests {
 
     #[test]
     fn an_answer_waits_for_its_time_and_for_knowledge_and_is_given_up_at_last() {
-        let seams = TrueSeams::of([wavy_seam()]);
-        let mut cameras = GeometricCameras::new(10_000, 0.0, 1);
-        cameras.strobe(capture(1), 1_000);
-        cameras.strobe(capture(2), 6_000);
+        let mut cameras = cameras(10_000, 0.0, 1);
+        cameras.strobe(capture(1), 1_000, None);
+        cameras.strobe(capture(2), 6_000, None);
         assert_eq!(cameras.next_due_us(), Some(11_000));
         assert!(seen(&mut cameras, 10_999, 250.0).is_none());
-        assert!(answer(&mut cameras, &seams, 11_000, |_| None).is_none());
+        assert!(answer(&mut cameras, 11_000, |_| None).is_none());
         let known_later = |time| (time > 1_000).then(|| position(250.0));
-        let measurement = answer(&mut cameras, &seams, 211_001, known_later).unwrap();
+        let measurement = answer(&mut cameras, 211_001, known_later).unwrap();
         assert_eq!(measurement.capture, 2);
         assert_eq!(cameras.given_up(), 1);
     }
 
     #[test]
     fn where_there_is_no_seam_the_cameras_say_nothing() {
-        let mut cameras = GeometricCameras::new(0, 0.0, 1);
-        cameras.strobe(capture(1), 0);
-        let none = TrueSeams::none(heads());
-        let measurement = answer(&mut cameras, &none, 0, |_| Some(position(250.0)));
+        let mut cameras = cameras(0, 0.0, 1);
+        cameras.seams.set(TrueSeams::none(heads()));
+        cameras.strobe(capture(1), 0, None);
+        let measurement = answer(&mut cameras, 0, |_| Some(position(250.0)));
         assert_eq!(measurement, None);
         assert_eq!((cameras.next_due_us(), cameras.given_up()), (None, 0));
     }
@@ -224,11 +227,10 @@ mod tests {
                 panic!("axes")
             };
             axes[2] += up;
-            let mut cameras = GeometricCameras::new(0, 0.0, 1);
-            cameras.strobe(capture(1), 0);
-            let seams = TrueSeams::of([wavy_seam()]);
+            let mut cameras = cameras(0, 0.0, 1);
+            cameras.strobe(capture(1), 0, None);
             let at = MachinePosition::Axes(axes);
-            answer(&mut cameras, &seams, 0, |_| Some(at)).is_some()
+            answer(&mut cameras, 0, |_| Some(at)).is_some()
         };
         // The seam is told from 90 to 400 mm along the path.
         assert!(sees(250.0, 0.0) && sees(45.0, 0.0) && sees(425.0, 0.0));
@@ -238,8 +240,8 @@ mod tests {
     #[test]
     fn the_same_seed_gives_the_same_measurements() {
         let run = |seed| {
-            let mut cameras = GeometricCameras::new(0, 0.02 / 3.0, seed);
-            cameras.strobe(capture(1), 0);
+            let mut cameras = cameras(0, 0.02 / 3.0, seed);
+            cameras.strobe(capture(1), 0, None);
             seen(&mut cameras, 0, 250.0).unwrap()
         };
         assert_eq!(run(1), run(1));

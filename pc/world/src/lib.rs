@@ -13,6 +13,8 @@ mod rendered;
 mod seams;
 pub mod simulated;
 mod surroundings;
+#[cfg(test)]
+mod tests;
 
 pub use deviation::{Deviation, SeamError, check_seam};
 pub use emulated::BoardsError;

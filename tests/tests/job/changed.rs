@@ -1,7 +1,7 @@
 //! The file of a long program changes while it runs.
 
+use super::*;
 use host_link::boards::Overheard;
-use job::tests::*;
 use nc::interpret_file;
 use shared::protocol::MotionSample;
 use std::path::PathBuf;

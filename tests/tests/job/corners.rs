@@ -1,7 +1,7 @@
 //! Corners of a program on simulated boards.
 
+use super::*;
 use host_link::boards::Overheard;
-use job::tests::*;
 use shared::protocol::MotionSample;
 
 /// Samples of the motion board on a rectangle of 20 mm by 10 mm at 20 mm/s, and the evaluation.

@@ -1,6 +1,6 @@
 //! The true seam belongs to the drawing, whatever program the job runs.
 
-use job::tests::*;
+use super::*;
 
 /// The program of the tests, 1.5 mm beside it and higher, in other lines.
 fn beside() -> String {
@@ -9,11 +9,20 @@ fn beside() -> String {
         .replace("X1140", "X1040\nX1140")
 }
 
+fn beside_drawing(seam: Arc<Deviation>, drawing: Option<Program>) -> Arc<dyn job::Surroundings> {
+    let drawing = drawing.map(Arc::new);
+    Surroundings {
+        drawing,
+        ..around(Some(seam))
+    }
+    .into()
+}
+
 fn weld_beside(seam: Arc<Deviation>) -> Ended {
     let (machine, drawing) = (machine(), interpret(PROGRAM, Options::default()).unwrap());
     let program = interpret(&beside(), Options::default()).unwrap();
-    let mut job = job(&machine, &program, Some(seam));
-    job.surroundings.drawing = Some(&drawing);
+    let mut job = job(&machine, &program, None);
+    job.surroundings = beside_drawing(seam, Some(drawing));
     run(
         &mut SimulatedBoards::default(),
         &job,
@@ -57,11 +66,11 @@ fn a_drawing_of_another_place_is_refused() {
         .replace("X1180", "X1780");
     let drawing = interpret(&elsewhere, Options::default()).unwrap();
     let program = interpret(PROGRAM, Options::default()).unwrap();
-    let mut job = job(&machine, &program, Some(seam));
-    job.surroundings.drawing = Some(&drawing);
+    let mut job = job(&machine, &program, None);
+    job.surroundings = beside_drawing(seam.clone(), Some(drawing));
     let planner = Planner::build(&machine).unwrap();
     let error = job.plan(&program, &planner, &machine.homed_axes()).unwrap_err();
     assert!(error.to_string().contains("--seam-of"), "{error}");
-    job.surroundings.drawing = None;
+    job.surroundings = beside_drawing(seam, None);
     assert!(job.plan(&program, &planner, &machine.homed_axes()).is_ok());
 }

@@ -1,8 +1,8 @@
 //! Programs that are started at one of their lines.
 
+use super::*;
 use cam::path::FromLineError;
 use host_link::boards::Overheard;
-use job::tests::*;
 use shared::protocol::MotionSample;
 use std::path::Path;
 

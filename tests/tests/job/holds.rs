@@ -1,7 +1,7 @@
 //! Holds and overrides of a job.
 
+use super::*;
 use host_link::boards::Overheard;
-use job::tests::*;
 use shared::motion::State;
 use shared::protocol::MotionSample;
 

@@ -1,7 +1,7 @@
 //! Jobs of machines without a tracker.
 
+use super::*;
 use host_link::boards::Overheard;
-use job::tests::*;
 use report::Truth;
 use shared::protocol::MotionSample;
 use std::path::Path;

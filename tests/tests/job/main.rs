@@ -10,20 +10,25 @@ mod real_cameras;
 mod recentring;
 mod silence;
 mod single_block;
-mod slides;
 mod taught_seam;
 mod verdict;
 
-use host_link::boards::command;
+use cam::path::Planner;
+use config::machine::MachineFile;
+use host_link::boards::{Boards, LinkError, command};
 use host_link::pass_on;
-use job::*;
-use nc::{Options, interpret};
-use report::{Outcome, Report, SeamFigures};
-use shared::protocol::{Datagram, Identity, Response};
+use job::{Job, JobError, Names, Progress, Silent, Word, Work};
+use nc::{Options, Program, interpret};
+use report::{Ended, Outcome, Report, SeamFigures};
+use shared::motion::State;
+use shared::protocol::{Datagram, Identity, Request, Response, Role};
+use shared::tracking::{TrackerFault, TrackerState};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
-use world::Deviation;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use system_tests::run;
 use world::simulated::SimulatedBoards;
+use world::{Deviation, SeamError, Surroundings, check_seam};
 
 const PROGRAM: &str = "\
 G43.4
@@ -41,11 +46,7 @@ X1180
 M2";
 
 fn machine() -> MachineFile {
-    MachineFile::parse(
-        "m.toml",
-        include_str!("../../../../../machines/dual-beam-gantry.toml"),
-    )
-    .unwrap()
+    MachineFile::parse("m.toml", include_str!("../../../machines/dual-beam-gantry.toml")).unwrap()
 }
 
 /// Bends, slopes and a kink.
@@ -87,16 +88,20 @@ fn job<'a>(machine: &'a MachineFile, program: &'a Program, seam: Option<Arc<Devi
         part: None,
         speed_m_per_min: None,
         from_line: None,
-        surroundings: Surroundings {
-            seam,
-            ..Surroundings::default()
-        },
+        surroundings: around(seam).into(),
         names: Names {
             program: "job.ngc".into(),
             machine: "m.toml".into(),
             seam: None,
             boards: "simulated".into(),
         },
+    }
+}
+
+fn around(seam: Option<Arc<Deviation>>) -> Surroundings {
+    Surroundings {
+        seam,
+        ..Surroundings::default()
     }
 }
 
@@ -118,8 +123,6 @@ enum Trouble {
     EmergencyStop,
     /// The tracker board cannot be reached any more.
     TrackerGone,
-    /// Slides do not go where the PC sends them.
-    SlidesStand,
 }
 
 /// Simulated boards with a trouble.
@@ -179,10 +182,7 @@ impl Boards for Troubled {
         if role == Role::Motion {
             self.motion_disabled = *request == Request::Disable;
         }
-        match (&self.trouble, request) {
-            (Trouble::SlidesStand, Request::MoveSlides { .. }) => Ok(Response::Done),
-            _ => self.boards.request(role, request),
-        }
+        self.boards.request(role, request)
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
@@ -204,7 +204,7 @@ impl Boards for Troubled {
                         seen.delta_u_mm += bias;
                     }
                 }
-                Trouble::EmergencyStop | Trouble::TrackerGone | Trouble::SlidesStand => {}
+                Trouble::EmergencyStop | Trouble::TrackerGone => {}
             }
         }
         self.boards.send(role, &datagram)

@@ -1,17 +1,18 @@
 //! Cameras outside of the session: their frames come late, unasked and numbered by the camera, some never.
 
+use super::*;
 use camera::{Arrival, Camera, CameraError, Match, Matching, Picture, Strobe};
 use host_link::geometry::MachineGeometry;
 use host_link::record::Record;
-use job::tests::*;
-use job::{CameraChoice, ImageCameras};
+use job::ImageCameras;
 use shared::io::SIDES;
 use shared::protocol::Capture;
 use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex};
-use world::PictureSource;
-use world::{Prospect, RenderedCamera, RenderedWorld, SceneFile, TrueSeams, View};
+use world::{
+    CameraChoice, PictureChoice, Prospect, RenderedCamera, RenderedWorld, SceneFile, TrueSeams, View,
+};
 
 /// So many strobes later a frame is with the session at the latest.
 const LATE: u64 = 4;
@@ -177,7 +178,7 @@ fn camera(camera: (RenderedCamera, Sender<Prospect>)) -> (Lens, Outside) {
 struct World {
     boards: SimulatedBoards,
     file: MachineFile,
-    machine: Machine,
+    machine: MachineGeometry,
     seams: TrueSeams,
     record: Record,
     lenses: [Lens; SIDES],
@@ -203,7 +204,7 @@ impl World {
         let world = Self {
             boards: SimulatedBoards::default(),
             file: file.clone(),
-            machine: Machine::build(&file.motion).unwrap(),
+            machine: MachineGeometry::build(&file.motion).unwrap(),
             seams: TrueSeams::beside(heads, &paths, &waves()),
             record: Record::default(),
             lenses: [lens_1, lens_2],
@@ -280,18 +281,22 @@ fn weld_outside(wire: Wire, told: Option<Arc<Deviation>>) -> (Ended, World) {
     let machine = machine();
     let program = interpret(PROGRAM, Options::default()).unwrap();
     let (mut world, cameras) = World::new(&machine, &program, wire);
-    let cameras = std::cell::RefCell::new(cameras.map(Some));
+    let cameras = Mutex::new(cameras.map(Some));
     let open = move |side: usize| -> Result<Box<dyn Camera>, CameraError> {
-        let camera = cameras.borrow_mut()[side].take();
+        let camera = cameras.lock().unwrap()[side].take();
         Ok(Box::new(camera.expect("each is opened once")))
     };
     let unit = machine.tracking.as_ref().unwrap();
-    let mut job = job(&machine, &program, told);
-    job.surroundings.cameras = CameraChoice::Images(Box::new(ImageCameras {
+    let mut job = job(&machine, &program, None);
+    let images = ImageCameras {
         calibrations: std::array::from_fn(|side| unit.cameras.nominal(side)),
-        source: PictureSource::Real(Arc::new(open)),
         kept: None,
-    }));
+    };
+    job.surroundings = Surroundings {
+        cameras: CameraChoice::Images(Box::new(images), PictureChoice::Real(Arc::new(open))),
+        ..around(told)
+    }
+    .into();
     let ended = run(&mut world, &job, &AtomicBool::new(false), &mut Silent).unwrap();
     (ended, world)
 }

@@ -1,6 +1,6 @@
 //! Seams that lead the slides far away, on simulated boards.
 
-use job::tests::*;
+use super::*;
 
 /// A weld of 800 mm at 5 m/min.
 const LONG: &str = "\

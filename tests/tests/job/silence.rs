@@ -1,7 +1,7 @@
 //! A tracker board that does not answer, and a PC that was not there.
 
+use super::*;
 use host_link::boards::Absence;
-use job::tests::*;
 
 /// What goes wrong once the beam is on.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Single block, and an operator who says words.
 
+use super::*;
 use host_link::boards::Overheard;
-use job::tests::*;
 use shared::protocol::MotionSample;
 
 /// Waits for a while before every word.

@@ -1,6 +1,7 @@
 //! A seam beside its drawing: taught from a wrong start, planned, and welded with tracking on.
 
-use job::tests::*;
+use super::*;
+use job::{ImageCameras, Line, SeamLesson};
 use nalgebra::Vector3;
 use parts::SeamPoint;
 use parts::plan::{DualBeamPlan, PlanOptions, TaughtSeams, plan_dual_beam};
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 use teach::seam::{
     Cameras, Ended as Lesson, Head, SeamFile, SeamPoint as Taught, SeamTeaching, read_seam_points,
 };
-use world::SceneFile;
+use world::{CameraChoice, PictureChoice, SceneFile};
 
 /// How long the real seam bends to the left, and its radius there \[mm\].
 const BEND: f64 = 100.0;
@@ -79,10 +80,11 @@ impl Case {
         Job {
             surroundings: Surroundings {
                 seam: Some(self.real()),
-                drawing: Some(drawing),
+                drawing: Some(Arc::new(drawing.clone())),
                 cameras: self.cameras.clone(),
                 ..Surroundings::default()
-            },
+            }
+            .into(),
             ..job(&self.machine, program, None)
         }
     }
@@ -252,11 +254,10 @@ fn a_seam_is_taught_and_welded_through_pictures_as_well_after_an_interruption() 
     let cameras = &machine.tracking.as_ref().unwrap().cameras;
     let pictures = ImageCameras {
         calibrations: cameras.calibrations(Path::new("")).unwrap(),
-        source: PictureSource::Rendered(SceneFile::default()),
         kept: None,
     };
     let case = Case {
-        cameras: CameraChoice::Images(Box::new(pictures)),
+        cameras: CameraChoice::Images(Box::new(pictures), PictureChoice::Rendered(SceneFile::default())),
         config: SeamTeaching {
             // Each millisecond on the way has to be rendered.
             speed_m_min: 5.0,

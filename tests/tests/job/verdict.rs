@@ -1,6 +1,6 @@
 //! What a weld along a seam is judged by, where no part file says it: deviation, and what stayed unwelded.
 
-use job::tests::*;
+use super::*;
 use report::{JudgedBy, sentence};
 
 /// Simulated boards whose gate of side 2 is told shut on a stretch of the path \[mm\].

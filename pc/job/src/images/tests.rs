@@ -1,9 +1,26 @@
 //! How far a camera moves from capture to capture, and pictures that are measured again.
 
 use super::*;
-use camera::{Camera, Folder, Keeper, Shelf};
+use camera::{Arrival, Camera, CameraError, Folder, Keeper, Picture, Shelf};
 use config::machine::MachineFile;
-use world::{SceneFile, ViewForm};
+use world::{Prospect, RenderedWorld, SceneFile, View, ViewForm};
+
+/// Cameras that see nothing.
+struct Blind;
+
+impl Camera for Blind {
+    fn strobed(&mut self, _capture: u32, _time_us: u64) {}
+
+    fn next(&mut self, _timeout: Duration, _picture: &mut Picture) -> Result<Arrival, CameraError> {
+        Ok(Arrival::Nothing)
+    }
+}
+
+impl PictureSource for Blind {
+    fn open(&mut self, _side: usize) -> Result<Box<dyn Camera>, CameraError> {
+        Ok(Box::new(Self))
+    }
+}
 
 fn images() -> Images {
     let text = include_str!("../../../../machines/dual-beam-gantry.toml");
@@ -11,10 +28,9 @@ fn images() -> Images {
     let heads = unit.board.head.build().unwrap();
     let of = ImageCameras {
         calibrations: std::array::from_fn(|side| unit.cameras.nominal(side)),
-        source: PictureSource::Rendered(SceneFile::default()),
-        kept: Default::default(),
+        kept: None,
     };
-    Images::begin(&of, &unit, heads, 1).unwrap()
+    Images::begin(&of, Box::new(Blind), &unit, heads).unwrap()
 }
 
 fn capture(number: u32, s_mm: f64, u1_mm: f64) -> Capture {

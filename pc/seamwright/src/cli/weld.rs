@@ -13,7 +13,6 @@ use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
 use job::{Job, JobError, Names, NoTeaching, Taught, Work, check_teaching};
 use nc::Program;
 use parts::PartFile;
-use report::Report;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -167,7 +166,7 @@ impl Weld {
             outln!("  report in {}", self.report.display());
         }
         if ended.error.is_none()
-            && let Some(outside) = verdict(&ended.report)
+            && let Some(outside) = report::verdict(&ended.report)
         {
             errln!("seamwright: {outside}");
             return Ok(ExitCode::from(OUTSIDE));
@@ -271,42 +270,9 @@ fn told_of(file: &Path, notes: &[String]) {
     }
 }
 
-/// What is outside its limits, if anything is.
-fn verdict(report: &Report) -> Option<String> {
-    let exceeded: Vec<String> = report.exceeded().map(report::sentence).collect();
-    let limits =
-        (!exceeded.is_empty()).then(|| format!("the weld is outside its limits: {}", exceeded.join(", ")));
-    let left_out = report.unwelded.iter().map(ToString::to_string);
-    let told: Vec<String> = limits.into_iter().chain(left_out).collect();
-    (!told.is_empty()).then(|| told.join("; "))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use report::unwelded::Unwelded;
-
-    #[test]
-    fn a_weld_outside_its_limits_is_told_with_figure_and_limit() {
-        let mut report = report::tests::without_tracker();
-        assert_eq!(
-            verdict(&report).as_deref(),
-            Some("the weld is outside its limits: height of the torch 0.2500 mm (may be 0.2000 mm)")
-        );
-        report.figures.remove(1);
-        assert_eq!(verdict(&report), None);
-        report.unwelded.push(Unwelded {
-            line: 7,
-            beam: 1,
-            path_id: 2,
-            from_mm: 10.0,
-            to_mm: 25.0,
-        });
-        assert_eq!(
-            verdict(&report).as_deref(),
-            Some("line 7, s = 10.00…25.00 mm was not welded by beam 1")
-        );
-    }
 
     #[test]
     fn speeds_are_positive_numbers() {

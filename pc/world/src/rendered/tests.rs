@@ -3,10 +3,10 @@
 use super::*;
 use crate::TrueSeams;
 use crate::seams::tests::{heads, wavy_seam};
+use crate::tests::{axes_at, machine};
 use camera::nominal_slopes;
 use config::calibration::Calibration;
 use config::machine::{JointForm, MachineFile};
-use host_link::geometry::tests::machine;
 use host_link::record::MachinePosition;
 use nalgebra::Vector3;
 use shared::io::SLIDES;
@@ -33,7 +33,7 @@ fn standing(seams: &TrueSeams, s: f64, off: [f64; 2]) -> (MachinePosition, [f64;
         slides[2 * side] = crossing.u - off[0];
         slides[2 * side + 1] = crossing.v - off[1];
     }
-    (MachinePosition::Axes(machine().inverse(&pose)), slides)
+    (MachinePosition::Axes(axes_at(&pose)), slides)
 }
 
 fn picture(

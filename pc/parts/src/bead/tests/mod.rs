@@ -2,7 +2,6 @@
 
 mod plans;
 mod runs;
-mod simulated;
 mod speeds;
 mod wrong;
 

@@ -1,7 +1,5 @@
 //! Programs through points that were taught without an error.
 
-mod run;
-
 use super::*;
 use crate::Part;
 use cam::path::{PlannedPath, Planner};

@@ -4,15 +4,12 @@ use super::*;
 use crate::Judgement;
 use cam::path::{PlannedPath, Planner};
 use evaluate::RunSample;
-use job::{Job, Names, Silent, Work, run};
 use nc::{Options, interpret};
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
 use shared::trajectory::PathSpace;
 use std::collections::BTreeMap;
-use std::sync::atomic::AtomicBool;
-use world::simulated::SimulatedBoards;
 
 fn part() -> PartFile {
     PartFile::read(&shipped("programs/saddle-320-80.toml")).unwrap()
@@ -179,43 +176,6 @@ fn the_torch_leaves_the_work_before_the_waist_turns_back() {
             }
         }
     }
-}
-
-#[test]
-fn the_shipped_job_stays_on_the_saddle_with_drives_and_gratings() {
-    let (machine, part) = (machine(), part());
-    let text = std::fs::read_to_string(shipped("programs/saddle-320-80.ngc")).unwrap();
-    let program = interpret(&text, Options::default()).unwrap();
-    let job = Job {
-        machine: &machine,
-        work: Work::Program(&program),
-        speed_m_per_min: None,
-        from_line: None,
-        part: Some(&part),
-        surroundings: Default::default(),
-        names: Names {
-            program: "saddle".to_owned(),
-            machine: "pipe-welder".to_owned(),
-            seam: None,
-            boards: "simulated".to_owned(),
-        },
-    };
-    let never = AtomicBool::new(false);
-    let mut boards = SimulatedBoards::new("pipe-welder").unwrap();
-    let ended = run(&mut boards, &job, &never, &mut Silent).unwrap();
-    assert!(ended.error.is_none(), "{:?}", ended.error);
-    println!("{}", ended.report);
-    let figures = &ended.report.figures;
-    assert_eq!(figures.len(), 7);
-    for figure in figures {
-        assert!(
-            figure.limit.is_none_or(|limit| figure.value <= limit),
-            "{figure:?}"
-        );
-    }
-    // Once around and 5 mm on, twice.
-    assert!((figures[4].value - 528.9).abs() < 0.2, "{:?}", figures[4]);
-    assert!(figures[5].value < 0.1, "{:?}", figures[5]);
 }
 
 #[test]

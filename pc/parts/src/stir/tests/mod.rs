@@ -3,7 +3,6 @@
 mod contour;
 mod judge;
 mod program;
-mod run;
 
 use super::*;
 use crate::Part;

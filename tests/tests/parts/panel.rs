@@ -1,61 +1,39 @@
-//! Panels taught and cut on simulated boards: drives, gratings and servo loops included.
+//! Panels taught and cut.
 
 use super::*;
-use crate::PartFile;
-use job::{Job, JobError, Names, Progress, Silent, Work, run};
-use report::Ended;
-use report::Outcome;
-use std::sync::atomic::{AtomicBool, Ordering};
-use world::simulated::SimulatedBoards;
+use toml::{Table, Value};
 
 /// The shipped panel with every so many of its guide points, changed by `change`.
-fn part(every: usize, change: impl Fn(&mut Panel)) -> PartFile {
-    let mut panel = panel();
-    panel.guide = panel.guide.into_iter().step_by(every).collect();
-    change(&mut panel);
-    PartFile {
-        part: Part::Panel(Box::new(panel)),
-        path: "panel.toml".into(),
-    }
+fn part(every: usize, change: impl Fn(&mut Table)) -> PartFile {
+    let mut file: Table = text("programs/panel.toml").parse().unwrap();
+    let panel = file["panel"].as_table_mut().unwrap();
+    let guide: Vec<Value> = guides(panel).iter().step_by(every).cloned().collect();
+    *guides(panel) = guide;
+    change(panel);
+    PartFile::parse(&shipped("programs/panel.toml"), &file.to_string()).unwrap()
 }
 
-fn made(part: &PartFile, work: Work, interrupted: &AtomicBool, progress: &mut dyn Progress) -> Ended {
-    let machine = machine();
-    let job = Job {
-        machine: &machine,
-        work,
-        part: Some(part),
-        speed_m_per_min: None,
-        from_line: None,
-        surroundings: Default::default(),
-        names: Names {
-            program: "panel.toml".into(),
-            machine: "ac-head.toml".into(),
-            seam: None,
-            boards: "simulated".into(),
-        },
-    };
-    let mut boards = SimulatedBoards::new("ac-head").unwrap();
-    run(&mut boards, &job, interrupted, progress).unwrap()
+fn guides(panel: &mut Table) -> &mut Vec<Value> {
+    panel["guide"].as_array_mut().unwrap()
+}
+
+fn taught(part: &PartFile, work: Work, interrupted: &AtomicBool, progress: &mut dyn Progress) -> Ended {
+    made(&machine("ac-head"), work, part, interrupted, progress)
 }
 
 fn teach(part: &PartFile) -> Ended {
-    made(part, Work::Teach, &AtomicBool::new(false), &mut Silent)
+    taught(part, Work::Teach, &AtomicBool::new(false), &mut Silent)
 }
 
 #[test]
 fn a_panel_is_taught_and_cut_within_its_limits() {
     let part = part(3, |_| {});
-    let ended = made(&part, Work::TeachAndMake, &AtomicBool::new(false), &mut Silent);
+    let ended = taught(&part, Work::TeachAndMake, &AtomicBool::new(false), &mut Silent);
     let report = &ended.report;
     assert!(ended.error.is_none(), "{:?}", ended.error);
     assert_eq!(report.outcome, Outcome::Finished, "{report}");
-    let exceeded: Vec<_> = report.exceeded().map(|figure| figure.key).collect();
-    assert_eq!(exceeded, [""; 0], "{report}");
-    let value = |key: &str| {
-        let figure = report.figures.iter().find(|figure| figure.key == key);
-        figure.unwrap_or_else(|| panic!("no {key}")).value
-    };
+    assert_eq!(exceeded(report), [""; 0], "{report}");
+    let value = |key: &str| value(report, key);
     assert_eq!(ended.taught.points.len(), 6);
     assert!(value("max_focus_error_cut_mm") < 0.01, "{report}");
     assert!(value("max_focus_error_turn_mm") < 0.0075, "{report}");
@@ -66,8 +44,8 @@ fn a_panel_is_taught_and_cut_within_its_limits() {
 }
 
 /// What is said of guide points on the third of which is something wrong; the first two are kept.
-fn told(change: impl Fn(&mut [f64; 5])) -> String {
-    let ended = teach(&part(6, |panel| change(&mut panel.guide[2])));
+fn told(axis: usize, value: f64) -> String {
+    let ended = teach(&part(6, |panel| guides(panel)[2][axis] = value.into()));
     assert_eq!(ended.taught.points.len(), 2);
     assert_eq!(ended.report.outcome, Outcome::Failed);
     ended.error.unwrap().to_string()
@@ -75,10 +53,10 @@ fn told(change: impl Fn(&mut [f64; 5])) -> String {
 
 #[test]
 fn what_ends_teaching_names_its_point() {
-    let text = told(|guide| guide[1] = 860.0);
+    let text = told(1, 860.0);
     assert!(text.starts_with("teaching ended: point 3 (X"), "{text}");
     assert!(text.contains("too far"), "{text}");
-    let text = told(|guide| guide[0] = 2990.0);
+    let text = told(0, 2990.0);
     assert!(
         text.starts_with("teaching ended: point 3") && text.contains('X'),
         "{text}"
@@ -88,13 +66,15 @@ fn what_ends_teaching_names_its_point() {
 #[test]
 fn what_cannot_be_taught_at_all_is_said_before_the_machine_moves() {
     let error = |part: &PartFile| teach(part).error.unwrap().to_string();
-    let text = error(&part(1, |panel| panel.guide.clear()));
+    let text = error(&part(1, |panel| guides(panel).clear()));
     assert!(text.contains("no guide points"), "{text}");
-    let text = error(&part(1, |panel| panel.taught = Some("taught.csv".into())));
+    let text = error(&part(1, |panel| {
+        drop(panel.insert("taught".into(), "taught.csv".into()))
+    }));
     assert!(text.contains("nothing to teach"), "{text}");
-    let text = error(&part(1, |panel| panel.teaching.readings = 3));
+    let text = error(&part(1, |panel| panel["teaching"]["readings"] = 3.into()));
     assert!(text.contains("readings is 3"), "{text}");
-    let ended = teach(&part(1, |panel| panel.simulated_surface = None));
+    let ended = teach(&part(1, |panel| drop(panel.remove("simulated_surface"))));
     assert!(ended.error.unwrap().to_string().contains("simulated_surface"));
     assert!(!ended.began);
 }
@@ -115,7 +95,7 @@ impl Progress for Operator<'_> {
 #[test]
 fn the_operator_ends_teaching_and_keeps_what_was_taught() {
     let interrupted = AtomicBool::new(false);
-    let ended = made(
+    let ended = taught(
         &part(6, |_| {}),
         Work::Teach,
         &interrupted,

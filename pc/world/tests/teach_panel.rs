@@ -1,6 +1,7 @@
 //! The routine on a machine that goes exactly where it is sent, its probe in front of a curved panel.
 
 use config::machine::MachineFile;
+use job::RangingProbe;
 use nalgebra::Vector3;
 use parts::Surface;
 use shared::geometry::{Pose, angle};

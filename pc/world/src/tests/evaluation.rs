@@ -1,20 +1,22 @@
 //! Records of which the figures are known.
 
-use super::*;
-use host_link::record::MachinePosition;
-use host_link::record::tests::{motion_sample, tracker_sample};
-use host_link::geometry::tests::machine;
-use world::seams::tests::{bent_path, heads, wavy_seam};
+use super::{axes_at, machine, motion_sample, tracker_sample};
+use crate::TrueSeams;
+use crate::seams::tests::{bent_path, heads, wavy_seam};
+use cam::path::PlannedPath;
+use evaluate::{Evaluation, Followed, evaluate, run_samples};
+use host_link::record::{MachinePosition, Record};
 use nc::Motion;
-use shared::io::SIDES;
+use shared::io::{SIDES, SLIDES};
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{PathSpace, SpeedLimits};
+use std::collections::BTreeMap;
 
 /// A seam tick's machine: axes that hold the pose of the path at s, and slides that sit on the seam.
 fn follow(record: &mut Record, tick: u32, s: f64, off: [f64; SLIDES], tracker_ahead_us: u64) {
     let (machine, seam) = (machine(), wavy_seam());
     let (pose, _) = seam.planned(s).unwrap();
-    let axes = machine.inverse(&pose);
+    let axes = axes_at(&pose);
     let mut sample = motion_sample(tick);
     sample.path_id = 7;
     sample.s_mm = s;
@@ -54,7 +56,7 @@ fn job(off: [f64; SLIDES], tracker_ahead_us: u64) -> Record {
 fn evaluated(record: &Record, tracker_ahead_us: i64) -> Evaluation {
     let seams = TrueSeams::of([wavy_seam()]);
     let followed = Followed {
-        seams: &seams,
+        seams: Some(&seams),
         tracker_ahead_us,
     };
     evaluate(

@@ -45,3 +45,6 @@ impl Session<'_> {
         away.into_iter().find(|(_, away_mm)| *away_mm > THERE_MM)
     }
 }
+
+#[cfg(test)]
+mod tests;
