@@ -82,7 +82,7 @@ fn ready(boards: &mut dyn Boards, then: impl FnOnce(&mut Session)) {
         MachineFile::parse("m.toml", text).unwrap(),
         AtomicBool::new(false),
     );
-    let program = interpret("M2", Options::default()).unwrap();
+    let program = interpret("G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nM2", Options::default()).unwrap();
     let job = Job {
         machine: &machine,
         work: Work::Program(&program),
