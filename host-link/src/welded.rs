@@ -5,8 +5,8 @@ use crate::evaluate::{HALF_MM, WorkTick};
 use crate::path::{PlannedPath, Programmed};
 use nc::Motion;
 use serde::Serialize;
+use shared::config::BeamConfig;
 use shared::io::SIDES;
-use shared::motion::BeamConfig;
 use shared::trajectory::SpeedLimits;
 use std::collections::BTreeMap;
 

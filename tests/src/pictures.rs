@@ -6,7 +6,7 @@ use host_link::machine::{JointForm, MachineFile};
 use host_link::weld::{CameraChoice, Ended, ImageCameras, JobError, PictureSource};
 use host_link::world::{Dark, SceneFile};
 use shared::io::SIDES;
-use shared::tracking::TrackerFault;
+use shared::state::TrackerFault;
 
 /// Where the light of side 2 fails \[mm\], and how far the map may reach beyond what was seen last.
 const DARK_FROM_MM: f64 = 200.0;

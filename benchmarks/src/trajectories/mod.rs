@@ -22,4 +22,4 @@ pub use outcome::{Outcome, of_file};
 pub use spiral::{Spiral, SpiralError};
 
 /// A tick \[s\].
-pub const TICK: f64 = shared::motion::PATH_PERIOD_S;
+pub const TICK: f64 = shared::ticks::PATH_PERIOD_S;

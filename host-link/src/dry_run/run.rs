@@ -8,7 +8,8 @@ use crate::machine::MachineFile;
 use crate::path::PlannedPath;
 use shared::io::AXES;
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
-use shared::motion::{Machine, PATH_PERIOD_S};
+use shared::motion::Machine;
+use shared::ticks::PATH_PERIOD_S;
 use shared::trajectory::{BoardPlanner, Element, Output};
 use std::collections::VecDeque;
 

@@ -2,8 +2,8 @@
 
 use super::blocks::Leg;
 use super::{PathError, PlannedPath};
-use shared::protocol::{Knot, PathEvent, PathLimits};
-use shared::trajectory::{CHANNELS, Cubic, Element, Join, SHAPED, Shape, Tolerance};
+use shared::protocol::{PathEvent, PathLimits};
+use shared::trajectory::{CHANNELS, Cubic, Element, Join, Knot, SHAPED, Shape, Tolerance};
 
 /// What rounded corners, and the planner's output filter on curves, may take.
 pub const TOLERANCE: Tolerance = Tolerance {

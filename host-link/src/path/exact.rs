@@ -15,9 +15,8 @@ use nalgebra::Vector3;
 use nc::{Motion, Target};
 use shared::geometry::angle;
 use shared::io::{AXES, SIDES};
-use shared::motion::PATH_PERIOD_S;
-use shared::protocol::Knot;
-use shared::trajectory::{CHANNELS, PathPoint, SHAPED};
+use shared::ticks::PATH_PERIOD_S;
+use shared::trajectory::{CHANNELS, Knot, PathPoint, SHAPED};
 
 /// Largest change of direction that is gone over without a stop \[rad\], half a degree. The tip then leaves the
 /// corner by about a thousandth of the length of the change: nanometres at the feeds of arc and friction

@@ -6,12 +6,11 @@ use super::{Bound, PathError, PlannedPath, Planner};
 use crate::machine::MachineFile;
 use crate::table::FARTHEST_MM;
 use nc::Place;
+use shared::config::SlideConfig;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
 use shared::parameter::ParameterError;
-use shared::protocol::Knot;
-use shared::tracking::SlideConfig;
-use shared::trajectory::{CHANNELS, PathPoint, PathSpace, SpeedLimits};
+use shared::trajectory::{CHANNELS, Knot, PathPoint, PathSpace, SpeedLimits};
 
 /// The axes, then the extensions of the V slides.
 pub(super) const DRIVES: usize = AXES + SIDES;

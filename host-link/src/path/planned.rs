@@ -4,8 +4,8 @@ use super::blocks::{Blocks, Course, Leg};
 use super::shape::Shape;
 use super::{CAPACITY, PathError};
 use nc::Motion;
-use shared::protocol::{Knot, PathAction, PathEvent};
-use shared::trajectory::{Path, PathSpace, SpeedLimits};
+use shared::protocol::{PathAction, PathEvent};
+use shared::trajectory::{Knot, Path, PathSpace, SpeedLimits};
 
 /// A path that the boards can run.
 #[derive(Clone, Debug)]

@@ -7,8 +7,7 @@ use nc::{Place, Target};
 use shared::geometry::{Pose, angle};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
-use shared::protocol::Knot;
-use shared::trajectory::CHANNELS;
+use shared::trajectory::{CHANNELS, Knot};
 
 /// Largest angle between two chords of a path \[rad\]: a spline through a sharper corner would swing out.
 const MAX_CORNER: f64 = 0.35;

@@ -15,7 +15,7 @@ use crate::welded::SpeedShares;
 use shared::io::MOTOR_AXIS;
 use shared::kinematics::AXIS_UNIT;
 use shared::protocol::Role;
-use shared::tracking::TrackerFault;
+use shared::state::TrackerFault;
 use shared::units::MM_S_PER_M_MIN;
 use std::collections::BTreeMap;
 

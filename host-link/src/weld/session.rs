@@ -7,8 +7,8 @@ use crate::machine::MachineFile;
 use crate::record::Record;
 use crate::report::ByBoard;
 use crate::world::Machine;
-use shared::motion::{Fault, State};
 use shared::protocol::{Datagram, MotionStatus, Request, Response, Role};
+use shared::state::{Fault, State};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 

@@ -4,10 +4,10 @@
 //! that its acceleration is continuous and its jerk bounded, and takes so long that no axis gets more than
 //! [`SHARE`] of its limits besides the plan, and the tip no more than [`SPEED`].
 
-use super::segment::PATH_PERIOD_S;
 use crate::geometry::PoseOffset;
 use crate::io::AXES;
 use crate::kinematics::{AxisLimits, AxisMotion, Kinematics, KinematicsError};
+use crate::ticks::PATH_PERIOD_S;
 
 /// Part of the limits of an axis that a blend may take besides the plan; the drives have more to spare than that.
 const SHARE: f64 = 0.05;

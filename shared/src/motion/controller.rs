@@ -8,19 +8,20 @@ mod loading;
 mod path;
 mod requests;
 
+use super::Vibration;
 use super::aside::Aside;
 use super::beams::Beams;
 use super::homing::{Homing, HomingStep};
 use super::machine::Machine;
 use super::permit::{BeamLease, Permits};
-use super::segment::{MotorReference, PATH_PERIOD_S, Segment};
+use super::segment::{MotorReference, Segment};
 use super::servo::{ServoOrder, ServoReport, ServoSetup};
-use super::state::Event;
-use super::{Fault, State, Vibration};
 use crate::control::UNATTENDED_S;
 use crate::io::{AXES, MOTORS, SIDES};
 use crate::kinematics::AXIS_UNIT;
 use crate::protocol::{Datagram, MotionSample, PathState};
+use crate::state::{Event, Fault, State};
+use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{BoardPlanner, SpeedState};
 use path::LoadedPath;
 

@@ -3,14 +3,15 @@
 use super::aside::Aside;
 use super::beams::BeamLimits;
 use super::homing::HomingPlan;
-use super::segment::PATH_PERIOD_S;
+use super::sensible;
 use super::servo::ServoSetup;
-use super::{MotionConfig, SERVO_PERIOD_S, sensible};
+use crate::config::MotionConfig;
 use crate::control::{Gantry, Pid};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use crate::kinematics::{AXIS_OWNERS, AxisLimits, AxisMotion, Kinematics, KinematicsError};
 use crate::parameter::ParameterError;
 use crate::protocol::PathLimits;
+use crate::ticks::{PATH_PERIOD_S, SERVO_PERIOD_S};
 use crate::trajectory::{PlanLimits, SpeedLimits};
 
 /// A stop is at rest after 0.4 s and four times what the slowest axis needs to slow down at its constant acceleration, to
@@ -50,7 +51,7 @@ impl Machine {
             homing: HomingPlan::build(config)?,
             beams: BeamLimits::build(&config.beams)?,
             link_timeout_us: u64::from(config.link_timeout_ms) * 1000,
-            overrun: limits.map(|axis| OVERRUN * axis.full_stop()),
+            overrun: limits.map(|axis| OVERRUN * full_stop(&axis)),
             limits,
             gantry,
         };
@@ -135,6 +136,19 @@ impl Machine {
     }
 }
 
+/// Way to a stop of an axis from its highest speed (mm, rad); of one that the machine does not have it has no end.
+fn full_stop(axis: &AxisLimits) -> f64 {
+    if !axis.velocity.is_finite() {
+        return f64::INFINITY;
+    }
+    let limits = SpeedLimits {
+        velocity: axis.velocity,
+        acceleration: axis.acceleration,
+        jerk: axis.jerk,
+    };
+    limits.ramp()
+}
+
 /// Every axis of the kinematics needs its limits and its motor, and no other may have them.
 fn check_fitted(config: &MotionConfig) -> Result<(), ParameterError> {
     let fitted = config.kinematics.fitted();
@@ -170,4 +184,14 @@ fn build_gantry(config: &MotionConfig) -> Result<Option<Gantry>, ParameterError>
     };
     let pid = |motor: usize, config| Pid::build(MOTOR_NAMES[motor], config, 1.0, SERVO_PERIOD_S);
     Gantry::build(gantry, [pid(0, x1)?, pid(X2, x2)?], SERVO_PERIOD_S).map(Some)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_that_is_not_there_never_needs_to_stop() {
+        assert_eq!(full_stop(&AxisLimits::NOT_FITTED), f64::INFINITY);
+    }
 }

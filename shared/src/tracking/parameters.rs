@@ -6,14 +6,13 @@ use super::law::SlideLaw;
 use super::map::{MAP_CAPACITY, MapLaw};
 use super::plausible::Belief;
 use super::search::SearchLaw;
+use super::sensible;
 use super::supervision::{Supervised, Supervision};
-use super::{SlideConfig, TrackerConfig, TrackingConfig, sensible};
+use crate::config::{SlideConfig, TrackerConfig, TrackingConfig};
 use crate::control::ReferenceSearch;
 use crate::io::{SLIDE_NAMES, SLIDES};
 use crate::parameter::{ParameterError, check, not_negative, positive};
-
-/// Period of the control tick \[s\].
-pub const TICK_S: f64 = 1e-3;
+use crate::ticks::TRACKER_PERIOD_S;
 
 /// Steeper than this, U would have to be faster than the path.
 const STEEPEST: f64 = 1.0;
@@ -93,7 +92,7 @@ impl TrackerConfig {
         let ends = slides.iter().map(|slide| slide.law.travel);
         let furthest = ends.fold(0.0, |most: f64, (min, max)| most.max(-min).max(max));
         // Faster, and no picture would lie within reach of the map.
-        let fastest_path = (window + hold) / (f64::from(tracking.frame_period_ms) * TICK_S);
+        let fastest_path = (window + hold) / (f64::from(tracking.frame_period_ms) * TRACKER_PERIOD_S);
         let slowest_slide = slides.iter().map(|slide| slide.law.max_velocity);
         let belief = Belief {
             path_speed: check(
@@ -165,7 +164,7 @@ impl SlideConfig {
             law: SlideLaw {
                 kp: check("tracking", "kp", tracking.kp, |v| v > 0.0 && v < limit)?,
                 ki: not_negative("tracking", "ki", tracking.ki)?,
-                dt: TICK_S,
+                dt: TRACKER_PERIOD_S,
                 max_velocity,
                 max_acceleration,
                 travel: (min, max),
@@ -174,14 +173,14 @@ impl SlideConfig {
                 full_scale,
             },
             counts_per_mm,
-            travel_ticks: libm::ceil((max - min) / max_velocity / TICK_S) as u32,
+            travel_ticks: libm::ceil((max - min) / max_velocity / TRACKER_PERIOD_S) as u32,
             search: ReferenceSearch::build(
                 [name],
                 [&self.home],
                 [self.counts_per_mm],
                 1.0,
                 max_acceleration,
-                TICK_S,
+                TRACKER_PERIOD_S,
             )?,
             supervision: Supervision::build(name, &supervised, self.following_error_mm)?,
         })

@@ -7,11 +7,10 @@ use host_link::boards::simulated::SimulatedBoards;
 use host_link::boards::{Boards, LinkError};
 use host_link::machine::MachineFile;
 use host_link::pass_on;
+use shared::config::{MotionConfig, TrackerConfig};
 use shared::geometry::PoseOffset;
 use shared::io::SLIDES;
-use shared::motion::MotionConfig;
 use shared::protocol::{Datagram, Request, Response, Role};
-use shared::tracking::TrackerConfig;
 
 /// Moments of a job at which its boards are kept.
 const MOMENTS: usize = 24;

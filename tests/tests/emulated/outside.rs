@@ -9,13 +9,12 @@ use host_link::boards::{Boards, Overheard};
 use host_link::weld::Ended;
 use nix::sys::signal::Signal;
 use serde_json::Value;
-use shared::motion::{Fault, State};
 use shared::protocol::framing::{MAX_DATAGRAM, encode_datagram};
 use shared::protocol::{
     BeamPermit, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, PathState, Permit, Request,
     Response, Role, SideMeasurement,
 };
-use shared::tracking::TrackerFault;
+use shared::state::{Fault, State, TrackerFault};
 use std::fs;
 use std::net::{Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;

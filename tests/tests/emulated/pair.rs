@@ -4,9 +4,8 @@ use emulator::{INSTRUCTIONS_PER_US, Options, PROGRAM_VARIABLES, SESSION_VARIABLE
 use host_link::boards::{Boards, NetworkBoards, Patience};
 use host_link::report::Report;
 use plant::DEFAULT_MACHINE;
-use shared::motion::State;
 use shared::protocol::{MotionStatus, Request, Response, Role, TrackerStatus};
-use shared::tracking::TrackerState;
+use shared::state::{State, TrackerState};
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -9,7 +9,7 @@ use shared::geometry::Moving;
 use shared::geometry::nurbs::curvature;
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::{AxisLimits, AxisMotion, Kinematics};
-use shared::motion::PATH_PERIOD_S;
+use shared::ticks::PATH_PERIOD_S;
 use shared::trajectory::{CurveLimits, ProcessWindow, WindowError};
 
 /// Largest distance of the curve from the chord of one path period \[mm\]. The boards interpolate within it, so

@@ -16,10 +16,10 @@ use crate::machine::{MachineFile, TrackingUnit};
 use crate::path::CAPACITY;
 use crate::seam::SeamPoint;
 use nalgebra::Vector3;
+use shared::config::HeadConfig;
 use shared::geometry::{Pose, PoseError, SplineError, angle};
 use shared::kinematics::KinematicsError;
 use shared::parameter::ParameterError;
-use shared::tracking::HeadConfig;
 use shared::units::DEG_PER_RAD;
 use thiserror::Error;
 

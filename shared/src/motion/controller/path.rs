@@ -8,10 +8,10 @@ use crate::motion::aside::Aside;
 use crate::motion::beams::{Activity, Beams, EventQueue};
 use crate::motion::overlap::Overlap;
 use crate::motion::permit::BeamLease;
-use crate::motion::segment::{BeamOutput, MotorReference, PATH_PERIOD_S};
+use crate::motion::segment::{BeamOutput, MotorReference};
 use crate::motion::servo::ServoReport;
-use crate::motion::state::Event;
-use crate::motion::{Fault, NoPermit, State};
+use crate::state::{Event, Fault, NoPermit, State};
+use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{Output, PathSpace, SpeedLimits, SpeedState, Way};
 
 /// What is published has caught up with the references after so many ticks.

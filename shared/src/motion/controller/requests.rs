@@ -2,14 +2,14 @@
 
 use super::MotionController;
 use super::path::LoadedPath;
+use crate::config::MotionConfig;
 use crate::geometry::PoseOffset;
 use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::homing::Homing;
 use crate::motion::machine::Machine;
-use crate::motion::state::Event;
-use crate::motion::{MotionConfig, State};
 use crate::protocol::{MotionStatus, Refusal, Request, Response};
+use crate::state::{Event, State};
 use crate::units::DEG_PER_RAD;
 
 /// How far the pose may be moved beside the path \[mm\] and turned about T \[rad\].

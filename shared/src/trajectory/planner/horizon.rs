@@ -11,7 +11,7 @@ use super::node::{Lanes, Nodes};
 use super::player::Player;
 use super::split::split;
 use super::swing::{REST, pause};
-use crate::motion::PATH_PERIOD_S;
+use crate::ticks::PATH_PERIOD_S;
 
 /// Rounds in which boxes may also grow.
 const RELAXED: u32 = 2;

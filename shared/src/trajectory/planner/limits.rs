@@ -2,7 +2,7 @@
 
 use crate::io::AXES;
 use crate::kinematics::AxisLimits;
-use crate::motion::PATH_PERIOD_S;
+use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{SHAPED, Tolerance};
 
 /// Limits of the axes and of the path, and the accuracy that the output filter is made for (mm, rad, s).

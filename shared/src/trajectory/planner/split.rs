@@ -2,7 +2,7 @@
 
 use super::limits::{Bounds, ROWS};
 use super::node::{Node, Nodes, Side, least, most};
-use crate::motion::PATH_PERIOD_S;
+use crate::ticks::PATH_PERIOD_S;
 
 /// An interval is split if it would make a change of the plan later than this \[s\], and than twice the time that a plan
 /// needs: more nodes are more work.

@@ -4,7 +4,7 @@ use super::horizon::Horizon;
 use super::limits::{Bounds, ROWS};
 use super::node::{Lanes, Node, Nodes, least, most};
 use super::scan::advance;
-use crate::motion::PATH_PERIOD_S;
+use crate::ticks::PATH_PERIOD_S;
 
 /// No acceleration.
 pub(super) const REST: Lanes = [0.0; ROWS];

@@ -2,8 +2,8 @@
 
 use super::bench::{Bench, config};
 use super::*;
+use shared::config::ReadbackConfig;
 use shared::io::DacCode;
-use shared::motion::ReadbackConfig;
 
 /// With 5 % of full power allowed for 5 ms; on a line, with beam 1 on.
 fn welding() -> Bench {

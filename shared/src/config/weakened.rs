@@ -1,8 +1,7 @@
 //! Protections that a machine's parameters leave weaker than usual: allowed, and to be known.
 
+use crate::config::{MotionConfig, TrackerConfig};
 use crate::io::{MOTOR_NAMES, MOTORS, SIDES};
-use crate::motion::MotionConfig;
-use crate::tracking::TrackerConfig;
 use heapless::Vec;
 use thiserror::Error;
 
@@ -147,7 +146,7 @@ impl MotionConfig {
             }
         }
         for (side, beam) in (0..).zip(&self.beams) {
-            let rests = |beam: &crate::motion::BeamConfig| {
+            let rests = |beam: &crate::config::BeamConfig| {
                 // A spindle is meant to turn at rest.
                 beam.min_speed_mm_s <= 0.0 && !beam.stays_on_at_rest
             };
