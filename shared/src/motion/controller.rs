@@ -4,6 +4,7 @@
 //! makes the [`Segment`] which the servo ticks follow from k + 1 on, so the path tick has a whole
 //! millisecond. What is published at tick k belongs to k.
 
+mod loaded;
 mod loading;
 mod path;
 mod requests;
@@ -23,7 +24,7 @@ use crate::protocol::{Datagram, MotionSample, PathState};
 use crate::state::{Event, Fault, State};
 use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{BoardPlanner, SpeedState};
-use path::LoadedPath;
+use loaded::LoadedPath;
 
 /// Lost path ticks that are made up for at once; more are too late anyway.
 const MAX_CATCH_UP: u32 = 4;

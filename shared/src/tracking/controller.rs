@@ -11,6 +11,7 @@ mod captures;
 mod following;
 mod permit;
 mod requests;
+mod strobes;
 mod supervising;
 
 use super::clock::ClockRelation;
@@ -26,8 +27,8 @@ use crate::io::{Bits, Command, DacCode, ESTOP_CHANNELS, SIDES, SLIDES, SlideComm
 use crate::protocol::{BeamPermit, Capture, Datagram, PathState, Permit, TrackerSample};
 use crate::state::{TrackerFault, TrackerState};
 use crate::trajectory::Path;
-use captures::Strobes;
 use heapless::Vec;
+use strobes::Strobes;
 
 /// Period of the control tick \[µs\].
 const TICK_US: u32 = 1000;

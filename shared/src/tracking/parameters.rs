@@ -4,7 +4,6 @@ use super::frames::Heads;
 use super::gain::crossover;
 use super::law::SlideLaw;
 use super::map::{MAP_CAPACITY, MapLaw};
-use super::plausible::Belief;
 use super::search::SearchLaw;
 use super::sensible;
 use super::supervision::{Supervised, Supervision};
@@ -55,6 +54,25 @@ pub struct SlideParameters {
     pub search: ReferenceSearch<1>,
     /// Trips.
     pub supervision: Supervision,
+}
+
+/// What can be on this machine, ready for use (mm, s).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Belief {
+    /// Fastest path \[mm/s\].
+    pub path_speed: f64,
+    /// How far a seam, or the pose, may be off the plan \[mm\].
+    pub deviation: f64,
+    /// How far from the plane of the lead a camera sees \[mm\].
+    pub along: f64,
+    /// How far beyond the travel of a slide a seam is still told \[mm\].
+    pub gate: f64,
+    /// How fast the pose may move beside the plan \[mm/s\]: faster, and no slide follows.
+    pub pose_speed: f64,
+    /// From D to the furthest that a camera sees \[mm\]: what a turn of the head is multiplied with.
+    pub lever: f64,
+    /// Path states older than this are of no use \[µs\].
+    pub stale_us: u64,
 }
 
 impl TrackerConfig {

@@ -1,7 +1,7 @@
 //! A path comes in: its beginning, its elements, its events.
 
 use super::MotionController;
-use super::path::LoadedPath;
+use super::loaded::LoadedPath;
 use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::beams::EVENTS;

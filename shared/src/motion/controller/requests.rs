@@ -1,7 +1,7 @@
 //! What the PC may ask of the motion board, and what it is told.
 
 use super::MotionController;
-use super::path::LoadedPath;
+use super::loaded::LoadedPath;
 use crate::config::MotionConfig;
 use crate::geometry::PoseOffset;
 use crate::io::AXES;

@@ -1,6 +1,7 @@
 //! The places of the path at which speed is planned.
 
 use super::limits::{Bounds, ROWS};
+use crate::ticks::PATH_PERIOD_S;
 
 /// How much of a swing that is too large is taken away in one round, and given back of one that need not be so small.
 const TIGHTEN: f32 = 0.8;
@@ -16,6 +17,8 @@ const LEAST_RATE: f32 = 1e-6;
 
 /// A lane for every row of limits.
 pub(super) type Lanes = [f32; ROWS];
+/// No acceleration.
+pub(super) const REST: Lanes = [0.0; ROWS];
 
 /// The smaller one, for lanes: unlike `f32::min` it costs one instruction, as no number here is NaN.
 pub(super) fn least(a: f32, b: f32) -> f32 {
@@ -336,5 +339,14 @@ impl<const N: usize> Nodes<N> {
 
     pub fn at_mut(&mut self, serial: u32) -> &mut Node {
         &mut self.ring[serial as usize % N]
+    }
+}
+
+/// Time that the machine stands at a node: until the output filter has come to rest \[s\].
+pub(super) fn pause(node: &Node, bounds: &Bounds) -> f64 {
+    if node.limit > 0.0 {
+        0.0
+    } else {
+        bounds.filter + PATH_PERIOD_S
     }
 }

@@ -3,9 +3,8 @@
 
 use super::horizon::{Horizon, Phase, TAKEN_FOR_ONE};
 use super::limits::Bounds;
-use super::node::{Nodes, most};
+use super::node::{Nodes, REST, most};
 use super::scan::reach;
-use super::swing::REST;
 
 /// Rounds of passes that a plan is given before it is given up.
 const ROUNDS: u32 = 12;

@@ -6,10 +6,10 @@
 
 use super::horizon::{Horizon, LEAST_WINDOW, Phase};
 use super::limits::{Bounds, PATH_ROW, ROWS};
-use super::node::{Lanes, Node, Nodes, least, most};
+use super::node::{Lanes, Node, Nodes, least, most, pause};
 use super::rounds::{ITERATION, OPEN, REACH};
 use super::scan::{lowest, reach};
-use super::swing::{LOOK, pause};
+use super::swing::LOOK;
 
 /// Work of a step forward, and of one back beside the search for a reach; nodes looked at for a unit of it.
 const BRAKE: u32 = 5;

@@ -2,12 +2,9 @@
 
 use super::horizon::Horizon;
 use super::limits::{Bounds, ROWS};
-use super::node::{Lanes, Node, Nodes, least, most};
+use super::node::{Lanes, Nodes, REST, least, most, pause};
 use super::scan::advance;
-use crate::ticks::PATH_PERIOD_S;
 
-/// No acceleration.
-pub(super) const REST: Lanes = [0.0; ROWS];
 /// Work of a step of the pass forward, of a repair, of another box in it, and of each interval one filter length away
 /// that they look at.
 const FORWARD: u32 = 7;
@@ -192,19 +189,10 @@ fn alone([from, to]: [f64; 2], length: f64, wanted: &[Lanes; 2], bounds: &Bounds
     [1.0, -1.0].map(|sign| core::array::from_fn(|row| middle(row) + sign * swings * bounds.swing[row]))
 }
 
-/// Time that the machine stands at a node: until the output filter has come to rest \[s\].
-pub(super) fn pause(node: &Node, bounds: &Bounds) -> f64 {
-    if node.limit > 0.0 {
-        0.0
-    } else {
-        bounds.filter + PATH_PERIOD_S
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trajectory::planner::node::Side;
+    use crate::trajectory::planner::node::{Node, Side};
     use proptest::prelude::*;
 
     /// Boxes that the machine keeps only by coming to all but a rest, in an interval behind which it could go on.
