@@ -24,6 +24,7 @@ mod semihosting;
 mod tick;
 mod time;
 pub mod tracker;
+mod vectors;
 mod watchdog;
 
 pub use network::Network;
