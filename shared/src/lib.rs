@@ -14,6 +14,7 @@
 //! [`tracking`], which do not know each other.
 #![no_std]
 
+pub mod alive_supervision;
 pub mod config;
 pub mod control;
 pub mod execution_time;
@@ -23,7 +24,6 @@ pub mod kinematics;
 pub mod motion;
 pub mod parameter;
 pub mod protocol;
-pub mod roll_call;
 pub mod state;
 pub mod ticks;
 pub mod tracking;

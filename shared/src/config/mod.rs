@@ -5,8 +5,8 @@
 
 mod motion;
 mod tracker;
-mod weakened;
+mod weak_protection;
 
 pub use motion::{BeamConfig, MotionConfig, ReadbackConfig};
 pub use tracker::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
-pub use weakened::Weakened;
+pub use weak_protection::WeakProtection;

@@ -1,10 +1,10 @@
 //! A machine's parameters, checked and in the units the ticks use.
 
-use super::aside::Aside;
 use super::beams::BeamLimits;
 use super::homing::HomingPlan;
 use super::sensible;
 use super::servo::ServoSetup;
+use super::superimposed::Superimposed;
 use crate::config::MotionConfig;
 use crate::control::{Gantry, Pid};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
@@ -92,15 +92,15 @@ impl Machine {
         [x, motors[2], motors[3], motors[4], motors[5], motors[6]]
     }
 
-    /// The axes for the pose beside the one of `planned`; a tick of `aside`, which goes on only where the machine
+    /// The axes for the pose beside the one of `planned`; a tick of `superimposed`, which goes on only where the machine
     /// `goes` along its path.
-    pub fn aside(
+    pub fn superimpose(
         &self,
-        aside: &mut Aside,
+        superimposed: &mut Superimposed,
         planned: &AxisMotion,
         goes: bool,
     ) -> Result<AxisMotion, KinematicsError> {
-        aside.step(&self.kinematics, &self.limits, planned, goes)
+        superimposed.step(&self.kinematics, &self.limits, planned, goes)
     }
 
     /// First axis that would go from one path tick to the next further than twice its speed allows, if any: no

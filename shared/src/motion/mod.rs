@@ -4,7 +4,6 @@
 //! between them pass one [`ServoOrder`] and one [`ServoReport`] a millisecond. Firmware, simulation and
 //! tests use the same two structs.
 
-mod aside;
 mod beams;
 mod controller;
 mod homing;
@@ -15,6 +14,7 @@ mod readback;
 mod segment;
 mod sensible;
 mod servo;
+mod superimposed;
 mod vibration;
 
 pub use beams::EVENTS;

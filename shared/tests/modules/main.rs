@@ -5,7 +5,13 @@ use std::path::{Path, PathBuf};
 
 /// From the ground up; modules of one floor do not use each other.
 const FLOORS: [&[&str]; 8] = [
-    &["execution_time", "parameter", "roll_call", "ticks", "units"],
+    &[
+        "execution_time",
+        "parameter",
+        "alive_supervision",
+        "ticks",
+        "units",
+    ],
     &["geometry", "io"],
     &["kinematics", "state"],
     &["control"],

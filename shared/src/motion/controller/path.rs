@@ -5,12 +5,12 @@ use super::loaded::Resume;
 use crate::geometry::PoseOffset;
 use crate::io::SIDES;
 use crate::kinematics::AXIS_UNIT;
-use crate::motion::aside::Aside;
 use crate::motion::beams::{Activity, Beams};
 use crate::motion::overlap::Overlap;
 use crate::motion::permit::BeamLease;
 use crate::motion::segment::{BeamOutput, MotorReference};
 use crate::motion::servo::ServoReport;
+use crate::motion::superimposed::Superimposed;
 use crate::state::{Event, Fault, NoPermit, State};
 use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{Output, SpeedState, Way};
@@ -50,11 +50,11 @@ impl MotionController {
         let ends = output.at_rest && self.path.complete && output.along.s >= self.path.end_s - AT_END;
         if running && (ends || !self.beams.tracking()) {
             // Back on the path before it ends: the next one goes on there.
-            self.aside.want(PoseOffset::NONE);
+            self.superimposed.want(PoseOffset::NONE);
         }
         let goes = running && (ends || !output.at_rest);
-        if self.aside.acts() {
-            match machine.aside(&mut self.aside, &output.axes, goes) {
+        if self.superimposed.acts() {
+            match machine.superimpose(&mut self.superimposed, &output.axes, goes) {
                 Ok(axes) => output.axes = axes,
                 Err(_) => {
                     let (line, s_mm) = (output.line, output.along.s as f32);
@@ -85,9 +85,9 @@ impl MotionController {
         }
         self.follow(&output);
         let still = if ends && running {
-            self.aside.is_none()
+            self.superimposed.is_none()
         } else {
-            !self.aside.moves()
+            !self.superimposed.moves()
         };
         self.path.resting = if output.at_rest && still {
             self.path.resting.saturating_add(1)
@@ -132,7 +132,7 @@ impl MotionController {
             State::Stopping => {
                 self.path.forget();
                 // The axes stay where they are, and that is where a path begins.
-                self.aside = Aside::NONE;
+                self.superimposed = Superimposed::NONE;
                 self.beams = Beams::NONE;
                 match self.pending.take() {
                     Some(fault) => self.trip(fault),

@@ -175,7 +175,7 @@ impl MotionController {
             });
         }
         let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
-        let planned = self.aside.planned(&self.axes);
+        let planned = self.superimposed.planned(&self.axes);
         let pose = offset.beside(&machine.kinematics.forward(&planned));
         let axes = machine
             .kinematics
@@ -187,7 +187,7 @@ impl MotionController {
                 position: (axes[axis] / AXIS_UNIT[axis]) as f32,
             });
         }
-        self.aside.want(*offset);
+        self.superimposed.want(*offset);
         Ok(())
     }
 
@@ -220,7 +220,7 @@ impl MotionController {
             elements: self.path.elements,
             room: self.room(),
             speed_override: self.factor,
-            aside: self.aside.now(),
+            aside: self.superimposed.now(),
             servo_ticks,
             servo_lost,
             path_ticks: self.tick as u32,

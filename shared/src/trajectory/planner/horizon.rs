@@ -142,7 +142,7 @@ pub(super) struct Horizon {
     early: u32,
     /// Longer time for a plan after others were given up: a factor.
     patience: u32,
-    /// Largest swing above its limit, as a share.
+    /// Largest change of acceleration above its limit, as a share.
     pub(super) excess: Lanes,
     /// Node before the time one filter length away.
     pub(super) away: u32,

@@ -4,6 +4,7 @@
 //! to rest at the end of what it knows. Corners are rounded inside their tolerance.
 
 mod accuracy;
+mod braking;
 mod breaks;
 mod chain;
 mod channels;
@@ -11,6 +12,7 @@ mod corner;
 mod filter;
 mod grid;
 mod horizon;
+mod jerk_limit;
 mod limits;
 mod node;
 mod player;
@@ -19,9 +21,7 @@ mod rounding;
 mod rounds;
 mod sample;
 mod scan;
-mod slowest;
 mod split;
-mod swing;
 #[cfg(test)]
 mod tests;
 mod track;
@@ -362,7 +362,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         // In one go for many of them.
         let behind = self.player.node - self.nodes.first;
         if self.nodes.room() == 0 && behind as usize > NODES / 4 {
-            // The swings need all that the output filter remembers, and more; at rest it remembers nothing.
+            // The limit of jerk needs all that the output filter remembers, and more; at rest it remembers nothing.
             let mut time = if self.rested() { f64::INFINITY } else { 0.0 };
             let mut oldest = self.player.node;
             while oldest > self.nodes.first

@@ -1,4 +1,4 @@
-//! The pose beside the planned path: blended in slowly, in addition to what is planned (SPEC 0.7).
+//! Superimposed motion: the pose goes beside the planned one, blended in slowly (SPEC 0.7).
 //!
 //! It comes after planner and output filter, which know nothing of it. A blend is a polynomial of fifth degree, so
 //! that its acceleration is continuous and its jerk bounded, and takes so long that no axis gets more than
@@ -22,7 +22,7 @@ const PEAK: [f64; 3] = [1.875, 5.773_503, 60.0];
 
 /// Where the pose is beside the plan, and on its way to where.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Aside {
+pub struct Superimposed {
     from: PoseOffset,
     to: PoseOffset,
     /// Where to go next, once the present blend is over or stands.
@@ -40,7 +40,7 @@ pub struct Aside {
     added_rate: [f64; AXES],
 }
 
-impl Aside {
+impl Superimposed {
     /// On the plan.
     pub const NONE: Self = Self {
         from: PoseOffset::NONE,
