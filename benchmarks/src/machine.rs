@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use shared::io::AXES;
-use shared::kinematics::{AxisLimits, Kinematics, KinematicsConfig};
-use shared::motion::AxisConfig;
+use shared::kinematics::{AxisConfig, AxisLimits, Kinematics, KinematicsConfig};
 use shared::parameter::ParameterError;
 use thiserror::Error;
 

@@ -44,7 +44,7 @@ pub struct Options {
 pub const BOOT_VARIABLES: [&str; 3] = ["SEAMWRIGHT_MOTION", "SEAMWRIGHT_TRACKER", "SEAMWRIGHT_PACE"];
 
 /// Environment variables by which a test is told the programs it runs: seamwright and xtask.
-pub const PROGRAM_VARIABLES: [&str; 2] = ["SEAMWRIGHT_HOST_LINK", "SEAMWRIGHT_XTASK"];
+pub const PROGRAM_VARIABLES: [&str; 2] = ["SEAMWRIGHT_PROGRAM", "SEAMWRIGHT_XTASK"];
 
 impl Options {
     /// What `cargo xtask test` has built, in real time, wired to the [`DEFAULT_MACHINE`]; an error names the variable that is not set.

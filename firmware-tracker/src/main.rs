@@ -68,7 +68,7 @@ mod app {
         );
         let shared = Shared {
             controller: cx.local.controller,
-            alive: tasks::ROLL_CALL,
+            alive: tasks::ALIVE_SUPERVISION,
         };
         let local = Local {
             slides: board.slides,

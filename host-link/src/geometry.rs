@@ -1,10 +1,10 @@
 //! Where the tool really is.
 
 use crate::record::MachinePosition;
+use shared::config::MotionConfig;
 use shared::geometry::Pose;
 use shared::io::AXES;
 use shared::kinematics::Kinematics;
-use shared::motion::MotionConfig;
 use shared::parameter::ParameterError;
 
 /// Geometry of the machine as it really is.

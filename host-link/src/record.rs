@@ -111,8 +111,7 @@ fn between<const N: usize>(a: &[f64; N], b: &[f64; N], ratio: f64) -> [f64; N] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::motion::State;
-    use shared::tracking::TrackerState;
+    use shared::state::{State, TrackerState};
 
     /// A tick of a motion board at rest in the origin.
     fn motion_sample(tick: u32) -> MotionSample {

@@ -55,11 +55,15 @@
 //! Rules of this crate: no allocation, no logging, no interrupts, no clock of its own.
 #![no_std]
 
+mod address;
 mod announce;
+mod counters;
 mod session;
 mod stack;
 mod storage;
 
+pub use address::{Address, Partner, Source};
+pub use counters::Counters;
 pub use session::Node;
-pub use stack::{Address, Counters, Link, Partner, Source};
+pub use stack::Link;
 pub use storage::Storage;

@@ -1,6 +1,7 @@
 //! What a session allows, what it answers by itself, and how long it lasts.
 
-use crate::stack::{Counters, Source};
+use crate::address::Source;
+use crate::counters::Counters;
 use shared::protocol::{Datagram, Identity, Refusal, Request, Response, SCHEMA_HASH};
 
 /// A connection that has not said Hello after so long is given up \[µs\].

@@ -1,6 +1,8 @@
 //! The sockets of a board and their service.
 
+use crate::address::{Address, Partner, Source};
 use crate::announce::announce;
+use crate::counters::{Counters, count};
 use crate::session::{Node, Session, number};
 use crate::storage::{FRAME, Storage};
 use shared::protocol::framing::{self, FrameError, MAX_MESSAGE};
@@ -23,67 +25,6 @@ const HALF_OPEN_US: u64 = 500_000;
 const ANNOUNCE_US: u64 = 1_000_000;
 /// Most frames taken, and most sent, in one call.
 const BURST: usize = 32;
-
-/// Addresses of a board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Address {
-    /// Ethernet address.
-    pub mac: [u8; 6],
-    /// IPv4 address.
-    pub ip: [u8; 4],
-    /// Length of the network part in bits, at most 32.
-    pub prefix: u8,
-    /// IPv4 address of the gateway.
-    pub gateway: [u8; 4],
-}
-
-/// IPv4 address and UDP port from which a datagram came, or to which it goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Source {
-    /// IPv4 address.
-    pub address: [u8; 4],
-    /// UDP port.
-    pub port: u16,
-}
-
-/// The other board: where it is, and the number that the datagrams between the two carry, which is that of the tracker
-/// board's session.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Partner {
-    /// Where its datagrams come from, and where those for it go.
-    pub source: Source,
-    /// Number of the session.
-    pub session: u32,
-}
-
-/// What has happened since boot; all counters wrap.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
-    /// Connections accepted.
-    pub sessions: u32,
-    /// Requests answered, the malformed ones too.
-    pub requests: u32,
-    /// Requests that could not be decoded.
-    pub malformed_requests: u32,
-    /// Sessions ended because the stream announced an impossible message.
-    pub broken_streams: u32,
-    /// Sessions given up because nothing was asked for too long.
-    pub silent_sessions: u32,
-    /// Datagrams received and understood.
-    pub datagrams: u32,
-    /// Datagrams that were neither of the PC of this session nor of the other board.
-    pub strange_datagrams: u32,
-    /// Datagrams of another version of the protocol.
-    pub foreign_datagrams: u32,
-    /// Datagrams that could not be decoded.
-    pub malformed_datagrams: u32,
-    /// Datagrams for which there was no room.
-    pub unsent: u32,
-}
-
-fn count(counter: &mut u32) {
-    *counter = counter.wrapping_add(1);
-}
 
 /// The network of one board.
 pub struct Link<'a> {

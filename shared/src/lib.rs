@@ -7,8 +7,15 @@
 //! Inside, lengths are mm, angles rad, times s and speeds mm/s or rad/s; what people read and write
 //! (configuration, NC text, reports) is mm, degrees and mm/min. Names of fields carry the unit wherever it
 //! is not one of the first kind.
+//!
+//! Modules use one another one way only, which a test holds. From the ground up: [`units`], [`parameter`] and [`ticks`];
+//! [`geometry`] and [`io`]; [`kinematics`], and [`state`] with the states and faults that everybody names; [`control`];
+//! [`config`] (what is told to a board) and [`trajectory`]; [`protocol`]; and on top the two boards, [`motion`] and
+//! [`tracking`], which do not know each other.
 #![no_std]
 
+pub mod alive_supervision;
+pub mod config;
 pub mod control;
 pub mod execution_time;
 pub mod geometry;
@@ -17,8 +24,8 @@ pub mod kinematics;
 pub mod motion;
 pub mod parameter;
 pub mod protocol;
-pub mod roll_call;
+pub mod state;
+pub mod ticks;
 pub mod tracking;
 pub mod trajectory;
 pub mod units;
-pub mod weakened;

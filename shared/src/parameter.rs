@@ -218,6 +218,21 @@ pub fn within(
     check(owner, field, value, |x| range.contains(&x)).map_err(|error| error.allowing(allowed))
 }
 
+/// As [`within`], for the size of a value that may be negative; gives the size.
+pub fn within_either_sign(
+    owner: &str,
+    field: &str,
+    value: f64,
+    range: RangeInclusive<f64>,
+) -> Result<f64, ParameterError> {
+    let signed = if value < 0.0 {
+        -*range.end()..=-*range.start()
+    } else {
+        range
+    };
+    Ok(libm::fabs(within(owner, field, value, signed)?))
+}
+
 #[cfg(test)]
 mod tests {
     extern crate std;

@@ -4,8 +4,8 @@ use crate::prediction::run_heard;
 use crate::{assert_welded, machine, shipped_seam, with_weld};
 use host_link::boards::{Boards, command};
 use report::Ended;
-use shared::motion::State;
 use shared::protocol::{MotionSample, Request, Role};
+use shared::state::State;
 
 /// How far into the weld the operator holds it \[mm\].
 const HOLD_AFTER_MM: f64 = 200.0;

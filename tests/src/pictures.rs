@@ -6,7 +6,7 @@ use host_link::boards::Boards;
 use job::{ImageCameras, JobError};
 use report::Ended;
 use shared::io::SIDES;
-use shared::tracking::TrackerFault;
+use shared::state::TrackerFault;
 use world::{CameraChoice, Dark, PictureChoice, SceneFile, Surroundings};
 
 /// Where the light of side 2 fails \[mm\], and how far the map may reach beyond what was seen last.

@@ -1,10 +1,11 @@
 //! NURBS as files hold them: JSON with `degree`, `control_points` \[mm\], `weights` and `knots`.
 
+use super::nurbs::FreeForm;
 use super::way::{Move, ROTARY, Way};
 use anyhow::Result;
 use nalgebra::Vector3;
 use serde::Deserialize;
-use shared::geometry::nurbs::{Nurbs, NurbsError, length};
+use shared::geometry::nurbs::length;
 
 #[derive(Deserialize)]
 struct Document {
@@ -12,38 +13,6 @@ struct Document {
     control_points: Vec<[f64; 3]>,
     weights: Vec<f64>,
     knots: Vec<f64>,
-}
-
-/// A NURBS with its own memory.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FreeForm {
-    degree: usize,
-    points: Vec<Vector3<f64>>,
-    weights: Vec<f64>,
-    knots: Vec<f64>,
-}
-
-impl FreeForm {
-    /// See [`Nurbs::new`].
-    pub fn new(
-        degree: usize,
-        points: Vec<Vector3<f64>>,
-        weights: Vec<f64>,
-        knots: Vec<f64>,
-    ) -> Result<Self, NurbsError> {
-        Nurbs::new(degree, &points, &weights, &knots)?;
-        Ok(Self {
-            degree,
-            points,
-            weights,
-            knots,
-        })
-    }
-
-    /// The curve.
-    pub fn curve(&self) -> Nurbs<'_> {
-        Nurbs::new(self.degree, &self.points, &self.weights, &self.knots).expect("new() has checked it")
-    }
 }
 
 /// Reads a NURBS as a program of one move.

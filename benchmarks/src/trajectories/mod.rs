@@ -10,6 +10,7 @@ pub mod evenness;
 pub mod free_form;
 pub mod limits;
 mod metrics;
+mod nurbs;
 mod outcome;
 pub mod run;
 pub mod seg;
@@ -18,8 +19,9 @@ pub mod way;
 
 pub use contour::{Contour, Nearest, cut_off};
 pub use metrics::Figures;
+pub use nurbs::FreeForm;
 pub use outcome::{Outcome, of_file};
 pub use spiral::{Spiral, SpiralError};
 
 /// A tick \[s\].
-pub const TICK: f64 = shared::motion::PATH_PERIOD_S;
+pub const TICK: f64 = shared::ticks::PATH_PERIOD_S;

@@ -1,6 +1,6 @@
 //! Programs as they were written: the moves, and what of them is geometry.
 
-use super::free_form::FreeForm;
+use super::nurbs::FreeForm;
 use super::spiral::Spiral;
 use nalgebra::Vector3;
 use shared::geometry::nurbs::{Curve, Nurbs};

@@ -5,16 +5,13 @@ use super::figures::{mean, micrometres, quantile, rms};
 use super::groups::{GROUPS, is_normal};
 use super::limits::Limit;
 use super::seeds::of_seeds;
-use super::{NOISE, camera};
+use super::{NOISE, SAMPLES, camera};
 use anyhow::Result;
 use vision::render::{Errors, Finish, RandomRun, Scene, Shown, TruthRenderer};
 use vision::{Detector, Doubt, Image, Joint, Observation, Observer, ObserverConfig, Optics, Profile};
 
 /// Pictures of one seam; the first of them acquire it.
 const RUN: u64 = 10;
-
-/// Samples a pixel of the truth: centres then are off by 0.1 µm from those of seven, heights by 0.2 µm.
-pub(super) const SAMPLES: usize = 2;
 
 /// Share of the pictures that is taken for each other aperture.
 const APERTURES: [f64; 2] = [0.07, 0.13];

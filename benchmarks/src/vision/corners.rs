@@ -1,10 +1,9 @@
 //! Closed corners whose walls are learnt.
 
-use super::NOISE;
-use super::accuracy::SAMPLES;
 use super::figures::{mean, micrometres, quantile, rms};
 use super::limits::Limit;
 use super::seeds::of_seeds;
+use super::{NOISE, SAMPLES};
 use anyhow::Result;
 use vision::render::{Errors, Finish, Texture, TruthRenderer, random_corner};
 use vision::{Detector, Image, Joint, Moved, Observer, ObserverConfig, Optics, Profile, Walls};

@@ -10,7 +10,7 @@
 // Registers and vectors are reached here and nowhere else.
 #![allow(unsafe_code)]
 
-use board_copy as _;
+use board_memcpy as _;
 
 pub mod benchmark;
 pub mod device;
@@ -24,6 +24,7 @@ mod semihosting;
 mod tick;
 mod time;
 pub mod tracker;
+mod vectors;
 mod watchdog;
 
 pub use network::Network;

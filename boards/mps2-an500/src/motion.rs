@@ -68,7 +68,7 @@ impl Axes {
         self.command = *command;
     }
 
-    /// True position of each motor's axis \[mm, rotary deg\], which a real machine does not know.
+    /// True position of each motor's axis (mm, rad), which a real machine does not know.
     pub fn truth(&self) -> Option<[f64; MOTORS]> {
         Some(self.plant.truth())
     }

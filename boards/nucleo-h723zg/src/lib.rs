@@ -12,7 +12,7 @@
 #![cfg_attr(target_os = "none", allow(unsafe_code))]
 
 #[cfg(target_os = "none")]
-use board_copy as _;
+use board_memcpy as _;
 
 pub mod counting;
 pub mod exchange;

@@ -5,19 +5,19 @@ pub mod path;
 pub mod servo;
 
 use heapless::spsc::{Consumer, Producer};
+use shared::alive_supervision::AliveSupervision;
 use shared::motion::MotionController;
 use shared::protocol::{MotionSample, PathState};
-use shared::roll_call::RollCall;
 
 pub use network::Network;
 pub use path::PathTask;
 pub use servo::Servo;
 
 /// Who must be seen for the servo tick to feed the watchdog, every 2000 servo ticks (0.5 s) at least.
-pub const ROLL_CALL: RollCall<2> = RollCall::new(2000);
-/// The path task's place in the roll call.
+pub const ALIVE_SUPERVISION: AliveSupervision<2> = AliveSupervision::new(2000);
+/// The path task's number in the alive supervision.
 pub const PATH_TASK: usize = 0;
-/// The network task's place in the roll call.
+/// The network task's number in the alive supervision.
 pub const NETWORK_TASK: usize = 1;
 
 /// State machine, path and homing.

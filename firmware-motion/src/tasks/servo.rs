@@ -1,17 +1,17 @@
 //! The servo tick: read the gratings, run the loops, write the drives; feed the watchdog if all others live.
 
-use super::ROLL_CALL;
+use super::ALIVE_SUPERVISION;
 use crate::board::{self, Watchdog, motion::Axes};
+use shared::alive_supervision::AliveSupervision;
 use shared::execution_time::ExecutionTime;
 use shared::motion::ServoLoops;
-use shared::roll_call::RollCall;
 
 /// The servo loops, and who else is alive.
 pub struct Servo {
     /// Drives off until parameters were accepted.
     pub loops: ServoLoops,
     /// Decides about the watchdog.
-    pub alive: RollCall<2>,
+    pub alive: AliveSupervision<2>,
     /// What the servo ticks take, on an emulated board with its machine.
     pub time: ExecutionTime,
 }
@@ -21,7 +21,7 @@ impl Servo {
     pub fn new() -> Self {
         Self {
             loops: ServoLoops::default(),
-            alive: ROLL_CALL,
+            alive: ALIVE_SUPERVISION,
             time: ExecutionTime::new(),
         }
     }

@@ -4,8 +4,8 @@ pub mod control;
 mod network;
 
 use heapless::spsc::{Consumer, Producer};
+use shared::alive_supervision::AliveSupervision;
 use shared::protocol::{Capture, Permit, TrackerSample};
-use shared::roll_call::RollCall;
 use shared::tracking::TrackerController;
 
 pub use network::Network;
@@ -15,10 +15,10 @@ pub const KNOTS: usize = 512;
 
 /// Who must be seen for the control tick to feed the watchdog: the network task, every 500 control ticks
 /// (0.5 s) at least.
-pub type Alive = RollCall<1>;
+pub type Alive = AliveSupervision<1>;
 /// Everyone has a first chance.
-pub const ROLL_CALL: Alive = RollCall::new(500);
-/// The network task's place in the roll call.
+pub const ALIVE_SUPERVISION: Alive = AliveSupervision::new(500);
+/// The network task's number in the alive supervision.
 pub const NETWORK_TASK: usize = 0;
 
 /// State machine, map and control law.

@@ -1,6 +1,6 @@
 //! Boards for tests that listen in on the motion board.
 
-use crate::boards::{Boards, LinkError};
+use super::{Boards, LinkError};
 use crate::pass_on;
 use shared::protocol::{Datagram, MotionSample, Role};
 use std::time::Duration;

@@ -1,8 +1,8 @@
 //! CPU load of the motion board: what its ticks took, on any path.
 
 use serde::Serialize;
-use shared::motion::{PATH_PERIOD_S, SERVO_PERIOD_S};
 use shared::protocol::BoardLoad;
+use shared::ticks::{PATH_PERIOD_S, SERVO_PERIOD_S};
 use std::fmt;
 
 /// Execution times of the ticks, and the clock they are counted by.

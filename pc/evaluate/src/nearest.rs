@@ -55,7 +55,7 @@ pub(super) fn nearest(path: &Course, tip: &Vector3<f64>, s: f64) -> Option<Neare
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::protocol::Knot;
+    use shared::trajectory::Knot;
     use shared::trajectory::{CHANNELS, Path};
 
     /// A rising bend of radius 500 mm, with its place and direction at s.

@@ -2,7 +2,7 @@
 
 use crate::WorkTick;
 use nalgebra::Vector3;
-use shared::motion::PATH_PERIOD_S;
+use shared::ticks::PATH_PERIOD_S;
 
 /// The true speed is that of the way over so many ticks before and after, 8 ms in all: a grating of 0.1 µm then makes
 /// less than 0.02 mm/s of noise.

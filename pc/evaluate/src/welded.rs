@@ -6,8 +6,8 @@ use cam::along::Along;
 use cam::path::{PlannedPath, Programmed};
 use nc::Motion;
 use serde::Serialize;
+use shared::config::BeamConfig;
 use shared::io::SIDES;
-use shared::motion::BeamConfig;
 use shared::trajectory::SpeedLimits;
 use std::collections::BTreeMap;
 

@@ -3,8 +3,8 @@
 use crate::feeding::{EndedBlock, Feeding};
 use crate::session::{Session, on_path};
 use crate::{JobError, Word, recentring};
-use shared::motion::State;
 use shared::protocol::{MotionSample, MotionStatus, Request, Role};
+use shared::state::State;
 
 /// A machine that shall move and does not for so long never will \[s\]; far longer than a queue runs dry.
 const STANDSTILL_S: u32 = 10;

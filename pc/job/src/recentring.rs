@@ -10,7 +10,7 @@ use shared::geometry::PoseOffset;
 use shared::io::{SLIDE_NAMES, SLIDES};
 use shared::parameter::ParameterError;
 use shared::protocol::{Request, Role};
-use shared::tracking::TrackerState;
+use shared::state::TrackerState;
 use shared::tracking::frames::Heads;
 use shared::tracking::recentre::{recentre, slides_after};
 use shared::units::DEG_PER_RAD;

@@ -8,8 +8,8 @@ use host_link::geometry::MachineGeometry;
 use host_link::record::Record;
 use serde::Serialize;
 use shared::io::SIDES;
-use shared::motion::Fault;
 use shared::protocol::{Identity, Role, TrackerStatus};
+use shared::state::Fault;
 use std::collections::BTreeMap;
 use std::time::Duration;
 

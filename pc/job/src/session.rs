@@ -8,8 +8,8 @@ use config::machine::MachineFile;
 use host_link::boards::{Absence, Boards, LinkError, command};
 use host_link::geometry::MachineGeometry;
 use host_link::record::Record;
-use shared::motion::{Fault, State};
 use shared::protocol::{Datagram, MotionStatus, Request, Response, Role};
+use shared::state::{Fault, State};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 

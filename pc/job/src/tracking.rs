@@ -16,8 +16,8 @@ use shared::protocol::{
     Capture, ClockReply, ClockRequest, Datagram, Measurement, Request, Response, Role, SideMeasurement,
     TrackerStatus,
 };
+use shared::state::{TrackerFault, TrackerState};
 use shared::tracking::frames::Heads;
-use shared::tracking::{TrackerFault, TrackerState};
 use shared::trajectory::{Path, PathSpace};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;

@@ -135,7 +135,7 @@ fn rounded(x: f64, decimals: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::motion::AxisConfig;
+    use shared::kinematics::AxisConfig;
 
     #[test]
     fn decimals_round_away_from_zero_and_know_no_negative_zero() {

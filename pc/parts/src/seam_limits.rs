@@ -128,7 +128,7 @@ fn longest_unknown(ticks: &[WorkTick], side: usize) -> (f64, f64) {
         .filter(|chunk| !known(&chunk[0]));
     let ways = unknown.map(|chunk| {
         // A tick stands for its own way.
-        let own = chunk[0].speed_mm_s * shared::motion::PATH_PERIOD_S;
+        let own = chunk[0].speed_mm_s * shared::ticks::PATH_PERIOD_S;
         (
             chunk[chunk.len() - 1].s_mm - chunk[0].s_mm + own,
             chunk[0].along_mm,

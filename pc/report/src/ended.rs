@@ -10,9 +10,8 @@ use job::{ByBoard, Job, JobError, RunRecord, Taught, TrackingRecord};
 use parts::{Judgement, PartFile, Plot, Run, SeamLimits};
 use shared::io::MOTOR_AXIS;
 use shared::kinematics::AXIS_UNIT;
-use shared::motion::State;
 use shared::protocol::Identity;
-use shared::tracking::TrackerFault;
+use shared::state::{State, TrackerFault};
 use shared::units::MM_S_PER_M_MIN;
 
 /// A job after its end.

@@ -219,9 +219,8 @@ impl TrueSeam {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use shared::protocol::Knot;
-    use shared::tracking::HeadConfig;
-    use shared::trajectory::CHANNELS;
+    use shared::config::HeadConfig;
+    use shared::trajectory::{CHANNELS, Knot};
 
     impl TrueSeams {
         /// These.

@@ -1,9 +1,9 @@
 //! The two motors of the X axis: cross-coupling, skew, and where the ram is (SPEC 0.10).
 
 use super::derivative::{Derivative, DerivativeState};
-use super::{NotFinite, Pid, PidState, Setpoint};
-use crate::motion::{Fault, GantryConfig};
+use super::{GantryConfig, NotFinite, Pid, PidState, Setpoint};
 use crate::parameter::{ParameterError, check, not_negative, positive};
+use crate::state::Fault;
 
 /// Position loops of X1 and X2 and the coupling between them, ready for the tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,7 +125,7 @@ impl Gantry {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::{HomeConfig, MotorConfig};
+    use crate::control::{HomeConfig, MotorConfig};
 
     fn gantry() -> Gantry {
         let motor = MotorConfig {

@@ -1,16 +1,18 @@
 //! Servo laws: position loops, gantry, trips, and the search for reference marks.
 //!
-//! Each law has the human numbers of the machine file (`crate::motion`), coefficients made from them by a
-//! fallible `build`, and a state. Inside everything is mm or rad and seconds.
+//! Each law has the human numbers of the machine file, coefficients made from them by a fallible `build`, and a state. Inside everything is mm or rad and seconds.
 
+mod config;
 mod derivative;
 mod emergency_stop;
 mod gantry;
 mod movement;
 mod pid;
 mod reference_search;
+pub(crate) mod sensible;
 mod trip;
 
+pub use config::{GantryConfig, HomeConfig, MotorConfig};
 pub use emergency_stop::{DISCREPANCY_US, EmergencyStop};
 pub use gantry::{Gantry, GantryOutput, GantryState, Ram};
 pub use movement::{MovementCheck, MovementState};

@@ -1,8 +1,7 @@
 //! Position loop of one motor with a velocity drive (SPEC 0.10).
 
-use super::NotFinite;
 use super::derivative::{Derivative, DerivativeState};
-use crate::motion::MotorConfig;
+use super::{MotorConfig, NotFinite};
 use crate::parameter::{ParameterError, not_negative, positive};
 
 /// PID with velocity and acceleration feed-forward and anti-windup, ready for the tick.

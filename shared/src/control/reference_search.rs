@@ -12,7 +12,7 @@
 //! The largest travel counts the ways there and back together, and at least what was commanded: a search whose
 //! grating stands still ends too.
 
-use crate::motion::HomeConfig;
+use super::HomeConfig;
 use crate::parameter::{ParameterError, check, positive};
 
 /// The velocity of the approach as a part of the search velocity.

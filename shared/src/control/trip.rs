@@ -1,7 +1,8 @@
 //! What a servo loop must not do without stopping the machine (SPEC 0.10).
 
-use crate::motion::{Fault, MotorConfig};
+use super::MotorConfig;
 use crate::parameter::{ParameterError, check, not_negative, positive};
+use crate::state::Fault;
 
 /// Following-error trip |e| > e0 + |v|·t of one motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +83,7 @@ impl EncoderCheck {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::HomeConfig;
+    use crate::control::HomeConfig;
     use crate::units::DEG_PER_RAD;
 
     fn motor() -> MotorConfig {

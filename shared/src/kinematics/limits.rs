@@ -1,10 +1,10 @@
 //! Travel and speed of the linked axes.
 
 use crate::io::{AXES, Bits};
-use crate::motion::AxisConfig;
 use crate::parameter::{ParameterError, check, positive};
-use crate::trajectory::SpeedLimits;
 use crate::units::DEG_PER_RAD;
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
 
 /// Internal units (mm, rad) in one unit of the machine file (mm, degrees), for X Y Z A B C.
 pub const AXIS_UNIT: [f64; AXES] = [
@@ -21,6 +21,22 @@ pub(crate) const AXIS_OWNERS: [&str; AXES] = ["axis X", "axis Y", "axis Z", "axi
 
 /// How far outside its travel an axis may be by rounding alone, in units of the machine file (SPEC 0.2).
 const TOLERANCE: f64 = 1e-9;
+
+/// Limits of one axis as the machine file has them (mm or degrees).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct AxisConfig {
+    /// Lowest position.
+    pub travel_min: f64,
+    /// Highest position.
+    pub travel_max: f64,
+    /// Highest speed \[1/s\].
+    pub max_velocity: f64,
+    /// Highest acceleration \[1/s²\].
+    pub max_acceleration: f64,
+    /// Highest jerk \[1/s³\].
+    pub max_jerk: f64,
+}
 
 /// Limits of one axis (mm, rad, s).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,19 +69,6 @@ impl AxisLimits {
             jerk: positive(owner, "max_jerk", config.max_jerk)? * unit,
             tolerance: TOLERANCE * unit,
         })
-    }
-
-    /// Way to a stop from the highest speed (mm, rad); of an axis that the machine does not have it has no end.
-    pub fn full_stop(&self) -> f64 {
-        if !self.velocity.is_finite() {
-            return f64::INFINITY;
-        }
-        let limits = SpeedLimits {
-            velocity: self.velocity,
-            acceleration: self.acceleration,
-            jerk: self.jerk,
-        };
-        limits.ramp()
     }
 
     /// Of an axis that the machine does not have: it stands at 0, and limits no other.
@@ -115,14 +118,4 @@ pub fn feed_limit(q_prime: &[f64; AXES], limits: &[AxisLimits; AXES]) -> (f64, u
         }
     }
     lowest
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_axis_that_is_not_there_never_needs_to_stop() {
-        assert_eq!(AxisLimits::NOT_FITTED.full_stop(), f64::INFINITY);
-    }
 }

@@ -21,7 +21,7 @@ mod wire_arc;
 pub use ac_head::{AcHead, AcHeadConfig};
 pub use dual_beam::{DualBeam, DualBeamConfig};
 pub(crate) use limits::AXIS_OWNERS;
-pub use limits::{AXIS_UNIT, AxisLimits, feed_limit, violations};
+pub use limits::{AXIS_UNIT, AxisConfig, AxisLimits, feed_limit, violations};
 pub use pipe_welder::{PipeWelder, PipeWelderConfig};
 pub use stir_gantry::{StirGantry, StirGantryConfig, StirTilt};
 pub use wire_arc::{WireArc, WireArcConfig};

@@ -1,7 +1,7 @@
 //! Gates and powers of the beams, and the tracking flag, over the path.
 
-use super::BeamConfig;
 use super::segment::BeamOutput;
+use crate::config::BeamConfig;
 use crate::io::{DacCode, SIDES};
 use crate::parameter::{ParameterError, not_negative, positive};
 use crate::protocol::{PathAction, PathEvent};

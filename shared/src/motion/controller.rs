@@ -4,25 +4,27 @@
 //! makes the [`Segment`] which the servo ticks follow from k + 1 on, so the path tick has a whole
 //! millisecond. What is published at tick k belongs to k.
 
+mod loaded;
 mod loading;
 mod path;
 mod requests;
 
-use super::aside::Aside;
+use super::Vibration;
 use super::beams::Beams;
 use super::homing::{Homing, HomingStep};
 use super::machine::Machine;
 use super::permit::{BeamLease, Permits};
-use super::segment::{MotorReference, PATH_PERIOD_S, Segment};
+use super::segment::{MotorReference, Segment};
 use super::servo::{ServoOrder, ServoReport, ServoSetup};
-use super::state::Event;
-use super::{Fault, State, Vibration};
+use super::superimposed::Superimposed;
 use crate::control::UNATTENDED_S;
 use crate::io::{AXES, MOTORS, SIDES};
 use crate::kinematics::AXIS_UNIT;
 use crate::protocol::{Datagram, MotionSample, PathState};
+use crate::state::{Event, Fault, State};
+use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{BoardPlanner, SpeedState};
-use path::LoadedPath;
+use loaded::LoadedPath;
 
 /// Lost path ticks that are made up for at once; more are too late anyway.
 const MAX_CATCH_UP: u32 = 4;
@@ -77,7 +79,7 @@ pub struct MotionController {
     planner: BoardPlanner,
     path: LoadedPath,
     /// The pose beside it.
-    aside: Aside,
+    superimposed: Superimposed,
     /// Part of the programmed speed that is asked for.
     factor: f64,
     beams: Beams,
@@ -133,7 +135,7 @@ impl MotionController {
             homed: false,
             planner: BoardPlanner::new(),
             path: LoadedPath::NONE,
-            aside: Aside::NONE,
+            superimposed: Superimposed::NONE,
             factor: 1.0,
             beams: Beams::NONE,
             along: [SpeedState::at_rest(0.0); 3],
@@ -245,7 +247,7 @@ impl MotionController {
                 // On a path that is given up nobody looks for the seam any more.
                 tracking: on_path && self.state != State::Stopping && self.beams.tracking(),
                 beams: report.gate,
-                aside: self.aside.rate(),
+                aside: self.superimposed.rate(),
             },
             sample: MotionSample {
                 tick: self.tick as u32,
@@ -399,7 +401,7 @@ impl MotionController {
         self.released = true;
         self.along = [SpeedState::at_rest(self.along[0].s); 3];
         self.path.forget();
-        self.aside = Aside::NONE;
+        self.superimposed = Superimposed::NONE;
         self.homing = None;
         self.pending = None;
         self.beams = Beams::NONE;

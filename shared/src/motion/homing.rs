@@ -1,12 +1,14 @@
 //! Finding the reference marks, in the sequence of the machine file; the two motors of a gantry move as one,
 //! and in the end the beam is squared.
 
-use super::segment::{MotorReference, PATH_PERIOD_S};
+use super::segment::MotorReference;
 use super::servo::{ServoReport, UNIT};
-use super::{Fault, MotionConfig};
+use crate::config::MotionConfig;
 use crate::control::{ReferenceSearch, SearchInput, SearchProgress, SearchState};
 use crate::io::{MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use crate::parameter::ParameterError;
+use crate::state::Fault;
+use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{RestToRest, SpeedLimits};
 
 const X1: usize = 0;

@@ -1,16 +1,17 @@
 //! A machine's parameters, checked and in the units the ticks use.
 
-use super::aside::Aside;
 use super::beams::BeamLimits;
 use super::homing::HomingPlan;
-use super::segment::PATH_PERIOD_S;
+use super::sensible;
 use super::servo::ServoSetup;
-use super::{MotionConfig, SERVO_PERIOD_S, sensible};
+use super::superimposed::Superimposed;
+use crate::config::MotionConfig;
 use crate::control::{Gantry, Pid};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use crate::kinematics::{AXIS_OWNERS, AxisLimits, AxisMotion, Kinematics, KinematicsError};
 use crate::parameter::ParameterError;
 use crate::protocol::PathLimits;
+use crate::ticks::{PATH_PERIOD_S, SERVO_PERIOD_S};
 use crate::trajectory::{PlanLimits, SpeedLimits};
 
 /// A stop is at rest after 0.4 s and four times what the slowest axis needs to slow down at its constant acceleration, to
@@ -50,7 +51,7 @@ impl Machine {
             homing: HomingPlan::build(config)?,
             beams: BeamLimits::build(&config.beams)?,
             link_timeout_us: u64::from(config.link_timeout_ms) * 1000,
-            overrun: limits.map(|axis| OVERRUN * axis.full_stop()),
+            overrun: limits.map(|axis| OVERRUN * full_stop(&axis)),
             limits,
             gantry,
         };
@@ -91,15 +92,15 @@ impl Machine {
         [x, motors[2], motors[3], motors[4], motors[5], motors[6]]
     }
 
-    /// The axes for the pose beside the one of `planned`; a tick of `aside`, which goes on only where the machine
+    /// The axes for the pose beside the one of `planned`; a tick of `superimposed`, which goes on only where the machine
     /// `goes` along its path.
-    pub fn aside(
+    pub fn superimpose(
         &self,
-        aside: &mut Aside,
+        superimposed: &mut Superimposed,
         planned: &AxisMotion,
         goes: bool,
     ) -> Result<AxisMotion, KinematicsError> {
-        aside.step(&self.kinematics, &self.limits, planned, goes)
+        superimposed.step(&self.kinematics, &self.limits, planned, goes)
     }
 
     /// First axis that would go from one path tick to the next further than twice its speed allows, if any: no
@@ -133,6 +134,19 @@ impl Machine {
     pub fn beyond_travel(&self, axes: &[f64; AXES]) -> Option<usize> {
         (0..AXES).find(|axis| !self.limits[*axis].contains(axes[*axis]))
     }
+}
+
+/// Way to a stop of an axis from its highest speed (mm, rad); of one that the machine does not have it has no end.
+fn full_stop(axis: &AxisLimits) -> f64 {
+    if !axis.velocity.is_finite() {
+        return f64::INFINITY;
+    }
+    let limits = SpeedLimits {
+        velocity: axis.velocity,
+        acceleration: axis.acceleration,
+        jerk: axis.jerk,
+    };
+    limits.ramp()
 }
 
 /// Every axis of the kinematics needs its limits and its motor, and no other may have them.
@@ -170,4 +184,14 @@ fn build_gantry(config: &MotionConfig) -> Result<Option<Gantry>, ParameterError>
     };
     let pid = |motor: usize, config| Pid::build(MOTOR_NAMES[motor], config, 1.0, SERVO_PERIOD_S);
     Gantry::build(gantry, [pid(0, x1)?, pid(X2, x2)?], SERVO_PERIOD_S).map(Some)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_that_is_not_there_never_needs_to_stop() {
+        assert_eq!(full_stop(&AxisLimits::NOT_FITTED), f64::INFINITY);
+    }
 }

@@ -5,8 +5,8 @@
 //! waits for its place goes on waiting through further holds, until it has been open there.
 
 use super::beams::{BeamLimits, Beams};
-use super::segment::PATH_PERIOD_S;
 use crate::io::SIDES;
+use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{SpeedLimits, SpeedState};
 
 /// Part of its speed that a beam needs to go on again.

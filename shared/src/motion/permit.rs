@@ -1,8 +1,9 @@
 //! The tracker's permits, as the motion board takes them: what each beam may do where the path tracks, and until when.
 
-use super::{NoPermit, SERVO_PERIOD_S};
 use crate::io::SIDES;
 use crate::protocol::{BeamPermit, PERMIT_US, Permit};
+use crate::state::NoPermit;
+use crate::ticks::SERVO_PERIOD_S;
 
 /// Servo tick \[µs\].
 const SERVO_US: u64 = (SERVO_PERIOD_S * 1e6) as u64;

@@ -1,8 +1,10 @@
 //! The power that a beam's source gives, where it is measured, against the one that is commanded.
 
-use super::{Fault, ReadbackConfig, SERVO_PERIOD_S};
+use crate::config::ReadbackConfig;
 use crate::io::DacCode;
 use crate::parameter::{ParameterError, positive};
+use crate::state::Fault;
+use crate::ticks::SERVO_PERIOD_S;
 
 /// A source whose gate is closed may read as so much of full power: 0.2 V of 10 V, for the offsets of its output and of
 /// the converter, and noise on the cable.

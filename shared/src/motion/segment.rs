@@ -1,13 +1,7 @@
 //! References of one millisecond, from the path tick to the servo ticks.
 
 use crate::io::{DacCode, MOTORS, SIDES};
-
-/// Servo ticks in one path tick.
-pub const SERVO_TICKS_PER_PATH_TICK: u32 = 4;
-/// Time between two path ticks \[s\].
-pub const PATH_PERIOD_S: f64 = 0.001;
-/// Time between two servo ticks \[s\].
-pub const SERVO_PERIOD_S: f64 = 0.000_25;
+use crate::ticks::{PATH_PERIOD_S, SERVO_TICKS_PER_PATH_TICK};
 
 /// Position, velocity and acceleration reference of every motor at one instant (mm or rad).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,11 +2,13 @@
 //! so is what no machine has.
 
 use super::readback::DARK;
-use super::segment::SERVO_PERIOD_S;
-use super::{AxisConfig, BeamConfig, GantryConfig, HomeConfig, MotionConfig, MotorConfig};
+use crate::config::{BeamConfig, MotionConfig};
+use crate::control::sensible::{MOST_COUNTS, SCALES, SHORTEST_TRAVEL, check_home};
+use crate::control::{GantryConfig, MotorConfig};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES};
-use crate::kinematics::AXIS_OWNERS;
-use crate::parameter::{LARGEST_MACHINE_MM, ParameterError, within};
+use crate::kinematics::{AXIS_OWNERS, AxisConfig};
+use crate::parameter::{LARGEST_MACHINE_MM, ParameterError, within, within_either_sign};
+use crate::ticks::SERVO_PERIOD_S;
 use core::f64::consts::FRAC_PI_2;
 use core::ops::RangeInclusive;
 
@@ -14,18 +16,12 @@ use core::ops::RangeInclusive;
 const MOST_TURNS: f64 = 36_000.0;
 /// Linear axes of an X Y Z A B C.
 const LINEAR: usize = 3;
-/// Shortest travel (mm or °).
-const SHORTEST_TRAVEL: f64 = 0.1;
 /// Speeds of axes and drives: linear motors go 10 m/s at most.
 const SPEEDS: RangeInclusive<f64> = 0.1..=1e4;
 /// Accelerations: up to ten times that of gravity.
 const ACCELERATIONS: RangeInclusive<f64> = 1.0..=1e5;
 /// Longest time from no acceleration to the full one \[s\]; the shortest is a servo tick.
 const LONGEST_RAMP_S: f64 = 10.0;
-/// Counts in one mm or °: from one to ten million, a tenth of a nanometre.
-pub(crate) const SCALES: RangeInclusive<f64> = 1.0..=1e7;
-/// Counters of 16 bits must not go half their way round between two looks, or nobody can tell which way it was.
-pub(crate) const MOST_COUNTS: f64 = 32_767.0;
 /// A trip needs some counts, or the grating's own noise sets it off.
 const FEWEST_COUNTS: f64 = 10.0;
 /// Servo loops have a delay of one and a half ticks at least \[s\]: sampled, computed, held.
@@ -36,10 +32,6 @@ const MOST_ERROR_AT_REST: f64 = 10.0;
 /// Part of the travel that it may have at full speed, and longest time of lag \[s\].
 const ERROR_AT_SPEED: f64 = 0.2;
 const LONGEST_LAG_S: f64 = 0.2;
-/// Reference marks may stand beside the travel by this part of it.
-pub(crate) const BESIDE: f64 = 0.1;
-/// A search goes over the travel there, back, and over the mark again.
-pub(crate) const SEARCHES: f64 = 3.0;
 /// Yaw that the guides of a gantry bear \[rad\]: the skew trip is this times the width, at most.
 const MOST_YAW: f64 = 1e-3;
 /// Off square by construction: a hundredth of the width.
@@ -177,46 +169,6 @@ fn check_motor(owner: &str, motor: &MotorConfig, axis: &AxisConfig) -> Result<()
         (axis.travel_min, axis.travel_max),
         axis.max_velocity,
     )
-}
-
-/// A search inside `travel`, no faster than `fastest`.
-pub(crate) fn check_home(
-    owner: &str,
-    home: &HomeConfig,
-    (min, max): (f64, f64),
-    fastest: f64,
-) -> Result<(), ParameterError> {
-    let travel = max - min;
-    let beside = BESIDE * travel;
-    within_either_sign(owner, "home.velocity", home.velocity, 1e-3..=fastest)?;
-    within(
-        owner,
-        "home.mark_position",
-        home.mark_position,
-        min - beside..=max + beside,
-    )?;
-    within(
-        owner,
-        "home.max_travel",
-        home.max_travel,
-        SHORTEST_TRAVEL..=SEARCHES * travel,
-    )?;
-    Ok(())
-}
-
-/// As [`within`], of the size of a value that may be negative; gives the size.
-pub(crate) fn within_either_sign(
-    owner: &str,
-    field: &str,
-    value: f64,
-    range: RangeInclusive<f64>,
-) -> Result<f64, ParameterError> {
-    let signed = if value < 0.0 {
-        -*range.end()..=-*range.start()
-    } else {
-        range
-    };
-    Ok(libm::fabs(within(owner, field, value, signed)?))
 }
 
 fn check_gantry(gantry: &GantryConfig, motor: &MotorConfig) -> Result<(), ParameterError> {

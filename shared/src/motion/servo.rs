@@ -2,15 +2,17 @@
 
 use super::permit::BeamLease;
 use super::readback::{ReadbackCheck, ReadbackState};
-use super::segment::{SERVO_TICKS_PER_PATH_TICK, Segment};
-use super::{BeamConfig, Fault, MotorConfig, SERVO_PERIOD_S};
+use super::segment::Segment;
+use crate::config::BeamConfig;
 use crate::control::{
-    EmergencyStop, EncoderCheck, FollowingTrip, Gantry, GantryState, MovementCheck, MovementState, Pid,
-    PidState, Setpoint,
+    EmergencyStop, EncoderCheck, FollowingTrip, Gantry, GantryState, MotorConfig, MovementCheck,
+    MovementState, Pid, PidState, Setpoint,
 };
 use crate::io::{Bits, DacCode, MOTOR_NAMES, MOTORS, MotionCommand, MotionFeedback, SIDES};
 use crate::kinematics::AXIS_UNIT;
 use crate::parameter::{ParameterError, check};
+use crate::state::Fault;
+use crate::ticks::{SERVO_PERIOD_S, SERVO_TICKS_PER_PATH_TICK};
 
 /// Internal units (mm or rad) in one unit of the machine file (mm or degree): those of the motors' axes.
 pub const UNIT: [f64; MOTORS] = {

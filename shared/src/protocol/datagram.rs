@@ -1,8 +1,7 @@
 //! Cyclic data: small, self-contained, the newest wins.
 
 use crate::io::{AXES, MOTORS, SIDES, SLIDES};
-use crate::motion::State;
-use crate::tracking::{TrackerFault, TrackerState};
+use crate::state::{State, TrackerFault, TrackerState};
 use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};

@@ -16,7 +16,7 @@ pub use datagram::{
 };
 pub use element::{BadElement, PathChannel, PathElement, PathJoin, PathShape};
 pub use request::{
-    Identity, Knot, LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, MotionStatus, PathAction, PathEvent, PathLimits,
+    Identity, LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, MotionStatus, PathAction, PathEvent, PathLimits,
     Refusal, Request, Response, Role, Room, TrackerStatus,
 };
 

@@ -1,12 +1,12 @@
 //! Requests of the PC and the answers of the boards.
 
 use super::element::{BadElement, PathElement};
+use crate::config::{MotionConfig, TrackerConfig};
 use crate::geometry::PoseOffset;
 use crate::io::{AXES, MOTORS, SLIDE_NAMES, SLIDES};
-use crate::motion::{Fault, MotionConfig, State};
 use crate::parameter::ParameterError;
-use crate::tracking::{TrackerConfig, TrackerFault, TrackerState};
-use crate::trajectory::{CHANNELS, PathError, PathSpace, PushError};
+use crate::state::{Fault, State, TrackerFault, TrackerState};
+use crate::trajectory::{Knot, PathError, PathSpace, PushError};
 use heapless::{String, Vec};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -373,17 +373,6 @@ impl From<PushError> for Refusal {
             PushError::Gap { line, distance } => Self::Gap { line, distance },
         }
     }
-}
-
-/// A knot of the path: between two of them every channel is a cubic Hermite span over s.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
-pub struct Knot {
-    /// Path length \[mm\].
-    pub s_mm: f64,
-    /// Position of D (3) \[mm\], T (3), N (3), or the axes (6) and nothing (3), by the path's space; extension of the V slides that keeps the defocus (2) \[mm\].
-    pub value: [f64; CHANNELS],
-    /// Derivative of each channel over s.
-    pub slope: [f64; CHANNELS],
 }
 
 /// Something that happens at a path position.

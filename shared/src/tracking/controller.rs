@@ -11,6 +11,7 @@ mod captures;
 mod following;
 mod permit;
 mod requests;
+mod strobes;
 mod supervising;
 
 use super::clock::ClockRelation;
@@ -21,13 +22,13 @@ use super::plausible::{Arrival, PathStateGate};
 use super::seam::Seam;
 use super::search::SeamSearch;
 use super::supervision::SlideWatch;
-use super::{TrackerFault, TrackerState};
 use crate::control::{EmergencyStop, SearchInput, SearchProgress, SearchState, UNATTENDED_S};
 use crate::io::{Bits, Command, DacCode, ESTOP_CHANNELS, SIDES, SLIDES, SlideCommand, SlideFeedback};
 use crate::protocol::{BeamPermit, Capture, Datagram, PathState, Permit, TrackerSample};
+use crate::state::{TrackerFault, TrackerState};
 use crate::trajectory::Path;
-use captures::Strobes;
 use heapless::Vec;
+use strobes::Strobes;
 
 /// Period of the control tick \[µs\].
 const TICK_US: u32 = 1000;

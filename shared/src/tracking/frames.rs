@@ -1,6 +1,6 @@
 //! Where the two beams and the two cameras look (SPEC 0.6, 0.7) and what a measurement means on the path (0.8.2).
 
-use super::HeadConfig;
+use crate::config::HeadConfig;
 use crate::geometry::Pose;
 use crate::io::SIDES;
 use crate::parameter::{ParameterError, check, positive};

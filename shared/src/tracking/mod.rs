@@ -1,9 +1,7 @@
 //! Following the seam: from captures to the velocity of the slides.
 
 pub mod clock;
-mod config;
 mod controller;
-mod fault;
 pub mod frames;
 pub mod gain;
 pub mod history;
@@ -17,6 +15,4 @@ pub mod search;
 mod sensible;
 pub mod supervision;
 
-pub use config::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
 pub use controller::{TickInput, TickOutput, TrackerController};
-pub use fault::{TrackerFault, TrackerState};

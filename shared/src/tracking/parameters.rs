@@ -4,16 +4,14 @@ use super::frames::Heads;
 use super::gain::crossover;
 use super::law::SlideLaw;
 use super::map::{MAP_CAPACITY, MapLaw};
-use super::plausible::Belief;
 use super::search::SearchLaw;
+use super::sensible;
 use super::supervision::{Supervised, Supervision};
-use super::{SlideConfig, TrackerConfig, TrackingConfig, sensible};
+use crate::config::{SlideConfig, TrackerConfig, TrackingConfig};
 use crate::control::ReferenceSearch;
 use crate::io::{SLIDE_NAMES, SLIDES};
 use crate::parameter::{ParameterError, check, not_negative, positive};
-
-/// Period of the control tick \[s\].
-pub const TICK_S: f64 = 1e-3;
+use crate::ticks::TRACKER_PERIOD_S;
 
 /// Steeper than this, U would have to be faster than the path.
 const STEEPEST: f64 = 1.0;
@@ -58,6 +56,25 @@ pub struct SlideParameters {
     pub supervision: Supervision,
 }
 
+/// What can be on this machine, ready for use (mm, s).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Belief {
+    /// Fastest path \[mm/s\].
+    pub path_speed: f64,
+    /// How far a seam, or the pose, may be off the plan \[mm\].
+    pub deviation: f64,
+    /// How far from the plane of the lead a camera sees \[mm\].
+    pub along: f64,
+    /// How far beyond the travel of a slide a seam is still told \[mm\].
+    pub gate: f64,
+    /// How fast the pose may move beside the plan \[mm/s\]: faster, and no slide follows.
+    pub pose_speed: f64,
+    /// From D to the furthest that a camera sees \[mm\]: what a turn of the head is multiplied with.
+    pub lever: f64,
+    /// Path states older than this are of no use \[µs\].
+    pub stale_us: u64,
+}
+
 impl TrackerConfig {
     /// Checks and builds; errors name the field as in the machine file.
     pub fn build(&self) -> Result<TrackerParameters, ParameterError> {
@@ -93,7 +110,7 @@ impl TrackerConfig {
         let ends = slides.iter().map(|slide| slide.law.travel);
         let furthest = ends.fold(0.0, |most: f64, (min, max)| most.max(-min).max(max));
         // Faster, and no picture would lie within reach of the map.
-        let fastest_path = (window + hold) / (f64::from(tracking.frame_period_ms) * TICK_S);
+        let fastest_path = (window + hold) / (f64::from(tracking.frame_period_ms) * TRACKER_PERIOD_S);
         let slowest_slide = slides.iter().map(|slide| slide.law.max_velocity);
         let belief = Belief {
             path_speed: check(
@@ -165,7 +182,7 @@ impl SlideConfig {
             law: SlideLaw {
                 kp: check("tracking", "kp", tracking.kp, |v| v > 0.0 && v < limit)?,
                 ki: not_negative("tracking", "ki", tracking.ki)?,
-                dt: TICK_S,
+                dt: TRACKER_PERIOD_S,
                 max_velocity,
                 max_acceleration,
                 travel: (min, max),
@@ -174,14 +191,14 @@ impl SlideConfig {
                 full_scale,
             },
             counts_per_mm,
-            travel_ticks: libm::ceil((max - min) / max_velocity / TICK_S) as u32,
+            travel_ticks: libm::ceil((max - min) / max_velocity / TRACKER_PERIOD_S) as u32,
             search: ReferenceSearch::build(
                 [name],
                 [&self.home],
                 [self.counts_per_mm],
                 1.0,
                 max_acceleration,
-                TICK_S,
+                TRACKER_PERIOD_S,
             )?,
             supervision: Supervision::build(name, &supervised, self.following_error_mm)?,
         })

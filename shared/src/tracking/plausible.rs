@@ -8,7 +8,7 @@
 //! when two states in a row say so.
 
 use super::history::RESTARTED;
-use super::parameters::TrackerParameters;
+use super::parameters::{Belief, TrackerParameters};
 use crate::geometry::Pose;
 use crate::io::{SIDES, SLIDES};
 use crate::protocol::{PathState, SideMeasurement};
@@ -30,25 +30,6 @@ const GAIN: f64 = 0.1;
 const EARLY: f64 = 5000.0;
 /// Cosine of the largest angle between planned and measured directions: 60°.
 const TURNED: f64 = 0.5;
-
-/// What can be on this machine, ready for use (mm, s).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Belief {
-    /// Fastest path \[mm/s\].
-    pub path_speed: f64,
-    /// How far a seam, or the pose, may be off the plan \[mm\].
-    pub deviation: f64,
-    /// How far from the plane of the lead a camera sees \[mm\].
-    pub along: f64,
-    /// How far beyond the travel of a slide a seam is still told \[mm\].
-    pub gate: f64,
-    /// How fast the pose may move beside the plan \[mm/s\]: faster, and no slide follows.
-    pub pose_speed: f64,
-    /// From D to the furthest that a camera sees \[mm\]: what a turn of the head is multiplied with.
-    pub lever: f64,
-    /// Path states older than this are of no use \[µs\].
-    pub stale_us: u64,
-}
 
 impl TrackerParameters {
     /// Whether the camera of `side` can have seen the seam there, with the slides at `slides` \[mm\] and the machine going

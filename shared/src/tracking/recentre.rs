@@ -75,7 +75,7 @@ pub fn recentre(heads: &Heads, slides: &[f64; SLIDES], turn: (f64, f64)) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tracking::HeadConfig;
+    use crate::config::HeadConfig;
 
     const ANY: (f64, f64) = (-10.0, 10.0);
 

@@ -4,7 +4,7 @@
 //! beside the planned one. The sweep is a triangle, so that the seam passes the picture at one speed.
 
 use super::law::SlideTarget;
-use super::parameters::TICK_S;
+use crate::ticks::TRACKER_PERIOD_S;
 
 /// Without sight of the seam for so long, the sweep begins: longer than a camera that sees it takes to say so.
 const BEGIN_AFTER_S: f64 = 0.06;
@@ -51,7 +51,7 @@ impl SeamSearch {
         if goes {
             self.ticks = self.ticks.saturating_add(1);
         }
-        let time = f64::from(self.ticks) * TICK_S - BEGIN_AFTER_S;
+        let time = f64::from(self.ticks) * TRACKER_PERIOD_S - BEGIN_AFTER_S;
         let (offset, _) = law.at(time);
         let wanted = centre.position + offset;
         let position = wanted.clamp(travel.0 + MARGIN, (travel.1 - MARGIN).max(travel.0 + MARGIN));
@@ -99,7 +99,7 @@ mod tests {
         let mut last = 0.0;
         for _ in 0..ms {
             let target = search.step(law, SlideTarget::rest(0.0), travel, true);
-            assert!((target.position - last).abs() <= law.speed * TICK_S + 1e-9);
+            assert!((target.position - last).abs() <= law.speed * TRACKER_PERIOD_S + 1e-9);
             assert!(target.velocity.abs() <= law.speed);
             last = target.position;
             range = [range[0].min(last), range[1].max(last)];

@@ -1,10 +1,10 @@
 //! What the tracker board's parameters may be, by what they mean.
 
-use super::parameters::TICK_S;
-use super::{SlideConfig, TrackerConfig};
+use crate::config::{SlideConfig, TrackerConfig};
+use crate::control::sensible::{MOST_COUNTS, SCALES, check_home};
 use crate::io::SLIDE_NAMES;
-use crate::motion::sensible::{MOST_COUNTS, SCALES, check_home, within_either_sign};
-use crate::parameter::{ParameterError, within};
+use crate::parameter::{ParameterError, within, within_either_sign};
+use crate::ticks::TRACKER_PERIOD_S;
 use core::ops::RangeInclusive;
 
 /// Travel of a slide \[mm\], from its lowest to its highest position, which lie no farther than this from 0.
@@ -76,7 +76,7 @@ fn check_slide(owner: &str, slide: &SlideConfig) -> Result<(), ParameterError> {
         slide.max_velocity_mm_s,
         *SPEEDS.start()..=full_scale,
     )?;
-    let most = libm::fmin(*SCALES.end(), MOST_COUNTS / (fastest * TICK_S));
+    let most = libm::fmin(*SCALES.end(), MOST_COUNTS / (fastest * TRACKER_PERIOD_S));
     within_either_sign(
         owner,
         "counts_per_mm",

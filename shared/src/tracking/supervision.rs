@@ -6,10 +6,10 @@
 //! are forgotten within ten times that, so that a scale of the drive that is some percent off adds up to nothing:
 //! at speed v a drive that is wrong by the part g shows g·v·10·`preview_s`.
 
-use super::TrackerFault;
-use super::parameters::TICK_S;
 use crate::control::{MovementCheck, MovementState};
 use crate::parameter::{ParameterError, check};
+use crate::state::TrackerFault;
+use crate::ticks::TRACKER_PERIOD_S;
 
 /// Ways are forgotten within this many times the lag of the drive.
 const MEMORY: f64 = 10.0;
@@ -68,12 +68,13 @@ impl Supervision {
         let following_error = check(owner, "following_error_mm", following_error_mm, |v| {
             v >= least && v <= most
         })?;
-        let step = libm::ceil(libm::fabs(of.counts_per_mm) * of.max_velocity * TICK_S * STEP_MARGIN);
+        let step =
+            libm::ceil(libm::fabs(of.counts_per_mm) * of.max_velocity * TRACKER_PERIOD_S * STEP_MARGIN);
         Ok(Self {
             slide: of.slide,
             pitch: 1.0 / of.counts_per_mm,
-            lag: 1.0 - libm::exp(-TICK_S / of.preview),
-            fade: libm::exp(-TICK_S / (MEMORY * of.preview)),
+            lag: 1.0 - libm::exp(-TRACKER_PERIOD_S / of.preview),
+            fade: libm::exp(-TRACKER_PERIOD_S / (MEMORY * of.preview)),
             following_error,
             step: step as i32,
             speed: SPEED_MARGIN * of.max_velocity,
@@ -129,11 +130,11 @@ impl SlideWatch {
         let step = counts.saturating_sub(self.counts);
         self.counts = counts;
         // Over lost ticks the drive kept its command.
-        let time = f64::from(periods.max(1)) * TICK_S;
+        let time = f64::from(periods.max(1)) * TRACKER_PERIOD_S;
         let moved = step as f64 * by.pitch;
         for _ in 0..periods.clamp(1, 100) {
             self.expected += (self.command - self.expected) * by.lag;
-            self.error = (self.error + self.expected * TICK_S) * by.fade;
+            self.error = (self.error + self.expected * TRACKER_PERIOD_S) * by.fade;
         }
         self.error -= moved;
         self.speed += (moved / time - self.speed) * (1.0 - libm::exp(-time / SPEED_TIME));

@@ -20,7 +20,7 @@ pub use curve::{
 };
 pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
 pub use matched_turn::MatchedTurn;
-pub use path::{Path, PathError, PathPoint, PathSpace};
+pub use path::{Knot, Path, PathError, PathPoint, PathSpace};
 pub use planner::{LONGEST_PATH, Output, PlanLimits, Planner, PushError, Way};
 pub use reference::{ReferenceError, Unreachable, at_unit_speed, axes_at};
 pub use rest_to_rest::RestToRest;

@@ -4,7 +4,6 @@ use super::CHANNELS;
 use crate::geometry::{Moving, Pose, PoseError, PoseMotion, pose_in_motion};
 use crate::io::SIDES;
 use crate::kinematics::AxisMotion;
-use crate::protocol::Knot;
 use heapless::Vec;
 use nalgebra::Vector3;
 use postcard_schema::Schema;
@@ -19,6 +18,17 @@ pub enum PathSpace {
     Tool,
     /// The six axes (mm, rad); channels 6 to 8 mean nothing. The beams stay off.
     Axes,
+}
+
+/// A knot of the path: between two of them every channel is a cubic Hermite span over s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct Knot {
+    /// Path length \[mm\].
+    pub s_mm: f64,
+    /// Position of D (3) \[mm\], T (3), N (3), or the axes (6) and nothing (3), by the path's space; extension of the V slides that keeps the defocus (2) \[mm\].
+    pub value: [f64; CHANNELS],
+    /// Derivative of each channel over s.
+    pub slope: [f64; CHANNELS],
 }
 
 /// Up to `N` knots; between two of them every channel is a cubic Hermite span over s, outside it goes on in a

@@ -65,8 +65,7 @@ pub fn axes_at(
 mod tests {
     use super::*;
     use crate::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
-    use crate::protocol::Knot;
-    use crate::trajectory::{CHANNELS, Path, RestToRest, SpeedLimits, SpeedState};
+    use crate::trajectory::{CHANNELS, Knot, Path, RestToRest, SpeedLimits, SpeedState};
 
     fn machine() -> Kinematics {
         let config = KinematicsConfig::DualBeamGantry(DualBeamConfig {

@@ -4,10 +4,9 @@ use nalgebra::Vector3;
 use shared::geometry::{Pose, PoseMotion};
 use shared::io::AXES;
 use shared::kinematics::{
-    AcHeadConfig, AxisLimits, DualBeamConfig, Kinematics, KinematicsConfig, PipeWelderConfig,
+    AcHeadConfig, AxisConfig, AxisLimits, DualBeamConfig, Kinematics, KinematicsConfig, PipeWelderConfig,
     StirGantryConfig, StirTilt, WireArcConfig,
 };
-use shared::motion::AxisConfig;
 
 /// A machine with the limits it was built with.
 pub struct Machine {

@@ -1,15 +1,16 @@
 //! Servo loops and controller in lockstep with drives that follow their command at once.
 
+use shared::config::{BeamConfig, MotionConfig};
+use shared::control::{GantryConfig, HomeConfig, MotorConfig};
 use shared::io::{MOTORS, MotionCommand, MotionFeedback};
-use shared::kinematics::{AXIS_UNIT, DualBeamConfig, KinematicsConfig};
-use shared::motion::{
-    AxisConfig, BeamConfig, Fault, GantryConfig, HomeConfig, MotionConfig, MotionController, MotorConfig,
-    PathTickInput, SERVO_PERIOD_S, SERVO_TICKS_PER_PATH_TICK, ServoLoops, State,
-};
+use shared::kinematics::{AXIS_UNIT, AxisConfig, DualBeamConfig, KinematicsConfig};
+use shared::motion::{MotionController, PathTickInput, ServoLoops};
 use shared::protocol::{
     MotionSample, MotionStatus, PathAction, PathChannel, PathElement, PathEvent, PathJoin, PathLimits,
     PathShape, PathState, Refusal, Request, Response, Room,
 };
+use shared::state::{Fault, State};
+use shared::ticks::{SERVO_PERIOD_S, SERVO_TICKS_PER_PATH_TICK};
 use shared::trajectory::PathSpace;
 
 /// Counts in one mm or degree.

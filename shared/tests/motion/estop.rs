@@ -3,8 +3,8 @@
 use super::bench::{Bench, config};
 use shared::control::DISCREPANCY_US;
 use shared::io::MotionCommand;
-use shared::motion::{Fault, State};
 use shared::protocol::{Refusal, Request};
+use shared::state::{Fault, State};
 
 /// The longest time that the channels may differ \[ms\].
 const LONGEST_MS: u32 = DISCREPANCY_US / 1000;

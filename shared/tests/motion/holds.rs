@@ -1,8 +1,8 @@
 //! Hold, resume with overlap, back, and override.
 
 use super::bench::Bench;
-use shared::motion::State;
 use shared::protocol::{MotionSample, Request};
+use shared::state::State;
 
 /// Asks like a PC that is alive, until `done`.
 fn run_until(bench: &mut Bench, done: impl Fn(&MotionSample) -> bool) {

@@ -2,8 +2,8 @@
 
 use super::bench::{Bench, MARK, config};
 use shared::io::MotionCommand;
-use shared::motion::{Fault, State};
 use shared::protocol::Request;
+use shared::state::{Fault, State};
 
 /// Axis positions that the marks 2 below the power-up position mean (mm, degrees).
 fn expected(bench: &Bench) -> [f64; 6] {

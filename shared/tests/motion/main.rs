@@ -1,6 +1,5 @@
 //! The motion board's controller with ideal drives: every stop, trip and way back.
 
-mod aside;
 mod bench;
 mod estop;
 mod holds;
@@ -12,6 +11,7 @@ mod readback;
 mod steps;
 mod stops;
 mod streaming;
+mod superimposed;
 mod ticks;
 mod trips;
 mod words;

@@ -2,8 +2,8 @@
 
 use super::bench::{BLEND, Bench, LIMITS, load};
 use shared::io::MotionCommand;
-use shared::motion::State;
 use shared::protocol::{PathAction, PathEvent, PathJoin, PathLimits, Refusal, Request};
+use shared::state::State;
 use shared::trajectory::PathSpace;
 
 /// With it a plan of a long path wanted more nodes than numbers count.

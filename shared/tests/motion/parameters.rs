@@ -1,7 +1,9 @@
 //! Parameters have floors and ceilings by what they mean.
 
 use super::bench::{Bench, config};
-use shared::motion::{AxisConfig, BeamConfig, GantryConfig, MotionConfig, MotorConfig, ReadbackConfig};
+use shared::config::{BeamConfig, MotionConfig, ReadbackConfig};
+use shared::control::{GantryConfig, MotorConfig};
+use shared::kinematics::AxisConfig;
 use shared::parameter::ParameterError;
 use shared::protocol::{Refusal, Request};
 

@@ -2,8 +2,8 @@
 
 use super::bench::{Bench, Y};
 use shared::io::MotionCommand;
-use shared::motion::{Fault, NoPermit, State};
 use shared::protocol::{BeamPermit, Datagram, PERMIT_US, PathAction, PathEvent, PathJoin, Permit, Request};
+use shared::state::{Fault, NoPermit, State};
 use shared::trajectory::PathSpace;
 
 /// Where the beam goes on \[mm\].

@@ -1,9 +1,11 @@
 //! The power that a source gives back, against the one that is commanded.
 
 use super::bench::{Bench, config};
+use shared::config::{MotionConfig, ReadbackConfig};
 use shared::io::{DacCode, MotionCommand};
-use shared::motion::{DARK, Fault, MotionConfig, ReadbackConfig, State};
+use shared::motion::DARK;
 use shared::protocol::{Refusal, Request};
+use shared::state::{Fault, State};
 
 /// A tenth of 4000 W, for 10 ms.
 const READBACK: ReadbackConfig = ReadbackConfig {

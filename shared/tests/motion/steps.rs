@@ -1,8 +1,8 @@
 //! Steps of the speed along a path, and what hold, resume and stop make of them.
 
 use super::bench::Bench;
-use shared::motion::State;
 use shared::protocol::Request;
+use shared::state::State;
 
 const STEPS: [(f64, f64); 3] = [(100.0, 30.0), (140.0, 60.0), (220.0, 20.0)];
 

@@ -2,8 +2,8 @@
 
 use super::bench::{BLEND, Bench, LIMITS, Y, config, load};
 use shared::io::MotionCommand;
-use shared::motion::State;
 use shared::protocol::{PathAction, PathEvent, PathJoin, PathLimits, Refusal, Request};
+use shared::state::State;
 use shared::trajectory::PathSpace;
 
 fn events(events: &[(f64, PathAction)]) -> Request {

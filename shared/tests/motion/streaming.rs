@@ -1,8 +1,9 @@
 //! Elements and events that come while the path runs.
 
 use super::bench::{BLEND, Bench, load};
-use shared::motion::{EVENTS, State};
+use shared::motion::EVENTS;
 use shared::protocol::{PathAction, PathEvent, PathJoin, Refusal, Request};
+use shared::state::State;
 use shared::trajectory::{ELEMENTS, PathSpace};
 
 const STEP: f64 = 0.25;

@@ -1,8 +1,9 @@
 //! Counters and clocks over weeks.
 
 use super::bench::{Bench, config};
-use shared::motion::{MotionController, PathTickInput, ServoReport, State};
+use shared::motion::{MotionController, PathTickInput, ServoReport};
 use shared::protocol::Request;
+use shared::state::State;
 
 /// Path ticks are counted in 32 bits for people, 49 days of them; their time goes on.
 #[test]

@@ -2,8 +2,10 @@
 
 use super::bench::{BLEND, Bench, MARK, SCALE, TRAVEL_MAX, Y, config, load};
 use shared::io::MotionCommand;
-use shared::motion::{Fault, Machine, PathTickInput, SERVO_TICKS_PER_PATH_TICK, State};
+use shared::motion::{Machine, PathTickInput};
 use shared::protocol::{MotionSample, PathAction, PathChannel, PathEvent, PathJoin, Refusal, Request};
+use shared::state::{Fault, State};
+use shared::ticks::SERVO_TICKS_PER_PATH_TICK;
 use shared::trajectory::PathSpace;
 
 /// Pushes the motors by `step` in each of `ticks` servo ticks; the fault, all drives off in the tick it came.

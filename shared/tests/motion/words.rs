@@ -1,8 +1,8 @@
 //! An operator's words in any order: every place where the path has a beam on is gone over with the beam open.
 
 use super::bench::{BLEND, Bench, load};
-use shared::motion::State;
 use shared::protocol::{MotionSample, PathAction, PathElement, PathEvent, PathJoin, Request};
+use shared::state::State;
 use shared::trajectory::PathSpace;
 use std::collections::VecDeque;
 

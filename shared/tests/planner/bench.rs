@@ -4,10 +4,9 @@ use nalgebra::Vector3;
 use shared::geometry::{Pose, rotate};
 use shared::io::AXES;
 use shared::kinematics::{
-    AcHeadConfig, AxisLimits, DualBeamConfig, Kinematics, KinematicsConfig, PipeWelderConfig,
+    AcHeadConfig, AxisConfig, AxisLimits, DualBeamConfig, Kinematics, KinematicsConfig, PipeWelderConfig,
     StirGantryConfig, StirTilt, WireArcConfig,
 };
-use shared::motion::AxisConfig;
 use shared::trajectory::{CHANNELS, PathSpace, PlanLimits};
 
 /// A machine, and the neighbourhood in which programs are run on it.

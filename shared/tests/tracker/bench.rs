@@ -2,17 +2,16 @@
 
 use nalgebra::Vector3;
 use plant::SlidePlant;
+use shared::config::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
+use shared::control::HomeConfig;
 use shared::geometry::Pose;
 use shared::io::{SIDES, SLIDES, SlideCommand, SlideFeedback};
-use shared::motion::HomeConfig;
 use shared::protocol::{
-    ClockReply, Datagram, Knot, Measurement, PathState, Request, Response, SideMeasurement, TrackerStatus,
+    ClockReply, Datagram, Measurement, PathState, Request, Response, SideMeasurement, TrackerStatus,
 };
 use shared::tracking::frames::Heads;
-use shared::tracking::{
-    HeadConfig, SlideConfig, TickInput, TickOutput, TrackerConfig, TrackerController, TrackingConfig,
-};
-use shared::trajectory::PathSpace;
+use shared::tracking::{TickInput, TickOutput, TrackerController};
+use shared::trajectory::{Knot, PathSpace};
 use std::collections::VecDeque;
 
 pub const KNOTS: usize = 600;

@@ -5,7 +5,7 @@ use crate::states::{bench, ready};
 use shared::control::DISCREPANCY_US;
 use shared::io::{SlideCommand, SlideFeedback};
 use shared::protocol::{Refusal, Request, Response};
-use shared::tracking::{TrackerFault, TrackerState};
+use shared::state::{TrackerFault, TrackerState};
 
 /// The longest time that the channels may differ \[ms\].
 const LONGEST_MS: u32 = DISCREPANCY_US / 1000;

@@ -1,7 +1,7 @@
 //! How near the spots stay to the seam.
 
 use crate::bench::{Bench, SeamFn, Shape, config};
-use shared::tracking::TrackerState;
+use shared::state::TrackerState;
 
 const FIVE_M_MIN: f64 = 5000.0 / 60.0;
 const NINE_M_MIN: f64 = 150.0;

@@ -3,7 +3,7 @@
 use crate::bench::{Bench, SeamFn, Shape, config};
 use shared::io::SLIDES;
 use shared::protocol::{ClockReply, Datagram, Measurement, PathState, SideMeasurement};
-use shared::tracking::{TrackerFault, TrackerState};
+use shared::state::{TrackerFault, TrackerState};
 
 const NINE_M_MIN: f64 = 150.0;
 

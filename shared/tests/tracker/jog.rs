@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, PATH_ID, Shape, config};
 use shared::protocol::{Refusal, Request, Response};
-use shared::tracking::TrackerState;
+use shared::state::TrackerState;
 use shared::trajectory::PathSpace;
 
 const PLACE: [f64; 4] = [3.0, -1.5, -11.9, 0.25];

@@ -1,9 +1,9 @@
 //! Parameters have floors and ceilings by what they mean.
 
 use super::bench::{Bench, Shape, config};
+use shared::config::{SlideConfig, TrackerConfig, TrackingConfig};
 use shared::parameter::ParameterError;
 use shared::protocol::{Refusal, Request, Response};
-use shared::tracking::{SlideConfig, TrackerConfig, TrackingConfig};
 
 fn refused(owner: &str, field: &str, value: f64, change: impl FnOnce(&mut TrackerConfig)) {
     let mut config = config();

@@ -1,9 +1,10 @@
 //! What the tracker lets the beams do.
 
 use crate::bench::{Bench, Shape, config};
+use shared::config::TrackerConfig;
 use shared::protocol::BeamPermit::{Keep, No, Open};
 use shared::protocol::{BeamPermit, Request, Response};
-use shared::tracking::{TrackerConfig, TrackerFault, TrackerState};
+use shared::state::{TrackerFault, TrackerState};
 
 fn straight(_side: usize, _s: f64) -> (f64, f64) {
     (0.3, -0.2)

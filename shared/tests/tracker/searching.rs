@@ -1,7 +1,8 @@
 //! A seam beside what the cameras see is found by the slides, and reached before the beam is on.
 
 use crate::bench::{Bench, SeamFn, Shape, config};
-use shared::tracking::{TrackerConfig, TrackerFault, TrackerState};
+use shared::config::TrackerConfig;
+use shared::state::{TrackerFault, TrackerState};
 
 /// Where the beams go on \[mm\].
 const WELD: f64 = 80.0;

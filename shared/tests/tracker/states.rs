@@ -4,7 +4,8 @@ use crate::bench::{Bench, PATH_ID, Shape, config};
 use shared::io::SlideCommand;
 use shared::parameter::ParameterError;
 use shared::protocol::{Datagram, Measurement, Refusal, Request, Response};
-use shared::tracking::{TickInput, TrackerController, TrackerFault, TrackerState};
+use shared::state::{TrackerFault, TrackerState};
+use shared::tracking::{TickInput, TrackerController};
 use shared::trajectory::PathSpace;
 
 pub fn bench() -> Bench {
@@ -559,7 +560,7 @@ fn a_strobe_is_asked_for_before_the_law_and_what_it_was_late_is_told() {
 
 #[test]
 fn what_is_believed_has_bounds() {
-    type Change = fn(&mut shared::tracking::TrackingConfig, f64);
+    type Change = fn(&mut shared::config::TrackingConfig, f64);
     let path_speed: Change = |tracking, value| tracking.max_path_speed_mm_s = value;
     let deviation: Change = |tracking, value| tracking.max_seam_deviation_mm = value;
     let slope: Change = |tracking, value| tracking.max_seam_slope = value;

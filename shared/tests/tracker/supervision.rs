@@ -5,7 +5,7 @@ use plant::{GratingFault, SlideFault};
 use shared::io::{SLIDES, SlideCommand};
 use shared::parameter::ParameterError;
 use shared::protocol::{Refusal, Request, Response};
-use shared::tracking::{TrackerFault, TrackerState};
+use shared::state::{TrackerFault, TrackerState};
 
 const DEAD: SlideFault = SlideFault::Encoder(GratingFault::Dead);
 

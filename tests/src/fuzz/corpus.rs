@@ -6,11 +6,10 @@ use crate::{JOBS, MACHINE, assert_held_weld_goes_on, shipped, shipped_seam, weld
 use config::machine::MachineFile;
 use host_link::boards::{Boards, LinkError};
 use host_link::pass_on;
+use shared::config::{MotionConfig, TrackerConfig};
 use shared::geometry::PoseOffset;
 use shared::io::SLIDES;
-use shared::motion::MotionConfig;
 use shared::protocol::{Datagram, Request, Response, Role};
-use shared::tracking::TrackerConfig;
 use world::simulated::SimulatedBoards;
 
 /// Moments of a job at which its boards are kept.

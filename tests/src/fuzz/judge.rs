@@ -2,11 +2,11 @@
 
 use super::wire::Wire;
 use serde::Serialize;
+use shared::config::{MotionConfig, TrackerConfig};
 use shared::io::{DacCode, MOTOR_AXIS, MOTOR_NAMES, MOTORS, SIDES, SLIDE_NAMES, SLIDES};
 use shared::kinematics::AXIS_UNIT;
-use shared::motion::{MotionConfig, State};
 use shared::protocol::{PathAction, PathEvent, Request, Response, Role};
-use shared::tracking::{TrackerConfig, TrackerState};
+use shared::state::{State, TrackerState};
 use world::simulated::Outputs;
 
 /// Orders of the path tick reach the drives a millisecond later, and what they say of the next one later still.

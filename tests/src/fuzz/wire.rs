@@ -272,10 +272,10 @@ parts! {
 mod tests {
     use super::*;
     use shared::io::{MOTORS, SIDES};
-    use shared::motion::State;
     use shared::protocol::{
         Datagram, LOAD_EVENTS, MotionSample, PathAction, PathEvent, Refusal, Request, Response,
     };
+    use shared::state::State;
 
     fn same(message: &impl Serialize) -> Vec<Place> {
         let mut wire = Wire::default();

@@ -5,8 +5,8 @@ use config::machine::MachineFile;
 use host_link::boards::{Boards, command};
 use shared::io::{AXES, MOTOR_AXIS, MOTORS};
 use shared::kinematics::AXIS_UNIT;
-use shared::motion::State;
 use shared::protocol::{Datagram, MotionSample, Request, Role};
+use shared::state::State;
 use std::time::{Duration, Instant};
 use system_tests::{JOBS, assert_within_limits, shipped, weld_job};
 

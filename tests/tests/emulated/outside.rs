@@ -9,13 +9,12 @@ use host_link::boards::{Boards, Overheard};
 use nix::sys::signal::Signal;
 use report::Ended;
 use serde_json::Value;
-use shared::motion::{Fault, State};
 use shared::protocol::framing::{MAX_DATAGRAM, encode_datagram};
 use shared::protocol::{
     BeamPermit, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, PathState, Permit, Request,
     Response, Role, SideMeasurement,
 };
-use shared::tracking::TrackerFault;
+use shared::state::{Fault, State, TrackerFault};
 use std::fs;
 use std::net::{Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
@@ -149,20 +148,20 @@ fn a_motion_board_that_freezes_is_reset_or_dies_is_blamed_and_the_slides_stop() 
 
 /// A program that welds, paused when its beams have been on for a while.
 fn paused(pair: &Pair) -> Process {
-    let mut command = pair.host_link(None);
+    let mut command = pair.seamwright(None);
     command.args(["--speed", "9"]);
-    let mut host_link = Process::start(command);
-    host_link.wait_for("welding");
+    let mut seamwright = Process::start(command);
+    seamwright.wait_for("welding");
     thread::sleep(Duration::from_secs(2));
-    host_link.signal(Signal::SIGSTOP);
-    host_link
+    seamwright.signal(Signal::SIGSTOP);
+    seamwright
 }
 
 /// Checks that what was paused says so and ends with an error, and that nothing moves or burns.
 #[track_caller]
-fn assert_blames_itself(host_link: Process, pair: &Pair) {
-    host_link.signal(Signal::SIGCONT);
-    let (status, said) = host_link.end();
+fn assert_blames_itself(seamwright: Process, pair: &Pair) {
+    seamwright.signal(Signal::SIGCONT);
+    let (status, said) = seamwright.end();
     println!("{said:#?}");
     assert_eq!(status.code(), Some(1), "{said:#?}");
     let last = said.last().expect("an error");
@@ -176,9 +175,9 @@ fn assert_blames_itself(host_link: Process, pair: &Pair) {
 #[test]
 fn a_pc_that_is_paused_stops_the_machine_and_blames_itself() {
     let pair = Pair::boot("pc-paused");
-    let host_link = paused(&pair);
+    let seamwright = paused(&pair);
     thread::sleep(Duration::from_secs(3));
-    assert_blames_itself(host_link, &pair);
+    assert_blames_itself(seamwright, &pair);
     let (motion, _) = status(&mut pair.connect());
     assert_eq!(motion.state, State::Fault, "{:?}", motion.fault);
 }
@@ -189,7 +188,7 @@ fn a_pc_that_is_started_anew_takes_the_place_of_one_that_is_silent() {
     let silent = paused(&pair);
     // It keeps its place for 5 s, and emulated boards wait for a silent PC for a second before.
     thread::sleep(Duration::from_secs(4));
-    let mut anew = Process::start(pair.host_link(None));
+    let mut anew = Process::start(pair.seamwright(None));
     anew.wait_for("searching reference marks");
     assert_blames_itself(silent, &pair);
     // The marks are a minute away.

@@ -4,13 +4,13 @@ use emulator::{INSTRUCTIONS_PER_US, Options, PROGRAM_VARIABLES, SESSION_VARIABLE
 use host_link::boards::{Boards, NetworkBoards, Patience};
 use plant::DEFAULT_MACHINE;
 use report::Report;
-use shared::motion::State;
 use shared::protocol::{MotionStatus, Request, Response, Role, TrackerStatus};
-use shared::tracking::TrackerState;
+use shared::state::{State, TrackerState};
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use system_tests::{MACHINE, PROGRAM, SEAM, shipped};
+use world::emulated;
 
 /// Boards that run, with a folder of their own.
 pub struct Pair {
@@ -38,18 +38,18 @@ impl Pair {
     }
 
     pub fn connect(&self) -> NetworkBoards {
-        NetworkBoards::emulated(self.boards.session(), true, Patience::default())
+        emulated::connect(self.boards.session(), true, Patience::default())
             .unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// A connection to the motion board only, as machines without a tracker have it.
     pub fn connect_motion(&self) -> NetworkBoards {
-        NetworkBoards::emulated(self.boards.session(), false, Patience::default())
+        emulated::connect(self.boards.session(), false, Patience::default())
             .unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// `seamwright weld` with the shipped job on these boards.
-    pub fn host_link(&self, seam: Option<&Path>) -> Command {
+    pub fn seamwright(&self, seam: Option<&Path>) -> Command {
         let mut command = bound_to_parent(program(PROGRAM_VARIABLES[0]));
         command
             .args(["weld", "--boards", "emulated", "--machine"])

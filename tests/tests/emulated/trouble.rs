@@ -8,9 +8,8 @@ use host_link::boards::Boards;
 use job::JobError;
 use nix::sys::signal::Signal;
 use serde_json::Value;
-use shared::motion::{Fault, State};
 use shared::protocol::{Datagram, MotionSample, TELEMETRY_BATCH};
-use shared::tracking::TrackerState;
+use shared::state::{Fault, State, TrackerState};
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::os::unix::process::ExitStatusExt;
@@ -26,10 +25,10 @@ fn far(s: f64) -> [f64; 4] {
 #[test]
 fn ctrl_c_stops_on_the_path_and_leaves_a_report_and_the_drives_off() {
     let mut pair = Pair::boot("ctrl-c");
-    let mut host_link = Process::start(pair.host_link(None));
-    host_link.wait_for("welding");
-    host_link.signal(Signal::SIGINT);
-    let (status, said) = host_link.end();
+    let mut seamwright = Process::start(pair.seamwright(None));
+    seamwright.wait_for("welding");
+    seamwright.signal(Signal::SIGINT);
+    let (status, said) = seamwright.end();
     assert_eq!(status.code(), Some(130), "{said:#?}");
     assert!(
         said.last()
@@ -62,7 +61,7 @@ fn a_refused_job_leaves_the_drives_off() {
     let mut pair = Pair::boot("refused");
     let file = scratch("far.csv");
     fs::write(&file, seam_file(far)).expect("the scratch folder is writable");
-    let (status, said) = Process::start(pair.host_link(Some(&file))).end();
+    let (status, said) = Process::start(pair.seamwright(Some(&file))).end();
     assert_eq!((status.code(), said.len()), (Some(1), 1), "{said:#?}");
     assert!(
         said[0].contains("V2") && said[0].contains("beyond its travel"),
@@ -77,7 +76,7 @@ fn a_refused_job_leaves_the_drives_off() {
     // The job itself finds out when the drives are on.
     let ended = weld(&mut pair.connect(), seam(far), 5.0);
     assert!(
-        matches!(ended.error, Some(JobError::Seam(_))),
+        matches!(ended.error, Some(JobError::Surroundings(_))),
         "{:?}",
         ended.error
     );
@@ -88,10 +87,10 @@ fn a_refused_job_leaves_the_drives_off() {
 #[test]
 fn without_the_pc_the_machine_stops_on_its_path_and_welds_again_later() {
     let mut pair = Pair::boot("vanished");
-    let mut host_link = Process::start(pair.host_link(None));
-    host_link.wait_for("welding");
-    host_link.signal(Signal::SIGKILL);
-    host_link.end();
+    let mut seamwright = Process::start(pair.seamwright(None));
+    seamwright.wait_for("welding");
+    seamwright.signal(Signal::SIGKILL);
+    seamwright.end();
 
     // A stranger who connects, says Hello, and asks for the state does not take the path over.
     let mut boards = pair.connect();

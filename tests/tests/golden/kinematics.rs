@@ -5,8 +5,7 @@ use nalgebra::Vector3;
 use serde_json::Value;
 use shared::geometry::{Pose, PoseMotion, interpolate};
 use shared::io::{AXES, AXIS_NAMES};
-use shared::kinematics::{AxisLimits, Chain, DualBeam, DualBeamConfig, feed_limit, violations};
-use shared::motion::AxisConfig;
+use shared::kinematics::{AxisConfig, AxisLimits, Chain, DualBeam, DualBeamConfig, feed_limit, violations};
 
 pub fn machine(case: &Value) -> DualBeam {
     let geometry = &case["in"]["geo"];

@@ -6,8 +6,7 @@ use nc::text::{decimal, machine_block};
 use serde_json::Value;
 use shared::geometry::Pose;
 use shared::io::AXES;
-use shared::kinematics::{AcHead, AcHeadConfig, AxisLimits, Chain, StirGantryConfig, StirTilt};
-use shared::motion::AxisConfig;
+use shared::kinematics::{AcHead, AcHeadConfig, AxisConfig, AxisLimits, Chain, StirGantryConfig, StirTilt};
 
 const A: usize = 3;
 const B: usize = 4;

@@ -2,8 +2,7 @@
 
 use super::file::{Golden, near, number, numbers};
 use serde_json::Value;
-use shared::control::{Gantry, GantryState, Pid, PidState, Setpoint};
-use shared::motion::{GantryConfig, HomeConfig, MotorConfig};
+use shared::control::{Gantry, GantryConfig, GantryState, HomeConfig, MotorConfig, Pid, PidState, Setpoint};
 
 /// A loop with the parameters of a golden file.
 pub fn pid(par: &Value) -> Pid {

@@ -2,8 +2,8 @@
 
 use super::*;
 use host_link::boards::Overheard;
-use shared::motion::State;
 use shared::protocol::MotionSample;
+use shared::state::State;
 
 /// Ten times the time of the path at its feed, and a hold of a minute.
 #[test]

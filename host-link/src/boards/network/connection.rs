@@ -1,8 +1,8 @@
 //! The connection to one board: its request stream, its UDP socket and the thread that empties it.
 
+use super::stream::Stream;
+use super::{Endpoint, Incoming, Patience, waits};
 use crate::boards::LinkError;
-use crate::boards::network::stream::Stream;
-use crate::boards::network::{Endpoint, Incoming, Patience, waits};
 use shared::protocol::framing;
 use shared::protocol::{Datagram, Identity, Request, Response, Role, SCHEMA_HASH};
 use std::io;

@@ -6,7 +6,7 @@ mod stream;
 #[cfg(test)]
 mod tests;
 
-use crate::boards::{Absence, Boards, LinkError};
+use super::{Absence, Boards, LinkError};
 use attention::Attention;
 use connection::Connection;
 use shared::protocol::framing;

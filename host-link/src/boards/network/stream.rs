@@ -1,7 +1,7 @@
 //! The request stream of one board: TCP, requests and their answers, in the same order.
 
+use super::{Endpoint, Patience, waits};
 use crate::boards::LinkError;
-use crate::boards::network::{Endpoint, Patience, waits};
 use shared::protocol::framing::{self, FrameError, MAX_MESSAGE};
 use shared::protocol::{Identity, Request, Response, Role, SCHEMA_HASH};
 use std::collections::VecDeque;

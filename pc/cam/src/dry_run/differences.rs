@@ -1,7 +1,7 @@
 //! Speed, acceleration and jerk as differences of positions.
 
-use crate::dry_run::ROWS;
-use shared::motion::PATH_PERIOD_S;
+use super::ROWS;
+use shared::ticks::PATH_PERIOD_S;
 
 /// Speed, acceleration and jerk of a row.
 pub type Rates = [f64; 3];

@@ -1,8 +1,8 @@
 //! What is known after a dry run.
 
-use crate::dry_run::differences::Rates;
-use crate::dry_run::trace::Trace;
-use crate::dry_run::{PATH, ROWS};
+use super::differences::Rates;
+use super::trace::Trace;
+use super::{PATH, ROWS};
 use nc::Motion;
 use serde::Serialize;
 use shared::io::AXES;

@@ -1,14 +1,15 @@
 //! Paths one after the other through the planner, a millisecond at a time.
 
-use crate::dry_run::differences::{Differences, Rates};
-use crate::dry_run::figures::{Rulers, row_unit};
-use crate::dry_run::stream::{ARRIVED, Stream, dwell_ticks, ticks_between};
-use crate::dry_run::{DryRun, DryRunError, Highest, PATH, PathFigures, ROWS, Stop, Trace};
+use super::differences::{Differences, Rates};
+use super::figures::{Rulers, row_unit};
+use super::stream::{ARRIVED, Stream, dwell_ticks, ticks_between};
+use super::{DryRun, DryRunError, Highest, PATH, PathFigures, ROWS, Stop, Trace};
 use crate::path::PlannedPath;
 use config::machine::MachineFile;
 use shared::io::AXES;
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
-use shared::motion::{Machine, PATH_PERIOD_S};
+use shared::motion::Machine;
+use shared::ticks::PATH_PERIOD_S;
 use shared::trajectory::{BoardPlanner, Element, Output};
 use std::collections::VecDeque;
 

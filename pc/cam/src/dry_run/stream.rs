@@ -1,6 +1,6 @@
 //! How paths reach the planner: as the PC gives them to the motion board, a request a millisecond.
 
-use crate::dry_run::DryRunError;
+use super::DryRunError;
 use crate::path::{Leg, PathError, PlannedPath};
 use shared::protocol::{LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, TELEMETRY_BATCH};
 use shared::trajectory::{BoardPlanner, Element};

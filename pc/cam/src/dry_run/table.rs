@@ -1,7 +1,7 @@
 //! The prediction for people.
 
-use crate::dry_run::figures::name;
-use crate::dry_run::{DryRun, PATH, PathFigures, Peak, QUANTITIES, ROWS};
+use super::figures::name;
+use super::{DryRun, PATH, PathFigures, Peak, QUANTITIES, ROWS};
 use nc::Motion;
 use shared::io::AXIS_NAMES;
 use shared::units::MM_S_PER_M_MIN;

@@ -1,7 +1,7 @@
 //! Curves over time in constant memory: lowest and highest value of ever longer intervals.
 
-use crate::dry_run::ROWS;
-use shared::motion::PATH_PERIOD_S;
+use super::ROWS;
+use shared::ticks::PATH_PERIOD_S;
 
 /// Intervals of a curve: twice what a plot can show.
 const BINS: usize = 4096;

@@ -1,9 +1,9 @@
 //! The motion of one block that is followed exactly: straight, round, or along a NURBS.
 
-use crate::path::nurbs::LongCurve;
-use crate::path::shape::{SHORTEST, channels};
-use crate::path::targets::arc;
-use crate::path::{PathError, Planner, Tip};
+use super::nurbs::LongCurve;
+use super::shape::{SHORTEST, channels};
+use super::targets::arc;
+use super::{PathError, Planner, Tip};
 use config::table::FARTHEST_MM;
 use nalgebra::Vector3;
 use nc::{Motion, Place, Target, Way};

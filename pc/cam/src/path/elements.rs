@@ -1,9 +1,9 @@
 //! A planned path as elements: what the motion board is given.
 
-use crate::path::blocks::Leg;
-use crate::path::{PathError, PlannedPath};
-use shared::protocol::{Knot, PathEvent, PathLimits};
-use shared::trajectory::{CHANNELS, Cubic, Element, Join, SHAPED, Shape, Tolerance};
+use super::blocks::Leg;
+use super::{PathError, PlannedPath};
+use shared::protocol::{PathEvent, PathLimits};
+use shared::trajectory::{CHANNELS, Cubic, Element, Join, Knot, SHAPED, Shape, Tolerance};
 
 /// What rounded corners, and the planner's output filter on curves, may take.
 pub const TOLERANCE: Tolerance = Tolerance {

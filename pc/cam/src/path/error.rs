@@ -1,6 +1,6 @@
 //! Why a program path cannot be run on this machine.
 
-use crate::path::{CAPACITY, MAX_EVENTS};
+use super::{CAPACITY, MAX_EVENTS};
 use config::table::FARTHEST_MM;
 use nc::{NcError, Place};
 use shared::geometry::nurbs::NurbsError;

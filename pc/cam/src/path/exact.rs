@@ -5,19 +5,18 @@
 //! degree between two directions, go over from one to the other within a short length around the join, at the
 //! acceleration that the axes have.
 
-use crate::path::block::{Block, Jet};
-use crate::path::feeds::Feeds;
-use crate::path::limits::{CURVATURE_SHARE, DRIVES};
-use crate::path::shape::{Goal, Shape};
-use crate::path::targets::ROTARY;
-use crate::path::{PathError, Planner, Tip};
+use super::block::{Block, Jet};
+use super::feeds::Feeds;
+use super::limits::{CURVATURE_SHARE, DRIVES};
+use super::shape::{Goal, Shape};
+use super::targets::ROTARY;
+use super::{PathError, Planner, Tip};
 use nalgebra::Vector3;
 use nc::{Motion, Target};
 use shared::geometry::angle;
 use shared::io::{AXES, SIDES};
-use shared::motion::PATH_PERIOD_S;
-use shared::protocol::Knot;
-use shared::trajectory::{CHANNELS, PathPoint, SHAPED};
+use shared::ticks::PATH_PERIOD_S;
+use shared::trajectory::{CHANNELS, Knot, PathPoint, SHAPED};
 
 /// Largest change of direction that is gone over without a stop \[rad\], half a degree. The tip then leaves the
 /// corner by about a thousandth of the length of the change: nanometres at the feeds of arc and friction

@@ -1,6 +1,6 @@
 //! How fast the way to each target is to be gone.
 
-use crate::path::PathError;
+use super::PathError;
 use nc::{FeedRate, Place, ProgramPath, Target};
 
 /// Feeds of a path.

@@ -1,8 +1,8 @@
 //! Starting a program at one of its lines: the whole program is planned for its state, and run from there.
 
-use crate::path::outputs::Switched;
-use crate::path::shape::{Shape, channels};
-use crate::path::{Leg, NOWHERE, PathError, PlannedPath, Planner, inner};
+use super::outputs::Switched;
+use super::shape::{Shape, channels};
+use super::{Leg, NOWHERE, PathError, PlannedPath, Planner, inner};
 use nc::{Motion, Program, Way};
 use shared::io::{AXES, SIDES};
 use shared::protocol::{PathAction, PathEvent};

@@ -1,17 +1,16 @@
 //! What a path asks of the axes and V slides, and the speed that they allow.
 
-use crate::path::shape::Shape;
-use crate::path::targets::ROTARY;
-use crate::path::{Bound, PathError, PlannedPath, Planner};
+use super::shape::Shape;
+use super::targets::ROTARY;
+use super::{Bound, PathError, PlannedPath, Planner};
 use config::machine::MachineFile;
 use config::table::FARTHEST_MM;
 use nc::Place;
+use shared::config::SlideConfig;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
 use shared::parameter::ParameterError;
-use shared::protocol::Knot;
-use shared::tracking::SlideConfig;
-use shared::trajectory::{CHANNELS, PathPoint, PathSpace, SpeedLimits};
+use shared::trajectory::{CHANNELS, Knot, PathPoint, PathSpace, SpeedLimits};
 
 /// The axes, then the extensions of the V slides.
 pub(super) const DRIVES: usize = AXES + SIDES;

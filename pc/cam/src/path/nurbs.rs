@@ -1,6 +1,6 @@
 //! NURBS of a program over their length.
 
-use crate::path::{PathError, Tip};
+use super::{PathError, Tip};
 use nalgebra::Vector3;
 use nc::{NurbsWay, Place};
 use shared::geometry::nurbs::{Curve, Nurbs, RationalBezier, length, parameter_at_length};

@@ -1,6 +1,6 @@
 //! What a program switches, on the machine that is there.
 
-use crate::path::{MAX_EVENTS, PathError, Planner, SpeedStep};
+use super::{MAX_EVENTS, PathError, Planner, SpeedStep};
 use nc::{Place, ProgramAction, ProgramEvent};
 use shared::geometry::Turn;
 use shared::io::SIDES;

@@ -1,14 +1,14 @@
 //! From one path of a program to what the boards run: its curves, timed and checked, and where the machine then
 //! stands.
 
-use crate::path::blocks::Moves;
-use crate::path::exact::Piece;
-use crate::path::feeds::Feeds;
-use crate::path::limits::{Demand, axes_at};
-use crate::path::outputs::{Switched, Switching, on_the_way};
-use crate::path::shape::{Goal, Shape, channels};
-use crate::path::targets::{ROTARY, Stand};
-use crate::path::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip};
+use super::blocks::Moves;
+use super::exact::Piece;
+use super::feeds::Feeds;
+use super::limits::{Demand, axes_at};
+use super::outputs::{Switched, Switching, on_the_way};
+use super::shape::{Goal, Shape, channels};
+use super::targets::{ROTARY, Stand};
+use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip};
 use nc::{Motion, PathControl, Place, ProgramPath, Target, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;

@@ -1,11 +1,11 @@
 //! A planned path: what the boards are given.
 
-use crate::path::blocks::{Blocks, Course, Leg};
-use crate::path::shape::Shape;
-use crate::path::{CAPACITY, PathError};
+use super::blocks::{Blocks, Course, Leg};
+use super::shape::Shape;
+use super::{CAPACITY, PathError};
 use nc::Motion;
-use shared::protocol::{Knot, PathAction, PathEvent};
-use shared::trajectory::{Path, PathSpace, SpeedLimits};
+use shared::protocol::{PathAction, PathEvent};
+use shared::trajectory::{Knot, Path, PathSpace, SpeedLimits};
 
 /// A path that the boards can run.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! What a path is programmed to do where: its feeds, and where beams burn and seams are followed.
 
-use crate::path::PlannedPath;
+use super::PlannedPath;
 use shared::io::SIDES;
 use shared::protocol::PathAction;
 

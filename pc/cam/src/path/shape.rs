@@ -1,14 +1,13 @@
 //! Curves with their knots: smooth through many points, and straight in axis space.
 
+use super::{PathError, Planner, Tip};
 use crate::curve::{Curve, distance};
-use crate::path::{PathError, Planner, Tip};
 use nalgebra::Vector3;
 use nc::{Place, Target};
 use shared::geometry::{Pose, angle};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
-use shared::protocol::Knot;
-use shared::trajectory::CHANNELS;
+use shared::trajectory::{CHANNELS, Knot};
 
 /// Largest angle between two chords of a path \[rad\]: a spline through a sharper corner would swing out.
 const MAX_CORNER: f64 = 0.35;

@@ -1,8 +1,8 @@
 //! From the words of a program to places: what is not said is filled in, and what this machine cannot have is
 //! refused.
 
-use crate::path::outputs::Switched;
-use crate::path::{PathError, Planner};
+use super::outputs::Switched;
+use super::{PathError, Planner};
 use nalgebra::Vector3;
 use nc::{ArcForm, ArcWay, Place, ProgramPath, Target, Way};
 use shared::geometry::{Arc, Turn};

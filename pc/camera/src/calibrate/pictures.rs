@@ -1,6 +1,6 @@
 //! A folder of pictures to calibrate from, and what is known of each.
 
-use crate::calibrate::CalibrateError;
+use super::CalibrateError;
 use crate::{Picture, read_grey};
 use config::table::{self, TableError};
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! What is found from pictures of which something is known, told beside what was believed before.
 
+use super::Known;
 use crate::PngError;
-use crate::calibrate::Known;
 use config::calibration::Calibration;
 use config::table::TableError;
 use thiserror::Error;

@@ -7,8 +7,8 @@
 //! - white bar: 0.1 mm
 //! - frame: green where the seam may be used, red where not; bars at the lower or upper border: the work is too high or too low
 
+use super::canvas::{Canvas, Colour, Pen};
 use crate::Picture;
-use crate::measure::canvas::{Canvas, Colour, Pen};
 use config::calibration::Calibration;
 use vision::{
     Corner, CornerFeatures, EDGE_ROWS_MM, Form, GeometryError, Measured, Optics, PlateFeatures, PlateSeam,

@@ -1,6 +1,6 @@
 //! A measured picture as data.
 
-use crate::measure::{Outcome, words};
+use super::{Outcome, words};
 use serde::Serialize;
 use vision::{Form, Measured, Observation};
 

@@ -1,7 +1,7 @@
 //! Measured pictures as a table for people.
 
-use crate::measure::Record;
-use crate::measure::record::Figure;
+use super::Record;
+use super::record::Figure;
 
 /// Width of a column with a figure and its deviation.
 const FIGURE: usize = 18;

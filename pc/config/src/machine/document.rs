@@ -3,9 +3,9 @@
 use super::{ByAxis, CameraConfig, MachineFile, Mistake, PlanningConfig, ProcessConfig, TrackingUnit};
 use crate::probe::ProbeUnit;
 use serde::Deserialize;
-use shared::kinematics::KinematicsConfig;
-use shared::motion::{AxisConfig, BeamConfig, GantryConfig, MotionConfig, MotorConfig};
-use shared::tracking::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
+use shared::config::{BeamConfig, HeadConfig, MotionConfig, SlideConfig, TrackerConfig, TrackingConfig};
+use shared::control::{GantryConfig, MotorConfig};
+use shared::kinematics::{AxisConfig, KinematicsConfig};
 
 /// The file as it is written.
 #[derive(Deserialize)]

@@ -12,9 +12,9 @@ use crate::probe::ProbeUnit;
 use crate::table::line_of;
 use document::Document;
 use serde::Deserialize;
+use shared::config::{MotionConfig, TrackerConfig};
 use shared::io::{AXES, MOTOR_AXIS};
-use shared::motion::{Machine, MotionConfig};
-use shared::tracking::TrackerConfig;
+use shared::motion::Machine;
 use std::path::Path;
 
 /// A machine, as its file says.

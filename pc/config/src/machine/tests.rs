@@ -48,11 +48,11 @@ fn no_shipped_machine_weakens_a_protection_and_a_late_one_is_named() {
         "stir-gantry",
     ] {
         let machine = shipped(name);
-        assert!(machine.motion.weakened().is_empty(), "{name}");
+        assert!(machine.motion.weak_protections().is_empty(), "{name}");
         assert!(
             machine
                 .tracking
-                .is_none_or(|unit| unit.board.weakened().is_empty()),
+                .is_none_or(|unit| unit.board.weak_protections().is_empty()),
             "{name}"
         );
     }
@@ -61,8 +61,8 @@ fn no_shipped_machine_weakens_a_protection_and_a_late_one_is_named() {
         .replace("hold_mm = 2.0", "hold_mm = 20.0");
     let machine = MachineFile::parse("m.toml", &text).unwrap();
     let (motion, tracker) = (
-        machine.motion.weakened(),
-        machine.tracking.unwrap().board.weakened(),
+        machine.motion.weak_protections(),
+        machine.tracking.unwrap().board.weak_protections(),
     );
     let told: Vec<String> = motion.iter().chain(&tracker).map(ToString::to_string).collect();
     assert_eq!(told.len(), 2, "{told:?}");
@@ -88,7 +88,7 @@ fn the_readback_of_a_beam_is_read_bounded_and_none_where_it_is_left_out() {
         let [one, two] = machine.motion.beams.clone().map(|beam| beam.unwrap().readback);
         let told: Vec<String> = machine
             .motion
-            .weakened()
+            .weak_protections()
             .iter()
             .map(ToString::to_string)
             .collect();

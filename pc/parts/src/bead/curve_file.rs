@@ -1,6 +1,6 @@
 //! The curve of a bead: a NURBS as a table of the part file or as a JSON file.
 
-use crate::bead::error::BeadError;
+use super::error::BeadError;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use shared::geometry::nurbs::{Nurbs, NurbsError};

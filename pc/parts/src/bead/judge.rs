@@ -1,7 +1,7 @@
 //! What a run made of a bead: true speed against the process window, true tip against the exact NURBS.
 
-use crate::bead::route::Route;
-use crate::bead::{BeadLimits, Layer};
+use super::route::Route;
+use super::{BeadLimits, Layer};
 use crate::{ALONG, Figure, GAP, Judgement, Plot, Run};
 use anyhow::ensure;
 use evaluate::RunSample;

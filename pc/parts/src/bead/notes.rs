@@ -1,8 +1,8 @@
 //! What a person should know of a planned bead.
 
-use crate::bead::Bead;
-use crate::bead::route::Route;
-use crate::bead::speed::{Limit, SpeedPlan};
+use super::Bead;
+use super::route::Route;
+use super::speed::{Limit, SpeedPlan};
 use config::machine::PlanningConfig;
 use shared::geometry::nurbs::Curve;
 use shared::trajectory::ProcessWindow;

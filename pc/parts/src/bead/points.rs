@@ -1,8 +1,8 @@
 //! Which points of a curve a program needs, so that the boards' spline through them is the curve.
 
-use crate::bead::Attitude;
-use crate::bead::error::BeadError;
-use crate::bead::route::Route;
+use super::Attitude;
+use super::error::BeadError;
+use super::route::Route;
 use cam::curve::Curve as Spline;
 use cam::path::CAPACITY;
 use nalgebra::Vector3;

@@ -1,9 +1,9 @@
 //! The NC program of a bead: layer upon layer, each one path.
 
+use super::speed::FeedStep;
+use super::stations::Station;
+use super::{Bead, CLEARANCE};
 use crate::Place;
-use crate::bead::speed::FeedStep;
-use crate::bead::stations::Station;
-use crate::bead::{Bead, CLEARANCE};
 use nc::text::{NcText, decimal, words};
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::AXIS_UNIT;

@@ -1,8 +1,8 @@
 //! The way of one layer over its length: lead-in, bead, overlap, lead-out.
 
-use crate::bead::error::BeadError;
-use crate::bead::length_table::LengthTable;
-use crate::bead::points::LONGEST;
+use super::error::BeadError;
+use super::length_table::LengthTable;
+use super::points::LONGEST;
 use nalgebra::Vector3;
 use shared::geometry::nurbs::{self, Curve, Nurbs};
 use shared::geometry::{Moving, angle};

@@ -1,6 +1,6 @@
 //! How fast the bead can be laid: curve, machine and process window (SPEC 3.3, 3.4).
 
-use crate::bead::error::BeadError;
+use super::error::BeadError;
 use cam::path::MAX_EVENTS;
 use cam::path::{NOWHERE, PathError, PlannedPath};
 use config::machine::MachineFile;
@@ -9,7 +9,7 @@ use shared::geometry::Moving;
 use shared::geometry::nurbs::curvature;
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::{AxisLimits, AxisMotion, Kinematics};
-use shared::motion::PATH_PERIOD_S;
+use shared::ticks::PATH_PERIOD_S;
 use shared::trajectory::{CurveLimits, ProcessWindow, WindowError};
 
 /// Largest distance of the curve from the chord of one path period \[mm\]. The boards interpolate within it, so

@@ -1,9 +1,9 @@
 //! How the machine stands at each point of a bead.
 
+use super::error::BeadError;
+use super::route::Route;
+use super::{Attitude, Layer};
 use crate::Place;
-use crate::bead::error::BeadError;
-use crate::bead::route::Route;
-use crate::bead::{Attitude, Layer};
 use cam::path::Planner;
 use config::machine::MachineFile;
 use nalgebra::Vector3;

@@ -4,8 +4,8 @@
 //! means little and C would have to turn fast. There C goes on smoothly from one side to the other, A changes its
 //! sign where that is the shorter way, and the tool leans off the normal by less than the inclination.
 
-use crate::panel::PanelError;
-use crate::panel::line::Station;
+use super::PanelError;
+use super::line::Station;
 use cam::curve::Curve;
 use nalgebra::Vector3;
 use shared::geometry::angle;

@@ -1,7 +1,7 @@
 //! What a cut on a panel was worth: by where the focus truly was, and in a simulated world by the panel itself.
 
+use super::{Panel, PanelLimits};
 use crate::Surface;
-use crate::panel::{Panel, PanelLimits};
 use crate::{ALONG, Figure, GAP, Judgement, Plot, Run};
 use cam::path::{Course, PlannedPath};
 use evaluate::RunSample;

@@ -1,6 +1,6 @@
 //! The smooth line through taught points: where the focus goes, and along which normal.
 
-use crate::panel::PanelError;
+use super::PanelError;
 use cam::curve::Curve;
 use nalgebra::Vector3;
 use teach::TaughtPoint;

@@ -1,8 +1,8 @@
 //! The NC program of a cut: approach, lead-in, cut, lead-out, retract.
 
-use crate::panel::attitude::{Attitudes, tool_axis};
-use crate::panel::line::{Line, Station};
-use crate::panel::{Panel, PanelError};
+use super::attitude::{Attitudes, tool_axis};
+use super::line::{Line, Station};
+use super::{Panel, PanelError};
 use crate::{Place, Plan};
 use config::table::FARTHEST_MM;
 use nalgebra::Vector3;

@@ -1,8 +1,8 @@
 //! How fast a line can be cut, told before anything moves.
 
+use super::program::C;
+use super::{Panel, PanelError};
 use crate::Place;
-use crate::panel::program::C;
-use crate::panel::{Panel, PanelError};
 use cam::path::{Bound, Planner};
 use nc::{Options, interpret};
 use shared::io::AXIS_NAMES;

@@ -1,6 +1,6 @@
 //! Where two beams cross, and how far the V slides reach (SPEC 0.5 (3), 0.6).
 
-use crate::plan::locate::LocateError;
+use super::locate::LocateError;
 use nalgebra::Vector3;
 
 /// Closest approach of two beam axes.

@@ -1,6 +1,6 @@
 //! Where the plane across seam 1 meets seam 2 (SPEC 0.5 (2)).
 
-use crate::plan::locate::LocateError;
+use super::locate::LocateError;
 use cam::curve::Curve;
 use nalgebra::Vector3;
 use shared::geometry::SplineError;

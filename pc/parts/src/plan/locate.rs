@@ -1,7 +1,7 @@
 //! Pose of the dual-beam head at one point of seam 1 (SPEC 0.5).
 
-use crate::plan::beams::closest_approach;
-use crate::plan::cut::OtherSeam;
+use super::beams::closest_approach;
+use super::cut::OtherSeam;
 use nalgebra::Vector3;
 use shared::geometry::rotate;
 use thiserror::Error;

@@ -1,7 +1,7 @@
 //! From the points of a taught seam to the curves that are planned from.
 
+use super::smooth::Scattered;
 use crate::SeamPoint;
-use crate::plan::smooth::Scattered;
 use nalgebra::Vector3;
 use shared::geometry::angle;
 use shared::io::SIDES;

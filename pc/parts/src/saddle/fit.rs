@@ -5,11 +5,9 @@
 //! around all of them can be found. A point is worth one of these unknowns, and one more point is asked for, so
 //! that there is something to check by; the radius of the branch shows in every point besides.
 
-use crate::saddle::error::TaughtError;
-use crate::saddle::least_squares::{
-    ANGLE, BRANCH, LIFT, MAIN, OFFSET, Problem, TURN, UNKNOWNS, Values, height,
-};
-use crate::saddle::seam::Placement;
+use super::error::TaughtError;
+use super::least_squares::{ANGLE, BRANCH, LIFT, MAIN, OFFSET, Problem, TURN, UNKNOWNS, Values, height};
+use super::seam::Placement;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 

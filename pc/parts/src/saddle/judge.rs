@@ -1,8 +1,8 @@
 //! Figures of a run: the torch as it truly was against the exact saddle and the bisector of its groove.
 
-use crate::saddle::error::SaddlePartError;
-use crate::saddle::seam::{Deviation, Seam};
-use crate::saddle::{Pass, Saddle, SaddleLimits};
+use super::error::SaddlePartError;
+use super::seam::{Deviation, Seam};
+use super::{Pass, Saddle, SaddleLimits};
 use crate::{ALONG, Figure, GAP, Judgement, Plot, Run};
 use evaluate::RunSample;
 use shared::units::next_to;

@@ -1,6 +1,6 @@
 //! Least squares for a saddle: its height around the branch, and the descent to the best of all saddles.
 
-use crate::saddle::fit::Known;
+use super::fit::Known;
 use nalgebra::{SMatrix, SVector, Vector3};
 use shared::units::wrap;
 use std::f64::consts::{FRAC_PI_2, TAU};

@@ -2,10 +2,10 @@
 //!
 //! The way to a pass leads along a column outside the branch and above the main pipe; there the waist turns.
 
-use crate::saddle::Saddle;
-use crate::saddle::error::SaddlePartError;
-use crate::saddle::round::Round;
-use crate::saddle::seam::{Seam, Station};
+use super::Saddle;
+use super::error::SaddlePartError;
+use super::round::Round;
+use super::seam::{Seam, Station};
 use crate::{Place, Plan};
 use anyhow::Context;
 use cam::path::{PlannedPath, Planner};

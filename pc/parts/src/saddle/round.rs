@@ -1,8 +1,8 @@
 //! A pass around the branch, station by station.
 
-use crate::saddle::error::SaddlePartError;
-use crate::saddle::seam::{Seam, Station};
-use crate::saddle::{Pass, Saddle};
+use super::error::SaddlePartError;
+use super::seam::{Seam, Station};
+use super::{Pass, Saddle};
 use config::machine::MachineFile;
 use shared::geometry::angle;
 use std::f64::consts::TAU;

@@ -1,6 +1,6 @@
 //! The seam as the machine sees it: in the frame of the branch it is clamped to, with waist and tilt.
 
-use crate::saddle::error::SaddlePartError;
+use super::error::SaddlePartError;
 use nalgebra::Vector3;
 use shared::geometry::{Meeting, PipePair, Pose, SaddleCurve, SaddleError, SeamPoint, Sheet};
 use shared::units::{next_to, wrap};

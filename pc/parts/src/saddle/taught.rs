@@ -1,8 +1,8 @@
 //! The seam from points taught with the tip of the torch.
 
-use crate::saddle::error::{SaddlePartError, TaughtError};
-use crate::saddle::fit::{Fit, Known, fit};
-use crate::saddle::seam::Seam;
+use super::error::{SaddlePartError, TaughtError};
+use super::fit::{Fit, Known, fit};
+use super::seam::Seam;
 use config::table::{self, TableError};
 use nalgebra::Vector3;
 use shared::geometry::PipePair;

@@ -1,6 +1,6 @@
 //! The contour: lines and arcs that touch, with the heading over the length (SPEC 4.2, 4.3).
 
-use crate::stir::error::StirError;
+use super::error::StirError;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use shared::geometry::{Arc, Line, Turn};

@@ -5,8 +5,8 @@
 //! percentage error MAPE depends on where the origin of the work lies, as each error is divided by its coordinate:
 //! the error relative to the extent of the contour (NMAE) does not.
 
-use crate::stir::error::StirError;
-use crate::stir::{B, C, Job, SPINDLE, Stir, StirLimits};
+use super::error::StirError;
+use super::{B, C, Job, SPINDLE, Stir, StirLimits};
 use crate::{ALONG, Figure, GAP, Judgement, Plot, Run};
 use cam::metrics::compare;
 use cam::path::{Course, PlannedPath};

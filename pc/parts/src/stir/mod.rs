@@ -16,8 +16,8 @@ use contour::{Contour, SegmentEntry};
 use error::StirError;
 use passes::{Pass, passes};
 use serde::Deserialize;
-use shared::kinematics::{KinematicsConfig, StirTilt};
-use shared::motion::{AxisConfig, BeamConfig};
+use shared::config::BeamConfig;
+use shared::kinematics::{AxisConfig, KinematicsConfig, StirTilt};
 use std::f64::consts::PI;
 
 /// Slots of the axes.

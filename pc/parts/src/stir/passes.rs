@@ -1,7 +1,7 @@
 //! How C follows the contour within its travel (SPEC 4.3).
 
-use crate::stir::contour::Contour;
-use crate::stir::error::StirError;
+use super::contour::Contour;
+use super::error::StirError;
 use std::f64::consts::TAU;
 
 /// C may be this far beyond its travel \[rad\]: less than the digits of a program.

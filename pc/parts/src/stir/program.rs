@@ -1,9 +1,9 @@
 //! The NC program: approach, plunge, preheat, contour and retract of every pass.
 
+use super::contour::{Form, Segment};
+use super::passes::Pass;
+use super::{C, Job, Stir};
 use crate::Place;
-use crate::stir::contour::{Form, Segment};
-use crate::stir::passes::Pass;
-use crate::stir::{C, Job, Stir};
 use config::machine::MachineFile;
 use nc::text::{NcText, decimal, words};
 use shared::units::DEG_PER_RAD;

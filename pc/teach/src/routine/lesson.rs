@@ -1,9 +1,9 @@
 //! Teaching while it goes on: the moves of one machine, and what its probe sees.
 
+use super::error::{PointError, Seen, Trouble};
+use super::{Arm, Guide, Teacher, aim};
 use crate::halving::HalvingError;
 use crate::ring::{DIRECTIONS, NEIGHBOURS};
-use crate::routine::error::{PointError, Seen, Trouble};
-use crate::routine::{Arm, Guide, Teacher, aim};
 use crate::{Ring, Taught, TaughtPoint};
 use nalgebra::Vector3;
 use nc::text::NcText;

@@ -1,7 +1,7 @@
 //! From what the cameras see to places in the world, and to the stance that has both seams in the middle of their
 //! bands.
 
-use crate::seam::{Foot, Seen, View};
+use super::{Foot, Seen, View};
 use nalgebra::Vector3;
 use shared::geometry::{Pose, angle, rotate};
 use shared::io::{SIDES, SLIDES};

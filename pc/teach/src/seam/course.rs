@@ -1,6 +1,6 @@
 //! The course of the seams as far as they are taught, and how far the next point may be.
 
-use crate::seam::SeamTeaching;
+use super::SeamTeaching;
 use nalgebra::{Matrix3, Vector3};
 use shared::io::SIDES;
 

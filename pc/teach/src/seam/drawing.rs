@@ -1,6 +1,6 @@
 //! What machine and drawing say of a lesson.
 
-use crate::seam::Cameras;
+use super::Cameras;
 use config::machine::TrackingUnit;
 use nalgebra::Vector3;
 use shared::parameter::ParameterError;

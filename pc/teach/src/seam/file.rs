@@ -1,6 +1,6 @@
 //! Taught seams in a file that people can read, complete after every point.
 
-use crate::seam::{Foot, SeamPoint};
+use super::{Foot, SeamPoint};
 use config::table::{self, Row, TableError};
 use nalgebra::Vector3;
 use nc::text::decimal;

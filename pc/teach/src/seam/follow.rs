@@ -1,7 +1,7 @@
 //! Following a seam: centre, take down, step along the tangent, to the end of the seam.
 
-use crate::seam::course::Course;
-use crate::seam::{Cameras, Drawing, Foot, NotFound, Rig, SeamPoint, SeamTeaching, Stance, View};
+use super::course::Course;
+use super::{Cameras, Drawing, Foot, NotFound, Rig, SeamPoint, SeamTeaching, Stance, View};
 use config::RangeError;
 use shared::geometry::Pose;
 use shared::io::SIDES;

@@ -1,7 +1,7 @@
 //! Teaching by hand: the operator says moves and what to take, a line each.
 
-use crate::seam::follow::{Centred, SAME_PLACE, take};
-use crate::seam::{Ended, Follower, Rig, SeamPoint, SeamTeachError, Stance, View};
+use super::follow::{Centred, SAME_PLACE, take};
+use super::{Ended, Follower, Rig, SeamPoint, SeamTeachError, Stance, View};
 use nalgebra::Vector3;
 use shared::geometry::{Pose, rotate};
 use shared::io::SIDES;

@@ -1,6 +1,6 @@
 //! A machine with two cameras, as teaching uses it.
 
-use crate::seam::{SeamPoint, Stance};
+use super::{SeamPoint, Stance};
 use shared::geometry::Pose;
 use shared::io::{SIDES, SLIDES};
 use std::error::Error as StdError;

@@ -1,7 +1,7 @@
 //! Searching seams that are not seen where they should be: each side by itself, around its own place.
 
-use crate::seam::follow::{Centred, Follower};
-use crate::seam::{Cameras, NotFound, Rig, SeamTeachError, SeamTeaching, Stance};
+use super::follow::{Centred, Follower};
+use super::{Cameras, NotFound, Rig, SeamTeachError, SeamTeaching, Stance};
 use nalgebra::Vector3;
 use shared::io::SIDES;
 

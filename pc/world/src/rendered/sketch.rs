@@ -1,7 +1,7 @@
 //! From what stands before a camera to the scene that is rendered.
 
-use crate::rendered::scene_file::SceneFile;
-use crate::rendered::view::{View, ViewForm};
+use super::scene_file::SceneFile;
+use super::view::{View, ViewForm};
 use std::f64::consts::TAU;
 use vision::render::{Blob, Gap, Joint, Light, Root, Scene, SplitMix64, Stripe, Texture};
 use vision::{Corner, PlateSeam};

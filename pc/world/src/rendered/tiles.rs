@@ -1,6 +1,6 @@
 //! Textured work for the renderers of both sides, made in the background.
 
-use crate::rendered::scene_file::SceneFile;
+use super::scene_file::SceneFile;
 use camera::nominal_slopes;
 use config::machine::CameraConfig;
 use shared::io::SIDES;

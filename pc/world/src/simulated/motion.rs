@@ -2,8 +2,9 @@
 
 use plant::MotionPlant;
 use shared::io::{ESTOP_CHANNELS, MotionCommand, MotionFeedback};
-use shared::motion::{MotionController, PathTickInput, SERVO_TICKS_PER_PATH_TICK, ServoLoops};
+use shared::motion::{MotionController, PathTickInput, ServoLoops};
 use shared::protocol::{Batch, Datagram, MotionSample, MotionTelemetry, PathState, Request, Response};
+use shared::ticks::SERVO_TICKS_PER_PATH_TICK;
 
 #[derive(Clone)]
 pub struct MotionBoard {

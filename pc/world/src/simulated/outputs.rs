@@ -1,10 +1,9 @@
 //! What simulated boards put out, tick by tick, and requests that take no time: for tests that judge every tick.
 
-use crate::simulated::SimulatedBoards;
+use super::SimulatedBoards;
 use shared::io::{MOTORS, MotionCommand, SIDES, SLIDES, SlideCommand};
-use shared::motion::State;
 use shared::protocol::{Capture, MotionSample, PathState, Request, Response, Role, TrackerSample};
-use shared::tracking::TrackerState;
+use shared::state::{State, TrackerState};
 
 /// Outputs of the last ticks, and where the machine truly is after them.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! The tracker board with its slides.
 
-use crate::simulated::KNOTS;
+use super::KNOTS;
 use plant::SlidePlant;
 use shared::io::{ESTOP_CHANNELS, SlideCommand, SlideFeedback};
 use shared::protocol::{Batch, Capture, TrackerSample, TrackerTelemetry};

@@ -1,6 +1,6 @@
 //! What befalls simulated boards from outside, for tests of what they make of it.
 
-use crate::simulated::{Node, SimulatedBoards};
+use super::{Node, SimulatedBoards};
 use shared::io::{MotionFeedback, SlideFeedback};
 use shared::protocol::Role;
 

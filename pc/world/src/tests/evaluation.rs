@@ -72,7 +72,7 @@ fn planned() -> PlannedPath {
     let knots = (0..=100).map(|k| {
         let s_mm = 5.0 * f64::from(k);
         let point = bent_path().at(s_mm).unwrap();
-        shared::protocol::Knot {
+        shared::trajectory::Knot {
             s_mm,
             value: point.value,
             slope: point.first,

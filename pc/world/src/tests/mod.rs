@@ -6,9 +6,8 @@ use host_link::geometry::MachineGeometry;
 use shared::geometry::Pose;
 use shared::io::{AXES, MOTORS, SLIDES};
 use shared::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
-use shared::motion::State;
 use shared::protocol::{MotionSample, TrackerSample};
-use shared::tracking::TrackerState;
+use shared::state::{State, TrackerState};
 
 /// A dual-beam gantry.
 pub fn machine() -> MachineGeometry {

@@ -2,8 +2,7 @@
 
 use super::super::Moving;
 use super::curve::Curve;
-use super::de_boor::{blossom, evaluate, homogeneous};
-use super::spline::Nurbs;
+use super::de_boor::{evaluate, homogeneous};
 use super::validation::{NurbsError, check_degree, check_points};
 use super::{MAX_DEGREE, ORDER};
 use nalgebra::{Vector3, Vector4};
@@ -33,14 +32,19 @@ impl RationalBezier {
         let degree = points.len().saturating_sub(1);
         check_degree(degree, points.len())?;
         check_points(points, weights)?;
-        let mut curve = Self {
-            degree,
-            points: [Vector3::zeros(); ORDER],
-            weights: [0.0; ORDER],
-        };
+        let mut curve = Self::of_degree(degree);
         curve.points[..=degree].copy_from_slice(points);
         curve.weights[..=degree].copy_from_slice(weights);
         Ok(curve)
+    }
+
+    /// Points and weights of this degree that are yet to be set.
+    pub(super) fn of_degree(degree: usize) -> Self {
+        Self {
+            degree,
+            points: [Vector3::zeros(); ORDER],
+            weights: [0.0; ORDER],
+        }
     }
 
     /// Degree.
@@ -64,7 +68,7 @@ impl RationalBezier {
         [before, after]
     }
 
-    fn set(&mut self, i: usize, point: &Vector4<f64>) {
+    pub(super) fn set(&mut self, i: usize, point: &Vector4<f64>) {
         self.points[i] = point.xyz() / point.w;
         self.weights[i] = point.w;
     }
@@ -93,60 +97,5 @@ impl Curve for RationalBezier {
 
     fn next_break(&self, _u: f64) -> f64 {
         1.0
-    }
-}
-
-/// One span of a NURBS as a Bézier curve: C(u) is the curve at t = (u − from) / (to − from), and a derivative
-/// over u is the one over t divided by (to − from), once for each order.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
-    /// The same points as the span.
-    pub curve: RationalBezier,
-    /// Parameter of the NURBS at t = 0.
-    pub from: f64,
-    /// Parameter of the NURBS at t = 1.
-    pub to: f64,
-}
-
-/// The pieces of a NURBS, in order; see [`Nurbs::pieces`].
-#[derive(Clone, Debug)]
-pub struct Pieces<'a> {
-    nurbs: Nurbs<'a>,
-    /// Where the next piece begins.
-    from: f64,
-}
-
-impl<'a> Pieces<'a> {
-    pub(super) fn new(nurbs: Nurbs<'a>) -> Self {
-        let [from, _] = nurbs.domain();
-        Self { nurbs, from }
-    }
-}
-
-impl Iterator for Pieces<'_> {
-    type Item = Piece;
-
-    /// Inserting both ends of the span as knots until they are full leaves the control points f(from, …, to, …)
-    /// of the blossom f, with one more `to` from point to point. Weights stay positive (see `de_boor`).
-    fn next(&mut self) -> Option<Piece> {
-        let [_, end] = self.nurbs.domain();
-        if self.from >= end {
-            return None;
-        }
-        let span = self.nurbs.span(self.from);
-        let [from, to] = self.nurbs.bounds(span);
-        let (net, knots) = self.nurbs.net(span);
-        let degree = self.nurbs.degree();
-        let mut curve = RationalBezier {
-            degree,
-            points: [Vector3::zeros(); ORDER],
-            weights: [0.0; ORDER],
-        };
-        for j in 0..=degree {
-            let arguments = (0..degree).map(|level| if level < degree - j { from } else { to });
-            curve.set(j, &blossom(net, knots, arguments));
-        }
-        self.from = to;
-        Some(Piece { curve, from, to })
     }
 }

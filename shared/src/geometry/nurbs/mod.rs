@@ -8,15 +8,17 @@ mod curve;
 mod de_boor;
 mod discretise;
 mod length;
+mod pieces;
 mod power_basis;
 mod spline;
 mod stepping;
 mod validation;
 
-pub use bezier::{Piece, Pieces, RationalBezier};
+pub use bezier::RationalBezier;
 pub use curve::{Curve, NoTangent, chord_height_radius, curvature};
 pub use discretise::{Discretisation, DiscretiseError, discretise};
 pub use length::{length, length_between, length_in_parts, parameter_at_length};
+pub use pieces::{Piece, Pieces};
 pub use power_basis::PowerBasis;
 pub use spline::Nurbs;
 pub use stepping::{

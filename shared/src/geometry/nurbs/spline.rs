@@ -1,7 +1,6 @@
 //! The NURBS curve itself (SPEC 3.1).
 
 use super::super::Moving;
-use super::bezier::Pieces;
 use super::curve::Curve;
 use super::de_boor::{Net, evaluate, homogeneous};
 use super::validation::{NurbsError, validate};
@@ -52,11 +51,6 @@ impl<'a> Nurbs<'a> {
         } else {
             inside.partition_point(|&knot| knot < self.knots[last]) - 1
         }
-    }
-
-    /// Exact rational Bézier pieces, one for each span that is not empty, in order.
-    pub fn pieces(&self) -> Pieces<'a> {
-        Pieces::new(*self)
     }
 
     /// Control points of span `i`, and the knots around it.

@@ -1,13 +1,13 @@
 //! A path comes in: its beginning, its elements, its events.
 
 use super::MotionController;
-use super::path::LoadedPath;
+use super::loaded::LoadedPath;
 use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
-use crate::motion::State;
 use crate::motion::beams::EVENTS;
 use crate::motion::overlap::way_back;
 use crate::protocol::{PathAction, PathElement, PathEvent, PathLimits, Refusal, Room};
+use crate::state::State;
 use crate::trajectory::{Element, Join, LONGEST_PATH, PathSpace, SpeedLimits, axes_at};
 use core::ops::RangeInclusive;
 

@@ -1,99 +1,24 @@
 //! On the path: from the planner's output to references, beams, and the ways of a hold.
 
 use super::MotionController;
+use super::loaded::Resume;
 use crate::geometry::PoseOffset;
-use crate::io::{AXES, SIDES};
+use crate::io::SIDES;
 use crate::kinematics::AXIS_UNIT;
-use crate::motion::aside::Aside;
-use crate::motion::beams::{Activity, Beams, EventQueue};
+use crate::motion::beams::{Activity, Beams};
 use crate::motion::overlap::Overlap;
 use crate::motion::permit::BeamLease;
-use crate::motion::segment::{BeamOutput, MotorReference, PATH_PERIOD_S};
+use crate::motion::segment::{BeamOutput, MotorReference};
 use crate::motion::servo::ServoReport;
-use crate::motion::state::Event;
-use crate::motion::{Fault, NoPermit, State};
-use crate::trajectory::{Output, PathSpace, SpeedLimits, SpeedState, Way};
+use crate::motion::superimposed::Superimposed;
+use crate::state::{Event, Fault, NoPermit, State};
+use crate::ticks::PATH_PERIOD_S;
+use crate::trajectory::{Output, SpeedState, Way};
 
 /// What is published has caught up with the references after so many ticks.
 const PUBLISHED: u32 = 2;
 /// The end of a path is reached, to this much \[mm\].
 const AT_END: f64 = 1e-6;
-
-/// The path that is loaded, and how far it has come; its elements are in the planner.
-#[derive(Clone, Debug)]
-pub(super) struct LoadedPath {
-    /// Its number.
-    pub id: u32,
-    pub space: PathSpace,
-    /// Limits along it, for run-ups, and the highest feed so far.
-    pub limits: SpeedLimits,
-    /// Where it begins: the planner was started there, and nobody moved since.
-    pub start: Option<[f64; AXES]>,
-    /// Elements taken.
-    pub elements: u32,
-    /// Path length where they end \[mm\].
-    pub end_s: f64,
-    /// No more come.
-    pub complete: bool,
-    pub events: EventQueue,
-    /// Events taken.
-    pub event_count: u32,
-    /// Path length of the last one.
-    pub last_event_s: f64,
-    /// Line of the program, and the feed there \[mm/s\].
-    pub line: u32,
-    pub feed: f64,
-    /// Ticks since the references came to rest.
-    pub resting: u32,
-    /// Beams that wait for their place after a hold.
-    pub overlap: Option<Overlap>,
-    pub resume: Resume,
-}
-
-/// How far a resume has come.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Resume {
-    /// Not asked for.
-    No,
-    /// Asked for; the machine comes to rest first.
-    Wanted,
-    /// Going back to this path length \[mm\].
-    Back(f64),
-    /// Far enough back; coming to rest.
-    Turning,
-}
-
-impl LoadedPath {
-    pub const NONE: Self = Self {
-        id: 0,
-        space: PathSpace::Tool,
-        limits: SpeedLimits {
-            velocity: 0.0,
-            acceleration: 1.0,
-            jerk: 1.0,
-        },
-        start: None,
-        elements: 0,
-        end_s: 0.0,
-        complete: false,
-        events: EventQueue::new(),
-        event_count: 0,
-        last_event_s: f64::NEG_INFINITY,
-        line: 0,
-        feed: 0.0,
-        resting: 0,
-        overlap: None,
-        resume: Resume::No,
-    };
-
-    /// The machine will not run it any more.
-    pub fn forget(&mut self) {
-        self.start = None;
-        self.overlap = None;
-        self.resume = Resume::No;
-        self.events.clear();
-    }
-}
 
 impl MotionController {
     /// Moves the references on along the path.
@@ -125,11 +50,11 @@ impl MotionController {
         let ends = output.at_rest && self.path.complete && output.along.s >= self.path.end_s - AT_END;
         if running && (ends || !self.beams.tracking()) {
             // Back on the path before it ends: the next one goes on there.
-            self.aside.want(PoseOffset::NONE);
+            self.superimposed.want(PoseOffset::NONE);
         }
         let goes = running && (ends || !output.at_rest);
-        if self.aside.acts() {
-            match machine.aside(&mut self.aside, &output.axes, goes) {
+        if self.superimposed.acts() {
+            match machine.superimpose(&mut self.superimposed, &output.axes, goes) {
                 Ok(axes) => output.axes = axes,
                 Err(_) => {
                     let (line, s_mm) = (output.line, output.along.s as f32);
@@ -160,9 +85,9 @@ impl MotionController {
         }
         self.follow(&output);
         let still = if ends && running {
-            self.aside.is_none()
+            self.superimposed.is_none()
         } else {
-            !self.aside.moves()
+            !self.superimposed.moves()
         };
         self.path.resting = if output.at_rest && still {
             self.path.resting.saturating_add(1)
@@ -207,7 +132,7 @@ impl MotionController {
             State::Stopping => {
                 self.path.forget();
                 // The axes stay where they are, and that is where a path begins.
-                self.aside = Aside::NONE;
+                self.superimposed = Superimposed::NONE;
                 self.beams = Beams::NONE;
                 match self.pending.take() {
                     Some(fault) => self.trip(fault),

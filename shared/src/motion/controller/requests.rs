@@ -1,15 +1,15 @@
 //! What the PC may ask of the motion board, and what it is told.
 
 use super::MotionController;
-use super::path::LoadedPath;
+use super::loaded::LoadedPath;
+use crate::config::MotionConfig;
 use crate::geometry::PoseOffset;
 use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::homing::Homing;
 use crate::motion::machine::Machine;
-use crate::motion::state::Event;
-use crate::motion::{MotionConfig, State};
 use crate::protocol::{MotionStatus, Refusal, Request, Response};
+use crate::state::{Event, State};
 use crate::units::DEG_PER_RAD;
 
 /// How far the pose may be moved beside the path \[mm\] and turned about T \[rad\].
@@ -175,7 +175,7 @@ impl MotionController {
             });
         }
         let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
-        let planned = self.aside.planned(&self.axes);
+        let planned = self.superimposed.planned(&self.axes);
         let pose = offset.beside(&machine.kinematics.forward(&planned));
         let axes = machine
             .kinematics
@@ -187,7 +187,7 @@ impl MotionController {
                 position: (axes[axis] / AXIS_UNIT[axis]) as f32,
             });
         }
-        self.aside.want(*offset);
+        self.superimposed.want(*offset);
         Ok(())
     }
 
@@ -220,7 +220,7 @@ impl MotionController {
             elements: self.path.elements,
             room: self.room(),
             speed_override: self.factor,
-            aside: self.aside.now(),
+            aside: self.superimposed.now(),
             servo_ticks,
             servo_lost,
             path_ticks: self.tick as u32,

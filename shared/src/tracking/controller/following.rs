@@ -2,11 +2,11 @@
 
 use super::TrackerController;
 use crate::io::{Command, DacCode, SIDES, SLIDES, SlideCommand};
+use crate::state::{TrackerFault, TrackerState};
 use crate::tracking::history::Place;
 use crate::tracking::law::{LawFlag, SlideTarget};
 use crate::tracking::parameters::TrackerParameters;
 use crate::tracking::seam::{RealHead, Sight, plan};
-use crate::tracking::{TrackerFault, TrackerState};
 
 /// A slide that should go beyond its travel and is as near as this to the end has gone as far as it can \[mm\].
 const AT_THE_END: f64 = 0.1;

@@ -2,7 +2,7 @@
 
 use super::TrackerController;
 use crate::protocol::{BeamPermit, Permit};
-use crate::tracking::TrackerState;
+use crate::state::TrackerState;
 
 impl<const KNOTS: usize> TrackerController<KNOTS> {
     /// The permit of this tick; `None` until the motion board was heard. No beam burns on a tracked path unless the

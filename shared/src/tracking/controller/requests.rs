@@ -3,7 +3,7 @@
 use super::TrackerController;
 use crate::io::SLIDES;
 use crate::protocol::{Refusal, Request, Response, TrackerStatus};
-use crate::tracking::TrackerState;
+use crate::state::TrackerState;
 use crate::trajectory::PathSpace;
 
 impl<const KNOTS: usize> TrackerController<KNOTS> {

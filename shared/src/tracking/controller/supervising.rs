@@ -2,7 +2,7 @@
 
 use super::TrackerController;
 use crate::io::SlideCommand;
-use crate::tracking::TrackerFault;
+use crate::state::TrackerFault;
 use crate::tracking::parameters::TrackerParameters;
 
 impl<const KNOTS: usize> TrackerController<KNOTS> {

@@ -4,10 +4,13 @@
 //! among them, so that pieces join without a step in speed. |C′(v(s))|·dv/ds − 1 is the fluctuation of the speed
 //! along the curve at s, exactly and without a quadrature; so it is checked between the nodes.
 
-use super::FLUCTUATION;
 use crate::geometry::nurbs::PowerBasis;
 use nalgebra::Vector2;
 use thiserror::Error;
+
+/// Deviation of the speed along a curve from the one that is asked for, as a part of it, at most. Half of it is
+/// kept in reserve for what lies between the places that are checked.
+pub const FLUCTUATION: f64 = 5e-7;
 
 /// Nodes of the collocation.
 const COUNT: usize = 13;

@@ -8,17 +8,13 @@ mod arc_length;
 mod numbers;
 mod pieces;
 
-pub use arc_length::TooUneven;
+pub use arc_length::{FLUCTUATION, TooUneven};
 pub use numbers::{CurveNumbers, NoCurve};
 pub use pieces::{ArcLengthPiece, ArcLengthPieces, Cusp};
 
 use crate::geometry::Moving;
 use crate::geometry::nurbs::{PowerBasis, RationalBezier};
 use arc_length::{Parameter, tabulate};
-
-/// Deviation of the speed along a curve from the one that is asked for, as a part of it, at most. Half of it is
-/// kept in reserve for what lies between the places that are checked.
-pub const FLUCTUATION: f64 = 5e-7;
 
 /// A rational Bézier curve over its arc length, of fixed size.
 #[derive(Clone, Copy, Debug, PartialEq)]

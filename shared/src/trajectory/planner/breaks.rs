@@ -1,9 +1,9 @@
 //! Where limits change along the path.
 
-use super::grid::SAME;
+use super::channels::{SAME, SMOOTH};
 use super::node::{greater, lesser};
 use super::sample::Ground;
-use super::track::{Piece, SMOOTH};
+use super::track::Piece;
 use crate::trajectory::SHAPED;
 use nalgebra::Vector3;
 

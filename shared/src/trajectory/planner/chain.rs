@@ -5,7 +5,7 @@
 //! is off by that much inside, and the middle of a line by as much outside.
 
 use super::limits::{Bounds, FILTER_SHARE};
-use super::rounding::{plain, room};
+use super::room::{plain, room};
 use super::track::Track;
 use crate::trajectory::{Cubic, Join, SHAPED, Shape};
 use nalgebra::Vector3;

@@ -1,7 +1,6 @@
 //! Rounded corners, as terms that are added to the path.
 
-use super::rounding::ATTITUDE;
-use super::track::{attitude_norm, position_norm};
+use super::channels::{ATTITUDE, attitude_norm, position_norm};
 use crate::trajectory::{CHANNELS, PathPoint, SHAPED};
 use nalgebra::Vector3;
 

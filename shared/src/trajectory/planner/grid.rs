@@ -1,6 +1,7 @@
 //! Where nodes stand: dense where limits change, far apart where they do not.
 
 use super::breaks::{Break, MOST_LOOKS, Search};
+use super::channels::SAME;
 use super::limits::{Bounds, ROWS};
 use super::node::{Lanes, Node, Nodes, Side, greater, highest, least, lesser, most};
 use super::sample::{Ground, Sample};
@@ -8,8 +9,6 @@ use crate::io::AXES;
 use crate::trajectory::{PathSpace, Unreachable};
 use core::array::from_fn;
 
-/// Places nearer than this are one \[mm\].
-pub(super) const SAME: f64 = 1e-9;
 /// Time between nodes on curves \[s\].
 const CURVE_STEP: f64 = 0.004;
 /// Largest turn of the path between two nodes \[rad\].

@@ -5,14 +5,14 @@
 //! difference of the accelerations at t and one filter length before, divided by that length; where that is too
 //! much, the boxes are made smaller, and the passes repeated.
 
-use super::WORK;
 use super::limits::Bounds;
-use super::node::{Lanes, Nodes};
+use super::node::{Lanes, Nodes, REST, pause};
 use super::player::Player;
 use super::split::split;
-use super::swing::{REST, pause};
-use crate::motion::PATH_PERIOD_S;
+use crate::ticks::PATH_PERIOD_S;
 
+/// Work of planning in one tick, in hundreds of instructions of a PC.
+pub(super) const WORK: u32 = 95;
 /// Rounds in which boxes may also grow.
 const RELAXED: u32 = 2;
 /// Most nodes that a plan goes beyond the one in force, and the fewest if it has them.
@@ -142,7 +142,7 @@ pub(super) struct Horizon {
     early: u32,
     /// Longer time for a plan after others were given up: a factor.
     patience: u32,
-    /// Largest swing above its limit, as a share.
+    /// Largest change of acceleration above its limit, as a share.
     pub(super) excess: Lanes,
     /// Node before the time one filter length away.
     pub(super) away: u32,

@@ -2,7 +2,7 @@
 
 use crate::io::AXES;
 use crate::kinematics::AxisLimits;
-use crate::motion::PATH_PERIOD_S;
+use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{SHAPED, Tolerance};
 
 /// Limits of the axes and of the path, and the accuracy that the output filter is made for (mm, rad, s).
@@ -70,9 +70,9 @@ pub(super) struct Bounds {
     pub per_acceleration: [f32; ROWS],
     /// Most that the acceleration of a row may differ from itself one filter length away: jerk times that
     /// length.
-    pub swing: [f32; ROWS],
+    pub acceleration_change: [f32; ROWS],
     /// One divided by it.
-    pub per_swing: [f32; ROWS],
+    pub per_acceleration_change: [f32; ROWS],
     /// One divided by the highest speed of a row; 0 where it has none.
     pub per_velocity: [f32; ROWS],
     /// Acceleration that sizes corners: the least of the linear axes and the path.
@@ -99,8 +99,8 @@ impl Bounds {
     pub const NONE: Self = Self {
         acceleration: [1.0; ROWS],
         per_acceleration: [1.0; ROWS],
-        swing: [1.0; ROWS],
-        per_swing: [1.0; ROWS],
+        acceleration_change: [1.0; ROWS],
+        per_acceleration_change: [1.0; ROWS],
         per_velocity: [0.0; ROWS],
         corner: 1.0,
         spin: 1.0,
@@ -152,23 +152,23 @@ impl Bounds {
         // Large enough to mean none, small enough for single precision.
         let sane = |x: f64| libm::fmin(x, 1e9) as f32;
         bounds.acceleration = [sane(f64::INFINITY); ROWS];
-        bounds.swing = bounds.acceleration;
+        bounds.acceleration_change = bounds.acceleration;
         bounds.acceleration[PATH_ROW] = sane(limits.path_acceleration * ACCELERATION_RESERVE);
-        bounds.swing[PATH_ROW] = sane(limits.path_jerk * JERK_RESERVE * filter);
+        bounds.acceleration_change[PATH_ROW] = sane(limits.path_jerk * JERK_RESERVE * filter);
         for axis in 0..AXES {
             bounds.acceleration[PATH_ROW + 1 + axis] = sane(limits.acceleration[axis] * ACCELERATION_RESERVE);
-            bounds.swing[PATH_ROW + 1 + axis] = sane(limits.jerk[axis] * JERK_RESERVE * filter);
+            bounds.acceleration_change[PATH_ROW + 1 + axis] = sane(limits.jerk[axis] * JERK_RESERVE * filter);
             bounds.per_velocity[PATH_ROW + 1 + axis] = (1.0 / limits.velocity[axis]) as f32;
         }
         bounds.acceleration[ACCURACY_ROW] = 1.0;
-        let feels = |row: usize| bounds.acceleration[row].min(bounds.swing[row]);
+        let feels = |row: usize| bounds.acceleration[row].min(bounds.acceleration_change[row]);
         let most_sensitive = (PATH_ROW..=PATH_ROW + SHAPED)
             .map(feels)
             .fold(f32::INFINITY, f32::min);
         bounds.unfelt = UNFELT * f64::from(most_sensitive) * PATH_PERIOD_S;
         // There and back from tick to tick, and the other way one filter length later.
         bounds.unfelt_way = bounds.unfelt * PATH_PERIOD_S / 8.0;
-        bounds.per_swing = bounds.swing.map(|swing| 1.0 / swing);
+        bounds.per_acceleration_change = bounds.acceleration_change.map(|change| 1.0 / change);
         bounds.per_acceleration = bounds.acceleration.map(|acceleration| 1.0 / acceleration);
         bounds
     }

@@ -4,51 +4,49 @@
 //! to rest at the end of what it knows. Corners are rounded inside their tolerance.
 
 mod accuracy;
+mod braking;
 mod breaks;
 mod chain;
+mod channels;
 mod corner;
 mod filter;
 mod grid;
 mod horizon;
+mod jerk_limit;
 mod limits;
 mod node;
 mod player;
+mod room;
 mod rounding;
 mod rounds;
 mod sample;
 mod scan;
-mod slowest;
 mod split;
-mod swing;
 #[cfg(test)]
 mod tests;
 mod track;
 
 pub use limits::PlanLimits;
-pub use track::LONGEST as LONGEST_PATH;
+pub use track::{LONGEST as LONGEST_PATH, PushError};
 
 use super::reference::at_unit_speed;
 use super::{Element, PathSpace, SpeedState, Unreachable};
 use crate::io::AXES;
 use crate::kinematics::{AxisMotion, Kinematics};
+use channels::POSE_CHANNELS;
 use filter::Filter;
 use grid::{Grid, most_work};
-use horizon::{Horizon, WINDOW, Wish};
+use horizon::{Horizon, WINDOW, WORK, Wish};
 use limits::Bounds;
 use node::Nodes;
 use player::Player;
 use sample::Ground;
-use thiserror::Error;
 use track::Track;
 
 /// Highest feed override, and the lowest that is not a stop: with less a weld at 9 m/min would go 15 µm/s, and squares of
 /// speeds would go out of what single precision holds.
 const MOST_OVERRIDE: f64 = 2.0;
 const LEAST_OVERRIDE: f64 = 1e-4;
-/// Channels that make a pose: position, T and N.
-const POSE_CHANNELS: usize = 9;
-/// Work of planning in one tick, in hundreds of instructions of a PC.
-const WORK: u32 = 95;
 /// Work to shape a corner, and to begin a plan.
 const CORNER: u32 = 5;
 const BEGIN: u32 = 40;
@@ -114,31 +112,6 @@ pub struct Output {
     pub feed: f64,
     /// Nothing moves, and nothing will before another element comes, or another way or override is asked for.
     pub at_rest: bool,
-}
-
-/// Why an element was not taken; the planner is as before.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum PushError {
-    /// No room for another element now; there will be when some have been passed.
-    #[error("the planner holds all the elements it can; wait until it has room")]
-    Full,
-    /// Length or feed is not above zero, a number is not finite, or one is out of all proportion: a path of more than
-    /// 1000 km, a feed above 1 km/s or below 1 nm/s, a channel that changes by more than 10⁶ for each mm.
-    #[error(
-        "line {line}: the element has no length, no feed, or a number that is not finite or out of all proportion"
-    )]
-    Unsound {
-        /// Line of the program.
-        line: u32,
-    },
-    /// It does not begin where the one before it ends.
-    #[error("line {line}: the element begins {distance} mm (or rad) away from the end of the one before it")]
-    Gap {
-        /// Line of the program.
-        line: u32,
-        /// Largest difference of a channel.
-        distance: f32,
-    },
 }
 
 impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
@@ -389,7 +362,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         // In one go for many of them.
         let behind = self.player.node - self.nodes.first;
         if self.nodes.room() == 0 && behind as usize > NODES / 4 {
-            // The swings need all that the output filter remembers, and more; at rest it remembers nothing.
+            // The limit of jerk needs all that the output filter remembers, and more; at rest it remembers nothing.
             let mut time = if self.rested() { f64::INFINITY } else { 0.0 };
             let mut oldest = self.player.node;
             while oldest > self.nodes.first

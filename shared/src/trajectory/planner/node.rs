@@ -1,11 +1,13 @@
 //! The places of the path at which speed is planned.
 
 use super::limits::{Bounds, ROWS};
+use crate::ticks::PATH_PERIOD_S;
 
-/// How much of a swing that is too large is taken away in one round, and given back of one that need not be so small.
+/// How much of a change of acceleration that is too large is taken away in one round, and given back of one that need not
+/// be so small.
 const TIGHTEN: f32 = 0.8;
 const LOOSEN: f32 = 0.4;
-/// Swings within this share of their limit are left alone.
+/// Changes within this share of their limit are left alone.
 const TIGHTEN_FROM: f32 = 0.01;
 const LOOSEN_FROM: f32 = 0.02;
 /// No box is made smaller than this share of the acceleration.
@@ -16,6 +18,8 @@ const LEAST_RATE: f32 = 1e-6;
 
 /// A lane for every row of limits.
 pub(super) type Lanes = [f32; ROWS];
+/// No acceleration.
+pub(super) const REST: Lanes = [0.0; ROWS];
 
 /// The smaller one, for lanes: unlike `f32::min` it costs one instruction, as no number here is NaN.
 pub(super) fn least(a: f32, b: f32) -> f32 {
@@ -152,23 +156,23 @@ impl Side {
                 most(by_past[row], by_future[row]),
             );
             let far = most(is[row] - top, bottom - is[row]);
-            off = most(off, far * bounds.per_swing[row]);
+            off = most(off, far * bounds.per_acceleration_change[row]);
         }
         if off <= TIGHTEN_FROM {
             return false;
         }
         for row in 0..ROWS {
-            let swing = bounds.swing[row];
+            let change = bounds.acceleration_change[row];
             let (top, bottom) = (
                 least(by_past[row], by_future[row]),
                 most(by_past[row], by_future[row]),
             );
             let (above, below) = (is[row] - top, bottom - is[row]);
-            let (shut_above, shut_below) = (above > TIGHTEN_FROM * swing, below > TIGHTEN_FROM * swing);
+            let (shut_above, shut_below) = (above > TIGHTEN_FROM * change, below > TIGHTEN_FROM * change);
             if !(shut_above || shut_below) {
                 continue;
             }
-            let smallest = LEAST_BOX * least(bounds.acceleration[row], swing);
+            let smallest = LEAST_BOX * least(bounds.acceleration[row], change);
             let (mut low, mut high) = self.of_row(row);
             if shut_above {
                 high = most(is[row] - TIGHTEN * above, smallest);
@@ -193,10 +197,10 @@ impl Side {
             if self.boxed & (1 << row) == 0 {
                 continue;
             }
-            let (full, swing) = (bounds.acceleration[row], bounds.swing[row]);
+            let (full, change) = (bounds.acceleration[row], bounds.acceleration_change[row]);
             let above = room[0][row] - is[row];
             let below = is[row] - room[1][row];
-            let (opens_above, opens_below) = (above > LOOSEN_FROM * swing, below > LOOSEN_FROM * swing);
+            let (opens_above, opens_below) = (above > LOOSEN_FROM * change, below > LOOSEN_FROM * change);
             if !(opens_above || opens_below) {
                 continue;
             }
@@ -336,5 +340,14 @@ impl<const N: usize> Nodes<N> {
 
     pub fn at_mut(&mut self, serial: u32) -> &mut Node {
         &mut self.ring[serial as usize % N]
+    }
+}
+
+/// Time that the machine stands at a node: until the output filter has come to rest \[s\].
+pub(super) fn pause(node: &Node, bounds: &Bounds) -> f64 {
+    if node.limit > 0.0 {
+        0.0
+    } else {
+        bounds.filter + PATH_PERIOD_S
     }
 }

@@ -1,7 +1,7 @@
 //! Plays the plan in force.
 
 use super::node::Nodes;
-use crate::motion::PATH_PERIOD_S;
+use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::SpeedState;
 
 /// A stop is reached this much before its time \[s\]: s is rounded, and else a tick of braking may come to lie behind

@@ -1,14 +1,14 @@
 //! How large the rounded corners are.
 
 use super::chain::chained;
-use super::limits::{Bounds, FILTER_SHARE};
-use super::track::{Piece, SMOOTH, Track, attitude_norm};
-use crate::trajectory::{CHANNELS, Join, SHAPED};
+use super::channels::{ATTITUDE, SMOOTH, attitude_norm};
+use super::limits::Bounds;
+use super::room::{between, plain, room, share};
+use super::track::{Piece, Track};
+use crate::trajectory::Join;
 
 /// A corner rounded by less \[mm\] is a stop.
 const SMALLEST: f64 = 1e-5;
-/// Channels of attitude (or axes A B C); after them come the V slides \[mm\].
-pub(super) const ATTITUDE: core::ops::Range<usize> = SHAPED..CHANNELS - 2;
 
 impl<const E: usize> Track<E> {
     /// Moves or shapes one corner, if there is one whose neighbours are known.
@@ -56,15 +56,6 @@ impl<const E: usize> Track<E> {
     }
 }
 
-/// What a corner may use of an element; `whole` if the machine comes to rest at its other end.
-fn share(piece: &Piece, whole: bool) -> f64 {
-    if whole {
-        piece.element.length
-    } else {
-        0.5 * piece.element.length
-    }
-}
-
 /// Half length of the corner between two elements \[mm\], and whether the machine has to stop there instead.
 fn size(before: &Piece, after: &Piece, bounds: &Bounds) -> (f64, bool) {
     let jump = &after.corner.jump;
@@ -101,23 +92,4 @@ fn size(before: &Piece, after: &Piece, bounds: &Bounds) -> (f64, bool) {
     } else {
         (half, false)
     }
-}
-
-/// What a corner may use of the two elements that meet there \[mm\].
-fn between(before: &Piece, after: &Piece) -> f64 {
-    libm::fmin(
-        share(before, before.stop),
-        share(after, after.element.join == Join::Stop),
-    )
-}
-
-/// The same, but no more than is needed to keep the feed where the direction turns by `turn`.
-pub(super) fn room(before: &Piece, after: &Piece, turn: f64, bounds: &Bounds) -> f64 {
-    let feed = libm::fmin(before.element.feed, after.element.feed);
-    libm::fmin(between(before, after), feed * feed * turn / (1.2 * bounds.corner))
-}
-
-/// Half length of a corner that turns by `turn` and stays within `tolerance` \[mm\].
-pub(super) fn plain(turn: f64, tolerance: f64) -> f64 {
-    4.0 * (1.0 - FILTER_SHARE) * tolerance / turn
 }

@@ -3,13 +3,12 @@
 
 use super::horizon::{Horizon, Phase, TAKEN_FOR_ONE};
 use super::limits::Bounds;
-use super::node::{Nodes, most};
+use super::node::{Nodes, REST, most};
 use super::scan::reach;
-use super::swing::REST;
 
 /// Rounds of passes that a plan is given before it is given up.
 const ROUNDS: u32 = 12;
-/// A plan is good if no swing of the acceleration is above its limit by more than this share.
+/// A plan is good if no change of acceleration is above its limit by more than this share.
 const GOOD: f32 = 0.025;
 /// Work of a step of the pass back.
 const BACK: u32 = 1;
@@ -70,7 +69,7 @@ impl Horizon {
     }
 
     /// The rounds have not led to a good plan. One from rest may be slower as a whole: accelerations go with x, and
-    /// so do their swings. Otherwise the plan in force goes on, to rest.
+    /// so do their changes of acceleration. Otherwise the plan in force goes on, to rest.
     fn last_resort<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
         if nodes.at(self.commit).x > 0.0 {
             self.give_up();
@@ -185,7 +184,7 @@ impl Horizon {
         self.phase = Phase::Back(i);
     }
 
-    /// No swing of the acceleration is too large.
+    /// No change of acceleration is too large.
     fn is_good(&self) -> bool {
         self.excess.iter().all(|excess| *excess <= GOOD)
     }

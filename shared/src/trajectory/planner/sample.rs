@@ -1,9 +1,9 @@
 //! What the path asks of the axes at one place.
 
-use super::POSE_CHANNELS;
+use super::channels::{POSE_CHANNELS, attitude_norm, position_norm};
 use super::limits::{Bounds, PATH_ROW, ROWS};
 use super::node::{Lanes, highest};
-use super::track::{Track, attitude_norm, position_norm};
+use super::track::Track;
 use crate::io::AXES;
 use crate::kinematics::Kinematics;
 use crate::trajectory::reference::at_unit_speed;

@@ -2,7 +2,7 @@
 
 use super::limits::{Bounds, ROWS};
 use super::node::{Node, Nodes, Side, least, most};
-use crate::motion::PATH_PERIOD_S;
+use crate::ticks::PATH_PERIOD_S;
 
 /// An interval is split if it would make a change of the plan later than this \[s\], and than twice the time that a plan
 /// needs: more nodes are more work.
@@ -64,16 +64,16 @@ fn places(node: &Node, next: &Node, after: f64, bounds: &Bounds) -> ([f64; STEPS
         return (places, 0);
     }
     // What the rows allow along the path, and how long it takes to get there.
-    let (mut most_a, mut most_swing) = (f32::INFINITY, f32::INFINITY);
+    let (mut most_a, mut most_change) = (f32::INFINITY, f32::INFINITY);
     for side in &node.sides {
         for row in 0..ROWS {
             let per_alpha = 1.0 / side.alpha[row].abs();
             most_a = most_a.min(bounds.acceleration[row] * per_alpha);
-            most_swing = most_swing.min(bounds.swing[row] * per_alpha);
+            most_change = most_change.min(bounds.acceleration_change[row] * per_alpha);
         }
     }
     let most_a = f64::from(most_a);
-    let ramp = bounds.filter * libm::fmax(1.0, most_a / f64::from(most_swing));
+    let ramp = bounds.filter * libm::fmax(1.0, most_a / f64::from(most_change));
     let v = v + a * after + 0.5 * libm::fmax(a, 0.0) * ramp;
     let step = LONGER * (v * v / (2.0 * most_a) + v * ramp) / STEPS as f64;
     let mut count = 1;

@@ -1,16 +1,13 @@
 //! The elements in the queue, with their corners rounded: where the tool is at path length s.
 
-use super::PushError;
+use super::channels::{SAME, SMOOTH, position_norm};
 use super::corner::Corner;
-use super::grid::SAME;
-use super::rounding::ATTITUDE;
 use crate::trajectory::{CHANNELS, Cubic, Element, Join, PathPoint, SHAPED, Shape};
 use nalgebra::Vector3;
+use thiserror::Error;
 
 /// Channels of two elements that meet may differ by this much (mm, rad).
 const GAP: f64 = 1e-5;
-/// A change of direction below this is none.
-pub(super) const SMOOTH: f64 = 1e-9;
 /// No path is longer than this \[mm\], 1000 km, and no channel farther from 0: single micrometres are still told apart
 /// there.
 pub const LONGEST: f64 = 1e9;
@@ -47,6 +44,31 @@ pub(super) struct Piece {
     pub chained: bool,
     /// How far the corner at its end reaches into it \[mm\].
     end_half: f64,
+}
+
+/// Why an element was not taken; the planner is as before.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum PushError {
+    /// No room for another element now; there will be when some have been passed.
+    #[error("the planner holds all the elements it can; wait until it has room")]
+    Full,
+    /// Length or feed is not above zero, a number is not finite, or one is out of all proportion: a path of more than
+    /// 1000 km, a feed above 1 km/s or below 1 nm/s, a channel that changes by more than 10⁶ for each mm.
+    #[error(
+        "line {line}: the element has no length, no feed, or a number that is not finite or out of all proportion"
+    )]
+    Unsound {
+        /// Line of the program.
+        line: u32,
+    },
+    /// It does not begin where the one before it ends.
+    #[error("line {line}: the element begins {distance} mm (or rad) away from the end of the one before it")]
+    Gap {
+        /// Line of the program.
+        line: u32,
+        /// Largest difference of a channel.
+        distance: f32,
+    },
 }
 
 impl Piece {
@@ -324,16 +346,4 @@ fn bend(element: &Element, ends: [&PathPoint; 2]) -> f64 {
 /// The first channels.
 fn position(channels: &[f64; CHANNELS]) -> Vector3<f64> {
     Vector3::new(channels[0], channels[1], channels[2])
-}
-
-/// Length of the change of the first channels.
-pub(super) fn position_norm(jump: &[f64]) -> f64 {
-    libm::sqrt(jump[..SHAPED].iter().map(|x| x * x).sum())
-}
-
-/// Length of the change of the attitude: of A B C together, or of T or N, whichever is more.
-pub(super) fn attitude_norm(jump: &[f64]) -> f64 {
-    let square = |range: core::ops::Range<usize>| jump[range].iter().map(|x| x * x).sum::<f64>();
-    let (middle, end) = (SHAPED + 3, ATTITUDE.end.min(jump.len()));
-    libm::sqrt(libm::fmax(square(SHAPED..middle), square(middle..end)))
 }

@@ -1,6 +1,6 @@
 //! Going through the blocks of a path once: what is wrong with them, and what they come to.
 
-use crate::path::blocks::walk::Step;
+use super::walk::Step;
 use crate::path::limits::{CHECK_STEP, Demand, Worst, check_continuous};
 use crate::path::shape::Goal;
 use crate::path::targets::Stand;

@@ -1,6 +1,6 @@
 //! Where a path is, by its length.
 
-use crate::path::blocks::{Blocks, Leg};
+use super::{Blocks, Leg};
 use crate::path::{CAPACITY, PathError};
 use shared::trajectory::{Element, Path, PathPoint};
 use std::cell::RefCell;

@@ -11,9 +11,9 @@ mod walk;
 pub use check::Summary;
 pub use course::Course;
 
-use crate::path::feeds::Feeds;
-use crate::path::targets::Stand;
-use crate::path::{PathError, PlannedPath, Planner};
+use super::feeds::Feeds;
+use super::targets::Stand;
+use super::{PathError, PlannedPath, Planner};
 use check::Check;
 use nc::{Motion, Move};
 use shared::protocol::PathEvent;

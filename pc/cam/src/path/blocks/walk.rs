@@ -1,7 +1,7 @@
 //! From moves to blocks, and how each of them goes on into the next.
 
+use super::Moves;
 use crate::path::block::Block;
-use crate::path::blocks::Moves;
 use crate::path::exact::{Join as Turning, MAX_TURN};
 use crate::path::feeds::Feeds;
 use crate::path::targets::Stand;

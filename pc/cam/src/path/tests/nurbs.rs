@@ -1,7 +1,7 @@
 //! NURBS are followed exactly, at their feed, and what is no way for a tool is refused.
 
+use super::control::tips;
 use super::*;
-use crate::path::tests::control::tips;
 use shared::geometry::nurbs::{Curve, Nurbs, length};
 
 /// A quarter of a circle of 100 mm as an exact rational curve, and the same as an arc.

@@ -7,18 +7,18 @@ mod program;
 #[cfg(test)]
 mod tests;
 
+use super::beams::slide_extension;
+use super::cut::SmoothSeam;
+use super::locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
 use crate::SeamPoint;
-use crate::plan::beams::slide_extension;
-use crate::plan::cut::SmoothSeam;
-use crate::plan::locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
 use cam::curve::Curve;
 use cam::path::CAPACITY;
 use config::machine::{MachineFile, TrackingUnit};
 use nalgebra::Vector3;
+use shared::config::HeadConfig;
 use shared::geometry::{Pose, PoseError, SplineError, angle};
 use shared::kinematics::KinematicsError;
 use shared::parameter::ParameterError;
-use shared::tracking::HeadConfig;
 use shared::units::DEG_PER_RAD;
 use teach::seam::{Drawing, Stance};
 use thiserror::Error;

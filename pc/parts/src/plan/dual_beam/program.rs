@@ -1,6 +1,6 @@
 //! The NC program of a planned weld: approach, run-in, seam, run-out, retract.
 
-use crate::plan::dual_beam::{CLEARANCE, DualBeamPlan, PlanError, PlanOptions, PlannedPoint, moved};
+use super::{CLEARANCE, DualBeamPlan, PlanError, PlanOptions, PlannedPoint, moved};
 use config::machine::MachineFile;
 use nc::text::{NcText, decimal, tip_words};
 use shared::io::AXES;

@@ -4,9 +4,9 @@ mod dimensions;
 mod planned;
 mod taught;
 
+use super::seam::{Placement, Seam};
 use super::*;
 use crate::PartFile;
-use crate::saddle::seam::{Placement, Seam};
 use config::machine::MachineFile;
 use shared::geometry::Sheet;
 use std::path::PathBuf;

@@ -3,12 +3,12 @@
 
 mod jog;
 
+use super::course::Local;
 use super::*;
-use crate::seam::course::Local;
 use nalgebra::Vector3;
+use shared::config::HeadConfig;
 use shared::geometry::{Pose, angle};
 use shared::io::SLIDES;
-use shared::tracking::HeadConfig;
 use std::convert::Infallible;
 use vision::render::SplitMix64;
 

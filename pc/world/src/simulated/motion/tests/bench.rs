@@ -3,11 +3,13 @@
 use crate::simulated::motion::MotionBoard;
 use config::machine::MachineFile;
 use plant::{DEFAULT_MACHINE, MotionPlant};
-use shared::motion::{MotionConfig, SERVO_TICKS_PER_PATH_TICK, State};
+use shared::config::MotionConfig;
 use shared::protocol::{
     MotionSample, MotionStatus, PathAction, PathChannel, PathElement, PathEvent, PathJoin, PathLimits,
     PathShape, Request, Response,
 };
+use shared::state::State;
+use shared::ticks::SERVO_TICKS_PER_PATH_TICK;
 use shared::trajectory::{CHANNELS, PathSpace, SHAPED};
 
 pub fn config() -> MotionConfig {

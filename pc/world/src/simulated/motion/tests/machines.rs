@@ -1,14 +1,14 @@
 //! Every machine on its board: it homes, and holds its tool on a path as its work asks.
 
-use crate::simulated::motion::tests::bench::{Bench, config_of};
+use super::bench::{Bench, config_of};
 use cam::path::TOLERANCE;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::{AXES, DacCode, MOTOR_AXIS, MOTORS};
 use shared::kinematics::{AXIS_UNIT, KinematicsConfig};
-use shared::motion::State;
-use shared::protocol::{Knot, PathElement, PathLimits, Request};
-use shared::trajectory::{CHANNELS, Cubic, Element, Join, PathSpace, SHAPED, Shape};
+use shared::protocol::{PathElement, PathLimits, Request};
+use shared::state::State;
+use shared::trajectory::{CHANNELS, Cubic, Element, Join, Knot, PathSpace, SHAPED, Shape};
 use std::f64::consts::TAU;
 
 #[test]

@@ -6,8 +6,8 @@ mod readback;
 
 use super::*;
 use bench::{Bench, config};
-use shared::motion::{Fault, State};
 use shared::protocol::Refusal;
+use shared::state::{Fault, State};
 
 #[test]
 fn homing_finds_the_marks_and_squares_the_gantry() {

@@ -1,9 +1,8 @@
 //! The power that the plant's sources give, supervised.
 
+use super::bench::{Bench, config};
 use super::*;
-use crate::simulated::motion::tests::bench::{Bench, config};
 use shared::io::DacCode;
-use shared::motion::ReadbackConfig;
 
 /// With 5 % of full power allowed for 5 ms; on a line, with beam 1 on.
 fn welding() -> Bench {

@@ -1,13 +1,13 @@
-//! Who is alive: one task feeds the watchdog, and only while all the others were seen lately.
+//! Alive supervision of tasks: one of them feeds the watchdog, and only while all the others ran lately.
 
 /// Tasks `0..N` that must be seen every so many ticks of the one that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RollCall<const N: usize> {
+pub struct AliveSupervision<const N: usize> {
     patience: u16,
     left: [u16; N],
 }
 
-impl<const N: usize> RollCall<N> {
+impl<const N: usize> AliveSupervision<N> {
     /// A task that was not seen for `patience` ticks is dead; everyone has a first chance.
     pub const fn new(patience: u16) -> Self {
         Self {
@@ -32,24 +32,24 @@ impl<const N: usize> RollCall<N> {
 
 #[cfg(test)]
 mod tests {
-    use super::RollCall;
+    use super::AliveSupervision;
 
     #[test]
     fn one_dead_task_is_enough_and_a_late_one_is_forgiven() {
-        let mut roll_call = RollCall::<2>::new(4);
+        let mut supervision = AliveSupervision::<2>::new(4);
         for _ in 0..10 {
-            assert!(roll_call.tick());
-            assert!(roll_call.tick());
-            roll_call.seen(0);
-            roll_call.seen(1);
+            assert!(supervision.tick());
+            assert!(supervision.tick());
+            supervision.seen(0);
+            supervision.seen(1);
         }
         let mut alive = 0;
         for _ in 0..10 {
-            roll_call.seen(0);
-            alive += u32::from(roll_call.tick());
+            supervision.seen(0);
+            alive += u32::from(supervision.tick());
         }
         assert_eq!(alive, 3, "the fourth tick without task 1 is the last");
-        roll_call.seen(1);
-        assert!(roll_call.tick());
+        supervision.seen(1);
+        assert!(supervision.tick());
     }
 }

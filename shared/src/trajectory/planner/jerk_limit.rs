@@ -1,13 +1,11 @@
-//! Swings of the acceleration: how far a row may differ from itself one filter length away, and boxes made to fit.
+//! The limit of jerk: how far the acceleration of a row may differ from itself one filter length away, and boxes made to
+//! fit.
 
 use super::horizon::Horizon;
 use super::limits::{Bounds, ROWS};
-use super::node::{Lanes, Node, Nodes, least, most};
+use super::node::{Lanes, Nodes, REST, least, most, pause};
 use super::scan::advance;
-use crate::motion::PATH_PERIOD_S;
 
-/// No acceleration.
-pub(super) const REST: Lanes = [0.0; ROWS];
 /// Work of a step of the pass forward, of a repair, of another box in it, and of each interval one filter length away
 /// that they look at.
 const FORWARD: u32 = 7;
@@ -98,12 +96,12 @@ impl Horizon {
         for row in 0..ROWS {
             allowed[row] = most(least(wanted[row], room[0][row]), room[1][row]);
             let off = most(wanted[row] - allowed[row], allowed[row] - wanted[row]);
-            self.excess[row] = most(self.excess[row], off * bounds.per_swing[row]);
+            self.excess[row] = most(self.excess[row], off * bounds.per_acceleration_change[row]);
         }
         allowed
     }
 
-    /// Highest and lowest accelerations that are at most one swing away from all between two times, as in `range`.
+    /// Highest and lowest accelerations that the limit of jerk allows beside all between two times, as in `range`.
     fn room<const N: usize>(
         &mut self,
         nodes: &Nodes<N>,
@@ -113,12 +111,18 @@ impl Horizon {
     ) -> [Lanes; 2] {
         let [mut highest, mut lowest] = self.range(nodes, from_to, times, bounds);
         for row in 0..ROWS {
-            let (top, bottom) = (highest[row] + bounds.swing[row], lowest[row] - bounds.swing[row]);
-            // Where they are farther apart than two swings, the middle is off by the least.
+            let (top, bottom) = (
+                highest[row] + bounds.acceleration_change[row],
+                lowest[row] - bounds.acceleration_change[row],
+            );
+            // Where those are too far apart for it, the middle is off by the least.
             let middle = 0.5 * (top + bottom);
             highest[row] = most(middle, top);
             lowest[row] = least(middle, bottom);
-            self.excess[row] = most(self.excess[row], 0.5 * (bottom - top) * bounds.per_swing[row]);
+            self.excess[row] = most(
+                self.excess[row],
+                0.5 * (bottom - top) * bounds.per_acceleration_change[row],
+            );
         }
         [highest, lowest]
     }
@@ -181,30 +185,24 @@ fn way([from, to]: [f64; 2], part: f64) -> f64 {
 }
 
 /// Highest and lowest accelerations in an interval by itself that is longer than the filter and lasts `length` \[s\]:
-/// where it is fastest they go one swing in the filter's length at most, on the way from one `wanted` to the other.
+/// where it is fastest they change by no more than the limit of jerk allows in the filter's length, on the way from one
+/// `wanted` to the other.
 fn alone([from, to]: [f64; 2], length: f64, wanted: &[Lanes; 2], bounds: &Bounds) -> [Lanes; 2] {
     let part = way(
         [libm::fmax(from, to), libm::fmin(from, to)],
         bounds.filter / length,
     );
-    let swings = 0.5 / part as f32;
+    let changes = 0.5 / part as f32;
     let middle = |row: usize| 0.5 * (wanted[0][row] + wanted[1][row]);
-    [1.0, -1.0].map(|sign| core::array::from_fn(|row| middle(row) + sign * swings * bounds.swing[row]))
-}
-
-/// Time that the machine stands at a node: until the output filter has come to rest \[s\].
-pub(super) fn pause(node: &Node, bounds: &Bounds) -> f64 {
-    if node.limit > 0.0 {
-        0.0
-    } else {
-        bounds.filter + PATH_PERIOD_S
-    }
+    [1.0, -1.0].map(|sign| {
+        core::array::from_fn(|row| middle(row) + sign * changes * bounds.acceleration_change[row])
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trajectory::planner::node::Side;
+    use crate::trajectory::planner::node::{Node, Side};
     use proptest::prelude::*;
 
     /// Boxes that the machine keeps only by coming to all but a rest, in an interval behind which it could go on.
@@ -238,7 +236,7 @@ mod tests {
         assert!(nodes.at(first + 1).time < 3.0);
     }
 
-    /// A row that has to be one swing away from two others at most, which are farther apart than two swings.
+    /// A row that has to be near two others, which are too far apart for that.
     #[test]
     fn a_past_that_asks_for_two_things_is_noticed() {
         let bounds = Bounds::NONE;
@@ -273,7 +271,7 @@ mod tests {
     }
 
     proptest! {
-        /// By steps of time, and in an interval by itself the filter's length of it is one swing at most.
+        /// By steps of time, and in an interval by itself the filter's length of it keeps the limit of jerk.
         #[test]
         fn accelerations_go_over_the_way(from in 0.0..2.0f64, to in 0.01..2.0f64, part in 0.0..1.0f64) {
             let speed = |time: f64| from + time * (to - from);
@@ -287,7 +285,7 @@ mod tests {
             let length = 1.5 * bounds.filter;
             let [highest, lowest] = alone([from, to], length, &[[4.0; ROWS], [-4.0; ROWS]], &bounds);
             let fastest = libm::fmax(way([from, to], 2.0 / 3.0), 1.0 - way([from, to], 1.0 / 3.0));
-            prop_assert!(((highest[0] - lowest[0]) * fastest as f32 - bounds.swing[0]).abs() < 1e-4);
+            prop_assert!(((highest[0] - lowest[0]) * fastest as f32 - bounds.acceleration_change[0]).abs() < 1e-4);
         }
     }
 }

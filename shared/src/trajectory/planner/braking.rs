@@ -1,15 +1,15 @@
-//! How slow the machine can be: the speeds that a plan to stop, or one for a lower override, is not below.
+//! Braking, or how slow the machine can be: the speeds that a plan to stop, or one for a lower override, is not below.
 //!
 //! First forward in time, from the commit to rest: at every node the lowest acceleration that the boxes and the past
 //! allow. Where all speeds have come down to what they shall be, the plan settles; from there back in time, so that the
 //! acceleration is let go in time too. If that does not lead back to the speed at the commit, it settles later.
 
 use super::horizon::{Horizon, LEAST_WINDOW, Phase};
+use super::jerk_limit::LOOK;
 use super::limits::{Bounds, PATH_ROW, ROWS};
-use super::node::{Lanes, Node, Nodes, least, most};
+use super::node::{Lanes, Node, Nodes, least, most, pause};
 use super::rounds::{ITERATION, OPEN, REACH};
 use super::scan::{lowest, reach};
-use super::swing::{LOOK, pause};
 
 /// Work of a step forward, and of one back beside the search for a reach; nodes looked at for a unit of it.
 const BRAKE: u32 = 5;
@@ -251,16 +251,16 @@ impl Horizon {
     }
 }
 
-/// Lowest a from which no row is more than one swing away from `other`, but never more than there.
+/// Lowest a from which no row is farther from `other` than the limit of jerk allows, but never more than there.
 fn demanded(node: &Node, other: &[Lanes; 2], bounds: &Bounds) -> f32 {
     let mut a = f32::NEG_INFINITY;
     for side in &node.sides {
         for row in 0..ROWS {
-            let (alpha, swing) = (side.alpha[row], bounds.swing[row]);
+            let (alpha, change) = (side.alpha[row], bounds.acceleration_change[row]);
             let bound = if alpha > 0.0 {
-                other[1][row] - swing
+                other[1][row] - change
             } else {
-                other[0][row] + swing
+                other[0][row] + change
             };
             a = most(a, bound / alpha);
         }

@@ -142,8 +142,9 @@ mod tests {
 
     #[test]
     fn only_off_and_fault_have_the_drives_off() {
-        for state in STATES {
-            assert_eq!(state.drives_on(), !matches!(state, State::Off | State::Fault));
-        }
+        assert_eq!(
+            STATES.map(State::drives_on),
+            [false, true, true, true, true, true, false]
+        );
     }
 }

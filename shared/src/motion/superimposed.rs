@@ -1,13 +1,13 @@
-//! The pose beside the planned path: blended in slowly, in addition to what is planned (SPEC 0.7).
+//! Superimposed motion: the pose goes beside the planned one, blended in slowly (SPEC 0.7).
 //!
 //! It comes after planner and output filter, which know nothing of it. A blend is a polynomial of fifth degree, so
 //! that its acceleration is continuous and its jerk bounded, and takes so long that no axis gets more than
 //! [`SHARE`] of its limits besides the plan, and the tip no more than [`SPEED`].
 
-use super::segment::PATH_PERIOD_S;
 use crate::geometry::PoseOffset;
 use crate::io::AXES;
 use crate::kinematics::{AxisLimits, AxisMotion, Kinematics, KinematicsError};
+use crate::ticks::PATH_PERIOD_S;
 
 /// Part of the limits of an axis that a blend may take besides the plan; the drives have more to spare than that.
 const SHARE: f64 = 0.05;
@@ -22,7 +22,7 @@ const PEAK: [f64; 3] = [1.875, 5.773_503, 60.0];
 
 /// Where the pose is beside the plan, and on its way to where.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Aside {
+pub struct Superimposed {
     from: PoseOffset,
     to: PoseOffset,
     /// Where to go next, once the present blend is over or stands.
@@ -40,7 +40,7 @@ pub struct Aside {
     added_rate: [f64; AXES],
 }
 
-impl Aside {
+impl Superimposed {
     /// On the plan.
     pub const NONE: Self = Self {
         from: PoseOffset::NONE,

@@ -1,7 +1,7 @@
 //! What a machine file says about the tracker board (mm, degrees, seconds).
 
+use crate::control::HomeConfig;
 use crate::io::{SIDES, SLIDES};
-use crate::motion::HomeConfig;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 

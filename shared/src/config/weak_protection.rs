@@ -1,8 +1,7 @@
 //! Protections that a machine's parameters leave weaker than usual: allowed, and to be known.
 
+use crate::config::{MotionConfig, TrackerConfig};
 use crate::io::{MOTOR_NAMES, MOTORS, SIDES};
-use crate::motion::MotionConfig;
-use crate::tracking::TrackerConfig;
 use heapless::Vec;
 use thiserror::Error;
 
@@ -26,7 +25,7 @@ const SATURATED_MS: u32 = 500;
 
 /// A protection that acts later than usual.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum Weakened {
+pub enum WeakProtection {
     /// A motor that stands elsewhere is noticed late.
     #[error("following_error_base of {} is {limit} mm (or °): a motor that does not follow is noticed late; {ERROR} is usual at most", MOTOR_NAMES[*.motor as usize])]
     FollowingError {
@@ -122,16 +121,16 @@ const MOST_OF_TRACKER: usize = 5;
 
 impl MotionConfig {
     /// Protections that act later than usual.
-    pub fn weakened(&self) -> Vec<Weakened, MOST_OF_MOTION> {
-        let mut weakened = Vec::new();
+    pub fn weak_protections(&self) -> Vec<WeakProtection, MOST_OF_MOTION> {
+        let mut found = Vec::new();
         for (number, motor) in (0..).zip(&self.motors) {
             let Some(motor) = motor else { continue };
             let (limit, time_s) = (motor.following_error_base, motor.following_error_time_s);
             if limit > ERROR {
-                weakened.extend([Weakened::FollowingError { motor: number, limit }]);
+                found.extend([WeakProtection::FollowingError { motor: number, limit }]);
             }
             if time_s > LAG_S {
-                weakened.extend([Weakened::FollowingErrorInMotion {
+                found.extend([WeakProtection::FollowingErrorInMotion {
                     motor: number,
                     time_s,
                 }]);
@@ -140,52 +139,52 @@ impl MotionConfig {
         if let Some(gantry) = &self.gantry {
             let yaw = libm::fabs(gantry.skew_trip_mm / (gantry.y2_mm - gantry.y1_mm));
             if yaw > YAW {
-                weakened.extend([Weakened::Skew {
+                found.extend([WeakProtection::Skew {
                     trip_mm: gantry.skew_trip_mm,
                     yaw,
                 }]);
             }
         }
         for (side, beam) in (0..).zip(&self.beams) {
-            let rests = |beam: &crate::motion::BeamConfig| {
+            let rests = |beam: &crate::config::BeamConfig| {
                 // A spindle is meant to turn at rest.
                 beam.min_speed_mm_s <= 0.0 && !beam.stays_on_at_rest
             };
             if beam.as_ref().is_some_and(rests) {
-                weakened.extend([Weakened::BeamAtRest { side }]);
+                found.extend([WeakProtection::BeamAtRest { side }]);
             }
             let tolerance = beam
                 .as_ref()
                 .and_then(|beam| Some(beam.readback.as_ref()?.tolerance));
             if let Some(tolerance) = tolerance.filter(|tolerance| *tolerance > POWER) {
-                weakened.extend([Weakened::Power { side, tolerance }]);
+                found.extend([WeakProtection::Power { side, tolerance }]);
             }
         }
         if self.link_timeout_ms > SILENCE_MS {
-            weakened.extend([Weakened::Link {
+            found.extend([WeakProtection::Link {
                 timeout_ms: self.link_timeout_ms,
             }]);
         }
-        weakened
+        found
     }
 }
 
 impl TrackerConfig {
     /// Protections that act later than usual.
-    pub fn weakened(&self) -> Vec<Weakened, MOST_OF_TRACKER> {
+    pub fn weak_protections(&self) -> Vec<WeakProtection, MOST_OF_TRACKER> {
         let tracking = &self.tracking;
         let way_mm = tracking.window_mm + tracking.hold_mm;
         let (gate_mm, band_mm) = (tracking.gate_mm, tracking.dead_band_mm);
         let (stale_ms, trip_ms) = (tracking.stale_path_ms, tracking.saturation_trip_ms);
         let all = [
-            (way_mm > BLIND_MM, Weakened::LostSeam { way_mm }),
-            (gate_mm > OUTLIER_MM, Weakened::Outliers { gate_mm }),
-            (band_mm > LEFT_ALONE_MM, Weakened::DeadBand { band_mm }),
-            (stale_ms > STALE_MS, Weakened::StalePath { stale_ms }),
-            (trip_ms > SATURATED_MS, Weakened::Saturation { trip_ms }),
+            (way_mm > BLIND_MM, WeakProtection::LostSeam { way_mm }),
+            (gate_mm > OUTLIER_MM, WeakProtection::Outliers { gate_mm }),
+            (band_mm > LEFT_ALONE_MM, WeakProtection::DeadBand { band_mm }),
+            (stale_ms > STALE_MS, WeakProtection::StalePath { stale_ms }),
+            (trip_ms > SATURATED_MS, WeakProtection::Saturation { trip_ms }),
         ];
         all.into_iter()
-            .filter_map(|(late, weakened)| late.then_some(weakened))
+            .filter_map(|(late, found)| late.then_some(found))
             .collect()
     }
 }

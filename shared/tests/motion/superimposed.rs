@@ -3,8 +3,8 @@
 use crate::bench::{Bench, TRAVEL_MAX, Y, config, load};
 use shared::geometry::{Pose, PoseOffset};
 use shared::kinematics::AXIS_UNIT;
-use shared::motion::State;
 use shared::protocol::{PathAction, PathEvent, PathJoin, Refusal, Request};
+use shared::state::State;
 use shared::trajectory::PathSpace;
 
 const FEED: f64 = 50.0;

@@ -1,0 +1,12 @@
+//! What a machine file says about each board, as it goes to the board.
+//!
+//! What belongs to one law or one machine stands beside it: motors, gantry and reference marks in [`crate::control`], axes
+//! and geometry in [`crate::kinematics`].
+
+mod motion;
+mod tracker;
+mod weak_protection;
+
+pub use motion::{BeamConfig, MotionConfig, ReadbackConfig};
+pub use tracker::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
+pub use weak_protection::WeakProtection;

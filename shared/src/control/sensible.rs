@@ -1,0 +1,41 @@
+//! What the parameters of any drive may be, by what they mean.
+
+use super::HomeConfig;
+use crate::parameter::{ParameterError, within, within_either_sign};
+use core::ops::RangeInclusive;
+
+/// Shortest travel (mm or °).
+pub const SHORTEST_TRAVEL: f64 = 0.1;
+/// Counts in one mm or °: from one to ten million, a tenth of a nanometre.
+pub const SCALES: RangeInclusive<f64> = 1.0..=1e7;
+/// Counters of 16 bits must not go half their way round between two looks, or nobody can tell which way it was.
+pub const MOST_COUNTS: f64 = 32_767.0;
+/// Reference marks may stand beside the travel by this part of it.
+const BESIDE: f64 = 0.1;
+/// A search goes over the travel there, back, and over the mark again.
+const SEARCHES: f64 = 3.0;
+
+/// A search inside `travel`, no faster than `fastest`.
+pub fn check_home(
+    owner: &str,
+    home: &HomeConfig,
+    (min, max): (f64, f64),
+    fastest: f64,
+) -> Result<(), ParameterError> {
+    let travel = max - min;
+    let beside = BESIDE * travel;
+    within_either_sign(owner, "home.velocity", home.velocity, 1e-3..=fastest)?;
+    within(
+        owner,
+        "home.mark_position",
+        home.mark_position,
+        min - beside..=max + beside,
+    )?;
+    within(
+        owner,
+        "home.max_travel",
+        home.max_travel,
+        SHORTEST_TRAVEL..=SEARCHES * travel,
+    )?;
+    Ok(())
+}
