@@ -1,4 +1,4 @@
-//! The pose beside the planned path: blended in slowly, in addition to what is planned (SPEC 0.7).
+//! The pose beside the planned path: blended in slowly, in addition to what is planned (mathematics 0.7).
 //!
 //! It comes after planner and output filter, which know nothing of it. A blend is a polynomial of fifth degree, so
 //! that its acceleration is continuous and its jerk bounded, and takes so long that no axis gets more than
