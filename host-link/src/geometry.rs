@@ -34,7 +34,7 @@ impl MachineGeometry {
         &self.kinematics
     }
 
-    /// Where the axes stand (mm, rad). The ram of a gantry hangs on the beam between X1 and X2 (SPEC 0.10).
+    /// Axis positions (mm, rad). The ram of a gantry hangs on the beam from X1 to X2 (mathematics 0.10).
     pub fn axes(&self, position: &MachinePosition) -> [f64; AXES] {
         match *position {
             MachinePosition::Axes(axes) => axes,

@@ -1,4 +1,4 @@
-//! Velocity-mode servo drive with the mechanics behind it (SPEC 0.11).
+//! Velocity-mode servo drive with the mechanics behind it (mathematics 0.11).
 
 /// One drive in its unit (mm or rad).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -104,7 +104,7 @@ impl Failed {
     }
 }
 
-/// Number of the grating line nearest to `position`: floor(x/q + ½) of SPEC 0.11.
+/// Number of the grating line nearest to `position`: floor(x/q + ½) of mathematics 0.11.
 fn line(counts_per_unit: f64, position: f64) -> i32 {
     let scaled = position * counts_per_unit + 0.5;
     let towards_zero = scaled as i32;

@@ -7,9 +7,9 @@ use shared::units::DEG_PER_RAD;
 
 /// Servo tick \[s\].
 const TICK: f64 = 250e-6;
-/// Steps of the drive model in a servo tick: h = 50 µs as in SPEC 0.11.
+/// Steps of the drive model in a servo tick: h = 50 µs as in mathematics 0.11.
 const STEPS: u32 = 5;
-/// Dead time of the drives, round(0.25 ms / h) + 1 steps (SPEC 0.11).
+/// Dead time of the drives, round(0.25 ms / h) + 1 steps (mathematics 0.11).
 const FIFO: usize = 6;
 
 /// The motors of a machine, in the order of [`shared::io::MOTOR_NAMES`]; `None` where nothing is wired.

@@ -1,11 +1,11 @@
-//! The four slides of the tracker (SPEC 0.9).
+//! The four slides of the tracker (mathematics 0.9).
 
 use crate::{Grating, GratingConfig, GratingFault};
 use shared::io::{Feedback, SLIDES, SlideCommand, SlideFeedback};
 
 /// Control tick \[s\].
 const TICK: f64 = 1e-3;
-/// Steps of the drive model in a control tick: h = 0.1 ms as in SPEC 0.9.
+/// Steps of the drive model in a control tick: h = 0.1 ms as in mathematics 0.9.
 const STEPS: usize = 10;
 /// Dead time of 2 ms in steps.
 const FIFO: usize = 20;

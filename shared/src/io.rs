@@ -25,7 +25,7 @@ pub const MOTOR_AXIS: [usize; MOTORS] = [0, 0, 1, 2, 3, 4, 5];
 /// Names of the slides, in the order of [`SLIDES`].
 pub const SLIDE_NAMES: [&str; SLIDES] = ["U1", "V1", "U2", "V2"];
 
-/// A signed 16-bit converter code, −32767…32767 for −10…+10 V; −32768 is never sent (SPEC 0.8.4).
+/// A signed 16-bit converter code, −32767…32767 for −10…+10 V; −32768 is never sent (mathematics 0.8.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DacCode(pub i16);
 

@@ -18,7 +18,7 @@ pub fn next_to(angle: f64, near: f64) -> f64 {
     near + wrap(angle - near)
 }
 
-/// Rounds to the nearest integer, halves away from zero (SPEC section C).
+/// Rounds to the nearest integer, halves away from zero (mathematics C).
 pub fn round_half_away(x: f64) -> f64 {
     libm::copysign(libm::floor(libm::fabs(x) + 0.5), x)
 }

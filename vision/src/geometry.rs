@@ -1,4 +1,4 @@
-//! From plate, seam and corner to what the picture shows of them, and back (SPEC 0.12).
+//! From plate, seam and corner to what the picture shows of them, and back (mathematics 0.12).
 //!
 //! Frame: a along travel, u across the seam, n out of the plate; its origin is where the optical axis meets the focal
 //! plane. Rows and columns count pixel centres from 0.

@@ -1,7 +1,7 @@
 //! The seam in pictures of a micro depth of field: measured, and rendered with a known truth.
 //!
 //! The camera looks at the work at an angle; its picture is sharp only in a thin band, where the focal plane cuts the
-//! surface. Where that band is tells the height, its slope the roll, and the dark gap in it the seam (SPEC 0.12).
+//! surface. The band's place gives the height, its slope the roll, the gap in it the seam (mathematics 0.12).
 
 mod band;
 pub mod calibrate;

@@ -6,7 +6,7 @@ use thiserror::Error;
 /// Finest object pixel that is measured \[mm\].
 const FINEST_MM: f64 = 0.0024;
 
-/// Lens and sensor of a camera whose optical axis is tilted against the plate (SPEC 0.12).
+/// Lens and sensor of a camera whose optical axis is tilted against the plate (mathematics 0.12).
 ///
 /// Columns of its picture go along +u, across the seam; rows along (cos α, 0, sin α) in the frame (a along travel, u, n
 /// out of the plate). What the axis meets in the focal plane is the middle of the picture.

@@ -1,4 +1,4 @@
-//! Depth of field, and how errors in the picture become errors of the measurement (SPEC 0.12).
+//! Depth of field, and how errors in the picture become errors of the measurement (mathematics 0.12).
 
 use crate::optics::Optics;
 

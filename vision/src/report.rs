@@ -41,7 +41,7 @@ pub struct Report {
 
 /// A measured band and the seam on it.
 ///
-/// Frame of the camera (SPEC 0.12): a along travel, u across, n out of the work, from where the optical axis meets the
+/// Camera frame (mathematics 0.12): a along travel, u across, n out of the work, from where its axis cuts the
 /// focal plane. The plate's pitch counts as 0: with a pitch p heights are h·sin α / (sin α − p·cos α).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
@@ -152,12 +152,12 @@ impl Report {
 }
 
 impl Measured {
-    /// h of SPEC 0.12: height of the plate at u = 0 \[mm\].
+    /// h of mathematics 0.12: height of the plate at u = 0 \[mm\].
     pub fn plate_height_mm(&self) -> f64 {
         self.height_mm - self.roll * self.lateral_mm
     }
 
-    /// u0 of SPEC 0.12: u of the seam at a = 0, along its angle \[mm\].
+    /// u0 of mathematics 0.12: u of the seam at a = 0, along its angle \[mm\].
     pub fn lateral_on_axis_mm(&self) -> f64 {
         self.lateral_mm - self.travel_mm * self.yaw_rad.tan()
     }

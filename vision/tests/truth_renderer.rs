@@ -1,4 +1,4 @@
-//! The pictures of the truth renderer hold what SPEC 0.12 says.
+//! The pictures of the truth renderer hold what mathematics 0.12 says.
 
 use proptest::prelude::*;
 use vision::render::{Finish, Gap, Joint, Light, Root, Scene, Shown, Stripe, Texture, TruthRenderer};

@@ -1,4 +1,4 @@
-//! How far measured values are from what they should be (SPEC 4.4).
+//! How far measured values are from what they should be (mathematics 4.4).
 //!
 //! Errors of single coordinates contain timing; the distance to the path does not. The percentage error MAPE depends
 //! on where the origin lies and explodes near it: it is here to be compared with published figures; judge by RMSE,

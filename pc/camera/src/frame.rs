@@ -1,4 +1,4 @@
-//! The frame of a camera on the slides of its head (SPEC 0.12).
+//! The frame of a camera on the slides of its head (mathematics 0.12).
 
 use nalgebra::Vector3;
 use shared::tracking::frames::SpotFrame;

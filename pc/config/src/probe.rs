@@ -1,4 +1,4 @@
-//! The ranging probe: from voltage and switches to a distance that can be relied on (SPEC 2, 2.1).
+//! The ranging probe: from voltage and switches to a distance that can be relied on (mathematics 2, 2.1).
 
 use crate::{RangeError, in_range};
 use serde::{Deserialize, Serialize};

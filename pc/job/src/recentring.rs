@@ -1,4 +1,4 @@
-//! Pose re-centring: where a slide has gone far on a weld, the six axes take over what they can (SPEC 0.7).
+//! Pose re-centring: where a slide has gone far, the six axes take over what they can (mathematics 0.7).
 
 use crate::JobError;
 use crate::run_record::Recentred;

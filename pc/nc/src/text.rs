@@ -1,4 +1,4 @@
-//! NC text: numbered blocks with fixed decimals (SPEC 2.6).
+//! NC text: numbered blocks with fixed decimals (mathematics 2.6).
 
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
@@ -85,7 +85,7 @@ pub fn words<'a>(words: impl IntoIterator<Item = (&'a str, f64)>) -> String {
 }
 
 /// Block number `number` that moves the axes of a machine to `axes` (X Y Z A B C; mm, rad) in machine coordinates,
-/// at `feed` \[mm/min\] (SPEC 2.6). It is meant for controllers without tool-centre-point control: solved pose by
+/// at `feed` \[mm/min\] (mathematics 2.6). For controllers without tool-centre-point control: solved pose by
 /// pose, it keeps the focus in place while the rotary axes turn, as far as the poses are close together.
 ///
 /// Only the `fitted` axes get a word, and what is written is within `limits`, rounding included.

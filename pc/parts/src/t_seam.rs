@@ -1,4 +1,4 @@
-//! Both feet of a rib, for the dual-beam head (SPEC 0.5).
+//! Both feet of a rib, for the dual-beam head (mathematics 0.5).
 
 use crate::plan::{DualBeamPlan, PlanOptions, TaughtSeams, plan_dual_beam};
 use crate::{Judgement, Kind, Percent, Place, Plan, Run, SeamLimits};

@@ -1,4 +1,4 @@
-//! Which radius the ring should have: smaller and smaller ones until the normal is good enough (SPEC 2.3, 2.4).
+//! Which radius the ring should have: halved until the normal is good enough (mathematics 2.3, 2.4).
 //!
 //! Two things turn the normal of a ring. Noise turns it by σ/(√2·S): small rings are bad. Third order of the surface
 //! turns it by b·S²: large rings are bad. The change of the normal from S to S/2 is ¾·b·S² and noise, so two rings

@@ -1,4 +1,4 @@
-//! Teaching by ranging: the normal of a surface from distances to it on a small circle (SPEC 2).
+//! Teaching by ranging: the normal of a surface from distances to it on a small circle (mathematics 2).
 //!
 //! Everything is in the frame of the probe: Z against its beam (from the surface to the probe), the centre of the
 //! ring at the origin. What is measured there has to be turned into the work frame with the probe's attitude.

@@ -1,4 +1,4 @@
-//! Eight heights on a circle: normal, curvature and what does not fit (SPEC 2.2, 2.4).
+//! Eight heights on a circle: normal, curvature and what does not fit (mathematics 2.2, 2.4).
 //!
 //! A surface z(x, y) over a circle of radius S is a sum of harmonics of the angle. The gradient is the first one, the
 //! curvature is in mean and second, and neither disturbs the other: the least-squares normal is exact for every

@@ -1,4 +1,4 @@
-//! Rings on known surfaces, with and without noise (figures of SPEC 2.3, 2.4).
+//! Rings on known surfaces, with and without noise (figures of mathematics 2.3, 2.4).
 
 mod loops;
 mod probe;

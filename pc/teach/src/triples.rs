@@ -1,4 +1,4 @@
-//! The published normal from three triangles, to compare with (SPEC 2.3).
+//! The published normal from three triangles, to compare with (mathematics 2.3).
 //!
 //! Noise apart, it errs on a cylinder of radius R by up to 0.12·S/R, and its spread of 0.5·S/R asks for smaller rings
 //! than the surface needs: the triangles leave some of the curvature in. [`crate::Ring::normal`] does not.

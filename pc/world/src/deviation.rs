@@ -20,7 +20,7 @@ const CHECK_STEP: f64 = 0.25;
 
 /// Deviation of both real seams from the programmed ones over path length.
 ///
-/// s = 0 is where the first beam goes on. U and V are those of each head on the planned pose (SPEC 0.7).
+/// s = 0 is where the first beam goes on. U, V are those of each head on the planned pose (mathematics 0.7).
 /// Linear between the rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviation {

@@ -16,7 +16,7 @@ pub struct TrackerConfig {
     pub tracking: TrackingConfig,
 }
 
-/// The two heads on the arc plate (SPEC 0.5–0.7).
+/// The two heads on the arc plate (mathematics 0.5–0.7).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 #[serde(deny_unknown_fields)]
 pub struct HeadConfig {
@@ -24,7 +24,7 @@ pub struct HeadConfig {
     /// N1 = Rot(T, −θ2/2)·N, N2 = Rot(T, +θ2/2)·N. Negative if seam 1 is on the right of travel.
     pub included_angle_deg: f64,
     /// Distance from D to each beam's working point along N_k with its V slide at zero \[mm\]: ℓ − f − z of
-    /// SPEC 0.6, so that the slide extension that keeps the defocus is this minus the distance of the seam.
+    /// mathematics 0.6. The slide extension that keeps the defocus is this minus the distance of the seam.
     pub working_distance_mm: [f64; SIDES],
     /// Lead of the cameras before the beams, along T \[mm\].
     pub camera_lead_mm: f64,
@@ -52,7 +52,7 @@ pub struct SlideConfig {
     pub home: HomeConfig,
 }
 
-/// Map of the seam and control law (SPEC 0.8).
+/// Map of the seam and control law (mathematics 0.8).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackingConfig {

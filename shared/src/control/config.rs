@@ -53,7 +53,7 @@ pub struct HomeConfig {
     pub max_travel: f64,
 }
 
-/// Gantry X1/X2 (SPEC 0.10).
+/// Gantry X1/X2 (mathematics 0.10).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 #[serde(deny_unknown_fields)]
 pub struct GantryConfig {

@@ -2,7 +2,7 @@
 
 use crate::parameter::{ParameterError, not_negative, positive};
 
-/// First-order filtered difference d = a·d + (1 − a)·Δe/T with a = td/(td + T) (SPEC 0.10).
+/// First-order filtered difference d = a·d + (1 − a)·Δe/T with a = td/(td + T) (mathematics 0.10).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Derivative {
     period: f64,

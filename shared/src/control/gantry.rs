@@ -1,4 +1,4 @@
-//! The two motors of the X axis: cross-coupling, skew, and where the ram is (SPEC 0.10).
+//! The two motors of the X axis: cross-coupling, skew, and where the ram is (mathematics 0.10).
 
 use super::derivative::{Derivative, DerivativeState};
 use super::{GantryConfig, NotFinite, Pid, PidState, Setpoint};

@@ -1,4 +1,4 @@
-//! Position loop of one motor with a velocity drive (SPEC 0.10).
+//! Position loop of one motor with a velocity drive (mathematics 0.10).
 
 use super::derivative::{Derivative, DerivativeState};
 use super::{MotorConfig, NotFinite};

@@ -1,4 +1,4 @@
-//! Rotation of vectors, and interpolation of attitude along the shortest way (SPEC C, 0.4).
+//! Rotation of vectors, and interpolation of attitude along the shortest way (mathematics C, 0.4).
 
 use super::Pose;
 use nalgebra::Vector3;

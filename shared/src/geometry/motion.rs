@@ -45,7 +45,7 @@ pub struct Moving {
 /// Makes a pose in motion of a position and two directions of any length: as [`Pose::new`], with the exact
 /// derivatives of what it does.
 ///
-/// With M = N × T and both directions made a frame, ω = T×Ṫ − T(Ṅ·M) (SPEC 0.3), and α is its derivative. What the
+/// With M = N × T and T, N made a frame: ω = T×Ṫ − T(Ṅ·M) (mathematics 0.3); α is its derivative. What the
 /// given directions move along T and N only changes their lengths.
 pub fn pose_in_motion(
     position: &Moving,

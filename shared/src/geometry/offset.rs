@@ -6,7 +6,7 @@ use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 /// How far a pose stands beside another one, in the frame T, M, N of that: shifted along M and N, and turned about T
-/// through its own D (SPEC 0.7).
+/// through its own D (mathematics 0.7).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, Schema)]
 pub struct PoseOffset {
     /// Along M, to the left of travel \[mm\].

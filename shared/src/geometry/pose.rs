@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use thiserror::Error;
 
-/// Position and attitude of the tool centre point in the world frame (SPEC 0.2).
+/// Position and attitude of the tool centre point in the world frame (mathematics 0.2).
 ///
 /// `tangent` (T) is the direction of travel, `normal` (N) the tool axis, pointing from the tip to the machine,
 /// away from the work. Both have unit length and are perpendicular: [`Pose::new`] sees to it.
@@ -36,7 +36,7 @@ pub enum PoseError {
 
 impl Pose {
     /// Makes a pose of a position and two directions of any length: T keeps its direction, N is turned into
-    /// the plane perpendicular to it (Gram–Schmidt, SPEC 0.2 step 1).
+    /// the plane perpendicular to it (Gram–Schmidt, mathematics 0.2 step 1).
     pub fn new(
         position: Vector3<f64>,
         tangent: Vector3<f64>,

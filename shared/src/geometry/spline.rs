@@ -1,4 +1,4 @@
-//! Natural cubic spline (SPEC 0.4.1).
+//! Natural cubic spline (mathematics 0.4.1).
 
 use thiserror::Error;
 

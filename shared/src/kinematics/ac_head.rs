@@ -1,4 +1,4 @@
-//! The five-axis machine with an A/C head: X Y Z, then C, A (SPEC 2.5).
+//! The five-axis machine with an A/C head: X Y Z, then C, A (mathematics 2.5).
 //!
 //! The head turns about C (vertical, in the ram), then tilts about A: R = Rz(C)·Rx(A), T = R·ex, N = R·ez. The
 //! nozzle is a body of revolution: it realises P and N = (sinC sinA, −cosC sinA, cosA). T is then the axis of A.
@@ -92,7 +92,7 @@ impl Angles {
 
 impl AcHead {
     /// By how much X Y Z must move so that the focus stays in place while A and C go from one pair to another
-    /// \[rad\] (SPEC 2.5). Apply it all along the way: half-way between two compensated ends the focus is off.
+    /// \[rad\] (mathematics 2.5). Apply it in every tick: between two compensated ends the focus is off.
     pub fn compensation(&self, from: [f64; 2], to: [f64; 2]) -> Vector3<f64> {
         let arm = |[a, c]: [f64; 2]| self.arm(&Angles::of_axes(a, c));
         let ((from_1, from_2), (to_1, to_2)) = (arm(from), arm(to));
@@ -104,7 +104,7 @@ impl AcHead {
         (angles.about_c(&self.o1), angles.about_ca(&self.o2))
     }
 
-    /// The solution for N that is nearest to `near` (SPEC 2.5).
+    /// The solution for N that is nearest to `near` (mathematics 2.5).
     fn solve(&self, normal: &Vector3<f64>, near: &[f64; AXES]) -> Result<Angles, KinematicsError> {
         let s = libm::sqrt(normal.x * normal.x + normal.y * normal.y);
         if s < POLE {

@@ -1,4 +1,4 @@
-//! The dual-beam gantry: X Y Z, then C, B, A (SPEC 0.2, 0.3).
+//! The dual-beam gantry: X Y Z, then C, B, A (mathematics 0.2, 0.3).
 //!
 //! The order of the axes is X Y Z A B C everywhere, in mm and rad. The head turns about C (vertical, in the
 //! ram), then B, then A, which is the direction of travel T: R = Rz(C)·Ry(B)·Rx(A), T = R·ex, N = R·ez.
@@ -68,7 +68,7 @@ impl DualBeam {
         [p.x, p.y, p.z, a, b, c]
     }
 
-    /// The closed forms of SPEC 0.3.
+    /// The closed forms of mathematics 0.3.
     fn motion(
         turn: &RollPitchYaw,
         segments: &Segments,
@@ -102,7 +102,7 @@ impl DualBeam {
 impl Chain for DualBeam {
     const FITTED: [bool; AXES] = [true; AXES];
 
-    /// Pose of the plate for axes `q` (SPEC 0.2).
+    /// Pose of the plate for axes `q` (mathematics 0.2).
     fn forward(&self, q: &[f64; AXES]) -> Pose {
         let turn = RollPitchYaw::of_angles(q[3], q[4], q[5]);
         let Segments { r1, r2, r3 } = self.segments(&turn);
@@ -113,7 +113,7 @@ impl Chain for DualBeam {
         }
     }
 
-    /// SPEC 0.2, steps 2 and 3; step 1 is [`Pose::new`]. The solution is unique, so `_near` does not matter.
+    /// Steps 2 and 3 of mathematics 0.2; step 1 is [`Pose::new`]. One solution only: `_near` is not used.
     fn inverse(&self, pose: &Pose, _near: &[f64; AXES]) -> Result<[f64; AXES], KinematicsError> {
         let turn = RollPitchYaw::of_pose(pose)?;
         let segments = self.segments(&turn);

@@ -19,7 +19,7 @@ pub const AXIS_UNIT: [f64; AXES] = [
 /// Names of the axes as owners of parameters.
 pub(crate) const AXIS_OWNERS: [&str; AXES] = ["axis X", "axis Y", "axis Z", "axis A", "axis B", "axis C"];
 
-/// How far outside its travel an axis may be by rounding alone, in units of the machine file (SPEC 0.2).
+/// How far outside its travel an axis may be by rounding, in units of the machine file (mathematics 0.2).
 const TOLERANCE: f64 = 1e-9;
 
 /// Limits of one axis as the machine file has them (mm or degrees).
@@ -108,7 +108,7 @@ pub fn violations(q: &[f64; AXES], limits: &[AxisLimits; AXES]) -> Bits {
 }
 
 /// The highest path speed \[mm/s\] that the speeds of the axes allow where they move by `q_prime` = dq/ds,
-/// and the axis that sets it (SPEC 0.3). Infinite where no axis moves.
+/// and the axis that sets it (mathematics 0.3). Infinite where no axis moves.
 pub fn feed_limit(q_prime: &[f64; AXES], limits: &[AxisLimits; AXES]) -> (f64, usize) {
     let mut lowest = (f64::INFINITY, 0);
     for (i, (rate, limit)) in q_prime.iter().zip(limits).enumerate() {

@@ -1,4 +1,4 @@
-//! The pipe-intersection welder: radial X, axial Z, torch tilt B, waist C (SPEC 1.3).
+//! The pipe-intersection welder: radial X, axial Z, torch tilt B, waist C (mathematics 1.3).
 //!
 //! Work frame: the branch pipe's, z along its axis Z_S, with the machine clamped around it. The arm stands at the
 //! waist angle C from x; e_r = (cosC, sinC, 0) points outwards along it and e_θ = (−sinC, cosC, 0) along the weld.

@@ -1,4 +1,4 @@
-//! The attitude Rz(C)·Ry(B)·Rx(A): roll A, pitch B, yaw C, and their rates (SPEC 0.2, 0.3).
+//! The attitude Rz(C)·Ry(B)·Rx(A): roll A, pitch B, yaw C, and their rates (mathematics 0.2, 0.3).
 //!
 //! Machines whose T and N determine all three angles share it. The attitude is held as sines and cosines: a pose
 //! gives them without any trigonometry.
@@ -135,7 +135,7 @@ impl RollPitchYaw {
         )
     }
 
-    /// How the angles move where the attitude turns by ω and α (SPEC 0.3).
+    /// How the angles move where the attitude turns by ω and α (mathematics 0.3).
     pub(super) fn rates(
         &self,
         omega: &Vector3<f64>,

@@ -1,4 +1,4 @@
-//! The friction-stir gantry: table X, then Y, Z, C, B (SPEC 4.1).
+//! The friction-stir gantry: table X, then Y, Z, C, B (mathematics 4.1).
 //!
 //! Work frame: that of the plate on the table, at home with the tip of the pin in its origin and Z up. The table
 //! carries the work, so the tool moves by sx = −X over it, sy = Y and sz = Z. The head turns about C, then tilts

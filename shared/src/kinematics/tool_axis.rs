@@ -8,7 +8,7 @@ use super::KinematicsError;
 use crate::geometry::{Moving, PoseMotion};
 use nalgebra::Vector3;
 
-/// Sine of the tilt below which N stands along the C axis (SPEC 2.5, 4.1).
+/// Sine of the tilt below which N stands along the C axis (mathematics 2.5, 4.1).
 pub(super) const POLE: f64 = 1e-9;
 
 /// By how much N may turn, in rad/s and rad/s² (or over mm and mm²), in a direction that C does not allow at its

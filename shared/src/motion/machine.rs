@@ -84,7 +84,7 @@ impl Machine {
         [axes[0], x2, axes[1], axes[2], axes[3], axes[4], axes[5]]
     }
 
-    /// Axes from motors, X where the beam carries the ram (SPEC 0.10).
+    /// Axes from motors, X where the beam carries the ram (mathematics 0.10).
     pub fn axes(&self, motors: &[f64; MOTORS]) -> [f64; AXES] {
         let x = self.gantry.map_or(motors[0], |gantry| {
             gantry.ram([motors[0], motors[1]], motors[2]).x

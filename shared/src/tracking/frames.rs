@@ -1,4 +1,4 @@
-//! Where the two beams and the two cameras look (SPEC 0.6, 0.7) and what a measurement means on the path (0.8.2).
+//! Where beams and cameras look, and what a measurement means on the path (mathematics 0.6, 0.7, 0.8.2).
 
 use crate::config::HeadConfig;
 use crate::geometry::Pose;
@@ -7,7 +7,7 @@ use crate::parameter::{ParameterError, check, positive};
 use crate::protocol::SideMeasurement;
 use nalgebra::Vector3;
 
-/// Frame of one head's working point with its slides at zero, in the world (SPEC 0.7).
+/// Frame of one head's working point with its slides at zero, in the world (mathematics 0.7).
 ///
 /// T, U, V are right-handed: V = −N_k is the direction of the beam, U = V × T.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl SpotFrame {
 }
 
 /// A measurement in the plate frame turned into that of a head tilted by `theta` \[rad\] about T from the plate
-/// normal: `u` \[mm\] lateral (along n × t), `h` \[mm\] height (along n) → (ΔU, ΔV) \[mm\] (SPEC 0.7).
+/// normal: `u` \[mm\] lateral (along n × t), `h` \[mm\] height (along n) → (ΔU, ΔV) \[mm\] (mathematics 0.7).
 pub fn plate_to_head(theta: f64, u: f64, h: f64) -> (f64, f64) {
     let (s, c) = (libm::sin(theta), libm::cos(theta));
     (-(u * c + h * s), u * s - h * c)

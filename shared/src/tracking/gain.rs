@@ -1,4 +1,4 @@
-//! How much gain a loop with dead time allows (SPEC 0.8.5).
+//! How much gain a loop with dead time allows (mathematics 0.8.5).
 
 use core::f64::consts::{FRAC_PI_2, PI};
 

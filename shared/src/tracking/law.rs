@@ -1,4 +1,4 @@
-//! From the seam to the velocity of one slide (SPEC 0.8.4).
+//! From the seam to the velocity of one slide (mathematics 0.8.4).
 
 use super::map::Estimate;
 use crate::io::DacCode;

@@ -1,4 +1,4 @@
-//! Map of the seam ahead: what the camera saw, over path position (SPEC 0.8.3).
+//! Map of the seam ahead: what the camera saw, over path position (mathematics 0.8.3).
 
 use heapless::Vec;
 

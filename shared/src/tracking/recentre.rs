@@ -1,4 +1,4 @@
-//! Which move of the six axes takes the most off the slides (SPEC 0.7).
+//! Which move of the six axes takes the most off the slides (mathematics 0.7).
 
 use super::frames::Heads;
 use crate::geometry::{Pose, PoseOffset};
@@ -6,7 +6,7 @@ use crate::io::{SIDES, SLIDES};
 use nalgebra::{Matrix4x3, Vector2, Vector3, Vector4};
 
 /// What the slides would have to move for the spots to stay, for each unit along M, along N and about T: the negative
-/// of C_1 and C_2 of SPEC 0.7, rows U1 V1 U2 V2, for slides at `slides` \[mm\].
+/// of C_1 and C_2 of mathematics 0.7, rows U1 V1 U2 V2, for slides at `slides` \[mm\].
 fn response(heads: &Heads, slides: &[f64; SLIDES]) -> Matrix4x3<f64> {
     let pose = tool();
     let mut rows = Matrix4x3::zeros();

@@ -170,7 +170,7 @@ fn planned_spot<const N: usize>(heads: &Heads, path: &Path<N>, side: usize, s: f
 }
 
 /// Where the plan puts the slides at path position `s` \[mm\], moving at `speed` \[mm/s\]: U at zero, V where it
-/// keeps the defocus (SPEC 0.6). Beyond its ends the path stands still.
+/// keeps the defocus (mathematics 0.6). Beyond its ends the path stands still.
 pub fn plan<const N: usize>(
     parameters: &TrackerParameters,
     path: &Path<N>,
@@ -192,7 +192,7 @@ pub fn plan<const N: usize>(
 }
 
 /// A head where it really is, beside where the planned path would have it: every six-axis deviation is fed forward to
-/// both trackers (SPEC 0.7).
+/// both trackers (mathematics 0.7).
 #[derive(Clone, Copy, Debug)]
 pub struct RealHead {
     planned: SpotFrame,

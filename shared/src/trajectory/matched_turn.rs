@@ -1,4 +1,4 @@
-//! The paper's rule for a tool that turns with an arc, for comparison (SPEC 4.2).
+//! The paper's rule for a tool that turns with an arc, for comparison (mathematics 4.2).
 
 use super::{Trapezoid, TrapezoidError};
 use crate::geometry::Arc;

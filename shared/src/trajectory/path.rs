@@ -194,7 +194,7 @@ impl PathPoint {
         point
     }
 
-    /// Extension of the V slide of each side that keeps the defocus \[mm\] (SPEC 0.6).
+    /// Extension of the V slide of each side that keeps the defocus \[mm\] (mathematics 0.6).
     pub fn v_follow(&self) -> [f64; SIDES] {
         [self.value[9], self.value[10]]
     }
@@ -212,7 +212,7 @@ impl<const N: usize> PathPoint<N> {
         second: [0.0; N],
     };
 
-    /// The pose here, T and N orthonormal (SPEC 0.4).
+    /// The pose here, T and N orthonormal (mathematics 0.4).
     pub fn pose(&self) -> Result<Pose, PoseError> {
         Pose::new(self.moving(0).value, self.moving(3).value, self.moving(6).value)
     }

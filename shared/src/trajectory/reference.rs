@@ -32,7 +32,7 @@ pub struct Unreachable {
     pub source: ReferenceError,
 }
 
-/// The axes at a point of a path in motion at unit speed: nearest to `near`, with their derivatives over s (SPEC 0.3,
+/// The axes at a point of a path, nearest to `near`, with derivatives over s (mathematics 0.3,
 /// 0.4). A path in axis space gives its axes as they are.
 ///
 /// Of the channels of a point it needs the first six in axis space, the first nine of a tool.

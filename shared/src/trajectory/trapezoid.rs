@@ -1,5 +1,5 @@
 //! The classic speed profile, for comparison: trapezoid of speed, sampled and smoothed by a moving mean
-//! (SPEC 0.4.2). What the machines run is planned by the [`super::Planner`].
+//! (mathematics 0.4.2). What the machines run is planned by the [`super::Planner`].
 
 use super::SpeedState;
 use thiserror::Error;

@@ -1,4 +1,4 @@
-//! Speed over a curved path under a process window (SPEC 3.3, 3.4).
+//! Speed over a curved path under a process window (mathematics 3.3, 3.4).
 
 use thiserror::Error;
 

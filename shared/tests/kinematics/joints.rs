@@ -121,7 +121,7 @@ fn the_positioner_turns_left_and_tilts_towards_x() {
     near(pose.normal, 0.0, -1.0, 0.0);
 }
 
-/// The Denavit–Hartenberg product of SPEC 4.1.
+/// The Denavit–Hartenberg product of mathematics 4.1.
 #[test]
 fn the_friction_stir_gantry_is_its_denavit_hartenberg_product() {
     let link = |theta: f64, d: f64, alpha: f64| rz(theta) * shift(0.0, 0.0, d) * rx(alpha);

@@ -129,7 +129,7 @@ fn a_step_must_be_a_length() {
     assert_eq!(tiny, StepError::NoProgress { u: 3.0 });
 }
 
-/// Two Newton steps are enough for a control tick on curves that are calm over a step (SPEC 3.5).
+/// Two Newton steps are enough for a control tick on curves that are calm over a step (mathematics 3.5).
 #[test]
 fn two_newton_steps_meet_the_chord_to_a_millionth_of_a_permille() {
     let points = [

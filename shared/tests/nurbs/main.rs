@@ -1,4 +1,4 @@
-//! Properties of NURBS curves, and of what is done along them (SPEC 3).
+//! Properties of NURBS curves, and of what is done along them (mathematics 3).
 
 mod along;
 mod arc_length;

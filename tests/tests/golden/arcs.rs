@@ -1,4 +1,4 @@
-//! Arcs through three points, their stepping (SPEC 1.4, 1.5) and arcs with the tool along the tangent (SPEC 4.2).
+//! Arcs through three points, stepping, arcs with the tool along the tangent (mathematics 1.4, 1.5, 4.2).
 
 use super::file::{Golden, near, near_all, number, numbers, vector};
 use nalgebra::Vector3;

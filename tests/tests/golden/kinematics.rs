@@ -1,4 +1,4 @@
-//! The dual-beam gantry and attitude (SPEC 0.2–0.4).
+//! The dual-beam gantry and attitude (mathematics 0.2–0.4).
 
 use super::file::{Golden, near, near_all, number, numbers, vector};
 use nalgebra::Vector3;
@@ -25,7 +25,7 @@ fn axes(value: &Value) -> [f64; AXES] {
     numbers(value).try_into().expect("six axes")
 }
 
-/// Travel and speeds of the published machine (SPEC 0.1).
+/// Travel and speeds of the published machine (mathematics 0.1).
 fn limits() -> [AxisLimits; AXES] {
     let axis = |travel_min, travel_max, max_velocity| AxisConfig {
         travel_min,

@@ -1,4 +1,4 @@
-//! The A/C head with its NC line, and the friction-stir gantry (SPEC 2.5, 2.6, 4.1).
+//! The A/C head with its NC line, and the friction-stir gantry (mathematics 2.5, 2.6, 4.1).
 
 use super::file::{Golden, near, near_all, number, numbers, vector};
 use nalgebra::Vector3;

@@ -1,4 +1,4 @@
-//! Errors of runs (SPEC 4.4).
+//! Errors of runs (mathematics 4.4).
 
 use super::file::{Golden, near, number, numbers, vector};
 use cam::metrics::{compare, distance_to_polyline};

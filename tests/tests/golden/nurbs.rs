@@ -1,4 +1,4 @@
-//! NURBS curves: points and derivatives, lengths, steps and discretisation (SPEC 3.1, 3.2, 3.5, 3.6).
+//! NURBS curves: points and derivatives, lengths, steps and discretisation (mathematics 3.1, 3.2, 3.5, 3.6).
 
 use super::file::{Golden, near, number, numbers};
 use nalgebra::Vector3;

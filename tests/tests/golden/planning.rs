@@ -1,4 +1,4 @@
-//! Planning of the dual-beam head (SPEC 0.5, 0.6).
+//! Planning of the dual-beam head (mathematics 0.5, 0.6).
 
 use super::file::{Golden, near, near_all, number, vector};
 use super::kinematics::machine;

@@ -1,4 +1,4 @@
-//! The smoothed trapezoid of speed (SPEC 0.4.2).
+//! The smoothed trapezoid of speed (mathematics 0.4.2).
 
 use super::file::{Golden, near, number, numbers};
 use shared::trajectory::{SmoothedTrapezoid, Trapezoid};

@@ -1,4 +1,4 @@
-//! The seam of two pipes (SPEC 1.1–1.3).
+//! The seam of two pipes (mathematics 1.1–1.3).
 
 use super::file::{Golden, near, near_all, number};
 use serde_json::Value;

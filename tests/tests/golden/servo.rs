@@ -1,4 +1,4 @@
-//! Position loops and gantry (SPEC 0.10).
+//! Position loops and gantry (mathematics 0.10).
 
 use super::file::{Golden, near, number, numbers};
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! Two closed loops on a circle, with the drive model of SPEC 0.11.
+//! Two closed loops on a circle, with the drive model of mathematics 0.11.
 
 use super::file::{Golden, near, number};
 use super::servo::pid;

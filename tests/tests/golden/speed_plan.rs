@@ -1,4 +1,4 @@
-//! Speed on curves, process window, acceleration passes (SPEC 3.3, 3.4).
+//! Speed on curves, process window, acceleration passes (mathematics 3.3, 3.4).
 
 use super::file::{Golden, near, near_all, number, numbers};
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! Natural cubic splines (SPEC 0.4.1).
+//! Natural cubic splines (mathematics 0.4.1).
 
 use super::file::{Golden, near_all, numbers};
 use shared::geometry::NaturalSpline;

@@ -1,4 +1,4 @@
-//! Normals from ranging rings (SPEC 2.2–2.4).
+//! Normals from ranging rings (mathematics 2.2–2.4).
 
 use super::file::{Golden, near, near_all, number, numbers, vector};
 use shared::geometry::angle;

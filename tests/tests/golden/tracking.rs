@@ -1,4 +1,4 @@
-//! Map, control law, frames of the heads (SPEC 0.7–0.9).
+//! Map, control law, frames of the heads (mathematics 0.7–0.9).
 
 use super::file::{Golden, near, near_all, number, numbers, vector};
 use nalgebra::Vector3;
@@ -142,7 +142,7 @@ pub fn track_gain(golden: &Golden) {
     }
 }
 
-/// Noise of SPEC 0.9.
+/// Noise of mathematics 0.9.
 struct SplitMix(u64);
 
 impl SplitMix {
@@ -161,7 +161,7 @@ impl SplitMix {
     }
 }
 
-/// Seam of SPEC 0.9.
+/// Seam of mathematics 0.9.
 fn seam(y: &Value, s: f64) -> f64 {
     match y["kind"].as_str().expect("kind") {
         "kink" => number(y, "m") * (s - number(y, "s0")).max(0.0),

@@ -1,4 +1,4 @@
-//! What a camera sees of a seam, and what the detector makes of pictures (SPEC 0.12).
+//! What a camera sees of a seam, and what the detector makes of pictures (mathematics 0.12).
 
 use super::file::{Golden, near, near_all, number};
 use base64::Engine;

@@ -1,4 +1,4 @@
-//! Whether a measured seam is the one that is followed (SPEC 0.8.3; widths after VISION 3).
+//! Whether a measured seam is the one that is followed (mathematics 0.8.3; widths: 0.12).
 
 use super::running::Running;
 use super::{Moved, State};

@@ -1,7 +1,7 @@
 //! Pictures of a seam whose truth is known.
 //!
 //! A [`Scene`] says what stands before the camera, and [`Scene::truth`] what a measurement should find in its picture.
-//! [`TruthRenderer`] makes the picture by the physics of SPEC 0.12, for tests; [`FastRenderer`] makes it at the pace of a
+//! [`TruthRenderer`] renders by the physics (mathematics 0.12), for tests; [`FastRenderer`] at the pace of a
 //! camera, from a [`Tile`] of textured work that was blurred beforehand.
 
 mod blur;

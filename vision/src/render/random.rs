@@ -1,6 +1,6 @@
 //! Numbers that look random and can be repeated, in a row and by place.
 
-/// The generator SplitMix64 (SPEC 0.9). It is small, and unlike a crate's generators its numbers stay the same for good:
+/// SplitMix64 (mathematics 0.9). It is small, and unlike a crate's generators its numbers never change:
 /// a picture is named by its seed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SplitMix64(u64);

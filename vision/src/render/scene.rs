@@ -3,7 +3,7 @@
 use super::texture::Texture;
 use crate::geometry::{Corner, PlateSeam};
 
-/// Work, marks on it, and light. Lengths and directions are those of SPEC 0.12: a along travel, u across the seam, n out
+/// Work, marks on it, and light. Directions are those of mathematics 0.12: a along travel, u across, n out
 /// of the plate, origin where the optical axis meets the focal plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
@@ -87,7 +87,7 @@ pub struct Blob {
 pub struct Light {
     /// Mean of the plate in the middle of the picture, as a share of full scale: 0 is off, above 1 saturates.
     pub level: f64,
-    /// Shading (1 + s₀x + s₁y)·(1 − s₂(x² + y²)/2), x and y from −1 to 1 across the columns and rows (SPEC 0.12).
+    /// Shading (1 + s₀x + s₁y)·(1 − s₂(x² + y²)/2), x, y −1…1 over columns and rows (mathematics 0.12).
     pub shading: [f64; 3],
     /// Share of the plate's mean that lies over everything as a veil.
     pub haze: f64,

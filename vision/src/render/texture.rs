@@ -8,7 +8,7 @@ pub const PERIOD_MM: [f64; 2] = [7.0656, 3.5328];
 /// How a surface was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finish {
-    /// Noise of 12 and 32 µm (SPEC 0.12).
+    /// Noise of 12 and 32 µm (mathematics 0.12).
     Plain,
     /// Rolled: streaks along the seam.
     Rolled,
@@ -59,7 +59,7 @@ impl Finish {
 pub struct Texture {
     /// How it was made.
     pub finish: Finish,
-    /// `tex` of SPEC 0.12: what the noise, within ±1 before its weights, is multiplied by.
+    /// `tex` of mathematics 0.12: what the noise, within ±1 before its weights, is multiplied by.
     pub contrast: f64,
     /// Which piece of it.
     pub seed: u64,

@@ -41,7 +41,7 @@ fn fit(readings: &[SlideReading]) -> Result<SlideFit, SlideError> {
 }
 
 /// From pictures of 8 places: a camera that is turned by 0.7° more and has a lens of 4.06 instead of 4.00. The matrix to
-/// 0.2 % across and to the 1 % of SPEC 0.12 in height, which the texture shifts; the turn to 0.1°; where its origin is to
+/// 0.2 % across, 1 % (mathematics 0.12) in height, which the texture shifts; the turn to 0.1°; its origin to
 /// 2 µm.
 #[test]
 fn a_camera_that_is_not_as_drawn_is_found_from_its_pictures() {

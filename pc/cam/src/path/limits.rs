@@ -211,7 +211,7 @@ impl Planner {
     }
 
     /// The programmed speeds on the way to each target, if every drive can follow: |q′|·F ≤ q̇max and
-    /// |q″|·F² + |q′|·a ≤ q̈max (SPEC 0.3). Given is the first one.
+    /// |q″|·F² + |q′|·a ≤ q̈max (mathematics 0.3). Given is the first one.
     ///
     /// The acceleration a along the path is that of the machine file, less where it would take more than half of
     /// what a drive has; so is the jerk, where it would take more than all.

@@ -94,7 +94,7 @@ impl Planner {
         }
     }
 
-    /// The pose of `tip` (SPEC 0.2).
+    /// The pose of `tip` (mathematics 0.2).
     pub fn pose(&self, tip: &Tip) -> Pose {
         let [a, b, c] = tip.angles_deg.map(f64::to_radians);
         Pose {

@@ -4,7 +4,7 @@ use super::{Outcome, words};
 use serde::Serialize;
 use vision::{Form, Measured, Observation};
 
-/// A measured picture; lengths in mm in the frame of the camera (SPEC 0.12), a figure that is not known is `null`.
+/// A measured picture; mm in the frame of the camera (mathematics 0.12), unknown figures are `null`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Record {
     /// The file.

@@ -29,7 +29,7 @@ pub struct Calibration {
     pub corner_offset_mm: Option<[f64; 2]>,
 }
 
-/// How the camera's frame (u across, n out of the work, SPEC 0.12) lies to the slides that carry it:
+/// How the camera's frame (u across, n out of the work, mathematics 0.12) lies to the slides that carry it:
 /// \[ΔU ΔV\] = matrix · \[u n\] + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlideMap {
@@ -41,7 +41,7 @@ pub struct SlideMap {
 
 impl SlideMap {
     /// Of a camera whose frame is the head's turned by `mount_rad` about T: n = Rot(T, mount)·N_k, the origin on the
-    /// spot. The head is then turned by −mount from n (SPEC 0.7).
+    /// spot. The head is then turned by −mount from n (mathematics 0.7).
     pub fn nominal(mount_rad: f64) -> Self {
         let (sin, cos) = (-mount_rad).sin_cos();
         Self {

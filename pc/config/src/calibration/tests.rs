@@ -47,7 +47,7 @@ fn line_of(text: &str, line: &str) -> usize {
 }
 
 proptest! {
-    /// The nominal camera measures as SPEC 0.7 says of a head that is turned by −mount from the camera's n.
+    /// The nominal camera measures as a head does that is turned by −mount from its n (mathematics 0.7).
     #[test]
     fn a_nominal_camera_maps_as_the_plate_of_spec_0_7(
         mount in prop::sample::select(vec![-30.0, -15.0, 0.0, 15.0, 30.0]),

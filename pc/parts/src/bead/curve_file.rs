@@ -6,7 +6,7 @@ use serde::Deserialize;
 use shared::geometry::nurbs::{Nurbs, NurbsError};
 use std::path::Path;
 
-/// Degree, control points, weights and knots (SPEC 3.1), not checked yet.
+/// Degree, control points, weights and knots (mathematics 3.1), not checked yet.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(from = "Document")]
 pub(super) struct CurveFile {

@@ -1,4 +1,4 @@
-//! A bead of deposited wire along a NURBS, as even as the process wants it (SPEC 3).
+//! A bead of deposited wire along a NURBS, as even as the process wants it (mathematics 3).
 //!
 //! The torch stands upright and the positioner lies flat. The bead is laid at one speed inside the process window
 //! if curve and machine allow one; otherwise at the lowest speed of the window, and slower only in the corners

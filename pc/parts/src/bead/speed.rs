@@ -1,4 +1,4 @@
-//! How fast the bead can be laid: curve, machine and process window (SPEC 3.3, 3.4).
+//! How fast the bead can be laid: curve, machine and process window (mathematics 3.3, 3.4).
 
 use super::error::BeadError;
 use cam::path::MAX_EVENTS;

@@ -1,4 +1,4 @@
-//! A line on a curved panel, for the A/C head: taught by the ranging probe, then cut (SPEC 2).
+//! A line on a curved panel, for the A/C head: taught by the ranging probe, then cut (mathematics 2).
 
 mod attitude;
 mod judge;

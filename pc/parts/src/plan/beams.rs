@@ -1,4 +1,4 @@
-//! Where two beams cross, and how far the V slides reach (SPEC 0.5 (3), 0.6).
+//! Where two beams cross, and how far the V slides reach (mathematics 0.5 (3), 0.6).
 
 use super::locate::LocateError;
 use nalgebra::Vector3;
@@ -43,7 +43,7 @@ pub fn closest_approach(
 }
 
 /// Extension of a V slide that keeps focal distance and defocus: v = ℓ − s − f − z, with `working_distance`
-/// ℓ − f − z and the `distance` s of the seam before D, all \[mm\] (SPEC 0.6).
+/// ℓ − f − z and the `distance` s of the seam before D, all \[mm\] (mathematics 0.6).
 pub fn slide_extension(working_distance: f64, distance: f64) -> f64 {
     working_distance - distance
 }

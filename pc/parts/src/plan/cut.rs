@@ -1,4 +1,4 @@
-//! Where the plane across seam 1 meets seam 2 (SPEC 0.5 (2)).
+//! Where the plane across seam 1 meets seam 2 (mathematics 0.5 (2)).
 
 use super::locate::LocateError;
 use cam::curve::Curve;

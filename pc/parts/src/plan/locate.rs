@@ -1,4 +1,4 @@
-//! Pose of the dual-beam head at one point of seam 1 (SPEC 0.5).
+//! Pose of the dual-beam head at one point of seam 1 (mathematics 0.5).
 
 use super::beams::closest_approach;
 use super::cut::OtherSeam;
@@ -113,7 +113,7 @@ const ROUNDS: usize = 50;
 const SETTLED: f64 = 1e-13;
 
 /// The pose in the plane that lies evenly across both seams: no side is privileged, and the beams of the
-/// rigid head meet both seams exactly (SPEC 0.5 (b)).
+/// rigid head meet both seams exactly (mathematics 0.5 (b)).
 pub fn locate_symmetric(
     place: &SeamPlace,
     other: &impl OtherSeam,

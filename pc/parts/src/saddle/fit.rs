@@ -1,4 +1,4 @@
-//! The saddle that taught points lie on, by least squares (SPEC 1.5).
+//! The saddle that taught points lie on, by least squares (mathematics 1.5).
 //!
 //! Around the branch the seam is, up to small terms, z = z₀ + a cosθ + b sinθ + c cos2θ: the offset makes a, the
 //! angle b, the radius of the main pipe c, and where the machine stands z₀ and the zero of θ. So from points all

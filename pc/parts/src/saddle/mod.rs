@@ -1,4 +1,4 @@
-//! The saddle where a branch pipe stands on a main pipe, for a welder that turns about the branch (SPEC 1).
+//! The saddle of a branch pipe on a main pipe, for a welder that turns about the branch (mathematics 1).
 //!
 //! The torch stands on the bisector of the groove, as near as four axes take it there: their tilt realises the
 //! part of it in the plane of waist and branch axis, the rest is in the notes of the plan and in the figures of

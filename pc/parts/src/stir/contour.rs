@@ -1,4 +1,4 @@
-//! The contour: lines and arcs that touch, with the heading over the length (SPEC 4.2, 4.3).
+//! The contour: lines and arcs that touch, with the heading over the length (mathematics 4.2, 4.3).
 
 use super::error::StirError;
 use nalgebra::Vector3;

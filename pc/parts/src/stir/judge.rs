@@ -1,4 +1,4 @@
-//! Figures of a run: the tip and the heading of the tool as they truly were, against the exact contour (SPEC 4.4).
+//! Figures of a run: true tip and heading of the tool against the exact contour (mathematics 4.4).
 //!
 //! Distance to the contour and heading tell how good the weld is. The errors of X and Y alone are against the
 //! programmed position at the same time, so they contain timing; with them stand the published bounds. Of these the

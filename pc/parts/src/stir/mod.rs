@@ -1,5 +1,5 @@
 //! Friction-stir welds along lines and arcs, for the gantry whose pin leans backwards and turns with the contour
-//! (SPEC 4).
+//! (mathematics 4).
 
 mod contour;
 mod error;

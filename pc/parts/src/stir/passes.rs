@@ -1,4 +1,4 @@
-//! How C follows the contour within its travel (SPEC 4.3).
+//! How C follows the contour within its travel (mathematics 4.3).
 
 use super::contour::Contour;
 use super::error::StirError;

@@ -8,7 +8,7 @@ use config::machine::MachineFile;
 use nc::text::{NcText, decimal, words};
 use shared::units::DEG_PER_RAD;
 
-/// Tilts that are usual in the process \[°\] (SPEC 4).
+/// Tilts that are usual in the process \[°\] (mathematics 4).
 const USUAL_TILT: [f64; 2] = [2.0, 5.0];
 /// Places of the contour nearer than this are one \[mm\]: a program is not written finer.
 const SAME_PLACE: f64 = 1e-6;
@@ -158,7 +158,7 @@ fn range_of_c(job: &Job) -> [f64; 2] {
 }
 
 /// By how much C is off where the curvature changes \[°\]: Δω²/(8α) with the acceleration α that C has for it
-/// (SPEC 4.2, spread to both sides of the join).
+/// (mathematics 4.2, spread to both sides of the join).
 pub(super) fn late_at_joins(part: &Stir, job: &Job, machine: &MachineFile) -> Option<f64> {
     let acceleration = TURN_SHARE * machine.motion.axes[C].as_ref()?.max_acceleration;
     let speed = part.travel_mm_min / 60.0;

@@ -1,4 +1,4 @@
-//! Teaching a line on a surface by a machine that moves its probe (SPEC 2): from guide point to guide point, on
+//! Teaching a line on a surface with a moving probe (mathematics 2): from guide point to guide point, on
 //! each a ring to turn the probe towards the surface, then rings until the normal is good enough.
 //!
 //! The probe stands where the nozzle does. Its beam meets the focus at the reference distance d₀: with the tip at

@@ -7,7 +7,7 @@ use shared::geometry::{Pose, angle, rotate};
 use shared::io::{SIDES, SLIDES};
 use shared::tracking::frames::Heads;
 
-/// Part of its travel to a side beyond which no slide goes where the pose can take over (SPEC 0.7).
+/// Part of its travel to a side beyond which no slide goes where the pose can take over (mathematics 0.7).
 const ROOM: f64 = 0.7;
 /// The head turns to the skin only where it leans more than this from it \[rad\]: a picture shows its slope to 0.02.
 const LEAN: f64 = 0.05;
@@ -85,7 +85,7 @@ impl Cameras {
     /// The stance with its head along `normal`, in which both cameras look at their `points` and the slides are as near
     /// to zero as a move of `pose` across and up can bring them: Σ(u² + v²) is least.
     ///
-    /// SPEC 0.7 turns the head about T as well, by both feet. They are a few mm apart, and a rib that is not straight
+    /// The turn about T of mathematics 0.7 is left out: the feet are a few mm apart, and a rib that is not straight
     /// would turn the head by degrees; the skin says better how the head shall stand.
     pub fn centred(&self, pose: &Pose, normal: &Vector3<f64>, points: [Vector3<f64>; SIDES]) -> Stance {
         let pose = turned(pose, normal);

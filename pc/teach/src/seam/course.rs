@@ -156,8 +156,8 @@ impl Local {
         self.curvature.norm() * step * step / 8.0 + beside / 2.0
     }
 
-    /// How far the next point may be: Δs = min(Δs_max, √(8ρε), ρφ_max) (SPEC 0.4), and not much farther than the
-    /// last one was from the one `before` it.
+    /// Way to the next point: Δs = min(Δs_max, √(8ρε), ρφ_max) (mathematics 0.4), not much longer than the
+    /// step `before`.
     pub fn step(&self, config: &SeamTeaching, before: Option<f64>) -> f64 {
         let curvature = self.curvature.norm();
         let largest = before.map_or(FIRST * config.smallest_step_mm, |step| GROWTH * step);

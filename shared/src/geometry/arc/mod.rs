@@ -1,4 +1,4 @@
-//! Circular arcs and helices over their length (SPEC 1.4, 4.2).
+//! Circular arcs and helices over their length (mathematics 1.4, 4.2).
 
 mod steps;
 #[cfg(test)]
@@ -94,7 +94,7 @@ impl Arc {
     /// decimals.
     pub const RADIUS_TOLERANCE: f64 = 0.005;
 
-    /// Least sweep that three measured points should span \[rad\], 10° (SPEC 1.4).
+    /// Least sweep that three measured points should span \[rad\], 10° (mathematics 1.4).
     pub const LEAST_TAUGHT_SWEEP: f64 = PI / 18.0;
 
     /// The arc from `start` to `end` about `centre`, as G2 and G3 give it: `axis` is the axis of the plane, of
@@ -156,7 +156,7 @@ impl Arc {
         self
     }
 
-    /// The arc from `a` through `b` to `c` (SPEC 1.4). It goes right-handed about (b−a)×(c−a) and may be a
+    /// The arc from `a` through `b` to `c` (mathematics 1.4), right-handed about (b−a)×(c−a). It may be a
     /// major one. Points taken by measuring should also pass [`Arc::check_conditioning`].
     pub fn through(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> Result<Self, ArcError> {
         finite(&[a, b, c])?;
@@ -191,7 +191,7 @@ impl Arc {
     }
 
     /// Refuses an arc through measured points that span too little: a sweep of 10° makes an error of the
-    /// radius some 200 times that of the points (SPEC 1.4).
+    /// radius some 200 times that of the points (mathematics 1.4).
     pub fn check_conditioning(&self) -> Result<(), ArcError> {
         if self.sweep < Self::LEAST_TAUGHT_SWEEP {
             return Err(ArcError::IllConditioned {
@@ -221,7 +221,7 @@ impl Arc {
         self.sweep
     }
 
-    /// Sweep, positive if the arc goes right-handed about `direction`, else negative \[rad\] (SPEC 4.2).
+    /// Sweep \[rad\], positive if right-handed about `direction`, else negative (mathematics 4.2).
     pub fn signed_sweep(&self, direction: &Vector3<f64>) -> f64 {
         libm::copysign(self.sweep, self.axis.dot(direction))
     }
@@ -270,7 +270,7 @@ impl Arc {
     }
 
     /// Central angle from the start to the direction of `point`, right-handed about the axis \[rad\], in (0, 2π]
-    /// (SPEC 1.4).
+    /// (mathematics 1.4).
     pub fn angle_of(&self, point: &Vector3<f64>) -> f64 {
         central_angle(&self.axis, &self.arm, &(point - self.centre))
     }
@@ -279,7 +279,7 @@ impl Arc {
     /// start and without a jump from there on. `None` if the axis is not ±Z.
     ///
     /// A tool that must look along the path takes C = heading + a constant in every tick, and κ·ṡ as its
-    /// velocity (SPEC 4.2): this holds at any speed and override, see
+    /// velocity (mathematics 4.2): this holds at any speed and override, see
     /// [`crate::trajectory::MatchedTurn`] for the rule that does not.
     pub fn heading(&self, s: f64) -> Option<f64> {
         if libm::hypot(self.axis.x, self.axis.y) > 1e-9 {

@@ -1,4 +1,4 @@
-//! Points along an arc in steps (SPEC 1.5).
+//! Points along an arc in steps (mathematics 1.5).
 
 use super::{Arc, ArcError};
 use nalgebra::Vector3;
@@ -16,7 +16,7 @@ impl Arc {
         Ok((0..steps + 1).map(move |i| arc.at_angle(arc.sweep() * i as f64 / steps as f64)))
     }
 
-    /// The paper's walk (SPEC 1.5, equations 12–14), for comparison, on the plane part of the arc: a `step`
+    /// The published walk (mathematics 1.5), for comparison, on the plane part of the arc: a `step`
     /// \[mm\] along the tangent, then back onto the circle, until the end is nearer than a step, then the end.
     ///
     /// It keeps the radius, but turns by atan(step/R) where step/R was meant: the feed is low by

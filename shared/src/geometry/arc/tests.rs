@@ -170,7 +170,7 @@ fn what_is_no_arc_is_refused_with_the_reason() {
     assert_eq!(upright.heading(0.1), None);
 }
 
-/// SPEC 1.5: the paper's walk keeps the radius, but falls behind by (step/R)²/3.
+/// mathematics 1.5: the paper's walk keeps the radius, but falls behind by (step/R)²/3.
 #[test]
 fn the_tangent_walk_falls_behind() {
     let z = Vector3::z();

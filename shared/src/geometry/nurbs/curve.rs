@@ -1,4 +1,4 @@
-//! What all parametric curves have, and their curvature (SPEC 3.2).
+//! What all parametric curves have, and their curvature (mathematics 3.2).
 
 use super::super::Moving;
 use nalgebra::Vector3;
@@ -61,7 +61,7 @@ pub fn curvature(at: &Moving) -> Result<f64, NoTangent> {
 /// chord of the others; infinite if they lie on a line.
 ///
 /// For comparison only: its error falls with the square of the distance of the points, and rises again by
-/// cancellation when they come close (SPEC 3.2). [`curvature`] is exact.
+/// cancellation when they come close (mathematics 3.2). [`curvature`] is exact.
 pub fn chord_height_radius(points: [Vector3<f64>; 3]) -> f64 {
     let chord = points[2] - points[0];
     let to_middle = points[1] - points[0];

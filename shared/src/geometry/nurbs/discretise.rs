@@ -1,4 +1,4 @@
-//! Parameters between which a curve is straight enough (SPEC 3.6).
+//! Parameters between which a curve is straight enough (mathematics 3.6).
 
 use super::super::angle;
 use super::curve::{Curve, spans};

@@ -1,4 +1,4 @@
-//! Arc length, and the parameter at a length (SPEC 3.5), by adaptive Gauss–Legendre quadrature.
+//! Arc length, and the parameter at a length (mathematics 3.5), by adaptive Gauss–Legendre quadrature.
 
 use super::curve::{Curve, spans};
 use heapless::Vec;

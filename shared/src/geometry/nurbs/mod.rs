@@ -1,4 +1,4 @@
-//! Free-form curves: NURBS, their rational Bézier pieces, and what is done along them (SPEC 3).
+//! Free-form curves: NURBS, their rational Bézier pieces, and what is done along them (mathematics 3).
 //!
 //! [`Nurbs`] borrows its control points, [`RationalBezier`] owns the few of one piece; both are a [`Curve`], and
 //! [length](length_between), [steps](Walk) and [discretisation](discretise) work on any of those.

@@ -1,4 +1,4 @@
-//! The NURBS curve itself (SPEC 3.1).
+//! The NURBS curve itself (mathematics 3.1).
 
 use super::super::Moving;
 use super::curve::Curve;

@@ -1,4 +1,4 @@
-//! The next parameter a given way further along a curve (SPEC 3.5).
+//! The next parameter a given way further along a curve (mathematics 3.5).
 
 use super::super::Moving;
 use super::curve::{Curve, speed};

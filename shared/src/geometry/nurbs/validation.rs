@@ -1,4 +1,4 @@
-//! What makes a NURBS valid (SPEC 3.1).
+//! What makes a NURBS valid (mathematics 3.1).
 
 use super::MAX_DEGREE;
 use nalgebra::Vector3;
@@ -87,7 +87,7 @@ pub enum NurbsError {
     },
 }
 
-/// Checks in the order of SPEC 3.1.
+/// Checks in the order of mathematics 3.1.
 pub(super) fn validate(
     degree: usize,
     points: &[Vector3<f64>],

@@ -1,4 +1,4 @@
-//! Directions of the groove between the walls, and the coordinates of a pipe welder (SPEC 1.2, 1.3).
+//! Directions of the groove between the walls, and the coordinates of a pipe welder (mathematics 1.2, 1.3).
 
 use super::{PipePair, SaddleError};
 use core::f64::consts::TAU;
@@ -39,7 +39,7 @@ impl SeamFrame {
     }
 }
 
-/// Coordinates of a welder that turns about the branch axis (SPEC 1.3).
+/// Coordinates of a welder that turns about the branch axis (mathematics 1.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MachineCoordinates {
     /// Waist θ \[rad\], in [0, 2π).

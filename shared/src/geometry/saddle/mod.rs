@@ -1,4 +1,4 @@
-//! The saddle curve, where the walls of two pipes meet (SPEC 1.1–1.3).
+//! The saddle curve, where the walls of two pipes meet (mathematics 1.1–1.3).
 //!
 //! Frames: M is that of the main pipe (Z along its axis), S that of the branch (Z along its axis, X common
 //! with M). The branch axis is tilted by β from Z_M towards +Y_M and stands `offset` beside the main axis,

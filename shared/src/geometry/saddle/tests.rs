@@ -27,7 +27,7 @@ fn sheets() -> impl Strategy<Value = Sheet> {
     prop_oneof![Just(Sheet::Plus), Just(Sheet::Minus)]
 }
 
-/// The prototype of SPEC 1.3: main pipe ⌀320, branch ⌀80, offset 10, 5° oblique.
+/// The prototype of mathematics 1.3: main pipe ⌀320, branch ⌀80, offset 10, 5° oblique.
 fn prototype() -> PipePair {
     PipePairConfig {
         main_radius_mm: 160.0,
@@ -150,7 +150,7 @@ proptest! {
     }
 }
 
-/// The figures of SPEC 1.3.
+/// The figures of mathematics 1.3.
 #[test]
 fn the_prototype_has_the_published_figures() {
     let pair = prototype();

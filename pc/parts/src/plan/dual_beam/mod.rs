@@ -1,4 +1,4 @@
-//! Plans a weld of both feet of a rib with the rigid dual-beam head (SPEC 0.5, 0.6).
+//! Plans a weld of both feet of a rib with the rigid dual-beam head (mathematics 0.5, 0.6).
 //!
 //! Seam 1 is divided until its chords are fine enough; at each point the head is located on both seams; the
 //! path begins and ends with a straight run along the end tangents, with the attitude of the end.
@@ -64,7 +64,7 @@ pub struct PlannedPoint {
     pub pose: Pose,
     /// Extension of V1 and V2 that keeps the defocus \[mm\].
     pub extension: [f64; 2],
-    /// Speed on seam 2 over speed on seam 1 on the way here (SPEC 0.5).
+    /// Speed on seam 2 over speed on seam 1 on the way here (mathematics 0.5).
     pub speed_ratio: f64,
 }
 
@@ -323,7 +323,7 @@ fn locate_at(
 }
 
 /// Lengths of seam 1 at which the head is located: pieces are halved until chord, turn and distance from the
-/// chord are small enough (SPEC 3.6).
+/// chord are small enough (mathematics 3.6).
 fn divide(curve: &Curve<6>) -> Result<Vec<f64>, PlanError> {
     let position = |s: f64| {
         let [value, slope, _] = curve.at(s);

@@ -7,7 +7,7 @@ use shared::io::AXES;
 use shared::kinematics::Kinematics;
 use shared::units::DEG_PER_RAD;
 
-/// Power 2 follows the speed on seam 2 where that differs by more from the speed on seam 1 (SPEC 0.5).
+/// Power 2 follows the speed on seam 2 where that differs by more from the speed on seam 1 (mathematics 0.5).
 const SPEED_TOLERANCE: f64 = 0.02;
 /// Smallest change of power 2 that is programmed, as part of it.
 const POWER_STEP: f64 = 0.01;

@@ -45,7 +45,7 @@ impl Drop for Scratch {
     }
 }
 
-/// The prototype of SPEC 1.3: main pipe 320, branch 80, offset 10, 5° off square.
+/// The prototype of mathematics 1.3: main pipe 320, branch 80, offset 10, 5° off square.
 fn prototype(placement: Placement) -> Seam {
     let pair = PipePair::new(160.0, 40.0, 85f64.to_radians(), 10.0).unwrap();
     Seam::new(pair, 10.0, placement).unwrap()

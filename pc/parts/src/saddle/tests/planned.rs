@@ -88,7 +88,7 @@ fn the_shipped_program_is_the_plan_of_the_shipped_part() {
     let plan = part().plan(&machine(), "saddle-320-80").unwrap();
     let shipped = std::fs::read_to_string(shipped("programs/saddle-320-80.ngc")).unwrap();
     assert_eq!(plan.program, shipped);
-    // The figures of the prototype in SPEC 1.3.
+    // The figures of the prototype in mathematics 1.3.
     let notes = plan.notes.join("\n");
     for wanted in [
         "seam of 253.09 mm, 11.92 mm high, groove 84.8 to 108.6°, tilt 35.7 to 47.6°",

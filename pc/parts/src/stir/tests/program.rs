@@ -93,7 +93,7 @@ fn either_sign_of_the_tilt_and_none_lean_backwards() {
             let shift = if from > 0.0 { -180.0 } else { 0.0 };
             let c = assert_exact(&part, &machine);
             assert!((c[0] - shift).abs() < 1e-3, "{}", c[0]);
-            // O leans against the heading (SPEC 4.1).
+            // O leans against the heading (mathematics 4.1).
             let paths = planned(&part, &machine);
             let pose = along(&paths)[0].path().at(5.0).unwrap().pose().unwrap();
             let back = f64::to_radians(tilt.parse().unwrap()).sin();
