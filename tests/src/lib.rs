@@ -2,17 +2,19 @@
 
 pub mod fuzz;
 mod hold;
+mod operator;
 mod pictures;
 mod prediction;
 mod words;
 
 pub use hold::assert_held_weld_goes_on;
+pub use operator::{Heard, Nobody, Operator, run};
 pub use pictures::{assert_stops_in_the_dark, weld_disturbed, weld_through_pictures};
 pub use words::{Fate, Meddled, meddled};
 
-use ::job::{Job, JobError, Names, Progress, Work};
 use config::machine::MachineFile;
 use host_link::boards::Boards;
+use job::{Job, Names, Work};
 use nc::{Options, Program, interpret};
 use parts::PartFile;
 use report::Ended;
@@ -20,7 +22,6 @@ use report::Report;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use world::Deviation;
 use world::Surroundings;
 
@@ -150,20 +151,6 @@ fn with_seam(seam: Option<Deviation>) -> Surroundings {
         seam: seam.map(Arc::new),
         ..Surroundings::default()
     }
-}
-
-/// Does a job and judges it.
-///
-/// # Errors
-/// As [`job::run`].
-pub fn run(
-    boards: &mut dyn Boards,
-    job: &Job,
-    interrupted: &AtomicBool,
-    progress: &mut dyn Progress,
-) -> Result<Ended, JobError> {
-    let record = ::job::run(boards, job, interrupted, progress)?;
-    Ok(report::ended(job, record))
 }
 
 /// The machines without a tracker and their shipped jobs.

@@ -1,16 +1,16 @@
 //! What a dry run says of a job beside the run itself.
 
+use crate::{Heard, Nobody};
 use cam::dry_run;
 use cam::dry_run::DryRun;
 use cam::path::Planner;
-use host_link::boards::{Boards, Overheard};
+use host_link::boards::Boards;
 use job;
-use job::{Job, Silent, Work};
+use job::{Job, Work};
 use nc::Program;
 use report::Ended;
 use shared::protocol::MotionSample;
 use shared::units::MM_S_PER_M_MIN;
-use std::sync::atomic::AtomicBool;
 
 /// How far the predicted duration of a job may be off, as a part of it, ...
 const JOB: f64 = 0.005;
@@ -36,9 +36,8 @@ pub fn run_heard(
     job: &Job,
     hear: impl FnMut(&mut dyn Boards, &MotionSample),
 ) -> Ended {
-    let mut overheard = Overheard { boards, hear };
-    crate::run(&mut overheard, job, &AtomicBool::new(false), &mut Silent)
-        .unwrap_or_else(|error| panic!("{error}"))
+    let mut heard = Heard { boards, hear };
+    crate::run(&mut heard, job, &mut Nobody).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// What `seamwright dry-run` does.

@@ -1,9 +1,10 @@
 //! An operator who says anything at any time, and what has become of the weld.
 
+use crate::Heard;
 use config::machine::MachineFile;
-use host_link::boards::{Boards, Overheard};
-use job;
-use job::{Job, JobError, Names, Progress, Word, Work};
+use host_link::boards::Boards;
+use host_link::{Command, Remote};
+use job::{Job, JobError, Names, Work};
 use nc::{Options, interpret};
 use report::Ended;
 use shared::io::SIDES;
@@ -12,7 +13,6 @@ use std::cell::RefCell;
 use std::fmt::Write;
 use std::rc::Rc;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use world::Surroundings;
 use world::simulated::SimulatedBoards;
 
@@ -113,21 +113,26 @@ struct Hand {
     next: u32,
     words_left: u64,
     single_block: bool,
+    stopped: bool,
     said: Vec<String>,
     samples: Vec<MotionSample>,
 }
 
-struct Operator<'a> {
+struct Operator {
     hand: Rc<RefCell<Hand>>,
-    interrupted: &'a AtomicBool,
 }
 
-impl Progress for Operator<'_> {
-    fn phase(&mut self, _text: &str) {}
+impl crate::Operator for Operator {
+    fn turn(&mut self, remote: &Remote) {
+        if let Some(command) = self.word() {
+            // One who says more than the job can take is not heard.
+            let _ = remote.send(command);
+        }
+    }
+}
 
-    fn travel(&mut self, _done_mm: f64, _length_mm: f64) {}
-
-    fn word(&mut self) -> Option<Word> {
+impl Operator {
+    fn word(&mut self) -> Option<Command> {
         let mut hand = self.hand.borrow_mut();
         if hand.tick < hand.next {
             return None;
@@ -139,8 +144,15 @@ impl Progress for Operator<'_> {
                 .last()
                 .is_some_and(|said| said.ends_with("Override(1.0)"));
             hand.next = tick + GOES_ON;
-            hand.single_block = false;
-            let word = if raised { Word::GoOn } else { Word::Override(1.0) };
+            if hand.single_block {
+                hand.single_block = false;
+                return Some(Command::SingleBlock(false));
+            }
+            let word = if raised {
+                Command::Resume
+            } else {
+                Command::Override(1.0)
+            };
             if !raised {
                 hand.said.push(format!("{tick}: {word:?}"));
             }
@@ -150,33 +162,29 @@ impl Progress for Operator<'_> {
         let longest = hand.random.one_of(&PAUSES);
         hand.next = tick + hand.random.below(longest) as u32;
         let word = match hand.random.below(40) {
-            0..10 => Word::Hold,
-            10..18 => Word::Back,
-            18..28 => Word::GoOn,
+            0..10 => Command::Hold,
+            10..18 => Command::Back,
+            18..28 => Command::Resume,
             28..36 => {
                 let percent = hand
                     .random
                     .one_of(&[0.0, 1e-6, 1.0, 3.0, 8.0, 30.0, 80.0, 100.0, 200.0]);
-                Word::Override(percent / 100.0)
+                Command::Override(percent / 100.0)
             }
             36..39 => {
                 hand.single_block = !hand.single_block;
                 let word = format!("{tick}: single block {}", hand.single_block);
                 hand.said.push(word);
-                return None;
+                return Some(Command::SingleBlock(hand.single_block));
             }
             _ => {
-                self.interrupted.store(true, Ordering::Relaxed);
+                hand.stopped = true;
                 hand.said.push(format!("{tick}: stop"));
-                return None;
+                return Some(Command::Stop);
             }
         };
         hand.said.push(format!("{tick}: {word:?}"));
         Some(word)
-    }
-
-    fn single_block(&self) -> bool {
-        self.hand.borrow().single_block
     }
 }
 
@@ -218,16 +226,13 @@ pub fn meddled(seed: u64) -> Meddled {
         next: u32::MAX,
         words_left,
         single_block: false,
+        stopped: false,
         said: Vec::new(),
         samples: Vec::new(),
     }));
-    let interrupted = AtomicBool::new(false);
-    let mut operator = Operator {
-        hand: hand.clone(),
-        interrupted: &interrupted,
-    };
+    let mut operator = Operator { hand: hand.clone() };
     let mut boards = SimulatedBoards::new(machine.motion.kinematics.name()).expect("a plant");
-    let mut overheard = Overheard {
+    let mut heard = Heard {
         boards: &mut boards,
         hear: |_: &mut dyn Boards, sample: &MotionSample| {
             let mut hand = hand.borrow_mut();
@@ -241,7 +246,7 @@ pub fn meddled(seed: u64) -> Meddled {
             }
         },
     };
-    let ended = crate::run(&mut overheard, &job, &interrupted, &mut operator);
+    let ended = crate::run(&mut heard, &job, &mut operator);
     let ended = ended.unwrap_or_else(|error| panic!("{error}"));
     let overlap = machine.motion.beams.iter().flatten().map(|beam| beam.overlap_mm);
     let overlap_mm = overlap.fold(0.0, f64::max);
@@ -249,7 +254,7 @@ pub fn meddled(seed: u64) -> Meddled {
     Meddled {
         said: std::mem::take(&mut hand.said),
         ended,
-        stopped: interrupted.load(Ordering::Relaxed),
+        stopped: hand.stopped,
         programmed,
         feed_mm_s,
         samples: std::mem::take(&mut hand.samples),

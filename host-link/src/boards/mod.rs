@@ -1,11 +1,9 @@
 //! The two boards as the PC sees them, whether they are real, emulated or simulated.
 
 mod network;
-mod overheard;
 mod pass_on;
 
-pub use network::{Endpoint, NetworkBoards, Patience};
-pub use overheard::Overheard;
+pub use network::{Endpoint, NetworkBoards, Patience, Waker};
 
 use shared::protocol::framing::FrameError;
 use shared::protocol::{Datagram, Identity, Refusal, Request, Response, Role};
@@ -20,15 +18,20 @@ pub trait Boards {
     /// Sends `request` and waits for the answer.
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError>;
 
-    /// As [`Self::request`], but waits for nothing: `None` until the answer is there. To be asked for with the same
-    /// request until then; whatever else is requested of the board meanwhile leaves nobody to take this answer.
-    /// Simulated boards answer at once.
-    fn poll(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
+    /// Sends `request` and waits for nothing: the answer, if it is there at once, else [`Self::answer`] gives it. The answer to
+    /// what was asked of this board before is nobody's any more. Simulated boards answer at once.
+    fn ask(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
         self.request(role, request).map(Some)
     }
 
-    /// The next datagram of either board, in the order of arrival; `None` if none came within `timeout`.
-    /// Simulated boards advance their time here, by at most `timeout`.
+    /// The answer to what was asked of this board last, once, if it has come.
+    fn answer(&mut self, _role: Role) -> Result<Option<Response>, LinkError> {
+        Ok(None)
+    }
+
+    /// The next datagram of either board, in the order of arrival; `None` if none came within `timeout`, or something else is
+    /// to be looked at before: an answer, or what [`Self::waker`] told of. Simulated boards advance their time here, by at most
+    /// `timeout`.
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError>;
 
     /// Sends a datagram to a board.
@@ -42,6 +45,16 @@ pub trait Boards {
 
     /// How the motion board is told where the tracker board is ([`Request::PathStatesTo`]); `None` without one.
     fn path_states_target(&self) -> Option<Request>;
+
+    /// Ends the wait of [`Self::receive`] from another thread; `None` of simulated boards, whose time is not that of threads.
+    fn waker(&self) -> Option<Waker> {
+        None
+    }
+
+    /// Datagrams that were not understood, or that came while too many waited; the simulated ones all arrive.
+    fn dropped_datagrams(&self) -> u32 {
+        0
+    }
 
     /// The last time in which this program did nothing, if there was one. The time of simulated boards stands still
     /// meanwhile.

@@ -2,7 +2,7 @@
 
 /// In an `impl Boards`: passes the methods that are named on to the boards in a field.
 ///
-/// A `poll` that is neither named nor written asks by `request`, as in every [`Boards`](crate::boards::Boards).
+/// An `ask` that is neither named nor written is a `request`, as in every [`Boards`](crate::boards::Boards).
 #[macro_export]
 macro_rules! pass_on {
     ($boards:tt: $($method:ident),+) => {
@@ -15,6 +15,38 @@ macro_rules! pass_on {
             request: &::shared::protocol::Request,
         ) -> Result<::shared::protocol::Response, $crate::boards::LinkError> {
             self.$boards.request(role, request)
+        }
+    };
+    (@ask $boards:tt) => {
+        fn ask(
+            &mut self,
+            role: ::shared::protocol::Role,
+            request: &::shared::protocol::Request,
+        ) -> Result<Option<::shared::protocol::Response>, $crate::boards::LinkError> {
+            self.$boards.ask(role, request)
+        }
+    };
+    (@answer $boards:tt) => {
+        fn answer(
+            &mut self,
+            role: ::shared::protocol::Role,
+        ) -> Result<Option<::shared::protocol::Response>, $crate::boards::LinkError> {
+            self.$boards.answer(role)
+        }
+    };
+    (@waker $boards:tt) => {
+        fn waker(&self) -> Option<$crate::boards::Waker> {
+            self.$boards.waker()
+        }
+    };
+    (@dropped_datagrams $boards:tt) => {
+        fn dropped_datagrams(&self) -> u32 {
+            self.$boards.dropped_datagrams()
+        }
+    };
+    (@absence $boards:tt) => {
+        fn absence(&self) -> Option<$crate::boards::Absence> {
+            self.$boards.absence()
         }
     };
     (@receive $boards:tt) => {

@@ -10,6 +10,7 @@ use cam::path::CAPACITY;
 use camera::calibrate::Known;
 use camera::{Picture, Shelf};
 use config::calibration::Calibration;
+use host_link::events::Phase;
 use nc::text::tip_words;
 use nc::{Options, Program, interpret};
 use shared::io::AXES;
@@ -73,7 +74,7 @@ impl Weld {
                 weld = Some(path);
                 break;
             }
-            self.path(session, path, "approaching")?;
+            self.path(session, path, Phase::Approaching)?;
         }
         let nothing = || JobError::Calibrate("the program has no weld before which to look".to_owned());
         let weld = weld.ok_or_else(nothing)?;
@@ -88,7 +89,10 @@ impl Weld {
             let standing = Standing {
                 path: &path,
                 s,
-                what: format!("place {} of {}", place + 1, run.places),
+                phase: Phase::Calibrating {
+                    place: place + 1,
+                    of: run.places,
+                },
             };
             standing.go(self, session, 0.0)?;
             let middle = centred(session, run)?;
@@ -135,27 +139,27 @@ struct Standing<'a> {
     path: &'a Path<CAPACITY>,
     /// Its path position \[mm\].
     s: f64,
-    what: String,
+    phase: Phase,
 }
 
 impl Standing<'_> {
     /// A rapid to `along_mm` beyond the place.
     fn go(&self, weld: &mut Weld, session: &mut Session, along_mm: f64) -> Result<(), JobError> {
-        let lost = || JobError::Calibrate(format!("{} is beyond the program", self.what));
+        let lost = || JobError::Calibrate(format!("{} is beyond the program", self.phase));
         let point = self.path.at(self.s + along_mm).ok_or_else(lost)?;
         let pose = point.pose().map_err(|_| lost())?;
         let axes = weld
             .planner
             .kinematics()
             .inverse(&pose, &[0.0; AXES])
-            .map_err(|error| JobError::Calibrate(format!("{} cannot be reached: {error}", self.what)))?;
+            .map_err(|error| JobError::Calibrate(format!("{} cannot be reached: {error}", self.phase)))?;
         let angles = [axes[3], axes[4], axes[5]].map(|angle| angle * DEG_PER_RAD);
         let words = tip_words(&pose.position.into(), &angles, &[0.0; 2]);
         let text = format!("G43.4\nG0 {words}\nM2\n");
         let program =
             interpret(&text, Options::default()).map_err(|error| JobError::Plan(error.to_string()))?;
         for path in weld.planner.program(&program, &session.motion.reference, None)? {
-            weld.path(session, path, &self.what)?;
+            weld.path(session, path, self.phase)?;
         }
         Ok(())
     }

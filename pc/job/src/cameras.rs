@@ -2,6 +2,8 @@
 
 use crate::images::ImagesError;
 use camera::{Camera, CameraError};
+use host_link::boards::Waker;
+use host_link::events::Events;
 use host_link::geometry::MachineGeometry;
 use host_link::record::MachinePosition;
 use serde::Serialize;
@@ -12,6 +14,9 @@ use vision::Seam;
 
 /// The cameras of a session, whatever they are: captures in, measurements out.
 pub trait SeamCameras: Send {
+    /// Who waits for answers is woken by `waker`, if by anything; pictures are told by `events`.
+    fn attach(&mut self, _waker: Option<Waker>, _events: &Events) {}
+
     /// Takes a capture of the tracker board; `strobe_us` is when by the motion board's clock, `pose` what was planned for
     /// that time, if it is known.
     fn strobe(&mut self, capture: Capture, strobe_us: u64, pose: Option<Pose>);

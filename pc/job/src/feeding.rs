@@ -92,7 +92,7 @@ impl<'a> Feeding<'a> {
     fn send(&mut self, session: &mut Session) -> Result<(), JobError> {
         let mut room = ask(session)?;
         while !self.done {
-            self.fill(session.progress.single_block())?;
+            self.fill(session.control.single_block())?;
             if self.batch.is_empty() && self.ended.is_some() {
                 break;
             }

@@ -2,7 +2,9 @@
 
 use crate::feeding::{EndedBlock, Feeding};
 use crate::session::{Session, on_path};
-use crate::{JobError, Word, recentring};
+use crate::{JobError, recentring};
+use host_link::Command;
+use host_link::events::{Event, Next, Phase, Question};
 use shared::protocol::{MotionSample, MotionStatus, Request, Role};
 use shared::state::State;
 
@@ -10,9 +12,6 @@ use shared::state::State;
 const STANDSTILL_S: u32 = 10;
 /// A path tick is a millisecond.
 const TICKS_PER_S: u32 = 1000;
-
-/// What the operator is told of a hold that nobody asked for.
-const TOO_SLOW: &str = "held: the feed is too low for the beam; raise it, then Enter goes on";
 
 /// A place on the path is reached, to this much \[mm\]; and what is slower stands \[mm/s\].
 const REACHED: f64 = 1e-3;
@@ -47,29 +46,33 @@ pub(super) fn follow(
         if let Some(here) = here.filter(|here| here.path_id == id) {
             if here.beams.contains(&true) && !welding {
                 welding = true;
-                s.progress.phase("welding");
+                s.phase(Phase::Welding);
             }
-            s.progress.travel(here.s_mm, length_mm);
+            s.control.publish(Event::Progress {
+                done_mm: here.s_mm,
+                length_mm,
+            });
             if let (None, Some(block)) = (waits, feeding.ended_block())
                 && rests_after(&block, &here)
             {
                 // Held, the beams stay off, and go over the place again.
                 s.ask(&Request::Hold)?;
-                s.tell_waiting(&format!("line {}", block.next_line));
+                let next = Next::Line(block.next_line);
+                s.question(Question::GoOn { next });
                 waits = Some(block.next_line);
             }
         }
         standing.watch(&s.motion);
         if standing.held_by_board && waits.is_none() {
-            s.progress.phase(TOO_SLOW);
+            s.question(Question::FeedTooLow);
             welding = false;
         }
-        let word = s.obey(waits.is_some() || standing.for_somebody)?;
-        standing.hear(word, s.tick());
-        if word == Some(Word::GoOn) {
+        let order = s.obey(waits.is_some() || standing.for_somebody)?;
+        standing.hear(order.as_ref(), s.tick());
+        if order == Some(Command::Resume) {
             if let Some(line) = waits.take() {
                 welding = false;
-                s.progress.phase(&format!("line {line}"));
+                s.phase(Phase::Line(line));
                 feeding.next_block(s)?;
             }
             s.ask(&Request::Resume)?;
@@ -94,7 +97,7 @@ struct Standing {
     /// In a hold that nobody asked for.
     held_by_board: bool,
     /// What was said last of hold, back and going on, if the board has not been seen to run since; and when.
-    said: Option<Word>,
+    said: Option<Command>,
     said_at: u32,
 }
 
@@ -108,13 +111,13 @@ impl Standing {
         }
         self.held_by_board = held && self.said.is_none();
         let stopped = motion.state == State::Running && motion.speed_override <= 0.0;
-        self.for_somebody = stopped || held && self.said != Some(Word::GoOn);
+        self.for_somebody = stopped || held && self.said != Some(Command::Resume);
     }
 
     /// Takes what was said at path tick `tick`.
-    fn hear(&mut self, word: Option<Word>, tick: u32) {
-        if let Some(Word::Hold | Word::Back | Word::GoOn) = word {
-            (self.said, self.said_at) = (word, tick);
+    fn hear(&mut self, order: Option<&Command>, tick: u32) {
+        if let Some(Command::Hold | Command::Back | Command::Resume) = order {
+            (self.said, self.said_at) = (order.cloned(), tick);
         }
     }
 }
@@ -209,19 +212,19 @@ mod tests {
     fn whoever_is_held_waits_for_somebody_until_it_goes_on() {
         use State::{Holding, Running};
         let mut standing = Standing::default();
-        let mut told = |tick: u32, state, factor, word: Option<Word>| {
+        let mut told = |tick: u32, state, factor, order: Option<Command>| {
             let mut motion = status(0, state, factor, 0.0);
             motion.path_ticks = tick;
             standing.watch(&motion);
-            standing.hear(word, tick);
+            standing.hear(order.as_ref(), tick);
             (standing.for_somebody, standing.held_by_board)
         };
-        assert_eq!(told(10, Running, 1.0, Some(Word::Hold)), (false, false));
+        assert_eq!(told(10, Running, 1.0, Some(Command::Hold)), (false, false));
         // As it was told before the word, and after it.
         assert_eq!(told(10, Running, 1.0, None), (false, false));
         assert_eq!(told(12, Holding, 1.0, None), (true, false));
-        assert_eq!(told(13, Holding, 1.0, Some(Word::Back)), (true, false));
-        assert_eq!(told(14, Holding, 1.0, Some(Word::GoOn)), (true, false));
+        assert_eq!(told(13, Holding, 1.0, Some(Command::Back)), (true, false));
+        assert_eq!(told(14, Holding, 1.0, Some(Command::Resume)), (true, false));
         // It goes back before it goes on.
         assert_eq!(told(15, Holding, 1.0, None), (false, false));
         assert_eq!(told(16, Running, 1.0, None), (false, false));

@@ -2,12 +2,12 @@
 
 mod calibrating;
 mod cameras;
+mod delays;
 mod feeding;
 mod following;
 mod images;
 mod operator;
 mod planned;
-mod progress;
 mod recentring;
 mod run_record;
 mod seam_teaching;
@@ -19,8 +19,8 @@ mod tracking;
 
 pub use calibrating::{CameraPictures, PictureRun};
 pub use cameras::{Answer, CameraFigures, Moment, PictureSource, SeamCameras};
+pub use delays::{DelayFigures, Delays};
 pub use images::{ImageCameras, Images, ImagesError, WorkerError};
-pub use progress::{Line, Progress, Silent, Word};
 pub use run_record::{ByBoard, Recentred, RunRecord, TrackingRecord};
 pub use seam_teaching::{SeamLesson, TaughtSeam};
 pub use surroundings::{RealSurroundings, Surroundings, SurroundingsError};
@@ -30,7 +30,9 @@ use cam::path::{FromLineError, PathError, PlannedPath, Planner};
 use config::machine::MachineFile;
 use feeding::Feeding;
 use following::follow;
+use host_link::Control;
 use host_link::boards::{Boards, LinkError};
+use host_link::events::{Event, Next, Phase};
 use nc::Program;
 use parts::PartFile;
 use session::Session;
@@ -39,7 +41,6 @@ use shared::protocol::{LOAD_BATCH, Request, Role};
 use shared::state::{Fault, State, TrackerFault, TrackerState};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use thiserror::Error;
 use tracking::Tracking;
@@ -140,7 +141,7 @@ pub enum JobError {
     Interrupted,
     /// Nobody can say that the next block may begin, or that a hold is over.
     #[error(
-        "the machine waits for the operator, and the input has ended; run seamwright in a terminal, or without single block"
+        "the machine waits for the operator, and nobody is there who could answer; attend to the job, or run it without single block"
     )]
     NoOperator,
     /// Something does not come to an end.
@@ -215,20 +216,9 @@ impl JobError {
 }
 
 /// Runs a job on boards that may be in any state. They are off afterwards, if they can be reached at all.
-pub fn run(
-    boards: &mut dyn Boards,
-    job: &Job,
-    interrupted: &AtomicBool,
-    progress: &mut dyn Progress,
-) -> Result<RunRecord, JobError> {
+pub fn run(boards: &mut dyn Boards, job: &Job, control: &mut Control) -> Result<RunRecord, JobError> {
     let planner = Planner::build(job.machine)?;
-    let mut session = Session::begin(
-        boards,
-        job.machine,
-        job.surroundings.as_ref(),
-        interrupted,
-        progress,
-    )?;
+    let mut session = Session::begin(boards, job.machine, job.surroundings.as_ref(), control)?;
     let mut weld = Weld {
         planner,
         paths: BTreeMap::new(),
@@ -240,6 +230,11 @@ pub fn run(
         Some(error) => Some(error.then(switched_off)),
         None => switched_off.err(),
     };
+    let end = Event::End {
+        error: error.as_ref().map(ToString::to_string),
+        duration: session.boards.now() - session.began,
+    };
+    session.control.publish(end);
     Ok(run_record::run_record(session, weld.paths, weld.taught, error))
 }
 
@@ -265,52 +260,52 @@ impl Weld {
                 self.program(session, job, &program)?;
             }
         }
-        session.wait_before("parking")?;
+        session.wait_before(Next::Parking)?;
         for path in self.planner.park(&session.motion.reference)? {
-            self.path(session, path, "parking")?;
+            self.path(session, path, Phase::Parking)?;
         }
         Ok(())
     }
 
     /// Runs a program from where the axes stand.
     fn program(&mut self, session: &mut Session, job: &Job, program: &Program) -> Result<(), JobError> {
-        let mut elsewhere = "approaching";
+        let mut elsewhere = Phase::Approaching;
         let planned = job.plan(program, &self.planner, &session.motion.reference)?;
         for (index, path) in planned.into_iter().enumerate() {
             if index > 0 {
                 let next = match path.first_and_last_line().0 {
-                    0 => "the next way of the approach".to_owned(),
-                    line => format!("line {line}"),
+                    0 => Next::Approach,
+                    line => Next::Line(line),
                 };
-                session.wait_before(&next)?;
+                session.wait_before(next)?;
             }
-            let what = if path.weld().is_some() {
-                elsewhere = "moving on";
-                "running in"
+            let phase = if path.weld().is_some() {
+                elsewhere = Phase::MovingOn;
+                Phase::RunningIn
             } else {
                 elsewhere
             };
-            self.path(session, path, what)?;
+            self.path(session, path, phase)?;
         }
         Ok(())
     }
 
     /// Loads and runs one path; the machine stands afterwards, on an error too.
-    fn path(&mut self, session: &mut Session, path: PlannedPath, what: &str) -> Result<(), JobError> {
+    fn path(&mut self, session: &mut Session, path: PlannedPath, phase: Phase) -> Result<(), JobError> {
         let id = self.paths.len() as u32 + 1;
         let feeding = load(session, &path, id)?;
         if let Some(tracking) = &mut session.tracking {
             tracking.add_path(id, &path);
         }
         if path.dwell_before_s > 0.0 {
-            session.progress.phase("dwelling");
+            session.phase(Phase::Dwelling);
             session.dwell(path.dwell_before_s)?;
         }
-        session.progress.phase(what);
+        session.phase(phase);
         let ran = follow(session, feeding, path.length_mm(), id);
         self.paths.insert(id, path);
         ran.map_err(|error| {
-            session.progress.phase("stopping");
+            session.phase(Phase::Stopping);
             error.then(session.stop(STOP_LIMIT))
         })
     }
@@ -318,9 +313,9 @@ impl Weld {
 
 /// Brings boards and machine from any state to where paths can be run.
 fn make_ready(session: &mut Session, job: &Job) -> Result<(), JobError> {
-    session.progress.phase("setting up the boards");
+    session.phase(Phase::SettingUp);
     set_up(session, job)?;
-    session.progress.phase("searching reference marks");
+    session.phase(Phase::Homing);
     session.command_all(&Request::Home)?;
     session.refresh()?;
     session.wait_until("the search for reference marks", HOMING_LIMIT, |s| {
@@ -330,7 +325,7 @@ fn make_ready(session: &mut Session, job: &Job) -> Result<(), JobError> {
             && tracking.is_none_or(|t| t.homed && t.state == TrackerState::Ready))
     })?;
     if session.tracking.is_some() {
-        session.progress.phase("relating the clocks");
+        session.phase(Phase::RelatingClocks);
         session.wait_until("relating the boards' clocks", CLOCK_LIMIT, |s| {
             Ok(s.tracking.as_ref().is_none_or(Tracking::clocks_related))
         })?;

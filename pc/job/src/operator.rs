@@ -1,27 +1,28 @@
-//! Doing what the operator asks for.
+//! Doing what whoever drives the job asks for.
 
+use crate::JobError;
 use crate::session::Session;
-use crate::{JobError, Word};
+use host_link::Command;
 use host_link::boards::LinkError;
+use host_link::events::{Event, Next, Phase, Question};
 use shared::protocol::{Request, Role};
 
 impl Session<'_> {
-    /// Does what the operator asks for now, but to go on, which is for the caller to do; what it was. Somebody must be
-    /// there who could ask if the machine is `waiting` for them.
+    /// Does what is asked for now, but to resume, which is for the caller to do; what it was. Somebody must be there who
+    /// could ask if the machine is `waiting` for them.
     ///
     /// # Errors
     /// [`JobError::NoOperator`], and what the connection has.
-    pub fn obey(&mut self, waiting: bool) -> Result<Option<Word>, JobError> {
-        let word = self.progress.word();
-        match word {
-            None | Some(Word::GoOn) => {}
-            Some(Word::Hold) => self.ask(&Request::Hold)?,
-            Some(Word::Back) => self.ask(&Request::Back)?,
-            Some(Word::Override(factor)) => self.ask(&Request::Override { factor })?,
-            Some(Word::Gone) if waiting => return Err(JobError::NoOperator),
-            Some(Word::Gone) => {}
+    pub fn obey(&mut self, waiting: bool) -> Result<Option<Command>, JobError> {
+        let order = self.control.order();
+        match &order {
+            None if waiting && self.control.unattended() => return Err(JobError::NoOperator),
+            Some(Command::Hold) => self.ask(&Request::Hold)?,
+            Some(Command::Back) => self.ask(&Request::Back)?,
+            Some(Command::Override(factor)) => self.ask(&Request::Override { factor: *factor })?,
+            None | Some(_) => {}
         }
-        Ok(word)
+        Ok(order)
     }
 
     /// A request to the motion board that means nothing in another state, as one that the operator makes a moment
@@ -33,19 +34,28 @@ impl Session<'_> {
         }
     }
 
-    /// Tells the operator that the machine waits for them before `what`.
-    pub fn tell_waiting(&mut self, what: &str) {
-        self.progress
-            .phase(&format!("waiting before {what}: Enter goes on"));
+    /// A new part of the job begins; one that goes on is told once.
+    pub fn phase(&mut self, phase: Phase) {
+        self.question = None;
+        if self.phase.replace(phase) != Some(phase) {
+            self.control.publish(Event::Phase(phase));
+        }
     }
 
-    /// In single block, waits at rest between two paths until the operator lets the machine go on to `what`.
-    pub fn wait_before(&mut self, what: &str) -> Result<(), JobError> {
-        if !self.progress.single_block() {
+    /// The machine stands until somebody answers; what is asked already is asked once.
+    pub fn question(&mut self, question: Question) {
+        self.phase = None;
+        if self.question.replace(question) != Some(question) {
+            self.control.publish(Event::Question(question));
+        }
+    }
+
+    /// In single block, waits at rest between two paths until the machine may go on to `next`.
+    pub fn wait_before(&mut self, next: Next) -> Result<(), JobError> {
+        if !self.control.single_block() {
             return Ok(());
         }
-        self.progress
-            .phase(&format!("waiting before {what}: Enter goes on"));
-        self.go_on_until(|session| Ok(session.obey(true)? == Some(Word::GoOn)))
+        self.question(Question::GoOn { next });
+        self.go_on_until(|session| Ok(session.obey(true)? == Some(Command::Resume)))
     }
 }

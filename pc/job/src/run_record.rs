@@ -1,7 +1,7 @@
 //! What is left of a job after its end: what the boards told, and what was done.
 
 use crate::session::Session;
-use crate::{CameraFigures, JobError, Taught};
+use crate::{CameraFigures, DelayFigures, JobError, Taught};
 use cam::along::Along;
 use cam::path::PlannedPath;
 use host_link::geometry::MachineGeometry;
@@ -32,6 +32,8 @@ pub struct RunRecord {
     pub tracking: Option<TrackingRecord>,
     /// Control ticks lost.
     pub lost_ticks: ByBoard,
+    /// Datagrams of the boards that this PC did not understand, or had no room for.
+    pub dropped_datagrams: u32,
     /// How long it took, by the clock of the PC.
     pub duration: Duration,
     /// What was taught, as far as it came.
@@ -51,6 +53,8 @@ pub struct TrackingRecord {
     pub given_up: u32,
     /// What became of the pictures of each camera; `None` without pictures.
     pub pictures: Option<[CameraFigures; SIDES]>,
+    /// From the strobe to the measurement that was sent; `None` if none was.
+    pub delays: Option<DelayFigures>,
     /// Largest residual of the tracker's relation to the motion clock while welding \[µs\].
     pub clock_residual_us: Option<f64>,
     /// Largest difference between the tracker's relation to the motion clock and the PC's while welding \[µs\].
@@ -115,12 +119,14 @@ pub(crate) fn run_record(
             tracker_ahead_us: tracking.tracker_ahead_us().unwrap_or(0),
             given_up: tracking.cameras.given_up(),
             pictures: tracking.cameras.figures(),
+            delays: tracking.delays.figures(),
             clock_residual_us: tracking.clock_residual_us,
             clock_difference_us: tracking.clock_difference_us,
             status: tracking.status,
             recentred: recentred.unwrap_or_default(),
         }),
         lost_ticks,
+        dropped_datagrams: session.boards.dropped_datagrams(),
         duration: session.boards.now() - session.began,
         machine: session.machine,
         record: session.record,

@@ -2,15 +2,16 @@
 
 use crate::session::Session;
 use crate::tracking::Watched;
-use crate::{Job, JobError, Line, Weld};
+use crate::{Job, JobError, Weld};
 use config::machine::MachineFile;
 use host_link::boards::LinkError;
+use host_link::events::{Event, Phase, Question};
 use nc::text::{decimal, tip_words};
 use nc::{Options, interpret};
 use shared::io::{AXES, SIDES, SLIDES};
 use shared::protocol::Refusal;
 use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
-use std::cell::RefCell;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use teach::seam::{
     Cameras, Drawing, Ended, Follower, Hand, Head, Rig, SeamFile, SeamPoint, SeamTeachError, SeamTeaching,
@@ -43,7 +44,7 @@ pub struct SeamLesson {
     /// Points taught before.
     pub points: Vec<SeamPoint>,
     /// Where new points go.
-    pub file: RefCell<SeamFile>,
+    pub file: Mutex<SeamFile>,
     /// Whose they are.
     pub head: Head,
     /// The operator drives.
@@ -122,7 +123,7 @@ impl SeamArm<'_, '_, '_> {
     fn run(
         &mut self,
         text: &str,
-        what: &str,
+        phase: Phase,
         largest_mm_s: f64,
         slides_mm: &[f64; SLIDES],
     ) -> Result<(), JobError> {
@@ -135,7 +136,7 @@ impl SeamArm<'_, '_, '_> {
             .program_from(&program, &from, extensions(&self.slides_mm), None)?;
         for mut path in planned {
             path.limits.velocity = path.limits.velocity.min(largest_mm_s);
-            self.weld.path(self.session, path, what)?;
+            self.weld.path(self.session, path, phase)?;
         }
         // Along a path the U slides stand in the middle.
         self.move_slides(slides_mm)?;
@@ -162,8 +163,10 @@ impl SeamArm<'_, '_, '_> {
         Ok([axes[3], axes[4], axes[5]].map(|angle| angle * DEG_PER_RAD))
     }
 
-    fn what(&self) -> String {
-        format!("teaching point {}", self.count + 1)
+    fn phase(&self) -> Phase {
+        Phase::TeachingSeam {
+            number: self.count + 1,
+        }
     }
 
     /// Pictures of a look should have come so many ticks after the first of them.
@@ -184,7 +187,7 @@ impl Rig for SeamArm<'_, '_, '_> {
         let above = [position.x, position.y, self.machine.planning.safe_height_mm];
         let words = tip_words(&above, &self.angles(stance)?, &extensions(&stance.slides_mm));
         let text = format!("G43.4\nG0 {words}\nG0 Z{}\nM2\n", decimal(position.z, 5));
-        self.run(&text, "approaching", f64::INFINITY, &stance.slides_mm)
+        self.run(&text, Phase::Approaching, f64::INFINITY, &stance.slides_mm)
     }
 
     fn go(&mut self, stance: &Stance) -> Result<(), JobError> {
@@ -196,7 +199,7 @@ impl Rig for SeamArm<'_, '_, '_> {
             let words = tip_words(&position, &angles, &extensions(&stance.slides_mm));
             let speed = self.lesson.config.speed_m_min * MM_S_PER_M_MIN;
             let text = format!("G43.4\nG0 {words}\nM2\n");
-            self.run(&text, &self.what(), speed, &stance.slides_mm)
+            self.run(&text, self.phase(), speed, &stance.slides_mm)
         } else if moves(&stance.slides_mm, &self.slides_mm, NO_SLIDE_MOVE) {
             self.move_slides(&stance.slides_mm)
         } else {
@@ -252,7 +255,8 @@ impl Rig for SeamArm<'_, '_, '_> {
     fn taught(&mut self, point: &SeamPoint) -> Result<(), JobError> {
         self.lesson
             .file
-            .borrow_mut()
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
             .add(point)
             .map_err(|error| JobError::Teach(error.to_string()))?;
         self.count += 1;
@@ -260,42 +264,38 @@ impl Rig for SeamArm<'_, '_, '_> {
     }
 
     fn enough(&mut self) -> bool {
-        match self.session.progress.line() {
-            None | Some(Line::Over) => false,
-            Some(Line::Said(text)) if text.trim() == "done" => true,
-            Some(Line::Said(_)) => {
-                self.session
-                    .progress
-                    .say("done ends after this point, Ctrl-C at once");
+        match self.session.control.answer() {
+            Some(text) if text.trim() == "done" => true,
+            Some(_) => {
+                self.say("done ends after this point, a stop at once");
                 false
             }
+            None => false,
         }
     }
 }
 
 impl Hand for SeamArm<'_, '_, '_> {
     fn line(&mut self) -> Result<Option<String>, JobError> {
-        self.session.progress.phase("jog: say what to do");
+        self.session.question(Question::Jog);
         let mut said = None;
         self.session.go_on_until(|session| {
-            said = session.progress.line();
-            Ok(said.is_some())
+            said = session.control.answer();
+            Ok(said.is_some() || session.control.unattended())
         })?;
-        Ok(match said {
-            Some(Line::Said(text)) => Some(text),
-            Some(Line::Over) | None => None,
-        })
+        Ok(said)
     }
 
     fn say(&mut self, text: &str) {
-        self.session.progress.say(text);
+        self.session.control.publish(Event::Message(text.to_owned()));
     }
 
     fn untaught(&mut self, points: &[SeamPoint]) -> Result<(), JobError> {
         self.count = points.len();
         self.lesson
             .file
-            .borrow_mut()
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
             .keep(points, &self.lesson.head)
             .map_err(|error| JobError::Teach(error.to_string()))
     }

@@ -3,14 +3,15 @@
 use crate::recentring::Recentring;
 use crate::run_record::ByBoard;
 use crate::surroundings::Surroundings;
-use crate::{JobError, Progress, Tracking};
+use crate::{JobError, Tracking};
 use config::machine::MachineFile;
-use host_link::boards::{Absence, Boards, LinkError, command};
+use host_link::Control;
+use host_link::boards::{Absence, Boards, LinkError};
+use host_link::events::{Event, Phase, Question};
 use host_link::geometry::MachineGeometry;
 use host_link::record::Record;
 use shared::protocol::{Datagram, MotionStatus, Request, Response, Role};
 use shared::state::{Fault, State};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// How often the boards are asked for their state; it also tells them that the PC is there.
@@ -27,8 +28,12 @@ const SHORTEST_WAIT: Duration = Duration::from_micros(200);
 /// A session and everything that was learned in it.
 pub(super) struct Session<'a> {
     pub boards: &'a mut dyn Boards,
-    pub interrupted: &'a AtomicBool,
-    pub progress: &'a mut dyn Progress,
+    pub control: &'a mut Control,
+    /// What was told last of the two.
+    pub(super) phase: Option<Phase>,
+    pub(super) question: Option<Question>,
+    /// What went wrong while a board was asked for something.
+    trouble: Option<JobError>,
     pub machine: MachineGeometry,
     /// The tracker board, if the machine has one.
     pub tracking: Option<Tracking>,
@@ -51,20 +56,26 @@ impl<'a> Session<'a> {
         boards: &'a mut dyn Boards,
         machine: &MachineFile,
         around: &dyn Surroundings,
-        interrupted: &'a AtomicBool,
-        progress: &'a mut dyn Progress,
+        control: &'a mut Control,
     ) -> Result<Self, JobError> {
         let geometry = MachineGeometry::build(&machine.motion)?;
         let began = boards.now();
         let unit = machine.tracking.as_ref();
         let tracking = unit
-            .map(|unit| Tracking::begin(boards, unit, around))
+            .map(|unit| Tracking::begin(boards, unit, around, control))
             .transpose()?;
-        let motion = motion_status(boards)?;
+        let motion = motion(boards.request(Role::Motion, &Request::Status)?)?;
+        let identity = |role| boards.identity(role).cloned();
+        control.publish(Event::Connected {
+            motion: identity(Role::Motion),
+            tracker: unit.and_then(|_| identity(Role::Tracker)),
+        });
         Ok(Self {
             boards,
-            interrupted,
-            progress,
+            control,
+            phase: None,
+            question: None,
+            trouble: None,
             machine: geometry,
             tracking,
             recentring: unit.map(Recentring::new).transpose()?,
@@ -89,7 +100,46 @@ impl<'a> Session<'a> {
 
     /// A request that is answered by "done".
     pub fn command(&mut self, role: Role, request: &Request) -> Result<(), LinkError> {
-        command(self.boards, role, request)
+        match self.request(role, request)? {
+            Response::Done => Ok(()),
+            other => Err(unexpected(role, &other)),
+        }
+    }
+
+    /// Asks a board, and goes on with everything else until it answers: what boards send is taken, and measurements leave for
+    /// the tracker board.
+    pub fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
+        if let (Role::Tracker, Some(tracking)) = (role, &mut self.tracking) {
+            tracking.forget_question();
+        }
+        let mut answer = self.boards.ask(role, request)?;
+        loop {
+            if let Some(answer) = answer {
+                return Ok(answer);
+            }
+            self.attend(LONGEST_WAIT)?;
+            answer = self.boards.answer(role)?;
+        }
+    }
+
+    /// Takes what comes within `wait`, at most one datagram, and sends what is to be sent.
+    fn attend(&mut self, wait: Duration) -> Result<(), LinkError> {
+        let now = self.boards.now();
+        let due = self.tracking.as_ref().map(|tracking| tracking.next_due(now));
+        let wait = due.map_or(wait, |due| wait.min(due.saturating_sub(now)));
+        if let Some((role, datagram)) = self.boards.receive(wait.max(SHORTEST_WAIT))? {
+            self.take(role, datagram);
+        }
+        if let Some(tracking) = &mut self.tracking {
+            let turned = tracking.turn(self.boards, &self.machine, &self.record, self.control);
+            match turned {
+                Err(JobError::Link(error)) => return Err(error),
+                // It ends the job as soon as the board has answered.
+                Err(error) => drop(self.trouble.get_or_insert(error)),
+                Ok(()) => {}
+            }
+        }
+        Ok(())
     }
 
     /// The same request to every board of the machine, to each even if the other one is lost.
@@ -104,17 +154,21 @@ impl<'a> Session<'a> {
     /// Asks the boards for their state now, and waits for both.
     pub fn refresh(&mut self) -> Result<(), LinkError> {
         self.refresh_motion()?;
-        let welding = self.welding();
-        if let Some(tracking) = &mut self.tracking {
-            tracking.refresh(self.boards, welding)?;
+        if self.tracking.is_some() {
+            let answer = self.request(Role::Tracker, &Request::Status)?;
+            let welding = self.welding();
+            if let Some(tracking) = &mut self.tracking {
+                tracking.take_status(answer, welding)?;
+            }
         }
+        self.publish_status();
         self.next_status = self.boards.now() + STATUS_PERIOD;
         Ok(())
     }
 
     fn refresh_motion(&mut self) -> Result<(), LinkError> {
         let ticks = self.motion.path_ticks;
-        self.motion = motion_status(self.boards)?;
+        self.motion = motion(self.request(Role::Motion, &Request::Status)?)?;
         if self.motion.path_ticks != ticks {
             self.ticked = self.boards.now();
         }
@@ -133,9 +187,17 @@ impl<'a> Session<'a> {
             tracking.poll(self.boards, due, welding)?;
         }
         if due {
+            self.publish_status();
             self.next_status = self.boards.now() + STATUS_PERIOD;
         }
         Ok(())
+    }
+
+    fn publish_status(&self) {
+        self.control.publish(Event::Status {
+            motion: self.motion.clone(),
+            tracker: self.tracking.as_ref().map(|tracking| tracking.status.clone()),
+        });
     }
 
     /// Control ticks lost since the session began.
@@ -165,7 +227,14 @@ impl<'a> Session<'a> {
             Ok(())
         };
         let ended = go_on();
-        ended.map_err(|error| self.explained(error))
+        ended.map_err(|error| {
+            match &error {
+                JobError::Motion(fault) => self.control.publish(Event::MotionFault(*fault)),
+                JobError::Tracker(fault) => self.control.publish(Event::TrackerFault(*fault)),
+                _ => {}
+            }
+            self.explained(error)
+        })
     }
 
     /// An error of the boards, with the reason if this program was not there for them just before.
@@ -225,7 +294,7 @@ impl<'a> Session<'a> {
             (Some(fault), _) => return Err(JobError::Motion(fault)),
             (None, None) => {}
         }
-        if self.interrupted.load(Ordering::Relaxed) {
+        if self.control.stopped() {
             return Err(JobError::Interrupted);
         }
         if self.boards.now() > self.ticked + STANDSTILL {
@@ -246,7 +315,7 @@ impl<'a> Session<'a> {
         }
         let end = self.boards.now() + limit;
         loop {
-            self.motion = motion_status(self.boards)?;
+            self.motion = motion(self.request(Role::Motion, &Request::Status)?)?;
             if !on_path(self.motion.state) {
                 return Ok(());
             }
@@ -270,15 +339,10 @@ impl<'a> Session<'a> {
 
     /// One turn: at most one datagram, and whatever is due.
     pub fn turn(&mut self) -> Result<(), JobError> {
-        let now = self.boards.now();
-        let tracking_due = self.tracking.as_ref().map(|tracking| tracking.next_due(now));
-        let due = tracking_due.map_or(self.next_status, |due| due.min(self.next_status));
-        let wait = due.saturating_sub(now).clamp(SHORTEST_WAIT, LONGEST_WAIT);
-        if let Some((role, datagram)) = self.boards.receive(wait)? {
-            self.take(role, datagram);
-        }
-        if let Some(tracking) = &mut self.tracking {
-            tracking.turn(self.boards, &self.machine, &self.record)?;
+        let wait = self.next_status.saturating_sub(self.boards.now());
+        self.attend(wait.clamp(SHORTEST_WAIT, LONGEST_WAIT))?;
+        if let Some(trouble) = self.trouble.take() {
+            return Err(trouble);
         }
         Ok(self.poll()?)
     }
@@ -292,10 +356,19 @@ impl<'a> Session<'a> {
                     tracking.saw_motion(newest.time_us, arrived_us);
                 }
                 self.record.add_motion(&telemetry.samples);
+                let samples = telemetry.samples.as_slice().into();
+                self.control.publish(Event::MotionSamples(samples));
             }
-            (Datagram::TrackerTelemetry(telemetry), _) => self.record.add_tracker(&telemetry.samples),
+            (Datagram::TrackerTelemetry(telemetry), _) => {
+                self.record.add_tracker(&telemetry.samples);
+                let samples = telemetry.samples.as_slice().into();
+                self.control.publish(Event::TrackerSamples(samples));
+            }
             (Datagram::ClockReply(reply), Some(tracking)) => tracking.clock_reply(role, &reply, arrived_us),
-            (Datagram::Capture(capture), Some(tracking)) => tracking.strobe(&self.machine, capture, welding),
+            (Datagram::Capture(capture), Some(tracking)) => {
+                self.control.publish(Event::Capture(capture));
+                tracking.strobe(&self.machine, capture, welding);
+            }
             // Left over from another session, or what boards send to each other only.
             (Datagram::ClockReply(_) | Datagram::Capture(_), None)
             | (
@@ -321,8 +394,8 @@ pub(super) fn on_path(state: State) -> bool {
     matches!(state, State::Running | State::Holding | State::Stopping)
 }
 
-fn motion_status(boards: &mut dyn Boards) -> Result<MotionStatus, LinkError> {
-    match boards.request(Role::Motion, &Request::Status)? {
+fn motion(answer: Response) -> Result<MotionStatus, LinkError> {
+    match answer {
         Response::MotionStatus(status) => Ok(status),
         other => Err(unexpected(Role::Motion, &other)),
     }

@@ -8,6 +8,7 @@ use crate::{CameraPictures, Job, JobError, TaughtSeam, Weld};
 use config::RangeError;
 use config::machine::MachineFile;
 use config::probe::Reading;
+use host_link::events::Phase;
 use nc::{Options, Program, interpret};
 use parts::{Panel, PartFile};
 use shared::geometry::Pose;
@@ -174,13 +175,16 @@ impl Arm for BoardArm<'_, '_, '_> {
         let program = read(program)?;
         let from = self.session.motion.reference;
         let number = self.weld.taught.points.len() + 1;
-        let what = format!("teaching point {number} of {}", self.count);
+        let phase = Phase::TeachingPoint {
+            number,
+            of: self.count,
+        };
         if slower > 1.0 {
             // A motion that has to be exact from its beginning begins when all axes have settled.
             self.session.dwell(1e-3 * f64::from(self.settle_ms))?;
         }
         for path in self.weld.planner.program(&program, &from, None)? {
-            self.weld.path(self.session, path.slower(slower), &what)?;
+            self.weld.path(self.session, path.slower(slower), phase)?;
         }
         Ok(())
     }

@@ -2,12 +2,15 @@
 
 use crate::JobError;
 use crate::cameras::{Answer, Moment, SeamCameras};
+use crate::delays::Delays;
 use crate::session::unexpected;
 use crate::surroundings::Surroundings;
 use cam::path::{CAPACITY, PlannedPath};
 use config::machine::TrackingUnit;
+use host_link::Control;
 use host_link::boards::{Boards, LinkError};
 use host_link::clock::BoardClocks;
+use host_link::events::Event;
 use host_link::geometry::MachineGeometry;
 use host_link::record::Record;
 use shared::geometry::Pose;
@@ -28,6 +31,8 @@ use vision::{Form, Seam};
 const CLOCK_PERIOD: Duration = Duration::from_millis(50);
 /// Paths that are remembered.
 const PATHS: usize = 4;
+/// Strobes that are remembered until their measurements leave.
+const STROBES: usize = 256;
 
 /// A picture of both cameras that somebody watches for.
 #[derive(Clone, Debug)]
@@ -50,6 +55,10 @@ struct Watch {
 pub(super) struct Tracking {
     pub status: TrackerStatus,
     pub cameras: Box<dyn SeamCameras>,
+    /// The newest captures, and when each was strobed by the motion board's clock \[µs\].
+    strobes: VecDeque<(u32, u64)>,
+    /// From the strobe to the sent measurement.
+    pub delays: Delays,
     /// Largest residual that the tracker told while welding \[µs\].
     pub clock_residual_us: Option<f64>,
     /// Largest difference of its relation from the PC's while welding \[µs\].
@@ -76,15 +85,20 @@ impl Tracking {
         boards: &mut dyn Boards,
         unit: &TrackingUnit,
         around: &dyn Surroundings,
+        control: &Control,
     ) -> Result<Self, JobError> {
         let heads = unit.board.head.build()?;
         let role = Role::Tracker;
         boards.identity(role).ok_or(LinkError::Absent { role })?;
-        let status = status(boards)?;
+        let status = of(boards.request(role, &Request::Status)?)?;
+        let mut cameras = around.cameras(unit, heads)?;
+        cameras.attach(boards.waker(), control.events());
         Ok(Self {
             lost_before: status.lost,
             status,
-            cameras: around.cameras(unit, heads)?,
+            cameras,
+            strobes: VecDeque::new(),
+            delays: Delays::default(),
             strobed: None,
             paths: VecDeque::new(),
             clock_residual_us: None,
@@ -98,21 +112,27 @@ impl Tracking {
         })
     }
 
-    /// Asks the board for its state now.
-    pub fn refresh(&mut self, boards: &mut dyn Boards, welding: bool) -> Result<(), LinkError> {
-        self.told(status(boards)?, welding);
+    /// Takes an answer of the board that says its state.
+    pub fn take_status(&mut self, answer: Response, welding: bool) -> Result<(), LinkError> {
+        self.told(of(answer)?, welding);
         Ok(())
+    }
+
+    /// The board is about to be asked for something else.
+    pub fn forget_question(&mut self) {
+        self.asked = false;
     }
 
     /// Asks the board for its state if that is `due`, and takes its answer if that is there.
     pub fn poll(&mut self, boards: &mut dyn Boards, due: bool, welding: bool) -> Result<(), LinkError> {
-        if !due && !self.asked {
-            return Ok(());
-        }
-        let answer = boards.poll(Role::Tracker, &Request::Status)?;
-        self.asked = answer.is_none();
-        if let Some(answer) = answer {
-            self.told(of(answer)?, welding);
+        let answer = match (self.asked, due) {
+            (true, _) => boards.answer(Role::Tracker)?,
+            (false, true) => boards.ask(Role::Tracker, &Request::Status)?,
+            (false, false) => return Ok(()),
+        };
+        match answer {
+            Some(answer) => self.told(of(answer)?, welding),
+            None => self.asked = true,
         }
         Ok(())
     }
@@ -202,7 +222,26 @@ impl Tracking {
             _ => self.planned(machine, &capture),
         };
         let pose = self.stands;
+        if self.strobes.len() == STROBES {
+            self.strobes.pop_front();
+        }
+        self.strobes.push_back((capture.number, on_motion));
         self.cameras.strobe(capture, on_motion, pose);
+    }
+
+    /// Notes that a measurement has left for the tracker board.
+    fn sent(&mut self, measurement: Measurement, now: Duration, control: &Control) {
+        let strobed = |(number, _): &&(u32, u64)| *number == measurement.capture;
+        let strobe = self.strobes.iter().rev().find(strobed);
+        let sent = self.clocks.motion_now_us(now.as_micros() as u64);
+        if let (Some(&(_, strobe_us)), Some(sent_us)) = (strobe, sent) {
+            self.delays.add(sent_us.saturating_sub(strobe_us));
+            control.publish(Event::Measurement {
+                measurement,
+                strobe_us,
+                sent_us,
+            });
+        }
     }
 
     /// From now on the pictures are kept, those strobed from now on.
@@ -239,6 +278,7 @@ impl Tracking {
         boards: &mut dyn Boards,
         machine: &MachineGeometry,
         record: &Record,
+        control: &Control,
     ) -> Result<(), JobError> {
         let now = boards.now();
         if now >= self.next_clock {
@@ -263,6 +303,7 @@ impl Tracking {
                 watch.add(&answer);
             }
             boards.send(Role::Tracker, &Datagram::Measurement(answer.measurement))?;
+            self.sent(answer.measurement, boards.now(), control);
         }
         Ok(())
     }
@@ -299,10 +340,6 @@ fn seen(side: &SideMeasurement, seam: Option<&Seam>) -> Seen {
         scatter_mm: 0.0,
         pictures: 1,
     }
-}
-
-fn status(boards: &mut dyn Boards) -> Result<TrackerStatus, LinkError> {
-    of(boards.request(Role::Tracker, &Request::Status)?)
 }
 
 fn of(answer: Response) -> Result<TrackerStatus, LinkError> {

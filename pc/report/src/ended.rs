@@ -116,6 +116,7 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
             motion: motion_gaps,
             tracker: run.tracking.as_ref().map(|_| tracker_gaps),
         },
+        dropped_datagrams: run.dropped_datagrams,
         seam: run
             .tracking
             .as_ref()
@@ -222,6 +223,7 @@ fn seam_figures(tracking: &TrackingRecord, job: &Job, evaluation: &Evaluation) -
             given_up: tracking.given_up,
         },
         pictures: tracking.pictures,
+        strobe_to_measurement_ms: tracking.delays,
         clock_residual_us: tracking.clock_residual_us,
         clock_difference_us: tracking.clock_difference_us,
         recentred: tracking.recentred.clone(),

@@ -13,7 +13,7 @@ pub use ended::{Ended, ended};
 
 use crate::unwelded::Unwelded;
 use evaluate::{Evaluation, Load, SpeedShares};
-use job::{ByBoard, CameraFigures, Recentred};
+use job::{ByBoard, CameraFigures, DelayFigures, Recentred};
 use parts::{Figure, Plot};
 use serde::{Serialize, Serializer};
 use shared::io::{MOTOR_NAMES, MOTORS, SLIDES};
@@ -62,6 +62,8 @@ pub struct Report {
     pub load: Option<Load>,
     /// Ticks whose telemetry never arrived.
     pub telemetry_gaps: ByBoard,
+    /// Datagrams of the boards that the PC did not understand, or had no room for.
+    pub dropped_datagrams: u32,
     /// How the seam was followed, where the machine has a tracker.
     #[serde(flatten)]
     pub seam: Option<SeamFigures>,
@@ -135,6 +137,8 @@ pub struct SeamFigures {
     /// What became of the pictures of camera 1 and 2, if there were any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pictures: Option<[CameraFigures; 2]>,
+    /// From the strobe of the cameras to the measurement that was sent, by the motion board's clock \[ms\].
+    pub strobe_to_measurement_ms: Option<DelayFigures>,
     /// Largest residual of the tracker's relation to the motion clock while welding.
     pub clock_residual_us: Option<f64>,
     /// Largest difference between the tracker's relation to the motion clock and the PC's while welding.
@@ -338,6 +342,7 @@ pub(crate) mod tests {
             lost_ticks: NONE,
             load: None,
             telemetry_gaps: NONE,
+            dropped_datagrams: 0,
             seam: Some(SeamFigures {
                 seam: Some("seam.csv".into()),
                 max_deviation_mm: [Some(0.0123), Some(0.011), Some(0.009), None].into(),
@@ -353,6 +358,10 @@ pub(crate) mod tests {
                         relocked: 1,
                     }; 2],
                 ),
+                strobe_to_measurement_ms: Some(DelayFigures {
+                    median: 10.1,
+                    worst: 12.5,
+                }),
                 clock_residual_us: Some(12.0),
                 clock_difference_us: None,
                 recentred: vec![Recentred {
@@ -388,6 +397,7 @@ pub(crate) mod tests {
         assert_eq!(json["lost_ticks"]["motion"], 0);
         assert_eq!(json["lost_ticks"]["tracker"], 0);
         assert_eq!(json["clock_residual_us"], 12.0);
+        assert_eq!(json["strobe_to_measurement_ms"]["worst"], 12.5);
         assert_eq!(json["faults"].as_array().unwrap().len(), 1);
         assert_eq!(json["duration_s"], 42.5);
         assert_eq!(json["outcome"], "finished");

@@ -152,6 +152,9 @@ fn boards_served(f: &mut Formatter, r: &Report) -> Result {
             None => writeln!(f)?,
         }
     }
+    if r.dropped_datagrams > 0 {
+        writeln!(f, "  {:<25}{:8}", "datagrams dropped here", r.dropped_datagrams)?;
+    }
     if let Some(load) = &r.load {
         writeln!(f, "  load of the motion board     path tick  {}", load.path_tick)?;
         writeln!(f, "                               servo tick {}", load.servo_tick)?;
@@ -164,6 +167,13 @@ fn boards_served(f: &mut Formatter, r: &Report) -> Result {
             known(seam.clock_residual_us, 1).trim(),
             known(seam.clock_difference_us, 1).trim()
         )?;
+        if let Some(delay) = seam.strobe_to_measurement_ms {
+            writeln!(
+                f,
+                "  {:<28}median {:.2} ms, worst {:.2} ms",
+                "strobe to measurement", delay.median, delay.worst
+            )?;
+        }
         let m = &seam.measurements;
         writeln!(
             f,

@@ -1,123 +1,103 @@
 //! The operator at a terminal: a bar on standard error, and lines on standard input.
 
 use crate::console::errln;
+use host_link::events::{Event, Interest, Question, Subscription};
+use host_link::{Command, Remote};
 use indicatif::{ProgressBar, ProgressStyle};
-use job::{Line, Progress, Word};
 use std::io::IsTerminal;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 /// What may be said.
 const KEYS: &str = "Enter goes on, h holds, b goes back, s switches single block on or off, a number from 0 to 200 is \
                     the feed in %, Ctrl-C stops the job";
+/// Samples that wait to be shown.
+const SAMPLES: usize = 16;
+
+/// How the operator takes part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operator {
+    /// They look on.
+    LooksOn,
+    /// They say words, a line each, if standard input is a terminal. In single block the machine waits after every block, and
+    /// words are read wherever they come from.
+    SaysWords {
+        /// Whether it is.
+        single_block: bool,
+    },
+    /// They lead a job by lines, if standard input is a terminal; `always` wherever they come from.
+    LeadsByLines {
+        /// See there.
+        always: bool,
+    },
+}
 
 /// A bar on the terminal; one line for each part of the job if standard error is none.
 #[derive(Debug)]
 pub struct Terminal {
-    bar: Option<ProgressBar>,
-    /// What was told last.
-    told: String,
-    /// Lines that the operator enters.
-    lines: Option<Receiver<String>>,
-    single_block: bool,
-    /// Lines are no words: whoever leads the job reads them, when the machine stands.
-    led_by_lines: bool,
+    events: Subscription,
+    screen: Screen,
 }
 
+/// Where the operator reads.
+#[derive(Clone, Debug)]
+struct Screen(Option<ProgressBar>);
+
 /// What a line means.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Said {
-    Word(Word),
+    Order(Command),
     SingleBlock,
 }
 
 impl Terminal {
-    /// For an operator who looks on; shows a bar if standard error is a terminal.
-    pub fn new() -> Self {
-        Self {
-            bar: std::io::stderr().is_terminal().then(ProgressBar::no_length),
-            told: String::new(),
-            lines: None,
-            single_block: false,
-            led_by_lines: false,
-        }
-    }
-
-    /// For an operator who says words, a line each, if standard input is a terminal. With `single_block` the
-    /// machine waits after every block, and words are read wherever they come from.
-    pub fn with_words(single_block: bool) -> Self {
-        let mut terminal = Self::new();
-        terminal.single_block = single_block;
-        if single_block || std::io::stdin().is_terminal() {
-            terminal.lines = Some(read_lines());
-            terminal.print(KEYS);
-        }
-        terminal
-    }
-
-    /// For an operator who leads a job by lines, if standard input is a terminal; with `always` they are read
-    /// wherever they come from.
-    pub fn with_lines(always: bool) -> Self {
-        let mut terminal = Self::new();
-        terminal.led_by_lines = true;
-        if always || std::io::stdin().is_terminal() {
-            terminal.lines = Some(read_lines());
-        }
-        terminal
-    }
-
-    fn print(&self, text: &str) {
-        match &self.bar {
-            Some(bar) => bar.suspend(|| errln!("{text}")),
-            None => errln!("{text}"),
-        }
-    }
-}
-
-impl Default for Terminal {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-/// Lines of standard input as they come. The thread ends with the program, or with the input.
-fn read_lines() -> Receiver<String> {
-    let (sender, lines) = channel();
-    std::thread::spawn(move || {
-        for line in std::io::stdin().lines().map_while(Result::ok) {
-            if sender.send(line).is_err() {
-                return;
+    /// Begins to take part in the job of `remote`.
+    pub fn new(operator: Operator, remote: &Remote) -> Self {
+        let screen = Screen(std::io::stderr().is_terminal().then(ProgressBar::no_length));
+        let terminal = Self {
+            events: remote.subscribe(Interest::Samples, SAMPLES),
+            screen: screen.clone(),
+        };
+        let is_terminal = std::io::stdin().is_terminal();
+        let remote = remote.clone();
+        match operator {
+            Operator::SaysWords { single_block } if single_block || is_terminal => {
+                // A state, which needs no room.
+                let _ = remote.send(Command::SingleBlock(single_block));
+                screen.print(KEYS);
+                std::thread::spawn(move || read_words(&remote, &screen, single_block));
             }
+            Operator::LeadsByLines { always } if always || is_terminal => {
+                std::thread::spawn(move || read_lines(&remote));
+            }
+            Operator::LooksOn | Operator::SaysWords { .. } | Operator::LeadsByLines { .. } => {}
         }
-    });
-    lines
+        terminal
+    }
+
+    /// Shows what happens, until the job ends.
+    pub fn show(self) {
+        for received in self.events {
+            self.screen.show(&received.event);
+        }
+        if let Screen(Some(bar)) = &self.screen {
+            bar.finish_and_clear();
+        }
+    }
 }
 
-/// What `line` means, if anything.
-fn meaning(line: &str) -> Option<Said> {
-    Some(match line.trim() {
-        "" => Said::Word(Word::GoOn),
-        "h" => Said::Word(Word::Hold),
-        "b" => Said::Word(Word::Back),
-        "s" => Said::SingleBlock,
-        number => {
-            let percent: f64 = number.trim_end_matches('%').trim_end().parse().ok()?;
-            let sensible = (0.0..=200.0).contains(&percent);
-            sensible.then_some(Said::Word(Word::Override(percent / 100.0)))?
+impl Screen {
+    fn show(&self, event: &Event) {
+        match event {
+            Event::Phase(phase) => self.headline(&phase.to_string()),
+            Event::Question(question) => self.headline(&asked(question)),
+            Event::Message(text) => self.print(text),
+            Event::Progress { done_mm, length_mm } => self.travel(*done_mm, *length_mm),
+            // What the boards tell is for other eyes; how the job ended is said when it is evaluated.
+            _ => {}
         }
-    })
-}
+    }
 
-fn style(template: &str) -> ProgressStyle {
-    ProgressStyle::with_template(template).expect("the template is sound")
-}
-
-impl Progress for Terminal {
-    fn phase(&mut self, text: &str) {
-        if self.told == text {
-            return;
-        }
-        text.clone_into(&mut self.told);
-        match &self.bar {
+    fn headline(&self, text: &str) {
+        match &self.0 {
             Some(bar) => {
                 // How far it goes is not known before the path moves.
                 bar.set_style(style("{msg:24} {spinner}"));
@@ -127,61 +107,88 @@ impl Progress for Terminal {
         }
     }
 
-    fn travel(&mut self, done_mm: f64, length_mm: f64) {
-        if let Some(bar) = &self.bar {
+    fn travel(&self, done_mm: f64, length_mm: f64) {
+        if let Some(bar) = &self.0 {
             bar.set_style(style("{msg:24} {wide_bar} {pos:>5} of {len} mm"));
             bar.set_length(length_mm.round() as u64);
             bar.set_position(done_mm.round() as u64);
         }
     }
 
-    fn line(&mut self) -> Option<Line> {
-        match self.lines.as_ref()?.try_recv() {
-            Ok(line) => Some(Line::Said(line)),
-            Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some(Line::Over),
+    fn print(&self, text: &str) {
+        match &self.0 {
+            Some(bar) => bar.suspend(|| errln!("{text}")),
+            None => errln!("{text}"),
         }
     }
+}
 
-    fn say(&mut self, text: &str) {
-        self.print(text);
-    }
-
-    fn word(&mut self) -> Option<Word> {
-        if self.led_by_lines {
-            return None;
+/// A question in words.
+fn asked(question: &Question) -> String {
+    match question {
+        Question::GoOn { next } => format!("waiting before {next}: Enter goes on"),
+        Question::FeedTooLow => {
+            "held: the feed is too low for the beam; raise it, then Enter goes on".to_owned()
         }
-        let line = match self.lines.as_ref()?.try_recv() {
-            Ok(line) => line,
-            Err(TryRecvError::Empty) => return None,
-            Err(TryRecvError::Disconnected) => return Some(Word::Gone),
-        };
-        match meaning(&line) {
-            Some(Said::Word(word)) => return Some(word),
+        Question::Jog => "jog: say what to do".to_owned(),
+    }
+}
+
+/// Reads words from standard input as they come. Ends with the program, or with the input.
+fn read_words(remote: &Remote, screen: &Screen, mut single_block: bool) {
+    for line in std::io::stdin().lines().map_while(Result::ok) {
+        let order = match meaning(&line) {
+            Some(Said::Order(order)) => order,
             Some(Said::SingleBlock) => {
-                self.single_block = !self.single_block;
-                self.print(if self.single_block {
+                single_block = !single_block;
+                screen.print(if single_block {
                     "single block: on, from the next block that has not gone to the board"
                 } else {
                     "single block: off"
                 });
+                Command::SingleBlock(single_block)
             }
-            None => self.print(KEYS),
+            None => {
+                screen.print(KEYS);
+                continue;
+            }
+        };
+        if let Err(error) = remote.send(order) {
+            screen.print(&format!("not taken: {error}"));
         }
-        None
     }
-
-    fn single_block(&self) -> bool {
-        self.single_block
-    }
+    // A state, which needs no room.
+    let _ = remote.send(Command::Unattended);
 }
 
-impl Drop for Terminal {
-    fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
+/// Reads the lines that lead a job.
+fn read_lines(remote: &Remote) {
+    for line in std::io::stdin().lines().map_while(Result::ok) {
+        // Lines that come faster than a lesson takes them wait for their turn.
+        while let Err(host_link::CommandError::Full) = remote.send(Command::Answer(line.clone())) {
+            std::thread::sleep(std::time::Duration::from_millis(20));
         }
     }
+    let _ = remote.send(Command::Unattended);
+}
+
+/// What `line` means, if anything.
+fn meaning(line: &str) -> Option<Said> {
+    Some(match line.trim() {
+        "" => Said::Order(Command::Resume),
+        "h" => Said::Order(Command::Hold),
+        "b" => Said::Order(Command::Back),
+        "s" => Said::SingleBlock,
+        number => {
+            let percent: f64 = number.trim_end_matches('%').trim_end().parse().ok()?;
+            let sensible = (0.0..=200.0).contains(&percent);
+            sensible.then_some(Said::Order(Command::Override(percent / 100.0)))?
+        }
+    })
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).expect("the template is sound")
 }
 
 #[cfg(test)]
@@ -189,14 +196,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_are_words_or_nothing() {
-        assert_eq!(meaning(""), Some(Said::Word(Word::GoOn)));
-        assert_eq!(meaning(" h "), Some(Said::Word(Word::Hold)));
-        assert_eq!(meaning("b"), Some(Said::Word(Word::Back)));
+    fn lines_are_orders_or_nothing() {
+        let order = |command| Some(Said::Order(command));
+        assert_eq!(meaning(""), order(Command::Resume));
+        assert_eq!(meaning(" h "), order(Command::Hold));
+        assert_eq!(meaning("b"), order(Command::Back));
         assert_eq!(meaning("s"), Some(Said::SingleBlock));
-        assert_eq!(meaning("50"), Some(Said::Word(Word::Override(0.5))));
-        assert_eq!(meaning("200 %"), Some(Said::Word(Word::Override(2.0))));
-        assert_eq!(meaning("0%"), Some(Said::Word(Word::Override(0.0))));
+        assert_eq!(meaning("50"), order(Command::Override(0.5)));
+        assert_eq!(meaning("200 %"), order(Command::Override(2.0)));
+        assert_eq!(meaning("0%"), order(Command::Override(0.0)));
         for nothing in ["hold", "-1", "201", "NaN", "%", "1e9"] {
             assert_eq!(meaning(nothing), None, "{nothing}");
         }

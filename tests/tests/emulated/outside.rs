@@ -5,7 +5,7 @@
 use crate::pair::{Pair, assert_served, status};
 use crate::process::Process;
 use emulator::{BoardTime, Meddling, Session};
-use host_link::boards::{Boards, Overheard};
+use host_link::boards::Boards;
 use nix::sys::signal::Signal;
 use report::Ended;
 use serde_json::Value;
@@ -21,7 +21,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
-use system_tests::{assert_on_seam, shipped_seam, weld};
+use system_tests::{Heard, assert_on_seam, shipped_seam, weld};
 
 /// No crowd lasts longer than this.
 const LONGEST: Duration = Duration::from_secs(180);
@@ -43,7 +43,7 @@ const PERMIT_MS: u32 = 10;
 fn weld_and(pair: &mut Pair, act: impl FnOnce(&mut Pair)) -> (Ended, MotionSample) {
     let mut boards = pair.connect();
     let (mut on_mm, mut last, mut act) = (None, None, Some(act));
-    let mut overheard = Overheard {
+    let mut overheard = Heard {
         boards: &mut boards as &mut dyn Boards,
         hear: |_: &mut dyn Boards, sample: &MotionSample| {
             if sample.beams == [true; 2] {

@@ -1,7 +1,6 @@
 //! The file of a long program changes while it runs.
 
 use super::*;
-use host_link::boards::Overheard;
 use nc::interpret_file;
 use shared::protocol::MotionSample;
 use std::path::PathBuf;
@@ -12,11 +11,12 @@ struct Careless {
     text: String,
 }
 
-impl Progress for Careless {
-    fn phase(&mut self, _text: &str) {}
-
-    fn travel(&mut self, done_mm: f64, length_mm: f64) {
-        if (length_mm - 300.0).abs() < 1e-6 && done_mm > 1.0 {
+impl Operator for Careless {
+    fn event(&mut self, event: &Event, _remote: &Remote) {
+        if let Event::Progress { done_mm, length_mm } = event
+            && (length_mm - 300.0).abs() < 1e-6
+            && *done_mm > 1.0
+        {
             std::fs::write(&self.file, &self.text).unwrap();
         }
     }
@@ -37,7 +37,7 @@ fn a_program_that_changes_while_it_runs_ends_with_the_machine_at_rest_on_the_pat
     let program = interpret_file(std::fs::File::open(&file).unwrap(), options).unwrap();
     let mut last: Option<MotionSample> = None;
     let mut simulated = SimulatedBoards::new("stir-gantry").unwrap();
-    let mut boards = Overheard {
+    let mut boards = Heard {
         boards: &mut simulated,
         hear: |_: &mut dyn Boards, sample: &MotionSample| {
             if sample.path_id == 3 {
@@ -45,14 +45,13 @@ fn a_program_that_changes_while_it_runs_ends_with_the_machine_at_rest_on_the_pat
             }
         },
     };
-    let machine = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/stir-gantry.toml");
+    let machine = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines/stir-gantry.toml");
     let machine = MachineFile::read(std::path::Path::new(machine)).unwrap();
     let mut careless = Careless {
         file: file.clone(),
         text: text.replace("X62", "X92"),
     };
-    let never = AtomicBool::new(false);
-    let ended = run(&mut boards, &job(&machine, &program, None), &never, &mut careless).unwrap();
+    let ended = run(&mut boards, &job(&machine, &program, None), &mut careless).unwrap();
     std::fs::remove_file(&file).unwrap();
     let error = ended.error.expect("it cannot go on").to_string();
     assert!(

@@ -1,7 +1,6 @@
 //! Corners of a program on simulated boards.
 
 use super::*;
-use host_link::boards::Overheard;
 use shared::protocol::MotionSample;
 
 /// Samples of the motion board on a rectangle of 20 mm by 10 mm at 20 mm/s, and the evaluation.
@@ -10,7 +9,7 @@ fn rectangle(mode: &str) -> (Vec<MotionSample>, Ended) {
         format!("G43.4\nG0 X600 Y500 Z150 B-2.5 C0\nG0 Z50\n{mode}\nF1200\nG1 X620\nY510\nX600\nY500\nM2\n");
     let mut samples = Vec::new();
     let mut simulated = SimulatedBoards::new("stir-gantry").unwrap();
-    let mut boards = Overheard {
+    let mut boards = Heard {
         boards: &mut simulated,
         hear: |_: &mut dyn Boards, sample: &MotionSample| {
             if sample.path_id == 3 {
@@ -18,10 +17,9 @@ fn rectangle(mode: &str) -> (Vec<MotionSample>, Ended) {
             }
         },
     };
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/stir-gantry.toml");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines/stir-gantry.toml");
     let machine = MachineFile::read(std::path::Path::new(file)).unwrap();
-    let never = AtomicBool::new(false);
-    let ended = run_on(&mut boards, &machine, &body, None, &never, &mut Silent).unwrap();
+    let ended = run_on(&mut boards, &machine, &body, None, &mut Nobody).unwrap();
     assert!(ended.error.is_none(), "{mode}: {:?}", ended.error);
     (samples, ended)
 }

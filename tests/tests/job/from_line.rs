@@ -2,7 +2,6 @@
 
 use super::*;
 use cam::path::FromLineError;
-use host_link::boards::Overheard;
 use shared::protocol::MotionSample;
 use std::path::Path;
 
@@ -23,7 +22,7 @@ X640
 M2";
 
 fn shipped(name: &str) -> MachineFile {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../machines/{name}.toml"));
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../machines/{name}.toml"));
     MachineFile::read(&file).unwrap()
 }
 
@@ -32,13 +31,13 @@ fn started(machine: &MachineFile, text: &str, line: Option<u32>) -> (Ended, Vec<
     let program = interpret(text, Options::default()).unwrap();
     let mut samples = Vec::new();
     let kinematics = machine.motion.kinematics.name();
-    let mut boards = Overheard {
+    let mut boards = Heard {
         boards: &mut SimulatedBoards::new(kinematics).unwrap(),
         hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let mut job = job(machine, &program, None);
     job.from_line = line;
-    let ended = run(&mut boards, &job, &AtomicBool::new(false), &mut Silent).unwrap();
+    let ended = run(&mut boards, &job, &mut Nobody).unwrap();
     (ended, samples)
 }
 
@@ -183,7 +182,7 @@ fn a_tracked_weld_is_started_with_its_run_in_only() {
         let mut job = job(&machine, &program, Some(seam()));
         job.from_line = Some(line);
         let mut boards = SimulatedBoards::default();
-        let ended = run(&mut boards, &job, &AtomicBool::new(false), &mut Silent).unwrap();
+        let ended = run(&mut boards, &job, &mut Nobody).unwrap();
         assert!(ended.error.is_none(), "line {line}: {:?}", ended.error);
         let report = &ended.report;
         assert!((report.weld_length_mm - length_mm).abs() < 0.2, "line {line}");

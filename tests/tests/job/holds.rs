@@ -1,7 +1,6 @@
 //! Holds and overrides of a job.
 
 use super::*;
-use host_link::boards::Overheard;
 use shared::protocol::MotionSample;
 use shared::state::State;
 
@@ -10,7 +9,7 @@ use shared::state::State;
 fn a_low_override_and_a_long_hold_take_what_they_take() {
     let program = "G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nF5000\nG1 X1180\nM2";
     let mut held = 0;
-    let mut boards = Overheard {
+    let mut boards = Heard {
         boards: &mut SimulatedBoards::default(),
         hear: |boards: &mut dyn Boards, sample: &MotionSample| {
             let feeds = sample.path_id == 2;
@@ -25,8 +24,7 @@ fn a_low_override_and_a_long_hold_take_what_they_take() {
             command(boards, Role::Motion, &request).unwrap();
         },
     };
-    let never = AtomicBool::new(false);
-    let ended = run_on(&mut boards, &machine(), program, None, &never, &mut Silent).unwrap();
+    let ended = run_on(&mut boards, &machine(), program, None, &mut Nobody).unwrap();
     assert!(ended.error.is_none(), "{:?}", ended.error);
     // 280 mm at 5 m/min are 3.36 s.
     let motion_s = ended.report.motion_s;

@@ -1,7 +1,6 @@
 //! Jobs of machines without a tracker.
 
 use super::*;
-use host_link::boards::Overheard;
 use report::Truth;
 use shared::protocol::MotionSample;
 use std::path::Path;
@@ -47,8 +46,7 @@ fn untracked() -> String {
 fn a_machine_without_a_tracker_needs_the_motion_board_only() {
     let mut boards = MotionOnly(SimulatedBoards::default());
     let (machine, program) = (without_tracker(), untracked());
-    let never = AtomicBool::new(false);
-    let ended = run_on(&mut boards, &machine, &program, None, &never, &mut Silent).unwrap();
+    let ended = run_on(&mut boards, &machine, &program, None, &mut Nobody).unwrap();
     assert!(ended.error.is_none(), "{:?}", ended.error);
     let report = &ended.report;
     assert_eq!((report.outcome, &report.seam), (Outcome::Finished, &None));
@@ -86,16 +84,7 @@ fn a_seam_is_asked_for_where_the_program_tracks_and_refused_where_the_machine_ca
 #[test]
 fn a_machine_with_a_tracker_does_not_begin_without_it() {
     let mut boards = MotionOnly(SimulatedBoards::default());
-    let never = AtomicBool::new(false);
-    let error = run_on(
-        &mut boards,
-        &machine(),
-        PROGRAM,
-        Some(seam()),
-        &never,
-        &mut Silent,
-    )
-    .unwrap_err();
+    let error = run_on(&mut boards, &machine(), PROGRAM, Some(seam()), &mut Nobody).unwrap_err();
     assert!(
         error
             .to_string()
@@ -127,12 +116,11 @@ const MACHINES: [(&str, &str); 4] = [
 #[test]
 fn every_machine_runs_from_its_marks_to_its_park_position_on_its_motion_board() {
     for (name, way) in MACHINES {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../machines/{name}.toml"));
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../machines/{name}.toml"));
         let machine = MachineFile::read(&file).unwrap();
         let mut boards = MotionOnly(SimulatedBoards::new(name).unwrap());
         let program = format!("G43.4\n{way}\nM2");
-        let never = AtomicBool::new(false);
-        let ended = run_on(&mut boards, &machine, &program, None, &never, &mut Silent).unwrap();
+        let ended = run_on(&mut boards, &machine, &program, None, &mut Nobody).unwrap();
         assert!(ended.error.is_none(), "{name}: {:?}", ended.error);
         let report = &ended.report;
         assert!(report.max_contour_error_mm.unwrap() < 0.02, "{name}\n{report}");
@@ -164,17 +152,16 @@ fn every_machine_runs_from_its_marks_to_its_park_position_on_its_motion_board() 
 /// motion.
 #[test]
 fn a_spindle_runs_up_before_the_motion_and_stops_before_the_next() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines/stir-gantry.toml");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../machines/stir-gantry.toml");
     let machine = MachineFile::read(&file).unwrap();
     let mut samples = Vec::new();
-    let mut boards = Overheard {
+    let mut boards = Heard {
         boards: &mut MotionOnly(SimulatedBoards::new("stir-gantry").unwrap()),
         hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let program =
         "G43.4\nG0 X300 Y200 Z50 B-3 C0\nM3 S600\nG4 P2\nG1 Z45 F120\nG0 Z60\nM5\nG4 P1\nG0 X310\nM2";
-    let never = AtomicBool::new(false);
-    let ended = run_on(&mut boards, &machine, program, None, &never, &mut Silent).unwrap();
+    let ended = run_on(&mut boards, &machine, program, None, &mut Nobody).unwrap();
     assert!(ended.error.is_none(), "{:?}", ended.error);
     // Paths: approach, spindle on, plunge, retract, spindle off, across.
     let of_path = |id: u32| samples.iter().filter(move |sample| sample.path_id == id);
@@ -201,8 +188,7 @@ fn the_machine_stands_for_the_time_of_a_dwell() {
     let machine = without_tracker();
     let duration = |program: &str| {
         let mut boards = MotionOnly(SimulatedBoards::default());
-        let never = AtomicBool::new(false);
-        let ended = run_on(&mut boards, &machine, program, None, &never, &mut Silent).unwrap();
+        let ended = run_on(&mut boards, &machine, program, None, &mut Nobody).unwrap();
         assert!(ended.error.is_none(), "{:?}", ended.error);
         ended.report.duration_s
     };
@@ -211,23 +197,21 @@ fn the_machine_stands_for_the_time_of_a_dwell() {
 }
 
 /// Presses Ctrl-C as soon as the machine dwells.
-struct Impatient<'a>(&'a AtomicBool);
+struct Impatient;
 
-impl Progress for Impatient<'_> {
-    fn phase(&mut self, text: &str) {
-        self.0.fetch_or(text == "dwelling", Ordering::Relaxed);
+impl Operator for Impatient {
+    fn event(&mut self, event: &Event, remote: &Remote) {
+        if let Event::Phase(Phase::Dwelling) = event {
+            remote.send(Command::Stop).unwrap();
+        }
     }
-
-    fn travel(&mut self, _done_mm: f64, _length_mm: f64) {}
 }
 
 #[test]
 fn the_operator_ends_a_dwell() {
     let mut boards = MotionOnly(SimulatedBoards::default());
-    let interrupted = AtomicBool::new(false);
     let (machine, program) = (without_tracker(), with_dwell(3600.0));
-    let mut operator = Impatient(&interrupted);
-    let ended = run_on(&mut boards, &machine, &program, None, &interrupted, &mut operator).unwrap();
+    let ended = run_on(&mut boards, &machine, &program, None, &mut Impatient).unwrap();
     assert!(
         matches!(ended.error, Some(JobError::Interrupted)),
         "{:?}",

@@ -16,16 +16,17 @@ mod verdict;
 use cam::path::Planner;
 use config::machine::MachineFile;
 use host_link::boards::{Boards, LinkError, command};
+use host_link::events::{Event, Next, Phase, Question};
 use host_link::pass_on;
-use job::{Job, JobError, Names, Progress, Silent, Word, Work};
+use host_link::{Command, Remote};
+use job::{Job, JobError, Names, Work};
 use nc::{Options, Program, interpret};
 use report::{Ended, Outcome, Report, SeamFigures};
 use shared::protocol::{Datagram, Identity, Request, Response, Role};
 use shared::state::{State, TrackerFault, TrackerState};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-use system_tests::run;
+use system_tests::{Heard, Nobody, Operator, run};
 use world::simulated::SimulatedBoards;
 use world::{Deviation, SeamError, Surroundings, check_seam};
 
@@ -64,8 +65,8 @@ fn seam() -> Arc<Deviation> {
     Arc::new(Deviation::parse("seam.csv", &text).unwrap())
 }
 
-fn weld(boards: &mut dyn Boards, interrupted: &AtomicBool, progress: &mut dyn Progress) -> Ended {
-    run_on(boards, &machine(), PROGRAM, Some(seam()), interrupted, progress).unwrap()
+fn weld(boards: &mut dyn Boards, operator: &mut dyn Operator) -> Ended {
+    run_on(boards, &machine(), PROGRAM, Some(seam()), operator).unwrap()
 }
 
 fn run_on(
@@ -73,11 +74,10 @@ fn run_on(
     machine: &MachineFile,
     program: &str,
     seam: Option<Arc<Deviation>>,
-    interrupted: &AtomicBool,
-    progress: &mut dyn Progress,
+    operator: &mut dyn Operator,
 ) -> Result<Ended, JobError> {
     let program = interpret(program, Options::default()).unwrap();
-    run(boards, &job(machine, &program, seam), interrupted, progress)
+    run(boards, &job(machine, &program, seam), operator)
 }
 
 fn job<'a>(machine: &'a MachineFile, program: &'a Program, seam: Option<Arc<Deviation>>) -> Job<'a> {
@@ -109,7 +109,7 @@ fn seam_of(report: &Report) -> &SeamFigures {
 }
 
 fn undisturbed(boards: &mut dyn Boards) -> Ended {
-    weld(boards, &AtomicBool::new(false), &mut Silent)
+    weld(boards, &mut Nobody)
 }
 
 /// What can go wrong, from a path position of the welding path on.
@@ -294,19 +294,18 @@ fn the_report_tells_the_truth_and_not_what_the_controller_believes() {
 }
 
 /// Presses Ctrl-C in the middle of the weld.
-struct Operator<'a> {
-    interrupted: &'a AtomicBool,
+struct Stopper {
     welding: bool,
 }
 
-impl Progress for Operator<'_> {
-    fn phase(&mut self, text: &str) {
-        self.welding = text == "welding";
-    }
-
-    fn travel(&mut self, done_mm: f64, _length_mm: f64) {
-        if self.welding && done_mm > 100.0 {
-            self.interrupted.store(true, Ordering::Relaxed);
+impl Operator for Stopper {
+    fn event(&mut self, event: &Event, remote: &Remote) {
+        match event {
+            Event::Phase(phase) => self.welding = *phase == Phase::Welding,
+            Event::Progress { done_mm, .. } if self.welding && *done_mm > 100.0 => {
+                remote.send(Command::Stop).unwrap();
+            }
+            _ => {}
         }
     }
 }
@@ -314,12 +313,7 @@ impl Progress for Operator<'_> {
 #[test]
 fn the_operator_stops_the_machine_on_its_path() {
     let mut boards = SimulatedBoards::default();
-    let interrupted = AtomicBool::new(false);
-    let mut operator = Operator {
-        interrupted: &interrupted,
-        welding: false,
-    };
-    let ended = weld(&mut boards, &interrupted, &mut operator);
+    let ended = weld(&mut boards, &mut Stopper { welding: false });
     assert!(
         matches!(ended.error, Some(JobError::Interrupted)),
         "{:?}",

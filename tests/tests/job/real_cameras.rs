@@ -297,7 +297,7 @@ fn weld_outside(wire: Wire, told: Option<Arc<Deviation>>) -> (Ended, World) {
         ..around(told)
     }
     .into();
-    let ended = run(&mut world, &job, &AtomicBool::new(false), &mut Silent).unwrap();
+    let ended = run(&mut world, &job, &mut Nobody).unwrap();
     (ended, world)
 }
 

@@ -38,14 +38,12 @@ fn straight(seams: [[f64; 2]; 4]) -> Arc<Deviation> {
 /// slides at the end of the weld.
 #[track_caller]
 fn followed(seams: [[f64; 2]; 4]) -> (Report, [f64; 4]) {
-    let never = AtomicBool::new(false);
     let ended = run_on(
         &mut SimulatedBoards::default(),
         &machine(),
         LONG,
         Some(straight(seams)),
-        &never,
-        &mut Silent,
+        &mut Nobody,
     )
     .unwrap();
     assert!(ended.error.is_none(), "{:?}", ended.error);

@@ -1,6 +1,19 @@
 //! A tracker board that does not answer, and a PC that was not there.
 
 use super::*;
+use std::cell::Cell;
+use std::rc::Rc;
+
+/// Stops the job when something is so.
+struct StopsWhen(Rc<Cell<bool>>);
+
+impl Operator for StopsWhen {
+    fn turn(&mut self, remote: &Remote) {
+        if self.0.get() {
+            remote.send(Command::Stop).unwrap();
+        }
+    }
+}
 use host_link::boards::Absence;
 
 /// What goes wrong once the beam is on.
@@ -16,10 +29,10 @@ enum Wrong {
 
 const PAUSE: Duration = Duration::from_secs(3);
 
-struct Alone<'a> {
+struct Alone {
     boards: SimulatedBoards,
     wrong: Wrong,
-    interrupted: &'a AtomicBool,
+    interrupted: Rc<Cell<bool>>,
     begun: bool,
     absence: Option<Absence>,
     /// What was asked with an answer waited for, since it went wrong.
@@ -27,12 +40,12 @@ struct Alone<'a> {
     polled: usize,
 }
 
-impl<'a> Alone<'a> {
-    fn new(wrong: Wrong, interrupted: &'a AtomicBool) -> Self {
+impl Alone {
+    fn new(wrong: Wrong, interrupted: &Rc<Cell<bool>>) -> Self {
         Self {
             boards: SimulatedBoards::default(),
             wrong,
-            interrupted,
+            interrupted: interrupted.clone(),
             begun: false,
             absence: None,
             asked: Vec::new(),
@@ -41,7 +54,7 @@ impl<'a> Alone<'a> {
     }
 }
 
-impl Boards for Alone<'_> {
+impl Boards for Alone {
     pass_on!(boards: send, now, identity, path_states_target);
 
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
@@ -55,14 +68,22 @@ impl Boards for Alone<'_> {
         self.boards.request(role, request)
     }
 
-    fn poll(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
-        if self.begun && self.wrong == Wrong::TrackerSilent {
-            // The job goes on meanwhile, until the operator has enough.
-            self.polled += 1;
-            self.interrupted.store(self.polled > 20, Ordering::Relaxed);
-            return Ok(None);
+    fn ask(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
+        if self.begun
+            && self.wrong == Wrong::TrackerSilent
+            && (role, request) == (Role::Tracker, &Request::Status)
+        {
+            return self.answer(role);
         }
         self.request(role, request).map(Some)
+    }
+
+    fn answer(&mut self, role: Role) -> Result<Option<Response>, LinkError> {
+        assert_eq!(role, Role::Tracker);
+        // The job goes on meanwhile, until the operator has enough.
+        self.polled += 1;
+        self.interrupted.set(self.polled > 20);
+        Ok(None)
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
@@ -93,9 +114,9 @@ impl Boards for Alone<'_> {
 
 #[test]
 fn a_tracker_that_does_not_answer_keeps_nobody_from_stopping() {
-    let interrupted = AtomicBool::new(false);
+    let interrupted = Rc::new(Cell::new(false));
     let mut boards = Alone::new(Wrong::TrackerSilent, &interrupted);
-    let ended = weld(&mut boards, &interrupted, &mut Silent);
+    let ended = weld(&mut boards, &mut StopsWhen(interrupted));
     assert!(
         matches!(ended.error, Some(JobError::Interrupted)),
         "{:?}",
@@ -114,8 +135,8 @@ fn a_tracker_that_does_not_answer_keeps_nobody_from_stopping() {
 }
 
 /// Welds with a pause.
-fn paused(boards: &mut Alone, interrupted: &AtomicBool) {
-    let ended = weld(boards, interrupted, &mut Silent);
+fn paused(boards: &mut Alone, interrupted: &Rc<Cell<bool>>) {
+    let ended = weld(boards, &mut StopsWhen(interrupted.clone()));
     let told = ended.error.expect("the boards do not go on").to_string();
     assert!(
         told.starts_with("this PC did nothing for 3.0 s (paused") && told.contains("board"),
@@ -131,7 +152,7 @@ fn paused(boards: &mut Alone, interrupted: &AtomicBool) {
 
 #[test]
 fn a_paused_pc_says_that_it_was_paused() {
-    let interrupted = AtomicBool::new(false);
+    let interrupted = Rc::new(Cell::new(false));
     let mut boards = Alone::new(Wrong::Paused, &interrupted);
     paused(&mut boards, &interrupted);
     assert_off(&mut boards);
@@ -139,6 +160,6 @@ fn a_paused_pc_says_that_it_was_paused() {
 
 #[test]
 fn a_pc_that_was_paused_until_another_has_its_place_says_so_too() {
-    let interrupted = AtomicBool::new(false);
+    let interrupted = Rc::new(Cell::new(false));
     paused(&mut Alone::new(Wrong::Replaced, &interrupted), &interrupted);
 }

@@ -1,14 +1,13 @@
 //! Single block, and an operator who says words.
 
 use super::*;
-use host_link::boards::Overheard;
 use shared::protocol::MotionSample;
 
 /// Waits for a while before every word.
 #[derive(Default)]
 struct Patient {
     /// What the machine waited before.
-    waited: Vec<String>,
+    waited: Vec<Next>,
     waiting: u32,
     /// After so many waits nobody is there.
     leaves_after: Option<usize>,
@@ -16,46 +15,47 @@ struct Patient {
     lets_run_after: Option<usize>,
 }
 
-/// Times that a word is asked for before it comes: some seconds.
+/// Times that the job waits for the boards before a word comes: some seconds.
 const PATIENCE: u32 = 1000;
 
-impl Progress for Patient {
-    fn phase(&mut self, text: &str) {
-        self.waiting = 0;
-        if let Some(wait) = text.strip_prefix("waiting before ") {
-            self.waited
-                .push(wait.trim_end_matches(": Enter goes on").to_owned());
-            self.waiting = 1;
-        }
-    }
-
-    fn travel(&mut self, _done_mm: f64, _length_mm: f64) {}
-
-    fn word(&mut self) -> Option<Word> {
-        if self.leaves_after == Some(self.waited.len()) {
-            return Some(Word::Gone);
-        }
-        if self.waiting == 0 {
+impl Operator for Patient {
+    fn event(&mut self, event: &Event, remote: &Remote) {
+        match event {
             // Too early: the machine does not wait.
-            return Some(Word::GoOn);
+            Event::Phase(_) => {
+                remote.send(Command::Resume).unwrap();
+                self.waiting = 0;
+            }
+            Event::Question(Question::GoOn { next }) => {
+                self.waited.push(*next);
+                self.waiting = 1;
+            }
+            _ => {}
         }
-        self.waiting += 1;
-        (self.waiting == PATIENCE).then_some(Word::GoOn)
     }
 
-    fn single_block(&self) -> bool {
-        self.lets_run_after.is_none_or(|waits| self.waited.len() < waits)
+    fn turn(&mut self, remote: &Remote) {
+        let single = self.lets_run_after.is_none_or(|waits| self.waited.len() < waits);
+        remote.send(Command::SingleBlock(single)).unwrap();
+        if self.leaves_after == Some(self.waited.len()) {
+            remote.send(Command::Unattended).unwrap();
+        } else if self.waiting > 0 {
+            self.waiting += 1;
+            if self.waiting == PATIENCE {
+                remote.send(Command::Resume).unwrap();
+            }
+        }
     }
 }
 
 /// The welding job block by block, and all that the motion board told.
 fn block_by_block(operator: &mut Patient) -> (Ended, Vec<MotionSample>) {
     let mut samples = Vec::new();
-    let mut boards = Overheard {
+    let mut boards = Heard {
         boards: &mut SimulatedBoards::default(),
         hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
-    let ended = weld(&mut boards, &AtomicBool::new(false), operator);
+    let ended = weld(&mut boards, operator);
     (ended, samples)
 }
 
@@ -65,7 +65,10 @@ fn the_machine_waits_after_every_block_with_its_beams_off() {
     let mut operator = Patient::default();
     let (ended, samples) = block_by_block(&mut operator);
     assert!(ended.error.is_none(), "{:?}", ended.error);
-    assert_eq!(operator.waited, ["line 5", "line 8", "line 12", "parking"]);
+    assert_eq!(
+        operator.waited,
+        [Next::Line(5), Next::Line(8), Next::Line(12), Next::Parking]
+    );
     for max in ended.evaluation.max_deviation_mm {
         assert!(max.unwrap() < 0.02, "{:?}", ended.evaluation.max_deviation_mm);
     }
@@ -96,7 +99,7 @@ fn nobody_to_ask_ends_the_job_at_rest() {
         "{:?}",
         ended.error
     );
-    assert_eq!(operator.waited, ["line 5", "line 8"]);
+    assert_eq!(operator.waited, [Next::Line(5), Next::Line(8)]);
     assert!(samples.iter().all(|sample| sample.beams == [false; 2]));
     let last = samples.iter().rfind(|sample| sample.path_id == 2).unwrap();
     assert!((last.s_mm - 40.0).abs() < 1e-6, "{last:?}");
@@ -110,7 +113,7 @@ fn single_block_can_be_switched_off_on_the_way() {
     };
     let (ended, _) = block_by_block(&mut operator);
     assert!(ended.error.is_none(), "{:?}", ended.error);
-    assert_eq!(operator.waited, ["line 5"]);
+    assert_eq!(operator.waited, [Next::Line(5)]);
 }
 
 /// A block that ends in the middle of the weld.
@@ -118,21 +121,12 @@ fn single_block_can_be_switched_off_on_the_way() {
 fn a_weld_goes_on_over_the_end_of_a_block() {
     let program = PROGRAM.replace("X1140", "X1040\nX1140");
     let mut samples = Vec::new();
-    let mut boards = Overheard {
+    let mut boards = Heard {
         boards: &mut SimulatedBoards::default(),
         hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
-    let never = AtomicBool::new(false);
     let mut operator = Patient::default();
-    let ended = run_on(
-        &mut boards,
-        &machine(),
-        &program,
-        Some(seam()),
-        &never,
-        &mut operator,
-    )
-    .unwrap();
+    let ended = run_on(&mut boards, &machine(), &program, Some(seam()), &mut operator).unwrap();
     assert!(ended.error.is_none(), "{:?}", ended.error);
     for max in ended.evaluation.max_deviation_mm {
         assert!(max.unwrap() < 0.02, "{:?}", ended.evaluation.max_deviation_mm);
@@ -156,25 +150,23 @@ type Place = fn(f64) -> bool;
 /// Says its words when the machine has come to their places.
 struct Steering {
     done_mm: f64,
-    words: Vec<(Place, Word)>,
+    words: Vec<(Place, Command)>,
 }
 
-impl Progress for Steering {
-    fn phase(&mut self, _text: &str) {}
-
-    fn travel(&mut self, done_mm: f64, length_mm: f64) {
+impl Operator for Steering {
+    fn event(&mut self, event: &Event, _remote: &Remote) {
         // Not on the way there.
-        if (length_mm - 280.0).abs() < 1e-6 {
-            self.done_mm = done_mm;
+        if let Event::Progress { done_mm, length_mm } = event
+            && (length_mm - 280.0).abs() < 1e-6
+        {
+            self.done_mm = *done_mm;
         }
     }
 
-    fn word(&mut self) -> Option<Word> {
-        let (is_there, word) = *self.words.last()?;
-        is_there(self.done_mm).then(|| {
-            self.words.pop();
-            word
-        })
+    fn turn(&mut self, remote: &Remote) {
+        if let Some((_, word)) = self.words.pop_if(|(is_there, _)| is_there(self.done_mm)) {
+            remote.send(word).unwrap();
+        }
     }
 }
 
@@ -185,20 +177,19 @@ fn words_hold_the_machine_lead_it_back_and_change_its_feed() {
         done_mm: 0.0,
         // The last one is said first.
         words: vec![
-            (|s| s > 200.0, Word::Gone),
-            (|s| s < 60.0, Word::GoOn),
-            (|s| s > 100.0, Word::Back),
-            (|s| s > 100.0, Word::Hold),
-            (|s| (50.0..99.0).contains(&s), Word::Override(0.5)),
+            (|s| s > 200.0, Command::Unattended),
+            (|s| s < 60.0, Command::Resume),
+            (|s| s > 100.0, Command::Back),
+            (|s| s > 100.0, Command::Hold),
+            (|s| (50.0..99.0).contains(&s), Command::Override(0.5)),
         ],
     };
     let mut samples = Vec::new();
-    let mut boards = Overheard {
+    let mut boards = Heard {
         boards: &mut SimulatedBoards::default(),
         hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
-    let never = AtomicBool::new(false);
-    let ended = run_on(&mut boards, &machine(), program, None, &never, &mut operator).unwrap();
+    let ended = run_on(&mut boards, &machine(), program, None, &mut operator).unwrap();
     assert!(
         ended.error.is_none() && operator.words.is_empty(),
         "{:?}",

@@ -1,12 +1,12 @@
 //! A seam beside its drawing: taught from a wrong start, planned, and welded with tracking on.
 
 use super::*;
-use job::{ImageCameras, Line, SeamLesson};
+use job::{ImageCameras, SeamLesson};
 use nalgebra::Vector3;
 use parts::SeamPoint;
 use parts::plan::{DualBeamPlan, PlanOptions, TaughtSeams, plan_dual_beam};
-use std::cell::RefCell;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use teach::seam::{
     Cameras, Ended as Lesson, Head, SeamFile, SeamPoint as Taught, SeamTeaching, read_seam_points,
 };
@@ -90,7 +90,7 @@ impl Case {
     }
 
     /// Teaches into `output`, or goes on there, from a start that is wrong by some mm and degrees.
-    fn teach(&self, output: &Path, interrupted: &AtomicBool, progress: &mut dyn Progress) -> Ended {
+    fn teach(&self, output: &Path, operator: &mut dyn Operator) -> Ended {
         let drawing = self.drawn();
         let cameras = Cameras::of(self.machine.tracking.as_ref().unwrap()).unwrap();
         let mut start = drawing.stance_before(cameras.heads.camera_lead());
@@ -107,7 +107,7 @@ impl Case {
             config: self.config,
             cameras,
             points: opened.points,
-            file: RefCell::new(opened.file),
+            file: Mutex::new(opened.file),
             head: head(),
             by_jog: false,
         };
@@ -117,7 +117,7 @@ impl Case {
             ..self.job(&program, &program)
         };
         let mut boards = SimulatedBoards::default();
-        let ended = run(&mut boards, &job, interrupted, progress).unwrap();
+        let ended = run(&mut boards, &job, operator).unwrap();
         assert_off(&mut boards);
         ended
     }
@@ -136,7 +136,7 @@ impl Case {
         let (program, of_drawing) = (read(&taught), read(&self.drawn()));
         let job = self.job(&program, &of_drawing);
         let mut boards = SimulatedBoards::default();
-        run(&mut boards, &job, &AtomicBool::new(false), &mut Silent).unwrap()
+        run(&mut boards, &job, &mut Nobody).unwrap()
     }
 
     /// From its beginning to its end as drawn, and denser where it bends; welded as well as a drawn one.
@@ -179,31 +179,29 @@ fn head() -> Head {
 }
 
 /// Says that it is enough when the lesson has come to this point.
-struct Enough(&'static str, bool);
+struct Enough(Phase);
 
-impl Progress for Enough {
-    fn phase(&mut self, text: &str) {
-        self.1 |= text == self.0;
-    }
-
-    fn travel(&mut self, _done_mm: f64, _length_mm: f64) {}
-
-    fn line(&mut self) -> Option<Line> {
-        self.1.then(|| Line::Said("done".into()))
+impl Operator for Enough {
+    fn event(&mut self, event: &Event, remote: &Remote) {
+        if let Event::Phase(phase) = event
+            && *phase == self.0
+        {
+            remote.send(Command::Answer("done".into())).unwrap();
+        }
     }
 }
 
 /// The operator presses Ctrl-C when the lesson has come to this point.
-struct Stops<'a>(&'static str, &'a AtomicBool);
+struct Stops(Phase);
 
-impl Progress for Stops<'_> {
-    fn phase(&mut self, text: &str) {
-        if text == self.0 {
-            self.1.store(true, Ordering::Relaxed);
+impl Operator for Stops {
+    fn event(&mut self, event: &Event, remote: &Remote) {
+        if let Event::Phase(phase) = event
+            && *phase == self.0
+        {
+            remote.send(Command::Stop).unwrap();
         }
     }
-
-    fn travel(&mut self, _done_mm: f64, _length_mm: f64) {}
 }
 
 /// A file in a folder of its own, which is not there yet.
@@ -229,15 +227,14 @@ fn a_seam_taught_from_a_wrong_start_in_two_goes_is_welded_as_well_as_a_drawn_one
         start: [-1.5, 1.2, -0.7],
     };
     let output = fresh("geometric");
-    let never = AtomicBool::new(false);
-    let mut enough = Enough("teaching point 5", false);
-    let taught = case.teach(&output, &never, &mut enough).taught;
+    let mut enough = Enough(Phase::TeachingSeam { number: 5 });
+    let taught = case.teach(&output, &mut enough).taught;
     let first = taught.seam.unwrap();
     assert_eq!(first.ended, Lesson::Operator);
     // Something cuts the file in the middle of a row.
     let text = std::fs::read_to_string(&output).unwrap();
     std::fs::write(&output, &text[..text.len() - 30]).unwrap();
-    let second = case.teach(&output, &never, &mut Silent);
+    let second = case.teach(&output, &mut Nobody);
     assert!(second.error.is_none(), "{:?}", second.error);
     let second = second.taught.seam.unwrap();
     assert_eq!(second.ended, Lesson::Drawn);
@@ -269,19 +266,14 @@ fn a_seam_is_taught_and_welded_through_pictures_as_well_after_an_interruption() 
         start: [-1.0, 1.2, 0.3],
     };
     let output = fresh("pictures");
-    let interrupted = AtomicBool::new(false);
-    let first = case.teach(
-        &output,
-        &interrupted,
-        &mut Stops("teaching point 4", &interrupted),
-    );
+    let first = case.teach(&output, &mut Stops(Phase::TeachingSeam { number: 4 }));
     assert!(
         matches!(first.error, Some(JobError::Interrupted)),
         "{:?}",
         first.error
     );
     assert_eq!(read_seam_points(&output).unwrap().len(), 3);
-    let second = case.teach(&output, &AtomicBool::new(false), &mut Silent);
+    let second = case.teach(&output, &mut Nobody);
     assert!(second.error.is_none(), "{:?}", second.error);
     assert_eq!(second.taught.seam.unwrap().ended, Lesson::Drawn);
     case.assert_taught_and_welded(&output);

@@ -6,12 +6,13 @@ mod saddle;
 mod stir;
 
 use config::machine::MachineFile;
-use job::{Job, JobError, Names, Progress, Silent, Work};
+use host_link::events::{Event, Phase};
+use host_link::{Command, Remote};
+use job::{Job, JobError, Names, Work};
 use nc::{Options, interpret};
 use parts::PartFile;
 use report::{Ended, Outcome, Report};
-use std::sync::atomic::{AtomicBool, Ordering};
-use system_tests::shipped;
+use system_tests::{Nobody, Operator, shipped};
 use world::Surroundings;
 use world::simulated::SimulatedBoards;
 
@@ -35,13 +36,7 @@ fn part_with(name: &str, changes: &[(&str, &str)]) -> PartFile {
 }
 
 /// What comes of `work` on a simulated `machine`, judged by `part`.
-fn made(
-    machine: &MachineFile,
-    work: Work,
-    part: &PartFile,
-    interrupted: &AtomicBool,
-    progress: &mut dyn Progress,
-) -> Ended {
+fn made(machine: &MachineFile, work: Work, part: &PartFile, operator: &mut dyn Operator) -> Ended {
     let job = Job {
         machine,
         work,
@@ -57,14 +52,13 @@ fn made(
         },
     };
     let mut boards = SimulatedBoards::new(machine.motion.kinematics.name()).unwrap();
-    system_tests::run(&mut boards, &job, interrupted, progress).unwrap()
+    system_tests::run(&mut boards, &job, operator).unwrap()
 }
 
 /// Runs a program, judged by `part`, to its end.
 fn welded(machine: &MachineFile, program: &str, part: &PartFile) -> Report {
     let program = interpret(program, Options::default()).unwrap();
-    let never = AtomicBool::new(false);
-    let report = made(machine, Work::Program(&program), part, &never, &mut Silent).report;
+    let report = made(machine, Work::Program(&program), part, &mut Nobody).report;
     assert_eq!(report.outcome, Outcome::Finished, "{report}");
     report
 }

@@ -17,18 +17,18 @@ fn guides(panel: &mut Table) -> &mut Vec<Value> {
     panel["guide"].as_array_mut().unwrap()
 }
 
-fn taught(part: &PartFile, work: Work, interrupted: &AtomicBool, progress: &mut dyn Progress) -> Ended {
-    made(&machine("ac-head"), work, part, interrupted, progress)
+fn taught(part: &PartFile, work: Work, operator: &mut dyn Operator) -> Ended {
+    made(&machine("ac-head"), work, part, operator)
 }
 
 fn teach(part: &PartFile) -> Ended {
-    taught(part, Work::Teach, &AtomicBool::new(false), &mut Silent)
+    taught(part, Work::Teach, &mut Nobody)
 }
 
 #[test]
 fn a_panel_is_taught_and_cut_within_its_limits() {
     let part = part(3, |_| {});
-    let ended = taught(&part, Work::TeachAndMake, &AtomicBool::new(false), &mut Silent);
+    let ended = taught(&part, Work::TeachAndMake, &mut Nobody);
     let report = &ended.report;
     assert!(ended.error.is_none(), "{:?}", ended.error);
     assert_eq!(report.outcome, Outcome::Finished, "{report}");
@@ -80,27 +80,19 @@ fn what_cannot_be_taught_at_all_is_said_before_the_machine_moves() {
 }
 
 /// Presses Ctrl-C on the second point.
-struct Operator<'a>(&'a AtomicBool);
+struct Stopper;
 
-impl Progress for Operator<'_> {
-    fn phase(&mut self, text: &str) {
-        if text.starts_with("teaching point 2") {
-            self.0.store(true, Ordering::Relaxed);
+impl Operator for Stopper {
+    fn event(&mut self, event: &Event, remote: &Remote) {
+        if let Event::Phase(Phase::TeachingPoint { number: 2, .. }) = event {
+            remote.send(Command::Stop).unwrap();
         }
     }
-
-    fn travel(&mut self, _done_mm: f64, _length_mm: f64) {}
 }
 
 #[test]
 fn the_operator_ends_teaching_and_keeps_what_was_taught() {
-    let interrupted = AtomicBool::new(false);
-    let ended = taught(
-        &part(6, |_| {}),
-        Work::Teach,
-        &interrupted,
-        &mut Operator(&interrupted),
-    );
+    let ended = taught(&part(6, |_| {}), Work::Teach, &mut Stopper);
     assert!(matches!(ended.error, Some(JobError::Interrupted)));
     assert_eq!(ended.taught.points.len(), 1);
     assert!(ended.taught.part.is_none());

@@ -1,6 +1,6 @@
 //! The connection to one board: its request stream, its UDP socket and the thread that empties it.
 
-use super::stream::Stream;
+use super::stream::{Stream, read_answers};
 use super::{Endpoint, Incoming, Patience, waits};
 use crate::boards::LinkError;
 use shared::protocol::framing;
@@ -24,7 +24,7 @@ pub(super) struct Connection {
     pub(super) session: u32,
     pub(super) board: SocketAddrV4,
     pub(super) identity: Identity,
-    reader: Option<JoinHandle<()>>,
+    readers: Vec<JoinHandle<()>>,
     unwanted: Arc<AtomicBool>,
 }
 
@@ -41,7 +41,7 @@ impl Connection {
             address: endpoint.to_string(),
             source,
         };
-        let (mut stream, identity) = Stream::open(role, endpoint, patience)?;
+        let (mut stream, mut frames, identity) = Stream::open(role, endpoint, patience)?;
         if identity.schema_hash != SCHEMA_HASH {
             return Err(LinkError::WrongSchema {
                 role,
@@ -66,7 +66,7 @@ impl Connection {
             .set_read_timeout(Some(READER_WAKES))
             .map_err(unreachable)?;
         let port = datagrams.local_addr().map_err(unreachable)?.port();
-        let session = match stream.exchange(&Request::Subscribe { port })? {
+        let session = match stream.exchange(&mut frames, &Request::Subscribe { port })? {
             Response::Session { number } => number,
             Response::Refused(refusal) => return Err(LinkError::Refused { role, refusal }),
             _ => return Err(LinkError::Unexpected { role }),
@@ -81,13 +81,18 @@ impl Connection {
             bad: Arc::clone(bad),
             unwanted: Arc::clone(&unwanted),
         };
+        let answers = sender.clone();
+        let readers = vec![
+            std::thread::spawn(|| reader.run()),
+            std::thread::spawn(move || read_answers(role, frames, &answers)),
+        ];
         Ok(Self {
             stream,
             datagrams,
             session,
             board,
             identity,
-            reader: Some(std::thread::spawn(|| reader.run())),
+            readers,
             unwanted,
         })
     }
@@ -96,7 +101,8 @@ impl Connection {
 impl Drop for Connection {
     fn drop(&mut self) {
         self.unwanted.store(true, Ordering::Relaxed);
-        if let Some(reader) = self.reader.take() {
+        self.stream.close();
+        for reader in self.readers.drain(..) {
             // A reader that panicked has nothing left to clean up.
             let _ = reader.join();
         }
@@ -126,7 +132,7 @@ impl Reader {
             };
             let Some(received) = received else { continue };
             let failed = received.is_err();
-            match self.sender.try_send((self.role, received)) {
+            match self.sender.try_send(Incoming::Datagram(self.role, received)) {
                 Ok(()) => {}
                 Err(TrySendError::Full(_)) => {
                     self.bad.fetch_add(1, Ordering::Relaxed);

@@ -2,6 +2,7 @@
 
 mod attention;
 mod connection;
+mod frames;
 mod stream;
 #[cfg(test)]
 mod tests;
@@ -11,14 +12,15 @@ use attention::Attention;
 use connection::Connection;
 use shared::protocol::framing;
 use shared::protocol::{DATAGRAM_PORT, Datagram, Identity, REQUEST_PORT, Request, Response, Role};
+use std::collections::VecDeque;
 use std::fmt;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, ToSocketAddrs};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
-use stream::Stream;
+use stream::{Answer, Stream};
 
 /// Datagrams that wait for [`Boards::receive`]; about ten seconds of both boards. More are dropped and counted.
 const WAITING: usize = 4096;
@@ -89,6 +91,9 @@ pub struct NetworkBoards {
     tracker: Option<Connection>,
     path_states_target: Option<([u8; 4], u16)>,
     incoming: Receiver<Incoming>,
+    waker: Waker,
+    /// Datagrams that came while an answer was waited for.
+    came: VecDeque<(Role, io::Result<Datagram>)>,
     bad: Arc<AtomicU32>,
     began: Instant,
     /// See [`Self::paced_by`].
@@ -100,8 +105,24 @@ pub struct NetworkBoards {
     attention: Attention,
 }
 
-/// What a reader passes on.
-type Incoming = (Role, io::Result<Datagram>);
+/// What the readers pass on.
+enum Incoming {
+    Datagram(Role, io::Result<Datagram>),
+    Answer(Role, Answer),
+    /// Something else is to be looked at.
+    Wake,
+}
+
+/// Ends the wait of [`Boards::receive`] from another thread.
+#[derive(Clone)]
+pub struct Waker(SyncSender<Incoming>);
+
+impl Waker {
+    /// Ends it now. Where very much waits to be received, it is ended by that.
+    pub fn wake(&self) {
+        let _ = self.0.try_send(Incoming::Wake);
+    }
+}
 
 impl NetworkBoards {
     /// Connects to the motion board and, if the machine has one, to the tracker board, says Hello, and checks
@@ -132,6 +153,8 @@ impl NetworkBoards {
             motion,
             tracker,
             incoming,
+            waker: Waker(sender),
+            came: VecDeque::new(),
             bad,
             began: Instant::now(),
             handled: None,
@@ -163,11 +186,6 @@ impl NetworkBoards {
         }
     }
 
-    /// Datagrams that were not understood, or that came while too many waited.
-    pub fn bad_datagrams(&self) -> u32 {
-        self.bad.load(Ordering::Relaxed)
-    }
-
     /// A stop waits for no answer of any board.
     fn stop_if_interrupted(&mut self) {
         if self.interrupted.load(Ordering::Relaxed) && !self.stopped {
@@ -192,31 +210,61 @@ impl NetworkBoards {
             Role::Tracker => self.tracker.as_ref(),
         }
     }
+
+    /// Takes what comes next within `timeout`: whether anything did. Answers go to their streams, datagrams to `came`.
+    fn take(&mut self, timeout: Duration) -> bool {
+        let waiting = self.incoming.try_recv();
+        let taken = waiting.ok().or_else(|| {
+            self.keep_pace();
+            self.incoming.recv_timeout(timeout).ok()
+        });
+        match taken {
+            Some(Incoming::Datagram(role, datagram)) => self.came.push_back((role, datagram)),
+            Some(Incoming::Answer(role, answer)) => {
+                // The session ends with its boards, so that of each that told something there is a stream.
+                if let Ok(stream) = self.stream(role) {
+                    stream.deliver(answer);
+                }
+            }
+            Some(Incoming::Wake) => {}
+            None => return false,
+        }
+        true
+    }
 }
 
 impl Boards for NetworkBoards {
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
-        self.keep_pace();
-        self.attention.paid(self.began.elapsed(), Duration::ZERO);
-        self.stream(role)?.ask(request)?;
+        let mut answer = self.ask(role, request)?;
         loop {
-            let answer = self.stream(role)?.answer(LOOK)?;
-            self.attention.paid(self.began.elapsed(), LOOK);
             if let Some(answer) = answer {
                 return Ok(answer);
             }
+            self.take(LOOK);
+            self.attention.paid(self.began.elapsed(), LOOK);
             self.stop_if_interrupted();
+            answer = self.stream(role)?.answer()?;
         }
     }
 
-    fn poll(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
-        self.keep_pace();
+    fn ask(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
         self.attention.paid(self.began.elapsed(), Duration::ZERO);
-        let stream = self.stream(role)?;
-        if !stream.owes() {
-            stream.ask(request)?;
-        }
-        stream.answer(Duration::ZERO)
+        self.stop_if_interrupted();
+        self.stream(role)?.ask(request)?;
+        Ok(None)
+    }
+
+    fn answer(&mut self, role: Role) -> Result<Option<Response>, LinkError> {
+        self.stop_if_interrupted();
+        self.stream(role)?.answer()
+    }
+
+    fn waker(&self) -> Option<Waker> {
+        Some(self.waker.clone())
+    }
+
+    fn dropped_datagrams(&self) -> u32 {
+        self.bad.load(Ordering::Relaxed)
     }
 
     fn absence(&self) -> Option<Absence> {
@@ -225,14 +273,15 @@ impl Boards for NetworkBoards {
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
         self.attention.paid(self.began.elapsed(), Duration::ZERO);
-        let waiting = self.incoming.try_recv().map_err(|_| self.keep_pace());
-        let received = waiting.or_else(|()| self.incoming.recv_timeout(timeout));
-        self.attention.paid(self.began.elapsed(), timeout);
-        match received {
-            Ok((role, Ok(datagram))) => Ok(Some((role, datagram))),
-            Ok((role, Err(source))) => Err(LinkError::Lost { role, source }),
-            // All readers have ended, each after an error that was returned before.
-            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => Ok(None),
+        self.stop_if_interrupted();
+        if self.came.is_empty() {
+            self.take(timeout);
+            self.attention.paid(self.began.elapsed(), timeout);
+        }
+        match self.came.pop_front() {
+            Some((role, Ok(datagram))) => Ok(Some((role, datagram))),
+            Some((role, Err(source))) => Err(LinkError::Lost { role, source }),
+            None => Ok(None),
         }
     }
 

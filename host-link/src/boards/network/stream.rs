@@ -1,16 +1,25 @@
 //! The request stream of one board: TCP, requests and their answers, in the same order.
+//!
+//! Once the session has begun, a thread of its own reads the answers.
 
-use super::{Endpoint, Patience, waits};
+use super::frames::Frames;
+use super::{Endpoint, Incoming, Patience, waits};
 use crate::boards::LinkError;
 use shared::protocol::framing::{self, FrameError, MAX_MESSAGE};
 use shared::protocol::{Identity, Request, Response, Role, SCHEMA_HASH};
 use std::collections::VecDeque;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::net::TcpStream;
+use std::sync::mpsc::SyncSender;
 use std::time::{Duration, Instant};
 
 /// Pause between two attempts to connect.
 const RETRY: Duration = Duration::from_millis(100);
+/// An answer that is overdue is given up after this much more: a program that was paused finds it a moment later.
+const SECOND_LOOK: Duration = Duration::from_millis(100);
+
+/// What a reader found.
+pub(super) type Answer = io::Result<Result<Response, FrameError>>;
 
 /// The request stream of one board. After an error it is closed.
 pub(super) struct Stream {
@@ -19,9 +28,10 @@ pub(super) struct Stream {
     patience: Duration,
     /// What the board has not answered yet, oldest first.
     owed: VecDeque<Owed>,
-    /// The beginning of the next answer, with its length before it.
-    buffer: [u8; MAX_MESSAGE + 2],
-    filled: usize,
+    /// What has come of an answer that somebody waits for, or what ended the stream.
+    answered: Option<Result<Response, LinkError>>,
+    /// Since when an answer was seen to be overdue.
+    overdue: Option<Instant>,
 }
 
 /// An answer that is yet to come.
@@ -38,7 +48,7 @@ impl Stream {
         role: Role,
         endpoint: &Endpoint,
         patience: Patience,
-    ) -> Result<(Self, Identity), LinkError> {
+    ) -> Result<(Self, Frames, Identity), LinkError> {
         let deadline = Instant::now() + patience.connect;
         loop {
             let error = match Self::try_open(role, endpoint, patience, deadline) {
@@ -79,7 +89,7 @@ impl Stream {
         endpoint: &Endpoint,
         patience: Patience,
         deadline: Instant,
-    ) -> Result<(Self, Identity), LinkError> {
+    ) -> Result<(Self, Frames, Identity), LinkError> {
         let lost = |source| LinkError::Lost { role, source };
         let address = endpoint.address().map_err(lost)?;
         let left = deadline
@@ -88,18 +98,19 @@ impl Stream {
         let socket =
             TcpStream::connect_timeout(&(address, endpoint.request_port).into(), left).map_err(lost)?;
         socket.set_nodelay(true).map_err(lost)?;
+        let mut frames = Frames::new(socket.try_clone().map_err(lost)?);
         let mut stream = Self {
             role,
             socket,
             patience: patience.answer.min(left),
             owed: VecDeque::new(),
-            buffer: [0; MAX_MESSAGE + 2],
-            filled: 0,
+            answered: None,
+            overdue: None,
         };
         let hello = Request::Hello {
             schema_hash: SCHEMA_HASH,
         };
-        let identity = match stream.exchange(&hello)? {
+        let identity = match stream.exchange(&mut frames, &hello)? {
             Response::Identity(identity) => identity,
             Response::Refused(refusal) => return Err(LinkError::Refused { role, refusal }),
             _ => {
@@ -107,14 +118,22 @@ impl Stream {
             }
         };
         stream.patience = patience.answer;
-        Ok((stream, identity))
+        Ok((stream, frames, identity))
     }
 
-    /// One request and its answer, with nothing else to do meanwhile.
-    pub(super) fn exchange(&mut self, request: &Request) -> Result<Response, LinkError> {
+    /// One request and its answer, before the answers have a thread of their own.
+    pub(super) fn exchange(&mut self, frames: &mut Frames, request: &Request) -> Result<Response, LinkError> {
         self.ask(request)?;
+        let end = Instant::now() + self.patience;
         loop {
-            if let Some(answer) = self.answer(self.patience)? {
+            let left = end.saturating_duration_since(Instant::now());
+            match frames.next(left.max(Duration::from_millis(1))) {
+                Ok(Some(answer)) => self.deliver(Ok(answer)),
+                Ok(None) if left.is_zero() => self.deliver(Err(io::ErrorKind::TimedOut.into())),
+                Ok(None) => {}
+                Err(error) => self.deliver(Err(error)),
+            }
+            if let Some(answer) = self.answer()? {
                 return Ok(answer);
             }
         }
@@ -125,6 +144,9 @@ impl Stream {
         for owed in &mut self.owed {
             owed.wanted = false;
         }
+        if let Some(Ok(_)) = self.answered {
+            self.answered = None;
+        }
         self.post(request, true)
     }
 
@@ -133,29 +155,56 @@ impl Stream {
         self.post(request, false)
     }
 
-    /// Whether somebody waits for an answer.
-    pub(super) fn owes(&self) -> bool {
-        self.owed.iter().any(|owed| owed.wanted)
-    }
-
-    /// The answer to what was asked last, if it comes within `wait`.
-    pub(super) fn answer(&mut self, wait: Duration) -> Result<Option<Response>, LinkError> {
+    /// Takes what the reader has found.
+    pub(super) fn deliver(&mut self, answer: Answer) {
         let role = self.role;
-        match self.next(Instant::now() + wait) {
-            Ok(Ok(answer)) => Ok(answer),
-            Ok(Err(source)) => {
-                self.close();
-                Err(LinkError::Frame { role, source })
-            }
-            Err(source) => {
-                self.close();
+        let found = match answer {
+            Ok(Ok(response)) => match self.owed.pop_front() {
+                Some(Owed { wanted: true, .. }) => Ok(response),
+                // Of a request that nobody waits for.
+                Some(Owed { wanted: false, .. }) | None => return,
+            },
+            Ok(Err(source)) => Err(LinkError::Frame { role, source }),
+            Err(error) => {
+                let source = self.explain(error);
                 Err(LinkError::Lost { role, source })
             }
+        };
+        if found.is_err() {
+            self.close();
         }
+        self.overdue = None;
+        self.answered = Some(found);
+    }
+
+    /// The answer to what was asked last, once, if it has come.
+    pub(super) fn answer(&mut self) -> Result<Option<Response>, LinkError> {
+        if let Some(answered) = self.answered.take() {
+            return answered.map(Some);
+        }
+        let now = Instant::now();
+        if self.owed.front().is_some_and(|owed| now >= owed.deadline) {
+            let since = *self.overdue.get_or_insert(now);
+            if now.duration_since(since) >= SECOND_LOOK {
+                self.close();
+                let source = self.explain(io::ErrorKind::TimedOut.into());
+                return Err(LinkError::Lost {
+                    role: self.role,
+                    source,
+                });
+            }
+        } else {
+            self.overdue = None;
+        }
+        Ok(None)
     }
 
     fn post(&mut self, request: &Request, wanted: bool) -> Result<(), LinkError> {
         let role = self.role;
+        if let Some(Err(_)) = self.answered {
+            // The stream has ended meanwhile.
+            self.answer()?;
+        }
         let mut buffer = [0; MAX_MESSAGE + 2];
         let bytes = framing::encode_message(request, &mut buffer).map_err(|source| {
             self.close();
@@ -177,69 +226,8 @@ impl Stream {
         Ok(())
     }
 
-    /// The next answer that somebody waits for, if it comes before `end`.
-    fn next(&mut self, end: Instant) -> io::Result<Result<Option<Response>, FrameError>> {
-        loop {
-            if self.filled >= 2 {
-                let length = usize::from(u16::from_le_bytes([self.buffer[0], self.buffer[1]]));
-                let Some(body) = self.buffer[2..].get(..length) else {
-                    return Ok(Err(FrameError::TooLong));
-                };
-                if self.filled == length + 2 {
-                    let answer = framing::decode_message(body);
-                    self.filled = 0;
-                    match (self.owed.pop_front(), answer) {
-                        (_, Err(error)) => return Ok(Err(error)),
-                        (Some(Owed { wanted: true, .. }), Ok(answer)) => return Ok(Ok(Some(answer))),
-                        // Of a request that nobody waits for.
-                        (_, Ok(_)) => continue,
-                    }
-                }
-            }
-            // A program that was paused may find an answer that has waited for it: looked for first, then given up.
-            let looked = Instant::now();
-            if !self.fill(end.saturating_duration_since(looked))? {
-                if self.owed.front().is_some_and(|owed| looked >= owed.deadline) {
-                    return Err(self.explain(io::ErrorKind::TimedOut.into()));
-                }
-                if looked >= end {
-                    return Ok(Ok(None));
-                }
-            }
-        }
-    }
-
-    /// Takes what has come of the next answer, waiting at most for `wait`; whether anything has.
-    fn fill(&mut self, wait: Duration) -> io::Result<bool> {
-        let end = match self.filled {
-            0 | 1 => 2,
-            _ => 2 + usize::from(u16::from_le_bytes([self.buffer[0], self.buffer[1]])),
-        };
-        self.socket.set_nonblocking(wait.is_zero())?;
-        if !wait.is_zero() {
-            self.socket.set_read_timeout(Some(wait))?;
-        }
-        let read = self.socket.read(&mut self.buffer[self.filled..end]);
-        if wait.is_zero() {
-            // Writing waits.
-            self.socket.set_nonblocking(false)?;
-        }
-        match read {
-            Ok(0) => Err(io::Error::new(
-                io::ErrorKind::UnexpectedEof,
-                "the board closed the connection",
-            )),
-            Ok(read) => {
-                self.filled += read;
-                Ok(true)
-            }
-            Err(error) if waits(&error) => Ok(false),
-            Err(error) => Err(error),
-        }
-    }
-
-    /// No answer of before may be taken for that of a later request.
-    fn close(&mut self) {
+    /// No answer of before may be taken for that of a later request; the reader ends.
+    pub(super) fn close(&mut self) {
         // Fails if it is closed already.
         let _ = self.socket.shutdown(std::net::Shutdown::Both);
     }
@@ -251,6 +239,22 @@ impl Stream {
             io::Error::new(io::ErrorKind::TimedOut, waited)
         } else {
             error
+        }
+    }
+}
+
+/// Passes all answers of a board on to `sender`, until the stream ends.
+pub(super) fn read_answers(role: Role, mut frames: Frames, sender: &SyncSender<Incoming>) {
+    loop {
+        let answer = match frames.next(Duration::from_secs(3600)) {
+            Ok(None) => continue,
+            Ok(Some(answer)) => Ok(answer),
+            Err(error) => Err(error),
+        };
+        let ended = !matches!(answer, Ok(Ok(_)));
+        // Answers are few, and wait for room.
+        if sender.send(Incoming::Answer(role, answer)).is_err() || ended {
+            return;
         }
     }
 }

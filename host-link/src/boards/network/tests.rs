@@ -176,7 +176,7 @@ fn datagrams_come_from_both_boards_in_order_and_bad_ones_are_counted() {
         *next += 1;
     }
     assert_eq!(boards.receive(Duration::ZERO).unwrap(), None);
-    assert_eq!(boards.bad_datagrams(), 2);
+    assert_eq!(boards.dropped_datagrams(), 2);
 }
 
 #[test]
@@ -389,7 +389,7 @@ fn a_stop_does_not_wait_for_a_board_that_does_not_answer() {
 }
 
 #[test]
-fn what_is_polled_is_waited_for_by_nobody_and_taken_when_it_comes() {
+fn what_is_asked_is_waited_for_by_nobody_and_taken_when_it_comes() {
     let (answers, held) = sync_channel::<()>(8);
     let motion = Fake::silent(Role::Motion);
     let tracker = Fake::board(Role::Tracker, move |request| {
@@ -400,15 +400,19 @@ fn what_is_polled_is_waited_for_by_nobody_and_taken_when_it_comes() {
         }))
     });
     let mut boards = NetworkBoards::connect(&motion.endpoint, Some(&tracker.endpoint), None, LONG).unwrap();
-    let poll = |boards: &mut NetworkBoards| boards.poll(Role::Tracker, &Request::Status).unwrap();
+    let poll = |boards: &mut NetworkBoards| {
+        boards.receive(Duration::ZERO).unwrap();
+        boards.answer(Role::Tracker).unwrap()
+    };
+    assert_eq!(boards.ask(Role::Tracker, &Request::Status).unwrap(), None);
     for _ in 0..3 {
         assert_eq!(poll(&mut boards), None);
     }
     answers.send(()).unwrap();
     let answer = std::iter::repeat_with(|| poll(&mut boards)).find_map(|answer| answer);
     assert_eq!(answer, Some(Response::Refused(Refusal::NotHomed)));
-    // Another request takes its own answer, and not that of what was polled before.
-    assert_eq!(poll(&mut boards), None);
+    // Another request takes its own answer, and not that of what was asked before.
+    assert_eq!(boards.ask(Role::Tracker, &Request::Status).unwrap(), None);
     answers.send(()).unwrap();
     answers.send(()).unwrap();
     assert_eq!(
@@ -421,14 +425,32 @@ fn what_is_polled_is_waited_for_by_nobody_and_taken_when_it_comes() {
 fn a_program_that_was_paused_takes_the_answer_that_waited_for_it_and_knows_of_its_absence() {
     let motion = Fake::board(Role::Motion, |_| Some(bytes(&Response::Done)));
     let mut boards = NetworkBoards::connect(&motion.endpoint, None, None, BRIEF).unwrap();
-    assert_eq!(boards.poll(Role::Motion, &Request::Status).unwrap(), None);
+    assert_eq!(boards.ask(Role::Motion, &Request::Status).unwrap(), None);
     let before = boards.now();
     std::thread::sleep(BRIEF.answer * 2);
-    let answer = boards.poll(Role::Motion, &Request::Status).unwrap();
-    assert_eq!(answer, Some(Response::Done));
+    let answer = std::iter::repeat_with(|| {
+        boards.receive(Duration::from_millis(10)).unwrap();
+        boards.answer(Role::Motion).unwrap()
+    });
+    assert_eq!(answer.take(20).flatten().next(), Some(Response::Done));
     let absence = boards.absence().expect("it did nothing for a while");
     assert!(
         absence.ended >= before && absence.lasted >= BRIEF.answer * 2,
         "{absence:?}"
     );
+}
+
+#[test]
+fn another_thread_ends_a_wait() {
+    let motion = Fake::silent(Role::Motion);
+    let mut boards = NetworkBoards::connect(&motion.endpoint, None, None, BRIEF).unwrap();
+    let waker = boards.waker().unwrap();
+    let began = std::time::Instant::now();
+    let sleeper = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(50));
+        waker.wake();
+    });
+    assert!(boards.receive(AMPLE).unwrap().is_none());
+    assert!(began.elapsed() < AMPLE / 2);
+    sleeper.join().unwrap();
 }

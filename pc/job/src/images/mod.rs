@@ -14,6 +14,8 @@ use camera::{CameraFrame, nominal_slopes};
 use camera::{Keeping, Shelf};
 use config::calibration::Calibration;
 use config::machine::{CameraConfig, JointForm, TrackingUnit};
+use host_link::boards::Waker;
+use host_link::events::Events;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::SIDES;
@@ -116,7 +118,7 @@ impl Images {
                 }),
             };
             Ok(Side {
-                worker: Worker::start(camera, Observer::new(detector, config, joint), calibration),
+                worker: Worker::start(side, camera, Observer::new(detector, config, joint), calibration),
                 waiting: VecDeque::new(),
                 figures: CameraFigures::default(),
                 held: None,
@@ -178,6 +180,12 @@ impl Images {
 }
 
 impl SeamCameras for Images {
+    fn attach(&mut self, waker: Option<Waker>, events: &Events) {
+        for side in &self.sides {
+            side.worker.attach(waker.clone(), events);
+        }
+    }
+
     fn strobe(&mut self, capture: Capture, strobe_us: u64, pose: Option<Pose>) {
         for side in 0..SIDES {
             let moved = pose.and_then(|pose| self.moved(side, &pose, &capture));

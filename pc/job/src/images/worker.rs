@@ -2,9 +2,12 @@
 
 use camera::{Arrival, Camera, CameraError, Picture};
 use config::calibration::Calibration;
+use host_link::boards::Waker;
+use host_link::events::{Event, Events, MeasuredPicture, SeamInPicture};
 use shared::protocol::SideMeasurement;
 use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
+use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::Duration;
 use vision::{DetectorError, ImageError, Moved, Observation, Observer, State};
@@ -52,8 +55,15 @@ pub enum WorkerError {
     Gone,
 }
 
+/// Where answers and pictures are announced.
+struct Outlet {
+    waker: Option<Waker>,
+    events: Events,
+}
+
 /// A camera, its observer, and a thread for both.
 pub(super) struct Worker {
+    outlet: Arc<OnceLock<Outlet>>,
     strobes: Option<Sender<Strobe>>,
     answers: Receiver<Result<Seen, WorkerError>>,
     thread: Option<JoinHandle<()>>,
@@ -61,10 +71,13 @@ pub(super) struct Worker {
 
 impl Worker {
     /// Starts the thread.
-    pub fn start(camera: Box<dyn Camera>, observer: Observer, calibration: Calibration) -> Self {
+    pub fn start(side: usize, camera: Box<dyn Camera>, observer: Observer, calibration: Calibration) -> Self {
         let (strobes, told) = channel();
         let (answer, answers) = channel();
+        let outlet = Arc::<OnceLock<Outlet>>::default();
         let mut work = Work {
+            side,
+            outlet: Arc::clone(&outlet),
             camera,
             observer,
             calibration,
@@ -80,13 +93,22 @@ impl Worker {
             // The end of the session is no error.
             if let Err(error) = work.run(&told, &answer) {
                 drop(answer.send(Err(error)));
+                work.wake();
             }
         });
         Self {
+            outlet,
             strobes: Some(strobes),
             answers,
             thread: Some(thread),
         }
+    }
+
+    /// Answers and pictures are announced there from now on.
+    pub fn attach(&self, waker: Option<Waker>, events: &Events) {
+        let events = events.clone();
+        // A session has one.
+        let _ = self.outlet.set(Outlet { waker, events });
     }
 
     /// Tells of a strobe. If the thread has ended, its error is the next answer.
@@ -125,6 +147,8 @@ impl Drop for Worker {
 
 /// What the thread has.
 struct Work {
+    side: usize,
+    outlet: Arc<OnceLock<Outlet>>,
     camera: Box<dyn Camera>,
     observer: Observer,
     calibration: Calibration,
@@ -180,11 +204,53 @@ impl Work {
                 if answer.send(Ok(seen)).is_err() {
                     return Ok(());
                 }
+                self.wake();
+                if arrived {
+                    self.show(&seen);
+                }
                 if strobe.capture == capture {
                     break;
                 }
             }
         }
+    }
+
+    /// Whoever waits for the answer looks at once.
+    fn wake(&self) {
+        if let Some(waker) = self.outlet.get().and_then(|outlet| outlet.waker.as_ref()) {
+            waker.wake();
+        }
+    }
+
+    /// Tells who is interested of the picture and of what is seen in it, after the answer has left.
+    fn show(&self, seen: &Seen) {
+        let Some(Outlet { events, .. }) = self.outlet.get() else {
+            return;
+        };
+        if !events.want_pictures() {
+            return;
+        }
+        let seam = seen.observation.and_then(|observation| observation.seam);
+        let Picture {
+            rows,
+            columns,
+            ref pixels,
+            ..
+        } = self.picture;
+        events.publish(Event::Picture(Arc::new(MeasuredPicture {
+            side: self.side,
+            capture: seen.capture,
+            rows,
+            columns,
+            pixels: pixels.clone(),
+            seam: seam.map(|seam| SeamInPicture {
+                lateral_mm: seam.lateral_mm,
+                travel_mm: seam.travel_mm,
+                height_mm: seam.mean.map(|mean| mean.height_mm),
+                width_mm: seam.width_mm,
+                quality: seam.quality,
+            }),
+        })));
     }
 
     /// Sums up how far the camera moved.

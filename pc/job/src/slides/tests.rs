@@ -2,9 +2,7 @@
 
 use super::*;
 use crate::{Answer, CameraFigures, ImagesError, Moment};
-use crate::{
-    Job, Names, RangingProbe, SeamCameras, Silent, Surroundings, SurroundingsError, Work, make_ready,
-};
+use crate::{Job, Names, RangingProbe, SeamCameras, Surroundings, SurroundingsError, Work, make_ready};
 use cam::path::{PlannedPath, Planner};
 use config::machine::{MachineFile, TrackingUnit};
 use evaluate::SeamTruth;
@@ -14,10 +12,9 @@ use nc::{Options, interpret};
 use parts::PartFile;
 use shared::geometry::Pose;
 use shared::io::SIDES;
-use shared::protocol::{Capture, Datagram, Response};
+use shared::protocol::{Capture, Response};
 use shared::tracking::frames::Heads;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use world::simulated::SimulatedBoards;
 
 /// Nothing to be seen.
@@ -78,10 +75,7 @@ impl Boards for Standing {
 /// A session on `boards` that is ready for a path.
 fn ready(boards: &mut dyn Boards, then: impl FnOnce(&mut Session)) {
     let text = include_str!("../../../../machines/dual-beam-gantry.toml");
-    let (machine, never) = (
-        MachineFile::parse("m.toml", text).unwrap(),
-        AtomicBool::new(false),
-    );
+    let machine = MachineFile::parse("m.toml", text).unwrap();
     let program = interpret("G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nM2", Options::default()).unwrap();
     let job = Job {
         machine: &machine,
@@ -97,8 +91,8 @@ fn ready(boards: &mut dyn Boards, then: impl FnOnce(&mut Session)) {
             boards: String::new(),
         },
     };
-    let mut silent = Silent;
-    let mut session = Session::begin(boards, &machine, &Dark, &never, &mut silent).unwrap();
+    let (_remote, mut control) = host_link::control();
+    let mut session = Session::begin(boards, &machine, &Dark, &mut control).unwrap();
     make_ready(&mut session, &job).unwrap();
     then(&mut session);
 }

@@ -1,11 +1,12 @@
 //! Which boards a command uses, how it connects to them, and what it returns after its job.
 
 use crate::console::errln;
-use crate::terminal::Terminal;
+use crate::terminal::{Operator, Terminal};
 use anyhow::{Context, bail};
 use config::machine::MachineFile;
 use emulator::{SESSION_VARIABLE, Session};
 use host_link::boards::{Boards, Endpoint, NetworkBoards, Patience};
+use host_link::{Command, control};
 use job::{Job, JobError, run};
 use report::{Ended, ended};
 use std::path::Path;
@@ -94,25 +95,29 @@ impl BoardChoice {
         }
     }
 
-    /// Connects and does `job` before `terminal`, while Ctrl-C, SIGTERM and SIGHUP are watched, which stop the machine and
-    /// never this program, however often they come; the exit code if that was before anything was asked of the boards.
-    pub fn run(
-        &self,
-        job: &Job,
-        terminal: impl FnOnce() -> Terminal,
-    ) -> anyhow::Result<Result<Ended, ExitCode>> {
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&interrupted);
-        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("cannot watch for Ctrl-C")?;
+    /// Connects and does `job` with an `operator` at the terminal, while Ctrl-C, SIGTERM and SIGHUP are watched, which stop the
+    /// machine and never this program, however often they come; the exit code if that was before anything was asked of the
+    /// boards.
+    pub fn run(&self, job: &Job, operator: Operator) -> anyhow::Result<Result<Ended, ExitCode>> {
+        let (remote, mut control) = control();
+        let stopped = remote.clone();
+        // A stop needs no room.
+        ctrlc::set_handler(move || _ = stopped.send(Command::Stop)).context("cannot watch for Ctrl-C")?;
         let (choice, wanted) = (self.clone(), job.machine.motion.kinematics.name());
         let tracked = job.machine.tracking.is_some();
-        let stop = Arc::clone(&interrupted);
+        let stop = remote.stop_flag();
         let connect = move || choice.connect(wanted, tracked, stop);
-        let Some(mut boards) = unless_interrupted(connect, &interrupted)? else {
+        let Some(mut boards) = unless_interrupted(connect, &remote.stop_flag())? else {
             errln!("seamwright: stopped by the operator; the boards were not asked for anything");
             return Ok(Err(ExitCode::from(INTERRUPTED)));
         };
-        let record = run(boards.as_mut(), job, &interrupted, &mut terminal())?;
+        let terminal = Terminal::new(operator, &remote);
+        let record = std::thread::scope(|scope| {
+            let job = scope.spawn(move || run(boards.as_mut(), job, &mut control));
+            terminal.show();
+            job.join()
+        });
+        let record = record.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
         Ok(Ok(ended(job, record)))
     }
 

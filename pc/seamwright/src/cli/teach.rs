@@ -3,7 +3,7 @@
 use super::boards::{BoardChoice, exit_code};
 use super::teach_seam::SeamArgs;
 use crate::console::{errln, outln};
-use crate::terminal::Terminal;
+use crate::terminal::Operator;
 use anyhow::Context;
 use clap::Args;
 use config::machine::MachineFile;
@@ -82,7 +82,7 @@ impl Teach {
                 boards: self.boards.name(),
             },
         };
-        let ended = match self.boards.run(&job, Terminal::new)? {
+        let ended = match self.boards.run(&job, Operator::LooksOn)? {
             Ok(ended) => ended,
             Err(code) => return Ok(code),
         };

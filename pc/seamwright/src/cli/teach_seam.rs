@@ -4,7 +4,7 @@ use super::boards::{BoardChoice, exit_code};
 use super::cameras::CameraArgs;
 use super::read_program;
 use crate::console::outln;
-use crate::terminal::Terminal;
+use crate::terminal::Operator;
 use anyhow::{Context, anyhow, bail};
 use cam::path::{Planner, Tip};
 use clap::Args;
@@ -14,11 +14,10 @@ use nc::{Options, Program, interpret};
 use parts::plan::DualBeamPlan;
 use parts::{PartFile, TSeam};
 use shared::io::SLIDES;
-use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use teach::seam::{Cameras, Drawing, Ended, Head, SeamFile, Stance};
 use world::Deviation;
 use world::Surroundings;
@@ -133,7 +132,7 @@ impl SeamArgs {
             config: *seam.teaching(),
             cameras: prepared.cameras,
             points: opened.points,
-            file: RefCell::new(opened.file),
+            file: Mutex::new(opened.file),
             head,
             by_jog: self.jog,
         };
@@ -159,7 +158,7 @@ impl SeamArgs {
                 boards: boards.name(),
             },
         };
-        let ended = match boards.run(&job, || Terminal::with_lines(self.jog))? {
+        let ended = match boards.run(&job, Operator::LeadsByLines { always: self.jog })? {
             Ok(ended) => ended,
             Err(code) => return Ok(code),
         };

@@ -4,7 +4,7 @@ use super::boards::{BoardChoice, exit_code};
 use super::cameras::CameraArgs;
 use super::{OUTSIDE, read_program, sentence};
 use crate::console::{errln, out, outln};
-use crate::terminal::Terminal;
+use crate::terminal::Operator;
 use anyhow::{Context, Error, bail};
 use cam::path::Planner;
 use clap::Args;
@@ -139,8 +139,10 @@ impl Weld {
         self.check(&job)?;
         report::prepare(&self.report)?;
         let keepers = self.cameras.keep(&cameras)?;
-        let terminal = || Terminal::with_words(self.single_block);
-        let ended = match self.boards.run(&job, terminal)? {
+        let operator = Operator::SaysWords {
+            single_block: self.single_block,
+        };
+        let ended = match self.boards.run(&job, operator)? {
             Ok(ended) => ended,
             Err(code) => return Ok(code),
         };

@@ -4,7 +4,7 @@ use super::super::boards::{BoardChoice, exit_code};
 use super::super::cameras::source;
 use super::super::read_program;
 use super::{Camera, Meets};
-use crate::terminal::Terminal;
+use crate::terminal::Operator;
 use anyhow::{Context, bail};
 use camera::Shelf;
 use camera::calibrate::procedure;
@@ -120,7 +120,7 @@ impl Live {
                 boards: self.boards.name(),
             },
         };
-        let ended = match self.boards.run(&job, Terminal::new)? {
+        let ended = match self.boards.run(&job, Operator::LooksOn)? {
             Ok(ended) => ended,
             Err(code) => return Ok(Err(code)),
         };

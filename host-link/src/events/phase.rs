@@ -1,0 +1,105 @@
+//! The parts of a job, and what it asks.
+
+use std::fmt;
+
+/// A part of a job. Its text is a short description in plain English.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// The boards get the machine's parameters.
+    SettingUp,
+    /// The axes search their reference marks.
+    Homing,
+    /// The boards relate their clocks.
+    RelatingClocks,
+    /// On the way to where the work begins.
+    Approaching,
+    /// On the path of a weld, with the beams off.
+    RunningIn,
+    /// A beam is on.
+    Welding,
+    /// Between two welds.
+    MovingOn,
+    /// At rest for a time that the program asks for.
+    Dwelling,
+    /// In single block: this line of the program.
+    Line(u32),
+    /// A point of a panel is taught.
+    TeachingPoint {
+        /// Its number, from 1.
+        number: usize,
+        /// How many there are.
+        of: usize,
+    },
+    /// A point of a seam is taught.
+    TeachingSeam {
+        /// Its number, from 1.
+        number: usize,
+    },
+    /// Pictures for a calibration are taken.
+    Calibrating {
+        /// Number of the place, from 1.
+        place: u32,
+        /// How many there are.
+        of: u32,
+    },
+    /// The machine goes to its park position.
+    Parking,
+    /// A controlled stop, after a fault or a command.
+    Stopping,
+}
+
+impl fmt::Display for Phase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::SettingUp => f.write_str("setting up the boards"),
+            Self::Homing => f.write_str("searching reference marks"),
+            Self::RelatingClocks => f.write_str("relating the clocks"),
+            Self::Approaching => f.write_str("approaching"),
+            Self::RunningIn => f.write_str("running in"),
+            Self::Welding => f.write_str("welding"),
+            Self::MovingOn => f.write_str("moving on"),
+            Self::Dwelling => f.write_str("dwelling"),
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::TeachingPoint { number, of } => write!(f, "teaching point {number} of {of}"),
+            Self::TeachingSeam { number } => write!(f, "teaching point {number}"),
+            Self::Calibrating { place, of } => write!(f, "place {place} of {of}"),
+            Self::Parking => f.write_str("parking"),
+            Self::Stopping => f.write_str("stopping"),
+        }
+    }
+}
+
+/// What the machine stands for until somebody answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Question {
+    /// May it go on, in single block? [`super::super::Command::Resume`] says so.
+    GoOn {
+        /// With what.
+        next: Next,
+    },
+    /// The motion board holds it, since the feed is too low for the beam: raise the override, then resume.
+    FeedTooLow,
+    /// Where to jog, or what to teach; [`super::super::Command::Answer`] says it.
+    Jog,
+}
+
+/// What comes next in single block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Next {
+    /// A line of the program.
+    Line(u32),
+    /// The next move of the approach.
+    Approach,
+    /// The way to the park position.
+    Parking,
+}
+
+impl fmt::Display for Next {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Approach => f.write_str("the next move of the approach"),
+            Self::Parking => f.write_str("parking"),
+        }
+    }
+}
