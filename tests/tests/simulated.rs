@@ -17,7 +17,7 @@ fn weld(seam: Deviation, speed_m_per_min: f64) -> Ended {
 fn report_files(ended: &Ended, name: &str) -> BTreeMap<String, Vec<u8>> {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
-    report::write(&folder, &ended.report, &ended.evaluation, &ended.plots).expect("a report");
+    report::write(&folder, ended).expect("a report");
     let files = std::fs::read_dir(&folder).expect("the report's folder");
     files
         .map(|file| {

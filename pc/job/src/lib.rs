@@ -99,7 +99,7 @@ impl Job<'_> {
 }
 
 /// What the report calls everything.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Names {
     /// The program.
     pub program: String,

@@ -1,11 +1,14 @@
 //! What came of a job: evaluated and judged.
 
 use crate::unwelded::unwelded;
-use crate::{BoardsUsed, ByMotor, JudgedBy, Measurements, Outcome, Report, SeamFigures, Truth, WeldTicks};
+use crate::{
+    BoardsUsed, ByMotor, JudgedBy, LogColumns, Measurements, Outcome, Report, SeamFigures, Truth, WeldTicks,
+};
 use cam::along::{Along, works};
 use cam::dry_run::{self, DryRunError};
 use cam::path::{PathError, PlannedPath};
 use evaluate::{Evaluation, Followed, SeamTruth, SpeedShares, evaluate, run_samples};
+use host_link::record::Record;
 use job::{ByBoard, Job, JobError, RunRecord, Taught, TrackingRecord};
 use parts::{Judgement, PartFile, Plot, Run, SeamLimits};
 use shared::io::MOTOR_AXIS;
@@ -29,6 +32,10 @@ pub struct Ended {
     pub plots: Vec<Plot>,
     /// What was taught, as far as it came.
     pub taught: Taught,
+    /// What the boards told.
+    pub record: Record,
+    /// Columns of its log.
+    pub columns: LogColumns,
 }
 
 /// Evaluates what the boards told of `job`, and judges the run.
@@ -135,6 +142,8 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
         evaluation,
         plots: judgement.plots,
         taught: run.taught,
+        record: run.record,
+        columns: LogColumns::of(job.machine),
     }
 }
 

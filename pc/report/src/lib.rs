@@ -10,11 +10,12 @@ pub mod unwelded;
 
 pub use dry_run::write_dry_run;
 pub use ended::{Ended, ended};
+pub use log::{LOG, LogColumns, LogWriter};
 
 use crate::unwelded::Unwelded;
-use evaluate::{Evaluation, Load, SpeedShares};
+use evaluate::{Load, SpeedShares};
 use job::{ByBoard, CameraFigures, DelayFigures, Recentred};
-use parts::{Figure, Plot};
+use parts::Figure;
 use serde::{Serialize, Serializer};
 use shared::io::{MOTOR_NAMES, MOTORS, SLIDES};
 use std::fmt;
@@ -266,26 +267,25 @@ impl ReportError {
     }
 }
 
-/// Writes `report.json`, `log.csv` and, if anything was welded, the plots into `directory`, which is made if it
-/// is missing. `more` are the plots of the part.
-pub fn write(
-    directory: &Path,
-    report: &Report,
-    evaluation: &Evaluation,
-    more: &[Plot],
-) -> Result<(), ReportError> {
+/// Writes all of it into `directory`: `report.json`, `log.csv`, and the plots.
+///
+/// # Errors
+/// [`ReportError`] with the file.
+pub fn write(directory: &Path, ended: &Ended) -> Result<(), ReportError> {
     std::fs::create_dir_all(directory).map_err(|e| ReportError::new(directory, e))?;
-    let save = |name: &str, content: String| {
-        let path = directory.join(name);
-        std::fs::write(&path, content).map_err(|e| ReportError::new(&path, e))
-    };
+    let Ended {
+        report, evaluation, ..
+    } = ended;
+    let file = directory.join("report.json");
     let json = serde_json::to_string_pretty(report).map_err(|e| ReportError::new(directory, e))?;
-    save("report.json", json + "\n")?;
-    save("log.csv", log::csv(report, &evaluation.ticks))?;
+    std::fs::write(&file, json + "\n").map_err(|e| ReportError::new(&file, e))?;
+    let file = directory.join(LOG);
+    let samples = ended.record.motion();
+    log::write(&file, &ended.columns, samples, &evaluation.ticks).map_err(|e| ReportError::new(&file, e))?;
     if !evaluation.ticks.is_empty() {
         plots::draw(directory, report, &evaluation.ticks)?;
     }
-    plots::draw_more(directory, report, more)
+    plots::draw_more(directory, report, &ended.plots)
 }
 
 /// Checks that a report can be written into `directory`, before anything moves.

@@ -45,11 +45,12 @@ fn ctrl_c_stops_on_the_path_and_leaves_a_report_and_the_drives_off() {
     let log = fs::read_to_string(pair.report().join("log.csv")).expect("a log");
     let mut lines = log.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let heading = lines.next().expect("a heading");
-    let last = lines.next_back().expect("ticks");
-    let value = |name: &str| {
-        let column = heading.iter().position(|n| *n == name).expect(name);
-        last[column].parse::<f64>().expect(name)
-    };
+    let column = |name: &str| heading.iter().position(|n| *n == name).expect(name);
+    // The last tick on the path.
+    let last = lines
+        .rfind(|line| !line[column("contour_error_mm")].is_empty())
+        .expect("ticks");
+    let value = |name: &str| last[column(name)].parse::<f64>().expect(name);
     assert_eq!((value("beam_1"), value("beam_2")), (0.0, 0.0));
     assert!(value("speed_m_per_min").abs() < 0.05, "{last:?}");
     assert!(value("contour_error_mm") < 0.05, "{last:?}");
@@ -90,20 +91,38 @@ fn without_the_pc_the_machine_stops_on_its_path_and_welds_again_later() {
     let mut seamwright = Process::start(pair.seamwright(None));
     seamwright.wait_for("welding");
     seamwright.signal(Signal::SIGKILL);
+    let killed = Instant::now();
     seamwright.end();
+    let log = fs::read_to_string(pair.report().join("log.csv")).expect("a log");
 
     // A stranger who connects, says Hello, and asks for the state does not take the path over.
     let mut boards = pair.connect();
     status(&mut boards);
-    let mut samples: Vec<MotionSample> = Vec::new();
+    let (mut samples, mut first_heard) = (Vec::<MotionSample>::new(), None);
     let end = Instant::now() + Duration::from_secs(30);
     while samples.last().is_none_or(|last| last.state != State::Fault) {
         assert!(Instant::now() < end, "no fault after {} ms", samples.len());
         let received = boards.receive(Duration::from_millis(10));
         if let Some((_, Datagram::MotionTelemetry(telemetry))) = received.expect("datagrams") {
+            first_heard.get_or_insert_with(Instant::now);
             samples.extend(telemetry.samples);
         }
     }
+    // What the PC left tells of the weld to within a second, in whole lines but for the last one.
+    let columns = log.lines().next().expect("a heading").split(',').count();
+    let whole = log
+        .lines()
+        .rfind(|line| line.split(',').count() == columns)
+        .expect("ticks");
+    let logged: u32 = whole
+        .split(',')
+        .next()
+        .and_then(|tick| tick.parse().ok())
+        .expect("a tick");
+    let missing = samples[0].tick - logged;
+    let since = first_heard.expect("samples").duration_since(killed).as_millis();
+    assert!(u128::from(missing) <= 1000 + since, "{missing} ticks, {since} ms");
+
     // The end of its session shut the beams and began the stop before anybody else had one: only the first samples may be
     // of a batch that was begun before.
     let stops = samples

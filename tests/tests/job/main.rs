@@ -10,6 +10,7 @@ mod real_cameras;
 mod recentring;
 mod silence;
 mod single_block;
+mod subscribers;
 mod taught_seam;
 mod verdict;
 

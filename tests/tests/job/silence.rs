@@ -82,8 +82,11 @@ impl Boards for Alone {
         assert_eq!(role, Role::Tracker);
         // The job goes on meanwhile, until the operator has enough.
         self.polled += 1;
-        self.interrupted.set(self.polled > 20);
-        Ok(None)
+        if self.polled <= 20 {
+            return Ok(None);
+        }
+        self.interrupted.set(true);
+        self.boards.request(role, &Request::Status).map(Some)
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {

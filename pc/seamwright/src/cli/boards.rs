@@ -6,9 +6,10 @@ use anyhow::{Context, bail};
 use config::machine::MachineFile;
 use emulator::{SESSION_VARIABLE, Session};
 use host_link::boards::{Boards, Endpoint, NetworkBoards, Patience};
+use host_link::events::Interest;
 use host_link::{Command, control};
 use job::{Job, JobError, run};
-use report::{Ended, ended};
+use report::{Ended, LogColumns, LogWriter, ended};
 use std::path::Path;
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -24,6 +25,9 @@ use world::simulated::SimulatedBoards;
 const INTERRUPTED: u8 = 130;
 /// How often Ctrl-C is looked for while the boards are connected.
 const POLL: Duration = Duration::from_millis(20);
+
+/// Events that wait for the disk: more than half a minute of both boards.
+const LOGGED: usize = 1 << 14;
 
 /// Which boards.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -97,8 +101,13 @@ impl BoardChoice {
 
     /// Connects and does `job` with an `operator` at the terminal, while Ctrl-C, SIGTERM and SIGHUP are watched, which stop the
     /// machine and never this program, however often they come; the exit code if that was before anything was asked of the
-    /// boards.
-    pub fn run(&self, job: &Job, operator: Operator) -> anyhow::Result<Result<Ended, ExitCode>> {
+    /// boards. What the motion board tells is written to the folder `log` as it comes.
+    pub fn run(
+        &self,
+        job: &Job,
+        operator: Operator,
+        log: Option<&Path>,
+    ) -> anyhow::Result<Result<Ended, ExitCode>> {
         let (remote, mut control) = control();
         let stopped = remote.clone();
         // A stop needs no room.
@@ -111,6 +120,13 @@ impl BoardChoice {
             errln!("seamwright: stopped by the operator; the boards were not asked for anything");
             return Ok(Err(ExitCode::from(INTERRUPTED)));
         };
+        let log = log.map(|folder| {
+            let events = remote.subscribe(Interest::Samples, LOGGED);
+            let columns = LogColumns::of(job.machine);
+            LogWriter::start(folder, columns, events)
+                .with_context(|| format!("cannot write the log in {}", folder.display()))
+        });
+        let log = log.transpose()?;
         let terminal = Terminal::new(operator, &remote);
         let record = std::thread::scope(|scope| {
             let job = scope.spawn(move || run(boards.as_mut(), job, &mut control));
@@ -118,6 +134,14 @@ impl BoardChoice {
             job.join()
         });
         let record = record.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+        match log.map(LogWriter::end) {
+            None | Some(Ok(0)) => {}
+            Some(Ok(lost)) => {
+                errln!("seamwright: writing the log could not keep pace: {lost} events are missing")
+            }
+            // What can be known of the run is written anew.
+            Some(Err(error)) => errln!("seamwright: cannot write the log while the job runs: {error}"),
+        }
         Ok(Ok(ended(job, record)))
     }
 

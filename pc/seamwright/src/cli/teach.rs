@@ -82,7 +82,7 @@ impl Teach {
                 boards: self.boards.name(),
             },
         };
-        let ended = match self.boards.run(&job, Operator::LooksOn)? {
+        let ended = match self.boards.run(&job, Operator::LooksOn, None)? {
             Ok(ended) => ended,
             Err(code) => return Ok(code),
         };

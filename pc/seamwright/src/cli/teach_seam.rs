@@ -158,7 +158,7 @@ impl SeamArgs {
                 boards: boards.name(),
             },
         };
-        let ended = match boards.run(&job, Operator::LeadsByLines { always: self.jog })? {
+        let ended = match boards.run(&job, Operator::LeadsByLines { always: self.jog }, None)? {
             Ok(ended) => ended,
             Err(code) => return Ok(code),
         };

@@ -142,13 +142,13 @@ impl Weld {
         let operator = Operator::SaysWords {
             single_block: self.single_block,
         };
-        let ended = match self.boards.run(&job, operator)? {
+        let ended = match self.boards.run(&job, operator, Some(&self.report))? {
             Ok(ended) => ended,
             Err(code) => return Ok(code),
         };
         keepers.end();
         let taught = self.write_taught(&ended.taught);
-        let report = || report::write(&self.report, &ended.report, &ended.evaluation, &ended.plots);
+        let report = || report::write(&self.report, &ended);
         let report = if ended.began {
             report().map_err(Error::from)
         } else {

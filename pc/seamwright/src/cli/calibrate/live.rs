@@ -120,7 +120,7 @@ impl Live {
                 boards: self.boards.name(),
             },
         };
-        let ended = match self.boards.run(&job, Operator::LooksOn)? {
+        let ended = match self.boards.run(&job, Operator::LooksOn, None)? {
             Ok(ended) => ended,
             Err(code) => return Ok(Err(code)),
         };
