@@ -22,6 +22,7 @@ mod golden {
     mod servo_circle;
     mod speed_plan;
     mod spline;
+    mod stepping;
     mod tally;
     mod teaching;
     mod tracking;

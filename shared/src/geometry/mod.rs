@@ -8,7 +8,6 @@ pub mod nurbs;
 mod offset;
 mod pose;
 mod saddle;
-mod spline;
 
 pub use arc::{Arc, ArcError, Turn};
 pub use attitude::{AttitudeError, angle, interpolate, rotate};
@@ -20,4 +19,3 @@ pub use saddle::{
     CurvePoint, MachineCoordinates, Meeting, Nearest, PipePair, PipePairConfig, SaddleCurve, SaddleError,
     SeamFrame, SeamPoint, Sheet,
 };
-pub use spline::{NaturalSpline, SplineError};

@@ -4,7 +4,7 @@
 //! looks places up in, and what planners on the PC begin with. [`RestToRest`] is one way by itself, as in homing.
 //! [`Trapezoid`] and [`MatchedTurn`] are for comparison only.
 
-mod curve;
+pub(crate) mod curve;
 mod element;
 mod matched_turn;
 mod path;
@@ -15,9 +15,7 @@ mod speed;
 mod trapezoid;
 mod window;
 
-pub use curve::{
-    ArcLengthCurve, ArcLengthPiece, ArcLengthPieces, CurveNumbers, Cusp, FLUCTUATION, NoCurve, TooUneven,
-};
+pub use curve::{ArcLengthCurve, CurveNumbers, NoCurve, PARAMETER_COEFFICIENTS};
 pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
 pub use matched_turn::MatchedTurn;
 pub use path::{Knot, Path, PathError, PathPoint, PathSpace};

@@ -2,9 +2,10 @@
 
 use super::{CAPACITY, MAX_EVENTS};
 use config::table::FARTHEST_MM;
+use curves::SplineError;
+use curves::nurbs::NurbsError;
 use nc::{NcError, Place};
-use shared::geometry::nurbs::NurbsError;
-use shared::geometry::{ArcError, AttitudeError, PoseError, SplineError};
+use shared::geometry::{ArcError, AttitudeError, PoseError};
 use shared::io::AXIS_NAMES;
 use shared::kinematics::KinematicsError;
 use thiserror::Error;

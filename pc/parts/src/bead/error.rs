@@ -1,8 +1,8 @@
 //! Why no program can be planned for a bead.
 
 use cam::path::CAPACITY;
-use shared::geometry::SplineError;
-use shared::geometry::nurbs::{DiscretiseError, NurbsError};
+use curves::SplineError;
+use curves::nurbs::{DiscretiseError, NurbsError};
 use shared::trajectory::WindowError;
 use thiserror::Error;
 

@@ -4,9 +4,9 @@ use super::route::Route;
 use super::{BeadLimits, Layer};
 use crate::{ALONG, Figure, GAP, Judgement, Plot, Run};
 use anyhow::ensure;
+use curves::nurbs::Curve;
 use evaluate::RunSample;
 use nalgebra::Vector3;
-use shared::geometry::nurbs::Curve;
 use shared::trajectory::ProcessWindow;
 use std::collections::BTreeSet;
 

@@ -4,7 +4,7 @@ use super::Bead;
 use super::route::Route;
 use super::speed::{Limit, SpeedPlan};
 use config::machine::PlanningConfig;
-use shared::geometry::nurbs::Curve;
+use curves::nurbs::Curve;
 use shared::trajectory::ProcessWindow;
 
 /// Of its shape: how it begins and ends, and of how many points a layer is.

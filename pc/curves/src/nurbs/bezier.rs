@@ -1,11 +1,11 @@
 //! Rational Bézier curves: the pieces a NURBS falls into, of fixed size.
 
-use super::super::Moving;
 use super::curve::Curve;
 use super::de_boor::{evaluate, homogeneous};
 use super::validation::{NurbsError, check_degree, check_points};
 use super::{MAX_DEGREE, ORDER};
 use nalgebra::{Vector3, Vector4};
+use shared::geometry::Moving;
 
 /// A rational Bézier curve over t from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]

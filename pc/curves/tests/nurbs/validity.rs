@@ -1,14 +1,14 @@
 //! What is a curve and what is not.
 
-use crate::curves::{any_curve, circle};
+use crate::definitions::{any_curve, circle};
+use curves::nurbs::{Curve, Nurbs, NurbsError, RationalBezier, length};
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use shared::geometry::nurbs::{Curve, Nurbs, NurbsError, RationalBezier, length};
 
 #[test]
 fn what_is_wrong_is_named_with_its_place() {
     let good = circle(1.0);
-    let error = |change: &dyn Fn(&mut crate::curves::Definition)| {
+    let error = |change: &dyn Fn(&mut crate::definitions::Definition)| {
         let mut bad = good.clone();
         change(&mut bad);
         bad.try_curve().unwrap_err()

@@ -1,26 +1,20 @@
-//! Lengths, steps, cuts.
+//! Lengths, cuts.
 
-use crate::curves::{any_curve, at_part, circle};
+use crate::definitions::{any_curve, at_part, circle};
+use curves::nurbs::{
+    Curve, Discretisation, DiscretiseError, Nurbs, RationalBezier, discretise, length, length_between,
+    parameter_at_length,
+};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use shared::geometry::angle;
-use shared::geometry::nurbs::{
-    Curve, Discretisation, DiscretiseError, EMBEDDED_ITERATIONS, NEWTON_ITERATIONS, Nurbs, RationalBezier,
-    StepError, StepRule, Walk, chord_step, curvature, discretise, length, length_between, length_in_parts,
-    newton_step, parameter_at_length, taylor_1,
-};
 use std::f64::consts::PI;
-
-fn walk<C: Curve>(curve: &C, rule: StepRule, ds: f64) -> Result<Vec<f64>, StepError> {
-    Walk::new(curve, rule, ds)?.collect()
-}
 
 #[test]
 fn the_length_of_a_circle_is_that_of_the_textbook() {
     let circle = circle(20.0);
     let curve = circle.curve();
     assert!((length(&curve) / (40.0 * PI) - 1.0).abs() < 1e-13);
-    assert!((length_in_parts(&curve, 1) / (40.0 * PI) - 1.0).abs() < 1e-7);
     // A quarter in each span.
     assert!((parameter_at_length(&curve, 0.0, 10.0 * PI) - 1.0).abs() < 1e-9);
     assert!((parameter_at_length(&curve, 1.0, 15.0 * PI) - 2.5).abs() < 1e-9);
@@ -51,55 +45,6 @@ fn a_point_of_rest_does_not_spoil_the_length() {
 }
 
 #[test]
-fn a_closed_curve_is_walked_all_the_way_round() {
-    let circle = circle(10.0);
-    let curve = circle.curve();
-    let ds = 0.1;
-    for rule in [
-        StepRule::ExactChord,
-        StepRule::Newton {
-            iterations: EMBEDDED_ITERATIONS,
-        },
-        StepRule::Taylor2,
-    ] {
-        let us = walk(&curve, rule, ds).unwrap();
-        // Each chord spans an angle of 2·asin(ds/2R).
-        let steps = (2.0 * PI / (2.0 * (ds / 20.0).asin())).ceil();
-        assert_eq!(us.len() as f64, steps + 1.0, "{rule:?}");
-        assert_eq!((us[0], us[us.len() - 1]), (0.0, 4.0));
-    }
-}
-
-/// Where both control points of the start coincide there is no tangent, and Taylor's rules do not know where to.
-#[test]
-fn the_exact_chord_leaves_a_start_without_tangent() {
-    let points = [(0.0, 0.0), (0.0, 0.0), (5.0, 0.0), (5.0, 5.0)].map(|(x, y)| Vector3::new(x, y, 0.0));
-    let knots = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
-    let curve = Nurbs::new(3, &points, &[1.0; 4], &knots).unwrap();
-    assert_eq!(taylor_1(&curve, 0.0, 0.1), Err(StepError::NoTangent { u: 0.0 }));
-    assert_eq!(
-        walk(&curve, StepRule::Taylor1, 0.1),
-        Err(StepError::NoTangent { u: 0.0 })
-    );
-    let u = chord_step(&curve, 0.0, 0.1).unwrap();
-    assert!((curve.point(u).norm() - 0.1).abs() < 1e-10);
-}
-
-/// Out and back along a line, with so slow a start that it looks as if the step led beyond the end, which is
-/// where the start is.
-#[test]
-fn a_closed_curve_with_a_slow_start_is_not_over_at_once() {
-    let points = [0.0, 0.01, 10.0, 0.0].map(|x| Vector3::new(x, 0.0, 0.0));
-    let curve = RationalBezier::new(&points, &[1.0; 4]).unwrap();
-    assert_eq!(newton_step(&curve, 0.0, 3.0, NEWTON_ITERATIONS), Ok(1.0));
-    let u = chord_step(&curve, 0.0, 3.0).unwrap();
-    assert!(
-        (curve.point(u).x - 3.0).abs() < 1e-9 && curve.at(u).first.x > 0.0,
-        "{u}"
-    );
-}
-
-#[test]
 fn a_curve_that_crosses_the_middle_of_its_chord_is_cut() {
     let points = [(0.0, 0.0), (1.0, 3.0), (2.0, -3.0), (3.0, 0.0)].map(|(x, y)| Vector3::new(x, y, 0.0));
     let curve = RationalBezier::new(&points, &[1.0; 4]).unwrap();
@@ -114,49 +59,6 @@ fn a_curve_that_crosses_the_middle_of_its_chord_is_cut() {
 }
 
 #[test]
-fn a_step_must_be_a_length() {
-    let circle = circle(10.0);
-    let curve = circle.curve();
-    for ds in [0.0, -1.0, f64::INFINITY] {
-        assert_eq!(chord_step(&curve, 0.0, ds), Err(StepError::Length(ds)));
-        assert_eq!(taylor_1(&curve, 0.0, ds), Err(StepError::Length(ds)));
-        assert!(Walk::new(&curve, StepRule::Taylor1, ds).is_err());
-    }
-    assert!(chord_step(&curve, 0.0, f64::NAN).is_err());
-    assert_eq!(chord_step(&curve, f64::NAN, 0.1), chord_step(&curve, 0.0, 0.1));
-    assert_eq!(chord_step(&curve, 7.0, 0.1), Ok(4.0));
-    let tiny = chord_step(&curve, 3.0, 1e-20).unwrap_err();
-    assert_eq!(tiny, StepError::NoProgress { u: 3.0 });
-}
-
-/// Two Newton steps are enough for a control tick on curves that are calm over a step (mathematics 3.5).
-#[test]
-fn two_newton_steps_meet_the_chord_to_a_millionth_of_a_permille() {
-    let points = [
-        (0.0, 0.0),
-        (30.0, 60.0),
-        (60.0, -60.0),
-        (90.0, 40.0),
-        (120.0, 0.0),
-    ];
-    let points = points.map(|(x, y)| Vector3::new(x, y, 0.1 * x));
-    let knots = [0.0, 0.0, 0.0, 0.0, 0.4, 1.0, 1.0, 1.0, 1.0];
-    let curve = Nurbs::new(3, &points, &[1.0, 2.0, 0.5, 1.0, 1.5], &knots).unwrap();
-    let (mut u, mut steps, ds) = (0.0, 0, 0.3);
-    loop {
-        assert!(curvature(&curve.at(u)).unwrap() * ds < 0.1);
-        let next = newton_step(&curve, u, ds, EMBEDDED_ITERATIONS).unwrap();
-        if next == 1.0 {
-            break;
-        }
-        let chord = (curve.point(next) - curve.point(u)).norm();
-        assert!((chord / ds - 1.0).abs() < 1e-9, "{chord} at {u}");
-        (u, steps) = (next, steps + 1);
-    }
-    assert!(steps > 500);
-}
-
-#[test]
 fn limits_of_a_cut_must_be_above_zero_and_knots_not_absurd() {
     let circle = circle(10.0);
     let good = Discretisation {
@@ -168,8 +70,9 @@ fn limits_of_a_cut_must_be_above_zero_and_knots_not_absurd() {
         tolerance: 0.0,
         ..good
     };
-    let cut =
-        |definition: &crate::curves::Definition, fineness| discretise(&definition.curve(), fineness, |_| {});
+    let cut = |definition: &crate::definitions::Definition, fineness| {
+        discretise(&definition.curve(), fineness, |_| {})
+    };
     assert_eq!(cut(&circle, &bad), Err(DiscretiseError::Limits));
     let nan = Discretisation {
         max_turn: f64::NAN,
@@ -224,53 +127,6 @@ proptest! {
             prop_assert!((length_between(&curve, from, u) - s).abs() <= 2e-9 * size, "{} at {}", s, u);
         }
         prop_assert!(u >= from && (v > u || far - near <= 1e-8 * size));
-    }
-
-    #[test]
-    fn steps_by_exact_chord_are_exact_and_reach_the_end(definition in any_curve(), part in 0.003..0.1f64) {
-        let curve = definition.curve();
-        let whole = length(&curve);
-        prop_assume!(whole > 1.0);
-        let ds = part * whole;
-        let us = walk(&curve, StepRule::ExactChord, ds);
-        let us = us.expect("a walk");
-        prop_assert!(us.windows(2).all(|pair| pair[1] > pair[0]));
-        prop_assert_eq!([us[0], us[us.len() - 1]], curve.domain());
-        let chord = |pair: &[f64]| (curve.point(pair[1]) - curve.point(pair[0])).norm() / ds;
-        for pair in us[..us.len() - 1].windows(2) {
-            prop_assert!((chord(pair) - 1.0).abs() <= 1e-9, "{} from {}", chord(pair), pair[0]);
-        }
-        prop_assert!(chord(&us[us.len() - 2..]) <= 1.0 + 1e-6);
-        prop_assert!((us.len() - 2) as f64 <= 1.0 / part * (1.0 + 1e-9));
-    }
-
-    #[test]
-    fn approximate_rules_never_go_backwards_or_beyond(definition in any_curve(), part in 0.001..0.2f64) {
-        let curve = definition.curve();
-        let ds = part * length(&curve);
-        prop_assume!(ds > 0.0);
-        let rules = [
-            StepRule::Taylor1,
-            StepRule::Taylor2,
-            StepRule::AdamsBashforth2,
-            StepRule::Newton { iterations: EMBEDDED_ITERATIONS },
-            StepRule::Newton { iterations: NEWTON_ITERATIONS },
-        ];
-        let [first, last] = curve.domain();
-        for rule in rules {
-            let mut before = first - 1.0;
-            // One that sees the curve stop and start again may crawl; look at its beginning.
-            for u in Walk::new(&curve, rule, ds).unwrap().take(300) {
-                match u {
-                    Ok(u) => {
-                        prop_assert!(u > before && u >= first && u <= last, "{:?} {}", rule, u);
-                        before = u;
-                    }
-                    Err(StepError::NoProgress { u } | StepError::NoTangent { u }) => prop_assert_eq!(u, before),
-                    Err(error) => prop_assert!(false, "{}", error),
-                }
-            }
-        }
     }
 
     #[test]

@@ -1,15 +1,11 @@
 //! Curves over their arc length.
 
-use crate::curves::{Definition, any_curve, circle};
+use crate::definitions::{Definition, any_curve, circle};
+use curves::nurbs::{Curve, Nurbs, RationalBezier, length, length_between, parameter_at_length, power_basis};
+use curves::{ArcLengthPiece, ArcLengthPieces, Cusp, FLUCTUATION, tabulate};
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use shared::geometry::nurbs::{
-    Curve, Nurbs, PowerBasis, RationalBezier, length, length_between, parameter_at_length,
-};
-use shared::trajectory::{
-    ArcLengthCurve, ArcLengthPiece, ArcLengthPieces, CHANNELS, Cubic, Cusp, Element, FLUCTUATION, Join,
-    SHAPED, Shape,
-};
+use shared::trajectory::{ArcLengthCurve, CHANNELS, Cubic, Element, Join, SHAPED, Shape};
 use std::f64::consts::FRAC_PI_2;
 
 fn pieces(nurbs: &Nurbs) -> Result<Vec<ArcLengthPiece>, Cusp> {
@@ -257,19 +253,19 @@ fn a_curve_that_all_but_stops_is_cut_and_keeps_its_speed() {
 fn what_is_too_uneven_says_so() {
     let points = [(0.0, 0.0), (10.0, 10.0), (3.0, 10.0), (10.0, 0.0)].map(|(x, y)| Vector3::new(x, y, 0.0));
     let curve = RationalBezier::new(&points, &[1.0; 4]).unwrap();
-    let error = ArcLengthCurve::new(&curve).unwrap_err();
+    let error = tabulate(&curve).unwrap_err();
     assert!(f64::from(error.fluctuation) > FLUCTUATION / 2.0);
     assert!(error.to_string().starts_with("too uneven"), "{error}");
     let overflowing = points.map(|point| point * 1e200);
     let curve = RationalBezier::new(&overflowing, &[1.0; 4]).unwrap();
-    assert!(ArcLengthCurve::new(&curve).is_err());
+    assert!(tabulate(&curve).is_err());
 }
 
 #[test]
 fn a_curve_is_small_and_an_element_goes_along_it() {
     assert!(size_of::<ArcLengthCurve>() <= 320);
     let points = [(0.0, 0.0), (3.0, 0.0), (5.0, 2.0)].map(|(x, y)| Vector3::new(x, y, 1.0));
-    let curve = ArcLengthCurve::new(&RationalBezier::new(&points, &[1.0, 0.9, 1.0]).unwrap()).unwrap();
+    let curve = tabulate(&RationalBezier::new(&points, &[1.0, 0.9, 1.0]).unwrap()).unwrap();
     let element = Element {
         line: 1,
         shape: Shape::Curve(curve),
@@ -301,7 +297,7 @@ proptest! {
             for (part, of_whole) in [(before, cut * t), (after, cut + (1.0 - cut) * t)] {
                 let (wanted, seen) = (piece.curve.at(of_whole), part.at(t));
                 prop_assert!((seen.value - wanted.value).norm() <= rounding);
-                let power = PowerBasis::new(&part).at(2.0 * t - 1.0);
+                let power = power_basis(&part).at(2.0 * t - 1.0);
                 prop_assert!((power.value - seen.value).norm() <= rounding);
                 let off = (power.first * 2.0 - seen.first).norm();
                 prop_assert!(off <= 1e-9 * seen.first.norm() + 100.0 * rounding);

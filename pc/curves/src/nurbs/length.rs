@@ -74,19 +74,6 @@ pub fn length<C: Curve>(curve: &C) -> f64 {
     length_between(curve, from, to)
 }
 
-/// Arc length \[mm\] of all of `curve` by a fixed amount of work: 8 evaluations in each of the `parts` that every
-/// smooth stretch is cut into. With 16 parts it is good to 1e-9 on calm curves, but only to 1e-5 where one
-/// nearly stops; [`length`] sees to its accuracy itself.
-pub fn length_in_parts<C: Curve>(curve: &C, parts: u32) -> f64 {
-    let [from, to] = curve.domain();
-    let of_span = |[a, b]: [f64; 2]| {
-        let bound = |i: u32| a + (b - a) * (f64::from(i) / f64::from(parts));
-        let each = (0..parts).map(|i| gauss(curve, bound(i), bound(i + 1)));
-        each.sum::<f64>()
-    };
-    spans(curve, from, to).map(of_span).sum()
-}
-
 /// The parameter a `distance` \[mm\] of arc length after the parameter `from`, to 1e-10 of the length of the
 /// span it lies in. Not before `from`, and not beyond the end of the domain.
 pub fn parameter_at_length<C: Curve>(curve: &C, from: f64, distance: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! What all parametric curves have, and their curvature (mathematics 3.2).
 
-use super::super::Moving;
 use nalgebra::Vector3;
+use shared::geometry::Moving;
 use thiserror::Error;
 
 /// A curve over a parameter u, smooth but at a finite number of parameters, its breaks.
@@ -55,24 +55,4 @@ pub fn curvature(at: &Moving) -> Result<f64, NoTangent> {
     let speed = speed(at).ok_or(NoTangent)?;
     // Divided early: the cube of a small speed would lose the digits.
     Ok((at.first / speed).cross(&(at.second / speed)).norm() / speed)
-}
-
-/// Radius \[mm\] of the circle through three points on the curve, by the height of the middle one above the
-/// chord of the others; infinite if they lie on a line.
-///
-/// For comparison only: its error falls with the square of the distance of the points, and rises again by
-/// cancellation when they come close (mathematics 3.2). [`curvature`] is exact.
-pub fn chord_height_radius(points: [Vector3<f64>; 3]) -> f64 {
-    let chord = points[2] - points[0];
-    let to_middle = points[1] - points[0];
-    let length = chord.norm();
-    if length == 0.0 {
-        return to_middle.norm() / 2.0;
-    }
-    let height = (to_middle - chord * (to_middle.dot(&chord) / (length * length))).norm();
-    if height < 1e-15 * length {
-        f64::INFINITY
-    } else {
-        length * length / (8.0 * height) + height / 2.0
-    }
 }

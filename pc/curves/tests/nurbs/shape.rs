@@ -1,9 +1,9 @@
 //! Points, derivatives, curvature, pieces.
 
-use crate::curves::{any_curve, at_part, circle};
+use crate::definitions::{any_curve, at_part, circle};
+use curves::nurbs::{Curve, NoTangent, Nurbs, RationalBezier, curvature};
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use shared::geometry::nurbs::{Curve, NoTangent, Nurbs, RationalBezier, chord_height_radius, curvature};
 
 #[test]
 fn a_circle_is_round_to_the_last_digit() {
@@ -15,18 +15,6 @@ fn a_circle_is_round_to_the_last_digit() {
         assert!(at.value.dot(&at.first).abs() < 1e-11, "tangent at {k}");
         assert!((curvature(&at).unwrap() - 0.02).abs() < 1e-15, "curvature at {k}");
     }
-}
-
-#[test]
-fn three_points_of_a_circle_have_its_radius() {
-    let points = [0.1, 0.3, 0.5f64].map(|a| Vector3::new(a.cos(), a.sin(), 0.0) * 3.0);
-    assert!((chord_height_radius(points) - 3.0).abs() < 1e-13);
-    let half_circle = [-1.0, 0.0, 1.0f64].map(|x| Vector3::new(x, (1.0 - x * x).sqrt(), 0.0));
-    assert_eq!(chord_height_radius(half_circle), 1.0);
-    let there_and_back = [0.0, 2.0, 0.0].map(|x| Vector3::new(x, 0.0, 0.0));
-    assert_eq!(chord_height_radius(there_and_back), 1.0);
-    let line = [0.0, 1.0, 3.0].map(|x| Vector3::new(x, x, x));
-    assert_eq!(chord_height_radius(line), f64::INFINITY);
 }
 
 #[test]

@@ -2,6 +2,6 @@
 
 mod along;
 mod arc_length;
-mod curves;
+mod definitions;
 mod shape;
 mod validity;

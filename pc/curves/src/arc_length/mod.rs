@@ -1,11 +1,20 @@
-//! The parameter of a curve as a polynomial over its arc length.
+//! Free-form curves over their arc length.
+//!
+//! A rational Bézier curve has no formula for its parameter at a length, so that is tabulated as a polynomial,
+//! to the accuracy that the [speed](FLUCTUATION) asks for. Where the curve is too uneven for one polynomial, as
+//! where it almost turns on the spot, [`ArcLengthPieces`] cuts it.
 //!
 //! dv/ds = 1/|C′(v)| is solved by collocation: a polynomial v(s) that fulfils it at Lobatto's nodes, both ends
 //! among them, so that pieces join without a step in speed. |C′(v(s))|·dv/ds − 1 is the fluctuation of the speed
 //! along the curve at s, exactly and without a quadrature; so it is checked between the nodes.
 
-use crate::geometry::nurbs::PowerBasis;
-use nalgebra::Vector2;
+mod pieces;
+
+pub use pieces::{ArcLengthPiece, ArcLengthPieces, Cusp};
+
+use crate::nurbs::{RationalBezier, power_basis};
+use shared::geometry::nurbs::PowerBasis;
+use shared::trajectory::{ArcLengthCurve, NoCurve, PARAMETER_COEFFICIENTS as COEFFICIENTS};
 use thiserror::Error;
 
 /// Deviation of the speed along a curve from the one that is asked for, as a part of it, at most. Half of it is
@@ -32,8 +41,8 @@ const NODES: [f64; COUNT] = [
     1.0,
 ];
 
-/// Coefficients of the parameter, from the constant one on.
-pub(super) const COEFFICIENTS: usize = COUNT + 1;
+// The integral of a polynomial through the values at all nodes.
+const _: () = assert!(COEFFICIENTS == COUNT + 1);
 
 /// For each node, the weights of the values at all nodes in their [integral] there.
 static INTEGRALS: [[f64; COUNT]; COUNT] = integrals();
@@ -55,33 +64,21 @@ pub struct TooUneven {
     pub fluctuation: f32,
 }
 
-/// The parameter v, from −1 to 1, over the length from the middle of a curve.
-///
-/// Coefficients of an even power and the odd one above it side by side: Horner's rule over the square of the
-/// length then takes half as many steps, of two coefficients each, which two lanes of a processor share.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Parameter(pub(super) [Vector2<f64>; COEFFICIENTS / 2]);
-
-impl Parameter {
-    /// v and dv/dx \[1/mm\] at the length `x` \[mm\] from the middle.
-    #[inline]
-    pub(super) fn at(&self, x: f64) -> (f64, f64) {
-        let square = x * x;
-        let [lower @ .., highest] = &self.0;
-        let (mut sum, mut slope) = (*highest, Vector2::zeros());
-        for pair in lower.iter().rev() {
-            slope = slope * square + sum;
-            sum = sum * square + pair;
-        }
-        (sum.x + x * sum.y, sum.y + 2.0 * x * (slope.x + x * slope.y))
-    }
+/// The same curve as `curve` over its arc length, or an error if it must be split first. The work is bounded: at most
+/// 193 evaluations of the curve, mostly about 105.
+pub fn tabulate(curve: &RationalBezier) -> Result<ArcLengthCurve, TooUneven> {
+    let curve = power_basis(curve);
+    let (parameter, half_length) = table(&curve)?;
+    ArcLengthCurve::of_parts(curve, parameter, half_length).map_err(|NoCurve| NO_TABLE)
 }
 
-/// The parameter over the length, and half the length \[mm\].
-pub(super) fn tabulate(curve: &PowerBasis) -> Result<(Parameter, f64), TooUneven> {
-    let rates = collocate(curve).ok_or(TooUneven {
-        fluctuation: f32::INFINITY,
-    })?;
+const NO_TABLE: TooUneven = TooUneven {
+    fluctuation: f32::INFINITY,
+};
+
+/// Coefficients of the parameter over the length from the middle, and half the length \[mm\].
+fn table(curve: &PowerBasis) -> Result<([f64; COEFFICIENTS], f64), TooUneven> {
+    let rates = collocate(curve).ok_or(NO_TABLE)?;
     let slope = interpolate(rates);
     let mut parameter = integral(&slope);
     // From these coefficients and no others, so that the ends are exact.
@@ -104,8 +101,7 @@ pub(super) fn tabulate(curve: &PowerBasis) -> Result<(Parameter, f64), TooUneven
         *coefficient *= scale;
         scale /= half_length;
     }
-    let pairs = core::array::from_fn(|i| Vector2::new(parameter[2 * i], parameter[2 * i + 1]));
-    Ok((Parameter(pairs), half_length))
+    Ok((parameter, half_length))
 }
 
 /// Solves dv/ds = 1/|C′(v)| by Picard's iteration: 1/|C′| \[1/mm\] at the nodes, which are

@@ -1,8 +1,8 @@
 //! Curves to test with.
 
+use curves::nurbs::{Curve, MAX_DEGREE, Nurbs, NurbsError};
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use shared::geometry::nurbs::{Curve, MAX_DEGREE, Nurbs, NurbsError};
 
 /// What a curve borrows.
 #[derive(Clone, Debug)]

@@ -1,12 +1,12 @@
-//! Rational Bézier curves in the power basis: the quickest form to evaluate.
+//! Pieces of NURBS in the power basis: the quickest form to evaluate (mathematics 3).
 
-use super::super::Moving;
-use super::bezier::RationalBezier;
-use super::de_boor::{homogeneous, project};
-use super::{MAX_DEGREE, ORDER};
+use super::Moving;
 use nalgebra::{Vector3, Vector4};
 
-/// A [`RationalBezier`] as polynomials about its middle: over v = 2t − 1, from −1 to 1.
+/// The highest degree of a curve; CAD systems rarely write a higher one.
+pub const MAX_DEGREE: usize = 5;
+
+/// A rational Bézier curve as polynomials about its middle: over v = 2t − 1, from −1 to 1.
 ///
 /// About the middle, and relative to the point there, the terms stay small, and so does their rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,34 +18,6 @@ pub struct PowerBasis {
 }
 
 impl PowerBasis {
-    /// The same curve as `curve`.
-    ///
-    /// Over its second half v goes from 0 to 1, so the terms are the binomial differences of the control points
-    /// of that half.
-    pub fn new(curve: &RationalBezier) -> Self {
-        let [_, half] = curve.split(0.5);
-        let (degree, middle, weight) = (half.degree(), half.points()[0], half.weights()[0]);
-        let mut relative = [Vector3::zeros(); ORDER];
-        for (slot, point) in relative.iter_mut().zip(half.points()) {
-            *slot = point - middle;
-        }
-        let mut differences = homogeneous(&relative[..=degree], half.weights());
-        let mut terms = [Vector4::zeros(); MAX_DEGREE];
-        let mut binomial = 1.0;
-        for k in 1..=degree {
-            for i in 0..=degree - k {
-                differences[i] = differences[i + 1] - differences[i];
-            }
-            binomial *= (degree + 1 - k) as f64 / k as f64;
-            terms[k - 1] = differences[0] * (binomial / weight);
-        }
-        Self {
-            middle,
-            terms,
-            degree,
-        }
-    }
-
     /// The point in the middle, and the terms in use.
     pub fn parts(&self) -> (Vector3<f64>, &[Vector4<f64>]) {
         (self.middle, &self.terms[..self.degree])
@@ -82,4 +54,13 @@ impl PowerBasis {
         moving.value += self.middle;
         moving
     }
+}
+
+/// A homogeneous point with its derivatives, divided by its weight.
+pub fn project(a: &Vector4<f64>, a1: &Vector4<f64>, a2: &Vector4<f64>) -> Moving {
+    let per_weight = 1.0 / a.w;
+    let value = a.xyz() * per_weight;
+    let first = (a1.xyz() - value * a1.w) * per_weight;
+    let second = (a2.xyz() - first * (2.0 * a1.w) - value * a2.w) * per_weight;
+    Moving { value, first, second }
 }

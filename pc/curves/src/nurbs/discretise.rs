@@ -1,9 +1,9 @@
 //! Parameters between which a curve is straight enough (mathematics 3.6).
 
-use super::super::angle;
 use super::curve::{Curve, spans};
 use heapless::Vec;
 use nalgebra::Vector3;
+use shared::geometry::angle;
 use thiserror::Error;
 
 /// How fine a curve is cut.

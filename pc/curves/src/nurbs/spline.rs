@@ -1,10 +1,10 @@
 //! The NURBS curve itself (mathematics 3.1).
 
-use super::super::Moving;
 use super::curve::Curve;
 use super::de_boor::{Net, evaluate, homogeneous};
 use super::validation::{NurbsError, validate};
 use nalgebra::Vector3;
+use shared::geometry::Moving;
 
 /// C(u) = Σ N(u)·w·d / Σ N(u)·w over borrowed control points d \[mm\], weights w and knots.
 ///

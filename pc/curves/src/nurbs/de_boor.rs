@@ -1,8 +1,9 @@
 //! De Boor's triangle in homogeneous coordinates (w·P, w): points, derivatives and blossoms of one span.
 
-use super::super::Moving;
 use super::ORDER;
 use nalgebra::{Vector3, Vector4};
+use shared::geometry::Moving;
+use shared::geometry::nurbs::project;
 
 /// Homogeneous control points of one span; those above the degree are not used.
 pub(super) type Net = [Vector4<f64>; ORDER];
@@ -59,13 +60,4 @@ pub(super) fn evaluate(mut net: Net, knots: &[f64], u: f64) -> Moving {
     let first = (net[1] - net[0]) * (k / width);
     raise(&mut net, knots, degree, u);
     project(&net[0], &first, &second)
-}
-
-/// A homogeneous point with its derivatives, divided by its weight.
-pub(super) fn project(a: &Vector4<f64>, a1: &Vector4<f64>, a2: &Vector4<f64>) -> Moving {
-    let per_weight = 1.0 / a.w;
-    let value = a.xyz() * per_weight;
-    let first = (a1.xyz() - value * a1.w) * per_weight;
-    let second = (a2.xyz() - first * (2.0 * a1.w) - value * a2.w) * per_weight;
-    Moving { value, first, second }
 }

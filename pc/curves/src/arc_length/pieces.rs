@@ -1,7 +1,8 @@
 //! Cutting a NURBS into pieces over arc length.
 
-use super::ArcLengthCurve;
-use crate::geometry::nurbs::{Nurbs, Piece, Pieces, RationalBezier};
+use super::tabulate;
+use crate::nurbs::{Nurbs, Piece, Pieces, RationalBezier};
+use shared::trajectory::ArcLengthCurve;
 use thiserror::Error;
 
 /// A curve that needs pieces shorter than this \[mm\] turns on the spot, for all that a machine can follow.
@@ -115,7 +116,7 @@ impl Rest {
             } else {
                 [self.curve; 2]
             };
-            if let Ok(curve) = ArcLengthCurve::new(&piece) {
+            if let Ok(curve) = tabulate(&piece) {
                 let piece = ArcLengthPiece {
                     curve,
                     from: self.parameter(self.left),
