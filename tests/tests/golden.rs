@@ -26,6 +26,7 @@ mod golden {
     mod tally;
     mod teaching;
     mod tracking;
+    mod trapezoid;
     mod vision;
 
     /// A test for each file, and the list of their names.

@@ -7,7 +7,6 @@ mod motion;
 pub mod nurbs;
 mod offset;
 mod pose;
-mod saddle;
 
 pub use arc::{Arc, ArcError, Turn};
 pub use attitude::{AttitudeError, angle, interpolate, rotate};
@@ -15,7 +14,3 @@ pub use line::{Line, LineError};
 pub use motion::{Moving, PoseMotion, pose_in_motion};
 pub use offset::PoseOffset;
 pub use pose::{Pose, PoseError};
-pub use saddle::{
-    CurvePoint, MachineCoordinates, Meeting, Nearest, PipePair, PipePairConfig, SaddleCurve, SaddleError,
-    SeamFrame, SeamPoint, Sheet,
-};

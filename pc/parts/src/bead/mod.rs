@@ -16,6 +16,7 @@ mod speed;
 mod stations;
 #[cfg(test)]
 mod tests;
+pub mod window;
 
 use crate::limits::SPEED_DIP;
 use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
@@ -29,10 +30,10 @@ use points::LONGEST;
 use program::Pass;
 use route::Route;
 use serde::Deserialize;
-use shared::trajectory::ProcessWindow;
 use speed::FeedStep;
 use std::borrow::Cow;
 use std::path::PathBuf;
+use window::ProcessWindow;
 
 /// Room between a bead and a torch that travels \[mm\].
 const CLEARANCE: f64 = 10.0;

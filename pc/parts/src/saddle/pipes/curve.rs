@@ -2,8 +2,8 @@
 
 use super::closed::{Closed, ROUND};
 use super::{Meeting, PipePair, SaddleError, SeamFrame, SeamPoint, Sheet};
-use crate::geometry::Moving;
 use nalgebra::Vector3;
+use shared::geometry::Moving;
 
 /// Parts of the round of equal parameter whose lengths are kept. A multiple of 4, so that the corners of
 /// tangent pipes, at quarters of the round, lie between parts.

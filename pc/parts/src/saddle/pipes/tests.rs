@@ -1,9 +1,6 @@
-extern crate std;
-
 use super::*;
-use core::f64::consts::PI;
 use proptest::prelude::*;
-use std::string::ToString;
+use std::f64::consts::PI;
 
 /// Pairs of every kind that meet, at β from 30° to 150°, and not nearer to tangent than 2 % of R, where the
 /// seam bends too sharply for the steps of these tests.
@@ -29,14 +26,7 @@ fn sheets() -> impl Strategy<Value = Sheet> {
 
 /// The prototype of mathematics 1.3: main pipe ⌀320, branch ⌀80, offset 10, 5° oblique.
 fn prototype() -> PipePair {
-    PipePairConfig {
-        main_radius_mm: 160.0,
-        branch_radius_mm: 40.0,
-        angle_deg: 85.0,
-        offset_mm: 10.0,
-    }
-    .build()
-    .unwrap()
+    PipePair::new(160.0, 40.0, 85f64.to_radians(), 10.0).unwrap()
 }
 
 proptest! {
@@ -73,7 +63,7 @@ proptest! {
         }
         // Each wall leads out of the other pipe, and the torch is in the middle of the walls.
         prop_assert!(frame.branch_wall.dot(&nb) > 0.0 && frame.main_wall.dot(&na) > 0.0);
-        let angle = crate::geometry::angle;
+        let angle = shared::geometry::angle;
         prop_assert!((angle(&frame.branch_wall, &frame.main_wall) - frame.groove).abs() < 1e-12);
         prop_assert!((angle(&frame.torch, &frame.branch_wall) - frame.work_angle()).abs() < 1e-12);
         prop_assert!((angle(&frame.torch, &frame.main_wall) - frame.work_angle()).abs() < 1e-12);

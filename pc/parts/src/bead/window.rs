@@ -54,28 +54,15 @@ pub enum WindowError {
         /// Upper end.
         high: f64,
     },
-    /// No planned speeds, or not as many of them as path lengths.
-    #[error("{speeds} speeds planned at {places} places: there must be one for each, and at least one")]
-    Count {
-        /// Places on the path.
-        places: usize,
-        /// Speeds planned.
-        speeds: usize,
-    },
+    /// No planned speeds.
+    #[error("no speeds are planned: there must be at least one")]
+    NoSpeeds,
     /// A planned speed is negative or not a number.
     #[error("the speed planned at point {index} is {value} mm/s, but must be zero or more")]
     Speed {
         /// Which point, from 0.
         index: usize,
         /// What is planned.
-        value: f64,
-    },
-    /// A path length is not finite or below the one before it.
-    #[error("the path length goes back at point {index}, to {value} mm")]
-    Order {
-        /// Which point, from 0.
-        index: usize,
-        /// Its path length.
         value: f64,
     },
 }
@@ -132,7 +119,7 @@ impl ProcessWindow {
             return Err(WindowError::Empty { low, high });
         }
         if planned.is_empty() {
-            return Err(WindowError::Count { places: 0, speeds: 0 });
+            return Err(WindowError::NoSpeeds);
         }
         for (index, &value) in planned.iter().enumerate() {
             check_speed(index, value)?;
@@ -151,54 +138,9 @@ impl ProcessWindow {
     }
 }
 
-/// Lowers `speeds` \[mm/s\] at the path lengths `s` \[mm\] until none needs more than `acceleration` \[mm/s²\]
-/// from its neighbours, beginning at `start` and ending at `end` \[mm/s\] or less: v² changes by at most 2aΔs.
-///
-/// Places may coincide; their speeds then become equal.
-pub fn limit_acceleration(
-    s: &[f64],
-    speeds: &mut [f64],
-    acceleration: f64,
-    start: f64,
-    end: f64,
-) -> Result<(), WindowError> {
-    positive(acceleration)?;
-    let n = speeds.len();
-    if n == 0 || s.len() != n {
-        return Err(WindowError::Count {
-            places: s.len(),
-            speeds: n,
-        });
-    }
-    for (index, &value) in s.iter().enumerate() {
-        if !value.is_finite() || index > 0 && value < s[index - 1] {
-            return Err(WindowError::Order { index, value });
-        }
-    }
-    for (index, &value) in speeds.iter().enumerate() {
-        check_speed(index, value)?;
-    }
-    check_speed(0, start)?;
-    check_speed(n - 1, end)?;
-    speeds[0] = libm::fmin(speeds[0], start);
-    speeds[n - 1] = libm::fmin(speeds[n - 1], end);
-    let reachable = |from: f64, way: f64| libm::sqrt(from * from + 2.0 * acceleration * way);
-    for i in 1..n {
-        speeds[i] = libm::fmin(speeds[i], reachable(speeds[i - 1], s[i] - s[i - 1]));
-    }
-    for i in (1..n).rev() {
-        speeds[i - 1] = libm::fmin(speeds[i - 1], reachable(speeds[i], s[i] - s[i - 1]));
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
-    extern crate std;
     use super::*;
-    use proptest::prelude::*;
-    use std::string::ToString;
-    use std::vec::Vec;
 
     const LIMITS: CurveLimits = CurveLimits {
         velocity: 16.0,
@@ -273,68 +215,11 @@ mod tests {
             window(5.0, 4.0).apply(&mut [1.0]),
             Err(WindowError::Empty { low: 5.0, high: 4.0 })
         );
-        assert_eq!(
-            window(4.0, 16.0).apply(&mut []),
-            Err(WindowError::Count { places: 0, speeds: 0 })
-        );
+        assert_eq!(window(4.0, 16.0).apply(&mut []), Err(WindowError::NoSpeeds));
         let nan = window(4.0, 16.0).apply(&mut [1.0, f64::NAN]).unwrap_err();
         assert_eq!(
             nan.to_string(),
             "the speed planned at point 1 is NaN mm/s, but must be zero or more"
         );
-        let passes =
-            |s: &[f64], v: &[f64], a: f64, end: f64| limit_acceleration(s, &mut v.to_vec(), a, 0.0, end);
-        assert_eq!(passes(&[0.0, 1.0], &[1.0, 1.0], 10.0, 0.0), Ok(()));
-        assert_eq!(
-            passes(&[0.0, 1.0], &[1.0], 10.0, 0.0),
-            Err(WindowError::Count { places: 2, speeds: 1 })
-        );
-        assert_eq!(
-            passes(&[], &[], 10.0, 0.0),
-            Err(WindowError::Count { places: 0, speeds: 0 })
-        );
-        assert_eq!(
-            passes(&[0.0, 2.0, 1.0], &[1.0; 3], 10.0, 0.0),
-            Err(WindowError::Order { index: 2, value: 1.0 })
-        );
-        assert_eq!(passes(&[0.0], &[1.0], -1.0, 0.0), Err(WindowError::Limit(-1.0)));
-        assert_eq!(
-            passes(&[0.0, 1.0], &[1.0; 2], 1.0, -2.0),
-            Err(WindowError::Speed {
-                index: 1,
-                value: -2.0
-            })
-        );
-    }
-
-    proptest! {
-        #[test]
-        fn acceleration_stays_in_its_limit_and_speeds_are_only_lowered_where_it_needs(
-            steps in prop::collection::vec((prop_oneof![Just(0.0), 0.0..5.0f64], 0.0..100.0f64), 1..40),
-            acceleration in 1.0..1000.0f64, start in 0.0..20.0f64, end in 0.0..20.0f64,
-        ) {
-            let mut s = Vec::new();
-            for (step, _) in &steps {
-                s.push(s.last().unwrap_or(&0.0) + step);
-            }
-            let planned: Vec<f64> = steps.iter().map(|step| step.1).collect();
-            let mut v = planned.clone();
-            limit_acceleration(&s, &mut v, acceleration, start, end).unwrap();
-            let n = v.len();
-            prop_assert!(v[0] <= start && v[n - 1] <= end);
-            for i in 0..n {
-                prop_assert!(v[i] <= planned[i] && v[i] >= 0.0);
-                let change = |j: usize| v[i] * v[i] - v[j] * v[j] - 2.0 * acceleration * (s[i] - s[j]).abs();
-                let neighbours = [i.checked_sub(1), (i + 1 < n).then_some(i + 1)];
-                let changes: Vec<f64> = neighbours.into_iter().flatten().map(change).collect();
-                prop_assert!(changes.iter().all(|c| *c <= 1e-9));
-                // Lowered only if a neighbour or an end asks for it.
-                let asked = [(0, start), (n - 1, end)].iter().any(|&(j, limit)| j == i && v[i] == limit);
-                prop_assert!(v[i] == planned[i] || asked || changes.iter().any(|c| *c >= -1e-9));
-            }
-            let once = v.clone();
-            limit_acceleration(&s, &mut v, acceleration, start, end).unwrap();
-            prop_assert!(once.iter().zip(&v).all(|(a, b)| (a - b).abs() < 1e-9));
-        }
     }
 }

@@ -1,8 +1,8 @@
 //! Directions of the groove between the walls, and the coordinates of a pipe welder (mathematics 1.2, 1.3).
 
 use super::{PipePair, SaddleError};
-use core::f64::consts::TAU;
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 
 /// A point where the walls meet.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -20,39 +20,11 @@ pub use error::SaddleError;
 pub use frame::{MachineCoordinates, SeamFrame, SeamPoint};
 pub use nearest::Nearest;
 
-use core::f64::consts::TAU;
-use heapless::Vec;
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// Relative tolerance of tangency: r + |δ| = R within this part of R.
 const TANGENT: f64 = 1e-9;
-
-/// Two pipes as people give them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PipePairConfig {
-    /// Outer radius of the main pipe \[mm\].
-    pub main_radius_mm: f64,
-    /// Outer radius of the branch \[mm\].
-    pub branch_radius_mm: f64,
-    /// Angle β from the main axis to the branch axis \[°\], 90 for a square branch.
-    pub angle_deg: f64,
-    /// Distance δ of the axes, towards +X \[mm\].
-    pub offset_mm: f64,
-}
-
-impl PipePairConfig {
-    /// The pair.
-    pub fn build(&self) -> Result<PipePair, SaddleError> {
-        PipePair::new(
-            self.main_radius_mm,
-            self.branch_radius_mm,
-            self.angle_deg.to_radians(),
-            self.offset_mm,
-        )
-    }
-}
 
 /// How two pipes meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,9 +127,9 @@ impl PipePair {
 
     /// The intervals of θ where the branch meets the main pipe \[rad\]; the first may begin below 0. At the
     /// ends of those of a partial meeting both sheets join.
-    pub fn intervals(&self) -> Vec<[f64; 2], 2> {
+    pub fn intervals(&self) -> Vec<[f64; 2]> {
         let mut intervals = Vec::new();
-        let mut add = |from: f64, to: f64| intervals.push([from, to]).expect("two at most");
+        let mut add = |from: f64, to: f64| intervals.push([from, to]);
         match self.meeting {
             Meeting::None => {}
             Meeting::Full | Meeting::Tangent => add(0.0, TAU),

@@ -1,8 +1,8 @@
 //! The closed seams of two pipes over a parameter that goes on evenly all around.
 
 use super::{Meeting, PipePair, Sheet, TANGENT};
-use core::f64::consts::TAU;
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 
 /// The parameter u of a closed seam goes from 0 to this.
 pub const ROUND: f64 = TAU;
