@@ -9,7 +9,7 @@ mod offset;
 mod pose;
 
 pub use arc::{Arc, ArcError, Turn};
-pub use attitude::{AttitudeError, angle, interpolate, rotate};
+pub use attitude::{angle, rotate};
 pub use line::{Line, LineError};
 pub use motion::{Moving, PoseMotion, pose_in_motion};
 pub use offset::PoseOffset;

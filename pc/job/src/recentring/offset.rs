@@ -1,9 +1,9 @@
 //! Which move of the six axes takes the most off the slides (mathematics 0.7).
 
-use super::frames::Heads;
-use crate::geometry::{Pose, PoseOffset};
-use crate::io::{SIDES, SLIDES};
 use nalgebra::{Matrix4x3, Vector2, Vector3, Vector4};
+use shared::geometry::{Pose, PoseOffset};
+use shared::io::{SIDES, SLIDES};
+use shared::tracking::frames::Heads;
 
 /// What the slides would have to move for the spots to stay, for each unit along M, along N and about T: the negative
 /// of C_1 and C_2 of mathematics 0.7, rows U1 V1 U2 V2, for slides at `slides` \[mm\].
@@ -36,7 +36,7 @@ fn tool() -> Pose {
 
 /// Where slides that stand at `slides` (U1, V1, U2, V2) and keep their spots stand after the pose has moved by
 /// `offset` \[mm\].
-pub fn slides_after(heads: &Heads, slides: &[f64; SLIDES], offset: &PoseOffset) -> [f64; SLIDES] {
+pub(super) fn slides_after(heads: &Heads, slides: &[f64; SLIDES], offset: &PoseOffset) -> [f64; SLIDES] {
     let (before, after) = (tool(), offset.beside(&tool()));
     let mut moved = [0.0; SLIDES];
     for side in 0..SIDES {
@@ -53,7 +53,7 @@ pub fn slides_after(heads: &Heads, slides: &[f64; SLIDES], offset: &PoseOffset) 
 /// would ask for much of it.
 ///
 /// `None` where the heads leave a freedom without effect, or a number is not finite.
-pub fn recentre(heads: &Heads, slides: &[f64; SLIDES], turn: (f64, f64)) -> Option<PoseOffset> {
+pub(super) fn recentre(heads: &Heads, slides: &[f64; SLIDES], turn: (f64, f64)) -> Option<PoseOffset> {
     let response = response(heads, slides);
     let rest = Vector4::from_column_slice(slides);
     let normal = response.tr_mul(&response);
@@ -75,7 +75,7 @@ pub fn recentre(heads: &Heads, slides: &[f64; SLIDES], turn: (f64, f64)) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::HeadConfig;
+    use shared::config::HeadConfig;
 
     const ANY: (f64, f64) = (-10.0, 10.0);
 

@@ -1,8 +1,8 @@
 //! Protections that a machine's parameters leave weaker than usual: allowed, and to be known.
 
-use crate::config::{MotionConfig, TrackerConfig};
-use crate::io::{MOTOR_NAMES, MOTORS, SIDES};
-use heapless::Vec;
+use super::MachineFile;
+use shared::config::{BeamConfig, MotionConfig, TrackerConfig};
+use shared::io::MOTOR_NAMES;
 use thiserror::Error;
 
 /// Following errors at rest that trip late (mm or °), and lags \[s\].
@@ -114,77 +114,76 @@ pub enum WeakProtection {
     },
 }
 
-/// Most that parameters of the motion board can weaken.
-const MOST_OF_MOTION: usize = 2 * MOTORS + 2 * SIDES + 2;
-/// Most that those of the tracker board can.
-const MOST_OF_TRACKER: usize = 5;
-
-impl MotionConfig {
+impl MachineFile {
     /// Protections that act later than usual.
-    pub fn weak_protections(&self) -> Vec<WeakProtection, MOST_OF_MOTION> {
-        let mut found = Vec::new();
-        for (number, motor) in (0..).zip(&self.motors) {
-            let Some(motor) = motor else { continue };
-            let (limit, time_s) = (motor.following_error_base, motor.following_error_time_s);
-            if limit > ERROR {
-                found.extend([WeakProtection::FollowingError { motor: number, limit }]);
-            }
-            if time_s > LAG_S {
-                found.extend([WeakProtection::FollowingErrorInMotion {
-                    motor: number,
-                    time_s,
-                }]);
-            }
-        }
-        if let Some(gantry) = &self.gantry {
-            let yaw = libm::fabs(gantry.skew_trip_mm / (gantry.y2_mm - gantry.y1_mm));
-            if yaw > YAW {
-                found.extend([WeakProtection::Skew {
-                    trip_mm: gantry.skew_trip_mm,
-                    yaw,
-                }]);
-            }
-        }
-        for (side, beam) in (0..).zip(&self.beams) {
-            let rests = |beam: &crate::config::BeamConfig| {
-                // A spindle is meant to turn at rest.
-                beam.min_speed_mm_s <= 0.0 && !beam.stays_on_at_rest
-            };
-            if beam.as_ref().is_some_and(rests) {
-                found.extend([WeakProtection::BeamAtRest { side }]);
-            }
-            let tolerance = beam
-                .as_ref()
-                .and_then(|beam| Some(beam.readback.as_ref()?.tolerance));
-            if let Some(tolerance) = tolerance.filter(|tolerance| *tolerance > POWER) {
-                found.extend([WeakProtection::Power { side, tolerance }]);
-            }
-        }
-        if self.link_timeout_ms > SILENCE_MS {
-            found.extend([WeakProtection::Link {
-                timeout_ms: self.link_timeout_ms,
-            }]);
-        }
+    pub fn weak_protections(&self) -> Vec<WeakProtection> {
+        let tracking = self.tracking.as_ref();
+        let mut found = of_motion(&self.motion);
+        found.extend(tracking.into_iter().flat_map(|unit| of_tracker(&unit.board)));
         found
     }
 }
 
-impl TrackerConfig {
-    /// Protections that act later than usual.
-    pub fn weak_protections(&self) -> Vec<WeakProtection, MOST_OF_TRACKER> {
-        let tracking = &self.tracking;
-        let way_mm = tracking.window_mm + tracking.hold_mm;
-        let (gate_mm, band_mm) = (tracking.gate_mm, tracking.dead_band_mm);
-        let (stale_ms, trip_ms) = (tracking.stale_path_ms, tracking.saturation_trip_ms);
-        let all = [
-            (way_mm > BLIND_MM, WeakProtection::LostSeam { way_mm }),
-            (gate_mm > OUTLIER_MM, WeakProtection::Outliers { gate_mm }),
-            (band_mm > LEFT_ALONE_MM, WeakProtection::DeadBand { band_mm }),
-            (stale_ms > STALE_MS, WeakProtection::StalePath { stale_ms }),
-            (trip_ms > SATURATED_MS, WeakProtection::Saturation { trip_ms }),
-        ];
-        all.into_iter()
-            .filter_map(|(late, found)| late.then_some(found))
-            .collect()
+fn of_motion(motion: &MotionConfig) -> Vec<WeakProtection> {
+    let mut found = Vec::new();
+    for (number, motor) in (0..).zip(&motion.motors) {
+        let Some(motor) = motor else { continue };
+        let (limit, time_s) = (motor.following_error_base, motor.following_error_time_s);
+        if limit > ERROR {
+            found.push(WeakProtection::FollowingError { motor: number, limit });
+        }
+        if time_s > LAG_S {
+            found.push(WeakProtection::FollowingErrorInMotion {
+                motor: number,
+                time_s,
+            });
+        }
     }
+    if let Some(gantry) = &motion.gantry {
+        let yaw = libm::fabs(gantry.skew_trip_mm / (gantry.y2_mm - gantry.y1_mm));
+        if yaw > YAW {
+            found.push(WeakProtection::Skew {
+                trip_mm: gantry.skew_trip_mm,
+                yaw,
+            });
+        }
+    }
+    for (side, beam) in (0..).zip(&motion.beams) {
+        let rests = |beam: &BeamConfig| {
+            // A spindle is meant to turn at rest.
+            beam.min_speed_mm_s <= 0.0 && !beam.stays_on_at_rest
+        };
+        if beam.as_ref().is_some_and(rests) {
+            found.push(WeakProtection::BeamAtRest { side });
+        }
+        let tolerance = beam
+            .as_ref()
+            .and_then(|beam| Some(beam.readback.as_ref()?.tolerance));
+        if let Some(tolerance) = tolerance.filter(|tolerance| *tolerance > POWER) {
+            found.push(WeakProtection::Power { side, tolerance });
+        }
+    }
+    if motion.link_timeout_ms > SILENCE_MS {
+        found.push(WeakProtection::Link {
+            timeout_ms: motion.link_timeout_ms,
+        });
+    }
+    found
+}
+
+fn of_tracker(board: &TrackerConfig) -> Vec<WeakProtection> {
+    let tracking = &board.tracking;
+    let way_mm = tracking.window_mm + tracking.hold_mm;
+    let (gate_mm, band_mm) = (tracking.gate_mm, tracking.dead_band_mm);
+    let (stale_ms, trip_ms) = (tracking.stale_path_ms, tracking.saturation_trip_ms);
+    let all = [
+        (way_mm > BLIND_MM, WeakProtection::LostSeam { way_mm }),
+        (gate_mm > OUTLIER_MM, WeakProtection::Outliers { gate_mm }),
+        (band_mm > LEFT_ALONE_MM, WeakProtection::DeadBand { band_mm }),
+        (stale_ms > STALE_MS, WeakProtection::StalePath { stale_ms }),
+        (trip_ms > SATURATED_MS, WeakProtection::Saturation { trip_ms }),
+    ];
+    all.into_iter()
+        .filter_map(|(late, found)| late.then_some(found))
+        .collect()
 }
