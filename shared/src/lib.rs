@@ -1,4 +1,5 @@
-//! Everything of Seamwright that is the same wherever it runs: on the boards, in the dry run, in tests.
+//! Everything of Seamwright that is the same wherever it runs: on the boards, in the dry run, in tests. What no board runs
+//! has its place with those who use it.
 //!
 //! Rules of this crate: values in, values out; it never reads a clock, a register or a socket, never
 //! allocates and never logs. Time is a field of the inputs. All mathematics goes through `libm`, so that a

@@ -22,9 +22,11 @@ mod golden {
     mod servo_circle;
     mod speed_plan;
     mod spline;
+    mod stepping;
     mod tally;
     mod teaching;
     mod tracking;
+    mod trapezoid;
     mod vision;
 
     /// A test for each file, and the list of their names.

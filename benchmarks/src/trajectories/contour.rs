@@ -2,8 +2,8 @@
 //! other way round.
 
 use super::way::{Course, Move};
+use curves::nurbs::{Curve, length_between};
 use nalgebra::Vector3;
-use shared::geometry::nurbs::{Curve, length_between};
 
 /// The nearest point is looked for so far before and after the path length that was given \[mm\]: more than a rounded
 /// corner takes, ...

@@ -2,9 +2,10 @@
 
 use super::spiral::Spiral;
 use super::way::{Move, ROTARY, Way};
-use shared::geometry::nurbs::{Curve, length_between};
+use curves::nurbs::{Curve, length_between};
+use curves::{ArcLengthPieces, Cusp};
 use shared::geometry::{Arc, ArcError, Turn};
-use shared::trajectory::{ArcLengthPieces, CHANNELS, Cubic, Cusp, Element, Join, SHAPED, Shape, Tolerance};
+use shared::trajectory::{CHANNELS, Cubic, Element, Join, SHAPED, Shape, Tolerance};
 use std::f64::consts::TAU;
 use thiserror::Error;
 

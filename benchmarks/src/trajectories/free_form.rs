@@ -3,9 +3,9 @@
 use super::nurbs::FreeForm;
 use super::way::{Move, ROTARY, Way};
 use anyhow::Result;
+use curves::nurbs::length;
 use nalgebra::Vector3;
 use serde::Deserialize;
-use shared::geometry::nurbs::length;
 
 #[derive(Deserialize)]
 struct Document {

@@ -1,7 +1,7 @@
 //! NURBS that are kept.
 
+use curves::nurbs::{Nurbs, NurbsError};
 use nalgebra::Vector3;
-use shared::geometry::nurbs::{Nurbs, NurbsError};
 
 /// A NURBS with its own memory.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,9 +7,9 @@
 
 use super::spiral::{Spiral, SpiralError};
 use super::way::{Move, ROTARY, Way};
+use curves::nurbs::length;
 use nalgebra::Vector3;
 use shared::geometry::Line;
-use shared::geometry::nurbs::length;
 use thiserror::Error;
 
 /// Ways shorter than this (mm, rad) lead nowhere.

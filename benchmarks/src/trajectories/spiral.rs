@@ -1,7 +1,7 @@
 //! Arcs as a program gives them: about an axis, evenly to another height, another radius, over any number of turns.
 
+use curves::nurbs::Curve;
 use nalgebra::Vector3;
-use shared::geometry::nurbs::Curve;
 use shared::geometry::{Moving, rotate};
 use std::f64::consts::TAU;
 use thiserror::Error;

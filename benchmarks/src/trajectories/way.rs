@@ -2,8 +2,8 @@
 
 use super::nurbs::FreeForm;
 use super::spiral::Spiral;
+use curves::nurbs::{Curve, Nurbs};
 use nalgebra::Vector3;
-use shared::geometry::nurbs::{Curve, Nurbs};
 use shared::geometry::{Line, Moving};
 
 /// Rotary axes A B C.

@@ -1,6 +1,6 @@
 //! Smooth curves through points in any number of channels: natural cubic splines with one parameter.
 
-use shared::geometry::{NaturalSpline, SplineError};
+use curves::{NaturalSpline, SplineError};
 
 /// A natural cubic spline in `N` channels of which the first three are a position \[mm\].
 #[derive(Clone, Debug)]

@@ -1,18 +1,20 @@
 //! Pose re-centring: where a slide has gone far, the six axes take over what they can (mathematics 0.7).
 
+mod offset;
+
 use crate::JobError;
 use crate::run_record::Recentred;
 use crate::session::Session;
 use cam::along::Along;
 use config::machine::TrackingUnit;
 use host_link::boards::LinkError;
+use offset::{recentre, slides_after};
 use shared::geometry::PoseOffset;
 use shared::io::{SLIDE_NAMES, SLIDES};
 use shared::parameter::ParameterError;
 use shared::protocol::{Request, Role};
 use shared::state::TrackerState;
 use shared::tracking::frames::Heads;
-use shared::tracking::recentre::{recentre, slides_after};
 use shared::units::DEG_PER_RAD;
 
 /// Part of its stroke beyond which a slide asks for it, and within which all are before one may ask again.

@@ -16,11 +16,11 @@ mod stir;
 mod surface;
 mod t_seam;
 
-pub use bead::Bead;
+pub use bead::{Bead, window};
 pub use judge::{ALONG, Figure, GAP, Judgement, Plot, Run};
 pub use limits::{Limit, Percent};
 pub use panel::{Panel, PanelError};
-pub use saddle::{Saddle, SaddlePartError, TaughtError};
+pub use saddle::{Saddle, SaddlePartError, TaughtError, pipes};
 pub use seam_curves::{SeamPoint, read_main_curve, read_other_curve};
 pub use seam_limits::SeamLimits;
 pub use stir::Stir;

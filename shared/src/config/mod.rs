@@ -5,8 +5,6 @@
 
 mod motion;
 mod tracker;
-mod weak_protection;
 
 pub use motion::{BeamConfig, MotionConfig, ReadbackConfig};
 pub use tracker::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
-pub use weak_protection::WeakProtection;

@@ -7,17 +7,10 @@ mod motion;
 pub mod nurbs;
 mod offset;
 mod pose;
-mod saddle;
-mod spline;
 
 pub use arc::{Arc, ArcError, Turn};
-pub use attitude::{AttitudeError, angle, interpolate, rotate};
+pub use attitude::{angle, rotate};
 pub use line::{Line, LineError};
 pub use motion::{Moving, PoseMotion, pose_in_motion};
 pub use offset::PoseOffset;
 pub use pose::{Pose, PoseError};
-pub use saddle::{
-    CurvePoint, MachineCoordinates, Meeting, Nearest, PipePair, PipePairConfig, SaddleCurve, SaddleError,
-    SeamFrame, SeamPoint, Sheet,
-};
-pub use spline::{NaturalSpline, SplineError};

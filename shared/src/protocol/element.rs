@@ -222,9 +222,9 @@ impl PathJoin {
 mod tests {
     extern crate std;
     use super::*;
-    use crate::geometry::nurbs::RationalBezier;
     use crate::protocol::framing::{MAX_MESSAGE, encode_message};
     use crate::protocol::{LOAD_ELEMENTS, Request};
+    use crate::trajectory::curve;
     use std::vec::Vec;
 
     fn element(shape: Shape, length: f64) -> Element {
@@ -256,14 +256,7 @@ mod tests {
         };
         let axis = v(0.1, 0.0, 1.0).normalize();
         let full = v(10.0, 0.0, 1.0) + axis * 2.0;
-        let points = [
-            v(0.0, 0.0, 0.0),
-            v(1.3, 0.4, 0.0),
-            v(2.6, 0.5, 0.5),
-            v(4.0, 0.0, 1.0),
-        ];
-        let bezier = RationalBezier::new(&points, &[1.0, 0.95, 1.02, 1.0]).unwrap();
-        let curve = ArcLengthCurve::new(&bezier).unwrap();
+        let curve = curve::tests::arc();
         let cubics = [
             Cubic([1.0, 2.0, 3.0, 4.0]),
             Cubic::constant(1.0),
@@ -296,10 +289,10 @@ mod tests {
         // Line, which shape, middle: then the number of terms of four numbers each.
         let line = postcard::to_slice(&sent.line, &mut [0; 8]).unwrap().len();
         let at = line + 1 + 3 * 8;
-        assert_eq!(buffer[at], 3);
+        assert_eq!(buffer[at], 2);
         let mut none = [0; 1024];
         none[..at].copy_from_slice(&buffer[..at]);
-        none[at + 1..length - 96].copy_from_slice(&buffer[at + 1 + 96..length]);
+        none[at + 1..length - 64].copy_from_slice(&buffer[at + 1 + 64..length]);
         let none: PathElement = postcard::from_bytes(&none).unwrap();
         assert_eq!(none.build(), Err(BadElement { line: sent.line }));
         for bad in [f64::NAN, f64::INFINITY, 1e300, 0.0] {

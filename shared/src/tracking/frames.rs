@@ -46,13 +46,6 @@ impl SpotFrame {
     }
 }
 
-/// A measurement in the plate frame turned into that of a head tilted by `theta` \[rad\] about T from the plate
-/// normal: `u` \[mm\] lateral (along n × t), `h` \[mm\] height (along n) → (ΔU, ΔV) \[mm\] (mathematics 0.7).
-pub fn plate_to_head(theta: f64, u: f64, h: f64) -> (f64, f64) {
-    let (s, c) = (libm::sin(theta), libm::cos(theta));
-    (-(u * c + h * s), u * s - h * c)
-}
-
 /// The two heads on the arc plate, ready for use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heads {

@@ -1,6 +1,6 @@
 //! How much gain a loop with dead time allows (mathematics 0.8.5).
 
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::FRAC_PI_2;
 
 /// The crossover where the open loop K·e^(−sT)/(s(τs+1)) has a phase margin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,19 +33,14 @@ pub fn crossover(delay: f64, lag: f64, margin: f64) -> Crossover {
     }
 }
 
-/// Largest stable gain of a discrete integrator whose input is `delay` samples old: 2 sin(π/(2(2d+1))).
-pub fn discrete_limit(delay: u32) -> f64 {
-    2.0 * libm::sin(PI / (2.0 * (2.0 * f64::from(delay) + 1.0)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use core::f64::consts::PI;
 
     #[test]
     fn a_pure_delay_has_its_limit_at_a_quarter_period() {
         let limit = crossover(0.01, 0.0, 0.0);
         assert!((limit.gain - 50.0 * PI).abs() < 1e-9);
-        assert!((discrete_limit(1) - 1.0).abs() < 1e-15);
     }
 }

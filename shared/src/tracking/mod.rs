@@ -9,7 +9,6 @@ pub mod law;
 pub mod map;
 pub mod parameters;
 pub mod plausible;
-pub mod recentre;
 mod seam;
 pub mod search;
 mod sensible;

@@ -2,31 +2,22 @@
 //!
 //! The motion board runs [`Element`]s through the [`Planner`], which looks ahead. [`Path`] is what the tracker board
 //! looks places up in, and what planners on the PC begin with. [`RestToRest`] is one way by itself, as in homing.
-//! [`Trapezoid`] and [`MatchedTurn`] are for comparison only.
 
-mod curve;
+pub(crate) mod curve;
 mod element;
-mod matched_turn;
 mod path;
 mod planner;
 mod reference;
 mod rest_to_rest;
 mod speed;
-mod trapezoid;
-mod window;
 
-pub use curve::{
-    ArcLengthCurve, ArcLengthPiece, ArcLengthPieces, CurveNumbers, Cusp, FLUCTUATION, NoCurve, TooUneven,
-};
+pub use curve::{ArcLengthCurve, CurveNumbers, NoCurve, PARAMETER_COEFFICIENTS};
 pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
-pub use matched_turn::MatchedTurn;
 pub use path::{Knot, Path, PathError, PathPoint, PathSpace};
 pub use planner::{LONGEST_PATH, Output, PlanLimits, Planner, PushError, Way};
 pub use reference::{ReferenceError, Unreachable, at_unit_speed, axes_at};
 pub use rest_to_rest::RestToRest;
 pub use speed::{SpeedLimits, SpeedState};
-pub use trapezoid::{SmoothedTrapezoid, Trapezoid, TrapezoidError};
-pub use window::{CurveLimits, ProcessWindow, WindowError, WindowPlan, limit_acceleration};
 
 /// Channels of a path: position (3), T (3), N (3), V slide extensions (2).
 pub const CHANNELS: usize = 11;

@@ -1,12 +1,11 @@
 //! Programs made of moves that are relative to one another, so that any of them can be left out.
 
 use super::bench::Bench;
+use curves::ArcLengthPieces;
+use curves::nurbs::Nurbs;
 use nalgebra::Vector3;
-use shared::geometry::nurbs::Nurbs;
 use shared::geometry::{Arc, Line, Turn, rotate};
-use shared::trajectory::{
-    ArcLengthPieces, CHANNELS, Cubic, Element, Join, PathSpace, SHAPED, Shape, Tolerance,
-};
+use shared::trajectory::{CHANNELS, Cubic, Element, Join, PathSpace, SHAPED, Shape, Tolerance};
 use std::f64::consts::TAU;
 
 /// A move, relative to where and in which direction the one before ended.

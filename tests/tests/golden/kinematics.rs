@@ -1,9 +1,10 @@
 //! The dual-beam gantry and attitude (mathematics 0.2–0.4).
 
 use super::file::{Golden, near, near_all, number, numbers, vector};
+use cam::attitude::interpolate;
 use nalgebra::Vector3;
 use serde_json::Value;
-use shared::geometry::{Pose, PoseMotion, interpolate};
+use shared::geometry::{Pose, PoseMotion};
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::{AxisConfig, AxisLimits, Chain, DualBeam, DualBeamConfig, feed_limit, violations};
 

@@ -1,12 +1,10 @@
 //! NURBS curves: points and derivatives, lengths, steps and discretisation (mathematics 3.1, 3.2, 3.5, 3.6).
 
 use super::file::{Golden, near, number, numbers};
+use super::stepping::{chord_height_radius, length_in_parts, newton_step, taylor_1, taylor_2, walk};
+use curves::nurbs::{Curve, Discretisation, Nurbs, NurbsError, curvature, discretise, length};
 use nalgebra::Vector3;
 use serde_json::Value;
-use shared::geometry::nurbs::{
-    Curve, Discretisation, NEWTON_ITERATIONS, Nurbs, NurbsError, StepRule, Walk, chord_height_radius,
-    curvature, discretise, length, length_in_parts, newton_step, taylor_1, taylor_2,
-};
 
 /// What a curve is made of.
 struct Definition {
@@ -122,11 +120,7 @@ pub fn nurbs_step(golden: &Golden) {
             continue;
         };
         let [u, ds] = ["u", "ds"].map(|name| number(&case["in"], name));
-        let rule = StepRule::Newton {
-            iterations: NEWTON_ITERATIONS,
-        };
-        let walk: Result<Vec<f64>, _> = Walk::new(&curve, rule, ds).expect("walk").collect();
-        let walk = walk.expect("walk");
+        let walk = walk(&curve, ds);
         let mut cuts = Vec::new();
         let fineness = Discretisation {
             tolerance: number(&case["in"], "tol"),
@@ -151,12 +145,9 @@ pub fn nurbs_step(golden: &Golden) {
                     near(case, name, seen, wanted, RELATIVE * wanted);
                     (length(&curve), RELATIVE * wanted + 4.0 * (finer - seen).abs())
                 }
-                "taylor1" => (taylor_1(&curve, u, ds).expect(name), parameter),
-                "taylor2" => (taylor_2(&curve, u, ds).expect(name), parameter),
-                "newton" => (
-                    newton_step(&curve, u, ds, NEWTON_ITERATIONS).expect(name),
-                    parameter,
-                ),
+                "taylor1" => (taylor_1(&curve, u, ds), parameter),
+                "taylor2" => (taylor_2(&curve, u, ds), parameter),
+                "newton" => (newton_step(&curve, u, ds), parameter),
                 "n_newton" => (walk.len() as f64, 0.0),
                 "u_10" => (walk[10], parameter),
                 "u_100" => (walk[100], parameter),

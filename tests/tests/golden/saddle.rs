@@ -1,8 +1,8 @@
 //! The seam of two pipes (mathematics 1.1–1.3).
 
 use super::file::{Golden, near, near_all, number};
+use parts::pipes::{Meeting, PipePair, SaddleError, SeamFrame, SeamPoint, Sheet};
 use serde_json::Value;
-use shared::geometry::{Meeting, PipePair, SaddleError, SeamFrame, SeamPoint, Sheet};
 
 /// Tolerances of the file.
 struct Tolerance {

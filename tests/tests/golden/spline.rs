@@ -1,7 +1,7 @@
 //! Natural cubic splines (mathematics 0.4.1).
 
 use super::file::{Golden, near_all, numbers};
-use shared::geometry::NaturalSpline;
+use curves::NaturalSpline;
 
 /// Checks the file `spline`.
 pub fn spline(golden: &Golden) {

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use serde_json::Value;
 use shared::geometry::rotate;
 use shared::io::DacCode;
-use shared::tracking::frames::{SpotFrame, plate_to_head};
-use shared::tracking::gain::{crossover, discrete_limit};
+use shared::tracking::frames::SpotFrame;
+use shared::tracking::gain::crossover;
 use shared::tracking::law::{LawFlag, LawOutput, LawState, SlideLaw, SlideTarget};
 use shared::tracking::map::{Added, MapLaw, SeamMap};
 use std::collections::VecDeque;
@@ -111,6 +111,11 @@ pub fn tracker_seq(golden: &Golden) {
             );
         }
     }
+}
+
+/// Largest stable gain of a discrete integrator whose input is `delay` samples old: 2 sin(π/(2(2d+1))).
+fn discrete_limit(delay: u32) -> f64 {
+    2.0 * (std::f64::consts::PI / (2.0 * (2.0 * f64::from(delay) + 1.0))).sin()
 }
 
 /// Checks the file `track_gain`.
@@ -270,6 +275,13 @@ pub fn m0_uv(golden: &Golden) {
         let (along, u, v) = spot.coordinates(&moved);
         near_all(case, "twist", &[u, v, along], &out["spot_uvt"], golden.tolerance);
     }
+}
+
+/// A measurement in the plate frame turned into that of a head tilted by `theta` \[rad\] about T from the plate
+/// normal: `u` \[mm\] lateral (along n × t), `h` \[mm\] height (along n) → (ΔU, ΔV) \[mm\] (mathematics 0.7).
+fn plate_to_head(theta: f64, u: f64, h: f64) -> (f64, f64) {
+    let (s, c) = (theta.sin(), theta.cos());
+    (-(u * c + h * s), u * s - h * c)
 }
 
 /// Checks the file `m0_uv_meas`.

@@ -4,10 +4,11 @@ use super::nurbs::LongCurve;
 use super::shape::{SHORTEST, channels};
 use super::targets::arc;
 use super::{PathError, Planner, Tip};
+use crate::attitude::interpolate;
 use config::table::FARTHEST_MM;
 use nalgebra::Vector3;
 use nc::{Motion, Place, Target, Way};
-use shared::geometry::{Arc, Moving, Pose, angle, interpolate};
+use shared::geometry::{Arc, Moving, Pose, angle};
 use shared::io::SIDES;
 use shared::trajectory::CHANNELS;
 

@@ -1,10 +1,12 @@
 //! Why a program path cannot be run on this machine.
 
 use super::{CAPACITY, MAX_EVENTS};
+use crate::attitude::AttitudeError;
 use config::table::FARTHEST_MM;
+use curves::SplineError;
+use curves::nurbs::NurbsError;
 use nc::{NcError, Place};
-use shared::geometry::nurbs::NurbsError;
-use shared::geometry::{ArcError, AttitudeError, PoseError, SplineError};
+use shared::geometry::{ArcError, PoseError};
 use shared::io::AXIS_NAMES;
 use shared::kinematics::KinematicsError;
 use thiserror::Error;

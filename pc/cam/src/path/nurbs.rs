@@ -1,9 +1,10 @@
 //! NURBS of a program over their length.
 
 use super::{PathError, Tip};
+use curves::nurbs::{Curve, Nurbs, RationalBezier, length, parameter_at_length};
+use curves::tabulate;
 use nalgebra::Vector3;
 use nc::{NurbsWay, Place};
-use shared::geometry::nurbs::{Curve, Nurbs, RationalBezier, length, parameter_at_length};
 use shared::geometry::{Moving, angle};
 use shared::trajectory::ArcLengthCurve;
 
@@ -70,7 +71,7 @@ impl LongCurve {
             let Some(part) = span.part(from, to) else { continue };
             let mut waiting = vec![part];
             while let Some(piece) = waiting.pop() {
-                match ArcLengthCurve::new(&piece) {
+                match tabulate(&piece) {
                     Ok(curve) => pieces.push(curve),
                     Err(_) if length(&piece) < SHORTEST_PIECE => return Err(span.start),
                     Err(_) => {

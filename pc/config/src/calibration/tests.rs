@@ -1,7 +1,7 @@
 use super::*;
 use nalgebra::{Rotation3, Unit, Vector3};
 use proptest::prelude::*;
-use shared::tracking::frames::{SpotFrame, plate_to_head};
+use shared::tracking::frames::SpotFrame;
 
 const OPTICS: Optics = Optics {
     magnification: 4.0,
@@ -12,6 +12,13 @@ const OPTICS: Optics = Optics {
     rows: 300,
     columns: 400,
 };
+
+/// A measurement in the plate frame turned into that of a head tilted by `theta` \[rad\] about T from the plate
+/// normal: `u` \[mm\] lateral (along n × t), `h` \[mm\] height (along n) → (ΔU, ΔV) \[mm\] (mathematics 0.7).
+fn plate_to_head(theta: f64, u: f64, h: f64) -> (f64, f64) {
+    let (s, c) = (theta.sin(), theta.cos());
+    (-(u * c + h * s), u * s - h * c)
+}
 
 const NOISE: PhotonTransfer = PhotonTransfer {
     full_well: 20_000.0,

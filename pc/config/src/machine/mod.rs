@@ -4,9 +4,11 @@ mod cameras;
 mod check;
 mod document;
 mod error;
+mod weak_protection;
 
 pub use cameras::{CameraConfig, JointForm};
 pub use error::{MachineError, Mistake};
+pub use weak_protection::WeakProtection;
 
 use crate::probe::ProbeUnit;
 use crate::table::line_of;

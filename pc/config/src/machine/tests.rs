@@ -48,23 +48,14 @@ fn no_shipped_machine_weakens_a_protection_and_a_late_one_is_named() {
         "stir-gantry",
     ] {
         let machine = shipped(name);
-        assert!(machine.motion.weak_protections().is_empty(), "{name}");
-        assert!(
-            machine
-                .tracking
-                .is_none_or(|unit| unit.board.weak_protections().is_empty()),
-            "{name}"
-        );
+        assert_eq!(machine.weak_protections(), [], "{name}");
     }
     let text = SHIPPED
         .replace("link_timeout_ms = 500", "link_timeout_ms = 3000")
         .replace("hold_mm = 2.0", "hold_mm = 20.0");
     let machine = MachineFile::parse("m.toml", &text).unwrap();
-    let (motion, tracker) = (
-        machine.motion.weak_protections(),
-        machine.tracking.unwrap().board.weak_protections(),
-    );
-    let told: Vec<String> = motion.iter().chain(&tracker).map(ToString::to_string).collect();
+    let weak = machine.weak_protections();
+    let told: Vec<String> = weak.iter().map(ToString::to_string).collect();
     assert_eq!(told.len(), 2, "{told:?}");
     assert!(told[0].starts_with("link_timeout_ms is 3000"), "{told:?}");
     assert!(told[1].contains("23 mm together"), "{told:?}");
@@ -87,7 +78,6 @@ fn the_readback_of_a_beam_is_read_bounded_and_none_where_it_is_left_out() {
         let machine = MachineFile::parse("m.toml", text).unwrap();
         let [one, two] = machine.motion.beams.clone().map(|beam| beam.unwrap().readback);
         let told: Vec<String> = machine
-            .motion
             .weak_protections()
             .iter()
             .map(ToString::to_string)

@@ -1,9 +1,9 @@
 //! The curve of a bead: a NURBS as a table of the part file or as a JSON file.
 
 use super::error::BeadError;
+use curves::nurbs::{Nurbs, NurbsError};
 use nalgebra::Vector3;
 use serde::Deserialize;
-use shared::geometry::nurbs::{Nurbs, NurbsError};
 use std::path::Path;
 
 /// Degree, control points, weights and knots (mathematics 3.1), not checked yet.

@@ -1,9 +1,9 @@
 //! Why no program can be planned for a bead.
 
+use super::window::WindowError;
 use cam::path::CAPACITY;
-use shared::geometry::SplineError;
-use shared::geometry::nurbs::{DiscretiseError, NurbsError};
-use shared::trajectory::WindowError;
+use curves::SplineError;
+use curves::nurbs::{DiscretiseError, NurbsError};
 use thiserror::Error;
 
 /// Why no program can be planned for a bead. Reads as one sentence.

@@ -1,13 +1,13 @@
 //! What a run made of a bead: true speed against the process window, true tip against the exact NURBS.
 
 use super::route::Route;
+use super::window::ProcessWindow;
 use super::{BeadLimits, Layer};
 use crate::{ALONG, Figure, GAP, Judgement, Plot, Run};
 use anyhow::ensure;
+use curves::nurbs::Curve;
 use evaluate::RunSample;
 use nalgebra::Vector3;
-use shared::geometry::nurbs::Curve;
-use shared::trajectory::ProcessWindow;
 use std::collections::BTreeSet;
 
 /// The true speed is the length of the true way over this many ticks before and after, 8 ms in all: a grating of

@@ -1,6 +1,6 @@
 //! A NURBS over its length, fast to ask: a table of short cells.
 
-use shared::geometry::nurbs::{Curve, Nurbs, Piece, length_between};
+use curves::nurbs::{Curve, Nurbs, Piece, length_between};
 
 /// Length of a cell \[mm\]. A cubic in it is good for 1e-6 mm around corners of a third of a millimetre.
 const CELL: f64 = 0.05;

@@ -16,11 +16,13 @@ mod speed;
 mod stations;
 #[cfg(test)]
 mod tests;
+pub mod window;
 
 use crate::limits::SPEED_DIP;
 use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
 use cam::path::{PlannedPath, Planner};
 use curve_file::CurveFile;
+use curves::nurbs::Curve;
 use error::BeadError;
 use nalgebra::Vector3;
 use nc::{Motion, Options, interpret};
@@ -28,11 +30,10 @@ use points::LONGEST;
 use program::Pass;
 use route::Route;
 use serde::Deserialize;
-use shared::geometry::nurbs::Curve;
-use shared::trajectory::ProcessWindow;
 use speed::FeedStep;
 use std::borrow::Cow;
 use std::path::PathBuf;
+use window::ProcessWindow;
 
 /// Room between a bead and a torch that travels \[mm\].
 const CLEARANCE: f64 = 10.0;

@@ -3,9 +3,9 @@
 use super::Bead;
 use super::route::Route;
 use super::speed::{Limit, SpeedPlan};
+use super::window::ProcessWindow;
 use config::machine::PlanningConfig;
-use shared::geometry::nurbs::Curve;
-use shared::trajectory::ProcessWindow;
+use curves::nurbs::Curve;
 
 /// Of its shape: how it begins and ends, and of how many points a layer is.
 pub(super) fn of_route(bead: &Bead, route: &Route, points: usize) -> Vec<String> {

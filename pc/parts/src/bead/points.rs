@@ -5,8 +5,8 @@ use super::error::BeadError;
 use super::route::Route;
 use cam::curve::Curve as Spline;
 use cam::path::CAPACITY;
+use curves::nurbs::{Curve, Discretisation, discretise};
 use nalgebra::Vector3;
-use shared::geometry::nurbs::{Curve, Discretisation, discretise};
 use shared::geometry::{Moving, angle};
 
 /// Largest distance of the spline from the curve \[mm\]: half of what a planned path may have.

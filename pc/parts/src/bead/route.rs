@@ -3,8 +3,8 @@
 use super::error::BeadError;
 use super::length_table::LengthTable;
 use super::points::LONGEST;
+use curves::nurbs::{self, Curve, Nurbs};
 use nalgebra::Vector3;
-use shared::geometry::nurbs::{self, Curve, Nurbs};
 use shared::geometry::{Moving, angle};
 
 /// A change of direction that the spline through the points makes nothing of \[rad\].

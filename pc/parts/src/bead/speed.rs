@@ -1,16 +1,16 @@
 //! How fast the bead can be laid: curve, machine and process window (mathematics 3.3, 3.4).
 
 use super::error::BeadError;
+use super::window::{CurveLimits, ProcessWindow, WindowError};
 use cam::path::MAX_EVENTS;
 use cam::path::{NOWHERE, PathError, PlannedPath};
 use config::machine::MachineFile;
+use curves::nurbs::curvature;
 use nalgebra::Vector3;
 use shared::geometry::Moving;
-use shared::geometry::nurbs::curvature;
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::{AxisLimits, AxisMotion, Kinematics};
 use shared::ticks::PATH_PERIOD_S;
-use shared::trajectory::{CurveLimits, ProcessWindow, WindowError};
 
 /// Largest distance of the curve from the chord of one path period \[mm\]. The boards interpolate within it, so
 /// this does not make an error; it keeps a period short against the radius.
@@ -171,7 +171,7 @@ pub(super) fn plan(
         .filter(|stretch| stretch[0].speed < window.low)
         .filter_map(slowest)
         .collect();
-    let nothing = BeadError::Window(WindowError::Count { places: 0, speeds: 0 });
+    let nothing = BeadError::Window(WindowError::NoSpeeds);
     Ok(SpeedPlan {
         feeds,
         constant,

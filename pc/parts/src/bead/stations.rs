@@ -6,9 +6,9 @@ use super::{Attitude, Layer};
 use crate::Place;
 use cam::path::Planner;
 use config::machine::MachineFile;
+use curves::nurbs::Curve;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
-use shared::geometry::nurbs::Curve;
 use shared::io::AXES;
 use std::f64::consts::TAU;
 

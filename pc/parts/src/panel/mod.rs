@@ -112,7 +112,7 @@ pub enum PanelError {
     NoHead,
     /// No smooth curve.
     #[error("no smooth curve through the taught points: {0}; are two of them the same?")]
-    Curve(shared::geometry::SplineError),
+    Curve(curves::SplineError),
     /// The head cannot take the attitude.
     #[error("near taught point {point}: {source}")]
     Attitude {

@@ -2,8 +2,8 @@
 
 use super::locate::LocateError;
 use cam::curve::Curve;
+use curves::SplineError;
 use nalgebra::Vector3;
-use shared::geometry::SplineError;
 
 /// Where a plane meets seam 2.
 #[derive(Clone, Copy, Debug, PartialEq)]

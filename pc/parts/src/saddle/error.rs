@@ -1,6 +1,6 @@
 //! Why a saddle cannot be welded as its part file says.
 
-use shared::geometry::SaddleError;
+use super::pipes::SaddleError;
 use thiserror::Error;
 
 /// Why a saddle cannot be welded as its part file says. Reads as one sentence that names the key.

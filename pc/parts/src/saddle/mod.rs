@@ -8,6 +8,7 @@ mod error;
 mod fit;
 mod judge;
 mod least_squares;
+pub mod pipes;
 mod program;
 mod round;
 mod seam;
@@ -20,9 +21,9 @@ pub use error::{SaddlePartError, TaughtError};
 use crate::limits::SPEED_DIP;
 use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
 use fit::Known;
+use pipes::PipePair;
 use seam::{Offset, Placement, Seam};
 use serde::Deserialize;
-use shared::geometry::PipePair;
 use shared::kinematics::Kinematics;
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,9 @@
 //! The seam as the machine sees it: in the frame of the branch it is clamped to, with waist and tilt.
 
 use super::error::SaddlePartError;
+use super::pipes::{Meeting, PipePair, SaddleCurve, SaddleError, SeamPoint, Sheet};
 use nalgebra::Vector3;
-use shared::geometry::{Meeting, PipePair, Pose, SaddleCurve, SaddleError, SeamPoint, Sheet};
+use shared::geometry::Pose;
 use shared::units::{next_to, wrap};
 
 /// Steps to the nearest point, and the last one \[rad\].

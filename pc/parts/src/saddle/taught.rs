@@ -2,10 +2,10 @@
 
 use super::error::{SaddlePartError, TaughtError};
 use super::fit::{Fit, Known, fit};
+use super::pipes::PipePair;
 use super::seam::Seam;
 use config::table::{self, TableError};
 use nalgebra::Vector3;
-use shared::geometry::PipePair;
 use shared::io::AXES;
 use shared::kinematics::{AXIS_UNIT, Kinematics};
 use shared::units::DEG_PER_RAD;

@@ -59,12 +59,7 @@ impl Check {
 
 /// Protections that the machine file leaves weaker than usual.
 fn print_weakened(machine: &MachineFile) {
-    let motion = machine.motion.weak_protections();
-    let tracker = machine
-        .tracking
-        .as_ref()
-        .map(|unit| unit.board.weak_protections());
-    for weakened in motion.iter().chain(tracker.iter().flatten()) {
+    for weakened in machine.weak_protections() {
         outln!("weak protection: {weakened}");
     }
 }

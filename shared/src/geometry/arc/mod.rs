@@ -1,11 +1,10 @@
 //! Circular arcs and helices over their length (mathematics 1.4, 4.2).
 
-mod steps;
 #[cfg(test)]
 mod tests;
 
 use super::{Moving, pose::unit, rotate};
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::TAU;
 use nalgebra::Vector3;
 use thiserror::Error;
 
@@ -15,18 +14,6 @@ const SAME_POINT: f64 = 1e-6;
 /// Why there is no arc.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ArcError {
-    /// Two of three points are the same, to 1e-9 of their largest distance.
-    #[error("coincident: two of the three points are {shortest} mm apart; take three different points")]
-    Coincident {
-        /// Smallest distance between two of the points \[mm\].
-        shortest: f64,
-    },
-    /// The three points lie on a line, to 1e-9 of their largest distance.
-    #[error("collinear: the three points are within {offset} mm of a line; move straight instead")]
-    Collinear {
-        /// Smallest height of the triangle \[mm\].
-        offset: f64,
-    },
     /// Start and end are not equally far from the centre.
     #[error(
         "radius mismatch: the start is {start} mm from the centre, the end {end} mm, and {limit} mm is \
@@ -46,18 +33,6 @@ pub enum ArcError {
     /// The axis has no direction.
     #[error("zero axis: the arc lies in no plane")]
     ZeroAxis,
-    /// Less than [`Arc::LEAST_TAUGHT_SWEEP`]: small errors of the points become large ones of the radius.
-    #[error("ill-conditioned: the three points span {sweep_deg}° only; take them over at least 10°")]
-    IllConditioned {
-        /// Sweep \[°\].
-        sweep_deg: f64,
-    },
-    /// A step that is not above zero.
-    #[error("step: {step} mm is no step along an arc")]
-    Step {
-        /// The step \[mm\].
-        step: f64,
-    },
     /// A coordinate is infinite or not a number.
     #[error("not finite: a coordinate of the arc is no number")]
     NotFinite,
@@ -93,9 +68,6 @@ impl Arc {
     /// Largest difference of the radii at start and end \[mm\]: above the rounding of programs with three
     /// decimals.
     pub const RADIUS_TOLERANCE: f64 = 0.005;
-
-    /// Least sweep that three measured points should span \[rad\], 10° (mathematics 1.4).
-    pub const LEAST_TAUGHT_SWEEP: f64 = PI / 18.0;
 
     /// The arc from `start` to `end` about `centre`, as G2 and G3 give it: `axis` is the axis of the plane, of
     /// any length, and `turn` the sense about it. Ends at one place mean a full circle. The end may be higher
@@ -154,51 +126,6 @@ impl Arc {
         self.sweep += TAU * f64::from(more);
         self.length = libm::hypot(self.radius * self.sweep, rise);
         self
-    }
-
-    /// The arc from `a` through `b` to `c` (mathematics 1.4), right-handed about (b−a)×(c−a). It may be a
-    /// major one. Points taken by measuring should also pass [`Arc::check_conditioning`].
-    pub fn through(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> Result<Self, ArcError> {
-        finite(&[a, b, c])?;
-        let (to_b, to_c) = (b - a, c - a);
-        let sides = [to_b.norm(), to_c.norm(), (c - b).norm()];
-        let longest = sides.iter().fold(0.0, |max: f64, &side| max.max(side));
-        let shortest = sides.iter().fold(longest, |min: f64, &side| min.min(side));
-        if shortest <= 1e-9 * longest {
-            return Err(ArcError::Coincident { shortest });
-        }
-        let normal = to_b.cross(&to_c);
-        let area = normal.norm();
-        if area < 1e-9 * longest * longest {
-            return Err(ArcError::Collinear {
-                offset: area / longest,
-            });
-        }
-        let to_centre = (normal.cross(&to_b) * to_c.norm_squared()
-            + to_c.cross(&normal) * to_b.norm_squared())
-            / (2.0 * area * area);
-        let (axis, arm) = (normal / area, -to_centre);
-        let (radius, sweep) = (arm.norm(), central_angle(&(normal / area), &arm, &(to_c + arm)));
-        Ok(Self {
-            centre: a + to_centre,
-            axis,
-            arm,
-            radius,
-            sweep,
-            drift: Vector3::zeros(),
-            length: radius * sweep,
-        })
-    }
-
-    /// Refuses an arc through measured points that span too little: a sweep of 10° makes an error of the
-    /// radius some 200 times that of the points (mathematics 1.4).
-    pub fn check_conditioning(&self) -> Result<(), ArcError> {
-        if self.sweep < Self::LEAST_TAUGHT_SWEEP {
-            return Err(ArcError::IllConditioned {
-                sweep_deg: self.sweep.to_degrees(),
-            });
-        }
-        Ok(())
     }
 
     /// Centre \[mm\], in the plane of the start.
@@ -273,20 +200,6 @@ impl Arc {
     /// (mathematics 1.4).
     pub fn angle_of(&self, point: &Vector3<f64>) -> f64 {
         central_angle(&self.axis, &self.arm, &(point - self.centre))
-    }
-
-    /// Direction of travel in the XY plane, from X about +Z, after the length `s` \[rad\]: in (−π, π] at the
-    /// start and without a jump from there on. `None` if the axis is not ±Z.
-    ///
-    /// A tool that must look along the path takes C = heading + a constant in every tick, and κ·ṡ as its
-    /// velocity (mathematics 4.2): this holds at any speed and override, see
-    /// [`crate::trajectory::MatchedTurn`] for the rule that does not.
-    pub fn heading(&self, s: f64) -> Option<f64> {
-        if libm::hypot(self.axis.x, self.axis.y) > 1e-9 {
-            return None;
-        }
-        let first = self.axis.cross(&self.arm);
-        Some(libm::atan2(first.y, first.x) + self.signed_sweep(&Vector3::z()) * s / self.length)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Blocks that are followed exactly: the elements that the motion board is given.
 
 use super::*;
-use shared::geometry::nurbs::{Curve, Nurbs};
+use curves::nurbs::{Curve, Nurbs};
 use shared::trajectory::{CHANNELS, Element, Join, Shape};
 
 const STIR: &str = "G43.4\nG0 X600 Y500 Z150 B-2.5 C0\nG0 Z50\nF300\n";
@@ -195,12 +195,12 @@ fn a_nurbs_reaches_the_board_as_curves() {
         assert!(value < 1e-8 && slope < 1e-6, "{value} {slope}");
         let points = POINTS.map(Vector3::from);
         let nurbs = Nurbs::new(3, &points, &WEIGHTS, &KNOTS).unwrap();
-        let whole = shared::geometry::nurbs::length(&nurbs);
+        let whole = curves::nurbs::length(&nurbs);
         assert!((path.length_mm() - whole).abs() < 1e-6);
         let mut s = 0.0;
         for element in &elements {
             for part in [0.0, 0.3, 0.8] {
-                let u = shared::geometry::nurbs::parameter_at_length(&nurbs, 0.0, s + part * element.length);
+                let u = curves::nurbs::parameter_at_length(&nurbs, 0.0, s + part * element.length);
                 let value = element.at(part * element.length).value;
                 let off = Vector3::new(value[0], value[1], value[2]) - nurbs.point(u);
                 assert!(off.norm() < 1e-5, "{off} at {s}");

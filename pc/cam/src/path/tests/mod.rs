@@ -9,9 +9,10 @@ mod nurbs;
 mod outputs;
 
 use super::*;
+use crate::attitude::interpolate;
 use nalgebra::Vector3;
 use nc::{Options, Place, interpret};
-use shared::geometry::{angle, interpolate};
+use shared::geometry::angle;
 use shared::trajectory::{SpeedLimits, at_unit_speed, axes_at};
 use std::fmt::Write;
 

@@ -2,7 +2,7 @@
 
 use super::control::tips;
 use super::*;
-use shared::geometry::nurbs::{Curve, Nurbs, length};
+use curves::nurbs::{Curve, Nurbs, length};
 
 /// A quarter of a circle of 100 mm as an exact rational curve, and the same as an arc.
 #[test]

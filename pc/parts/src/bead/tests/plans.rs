@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::bead::curve_file::CurveFile;
+use curves::nurbs::Curve;
 use nalgebra::Vector3;
-use shared::geometry::nurbs::Curve;
 use shared::io::AXES;
 
 /// A place of a path: s, tip, direction of travel, and T.

@@ -1,11 +1,12 @@
 //! Speeds: inside the window and what the machine can do, and what is said where it cannot.
 
+use super::super::window::ProcessWindow;
 use super::*;
 use crate::bead::speed::{FeedStep, Limit, plan as plan_speed};
 use nalgebra::Vector3;
 use shared::io::AXES;
 use shared::kinematics::AxisLimits;
-use shared::trajectory::{ProcessWindow, at_unit_speed};
+use shared::trajectory::at_unit_speed;
 
 const WINDOW: ProcessWindow = ProcessWindow { low: 4.0, high: 16.0 };
 

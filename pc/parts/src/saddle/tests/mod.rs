@@ -4,11 +4,11 @@ mod dimensions;
 mod planned;
 mod taught;
 
+use super::pipes::Sheet;
 use super::seam::{Placement, Seam};
 use super::*;
 use crate::PartFile;
 use config::machine::MachineFile;
-use shared::geometry::Sheet;
 use std::path::PathBuf;
 
 fn shipped(name: &str) -> PathBuf {

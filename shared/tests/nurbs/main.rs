@@ -1,7 +1,0 @@
-//! Properties of NURBS curves, and of what is done along them (mathematics 3).
-
-mod along;
-mod arc_length;
-mod curves;
-mod shape;
-mod validity;
