@@ -74,7 +74,6 @@ fn milestones_come_in_order_and_the_end_is_the_last() {
             "approaching",
             "running in",
             "welding",
-            "moving on",
             "parking",
             "ended None"
         ]
