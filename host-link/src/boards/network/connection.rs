@@ -126,7 +126,9 @@ impl Reader {
         let mut buffer = [0; 2048];
         while !self.unwanted.load(Ordering::Relaxed) {
             let received = match self.datagrams.recv_from(&mut buffer) {
-                Ok((length, from)) => self.decode(&buffer[..length], from).map(Ok),
+                Ok((length, from)) => self
+                    .decode(&buffer[..length], from)
+                    .map(|datagram| Ok(Box::new(datagram))),
                 Err(error) if waits(&error) || error.kind() == io::ErrorKind::ConnectionReset => None,
                 Err(error) => Some(Err(error)),
             };

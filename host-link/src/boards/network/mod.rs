@@ -93,7 +93,7 @@ pub struct NetworkBoards {
     incoming: Receiver<Incoming>,
     waker: Waker,
     /// Datagrams that came while an answer was waited for.
-    came: VecDeque<(Role, io::Result<Datagram>)>,
+    came: VecDeque<(Role, io::Result<Box<Datagram>>)>,
     bad: Arc<AtomicU32>,
     began: Instant,
     /// See [`Self::paced_by`].
@@ -107,7 +107,7 @@ pub struct NetworkBoards {
 
 /// What the readers pass on.
 enum Incoming {
-    Datagram(Role, io::Result<Datagram>),
+    Datagram(Role, io::Result<Box<Datagram>>),
     Answer(Role, Answer),
     /// Something else is to be looked at.
     Wake,
@@ -279,7 +279,7 @@ impl Boards for NetworkBoards {
             self.attention.paid(self.began.elapsed(), timeout);
         }
         match self.came.pop_front() {
-            Some((role, Ok(datagram))) => Ok(Some((role, datagram))),
+            Some((role, Ok(datagram))) => Ok(Some((role, *datagram))),
             Some((role, Err(source))) => Err(LinkError::Lost { role, source }),
             None => Ok(None),
         }
