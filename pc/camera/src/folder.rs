@@ -46,7 +46,7 @@ impl Folder {
     pub fn open(folder: &Path) -> Result<Self, CameraError> {
         let list = folder.join(CAPTURES);
         let text = table::read(&list)?;
-        let recorded = parse(&list.display().to_string(), folder, &text)?;
+        let recorded = parse_captures(&list.display().to_string(), folder, &text)?;
         Ok(Self {
             recorded,
             strobed: VecDeque::new(),
@@ -81,8 +81,8 @@ impl Camera for Folder {
     }
 }
 
-/// Understands a list of captures; `name` is used in messages only.
-fn parse(name: &str, folder: &Path, text: &str) -> Result<Vec<Recorded>, TableError> {
+/// Understands the list of captures of `folder`; `name` is used in messages only.
+pub fn parse_captures(name: &str, folder: &Path, text: &str) -> Result<Vec<Recorded>, TableError> {
     let mut lines = text.lines().enumerate();
     if lines.next().map(|(_, header)| header.trim()) != Some(HEADER) {
         return Err(TableError::Header {
@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     fn said(text: &str) -> String {
-        let error = parse("a/captures.csv", Path::new("a"), text).expect_err("refused");
+        let error = parse_captures("a/captures.csv", Path::new("a"), text).expect_err("refused");
         error.to_string()
     }
 
@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn a_list_stands_beside_its_pictures() {
         let text = format!("{HEADER}\n7, 35000 ,x.png\r\n9,45000,y.png\n");
-        let recorded = parse("list", Path::new("dir"), &text).expect("a list");
+        let recorded = parse_captures("list", Path::new("dir"), &text).expect("a list");
         assert_eq!(recorded.len(), 2);
         assert_eq!((recorded[0].capture, recorded[0].time_us), (7, 35_000));
         assert_eq!(recorded[1].file, Path::new("dir/y.png"));

@@ -16,12 +16,12 @@ mod stir;
 mod surface;
 mod t_seam;
 
-pub use bead::Bead;
+pub use bead::{Bead, check_curve};
 pub use judge::{ALONG, Figure, GAP, Judgement, Plot, Run};
 pub use limits::{Limit, Percent};
 pub use panel::{Panel, PanelError};
 pub use saddle::{Saddle, SaddlePartError, TaughtError};
-pub use seam_curves::{SeamPoint, read_main_curve, read_other_curve};
+pub use seam_curves::{SeamPoint, parse_main_curve, parse_other_curve, read_main_curve, read_other_curve};
 pub use seam_limits::SeamLimits;
 pub use stir::Stir;
 pub use surface::Surface;

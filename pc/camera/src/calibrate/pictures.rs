@@ -50,12 +50,12 @@ pub fn read_pictures<const N: usize>(
             values,
         })
     };
-    let listed = parse(&list.display().to_string(), &text, columns)?;
+    let listed = parse_list(&list.display().to_string(), &text, columns)?;
     listed.into_iter().map(known).collect()
 }
 
 /// Files and numbers of a list; `name` is used in messages only.
-fn parse<'a, const N: usize>(
+pub fn parse_list<'a, const N: usize>(
     name: &str,
     text: &'a str,
     columns: [&str; N],
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn a_list_has_a_file_and_its_numbers_a_row() {
-        let rows = parse(
+        let rows = parse_list(
             "list",
             "file, u_mm,v_mm\r\na.png, 0.1,-0.2\n\nb.png,0,1e-1\n",
             ["u_mm", "v_mm"],
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_wrong_list_is_named_by_its_line() {
-        let said = |text: &str| parse("list", text, ["u_mm"]).unwrap_err().to_string();
+        let said = |text: &str| parse_list("list", text, ["u_mm"]).unwrap_err().to_string();
         assert_eq!(said("file,v_mm\n"), "list, line 1: the header must be file,u_mm");
         assert_eq!(said("file,u_mm\na.png\n"), "list, line 2: 1 values instead of 2");
         assert_eq!(
