@@ -35,6 +35,16 @@ impl Kind {
         !matches!(self, Self::Png | Self::Framing)
     }
 
+    /// Reads `bytes` as everything of this kind, and plans what was understood.
+    pub fn try_all(self, bytes: &[u8]) {
+        for reader in self.readers() {
+            if reader.read(bytes).is_ok() {
+                // Refusing it is as good.
+                let _ = reader.plan(bytes);
+            }
+        }
+    }
+
     /// Everything that reads such inputs.
     pub fn readers(self) -> &'static [Reader] {
         match self {

@@ -135,10 +135,18 @@ pub fn bead(text: &str) -> anyhow::Result<()> {
     plan("wire-arc", Path::new("a.toml"), &part)
 }
 
-/// A short program on the machine.
+/// The part that is quickly planned for the machine, and a short program on it.
 pub fn machine(text: &str) -> anyhow::Result<()> {
     let machine = MachineFile::parse("a.toml", text)?;
     let axes = machine.planning.park_axes();
+    let part = match machine.motion.kinematics.name() {
+        "dual-beam-gantry" => Some("t-seam-400"),
+        "stir-gantry" => Some("stir-contour"),
+        _ => None,
+    };
+    if let Some(part) = part {
+        PartFile::read(&shipped(&format!("programs/{part}.toml")))?.plan(&machine, "a")?;
+    }
     let [x, _, z, ..] = axes;
     dry_run_of(
         &machine,
