@@ -60,44 +60,10 @@ pub fn parse_list<'a, const N: usize>(
     text: &'a str,
     columns: [&str; N],
 ) -> Result<Vec<(&'a str, [f64; N])>, TableError> {
-    let mut lines = text.lines().enumerate();
-    let wanted = format!("file,{}", columns.join(","));
-    let header = lines.next().map_or("", |(_, line)| line.trim());
-    if header.split(',').map(str::trim).ne(wanted.split(',')) {
-        let path = name.to_owned();
-        return Err(TableError::Header {
-            path,
-            line: 1,
-            wanted,
-        });
-    }
-    let mut rows = Vec::new();
-    for (index, content) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-        let (path, line) = (name.to_owned(), index + 1);
-        let mut cells = content.split(',').map(str::trim);
-        let file = cells.next().unwrap_or_default();
-        let numbers: Vec<&str> = cells.collect();
-        if numbers.len() != N {
-            return Err(TableError::Count {
-                path,
-                line,
-                found: numbers.len() + 1,
-                wanted: N + 1,
-            });
-        }
-        let mut values = [0.0; N];
-        for ((value, text), column) in values.iter_mut().zip(&numbers).zip(columns) {
-            let number = text.parse().ok().filter(|x: &f64| x.is_finite());
-            *value = number.ok_or_else(|| TableError::Number {
-                path: name.to_owned(),
-                line,
-                column: column.to_owned(),
-                text: (*text).to_owned(),
-            })?;
-        }
-        rows.push((file, values));
-    }
-    Ok(rows)
+    let all: Vec<&str> = std::iter::once("file").chain(columns).collect();
+    let rows = table::cells(name, text, &all)?.into_iter();
+    rows.map(|(line, cells)| Ok((cells[0], table::numbers(name, line, columns, &cells[1..])?)))
+        .collect()
 }
 
 #[cfg(test)]
