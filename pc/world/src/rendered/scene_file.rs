@@ -1,11 +1,15 @@
 //! The scene file: what the seams of a simulated world look like, and what disturbs their pictures.
 
-use config::table::{FARTHEST_MM, line_of};
+use config::table::FARTHEST_MM;
+use config::toml_file::{self, TomlError};
 use serde::Deserialize;
 use shared::io::SIDES;
 use std::path::Path;
 use thiserror::Error;
 use vision::render::Finish;
+
+/// What messages call the file.
+const WHAT: &str = "scene file";
 
 /// What the seams look like, and what disturbs their pictures.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -131,26 +135,11 @@ impl Default for SceneFile {
 /// Why a scene file cannot be used. Reads as one sentence.
 #[derive(Debug, Error)]
 pub enum SceneError {
-    /// It cannot be read.
-    #[error("cannot read {path}: {source}")]
-    Read {
-        /// The file.
-        path: String,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// It is no scene.
-    #[error("{path}, line {line}: {message}")]
-    Content {
-        /// The file.
-        path: String,
-        /// Where.
-        line: usize,
-        /// What is wrong.
-        message: String,
-    },
+    /// It cannot be read, or is no scene.
+    #[error(transparent)]
+    File(#[from] TomlError),
     /// A value makes no sense.
-    #[error("{path}: {key} = {value}: it has to be {requirement}")]
+    #[error("scene file {path}: {key} = {value}: it has to be {requirement}")]
     Value {
         /// The file.
         path: String,
@@ -166,20 +155,12 @@ pub enum SceneError {
 impl SceneFile {
     /// Reads the file at `path`.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let name = path.display().to_string();
-        match std::fs::read_to_string(path) {
-            Ok(text) => Self::parse(&name, &text),
-            Err(source) => Err(SceneError::Read { path: name, source }),
-        }
+        Self::parse(&path.display().to_string(), &toml_file::text(WHAT, path)?)
     }
 
     /// Understands `text`; `path` is used in messages only.
     pub fn parse(path: &str, text: &str) -> Result<Self, SceneError> {
-        let scene: Self = toml::from_str(text).map_err(|error| SceneError::Content {
-            path: path.to_owned(),
-            line: line_of(text, error.span().map_or(0, |span| span.start)),
-            message: error.message().replace('\n', ", "),
-        })?;
+        let scene: Self = toml_file::parse(WHAT, path, text)?;
         let wrong = scene
             .values()
             .into_iter()
