@@ -138,7 +138,10 @@ mod tests {
 
     #[test]
     fn a_list_stands_beside_its_pictures() {
-        let text = format!("{}\n7, 35000 ,x.png\r\n9,45000,y.png\n", COLUMNS.join(","));
+        let text = format!(
+            "\u{feff}# of a weld\n{}\n7, 35000 ,x.png\r\n9,45000,y.png\n",
+            COLUMNS.join(",")
+        );
         let recorded = parse_captures("list", Path::new("dir"), &text).expect("a list");
         assert_eq!(recorded.len(), 2);
         assert_eq!((recorded[0].capture, recorded[0].time_us), (7, 35_000));
