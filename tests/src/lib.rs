@@ -1,5 +1,6 @@
 //! What whole-system runs share: the shipped jobs, other seams for them, and welds on any boards.
 
+pub mod bad_input;
 pub mod fuzz;
 mod hold;
 mod operator;

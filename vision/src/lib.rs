@@ -31,7 +31,7 @@ pub use geometry::{Corner, CornerFeatures, GeometryError, PlateFeatures, PlateSe
 pub use image::{Image, ImageError};
 pub use noise::PhotonTransfer;
 pub use observer::{Doubt, MeanPoint, Moved, Observation, Observer, ObserverConfig, Seam, State};
-pub use optics::{Optics, OpticsError};
+pub use optics::{MOST_PIXELS, Optics, OpticsError};
 pub use precision::{Precision, Readings};
 pub use prior::{Joint, Prior, Track, Walls};
 pub use profile::Profile;

@@ -3,6 +3,20 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+/// Most pixels of a picture: more than the largest sensors of machine cameras have. What says that it has more is refused
+/// before there is any memory for it.
+pub const MOST_PIXELS: usize = 1 << 26;
+
+/// Object pixels that a seam can be seen with \[mm\]: finer than a thousandth of the light's wavelength there is nothing,
+/// and a gap of a tenth of a millimetre needs two.
+const OBJECT_PIXEL_MM: [f64; 2] = [1e-6, 0.05];
+/// Largest field of view to either side \[mm\]: a seam, with all that slides can move, takes a tenth of it.
+const LARGEST_VIEW_MM: f64 = 100.0;
+/// Wavelengths of light that cameras have lenses for \[mm\]: ultraviolet to thermal infrared.
+const WAVELENGTH_MM: [f64; 2] = [1e-4, 2e-2];
+/// Numerical apertures of lenses.
+const APERTURE: [f64; 2] = [1e-3, 1.5];
+
 /// Finest object pixel that is measured \[mm\].
 const FINEST_MM: f64 = 0.0024;
 
@@ -39,6 +53,24 @@ pub enum OpticsError {
         /// What it is.
         value: f64,
     },
+    /// A figure that no lens or sensor has.
+    #[error("{what} of the camera is {value}; it has to be between {} and {}", range[0], range[1])]
+    Range {
+        /// Which one.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it may be.
+        range: [f64; 2],
+    },
+    /// More pixels than any sensor has.
+    #[error("the camera has {rows} rows of {columns} pixels; {MOST_PIXELS} pixels in all are possible")]
+    Pixels {
+        /// Rows.
+        rows: usize,
+        /// Columns.
+        columns: usize,
+    },
     /// The focal plane is not tilted against the plate.
     #[error("the camera's tilt of {degrees}° is not between 5° and 85°")]
     Tilt {
@@ -66,6 +98,30 @@ impl Optics {
         let degrees = self.tilt_rad.to_degrees();
         if !(5.0..=85.0).contains(&degrees) {
             return Err(OpticsError::Tilt { degrees });
+        }
+        let (rows, columns) = (self.rows, self.columns);
+        if rows
+            .checked_mul(columns)
+            .is_none_or(|pixels| pixels > MOST_PIXELS)
+        {
+            return Err(OpticsError::Pixels { rows, columns });
+        }
+        let object_pixel_mm = self.object_pixel_mm();
+        let view_mm = object_pixel_mm * rows.max(columns) as f64;
+        let ranges = [
+            ("the wavelength in mm", self.wavelength_mm, WAVELENGTH_MM),
+            ("the numerical aperture", self.aperture, APERTURE),
+            (
+                "the pixel pitch over the magnification in mm",
+                object_pixel_mm,
+                OBJECT_PIXEL_MM,
+            ),
+            ("the field of view in mm", view_mm, [0.0, LARGEST_VIEW_MM]),
+        ];
+        for (what, value, range) in ranges {
+            if !(range[0]..=range[1]).contains(&value) {
+                return Err(OpticsError::Range { what, value, range });
+            }
         }
         Ok(())
     }

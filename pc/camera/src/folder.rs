@@ -18,8 +18,8 @@ use std::time::Duration;
 /// Name of the list of captures in a folder.
 pub const CAPTURES: &str = "captures.csv";
 
-/// First line of that list.
-pub const HEADER: &str = "capture,time_us,file";
+/// Columns of that list.
+pub const COLUMNS: [&str; 3] = ["capture", "time_us", "file"];
 
 /// A picture of a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ impl Folder {
     pub fn open(folder: &Path) -> Result<Self, CameraError> {
         let list = folder.join(CAPTURES);
         let text = table::read(&list)?;
-        let recorded = parse(&list.display().to_string(), folder, &text)?;
+        let recorded = parse_captures(&list.display().to_string(), folder, &text)?;
         Ok(Self {
             recorded,
             strobed: VecDeque::new(),
@@ -81,31 +81,17 @@ impl Camera for Folder {
     }
 }
 
-/// Understands a list of captures; `name` is used in messages only.
-fn parse(name: &str, folder: &Path, text: &str) -> Result<Vec<Recorded>, TableError> {
-    let mut lines = text.lines().enumerate();
-    if lines.next().map(|(_, header)| header.trim()) != Some(HEADER) {
-        return Err(TableError::Header {
-            path: name.to_owned(),
-            line: 1,
-            wanted: HEADER.to_owned(),
-        });
-    }
+/// Understands the list of captures of `folder`; `name` is used in messages only.
+pub fn parse_captures(name: &str, folder: &Path, text: &str) -> Result<Vec<Recorded>, TableError> {
     let mut recorded: Vec<Recorded> = Vec::new();
-    for (index, row) in lines.filter(|(_, row)| !row.trim().is_empty()) {
+    for (line, cells) in table::cells(name, text, &COLUMNS)? {
+        let &[capture, time_us, file] = &cells[..] else {
+            continue;
+        };
         let wrong = |reason| TableError::Row {
             path: name.to_owned(),
-            line: index + 1,
+            line,
             reason,
-        };
-        let values: Vec<&str> = row.split(',').map(str::trim).collect();
-        let [capture, time_us, file] = values[..] else {
-            return Err(TableError::Count {
-                path: name.to_owned(),
-                line: index + 1,
-                found: values.len(),
-                wanted: 3,
-            });
         };
         let capture = capture
             .parse()
@@ -136,7 +122,7 @@ mod tests {
     use super::*;
 
     fn said(text: &str) -> String {
-        let error = parse("a/captures.csv", Path::new("a"), text).expect_err("refused");
+        let error = parse_captures("a/captures.csv", Path::new("a"), text).expect_err("refused");
         error.to_string()
     }
 
@@ -152,8 +138,11 @@ mod tests {
 
     #[test]
     fn a_list_stands_beside_its_pictures() {
-        let text = format!("{HEADER}\n7, 35000 ,x.png\r\n9,45000,y.png\n");
-        let recorded = parse("list", Path::new("dir"), &text).expect("a list");
+        let text = format!(
+            "\u{feff}# of a weld\n{}\n7, 35000 ,x.png\r\n9,45000,y.png\n",
+            COLUMNS.join(",")
+        );
+        let recorded = parse_captures("list", Path::new("dir"), &text).expect("a list");
         assert_eq!(recorded.len(), 2);
         assert_eq!((recorded[0].capture, recorded[0].time_us), (7, 35_000));
         assert_eq!(recorded[1].file, Path::new("dir/y.png"));

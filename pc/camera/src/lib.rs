@@ -19,13 +19,13 @@ mod walls;
 
 #[cfg(feature = "aravis")]
 pub use aravis::GigeCamera;
-pub use folder::{Folder, Recorded};
+pub use folder::{Folder, Recorded, parse_captures};
 pub use frame::CameraFrame;
 pub use gige::{GigeConfig, OpenCamera, real};
 pub use keeper::{Keeper, Kept};
 pub use keeping::{Keeping, Shelf};
 pub use matching::{Match, Matching, Strobe};
-pub use png::{PngError, read_grey, write_grey, write_rgb};
+pub use png::{PngError, parse_grey, read_grey, write_grey, write_rgb};
 pub use recorder::Recorder;
 pub use walls::{nominal_slopes, walls};
 

@@ -3,13 +3,10 @@
 use crate::Picture;
 use ::png::{BitDepth, ColorType, Compression, Decoder, DecodingError, Encoder, EncodingError};
 use std::fs::File;
-use std::io::{BufReader, BufWriter};
+use std::io::{BufRead, BufReader, BufWriter, Seek};
 use std::path::Path;
 use thiserror::Error;
-
-/// Most pixels of a picture: twice those of the largest sensors of machine cameras. What says that it has more is refused
-/// before there is any memory for it.
-pub const MOST_PIXELS: u64 = 1 << 28;
+use vision::MOST_PIXELS;
 
 /// Why a file gives no picture, or takes none. Reads as one sentence.
 #[derive(Debug, Error)]
@@ -68,16 +65,24 @@ pub enum PngError {
 ///
 /// Other pictures are refused: a picture that was made darker, lighter or coarser measures something else.
 pub fn read_grey(path: &Path, picture: &mut Picture) -> Result<(), PngError> {
-    let file = || path.display().to_string();
+    let name = path.display().to_string();
+    match File::open(path) {
+        Ok(file) => parse_grey(&name, BufReader::new(file), picture),
+        Err(source) => Err(PngError::Read { file: name, source }),
+    }
+}
+
+/// Understands a grey picture as [`read_grey`] does; `name` of the file is used in messages only.
+pub fn parse_grey(name: &str, bytes: impl BufRead + Seek, picture: &mut Picture) -> Result<(), PngError> {
+    let file = || name.to_owned();
     let broken = |source| PngError::Broken { file: file(), source };
-    let source = File::open(path).map_err(|source| PngError::Read { file: file(), source })?;
-    let mut reader = Decoder::new(BufReader::new(source)).read_info().map_err(broken)?;
+    let mut reader = Decoder::new(bytes).read_info().map_err(broken)?;
     let info = reader.info();
     if (info.color_type, info.bit_depth) != (ColorType::Grayscale, BitDepth::Eight) {
         let kind = kind(info.color_type, info.bit_depth);
         return Err(PngError::Kind { file: file(), kind });
     }
-    if u64::from(info.width) * u64::from(info.height) > MOST_PIXELS {
+    if u64::from(info.width) * u64::from(info.height) > MOST_PIXELS as u64 {
         return Err(PngError::TooLarge {
             file: file(),
             columns: info.width,
@@ -184,7 +189,7 @@ mod tests {
             .expect_err("it is too large")
             .to_string();
         assert!(
-            error.contains("200000 × 200000 pixels; at most 268 million"),
+            error.contains("200000 × 200000 pixels; at most 67 million"),
             "{error}"
         );
         assert!(read.pixels.is_empty());

@@ -1,6 +1,6 @@
 //! Keeps the pictures of a camera in a folder, so that they can be measured again.
 
-use crate::folder::{CAPTURES, HEADER};
+use crate::folder::{CAPTURES, COLUMNS};
 use crate::{CameraError, Picture, write_grey};
 use std::fs::File;
 use std::io::{ErrorKind, Write};
@@ -27,7 +27,7 @@ impl Recorder {
             return Err(CameraError::Holds { folder });
         }
         let mut captures = File::create(&list).map_err(failed)?;
-        writeln!(captures, "{HEADER}").map_err(failed)?;
+        writeln!(captures, "{}", COLUMNS.join(",")).map_err(failed)?;
         Ok(Self {
             folder: folder.to_owned(),
             captures,
@@ -55,7 +55,7 @@ fn holds_pictures(folder: &Path, list: &Path) -> std::io::Result<bool> {
         }
     }
     match std::fs::read_to_string(list) {
-        Ok(text) => Ok(text.trim() != HEADER),
+        Ok(text) => Ok(text.trim() != COLUMNS.join(",")),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
         Err(error) => Err(error),
     }

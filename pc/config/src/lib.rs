@@ -6,5 +6,6 @@ pub mod machine;
 pub mod probe;
 mod range;
 pub mod table;
+pub mod toml_file;
 
 pub use range::{RangeError, in_range};

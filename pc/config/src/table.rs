@@ -103,65 +103,96 @@ pub fn read(path: &Path) -> Result<String, TableError> {
     })
 }
 
-/// The rows of `text`, which starts with the names of the `columns`; empty lines and comments, which begin with #,
-/// are left out. `path` is used in messages only.
-pub fn parse<const N: usize>(path: &str, text: &str, columns: [&str; N]) -> Result<Vec<Row<N>>, TableError> {
+/// Line number and cells of every row of `text`, which starts with the names of the `columns`. Spaces around cells, empty
+/// lines and comments, which begin with #, are left out. `path` is used in messages only.
+///
+/// # Errors
+/// Other columns; a row with more or fewer cells.
+pub fn cells<'a>(
+    path: &str,
+    text: &'a str,
+    columns: &[&str],
+) -> Result<Vec<(usize, Vec<&'a str>)>, TableError> {
     let path = || path.to_owned();
-    let mut lines = text
-        .lines()
-        .enumerate()
-        .filter(|(_, line)| !line.starts_with('#'));
-    let (index, header) = lines.next().map_or((0, ""), |(index, line)| {
-        (index, line.trim_start_matches('\u{feff}'))
-    });
-    if !header.split(',').map(str::trim).eq(columns) {
-        let (line, wanted) = (index + 1, columns.join(","));
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.starts_with('#'));
+    let (line, header) = lines.next().unwrap_or((1, ""));
+    if !header.split(',').map(str::trim).eq(columns.iter().copied()) {
         return Err(TableError::Header {
             path: path(),
             line,
-            wanted,
+            wanted: columns.join(","),
         });
     }
-    let mut rows = Vec::new();
-    for (index, content) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-        let line = index + 1;
+    let rows = lines.filter(|(_, line)| !line.trim().is_empty());
+    rows.map(|(line, content)| {
         let cells: Vec<&str> = content.split(',').map(str::trim).collect();
-        let (found, wanted) = (cells.len(), N);
-        if found != wanted {
-            let path = path();
-            return Err(TableError::Count {
-                path,
-                line,
-                found,
-                wanted,
-            });
+        if cells.len() == columns.len() {
+            return Ok((line, cells));
         }
-        let mut values = [0.0; N];
-        for ((value, text), column) in values.iter_mut().zip(&cells).zip(columns) {
-            *value = text
-                .parse()
-                .ok()
-                .filter(|x: &f64| x.is_finite())
-                .ok_or_else(|| TableError::Number {
-                    path: path(),
-                    line,
-                    column: column.to_owned(),
-                    text: (*text).to_owned(),
-                })?;
-            if value.abs() > FARTHEST_MM {
-                return Err(TableError::TooLarge {
-                    path: path(),
-                    line,
-                    column: column.to_owned(),
-                    value: *value,
-                });
-            }
-        }
-        rows.push(Row { line, values });
-    }
-    Ok(rows)
+        Err(TableError::Count {
+            path: path(),
+            line,
+            found: cells.len(),
+            wanted: columns.len(),
+        })
+    })
+    .collect()
 }
-/// Number of the line that holds byte `offset`; the first is 1.
-pub fn line_of(text: &str, offset: usize) -> usize {
-    1 + text.bytes().take(offset).filter(|b| *b == b'\n').count()
+
+/// The numbers in the `cells` of a row, finite and no larger than [`FARTHEST_MM`].
+///
+/// # Errors
+/// Something else, named by `path`, `line` and column.
+pub fn numbers<const N: usize>(
+    path: &str,
+    line: usize,
+    columns: [&str; N],
+    cells: &[&str],
+) -> Result<[f64; N], TableError> {
+    let mut values = [0.0; N];
+    for ((value, text), column) in values.iter_mut().zip(cells).zip(columns) {
+        *value = number(path, line, column, text)?;
+    }
+    Ok(values)
+}
+
+fn number(path: &str, line: usize, column: &str, text: &str) -> Result<f64, TableError> {
+    let finite = text.parse().ok().filter(|value: &f64| value.is_finite());
+    let value = finite.ok_or_else(|| TableError::Number {
+        path: path.to_owned(),
+        line,
+        column: column.to_owned(),
+        text: shortened(text),
+    })?;
+    if value.abs() > FARTHEST_MM {
+        return Err(TableError::TooLarge {
+            path: path.to_owned(),
+            line,
+            column: column.to_owned(),
+            value,
+        });
+    }
+    Ok(value)
+}
+
+/// As much of a cell as a message takes.
+fn shortened(text: &str) -> String {
+    const MOST: usize = 40;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// The rows of `text` as numbers; otherwise as [`cells`].
+///
+/// # Errors
+/// Those of [`cells`] and [`numbers`].
+pub fn parse<const N: usize>(path: &str, text: &str, columns: [&str; N]) -> Result<Vec<Row<N>>, TableError> {
+    let row = |(line, cells): (usize, Vec<&str>)| {
+        let values = numbers(path, line, columns, &cells)?;
+        Ok(Row { line, values })
+    };
+    cells(path, text, &columns)?.into_iter().map(row).collect()
 }

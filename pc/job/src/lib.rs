@@ -2,6 +2,7 @@
 
 mod calibrating;
 mod cameras;
+mod countdown;
 mod delays;
 mod feeding;
 mod following;

@@ -1,5 +1,6 @@
 //! A session with the boards while a job runs: takes what they send and asks for their state.
 
+use crate::countdown::Countdown;
 use crate::recentring::Recentring;
 use crate::run_record::ByBoard;
 use crate::surroundings::Surroundings;
@@ -210,8 +211,14 @@ impl<'a> Session<'a> {
 
     /// Newest known path tick of the motion board, one a millisecond: the clock of the job.
     pub fn tick(&self) -> u32 {
-        let told = self.record.motion().last().map_or(0, |sample| sample.tick);
-        told.max(self.motion.path_ticks)
+        let asked = self.motion.path_ticks;
+        let told = self.record.motion().last().map_or(asked, |sample| sample.tick);
+        // The newer one, where the count begins anew, too.
+        if told.wrapping_sub(asked) < 1 << 31 {
+            told
+        } else {
+            asked
+        }
     }
 
     /// Goes on until `done`; a fault or the operator end it early.
@@ -264,10 +271,10 @@ impl<'a> Session<'a> {
         limit: Duration,
         mut done: impl FnMut(&mut Self) -> Result<bool, JobError>,
     ) -> Result<(), JobError> {
-        let end = u64::from(self.tick()) + limit.as_millis() as u64;
+        let mut limit_ms = Countdown::new(self.tick(), limit.as_millis() as u64);
         self.go_on_until(|s| {
             let over = done(s)?;
-            if !over && u64::from(s.tick()) > end {
+            if limit_ms.is_over(s.tick()) && !over {
                 let seconds = limit.as_secs();
                 return Err(JobError::TooLong { what, seconds });
             }
@@ -278,8 +285,8 @@ impl<'a> Session<'a> {
     /// Goes on for `seconds` by the motion board's clock, unless a fault or the operator end it early.
     pub fn dwell(&mut self, seconds: f64) -> Result<(), JobError> {
         self.refresh()?;
-        let end = u64::from(self.tick()) + (seconds * 1e3).ceil() as u64;
-        self.go_on_until(|s| Ok(u64::from(s.tick()) >= end))
+        let mut dwell = Countdown::new(self.tick(), (seconds * 1e3).ceil() as u64);
+        self.go_on_until(|s| Ok(dwell.is_over(s.tick())))
     }
 
     /// The first reason not to go on.

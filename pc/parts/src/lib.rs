@@ -16,12 +16,12 @@ mod stir;
 mod surface;
 mod t_seam;
 
-pub use bead::{Bead, window};
+pub use bead::{Bead, check_curve, window};
 pub use judge::{ALONG, Figure, GAP, Judgement, Plot, Run};
 pub use limits::{Limit, Percent};
 pub use panel::{Panel, PanelError};
 pub use saddle::{Saddle, SaddlePartError, TaughtError, pipes};
-pub use seam_curves::{SeamPoint, read_main_curve, read_other_curve};
+pub use seam_curves::{SeamPoint, parse_main_curve, parse_other_curve, read_main_curve, read_other_curve};
 pub use seam_limits::SeamLimits;
 pub use stir::Stir;
 pub use surface::Surface;
@@ -29,11 +29,10 @@ pub use t_seam::TSeam;
 
 use crate::plan::DualBeamPlan;
 use config::machine::MachineFile;
-use config::table::line_of;
+use config::toml_file::{self, TomlError};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use teach::TaughtPoint;
-use thiserror::Error;
 
 /// What every kind of part can do. Errors read as one sentence that names the place and what to do.
 pub trait Kind {
@@ -98,6 +97,9 @@ kinds! {
     "bead" Bead,
 }
 
+/// What messages call the file.
+const WHAT: &str = "part file";
+
 /// A part and where it came from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartFile {
@@ -105,46 +107,15 @@ pub struct PartFile {
     path: PathBuf,
 }
 
-/// Why a part file cannot be used. Reads as one sentence.
-#[derive(Debug, Error)]
-pub enum PartError {
-    /// The file cannot be read.
-    #[error("cannot read part file {path}: {source}")]
-    Read {
-        /// The file.
-        path: String,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// Not TOML, no part of a known kind, or a key is missing, unknown or of the wrong type.
-    #[error("part file {path}, line {line}: {message}")]
-    Content {
-        /// The file.
-        path: String,
-        /// First line is 1.
-        line: usize,
-        /// What is wrong.
-        message: String,
-    },
-}
-
 impl PartFile {
     /// Reads the file at `path`.
-    pub fn read(path: &Path) -> Result<Self, PartError> {
-        let text = std::fs::read_to_string(path).map_err(|source| PartError::Read {
-            path: path.display().to_string(),
-            source,
-        })?;
-        Self::parse(path, &text)
+    pub fn read(path: &Path) -> Result<Self, TomlError> {
+        Self::parse(path, &toml_file::text(WHAT, path)?)
     }
 
     /// Understands `text` as the file at `path`, which other files are found beside.
-    pub fn parse(path: &Path, text: &str) -> Result<Self, PartError> {
-        let part = toml::from_str(text).map_err(|error| PartError::Content {
-            path: path.display().to_string(),
-            line: line_of(text, error.span().map_or(0, |span| span.start)),
-            message: error.message().replace('\n', ", "),
-        })?;
+    pub fn parse(path: &Path, text: &str) -> Result<Self, TomlError> {
+        let part = toml_file::parse(WHAT, &path.display().to_string(), text)?;
         Ok(Self {
             part,
             path: path.to_owned(),
@@ -152,7 +123,7 @@ impl PartFile {
     }
 
     /// The part of the program at `path`: the part file of the same name beside it, if there is one.
-    pub fn of_program(path: &Path) -> Result<Option<Self>, PartError> {
+    pub fn of_program(path: &Path) -> Result<Option<Self>, TomlError> {
         let path = path.with_extension("toml");
         path.exists().then(|| Self::read(&path)).transpose()
     }

@@ -15,19 +15,19 @@ pub struct SeamPoint {
 
 /// Reads seam 1, `x_mm,y_mm,z_mm,nx,ny,nz`: points in the direction of travel with the skin normal.
 pub fn read_main_curve(path: &Path) -> Result<Vec<SeamPoint>, TableError> {
-    let name = path.display().to_string();
-    let rows = table::parse(
-        &name,
-        &table::read(path)?,
-        ["x_mm", "y_mm", "z_mm", "nx", "ny", "nz"],
-    )?;
-    check_points(&name, rows.iter().map(|r| (r.line, vector(&r.values, 0))))?;
+    parse_main_curve(&path.display().to_string(), &table::read(path)?)
+}
+
+/// Understands the `text` of seam 1; `name` of the file is used in messages only.
+pub fn parse_main_curve(name: &str, text: &str) -> Result<Vec<SeamPoint>, TableError> {
+    let rows = table::parse(name, text, ["x_mm", "y_mm", "z_mm", "nx", "ny", "nz"])?;
+    check_points(name, rows.iter().map(|r| (r.line, vector(&r.values, 0))))?;
     rows.iter()
         .map(|row| {
             let normal = vector(&row.values, 3);
             if normal.norm() < 1e-6 {
                 return Err(TableError::Row {
-                    path: name.clone(),
+                    path: name.to_owned(),
                     line: row.line,
                     reason: "the normal has no length",
                 });
@@ -42,9 +42,13 @@ pub fn read_main_curve(path: &Path) -> Result<Vec<SeamPoint>, TableError> {
 
 /// Reads seam 2, `x_mm,y_mm,z_mm`: points in the direction of travel.
 pub fn read_other_curve(path: &Path) -> Result<Vec<Vector3<f64>>, TableError> {
-    let name = path.display().to_string();
-    let rows = table::parse(&name, &table::read(path)?, ["x_mm", "y_mm", "z_mm"])?;
-    check_points(&name, rows.iter().map(|r| (r.line, vector(&r.values, 0))))?;
+    parse_other_curve(&path.display().to_string(), &table::read(path)?)
+}
+
+/// Understands the `text` of seam 2; `name` of the file is used in messages only.
+pub fn parse_other_curve(name: &str, text: &str) -> Result<Vec<Vector3<f64>>, TableError> {
+    let rows = table::parse(name, text, ["x_mm", "y_mm", "z_mm"])?;
+    check_points(name, rows.iter().map(|r| (r.line, vector(&r.values, 0))))?;
     Ok(rows.iter().map(|row| vector(&row.values, 0)).collect())
 }
 

@@ -38,7 +38,8 @@ pub fn read_points(path: &Path) -> Result<Vec<TaughtPoint>, TableError> {
     parse_points(&path.display().to_string(), &table::read(path)?)
 }
 
-fn parse_points(path: &str, text: &str) -> Result<Vec<TaughtPoint>, TableError> {
+/// Understands the `text` of such a file; `path` is used in messages only.
+pub fn parse_points(path: &str, text: &str) -> Result<Vec<TaughtPoint>, TableError> {
     table::parse(path, text, COLUMNS)?
         .into_iter()
         .map(|row| {

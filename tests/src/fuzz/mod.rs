@@ -11,7 +11,7 @@ mod random;
 mod wire;
 
 pub use case::{Case, Tally};
-pub use corpus::{Message, Said, Session};
+pub use corpus::{Message, Said, Session, seldom};
 pub use random::Random;
 
 use std::cell::RefCell;

@@ -174,12 +174,12 @@ impl Runner {
     }
 
     /// Stands for so many ticks.
-    fn wait(&mut self, ticks: u32) {
-        self.resting += u64::from(ticks);
+    fn wait(&mut self, ticks: u64) {
+        self.resting += ticks;
         let trace = &mut self.result.trace;
         let envelopes = trace.rows.iter_mut().flatten().chain(&mut trace.path_limits);
         envelopes.for_each(|envelope| envelope.push_times(0.0, ticks));
-        self.ticks += u64::from(ticks);
+        self.ticks += ticks;
     }
 
     fn record(&mut self, rates: &[Rates; ROWS], path: Rates) {

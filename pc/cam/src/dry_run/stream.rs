@@ -16,20 +16,20 @@ pub const ARRIVED: u32 = 2;
 const KNOWN: u32 = 1 + (TELEMETRY_BATCH as u32).div_ceil(2) + REQUEST;
 
 /// Ticks from the end of a path to the first one of `path`, whose start took `requests`.
-pub fn ticks_between(path: &PlannedPath, requests: u32, tracker: bool) -> u32 {
+pub fn ticks_between(path: &PlannedPath, requests: u32, tracker: bool) -> u64 {
     let knots = if tracker {
         1 + path.knots.len().div_ceil(LOAD_BATCH) as u32
     } else {
         0
     };
-    dwell_ticks(path).saturating_add(KNOWN + REQUEST * (requests + knots))
+    dwell_ticks(path) + u64::from(KNOWN + REQUEST * (requests + knots))
 }
 
 /// Ticks that the PC waits before a path.
-pub fn dwell_ticks(path: &PlannedPath) -> u32 {
+pub fn dwell_ticks(path: &PlannedPath) -> u64 {
     if path.dwell_before_s > 0.0 {
         // It asks for the time first, and telemetry tells it in batches.
-        ((path.dwell_before_s * 1e3).ceil() as u32).saturating_add(REQUEST + TELEMETRY_BATCH as u32 / 2)
+        (path.dwell_before_s * 1e3).ceil() as u64 + u64::from(REQUEST) + TELEMETRY_BATCH as u64 / 2
     } else {
         0
     }

@@ -31,7 +31,7 @@ pub struct Envelope {
     /// Ticks in a bin is two to this.
     doublings: u32,
     /// Ticks in the last bin.
-    ticks: u32,
+    ticks: u64,
 }
 
 impl Envelope {
@@ -41,7 +41,7 @@ impl Envelope {
     }
 
     /// The same value for so many ticks, as a machine has that stands: the work does not grow with them.
-    pub fn push_times(&mut self, value: f64, ticks: u32) {
+    pub fn push_times(&mut self, value: f64, ticks: u64) {
         let value = Bin {
             low: value,
             high: value,
@@ -71,7 +71,7 @@ impl Envelope {
 
     /// Length of an interval \[s\].
     pub fn step_s(&self) -> f64 {
-        f64::from(1_u32 << self.doublings) * PATH_PERIOD_S
+        (1_u64 << self.doublings) as f64 * PATH_PERIOD_S
     }
 
     /// Middle of every interval \[s\], with its values.
@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn a_machine_that_stands_leaves_what_its_ticks_would() {
         let (mut at_once, mut each) = (Envelope::default(), Envelope::default());
-        let stands = 3 * BINS as u32 + 77;
+        let stands = 3 * BINS as u64 + 77;
         for (value, ticks) in [(1.0, 5), (0.0, stands), (2.0, 1), (0.0, 1), (0.0, stands)] {
             at_once.push_times(value, ticks);
             (0..ticks).for_each(|_| each.push(value));

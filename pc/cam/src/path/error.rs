@@ -233,8 +233,25 @@ pub enum PathError {
         largest: f64,
     },
     /// The speed must be positive.
-    #[error("a feed of {0} mm/min is not possible")]
-    NoFeed(f64),
+    #[error("{place}: a feed of {mm_min} mm/min is not possible")]
+    NoFeed {
+        /// Where in the program.
+        place: Place,
+        /// The feed.
+        mm_min: f64,
+    },
+    /// A block that never ends.
+    #[error(
+        "{place}: with a feed of {mm_min:e} mm/min the {length:.3} mm to here take longer than a day: correct F"
+    )]
+    TooSlow {
+        /// Where in the program.
+        place: Place,
+        /// The feed.
+        mm_min: f64,
+        /// Length of the block \[mm\].
+        length: f64,
+    },
     /// One speed for a path with several feeds.
     #[error(
         "{place}: the path has several feeds, one speed cannot take their place; leave the speed out, or write one F"

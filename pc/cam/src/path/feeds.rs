@@ -3,6 +3,9 @@
 use super::PathError;
 use nc::{FeedRate, Place, ProgramPath, Target};
 
+/// Longest time that a block may take \[s\]: a day, as a dwell. A feed with which one takes longer is a slip.
+const LONGEST_BLOCK_S: f64 = 86_400.0;
+
 /// Feeds of a path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Feeds {
@@ -54,10 +57,17 @@ impl Feeds {
             FeedRate::InverseTime(per_minute) => length * per_minute / 60.0,
         };
         let speed = self.replaced.unwrap_or(programmed);
-        if speed.is_finite() && speed > 0.0 {
-            Ok(speed)
-        } else {
-            Err(PathError::NoFeed(speed * 60.0))
+        let (place, mm_min) = (target.place, speed * 60.0);
+        if !(speed.is_finite() && speed > 0.0) {
+            return Err(PathError::NoFeed { place, mm_min });
         }
+        if length > speed * LONGEST_BLOCK_S {
+            return Err(PathError::TooSlow {
+                place,
+                mm_min,
+                length,
+            });
+        }
+        Ok(speed)
     }
 }

@@ -50,54 +50,20 @@ pub fn read_pictures<const N: usize>(
             values,
         })
     };
-    let listed = parse(&list.display().to_string(), &text, columns)?;
+    let listed = parse_list(&list.display().to_string(), &text, columns)?;
     listed.into_iter().map(known).collect()
 }
 
 /// Files and numbers of a list; `name` is used in messages only.
-fn parse<'a, const N: usize>(
+pub fn parse_list<'a, const N: usize>(
     name: &str,
     text: &'a str,
     columns: [&str; N],
 ) -> Result<Vec<(&'a str, [f64; N])>, TableError> {
-    let mut lines = text.lines().enumerate();
-    let wanted = format!("file,{}", columns.join(","));
-    let header = lines.next().map_or("", |(_, line)| line.trim());
-    if header.split(',').map(str::trim).ne(wanted.split(',')) {
-        let path = name.to_owned();
-        return Err(TableError::Header {
-            path,
-            line: 1,
-            wanted,
-        });
-    }
-    let mut rows = Vec::new();
-    for (index, content) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-        let (path, line) = (name.to_owned(), index + 1);
-        let mut cells = content.split(',').map(str::trim);
-        let file = cells.next().unwrap_or_default();
-        let numbers: Vec<&str> = cells.collect();
-        if numbers.len() != N {
-            return Err(TableError::Count {
-                path,
-                line,
-                found: numbers.len() + 1,
-                wanted: N + 1,
-            });
-        }
-        let mut values = [0.0; N];
-        for ((value, text), column) in values.iter_mut().zip(&numbers).zip(columns) {
-            let number = text.parse().ok().filter(|x: &f64| x.is_finite());
-            *value = number.ok_or_else(|| TableError::Number {
-                path: name.to_owned(),
-                line,
-                column: column.to_owned(),
-                text: (*text).to_owned(),
-            })?;
-        }
-        rows.push((file, values));
-    }
-    Ok(rows)
+    let all: Vec<&str> = std::iter::once("file").chain(columns).collect();
+    let rows = table::cells(name, text, &all)?.into_iter();
+    rows.map(|(line, cells)| Ok((cells[0], table::numbers(name, line, columns, &cells[1..])?)))
+        .collect()
 }
 
 #[cfg(test)]
@@ -106,7 +72,7 @@ mod tests {
 
     #[test]
     fn a_list_has_a_file_and_its_numbers_a_row() {
-        let rows = parse(
+        let rows = parse_list(
             "list",
             "file, u_mm,v_mm\r\na.png, 0.1,-0.2\n\nb.png,0,1e-1\n",
             ["u_mm", "v_mm"],
@@ -116,7 +82,7 @@ mod tests {
 
     #[test]
     fn a_wrong_list_is_named_by_its_line() {
-        let said = |text: &str| parse("list", text, ["u_mm"]).unwrap_err().to_string();
+        let said = |text: &str| parse_list("list", text, ["u_mm"]).unwrap_err().to_string();
         assert_eq!(said("file,v_mm\n"), "list, line 1: the header must be file,u_mm");
         assert_eq!(said("file,u_mm\na.png\n"), "list, line 2: 1 values instead of 2");
         assert_eq!(

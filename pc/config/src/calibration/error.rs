@@ -1,5 +1,6 @@
 //! What is wrong with a calibration file.
 
+use crate::toml_file::TomlError;
 use thiserror::Error;
 
 /// Why a calibration cannot be used. Reads as one sentence.
@@ -14,15 +15,8 @@ pub enum CalibrationError {
         source: std::io::Error,
     },
     /// Not TOML, or a key is missing, unknown or of the wrong type.
-    #[error("calibration {path}, line {line}: {message}")]
-    Content {
-        /// The file.
-        path: String,
-        /// First line is 1.
-        line: usize,
-        /// What is wrong.
-        message: String,
-    },
+    #[error(transparent)]
+    File(#[from] TomlError),
     /// A value makes no sense.
     #[error("calibration {path}, line {line}: {reason}")]
     Value {

@@ -1,7 +1,7 @@
 //! The calibration file as it is written: degrees and µm.
 
 use super::{Calibration, CalibrationError, SlideMap};
-use crate::table::line_of;
+use crate::toml_file;
 use serde::{Deserialize, Serialize};
 use vision::{Optics, PhotonTransfer, Profile};
 
@@ -127,11 +127,7 @@ impl From<PhotonTransfer> for PhotonTransferTable {
 
 /// Understands the text of a file.
 pub(super) fn parse(name: &str, text: &str) -> Result<Calibration, CalibrationError> {
-    let document: Document = toml::from_str(text).map_err(|error| CalibrationError::Content {
-        path: name.to_owned(),
-        line: line_of(text, error.span().map_or(0, |span| span.start)),
-        message: error.message().replace('\n', ", "),
-    })?;
+    let document: Document = toml_file::parse("calibration", name, text)?;
     let wrong = |table: &str, reason: String| CalibrationError::Value {
         path: name.to_owned(),
         line: line_of_table(text, table),

@@ -200,6 +200,25 @@ fn a_value_that_makes_no_sense_is_named_with_its_line() {
             "fine_um is NaN",
         ),
         ("4.9123", "inf", "[corner]", "offset_um is inf"),
+        // More than a terabyte of pixels, and pixels without end.
+        (
+            "columns = 400",
+            "columns = 4294967296",
+            "[optics]",
+            "4294967296 pixels; 67108864 pixels in all are possible",
+        ),
+        (
+            "magnification = 4.0",
+            "magnification = 1e300",
+            "[optics]",
+            "the pixel pitch over the magnification in mm of the camera is",
+        ),
+        (
+            "magnification = 4.0",
+            "magnification = 0.2",
+            "[optics]",
+            "it has to be between 0.000001 and 0.05",
+        ),
     ];
     for (right, wrong, table, says) in cases {
         let changed = text.replace(right, wrong);

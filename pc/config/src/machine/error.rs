@@ -1,29 +1,15 @@
 //! What is wrong with a machine file.
 
+use crate::toml_file::TomlError;
 use shared::parameter::ParameterError;
 use thiserror::Error;
 
 /// Why a machine file cannot be used. Reads as one sentence.
 #[derive(Debug, Error)]
 pub enum MachineError {
-    /// The file cannot be read.
-    #[error("cannot read machine file {path}: {source}")]
-    Read {
-        /// The file.
-        path: String,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// Not TOML, or a key is missing, unknown or of the wrong type.
-    #[error("machine file {path}, line {line}: {message}")]
-    Content {
-        /// The file.
-        path: String,
-        /// First line is 1.
-        line: usize,
-        /// What is wrong.
-        message: String,
-    },
+    /// It cannot be read, is not TOML, or a key is missing, unknown or of the wrong type.
+    #[error(transparent)]
+    File(#[from] TomlError),
     /// A parameter of a board makes no sense.
     #[error("machine file {path}: {parameter}")]
     Parameter {

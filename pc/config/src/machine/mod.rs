@@ -11,13 +11,16 @@ pub use error::{MachineError, Mistake};
 pub use weak_protection::WeakProtection;
 
 use crate::probe::ProbeUnit;
-use crate::table::line_of;
+use crate::toml_file;
 use document::Document;
 use serde::Deserialize;
 use shared::config::{MotionConfig, TrackerConfig};
 use shared::io::{AXES, MOTOR_AXIS};
 use shared::motion::Machine;
 use std::path::Path;
+
+/// What messages call the file.
+const WHAT: &str = "machine file";
 
 /// A machine, as its file says.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,20 +130,12 @@ impl<T> ByAxis<T> {
 impl MachineFile {
     /// Reads the file at `path`.
     pub fn read(path: &Path) -> Result<Self, MachineError> {
-        let name = path.display().to_string();
-        match std::fs::read_to_string(path) {
-            Ok(text) => Self::parse(&name, &text),
-            Err(source) => Err(MachineError::Read { path: name, source }),
-        }
+        Self::parse(&path.display().to_string(), &toml_file::text(WHAT, path)?)
     }
 
     /// Understands `text`; `path` is used in messages only.
     pub fn parse(path: &str, text: &str) -> Result<Self, MachineError> {
-        let document: Document = toml::from_str(text).map_err(|error| MachineError::Content {
-            path: path.to_owned(),
-            line: line_of(text, error.span().map_or(0, |span| span.start)),
-            message: error.message().replace('\n', ", "),
-        })?;
+        let document: Document = toml_file::parse(WHAT, path, text)?;
         let mistake = |mistake| MachineError::Mistake {
             path: path.to_owned(),
             mistake,

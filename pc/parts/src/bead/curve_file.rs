@@ -44,6 +44,12 @@ impl From<Document> for CurveFile {
     }
 }
 
+/// Whether the JSON `text` is a curve; `name` of the file is used in messages only.
+pub fn check_curve(name: &str, text: &str) -> anyhow::Result<()> {
+    CurveFile::parse(name, text)?.nurbs(name)?;
+    Ok(())
+}
+
 impl CurveFile {
     /// Reads a JSON file.
     pub(super) fn read(path: &Path) -> Result<Self, BeadError> {
@@ -52,7 +58,15 @@ impl CurveFile {
             path: name.clone(),
             source,
         })?;
-        serde_json::from_str(&text).map_err(|source| BeadError::Json { path: name, source })
+        Self::parse(&name, &text)
+    }
+
+    /// Understands `text`; `name` of the file is used in messages only.
+    fn parse(name: &str, text: &str) -> Result<Self, BeadError> {
+        serde_json::from_str(text).map_err(|source| BeadError::Json {
+            path: name.to_owned(),
+            source,
+        })
     }
 
     /// The curve; `place` is where it was read, for messages.

@@ -22,6 +22,7 @@ use crate::limits::SPEED_DIP;
 use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
 use cam::path::{PlannedPath, Planner};
 use curve_file::CurveFile;
+pub use curve_file::check_curve;
 use curves::nurbs::Curve;
 use error::BeadError;
 use nalgebra::Vector3;

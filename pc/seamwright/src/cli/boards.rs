@@ -28,6 +28,8 @@ const POLL: Duration = Duration::from_millis(20);
 
 /// Events that wait for the disk: more than half a minute of both boards.
 const LOGGED: usize = 1 << 14;
+/// So many letters are wrong in a word that is meant to be another one.
+const NEAR: usize = 2;
 
 /// Which boards.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,7 +58,7 @@ impl FromStr for BoardChoice {
         match text {
             "emulated" => Ok(Self::Emulated),
             "simulated" => Ok(Self::Simulated),
-            _ if motion.is_empty() || tracker == Some("") => {
+            _ if motion.is_empty() || tracker == Some("") || is_meant(text) => {
                 Err("say emulated, simulated, or the addresses MOTION,TRACKER (MOTION without a tracker)")
             }
             _ => Ok(Self::At {
@@ -65,6 +67,13 @@ impl FromStr for BoardChoice {
             }),
         }
     }
+}
+
+/// Whether it is nearly one of the words, and no board's name.
+fn is_meant(text: &str) -> bool {
+    let text = text.to_lowercase();
+    let near = |word| strsim::damerau_levenshtein(&text, word) <= NEAR;
+    ["emulated", "simulated"].into_iter().any(near)
 }
 
 impl BoardChoice {
@@ -218,9 +227,11 @@ mod tests {
         assert_eq!(two.name(), "192.168.7.10,192.168.7.11");
         let one = "192.168.7.10".parse::<BoardChoice>().unwrap();
         assert_eq!(one.name(), "192.168.7.10");
-        for wrong in ["", "192.168.7.10,", ",x"] {
-            assert!(wrong.parse::<BoardChoice>().is_err(), "{wrong}");
+        for wrong in ["", "192.168.7.10,", ",x", "simulatd", "Simulated", "emulator"] {
+            let said = wrong.parse::<BoardChoice>().unwrap_err();
+            assert!(said.starts_with("say emulated, simulated, or"), "{wrong}");
         }
+        assert!("gantry-motion".parse::<BoardChoice>().is_ok());
     }
 
     #[test]

@@ -148,7 +148,7 @@ impl SeamFile {
                 });
             }
             let (complete, cut) = complete(&text);
-            points = parse(&name, &complete)?
+            points = parse_seam_points(&name, &complete)?
                 .into_iter()
                 .map(|(_, point)| point)
                 .collect();
@@ -259,10 +259,11 @@ fn rows(number: usize, point: &SeamPoint) -> String {
 
 /// Reads the points of a taught seam at `path`, each with the line of its first row, in the order of travel.
 pub fn read_seam_points(path: &Path) -> Result<Vec<(usize, SeamPoint)>, TableError> {
-    parse(&path.display().to_string(), &table::read(path)?)
+    parse_seam_points(&path.display().to_string(), &table::read(path)?)
 }
 
-fn parse(path: &str, text: &str) -> Result<Vec<(usize, SeamPoint)>, TableError> {
+/// Understands the `text` of such a file; `path` is used in messages only.
+pub fn parse_seam_points(path: &str, text: &str) -> Result<Vec<(usize, SeamPoint)>, TableError> {
     let rows = table::parse(path, text, COLUMNS)?;
     let wrong = |line, reason| TableError::Row {
         path: path.to_owned(),
@@ -452,7 +453,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named_with_its_line() {
         let text = |rows: &str| format!("{}{rows}", head().text());
-        let message = |rows: &str| parse("t.csv", &text(rows)).unwrap_err().to_string();
+        let message = |rows: &str| parse_seam_points("t.csv", &text(rows)).unwrap_err().to_string();
         let row = |point: u32, side: u32, s: f64, x: f64| {
             format!("{point},{side},{s},{x},0,0,0,0,1,0.05,0.9,0.001,8\n")
         };

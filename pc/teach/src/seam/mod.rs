@@ -23,7 +23,7 @@ pub use centring::{Cameras, Stance};
 pub use config::SeamTeaching;
 pub use course::{Foot, SeamPoint};
 pub use drawing::Drawing;
-pub use file::{Head, Opened, SeamFile, SeamFileError, read_seam_points};
+pub use file::{Head, Opened, SeamFile, SeamFileError, parse_seam_points, read_seam_points};
 pub use follow::{Ended, Follower, SeamTeachError};
 pub use jog::{Hand, JOG_WORDS, Jog};
 pub use not_found::NotFound;

@@ -1,11 +1,15 @@
 //! The scene file: what the seams of a simulated world look like, and what disturbs their pictures.
 
-use config::table::line_of;
+use config::table::FARTHEST_MM;
+use config::toml_file::{self, TomlError};
 use serde::Deserialize;
 use shared::io::SIDES;
 use std::path::Path;
 use thiserror::Error;
 use vision::render::Finish;
+
+/// What messages call the file.
+const WHAT: &str = "scene file";
 
 /// What the seams look like, and what disturbs their pictures.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -131,26 +135,11 @@ impl Default for SceneFile {
 /// Why a scene file cannot be used. Reads as one sentence.
 #[derive(Debug, Error)]
 pub enum SceneError {
-    /// It cannot be read.
-    #[error("cannot read {path}: {source}")]
-    Read {
-        /// The file.
-        path: String,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// It is no scene.
-    #[error("{path}, line {line}: {message}")]
-    Content {
-        /// The file.
-        path: String,
-        /// Where.
-        line: usize,
-        /// What is wrong.
-        message: String,
-    },
+    /// It cannot be read, or is no scene.
+    #[error(transparent)]
+    File(#[from] TomlError),
     /// A value makes no sense.
-    #[error("{path}: {key} = {value}: it has to be {requirement}")]
+    #[error("scene file {path}: {key} = {value}: it has to be {requirement}")]
     Value {
         /// The file.
         path: String,
@@ -166,20 +155,12 @@ pub enum SceneError {
 impl SceneFile {
     /// Reads the file at `path`.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let name = path.display().to_string();
-        match std::fs::read_to_string(path) {
-            Ok(text) => Self::parse(&name, &text),
-            Err(source) => Err(SceneError::Read { path: name, source }),
-        }
+        Self::parse(&path.display().to_string(), &toml_file::text(WHAT, path)?)
     }
 
     /// Understands `text`; `path` is used in messages only.
     pub fn parse(path: &str, text: &str) -> Result<Self, SceneError> {
-        let scene: Self = toml::from_str(text).map_err(|error| SceneError::Content {
-            path: path.to_owned(),
-            line: line_of(text, error.span().map_or(0, |span| span.start)),
-            message: error.message().replace('\n', ", "),
-        })?;
+        let scene: Self = toml_file::parse(WHAT, path, text)?;
         let wrong = scene
             .values()
             .into_iter()
@@ -199,18 +180,18 @@ impl SceneFile {
     fn values(&self) -> Vec<(String, f64, Range)> {
         let mut values: Vec<(String, f64, Range)> = [
             ("light", self.light, Range::Light),
-            ("smear_um", self.smear_um, Range::AtLeast0),
+            ("smear_um", self.smear_um, Range::Smear),
             ("gap_mm", self.gap_mm, Range::Gap),
             ("gap_wave_mm", self.gap_wave_mm, Range::Gap),
             ("gap_mm - gap_wave_mm", self.gap_mm - self.gap_wave_mm, Range::Gap),
-            ("gap_wave_length_mm", self.gap_wave_length_mm, Range::Above0),
+            ("gap_wave_length_mm", self.gap_wave_length_mm, Range::WaveLength),
             ("roll_wave_deg", self.roll_wave_deg, Range::Roll),
-            ("roll_wave_length_mm", self.roll_wave_length_mm, Range::Above0),
-            ("height_noise_um", self.height_noise_um, Range::AtLeast0),
+            ("roll_wave_length_mm", self.roll_wave_length_mm, Range::WaveLength),
+            ("height_noise_um", self.height_noise_um, Range::Noise),
             ("spatter_share", self.spatter_share, Range::Share),
             ("lost_share", self.lost_share, Range::Share),
             ("late_share", self.late_share, Range::Share),
-            ("late_ms", self.late_ms, Range::AtLeast0),
+            ("late_ms", self.late_ms, Range::Late),
         ]
         .map(|(key, value, range)| (key.to_owned(), value, range))
         .into();
@@ -218,17 +199,19 @@ impl SceneFile {
             let key = |name| format!("{name} of scratch {}", i + 1);
             values.extend([
                 (key("side"), f64::from(scratch.side), Range::Side),
-                (key("offset_mm"), scratch.offset_mm, Range::Finite),
-                (key("width_mm"), scratch.width_mm, Range::Above0),
-                (key("brightness"), scratch.brightness, Range::AtLeast0),
+                (key("offset_mm"), scratch.offset_mm, Range::Beside),
+                (key("width_mm"), scratch.width_mm, Range::Width),
+                (key("brightness"), scratch.brightness, Range::Brightness),
+                (key("from_s_mm"), scratch.from_s_mm.unwrap_or(0.0), Range::Along),
+                (key("to_s_mm"), scratch.to_s_mm.unwrap_or(0.0), Range::Along),
             ]);
         }
         for (i, dark) in self.dark.iter().enumerate() {
             let key = |name| format!("{name} of dark {}", i + 1);
             values.extend([
                 (key("side"), f64::from(dark.side), Range::Side),
-                (key("from_s_mm"), dark.from_s_mm, Range::Finite),
-                (key("for_ms"), dark.for_ms.unwrap_or(0.0), Range::AtLeast0),
+                (key("from_s_mm"), dark.from_s_mm, Range::Along),
+                (key("for_ms"), dark.for_ms.unwrap_or(0.0), Range::Dark),
             ]);
         }
         values
@@ -238,41 +221,63 @@ impl SceneFile {
 /// What a value may be.
 #[derive(Clone, Copy)]
 enum Range {
-    Finite,
-    AtLeast0,
-    Above0,
-    Share,
-    Light,
+    Along,
+    Beside,
+    Brightness,
+    Dark,
     Gap,
+    Late,
+    Light,
+    Noise,
     Roll,
+    Share,
     Side,
+    Smear,
+    WaveLength,
+    Width,
 }
 
 impl Range {
     fn holds(self, value: f64) -> bool {
-        value.is_finite()
-            && match self {
-                Self::Finite => true,
-                Self::AtLeast0 => value >= 0.0,
-                Self::Above0 => value > 0.0,
-                Self::Share => (0.0..=1.0).contains(&value),
-                Self::Light => (0.0..=2.0).contains(&value),
-                Self::Gap => (0.0..=1.0).contains(&value),
-                Self::Roll => (0.0..=15.0).contains(&value),
-                Self::Side => value == 1.0 || value == 2.0,
-            }
+        let (from, to) = match self {
+            // A seam is no longer than a table can say.
+            Self::Along => (-FARTHEST_MM, FARTHEST_MM),
+            // A picture shows some millimetres.
+            Self::Beside => (-100.0, 100.0),
+            Self::Brightness => (0.0, 100.0),
+            Self::Dark => (0.0, 1e9),
+            Self::Gap | Self::Share => (0.0, 1.0),
+            // Long after that the tracker has given up.
+            Self::Late => (0.0, 1e4),
+            Self::Light => (0.0, 2.0),
+            // Beyond half a millimetre nothing of the work is in focus.
+            Self::Noise => (0.0, 500.0),
+            Self::Roll => (0.0, 15.0),
+            Self::Side => return value == 1.0 || value == 2.0,
+            // 0.3 ms at 9 m/min; of more there is nothing left to see.
+            Self::Smear => (0.0, 50.0),
+            Self::WaveLength => (1.0, FARTHEST_MM),
+            Self::Width => (1e-4, 10.0),
+        };
+        (from..=to).contains(&value)
     }
 
     fn requirement(self) -> &'static str {
         match self {
-            Self::Finite => "a finite number",
-            Self::AtLeast0 => "0 or more",
-            Self::Above0 => "above 0",
-            Self::Share => "from 0 to 1",
-            Self::Light => "from 0 to 2",
+            Self::Along => "from -100000 to 100000 mm",
+            Self::Beside => "from -100 to 100 mm",
+            Self::Brightness => "from 0 to 100",
+            Self::Dark => "from 0 to 1000000000 ms",
             Self::Gap => "from 0 to 1 mm",
+            Self::Late => "from 0 to 10000 ms",
+            Self::Light => "from 0 to 2",
+            Self::Noise => "from 0 to 500 µm",
             Self::Roll => "from 0 to 15 degrees",
+            Self::Share => "from 0 to 1",
             Self::Side => "1 or 2",
+            Self::Smear => "from 0 to 50 µm",
+            Self::WaveLength => "from 1 to 100000 mm",
+            Self::Width => "from 0.0001 to 10 mm",
         }
     }
 }

@@ -223,6 +223,8 @@ fn a_wrong_scene_is_told_by_key_value_and_what_it_may_be() {
             "lost_share = 1.5",
             "scene.toml: lost_share = 1.5: it has to be from 0 to 1",
         ),
+        ("smear_um = 1e15", "it has to be from 0 to 50 µm"),
+        ("gap_wave_length_mm = 1e-300", "it has to be from 1 to 100000 mm"),
         ("gap_mm = 0.02\ngap_wave_mm = 0.03", "gap_mm - gap_wave_mm = -0.0"),
         (
             "[[dark]]\nside = 3\nfrom_s_mm = 0.0",

@@ -118,3 +118,14 @@ fn the_trace_ends_with_the_job_and_shows_its_peaks() {
         }
     }
 }
+
+/// 60 days: beyond 32 bits of milliseconds.
+#[test]
+fn dwells_are_summed_however_long_they_are() {
+    let machine = machine("stir-gantry.toml");
+    let dwells = "G4 P86400\n".repeat(60);
+    let program = program().replace("G4 P1.5\n", &dwells);
+    let ran = ran(&machine, &program, 1.0);
+    let between = ran.duration_s - ran.motion_s;
+    assert!((between - 60.0 * 86_400.0).abs() < 1.0, "{between} s");
+}

@@ -90,6 +90,19 @@ fn more_changes_than_the_board_holds_are_refused() {
 }
 
 #[test]
+fn a_feed_with_which_a_block_takes_more_than_a_day_is_a_slip() {
+    for body in [
+        "F0.00001\nG1 X1100",
+        "G93 G1 X1100 F0.0001",
+        "F1000 G64\nG1 X1100\nF0.00001 X1200",
+    ] {
+        let error = plan(body).unwrap_err();
+        assert!(matches!(error, PathError::TooSlow { .. }), "{body}: {error}");
+        assert!(error.to_string().starts_with("line "), "{error}");
+    }
+}
+
+#[test]
 fn what_bounds_a_feed_is_told_and_a_feed_up_to_it_is_planned() {
     let paths = plan("F3000\nG1 X1080 Y1060").unwrap();
     assert_eq!(paths[0].bound, None, "a rapid is as fast as it can be");
