@@ -5,7 +5,6 @@ use cam::dry_run;
 use cam::dry_run::DryRun;
 use cam::path::Planner;
 use host_link::boards::Boards;
-use job;
 use job::{Job, Work};
 use nc::Program;
 use report::Ended;
