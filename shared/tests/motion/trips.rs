@@ -130,6 +130,35 @@ fn a_grating_that_jumps_trips_but_not_over_a_lost_tick() {
     );
 }
 
+/// Which no reference asks for: something else moves it, and its loop has no limit of its own that ends it before.
+#[test]
+fn an_axis_far_beyond_its_travel_trips_and_tells_where_it_is() {
+    let mut config = config();
+    config.motors[Y].as_mut().unwrap().following_error_base = 1000.0;
+    let mut bench = Bench::new();
+    bench.done(&Request::ConfigureMotion(config));
+    bench.run_ms(3);
+    bench.done(&Request::Home);
+    bench.until(State::Idle, 5000);
+    bench.blocked[Y] = true;
+    // Twice its way to a stop, v/2·(v/a + a/j) with 300 mm/s, 1000 mm/s² and 20 000 mm/s³.
+    let over = 2.0 * 150.0 * (0.3 + 0.05);
+    while bench.position[Y] > -over {
+        assert!(bench.controller.state() == State::Idle, "{:?}", bench.fault());
+        assert!(bench.command.enable);
+        bench.position[Y] -= 0.09;
+        bench.servo_tick();
+    }
+    bench.run_ms(2);
+    assert_eq!(bench.command, MotionCommand::SAFE);
+    let fault = bench.fault();
+    assert!(
+        matches!(fault, Some(Fault::BeyondTravel { axis: 1, position })
+            if (f64::from(position) + over).abs() < 1.0),
+        "{fault:?}"
+    );
+}
+
 #[test]
 fn a_limit_switch_trips_outside_homing_only() {
     let mut bench = Bench::configured();

@@ -14,7 +14,7 @@ use nc::{Options, interpret};
 use parts::PartFile;
 use shared::geometry::Pose;
 use shared::io::SIDES;
-use shared::protocol::{Capture, Datagram, Response};
+use shared::protocol::{Capture, Response};
 use shared::tracking::frames::Heads;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

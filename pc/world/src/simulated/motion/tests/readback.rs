@@ -2,6 +2,7 @@
 
 use super::bench::{Bench, config};
 use super::*;
+use shared::config::ReadbackConfig;
 use shared::io::DacCode;
 
 /// With 5 % of full power allowed for 5 ms; on a line, with beam 1 on.
