@@ -4,7 +4,6 @@ use cam::dry_run;
 use cam::dry_run::DryRun;
 use cam::path::Planner;
 use host_link::boards::{Boards, Overheard};
-use job;
 use job::{Job, Silent, Work};
 use nc::Program;
 use report::Ended;

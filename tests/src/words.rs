@@ -2,7 +2,6 @@
 
 use config::machine::MachineFile;
 use host_link::boards::{Boards, Overheard};
-use job;
 use job::{Job, JobError, Names, Progress, Word, Work};
 use nc::{Options, interpret};
 use report::Ended;
