@@ -5,17 +5,29 @@
 //! on one clock. No privileges are needed, and no board outlives [`Boards`] or the thread that booted it.
 //!
 //! A board's log is in the binary form of defmt: `defmt-print -e FIRMWARE < motion.defmt` shows it.
+//!
+//! Boards are emulated on Linux only. On other systems this crate has the session file and the names of the environment
+//! variables, so that the PC's programs build everywhere.
 
+#[cfg(target_os = "linux")]
 mod boot;
+#[cfg(target_os = "linux")]
 mod hello;
+#[cfg(target_os = "linux")]
 mod pace;
+#[cfg(target_os = "linux")]
 mod qemu;
+#[cfg(target_os = "linux")]
 mod qmp;
 mod session;
 
+#[cfg(target_os = "linux")]
 pub use boot::{BOOT_VARIABLES, Boards, BootError, Options, PROGRAM_VARIABLES};
+#[cfg(target_os = "linux")]
 pub use pace::{BoardTime, Pace};
+#[cfg(target_os = "linux")]
 pub use qemu::{INSTRUCTIONS_PER_US, bound_to_parent};
+#[cfg(target_os = "linux")]
 pub use qmp::Meddling;
 pub use session::{
     Endpoint, JOB_VARIABLE, MACHINE_VARIABLE, PathStatesTo, SEAM_VARIABLE, SESSION_VARIABLE, Session,

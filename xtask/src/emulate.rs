@@ -22,9 +22,10 @@ pub struct Running {
 /// What the boards boot from, built. `log_directory` is where the logs go; `machine` is what the motion board is
 /// wired to.
 pub fn build(log_directory: PathBuf, rate: f64, machine: String) -> Result<Options> {
+    let [motion, tracker] = firmware::build(Firmware::ALL, Board::Mps2An500)?;
     Ok(Options {
-        motion: firmware::build(Firmware::Motion, Board::Mps2An500)?,
-        tracker: firmware::build(Firmware::Tracker, Board::Mps2An500)?,
+        motion,
+        tracker,
         plugin: firmware::build_pace()?,
         log_directory,
         rate,

@@ -30,15 +30,10 @@ pub enum Board {
     NucleoH723zg,
 }
 
-/// Every pair.
-pub const ALL: [(Firmware, Board); 4] = [
-    (Firmware::Motion, Board::Mps2An500),
-    (Firmware::Tracker, Board::Mps2An500),
-    (Firmware::Motion, Board::NucleoH723zg),
-    (Firmware::Tracker, Board::NucleoH723zg),
-];
-
 impl Firmware {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Motion, Self::Tracker];
+
     /// Name of the package.
     pub fn package(self) -> &'static str {
         match self {
@@ -46,6 +41,11 @@ impl Firmware {
             Self::Tracker => "firmware-tracker",
         }
     }
+}
+
+impl Board {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Mps2An500, Self::NucleoH723zg];
 }
 
 impl fmt::Display for Board {
@@ -58,37 +58,36 @@ impl fmt::Display for Board {
     }
 }
 
-/// Builds a firmware for a board; returns the image. Both boards' images have the same name in the target
-/// folder, so each is kept under a name of its own.
-pub fn build(firmware: Firmware, board: Board) -> Result<PathBuf> {
-    let package = firmware.package();
+/// Builds firmwares for a board, beside each other; returns the images. Both boards' images have the same name in the
+/// target folder, so each is kept under a name of its own.
+pub fn build<const N: usize>(firmwares: [Firmware; N], board: Board) -> Result<[PathBuf; N]> {
     let board = board.to_string();
-    let mut command = cargo(&[
-        "build",
-        "--quiet",
-        "--package",
-        package,
-        "--target",
-        TARGET,
-        "--profile",
-        PROFILE,
-        "--features",
-        &board,
-    ])?;
+    let mut command = cargo(&["build", "--quiet", "--target", TARGET, "--profile", PROFILE])?;
+    command.args(["--features", &board]);
+    for firmware in firmwares {
+        command.args(["--package", firmware.package()]);
+    }
     if std::env::var_os("DEFMT_LOG").is_none() {
         command.env("DEFMT_LOG", "info");
     }
-    eprintln!("building {package} for {board}");
-    run_command(command, &format!("building {package} for {board}"))?;
+    let what = format!(
+        "building {} for {board}",
+        firmwares.map(Firmware::package).join(" and ")
+    );
+    eprintln!("{what}");
+    run_command(command, &what)?;
 
     let target = target_directory()?;
-    let built = target.join(TARGET).join(PROFILE).join(package);
     let images = target.join("images");
     fs::create_dir_all(&images).with_context(|| format!("cannot make {}", images.display()))?;
-    let image = images.join(format!("{package}-{board}"));
-    fs::copy(&built, &image)
-        .with_context(|| format!("cannot copy {} to {}", built.display(), image.display()))?;
-    Ok(image)
+    let image = |firmware: Firmware| images.join(format!("{}-{board}", firmware.package()));
+    for firmware in firmwares {
+        let built = target.join(TARGET).join(PROFILE).join(firmware.package());
+        let image = image(firmware);
+        fs::copy(&built, &image)
+            .with_context(|| format!("cannot copy {} to {}", built.display(), image.display()))?;
+    }
+    Ok(firmwares.map(image))
 }
 
 /// Builds the plugin that keeps emulated boards on the wall clock; returns the library.

@@ -22,7 +22,7 @@ pub fn run(firmware: Firmware, board: Board) -> Result<ExitCode> {
         found.is_ok_and(|status| status.success()),
         "probe-rs is missing: install it (https://probe.rs), connect the board by USB, and try again"
     );
-    let image = firmware::build(firmware, board)?;
+    let [image] = firmware::build([firmware], board)?;
     for step in ["download", "reset"] {
         let mut command = Command::new("probe-rs");
         command.args([step, "--chip", CHIP]);

@@ -9,8 +9,10 @@ mod fuzz;
 mod interrupt;
 mod layout;
 mod machine;
+mod mutants;
 mod setup;
 mod size;
+mod tally;
 mod test;
 mod weld;
 
@@ -34,7 +36,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install what is missing: the Arm target of Rust, QEMU, Aravis
+    /// Install what is missing: the Arm and Windows targets of Rust, QEMU, Aravis
     Setup,
     /// Weld on two emulated boards: set up, build, boot, and run `seamwright weld` with the flags given
     #[command(disable_help_flag = true)]
@@ -49,6 +51,8 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         machine: Option<PathBuf>,
     },
+    /// Format, lints and tests of the host, whole jobs on simulated boards among them; needs no Arm target and no QEMU
+    Check,
     /// Check and test everything
     Test,
     /// Count instructions, on the PC by valgrind and on the emulated Cortex-M7; run programs through the planner
@@ -56,6 +60,8 @@ enum Task {
     Bench(bench::Benchmark),
     /// Tell both controllers what nobody should: random and mutated requests and datagrams, with overflow checks
     Fuzz(fuzz::Fuzz),
+    /// Change the code of a crate in a copy, one place at a time, and tell which changes no test notices
+    Mutants(mutants::Mutants),
     /// Flash and RAM of all four firmwares against their budgets
     Size,
     /// Write a firmware to a board by probe-rs
@@ -86,9 +92,11 @@ fn main() -> ExitCode {
                 machine.map_or_else(|| Ok(DEFAULT_MACHINE.to_owned()), |file| machine::name(&file))?;
             emulate::run(rate, machine)
         }),
-        Task::Test => set_up(&setup::ALL).and_then(|()| test::run()),
+        Task::Check => set_up(&[setup::Tool::Components]).map(|()| test::check()),
+        Task::Test => set_up(&setup::ALL).map(|()| test::run()),
         Task::Bench(benchmark) => set_up(benchmark.wants()).and_then(|()| benchmark.run()),
         Task::Fuzz(arguments) => fuzz::run(&arguments),
+        Task::Mutants(arguments) => set_up(&[setup::Tool::Mutants]).and_then(|()| mutants::run(&arguments)),
         Task::Size => set_up(&[setup::Tool::ArmTarget]).and_then(|()| size::run()),
         Task::Flash { firmware, board } => {
             set_up(&[setup::Tool::ArmTarget]).and_then(|()| flash::run(firmware, board))

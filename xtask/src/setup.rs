@@ -1,6 +1,6 @@
 //! Installs what building and emulating need, if it is missing. Says what it does; does nothing twice.
 
-use crate::cargo::{root, run_command};
+use crate::cargo::{root, run_command, target_directory};
 use crate::firmware::TARGET;
 use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
@@ -11,6 +11,8 @@ use std::process::{Command, Stdio};
 pub enum Tool {
     /// Rust's core library for the boards.
     ArmTarget,
+    /// Rust's library for the PC's programs on Windows.
+    WindowsTarget,
     /// Formatter and linter.
     Components,
     /// The emulator.
@@ -19,10 +21,23 @@ pub enum Tool {
     Valgrind,
     /// The library of GigE Vision cameras, and its simulated camera.
     Aravis,
+    /// What changes the code, to see whether a test notices.
+    Mutants,
 }
 
-/// For everything but counting.
-pub const ALL: [Tool; 4] = [Tool::ArmTarget, Tool::Components, Tool::Qemu, Tool::Aravis];
+/// Windows on the PC, as compilers call it.
+pub const WINDOWS: &str = "x86_64-pc-windows-gnu";
+/// Version of cargo-mutants whose flags and files are known here.
+const MUTANTS: &str = "27.1.0";
+
+/// For everything but counting and changing the code.
+pub const ALL: [Tool; 5] = [
+    Tool::ArmTarget,
+    Tool::WindowsTarget,
+    Tool::Components,
+    Tool::Qemu,
+    Tool::Aravis,
+];
 /// For emulated boards.
 pub const EMULATION: [Tool; 2] = [Tool::ArmTarget, Tool::Qemu];
 /// For counting instructions.
@@ -32,7 +47,8 @@ pub const COUNTING: [Tool; 3] = [Tool::ArmTarget, Tool::Qemu, Tool::Valgrind];
 pub fn run(wants: &[Tool]) -> Result<()> {
     for tool in wants {
         match tool {
-            Tool::ArmTarget => arm_target()?,
+            Tool::ArmTarget => rust_target(TARGET)?,
+            Tool::WindowsTarget => rust_target(WINDOWS)?,
             Tool::Components => components()?,
             Tool::Qemu => debian(
                 &["qemu-system-arm"],
@@ -53,23 +69,56 @@ pub fn run(wants: &[Tool]) -> Result<()> {
                 },
                 "install Aravis 0.8.25 or later by hand, with its tools",
             )?,
+            Tool::Mutants => mutants()?,
         }
     }
     Ok(())
 }
 
-fn arm_target() -> Result<()> {
-    let installed = || Ok::<_, anyhow::Error>(sysroot()?.join("lib/rustlib").join(TARGET).is_dir());
+fn rust_target(name: &str) -> Result<()> {
+    let installed = || Ok::<_, anyhow::Error>(sysroot()?.join("lib/rustlib").join(name).is_dir());
     if installed()? {
         return Ok(());
     }
-    rustup(&["target", "add", TARGET])?;
+    rustup(&["target", "add", name])?;
     ensure!(
         installed()?,
-        "rustup has added {TARGET} to another toolchain than {}",
+        "rustup has added {name} to another toolchain than {}",
         sysroot()?.display()
     );
     Ok(())
+}
+
+/// Installs cargo-mutants into the target folder.
+fn mutants() -> Result<()> {
+    if mutants_program()?.exists() {
+        return Ok(());
+    }
+    let folder = tools()?.display().to_string();
+    let arguments = [
+        "install",
+        "--locked",
+        "--version",
+        MUTANTS,
+        "--root",
+        &folder,
+        "cargo-mutants",
+    ];
+    let line = format!("cargo {}", arguments.join(" "));
+    eprintln!("set-up: {line}");
+    let mut command = Command::new("cargo");
+    command.args(arguments).current_dir(root());
+    run_command(command, &line)
+}
+
+/// The program of cargo-mutants.
+pub fn mutants_program() -> Result<PathBuf> {
+    Ok(tools()?.join("bin").join("cargo-mutants"))
+}
+
+/// Folder of programs that are installed for this project only.
+fn tools() -> Result<PathBuf> {
+    Ok(target_directory()?.join("tools"))
 }
 
 fn components() -> Result<()> {

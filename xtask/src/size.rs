@@ -55,11 +55,13 @@ const RAM_BEGINS: u64 = 0x2000_0000;
 pub fn run() -> Result<ExitCode> {
     let mut rows = Vec::new();
     let mut misplaced = Vec::new();
-    for (firmware, board) in firmware::ALL {
-        let image = firmware::build(firmware, board)?;
-        rows.push((firmware, board, measure(&image)?));
-        let findings = layout::check(&image, board)?.into_iter();
-        misplaced.extend(findings.map(|finding| format!("{} on {board}: {finding}", firmware.package())));
+    for board in Board::ALL {
+        let images = firmware::build(Firmware::ALL, board)?;
+        for (firmware, image) in Firmware::ALL.into_iter().zip(images) {
+            rows.push((firmware, board, measure(&image)?));
+            let findings = layout::check(&image, board)?.into_iter();
+            misplaced.extend(findings.map(|finding| format!("{} on {board}: {finding}", firmware.package())));
+        }
     }
     println!(
         "{:<18} {:<14} {:>9} {:>9}  {:>9} {:>9}  {:>16} {:>9}",

@@ -1,7 +1,11 @@
 //! Boards that are emulated on this computer.
 
-use emulator::{Pace, Session};
-use host_link::boards::{Endpoint, LinkError, NetworkBoards, Patience};
+#[cfg(target_os = "linux")]
+use emulator::Pace;
+use emulator::Session;
+#[cfg(target_os = "linux")]
+use host_link::boards::Endpoint;
+use host_link::boards::{LinkError, NetworkBoards, Patience};
 use thiserror::Error;
 
 /// Why emulated or simulated boards cannot be used.
@@ -34,6 +38,9 @@ pub enum BoardsError {
     /// The session file of the emulated boards cannot be used.
     #[error("the emulated boards cannot be found: {0}; start them by `cargo xtask emulate`")]
     BadSession(#[from] emulator::SessionError),
+    /// This computer cannot run them.
+    #[error("emulated boards need Linux; use --boards simulated, or the addresses of real boards")]
+    NeedsLinux,
 }
 
 /// Connects to emulated boards, and takes part in their pace: they wait while this program has no processor. There are
@@ -41,6 +48,7 @@ pub enum BoardsError {
 ///
 /// # Errors
 /// As [`NetworkBoards::connect`], or [`BoardsError::BadSession`] if the boards' page cannot be opened.
+#[cfg(target_os = "linux")]
 pub fn connect(session: &Session, tracked: bool, patience: Patience) -> Result<NetworkBoards, BoardsError> {
     let target = session.path_states_to;
     let tracker = endpoint(session.tracker);
@@ -58,6 +66,16 @@ pub fn connect(session: &Session, tracked: bool, patience: Patience) -> Result<N
     Ok(boards.paced_by(move || drop(pace.handled())))
 }
 
+/// There are none on this system.
+///
+/// # Errors
+/// [`BoardsError::NeedsLinux`] always.
+#[cfg(not(target_os = "linux"))]
+pub fn connect(_: &Session, _: bool, _: Patience) -> Result<NetworkBoards, BoardsError> {
+    Err(BoardsError::NeedsLinux)
+}
+
+#[cfg(target_os = "linux")]
 fn endpoint(board: emulator::Endpoint) -> Endpoint {
     Endpoint {
         host: board.host.to_string(),

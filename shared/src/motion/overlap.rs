@@ -117,3 +117,49 @@ impl Wait {
         now.s + now.v * PATH_PERIOD_S >= self.off.s
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::BeamConfig;
+
+    /// The planner keeps so much of the path that was gone, that the longest run-up after a hold is in it, and hardly more.
+    #[test]
+    fn the_way_back_is_as_long_as_the_longest_run_up() {
+        let limits = SpeedLimits {
+            velocity: 150.0,
+            acceleration: 1000.0,
+            jerk: 20_000.0,
+        };
+        let beam = BeamConfig {
+            power_at_10v_w: 4000.0,
+            min_speed_mm_s: 5.0,
+            overlap_mm: 2.0,
+            stays_on_at_rest: false,
+            readback: None,
+        };
+        let beams = BeamLimits::build(&[Some(beam), None]).unwrap();
+        let off = SpeedState {
+            s: 200.0,
+            v: 150.0,
+            ..SpeedState::default()
+        };
+        let wait = Wait {
+            off,
+            reopen: off.s - 2.0,
+        };
+        let overlap = Overlap {
+            held: off,
+            waits: [Some(wait), None],
+        };
+        // On for the time of the reaction, then v/2·(v/a + a/j) to rest.
+        let stands = off.s + 15.0 + 75.0 * (0.15 + 0.05);
+        let from = overlap.run_up_from(stands, None, &limits).unwrap();
+        let kept = way_back(&limits, &beams);
+        assert!(
+            (stands - from - kept).abs() < 1e-9,
+            "{} of {kept} mm",
+            stands - from
+        );
+    }
+}

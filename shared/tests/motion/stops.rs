@@ -107,6 +107,23 @@ fn disable_on_the_path_switches_everything_off_and_publishes_no_speed() {
     ));
 }
 
+/// Between places that are told by the axes no beam opens and nothing is tracked.
+#[test]
+fn a_path_in_axis_space_takes_no_beam_and_no_tracking() {
+    let mut bench = Bench::homed();
+    bench.begin(PathSpace::Axes);
+    let beam = |on| PathAction::Beam { side: 0, on };
+    let tracking = |on| PathAction::Tracking { on };
+    for action in [beam(true), tracking(true)] {
+        assert_eq!(
+            bench.refused(&events(&[(0.0, action)])),
+            Refusal::BadEvent { index: 0 },
+            "{action:?}"
+        );
+    }
+    bench.loaded(&events(&[(0.0, beam(false)), (0.0, tracking(false))]));
+}
+
 #[test]
 fn a_refused_request_leaves_the_path_as_it_was() {
     let mut bench = Bench::homed();

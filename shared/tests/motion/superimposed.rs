@@ -250,7 +250,7 @@ fn an_offset_is_refused_where_nothing_is_tracked_or_the_machine_ends() {
     bench.run();
     bench.until(State::Idle, 10_000);
     bench.begin(PathSpace::Tool);
-    let line = bench.along_y(0.0, 100.0, FEED, PathJoin::Stop);
+    let line = bench.along_y(0.0, 300.0, FEED, PathJoin::Stop);
     bench.loaded(&load(line, true));
     let on = PathEvent {
         s_mm: 0.0,
@@ -259,12 +259,23 @@ fn an_offset_is_refused_where_nothing_is_tracked_or_the_machine_ends() {
     bench.loaded(&Request::LoadEvents([on].into_iter().collect()));
     bench.run();
     run_ms(&mut bench, 500);
-    let up = PoseOffset {
-        normal_mm: 5.0,
-        ..PoseOffset::NONE
+    let up = |normal_mm| {
+        Request::OffsetPose(PoseOffset {
+            normal_mm,
+            ..PoseOffset::NONE
+        })
     };
-    let Refusal::OffsetBeyondTravel { axis: 2, position } = bench.refused(&Request::OffsetPose(up)) else {
-        panic!("Z ends");
+    let assert_ends = |bench: &mut Bench| {
+        let Refusal::OffsetBeyondTravel { axis: 2, position } = bench.refused(&up(5.0)) else {
+            panic!("Z ends");
+        };
+        assert!((position - 1001.0).abs() < 1e-3, "{position} mm");
     };
-    assert!((position - 1001.0).abs() < 1e-3, "{position} mm");
+    assert_ends(&mut bench);
+    // An offset is one of the plan, whatever the pose is beside it already.
+    bench.done(&up(3.0));
+    run_ms(&mut bench, 3000);
+    assert_eq!(bench.status().state, State::Running);
+    assert!((bench.status().reference[2] - 999.0).abs() < 1e-3);
+    assert_ends(&mut bench);
 }

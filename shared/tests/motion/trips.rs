@@ -130,6 +130,30 @@ fn a_grating_that_jumps_trips_but_not_over_a_lost_tick() {
     );
 }
 
+/// Which no reference asks for: something else moves it, by less than its following error.
+#[test]
+fn an_axis_far_beyond_its_travel_trips_and_tells_where_it_is() {
+    let mut config = config();
+    config.motors[Y].as_mut().unwrap().following_error_base = 10.0;
+    let y = config.axes[1].as_mut().unwrap();
+    (y.travel_max, y.max_velocity) = (MARK + 1.0, 60.0);
+    let mut bench = Bench::new();
+    bench.done(&Request::ConfigureMotion(config));
+    bench.run_ms(3);
+    bench.done(&Request::Home);
+    bench.until(State::Idle, 5000);
+    bench.blocked[Y] = true;
+    // Twice its way to a stop, v/2·(v/a + a/j) with 60 mm/s, 1000 mm/s² and 20 000 mm/s³.
+    let end = MARK + 1.0 + 2.0 * 30.0 * (0.06 + 0.05);
+    // It stands a little beside its mark.
+    assert_eq!(push(&mut bench, Y, 0.01, 600), None);
+    let fault = push(&mut bench, Y, 0.01, 300);
+    assert!(
+        matches!(fault, Some(Fault::BeyondTravel { axis: 1, position }) if (f64::from(position) - end).abs() < 0.1),
+        "{fault:?}"
+    );
+}
+
 #[test]
 fn a_limit_switch_trips_outside_homing_only() {
     let mut bench = Bench::configured();

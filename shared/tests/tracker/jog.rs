@@ -143,3 +143,28 @@ fn only_a_ready_tracker_moves_its_slides() {
         "they stay near their marks"
     );
 }
+
+/// What a slide was told before its drive went off is no speed to slow down from.
+#[test]
+fn slides_that_were_switched_off_on_the_way_start_from_rest() {
+    let mut bench = ready();
+    bench.accept(move_to(PLACE));
+    bench.run_ms(60);
+    let full = config().slides[2].velocity_at_10v_mm_s;
+    let told = |bench: &Bench| bench.last.command.dac.map(|dac| dac.ratio().abs() * full);
+    assert!(told(&bench)[2] > 20.0, "{:?}", told(&bench));
+    bench.accept(Request::Disable);
+    bench.run_ms(5);
+    bench.accept(Request::Home);
+    while bench.status().state == TrackerState::Homing {
+        bench.tick();
+    }
+    assert_eq!(bench.status().state, TrackerState::Ready);
+    bench.tick();
+    let most = config().slides[2].max_acceleration_mm_s2 * 1e-3;
+    assert!(
+        told(&bench).iter().all(|told| *told <= most),
+        "{:?}",
+        told(&bench)
+    );
+}

@@ -1,6 +1,7 @@
 //! The tracker board's controller against the slides' model, a path and a seam.
 
 mod bench;
+mod clock;
 mod estop;
 mod following;
 mod forged;

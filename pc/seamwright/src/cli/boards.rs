@@ -172,6 +172,7 @@ impl BoardChoice {
                 let boards = NetworkBoards::connect(&motion, tracker.as_ref(), None, patience)?;
                 Ok(Box::new(boards.stopped_by(interrupted)))
             }
+            Self::Emulated if cfg!(not(target_os = "linux")) => Err(BoardsError::NeedsLinux),
             Self::Emulated => {
                 let path = std::env::var_os(SESSION_VARIABLE).ok_or(BoardsError::NoEmulator)?;
                 let session = Session::read(Path::new(&path))?;
