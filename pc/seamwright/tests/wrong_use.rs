@@ -276,7 +276,7 @@ fn cameras_and_scenes_that_do_not_suit_are_told_with_the_remedy() {
     ]);
     assert_says(&kept, &["leave --keep-pictures out", "--camera images"]);
     let none = said(vec!["--boards", "simulated", "--scene", "no-scene.toml"]);
-    assert_says(&none, &["cannot read no-scene.toml"]);
+    assert_says(&none, &["cannot read scene file no-scene.toml"]);
 }
 
 #[test]
