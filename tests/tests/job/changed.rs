@@ -45,7 +45,7 @@ fn a_program_that_changes_while_it_runs_ends_with_the_machine_at_rest_on_the_pat
             }
         },
     };
-    let machine = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/stir-gantry.toml");
+    let machine = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines/stir-gantry.toml");
     let machine = MachineFile::read(std::path::Path::new(machine)).unwrap();
     let mut careless = Careless {
         file: file.clone(),

@@ -18,7 +18,7 @@ fn rectangle(mode: &str) -> (Vec<MotionSample>, Ended) {
             }
         },
     };
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/stir-gantry.toml");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines/stir-gantry.toml");
     let machine = MachineFile::read(std::path::Path::new(file)).unwrap();
     let never = AtomicBool::new(false);
     let ended = run_on(&mut boards, &machine, &body, None, &never, &mut Silent).unwrap();

@@ -23,7 +23,7 @@ X640
 M2";
 
 fn shipped(name: &str) -> MachineFile {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../machines/{name}.toml"));
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../machines/{name}.toml"));
     MachineFile::read(&file).unwrap()
 }
 

@@ -127,7 +127,7 @@ const MACHINES: [(&str, &str); 4] = [
 #[test]
 fn every_machine_runs_from_its_marks_to_its_park_position_on_its_motion_board() {
     for (name, way) in MACHINES {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../machines/{name}.toml"));
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../machines/{name}.toml"));
         let machine = MachineFile::read(&file).unwrap();
         let mut boards = MotionOnly(SimulatedBoards::new(name).unwrap());
         let program = format!("G43.4\n{way}\nM2");
@@ -164,7 +164,7 @@ fn every_machine_runs_from_its_marks_to_its_park_position_on_its_motion_board() 
 /// motion.
 #[test]
 fn a_spindle_runs_up_before_the_motion_and_stops_before_the_next() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines/stir-gantry.toml");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../machines/stir-gantry.toml");
     let machine = MachineFile::read(&file).unwrap();
     let mut samples = Vec::new();
     let mut boards = Overheard {
