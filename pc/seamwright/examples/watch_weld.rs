@@ -1,6 +1,4 @@
-//! Watches a weld on simulated boards that something else drives: the largest speed and tracking, ten times a second of the
-//! boards' time, and what a slow watcher misses.
-//! Run it in the project's folder: `cargo run --release -p seamwright --example watch_weld`.
+//! Watches a weld on simulated boards: state, place and largest speed, and what a slow watcher misses. Run it in the project's folder.
 
 use config::machine::MachineFile;
 use host_link::events::{Event, Interest, Subscription};
@@ -20,8 +18,9 @@ fn watch(events: Subscription) {
         }
         match &*received.event {
             Event::MotionSamples(samples) => {
-                let speeds = samples.iter().map(|sample| sample.speed_mm_s);
-                fastest = speeds.fold(fastest, f64::max);
+                fastest = samples
+                    .iter()
+                    .fold(fastest, |fastest, s| fastest.max(s.speed_mm_s));
             }
             Event::Status { motion, .. } => {
                 println!(
@@ -39,10 +38,8 @@ fn watch(events: Subscription) {
 
 fn weld(mut control: Control) -> Result<(), Box<dyn std::error::Error>> {
     let machine = MachineFile::read(Path::new("machines/pipe-welder.toml"))?;
-    let program = interpret(
-        &std::fs::read_to_string("programs/saddle-320-80.ngc")?,
-        Options::default(),
-    )?;
+    let program = std::fs::read_to_string("programs/saddle-320-80.ngc")?;
+    let program = interpret(&program, Options::default())?;
     let job = Job {
         machine: &machine,
         work: Work::Program(&program),
