@@ -4,7 +4,7 @@ mod phase;
 mod stream;
 
 pub use phase::{Next, Phase, Question};
-pub use stream::{Events, Interest, Lost, Received, Subscription};
+pub use stream::{Events, Interest, NoEvent, Received, Subscription};
 
 use shared::protocol::{
     Capture, Identity, Measurement, MotionSample, MotionStatus, TrackerSample, TrackerStatus,

@@ -72,7 +72,7 @@ pub struct Received {
 
 /// Why there is no event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lost {
+pub enum NoEvent {
     /// None came within the time.
     Timeout,
     /// The job has ended and all its events are taken.
@@ -157,8 +157,8 @@ impl Subscription {
     /// The next event, if one comes within `timeout`.
     ///
     /// # Errors
-    /// [`Lost`].
-    pub fn receive(&self, timeout: Duration) -> Result<Received, Lost> {
+    /// [`NoEvent`].
+    pub fn receive(&self, timeout: Duration) -> Result<Received, NoEvent> {
         let end = Instant::now() + timeout;
         let mut state = locked(&self.queue.state);
         loop {
@@ -168,11 +168,11 @@ impl Subscription {
                 return Ok(Received { lost, event });
             }
             if state.closed {
-                return Err(Lost::Ended);
+                return Err(NoEvent::Ended);
             }
             let left = end.saturating_duration_since(Instant::now());
             if left.is_zero() {
-                return Err(Lost::Timeout);
+                return Err(NoEvent::Timeout);
             }
             let waited = self.queue.arrived.wait_timeout(state, left);
             (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
@@ -188,8 +188,8 @@ impl Iterator for Subscription {
         loop {
             match self.receive(Duration::from_secs(3600)) {
                 Ok(received) => return Some(received),
-                Err(Lost::Ended) => return None,
-                Err(Lost::Timeout) => {}
+                Err(NoEvent::Ended) => return None,
+                Err(NoEvent::Timeout) => {}
             }
         }
     }
@@ -284,7 +284,7 @@ mod tests {
         events.close();
         assert!(stays.next().is_some());
         assert!(stays.next().is_none());
-        assert_eq!(stays.receive(Duration::from_secs(9)).unwrap_err(), Lost::Ended);
+        assert_eq!(stays.receive(Duration::from_secs(9)).unwrap_err(), NoEvent::Ended);
     }
 
     #[test]

@@ -68,8 +68,8 @@ pub trait SeamTruth {
 /// The seams that were followed.
 #[derive(Clone, Copy)]
 pub struct Followed<'a> {
-    /// As they really are; `None` where nobody knows.
-    pub seams: Option<&'a dyn SeamTruth>,
+    /// As they really are.
+    pub seams: &'a dyn SeamTruth,
     /// How far the tracker's clock is ahead of the motion board's \[µs\].
     pub tracker_ahead_us: i64,
 }
@@ -93,14 +93,13 @@ pub struct RunSample {
     pub pose: Pose,
 }
 
-/// Evaluates a record of a job that ran `paths`, by their numbers.
+/// Evaluates a record of a job that ran `paths`, by their numbers, beside the seams that it `followed`, where they are known.
 pub fn evaluate(
     record: &Record,
     machine: &MachineGeometry,
     paths: &BTreeMap<u32, PlannedPath>,
     followed: Option<Followed>,
 ) -> Evaluation {
-    let followed = followed.filter(|followed| followed.seams.is_some());
     let along = Along::of(paths);
     let working = working(paths, &along);
     let mut tips: Vec<Option<Vector3<f64>>> = Vec::new();

@@ -75,7 +75,7 @@ pub(super) fn work_tick(
     let mut deviation_mm = [None; SLIDES];
     if let (Some(pose), Some(slides), Some(followed)) = (pose, slides_mm, followed) {
         for side in 0..SIDES {
-            if let Some([u, v]) = followed.seams.and_then(|seams| seams.on_seam(side, &pose)) {
+            if let Some([u, v]) = followed.seams.on_seam(side, &pose) {
                 deviation_mm[2 * side] = Some(slides[2 * side] - u);
                 deviation_mm[2 * side + 1] = Some(slides[2 * side + 1] - v);
             }

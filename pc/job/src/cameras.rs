@@ -1,7 +1,7 @@
 //! What a job needs to know of what sees the seams.
 
 use crate::images::ImagesError;
-use camera::{Camera, CameraError};
+use camera::{Camera, CameraError, OpenCamera};
 use host_link::boards::Waker;
 use host_link::events::Events;
 use host_link::geometry::MachineGeometry;
@@ -103,4 +103,11 @@ pub trait PictureSource: Send {
     /// Tells the simulated camera of `side` where the machine truly was at the strobe of `capture`; `None` if nobody knows any
     /// more.
     fn tell(&mut self, _side: usize, _capture: &Capture, _at: Option<(&MachineGeometry, &MachinePosition)>) {}
+}
+
+/// Real cameras, as the machine file names them.
+impl PictureSource for OpenCamera {
+    fn open(&mut self, side: usize) -> Result<Box<dyn Camera>, CameraError> {
+        self(side)
+    }
 }

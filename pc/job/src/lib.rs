@@ -24,7 +24,7 @@ pub use delays::{DelayFigures, Delays};
 pub use images::{ImageCameras, Images, ImagesError, WorkerError};
 pub use run_record::{ByBoard, Recentred, RunRecord, TrackingRecord};
 pub use seam_teaching::{SeamLesson, TaughtSeam};
-pub use surroundings::{RealSurroundings, Surroundings, SurroundingsError};
+pub use surroundings::{Surroundings, SurroundingsError};
 pub use teaching::{NoTeaching, RangingProbe, Taught, check_teaching};
 
 use cam::path::{FromLineError, PathError, PlannedPath, Planner};

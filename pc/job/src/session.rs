@@ -108,7 +108,7 @@ impl<'a> Session<'a> {
     }
 
     /// Asks a board, and goes on with everything else until it answers: what boards send is taken, and measurements leave for
-    /// the tracker board.
+    /// the tracker board. What goes wrong with that meanwhile is for the next turn: a stop needs the motion board only.
     pub fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         if let (Role::Tracker, Some(tracking)) = (role, &mut self.tracking) {
             tracking.forget_question();
@@ -118,29 +118,25 @@ impl<'a> Session<'a> {
             if let Some(answer) = answer {
                 return Ok(answer);
             }
-            self.attend(LONGEST_WAIT)?;
+            if let Err(error) = self.attend(LONGEST_WAIT) {
+                self.trouble.get_or_insert(error);
+            }
             answer = self.boards.answer(role)?;
         }
     }
 
     /// Takes what comes within `wait`, at most one datagram, and sends what is to be sent.
-    fn attend(&mut self, wait: Duration) -> Result<(), LinkError> {
+    fn attend(&mut self, wait: Duration) -> Result<(), JobError> {
         let now = self.boards.now();
         let due = self.tracking.as_ref().map(|tracking| tracking.next_due(now));
         let wait = due.map_or(wait, |due| wait.min(due.saturating_sub(now)));
         if let Some((role, datagram)) = self.boards.receive(wait.max(SHORTEST_WAIT))? {
             self.take(role, datagram);
         }
-        if let Some(tracking) = &mut self.tracking {
-            let turned = tracking.turn(self.boards, &self.machine, &self.record, self.control);
-            match turned {
-                Err(JobError::Link(error)) => return Err(error),
-                // It ends the job as soon as the board has answered.
-                Err(error) => drop(self.trouble.get_or_insert(error)),
-                Ok(()) => {}
-            }
+        match &mut self.tracking {
+            Some(tracking) => tracking.turn(self.boards, &self.machine, &self.record, self.control),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// The same request to every board of the machine, to each even if the other one is lost.

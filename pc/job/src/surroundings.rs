@@ -1,10 +1,9 @@
 //! What is around a machine, as far as a job has to do with it.
 
-use crate::cameras::{PictureSource, SeamCameras};
-use crate::images::{ImageCameras, Images, ImagesError};
+use crate::cameras::SeamCameras;
+use crate::images::ImagesError;
 use crate::teaching::RangingProbe;
 use cam::path::{PlannedPath, Planner};
-use camera::{Camera, CameraError, OpenCamera};
 use config::machine::{MachineFile, TrackingUnit};
 use evaluate::SeamTruth;
 use parts::PartFile;
@@ -40,44 +39,3 @@ pub trait Surroundings: Send + Sync {
 
 /// Why a machine cannot follow what is around it.
 pub type SurroundingsError = Box<dyn Error + Send + Sync>;
-
-/// A real machine: real cameras, if it has some, and nobody who knows the truth.
-#[derive(Clone)]
-pub struct RealSurroundings {
-    /// The cameras of a machine that follows seams, and what opens them.
-    pub cameras: Option<(ImageCameras, OpenCamera)>,
-}
-
-impl Surroundings for RealSurroundings {
-    fn cameras(&self, unit: &TrackingUnit, heads: Heads) -> Result<Box<dyn SeamCameras>, ImagesError> {
-        let Some((cameras, open)) = &self.cameras else {
-            return Err(ImagesError {
-                side: 0,
-                source: CameraError::NotTold.into(),
-            });
-        };
-        let source = Box::new(RealCameras(open.clone()));
-        Ok(Box::new(Images::begin(cameras, source, unit, heads)?))
-    }
-
-    fn planned(&self, _: &MachineFile, _: &Planner, _: &[PlannedPath]) -> Result<(), SurroundingsError> {
-        Ok(())
-    }
-
-    fn probe(&self, _: &MachineFile, _: &PartFile) -> Option<Box<dyn RangingProbe>> {
-        None
-    }
-
-    fn truth(&self) -> Option<Arc<dyn SeamTruth + Send + Sync>> {
-        None
-    }
-}
-
-/// Cameras that are opened as the machine file names them.
-struct RealCameras(OpenCamera);
-
-impl PictureSource for RealCameras {
-    fn open(&mut self, side: usize) -> Result<Box<dyn Camera>, CameraError> {
-        (self.0)(side)
-    }
-}

@@ -7,7 +7,7 @@ use crate::{
 use cam::along::{Along, works};
 use cam::dry_run::{self, DryRunError};
 use cam::path::{PathError, PlannedPath};
-use evaluate::{Evaluation, Followed, SeamTruth, SpeedShares, evaluate, run_samples};
+use evaluate::{Evaluation, Followed, SpeedShares, evaluate, run_samples};
 use host_link::record::Record;
 use job::{ByBoard, Job, JobError, RunRecord, Taught, TrackingRecord};
 use parts::{Judgement, PartFile, Plot, Run, SeamLimits};
@@ -43,8 +43,9 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
     let mut error = run.error.take();
     let paths = &run.paths;
     let truth = job.surroundings.truth();
-    let followed = run.tracking.as_ref().map(|tracking| Followed {
-        seams: truth.as_deref().map(|truth| truth as &dyn SeamTruth),
+    let known = truth.as_deref().zip(run.tracking.as_ref());
+    let followed = known.map(|(seams, tracking)| Followed {
+        seams,
         tracker_ahead_us: tracking.tracker_ahead_us,
     });
     let mut evaluation = evaluate(&run.record, &run.machine, paths, followed);

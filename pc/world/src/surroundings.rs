@@ -7,9 +7,7 @@ use cam::path::{PathError, PlannedPath, Planner};
 use camera::OpenCamera;
 use config::machine::{MachineFile, TrackingUnit};
 use evaluate::SeamTruth;
-use job::{
-    ImageCameras, Images, ImagesError, RangingProbe, RealSurroundings, SeamCameras, SurroundingsError,
-};
+use job::{ImageCameras, Images, ImagesError, RangingProbe, SeamCameras, SurroundingsError};
 use nc::Program;
 use parts::PartFile;
 use shared::tracking::frames::Heads;
@@ -140,10 +138,7 @@ impl job::Surroundings for World {
                 Box::new(Images::begin(images, Box::new(source), unit, heads)?)
             }
             CameraChoice::Images(images, PictureChoice::Real(open)) => {
-                let real = RealSurroundings {
-                    cameras: Some(((**images).clone(), open.clone())),
-                };
-                return real.cameras(unit, heads);
+                Box::new(Images::begin(images, Box::new(open.clone()), unit, heads)?)
             }
         })
     }

@@ -1,6 +1,7 @@
 //! A tracker board that does not answer, and a PC that was not there.
 
 use super::*;
+use host_link::boards::Absence;
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -14,7 +15,6 @@ impl Operator for StopsWhen {
         }
     }
 }
-use host_link::boards::Absence;
 
 /// What goes wrong once the beam is on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,4 +165,82 @@ fn a_paused_pc_says_that_it_was_paused() {
 fn a_pc_that_was_paused_until_another_has_its_place_says_so_too() {
     let interrupted = Rc::new(Cell::new(false));
     paused(&mut Alone::new(Wrong::Replaced, &interrupted), &interrupted);
+}
+
+/// Boards in a network that answer a little later, and whose tracker board is lost for good once the beam is on.
+struct Lost {
+    boards: SimulatedBoards,
+    lost: bool,
+    answer: Option<Response>,
+    /// The state of the motion board when its drives were switched off for the last time.
+    off_from: Option<State>,
+}
+
+fn lost_tracker() -> LinkError {
+    LinkError::Lost {
+        role: Role::Tracker,
+        source: std::io::ErrorKind::HostUnreachable.into(),
+    }
+}
+
+impl Boards for Lost {
+    pass_on!(boards: now, identity, path_states_target);
+
+    fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
+        if self.lost && role == Role::Tracker {
+            return Err(lost_tracker());
+        }
+        if self.lost && *request == Request::Disable {
+            let Response::MotionStatus(status) = self.boards.request(role, &Request::Status)? else {
+                panic!("a state");
+            };
+            self.off_from = Some(status.state);
+        }
+        self.boards.request(role, request)
+    }
+
+    fn ask(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
+        self.answer = Some(self.request(role, request)?);
+        Ok(None)
+    }
+
+    fn answer(&mut self, _role: Role) -> Result<Option<Response>, LinkError> {
+        Ok(self.answer.take())
+    }
+
+    fn send(&mut self, role: Role, datagram: &Datagram) -> Result<(), LinkError> {
+        if self.lost && role == Role::Tracker {
+            return Err(lost_tracker());
+        }
+        self.boards.send(role, datagram)
+    }
+
+    fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
+        let received = self.boards.receive(timeout)?;
+        if let Some((_, Datagram::MotionTelemetry(telemetry))) = &received {
+            self.lost |= telemetry.samples.iter().any(|sample| sample.beams[0]);
+        }
+        match (&received, self.lost) {
+            (Some((Role::Tracker, _)), true) => Err(lost_tracker()),
+            _ => Ok(received),
+        }
+    }
+}
+
+#[test]
+fn a_lost_tracker_board_does_not_keep_the_machine_from_standing_before_its_drives_go_off() {
+    let mut boards = Lost {
+        boards: SimulatedBoards::default(),
+        lost: false,
+        answer: None,
+        off_from: None,
+    };
+    let ended = weld(&mut boards, &mut Nobody);
+    let error = ended.error.expect("the tracker board is lost").to_string();
+    assert!(
+        error.contains("the connection to the tracker board was lost"),
+        "{error}"
+    );
+    // At rest on its path: not in the middle of the stop.
+    assert_eq!(boards.off_from, Some(State::Idle));
 }

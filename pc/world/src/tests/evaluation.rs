@@ -56,7 +56,7 @@ fn job(off: [f64; SLIDES], tracker_ahead_us: u64) -> Record {
 fn evaluated(record: &Record, tracker_ahead_us: i64) -> Evaluation {
     let seams = TrueSeams::of([wavy_seam()]);
     let followed = Followed {
-        seams: Some(&seams),
+        seams: &seams,
         tracker_ahead_us,
     };
     evaluate(
