@@ -72,14 +72,14 @@ impl fmt::Display for Phase {
 /// What the machine stands for until somebody answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
-    /// May it go on, in single block? [`super::super::Command::Resume`] says so.
+    /// May it go on, in single block? [`crate::Command::Resume`] says so.
     GoOn {
         /// With what.
         next: Next,
     },
     /// The motion board holds it, since the feed is too low for the beam: raise the override, then resume.
     FeedTooLow,
-    /// Where to jog, or what to teach; [`super::super::Command::Answer`] says it.
+    /// Where to jog, or what to teach; [`crate::Command::Answer`] says it.
     Jog,
 }
 

@@ -211,8 +211,8 @@ impl NetworkBoards {
         }
     }
 
-    /// Takes what comes next within `timeout`: whether anything did. Answers go to their streams, datagrams to `came`.
-    fn take(&mut self, timeout: Duration) -> bool {
+    /// Takes what comes next within `timeout`. Answers go to their streams, datagrams to `came`.
+    fn take(&mut self, timeout: Duration) {
         let waiting = self.incoming.try_recv();
         let taken = waiting.ok().or_else(|| {
             self.keep_pace();
@@ -226,10 +226,8 @@ impl NetworkBoards {
                     stream.deliver(answer);
                 }
             }
-            Some(Incoming::Wake) => {}
-            None => return false,
+            Some(Incoming::Wake) | None => {}
         }
-        true
     }
 }
 

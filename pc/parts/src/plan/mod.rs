@@ -1,4 +1,4 @@
-//! Planning: from seam curves to NC programs.
+//! Planning of welds at both feet of a rib: from drawn or taught seam curves to NC programs. Other kinds of parts plan their own.
 
 mod beams;
 mod cut;
