@@ -55,12 +55,18 @@ pub struct Answer {
     pub measurement: Measurement,
     /// What was seen in the pictures, where there are some.
     pub seams: [Option<Seam>; SIDES],
+    /// When the later of its pictures was here, by the motion board's clock \[µs\]; a rendered one not before it is due. `None`
+    /// without pictures, and where time stands still while they are waited for.
+    pub arrived_us: Option<u64>,
 }
 
 impl From<Measurement> for Answer {
     fn from(measurement: Measurement) -> Self {
-        let seams = [None; SIDES];
-        Self { measurement, seams }
+        Self {
+            measurement,
+            seams: [None; SIDES],
+            arrived_us: None,
+        }
     }
 }
 

@@ -55,6 +55,8 @@ pub struct TrackingRecord {
     pub pictures: Option<[CameraFigures; SIDES]>,
     /// From the strobe to the measurement that was sent; `None` if none was.
     pub delays: Option<DelayFigures>,
+    /// From the arrival of its picture to the measurement that was sent; `None` without pictures or real time.
+    pub picture_delays: Option<DelayFigures>,
     /// Largest residual of the tracker's relation to the motion clock while welding \[µs\].
     pub clock_residual_us: Option<f64>,
     /// Largest difference between the tracker's relation to the motion clock and the PC's while welding \[µs\].
@@ -120,6 +122,7 @@ pub(crate) fn run_record(
             given_up: tracking.cameras.given_up(),
             pictures: tracking.cameras.figures(),
             delays: tracking.delays.figures(),
+            picture_delays: tracking.picture_delays.figures(),
             clock_residual_us: tracking.clock_residual_us,
             clock_difference_us: tracking.clock_difference_us,
             status: tracking.status,

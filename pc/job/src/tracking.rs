@@ -59,6 +59,8 @@ pub(super) struct Tracking {
     strobes: VecDeque<(u32, u64)>,
     /// From the strobe to the sent measurement.
     pub delays: Delays,
+    /// From the arrival of the picture to the sent measurement.
+    pub picture_delays: Delays,
     /// Largest residual that the tracker told while welding \[µs\].
     pub clock_residual_us: Option<f64>,
     /// Largest difference of its relation from the PC's while welding \[µs\].
@@ -99,6 +101,7 @@ impl Tracking {
             cameras,
             strobes: VecDeque::new(),
             delays: Delays::default(),
+            picture_delays: Delays::default(),
             strobed: None,
             paths: VecDeque::new(),
             clock_residual_us: None,
@@ -230,12 +233,16 @@ impl Tracking {
     }
 
     /// Notes that a measurement has left for the tracker board.
-    fn sent(&mut self, measurement: Measurement, now: Duration, control: &Control) {
+    fn sent(&mut self, answer: &Answer, now: Duration, control: &Control) {
+        let measurement = answer.measurement;
         let strobed = |(number, _): &&(u32, u64)| *number == measurement.capture;
         let strobe = self.strobes.iter().rev().find(strobed);
         let sent = self.clocks.motion_now_us(now.as_micros() as u64);
         if let (Some(&(_, strobe_us)), Some(sent_us)) = (strobe, sent) {
             self.delays.add(sent_us.saturating_sub(strobe_us));
+            if let Some(arrived_us) = answer.arrived_us {
+                self.picture_delays.add(sent_us.saturating_sub(arrived_us));
+            }
             control.publish(Event::Measurement {
                 measurement,
                 strobe_us,
@@ -303,7 +310,7 @@ impl Tracking {
                 watch.add(&answer);
             }
             boards.send(Role::Tracker, &Datagram::Measurement(answer.measurement))?;
-            self.sent(answer.measurement, boards.now(), control);
+            self.sent(&answer, boards.now(), control);
         }
         Ok(())
     }

@@ -234,6 +234,7 @@ fn seam_figures(tracking: &TrackingRecord, job: &Job, evaluation: &Evaluation) -
         },
         pictures: tracking.pictures,
         strobe_to_measurement_ms: tracking.delays,
+        picture_to_measurement_ms: tracking.picture_delays,
         clock_residual_us: tracking.clock_residual_us,
         clock_difference_us: tracking.clock_difference_us,
         recentred: tracking.recentred.clone(),

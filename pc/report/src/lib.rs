@@ -140,6 +140,10 @@ pub struct SeamFigures {
     pub pictures: Option<[CameraFigures; 2]>,
     /// From the strobe of the cameras to the measurement that was sent, by the motion board's clock \[ms\].
     pub strobe_to_measurement_ms: Option<DelayFigures>,
+    /// From the arrival of the picture, which is the time when a rendered one was there and due, to the measurement that was
+    /// sent \[ms\]; not told by simulated boards, whose time stands still meanwhile.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub picture_to_measurement_ms: Option<DelayFigures>,
     /// Largest residual of the tracker's relation to the motion clock while welding.
     pub clock_residual_us: Option<f64>,
     /// Largest difference between the tracker's relation to the motion clock and the PC's while welding.
@@ -362,6 +366,7 @@ pub(crate) mod tests {
                     median: 10.1,
                     worst: 12.5,
                 }),
+                picture_to_measurement_ms: None,
                 clock_residual_us: Some(12.0),
                 clock_difference_us: None,
                 recentred: vec![Recentred {

@@ -2,6 +2,7 @@
 
 use crate::log::is_rotary;
 use crate::{JudgedBy, Outcome, Report, SeamFigures, Truth, is_exceeded};
+use job::DelayFigures;
 use std::fmt::{Formatter, Result};
 
 pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
@@ -167,12 +168,14 @@ fn boards_served(f: &mut Formatter, r: &Report) -> Result {
             known(seam.clock_residual_us, 1).trim(),
             known(seam.clock_difference_us, 1).trim()
         )?;
-        if let Some(delay) = seam.strobe_to_measurement_ms {
-            writeln!(
-                f,
-                "  {:<28}median {:.2} ms, worst {:.2} ms",
-                "strobe to measurement", delay.median, delay.worst
-            )?;
+        let delays = [
+            ("strobe to measurement", seam.strobe_to_measurement_ms),
+            ("picture to measurement", seam.picture_to_measurement_ms),
+        ];
+        for (name, delay) in delays {
+            if let Some(DelayFigures { median, worst }) = delay {
+                writeln!(f, "  {name:<28}median {median:.2} ms, worst {worst:.2} ms")?;
+            }
         }
         let m = &seam.measurements;
         writeln!(

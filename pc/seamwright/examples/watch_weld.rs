@@ -18,9 +18,7 @@ fn watch(events: Subscription) {
         }
         match &*received.event {
             Event::MotionSamples(samples) => {
-                fastest = samples
-                    .iter()
-                    .fold(fastest, |fastest, s| fastest.max(s.speed_mm_s));
+                fastest = samples.iter().map(|s| s.speed_mm_s).fold(fastest, f64::max);
             }
             Event::Status { motion, .. } => {
                 println!(

@@ -54,6 +54,8 @@ pub struct Images {
     /// Of the last capture.
     last: Option<(Pose, Capture)>,
     given_up: u32,
+    /// Time goes on while pictures are waited for.
+    in_real_time: bool,
 }
 
 /// One camera.
@@ -62,7 +64,13 @@ struct Side {
     waiting: VecDeque<Waiting>,
     figures: CameraFigures,
     /// An answer that is ready for the tracker.
-    held: Option<Seen>,
+    held: Option<Held>,
+}
+
+/// An answer, and when it was due by the motion board's clock \[µs\].
+struct Held {
+    seen: Seen,
+    due_us: u64,
 }
 
 /// A capture without an answer.
@@ -133,6 +141,7 @@ impl Images {
             source,
             last: None,
             given_up: 0,
+            in_real_time: false,
         })
     }
 
@@ -179,8 +188,21 @@ impl Images {
     }
 }
 
+impl Images {
+    /// When the picture of an answer was here, by the motion board's clock, which is at `now_us`.
+    fn arrived_us(&self, held: &Held, now_us: u64) -> u64 {
+        let arrived = now_us.saturating_sub(held.seen.arrived.elapsed().as_micros() as u64);
+        if self.source.is_simulated() {
+            arrived.max(held.due_us)
+        } else {
+            arrived
+        }
+    }
+}
+
 impl SeamCameras for Images {
     fn attach(&mut self, waker: Option<Waker>, events: &Events) {
+        self.in_real_time = waker.is_some();
         for side in &self.sides {
             side.worker.attach(waker.clone(), events);
         }
@@ -235,7 +257,7 @@ impl SeamCameras for Images {
             let numbers = self
                 .sides
                 .each_ref()
-                .map(|side| Some(side.held.as_ref()?.capture));
+                .map(|side| Some(side.held.as_ref()?.seen.capture));
             let capture = match numbers {
                 // Numbers begin anew after 2³².
                 [Some(a), Some(b)] if (a.wrapping_sub(b) as i32) < 0 => a,
@@ -243,12 +265,16 @@ impl SeamCameras for Images {
                 [Some(a), None] => a,
                 [None, None] => return Ok(None),
             };
-            let seen = self.sides.each_mut().map(|side| side.give(capture));
+            let held = self.sides.each_mut().map(|side| side.give(capture));
+            let seen = held.each_ref().map(|held| Some(held.as_ref()?.seen));
             let sides = seen.map(|seen| seen?.measurement);
             if sides != [None; SIDES] {
-                let measurement = Measurement { capture, sides };
-                let seams = seen.map(|seen| seen?.observation?.seam);
-                return Ok(Some(Answer { measurement, seams }));
+                let arrived = held.iter().flatten().map(|held| self.arrived_us(held, at.now_us));
+                return Ok(Some(Answer {
+                    measurement: Measurement { capture, sides },
+                    seams: seen.map(|seen| seen?.observation?.seam),
+                    arrived_us: arrived.max().filter(|_| self.in_real_time),
+                }));
             }
         }
     }
@@ -284,14 +310,14 @@ impl Side {
     }
 
     fn hold(&mut self, seen: Seen) {
-        self.waiting.pop_front();
         count(&mut self.figures, &seen);
-        self.held = Some(seen);
+        let due_us = self.waiting.pop_front().map_or(0, |waiting| waiting.due_us);
+        self.held = Some(Held { seen, due_us });
     }
 
     /// The answer to a capture, if it is held.
-    fn give(&mut self, capture: u32) -> Option<Seen> {
-        self.held.take_if(|seen| seen.capture == capture)
+    fn give(&mut self, capture: u32) -> Option<Held> {
+        self.held.take_if(|held| held.seen.capture == capture)
     }
 }
 

@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
 use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use vision::{DetectorError, ImageError, Moved, Observation, Observer, State};
 
 /// How long a camera is waited for before new captures are looked for.
@@ -37,6 +37,8 @@ pub struct Seen {
     pub observation: Option<Observation>,
     /// What the tracker is told: the mean of the latest pictures, or the first pictures of a seam just found.
     pub measurement: Option<SideMeasurement>,
+    /// When its picture had arrived here, or was known to be lost.
+    pub arrived: Instant,
 }
 
 /// Why there are no more measurements. Reads as one sentence.
@@ -185,6 +187,7 @@ impl Work {
                 Err(RecvTimeoutError::Disconnected) => return Ok(()),
             }
             let arrival = self.camera.next(PATIENCE, &mut self.picture)?;
+            let at = Instant::now();
             let capture = match arrival {
                 Arrival::Nothing => continue,
                 Arrival::Picture => self.picture.capture,
@@ -195,12 +198,13 @@ impl Work {
                 self.note(strobe.moved);
                 let arrived = strobe.capture == capture && arrival == Arrival::Picture;
                 let seen = if arrived {
-                    self.look()?
+                    self.look(at)?
                 } else {
                     Seen {
                         capture: strobe.capture,
                         observation: None,
                         measurement: None,
+                        arrived: at,
                     }
                 };
                 if answer.send(Ok(seen)).is_err() {
@@ -267,8 +271,8 @@ impl Work {
         };
     }
 
-    /// Measures the picture.
-    fn look(&mut self) -> Result<Seen, WorkerError> {
+    /// Measures the picture that arrived at `arrived`.
+    fn look(&mut self, arrived: Instant) -> Result<Seen, WorkerError> {
         let moved = self.moved.replace(Moved::default());
         if moved.is_none() {
             self.observer.forget();
@@ -295,6 +299,7 @@ impl Work {
             observation: Some(observation),
             measurement: place
                 .map(|(lateral, travel, height)| self.calibration.side_measurement(lateral, travel, height)),
+            arrived,
         })
     }
 }
