@@ -19,6 +19,8 @@ pub struct Delays {
 pub struct DelayFigures {
     /// Half of them are shorter.
     pub median: f64,
+    /// 99 % of them are shorter.
+    pub percentile_99: f64,
     /// The longest.
     pub worst: f64,
 }
@@ -39,18 +41,24 @@ impl Delays {
         self.worst_us = self.worst_us.max(delay_us);
     }
 
-    /// Median, to 0.02 ms, and the longest; `None` of none.
+    /// Median and 99th percentile, to 0.02 ms, and the longest; `None` of none.
     pub fn figures(&self) -> Option<DelayFigures> {
-        let all: u64 = self.counts.iter().copied().map(u64::from).sum();
-        let mut sum = 0;
-        let median = self.counts.iter().position(|count| {
-            sum += u64::from(*count);
-            sum * 2 >= all && all > 0
-        })?;
         Some(DelayFigures {
-            median: (median as u64 * STEP_US) as f64 * 1e-3,
+            median: self.percentile(50)?,
+            percentile_99: self.percentile(99)?,
             worst: self.worst_us as f64 * 1e-3,
         })
+    }
+
+    /// What so many percent do not exceed \[ms\].
+    fn percentile(&self, percent: u64) -> Option<f64> {
+        let all: u64 = self.counts.iter().copied().map(u64::from).sum();
+        let mut sum = 0;
+        let step = self.counts.iter().position(|count| {
+            sum += u64::from(*count);
+            sum * 100 >= all * percent && all > 0
+        })?;
+        Some((step as u64 * STEP_US) as f64 * 1e-3)
     }
 }
 
@@ -66,6 +74,13 @@ mod tests {
             delays.add(delay_us);
         }
         let figures = delays.figures().unwrap();
-        assert_eq!((figures.median, figures.worst), (10.1, 900.001));
+        assert_eq!(
+            (figures.median, figures.percentile_99, figures.worst),
+            (10.1, 400.0, 900.001)
+        );
+        for _ in 0..494 {
+            delays.add(10_100);
+        }
+        assert_eq!(delays.figures().unwrap().percentile_99, 10.1);
     }
 }

@@ -364,6 +364,7 @@ pub(crate) mod tests {
                 ),
                 strobe_to_measurement_ms: Some(DelayFigures {
                     median: 10.1,
+                    percentile_99: 11.0,
                     worst: 12.5,
                 }),
                 picture_to_measurement_ms: None,

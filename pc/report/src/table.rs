@@ -2,7 +2,6 @@
 
 use crate::log::is_rotary;
 use crate::{JudgedBy, Outcome, Report, SeamFigures, Truth, is_exceeded};
-use job::DelayFigures;
 use std::fmt::{Formatter, Result};
 
 pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
@@ -173,8 +172,12 @@ fn boards_served(f: &mut Formatter, r: &Report) -> Result {
             ("picture to measurement", seam.picture_to_measurement_ms),
         ];
         for (name, delay) in delays {
-            if let Some(DelayFigures { median, worst }) = delay {
-                writeln!(f, "  {name:<28}median {median:.2} ms, worst {worst:.2} ms")?;
+            if let Some(d) = delay {
+                let (median, most, worst) = (d.median, d.percentile_99, d.worst);
+                writeln!(
+                    f,
+                    "  {name:<28}median {median:.2} ms, {most:.2} ms in 99 %, worst {worst:.2} ms"
+                )?;
             }
         }
         let m = &seam.measurements;

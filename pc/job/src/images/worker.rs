@@ -14,9 +14,6 @@ use vision::{DetectorError, ImageError, Moved, Observation, Observer, State};
 
 /// How long a camera is waited for before new captures are looked for.
 const PATIENCE: Duration = Duration::from_millis(2);
-/// Niceness of the thread.
-#[cfg(target_os = "linux")]
-const BEHIND: i32 = 10;
 
 /// A strobe of the camera.
 #[derive(Clone, Copy, Debug)]
@@ -90,10 +87,6 @@ impl Worker {
             settled: false,
         };
         let thread = std::thread::spawn(move || {
-            // Pictures may be late; the boards, where they are emulated on this computer, may not. Where that is not
-            // granted the thread goes on as it is.
-            #[cfg(target_os = "linux")]
-            let _ = rustix::process::setpriority_process(None, BEHIND);
             // The end of the session is no error.
             if let Err(error) = work.run(&told, &answer) {
                 drop(answer.send(Err(error)));

@@ -1,5 +1,6 @@
 //! Cameras of a simulated world that give pictures: rendered from where the machine and its slides truly were.
 
+mod background;
 mod scene_file;
 mod sketch;
 mod source;

@@ -1,5 +1,6 @@
 //! Rendered pictures for a job: of where the machine truly was at each strobe.
 
+use super::background::Background;
 use super::{Prospect, RenderedWorld, SceneFile, View};
 use crate::SharedSeams;
 use camera::{Camera, CameraError};
@@ -43,7 +44,7 @@ impl PictureSource for RenderedPictures {
     fn open(&mut self, side: usize) -> Result<Box<dyn Camera>, CameraError> {
         let (camera, tell) = self.world.camera(side);
         self.tell[side] = Some(tell);
-        Ok(Box::new(camera))
+        Ok(Box::new(Background::start(Box::new(camera))))
     }
 
     fn is_simulated(&self) -> bool {
