@@ -6,6 +6,9 @@ use host_link::{Remote, control, pass_on};
 use job::{Job, JobError};
 use report::Ended;
 use shared::protocol::{Datagram, MotionSample, Role};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// More events than come between two waits for the boards.
@@ -25,6 +28,44 @@ pub trait Operator {
 pub struct Nobody;
 
 impl Operator for Nobody {}
+
+/// Subscribes to everything, pictures too, and sleeps for a second at each event.
+#[derive(Debug, Default)]
+pub struct Sleeper {
+    over: Arc<AtomicBool>,
+    thread: Option<JoinHandle<u64>>,
+}
+
+impl Sleeper {
+    /// Wakes it for the last time; how many events it lost.
+    ///
+    /// # Panics
+    /// If there was no event.
+    pub fn end(self) -> u64 {
+        self.over.store(true, Ordering::Relaxed);
+        let thread = self.thread.expect("a job has events");
+        thread.join().expect("it only sleeps")
+    }
+}
+
+impl Operator for Sleeper {
+    fn event(&mut self, _: &Event, remote: &Remote) {
+        self.thread.get_or_insert_with(|| {
+            let (events, over) = (remote.subscribe(Interest::Pictures, 8), Arc::clone(&self.over));
+            std::thread::spawn(move || {
+                let mut lost = 0;
+                for received in events {
+                    lost += received.lost;
+                    if over.load(Ordering::Relaxed) {
+                        break;
+                    }
+                    std::thread::sleep(Duration::from_secs(1));
+                }
+                lost
+            })
+        });
+    }
+}
 
 /// Boards, and what is done with every sample of the motion board before the job gets it.
 pub struct Heard<'a, F> {

@@ -1,9 +1,9 @@
 //! The shipped weld by what cameras see in rendered pictures.
 
-use crate::{MACHINE, job, machine, prediction, program, shipped, shipped_seam, with_seam};
+use crate::{MACHINE, Sleeper, job, machine, prediction, program, shipped, shipped_seam, with_seam};
 use config::machine::{JointForm, MachineFile};
 use host_link::boards::Boards;
-use job::{ImageCameras, JobError};
+use job::{ImageCameras, Job, JobError};
 use report::Ended;
 use shared::io::SIDES;
 use shared::state::TrackerFault;
@@ -43,6 +43,24 @@ pub fn weld_through_pictures(
     scene: SceneFile,
     speed_m_per_min: f64,
 ) -> Ended {
+    let weld = |job: &Job| prediction::run(boards, job);
+    through_pictures(joint, scene, speed_m_per_min, weld)
+}
+
+/// The same along a gap, of which a subscriber of events gets each second one at most; and how many it lost.
+pub fn weld_before_a_sleeper(boards: &mut dyn Boards, speed_m_per_min: f64) -> (Ended, u64) {
+    let mut sleeper = Sleeper::default();
+    let weld = |job: &Job| crate::run(boards, job, &mut sleeper).unwrap_or_else(|error| panic!("{error}"));
+    let ended = through_pictures(JointForm::Gap, SceneFile::default(), speed_m_per_min, weld);
+    (ended, sleeper.end())
+}
+
+fn through_pictures(
+    joint: JointForm,
+    scene: SceneFile,
+    speed_m_per_min: f64,
+    weld: impl FnOnce(&Job) -> Ended,
+) -> Ended {
     let machine = machine_for(joint);
     let cameras = &machine.tracking.as_ref().expect("a tracker").cameras;
     let images = ImageCameras {
@@ -54,10 +72,7 @@ pub fn weld_through_pictures(
         cameras: CameraChoice::Images(Box::new(images), PictureChoice::Rendered(scene)),
         ..with_seam(Some(shipped_seam()))
     };
-    prediction::run(
-        boards,
-        &job(&machine, &program, surroundings, Some(speed_m_per_min)),
-    )
+    weld(&job(&machine, &program, surroundings, Some(speed_m_per_min)))
 }
 
 /// The same with spatter, scratches, roll, lost and late pictures and a dark spell, as the shipped scene tells.

@@ -15,7 +15,7 @@ pub const QUANTUM_NS: u64 = 250_000;
 /// Common time a board may be ahead of its peer \[ns\].
 const LEAD_NS: i64 = 250_000;
 /// Common time a board may be ahead of what the PC has handled \[ns\].
-const PC_LEAD_NS: i64 = 20_000_000;
+const PC_LEAD_NS: i64 = 5_000_000;
 /// Delay against the wall clock that is caught up; more is forgiven \[ns\]: a board that races meanwhile lets the datagrams
 /// under way to it grow old.
 const LATE_NS: i64 = 250_000;

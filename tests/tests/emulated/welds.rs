@@ -6,7 +6,7 @@ use host_link::boards::Boards;
 use report::Ended;
 use system_tests::{
     assert_held_weld_goes_on, assert_on_seam, assert_stops_in_the_dark, deviations, seam, short_lines, sines,
-    weld, weld_disturbed, weld_through_pictures,
+    weld, weld_before_a_sleeper, weld_disturbed, weld_through_pictures,
 };
 use world::SceneFile;
 use world::simulated::SimulatedBoards;
@@ -44,6 +44,23 @@ fn the_shipped_job_at_9_m_per_min() {
     assert_welds("weld-9", 0.03, |boards| {
         weld_through_pictures(boards, JointForm::Gap, SceneFile::default(), 9.0)
     });
+}
+
+#[test]
+fn a_subscriber_that_sleeps_changes_nothing() {
+    let mut pair = Pair::boot("weld-sleeper");
+    let scene = SceneFile::default();
+    let alone = weld_through_pictures(&mut pair.connect(), JointForm::Gap, scene, 9.0);
+    let (watched, lost) = weld_before_a_sleeper(&mut pair.connect(), 9.0);
+    assert_served(&watched.report);
+    assert!(lost > 1000, "{lost}");
+    let both = deviations(&alone.report)
+        .into_iter()
+        .zip(deviations(&watched.report));
+    for (alone, watched) in both {
+        assert!((alone - watched).abs() < 0.003, "{alone} and {watched} mm");
+    }
+    pair.assert_off();
 }
 
 #[test]

@@ -3,45 +3,23 @@
 use super::*;
 use host_link::control;
 use host_link::events::Interest;
-use shared::protocol::MotionSample;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-/// The weld, with a subscriber that sleeps for a second at each event, or without one; what the boards told, and what the
-/// subscriber lost.
-fn weld_before(sleeper: bool) -> (Vec<MotionSample>, u64) {
-    let (machine, program) = (machine(), interpret(PROGRAM, Options::default()).unwrap());
-    let job = job(&machine, &program, Some(seam()));
-    let (remote, mut control) = control();
-    let over = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        let subscription = sleeper.then(|| remote.subscribe(Interest::Pictures, 8));
-        let slept = subscription.map(|subscription| {
-            let over = &over;
-            scope.spawn(move || {
-                let mut lost = 0;
-                for received in subscription {
-                    lost += received.lost;
-                    if over.load(Ordering::Relaxed) {
-                        break;
-                    }
-                    std::thread::sleep(Duration::from_secs(1));
-                }
-                lost
-            })
-        });
-        let run = job::run(&mut SimulatedBoards::default(), &job, &mut control).unwrap();
-        assert!(run.error.is_none(), "{:?}", run.error);
-        over.store(true, Ordering::Relaxed);
-        let lost = slept.map_or(0, |slept| slept.join().unwrap());
-        (run.record.motion().to_vec(), lost)
-    })
-}
+use system_tests::{Nobody, Operator, Sleeper, run};
 
 #[test]
 fn a_subscriber_that_sleeps_changes_nothing_and_is_told_what_it_lost() {
-    let (alone, _) = weld_before(false);
-    let (watched, lost) = weld_before(true);
-    assert!(alone == watched, "the boards told something else");
+    let (machine, program) = (machine(), interpret(PROGRAM, Options::default()).unwrap());
+    let job = job(&machine, &program, Some(seam()));
+    let weld = |operator: &mut dyn Operator| {
+        let ended = run(&mut SimulatedBoards::default(), &job, operator).unwrap();
+        assert!(ended.error.is_none(), "{:?}", ended.error);
+        ended.record.motion().to_vec()
+    };
+    let mut sleeper = Sleeper::default();
+    assert!(
+        weld(&mut Nobody) == weld(&mut sleeper),
+        "the boards told something else"
+    );
+    let lost = sleeper.end();
     assert!(lost > 1000, "{lost}");
 }
 

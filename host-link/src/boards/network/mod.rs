@@ -28,6 +28,9 @@ const WAITING: usize = 4096;
 /// How often somebody who waits for an answer looks whether the machine is to stop.
 const LOOK: Duration = Duration::from_millis(10);
 
+/// How often emulated boards hear that this program keeps up, while it waits.
+const PACE: Duration = Duration::from_millis(1);
+
 /// Where a board is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Endpoint {
@@ -211,13 +214,29 @@ impl NetworkBoards {
         }
     }
 
+    /// What comes next within `timeout`; emulated boards hear meanwhile that this program keeps up with them.
+    fn wait(&self, timeout: Duration) -> Option<Incoming> {
+        let end = Instant::now() + timeout;
+        loop {
+            self.keep_pace();
+            let left = end.saturating_duration_since(Instant::now());
+            let step = if self.handled.is_some() {
+                left.min(PACE)
+            } else {
+                left
+            };
+            match self.incoming.recv_timeout(step) {
+                Ok(incoming) => return Some(incoming),
+                Err(_) if step == left => return None,
+                Err(_) => {}
+            }
+        }
+    }
+
     /// Takes what comes next within `timeout`. Answers go to their streams, datagrams to `came`.
     fn take(&mut self, timeout: Duration) {
         let waiting = self.incoming.try_recv();
-        let taken = waiting.ok().or_else(|| {
-            self.keep_pace();
-            self.incoming.recv_timeout(timeout).ok()
-        });
+        let taken = waiting.ok().or_else(|| self.wait(timeout));
         match taken {
             Some(Incoming::Datagram(role, datagram)) => self.came.push_back((role, datagram)),
             Some(Incoming::Answer(role, answer)) => {
