@@ -224,6 +224,25 @@ fn path_states_with_a_pose_beside_the_true_one_move_no_spot() {
 }
 
 #[test]
+fn a_pose_beside_the_plan_turns_no_faster_than_the_slides_follow() {
+    let (config, mut bench) = (config(), welding(sine));
+    let [slide, ..] = &config.slides;
+    // Where a camera is ahead of the tool and a slide is at its end.
+    let lever = config.head.camera_lead_mm + slide.travel_max_mm;
+    let most = slide.max_velocity_mm_s / lever;
+    for (turn, dropped) in [(0.95, 0), (-0.95, 0), (1.05, 1), (-1.05, 1)] {
+        bench.tick();
+        let before = bench.status().implausible_path_states;
+        let mut forged = bench.path_state.unwrap();
+        forged.aside[2] = turn * most;
+        let arrived = bench.now_us() + 200;
+        bench.controller.datagram(&Datagram::PathState(forged), arrived);
+        let now = bench.status().implausible_path_states;
+        assert_eq!(now - before, dropped, "{turn} of {most} rad/s");
+    }
+}
+
+#[test]
 fn one_measurement_from_far_ahead_blinds_no_side() {
     for along_mm in [100.0, 1e6, f64::INFINITY, -4.1, 2.9, 0.9, -0.9, -3.9] {
         let (mut bench, mut seen) = (welding(sine), Seen::default());
