@@ -1,7 +1,9 @@
 //! Checks of a machine file that the boards cannot do: that it is complete, and what only the PC uses.
 
 use super::{CameraConfig, MachineFile, Mistake, PlanningConfig};
+use crate::{RangeError, in_range};
 use shared::io::{AXES, AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
+use std::borrow::Cow;
 
 /// The second motor of X, which only a gantry has.
 const X2: usize = 1;
@@ -15,16 +17,12 @@ pub fn machine(machine: &MachineFile) -> Result<(), Mistake> {
         cameras(&unit.cameras)?;
     }
     if let Some(probe) = &machine.probe {
-        probe.build().map_err(|error| Mistake::Value {
-            key: format!("probe.{}", error.key),
-            value: error.value,
-            requirement: error.requirement,
-        })?;
+        probe.build().map_err(|error| error.within("probe"))?;
     }
     if let Some(process) = &machine.process {
         let (min, max) = (process.min_speed_mm_s, process.max_speed_mm_s);
         above_0("process.min_speed_mm_s", min)?;
-        value("process.max_speed_mm_s", max, max > min, "above min_speed_mm_s")?;
+        in_range("process.max_speed_mm_s", max, max > min, "above min_speed_mm_s")?;
     }
     Ok(())
 }
@@ -61,10 +59,10 @@ fn cameras(cameras: &CameraConfig) -> Result<(), Mistake> {
     at_least_0("cameras.noise_3sigma_mm", cameras.noise_3sigma_mm)?;
     for mount in cameras.mount_deg {
         let sensible = mount.abs() <= 90.0;
-        value("cameras.mount_deg", mount, sensible, "between -90 and 90")?;
+        in_range("cameras.mount_deg", mount, sensible, "between -90 and 90")?;
     }
     let above = cameras.focus_above_mm();
-    value(
+    in_range(
         "cameras.focus_above_mm",
         above,
         above.abs() <= 1.0,
@@ -85,7 +83,8 @@ fn cameras(cameras: &CameraConfig) -> Result<(), Mistake> {
     at_least_0(
         "cameras.photon_transfer.read_noise",
         cameras.photon_transfer.read_noise,
-    )
+    )?;
+    Ok(())
 }
 
 fn planning(planning: &PlanningConfig) -> Result<(), Mistake> {
@@ -96,19 +95,20 @@ fn planning(planning: &PlanningConfig) -> Result<(), Mistake> {
     above_0("planning.path_jerk_mm_s3", planning.path_jerk_mm_s3)?;
     let fraction = planning.rapid_fraction;
     let sensible = fraction > 0.0 && fraction <= 1.0;
-    value(
+    in_range(
         "planning.rapid_fraction",
         fraction,
         sensible,
         "above 0 and at most 1",
     )?;
     let height = planning.safe_height_mm;
-    value(
+    in_range(
         "planning.safe_height_mm",
         height,
         height.is_finite(),
         "a finite number",
-    )
+    )?;
+    Ok(())
 }
 
 /// The park position is one of the machine's.
@@ -120,7 +120,7 @@ fn park(machine: &MachineFile) -> Result<(), Mistake> {
         same(machine, &key, park[axis].is_some(), fitted[axis])?;
         if let (Some(at), Some(limits)) = (park[axis], &machine.motion.axes[axis]) {
             let within = (limits.travel_min..=limits.travel_max).contains(&at);
-            value(&key, at, within, "within the travel")?;
+            in_range(key, at, within, "within the travel")?;
         }
     }
     for name in &machine.planning.park_first {
@@ -131,21 +131,10 @@ fn park(machine: &MachineFile) -> Result<(), Mistake> {
     Ok(())
 }
 
-fn above_0(key: &str, number: f64) -> Result<(), Mistake> {
-    value(key, number, number.is_finite() && number > 0.0, "above 0")
+fn above_0(key: impl Into<Cow<'static, str>>, number: f64) -> Result<f64, RangeError> {
+    in_range(key, number, number > 0.0, "above 0")
 }
 
-fn at_least_0(key: &str, number: f64) -> Result<(), Mistake> {
-    value(key, number, number.is_finite() && number >= 0.0, "0 or more")
-}
-
-fn value(key: &str, value: f64, sensible: bool, requirement: &'static str) -> Result<(), Mistake> {
-    if sensible {
-        return Ok(());
-    }
-    Err(Mistake::Value {
-        key: key.to_owned(),
-        value,
-        requirement,
-    })
+fn at_least_0(key: impl Into<Cow<'static, str>>, number: f64) -> Result<f64, RangeError> {
+    in_range(key, number, number >= 0.0, "0 or more")
 }

@@ -1,5 +1,6 @@
 //! What is wrong with a machine file.
 
+use crate::RangeError;
 use crate::toml_file::TomlError;
 use shared::parameter::ParameterError;
 use thiserror::Error;
@@ -32,15 +33,8 @@ pub enum MachineError {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Mistake {
     /// A value.
-    #[error("{key} is {value}, but must be {requirement}")]
-    Value {
-        /// Dotted name of the key.
-        key: String,
-        /// What it says.
-        value: f64,
-        /// What it must be.
-        requirement: &'static str,
-    },
+    #[error(transparent)]
+    Value(#[from] RangeError),
     /// A key for an axis that the machine has is missing.
     #[error("{key} is missing; a {machine} has that axis")]
     AxisMissing {

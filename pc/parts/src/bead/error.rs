@@ -2,6 +2,7 @@
 
 use super::window::WindowError;
 use cam::path::CAPACITY;
+use config::RangeError;
 use curves::SplineError;
 use curves::nurbs::{DiscretiseError, NurbsError};
 use thiserror::Error;
@@ -50,12 +51,8 @@ pub(super) enum BeadError {
          control_points_mm, or make several beads"
     )]
     TooLong { place: String, length: f64, most: f64 },
-    #[error("{key} is {value}, but must be {must}")]
-    Value {
-        key: &'static str,
-        value: f64,
-        must: &'static str,
-    },
+    #[error(transparent)]
+    Value(#[from] RangeError),
     #[error(
         "neither the part (window_mm_s) nor the machine (process) has a process window; give window_mm_s"
     )]

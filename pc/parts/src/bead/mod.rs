@@ -21,6 +21,7 @@ pub mod window;
 use crate::limits::SPEED_DIP;
 use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
 use cam::path::{PlannedPath, Planner};
+use config::in_range;
 use curve_file::CurveFile;
 pub use curve_file::check_curve;
 use curves::nurbs::Curve;
@@ -186,10 +187,8 @@ impl Bead {
             ),
             ("overlap_mm", self.overlap_mm, self.overlap_mm >= 0.0, "0 or more"),
         ];
-        for (key, value, ok, must) in checks {
-            if !(ok && value.is_finite()) {
-                return Err(BeadError::Value { key, value, must });
-            }
+        for (key, value, ok, requirement) in checks {
+            in_range(key, value, ok, requirement)?;
         }
         Ok(())
     }

@@ -12,6 +12,7 @@ use crate::Surface;
 use crate::limits::SPEED_DIP;
 use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
 use config::table::FARTHEST_MM;
+use config::{RangeError, in_range};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use shared::kinematics::KinematicsError;
@@ -98,15 +99,8 @@ pub enum PanelError {
         least: usize,
     },
     /// A number makes no sense.
-    #[error("{key} is {value}, but must be {requirement}")]
-    Value {
-        /// Its key.
-        key: &'static str,
-        /// What it says.
-        value: f64,
-        /// What it must be.
-        requirement: &'static str,
-    },
+    #[error(transparent)]
+    Value(#[from] RangeError),
     /// Another machine.
     #[error("a panel is cut with an A/C head, and the machine has none")]
     NoHead,
@@ -210,14 +204,7 @@ impl Panel {
     fn check(&self) -> Result<(), PanelError> {
         let above_0 = [("speed_m_min", self.speed_m_min), ("power_w", self.power_w)];
         for (key, value) in above_0 {
-            if !(value.is_finite() && value > 0.0) {
-                let requirement = "above 0";
-                return Err(PanelError::Value {
-                    key,
-                    value,
-                    requirement,
-                });
-            }
+            in_range(key, value, value > 0.0, "above 0")?;
         }
         // Otherwise there is no end of points.
         let more = [
@@ -225,13 +212,7 @@ impl Panel {
             ("lead_mm", self.lead_mm, 0.0, "0 or more, and no more than 100000"),
         ];
         for (key, value, least, requirement) in more {
-            if !(least..=FARTHEST_MM).contains(&value) {
-                return Err(PanelError::Value {
-                    key,
-                    value,
-                    requirement,
-                });
-            }
+            in_range(key, value, (least..=FARTHEST_MM).contains(&value), requirement)?;
         }
         Ok(())
     }

@@ -4,6 +4,7 @@ use super::attitude::{Attitudes, tool_axis};
 use super::line::{Line, Station};
 use super::{Panel, PanelError};
 use crate::{Place, Plan};
+use config::in_range;
 use config::table::FARTHEST_MM;
 use nalgebra::Vector3;
 use nc::text::{NcText, decimal};
@@ -87,13 +88,9 @@ impl Panel {
         let planning = &place.machine.planning;
         let velocity = self.speed_m_min * MM_S_PER_M_MIN;
         let lead = self.lead_mm.max(planning.speed_up_length(velocity));
-        if lead > FARTHEST_MM || lead.is_nan() {
-            return Err(PanelError::Value {
-                key: "lead_mm",
-                value: lead,
-                requirement: "shorter: correct speed_m_min, or path_acceleration_mm_s2 and path_jerk_mm_s3 of the machine",
-            });
-        }
+        let requirement =
+            "shorter: correct speed_m_min, or path_acceleration_mm_s2 and path_jerk_mm_s3 of the machine";
+        in_range("lead_mm", lead, lead <= FARTHEST_MM, requirement)?;
         let length = line.length();
         let pieces = [(-lead, 0.0), (0.0, length), (length, length + lead)];
         let mut stations = vec![line.at(-lead)];

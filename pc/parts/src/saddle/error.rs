@@ -1,6 +1,7 @@
 //! Why a saddle cannot be welded as its part file says.
 
 use super::pipes::SaddleError;
+use config::RangeError;
 use thiserror::Error;
 
 /// Why a saddle cannot be welded as its part file says. Reads as one sentence that names the key.
@@ -13,27 +14,8 @@ pub enum SaddlePartError {
         key: &'static str,
     },
     /// A key has a value that makes no sense.
-    #[error("{key} is {value}, but must be {requirement}")]
-    Value {
-        /// The key.
-        key: &'static str,
-        /// What it says.
-        value: f64,
-        /// What it must be.
-        requirement: &'static str,
-    },
-    /// A key of a pass has a value that makes no sense.
-    #[error("{key} of pass {pass} is {value}, but must be {requirement}")]
-    PassValue {
-        /// The first pass is 1.
-        pass: usize,
-        /// The key.
-        key: &'static str,
-        /// What it says.
-        value: f64,
-        /// What it must be.
-        requirement: &'static str,
-    },
+    #[error(transparent)]
+    Value(#[from] RangeError),
     /// No passes.
     #[error("no passes: add [[saddle.passes]] with radial_mm, axial_mm, speed_mm_s and power_w")]
     NoPasses,

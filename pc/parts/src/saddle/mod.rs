@@ -20,6 +20,7 @@ pub use error::{SaddlePartError, TaughtError};
 
 use crate::limits::SPEED_DIP;
 use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
+use config::in_range;
 use fit::Known;
 use pipes::PipePair;
 use seam::{Offset, Placement, Seam};
@@ -125,9 +126,7 @@ impl Saddle {
         let (seam, notes) = match &self.taught {
             Some(file) => {
                 let within = self.taught_within_mm;
-                if !(within.is_finite() && within > 0.0) {
-                    return Err(value_error("taught_within_mm", within, "above 0").into());
-                }
+                in_range("taught_within_mm", within, within > 0.0, "above 0")?;
                 taught::seam(&directory.join(file), kinematics, &self.known()?, within)?
             }
             None => (self.seam_of_dimensions()?, Vec::new()),
@@ -151,15 +150,16 @@ impl Saddle {
     fn known(&self) -> Result<Known, SaddlePartError> {
         let (main, branch) = (self.main_diameter_mm, self.branch_diameter_mm);
         for (key, value) in [("main_diameter_mm", main), ("branch_diameter_mm", branch)] {
-            if let Some(value) = value.filter(|x| !(x.is_finite() && *x > 0.0)) {
-                return Err(value_error(key, value, "above 0"));
+            if let Some(value) = value {
+                in_range(key, value, value > 0.0, "above 0")?;
             }
         }
-        if let Some(value) = self.angle_deg.filter(|x| !(*x > 0.0 && *x < 180.0)) {
-            return Err(value_error("angle_deg", value, "above 0 and below 180"));
+        if let Some(value) = self.angle_deg {
+            let ok = value > 0.0 && value < 180.0;
+            in_range("angle_deg", value, ok, "above 0 and below 180")?;
         }
-        if let Some(value) = self.offset_mm.filter(|x| !x.is_finite()) {
-            return Err(value_error("offset_mm", value, "a finite number"));
+        if let Some(value) = self.offset_mm {
+            in_range("offset_mm", value, true, "a finite number")?;
         }
         Ok(Known {
             main_radius: main.map(|diameter| diameter / 2.0),
@@ -171,62 +171,33 @@ impl Saddle {
 
     fn check(&self, seam: &Seam) -> Result<(), SaddlePartError> {
         let branch_radius = seam.pair().branch_radius();
-        if !(0.0..=seam.length() / 4.0).contains(&self.overlap_mm) {
-            let requirement = "0 or more, and at most a quarter of the seam";
-            return Err(value_error("overlap_mm", self.overlap_mm, requirement));
-        }
-        if let Some(value) = self.start_deg.filter(|start| !start.is_finite()) {
-            return Err(value_error("start_deg", value, "a finite number"));
+        let short = (0.0..=seam.length() / 4.0).contains(&self.overlap_mm);
+        let requirement = "0 or more, and at most a quarter of the seam";
+        in_range("overlap_mm", self.overlap_mm, short, requirement)?;
+        if let Some(value) = self.start_deg {
+            in_range("start_deg", value, true, "a finite number")?;
         }
         if self.passes.is_empty() {
             return Err(SaddlePartError::NoPasses);
         }
         for (index, pass) in self.passes.iter().enumerate() {
-            let outside = pass.radial_mm.is_finite() && branch_radius + pass.radial_mm > 0.0;
-            let faults = [
+            let short_of_axis = branch_radius + pass.radial_mm > 0.0;
+            let values = [
                 (
-                    outside,
                     "radial_mm",
                     pass.radial_mm,
+                    short_of_axis,
                     "a number, and not beyond the branch axis",
                 ),
-                (
-                    pass.axial_mm.is_finite(),
-                    "axial_mm",
-                    pass.axial_mm,
-                    "a finite number",
-                ),
-                (
-                    pass.speed_mm_s.is_finite() && pass.speed_mm_s > 0.0,
-                    "speed_mm_s",
-                    pass.speed_mm_s,
-                    "above 0",
-                ),
-                (
-                    pass.power_w.is_finite() && pass.power_w >= 0.0,
-                    "power_w",
-                    pass.power_w,
-                    "0 or more",
-                ),
+                ("axial_mm", pass.axial_mm, true, "a finite number"),
+                ("speed_mm_s", pass.speed_mm_s, pass.speed_mm_s > 0.0, "above 0"),
+                ("power_w", pass.power_w, pass.power_w >= 0.0, "0 or more"),
             ];
-            if let Some((_, key, value, requirement)) = faults.into_iter().find(|(good, ..)| !good) {
-                return Err(SaddlePartError::PassValue {
-                    pass: index + 1,
-                    key,
-                    value,
-                    requirement,
-                });
+            for (key, value, ok, requirement) in values {
+                in_range(format!("{key} of pass {}", index + 1), value, ok, requirement)?;
             }
         }
         Ok(())
-    }
-}
-
-fn value_error(key: &'static str, value: f64, requirement: &'static str) -> SaddlePartError {
-    SaddlePartError::Value {
-        key,
-        value,
-        requirement,
     }
 }
 

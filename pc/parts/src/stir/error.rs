@@ -1,5 +1,6 @@
 //! Why a friction-stir part cannot be planned or judged.
 
+use config::RangeError;
 use shared::geometry::{ArcError, LineError};
 use thiserror::Error;
 
@@ -8,15 +9,8 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum StirError {
     /// A key has a value that makes no sense.
-    #[error("{key} is {value}, but must be {requirement}")]
-    Value {
-        /// The key.
-        key: &'static str,
-        /// What it says.
-        value: f64,
-        /// What it must be.
-        requirement: &'static str,
-    },
+    #[error(transparent)]
+    Value(#[from] RangeError),
     /// C cannot change its rate quickly enough where segments join.
     #[error(
         "where an arc begins or ends C would be {off_deg:.3}° off the heading, {limit_deg}° are allowed: travel_mm_min \

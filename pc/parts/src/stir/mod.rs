@@ -11,6 +11,7 @@ mod tests;
 
 use crate::limits::SPEED_DIP;
 use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
+use config::in_range;
 use config::machine::MachineFile;
 use contour::{Contour, SegmentEntry};
 use error::StirError;
@@ -183,21 +184,21 @@ impl Stir {
             ("retract_mm_min", self.retract_mm_min),
         ];
         for (key, value) in above_0 {
-            require(key, value, value > 0.0, "above 0")?;
+            in_range(key, value, value > 0.0, "above 0")?;
         }
         for (key, value) in [("preheat_s", self.preheat_s), ("tilt_deg", self.tilt_deg)] {
-            require(key, value, value >= 0.0, "0 or more")?;
+            in_range(key, value, value >= 0.0, "0 or more")?;
         }
         let (depth, thickness) = (self.depth_mm, self.plate_mm[2]);
         let inside = depth > 0.0 && depth < thickness;
-        require(
+        in_range(
             "depth_mm",
             depth,
             inside,
             "above 0 and less than the plate is thick",
         )?;
         for height in self.plate_corner_mm {
-            require("plate_corner_mm", height, true, "a finite number")?;
+            in_range("plate_corner_mm", height, true, "a finite number")?;
         }
         Ok(())
     }
@@ -252,18 +253,6 @@ impl Stir {
             }
         }
         Ok(())
-    }
-}
-
-fn require(key: &'static str, value: f64, holds: bool, requirement: &'static str) -> Result<(), StirError> {
-    if holds && value.is_finite() {
-        Ok(())
-    } else {
-        Err(StirError::Value {
-            key,
-            value,
-            requirement,
-        })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use config::table::FARTHEST_MM;
 use config::toml_file::{self, TomlError};
+use config::{RangeError, in_range};
 use serde::Deserialize;
 use shared::io::SIDES;
 use std::path::Path;
@@ -139,16 +140,12 @@ pub enum SceneError {
     #[error(transparent)]
     File(#[from] TomlError),
     /// A value makes no sense.
-    #[error("scene file {path}: {key} = {value}: it has to be {requirement}")]
+    #[error("scene file {path}: {source}")]
     Value {
         /// The file.
         path: String,
         /// Which one.
-        key: String,
-        /// What it is.
-        value: f64,
-        /// What it may be.
-        requirement: &'static str,
+        source: RangeError,
     },
 }
 
@@ -161,19 +158,13 @@ impl SceneFile {
     /// Understands `text`; `path` is used in messages only.
     pub fn parse(path: &str, text: &str) -> Result<Self, SceneError> {
         let scene: Self = toml_file::parse(WHAT, path, text)?;
-        let wrong = scene
-            .values()
-            .into_iter()
-            .find(|(_, value, range)| !range.holds(*value));
-        match wrong {
-            Some((key, value, range)) => Err(SceneError::Value {
-                path: path.to_owned(),
-                key,
-                value,
-                requirement: range.requirement(),
-            }),
-            None => Ok(scene),
+        for (key, value, range) in scene.values() {
+            in_range(key, value, range.holds(value), range.requirement()).map_err(|source| {
+                let path = path.to_owned();
+                SceneError::Value { path, source }
+            })?;
         }
+        Ok(scene)
     }
 
     /// Everything that has a range.

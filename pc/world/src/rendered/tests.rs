@@ -221,18 +221,21 @@ fn a_wrong_scene_is_told_by_key_value_and_what_it_may_be() {
         ),
         (
             "lost_share = 1.5",
-            "scene.toml: lost_share = 1.5: it has to be from 0 to 1",
+            "scene.toml: lost_share is 1.5, but must be from 0 to 1",
         ),
-        ("smear_um = 1e15", "it has to be from 0 to 50 µm"),
-        ("gap_wave_length_mm = 1e-300", "it has to be from 1 to 100000 mm"),
-        ("gap_mm = 0.02\ngap_wave_mm = 0.03", "gap_mm - gap_wave_mm = -0.0"),
+        ("smear_um = 1e15", "but must be from 0 to 50 µm"),
+        ("gap_wave_length_mm = 1e-300", "but must be from 1 to 100000 mm"),
+        (
+            "gap_mm = 0.02\ngap_wave_mm = 0.03",
+            "gap_mm - gap_wave_mm is -0.0",
+        ),
         (
             "[[dark]]\nside = 3\nfrom_s_mm = 0.0",
-            "side of dark 1 = 3: it has to be 1 or 2",
+            "side of dark 1 is 3, but must be 1 or 2",
         ),
         (
             "[[scratch]]\nside = 1\noffset_mm = 0.2\nwidth_mm = 0.0\nbrightness = 0.5",
-            "width_mm of scratch 1 = 0",
+            "width_mm of scratch 1 is 0",
         ),
     ] {
         let error = scene(text).unwrap_err();
