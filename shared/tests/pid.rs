@@ -5,13 +5,13 @@ use shared::control::{HomeConfig, MotorConfig, Pid, PidState, Setpoint};
 const PERIOD_S: f64 = 250e-6;
 
 /// Gains that make each term easy to count: kp 10, ki 100, anti-windup in 5 ms, limit 4 mm/s.
-fn pid() -> Pid {
+fn pid(kd: f64) -> Pid {
     let config = MotorConfig {
         kp: 10.0,
         ki: 100.0,
         integral_limit: 50.0,
         anti_windup_time_s: 0.005,
-        kd: 0.0,
+        kd,
         derivative_filter_s: 0.0,
         velocity_feed_forward: 0.0,
         acceleration_feed_forward_s: 0.0,
@@ -39,7 +39,7 @@ fn at(position: f64) -> Setpoint {
 
 #[test]
 fn one_input_that_is_not_finite_is_refused_and_changes_nothing() {
-    let pid = pid();
+    let pid = pid(0.0);
     let mut state = PidState::default();
     pid.step(&mut state, &at(0.1), 0.0, 0.0).unwrap();
     let before = state;
@@ -53,11 +53,21 @@ fn one_input_that_is_not_finite_is_refused_and_changes_nothing() {
 
 #[test]
 fn what_the_limit_cuts_off_unwinds_the_integral() {
-    let pid = pid();
+    let pid = pid(0.0);
     let mut state = PidState::default();
     // 1 mm off: 10 mm/s and 0.025 of the integral are wanted, 4 are given, so 6.025 are too much.
     assert_eq!(pid.step(&mut state, &at(1.0), 0.0, 0.0), Ok(4.0));
     // The next integral is 0.025 + 0.00025·(100·0.2 − 6.025/0.005) = −0.271 25, beside 10·0.2.
     let command = pid.step(&mut state, &at(0.2), 0.0, 0.0).unwrap();
     assert!((command - (2.0 - 0.271_25)).abs() < 1e-12, "{command}");
+}
+
+#[test]
+fn an_error_that_grows_is_answered_by_its_derivative() {
+    let pid = pid(0.001);
+    let mut state = PidState::default();
+    pid.step(&mut state, &at(0.0), 0.0, 0.0).unwrap();
+    // 0.1 mm in a tick are 400 mm/s: 0.4 of the derivative beside 1.0 and 0.0025.
+    let command = pid.step(&mut state, &at(0.1), 0.0, 0.0).unwrap();
+    assert!((command - 1.4025).abs() < 1e-12, "{command}");
 }
