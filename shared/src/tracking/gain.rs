@@ -43,4 +43,14 @@ mod tests {
         let limit = crossover(0.01, 0.0, 0.0);
         assert!((limit.gain - 50.0 * PI).abs() < 1e-9);
     }
+
+    #[test]
+    fn the_open_loop_with_a_lag_has_unit_gain_and_the_margin_at_the_crossover() {
+        let (delay, lag, margin) = (0.012, 0.03, 50f64.to_radians());
+        let Crossover { gain, omega } = crossover(delay, lag, margin);
+        let magnitude = gain / (omega * (1.0 + (omega * lag).powi(2)).sqrt());
+        let phase = -PI / 2.0 - omega * delay - (omega * lag).atan();
+        assert!((magnitude - 1.0).abs() < 1e-12, "{magnitude}");
+        assert!((phase + PI - margin).abs() < 1e-12, "{phase}");
+    }
 }
