@@ -31,8 +31,8 @@ impl Pace {
 
     /// Everything that the boards have sent so far has been handled.
     pub fn handled(&self) -> io::Result<()> {
-        let (slowest, now) = slowest(&self.page)?;
-        self.write(slowest, now)
+        let (least_reached, now) = least_reached(&self.page)?;
+        self.write(least_reached, now)
     }
 
     fn write(&self, reached: i64, seen: i64) -> io::Result<()> {
@@ -42,7 +42,7 @@ impl Pace {
 }
 
 /// How far the slower of the boards that run has come in their common time, and when that was told last \[ns\].
-fn slowest(page: &File) -> io::Result<(i64, i64)> {
+fn least_reached(page: &File) -> io::Result<(i64, i64)> {
     let mut bytes = [0; 32];
     page.read_exact_at(&mut bytes, BOARDS_AT)?;
     let number = |index: usize| {
@@ -53,8 +53,8 @@ fn slowest(page: &File) -> io::Result<(i64, i64)> {
     let now = boards[0].1.max(boards[1].1);
     // A board that has died is waited for no more.
     let alive = boards.iter().filter(|(_, seen)| now - seen <= PATIENCE_NS);
-    let slowest = alive.map(|(reached, _)| *reached).min();
-    Ok((slowest.unwrap_or(0), now))
+    let least_reached = alive.map(|(reached, _)| *reached).min();
+    Ok((least_reached.unwrap_or(0), now))
 }
 
 /// The time of the boards, which goes slower than that of the wall on a busy computer. Looking at it does not take part
@@ -74,7 +74,7 @@ impl BoardTime {
 
     /// How far the slower one has come.
     pub fn now(&self) -> io::Result<Duration> {
-        let (reached, _) = slowest(&self.page)?;
+        let (reached, _) = least_reached(&self.page)?;
         Ok(Duration::from_nanos(reached.try_into().unwrap_or(0)))
     }
 }

@@ -20,14 +20,14 @@ const LONGEST_US: u64 = 100_000;
 /// Speed of the weld \[mm/s\].
 const SPEED: f64 = 150.0;
 
-/// Boards in mid-weld, and what the PC says next.
+/// State of both boards in mid-weld, and what the PC sends next.
 #[derive(Clone)]
-struct Moment<'a> {
+struct WeldSnapshot<'a> {
     boards: SimulatedBoards,
     next: Iter<'a, Said>,
 }
 
-impl Moment<'_> {
+impl WeldSnapshot<'_> {
     fn now_us(&self) -> u64 {
         self.boards.outputs().now_us
     }
@@ -88,9 +88,9 @@ impl Moment<'_> {
     }
 }
 
-fn moments(session: &Session) -> Vec<Moment<'_>> {
+fn moments(session: &Session) -> Vec<WeldSnapshot<'_>> {
     let (boards, first) = &session.moments[0];
-    let mut now = Moment {
+    let mut now = WeldSnapshot {
         boards: boards.clone(),
         next: session.said[*first..].iter(),
     };
@@ -109,7 +109,7 @@ fn moments(session: &Session) -> Vec<Moment<'_>> {
 
 /// The longest of what `measure` finds at all moments, held to `bound_us`.
 #[track_caller]
-fn hold(moments: &[Moment], what: &str, bound_us: u64, measure: impl Fn(&mut Moment) -> u64) {
+fn hold(moments: &[WeldSnapshot], what: &str, bound_us: u64, measure: impl Fn(&mut WeldSnapshot) -> u64) {
     let longest_us = moments
         .iter()
         .map(|moment| measure(&mut moment.clone()))
@@ -122,7 +122,7 @@ fn hold(moments: &[Moment], what: &str, bound_us: u64, measure: impl Fn(&mut Mom
 
 /// As [`hold`], for what goes wrong on the boards: until beams `sides` are off.
 #[track_caller]
-fn hold_off(moments: &[Moment], what: &str, bound_us: u64, trouble: Trouble, sides: &[usize]) {
+fn hold_off(moments: &[WeldSnapshot], what: &str, bound_us: u64, trouble: Trouble, sides: &[usize]) {
     hold(moments, what, bound_us, |moment| {
         moment.boards.befall(trouble);
         moment.until_off(sides)

@@ -10,6 +10,7 @@ mod coarse;
 mod detector;
 mod gap;
 mod geometry;
+mod height_field;
 mod image;
 mod layer;
 mod level;
@@ -23,7 +24,6 @@ mod prior;
 mod profile;
 pub mod render;
 mod report;
-mod surface;
 
 pub use detector::{Detector, DetectorError};
 pub use gap::EDGE_ROWS_MM;

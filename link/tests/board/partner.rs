@@ -29,7 +29,7 @@ fn path_state() -> Datagram {
         pose: [0.0; 9],
         tracking: false,
         beams: [false; 2],
-        aside: [0.0; 3],
+        superimposed_rate: [0.0; 3],
     })
 }
 

@@ -8,7 +8,7 @@ use crate::session::Session;
 use crate::{Job, JobError, Weld};
 use cam::path::CAPACITY;
 use camera::calibrate::Known;
-use camera::{Picture, Shelf};
+use camera::{Picture, PictureQueue};
 use config::calibration::Calibration;
 use host_link::events::Phase;
 use nc::text::tip_words;
@@ -47,7 +47,7 @@ pub struct PictureRun<'a> {
     /// Places along the seam.
     pub places: u32,
     /// Where its pictures are.
-    pub shelf: Shelf,
+    pub queue: PictureQueue,
 }
 
 /// Pictures of a camera and where the slides were.
@@ -218,14 +218,14 @@ fn look(
     if let Some(tracking) = &mut session.tracking {
         tracking.strobed = Some(Default::default());
     }
-    run.shelf.take();
+    run.queue.take();
     let mut taken = None;
     let looked = session.wait_until("a picture of the seam", LIMIT, |session| {
         let strobed = session
             .tracking
             .as_ref()
             .and_then(|tracking| tracking.strobed.as_ref());
-        for picture in run.shelf.take() {
+        for picture in run.queue.take() {
             if let Some(slides) = strobed.and_then(|strobed| strobed.get(&picture.capture)) {
                 taken = Some((picture, [slides[2 * run.side], slides[2 * run.side + 1]]));
             }

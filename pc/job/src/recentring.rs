@@ -79,13 +79,13 @@ impl Recentring {
         }
     }
 
-    /// A look at slides at `slides` \[mm\] on path `path_id`, where the pose stands `aside` the plan: where to send it,
+    /// A look at slides at `slides` \[mm\] on path `path_id`, where the pose is offset by `superimposed` from the plan: where to send it,
     /// and for which slide.
     fn look(
         &mut self,
         path_id: u32,
         slides: &[f64; SLIDES],
-        aside: &PoseOffset,
+        superimposed: &PoseOffset,
     ) -> Option<(usize, PoseOffset)> {
         if path_id != self.path_id {
             (self.path_id, self.armed, self.offset) = (path_id, true, PoseOffset::NONE);
@@ -93,8 +93,11 @@ impl Recentring {
         let used = self.all_used(slides);
         self.armed |= used.iter().all(|used| *used < NEAR);
         // While it is on its way, what the slides show is not what will be left.
-        let (aside, wanted) = (aside.numbers(), self.offset.numbers());
-        let there = aside.iter().zip(wanted).all(|(a, b)| (a - b).abs() < REACHED);
+        let (superimposed, wanted) = (superimposed.numbers(), self.offset.numbers());
+        let there = superimposed
+            .iter()
+            .zip(wanted)
+            .all(|(a, b)| (a - b).abs() < REACHED);
         let slide = (0..SLIDES).find(|slide| used[*slide] > FAR)?;
         if !self.armed || !there {
             return None;
@@ -127,7 +130,7 @@ pub(super) fn watch(session: &mut Session, id: u32) -> Result<(), JobError> {
         return Ok(());
     }
     let (slides_mm, s_mm) = (slides.slides_mm, place.s_mm);
-    let Some((slide, offset)) = recentring.look(id, &slides_mm, &session.motion.aside) else {
+    let Some((slide, offset)) = recentring.look(id, &slides_mm, &session.motion.superimposed) else {
         return Ok(());
     };
     let refused = match session.command(Role::Motion, &Request::OffsetPose(offset)) {

@@ -14,8 +14,8 @@ use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use teach::seam::{
-    Cameras, Drawing, Ended, Follower, Hand, Head, Rig, SeamFile, SeamPoint, SeamTeachError, SeamTeaching,
-    Seen, Stance, View,
+    Cameras, Drawing, Ended, Follower, Hand, Head, Rig, SeamFile, SeamPoint, SeamSighting, SeamTeachError,
+    SeamTeaching, Stance, View,
 };
 
 /// Longest time for the pictures of a look.
@@ -316,8 +316,8 @@ fn extensions(slides_mm: &[f64; SLIDES]) -> [f64; SIDES] {
 }
 
 /// The mean of what the pictures show of `side`, if there are enough of them that show it.
-fn mean(pictures: &[Watched], side: usize, wanted: usize) -> Option<Seen> {
-    let seen: Vec<&Seen> = pictures
+fn mean(pictures: &[Watched], side: usize, wanted: usize) -> Option<SeamSighting> {
+    let seen: Vec<&SeamSighting> = pictures
         .iter()
         .filter_map(|picture| picture.sides[side].as_ref())
         .collect();
@@ -325,15 +325,16 @@ fn mean(pictures: &[Watched], side: usize, wanted: usize) -> Option<Seen> {
         return None;
     }
     let count = seen.len() as f64;
-    let mean_of = |value: &dyn Fn(&Seen) -> f64| seen.iter().map(|seen| value(seen)).sum::<f64>() / count;
+    let mean_of =
+        |value: &dyn Fn(&SeamSighting) -> f64| seen.iter().map(|seen| value(seen)).sum::<f64>() / count;
     // Of those that have it.
-    let mean_if = |value: &dyn Fn(&Seen) -> Option<f64>| {
+    let mean_if = |value: &dyn Fn(&SeamSighting) -> Option<f64>| {
         let values: Vec<f64> = seen.iter().filter_map(|seen| value(seen)).collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     };
     let offset_mm = [0, 1].map(|i| mean_of(&|seen| seen.offset_mm[i]));
     let squares = [0, 1].map(|i| mean_of(&|seen| libm::pow(seen.offset_mm[i] - offset_mm[i], 2.0)));
-    Some(Seen {
+    Some(SeamSighting {
         along_mm: mean_of(&|seen| seen.along_mm),
         offset_mm,
         roll: mean_if(&|seen| seen.roll),

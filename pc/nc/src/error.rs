@@ -3,27 +3,27 @@
 use std::fmt;
 use thiserror::Error;
 
-/// A place in a program; both count from 1.
+/// A position in the text of a program; line and column count from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct SourcePosition {
     /// Line of the file.
     pub line: u32,
     /// Character in the line.
     pub column: u32,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for SourcePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "line {}, column {}", self.line, self.column)
     }
 }
 
-/// A problem and its place.
+/// A problem and its position.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{place}: {problem}")]
 pub struct NcError {
     /// Where.
-    pub place: Place,
+    pub place: SourcePosition,
     /// What.
     pub problem: Problem,
 }
@@ -238,7 +238,7 @@ pub enum Problem {
 
 impl Problem {
     /// This problem at `place`.
-    pub(super) fn at(self, place: Place) -> NcError {
+    pub(super) fn at(self, place: SourcePosition) -> NcError {
         NcError { place, problem: self }
     }
 }

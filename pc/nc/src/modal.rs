@@ -2,7 +2,7 @@
 
 use super::claims::Claims;
 use super::codes::Code;
-use super::error::{NcError, Place, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 use super::parser::Block;
 use super::program::{FeedRate, PathControl, Plane};
 
@@ -109,7 +109,12 @@ impl Modal {
     }
 
     /// F for a motion of `mode` in `block`, which begins at `place`.
-    pub(super) fn feed_rate(&self, block: &Block, mode: Code, place: Place) -> Result<FeedRate, NcError> {
+    pub(super) fn feed_rate(
+        &self,
+        block: &Block,
+        mode: Code,
+        place: SourcePosition,
+    ) -> Result<FeedRate, NcError> {
         match self.feed_mode {
             FeedMode::PerMinute => {
                 let feed = self.feed.ok_or(Problem::NoFeed(mode.name()).at(place))?;

@@ -2,7 +2,7 @@
 
 use super::claims::Claims;
 use super::codes::{Code, Group};
-use super::error::{NcError, Place, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 use super::lexer::Word;
 use super::parser::{Block, CodeWord};
 use super::program::{ProgramAction, ProgramEvent};
@@ -17,7 +17,7 @@ const LONGEST_DWELL_S: f64 = 86_400.0;
 pub(super) struct Pending {
     pub(super) action: ProgramAction,
     pub(super) code: &'static str,
-    pub(super) place: Place,
+    pub(super) place: SourcePosition,
     /// It does not need a motion to take effect with: the machine stands anyway.
     pub(super) at_rest: bool,
 }
@@ -153,7 +153,7 @@ pub(super) fn output(block: &Block, claims: &Claims) -> Result<Option<Pending>, 
 }
 
 /// The time of a G4 in `block` \[s\].
-pub(super) fn dwell(block: &Block, claims: &Claims) -> Result<Option<(f64, Place)>, NcError> {
+pub(super) fn dwell(block: &Block, claims: &Claims) -> Result<Option<(f64, SourcePosition)>, NcError> {
     let Some(code) = block.code(Group::NonModal).filter(|c| c.code == Code::Dwell) else {
         return Ok(None);
     };

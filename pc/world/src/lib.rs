@@ -21,8 +21,8 @@ pub use emulated::BoardsError;
 pub use geometric::GeometricCameras;
 pub use probe::SimulatedProbe;
 pub use rendered::{
-    Dark, Prospect, RenderedCamera, RenderedPictures, RenderedWorld, SceneError, SceneFile, Scratch,
-    Surface as Texture, View, ViewForm,
+    Dark, FieldOfView, RenderedCamera, RenderedPictures, RenderedWorld, SceneError, SceneFile, Scratch,
+    SurfaceFinish, View, ViewForm,
 };
 pub use seams::{Crossing, SharedSeams, TrueSeam, TrueSeams};
 pub use surroundings::{CameraChoice, DrawingError, PictureChoice, Surroundings, World};

@@ -11,8 +11,8 @@ const OFFSET: f64 = 1e-3;
 /// Finds a drive whose encoder stands still while it is told to go, ready for the tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovementCheck {
-    /// Slower commands may be the offset of the drive.
-    slowest: f64,
+    /// Commands below this may be the offset of the drive.
+    min_velocity: f64,
     /// Way that commands may make without a movement.
     limit: f64,
 }
@@ -41,7 +41,7 @@ impl MovementCheck {
     /// seen it go.
     pub fn new(full_scale: f64, limit: f64) -> Self {
         Self {
-            slowest: libm::fabs(full_scale) * OFFSET,
+            min_velocity: libm::fabs(full_scale) * OFFSET,
             limit,
         }
     }
@@ -60,7 +60,7 @@ impl MovementCheck {
                 commanded: 0.0,
             };
         }
-        if libm::fabs(velocity) > self.slowest {
+        if libm::fabs(velocity) > self.min_velocity {
             state.commanded += velocity * period;
         }
         let way = libm::fabs(state.commanded);

@@ -247,7 +247,7 @@ impl MotionController {
                 // On a path that is given up nobody looks for the seam any more.
                 tracking: on_path && self.state != State::Stopping && self.beams.tracking(),
                 beams: report.gate,
-                aside: self.superimposed.rate(),
+                superimposed_rate: self.superimposed.rate(),
             },
             sample: MotionSample {
                 tick: self.tick as u32,

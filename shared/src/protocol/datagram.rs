@@ -74,8 +74,8 @@ pub struct PathState {
     pub tracking: bool,
     /// Gates that are open.
     pub beams: [bool; SIDES],
-    /// How fast the pose moves beside the planned one on purpose: along M and N \[mm/s\], about T \[rad/s\].
-    pub aside: [f64; 3],
+    /// Rate of the superimposed offset of the pose: along M and N \[mm/s\], about T \[rad/s\].
+    pub superimposed_rate: [f64; 3],
 }
 
 /// Whether the tracker lets the beams burn. Where the path tracks, the motion board opens a gate only on this, and

@@ -433,8 +433,8 @@ pub struct MotionStatus {
     pub room: Room,
     /// Part of the programmed speed that is asked for.
     pub speed_override: f64,
-    /// Where the pose stands beside the planned one.
-    pub aside: PoseOffset,
+    /// Superimposed offset of the pose from the planned one.
+    pub superimposed: PoseOffset,
     /// Servo ticks since boot, and how many came too late to be served.
     pub servo_ticks: u32,
     /// Servo ticks lost.

@@ -188,7 +188,7 @@ fn is_sound<const N: usize>(belief: &Belief, arrival: &Arrival<'_, N>, state: &P
         .sent_us
         .checked_sub(state.time_us)
         .is_some_and(|delay| delay <= belief.stale_us);
-    let [along_m, along_n, about_t] = state.aside.map(libm::fabs);
+    let [along_m, along_n, about_t] = state.superimposed_rate.map(libm::fabs);
     let finite = state.s_mm.is_finite() && p.iter().all(|x| x.is_finite());
     // Comparisons with what is not a number are false.
     let slow = libm::fabs(state.speed_mm_s) <= belief.path_speed

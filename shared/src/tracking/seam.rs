@@ -1,7 +1,7 @@
 //! The seam of both sides: from measurements to where the slides should be.
 
 use super::frames::{Heads, SpotFrame, meet};
-use super::history::Place;
+use super::history::PathSnapshot;
 use super::law::SlideTarget;
 use super::map::{Added, SeamMap};
 use super::parameters::TrackerParameters;
@@ -83,24 +83,24 @@ impl Seam {
         self.implausible[side] = self.implausible[side].saturating_add(1);
     }
 
-    /// Enters what the camera of `side` saw when the machine was at `place` and the slides at `slides` \[mm\].
+    /// Enters what the camera of `side` saw when the machine was in the state `snapshot` and the slides at `slides` \[mm\].
     pub fn add<const N: usize>(
         &mut self,
         parameters: &TrackerParameters,
         path: &Path<N>,
         side: usize,
-        place: &Place,
+        snapshot: &PathSnapshot,
         slides: &[f64; SLIDES],
         seen: &SideMeasurement,
     ) {
         let heads = &parameters.heads;
         let (u, v) = (u_slide(side), u_slide(side) + 1);
-        if !parameters.believes(side, slides, place.speed, seen) {
+        if !parameters.believes(side, slides, snapshot.speed, seen) {
             return self.disbelieve(side);
         }
-        let spot = heads.spot(&place.pose, side);
+        let spot = heads.spot(&snapshot.pose, side);
         let point = heads.seam_point(&spot, slides[u], slides[v], seen);
-        let start = place.s + heads.camera_lead() + seen.along_mm;
+        let start = snapshot.s + heads.camera_lead() + seen.along_mm;
         let Some(meeting) = meet(&point, start, |s| planned_spot(heads, path, side, s)) else {
             self.rejected[side] = self.rejected[side].saturating_add(1);
             return;
@@ -110,7 +110,7 @@ impl Seam {
         if libm::fabs(meeting.u).max(libm::fabs(meeting.v - planned)) > parameters.belief.deviation {
             return self.disbelieve(side);
         }
-        let add = if place.speed < 0.0 {
+        let add = if snapshot.speed < 0.0 {
             SeamMap::add_going_back
         } else {
             SeamMap::add
@@ -131,9 +131,9 @@ impl Seam {
         }
     }
 
-    /// Where `slide` should be when the machine is at `place`.
-    pub fn sight(&mut self, parameters: &TrackerParameters, slide: usize, place: &Place) -> Sight {
-        let (law, s, speed) = (&parameters.map, place.s, place.speed);
+    /// Where `slide` should be when the machine is in the state `snapshot`.
+    pub fn sight(&mut self, parameters: &TrackerParameters, slide: usize, snapshot: &PathSnapshot) -> Sight {
+        let (law, s, speed) = (&parameters.map, snapshot.s, snapshot.speed);
         let before = &mut self.before[slide];
         // It has jumped ahead, but not where the spot is.
         let behind = self.maps[slide].begins_after(s) && before.estimate(law, s).is_some();
@@ -153,7 +153,7 @@ impl Seam {
             };
         }
         // Back along the path after a hold, the map begins ahead.
-        if place.beams[slide / 2] && self.met[slide].is_some() && !map.begins_after(s) {
+        if snapshot.beams[slide / 2] && self.met[slide].is_some() && !map.begins_after(s) {
             return Sight::Lost;
         }
         match map.next_after(law, s) {
@@ -199,17 +199,22 @@ pub struct RealHead {
     real: SpotFrame,
     pose: Pose,
     /// How fast the pose moves beside the planned one on purpose.
-    aside: PoseOffset,
+    superimposed_rate: PoseOffset,
 }
 
 impl RealHead {
-    /// Of `side`, with the machine at `place`.
-    pub fn new<const N: usize>(heads: &Heads, path: &Path<N>, place: &Place, side: usize) -> Option<Self> {
+    /// Of `side`, with the machine in the state `snapshot`.
+    pub fn new<const N: usize>(
+        heads: &Heads,
+        path: &Path<N>,
+        snapshot: &PathSnapshot,
+        side: usize,
+    ) -> Option<Self> {
         Some(Self {
-            planned: planned_spot(heads, path, side, place.s)?,
-            real: heads.spot(&place.pose, side),
-            pose: place.pose,
-            aside: place.aside,
+            planned: planned_spot(heads, path, side, snapshot.s)?,
+            real: heads.spot(&snapshot.pose, side),
+            pose: snapshot.pose,
+            superimposed_rate: snapshot.superimposed_rate,
         })
     }
 
@@ -223,7 +228,9 @@ impl RealHead {
     pub fn targets(&self, in_plan: [SlideTarget; 2]) -> [SlideTarget; 2] {
         let point = self.planned.point(0.0, in_plan[0].position, in_plan[1].position);
         let (_, u, v) = self.real.coordinates(&point);
-        let moves = self.aside.velocity_at(&self.pose, &(point - self.pose.position));
+        let moves = self
+            .superimposed_rate
+            .velocity_at(&self.pose, &(point - self.pose.position));
         [
             SlideTarget {
                 position: u,

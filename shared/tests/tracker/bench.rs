@@ -258,7 +258,7 @@ impl Bench {
                 pose: core::array::from_fn(|i| flat[i / 3][i % 3]),
                 tracking: self.tracking,
                 beams: self.beams,
-                aside: [0.0; 3],
+                superimposed_rate: [0.0; 3],
             };
             self.controller
                 .datagram(&Datagram::PathState(state), t + 370 + TRACKER_CLOCK);

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::time::Duration;
 use vision::{Detector, Image, Joint, Prior};
-use world::{Deviation, Prospect, RenderedWorld, SceneFile, View, ViewForm, check_seam};
+use world::{Deviation, FieldOfView, RenderedWorld, SceneFile, View, ViewForm, check_seam};
 
 /// Rows and columns of a picture above which it is not measured here: that takes a share of a second.
 const LARGEST: usize = 256;
@@ -168,7 +168,7 @@ pub fn scene(text: &str) -> anyhow::Result<()> {
     };
     let mut picture = Picture::default();
     for (capture, along_mm) in [(1, 10.0), (2, 160.0)] {
-        tell.send(Prospect::Seam(View {
+        tell.send(FieldOfView::Seam(View {
             along_mm,
             lateral_mm: 0.1,
             height_mm: 0.05,

@@ -307,7 +307,7 @@ fn forged() -> Vec<Vec<u8>> {
             pose,
             tracking: true,
             beams: [true; 2],
-            aside: [0.0; 3],
+            superimposed_rate: [0.0; 3],
         }),
         Datagram::Permit(Permit {
             tick: 1_000_000,

@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex};
 use world::{
-    CameraChoice, PictureChoice, Prospect, RenderedCamera, RenderedWorld, SceneFile, TrueSeams, View,
+    CameraChoice, FieldOfView, PictureChoice, RenderedCamera, RenderedWorld, SceneFile, TrueSeams, View,
 };
 
 /// So many strobes later a frame is with the session at the latest.
@@ -134,21 +134,21 @@ impl Drop for Outside {
 
 /// The world's end of a camera.
 struct Lens {
-    strobes: Sender<(u64, Prospect)>,
+    strobes: Sender<(u64, FieldOfView)>,
     frames: Sender<Frame>,
     done: Arc<Done>,
 }
 
 /// A camera, both ends of it, and a thread that takes its pictures.
-fn camera(camera: (RenderedCamera, Sender<Prospect>)) -> (Lens, Outside) {
+fn camera(camera: (RenderedCamera, Sender<FieldOfView>)) -> (Lens, Outside) {
     let (mut rendered, tell) = camera;
     let (strobes, strobed) = channel();
     let (frames, came) = channel();
     let to_session = frames.clone();
     std::thread::spawn(move || {
-        for (number, prospect) in strobed {
+        for (number, field_of_view) in strobed {
             rendered.strobed(number as u32, 5_000 * number);
-            tell.send(prospect).unwrap();
+            tell.send(field_of_view).unwrap();
             let mut picture = Picture::default();
             let taken = rendered.next(PATIENCE, &mut picture).unwrap();
             assert_eq!(taken, Arrival::Picture);
@@ -250,8 +250,8 @@ impl World {
                 }
                 let cameras = &self.file.tracking.as_ref().unwrap().cameras;
                 let view = View::of(cameras, &self.machine, &self.seams, &position, &slides, side);
-                let prospect = view.map_or(Prospect::Nothing, Prospect::Seam);
-                lens.strobes.send((self.frames, prospect)).unwrap();
+                let field_of_view = view.map_or(FieldOfView::Nothing, FieldOfView::Seam);
+                lens.strobes.send((self.frames, field_of_view)).unwrap();
             }
             self.strobed.pop_front();
         }

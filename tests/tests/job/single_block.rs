@@ -144,13 +144,13 @@ fn a_weld_goes_on_over_the_end_of_a_block() {
     assert!((1.5..=2.2).contains(&overlap), "{overlap} mm");
 }
 
-/// Whether the machine, so far along its path \[mm\], has come to a place.
-type Place = fn(f64) -> bool;
+/// Whether the machine, at this path position \[mm\], has come far enough.
+type Reached = fn(f64) -> bool;
 
 /// Says its words when the machine has come to their places.
 struct Steering {
     done_mm: f64,
-    words: Vec<(Place, Command)>,
+    words: Vec<(Reached, Command)>,
 }
 
 impl Operator for Steering {

@@ -3,13 +3,13 @@
 use super::fading::Fading;
 use super::least_squares::LeastSquares;
 use crate::detector::{Detector, DetectorError};
+use crate::height_field::{HeightField, Plate};
 use crate::image::Image;
 use crate::noise::PhotonTransfer;
 use crate::optics::Optics;
 use crate::prior::{Joint, Prior};
 use crate::profile::Profile;
 use crate::report::Measured;
-use crate::surface::{Plate, Surface};
 use thiserror::Error;
 
 /// Fewest pictures that show a band.

@@ -37,9 +37,9 @@ pub(super) enum Verdict {
     Doubt(Doubt),
 }
 
-/// A seam as it was seen.
+/// One measurement of the seam.
 #[derive(Clone, Copy, Debug)]
-struct Seen {
+struct Sighting {
     form: Form,
     lateral_mm: f64,
     width_mm: f64,
@@ -53,9 +53,9 @@ pub(super) struct Gate {
     /// Median of the widths.
     width_mm: f64,
     /// The seam that was believed last.
-    believed: Option<Seen>,
+    believed: Option<Sighting>,
     /// The last one that was not, and how many before it were like it.
-    doubted: Option<(Seen, u32)>,
+    doubted: Option<(Sighting, u32)>,
     /// Pictures in a row without any seam.
     unseen: u32,
 }
@@ -106,7 +106,7 @@ impl Gate {
     /// Judges a seam.
     pub fn judge(&mut self, measured: &Measured, state: State) -> Verdict {
         self.unseen = 0;
-        let seen = Seen {
+        let seen = Sighting {
             form: measured.form,
             lateral_mm: measured.lateral_mm,
             width_mm: measured.width_mm,
@@ -115,7 +115,7 @@ impl Gate {
             None => Some(Doubt::New),
             Some(believed) => self.differs(
                 &seen,
-                &Seen {
+                &Sighting {
                     width_mm: self.width_mm,
                     ..believed
                 },
@@ -150,7 +150,7 @@ impl Gate {
     }
 
     /// In what a seam differs from another.
-    fn differs(&self, seen: &Seen, other: &Seen) -> Option<Doubt> {
+    fn differs(&self, seen: &Sighting, other: &Sighting) -> Option<Doubt> {
         let wider = (seen.width_mm - other.width_mm).abs();
         if (seen.lateral_mm - other.lateral_mm).abs() > self.gate_mm {
             Some(Doubt::Position)

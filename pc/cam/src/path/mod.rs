@@ -28,7 +28,7 @@ pub use targets::Tip;
 
 use config::machine::{MachineFile, PlanningConfig};
 use limits::{DRIVES, DriveLimits};
-use nc::{Place, Program};
+use nc::{Program, SourcePosition};
 use outputs::Switched;
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
@@ -42,7 +42,7 @@ pub const CAPACITY: usize = 512;
 pub const MAX_EVENTS: usize = 128;
 
 /// Of a path that no program asks for.
-pub const NOWHERE: Place = Place { line: 0, column: 0 };
+pub const NOWHERE: SourcePosition = SourcePosition { line: 0, column: 0 };
 
 /// Plans program paths for one machine.
 #[derive(Clone, Debug)]

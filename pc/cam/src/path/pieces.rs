@@ -9,7 +9,7 @@ use super::outputs::{Switched, Switching, on_the_way};
 use super::shape::{Goal, Shape, channels};
 use super::targets::{ROTARY, Stand};
 use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip};
-use nc::{Motion, PathControl, Place, ProgramPath, Target, Way};
+use nc::{Motion, PathControl, ProgramPath, SourcePosition, Target, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
 use shared::trajectory::PathSpace;
@@ -53,7 +53,7 @@ impl Planner {
         from: &[f64; AXES],
         to: &[f64; AXES],
         extension: &[f64; SIDES],
-        place: Place,
+        place: SourcePosition,
     ) -> Result<PlannedPath, PathError> {
         let shape = Shape::of_axes(from, to, extension, place);
         let mut planned = PlannedPath::untimed(&shape, PathSpace::Axes, Motion::Rapid);

@@ -4,7 +4,7 @@
 use super::outputs::Switched;
 use super::{PathError, Planner};
 use nalgebra::Vector3;
-use nc::{ArcForm, ArcWay, Place, ProgramPath, Target, Way};
+use nc::{ArcForm, ArcWay, ProgramPath, SourcePosition, Target, Way};
 use shared::geometry::{Arc, Turn};
 use shared::io::{AXES, AXIS_NAMES, SIDES};
 use shared::kinematics::AXIS_UNIT;
@@ -122,7 +122,7 @@ impl Planner {
 }
 
 /// The arc of a G2 or G3 block between two tips (RS274/NGC).
-pub(super) fn arc(from: &Tip, to: &Tip, way: &ArcWay, place: Place) -> Result<Arc, PathError> {
+pub(super) fn arc(from: &Tip, to: &Tip, way: &ArcWay, place: SourcePosition) -> Result<Arc, PathError> {
     let [start, end]: [Vector3<f64>; 2] = [from.position_mm.into(), to.position_mm.into()];
     let mut axis = Vector3::zeros();
     axis[way.plane.axis()] = 1.0;
@@ -141,7 +141,7 @@ fn radius_to_centre(
     axis: &Vector3<f64>,
     radius: f64,
     turn: Turn,
-    place: Place,
+    place: SourcePosition,
 ) -> Result<Vector3<f64>, PathError> {
     let across = axis.cross(&chord);
     let distance = across.norm();

@@ -350,12 +350,12 @@ pub fn corner(
     Ok(Found { calibration, figures })
 }
 
-/// A picture of a place of the seam: its number, the slides, how far the machine was along travel, what was measured.
-type Seen = (u32, [f64; 2], f64, Measured);
+/// A picture taken at a step of the slides: number of the place along the seam, position of the slides, offset of the machine along travel, measurement.
+type SlidePicture = (u32, [f64; 2], f64, Measured);
 
 /// The readings of a straight seam: its angle is the mean of each place's pictures, and takes what a height or the machine
 /// shifts the place that is seen along it.
-fn on_axis(seen: &[Seen]) -> Vec<SlideReading> {
+fn on_axis(seen: &[SlidePicture]) -> Vec<SlideReading> {
     let yaw = |place: u32| {
         let of = seen
             .iter()
@@ -364,7 +364,7 @@ fn on_axis(seen: &[Seen]) -> Vec<SlideReading> {
         let (sum, count) = of.fold((0.0, 0.0), |(sum, count), yaw| (sum + yaw, count + 1.0));
         sum / count
     };
-    let reading = |&(place, slides_mm, along_mm, measured): &Seen| SlideReading {
+    let reading = |&(place, slides_mm, along_mm, measured): &SlidePicture| SlideReading {
         place,
         slides_mm,
         seen_mm: [

@@ -7,11 +7,11 @@
 
 mod worker;
 
-pub use worker::{Seen, WorkerError};
+pub use worker::{MeasuredStrobe, WorkerError};
 
 use crate::cameras::{Answer, CameraFigures, Moment, PictureSource, SeamCameras};
 use camera::{CameraFrame, nominal_slopes};
-use camera::{Keeping, Shelf};
+use camera::{PictureQueue, RecordingCamera};
 use config::calibration::Calibration;
 use config::machine::{CameraConfig, JointForm, TrackingUnit};
 use host_link::boards::Waker;
@@ -41,7 +41,7 @@ pub struct ImageCameras {
     /// What is known of camera 1 and 2.
     pub calibrations: [Calibration; SIDES],
     /// Where every picture is kept, if it is.
-    pub kept: Option<[Shelf; SIDES]>,
+    pub kept: Option<[PictureQueue; SIDES]>,
 }
 
 /// Both cameras.
@@ -62,7 +62,7 @@ struct Side {
     waiting: VecDeque<Waiting>,
     figures: CameraFigures,
     /// An answer that is ready for the tracker.
-    held: Option<Seen>,
+    held: Option<MeasuredStrobe>,
 }
 
 /// A capture without an answer.
@@ -101,7 +101,7 @@ impl Images {
             let calibration = of.calibrations[side];
             let camera = source.open(side)?;
             let camera = match &of.kept {
-                Some(shelves) => Box::new(Keeping::new(camera, shelves[side].clone())),
+                Some(queues) => Box::new(RecordingCamera::new(camera, queues[side].clone())),
                 None => camera,
             };
             let (optics, noise) = (calibration.optics, calibration.photon_transfer);
@@ -283,19 +283,19 @@ impl Side {
         Ok(())
     }
 
-    fn hold(&mut self, seen: Seen) {
+    fn hold(&mut self, seen: MeasuredStrobe) {
         self.waiting.pop_front();
         count(&mut self.figures, &seen);
         self.held = Some(seen);
     }
 
     /// The answer to a capture, if it is held.
-    fn give(&mut self, capture: u32) -> Option<Seen> {
+    fn give(&mut self, capture: u32) -> Option<MeasuredStrobe> {
         self.held.take_if(|seen| seen.capture == capture)
     }
 }
 
-fn count(figures: &mut CameraFigures, seen: &Seen) {
+fn count(figures: &mut CameraFigures, seen: &MeasuredStrobe) {
     let Some(observation) = &seen.observation else {
         figures.lost += 1;
         return;

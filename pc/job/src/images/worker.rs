@@ -28,9 +28,9 @@ pub(super) struct Strobe {
     pub moved: Option<Moved>,
 }
 
-/// What came of a strobe.
+/// The result of one strobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct MeasuredStrobe {
     /// Number of the capture.
     pub capture: u32,
     /// What the picture says; `None` if it was lost.
@@ -66,7 +66,7 @@ struct Outlet {
 pub(super) struct Worker {
     outlet: Arc<OnceLock<Outlet>>,
     strobes: Option<Sender<Strobe>>,
-    answers: Receiver<Result<Seen, WorkerError>>,
+    answers: Receiver<Result<MeasuredStrobe, WorkerError>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -121,14 +121,14 @@ impl Worker {
     }
 
     /// The next answer, which there is exactly one of for every strobe, in their order.
-    pub fn wait(&self, timeout: Duration) -> Result<Seen, WorkerError> {
+    pub fn wait(&self, timeout: Duration) -> Result<MeasuredStrobe, WorkerError> {
         self.answers
             .recv_timeout(timeout)
             .unwrap_or(Err(WorkerError::Gone))
     }
 
     /// The next answer, if it is there.
-    pub fn poll(&self) -> Result<Option<Seen>, WorkerError> {
+    pub fn poll(&self) -> Result<Option<MeasuredStrobe>, WorkerError> {
         match self.answers.try_recv() {
             Ok(answer) => answer.map(Some),
             Err(TryRecvError::Empty) => Ok(None),
@@ -168,7 +168,7 @@ impl Work {
     fn run(
         &mut self,
         strobes: &Receiver<Strobe>,
-        answer: &Sender<Result<Seen, WorkerError>>,
+        answer: &Sender<Result<MeasuredStrobe, WorkerError>>,
     ) -> Result<(), WorkerError> {
         loop {
             let next = if self.waiting.is_empty() {
@@ -197,7 +197,7 @@ impl Work {
                 let seen = if arrived {
                     self.look()?
                 } else {
-                    Seen {
+                    MeasuredStrobe {
                         capture: strobe.capture,
                         observation: None,
                         measurement: None,
@@ -225,7 +225,7 @@ impl Work {
     }
 
     /// Tells who is interested of the picture and of what is seen in it, after the answer has left.
-    fn show(&self, seen: &Seen) {
+    fn show(&self, seen: &MeasuredStrobe) {
         let Some(Outlet { events, .. }) = self.outlet.get() else {
             return;
         };
@@ -268,7 +268,7 @@ impl Work {
     }
 
     /// Measures the picture.
-    fn look(&mut self) -> Result<Seen, WorkerError> {
+    fn look(&mut self) -> Result<MeasuredStrobe, WorkerError> {
         let moved = self.moved.replace(Moved::default());
         if moved.is_none() {
             self.observer.forget();
@@ -290,7 +290,7 @@ impl Work {
                 }
                 (None, _) => None,
             });
-        Ok(Seen {
+        Ok(MeasuredStrobe {
             capture: self.picture.capture,
             observation: Some(observation),
             measurement: place

@@ -26,7 +26,7 @@ fn g5_2_takes_control_points_up_to_g5_3() {
     assert_eq!(way.points[0].position, [None; 3]);
     assert_eq!(way.points[2].position, [Some(2.0), Some(2.0), None]);
     assert_eq!(target.words.axes[..3], [Some(0.0), Some(0.0), None]);
-    assert_eq!(target.place, Place { line: 6, column: 1 });
+    assert_eq!(target.place, SourcePosition { line: 6, column: 1 });
     assert_eq!(target.feed, Some(FeedRate::PerMinute(10.0)));
 }
 

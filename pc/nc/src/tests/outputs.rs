@@ -4,9 +4,9 @@ use super::*;
 use shared::protocol::PathAction;
 
 /// Motion, targets and events of the paths after the header.
-type Seen = (Motion, usize, Vec<(usize, ProgramAction, &'static str)>);
+type PathSummary = (Motion, usize, Vec<(usize, ProgramAction, &'static str)>);
 
-fn seen(body: &str) -> Vec<Seen> {
+fn seen(body: &str) -> Vec<PathSummary> {
     let program = run(body).unwrap();
     let paths = program.paths[2..].iter();
     paths

@@ -8,9 +8,9 @@ mod speed;
 #[cfg(test)]
 mod tests;
 
-use crate::Surface;
+use crate::CurvedPanel;
 use crate::limits::SPEED_DIP;
-use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
+use crate::{Judgement, Kind, Limit, PartContext, Percent, Plan, Run};
 use config::table::FARTHEST_MM;
 use nalgebra::Vector3;
 use serde::Deserialize;
@@ -49,7 +49,7 @@ pub struct Panel {
     #[serde(default)]
     limits: PanelLimits,
     /// The panel as it really is. Only simulated worlds look at it, and the judgement of a run in one.
-    simulated_surface: Option<Surface>,
+    simulated_surface: Option<CurvedPanel>,
     /// Points taught in this session.
     #[serde(skip)]
     points: Option<Vec<TaughtPoint>>,
@@ -188,7 +188,7 @@ impl Panel {
     }
 
     /// The panel as it really is, in a simulated world.
-    pub fn simulated_surface(&self) -> Option<&Surface> {
+    pub fn simulated_surface(&self) -> Option<&CurvedPanel> {
         self.simulated_surface.as_ref()
     }
 
@@ -198,10 +198,10 @@ impl Panel {
     }
 
     /// The taught points: of this session, or of the file.
-    fn points(&self, place: &Place) -> anyhow::Result<Cow<'_, [TaughtPoint]>> {
+    fn points(&self, context: &PartContext) -> anyhow::Result<Cow<'_, [TaughtPoint]>> {
         match (&self.points, &self.taught) {
             (Some(points), _) => Ok(Cow::Borrowed(points)),
-            (None, Some(file)) => Ok(Cow::Owned(read_points(&place.directory.join(file))?)),
+            (None, Some(file)) => Ok(Cow::Owned(read_points(&context.directory.join(file))?)),
             (None, None) => Err(PanelError::Untaught.into()),
         }
     }
@@ -238,15 +238,15 @@ impl Panel {
 }
 
 impl Kind for Panel {
-    fn plan(&self, place: &Place) -> anyhow::Result<Plan> {
+    fn plan(&self, context: &PartContext) -> anyhow::Result<Plan> {
         self.check()?;
-        let points = self.points(place)?;
-        self.check_speed(place, &points)?;
-        Ok(self.program(place, &points)?)
+        let points = self.points(context)?;
+        self.check_speed(context, &points)?;
+        Ok(self.program(context, &points)?)
     }
 
-    fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement> {
-        Ok(self.figures(run, &self.points(place)?))
+    fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {
+        Ok(self.figures(run, &self.points(context)?))
     }
 
     fn speed_dip(&self) -> Percent {

@@ -19,7 +19,7 @@ mod tests;
 pub use error::{SaddlePartError, TaughtError};
 
 use crate::limits::SPEED_DIP;
-use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
+use crate::{Judgement, Kind, Limit, PartContext, Percent, Plan, Run};
 use fit::Known;
 use pipes::PipePair;
 use seam::{Offset, Placement, Seam};
@@ -231,13 +231,13 @@ fn value_error(key: &'static str, value: f64, requirement: &'static str) -> Sadd
 }
 
 impl Kind for Saddle {
-    fn plan(&self, place: &Place) -> anyhow::Result<Plan> {
-        let (seam, notes) = self.seam(place.directory, &place.machine.motion.kinematics()?)?;
-        program::plan(self, &seam, notes, place)
+    fn plan(&self, context: &PartContext) -> anyhow::Result<Plan> {
+        let (seam, notes) = self.seam(context.directory, &context.machine.motion.kinematics()?)?;
+        program::plan(self, &seam, notes, context)
     }
 
-    fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement> {
-        let (seam, _) = self.seam(place.directory, run.kinematics)?;
+    fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {
+        let (seam, _) = self.seam(context.directory, run.kinematics)?;
         judge::judge(self, &seam, run)
     }
 

@@ -3,7 +3,7 @@
 use super::boards::BoardChoice;
 use crate::console::{errln, outln};
 use anyhow::bail;
-use camera::{CameraError, Keeper, Shelf};
+use camera::{CameraError, PictureQueue, PictureWriter};
 use clap::{Args, ValueEnum};
 use config::machine::{CameraConfig, MachineFile};
 use job::ImageCameras;
@@ -62,11 +62,11 @@ impl CameraArgs {
             (Camera::Images, _) => {
                 let folder = path.parent().unwrap_or(Path::new(""));
                 // The time of simulated boards stands still meanwhile.
-                let shelf = || match boards {
-                    BoardChoice::Simulated => Shelf::patient(),
-                    BoardChoice::Emulated | BoardChoice::At { .. } => Shelf::default(),
+                let queue = || match boards {
+                    BoardChoice::Simulated => PictureQueue::blocking(),
+                    BoardChoice::Emulated | BoardChoice::At { .. } => PictureQueue::default(),
                 };
-                let kept = self.keep_pictures.is_some().then(|| [shelf(), shelf()]);
+                let kept = self.keep_pictures.is_some().then(|| [queue(), queue()]);
                 let images = ImageCameras {
                     calibrations: unit.cameras.calibrations(folder)?,
                     kept,
@@ -78,28 +78,28 @@ impl CameraArgs {
     }
 
     /// Begins to keep the pictures of `cameras`, where that is asked for.
-    pub fn keep(&self, cameras: &CameraChoice) -> Result<Keepers, CameraError> {
+    pub fn keep(&self, cameras: &CameraChoice) -> Result<PictureWriters, CameraError> {
         let (Some(folder), CameraChoice::Images(images, _)) = (&self.keep_pictures, cameras) else {
-            return Ok(Keepers::default());
+            return Ok(PictureWriters::default());
         };
-        let mut keepers = Vec::new();
-        for (side, shelf) in (1..).zip(images.kept.iter().flatten()) {
+        let mut writers = Vec::new();
+        for (side, queue) in (1..).zip(images.kept.iter().flatten()) {
             let folder = folder.join(format!("side-{side}"));
-            keepers.push((Keeper::start(&folder, shelf.clone())?, folder));
+            writers.push((PictureWriter::start(&folder, queue.clone())?, folder));
         }
-        Ok(Keepers(keepers))
+        Ok(PictureWriters(writers))
     }
 }
 
 /// What keeps the pictures of both sides, and where.
 #[derive(Default)]
-pub struct Keepers(Vec<(Keeper, PathBuf)>);
+pub struct PictureWriters(Vec<(PictureWriter, PathBuf)>);
 
-impl Keepers {
+impl PictureWriters {
     /// Waits until what came is written, and tells what became of it.
     pub fn end(self) {
-        for (keeper, folder) in self.0 {
-            let kept = keeper.end();
+        for (writer, folder) in self.0 {
+            let kept = writer.end();
             let dropped = match (kept.dropped, &kept.error) {
                 (0, _) => String::new(),
                 (dropped, Some(_)) => format!(", {dropped} dropped"),

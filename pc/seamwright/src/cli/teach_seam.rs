@@ -30,7 +30,7 @@ const ENDS_EARLY: f64 = 5.0;
 pub struct SeamArgs {
     /// Seams: where the tip shall begin, a camera lead before the first point, in place of the drawing's beginning
     #[arg(long, value_name = "X,Y,Z,A,B,C", allow_hyphen_values = true)]
-    from: Option<Place>,
+    from: Option<TipPose>,
     /// Seams: the operator drives, by words on standard input
     #[arg(long)]
     jog: bool,
@@ -49,9 +49,9 @@ pub struct SeamArgs {
 
 /// X Y Z \[mm\] A B C \[deg\] of the tip.
 #[derive(Clone, Copy, Debug)]
-struct Place([f64; 6]);
+struct TipPose([f64; 6]);
 
-impl FromStr for Place {
+impl FromStr for TipPose {
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
@@ -205,7 +205,7 @@ impl SeamArgs {
     ) -> anyhow::Result<(Stance, Option<Drawing>)> {
         let drawing = drawn.map(DualBeamPlan::drawing);
         let start = match (self.from, drawn) {
-            (Some(Place([x, y, z, a, b, c])), _) => {
+            (Some(TipPose([x, y, z, a, b, c])), _) => {
                 let tip = Tip {
                     position_mm: [x, y, z],
                     angles_deg: [a, b, c],

@@ -96,13 +96,13 @@ pub(super) enum Trouble<E: StdError + 'static> {
     Point(#[from] PointError),
 }
 
-/// Why there is no distance.
-pub(super) enum Seen<E> {
+/// Why the probe gave no distance.
+pub(super) enum NoDistance<E> {
     Machine(E),
     Refused(RangingError),
 }
 
-impl<E: StdError + 'static> Seen<E> {
+impl<E: StdError + 'static> NoDistance<E> {
     pub(super) fn in_ring(self, radius: f64) -> Trouble<E> {
         match self {
             Self::Machine(error) => Trouble::Machine(error),
@@ -112,10 +112,10 @@ impl<E: StdError + 'static> Seen<E> {
 }
 
 impl<E: StdError + 'static> Trouble<E> {
-    pub(super) fn distance(seen: Seen<E>) -> Self {
+    pub(super) fn distance(seen: NoDistance<E>) -> Self {
         match seen {
-            Seen::Machine(error) => Self::Machine(error),
-            Seen::Refused(source) => Self::Point(PointError::Distance(source)),
+            NoDistance::Machine(error) => Self::Machine(error),
+            NoDistance::Refused(source) => Self::Point(PointError::Distance(source)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Teaching while it goes on: the moves of one machine, and what its probe sees.
 
-use super::error::{PointError, Seen, Trouble};
+use super::error::{NoDistance, PointError, Trouble};
 use super::{Arm, Guide, Teacher, aim};
 use crate::halving::HalvingError;
 use crate::ring::{DIRECTIONS, NEIGHBOURS};
@@ -135,11 +135,14 @@ impl<A: Arm> Lesson<'_, '_, A> {
     }
 
     /// The surface point in the beam.
-    fn surface_here(&mut self) -> Result<Vector3<f64>, Seen<A::Error>> {
+    fn surface_here(&mut self) -> Result<Vector3<f64>, NoDistance<A::Error>> {
         let teacher = self.teacher;
-        let look = self.arm.look(teacher.config.readings).map_err(Seen::Machine)?;
+        let look = self
+            .arm
+            .look(teacher.config.readings)
+            .map_err(NoDistance::Machine)?;
         self.time_us = look.time_us;
-        let ranging = teacher.probe.range(&look.readings).map_err(Seen::Refused)?;
+        let ranging = teacher.probe.range(&look.readings).map_err(NoDistance::Refused)?;
         let tool = teacher.kinematics.forward(&look.axes);
         Ok(tool.position - tool.normal * (ranging.distance_mm - teacher.reference))
     }

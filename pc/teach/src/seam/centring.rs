@@ -1,7 +1,7 @@
 //! From what the cameras see to places in the world, and to the stance that has both seams in the middle of their
 //! bands.
 
-use super::{Foot, Seen, View};
+use super::{Foot, SeamSighting, View};
 use nalgebra::Vector3;
 use shared::geometry::{Pose, angle, rotate};
 use shared::io::{SIDES, SLIDES};
@@ -34,7 +34,7 @@ pub struct Cameras {
 
 impl Cameras {
     /// What a camera sees, in the world: its place, and the skin there.
-    pub fn foot(&self, view: &View, side: usize, seen: &Seen) -> Foot {
+    pub fn foot(&self, view: &View, side: usize, seen: &SeamSighting) -> Foot {
         let spot = self.heads.spot(&view.pose, side);
         let [u, v] = [0, 1].map(|i| view.slides_mm[2 * side + i] + seen.offset_mm[i]);
         Foot {

@@ -27,4 +27,4 @@ pub use file::{Head, Opened, SeamFile, SeamFileError, parse_seam_points, read_se
 pub use follow::{Ended, Follower, SeamTeachError};
 pub use jog::{Hand, JOG_WORDS, Jog};
 pub use not_found::NotFound;
-pub use rig::{Rig, Seen, View};
+pub use rig::{Rig, SeamSighting, View};

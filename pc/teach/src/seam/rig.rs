@@ -5,9 +5,9 @@ use shared::geometry::Pose;
 use shared::io::{SIDES, SLIDES};
 use std::error::Error as StdError;
 
-/// The seam of one side, as a camera saw it in several pictures.
+/// The seam of one side, measured by its camera in several pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct SeamSighting {
     /// Beyond the plane of the lead, along T \[mm\].
     pub along_mm: f64,
     /// Beside the centre of the camera, along U and V of its head \[mm\].
@@ -32,7 +32,7 @@ pub struct View {
     /// U1, V1, U2, V2 by the encoders \[mm\].
     pub slides_mm: [f64; SLIDES],
     /// What each camera sees.
-    pub sides: [Option<Seen>; SIDES],
+    pub sides: [Option<SeamSighting>; SIDES],
 }
 
 /// A machine with two cameras.

@@ -220,7 +220,7 @@ impl MotionController {
             elements: self.path.elements,
             room: self.room(),
             speed_override: self.factor,
-            aside: self.superimposed.now(),
+            superimposed: self.superimposed.now(),
             servo_ticks,
             servo_lost,
             path_ticks: self.tick as u32,

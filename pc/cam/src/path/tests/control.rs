@@ -117,7 +117,7 @@ fn g93_gives_blocks_their_time() {
 fn a_time_that_the_axes_cannot_keep_is_named() {
     let error = plan("G93\nG1 X1100 F4\nX1500 F120").unwrap_err();
     assert!(
-        matches!(error, PathError::Feed { place: Place { line: 5, .. }, feed, .. } if (feed - 48_000.0).abs() < 1e-6),
+        matches!(error, PathError::Feed { place: SourcePosition { line: 5, .. }, feed, .. } if (feed - 48_000.0).abs() < 1e-6),
         "{error}"
     );
 }

@@ -52,7 +52,7 @@ fn pieces_begin_with_the_feed_of_their_first_block() {
 fn a_feed_that_the_axes_cannot_follow_is_named_by_its_block() {
     let error = plan("F600\nG1 X1010 Y1010\nF40000\nX1300 Y1300\nF600\nX1310 Y1310").unwrap_err();
     assert!(
-        matches!(error, PathError::Feed { place: Place { line: 6, .. }, feed, .. } if (feed - 40_000.0).abs() < 1e-6),
+        matches!(error, PathError::Feed { place: SourcePosition { line: 6, .. }, feed, .. } if (feed - 40_000.0).abs() < 1e-6),
         "{error}"
     );
 }
@@ -85,7 +85,7 @@ fn more_changes_than_the_board_holds_are_refused() {
     assert_eq!((path.steps.len(), path.events.len()), (MAX_EVENTS, 0));
     let error = plan(&blocks(MAX_EVENTS + 2)).unwrap_err();
     assert!(
-        matches!(error, PathError::TooManyEvents { place: Place { line: 4, .. }, events } if events == MAX_EVENTS + 1)
+        matches!(error, PathError::TooManyEvents { place: SourcePosition { line: 4, .. }, events } if events == MAX_EVENTS + 1)
     );
 }
 

@@ -46,7 +46,7 @@ fn the_first_motion_says_how_all_rotary_axes_stand() {
     );
     let error = plan_on("wire-arc", "G53 G0 B0\nG43.4\nG0 X0 Y0 Z150\nM2").unwrap_err();
     assert!(
-        matches!(error, PathError::Incomplete { place: Place { line: 3, .. }, missing, .. } if missing == "A B C")
+        matches!(error, PathError::Incomplete { place: SourcePosition { line: 3, .. }, missing, .. } if missing == "A B C")
     );
 }
 
@@ -113,7 +113,7 @@ fn a_block_that_turns_more_than_half_a_turn_is_refused() {
     let plan = |body: &str| plan_on("ac-head", &format!("{start}{body}\nM2"));
     let error = plan("G0 C100").unwrap_err();
     assert!(
-        matches!(error, PathError::Turned { place: Place { line: 4, .. }, axis: "C", programmed, reached, .. }
+        matches!(error, PathError::Turned { place: SourcePosition { line: 4, .. }, axis: "C", programmed, reached, .. }
             if (programmed - 100.0).abs() < 1e-9 && (reached + 260.0).abs() < 1e-6),
         "{error}"
     );
@@ -126,7 +126,7 @@ fn a_block_that_turns_more_than_half_a_turn_is_refused() {
 fn an_axis_that_would_jump_is_named() {
     let error = crate::path::tests::plan("G0 Z300\nG0 A-90\nG0 A95").unwrap_err();
     assert!(
-        matches!(error, PathError::Jump { place: Place { line: 5, .. }, axis: "A", from, to } if from < -175.0 && to > 175.0),
+        matches!(error, PathError::Jump { place: SourcePosition { line: 5, .. }, axis: "A", from, to } if from < -175.0 && to > 175.0),
         "{error}"
     );
     assert!(crate::path::tests::plan("G0 Z300\nG0 A-90\nG0 A0\nG0 A95").is_ok());
@@ -152,7 +152,7 @@ fn where_the_pose_leaves_an_axis_free_it_stays() {
         matches!(
             error,
             PathError::Kinematics {
-                place: Place { line: 3, .. },
+                place: SourcePosition { line: 3, .. },
                 ..
             }
         ),
@@ -192,7 +192,7 @@ fn g53_moves_the_axes_named_and_the_tip_goes_on_from_there() {
         matches!(
             error,
             PathError::Travel {
-                place: Place { line: 1, .. },
+                place: SourcePosition { line: 1, .. },
                 axis: "Z",
                 ..
             }

@@ -91,7 +91,7 @@ fn an_offset_pass_is_nearest_where_its_own_points_are() {
         let ahead = seam.at_length(f64::from(i) * 6.7 + 1e-4, &offset, 0.0).unwrap();
         let behind = seam.at_length(f64::from(i) * 6.7 - 1e-4, &offset, 0.0).unwrap();
         let along = (ahead.tip - behind.tip).normalize();
-        // A tip aside of the pass, across it.
+        // A tip beside the pass, across it.
         let across = along.cross(&station.outward()).normalize() * 0.5;
         let found = seam.nearest(&(station.tip + across), &offset).unwrap();
         assert!((found.tip - station.tip).norm() < 1e-5);

@@ -6,7 +6,7 @@ use super::super::read_program;
 use super::{Camera, Meets};
 use crate::terminal::Operator;
 use anyhow::{Context, bail};
-use camera::Shelf;
+use camera::PictureQueue;
 use camera::calibrate::procedure;
 use camera::calibrate::procedure::Found;
 use clap::Args;
@@ -87,17 +87,17 @@ impl Live {
             // Nobody has to say where it is.
             (None, PictureChoice::Real(_)) => None,
         };
-        let shelves = <[Shelf; SIDES]>::default();
+        let queues = <[PictureQueue; SIDES]>::default();
         let picture_run = PictureRun {
             program: &program,
             side,
             before,
             places: self.places,
-            shelf: shelves[side].clone(),
+            queue: queues[side].clone(),
         };
         let images = ImageCameras {
             calibrations,
-            kept: Some(shelves),
+            kept: Some(queues),
         };
         let name = |path: &Path| path.display().to_string();
         let job = Job {

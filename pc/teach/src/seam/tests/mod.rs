@@ -99,7 +99,7 @@ impl World {
     }
 
     /// What camera `side` sees with the machine in `stance`.
-    fn seen(&mut self, stance: &Stance, side: usize) -> Option<Seen> {
+    fn seen(&mut self, stance: &Stance, side: usize) -> Option<SeamSighting> {
         let spot = self.cameras.heads.spot(&stance.pose, side);
         let lead = self.cameras.heads.camera_lead();
         let mut s = 0.0;
@@ -119,7 +119,7 @@ impl World {
         let away = spot.u * offset[0] + spot.v * offset[1];
         let across = away.dot(&axis.cross(&stance.pose.tangent));
         let inside = across.abs() < VIEW[0] && away.dot(&axis).abs() < VIEW[1];
-        (inside && self.missing != Some(side) && s <= self.end).then_some(Seen {
+        (inside && self.missing != Some(side) && s <= self.end).then_some(SeamSighting {
             along_mm: 0.0,
             offset_mm,
             roll: Some(roll),
