@@ -2,7 +2,7 @@
 
 use crate::hello;
 use crate::qemu::{Board, PROGRAM, Setup};
-use crate::qmp::Meddling;
+use crate::qmp::BoardAction;
 use crate::session::{Endpoint, PathStatesTo, Session};
 use plant::{DEFAULT_MACHINE, MotionPlant};
 use shared::protocol::{Role, SCHEMA_HASH};
@@ -247,10 +247,10 @@ impl Boards {
     }
 
     /// Does something to a board from outside.
-    pub fn meddle(&self, role: Role, meddling: Meddling) -> io::Result<()> {
+    pub fn act(&self, role: Role, action: BoardAction) -> io::Result<()> {
         match role {
-            Role::Motion => self.motion.meddle(meddling),
-            Role::Tracker => self.tracker.meddle(meddling),
+            Role::Motion => self.motion.act(action),
+            Role::Tracker => self.tracker.act(action),
         }
     }
 

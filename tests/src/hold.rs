@@ -28,7 +28,7 @@ struct Operator {
 }
 
 impl Operator {
-    fn hear(&mut self, boards: &mut dyn Boards, sample: &MotionSample) {
+    fn on_sample(&mut self, boards: &mut dyn Boards, sample: &MotionSample) {
         if sample.beams == [true; 2] {
             self.on_mm.get_or_insert(sample.s_mm);
         }
@@ -61,7 +61,7 @@ fn ask(boards: &mut dyn Boards, request: &Request) {
 pub fn assert_held_weld_goes_on(boards: &mut dyn Boards, speed_m_per_min: f64) -> Ended {
     let mut operator = Operator::default();
     let ended = with_weld(shipped_seam(), speed_m_per_min, |job| {
-        run_heard(boards, job, |boards, sample| operator.hear(boards, sample))
+        run_heard(boards, job, |boards, sample| operator.on_sample(boards, sample))
     });
     let since = &operator.since;
     let path = since.first().expect("a hold").path_id;

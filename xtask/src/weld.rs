@@ -31,7 +31,7 @@ const SEAM: &str = "programs/t-seam-400-deviation.csv";
 
 /// Runs seamwright with `flags` and the defaults; gives back its exit code. `set_up` installs what is missing.
 pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) -> Result<ExitCode> {
-    let told = Told::from(flags);
+    let told = BoardFlags::from(flags);
     let emulated = !told.help && told.boards.as_deref().is_none_or(|boards| boards == "emulated");
     if emulated {
         set_up(&setup::EMULATION)?;
@@ -83,13 +83,13 @@ fn wait(child: &mut Child, interrupts: &Interrupts, mut running: Option<&mut Run
 
 /// What the command line says of the boards and their machine.
 #[derive(Debug, PartialEq, Eq)]
-struct Told {
+struct BoardFlags {
     machine: Option<String>,
     boards: Option<String>,
     help: bool,
 }
 
-impl Told {
+impl BoardFlags {
     fn from(flags: &[String]) -> Self {
         let value = |flag: &str| {
             let place = flags
@@ -146,9 +146,9 @@ mod tests {
     use super::*;
     use plant::MotionPlant;
 
-    fn told(line: &str) -> Told {
+    fn told(line: &str) -> BoardFlags {
         let flags: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
-        Told::from(&flags)
+        BoardFlags::from(&flags)
     }
 
     #[test]

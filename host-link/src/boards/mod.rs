@@ -3,7 +3,7 @@
 mod network;
 mod pass_on;
 
-pub use network::{Endpoint, NetworkBoards, Patience, Waker};
+pub use network::{Endpoint, NetworkBoards, Timeouts, Waker};
 
 use shared::protocol::framing::FrameError;
 use shared::protocol::{Datagram, Identity, Refusal, Request, Response, Role};
@@ -56,16 +56,15 @@ pub trait Boards {
         0
     }
 
-    /// The last time in which this program did nothing, if there was one. The time of simulated boards stands still
-    /// meanwhile.
-    fn absence(&self) -> Option<Absence> {
+    /// The last stall of this program, if there was one. Simulated boards have none: their time stands still meanwhile.
+    fn last_stall(&self) -> Option<Stall> {
         None
     }
 }
 
-/// A time in which this program did nothing: it was stopped, its computer slept, or was busy with something else.
+/// A time in which this program did not run: it was stopped, its computer slept, or was busy with something else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Absence {
+pub struct Stall {
     /// When it ended, by [`Boards::now`].
     pub ended: Duration,
     /// How long it was.

@@ -44,9 +44,9 @@ macro_rules! pass_on {
             self.$boards.dropped_datagrams()
         }
     };
-    (@absence $boards:tt) => {
-        fn absence(&self) -> Option<$crate::boards::Absence> {
-            self.$boards.absence()
+    (@last_stall $boards:tt) => {
+        fn last_stall(&self) -> Option<$crate::boards::Stall> {
+            self.$boards.last_stall()
         }
     };
     (@receive $boards:tt) => {

@@ -7,7 +7,7 @@
 use crate::session::Session;
 use crate::{Job, JobError, Weld};
 use cam::path::CAPACITY;
-use camera::calibrate::Known;
+use camera::calibrate::ReferencePicture;
 use camera::{Picture, PictureQueue};
 use config::calibration::Calibration;
 use host_link::events::Phase;
@@ -54,9 +54,9 @@ pub struct PictureRun<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct CameraPictures {
     /// Through focus: U, V.
-    pub profile: Vec<Known<2>>,
+    pub profile: Vec<ReferencePicture<2>>,
     /// Steps of the slides: place, U, V, and how far the machine is along travel.
-    pub slides: Vec<Known<4>>,
+    pub slides: Vec<ReferencePicture<4>>,
 }
 
 impl Weld {
@@ -102,7 +102,7 @@ impl Weld {
                     let [[_, u], [_, v]] = run.before.slides.matrix;
                     let n = DEPTH_STEP_MM * f64::from(k);
                     let (file, picture, values) = look(session, run, [middle[0] + u * n, middle[1] + v * n])?;
-                    pictures.profile.push(Known {
+                    pictures.profile.push(ReferencePicture {
                         file,
                         picture,
                         values,
@@ -122,7 +122,7 @@ impl Weld {
                     send(session, run.side, last)?;
                     last = slides;
                     let (file, picture, [u, v]) = look(session, run, slides)?;
-                    pictures.slides.push(Known {
+                    pictures.slides.push(ReferencePicture {
                         file,
                         picture,
                         values: [f64::from(place), u, v, along_mm],

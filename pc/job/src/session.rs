@@ -7,7 +7,7 @@ use crate::surroundings::Surroundings;
 use crate::{JobError, Tracking};
 use config::machine::MachineFile;
 use host_link::Control;
-use host_link::boards::{Absence, Boards, LinkError};
+use host_link::boards::{Boards, LinkError, Stall};
 use host_link::events::{Event, Phase, Question};
 use host_link::geometry::MachineGeometry;
 use host_link::record::Record;
@@ -19,7 +19,7 @@ use std::time::Duration;
 const STATUS_PERIOD: Duration = Duration::from_millis(100);
 /// A motion board whose clock has stood still for so long is broken.
 const STANDSTILL: Duration = Duration::from_secs(10);
-/// What the boards told is due to an absence of this program that ended no longer ago: their state is asked for at once
+/// What the boards told is due to a stall of this program that ended no longer ago: their state is asked for at once
 /// after it, and comes in a few turns.
 const JUST_BEFORE: Duration = Duration::from_secs(1);
 /// Longest and shortest wait for a datagram.
@@ -246,8 +246,8 @@ impl<'a> Session<'a> {
             error,
             JobError::Link(_) | JobError::Motion(_) | JobError::Tracker(_) | JobError::TooLong { .. }
         );
-        match self.boards.absence() {
-            Some(Absence { ended, lasted })
+        match self.boards.last_stall() {
+            Some(Stall { ended, lasted })
                 if of_boards && lasted >= self.missed && self.boards.now() < ended + JUST_BEFORE =>
             {
                 JobError::Absent {

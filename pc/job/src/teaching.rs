@@ -16,7 +16,7 @@ use shared::io::AXES;
 use shared::kinematics::Kinematics;
 use shared::protocol::{MotionSample, Role};
 use std::time::Duration;
-use teach::{Arm, Look, TaughtPoint, TeachError, Teacher};
+use teach::{Look, ProbeMachine, TaughtPoint, TeachError, Teacher};
 use thiserror::Error;
 
 /// A ranging probe in the place of the tool.
@@ -53,7 +53,7 @@ pub enum NoTeaching {
     Part,
     /// No guide points.
     #[error("the panel has no guide points to teach")]
-    Guide,
+    GuidePoint,
     /// The machine has no probe.
     #[error("the machine file has no [probe]: the machine cannot teach")]
     Probe,
@@ -84,7 +84,7 @@ pub fn check_teaching(machine: &MachineFile, part: &PartFile) -> Result<Option<S
     let panel = part.untaught().ok_or(NoTeaching::Part)?;
     let unit = machine.probe.as_ref().ok_or(NoTeaching::Probe)?;
     if panel.guides().is_empty() {
-        return Err(NoTeaching::Guide);
+        return Err(NoTeaching::GuidePoint);
     }
     unit.build()?;
     panel.teaching().check(unit)?;
@@ -168,7 +168,7 @@ struct BoardArm<'w, 's, 'b> {
     count: usize,
 }
 
-impl Arm for BoardArm<'_, '_, '_> {
+impl ProbeMachine for BoardArm<'_, '_, '_> {
     type Error = JobError;
 
     fn run(&mut self, program: &str, slower: f64) -> Result<(), JobError> {

@@ -137,7 +137,7 @@ mod tests {
     use super::*;
     use crate::PartFile;
     use config::machine::MachineFile;
-    use teach::seam::{Foot, Head, SeamFile, SeamPoint as TaughtPoint};
+    use teach::seam::{Head, MeasuredSeam, SeamFile, SeamPoint as TaughtPoint};
 
     fn shipped(name: &str) -> PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name)
@@ -159,7 +159,7 @@ mod tests {
         let mut opened = SeamFile::open(&file, &head, false).unwrap();
         let mut before = None;
         for (first, second) in main.iter().zip(&other).step_by(3) {
-            let feet = [first.position, *second].map(|position| Foot {
+            let feet = [first.position, *second].map(|position| MeasuredSeam {
                 position,
                 normal: first.normal.normalize(),
                 width_mm: 0.05,

@@ -5,7 +5,7 @@ use emulator::Pace;
 use emulator::Session;
 #[cfg(target_os = "linux")]
 use host_link::boards::Endpoint;
-use host_link::boards::{LinkError, NetworkBoards, Patience};
+use host_link::boards::{LinkError, NetworkBoards, Timeouts};
 use thiserror::Error;
 
 /// Why emulated or simulated boards cannot be used.
@@ -49,7 +49,7 @@ pub enum BoardsError {
 /// # Errors
 /// As [`NetworkBoards::connect`], or [`BoardsError::BadSession`] if the boards' page cannot be opened.
 #[cfg(target_os = "linux")]
-pub fn connect(session: &Session, tracked: bool, patience: Patience) -> Result<NetworkBoards, BoardsError> {
+pub fn connect(session: &Session, tracked: bool, patience: Timeouts) -> Result<NetworkBoards, BoardsError> {
     let target = session.path_states_to;
     let tracker = endpoint(session.tracker);
     let boards = NetworkBoards::connect(
@@ -71,7 +71,7 @@ pub fn connect(session: &Session, tracked: bool, patience: Patience) -> Result<N
 /// # Errors
 /// [`BoardsError::NeedsLinux`] always.
 #[cfg(not(target_os = "linux"))]
-pub fn connect(_: &Session, _: bool, _: Patience) -> Result<NetworkBoards, BoardsError> {
+pub fn connect(_: &Session, _: bool, _: Timeouts) -> Result<NetworkBoards, BoardsError> {
     Err(BoardsError::NeedsLinux)
 }
 

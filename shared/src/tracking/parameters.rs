@@ -6,7 +6,7 @@ use super::law::SlideLaw;
 use super::map::{MAP_CAPACITY, MapLaw};
 use super::search::SearchLaw;
 use super::sensible;
-use super::supervision::{Supervised, Supervision};
+use super::supervision::{SupervisedSlide, Supervision};
 use crate::config::{SlideConfig, TrackerConfig, TrackingConfig};
 use crate::control::ReferenceSearch;
 use crate::io::{SLIDE_NAMES, SLIDES};
@@ -26,7 +26,7 @@ pub struct TrackerParameters {
     /// How the maps take and read samples.
     pub map: MapLaw,
     /// What is believed of what others say.
-    pub belief: Belief,
+    pub belief: PlausibleLimits,
     /// How U slides look for a seam that was not seen yet.
     pub search: SearchLaw,
     /// A beam may go on while both slides of its side are no further than this from the seam \[mm\].
@@ -56,9 +56,9 @@ pub struct SlideParameters {
     pub supervision: Supervision,
 }
 
-/// What can be on this machine, ready for use (mm, s).
+/// Limits of what is plausible on this machine, ready for use (mm, s).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Belief {
+pub struct PlausibleLimits {
     /// Fastest path \[mm/s\].
     pub path_speed: f64,
     /// How far a seam, or the pose, may be off the plan \[mm\].
@@ -112,7 +112,7 @@ impl TrackerConfig {
         // Faster, and no picture would lie within reach of the map.
         let fastest_path = (window + hold) / (f64::from(tracking.frame_period_ms) * TRACKER_PERIOD_S);
         let slowest_slide = slides.iter().map(|slide| slide.law.max_velocity);
-        let belief = Belief {
+        let belief = PlausibleLimits {
             path_speed: check(
                 "tracking",
                 "max_path_speed_mm_s",
@@ -170,7 +170,7 @@ impl SlideConfig {
         let max_velocity = positive(name, "max_velocity_mm_s", self.max_velocity_mm_s)?;
         let full_scale = not_zero("velocity_at_10v_mm_s", self.velocity_at_10v_mm_s)?;
         let counts_per_mm = not_zero("counts_per_mm", self.counts_per_mm)?;
-        let supervised = Supervised {
+        let supervised = SupervisedSlide {
             slide: index as u8,
             counts_per_mm,
             full_scale,

@@ -8,7 +8,7 @@
 //! when two states in a row say so.
 
 use super::history::RESTARTED;
-use super::parameters::{Belief, TrackerParameters};
+use super::parameters::{PlausibleLimits, TrackerParameters};
 use crate::geometry::Pose;
 use crate::io::{SIDES, SLIDES};
 use crate::protocol::{PathState, SideMeasurement};
@@ -182,7 +182,7 @@ fn flags(state: &PathState) -> Flags {
     (state.path_id, state.tracking, state.beams)
 }
 
-fn is_sound<const N: usize>(belief: &Belief, arrival: &Arrival<'_, N>, state: &PathState) -> bool {
+fn is_sound<const N: usize>(belief: &PlausibleLimits, arrival: &Arrival<'_, N>, state: &PathState) -> bool {
     let p = &state.pose;
     let in_time = state
         .sent_us
@@ -230,7 +230,7 @@ fn off_plan<const N: usize>(path: &Path<N>, state: &PathState) -> Option<OffPlan
 }
 
 /// Whether `state`, with its pose `off` the plan, can come after `last`, which is older.
-fn fits(belief: &Belief, last: &Taken, state: &PathState, off: Option<&OffPlan>) -> bool {
+fn fits(belief: &PlausibleLimits, last: &Taken, state: &PathState, off: Option<&OffPlan>) -> bool {
     let before = &last.state;
     let Some(dt_us) = state.time_us.checked_sub(before.time_us) else {
         return false;

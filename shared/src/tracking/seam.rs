@@ -30,7 +30,7 @@ pub struct Seam {
 
 /// Where a slide should be, as far as the seam tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sight {
+pub enum SeamTarget {
     /// The seam, in the frame of the planned path.
     Seam(SlideTarget),
     /// The same, where the seam has just jumped to.
@@ -132,7 +132,12 @@ impl Seam {
     }
 
     /// Where `slide` should be when the machine is in the state `snapshot`.
-    pub fn sight(&mut self, parameters: &TrackerParameters, slide: usize, snapshot: &PathSnapshot) -> Sight {
+    pub fn sight(
+        &mut self,
+        parameters: &TrackerParameters,
+        slide: usize,
+        snapshot: &PathSnapshot,
+    ) -> SeamTarget {
         let (law, s, speed) = (&parameters.map, snapshot.s, snapshot.speed);
         let before = &mut self.before[slide];
         // It has jumped ahead, but not where the spot is.
@@ -147,18 +152,18 @@ impl Seam {
             let ahead = map.estimate(law, s + speed * parameters.preview);
             let target = SlideTarget::seam(now, ahead, speed);
             return if jumps {
-                Sight::Jump(target)
+                SeamTarget::Jump(target)
             } else {
-                Sight::Seam(target)
+                SeamTarget::Seam(target)
             };
         }
         // Back along the path after a hold, the map begins ahead.
         if snapshot.beams[slide / 2] && self.met[slide].is_some() && !map.begins_after(s) {
-            return Sight::Lost;
+            return SeamTarget::Lost;
         }
         match map.next_after(law, s) {
-            Some(position) => Sight::Ahead(SlideTarget::rest(position)),
-            None => Sight::Nowhere(self.met[slide].map(SlideTarget::rest)),
+            Some(position) => SeamTarget::Ahead(SlideTarget::rest(position)),
+            None => SeamTarget::Nowhere(self.met[slide].map(SlideTarget::rest)),
         }
     }
 }

@@ -117,7 +117,7 @@ pub struct Bench {
     pub controller: Box<TrackerController<KNOTS>>,
     pub plant: SlidePlant,
     /// Changes what the plant reads, for faults.
-    pub meddle: fn(&mut SlideFeedback),
+    pub change_inputs: fn(&mut SlideFeedback),
     pub shape: Shape,
     pub seam: SeamFn,
     /// Whether the camera of a side sees the seam at s.
@@ -168,7 +168,7 @@ impl Bench {
         Self {
             controller,
             plant: SlidePlant::dual_beam_tracker(),
-            meddle: |_| {},
+            change_inputs: |_| {},
             shape,
             seam,
             visible: |_, _| true,
@@ -271,7 +271,7 @@ impl Bench {
                 .datagram(&Datagram::Measurement(measurement), now + TRACKER_CLOCK);
         }
         let mut feedback = self.plant.advance(&self.command);
-        (self.meddle)(&mut feedback);
+        (self.change_inputs)(&mut feedback);
         let truth = self.plant.truth();
         let input = self.input(feedback);
         self.last = self.controller.tick(&input);

@@ -54,7 +54,7 @@ impl Clone for Wire {
 
 impl Judge {
     /// Takes note of what was accepted; `shipped` are the true parameters.
-    pub fn hear(
+    pub fn answered(
         &mut self,
         role: Role,
         request: &Request,

@@ -37,9 +37,9 @@ fn a_program_that_changes_while_it_runs_ends_with_the_machine_at_rest_on_the_pat
     let program = interpret_file(std::fs::File::open(&file).unwrap(), options).unwrap();
     let mut last: Option<MotionSample> = None;
     let mut simulated = SimulatedBoards::new("stir-gantry").unwrap();
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut simulated,
-        hear: |_: &mut dyn Boards, sample: &MotionSample| {
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| {
             if sample.path_id == 3 {
                 last = Some(*sample);
             }

@@ -297,7 +297,7 @@ fn weld_outside(wire: Wire, told: Option<Arc<Deviation>>) -> (Ended, World) {
         ..around(told)
     }
     .into();
-    let ended = run(&mut world, &job, &mut Nobody).unwrap();
+    let ended = run(&mut world, &job, &mut NoOperator).unwrap();
     (ended, world)
 }
 

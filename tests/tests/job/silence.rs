@@ -1,7 +1,7 @@
 //! A tracker board that does not answer, and a PC that was not there.
 
 use super::*;
-use host_link::boards::Absence;
+use host_link::boards::Stall;
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -34,7 +34,7 @@ struct Alone {
     wrong: Wrong,
     interrupted: Rc<Cell<bool>>,
     begun: bool,
-    absence: Option<Absence>,
+    last_stall: Option<Stall>,
     /// What was asked with an answer waited for, since it went wrong.
     asked: Vec<(Role, Request)>,
     polled: usize,
@@ -47,7 +47,7 @@ impl Alone {
             wrong,
             interrupted: interrupted.clone(),
             begun: false,
-            absence: None,
+            last_stall: None,
             asked: Vec::new(),
             polled: 0,
         }
@@ -101,7 +101,7 @@ impl Boards for Alone {
                 while self.now() < end {
                     self.boards.receive(Duration::from_millis(1))?;
                 }
-                self.absence = Some(Absence {
+                self.last_stall = Some(Stall {
                     ended: self.now(),
                     lasted: PAUSE,
                 });
@@ -110,8 +110,8 @@ impl Boards for Alone {
         Ok(received)
     }
 
-    fn absence(&self) -> Option<Absence> {
-        self.absence
+    fn last_stall(&self) -> Option<Stall> {
+        self.last_stall
     }
 }
 
@@ -235,7 +235,7 @@ fn a_lost_tracker_board_does_not_keep_the_machine_from_standing_before_its_drive
         answer: None,
         off_from: None,
     };
-    let ended = weld(&mut boards, &mut Nobody);
+    let ended = weld(&mut boards, &mut NoOperator);
     let error = ended.error.expect("the tracker board is lost").to_string();
     assert!(
         error.contains("the connection to the tracker board was lost"),

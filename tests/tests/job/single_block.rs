@@ -51,9 +51,9 @@ impl Operator for Patient {
 /// The welding job block by block, and all that the motion board told.
 fn block_by_block(operator: &mut Patient) -> (Ended, Vec<MotionSample>) {
     let mut samples = Vec::new();
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut SimulatedBoards::default(),
-        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let ended = weld(&mut boards, operator);
     (ended, samples)
@@ -121,9 +121,9 @@ fn single_block_can_be_switched_off_on_the_way() {
 fn a_weld_goes_on_over_the_end_of_a_block() {
     let program = PROGRAM.replace("X1140", "X1040\nX1140");
     let mut samples = Vec::new();
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut SimulatedBoards::default(),
-        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let mut operator = Patient::default();
     let ended = run_on(&mut boards, &machine(), &program, Some(seam()), &mut operator).unwrap();
@@ -185,9 +185,9 @@ fn words_hold_the_machine_lead_it_back_and_change_its_feed() {
         ],
     };
     let mut samples = Vec::new();
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut SimulatedBoards::default(),
-        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let ended = run_on(&mut boards, &machine(), program, None, &mut operator).unwrap();
     assert!(

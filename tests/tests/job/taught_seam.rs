@@ -136,7 +136,7 @@ impl Case {
         let (program, of_drawing) = (read(&taught), read(&self.drawn()));
         let job = self.job(&program, &of_drawing);
         let mut boards = SimulatedBoards::default();
-        run(&mut boards, &job, &mut Nobody).unwrap()
+        run(&mut boards, &job, &mut NoOperator).unwrap()
     }
 
     /// From its beginning to its end as drawn, and denser where it bends; welded as well as a drawn one.
@@ -234,7 +234,7 @@ fn a_seam_taught_from_a_wrong_start_in_two_goes_is_welded_as_well_as_a_drawn_one
     // Something cuts the file in the middle of a row.
     let text = std::fs::read_to_string(&output).unwrap();
     std::fs::write(&output, &text[..text.len() - 30]).unwrap();
-    let second = case.teach(&output, &mut Nobody);
+    let second = case.teach(&output, &mut NoOperator);
     assert!(second.error.is_none(), "{:?}", second.error);
     let second = second.taught.seam.unwrap();
     assert_eq!(second.ended, Lesson::Drawn);
@@ -273,7 +273,7 @@ fn a_seam_is_taught_and_welded_through_pictures_as_well_after_an_interruption() 
         first.error
     );
     assert_eq!(read_seam_points(&output).unwrap().len(), 3);
-    let second = case.teach(&output, &mut Nobody);
+    let second = case.teach(&output, &mut NoOperator);
     assert!(second.error.is_none(), "{:?}", second.error);
     assert_eq!(second.taught.seam.unwrap().ended, Lesson::Drawn);
     case.assert_taught_and_welded(&output);

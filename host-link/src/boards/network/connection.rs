@@ -1,7 +1,7 @@
 //! The connection to one board: its request stream, its UDP socket and the thread that empties it.
 
 use super::stream::{Stream, read_answers};
-use super::{Endpoint, Incoming, Patience, waits};
+use super::{Endpoint, Incoming, Timeouts, waits};
 use crate::boards::LinkError;
 use shared::protocol::framing;
 use shared::protocol::{Datagram, Identity, Request, Response, Role, SCHEMA_HASH};
@@ -32,7 +32,7 @@ impl Connection {
     pub(super) fn open(
         role: Role,
         endpoint: &Endpoint,
-        patience: Patience,
+        patience: Timeouts,
         sender: &SyncSender<Incoming>,
         bad: &Arc<AtomicU32>,
     ) -> Result<Self, LinkError> {

@@ -1,17 +1,17 @@
 //! Boards in a network, real or emulated: requests over TCP, datagrams over UDP.
 
-mod attention;
 mod connection;
 mod frames;
+mod stall;
 mod stream;
 #[cfg(test)]
 mod tests;
 
-use super::{Absence, Boards, LinkError};
-use attention::Attention;
+use super::{Boards, LinkError, Stall};
 use connection::Connection;
 use shared::protocol::framing;
 use shared::protocol::{DATAGRAM_PORT, Datagram, Identity, REQUEST_PORT, Request, Response, Role};
+use stall::StallDetector;
 use std::collections::VecDeque;
 use std::fmt;
 use std::io;
@@ -67,16 +67,16 @@ impl fmt::Display for Endpoint {
     }
 }
 
-/// How long the PC waits for a board.
+/// Longest times that the PC waits for a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Patience {
+pub struct Timeouts {
     /// For a connection: long enough for a board that boots or gives up the last session.
     pub connect: Duration,
     /// For the answer to a request.
     pub answer: Duration,
 }
 
-impl Default for Patience {
+impl Default for Timeouts {
     fn default() -> Self {
         Self {
             connect: Duration::from_secs(7),
@@ -102,7 +102,7 @@ pub struct NetworkBoards {
     interrupted: Arc<AtomicBool>,
     /// The motion board was told to, while an answer was waited for.
     stopped: bool,
-    attention: Attention,
+    stall_detector: StallDetector,
 }
 
 /// What the readers pass on.
@@ -138,7 +138,7 @@ impl NetworkBoards {
         motion: &Endpoint,
         tracker: Option<&Endpoint>,
         path_states_target: Option<([u8; 4], u16)>,
-        patience: Patience,
+        patience: Timeouts,
     ) -> Result<Self, LinkError> {
         let (sender, incoming) = sync_channel(WAITING);
         let bad = Arc::new(AtomicU32::new(0));
@@ -160,7 +160,7 @@ impl NetworkBoards {
             handled: None,
             interrupted: Arc::default(),
             stopped: false,
-            attention: Attention::new(),
+            stall_detector: StallDetector::new(),
         })
     }
 
@@ -239,14 +239,14 @@ impl Boards for NetworkBoards {
                 return Ok(answer);
             }
             self.take(LOOK);
-            self.attention.paid(self.began.elapsed(), LOOK);
+            self.stall_detector.check(self.began.elapsed(), LOOK);
             self.stop_if_interrupted();
             answer = self.stream(role)?.answer()?;
         }
     }
 
     fn ask(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
-        self.attention.paid(self.began.elapsed(), Duration::ZERO);
+        self.stall_detector.check(self.began.elapsed(), Duration::ZERO);
         self.stop_if_interrupted();
         self.stream(role)?.ask(request)?;
         Ok(None)
@@ -265,16 +265,16 @@ impl Boards for NetworkBoards {
         self.bad.load(Ordering::Relaxed)
     }
 
-    fn absence(&self) -> Option<Absence> {
-        self.attention.absence()
+    fn last_stall(&self) -> Option<Stall> {
+        self.stall_detector.last_stall()
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
-        self.attention.paid(self.began.elapsed(), Duration::ZERO);
+        self.stall_detector.check(self.began.elapsed(), Duration::ZERO);
         self.stop_if_interrupted();
         if self.came.is_empty() {
             self.take(timeout);
-            self.attention.paid(self.began.elapsed(), timeout);
+            self.stall_detector.check(self.began.elapsed(), timeout);
         }
         match self.came.pop_front() {
             Some((role, Ok(datagram))) => Ok(Some((role, *datagram))),

@@ -34,7 +34,7 @@ use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, Kinematics};
 use shared::parameter::ParameterError;
-use targets::Stand;
+use targets::RestState;
 
 /// Most knots of one path: what the boards hold.
 pub const CAPACITY: usize = 512;
@@ -122,7 +122,7 @@ impl Planner {
         extension_mm: [f64; SIDES],
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
-        let mut stand = Stand {
+        let mut stand = RestState {
             tip: Tip {
                 extension_mm,
                 ..self.tip(from)

@@ -28,9 +28,9 @@ pub struct Tip {
     pub extension_mm: [f64; SIDES],
 }
 
-/// Where the machine stands between two paths.
+/// State of the machine at rest between two paths.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stand {
+pub(super) struct RestState {
     pub(super) tip: Tip,
     /// mm, rad.
     pub(super) axes: [f64; AXES],
@@ -42,7 +42,7 @@ pub(super) struct Stand {
 
 impl Planner {
     /// The tips that `path` leads to, one after the other.
-    pub(super) fn tips(&self, path: &ProgramPath, from: &Stand) -> Result<Vec<Tip>, PathError> {
+    pub(super) fn tips(&self, path: &ProgramPath, from: &RestState) -> Result<Vec<Tip>, PathError> {
         let mut tip = from.tip;
         let mut placed = from.placed;
         let mut tips = Vec::with_capacity(path.targets.len());
@@ -73,7 +73,7 @@ impl Planner {
     }
 
     /// Where a G53 block leads the axes (mm, rad).
-    pub(super) fn axes_target(&self, target: &Target, from: &Stand) -> Result<[f64; AXES], PathError> {
+    pub(super) fn axes_target(&self, target: &Target, from: &RestState) -> Result<[f64; AXES], PathError> {
         self.check_fitted(target)?;
         let word = |i: usize| target.words.axes[i].map(|word| word * AXIS_UNIT[i]);
         Ok(std::array::from_fn(|i| word(i).unwrap_or(from.axes[i])))

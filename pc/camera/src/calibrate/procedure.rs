@@ -1,6 +1,6 @@
 //! What is found from pictures of which something is known, told beside what was believed before.
 
-use super::Known;
+use super::ReferencePicture;
 use crate::PngError;
 use config::calibration::Calibration;
 use config::table::TableError;
@@ -66,23 +66,23 @@ pub enum CalibrateError {
     Corner(#[from] CornerError),
 }
 
-/// A calibration and what people want to know of it.
+/// A calibration, and the figures to print with it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct CalibrationResult {
     /// The calibration with what was found in it.
     pub calibration: Calibration,
     /// What was found.
     pub figures: Vec<Figure>,
 }
 
-/// A line of what was found.
+/// One line of the printed result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// What it is.
+    /// Name of the figure.
     pub text: &'static str,
-    /// What was found, with its unit.
+    /// The value found, with its unit.
     pub found: String,
-    /// What was believed before, or what may be.
+    /// The value before, or the permitted range.
     pub beside: String,
 }
 
@@ -96,7 +96,10 @@ impl Figure {
 pub const NOISE: [&str; 1] = ["pair"];
 
 /// Photon transfer from pairs of equal pictures.
-pub fn noise(listed: &[Known<1>], before: &Calibration) -> Result<Found, CalibrateError> {
+pub fn noise(
+    listed: &[ReferencePicture<1>],
+    before: &Calibration,
+) -> Result<CalibrationResult, CalibrateError> {
     let mut numbers: Vec<f64> = Vec::new();
     for known in listed {
         if !numbers.contains(&known.values[0]) {
@@ -141,14 +144,17 @@ pub fn noise(listed: &[Known<1>], before: &Calibration) -> Result<Found, Calibra
         photon_transfer: is,
         ..*before
     };
-    Ok(Found { calibration, figures })
+    Ok(CalibrationResult { calibration, figures })
 }
 
 /// What is known of a picture for [`profile`]: where the slides are.
 pub const PROFILE: [&str; 2] = ["u_mm", "v_mm"];
 
 /// Depth profile from pictures of a plate that the slides stepped through focus.
-pub fn profile(listed: &[Known<2>], before: &Calibration) -> Result<Found, CalibrateError> {
+pub fn profile(
+    listed: &[ReferencePicture<2>],
+    before: &Calibration,
+) -> Result<CalibrationResult, CalibrateError> {
     let mut steps = Vec::new();
     for known in listed {
         let [u, v] = known.values;
@@ -196,7 +202,7 @@ pub fn profile(listed: &[Known<2>], before: &Calibration) -> Result<Found, Calib
         profile: is,
         ..*before
     };
-    Ok(Found { calibration, figures })
+    Ok(CalibrationResult { calibration, figures })
 }
 
 /// What is known of a picture for [`slides`]: which place of the seam it shows, where the slides are.
@@ -206,10 +212,10 @@ pub const SLIDES: [&str; 3] = ["place", "u_mm", "v_mm"];
 /// the machine had gone along travel \[mm\]. With `meets_mm`, the slides at which the beam meets that seam, the offset between
 /// beam and camera too.
 pub fn slides(
-    listed: &[Known<4>],
+    listed: &[ReferencePicture<4>],
     before: &Calibration,
     meets_mm: Option<[f64; 2]>,
-) -> Result<Found, CalibrateError> {
+) -> Result<CalibrationResult, CalibrateError> {
     let mut seen = Vec::new();
     for known in listed {
         if let Some(measured) = seam(before, known, Joint::Gap)? {
@@ -277,7 +283,7 @@ pub fn slides(
             },
         ),
     ];
-    Ok(Found { calibration, figures })
+    Ok(CalibrationResult { calibration, figures })
 }
 
 /// What is known of a picture for [`corner`]: 1 where it is closed, 0 where the same line is an open gap; the slides.
@@ -286,11 +292,11 @@ pub const CORNER: [&str; 3] = ["corner", "u_mm", "v_mm"];
 /// Offset of a corner from pictures of a coupon whose walls have the slopes `walls`. Where the corner is comes from the
 /// open pictures, or from `meets_mm`, the slides at which the beam meets it.
 pub fn corner(
-    listed: &[Known<3>],
+    listed: &[ReferencePicture<3>],
     before: &Calibration,
     walls: [f64; 2],
     meets_mm: Option<[f64; 2]>,
-) -> Result<Found, CalibrateError> {
+) -> Result<CalibrationResult, CalibrateError> {
     let closed = Joint::Corner(Walls {
         slopes: walls,
         sigma: WALL_SIGMA,
@@ -347,7 +353,7 @@ pub fn corner(
         corner_offset_mm: Some(fit.offset_mm),
         ..*before
     };
-    Ok(Found { calibration, figures })
+    Ok(CalibrationResult { calibration, figures })
 }
 
 /// A picture taken at a step of the slides: number of the place along the seam, position of the slides, offset of the machine along travel, measurement.
@@ -378,7 +384,7 @@ fn on_axis(seen: &[SlidePicture]) -> Vec<SlideReading> {
 /// The seam in a picture, if it shows one.
 fn seam<const N: usize>(
     calibration: &Calibration,
-    known: &Known<N>,
+    known: &ReferencePicture<N>,
     joint: Joint,
 ) -> Result<Option<Measured>, CalibrateError> {
     let picture = |reason| CalibrateError::Picture {
@@ -402,7 +408,7 @@ fn seam<const N: usize>(
 }
 
 /// The picture as it is measured.
-fn image<const N: usize>(known: &Known<N>) -> Result<vision::Image<'_>, CalibrateError> {
+fn image<const N: usize>(known: &ReferencePicture<N>) -> Result<vision::Image<'_>, CalibrateError> {
     known.picture.image().map_err(|reason| CalibrateError::Image {
         file: known.file.display().to_string(),
         reason,

@@ -17,7 +17,7 @@ use serde::Deserialize;
 use shared::kinematics::KinematicsError;
 use std::borrow::Cow;
 use std::path::PathBuf;
-use teach::{Guide, TaughtPoint, TeachingConfig, read_points};
+use teach::{GuidePoint, TaughtPoint, TeachingConfig, read_points};
 use thiserror::Error;
 
 /// Points of a program that are nearer to each other say nothing more \[mm\].
@@ -174,8 +174,8 @@ impl Panel {
     }
 
     /// Where to teach.
-    pub fn guides(&self) -> Vec<Guide> {
-        let guide = |[x, y, z, a, c]: &[f64; 5]| Guide {
+    pub fn guides(&self) -> Vec<GuidePoint> {
+        let guide = |[x, y, z, a, c]: &[f64; 5]| GuidePoint {
             position: Vector3::new(*x, *y, *z),
             angles_deg: [*a, 0.0, *c],
         };

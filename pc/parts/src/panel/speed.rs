@@ -100,7 +100,7 @@ impl Panel {
 }
 
 /// A guide as if the panel were there.
-fn as_taught(guide: &teach::Guide) -> TaughtPoint {
+fn as_taught(guide: &teach::GuidePoint) -> TaughtPoint {
     let [a, _, c] = guide.angles_deg.map(f64::to_radians);
     TaughtPoint {
         position: guide.position,

@@ -5,7 +5,7 @@ use crate::SeamPoint;
 use nalgebra::Vector3;
 use shared::geometry::angle;
 use shared::io::SIDES;
-use teach::seam::{Foot, SeamPoint as TaughtPoint};
+use teach::seam::{MeasuredSeam, SeamPoint as TaughtPoint};
 use thiserror::Error;
 
 /// Points that a curve needs.
@@ -225,7 +225,7 @@ fn chords(points: &[(usize, TaughtPoint)], side: usize) -> Vec<f64> {
 }
 
 /// Standard deviation of a point.
-fn sigma(foot: &Foot) -> f64 {
+fn sigma(foot: &MeasuredSeam) -> f64 {
     (foot.scatter_mm / libm::sqrt(foot.pictures as f64)).hypot(IN_COMMON)
 }
 
@@ -316,7 +316,7 @@ mod tests {
                 let mut noise = || scatter_mm / 8f64.sqrt() * noise.gauss()[0];
                 let (x, y) = (radius * phi.sin(), -radius * phi.cos());
                 let normal = Vector3::new(0.3 * scatter_mm.signum() * noise(), noise(), 1.0).normalize();
-                Foot {
+                MeasuredSeam {
                     position: Vector3::new(x + noise(), y + noise(), 100.0 + noise()),
                     normal,
                     width_mm: 0.05,

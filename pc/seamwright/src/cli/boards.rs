@@ -5,7 +5,7 @@ use crate::terminal::{Operator, Terminal};
 use anyhow::{Context, bail};
 use config::machine::MachineFile;
 use emulator::{SESSION_VARIABLE, Session};
-use host_link::boards::{Boards, Endpoint, NetworkBoards, Patience};
+use host_link::boards::{Boards, Endpoint, NetworkBoards, Timeouts};
 use host_link::events::Interest;
 use host_link::{Command, control};
 use job::{Job, JobError, run};
@@ -163,7 +163,7 @@ impl BoardChoice {
         tracked: bool,
         interrupted: Arc<AtomicBool>,
     ) -> Result<Box<dyn Boards + Send>, BoardsError> {
-        let patience = Patience::default();
+        let patience = Timeouts::default();
         match self {
             Self::Simulated => Ok(Box::new(SimulatedBoards::new(wanted)?)),
             Self::At { motion, tracker } => {

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex};
-use teach::seam::{Cameras, Drawing, Ended, Head, SeamFile, Stance};
+use teach::seam::{Cameras, Drawing, Ended, Head, MachinePose, SeamFile};
 use world::Deviation;
 use world::Surroundings;
 
@@ -67,7 +67,7 @@ impl FromStr for TipPose {
 
 /// What the part and its drawing say.
 struct Lesson {
-    start: Stance,
+    start: MachinePose,
     drawing: Option<Drawing>,
     cameras: Cameras,
     /// The program of the drawing, to which a simulated seam belongs.
@@ -202,7 +202,7 @@ impl SeamArgs {
         machine: &MachineFile,
         drawn: Option<&DualBeamPlan>,
         cameras: &Cameras,
-    ) -> anyhow::Result<(Stance, Option<Drawing>)> {
+    ) -> anyhow::Result<(MachinePose, Option<Drawing>)> {
         let drawing = drawn.map(DualBeamPlan::drawing);
         let start = match (self.from, drawn) {
             (Some(TipPose([x, y, z, a, b, c])), _) => {
@@ -211,7 +211,7 @@ impl SeamArgs {
                     angles_deg: [a, b, c],
                     ..Tip::default()
                 };
-                Stance {
+                MachinePose {
                     pose: Planner::build(machine)?.pose(&tip),
                     slides_mm: [0.0; SLIDES],
                 }

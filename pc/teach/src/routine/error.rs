@@ -89,7 +89,7 @@ pub enum TeachError<E: StdError + 'static> {
 
 /// What ends one point.
 #[derive(Debug, Error)]
-pub(super) enum Trouble<E: StdError + 'static> {
+pub(super) enum PointFailure<E: StdError + 'static> {
     #[error(transparent)]
     Machine(E),
     #[error(transparent)]
@@ -103,15 +103,15 @@ pub(super) enum NoDistance<E> {
 }
 
 impl<E: StdError + 'static> NoDistance<E> {
-    pub(super) fn in_ring(self, radius: f64) -> Trouble<E> {
+    pub(super) fn in_ring(self, radius: f64) -> PointFailure<E> {
         match self {
-            Self::Machine(error) => Trouble::Machine(error),
-            Self::Refused(source) => Trouble::Point(PointError::Neighbour { radius, source }),
+            Self::Machine(error) => PointFailure::Machine(error),
+            Self::Refused(source) => PointFailure::Point(PointError::Neighbour { radius, source }),
         }
     }
 }
 
-impl<E: StdError + 'static> Trouble<E> {
+impl<E: StdError + 'static> PointFailure<E> {
     pub(super) fn distance(seen: NoDistance<E>) -> Self {
         match seen {
             NoDistance::Machine(error) => Self::Machine(error),

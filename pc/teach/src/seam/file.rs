@@ -1,6 +1,6 @@
 //! Taught seams in a file that people can read, complete after every point.
 
-use super::{Foot, SeamPoint};
+use super::{MeasuredSeam, SeamPoint};
 use config::table::{self, Row, TableError};
 use nalgebra::Vector3;
 use nc::text::decimal;
@@ -237,7 +237,7 @@ fn complete(text: &str) -> (String, bool) {
 
 /// The two rows of a point.
 fn rows(number: usize, point: &SeamPoint) -> String {
-    let row = |(index, foot): (usize, &Foot)| {
+    let row = |(index, foot): (usize, &MeasuredSeam)| {
         let head = [
             number.to_string(),
             (index + 1).to_string(),
@@ -305,7 +305,7 @@ pub fn parse_seam_points(path: &str, text: &str) -> Result<Vec<(usize, SeamPoint
     Ok(points)
 }
 
-fn read_foot(row: &Row<13>) -> Result<Foot, &'static str> {
+fn read_foot(row: &Row<13>) -> Result<MeasuredSeam, &'static str> {
     let [
         _,
         _,
@@ -334,7 +334,7 @@ fn read_foot(row: &Row<13>) -> Result<Foot, &'static str> {
     if width_mm < 0.0 || scatter_mm < 0.0 {
         return Err("width_mm and scatter_mm are 0 or more");
     }
-    Ok(Foot {
+    Ok(MeasuredSeam {
         position: Vector3::new(x, y, z),
         normal: normal.normalize(),
         width_mm,
@@ -355,8 +355,8 @@ mod tests {
         }
     }
 
-    fn foot(x: f64, y: f64) -> Foot {
-        Foot {
+    fn foot(x: f64, y: f64) -> MeasuredSeam {
+        MeasuredSeam {
             position: Vector3::new(x, y, 100.25),
             normal: Vector3::new(0.0, 0.6, 0.8),
             width_mm: 0.05,

@@ -6,7 +6,7 @@ use crate::state::{TrackerFault, TrackerState};
 use crate::tracking::history::PathSnapshot;
 use crate::tracking::law::{LawFlag, SlideTarget};
 use crate::tracking::parameters::TrackerParameters;
-use crate::tracking::seam::{RealHead, Sight, plan};
+use crate::tracking::seam::{RealHead, SeamTarget, plan};
 
 /// A slide that should go beyond its travel and is as near as this to the end has gone as far as it can \[mm\].
 const AT_THE_END: f64 = 0.1;
@@ -97,10 +97,10 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             for (i, sight) in sights.into_iter().enumerate() {
                 let slide = &mut self.slides[u + i];
                 let away = libm::fabs(real[i].position - slide.position);
-                let seen = matches!(sight, Sight::Seam(_));
+                let seen = matches!(sight, SeamTarget::Seam(_));
                 slide.arrived |= seen && away <= parameters.map.gate;
                 slide.on_seam = seen && away <= parameters.lock;
-                targets[u + i] = (!matches!(sight, Sight::Lost)).then_some(real[i]);
+                targets[u + i] = (!matches!(sight, SeamTarget::Lost)).then_some(real[i]);
             }
         }
         targets
@@ -113,21 +113,21 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         parameters: &TrackerParameters,
         snapshot: &PathSnapshot,
         (slide, off): (usize, f64),
-        sight: &Sight,
+        sight: &SeamTarget,
         plan: &SlideTarget,
     ) -> Option<SlideTarget> {
         let side = slide / 2;
         match sight {
-            Sight::Seam(seam) => Some(*seam),
-            Sight::Jump(seam) => {
+            SeamTarget::Seam(seam) => Some(*seam),
+            SeamTarget::Jump(seam) => {
                 self.slides[slide].arrived = false;
                 Some(*seam)
             }
-            Sight::Ahead(beginning) => {
+            SeamTarget::Ahead(beginning) => {
                 self.not_there_yet(slide, snapshot);
                 Some(*beginning)
             }
-            Sight::Nowhere(last) => {
+            SeamTarget::Nowhere(last) => {
                 self.not_there_yet(slide, snapshot);
                 let about = last.unwrap_or(*plan);
                 if slide % 2 == 1 {
@@ -139,7 +139,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 let travel = (min + off, max + off);
                 Some(self.seam_searches[side].step(&parameters.search, about, travel, goes))
             }
-            Sight::Lost => {
+            SeamTarget::Lost => {
                 self.report(TrackerFault::LostSeam {
                     side: side as u8,
                     s_mm: snapshot.s as f32,

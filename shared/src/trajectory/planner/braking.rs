@@ -48,7 +48,7 @@ impl Horizon {
                     node.floor = f32::NEG_INFINITY;
                 }
             }
-            if !self.wish.stop {
+            if !self.wanted.stop {
                 // Nodes far beyond would only take time now; they are planned when it is obeyed.
                 let near = i.max(self.settled) + LEAST_WINDOW;
                 if near < self.last && nodes.at(near - 1).limit > 0.0 {
@@ -112,7 +112,7 @@ impl Horizon {
     /// Begins to let go of the acceleration before node `settled`.
     fn settle<const N: usize>(&mut self, nodes: &mut Nodes<N>, settled: u32) {
         self.settled = settled;
-        if self.wish.stop {
+        if self.wanted.stop {
             self.last = settled;
         }
         let node = nodes.at_mut(settled);
@@ -162,7 +162,7 @@ impl Horizon {
         self.work += (self.settled - self.commit) / LOOKED_AT_FOR_ONE;
         let mut way = 0.5 * lacks / f64::from(steepest);
         let mut settled = self.settled;
-        let end = if self.wish.stop {
+        let end = if self.wanted.stop {
             self.in_force()
         } else {
             self.last - 1

@@ -36,7 +36,7 @@ use crate::kinematics::{AxisMotion, Kinematics};
 use channels::POSE_CHANNELS;
 use filter::Filter;
 use grid::{Grid, most_work};
-use horizon::{Horizon, WINDOW, WORK, Wish};
+use horizon::{Horizon, PlanRequest, WINDOW, WORK};
 use limits::Bounds;
 use node::Nodes;
 use player::Player;
@@ -218,7 +218,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         let mut work = WORK;
         self.idle = false;
         if !self.horizon.waiting() {
-            self.horizon.obey(self.wish());
+            self.horizon.obey(self.wanted());
         }
         // Not only when no more nodes can be had.
         if self.horizon.waiting() && self.nodes.end > self.horizon.in_force() + WINDOW {
@@ -293,9 +293,9 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     }
 
     /// What a plan shall be for now.
-    fn wish(&self) -> Wish {
+    fn wanted(&self) -> PlanRequest {
         let stop = !self.along() || self.factor <= 0.0;
-        Wish {
+        PlanRequest {
             stop,
             factor: if stop { 0.0 } else { self.factor },
         }
@@ -316,16 +316,16 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     /// it was: none if it did not.
     #[inline]
     fn begin(&mut self) -> u32 {
-        let wish = self.wish();
-        if self.horizon.early(&wish) {
+        let wanted = self.wanted();
+        if self.horizon.early(&wanted) {
             return 0;
         }
-        self.begin_for(wish)
+        self.begin_for(wanted)
     }
 
     /// A call of its own: in most ticks it is too early for it.
     #[inline(never)]
-    fn begin_for(&mut self, wish: Wish) -> u32 {
+    fn begin_for(&mut self, wanted: PlanRequest) -> u32 {
         let along = self.along();
         let last = self.horizon.in_force();
         let inside = last + 1 < self.nodes.end && self.nodes.at(last).limit > 0.0;
@@ -341,7 +341,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         let node = self.player.node;
         let begun = self
             .horizon
-            .begin(&mut self.nodes, &mut self.player, rested, wish, &self.bounds);
+            .begin(&mut self.nodes, &mut self.player, rested, wanted, &self.bounds);
         match (begun, self.player.node < node) {
             (_, true) => BEGIN + SPLIT,
             (true, false) => BEGIN,

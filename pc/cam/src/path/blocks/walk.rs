@@ -4,7 +4,7 @@ use super::Moves;
 use crate::path::block::Block;
 use crate::path::exact::{Join as Turning, MAX_TURN};
 use crate::path::feeds::Feeds;
-use crate::path::targets::Stand;
+use crate::path::targets::RestState;
 use crate::path::{PathError, Planner, TOLERANCE, Tip};
 use nc::{Move, PathControl};
 use shared::geometry::angle;
@@ -96,7 +96,7 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    pub(super) fn new(planner: Arc<Planner>, moves: Moves, from: &Stand, feeds: Feeds) -> Self {
+    pub(super) fn new(planner: Arc<Planner>, moves: Moves, from: &RestState, feeds: Feeds) -> Self {
         Self {
             planner,
             moves,

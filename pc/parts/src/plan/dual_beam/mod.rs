@@ -21,7 +21,7 @@ use shared::geometry::{Pose, PoseError, angle};
 use shared::kinematics::KinematicsError;
 use shared::parameter::ParameterError;
 use shared::units::DEG_PER_RAD;
-use teach::seam::{Drawing, Stance};
+use teach::seam::{Drawing, MachinePose};
 use thiserror::Error;
 
 /// Largest chord \[mm\], distance of the curve from it \[mm\] and turn over it \[rad\].
@@ -102,10 +102,10 @@ impl DualBeamPlan {
     }
 
     /// The stance in which cameras that look `lead_mm` ahead see the beginning of the weld.
-    pub fn stance_before(&self, lead_mm: f64) -> Stance {
+    pub fn stance_before(&self, lead_mm: f64) -> MachinePose {
         let first = self.points[self.seam.0];
         let pose = first.pose;
-        Stance {
+        MachinePose {
             pose: Pose {
                 position: pose.position - pose.tangent * lead_mm,
                 ..pose

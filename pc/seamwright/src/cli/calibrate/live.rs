@@ -8,7 +8,7 @@ use crate::terminal::Operator;
 use anyhow::{Context, bail};
 use camera::PictureQueue;
 use camera::calibrate::procedure;
-use camera::calibrate::procedure::Found;
+use camera::calibrate::procedure::CalibrationResult;
 use clap::Args;
 use config::machine::{JointForm, MachineFile};
 use job::{ImageCameras, Job, Names, PictureRun, Work};
@@ -58,7 +58,7 @@ impl Live {
     }
 
     /// Takes the pictures and finds what they tell; an exit code if it was interrupted.
-    pub fn find(&self) -> anyhow::Result<Result<Found, ExitCode>> {
+    pub fn find(&self) -> anyhow::Result<Result<CalibrationResult, ExitCode>> {
         let (Some(machine_file), Some(side)) = (&self.camera.machine, self.camera.side) else {
             bail!("say which camera: --machine FILE --side 1|2");
         };
@@ -132,7 +132,7 @@ impl Live {
         let profile = procedure::profile(&pictures.profile, &before).with_context(not_written)?;
         let slides = procedure::slides(&pictures.slides, &profile.calibration, self.meets.meets)
             .with_context(not_written)?;
-        Ok(Ok(Found {
+        Ok(Ok(CalibrationResult {
             calibration: slides.calibration,
             figures: [profile.figures, slides.figures].concat(),
         }))

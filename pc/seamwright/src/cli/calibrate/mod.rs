@@ -5,8 +5,8 @@ mod live;
 use crate::console::{out, outln};
 use anyhow::{Context, bail};
 use camera::calibrate::procedure;
-use camera::calibrate::procedure::Found;
-use camera::calibrate::{CalibrateError, Known, read_pictures};
+use camera::calibrate::procedure::CalibrationResult;
+use camera::calibrate::{CalibrateError, ReferencePicture, read_pictures};
 use clap::{Args, Subcommand};
 use config::calibration::Calibration;
 use config::machine::MachineFile;
@@ -113,7 +113,7 @@ impl Calibrate {
             })?,
             What::Slides { folder, meets } => folder.find(|pictures, before| {
                 let listed = read_pictures(pictures, procedure::SLIDES)?.into_iter();
-                let listed: Vec<_> = listed.map(Known::at_rest).collect();
+                let listed: Vec<_> = listed.map(ReferencePicture::at_rest).collect();
                 procedure::slides(&listed, before, meets.meets)
             })?,
             What::Corner { folder, meets, walls } => folder.find(|pictures, before| {
@@ -132,8 +132,8 @@ impl Calibrate {
 impl Folder {
     fn find(
         &self,
-        procedure: impl Fn(&Path, &Calibration) -> Result<Found, CalibrateError>,
-    ) -> anyhow::Result<(&Camera, Found)> {
+        procedure: impl Fn(&Path, &Calibration) -> Result<CalibrationResult, CalibrateError>,
+    ) -> anyhow::Result<(&Camera, CalibrationResult)> {
         let found = procedure(&self.pictures, &self.camera.before()?);
         Ok((&self.camera, found.with_context(|| self.camera.not_written())?))
     }
@@ -160,7 +160,7 @@ impl Camera {
 }
 
 /// What was found, a line each.
-fn table(found: &Found) -> String {
+fn table(found: &CalibrationResult) -> String {
     let mut text = String::new();
     for figure in &found.figures {
         let line = format!("  {:<36} {:<28} {}", figure.text, figure.found, figure.beside);

@@ -12,18 +12,18 @@ struct OutOfReach;
 /// A world with limits.
 struct ByHand(World);
 
-impl Rig for ByHand {
+impl CameraMachine for ByHand {
     type Error = OutOfReach;
 
-    fn approach(&mut self, stance: &Stance) -> Result<(), OutOfReach> {
-        self.go(stance)
+    fn approach(&mut self, machine_pose: &MachinePose) -> Result<(), OutOfReach> {
+        self.go(machine_pose)
     }
 
-    fn go(&mut self, stance: &Stance) -> Result<(), OutOfReach> {
-        if stance.pose.position.y > REACH {
+    fn go(&mut self, machine_pose: &MachinePose) -> Result<(), OutOfReach> {
+        if machine_pose.pose.position.y > REACH {
             return Err(OutOfReach);
         }
-        let Ok(()) = self.0.go(stance);
+        let Ok(()) = self.0.go(machine_pose);
         Ok(())
     }
 
@@ -42,7 +42,7 @@ impl Rig for ByHand {
     }
 }
 
-impl Hand for ByHand {
+impl JogOperator for ByHand {
     fn line(&mut self) -> Result<Option<String>, OutOfReach> {
         Ok(self.0.lines.next().map(str::to_owned))
     }

@@ -1,6 +1,6 @@
 //! A machine with two cameras, as teaching uses it.
 
-use super::{SeamPoint, Stance};
+use super::{MachinePose, SeamPoint};
 use shared::geometry::Pose;
 use shared::io::{SIDES, SLIDES};
 use std::error::Error as StdError;
@@ -36,15 +36,15 @@ pub struct View {
 }
 
 /// A machine with two cameras.
-pub trait Rig {
+pub trait CameraMachine {
     /// Why it does not do what it is asked.
     type Error: StdError + 'static;
 
-    /// Goes to `stance` from above the work.
-    fn approach(&mut self, stance: &Stance) -> Result<(), Self::Error>;
+    /// Goes to `machine_pose` from above the work.
+    fn approach(&mut self, machine_pose: &MachinePose) -> Result<(), Self::Error>;
 
-    /// Goes straight to `stance`, and stands there.
-    fn go(&mut self, stance: &Stance) -> Result<(), Self::Error>;
+    /// Goes straight to `machine_pose`, and stands there.
+    fn go(&mut self, machine_pose: &MachinePose) -> Result<(), Self::Error>;
 
     /// Looks at the seams from where the machine stands: the mean of `pictures`, or of as many as saw them.
     fn look(&mut self, pictures: usize) -> Result<View, Self::Error>;
