@@ -351,7 +351,7 @@ fn existing(what: &'static str, path: &Path) -> Result<PathBuf, BootError> {
     })
 }
 
-/// A session on four ports that nobody uses, found by taking all at once and giving them back.
+/// A session on four unused ports, found by taking all at once and giving them back.
 fn free_ports(pace: PathBuf, machine: &str) -> io::Result<Session> {
     let host = Ipv4Addr::LOCALHOST;
     let tcp = [TcpListener::bind((host, 0))?, TcpListener::bind((host, 0))?];

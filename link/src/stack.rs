@@ -266,7 +266,7 @@ impl<'a> Link<'a> {
         }
     }
 
-    /// Who sent a datagram, if that is somebody who may: by address, port and number of the session.
+    /// The sender of a datagram, if it may send: by address, port and number of the session.
     fn sender(&mut self, from: Source, number: u32, datagram: &Datagram) -> Option<Sender> {
         let session = self.session?;
         let finds_partner = self.identity.role == Role::Tracker

@@ -231,7 +231,7 @@ fn beams_are_off_in_time_whatever_fails() {
         },
     );
 
-    // What nobody tells: the permit is not renewed.
+    // No message says this: the permit is not renewed.
     for (what, fault) in [
         ("tracker frozen, reset or off", InjectedFault::TrackerFrozen),
         ("tracker cut off", InjectedFault::CutOff(Role::Tracker)),

@@ -60,7 +60,7 @@ pub enum DetectorError {
         columns: usize,
     },
     /// Photon transfer or profile are not above zero.
-    #[error("the camera's calibration has {what} of {value}; it has to be above zero")]
+    #[error("the camera's calibration has {what} of {value}; it must be above zero")]
     Calibration {
         /// Which figure.
         what: &'static str,

@@ -46,7 +46,7 @@ pub struct Optics {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum OpticsError {
     /// A figure is not above zero and finite.
-    #[error("{what} of the camera is {value}; it has to be above zero")]
+    #[error("{what} of the camera is {value}; it must be above zero")]
     NotPositive {
         /// Which one.
         what: &'static str,
@@ -54,7 +54,7 @@ pub enum OpticsError {
         value: f64,
     },
     /// A figure that no lens or sensor has.
-    #[error("{what} of the camera is {value}; it has to be between {} and {}", range[0], range[1])]
+    #[error("{what} of the camera is {value}; it must be between {} and {}", range[0], range[1])]
     Range {
         /// Which one.
         what: &'static str,

@@ -58,7 +58,7 @@ enum Task {
     /// Count instructions, on the PC by valgrind and on the emulated Cortex-M7; run programs through the planner
     #[command(subcommand)]
     Bench(bench::Benchmark),
-    /// Tell both controllers what nobody should: random and mutated requests and datagrams, with overflow checks
+    /// Send both controllers random and mutated requests and datagrams, with overflow checks
     Fuzz(fuzz::Fuzz),
     /// Change the code of a crate in a copy, one place at a time, and tell which changes no test notices
     Mutants(mutants::Mutants),

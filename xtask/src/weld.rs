@@ -115,7 +115,7 @@ impl BoardFlags {
         }
     }
 
-    /// What seamwright shall take where its command line says nothing: machine, and job and seam of that machine.
+    /// Defaults of seamwright's command line: the machine, and job and seam of that machine.
     fn defaults(&self) -> Vec<(&'static str, String)> {
         let machine = self.machine_name().unwrap_or_else(|| DEFAULT_MACHINE.to_owned());
         let mut defaults = vec![(

@@ -50,7 +50,7 @@ const LAZY_STACKING: u32 = 1 << 5;
 const ADDRESS_VALID: u32 = 1 << 7;
 
 impl Fault {
-    /// Whether the stack ran over its end.
+    /// Whether the stack overflowed.
     pub fn stack_overflow(&self) -> bool {
         let guard = addr_of!(_stack_guard) as u32..addr_of!(_stack_end) as u32;
         let in_guard = self.status & ADDRESS_VALID != 0 && guard.contains(&self.address);

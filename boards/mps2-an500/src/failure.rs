@@ -33,8 +33,8 @@ extern "Rust" fn board_fault(fault: &Fault) -> ! {
     crate::logger::abandon();
     if fault.stack_overflow() {
         // To the console too, which programs without a logger have.
-        say("the stack ran over its end\n");
-        defmt::error!("the stack ran over its end");
+        say("the stack overflowed\n");
+        defmt::error!("the stack overflowed");
     }
     defmt::error!(
         "hard fault at {=u32:#010x}, called from {=u32:#010x}",

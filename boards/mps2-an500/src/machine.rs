@@ -1,4 +1,4 @@
-//! The machine that the motion board is wired to. Whoever starts QEMU says which: `arg=machine=NAME`.
+//! The machine that the motion board is wired to. It is named on the command line of QEMU: `arg=machine=NAME`.
 
 use crate::semihosting::{self, COMMAND_LINE};
 use plant::MotionPlant;

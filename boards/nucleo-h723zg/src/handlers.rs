@@ -45,7 +45,7 @@ pub(crate) fn report_last() {
         PANIC => defmt::error!("the last run ended in a panic, at line {} of its file", detail),
         FAULT => defmt::error!("the last run ended in a fault at {=u32:#010x}", detail),
         STACK => defmt::error!(
-            "the last run ended when the stack ran over its end, at {=u32:#010x}",
+            "the last run ended when the stack overflowed, at {=u32:#010x}",
             detail
         ),
         SUPPLY => {

@@ -12,14 +12,14 @@ use thiserror::Error;
 
 /// A session with a motion board and, where the machine has one, a tracker board.
 ///
-/// Whoever makes one has said Hello to each, compared the schema hashes, and subscribed to what they send. A job that uses nothing but
+/// Its constructor has said Hello to each, compared the schema hashes, and subscribed to what they send. A job that uses nothing but
 /// this trait for time and data is deterministic on simulated boards.
 pub trait Boards {
     /// Sends `request` and waits for the answer.
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError>;
 
     /// Sends `request` and waits for nothing: the answer, if it is there at once, else [`Self::answer`] gives it. The answer to
-    /// what was asked of this board before is nobody's any more. Simulated boards answer at once.
+    /// the answer to an earlier request to this board is dropped. Simulated boards answer at once.
     fn ask(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
         self.request(role, request).map(Some)
     }
@@ -102,7 +102,7 @@ pub enum LinkError {
         source: std::io::Error,
     },
     /// It is there, and does not take the connection.
-    #[error("the {} board at {address} turns the connection away ({source}): another program is connected to it (one that is cut off keeps its place for 5 s), it is booting, or something else has this address", role_name(*.role))]
+    #[error("the {} board at {address} refuses the connection ({source}): another program is connected to it (a lost connection is kept for 5 s), it is booting, or something else has this address", role_name(*.role))]
     Busy {
         /// Which board.
         role: Role,
@@ -151,7 +151,7 @@ pub enum LinkError {
         address: String,
     },
     /// Bytes that are no message.
-    #[error("the {} board sent something that is not understood ({source})", role_name(*.role))]
+    #[error("the {} board sent a message that cannot be decoded ({source})", role_name(*.role))]
     Frame {
         /// Which board.
         role: Role,
@@ -167,7 +167,7 @@ pub enum LinkError {
         refusal: Refusal,
     },
     /// An answer that does not belong to the request.
-    #[error("the {} board gave an answer that does not belong to the question", role_name(*.role))]
+    #[error("the {} board sent an answer of the wrong kind for its request", role_name(*.role))]
     Unexpected {
         /// Which board.
         role: Role,

@@ -69,7 +69,7 @@ impl fmt::Display for Phase {
     }
 }
 
-/// What the machine stands for until somebody answers.
+/// What the machine waits for until the operator answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
     /// May it go on, in single block? [`crate::Command::Resume`] says so.

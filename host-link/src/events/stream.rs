@@ -57,7 +57,7 @@ struct State {
     lost: u64,
     /// There will be no more.
     closed: bool,
-    /// Nobody takes them any more.
+    /// The subscription has ended.
     abandoned: bool,
 }
 
@@ -123,7 +123,7 @@ impl Events {
 }
 
 impl Queue {
-    /// Whether somebody still takes events.
+    /// Whether any subscription is left.
     fn push(&self, event: &Arc<Event>) -> bool {
         let mut state = locked(&self.state);
         if state.abandoned {

@@ -224,7 +224,7 @@ impl Camera for GigeCamera {
 impl Drop for GigeCamera {
     fn drop(&mut self) {
         if !self.gone.load(Ordering::Relaxed) {
-            // Nobody is left to be told that it does not answer.
+            // There is no caller left for the error.
             self.camera.stop_acquisition().ok();
         }
     }

@@ -145,7 +145,7 @@ pub enum CameraError {
         reason: String,
     },
     /// It was there and is not any more.
-    #[error("camera {camera} is gone: {reason}; check its power and its cable, then start the job anew")]
+    #[error("camera {camera} was lost: {reason}; check its power and its cable, then restart the job")]
     Gone {
         /// The camera as it was told.
         camera: String,

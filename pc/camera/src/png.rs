@@ -20,7 +20,7 @@ pub enum PngError {
         source: std::io::Error,
     },
     /// It is no PNG file, or only a part of one.
-    #[error("picture {file} is no PNG file or is damaged: {source}")]
+    #[error("picture {file} is not a PNG file, or is damaged: {source}")]
     Broken {
         /// The file.
         file: String,
@@ -29,7 +29,7 @@ pub enum PngError {
     },
     /// Its pixels are not what cameras give.
     #[error(
-        "picture {file} has {kind}; only grey pictures of 8 bits a pixel are measured: convert it to such a one"
+        "picture {file} has {kind}; only grey pictures of 8 bits a pixel can be measured: convert it"
     )]
     Kind {
         /// The file.
@@ -39,7 +39,7 @@ pub enum PngError {
     },
     /// It says that it is larger than any camera's.
     #[error(
-        "picture {file} has {columns} × {rows} pixels; at most {} million in all are read: cut it",
+        "picture {file} has {columns} × {rows} pixels; at most {} million in all can be read: crop it",
         MOST_PIXELS / 1_000_000
     )]
     TooLarge {
@@ -219,7 +219,7 @@ mod tests {
         let text = scratch("text.png");
         std::fs::write(&text, "no picture").expect("written");
         let error = said(&text);
-        assert!(error.contains("text.png is no PNG file or is damaged"), "{error}");
+        assert!(error.contains("text.png is not a PNG file, or is damaged"), "{error}");
 
         let colours = scratch("colours.png");
         write_rgb(&colours, 2, 2, &[9; 12]).expect("written");
@@ -244,7 +244,7 @@ mod tests {
         let cut = scratch("cut.png");
         std::fs::write(&cut, &bytes[..bytes.len() / 2]).expect("written");
         let error = said(&cut);
-        assert!(error.contains("cut.png is no PNG file or is damaged"), "{error}");
+        assert!(error.contains("cut.png is not a PNG file, or is damaged"), "{error}");
     }
 
     #[test]

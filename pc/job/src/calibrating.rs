@@ -76,7 +76,7 @@ impl Weld {
             }
             self.path(session, path, Phase::Approaching)?;
         }
-        let nothing = || JobError::Calibrate("the program has no weld before which to look".to_owned());
+        let nothing = || JobError::Calibrate("the program has no weld in front of which the camera could look at the seam".to_owned());
         let weld = weld.ok_or_else(nothing)?;
         let (path, (begin, _)) = (weld.knot_path(), weld.weld().ok_or_else(nothing)?);
         let lead = session

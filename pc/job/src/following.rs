@@ -8,7 +8,7 @@ use host_link::events::{Event, Next, Phase, Question};
 use shared::protocol::{MotionSample, MotionStatus, Request, Role};
 use shared::state::State;
 
-/// A machine that shall move and does not for so long never will \[s\]; far longer than a queue runs dry.
+/// A machine that should move, but has not for this time, is taken to be stuck \[s\]; far longer than a queue runs dry.
 const STANDSTILL_S: u32 = 10;
 /// A path tick is a millisecond.
 const TICKS_PER_S: u32 = 1000;
@@ -89,12 +89,12 @@ fn rests_after(block: &EndedBlock, here: &MotionSample) -> bool {
     reached && here.speed_mm_s.abs() < STILL && here.state == State::Running
 }
 
-/// Whether the machine stands until somebody says something.
+/// Whether the machine is at rest until the operator gives a command.
 #[derive(Default)]
 struct Standing {
     /// It does.
     for_somebody: bool,
-    /// In a hold that nobody asked for.
+    /// In a hold that was not commanded.
     held_by_board: bool,
     /// What was said last of hold, back and going on, if the board has not been seen to run since; and when.
     said: Option<Command>,
@@ -228,7 +228,7 @@ mod tests {
         // It goes back before it goes on.
         assert_eq!(told(15, Holding, 1.0, None), (false, false));
         assert_eq!(told(16, Running, 1.0, None), (false, false));
-        // And nobody asked for this hold, nor for it to end.
+        // And neither this hold nor its end was commanded.
         assert_eq!(told(17, Holding, 0.01, None), (true, true));
         assert_eq!(told(18, Running, 0.0, None), (true, false));
     }

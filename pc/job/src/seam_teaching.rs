@@ -159,7 +159,7 @@ impl SeamArm<'_, '_, '_> {
             .planner
             .kinematics()
             .inverse(&machine_pose.pose, &[0.0; AXES])
-            .map_err(|error| JobError::Teach(format!("the head cannot stand like that: {error}")))?;
+            .map_err(|error| JobError::Teach(format!("the head cannot take that attitude: {error}")))?;
         Ok([axes[3], axes[4], axes[5]].map(|angle| angle * DEG_PER_RAD))
     }
 
@@ -271,7 +271,7 @@ impl CameraMachine for SeamArm<'_, '_, '_> {
         match self.session.control.answer() {
             Some(text) if text.trim() == "done" => true,
             Some(_) => {
-                self.say("done ends after this point, a stop at once");
+                self.say("type done to end after this point; Ctrl-C stops at once");
                 false
             }
             None => false,

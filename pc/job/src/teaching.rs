@@ -49,7 +49,7 @@ pub struct Taught {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoTeaching {
     /// The part is of another kind, or taught before.
-    #[error("the part has nothing to teach: only panels are taught, and only without the key taught")]
+    #[error("the part has nothing to teach: only panels without the key taught are taught")]
     Part,
     /// No guide points.
     #[error("the panel has no guide points to teach")]
@@ -64,7 +64,7 @@ pub enum NoTeaching {
     )]
     Input,
     /// Nothing to range.
-    #[error("the panel has no table simulated_surface, and a simulated world has nothing else to measure")]
+    #[error("the panel has no table simulated_surface, so a simulated world has no surface to measure")]
     Surface,
     /// What is to be made of it cannot be, however it is taught.
     #[error("{0}")]

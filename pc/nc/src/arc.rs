@@ -52,7 +52,7 @@ fn form(claims: &Claims, mode: Code, plane: Plane, place: SourcePosition) -> Res
     match (any, claims.word(mode, "R")) {
         (true, Some(r)) => Err(Problem::CentreAndRadius.at(r.place)),
         (true, None) => Ok(ArcForm::Centre(centre.map(|word| word.map_or(0.0, |w| w.value)))),
-        (false, Some(r)) if r.value == 0.0 => Err(r.value_error("a radius is not 0")),
+        (false, Some(r)) if r.value == 0.0 => Err(r.value_error("the radius must not be 0")),
         (false, Some(r)) => Ok(ArcForm::Radius(r.value)),
         (false, None) => {
             let (code, word) = (mode.name(), "a centre (I J K) or R");

@@ -54,17 +54,17 @@ pub enum Problem {
     Expression,
     /// `O`: subroutines, loops and conditions.
     #[error(
-        "O words (subroutines, loops, conditions) are not supported: write the blocks out, or let what makes the program do so"
+        "O words (subroutines, loops, conditions) are not supported: write the blocks out, or let the CAM system do so"
     )]
     Subroutine,
     /// A number that is out of all proportion.
     #[error("the number of {0} has more than nine digits before the point: correct it")]
     TooLarge(String),
     /// `/` not at the start of a line.
-    #[error("block delete must stand at the start of the line")]
+    #[error("block delete must be at the start of the line")]
     DeleteInside,
     /// `%` with something else in its line, or at a wrong place.
-    #[error("% must stand alone, in the first and in the last line")]
+    #[error("% must be alone on its line, the first and the last of the program")]
     Percent,
     /// N not at the start of a block, or not a whole number.
     #[error("a block number is a whole number at the start of the line")]
@@ -81,7 +81,7 @@ pub enum Problem {
         number: f64,
     },
     /// The same word twice in a block.
-    #[error("{0} stands twice in this block")]
+    #[error("{0} occurs twice in this block")]
     Twice(String),
     /// Two codes of one modal group in a block.
     #[error("{first} and {second} exclude each other in one block")]
@@ -92,7 +92,7 @@ pub enum Problem {
         second: &'static str,
     },
     /// A word that belongs to a code that is not in the block.
-    #[error("{0} has no code in this block that it belongs to")]
+    #[error("{0} belongs to no code of this block")]
     Orphan(String),
     /// A word that could belong to two codes.
     #[error("{word} could belong to {first} or to {second}: write them in two blocks")]
@@ -160,7 +160,7 @@ pub enum Problem {
     #[error("with G93 F means the time of its own block, and this one does not feed: leave F out")]
     InverseTimeAlone,
     /// G4, M62, M63 or M67 without a motion after it.
-    #[error("{0} has no motion after it, before or with which it would take effect")]
+    #[error("{0} has no motion after it with which it could take effect")]
     NoMotionAfter(&'static str),
     /// M66.
     #[error("M66 waits for an input, and the boards have none for programs: wait with G4 P")]
@@ -222,8 +222,8 @@ pub enum Problem {
         /// Order.
         order: usize,
     },
-    /// A control point after a knot that stands alone.
-    #[error("after a knot that stands alone no control point can follow")]
+    /// A control point after a knot on its own.
+    #[error("after a knot on its own no control point can follow")]
     PointAfterKnots,
     /// Something after the end.
     #[error("nothing may follow the end of the program")]

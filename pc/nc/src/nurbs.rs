@@ -195,7 +195,7 @@ impl OpenNurbs {
             let weight = weight(block.word("R"))?;
             self.point(block, weight, place_of(block))?;
         } else if let Some(word) = block.words.iter().find(|word| word.address != "K") {
-            let (word_label, code) = (word.label(), "a knot that stands alone");
+            let (word_label, code) = (word.label(), "a knot on its own");
             return Err(Problem::NotInNurbs {
                 word: word_label,
                 code,
@@ -221,7 +221,7 @@ impl OpenNurbs {
         };
         let k = block.word("K").ok_or(missing.at(place_of(block)))?;
         if self.knots.last().is_some_and(|(before, _)| k.value < *before) {
-            return Err(k.value_error("knots do not decrease"));
+            return Err(k.value_error("knots must not decrease"));
         }
         self.knots.push((k.value, k.place));
         Ok(())
@@ -306,7 +306,7 @@ fn is_axis(word: &Word) -> bool {
 
 fn weight(word: Option<&Word>) -> Result<f64, NcError> {
     match word {
-        Some(word) if word.value <= 0.0 => Err(word.value_error("a weight is above 0")),
+        Some(word) if word.value <= 0.0 => Err(word.value_error("the weight must be above 0")),
         Some(word) => Ok(word.value),
         None => Ok(1.0),
     }

@@ -65,7 +65,7 @@ impl Spindle {
         let s = block.word("S");
         if let Some(s) = s {
             if s.value < 0.0 {
-                return Err(s.value_error("a spindle speed is 0 r/min or more"));
+                return Err(s.value_error("the spindle speed must be 0 r/min or more"));
             }
             self.speed = Some(s.value);
         }
@@ -125,7 +125,7 @@ pub(super) fn output(block: &Block, claims: &Claims) -> Result<Option<Pending>, 
                 return Err(e.value_error("E0 and E1 are the powers of beam 1 and 2"));
             };
             if q.value < 0.0 {
-                return Err(q.value_error("a power is 0 W or more"));
+                return Err(q.value_error("the power must be 0 W or more"));
             }
             PathAction::Power { side, watt: q.value }
         }
@@ -167,7 +167,7 @@ pub(super) fn dwell(block: &Block, claims: &Claims) -> Result<Option<(f64, Sourc
     };
     let p = claims.word(Code::Dwell, "P").ok_or(missing.at(code.place))?;
     if !(0.0..=LONGEST_DWELL_S).contains(&p.value) {
-        return Err(p.value_error("a time is 0 s or more, and a day (86400 s) at most"));
+        return Err(p.value_error("the time must be from 0 to 86400 s (a day)"));
     }
     Ok(Some((p.value, code.place)))
 }

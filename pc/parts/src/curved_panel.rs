@@ -64,7 +64,7 @@ impl TryFrom<Document> for CurvedPanel {
         ]
         .concat();
         if !all.iter().all(|x| x.is_finite()) {
-            return Err("a panel has finite numbers only");
+            return Err("all numbers of a panel must be finite");
         }
         if sx <= 0.0 || sy <= 0.0 || d.wave_length_mm <= 0.0 {
             return Err("size_mm and wave_length_mm must be above 0");

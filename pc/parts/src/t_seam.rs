@@ -122,7 +122,7 @@ impl Kind for TSeam {
         })
     }
 
-    /// The seams as they really are are not the part's: a simulated world, or whoever measured them, tells them.
+    /// The true seams are not part of the part file: they come from the simulated world, or from a measurement.
     fn judge(&self, _context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {
         Ok(self.limits.judge(run))
     }

@@ -240,7 +240,7 @@ fn wrong_files_are_told_and_the_others_are_measured() {
     assert_eq!(lines.len(), wrong.len(), "{errors}");
     let parts = [
         ["cannot read picture none.png", "No such file"],
-        ["text.png is no PNG file", "damaged"],
+        ["text.png is not a PNG file", "damaged"],
         ["colours.png has coloured pixels", "convert it"],
         [
             "small.png: a picture of 100 × 200 pixels",

@@ -98,7 +98,7 @@ pub struct Plane {
 /// The surface under a ring is neither a plane nor curved evenly: an edge, a step, a crease, or strong third order.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error(
-    "the surface in the ring of {radius} mm is uneven by {rest:.3} mm, which may turn its normal by {:.2}°: an edge? \
+    "the surface in the ring of {radius} mm is uneven by {rest:.3} mm, which may turn its normal by {:.2}°: is there an edge? \
      measure closer, or teach the normal by hand",
     .normal_error.to_degrees()
 )]

@@ -33,11 +33,11 @@ pub struct Deviation {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SeamError {
     /// A seam is given to a machine that cannot follow it.
-    #[error("this machine has no tracker, and no slides to follow a seam with: leave the seam out")]
+    #[error("this machine has no tracker and no slides to follow a seam: omit the seam")]
     NoTracking,
     /// The program tracks, and no seam is given.
     #[error(
-        "the program follows the seam (M62 P2): say by --seam FILE how the real seams deviate from the programmed ones"
+        "the program follows the seam (M62 P2): give with --seam FILE how the real seams deviate from the programmed ones"
     )]
     NoSeam,
     /// Shorter than the weld.

@@ -15,14 +15,14 @@ pub enum BoardsError {
     #[error(transparent)]
     Link(#[from] LinkError),
     /// Simulated boards have no plant of that name.
-    #[error("no plant is known for a machine called {machine}: it runs on real boards only")]
+    #[error("there is no simulation of a machine called {machine}: it runs on real boards only")]
     NoPlant {
         /// Name of its kinematics.
         machine: String,
     },
     /// The emulated boards run another machine.
     #[error(
-        "the emulated boards are wired to a {wired}, but the machine file describes a {wanted}; boot others by `cargo xtask emulate --machine FILE`"
+        "the emulated boards are wired to a {wired}, but the machine file describes a {wanted}; boot others with `cargo xtask emulate --machine FILE`"
     )]
     WrongMachine {
         /// What they run.
@@ -36,7 +36,7 @@ pub enum BoardsError {
     )]
     NoEmulator,
     /// The session file of the emulated boards cannot be used.
-    #[error("the emulated boards cannot be found: {0}; start them by `cargo xtask emulate`")]
+    #[error("the emulated boards cannot be found: {0}; start them with `cargo xtask emulate`")]
     BadSession(#[from] emulator::SessionError),
     /// This computer cannot run them.
     #[error("emulated boards need Linux; use --boards simulated, or the addresses of real boards")]

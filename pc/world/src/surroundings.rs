@@ -156,7 +156,7 @@ impl job::Surroundings for World {
                 .filter(|path| path.weld().is_some())
                 .try_for_each(|path| check_facing(seams, path, machine))?,
             (_, seam, _) => match check_seam(paths, machine, seam.as_deref()) {
-                // Real cameras see the seam, and nobody has to say where it is.
+                // Real cameras see the seam; its deviation need not be given.
                 Err(SeamError::NoSeam) if self.settings.cameras.real() => {}
                 checked => checked?,
             },

@@ -1,4 +1,4 @@
-//! The path tick: where the machine shall be two milliseconds from now, and everything that may change that.
+//! The path tick: the references of the machine two milliseconds ahead, and everything that may change them.
 //!
 //! Time runs in milliseconds k. Path tick k computes the reference of k + 2; together with that of k + 1 it
 //! makes the [`Segment`] which the servo ticks follow from k + 1 on, so the path tick has a whole
@@ -244,7 +244,7 @@ impl MotionController {
                 s_mm: now.s,
                 speed_mm_s: now.v,
                 pose: self.measured_pose(),
-                // On a path that is given up nobody looks for the seam any more.
+                // On a path that is given up the seam is not tracked any more.
                 tracking: on_path && self.state != State::Stopping && self.beams.tracking(),
                 beams: report.gate,
                 superimposed_rate: self.superimposed.rate(),

@@ -91,7 +91,7 @@ pub enum PathJoin {
 /// The numbers of an element are no piece of path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
-    "line {line}: the numbers of the element are no line, arc or curve of its length, or its tolerance is none"
+    "line {line}: the element is not a line, arc or curve of its length, or its tolerance is not valid"
 )]
 pub struct BadElement {
     /// Line of the program.

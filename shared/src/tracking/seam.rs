@@ -15,7 +15,7 @@ const fn u_slide(side: usize) -> usize {
     2 * side
 }
 
-/// Maps of the four channels, and what became of the measurements.
+/// Maps of the four channels, and counts of accepted and rejected measurements.
 #[derive(Clone, Debug, Default)]
 pub struct Seam {
     maps: [SeamMap; SLIDES],

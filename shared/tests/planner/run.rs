@@ -4,7 +4,7 @@ use super::bench::Bench;
 use shared::trajectory::{BoardPlanner, Element, Output, PushError, Unreachable, Way};
 use thiserror::Error;
 
-/// What somebody does at the controls, or what befalls the link.
+/// What an operator does at the controls, or a disturbance of the link.
 #[derive(Clone, Copy, Debug)]
 pub enum Act {
     Override(f64),

@@ -5,7 +5,7 @@ use nc::interpret_file;
 use shared::protocol::MotionSample;
 use std::path::PathBuf;
 
-/// Somebody who writes another program over the one that runs.
+/// Overwrites the program that runs with another one.
 struct Careless {
     file: PathBuf,
     text: String,

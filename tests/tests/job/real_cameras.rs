@@ -42,7 +42,7 @@ fn waves() -> Arc<Deviation> {
 enum Wire {
     /// Nothing: it stays.
     Whole,
-    /// No frame comes any more, and nobody says why.
+    /// No frame comes any more, without an error.
     Silent { side: usize, from_s_mm: f64 },
     /// The camera tells that it is gone.
     Gone { side: usize, from_s_mm: f64 },

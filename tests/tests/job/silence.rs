@@ -140,14 +140,14 @@ fn a_tracker_that_does_not_answer_keeps_nobody_from_stopping() {
 /// Welds with a pause.
 fn paused(boards: &mut Alone, interrupted: &Rc<Cell<bool>>) {
     let ended = weld(boards, &mut StopsWhen(interrupted.clone()));
-    let told = ended.error.expect("the boards do not go on").to_string();
+    let told = ended.error.expect("the boards stop without the PC").to_string();
     assert!(
-        told.starts_with("this PC did nothing for 3.0 s (paused") && told.contains("board"),
+        told.starts_with("this PC was stalled for 3.0 s (paused") && told.contains("board"),
         "{told}"
     );
     assert_eq!(ended.report.outcome, Outcome::Failed);
     assert!(
-        ended.report.faults[0].contains("this PC did nothing"),
+        ended.report.faults[0].contains("this PC was stalled"),
         "{:?}",
         ended.report.faults
     );

@@ -9,7 +9,7 @@ struct Patient {
     /// What the machine waited before.
     waited: Vec<Next>,
     waiting: u32,
-    /// After so many waits nobody is there.
+    /// After so many waits there is no operator any more.
     leaves_after: Option<usize>,
     /// Or no single block is wanted.
     lets_run_after: Option<usize>,

@@ -116,7 +116,7 @@ pub enum DepthError {
     },
     /// The plate did not move as told.
     #[error(
-        "the pictures show {percent:.1} % of the way that the slides were told (may be 5 % off): is tilt_deg right, and was it this camera's slide V?"
+        "the pictures show {percent:.1} % of the commanded travel of the slides (at most 5 % off is possible): is tilt_deg right, and was it this camera's slide V?"
     )]
     Way {
         /// Shown over told \[%\].

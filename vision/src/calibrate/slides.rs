@@ -86,7 +86,7 @@ pub enum SlideError {
     },
     /// The readings do not fit any matrix.
     #[error(
-        "what the camera saw does not fit the slides' steps: {residual_um:.1} µm rms are left (may be 5 µm), reading {worst} is off by {worst_um:.1} µm; did the work or the machine move, or was another seam measured?"
+        "the measured positions do not fit the slides' steps: {residual_um:.1} µm rms are left (may be 5 µm), reading {worst} is off by {worst_um:.1} µm; did the work or the machine move, or was another seam measured?"
     )]
     Residual {
         /// Root of the mean square \[µm\].

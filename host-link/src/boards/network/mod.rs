@@ -25,7 +25,7 @@ use stream::{Answer, Stream};
 /// Datagrams that wait for [`Boards::receive`]; about ten seconds of both boards. More are dropped and counted.
 const WAITING: usize = 4096;
 
-/// How often somebody who waits for an answer looks whether the machine is to stop.
+/// How often a thread that waits for an answer checks whether the machine is to stop.
 const LOOK: Duration = Duration::from_millis(10);
 
 /// Where a board is.
@@ -98,7 +98,7 @@ pub struct NetworkBoards {
     began: Instant,
     /// See [`Self::paced_by`].
     handled: Option<Box<dyn Fn() + Send>>,
-    /// Set by whoever wants the machine to stop.
+    /// Set to stop the machine.
     interrupted: Arc<AtomicBool>,
     /// The motion board was told to, while an answer was waited for.
     stopped: bool,

@@ -28,7 +28,7 @@ pub(super) struct Stream {
     patience: Duration,
     /// What the board has not answered yet, oldest first.
     pending: VecDeque<PendingAnswer>,
-    /// What has come of an answer that somebody waits for, or what ended the stream.
+    /// The answer that a caller waits for, once received, or what ended the stream.
     answered: Option<Result<Response, LinkError>>,
     /// Since when an answer was seen to be overdue.
     overdue: Option<Instant>,
@@ -37,7 +37,7 @@ pub(super) struct Stream {
 /// A request that the board has not answered yet.
 struct PendingAnswer {
     deadline: Instant,
-    /// Somebody waits for it.
+    /// A caller waits for it.
     wanted: bool,
 }
 
@@ -150,7 +150,7 @@ impl Stream {
         self.post(request, true)
     }
 
-    /// Sends a request whose answer nobody waits for. Those asked before keep theirs.
+    /// Sends a request whose answer is not waited for. Earlier requests are still waited for.
     pub(super) fn tell(&mut self, request: &Request) -> Result<(), LinkError> {
         self.post(request, false)
     }
@@ -161,7 +161,7 @@ impl Stream {
         let found = match answer {
             Ok(Ok(response)) => match self.pending.pop_front() {
                 Some(PendingAnswer { wanted: true, .. }) => Ok(response),
-                // Of a request that nobody waits for.
+                // Of a request whose answer is not waited for.
                 Some(PendingAnswer { wanted: false, .. }) | None => return,
             },
             Ok(Err(source)) => Err(LinkError::Frame { role, source }),

@@ -228,7 +228,7 @@ fn a_board_that_takes_no_connection_is_named_with_its_address() {
     let error = message(NetworkBoards::connect(&nowhere, Some(&nowhere), None, BRIEF));
     assert!(
         error.starts_with(&format!(
-            "the motion board at 127.0.0.1:{port} turns the connection away"
+            "the motion board at 127.0.0.1:{port} refuses the connection"
         )),
         "{error}"
     );
@@ -365,7 +365,7 @@ fn a_stop_does_not_wait_for_a_board_that_does_not_answer() {
         })
     ));
     assert_eq!(stops.recv_timeout(AMPLE), Ok(false));
-    // The answer to the stop is nobody's: the next one is that of the next request.
+    // The answer to the stop is dropped: the next one is that of the next request.
     let refused = Response::Refused(Refusal::NotHomed);
     drop((boards, motion));
     let motion = Fake::board(Role::Motion, {

@@ -22,7 +22,7 @@ pub enum DryRunError {
     Reference(#[from] Unreachable),
     /// The planner does not go on.
     #[error(
-        "line {line}: the planner stands still {s_mm:.3} mm along path {path}; please report the program"
+        "line {line}: the planner does not move on, {s_mm:.3} mm along path {path}; please report the program"
     )]
     Stuck {
         /// Line of the program.

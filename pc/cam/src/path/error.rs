@@ -42,7 +42,7 @@ pub enum PathError {
     },
     /// The first motion of the tip leaves something open.
     #[error(
-        "{place}: the first motion of the tip must say how all axes of {machine} stand: {missing} missing"
+        "{place}: the first motion of the tip must give the positions of all axes of {machine}: {missing} missing"
     )]
     Incomplete {
         /// Where in the program.
@@ -137,7 +137,7 @@ pub enum PathError {
         s: f64,
     },
     /// R for an arc whose ends are the same.
-    #[error("{place}: R tells no centre for a full circle; use I J K")]
+    #[error("{place}: R does not define the centre of a full circle; use I J K")]
     CircleByRadius {
         /// Where in the program.
         place: SourcePosition,
@@ -211,7 +211,7 @@ pub enum PathError {
         machine: String,
     },
     /// The spindle is not that fast.
-    #[error("{place}: {rpm} r/min are more than the spindle gives, at most {largest} r/min")]
+    #[error("{place}: {rpm} r/min is more than the maximum of the spindle, {largest} r/min")]
     SpindleSpeed {
         /// Where in the program.
         place: SourcePosition,
@@ -221,7 +221,7 @@ pub enum PathError {
         largest: f64,
     },
     /// A beam cannot give that much.
-    #[error("{place}: {watt} W are more than beam {} gives, at most {largest} W", side + 1)]
+    #[error("{place}: {watt} W is more than the maximum of beam {}, {largest} W", side + 1)]
     Power {
         /// Where in the program.
         place: SourcePosition,
@@ -254,7 +254,7 @@ pub enum PathError {
     },
     /// One speed for a path with several feeds.
     #[error(
-        "{place}: the path has several feeds, one speed cannot take their place; leave the speed out, or write one F"
+        "{place}: the path has several feeds, which one speed cannot replace; leave the speed out, or write one F"
     )]
     SeveralFeeds {
         /// Where its path begins.
@@ -293,7 +293,7 @@ pub enum PathError {
         source: KinematicsError,
     },
     /// The channels are no pose.
-    #[error("{place}: the path is no pose there: {source}")]
+    #[error("{place}: the path does not define a pose there: {source}")]
     Pose {
         /// Where in the program.
         place: SourcePosition,
@@ -335,7 +335,7 @@ impl PathError {
         let advice = if (turns - turns.round()).abs() < 1e-6 {
             "a block turns the short way; write it as several blocks of less than 180°"
         } else {
-            "the tip decides how this axis stands; correct the word, or X Y Z"
+            "the position of this axis follows from the tip; correct the word, or X Y Z"
         };
         Self::Turned {
             place,

@@ -49,7 +49,7 @@ pub enum CalibrateError {
     },
     /// Where the corner is remains unknown.
     #[error(
-        "where the corner is remains unknown: list pictures of its open end with 0 in the column corner, or say --meets U,V, the slides at which the beam meets it"
+        "the position of the corner is unknown: list pictures of its open end with 0 in the column corner, or say --meets U,V, the slides at which the beam meets it"
     )]
     NoPlace,
     /// The noise is not that of photons.
@@ -193,7 +193,7 @@ pub fn profile(
             "at least 40".to_owned(),
         ),
         Figure::new(
-            "way shown over told",
+            "measured over commanded travel",
             format!("{:.3}", fit.way),
             "0.95 to 1.05".to_owned(),
         ),
@@ -232,10 +232,10 @@ pub fn slides(
     }
     let mm_per_m = |share: f64| format!("{:+.1} mm/m", 1e3 * share);
     let um = |mm: f64| format!("{:.1} µm", 1e3 * mm);
-    let play = |axis: usize| fit.backlash_mm[axis].map_or("not seen: step both ways".to_owned(), um);
+    let play = |axis: usize| fit.backlash_mm[axis].map_or("not measured: step in both directions".to_owned(), um);
     let [offset_u, offset_v] = calibration.slides.offset_mm;
     let (was_u, was_v) = (before.slides.offset_mm[0], before.slides.offset_mm[1]);
-    let as_before = "of the calibration before".to_owned();
+    let as_before = "of the previous calibration".to_owned();
     let figures = vec![
         Figure::new(
             "scale across",
@@ -248,7 +248,7 @@ pub fn slides(
             "at most ±100 mm/m".to_owned(),
         ),
         Figure::new(
-            "turn against the mount before",
+            "rotation against the previous mount",
             format!("{:+.2}°", fit.rotation_rad.to_degrees()),
             "at most ±10°".to_owned(),
         ),
@@ -258,7 +258,7 @@ pub fn slides(
             String::new(),
         ),
         Figure::new(
-            "left of the pictures",
+            "residual in the pictures",
             format!(
                 "{} rms, {} in picture {}",
                 um(fit.residual_mm),

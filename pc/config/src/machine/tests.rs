@@ -222,12 +222,12 @@ fn axes_that_the_machine_has_not_are_named_and_so_are_those_that_are_missing() {
     let error = error_of(&pipe.replace("[axes.Z]", "[axes.Y]"));
     assert_eq!(
         error,
-        "machine file m.toml: axes.Y is told, but a pipe-welder has no such axis"
+        "machine file m.toml: axes.Y is given, but a pipe-welder has no such axis"
     );
     let error = error_of(&pipe.replace("[motors.B]", "[motors.A]"));
     assert_eq!(
         error,
-        "machine file m.toml: motors.A is told, but a pipe-welder has no such axis"
+        "machine file m.toml: motors.A is given, but a pipe-welder has no such axis"
     );
     let error = error_of(&pipe.replace(", B = 0.0, C = 0.0 }", ", B = 0.0 }"));
     assert_eq!(
@@ -237,7 +237,7 @@ fn axes_that_the_machine_has_not_are_named_and_so_are_those_that_are_missing() {
     let error = error_of(&pipe.replace("park_first = [\"X\"]", "park_first = [\"A\"]"));
     assert_eq!(
         error,
-        "machine file m.toml: planning.park_first A is told, but a pipe-welder has no such axis"
+        "machine file m.toml: planning.park_first A is given, but a pipe-welder has no such axis"
     );
     let error = error_of(&pipe.replace("park = { X = 190.0", "park = { X = 210.0"));
     assert_eq!(

@@ -27,7 +27,7 @@ const SATURATED_MS: u32 = 500;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum WeakProtection {
     /// A motor that stands elsewhere is noticed late.
-    #[error("following_error_base of {} is {limit} mm (or °): a motor that does not follow is noticed late; {ERROR} is usual at most", MOTOR_NAMES[*.motor as usize])]
+    #[error("following_error_base of {} is {limit} mm (or °): a motor that does not follow is detected late; usual values are up to {ERROR}", MOTOR_NAMES[*.motor as usize])]
     FollowingError {
         /// Index of the motor.
         motor: u8,
@@ -35,7 +35,7 @@ pub enum WeakProtection {
         limit: f64,
     },
     /// The same in motion.
-    #[error("following_error_time_s of {} is {time_s} s: a motor that does not follow in motion is noticed late; {LAG_S} is usual at most", MOTOR_NAMES[*.motor as usize])]
+    #[error("following_error_time_s of {} is {time_s} s: a motor that does not follow in motion is detected late; usual values are up to {LAG_S}", MOTOR_NAMES[*.motor as usize])]
     FollowingErrorInMotion {
         /// Index of the motor.
         motor: u8,
@@ -43,7 +43,7 @@ pub enum WeakProtection {
         time_s: f64,
     },
     /// A gantry may be far from square.
-    #[error("skew_trip_mm of gantry is {trip_mm} mm, {:.2} mrad over its width: guides may be forced before it trips; {} mrad is usual at most", yaw * 1e3, YAW * 1e3)]
+    #[error("skew_trip_mm of gantry is {trip_mm} mm, {:.2} mrad over its width: the guides may be forced before it trips; usual values are up to {} mrad", yaw * 1e3, YAW * 1e3)]
     Skew {
         /// The trip \[mm\].
         trip_mm: f64,
@@ -52,7 +52,7 @@ pub enum WeakProtection {
     },
     /// A machine without its PC goes on for long.
     #[error(
-        "link_timeout_ms is {timeout_ms}: a weld goes on for so long without its PC; {SILENCE_MS} is usual at most"
+        "link_timeout_ms is {timeout_ms}: a weld continues for this time without its PC; usual values are up to {SILENCE_MS}"
     )]
     Link {
         /// The timeout \[ms\].
@@ -65,7 +65,7 @@ pub enum WeakProtection {
         side: u8,
     },
     /// A beam may burn with another power than it was told.
-    #[error("readback.tolerance of beam {} is {tolerance}: the power may be off by so much of full power; {POWER} is usual at most", side + 1)]
+    #[error("readback.tolerance of beam {} is {tolerance}: the power may be off by this part of full power; usual values are up to {POWER}", side + 1)]
     Power {
         /// 0 or 1.
         side: u8,
@@ -74,7 +74,7 @@ pub enum WeakProtection {
     },
     /// A beam goes on for long without sight of its seam.
     #[error(
-        "window_mm and hold_mm of tracking are {way_mm} mm together: a beam goes so far without sight of its seam; {BLIND_MM} is usual at most"
+        "window_mm and hold_mm of tracking are {way_mm} mm together: a beam goes this far while its seam is not seen; usual values are up to {BLIND_MM}"
     )]
     LostSeam {
         /// The way \[mm\].
@@ -82,7 +82,7 @@ pub enum WeakProtection {
     },
     /// What is far from the seam is taken for it.
     #[error(
-        "gate_mm of tracking is {gate_mm} mm: what is so far from the seam is taken for it; {OUTLIER_MM} is usual at most"
+        "gate_mm of tracking is {gate_mm} mm: a measurement this far from the seam is accepted; usual values are up to {OUTLIER_MM}"
     )]
     Outliers {
         /// The gate \[mm\].
@@ -90,7 +90,7 @@ pub enum WeakProtection {
     },
     /// Deviations are left alone.
     #[error(
-        "dead_band_mm of tracking is {band_mm} mm: a spot may stay so far beside its seam; {LEFT_ALONE_MM} is usual at most"
+        "dead_band_mm of tracking is {band_mm} mm: a spot may stay this far beside its seam; usual values are up to {LEFT_ALONE_MM}"
     )]
     DeadBand {
         /// The band \[mm\].
@@ -98,7 +98,7 @@ pub enum WeakProtection {
     },
     /// Slides follow old path states for long.
     #[error(
-        "stale_path_ms of tracking is {stale_ms}: slides go on for so long without the motion board; {STALE_MS} is usual at most"
+        "stale_path_ms of tracking is {stale_ms}: the slides continue for this time without the motion board; usual values are up to {STALE_MS}"
     )]
     StalePath {
         /// The time \[ms\].
@@ -106,7 +106,7 @@ pub enum WeakProtection {
     },
     /// A slide that cannot follow is told late.
     #[error(
-        "saturation_trip_ms of tracking is {trip_ms}: a slide that cannot follow its seam is told late; {SATURATED_MS} is usual at most"
+        "saturation_trip_ms of tracking is {trip_ms}: a slide that cannot follow its seam is reported late; usual values are up to {SATURATED_MS}"
     )]
     Saturation {
         /// The time \[ms\].

@@ -52,7 +52,7 @@ pub enum WorkerError {
     #[error(transparent)]
     Image(#[from] ImageError),
     /// The thread is gone, or hangs.
-    #[error("its pictures are not measured any more: please report this, with the command line")]
+    #[error("the thread that measures its pictures has ended: please report this, with the command line")]
     Gone,
 }
 

@@ -83,14 +83,14 @@ impl Default for PanelLimits {
 /// Why there is no program. Reads as one sentence.
 #[derive(Debug, Error)]
 pub enum PanelError {
-    /// Nobody knows the surface.
+    /// The surface is unknown.
     #[error(
         "the panel is not taught: `seamwright teach` writes its points, and taught = \"FILE\" in the part file names \
          them; `seamwright weld` teaches and cuts in one go"
     )]
     Untaught,
     /// Not enough points for a curve.
-    #[error("{found} taught points make no curve, at least {least} are needed")]
+    #[error("{found} taught points are too few for a curve, at least {least} are needed")]
     TooFew {
         /// How many there are.
         found: usize,

@@ -49,7 +49,7 @@ impl Panel {
         }
         let unsure = || {
             format!(
-                "{}; whether that is so of the panel shows when it is taught",
+                "{}; whether this holds for the panel is only known when it is taught",
                 too_fast()
             )
         };
@@ -63,7 +63,7 @@ impl Panel {
             ..self.clone()
         };
         let plan = creeping.program(context, points)?;
-        // What else is wrong with the program is told by whoever runs it.
+        // Other errors of the program are reported when it is planned.
         let program = interpret(&plan.program, Options::default()).ok();
         let paths = program.and_then(|program| {
             let planner = Planner::build(context.machine).ok()?;

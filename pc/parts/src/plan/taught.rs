@@ -34,7 +34,7 @@ pub enum TaughtSeamError {
     },
     /// Seen too badly.
     #[error(
-        "line {line}: the quality of side {side} is {quality}, but must be {least} at least: teach this point anew, or \
+        "line {line}: the quality of side {side} is {quality}, but must be {least} at least: teach this point again, or \
          take it out of the file"
     )]
     Quality {
@@ -50,7 +50,7 @@ pub enum TaughtSeamError {
     /// A place that does not belong to the others.
     #[error(
         "line {line}: side {side} jumps there, {away_mm:.3} mm off the course of the other points: take the point out \
-         of the file, or teach it anew"
+         of the file, or teach it again"
     )]
     Jump {
         /// Line of the file.
@@ -62,8 +62,8 @@ pub enum TaughtSeamError {
     },
     /// Bends too much between two chords.
     #[error(
-        "line {line}: side {side} turns by {turn_deg:.0}° there: no seam bends so much from point to point, teach it \
-         anew with closer points"
+        "line {line}: side {side} turns by {turn_deg:.0}° there: too sharp a bend from one point to the next, teach it \
+         again with closer points"
     )]
     Bend {
         /// Line of the file.

@@ -109,7 +109,7 @@ pub(super) fn notes(part: &Stir, job: &Job, machine: &MachineFile) -> Vec<String
             .map(|pass| format!("{:.2}", pass.from))
             .collect();
         notes.push(format!(
-            "C comes to the end of its travel: the pin is lifted after {} mm, C turned back, and the pin plunges \
+            "C reaches the end of its travel: the pin is lifted after {} mm, C turned back, and the pin plunges \
              again there",
             places.join(", ")
         ));

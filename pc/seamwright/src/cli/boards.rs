@@ -59,7 +59,7 @@ impl FromStr for BoardChoice {
             "emulated" => Ok(Self::Emulated),
             "simulated" => Ok(Self::Simulated),
             _ if motion.is_empty() || tracker == Some("") || is_meant(text) => {
-                Err("say emulated, simulated, or the addresses MOTION,TRACKER (MOTION without a tracker)")
+                Err("must be emulated, simulated, or the addresses MOTION,TRACKER (MOTION without a tracker)")
             }
             _ => Ok(Self::At {
                 motion: motion.to_owned(),
@@ -97,11 +97,11 @@ impl BoardChoice {
     pub fn check(&self, machine: &MachineFile) -> anyhow::Result<()> {
         match (self, &machine.tracking) {
             (Self::At { tracker: None, .. }, Some(_)) => {
-                bail!("this machine has a tracker: say the addresses of both boards, --boards MOTION,TRACKER")
+                bail!("this machine has a tracker: give the addresses of both boards, --boards MOTION,TRACKER")
             }
             (Self::At { tracker: Some(_), .. }, None) => {
                 bail!(
-                    "this machine has no tracker: say the address of the motion board only, --boards MOTION"
+                    "this machine has no tracker: give the address of the motion board only, --boards MOTION"
                 )
             }
             _ => Ok(()),
@@ -126,7 +126,7 @@ impl BoardChoice {
         let stop = remote.stop_flag();
         let connect = move || choice.connect(wanted, tracked, stop);
         let Some(mut boards) = unless_interrupted(connect, &remote.stop_flag())? else {
-            errln!("seamwright: stopped by the operator; the boards were not asked for anything");
+            errln!("seamwright: stopped by the operator; nothing was sent to the boards");
             return Ok(Err(ExitCode::from(INTERRUPTED)));
         };
         let log = log.map(|folder| {
@@ -146,7 +146,7 @@ impl BoardChoice {
         match log.map(LogWriter::end) {
             None | Some(Ok(0)) => {}
             Some(Ok(lost)) => {
-                errln!("seamwright: writing the log could not keep pace: {lost} events are missing")
+                errln!("seamwright: writing the log was too slow: {lost} events are missing")
             }
             // What can be known of the run is written anew.
             Some(Err(error)) => errln!("seamwright: cannot write the log while the job runs: {error}"),
@@ -193,7 +193,7 @@ fn unless_interrupted<T: Send + 'static>(
     interrupted: &AtomicBool,
 ) -> Result<Option<T>, BoardsError> {
     let (sender, connected) = channel();
-    // An attempt that nobody waits for any more ends with this program.
+    // An attempt that is not waited for any more ends with this program.
     std::thread::spawn(move || sender.send(connect()));
     loop {
         match connected.recv_timeout(POLL) {
@@ -230,7 +230,7 @@ mod tests {
         assert_eq!(one.name(), "192.168.7.10");
         for wrong in ["", "192.168.7.10,", ",x", "simulatd", "Simulated", "emulator"] {
             let said = wrong.parse::<BoardChoice>().unwrap_err();
-            assert!(said.starts_with("say emulated, simulated, or"), "{wrong}");
+            assert!(said.starts_with("must be emulated, simulated, or"), "{wrong}");
         }
         assert!("gantry-motion".parse::<BoardChoice>().is_ok());
     }

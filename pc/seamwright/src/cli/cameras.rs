@@ -50,13 +50,13 @@ impl CameraArgs {
     ) -> anyhow::Result<CameraChoice> {
         let Some(unit) = &machine.tracking else {
             if let Some(told) = self.of_pictures() {
-                bail!("this machine has no cameras: leave {told} out");
+                bail!("this machine has no cameras: omit {told}");
             }
             return Ok(CameraChoice::Geometric);
         };
         match (self.camera, self.of_pictures()) {
             (Camera::Geometric, Some(told)) => {
-                bail!("--camera geometric has no pictures: leave {told} out, or say --camera images")
+                bail!("--camera geometric has no pictures: omit {told}, or use --camera images")
             }
             (Camera::Geometric, None) => Ok(CameraChoice::Geometric),
             (Camera::Images, _) => {
@@ -96,14 +96,14 @@ impl CameraArgs {
 pub struct PictureWriters(Vec<(PictureWriter, PathBuf)>);
 
 impl PictureWriters {
-    /// Waits until what came is written, and tells what became of it.
+    /// Waits until all queued pictures are written, and prints the result.
     pub fn end(self) {
         for (writer, folder) in self.0 {
             let kept = writer.end();
             let dropped = match (kept.dropped, &kept.error) {
                 (0, _) => String::new(),
                 (dropped, Some(_)) => format!(", {dropped} dropped"),
-                (dropped, None) => format!(", {dropped} dropped: writing them could not keep pace"),
+                (dropped, None) => format!(", {dropped} dropped: writing them was too slow"),
             };
             outln!(
                 "  {} pictures kept in {}{dropped}",
@@ -126,7 +126,7 @@ pub fn source(
     match (boards, scene) {
         (BoardChoice::At { .. }, Some(_)) => {
             bail!(
-                "real cameras see what is before them, and a scene is of rendered pictures: leave --scene out"
+                "a scene is for rendered pictures only: omit --scene with real cameras"
             )
         }
         (BoardChoice::At { .. }, None) => Ok(PictureChoice::Real(camera::real(cameras)?)),

@@ -58,7 +58,7 @@ impl Teach {
                 .teach(&self.boards, machine, &part, self.output.as_deref(), self.seed);
         }
         self.seams.refuse()?;
-        let output = self.output.context("say where the points go: --output FILE")?;
+        let output = self.output.context("where should the points be written? give --output FILE")?;
         let note =
             check_teaching(&machine, &part).with_context(|| format!("part {}", self.part.display()))?;
         if let Some(note) = note {

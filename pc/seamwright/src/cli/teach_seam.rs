@@ -28,13 +28,13 @@ const ENDS_EARLY: f64 = 5.0;
 /// What only seams are taught with.
 #[derive(Debug, Args)]
 pub struct SeamArgs {
-    /// Seams: where the tip shall begin, a camera lead before the first point, in place of the drawing's beginning
+    /// Seams: start position of the tip, one camera lead before the first point, in place of the beginning of the drawing
     #[arg(long, value_name = "X,Y,Z,A,B,C", allow_hyphen_values = true)]
     from: Option<TipPose>,
-    /// Seams: the operator drives, by words on standard input
+    /// Seams: the operator jogs the machine, by commands on standard input
     #[arg(long)]
     jog: bool,
-    /// Seams: begin anew; the points taught before stay under another name
+    /// Seams: start over; the points taught before are kept under another name
     #[arg(long)]
     restart: bool,
     /// Seams: how the real ones deviate from the drawing (CSV), for emulated and simulated boards
@@ -56,12 +56,12 @@ impl FromStr for TipPose {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let numbers = text.split(',').map(|number| number.trim().parse::<f64>());
-        let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().map_err(|_| "say six numbers")?;
+        let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().map_err(|_| "must be six finite numbers")?;
         let place: [f64; 6] = numbers
             .try_into()
-            .map_err(|_| "say six numbers: X,Y,Z in mm and A,B,C in degrees")?;
+            .map_err(|_| "must be six numbers: X,Y,Z in mm and A,B,C in degrees")?;
         let finite = place.iter().all(|number| number.is_finite());
-        finite.then_some(Self(place)).ok_or("say six numbers")
+        finite.then_some(Self(place)).ok_or("must be six finite numbers")
     }
 }
 
@@ -121,7 +121,7 @@ impl SeamArgs {
         opened.notes.iter().for_each(|note| outln!("{note}"));
         if !opened.points.is_empty() {
             outln!(
-                "{}: goes on after point {}",
+                "{}: continues after point {}",
                 output.display(),
                 opened.points.len()
             );
@@ -167,7 +167,7 @@ impl SeamArgs {
             (Some(taught), None) => tell(&output, &taught),
             (_, error) => {
                 outln!(
-                    "{}: what is taught so far; the same command goes on after it",
+                    "{}: the points taught so far; the same command continues after them",
                     output.display()
                 );
                 exit_code(error)
@@ -218,7 +218,7 @@ impl SeamArgs {
             }
             (None, Some(plan)) => plan.stance_before(cameras.heads.camera_lead()),
             (None, None) => {
-                bail!("the part has no drawing, so nobody knows where to begin: say it by --from")
+                bail!("the part has no drawing, so the start is unknown: give it with --from")
             }
         };
         Ok((start, drawing))
@@ -230,7 +230,7 @@ fn output_of(told: Option<&Path>, part: &PartFile, seam: &TSeam) -> anyhow::Resu
     match (told, seam.taught()) {
         (Some(told), _) => Ok(told.to_owned()),
         (None, Some(taught)) => Ok(part.path().parent().unwrap_or(Path::new("")).join(taught)),
-        (None, None) => bail!("say where the points go: --output FILE"),
+        (None, None) => bail!("where should the points be written? give --output FILE"),
     }
 }
 
@@ -239,7 +239,7 @@ fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
     outln!("{}: {} points", output.display(), taught.points);
     match taught.ended {
         Ended::Drawn => outln!("  the seam is taught as far as it is drawn"),
-        Ended::Operator => outln!("  ended by the operator; the same command goes on after the last point"),
+        Ended::Operator => outln!("  ended by the operator; the same command continues after the last point"),
         Ended::SeamEnds {
             s_mm,
             missing_mm,
@@ -253,8 +253,8 @@ fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
                 };
                 return exit_code(Some(JobError::Teach(format!(
                     "the seam is lost {s_mm:.1} mm from its beginning, {side}, {missing:.1} mm before its drawing ends: \
-                     if it does not end there, look what covers it and whether the light works; the same command goes \
-                     on after the last point"
+                     if it does not end there, check what covers it and whether the light works; the same command continues \
+                     after the last point"
                 ))));
             }
             _ => outln!("  the seam ends {s_mm:.1} mm from its beginning"),

@@ -28,7 +28,7 @@ pub enum PointError {
     Unsmooth(Unsmooth),
     /// The normal is not known well enough.
     #[error(
-        "the normal is known within {error_deg:.2}° only, {limit_deg}° are asked for: clean the surface, take more \
+        "the normal is known within {error_deg:.2}° only, {limit_deg}° are required: clean the surface, take more \
          readings, or let the rings be larger"
     )]
     Uncertain {
@@ -47,7 +47,7 @@ pub enum PointError {
     },
     /// Turning does not help.
     #[error(
-        "after {turns} turns the probe still stands {off_deg:.1}° off the normal: give a better attitude"
+        "after {turns} corrections the probe is still {off_deg:.1}° off the normal: give a better attitude"
     )]
     Aim {
         /// Turns.

@@ -108,7 +108,7 @@ pub trait ProbeMachine {
     /// The axes at rest, and `readings` of the probe meanwhile.
     fn look(&mut self, readings: usize) -> Result<Look, Self::Error>;
 
-    /// `done` points are taught; they can be told to whoever waits.
+    /// `done` points are taught; an implementation can report them.
     fn taught(&mut self, done: &[TaughtPoint]);
 }
 

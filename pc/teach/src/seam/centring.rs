@@ -94,7 +94,7 @@ impl Cameras {
     /// to zero as a move of `pose` across and up can bring them: Σ(u² + v²) is least.
     ///
     /// The turn about T of mathematics 0.7 is left out: the feet are a few mm apart, and a rib that is not straight
-    /// would turn the head by degrees; the skin says better how the head shall stand.
+    /// would turn the head by degrees; the skin gives a better attitude of the head.
     pub fn centred(&self, pose: &Pose, normal: &Vector3<f64>, points: [Vector3<f64>; SIDES]) -> MachinePose {
         let pose = turned(pose, normal);
         let zero = MachinePose {

@@ -76,7 +76,7 @@ pub enum SeamFileError {
     },
     /// Taught for something else.
     #[error(
-        "{path} was taught on machine {} for part {}, not on {} for {}: choose another output, or begin anew with \
+        "{path} was taught on machine {} for part {}, not on {} for {}: choose another output, or start over with \
          --restart",
         found.machine, found.part, wanted.machine, wanted.part
     )]
@@ -90,7 +90,7 @@ pub enum SeamFileError {
     },
     /// Something else.
     #[error(
-        "{path} exists and is no file of taught seams: choose another output, or begin anew with --restart"
+        "{path} exists and is not a file of taught seams: choose another output, or start over with --restart"
     )]
     Unknown {
         /// The file.
@@ -154,7 +154,7 @@ impl SeamFile {
                 .collect();
             if cut {
                 notes.push(format!(
-                    "the last point in {name} was not complete: it is taught anew"
+                    "the last point in {name} was not complete: it is taught again"
                 ));
                 replace(path, &complete).map_err(written)?;
             }

@@ -75,11 +75,11 @@ impl Jog {
         };
         let value = words.next();
         if let Some(rest) = words.next() {
-            return Err(format!("{rest} is too much: a word and a number"));
+            return Err(format!("{rest} is too much: type a command and one number"));
         }
         let number = |most: f64, unit: &str| -> Result<f64, String> {
             let text = value.ok_or_else(|| format!("{word} needs a number [{unit}]"))?;
-            let number: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
+            let number: f64 = text.parse().map_err(|_| format!("{text} is not a number"))?;
             if number.abs() <= most {
                 Ok(number)
             } else {
@@ -113,7 +113,7 @@ impl Jog {
             "undo" => Ok(Self::Undo),
             "look" => Ok(Self::Look),
             "done" => Ok(Self::Done),
-            _ => Err(format!("{word} means nothing here\n{JOG_WORDS}")),
+            _ => Err(format!("{word} is not a command here\n{JOG_WORDS}")),
         }
     }
 
@@ -218,7 +218,7 @@ impl Follower<'_> {
         let there = match jog {
             Jog::Step(by) => {
                 let Some(there) = self.stepped(machine_pose, points, by) else {
-                    rig.say("step goes on after the last point that is taken, and there is none yet");
+                    rig.say("step continues after the last point taken, and no point is taken yet");
                     return Ok(*machine_pose);
                 };
                 rig.go(&there)?;
@@ -228,14 +228,14 @@ impl Follower<'_> {
             Jog::Centre => match self.centre(rig, machine_pose)?.both() {
                 Some(centred) => centred.machine_pose,
                 None => {
-                    rig.say("both seams have to be seen to be centred: move nearer, or say search");
+                    rig.say("both seams must be visible to be centred: move nearer, or type search");
                     *machine_pose
                 }
             },
             Jog::Take => {
                 let view = self.look(rig)?;
                 let [Some(first), Some(second)] = self.feet(&view) else {
-                    rig.say("both seams have to be seen to be taken");
+                    rig.say("both seams must be visible to take a point");
                     return Ok(*machine_pose);
                 };
                 let here = Centred {
@@ -245,7 +245,7 @@ impl Follower<'_> {
                 let middle = (first.position + second.position) / 2.0;
                 let behind = |last: &SeamPoint| (middle - last.middle()).dot(&view.pose.tangent) < SAME_PLACE;
                 if points.last().is_some_and(behind) {
-                    rig.say("this is not beyond the last point: step goes on, undo takes the last one out");
+                    rig.say("this is not beyond the last point: type step to continue, or undo to remove the last point");
                     return Ok(*machine_pose);
                 }
                 take(rig, points, &here)?;

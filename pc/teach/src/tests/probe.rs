@@ -117,7 +117,7 @@ fn a_probe_that_makes_no_sense_is_refused_by_its_key() {
             distance_at_0v_mm: 15.0,
             ..good
         }),
-        "distance_at_0v_mm is 15, but must be so large that every voltage is a distance above 0"
+        "distance_at_0v_mm is 15, but must be large enough that every voltage is a distance above 0"
     );
     assert_eq!(
         refused(ProbeConfig {

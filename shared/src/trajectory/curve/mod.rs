@@ -26,7 +26,7 @@ const OFF: f64 = 1e-3;
 /// The numbers of the curve are none over its arc length: there are none, one is not finite, or somewhere the curve is not as
 /// fast as it should be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("the numbers of the curve are none over its arc length")]
+#[error("the curve is not parametrised by its arc length")]
 pub struct NoCurve;
 
 /// A rational Bézier curve over its arc length, of fixed size.

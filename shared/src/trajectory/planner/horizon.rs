@@ -119,7 +119,7 @@ pub(super) struct Horizon {
     pub(super) warm: bool,
     /// What the plan being made is for.
     pub(super) wanted: PlanRequest,
-    /// First node at which all speeds are again what they shall be.
+    /// First node at which all speeds are the wanted ones again.
     pub(super) settled: u32,
     /// First node whose boxes are still those of the plan in force.
     pub(super) opened: u32,

@@ -99,7 +99,7 @@ pub enum Way {
     Back,
 }
 
-/// What the machine shall do at one tick.
+/// References of the machine at one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Output {
     /// References of the axes.
@@ -207,7 +207,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     /// One path tick: a bounded share of the planning, and the next references.
     ///
     /// # Errors
-    /// A place ahead that the machine cannot be at, as soon as it rests before that and shall go on.
+    /// A place ahead that the machine cannot be at, as soon as it is at rest before that and is to continue.
     pub fn tick(&mut self, kinematics: &Kinematics) -> Result<Output, Unreachable> {
         self.plan(kinematics)?;
         self.play(kinematics)
@@ -283,7 +283,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         }
     }
 
-    /// The nodes lead the way that the machine shall go.
+    /// The nodes lead in the direction in which the machine is to go.
     fn along(&self) -> bool {
         match self.way {
             Way::Forward => self.grid.direction() > 0.0,
@@ -292,7 +292,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         }
     }
 
-    /// What a plan shall be for now.
+    /// What the plan is for now.
     fn wanted(&self) -> PlanRequest {
         let stop = !self.along() || self.factor <= 0.0;
         PlanRequest {
@@ -306,7 +306,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.resting >= self.bounds.filter_ticks as u32
     }
 
-    /// At rest at the end of the plan in force, and not because it shall be.
+    /// At rest at the end of the plan in force, without a hold or stop.
     fn rests(&self) -> bool {
         let ended = self.player.node >= self.horizon.in_force();
         self.rested() && ended && self.way != Way::Hold && self.factor > 0.0

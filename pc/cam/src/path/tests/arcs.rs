@@ -116,7 +116,7 @@ fn arcs_that_do_not_exist_are_named() {
     );
     assert_eq!(
         message("G3 R10"),
-        "line 5, column 4: R tells no centre for a full circle; use I J K"
+        "line 5, column 4: R does not define the centre of a full circle; use I J K"
     );
     assert!(message("G3 X650 I0 J0").contains("zero radius"));
 }

@@ -68,7 +68,7 @@ fn one_speed_does_not_replace_several_feeds() {
         |body: &str| planner.program(&program(body), &[100.0, 100.0, 900.0, 0.0, 0.0, 0.0], Some(40.0));
     assert_eq!(
         plan("F600\nG1 X1100\nF900 X1200").unwrap_err().to_string(),
-        "line 4, column 4: the path has several feeds, one speed cannot take their place; leave the speed out, or write one F"
+        "line 4, column 4: the path has several feeds, which one speed cannot replace; leave the speed out, or write one F"
     );
     let paths = plan("F600\nG1 X1100\nG0 Z150\nF900 G1 X1200").unwrap();
     assert_eq!((paths[1].limits.velocity, paths[3].limits.velocity), (40.0, 40.0));

@@ -42,7 +42,7 @@ fn the_first_motion_says_how_all_rotary_axes_stand() {
     let error = plan_on("pipe-welder", "G43.4\nG0 X100 Y0 Z240 B0\nM2").unwrap_err();
     assert_eq!(
         error.to_string(),
-        "line 2, column 4: the first motion of the tip must say how all axes of pipe-welder stand: C missing"
+        "line 2, column 4: the first motion of the tip must give the positions of all axes of pipe-welder: C missing"
     );
     let error = plan_on("wire-arc", "G53 G0 B0\nG43.4\nG0 X0 Y0 Z150\nM2").unwrap_err();
     assert!(
@@ -100,7 +100,7 @@ fn an_axis_turns_on_with_the_tip_and_comes_back_in_axis_space() {
 fn a_tip_that_contradicts_its_axis_is_named() {
     assert_eq!(
         pipe("G0 X0 Y40 C80").unwrap_err().to_string(),
-        "line 4, column 4: C would come to 90.000°, not to 80.000°: the tip decides how this axis stands; correct the \
+        "line 4, column 4: C would come to 90.000°, not to 80.000°: the position of this axis follows from the tip; correct the \
          word, or X Y Z"
     );
     assert!(pipe("G0 X0 Y40 C90").is_ok());

@@ -255,7 +255,7 @@ fn more_power_than_the_beam_gives_is_refused_with_its_line() {
     let error = plan("M67 E1 Q4000.5\nF600\nG1 X1010").unwrap_err();
     assert_eq!(
         error.to_string(),
-        "line 3, column 1: 4000.5 W are more than beam 2 gives, at most 4000 W"
+        "line 3, column 1: 4000.5 W is more than the maximum of beam 2, 4000 W"
     );
     assert!(plan("M67 E1 Q4000\nF600\nG1 X1010").is_ok());
 }

@@ -141,7 +141,7 @@ pub enum PlanError {
         source: LocateError,
     },
     /// The pose is none.
-    #[error("at {s:.1} mm of seam 1 the head has no pose: {source}")]
+    #[error("at {s:.1} mm of seam 1 no pose of the head is possible: {source}")]
     Pose {
         /// Length along seam 1 \[mm\].
         s: f64,
@@ -172,7 +172,7 @@ pub enum PlanError {
     },
     /// Runs before and after the seam that are longer than a path.
     #[error(
-        "the machine takes {run_mm:.0} mm to speed up and to find the seam, and a path of {CAPACITY} points has no room for \
+        "the machine takes {run_mm:.0} mm to speed up and to find the seam; a path of {CAPACITY} points is too short for \
          that: correct planning, tracking and slides of the machine file"
     )]
     LongRun {

@@ -60,7 +60,7 @@ impl Live {
     /// Takes the pictures and finds what they tell; an exit code if it was interrupted.
     pub fn find(&self) -> anyhow::Result<Result<CalibrationResult, ExitCode>> {
         let (Some(machine_file), Some(side)) = (&self.camera.machine, self.camera.side) else {
-            bail!("say which camera: --machine FILE --side 1|2");
+            bail!("which camera? give --machine FILE --side 1|2");
         };
         let machine = MachineFile::read(machine_file)?;
         self.boards.check(&machine)?;
@@ -84,7 +84,7 @@ impl Live {
         let seam = match (&self.seam, &source) {
             (Some(file), _) => Some(Deviation::read(file)?),
             (None, PictureChoice::Rendered(_)) => Some(Deviation::parse("coupon", COUPON)?),
-            // Nobody has to say where it is.
+            // A real camera sees the seam.
             (None, PictureChoice::Real(_)) => None,
         };
         let queues = <[PictureQueue; SIDES]>::default();

@@ -93,7 +93,7 @@ fn two(text: &str) -> Result<[f64; 2], &'static str> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|x| x.trim().parse()).collect();
     match numbers.as_deref() {
         Ok(&[a, b]) if a.is_finite() && b.is_finite() => Ok([a, b]),
-        _ => Err("say two numbers with a comma between them"),
+        _ => Err("must be two numbers with a comma between them"),
     }
 }
 
@@ -146,7 +146,7 @@ impl Camera {
             return Ok(Calibration::read(file)?);
         }
         let (Some(machine), Some(side)) = (&self.machine, self.side) else {
-            bail!("say what the camera was: --calibration FILE, or --machine FILE --side 1|2");
+            bail!("which camera was it? give --calibration FILE, or --machine FILE --side 1|2");
         };
         let Some(unit) = MachineFile::read(machine)?.tracking else {
             bail!("machine file {}: it has no cameras", machine.display());

@@ -110,13 +110,13 @@ fn what_cannot_be_done_is_said_and_nothing_is_lost() {
     let told = world.told.join("\n");
     for said in [
         "no point is taken",
-        "fly means nothing here",
+        "fly is not a command here",
         "x needs a number [mm]",
         "300 mm is more than 100 mm at once",
         "out of reach",
-        "both seams have to be seen to be taken",
+        "both seams must be visible to take a point",
         "no seam is seen on either side",
-        "u3 means nothing here",
+        "u3 is not a command here",
         "not beyond the last point",
         "2 points",
         "2 is too much",
