@@ -40,10 +40,10 @@ pub struct Options {
     pub machine: String,
 }
 
-/// Environment variables by which a test is told what to boot, in the order of [`Options`].
+/// Environment variables that say what a test boots, in the order of [`Options`].
 pub const BOOT_VARIABLES: [&str; 3] = ["SEAMWRIGHT_MOTION", "SEAMWRIGHT_TRACKER", "SEAMWRIGHT_PACE"];
 
-/// Environment variables by which a test is told the programs it runs: seamwright and xtask.
+/// Environment variables that name the programs a test runs: seamwright and xtask.
 pub const PROGRAM_VARIABLES: [&str; 2] = ["SEAMWRIGHT_PROGRAM", "SEAMWRIGHT_XTASK"];
 
 impl Options {
@@ -103,7 +103,7 @@ pub enum BootError {
         /// What the system said.
         source: io::Error,
     },
-    /// The environment does not tell what to boot.
+    /// The environment does not say what to boot.
     #[error("{variable} is not set; run these tests by `cargo xtask test`")]
     NotTold {
         /// The variable.
@@ -225,7 +225,7 @@ impl Boards {
         &self.session
     }
 
-    /// Whether both boards still run; an error tells how one ended.
+    /// Whether both boards still run; the error says how one ended.
     pub fn check(&mut self) -> Result<(), BootError> {
         for board in [&mut self.motion, &mut self.tracker] {
             let ended = board.ended().map_err(|source| BootError::Setup {

@@ -22,7 +22,7 @@ pub enum BoardAction {
     CableIn,
     /// Freeze it: its processor stands still, and its outputs stay as they are.
     Freeze,
-    /// Let it go on.
+    /// Let it continue.
     GoOn,
     /// Press its reset button.
     Reset,

@@ -10,12 +10,12 @@ use thiserror::Error;
 /// Commands that wait for the job. A job takes one in every turn, many hundred a second.
 const WAITING: usize = 256;
 
-/// Something that a job is told to do.
+/// A command to a job.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Beams off, and a stop on the path.
     Hold,
-    /// To go on after a hold, or with the next block; nothing where the machine does not wait.
+    /// To continue after a hold, or with the next block; nothing where the machine does not wait.
     Resume,
     /// Back along the path, from a hold.
     Back,
@@ -114,7 +114,7 @@ impl Remote {
         Ok(())
     }
 
-    /// Set when the job is told to stop, for what waits on its behalf.
+    /// Set when the job is to stop, for threads that wait on its behalf.
     pub fn stop_flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.states.stop)
     }
@@ -136,7 +136,7 @@ impl Control {
         self.events.publish(event);
     }
 
-    /// Whether the job is told to stop.
+    /// Whether the job is to stop.
     pub fn stopped(&self) -> bool {
         self.states.stop.load(Ordering::Relaxed)
     }

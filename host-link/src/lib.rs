@@ -16,7 +16,7 @@
 //! let (remote, mut control) = control();
 //! let events = remote.subscribe(Interest::Milestones, 100);
 //! let job = std::thread::spawn(move || {
-//!     // A job would move a machine here; it takes orders between two turns, and tells what it does.
+//!     // A job would move a machine here; it takes commands between two turns, and publishes events.
 //!     while control.order() != Some(Command::Resume) {}
 //!     control.publish(Event::Phase(Phase::Welding));
 //! });

@@ -2,7 +2,7 @@
 //!
 //! A [`Link`] holds one session with a PC at a time. It does by itself what no firmware should do
 //! differently: it compares the schema at [`Request::Hello`](shared::protocol::Request::Hello) and refuses
-//! everything before, gives the session a number and a lease that every request renews, tells the [`Node`] when it
+//! everything before, gives the session a number and a lease that every request renews, informs the [`Node`] when it
 //! ends, takes datagrams of its PC and of the other board only, answers clock requests, counts what goes wrong, and
 //! announces the board by ARP until the first session. Everything else goes to the [`Node`].
 //!

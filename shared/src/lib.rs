@@ -11,7 +11,7 @@
 //!
 //! Modules use one another one way only, which a test holds. From the ground up: [`units`], [`parameter`] and [`ticks`];
 //! [`geometry`] and [`io`]; [`kinematics`], and [`state`] with the states and faults that everybody names; [`control`];
-//! [`config`] (what is told to a board) and [`trajectory`]; [`protocol`]; and on top the two boards, [`motion`] and
+//! [`config`] (parameters sent to a board) and [`trajectory`]; [`protocol`]; and on top the two boards, [`motion`] and
 //! [`tracking`], which do not know each other.
 #![no_std]
 

@@ -9,7 +9,7 @@ use shared::state::State;
 
 /// How far into the weld the operator holds it \[mm\].
 const HOLD_AFTER_MM: f64 = 200.0;
-/// How long the machine stands before the operator goes on \[path ticks\].
+/// How long the machine stands before the operator continues \[path ticks\].
 const STANDS: u32 = 300;
 /// Ticks for which drives and gates still go on as they were told before the hold.
 const TOLD: usize = 2;
@@ -17,7 +17,7 @@ const TOLD: usize = 2;
 const DEVIATION_MM: f64 = 0.03;
 const CONTOUR_MM: f64 = 0.05;
 
-/// An operator who holds a weld once, and goes on when the machine has stood for a while.
+/// An operator who holds a weld once, and continues when the machine has stood for a while.
 #[derive(Default)]
 struct Operator {
     /// Where the beams went on \[mm\].

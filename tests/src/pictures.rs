@@ -60,7 +60,7 @@ pub fn weld_through_pictures(
     )
 }
 
-/// The same with spatter, scratches, roll, lost and late pictures and a dark spell, as the shipped scene tells.
+/// The same with spatter, scratches, roll, lost and late pictures and a dark spell, as in the shipped scene.
 ///
 /// # Panics
 /// If no picture was lost or none was late on a side.

@@ -52,7 +52,7 @@ const RUN_IN: f64 = 40.0;
 const BEGINS: f64 = 900.0;
 /// Longest pause of the operator \[ms\], of several kinds.
 const PAUSES: [u64; 5] = [2, 40, 300, 1000, 3000];
-/// Once the operator has nothing more on their mind they let the machine go on, so often \[ms\].
+/// Once the operator has nothing more on their mind they let the machine continue, so often \[ms\].
 const GOES_ON: u32 = 400;
 /// Where a hold or its end are known: gates have a tick of their own at either end, and the least speed of a beam is
 /// reached in less than 0.04 mm.

@@ -197,7 +197,7 @@ fn beams_are_off_in_time_whatever_fails() {
         });
     }
 
-    // What the tracker sees: at its next control tick, told by its permit.
+    // What the tracker sees: at its next control tick, sent with its permit.
     let told_us = CONTROL_US + TRANSIT_US + SERVO_US;
     for (what, fault) in [
         (

@@ -6,7 +6,7 @@ pub(crate) trait HeightField<const N: usize> {
     const STEP: [f64; N];
 
     /// Whether cells count the more the sharper they are. Streaks along the seam are not equally bright from end to end:
-    /// far off the band that pulls it more than it tells.
+    /// far off the band that adds more bias than information.
     const SHARPEST: bool;
 
     /// What cells of half the resolution count beside those of the full one.

@@ -121,7 +121,7 @@ const CLIMB: f64 = 0.03;
 const SLANT: f64 = 0.05;
 const LEAN: f64 = 0.04;
 
-/// The mean point lies on the true line, though the camera goes on and the slides move in between, and though a picture
+/// The mean point lies on the true line, though the camera continues and the slides move in between, and though a picture
 /// shows another seam, another one none at all. It lies behind what the last picture shows. The pitch of 16 pictures is that
 /// of the line, to 0.002.
 #[test]
@@ -207,7 +207,7 @@ fn a_sweeping_camera_acquires() {
     assert!(believed >= 3, "{believed}");
 }
 
-/// Means begin anew after a jump, and after four pictures in a row without the seam.
+/// Means start again after a jump, and after four pictures in a row without the seam.
 #[test]
 fn means_begin_anew_after_a_gap() {
     let mut bench = Bench::new(Joint::Gap);

@@ -184,7 +184,10 @@ fn sysroot() -> Result<PathBuf> {
         .current_dir(root())
         .output()
         .context("cannot run rustc")?;
-    ensure!(output.status.success(), "rustc does not report where it is installed");
+    ensure!(
+        output.status.success(),
+        "rustc does not report where it is installed"
+    );
     Ok(PathBuf::from(String::from_utf8_lossy(&output.stdout).trim()))
 }
 

@@ -1,5 +1,5 @@
-//! `seamwright weld` on two emulated boards. Whatever is told on the command line is seamwright's to judge; this
-//! adds only what is not told.
+//! `seamwright weld` on two emulated boards. Options on the command line are checked by seamwright; this
+//! adds only the missing ones.
 
 use crate::cargo::root;
 use crate::emulate::{self, Running};
@@ -107,7 +107,7 @@ impl BoardFlags {
         }
     }
 
-    /// Name of the machine; of a file that does not tell it none, which seamwright will refuse in its own words.
+    /// Name of the machine; `None` if the file does not say it, which seamwright reports.
     fn machine_name(&self) -> Option<String> {
         match &self.machine {
             None => Some(DEFAULT_MACHINE.to_owned()),

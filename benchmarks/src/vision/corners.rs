@@ -26,7 +26,7 @@ pub(super) struct Corners {
     runs: Vec<Vec<Errors>>,
 }
 
-/// Corners of a finish whose walls are told wrong by 0.015 and learnt.
+/// Corners of a finish whose calibrated walls are wrong by 0.015 and learnt.
 pub(super) fn corner(finish: Finish, optics: Optics, corners: u64) -> Result<Corners> {
     let name = format!("{finish:?}").to_lowercase();
     let runs = of_seeds(&format!("{name} corners"), corners, |seed| {

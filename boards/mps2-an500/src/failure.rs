@@ -27,7 +27,7 @@ fn defmt_panic() -> ! {
     exit(EXIT_CODE)
 }
 
-/// Entered from `board_faults`, on a stack that begins anew.
+/// Entered from `board_faults`, on a stack that starts again.
 #[unsafe(no_mangle)]
 extern "Rust" fn board_fault(fault: &Fault) -> ! {
     crate::logger::abandon();

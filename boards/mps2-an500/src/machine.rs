@@ -6,7 +6,7 @@ use plant::MotionPlant;
 /// Before the name of the machine.
 const KEY: &str = "machine=";
 
-/// The machine that was told, or [`plant::DEFAULT_MACHINE`] if none was. A name that no machine has ends the board:
+/// The machine that was named, or [`plant::DEFAULT_MACHINE`] if none was. A name that no machine has ends the board:
 /// it must not run on another machine than its user means.
 pub fn wired() -> MotionPlant {
     let mut buffer = [0; COMMAND_LINE];

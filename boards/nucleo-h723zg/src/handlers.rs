@@ -81,7 +81,7 @@ fn panic(info: &PanicInfo) -> ! {
     stop(PANIC, info.location().map_or(0, |location| location.line()))
 }
 
-/// Entered from `board_faults`, on a stack that begins anew.
+/// Entered from `board_faults`, on a stack that starts again.
 #[unsafe(no_mangle)]
 extern "Rust" fn board_fault(fault: &Fault) -> ! {
     stop(if fault.stack_overflow() { STACK } else { FAULT }, fault.at)

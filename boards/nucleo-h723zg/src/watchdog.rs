@@ -28,7 +28,7 @@ impl Watchdog {
         Self { fed: false }
     }
 
-    /// The board works: wait anew, 50 ms from the first feed on. To be called by the servo task alone, once it
+    /// The board works: wait again, 50 ms from the first feed on. To be called by the servo task alone, once it
     /// has seen the others alive.
     pub fn feed(&mut self) {
         if !self.fed {

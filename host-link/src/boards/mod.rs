@@ -30,7 +30,7 @@ pub trait Boards {
     }
 
     /// The next datagram of either board, in the order of arrival; `None` if none came within `timeout`, or something else is
-    /// to be looked at before: an answer, or what [`Self::waker`] told of. Simulated boards advance their time here, by at most
+    /// to be looked at before: an answer, or what [`Self::waker`] announced. Simulated boards advance their time here, by at most
     /// `timeout`.
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError>;
 
@@ -43,7 +43,7 @@ pub trait Boards {
     /// Who the board says it is; `None` if it is not in this session.
     fn identity(&self, role: Role) -> Option<&Identity>;
 
-    /// How the motion board is told where the tracker board is ([`Request::PathStatesTo`]); `None` without one.
+    /// The request that gives the motion board the address of the tracker board ([`Request::PathStatesTo`]); `None` without one.
     fn path_states_target(&self) -> Option<Request>;
 
     /// Ends the wait of [`Self::receive`] from another thread; `None` of simulated boards, whose time is not that of threads.

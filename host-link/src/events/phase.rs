@@ -72,7 +72,7 @@ impl fmt::Display for Phase {
 /// What the machine waits for until the operator answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
-    /// May it go on, in single block? [`crate::Command::Resume`] says so.
+    /// May it continue, in single block? [`crate::Command::Resume`] says so.
     GoOn {
         /// With what.
         next: Next,

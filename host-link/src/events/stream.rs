@@ -113,7 +113,7 @@ impl Events {
         }
     }
 
-    /// Ends all subscriptions after what has been told by now.
+    /// Ends all subscriptions after the events sent so far.
     pub fn close(&self) {
         for queue in locked(&self.shared.queues).drain(..) {
             locked(&queue.state).closed = true;

@@ -23,7 +23,7 @@ const SOFTWARE: &str = "Software";
 /// A GigE Vision camera. How its frames are matched with the captures stands at the head of `matching.rs`.
 #[derive(Debug)]
 pub struct GigeCamera {
-    /// As it was told.
+    /// Its name in the machine file.
     name: String,
     rows: usize,
     columns: usize,
@@ -33,7 +33,7 @@ pub struct GigeCamera {
     /// Aravis has heard nothing of the camera for seconds.
     gone: Arc<AtomicBool>,
     matching: Matching,
-    /// A frame whose strobe has not been told yet.
+    /// A frame whose strobe is not known yet.
     early: Option<Buffer>,
     /// What went wrong at a strobe.
     failed: Option<CameraError>,

@@ -28,9 +28,7 @@ pub enum PngError {
         source: DecodingError,
     },
     /// Its pixels are not what cameras give.
-    #[error(
-        "picture {file} has {kind}; only grey pictures of 8 bits a pixel can be measured: convert it"
-    )]
+    #[error("picture {file} has {kind}; only grey pictures of 8 bits a pixel can be measured: convert it")]
     Kind {
         /// The file.
         file: String,
@@ -219,7 +217,10 @@ mod tests {
         let text = scratch("text.png");
         std::fs::write(&text, "no picture").expect("written");
         let error = said(&text);
-        assert!(error.contains("text.png is not a PNG file, or is damaged"), "{error}");
+        assert!(
+            error.contains("text.png is not a PNG file, or is damaged"),
+            "{error}"
+        );
 
         let colours = scratch("colours.png");
         write_rgb(&colours, 2, 2, &[9; 12]).expect("written");
@@ -244,7 +245,10 @@ mod tests {
         let cut = scratch("cut.png");
         std::fs::write(&cut, &bytes[..bytes.len() / 2]).expect("written");
         let error = said(&cut);
-        assert!(error.contains("cut.png is not a PNG file, or is damaged"), "{error}");
+        assert!(
+            error.contains("cut.png is not a PNG file, or is damaged"),
+            "{error}"
+        );
     }
 
     #[test]

@@ -85,7 +85,7 @@ fn open(trigger: &str) -> GigeCamera {
     })
 }
 
-/// The answer to the strobe that was told last.
+/// The answer to the latest strobe.
 #[track_caller]
 fn answer(camera: &mut GigeCamera, picture: &mut Picture) -> Arrival {
     until("answer", || {

@@ -1,6 +1,6 @@
 //! Pictures to calibrate a camera from: the machine stands, its slides step, the camera looks.
 //!
-//! Where the camera steps out of the work or into it, the machine goes on along travel by as much as the sharp band would
+//! Where the camera steps out of the work or into it, the machine continues along travel by as much as the sharp band would
 //! wander on the work. So the band stays where it is: what its texture does to heights is the same in every picture and
 //! leaves the steps true, and so does work that slopes along travel.
 
@@ -76,7 +76,11 @@ impl Weld {
             }
             self.path(session, path, Phase::Approaching)?;
         }
-        let nothing = || JobError::Calibrate("the program has no weld in front of which the camera could look at the seam".to_owned());
+        let nothing = || {
+            JobError::Calibrate(
+                "the program has no weld in front of which the camera could look at the seam".to_owned(),
+            )
+        };
         let weld = weld.ok_or_else(nothing)?;
         let (path, (begin, _)) = (weld.knot_path(), weld.weld().ok_or_else(nothing)?);
         let lead = session

@@ -40,7 +40,7 @@ pub(super) fn follow(
         let mut stands = false;
         let here = s.record.motion().last().filter(|here| here.tick > begun).copied();
         if let Some(here) = &here {
-            // The telemetry tells it sooner than the next status; at rest it names no path.
+            // The telemetry shows it sooner than the next status; at rest it names no path.
             stands = !on_path(here.state);
         }
         if let Some(here) = here.filter(|here| here.path_id == id) {
@@ -96,16 +96,16 @@ struct Standing {
     for_somebody: bool,
     /// In a hold that was not commanded.
     held_by_board: bool,
-    /// What was said last of hold, back and going on, if the board has not been seen to run since; and when.
+    /// The last command of hold, back and resume, if the board has not been seen to run since; and when.
     said: Option<Command>,
     said_at: u32,
 }
 
 impl Standing {
-    /// Takes what the board says; a hold lasts while the machine goes back before it goes on.
+    /// Takes the state of the board; a hold lasts while the machine goes back before it continues.
     fn watch(&mut self, motion: &MotionStatus) {
         let held = motion.state == State::Holding;
-        // What was told before the word is of another state.
+        // Reports from before the command belong to another state.
         if motion.state == State::Running && motion.path_ticks > self.said_at {
             self.said = None;
         }
@@ -122,7 +122,7 @@ impl Standing {
     }
 }
 
-/// When the machine was last seen to go on, or to have a reason not to.
+/// When the machine was last seen to continue, or to have a reason not to.
 struct Advance {
     s_mm: f64,
     tick: u32,
@@ -220,12 +220,12 @@ mod tests {
             (standing.for_somebody, standing.held_by_board)
         };
         assert_eq!(told(10, Running, 1.0, Some(Command::Hold)), (false, false));
-        // As it was told before the word, and after it.
+        // As reported before the command, and after it.
         assert_eq!(told(10, Running, 1.0, None), (false, false));
         assert_eq!(told(12, Holding, 1.0, None), (true, false));
         assert_eq!(told(13, Holding, 1.0, Some(Command::Back)), (true, false));
         assert_eq!(told(14, Holding, 1.0, Some(Command::Resume)), (true, false));
-        // It goes back before it goes on.
+        // It goes back before it continues.
         assert_eq!(told(15, Holding, 1.0, None), (false, false));
         assert_eq!(told(16, Running, 1.0, None), (false, false));
         // And neither this hold nor its end was commanded.

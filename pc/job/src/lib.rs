@@ -131,7 +131,7 @@ pub enum JobError {
     Absent {
         /// For how long.
         seconds: f64,
-        /// What the boards told.
+        /// What the boards reported.
         source: Box<JobError>,
     },
     /// A camera gives no pictures, or none that can be measured.

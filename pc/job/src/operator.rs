@@ -34,7 +34,7 @@ impl Session<'_> {
         }
     }
 
-    /// A new part of the job begins; one that goes on is told once.
+    /// A new part of the job begins; one that continues is announced once.
     pub fn phase(&mut self, phase: Phase) {
         self.question = None;
         if self.phase.replace(phase) != Some(phase) {

@@ -135,7 +135,7 @@ pub(super) fn watch(session: &mut Session, id: u32) -> Result<(), JobError> {
     };
     let refused = match session.command(Role::Motion, &Request::OffsetPose(offset)) {
         Ok(()) => None,
-        // The slides go on alone, as far as they reach.
+        // The slides continue alone, as far as they reach.
         Err(LinkError::Refused { refusal, .. }) => Some(refusal.to_string()),
         Err(error) => return Err(error.into()),
     };
@@ -183,7 +183,7 @@ mod tests {
         for u2 in [-8.5, -3.0, -8.5] {
             assert_eq!(r.look(3, &[0.0, 0.0, u2, 0.0], &none), None);
         }
-        // There, it goes on from where it is.
+        // There, it continues from where it is.
         let (_, further) = r.look(3, &[0.0, 0.0, -8.5, 0.0], &offset).unwrap();
         assert!(
             further.lateral_mm.abs() > 1.5 * offset.lateral_mm.abs(),

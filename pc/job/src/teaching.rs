@@ -74,7 +74,7 @@ pub enum NoTeaching {
     Parameter(#[from] RangeError),
 }
 
-/// Whether `part` can be taught with `machine`, as far as that can be told without boards.
+/// Whether `part` can be taught with `machine`, as far as that is known without boards.
 ///
 /// Gives back what a person should know of it.
 ///

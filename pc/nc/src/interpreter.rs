@@ -33,7 +33,7 @@ pub(super) struct Interpreter {
     /// s, and where it was programmed.
     dwell: Option<(f64, SourcePosition)>,
     paths: Vec<ProgramPath>,
-    /// The next motion that feeds goes on along the last path.
+    /// The next motion that feeds continues along the last path.
     open: bool,
     pub(super) ended: bool,
 }
@@ -154,7 +154,7 @@ impl Interpreter {
         }
     }
 
-    /// G53: the axes named go, in axis space, where they are told to.
+    /// G53: the axes named go to their coordinates, in axis space.
     fn axes_motion(&mut self, block: &Block, place: SourcePosition) -> Result<(), NcError> {
         if self.modal.motion != Some(Code::Rapid) {
             return Err(Problem::AxesNeedRapid.at(place));
@@ -231,7 +231,7 @@ impl Interpreter {
         Ok(true)
     }
 
-    /// A complete NURBS. No motion goes on after it.
+    /// A complete NURBS. No motion continues after it.
     fn end_nurbs(&mut self, way: Way, words: Words) {
         let Some(open) = self.nurbs.take() else { return };
         self.learn(&words);

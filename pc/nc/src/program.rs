@@ -64,7 +64,7 @@ pub struct Target {
     pub words: Words,
     /// How fast; none of a rapid.
     pub feed: Option<FeedRate>,
-    /// How the way there is followed, and how it goes on.
+    /// How the way there is followed, and how it continues.
     pub control: PathControl,
     /// Where the program says so.
     pub place: SourcePosition,

@@ -91,7 +91,7 @@ impl Screen {
             Event::Question(question) => self.headline(&asked(question)),
             Event::Message(text) => self.print(text),
             Event::Progress { done_mm, length_mm } => self.travel(*done_mm, *length_mm),
-            // What the boards tell is for other eyes; how the job ended is said when it is evaluated.
+            // Telemetry is not printed; how the job ended is printed after its evaluation.
             _ => {}
         }
     }

@@ -146,12 +146,18 @@ fn what_cannot_be_taught_is_refused_before_the_machine_moves() {
     };
     let panel = shipped("programs/panel.toml").display().to_string();
     for (words, reason) in [
-        (&["rib.toml"][..], "where should the points be written? give --output FILE"),
+        (
+            &["rib.toml"][..],
+            "where should the points be written? give --output FILE",
+        ),
         (
             &["bare.toml", "-o", "t.csv"],
             "the start is unknown: give it with --from",
         ),
-        (&["rib.toml", "-o", "t.csv", "--from", "1,2,3"], "must be six finite numbers"),
+        (
+            &["rib.toml", "-o", "t.csv", "--from", "1,2,3"],
+            "must be six finite numbers",
+        ),
         (
             &["rib.toml", "-o", "other.csv"],
             "other.csv was taught on machine gantry for part other, not on dual-beam-gantry for rib",

@@ -9,7 +9,7 @@ use shared::protocol::{PathAction, PathEvent};
 use std::path::Path;
 use thiserror::Error;
 
-/// How far beyond its ends a deviation goes on in a straight line \[mm\], constant from there: enough for the
+/// How far beyond its ends a deviation continues in a straight line \[mm\], constant from there: enough for the
 /// cameras and the map to see a straight seam, without leading a steep one out of the slides' reach.
 const CONTINUATION: f64 = 20.0;
 /// Rows may begin this much after the weld does and end this much before; the straight continuation is the seam
@@ -118,7 +118,7 @@ impl Deviation {
         (self.s[0], self.s[self.s.len() - 1])
     }
 
-    /// u1, v1, u2, v2 \[mm\] at `s` \[mm\]. Beyond the rows it goes on in a straight line with the slope of the
+    /// u1, v1, u2, v2 \[mm\] at `s` \[mm\]. Beyond the rows it continues in a straight line with the slope of the
     /// last span for 20 mm, then parallel to the plan.
     pub fn at(&self, s: f64) -> [f64; SLIDES] {
         let (first, last) = self.range();

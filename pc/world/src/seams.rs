@@ -19,7 +19,7 @@ const STEPS: usize = 50;
 const PLACES: f64 = 1.0;
 /// Least cosine between T of a head and T of a seam that it can follow.
 const SAME_WAY: f64 = 0.5;
-/// How far beyond the ends of its file a seam goes on \[mm\].
+/// How far beyond the ends of its file a seam continues \[mm\].
 const BEYOND_END_MM: f64 = 40.0;
 
 /// All seams of a drawing as they really are, and the heads that follow them.

@@ -14,7 +14,7 @@ use shared::tracking::frames::Heads;
 use std::sync::{Arc, Mutex, PoisonError};
 use thiserror::Error;
 
-/// A noise of geometric cameras is told as so many standard deviations.
+/// The uncertainty that geometric cameras report, in standard deviations of their noise.
 const SIGMAS: f64 = 3.0;
 
 /// What is around a machine.

@@ -64,7 +64,7 @@ pub struct ReadbackConfig {
 }
 
 impl BeamConfig {
-    /// An overlap where the machine file tells none: assumed, about the width of a bead.
+    /// The overlap if the machine file gives none: assumed, about the width of a bead.
     pub const fn overlap_mm() -> f64 {
         2.0
     }

@@ -82,7 +82,7 @@ pub struct TrackingConfig {
     pub search_mm: f64,
     /// Speed of that \[mm/s\].
     pub search_speed_mm_s: f64,
-    /// Fastest that any path goes \[mm/s\]; path states that tell of more are not believed.
+    /// Fastest that any path goes \[mm/s\]; path states with more are rejected.
     pub max_path_speed_mm_s: f64,
     /// How far a seam may lie from its plan, along U and V \[mm\]; what is seen further away is not believed.
     pub max_seam_deviation_mm: f64,

@@ -36,7 +36,7 @@ impl PowerBasis {
         })
     }
 
-    /// Point \[mm\], first and second derivative over `v`, by Horner's rule. Outside −1 to 1 the curve goes on by
+    /// Point \[mm\], first and second derivative over `v`, by Horner's rule. Outside −1 to 1 the curve continues by
     /// its formula.
     #[inline]
     pub fn at(&self, v: f64) -> Moving {

@@ -93,7 +93,7 @@ impl Superimposed {
         core::array::from_fn(|axis| axes[axis] - self.added[axis])
     }
 
-    /// One path tick: the axes for the pose beside the one of `planned`. A blend goes on only where the machine
+    /// One path tick: the axes for the pose beside the one of `planned`. A blend continues only where the machine
     /// `goes` along its path.
     ///
     /// # Errors
@@ -137,7 +137,7 @@ impl Superimposed {
         Ok(axes)
     }
 
-    /// The blend goes on by a tick.
+    /// The blend continues by a tick.
     fn advance(&mut self, goes: bool) {
         let step = PATH_PERIOD_S / RAMP_S;
         self.pace = (self.pace + if goes { step } else { -step }).clamp(0.0, 1.0);

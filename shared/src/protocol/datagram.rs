@@ -99,7 +99,7 @@ pub enum BeamPermit {
     /// Nothing: the slides do not follow the seam, or the tracker has a fault.
     #[default]
     No,
-    /// Stay on, but not go on: the seam is followed, but the spot is not on it yet, or not known to be.
+    /// Stay on, but not continue: the seam is followed, but the spot is not on it yet, or not known to be.
     Keep,
     /// Go on: the seam was seen where the spot is, and both slides of the side are on it.
     Open,

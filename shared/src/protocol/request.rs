@@ -92,7 +92,7 @@ pub enum Request {
     /// Append elements to the path, before or while it runs; answered by [`Response::Room`]. Those before one that
     /// is refused are taken.
     LoadElements {
-        /// They go on where the last one ends; the first one begins where the axes stand.
+        /// They continue where the last one ends; the first one begins where the axes stand.
         elements: Vec<PathElement, LOAD_ELEMENTS>,
         /// The path is complete; its last element comes to rest.
         last: bool,

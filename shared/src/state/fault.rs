@@ -174,9 +174,11 @@ pub enum Fault {
     #[error("a control law got a value that is not a number; check the machine parameters")]
     NotANumber,
     /// The path task did not deliver references in time, twice in a row or three times within 100 ms.
-    #[error("the path task was late twice in a row, or three times within 100 ms; the servo loops had no references")]
+    #[error(
+        "the path task was late twice in a row, or three times within 100 ms; the servo loops had no references"
+    )]
     ReferencesLate,
-    /// A motor was told to go, and its grating stood still.
+    /// A motor was commanded to move, and its grating did not change.
     #[error("the drive of {} was commanded to move by {commanded_um:.0} µm (or m°), but its grating did not move: check grating and its cable, drive and brake, and the offset of the drive", MOTOR_NAMES[*motor as usize])]
     NoMovement {
         /// Index of the motor.

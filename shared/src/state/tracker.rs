@@ -120,7 +120,7 @@ pub enum TrackerFault {
         /// Largest believable step.
         limit: i32,
     },
-    /// A slide went faster than it is ever told to.
+    /// A slide moved faster than it is ever commanded to.
     #[error("slide {} went at {seen_mm_s:.0} mm/s, the limit is {limit_mm_s:.0}: check its drive and the encoder's scale; then reset and home", SLIDE_NAMES[*slide as usize])]
     Overspeed {
         /// Index of the slide.
@@ -130,7 +130,7 @@ pub enum TrackerFault {
         /// The trip.
         limit_mm_s: f32,
     },
-    /// A slide was told to go, and its encoder stood still.
+    /// A slide was commanded to move, and its encoder did not change.
     #[error("slide {} was commanded to move by {commanded_um:.0} µm, but its encoder did not move: check encoder and its cable, drive and brake, and the offset of the drive; then reset and home", SLIDE_NAMES[*slide as usize])]
     NoMovement {
         /// Index of the slide.

@@ -208,7 +208,7 @@ impl Filter {
             return;
         }
         self.far = 0;
-        // A datagram that was overtaken tells nothing new about time passed.
+        // A datagram that was overtaken says nothing new about the time passed.
         let dt = (sent_us.saturating_sub(self.last_sent_us) as f64 * 1e-6).min(MAX_STEP);
         self.last_sent_us = self.last_sent_us.max(sent_us);
         self.offset += self.rate * dt;

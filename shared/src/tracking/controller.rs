@@ -363,7 +363,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         })
     }
 
-    /// Compares the channels of the emergency stop. That they disagree is told with the drives off too, and in place of
+    /// Compares the channels of the emergency stop. That they disagree is reported with the drives off too, and in place of
     /// that it is pressed.
     fn watch_estop(&mut self, periods: u32) {
         let elapsed_us = periods.saturating_mul(TICK_US);

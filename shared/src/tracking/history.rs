@@ -45,7 +45,7 @@ pub struct PathHistory {
 pub enum Pushed {
     /// It is the newest.
     Newest,
-    /// It is the newest and the path began anew: another number, or s went back.
+    /// It is the newest and the path began again: another number, or s went back.
     Restarted,
     /// It came too late or is not finite; ignored.
     Ignored,

@@ -65,7 +65,7 @@ pub struct PlausibleLimits {
     pub deviation: f64,
     /// How far from the plane of the lead a camera sees \[mm\].
     pub along: f64,
-    /// How far beyond the travel of a slide a seam is still told \[mm\].
+    /// How far beyond the travel of a slide a seam is still accepted \[mm\].
     pub gate: f64,
     /// How fast the pose may move beside the plan \[mm/s\]: faster, and no slide follows.
     pub pose_speed: f64,

@@ -19,7 +19,7 @@ const fn u_slide(side: usize) -> usize {
 #[derive(Clone, Debug, Default)]
 pub struct Seam {
     maps: [SeamMap; SLIDES],
-    /// What the maps held before they locked on to the seam anew: the spot has yet to pass that.
+    /// What the maps held before they locked on to the seam again: the spot has yet to pass that.
     before: [SeamMap; SLIDES],
     /// Where each slide last met the seam since tracking began \[mm\].
     met: [Option<f64>; SLIDES],
@@ -28,7 +28,7 @@ pub struct Seam {
     implausible: [u32; SIDES],
 }
 
-/// Where a slide should be, as far as the seam tells.
+/// Where a slide should be, as far as it is known from the seam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SeamTarget {
     /// The seam, in the frame of the planned path.

@@ -83,11 +83,11 @@ impl Supervision {
     }
 }
 
-/// What a slide did and was told to.
+/// Position and command of a slide.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SlideWatch {
     counts: i64,
-    /// What the drive was told at the last tick \[mm/s\].
+    /// Command to the drive at the last tick \[mm/s\].
     command: f64,
     /// What the drive makes of its commands \[mm/s\].
     expected: f64,
@@ -119,7 +119,7 @@ impl SlideWatch {
         };
     }
 
-    /// The drive is told to go at `velocity` \[mm/s\].
+    /// The drive gets the command `velocity` \[mm/s\].
     pub fn command(&mut self, velocity: f64) {
         self.command = velocity;
     }

@@ -180,7 +180,7 @@ fn one_bad_datagram_here_and_there_makes_no_fault_and_moves_no_spot_far() {
         assert!(status.implausible_path_states > 0 && status.implausible_clock_replies > 0);
         worst = worst.max(extremes.off);
     }
-    // A measurement within what a camera sees, of the right capture and before the true one, cannot be told from it.
+    // A measurement within what a camera sees, of the right capture and before the true one, cannot be distinguished from it.
     println!("5 % forged: {worst:.3} mm at most");
     assert!(worst <= 0.35, "{worst} mm");
 }
@@ -293,7 +293,7 @@ fn measurements_that_drift_lead_no_further_than_a_seam_may_lie_and_no_faster() {
             }
         }
         println!("a drift of {drift}: {furthest:.2} mm, {:?}", extremes.fault);
-        // The soft limit, and what a slide goes on within the lag of its drive.
+        // The soft limit, and what a slide continues within the lag of its drive.
         assert!(furthest <= 12.5, "{furthest} mm");
         if drift > 0.3 {
             assert!(

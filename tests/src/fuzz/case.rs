@@ -1,4 +1,4 @@
-//! One case: boards at a moment of a job, and what they are told from there on.
+//! One case: boards at a moment of a job, and the messages sent to them from there on.
 
 use super::corpus::{Message, Session, any, seldom};
 use super::judge::Judge;

@@ -1,4 +1,4 @@
-//! What must be true of the boards' outputs at every tick, whatever they were told.
+//! What must be true of the boards' outputs at every tick, whatever messages they got.
 
 use super::wire::Wire;
 use serde::Serialize;

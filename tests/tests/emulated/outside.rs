@@ -39,7 +39,7 @@ const AFTER_MM: f64 = 150.0;
 /// A permit is valid for so long on emulated boards \[ms\].
 const PERMIT_MS: u32 = 10;
 
-/// Welds, and does `act` once the beams have been on for a while; what the motion board had told last before.
+/// Welds, and does `act` once the beams have been on for a while; the last sample of the motion board before.
 fn weld_and(pair: &mut Pair, act: impl FnOnce(&mut Pair)) -> (Ended, MotionSample) {
     let mut boards = pair.connect();
     let (mut on_mm, mut last, mut act) = (None, None, Some(act));

@@ -26,7 +26,7 @@ fn shipped(name: &str) -> MachineFile {
     MachineFile::read(&file).unwrap()
 }
 
-/// Runs `program` from `line`; what the motion board told, and how it ended.
+/// Runs `program` from `line`; the samples of the motion board, and how it ended.
 fn started(machine: &MachineFile, text: &str, line: Option<u32>) -> (Ended, Vec<MotionSample>) {
     let program = interpret(text, Options::default()).unwrap();
     let mut samples = Vec::new();

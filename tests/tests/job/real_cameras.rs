@@ -44,7 +44,7 @@ enum Wire {
     Whole,
     /// No frame comes any more, without an error.
     Silent { side: usize, from_s_mm: f64 },
-    /// The camera tells that it is gone.
+    /// The camera reports that it was lost.
     Gone { side: usize, from_s_mm: f64 },
 }
 
@@ -76,7 +76,7 @@ enum Frame {
 struct Outside {
     matching: Matching,
     frames: Receiver<Frame>,
-    /// Came before its strobe was told.
+    /// Came before its strobe was notified.
     early: Option<(u64, Picture)>,
     given: u64,
     done: Arc<Done>,
@@ -174,7 +174,7 @@ fn camera(camera: (RenderedCamera, Sender<FieldOfView>)) -> (Lens, Outside) {
     (lens, outside)
 }
 
-/// Simulated boards, and a world that sees what they tell the PC.
+/// Simulated boards, and a world that sees what they send to the PC.
 struct World {
     boards: SimulatedBoards,
     file: MachineFile,
@@ -262,7 +262,7 @@ impl Boards for World {
     pass_on!(boards: request, send, now, identity, path_states_target);
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
-        // Time goes on only if the pictures keep pace; the boards are much faster than the cameras.
+        // Time continues only if the pictures keep pace; the boards are much faster than the cameras.
         for (side, lens) in self.lenses.iter().enumerate() {
             if self.cut != Some(side) {
                 lens.done.wait(self.frames.saturating_sub(LATE));
@@ -276,7 +276,7 @@ impl Boards for World {
     }
 }
 
-/// Welds with cameras that are outside; a session that is not told of the seam does not judge its distance.
+/// Welds with cameras that are outside; a session without the true seam does not judge its distance.
 fn weld_outside(wire: Wire, told: Option<Arc<Deviation>>) -> (Ended, World) {
     let machine = machine();
     let program = interpret(PROGRAM, Options::default()).unwrap();

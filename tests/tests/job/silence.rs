@@ -19,7 +19,7 @@ impl Operator for StopsWhen {
 /// What goes wrong once the beam is on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Wrong {
-    /// The tracker board tells its state no more, and the operator stops the job.
+    /// The tracker board does not report its state any more, and the operator stops the job.
     TrackerSilent,
     /// This program is paused.
     Paused,
@@ -80,7 +80,7 @@ impl Boards for Alone {
 
     fn answer(&mut self, role: Role) -> Result<Option<Response>, LinkError> {
         assert_eq!(role, Role::Tracker);
-        // The job goes on meanwhile, until the operator has enough.
+        // The job continues meanwhile, until the operator has enough.
         self.polled += 1;
         if self.polled <= 20 {
             return Ok(None);

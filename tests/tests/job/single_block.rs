@@ -48,7 +48,7 @@ impl Operator for Patient {
     }
 }
 
-/// The welding job block by block, and all that the motion board told.
+/// The welding job block by block, and all samples of the motion board.
 fn block_by_block(operator: &mut Patient) -> (Ended, Vec<MotionSample>) {
     let mut samples = Vec::new();
     let mut boards = TappedBoards {

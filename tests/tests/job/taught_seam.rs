@@ -89,7 +89,7 @@ impl Case {
         }
     }
 
-    /// Teaches into `output`, or goes on there, from a start that is wrong by some mm and degrees.
+    /// Teaches into `output`, or continues there, from a start that is wrong by some mm and degrees.
     fn teach(&self, output: &Path, operator: &mut dyn Operator) -> Ended {
         let drawing = self.drawn();
         let cameras = Cameras::of(self.machine.tracking.as_ref().unwrap()).unwrap();

@@ -134,7 +134,7 @@ impl Observer {
         self.joint = joint;
     }
 
-    /// Forgets where the seam was, and acquires it anew.
+    /// Forgets where the seam was, and acquires it again.
     pub fn forget(&mut self) {
         self.lose(State::Acquiring);
     }
@@ -285,7 +285,7 @@ impl Observer {
         self.restart();
     }
 
-    /// Begins all means anew.
+    /// Begins all means again.
     fn restart(&mut self) {
         self.places.clear();
         self.rolls.clear();

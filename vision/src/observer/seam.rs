@@ -1,4 +1,4 @@
-//! What an observer is told, and what it tells.
+//! Inputs and results of an observer.
 
 use super::{Doubt, State};
 use crate::report::{Form, Report, Sigma, Status};
@@ -61,7 +61,7 @@ pub struct Seam {
 /// In the camera's frame where the camera is now: each picture's (a, u, n) is carried along by what the camera has moved
 /// since ([`Moved`]). The three are means over the same pictures and therefore belong together: on a seam that climbs,
 /// slants or bends the point lies on the seam, somewhat behind what the last picture shows. After a jump of the seam, a
-/// loss, or as many pictures in a row without the seam as a mean has, means begin anew.
+/// loss, or as many pictures in a row without the seam as a mean has, means start again.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MeanPoint {
     /// a \[mm\].

@@ -162,10 +162,7 @@ fn guard(image: &Image, regions: &[Region], findings: &mut Vec<String>) {
         .iter()
         .filter(|region| region.begin < end && begin < region.end)
     {
-        findings.push(format!(
-            "the guard below the stack overlaps {}",
-            region.name
-        ));
+        findings.push(format!("the guard below the stack overlaps {}", region.name));
     }
 }
 

@@ -123,7 +123,7 @@ pub fn image(bytes: &[u8]) -> Result<Image> {
     Ok(image)
 }
 
-/// What of each segment is flashed, where. The object crate tells addresses in memory only.
+/// What of each segment is flashed, where. The object crate gives addresses in memory only.
 fn loads(file: &object::File<'_>) -> Result<Vec<Part>> {
     let object::File::Elf32(elf) = file else {
         bail!("it is not a 32-bit ELF file");

@@ -16,7 +16,7 @@ use std::time::Duration;
 /// How often a reader looks whether it is still wanted.
 const READER_WAKES: Duration = Duration::from_millis(50);
 
-/// One board. Each has a UDP socket of its own: of an emulated board the source port tells nothing.
+/// One board. Each has a UDP socket of its own: of an emulated board the source port is arbitrary.
 pub(super) struct Connection {
     pub(super) stream: Stream,
     pub(super) datagrams: UdpSocket,

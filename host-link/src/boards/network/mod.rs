@@ -100,7 +100,7 @@ pub struct NetworkBoards {
     handled: Option<Box<dyn Fn() + Send>>,
     /// Set to stop the machine.
     interrupted: Arc<AtomicBool>,
-    /// The motion board was told to, while an answer was waited for.
+    /// A stop was sent to the motion board while an answer was waited for.
     stopped: bool,
     stall_detector: StallDetector,
 }
@@ -164,14 +164,14 @@ impl NetworkBoards {
         })
     }
 
-    /// As soon as `interrupted` is set the motion board is told to stop, whatever else is being waited for.
+    /// As soon as `interrupted` is set a stop is sent to the motion board, whatever else is being waited for.
     #[must_use]
     pub fn stopped_by(self, interrupted: Arc<AtomicBool>) -> Self {
         Self { interrupted, ..self }
     }
 
     /// `handled` is called whenever everything that the boards sent has been taken and this program is about to wait or to ask:
-    /// emulated boards, which wait while this program has no processor, are told so.
+    /// this is for emulated boards, which wait while this program has no processor.
     #[must_use]
     pub fn paced_by(self, handled: impl Fn() + Send + 'static) -> Self {
         Self {
@@ -221,7 +221,7 @@ impl NetworkBoards {
         match taken {
             Some(Incoming::Datagram(role, datagram)) => self.came.push_back((role, datagram)),
             Some(Incoming::Answer(role, answer)) => {
-                // The session ends with its boards, so that of each that told something there is a stream.
+                // The session ends with its boards, so that there is a stream for each that sent something.
                 if let Ok(stream) = self.stream(role) {
                     stream.deliver(answer);
                 }

@@ -20,7 +20,7 @@ pub enum DryRunError {
     /// There is no reference for the axes.
     #[error(transparent)]
     Reference(#[from] Unreachable),
-    /// The planner does not go on.
+    /// The planner does not continue.
     #[error(
         "line {line}: the planner does not move on, {s_mm:.3} mm along path {path}; please report the program"
     )]

@@ -26,7 +26,7 @@ pub enum FromLineError {
         /// The last one with a motion.
         last: u32,
     },
-    /// A curve is told in several lines.
+    /// A curve takes several lines.
     #[error(
         "line {line} is in the middle of the NURBS of line {begins}: start there, or after its G5.3 or last point"
     )]

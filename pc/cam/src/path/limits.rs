@@ -83,7 +83,7 @@ impl DriveLimits {
     }
 }
 
-/// The worst of all that is wrong, which is told.
+/// The worst of several errors, which is reported.
 #[derive(Debug, Default)]
 pub(super) struct Worst(Option<(f64, PathError)>);
 

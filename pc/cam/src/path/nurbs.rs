@@ -154,7 +154,7 @@ impl Span {
         Some(part)
     }
 
-    /// Whether it goes on from where the last one went, `before`, and has a direction at both ends.
+    /// Whether it continues from where the last one went, `before`, and has a direction at both ends.
     fn check(&self, before: Option<Vector3<f64>>, place: SourcePosition) -> Result<(), PathError> {
         let polygon = self.curve.points().windows(2).map(|two| (two[1] - two[0]).norm());
         let least = NO_SPEED * polygon.sum::<f64>();

@@ -99,7 +99,7 @@ impl Planner {
         }
     }
 
-    /// The first words must say all that the machine can be told.
+    /// The first motion must have words for all axes of the machine.
     fn check_complete(&self, target: &Target) -> Result<(), PathError> {
         let missing = ROTARY.filter(|&i| self.fitted[i] && target.words.axes[i].is_none());
         let missing: Vec<_> = missing.map(|i| AXIS_NAMES[i]).collect();

@@ -1,4 +1,4 @@
-//! What is found from pictures of which something is known, told beside what was believed before.
+//! Calibration from pictures with known values; results are listed beside the previous calibration.
 
 use super::ReferencePicture;
 use crate::PngError;
@@ -55,13 +55,13 @@ pub enum CalibrateError {
     /// The noise is not that of photons.
     #[error(transparent)]
     Transfer(#[from] TransferError),
-    /// The band tells no profile.
+    /// No profile can be determined from the band.
     #[error(transparent)]
     Depth(#[from] DepthError),
-    /// The steps tell no matrix.
+    /// No matrix can be determined from the steps.
     #[error(transparent)]
     Slides(#[from] SlideError),
-    /// The coupon tells no offset.
+    /// No offset can be determined from the coupon.
     #[error(transparent)]
     Corner(#[from] CornerError),
 }
@@ -232,7 +232,8 @@ pub fn slides(
     }
     let mm_per_m = |share: f64| format!("{:+.1} mm/m", 1e3 * share);
     let um = |mm: f64| format!("{:.1} µm", 1e3 * mm);
-    let play = |axis: usize| fit.backlash_mm[axis].map_or("not measured: step in both directions".to_owned(), um);
+    let play =
+        |axis: usize| fit.backlash_mm[axis].map_or("not measured: step in both directions".to_owned(), um);
     let [offset_u, offset_v] = calibration.slides.offset_mm;
     let (was_u, was_v) = (before.slides.offset_mm[0], before.slides.offset_mm[1]);
     let as_before = "of the previous calibration".to_owned();

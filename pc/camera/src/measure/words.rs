@@ -47,7 +47,9 @@ fn weakness(measured: &Measured) -> String {
         Criterion::Depth => "the line is not dark enough against the plate",
         Criterion::Straightness => "too little of the edges lies on straight lines",
         Criterion::Scatter => "the edges are too rough",
-        Criterion::Continuity => "the line does not continue outside the sharp band: is it a spot or a scratch?",
+        Criterion::Continuity => {
+            "the line does not continue outside the sharp band: is it a spot or a scratch?"
+        }
         Criterion::Height => "the height is too uncertain: too little texture?",
         Criterion::Width => "the line is too narrow",
         Criterion::Border => "it is too close to the left or right border",

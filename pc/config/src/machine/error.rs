@@ -64,7 +64,9 @@ pub enum Mistake {
         reason: vision::OpticsError,
     },
     /// Some of the tables of a tracker, but not all.
-    #[error("[{table}] is missing; a machine that follows a seam needs [head], [slides], [tracking] and [cameras]")]
+    #[error(
+        "[{table}] is missing; a machine that follows a seam needs [head], [slides], [tracking] and [cameras]"
+    )]
     TrackerIncomplete {
         /// The first that is missing.
         table: &'static str,

@@ -12,14 +12,14 @@ const LAG_S: f64 = 0.1;
 const YAW: f64 = 3e-4;
 /// Silence of the PC that stops late \[ms\].
 const SILENCE_MS: u32 = 1000;
-/// Part of full power by which a beam may be off, that is told late.
+/// Part of full power by which a beam may be off: more is detected late.
 const POWER: f64 = 0.2;
-/// Way without sight of the seam that is told late \[mm\].
+/// Distance without sight of the seam: more is detected late \[mm\].
 const BLIND_MM: f64 = 10.0;
 /// Outliers that are taken for the seam \[mm\], and deviations that are left alone.
 const OUTLIER_MM: f64 = 2.0;
 const LEFT_ALONE_MM: f64 = 0.05;
-/// Silence of the motion board that stops the slides late, and saturation that is told late \[ms\].
+/// Silence of the motion board that stops the slides late, and saturation: more is detected late \[ms\].
 const STALE_MS: u32 = 50;
 const SATURATED_MS: u32 = 500;
 
@@ -50,7 +50,7 @@ pub enum WeakProtection {
         /// The yaw at which it trips \[rad\].
         yaw: f64,
     },
-    /// A machine without its PC goes on for long.
+    /// A machine without its PC continues for long.
     #[error(
         "link_timeout_ms is {timeout_ms}: a weld continues for this time without its PC; usual values are up to {SILENCE_MS}"
     )]
@@ -64,7 +64,7 @@ pub enum WeakProtection {
         /// 0 or 1.
         side: u8,
     },
-    /// A beam may burn with another power than it was told.
+    /// A beam may burn with another power than commanded.
     #[error("readback.tolerance of beam {} is {tolerance}: the power may be off by this part of full power; usual values are up to {POWER}", side + 1)]
     Power {
         /// 0 or 1.
@@ -104,7 +104,7 @@ pub enum WeakProtection {
         /// The time \[ms\].
         stale_ms: u32,
     },
-    /// A slide that cannot follow is told late.
+    /// A slide that cannot follow is reported late.
     #[error(
         "saturation_trip_ms of tracking is {trip_ms}: a slide that cannot follow its seam is reported late; usual values are up to {SATURATED_MS}"
     )]

@@ -65,7 +65,7 @@ pub struct Bead {
     layer_height_mm: f64,
     /// Way without arc on which the tip gets up to speed, and to rest again \[mm\].
     lead_mm: f64,
-    /// A closed bead goes on over its beginning for this long \[mm\].
+    /// A closed bead continues over its beginning for this long \[mm\].
     #[serde(default)]
     overlap_mm: f64,
     /// What the turntable does.
@@ -216,7 +216,7 @@ impl Kind for Bead {
         }
         self.check_height(&passes, context)?;
 
-        // The boards' own path tells how exact it is, and what it asks of the drives.
+        // The path that the boards run shows its error, and what it requires of the drives.
         let draft = program::write(self, &passes, route.bead(), context, &[]);
         let drafts = feed_paths(&planner, context, &draft)?;
         let mut plans = Vec::new();

@@ -28,7 +28,7 @@ pub(super) struct Station {
     pub(super) axes: [f64; AXES],
 }
 
-/// The points of a layer, with C going on from point to point and, all in all, within its travel.
+/// The points of a layer, with C continuing from point to point and, all in all, within its travel.
 pub(super) fn stations(
     route: &Route,
     places: &[f64],

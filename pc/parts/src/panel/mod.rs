@@ -162,7 +162,7 @@ pub enum PanelError {
     },
 }
 
-/// Down to two decimals, so that what is told can be cut.
+/// Rounded down to two decimals, so that the value in the message can be used.
 fn floor(m_min: f64) -> f64 {
     libm::floor(100.0 * m_min) / 100.0
 }

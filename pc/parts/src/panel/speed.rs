@@ -1,4 +1,4 @@
-//! How fast a line can be cut, told before anything moves.
+//! How fast a line can be cut: checked before anything moves.
 
 use super::program::C;
 use super::{Panel, PanelError};
@@ -30,7 +30,7 @@ impl Panel {
         }
     }
 
-    /// Whether the feed can be cut, as far as the guide points tell that before anything is taught; what a person
+    /// Whether the feed can be cut, as far as the guide points show that before anything is taught; what a person
     /// should know of it, if it is not sure.
     ///
     /// # Errors

@@ -90,7 +90,7 @@ pub enum SaddlePartError {
         /// What is needed.
         needed_mm: f64,
     },
-    /// The seam bends too sharply to go on without a stop.
+    /// The seam bends too sharply to continue without a stop.
     #[error(
         "branch_diameter_mm, offset_mm: the seam bends by {degrees:.0}° between two points, too near to tangent"
     )]

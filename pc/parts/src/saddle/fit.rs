@@ -18,7 +18,7 @@ const KEYS: [&str; 3] = ["offset_mm", "angle_deg", "main_diameter_mm"];
 const ONE_PLACE: f64 = 0.1;
 /// Points whose distance from a line is less than this part of their spread are on the line: 14° of a circle.
 const ON_LINE: f64 = 0.03;
-/// Fits whose sums of squares differ by less than so many variances of the noise cannot be told apart.
+/// Fits whose sums of squares differ by less than so many variances of the noise cannot be distinguished.
 const ALIKE: f64 = 9.0;
 /// Noise of a taught point at least \[mm\]: what hands and eyes are good for.
 const NOISE: f64 = 0.05;

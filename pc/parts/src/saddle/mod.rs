@@ -54,7 +54,7 @@ pub struct Saddle {
     taught_within_mm: f64,
     /// Waist where the passes begin \[°\]; where the machine has most travel to either side, if not given.
     start_deg: Option<f64>,
-    /// How far a pass goes on past its start \[mm of the seam\].
+    /// How far a pass continues past its start \[mm of the seam\].
     #[serde(default = "default_overlap")]
     overlap_mm: f64,
     /// In the order of welding, each once around.

@@ -29,7 +29,7 @@ const Z: usize = 2;
 const B: usize = 4;
 const C: usize = 5;
 
-/// Plans the program; `notes` tell of the seam.
+/// Plans the program; `notes` are those of the seam.
 pub(super) fn plan(
     part: &Saddle,
     seam: &Seam,

@@ -97,7 +97,9 @@ impl BoardChoice {
     pub fn check(&self, machine: &MachineFile) -> anyhow::Result<()> {
         match (self, &machine.tracking) {
             (Self::At { tracker: None, .. }, Some(_)) => {
-                bail!("this machine has a tracker: give the addresses of both boards, --boards MOTION,TRACKER")
+                bail!(
+                    "this machine has a tracker: give the addresses of both boards, --boards MOTION,TRACKER"
+                )
             }
             (Self::At { tracker: Some(_), .. }, None) => {
                 bail!(
@@ -110,7 +112,7 @@ impl BoardChoice {
 
     /// Connects and does `job` with an `operator` at the terminal, while Ctrl-C, SIGTERM and SIGHUP are watched, which stop the
     /// machine and never this program, however often they come; the exit code if that was before anything was asked of the
-    /// boards. What the motion board tells is written to the folder `log` as it comes.
+    /// boards. The telemetry of the motion board is written to the folder `log` as it comes.
     pub fn run(
         &self,
         job: &Job,
@@ -148,7 +150,7 @@ impl BoardChoice {
             Some(Ok(lost)) => {
                 errln!("seamwright: writing the log was too slow: {lost} events are missing")
             }
-            // What can be known of the run is written anew.
+            // The log is rewritten with what is known after the evaluation.
             Some(Err(error)) => errln!("seamwright: cannot write the log while the job runs: {error}"),
         }
         Ok(Ok(ended(job, record)))

@@ -32,7 +32,7 @@ enum Camera {
 }
 
 impl CameraArgs {
-    /// The first option that has no meaning without pictures, if one is told.
+    /// The first option that has no meaning without pictures, if one is given.
     pub fn of_pictures(&self) -> Option<&'static str> {
         let told = [
             (self.scene.is_some(), "--scene"),
@@ -125,9 +125,7 @@ pub fn source(
 ) -> anyhow::Result<PictureChoice> {
     match (boards, scene) {
         (BoardChoice::At { .. }, Some(_)) => {
-            bail!(
-                "a scene is for rendered pictures only: omit --scene with real cameras"
-            )
+            bail!("a scene is for rendered pictures only: omit --scene with real cameras")
         }
         (BoardChoice::At { .. }, None) => Ok(PictureChoice::Real(camera::real(cameras)?)),
         (BoardChoice::Emulated | BoardChoice::Simulated, scene) => {

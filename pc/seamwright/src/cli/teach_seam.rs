@@ -56,7 +56,9 @@ impl FromStr for TipPose {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let numbers = text.split(',').map(|number| number.trim().parse::<f64>());
-        let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().map_err(|_| "must be six finite numbers")?;
+        let numbers: Vec<f64> = numbers
+            .collect::<Result<_, _>>()
+            .map_err(|_| "must be six finite numbers")?;
         let place: [f64; 6] = numbers
             .try_into()
             .map_err(|_| "must be six numbers: X,Y,Z in mm and A,B,C in degrees")?;
@@ -225,7 +227,7 @@ impl SeamArgs {
     }
 }
 
-/// Where the points go: as told, or where the part file expects them.
+/// Where the points are written: as given, or where the part file expects them.
 fn output_of(told: Option<&Path>, part: &PartFile, seam: &TSeam) -> anyhow::Result<PathBuf> {
     match (told, seam.taught()) {
         (Some(told), _) => Ok(told.to_owned()),

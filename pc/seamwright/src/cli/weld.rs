@@ -64,7 +64,7 @@ pub struct Weld {
     /// Leave out blocks that start with /
     #[arg(long)]
     block_delete: bool,
-    /// Wait after every block of the program until the operator goes on
+    /// Wait after every block of the program until the operator continues
     #[arg(long)]
     single_block: bool,
     /// Start at this line of the program (its first motion in or after it); no part but a seam is judged then

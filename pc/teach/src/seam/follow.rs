@@ -120,7 +120,7 @@ impl<'a> Follower<'a> {
         })
     }
 
-    /// Teaches from `start` on, or goes on after the `points` that are taught already. New points are given to the
+    /// Teaches from `start` on, or continues after the `points` that are taught already. New points are given to the
     /// rig one by one; the machine stands at the last of them.
     pub fn teach<R: CameraMachine>(
         &self,

@@ -1,4 +1,4 @@
-//! Teaching by hand: the operator says moves and what to take, a line each.
+//! Teaching by hand: the operator types jog commands, one per line.
 
 use super::follow::{Centred, SAME_PLACE, take};
 use super::{CameraMachine, Ended, Follower, MachinePose, SeamPoint, SeamTeachError, View};
@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use shared::geometry::{Pose, rotate};
 use shared::io::SIDES;
 
-/// What may be said.
+/// The jog commands.
 pub const JOG_WORDS: &str = "\
 x y z DISTANCE     moves along an axis of the work [mm]
 a b c ANGLE        turns the head about the tip [deg]
@@ -26,10 +26,10 @@ const WIDEST: f64 = 15.0;
 
 /// An operator who teaches by hand.
 pub trait JogOperator: CameraMachine {
-    /// The next line that the operator says; `None` when there are no more.
+    /// The next line of the operator; `None` when there are no more.
     fn line(&mut self) -> Result<Option<String>, Self::Error>;
 
-    /// Tells the operator something.
+    /// Prints a message to the operator.
     fn say(&mut self, text: &str);
 
     /// The last point does not count; `points` are those that stay.
@@ -39,7 +39,7 @@ pub trait JogOperator: CameraMachine {
     fn is_refusal(&self, error: &Self::Error) -> bool;
 }
 
-/// A line that the operator said.
+/// A jog command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Jog {
     /// To move along X, Y or Z \[mm\].
@@ -50,7 +50,7 @@ pub enum Jog {
     Head(usize, f64),
     /// To move a slide \[mm\].
     Slide(usize, f64),
-    /// To go on along the seam \[mm\].
+    /// To continue along the seam \[mm\].
     Step(Option<f64>),
     /// To centre both seams.
     Centre,
@@ -60,7 +60,7 @@ pub enum Jog {
     Take,
     /// To take the last one out.
     Undo,
-    /// To tell what is seen.
+    /// To print what is seen.
     Look,
     /// To end.
     Done,

@@ -32,7 +32,7 @@ fn a_reading_that_is_no_distance_is_refused_with_its_reason() {
     assert_eq!(refused(Reading { valid: false, ..good }), Refused::NotValid);
     assert_eq!(refused(Reading { near: true, ..good }), Refused::Near);
     assert_eq!(refused(Reading { far: true, ..good }), Refused::Far);
-    // A surface out of range sends no light back: the switch that helps more is told.
+    // A surface out of range sends no light back: the remedy that helps more is reported.
     let nothing = Reading {
         valid: false,
         far: true,

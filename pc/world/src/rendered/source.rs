@@ -17,7 +17,7 @@ pub struct RenderedPictures {
     world: RenderedWorld,
     cameras: CameraConfig,
     seams: SharedSeams,
-    /// Where each camera is told what stands before it.
+    /// Senders of the field of view of each camera.
     tell: [Option<Sender<FieldOfView>>; SIDES],
 }
 
@@ -64,7 +64,7 @@ impl PictureSource for RenderedPictures {
             None => FieldOfView::Unknown,
         };
         if let Some(tell) = &self.tell[side] {
-            // A camera that is gone has told why.
+            // A camera that was lost has reported its error.
             let _ = tell.send(field_of_view);
         }
     }

@@ -58,7 +58,7 @@ fn measured(calibration: &Calibration, joint: Joint, picture: &Picture) -> Measu
     *report.seam().unwrap_or_else(|| panic!("{report:?}"))
 }
 
-/// How far what is told of a picture lies beside the true seam, across and along the camera's view \[mm\].
+/// How far the measurement of a picture is beside the true seam, across and along the camera's view \[mm\].
 fn miss(
     seams: &TrueSeams,
     calibration: &Calibration,
@@ -77,7 +77,7 @@ fn miss(
 }
 
 /// For gaps seen along the skin's normal and a little beside it, and for corners along their bisector and beside it. One
-/// picture of a corner without learnt walls is good for 5 µm; the tracker is told means.
+/// picture of a corner without learnt walls is good for 5 µm; the tracker gets means.
 #[test]
 fn what_is_measured_in_rendered_pictures_is_where_the_seam_truly_is() {
     const PICTURES: u32 = 6;

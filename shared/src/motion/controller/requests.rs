@@ -1,4 +1,4 @@
-//! What the PC may ask of the motion board, and what it is told.
+//! Requests of the PC to the motion board, and their responses.
 
 use super::MotionController;
 use super::loaded::LoadedPath;

@@ -97,7 +97,7 @@ impl Horizon {
         }
     }
 
-    /// Opens the boxes of node `i`, once: they were made for going on.
+    /// Opens the boxes of node `i`, once: they were made for continuing.
     fn open<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
         if i < self.opened {
             return;

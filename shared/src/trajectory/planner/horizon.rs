@@ -18,7 +18,7 @@ const RELAXED: u32 = 2;
 /// Most nodes that a plan goes beyond the one in force, and the fewest if it has them.
 pub(super) const WINDOW: u32 = 64;
 pub(super) const LEAST_WINDOW: u32 = 32;
-/// Time before the slowing at the end of the plan in force that may be planned anew, in lengths of the output filter,
+/// Time before the slowing at the end of the plan in force that may be planned again, in lengths of the output filter,
 const SLACK: f64 = 14.0;
 /// and that is, from the first round on.
 const NEAR: f64 = 2.0;
@@ -220,7 +220,7 @@ impl Horizon {
         }
     }
 
-    /// The plan in force goes on as wished, and it is not yet time to look whether another has to be begun.
+    /// The plan in force continues as wished, and it is not yet time to look whether another has to be begun.
     pub fn early(&mut self, wanted: &PlanRequest) -> bool {
         self.early = if self.goes_on(wanted) {
             self.early.saturating_sub(1)
@@ -357,7 +357,7 @@ impl Horizon {
         };
         let (commit, time) = after(lead, earliest);
         if commit == self.in_force && time < lead {
-            // Little is left: there must be time to go on without a stop.
+            // Little is left: there must be time to continue without a stop.
             return after(0.6 * time, player).0;
         }
         commit

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 /// Channels of two elements that meet may differ by this much (mm, rad).
 const GAP: f64 = 1e-5;
-/// No path is longer than this \[mm\], 1000 km, and no channel farther from 0: single micrometres are still told apart
+/// No path is longer than this \[mm\], 1000 km, and no channel farther from 0: single micrometres are still resolved
 /// there.
 pub const LONGEST: f64 = 1e9;
 /// No channel changes by more than this for each mm of path length: a turn of some degrees about a tip that stands may be
@@ -78,7 +78,7 @@ impl Piece {
     }
 }
 
-/// A queue of up to `E` elements, a power of two. Elements have serial numbers, which go on for ever.
+/// A queue of up to `E` elements, a power of two. Elements have serial numbers, which continue for ever.
 #[derive(Clone, Debug)]
 pub(super) struct Track<const E: usize> {
     pieces: [Option<Piece>; E],

@@ -1,4 +1,4 @@
-//! From moves to blocks, and how each of them goes on into the next.
+//! From moves to blocks, and how each of them continues into the next.
 
 use super::Moves;
 use crate::path::block::Block;
@@ -12,7 +12,7 @@ use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{Element, Join, Tolerance};
 use std::sync::Arc;
 
-/// A block of a path, and how it goes on.
+/// A block of a path, and how it continues.
 pub(super) struct Step {
     pub(super) block: Block,
     /// Where it leads.
@@ -50,7 +50,7 @@ impl Step {
         self.actions.iter().map(event).collect()
     }
 
-    /// Decides how it goes on into `next`.
+    /// Decides how it continues into `next`.
     fn go_on_to(&mut self, next: &mut Step, planner: &Planner) {
         let direction = self.block.direction(self.block.length);
         let turn = angle(&direction, &next.block.direction(0.0));

@@ -121,7 +121,7 @@ fn a_block_that_turns_more_than_half_a_turn_is_refused() {
     assert!((end("ac-head", &paths)[5] - 100.0).abs() < 1e-6);
 }
 
-/// The tool would go on turning evenly, but no axis can follow from one end of its turn to the other.
+/// The tool would continue turning evenly, but no axis can follow from one end of its turn to the other.
 #[test]
 fn an_axis_that_would_jump_is_named() {
     let error = crate::path::tests::plan("G0 Z300\nG0 A-90\nG0 A95").unwrap_err();
@@ -160,7 +160,7 @@ fn where_the_pose_leaves_an_axis_free_it_stays() {
     );
 }
 
-/// Named axes go straight in axis space, the others stay, and the program goes on from there.
+/// Named axes go straight in axis space, the others stay, and the program continues from there.
 #[test]
 fn g53_moves_the_axes_named_and_the_tip_goes_on_from_there() {
     let body = "G43.4\nG0 X30 Y20 Z150 A5 B10 C20\nG53 G0 Z500 C-100\nG0 X30 Y20 Z160\nM2";

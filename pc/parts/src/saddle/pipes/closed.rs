@@ -1,4 +1,4 @@
-//! The closed seams of two pipes over a parameter that goes on evenly all around.
+//! The closed seams of two pipes over a parameter that continues evenly all around.
 
 use super::{Intersection, PipePair, Sheet, TANGENT};
 use nalgebra::Vector3;

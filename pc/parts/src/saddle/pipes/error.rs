@@ -51,8 +51,10 @@ pub enum SaddleError {
         /// x_M \[mm\].
         x: f64,
     },
-    /// Both sheets meet here and the seam does not go on with θ: |W| < 1e-9 R.
-    #[error("vertical tangent in theta at {theta_deg}°: theta does not change along the seam there; use the length as parameter")]
+    /// Both sheets meet here and the seam does not continue with θ: |W| < 1e-9 R.
+    #[error(
+        "vertical tangent in theta at {theta_deg}°: theta does not change along the seam there; use the length as parameter"
+    )]
     VerticalTangent {
         /// θ \[°\].
         theta_deg: f64,

@@ -267,7 +267,7 @@ fn a_point_that_is_off_is_named_with_its_line() {
     let part = Scratch::new("off.toml", &part_with(&points));
     let error = part.plan(&machine()).unwrap_err();
     assert!(error.starts_with("line 8: this taught point is 1."), "{error}");
-    // With as few points as there can be, too: the one that is off is told before what it leaves open.
+    // With as few points as there can be, too: the one that is off is reported before what it leaves open.
     let mut few = joints(&prototype(CLAMPED), &all_around(5), 0.0, 3);
     few[2][0] += 3.0;
     let points = Scratch::new("few.csv", &table(&few));

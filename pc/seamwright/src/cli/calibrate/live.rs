@@ -57,7 +57,7 @@ impl Live {
         &self.camera
     }
 
-    /// Takes the pictures and finds what they tell; an exit code if it was interrupted.
+    /// Takes the pictures and calibrates from them; an exit code if it was interrupted.
     pub fn find(&self) -> anyhow::Result<Result<CalibrationResult, ExitCode>> {
         let (Some(machine_file), Some(side)) = (&self.camera.machine, self.camera.side) else {
             bail!("which camera? give --machine FILE --side 1|2");

@@ -17,7 +17,7 @@ use std::process::ExitCode;
 
 /// Calibrate a camera, with the machine or from pictures in a folder
 ///
-/// What was found is told beside what was believed before. A poor fit is refused with the reason, and the file is then left
+/// Results are printed beside the previous values. A poor fit is refused with the reason, and the file is then left
 /// as it was.
 #[derive(Debug, Args)]
 pub struct Calibrate {
@@ -98,7 +98,7 @@ fn two(text: &str) -> Result<[f64; 2], &'static str> {
 }
 
 impl Calibrate {
-    /// Finds it, tells it and writes the file.
+    /// Calibrates, prints the result and writes the file.
     pub fn run(self) -> anyhow::Result<ExitCode> {
         let (camera, found) = match &self.what {
             What::Camera(live) => match live.find()? {

@@ -51,7 +51,7 @@ struct World {
     taught: Vec<SeamPoint>,
     /// The operator says that it is enough after so many points.
     enough: usize,
-    /// What the operator says, and is told.
+    /// Lines of the operator, and messages to the operator.
     lines: std::vec::IntoIter<&'static str>,
     told: Vec<String>,
 }
@@ -277,7 +277,7 @@ fn both_seams_are_centred_and_the_normal_is_that_of_the_skin() {
     }
     for point in &world.taught {
         for foot in &point.feet {
-            // Across the seam; along it the curve tells.
+            // Across the seam; along it by the curve.
             let lean = foot.normal.x.hypot(foot.normal.y).atan2(foot.normal.z);
             assert!(lean < 0.06, "{:?}", foot.normal);
         }
