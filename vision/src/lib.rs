@@ -22,6 +22,7 @@ mod optics;
 mod precision;
 mod prior;
 mod profile;
+#[cfg(feature = "render")]
 pub mod render;
 mod report;
 

@@ -70,7 +70,7 @@ fn a_signal_stops_the_machine_and_the_report_says_so() {
         assert_eq!(output.status.code(), Some(130), "{signal}: {said}");
         assert!(said.contains("welding\nstopping\n"), "{signal}: {said}");
         assert!(
-            said.ends_with("beams are off and the machine stands\n"),
+            said.ends_with("beams are off and the machine is at rest\n"),
             "{signal}: {said}"
         );
         assert_eq!(outcome(&report), "interrupted", "{signal}");
@@ -135,7 +135,7 @@ fn a_report_that_cannot_be_written_is_an_error_once_the_machine_stands() {
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(
-        said.contains("welding\nstopping\n") && said.contains("the machine stands"),
+        said.contains("welding\nstopping\n") && said.contains("the machine is at rest"),
         "{said}"
     );
     assert!(

@@ -318,8 +318,8 @@ fn a_folder_of_captures_is_followed_as_a_camera_would() {
         let pictures: Vec<&str> = said.split("capture-").collect();
         pictures[capture].to_owned()
     };
-    assert_says(&of(1), &["seam", "acquiring; not yet believed"]);
-    assert_says(&of(2), &["acquiring; not yet believed"]);
+    assert_says(&of(1), &["seam", "acquiring; not accepted yet"]);
+    assert_says(&of(2), &["acquiring; not accepted yet"]);
     assert_says(&of(3), &["tracking"]);
     assert!(!of(5).contains("mean"), "{said}");
     assert_says(&of(6), &["tracking; mean: across +0.08"]);

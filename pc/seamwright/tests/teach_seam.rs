@@ -100,7 +100,7 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
     let told = said(&second);
     assert!(second.status.success(), "{told}");
     assert!(
-        told.contains("goes on after point 2") && told.contains("taught.csv: 5 points"),
+        told.contains("continues after point 2") && told.contains("taught.csv: 5 points"),
         "{told}"
     );
 
@@ -156,7 +156,7 @@ fn what_cannot_be_taught_is_refused_before_the_machine_moves() {
         ),
         (
             &["rib.toml", "-o", "t.csv", "--from", "1,2,3"],
-            "must be six finite numbers",
+            "must be six numbers",
         ),
         (
             &["rib.toml", "-o", "other.csv"],

@@ -265,7 +265,7 @@ fn cameras_and_scenes_that_do_not_suit_are_told_with_the_remedy() {
         "--scene",
         "x.toml",
     ]);
-    assert_says(&blind, &["omit --scene with real cameras", "--camera images"]);
+    assert_says(&blind, &["omit --scene", "--camera images"]);
     let kept = said(vec![
         "--boards",
         "simulated",
@@ -609,7 +609,7 @@ fn a_part_file_is_no_program_and_plan_is_named() {
         assert_eq!(code, Some(1), "{said}");
         assert_says(
             &said,
-            &["leaf.toml is a part file, and not a program", "seamwright plan"],
+            &["leaf.toml is a part file, not a program", "seamwright plan"],
         );
     }
 }

@@ -303,6 +303,6 @@ mod tests {
         let findings = found(|image| {
             image.symbols.insert("_stack_guard".to_string(), 0x0808_0000);
         });
-        assert_eq!(findings, ["the guard below the stack takes memory of FLASH"]);
+        assert_eq!(findings, ["the guard below the stack overlaps FLASH"]);
     }
 }
