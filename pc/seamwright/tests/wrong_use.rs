@@ -274,7 +274,7 @@ fn cameras_and_scenes_that_do_not_suit_are_told_with_the_remedy() {
         "--keep-pictures",
         "x",
     ]);
-    assert_says(&kept, &["leave --keep-pictures out", "--camera images"]);
+    assert_says(&kept, &["omit --keep-pictures", "--camera images"]);
     let none = said(vec!["--boards", "simulated", "--scene", "no-scene.toml"]);
     assert_says(&none, &["cannot read scene file no-scene.toml"]);
 }

@@ -123,11 +123,6 @@ impl Ring {
         }
     }
 
-    /// The ring that a probe sees \[mm\], `centre` being its distance over the centre: what is nearer is higher.
-    pub fn from_distances(radius: f64, centre: f64, around: [f64; NEIGHBOURS]) -> Result<Self, RingError> {
-        Self::new(radius, around.map(|distance| centre - distance))
-    }
-
     /// Radius \[mm\].
     pub fn radius(&self) -> f64 {
         self.radius
@@ -217,7 +212,8 @@ impl Ring {
 
     /// Standard deviation of one height \[mm\] as the ring itself shows it: what second order leaves unexplained,
     /// with three degrees of freedom. Roughness is in it, and so is any third order.
-    pub fn noise_seen(&self) -> f64 {
+    #[cfg(test)]
+    pub(crate) fn noise_seen(&self) -> f64 {
         libm::sqrt(self.rest_squared() / 3.0)
     }
 

@@ -129,11 +129,6 @@ impl Observer {
         self.joint
     }
 
-    /// Takes the joint of a new pose; what was learnt of the walls is gone.
-    pub fn set_joint(&mut self, joint: Joint) {
-        self.joint = joint;
-    }
-
     /// Forgets where the seam was, and acquires it again.
     pub fn forget(&mut self) {
         self.lose(State::Acquiring);

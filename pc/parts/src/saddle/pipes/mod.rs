@@ -182,7 +182,8 @@ impl PipePair {
     }
 
     /// Distances of a point in M from the walls of branch and main pipe \[mm\], positive outside.
-    pub fn wall_distances(&self, main: &Vector3<f64>) -> [f64; 2] {
+    #[cfg(test)]
+    pub(crate) fn wall_distances(&self, main: &Vector3<f64>) -> [f64; 2] {
         let branch = self.to_branch(main);
         [
             libm::hypot(branch.x, branch.y) - self.branch_radius,
@@ -191,12 +192,14 @@ impl PipePair {
     }
 
     /// A point of M in S \[mm\].
-    pub fn to_branch(&self, main: &Vector3<f64>) -> Vector3<f64> {
+    #[cfg(test)]
+    pub(crate) fn to_branch(&self, main: &Vector3<f64>) -> Vector3<f64> {
         self.direction_to_branch(&(main - Vector3::new(self.offset, 0.0, 0.0)))
     }
 
     /// A point of S in M \[mm\].
-    pub fn to_main(&self, branch: &Vector3<f64>) -> Vector3<f64> {
+    #[cfg(test)]
+    pub(crate) fn to_main(&self, branch: &Vector3<f64>) -> Vector3<f64> {
         let (x, y, z) = (branch.x, branch.y, branch.z);
         Vector3::new(
             x + self.offset,
