@@ -409,14 +409,13 @@ mod tests {
 
     #[test]
     fn a_directory_serves_one_pair_at_a_time() {
-        let directory = env::temp_dir().join(format!("seamwright-emulator-{}", std::process::id()));
-        fs::create_dir_all(&directory).expect("the temporary directory is writable");
-        let page = shared_page(&directory).expect("is free");
+        let directory = tempfile::tempdir().expect("the temporary directory is writable");
+        let directory = directory.path();
+        let page = shared_page(directory).expect("is free");
         assert_eq!(page.0.metadata().expect("is open").len(), PEERS_LENGTH);
-        assert!(matches!(shared_page(&directory), Err(BootError::InUse { .. })));
+        assert!(matches!(shared_page(directory), Err(BootError::InUse { .. })));
         drop(page);
-        shared_page(&directory).expect("is free again");
-        fs::remove_dir_all(&directory).expect("is there");
+        shared_page(directory).expect("is free again");
     }
 
     #[test]

@@ -92,7 +92,8 @@ mod tests {
 
     #[test]
     fn the_slower_board_is_followed_and_the_end_is_told() {
-        let path = std::env::temp_dir().join(format!("seamwright-pace-{}", std::process::id()));
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("page");
         let mut page = vec![0; 4096];
         for (place, number) in [7_i64, 100, 1_000, 90, 1_005].into_iter().enumerate() {
             page[8 * place..8 * place + 8].copy_from_slice(&number.to_ne_bytes());
@@ -109,6 +110,5 @@ mod tests {
         assert_eq!(time.now().expect("the file"), Duration::from_nanos(90));
         drop(pace);
         assert_eq!(pc(), [0, 0]);
-        std::fs::remove_file(&path).expect("the file");
     }
 }

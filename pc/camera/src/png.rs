@@ -150,6 +150,7 @@ fn kind(colour: ColorType, depth: BitDepth) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use tempfile::tempdir;
 
     fn picture(rows: usize, columns: usize) -> Picture {
         Picture {
@@ -161,18 +162,11 @@ mod tests {
         }
     }
 
-    fn scratch(name: &str) -> std::path::PathBuf {
-        let folder = std::env::temp_dir().join(format!("seamwright-png-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a scratch folder");
-        folder.join(name)
-    }
-
     /// A PNG file that says that it has a side of 200,000 pixels, and has none.
     #[test]
     fn a_picture_larger_than_any_camera_s_is_refused_by_its_header() {
-        let folder = std::env::temp_dir().join(format!("seamwright-png-large-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a scratch folder");
-        let path = folder.join("large.png");
+        let folder = tempdir().expect("a folder");
+        let path = folder.path().join("large.png");
         let mut encoder = Encoder::new(File::create(&path).expect("a file"), 200_000, 200_000);
         encoder.set_color(ColorType::Grayscale);
         encoder.set_depth(BitDepth::Eight);
@@ -191,12 +185,12 @@ mod tests {
             "{error}"
         );
         assert!(read.pixels.is_empty());
-        std::fs::remove_dir_all(&folder).expect("removed");
     }
 
     #[test]
     fn a_grey_picture_comes_back_and_keeps_its_room() {
-        let path = scratch("grey.png");
+        let folder = tempdir().expect("a folder");
+        let path = folder.path().join("grey.png");
         let written = picture(60, 80);
         write_grey(&path, &written).expect("written");
         let mut read = picture(60, 80);
@@ -210,6 +204,8 @@ mod tests {
 
     #[test]
     fn what_is_no_grey_picture_is_told_by_its_file() {
+        let folder = tempdir().expect("a folder");
+        let scratch = |name: &str| folder.path().join(name);
         let mut into = picture(1, 1);
         let mut said = |path: &Path| read_grey(path, &mut into).expect_err("refused").to_string();
         assert!(said(&scratch("none.png")).contains("none.png: No such file"));
@@ -253,14 +249,15 @@ mod tests {
 
     #[test]
     fn a_picture_that_cannot_be_written_is_told() {
-        let nowhere = scratch("no-folder").join("a.png");
+        let folder = tempdir().expect("a folder");
+        let nowhere = folder.path().join("no-folder/a.png");
         let error = write_grey(&nowhere, &picture(2, 2))
             .expect_err("refused")
             .to_string();
         assert!(error.contains("a.png: No such file"), "{error}");
         let mut few = picture(2, 2);
         few.pixels.pop();
-        let error = write_grey(&scratch("few.png"), &few)
+        let error = write_grey(&folder.path().join("few.png"), &few)
             .expect_err("refused")
             .to_string();
         assert!(error.contains("cannot write picture"), "{error}");

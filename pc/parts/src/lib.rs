@@ -248,7 +248,8 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named_with_its_line() {
-        let path = std::env::temp_dir().join(format!("seamwright-part-{}.toml", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("part.toml");
         std::fs::write(&path, "[t-seam]\nseam_1 = \"a.csv\"\nwobble = 1\n").unwrap();
         let error = PartFile::read(&path).unwrap_err().to_string();
         std::fs::remove_file(&path).unwrap();

@@ -144,19 +144,14 @@ mod tests {
     }
 
     /// Every third point of the shipped seams, as if they had been taught.
-    fn taught() -> PathBuf {
+    fn taught(file: &Path) {
         let main = read_main_curve(&shipped("programs/t-seam-400-seam1.csv")).unwrap();
         let other = read_other_curve(&shipped("programs/t-seam-400-seam2.csv")).unwrap();
-        let name = format!("seamwright-t-seam-{}.csv", std::process::id());
-        let file = std::env::temp_dir().join(name);
         let head = Head {
             machine: "gantry".into(),
             part: "t-seam-400".into(),
         };
-        if file.exists() {
-            std::fs::remove_file(&file).unwrap();
-        }
-        let mut opened = SeamFile::open(&file, &head, false).unwrap();
+        let mut opened = SeamFile::open(file, &head, false).unwrap();
         let mut before = None;
         for (first, second) in main.iter().zip(&other).step_by(3) {
             let feet = [first.position, *second].map(|position| MeasuredSeam {
@@ -171,7 +166,6 @@ mod tests {
             opened.file.add(&point).unwrap();
             before = Some(point);
         }
-        file
     }
 
     #[test]
@@ -179,10 +173,11 @@ mod tests {
         let machine = MachineFile::read(&shipped("machines/dual-beam-gantry.toml")).unwrap();
         let part = PartFile::read(&shipped("programs/t-seam-400.toml")).unwrap();
         let drawn = part.plan(&machine, "drawn").unwrap();
-        let file = taught();
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("taught.csv");
+        taught(&file);
         let part = part.with_taught_seams(&file).unwrap();
         let plan = part.plan(&machine, "taught").unwrap();
-        std::fs::remove_file(&file).unwrap();
         assert!(
             plan.notes[1].starts_with("seam 1: 27 taught points lie within 0.00"),
             "{:?}",

@@ -8,16 +8,6 @@ fn shipped(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file)
 }
 
-/// A folder of this test, empty.
-fn scratch(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("teach-{test}"));
-    if folder.exists() {
-        std::fs::remove_dir_all(&folder).unwrap();
-    }
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
 fn host_link(folder: &Path, words: &[&str], input: &str) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_seamwright"))
         .current_dir(folder)
@@ -58,7 +48,8 @@ fn part(folder: &Path) {
 
 #[test]
 fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
-    let folder = scratch("hand");
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
     part(&folder);
     let seam = shipped("programs/t-seam-400-deviation.csv").display().to_string();
     let teach = [
@@ -130,7 +121,8 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
 
 #[test]
 fn what_cannot_be_taught_is_refused_before_the_machine_moves() {
-    let folder = scratch("refused");
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
     part(&folder);
     std::fs::write(
         folder.join("bare.toml"),

@@ -307,8 +307,8 @@ fn cameras_are_as_drawn_until_they_are_calibrated() {
         }
     }
 
-    let folder = std::env::temp_dir().join(format!("seamwright-cameras-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
     let measured = Calibration {
         corner_offset_mm: Some([0.001, 0.005]),
         ..first
@@ -316,9 +316,8 @@ fn cameras_are_as_drawn_until_they_are_calibrated() {
     std::fs::write(folder.join("camera-1.toml"), measured.to_toml()).unwrap();
     std::fs::write(folder.join("camera-2.toml"), second.to_toml()).unwrap();
     let files = shipped_with("# calibration = ", "calibration = ");
-    let read = cameras(&files).calibrations(&folder);
+    let read = cameras(&files).calibrations(folder);
     let missing = cameras(&files).calibrations(&folder.join("none"));
-    std::fs::remove_dir_all(&folder).unwrap();
     let [read, _] = read.unwrap();
     assert_eq!(read.corner_offset_mm, Some([0.001, 0.005]));
     assert_eq!(read.to_toml(), measured.to_toml());

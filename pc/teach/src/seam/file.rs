@@ -375,15 +375,6 @@ mod tests {
         points
     }
 
-    /// A path of a file of this test, which is gone.
-    fn fresh(test: &str) -> PathBuf {
-        let name = format!("seamwright-{test}-{}", std::process::id());
-        let folder = std::env::temp_dir().join(name);
-        let _ = std::fs::remove_dir_all(&folder);
-        std::fs::create_dir_all(&folder).unwrap();
-        folder.join("taught.csv")
-    }
-
     fn teach(path: &Path, points: &[SeamPoint]) {
         let mut opened = SeamFile::open(path, &head(), false).unwrap();
         points.iter().for_each(|point| opened.file.add(point).unwrap());
@@ -391,7 +382,8 @@ mod tests {
 
     #[test]
     fn points_come_back_and_new_ones_follow_them() {
-        let path = fresh("follow");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("taught.csv");
         let all = points(5);
         teach(&path, &all[..2]);
         let opened = SeamFile::open(&path, &head(), false).unwrap();
@@ -405,7 +397,8 @@ mod tests {
 
     #[test]
     fn a_file_cut_at_any_byte_keeps_its_complete_points() {
-        let path = fresh("cut");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("taught.csv");
         let all = points(3);
         teach(&path, &all);
         let text = std::fs::read_to_string(&path).unwrap();
@@ -423,7 +416,8 @@ mod tests {
 
     #[test]
     fn a_file_of_another_part_is_left_alone() {
-        let path = fresh("foreign");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("taught.csv");
         teach(&path, &points(2));
         let other = Head {
             part: "other".into(),
