@@ -41,7 +41,8 @@ impl Pace {
     }
 }
 
-/// How far the slower of the boards that run has come in their common time, and when that was reported last \[ns\].
+/// How far the slower of the boards that run has come in their common time, and when that was reported last
+/// \[ns\].
 fn least_reached(page: &File) -> io::Result<(i64, i64)> {
     let mut bytes = [0; 32];
     page.read_exact_at(&mut bytes, BOARDS_AT)?;

@@ -89,7 +89,8 @@ pub fn control() -> (Remote, Control) {
 }
 
 impl Remote {
-    /// Sends `command` to the job. Commands are taken one after the other; a stop, single block and [`Command::Unattended`] take effect at once.
+    /// Sends `command` to the job. Commands are taken one after the other; a stop, single block and
+    /// [`Command::Unattended`] take effect at once.
     ///
     /// # Errors
     /// [`CommandError`], of orders only.

@@ -174,8 +174,8 @@ impl<'a> Link<'a> {
         queued
     }
 
-    /// Where the other board is. The tracker board does not need it: it finds it by the first path state that carries
-    /// the number of its session.
+    /// Where the other board is. The tracker board does not need it: it finds it by the first path state that
+    /// carries the number of its session.
     pub fn set_partner(&mut self, partner: Partner) {
         if self.partner != Some(partner) {
             // What waits for the old one must not hold up the new one.

@@ -46,8 +46,8 @@ impl MotionPlant {
         }
     }
 
-    /// From now on the source of `side` gives this power regardless of commands, until `None`: with a gate whose line is
-    /// bridged, for instance, or at 0 with its interlock open.
+    /// From now on the source of `side` gives this power regardless of commands, until `None`: with a gate
+    /// whose line is bridged, for instance, or at 0 with its interlock open.
     pub fn stick_beam(&mut self, side: usize, power: Option<DacCode>) {
         self.stuck[side] = power;
     }

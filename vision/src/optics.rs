@@ -131,7 +131,8 @@ impl Optics {
         self.pixel_mm / self.magnification
     }
 
-    /// How many pixels a side count as one where a picture is measured: finer ones than 2.4 µm add no information.
+    /// How many pixels a side count as one where a picture is measured: finer ones than 2.4 µm add no
+    /// information.
     pub fn binning(&self) -> usize {
         let mut binning = 1;
         while self.object_pixel_mm() * (binning as f64) < FINEST_MM {

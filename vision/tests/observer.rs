@@ -121,9 +121,9 @@ const CLIMB: f64 = 0.03;
 const SLANT: f64 = 0.05;
 const LEAN: f64 = 0.04;
 
-/// The mean point lies on the true line, though the camera continues and the slides move in between, and though a picture
-/// shows another seam, another one none at all. It lies behind what the last picture shows. The pitch of 16 pictures is that
-/// of the line, to 0.002.
+/// The mean point lies on the true line, though the camera continues and the slides move in between, and
+/// though a picture shows another seam, another one none at all. It lies behind what the last picture shows.
+/// The pitch of 16 pictures is that of the line, to 0.002.
 #[test]
 fn the_mean_point_lies_on_the_seam() {
     let mut bench = Bench::new(Joint::Gap);

@@ -78,8 +78,8 @@ fn seams_are_followed_to_micrometres() {
     assert!(quantile(&heights, 0.99) < 0.012, "{}", quantile(&heights, 0.99));
 }
 
-/// A corner whose calibrated walls are wrong by 0.015 and learnt over 48 pictures: errors in those of the next 24 that are
-/// believed, which 18 are at least.
+/// A corner whose calibrated walls are wrong by 0.015 and learnt over 48 pictures: errors in those of the
+/// next 24 that are believed, which 18 are at least.
 fn errors_of_corner(finish: Finish, seed: u64) -> Vec<Errors> {
     let mut scene = random_corner(seed, &OPTICS);
     let truth = scene.truth(&OPTICS).expect("a truth");

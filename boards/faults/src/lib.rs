@@ -87,8 +87,9 @@ fn protect(mpu: &mut MPU) {
 /// Floating-point context control register; its lowest bit says that registers are still to be saved.
 const CONTEXT_CONTROL: u32 = 0xe000_ef34;
 
-/// Entry of every fault. The saved program counter and link register are fetched if the processor's frame lies in the
-/// stack; the stack starts again; and floating-point registers that are still to be saved into the old one are given up.
+/// Entry of every fault. The saved program counter and link register are fetched if the processor's frame
+/// lies in the stack; the stack starts again; and floating-point registers that are still to be saved into
+/// the old one are given up.
 #[unsafe(naked)]
 #[unsafe(no_mangle)]
 unsafe extern "C" fn HardFault() -> ! {

@@ -35,8 +35,9 @@ impl ReadBack {
         }
     }
 
-    /// To be called after each successful [`Bank::update`], with the same codes. An error of the bus is reported at
-    /// once, a code that is not what was written when it was so more than [`TOLERATED`] times in a row.
+    /// To be called after each successful [`Bank::update`], with the same codes. An error of the bus is
+    /// reported at once, a code that is not what was written when it was so more than [`TOLERATED`] times in
+    /// a row.
     pub fn after_update<B: SpiBus, P: OutputPin, D: DelayNs, const CHIPS: usize>(
         &mut self,
         bank: &mut Bank<B, P, D, CHIPS>,

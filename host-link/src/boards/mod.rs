@@ -12,8 +12,8 @@ use thiserror::Error;
 
 /// A session with a motion board and, where the machine has one, a tracker board.
 ///
-/// Its constructor has said Hello to each, compared the schema hashes, and subscribed to what they send. A job that uses nothing but
-/// this trait for time and data is deterministic on simulated boards.
+/// Its constructor has said Hello to each, compared the schema hashes, and subscribed to what they send. A
+/// job that uses nothing but this trait for time and data is deterministic on simulated boards.
 pub trait Boards {
     /// Sends `request` and waits for the answer.
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError>;
@@ -29,9 +29,9 @@ pub trait Boards {
         Ok(None)
     }
 
-    /// The next datagram of either board, in the order of arrival; `None` if none came within `timeout`, or something else is
-    /// to be looked at before: an answer, or what [`Self::waker`] announced. Simulated boards advance their time here, by at most
-    /// `timeout`.
+    /// The next datagram of either board, in the order of arrival; `None` if none came within `timeout`, or
+    /// something else is to be looked at before: an answer, or what [`Self::waker`] announced. Simulated
+    /// boards advance their time here, by at most `timeout`.
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError>;
 
     /// Sends a datagram to a board.
@@ -43,7 +43,8 @@ pub trait Boards {
     /// Who the board says it is; `None` if it is not in this session.
     fn identity(&self, role: Role) -> Option<&Identity>;
 
-    /// The request that gives the motion board the address of the tracker board ([`Request::PathStatesTo`]); `None` without one.
+    /// The request that gives the motion board the address of the tracker board ([`Request::PathStatesTo`]);
+    /// `None` without one.
     fn path_states_target(&self) -> Option<Request>;
 
     /// Ends the wait of [`Self::receive`] from another thread; `None` of simulated boards, whose time is not that of threads.
@@ -56,13 +57,15 @@ pub trait Boards {
         0
     }
 
-    /// The last stall of this program, if there was one. Simulated boards have none: their time stands still meanwhile.
+    /// The last stall of this program, if there was one. Simulated boards have none: their time stands still
+    /// meanwhile.
     fn last_stall(&self) -> Option<Stall> {
         None
     }
 }
 
-/// A time in which this program did not run: it was stopped, its computer slept, or was busy with something else.
+/// A time in which this program did not run: it was stopped, its computer slept, or was busy with something
+/// else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stall {
     /// When it ended, by [`Boards::now`].

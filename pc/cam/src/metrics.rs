@@ -1,8 +1,8 @@
 //! How far measured values are from what they should be (mathematics 4.4).
 //!
-//! Errors of single coordinates contain timing; the distance to the path does not. The percentage error MAPE depends
-//! on the origin and has no bound near it: it is for comparison with published figures; judge by RMSE and the largest
-//! error, and a contour by the distance to it.
+//! Errors of single coordinates contain timing; the distance to the path does not. The percentage error MAPE
+//! depends on the origin and has no bound near it: it is for comparison with published figures; judge by RMSE
+//! and the largest error, and a contour by the distance to it.
 
 use nalgebra::Vector3;
 use thiserror::Error;

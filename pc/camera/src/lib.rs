@@ -1,7 +1,7 @@
 //! Cameras: pictures that belong to the captures of the tracker board.
 //!
-//! The tracker board strobes its cameras and offers a capture for each strobe. A [`Camera`] is notified of the captures as they
-//! come, and gives for each of them, in their order, either its picture or "lost".
+//! The tracker board strobes its cameras and offers a capture for each strobe. A [`Camera`] is notified of
+//! the captures as they come, and gives for each of them, in their order, either its picture or "lost".
 
 #[cfg(feature = "aravis")]
 mod aravis;

@@ -8,7 +8,8 @@ use std::time::Duration;
 /// Capacity of a queue: more than a second of pictures.
 const CAPACITY: usize = 256;
 
-/// The newest pictures of a camera. Clones share one queue; when it is full the oldest picture is dropped and counted.
+/// The newest pictures of a camera. Clones share one queue; when it is full the oldest picture is dropped and
+/// counted.
 #[derive(Clone, Debug, Default)]
 pub struct PictureQueue(Arc<(Mutex<Queued>, Condvar)>);
 
@@ -23,7 +24,8 @@ struct Queued {
 }
 
 impl PictureQueue {
-    /// A queue that drops no picture: when it is full the camera waits. Only for a camera for which the job waits.
+    /// A queue that drops no picture: when it is full the camera waits. Only for a camera for which the job
+    /// waits.
     pub fn blocking() -> Self {
         let queue = Self::default();
         queue.lock().blocking = true;

@@ -25,7 +25,8 @@ impl PictureWriter {
     /// Creates `folder` and starts to write the pictures of `queue` to it.
     ///
     /// # Errors
-    /// [`CameraError::Record`] if the folder cannot be written, [`CameraError::Holds`] if it has pictures already.
+    /// [`CameraError::Record`] if the folder cannot be written, [`CameraError::Holds`] if it has pictures
+    /// already.
     pub fn start(folder: &Path, queue: PictureQueue) -> Result<Self, CameraError> {
         let mut recorder = Recorder::new(folder)?;
         let from = queue.clone();

@@ -1,8 +1,8 @@
 //! Pictures to calibrate a camera from: the machine stands, its slides step, the camera looks.
 //!
-//! Where the camera steps out of the work or into it, the machine continues along travel by as much as the sharp band would
-//! wander on the work. So the band stays where it is: what its texture does to heights is the same in every picture and
-//! leaves the steps true, and so does work that slopes along travel.
+//! Where the camera steps out of the work or into it, the machine continues along travel by as much as the
+//! sharp band would wander on the work. So the band stays where it is: what its texture does to heights is
+//! the same in every picture and leaves the steps true, and so does work that slopes along travel.
 
 use crate::session::Session;
 use crate::{Job, JobError, Weld};

@@ -8,7 +8,8 @@ use host_link::events::{Event, Next, Phase, Question};
 use shared::protocol::{MotionSample, MotionStatus, Request, Role};
 use shared::state::State;
 
-/// A machine that should move, but has not for this time, is taken to be stuck \[s\]; far longer than a queue runs dry.
+/// A machine that should move, but has not for this time, is taken to be stuck \[s\]; far longer than a queue
+/// runs dry.
 const STANDSTILL_S: u32 = 10;
 /// A path tick is a millisecond.
 const TICKS_PER_S: u32 = 1000;

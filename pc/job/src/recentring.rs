@@ -79,8 +79,8 @@ impl Recentring {
         }
     }
 
-    /// A look at slides at `slides` \[mm\] on path `path_id`, where the pose is offset by `superimposed` from the plan: where to send it,
-    /// and for which slide.
+    /// A look at slides at `slides` \[mm\] on path `path_id`, where the pose is offset by `superimposed` from
+    /// the plan: where to send it, and for which slide.
     fn look(
         &mut self,
         path_id: u32,

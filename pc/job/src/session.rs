@@ -19,8 +19,8 @@ use std::time::Duration;
 const STATUS_PERIOD: Duration = Duration::from_millis(100);
 /// A motion board whose clock has stood still for so long is broken.
 const STANDSTILL: Duration = Duration::from_secs(10);
-/// An error of the boards is due to a stall of this program that ended no longer ago: their state is asked for at once
-/// after it, and comes in a few turns.
+/// An error of the boards is due to a stall of this program that ended no longer ago: their state is asked
+/// for at once after it, and comes in a few turns.
 const JUST_BEFORE: Duration = Duration::from_secs(1);
 /// Longest and shortest wait for a datagram.
 const LONGEST_WAIT: Duration = Duration::from_millis(10);
@@ -107,8 +107,9 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Asks a board, and continues with everything else until it answers: what boards send is taken, and measurements leave for
-    /// the tracker board. What goes wrong with that meanwhile is for the next turn: a stop needs the motion board only.
+    /// Asks a board, and continues with everything else until it answers: what boards send is taken, and
+    /// measurements leave for the tracker board. What goes wrong with that meanwhile is for the next turn: a
+    /// stop needs the motion board only.
     pub fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         if let (Role::Tracker, Some(tracking)) = (role, &mut self.tracking) {
             tracking.forget_question();

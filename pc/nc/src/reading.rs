@@ -53,7 +53,8 @@ pub(super) fn read(source: &Source, options: Options, kept: usize) -> Result<Pro
     reader.end()
 }
 
-/// The blocks of a path that are not kept in memory: where they are in the source, and the state of the interpreter there.
+/// The blocks of a path that are not kept in memory: where they are in the source, and the state of the
+/// interpreter there.
 #[derive(Clone)]
 pub struct RemainingBlocks {
     /// Blocks of the path before these.

@@ -122,7 +122,8 @@ impl Kind for TSeam {
         })
     }
 
-    /// The true seams are not part of the part file: they come from the simulated world, or from a measurement.
+    /// The true seams are not part of the part file: they come from the simulated world, or from a
+    /// measurement.
     fn judge(&self, _context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {
         Ok(self.limits.judge(run))
     }

@@ -19,7 +19,8 @@ pub fn write_out(text: Arguments) {
 
 /// Writes a line to standard error.
 pub fn write_err(text: Arguments) {
-    // In one piece, so that lines of other programs stay apart from it. There is nowhere to report that it failed.
+    // In one piece, so that lines of other programs stay apart from it. There is nowhere to report that it
+    // failed.
     let _ = io::stderr().write_all(format!("{text}\n").as_bytes());
 }
 

@@ -79,8 +79,8 @@ fn a_signal_stops_the_machine_and_the_report_says_so() {
 
 #[test]
 fn a_weld_goes_on_without_anybody_who_reads() {
-    // Readers that have left, and a disk that is full: the result of the job is not lost, and that it could not be printed is an
-    // error if it was not chosen.
+    // Readers that have left, and a disk that is full: the result of the job is not lost, and that it could
+    // not be printed is an error if it was not chosen.
     let full = || {
         File::options()
             .write(true)

@@ -1,9 +1,9 @@
 //! Simulated machines and what is around them: boards with plants, where seams and spots really are, what cameras and
 //! probes see.
 //!
-//! Everything around a machine is looked up by the motion board's time, in what the boards reported for that time; never by
-//! the wall clock, never in the latest state. So the world is the same for emulated boards, which run in real
-//! time, and for simulated ones, which do not.
+//! Everything around a machine is looked up by the motion board's time, in what the boards reported for that
+//! time; never by the wall clock, never in the latest state. So the world is the same for emulated boards,
+//! which run in real time, and for simulated ones, which do not.
 
 pub mod deviation;
 pub mod emulated;

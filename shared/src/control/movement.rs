@@ -37,8 +37,8 @@ impl MovementState {
 }
 
 impl MovementCheck {
-    /// Of a drive with the speed `full_scale` at 10 V, whose commands may add up to `limit` before its encoder must have
-    /// changed.
+    /// Of a drive with the speed `full_scale` at 10 V, whose commands may add up to `limit` before its
+    /// encoder must have changed.
     pub fn new(full_scale: f64, limit: f64) -> Self {
         Self {
             min_velocity: libm::fabs(full_scale) * OFFSET,

@@ -380,7 +380,8 @@ impl MotionController {
         self.leave_path();
     }
 
-    /// A failure of the emergency stop itself: reported with the drives off too, and in place of its being pressed.
+    /// A failure of the emergency stop itself: reported with the drives off too, and in place of its being
+    /// pressed.
     fn distrust(&mut self, fault: Fault) {
         if self.fault == Some(Fault::EmergencyStop) {
             self.fault = Some(fault);

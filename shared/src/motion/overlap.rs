@@ -72,7 +72,8 @@ impl Overlap {
         };
         let waits = self.waits.iter().flatten();
         let waits = waits.map(|wait| before(wait.reopen, &wait.off));
-        // What lies between the hold and the place of rest has not happened yet, and must happen at its path position.
+        // What lies between the hold and the place of rest has not happened yet, and must happen at its path
+        // position.
         let event = next_event
             .filter(|event| *event <= stands)
             .map(|event| before(event, &self.held));

@@ -58,7 +58,8 @@ impl Motor {
         })
     }
 
-    /// The fault if motor number `index` is commanded to move at `velocity` and its grating has not moved for too long.
+    /// The fault if motor number `index` is commanded to move at `velocity` and its grating has not moved for
+    /// too long.
     fn moves(
         &self,
         index: usize,

@@ -93,8 +93,8 @@ impl Superimposed {
         core::array::from_fn(|axis| axes[axis] - self.added[axis])
     }
 
-    /// One path tick: the axes for the pose beside the one of `planned`. A blend continues only where the machine
-    /// `goes` along its path.
+    /// One path tick: the axes for the pose beside the one of `planned`. A blend continues only where the
+    /// machine `goes` along its path.
     ///
     /// # Errors
     /// The machine cannot take the pose.

@@ -363,8 +363,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         })
     }
 
-    /// Compares the channels of the emergency stop. That they disagree is reported with the drives off too, and in place of
-    /// that it is pressed.
+    /// Compares the channels of the emergency stop. That they disagree is reported with the drives off too,
+    /// and in place of that it is pressed.
     fn watch_estop(&mut self, periods: u32) {
         let elapsed_us = periods.saturating_mul(TICK_US);
         self.estop.step(self.feedback.estop, elapsed_us);

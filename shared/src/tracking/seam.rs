@@ -83,7 +83,8 @@ impl Seam {
         self.implausible[side] = self.implausible[side].saturating_add(1);
     }
 
-    /// Enters what the camera of `side` saw when the machine was in the state `snapshot` and the slides at `slides` \[mm\].
+    /// Enters what the camera of `side` saw when the machine was in the state `snapshot` and the slides at
+    /// `slides` \[mm\].
     pub fn add<const N: usize>(
         &mut self,
         parameters: &TrackerParameters,

@@ -28,7 +28,8 @@ fn code(part: f64) -> Option<DacCode> {
     Some(DacCode::from_ratio(part, 1.0))
 }
 
-/// With a source that gives the power commanded a tick before, and `error` of full power more where its gate is open.
+/// With a source that gives the power commanded a tick before, and `error` of full power more where its gate
+/// is open.
 struct Welder {
     bench: Bench,
     error: f64,

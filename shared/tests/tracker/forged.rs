@@ -180,7 +180,8 @@ fn one_bad_datagram_here_and_there_makes_no_fault_and_moves_no_spot_far() {
         assert!(status.implausible_path_states > 0 && status.implausible_clock_replies > 0);
         worst = worst.max(extremes.off);
     }
-    // A measurement within what a camera sees, of the right capture and before the true one, cannot be distinguished from it.
+    // A measurement within what a camera sees, of the right capture and before the true one, cannot be
+    // distinguished from it.
     println!("5 % forged: {worst:.3} mm at most");
     assert!(worst <= 0.35, "{worst} mm");
 }

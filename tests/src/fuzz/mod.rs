@@ -1,8 +1,9 @@
 //! Random and mutated requests and datagrams against both controllers, on simulated boards.
 //!
-//! Cases begin at moments of the shipped jobs, and continue with what the PC said then: some of it changed in one number,
-//! or in any byte, some of it twice or not at all, and between it what belongs elsewhere. At every tick the outputs
-//! are judged. Messages are changed in their postcard bytes, so that this file knows none of them by name.
+//! Cases begin at moments of the shipped jobs, and continue with what the PC said then: some of it changed in
+//! one number, or in any byte, some of it twice or not at all, and between it what belongs elsewhere. At
+//! every tick the outputs are judged. Messages are changed in their postcard bytes, so that this file knows
+//! none of them by name.
 
 mod case;
 mod corpus;

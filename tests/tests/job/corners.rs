@@ -24,7 +24,8 @@ fn rectangle(mode: &str) -> (Vec<MotionSample>, Ended) {
     (samples, ended)
 }
 
-/// Rounded within the tolerance the path continues at its corners, and takes less time than with a stop at each.
+/// Rounded within the tolerance the path continues at its corners, and takes less time than with a stop at
+/// each.
 #[test]
 fn a_rectangle_with_a_tolerance_passes_its_corners_without_a_stop() {
     let (rounded, ended) = rectangle("G64 P0.05");

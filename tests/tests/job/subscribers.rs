@@ -6,8 +6,8 @@ use host_link::events::Interest;
 use shared::protocol::MotionSample;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The weld, with a subscriber that sleeps for a second at each event, or without one; the telemetry of the boards, and what the
-/// subscriber lost.
+/// The weld, with a subscriber that sleeps for a second at each event, or without one; the telemetry of the
+/// boards, and what the subscriber lost.
 fn weld_before(sleeper: bool) -> (Vec<MotionSample>, u64) {
     let (machine, program) = (machine(), interpret(PROGRAM, Options::default()).unwrap());
     let job = job(&machine, &program, Some(seam()));

@@ -124,9 +124,9 @@ pub enum SlideError {
     },
 }
 
-/// The camera–slide matrix from readings in the order they were taken, by least squares. A seam at rest moves through
-/// the picture against the camera: seen = −matrix⁻¹ · slides + constant. Play of a slide is separated by the direction
-/// it last moved in. `nominal` is the matrix by the drawing.
+/// The camera–slide matrix from readings in the order they were taken, by least squares. A seam at rest moves
+/// through the picture against the camera: seen = −matrix⁻¹ · slides + constant. Play of a slide is separated
+/// by the direction it last moved in. `nominal` is the matrix by the drawing.
 ///
 /// Each place has a constant of its own: only what differs from the place's mean counts.
 pub fn slide_matrix(readings: &[SlideReading], nominal: [[f64; 2]; 2]) -> Result<SlideFit, SlideError> {

@@ -9,10 +9,12 @@ const SHORTEST: Duration = Duration::from_millis(100);
 /// A stall is remembered for so long.
 const RECENT: Duration = Duration::from_secs(1);
 
-/// Finds the times in which this program did not run: it was stopped, its computer slept, or had no processor for it.
+/// Finds the times in which this program did not run: it was stopped, its computer slept, or had no processor
+/// for it.
 #[derive(Debug)]
 pub(super) struct StallDetector {
-    /// Time of the last check, by the session's clock and by the wall clock, which also runs while a computer sleeps.
+    /// Time of the last check, by the session's clock and by the wall clock, which also runs while a computer
+    /// sleeps.
     last: Duration,
     last_wall: SystemTime,
     last_stall: Option<Stall>,
@@ -27,8 +29,8 @@ impl StallDetector {
         }
     }
 
-    /// To be called whenever the session has waited: `now` by the session's clock, `waited` is the longest that the wait
-    /// should have taken.
+    /// To be called whenever the session has waited: `now` by the session's clock, `waited` is the longest
+    /// that the wait should have taken.
     pub(super) fn check(&mut self, now: Duration, waited: Duration) {
         self.check_at(now, SystemTime::now(), waited);
     }

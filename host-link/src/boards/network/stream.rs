@@ -139,7 +139,8 @@ impl Stream {
         }
     }
 
-    /// Sends a request whose answer [`Self::answer`] gives. The answer to an earlier request is dropped when it comes.
+    /// Sends a request whose answer [`Self::answer`] gives. The answer to an earlier request is dropped when
+    /// it comes.
     pub(super) fn ask(&mut self, request: &Request) -> Result<(), LinkError> {
         for pending in &mut self.pending {
             pending.wanted = false;

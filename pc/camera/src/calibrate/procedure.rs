@@ -357,7 +357,8 @@ pub fn corner(
     Ok(CalibrationResult { calibration, figures })
 }
 
-/// A picture taken at a step of the slides: number of the place along the seam, position of the slides, offset of the machine along travel, measurement.
+/// A picture taken at a step of the slides: number of the place along the seam, position of the slides,
+/// offset of the machine along travel, measurement.
 type SlidePicture = (u32, [f64; 2], f64, Measured);
 
 /// The readings of a straight seam: its angle is the mean of each place's pictures, and takes what a height or the machine

@@ -30,8 +30,8 @@ impl Panel {
         }
     }
 
-    /// Whether the feed can be cut, as far as the guide points show that before anything is taught; what a person
-    /// should know of it, if it is not sure.
+    /// Whether the feed can be cut, as far as the guide points show that before anything is taught; what a
+    /// person should know of it, if it is not sure.
     ///
     /// # Errors
     /// [`PanelError::Value`], [`PanelError::Speed`].

@@ -28,7 +28,8 @@ const ENDS_EARLY: f64 = 5.0;
 /// What only seams are taught with.
 #[derive(Debug, Args)]
 pub struct SeamArgs {
-    /// Seams: start position of the tip, one camera lead before the first point, in place of the beginning of the drawing
+    /// Seams: start position of the tip, one camera lead before the first point, in place of the beginning of
+    /// the drawing
     #[arg(long, value_name = "X,Y,Z,A,B,C", allow_hyphen_values = true)]
     from: Option<TipPose>,
     /// Seams: the operator jogs the machine, by commands on standard input

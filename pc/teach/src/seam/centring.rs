@@ -1,5 +1,5 @@
-//! From what the cameras see to places in the world, and to the pose of the machine that has both seams in the middle of their
-//! bands.
+//! From what the cameras see to places in the world, and to the pose of the machine that has both seams in
+//! the middle of their bands.
 
 use super::{MeasuredSeam, SeamSighting, View};
 use nalgebra::Vector3;
@@ -69,8 +69,9 @@ impl Cameras {
         spot.point(self.heads.camera_lead(), u, v)
     }
 
-    /// The pose of the machine in which both cameras look at their `points`: each goes there by its own slides. The pose moves, as
-    /// in [`Self::centred`], only where a slide would go too far or the head leans from `normal`, that of the skin.
+    /// The pose of the machine in which both cameras look at their `points`: each goes there by its own
+    /// slides. The pose moves, as in [`Self::centred`], only where a slide would go too far or the head leans
+    /// from `normal`, that of the skin.
     pub fn aimed(
         &self,
         machine_pose: &MachinePose,
@@ -90,8 +91,8 @@ impl Cameras {
         }
     }
 
-    /// The pose of the machine with its head along `normal`, in which both cameras look at their `points` and the slides are as near
-    /// to zero as a move of `pose` across and up can bring them: Σ(u² + v²) is least.
+    /// The pose of the machine with its head along `normal`, in which both cameras look at their `points` and
+    /// the slides are as near to zero as a move of `pose` across and up can bring them: Σ(u² + v²) is least.
     ///
     /// The turn about T of mathematics 0.7 is left out: the feet are a few mm apart, and a rib that is not straight
     /// would turn the head by degrees; the skin gives a better attitude of the head.

@@ -120,8 +120,8 @@ impl<'a> Follower<'a> {
         })
     }
 
-    /// Teaches from `start` on, or continues after the `points` that are taught already. New points are given to the
-    /// rig one by one; the machine stands at the last of them.
+    /// Teaches from `start` on, or continues after the `points` that are taught already. New points are given
+    /// to the rig one by one; the machine stands at the last of them.
     pub fn teach<R: CameraMachine>(
         &self,
         rig: &mut R,
@@ -328,8 +328,8 @@ impl<'a> Follower<'a> {
         Some(self.ahead(machine_pose, &course, points.last()?, step))
     }
 
-    /// The pose of the machine that looks where the course leads, `step` \[mm\] after its `last` point, with the head along the skin
-    /// there; it stands as `machine_pose` does where that is not possible.
+    /// The pose of the machine that looks where the course leads, `step` \[mm\] after its `last` point, with
+    /// the head along the skin there; it stands as `machine_pose` does where that is not possible.
     fn ahead(&self, machine_pose: &MachinePose, course: &Course, last: &SeamPoint, step: f64) -> MachinePose {
         let (points, tangent) = course.ahead(step);
         let old = machine_pose.pose;

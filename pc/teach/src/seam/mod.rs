@@ -1,8 +1,9 @@
 //! Teaching both seams at the feet of a rib with the cameras of the welding heads (mathematics 0.4, 0.7).
 //!
-//! The machine stands still while the cameras look. The slides of each side search its seam and bring it to the middle
-//! of its band, and the place of both seams is taken down in the world. Then the machine continues along the tangent of
-//! what it has seen so far, farther where the seams are straight, to where the slides will stand near their middle.
+//! The machine stands still while the cameras look. The slides of each side search its seam and bring it to
+//! the middle of its band, and the place of both seams is taken down in the world. Then the machine continues
+//! along the tangent of what it has seen so far, farther where the seams are straight, to where the slides
+//! will stand near their middle.
 //!
 //! Nothing here knows boards or pictures: the machine is a [`CameraMachine`].
 

@@ -64,8 +64,8 @@ fn places(config: &SeamTeaching) -> Vec<[f64; 2]> {
 }
 
 impl Follower<'_> {
-    /// Centres the seams at `machine_pose`, where the machine stands, after a search if they are not seen: the slides of
-    /// each side look around for its seam, and the machine helps where they do not reach.
+    /// Centres the seams at `machine_pose`, where the machine stands, after a search if they are not seen:
+    /// the slides of each side look around for its seam, and the machine helps where they do not reach.
     pub(super) fn find<R: CameraMachine>(
         &self,
         rig: &mut R,

@@ -45,7 +45,8 @@ pub struct RenderedWorld {
     seed: u64,
 }
 
-/// One camera. What is in its field of view arrives through a channel, from the job, which knows the position of the machine.
+/// One camera. What is in its field of view arrives through a channel, from the job, which knows the position
+/// of the machine.
 pub struct RenderedCamera {
     file: Arc<SceneFile>,
     side: usize,
@@ -82,7 +83,8 @@ impl RenderedWorld {
         }
     }
 
-    /// The camera of `side` (0 or 1), and the sender of what is in its field of view: one message for each strobe, in order.
+    /// The camera of `side` (0 or 1), and the sender of what is in its field of view: one message for each
+    /// strobe, in order.
     pub fn camera(&self, side: usize) -> (RenderedCamera, Sender<FieldOfView>) {
         let (tell, fields_of_view) = channel();
         let camera = RenderedCamera {

@@ -6,8 +6,8 @@ use crate::state::TrackerFault;
 use crate::tracking::parameters::TrackerParameters;
 
 impl<const KNOTS: usize> TrackerController<KNOTS> {
-    /// A slide that did not follow its command since the last call, `periods` ticks ago, with the drives on. Its
-    /// position is unknown then, until it is homed.
+    /// A slide that did not follow its command since the last call, `periods` ticks ago, with the drives on.
+    /// Its position is unknown then, until it is homed.
     pub(super) fn supervise(&mut self, parameters: &TrackerParameters, periods: u32) -> Option<TrackerFault> {
         let counts = self.feedback.counts;
         for (i, (slide, of)) in self.slides.iter_mut().zip(&parameters.slides).enumerate() {

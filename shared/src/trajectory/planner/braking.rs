@@ -1,8 +1,9 @@
 //! Braking, or how slow the machine can be: the speeds that a plan to stop, or one for a lower override, is not below.
 //!
-//! First forward in time, from the commit to rest: at every node the lowest acceleration that the boxes and the past
-//! allow. Where all speeds have come down to the programmed ones, the plan settles; from there back in time, so that the
-//! acceleration is let go in time too. If that does not lead back to the speed at the commit, it settles later.
+//! First forward in time, from the commit to rest: at every node the lowest acceleration that the boxes and
+//! the past allow. Where all speeds have come down to the programmed ones, the plan settles; from there back
+//! in time, so that the acceleration is let go in time too. If that does not lead back to the speed at the
+//! commit, it settles later.
 
 use super::horizon::{Horizon, LEAST_WINDOW, Phase};
 use super::jerk_limit::LOOK;

@@ -18,7 +18,8 @@ const RELAXED: u32 = 2;
 /// Most nodes that a plan goes beyond the one in force, and the fewest if it has them.
 pub(super) const WINDOW: u32 = 64;
 pub(super) const LEAST_WINDOW: u32 = 32;
-/// Time before the slowing at the end of the plan in force that may be planned again, in lengths of the output filter,
+/// Time before the slowing at the end of the plan in force that may be planned again, in lengths of the
+/// output filter,
 const SLACK: f64 = 14.0;
 /// and that is, from the first round on.
 const NEAR: f64 = 2.0;

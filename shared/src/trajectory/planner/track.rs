@@ -8,8 +8,8 @@ use thiserror::Error;
 
 /// Channels of two elements that meet may differ by this much (mm, rad).
 const GAP: f64 = 1e-5;
-/// No path is longer than this \[mm\], 1000 km, and no channel farther from 0: single micrometres are still resolved
-/// there.
+/// No path is longer than this \[mm\], 1000 km, and no channel farther from 0: single micrometres are still
+/// resolved there.
 pub const LONGEST: f64 = 1e9;
 /// No channel changes by more than this for each mm of path length: a turn of some degrees about a tip that stands may be
 /// a short path.

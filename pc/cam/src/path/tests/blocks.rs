@@ -136,7 +136,8 @@ fn the_attitude_along_a_line_is_as_close_as_said() {
     assert!(value < 1e-9 && slope < 1e-9, "{value} {slope}");
 }
 
-/// Line, arc and three turns with the head turning: where they join smoothly nothing steps, and C continues as it was.
+/// Line, arc and three turns with the head turning: where they join smoothly nothing steps, and C continues
+/// as it was.
 #[test]
 fn rotary_axes_come_and_go_evenly_at_joins() {
     let paths = stir("G64 P0.05\nG1 X650\nG3 X700 Y550 J50 C90\nG3 X700 Y550 I-50 P3 C180\nG1 Y600");

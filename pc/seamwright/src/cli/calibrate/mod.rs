@@ -17,8 +17,8 @@ use std::process::ExitCode;
 
 /// Calibrate a camera, with the machine or from pictures in a folder
 ///
-/// Results are printed beside the previous values. A poor fit is refused with the reason, and the file is then left
-/// as it was.
+/// Results are printed beside the previous values. A poor fit is refused with the reason, and the file is
+/// then left as it was.
 #[derive(Debug, Args)]
 pub struct Calibrate {
     #[command(subcommand)]
