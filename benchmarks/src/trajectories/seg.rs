@@ -52,7 +52,7 @@ pub enum Why {
     /// Not a whole number that a program would hold.
     #[error("the turn is {0}; it must be a whole number within ±1000000")]
     Turn(f64),
-    /// The arc is none.
+    /// The arc is not valid.
     #[error(transparent)]
     Arc(#[from] SpiralError),
 }

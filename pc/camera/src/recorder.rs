@@ -47,7 +47,7 @@ impl Recorder {
     }
 }
 
-/// Whether a folder has pictures, or a list of some; that of a recording which never got one is none.
+/// Whether a folder has pictures, or a list of some; an empty list does not count.
 fn holds_pictures(folder: &Path, list: &Path) -> std::io::Result<bool> {
     for entry in std::fs::read_dir(folder)? {
         if Path::new(&entry?.file_name()).extension() == Some("png".as_ref()) {

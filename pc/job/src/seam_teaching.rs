@@ -24,7 +24,7 @@ const LOOK_LIMIT: Duration = Duration::from_secs(10);
 const PATIENCE: f64 = 2.0;
 /// Part of the pictures that have to show a seam.
 const ENOUGH: f64 = 0.5;
-/// Moves shorter than this are none, of the machine and of its slides \[mm\].
+/// Moves of the machine and of its slides that are shorter than this are left out \[mm\].
 const NO_MOVE: f64 = 1e-4;
 const NO_SLIDE_MOVE: f64 = 2e-3;
 /// Slides that are there come to rest for so long before a look \[s\].

@@ -178,7 +178,7 @@ pub enum Problem {
         /// What closes it.
         close: &'static str,
     },
-    /// A word among control points that is none of theirs.
+    /// A word among control points that does not belong to them.
     #[error("{word} does not belong to {code}: write it in the block that opens the NURBS, or after it")]
     NotInNurbs {
         /// The word.

@@ -30,7 +30,7 @@ pub enum Operator {
     },
 }
 
-/// A bar on the terminal; one line for each part of the job if standard error is none.
+/// A bar on the terminal; one line for each part of the job if standard error is not a terminal.
 #[derive(Debug)]
 pub struct Terminal {
     events: Subscription,

@@ -50,7 +50,7 @@ fn part(folder: &Path) {
 fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    part(&folder);
+    part(folder);
     let seam = shipped("programs/t-seam-400-deviation.csv").display().to_string();
     let teach = [
         "teach",
@@ -66,7 +66,7 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
         "geometric",
     ];
     let first = host_link(
-        &folder,
+        folder,
         &teach,
         "x 300000\nx -0.5\ncentre\ntake\nstep 8\ncentre\ntake\nstep 5\ntake\nundo\ndone\n",
     );
@@ -84,7 +84,7 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
     }
     // The input ends without a word.
     let second = host_link(
-        &folder,
+        folder,
         &teach,
         "step\ncentre\ntake\nstep\ntake\nstep 15\ncentre\ntake\n",
     );
@@ -96,7 +96,7 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
     );
 
     let plan = host_link(
-        &folder,
+        folder,
         &[
             "plan",
             "rib.toml",
@@ -123,7 +123,7 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
 fn what_cannot_be_taught_is_refused_before_the_machine_moves() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    part(&folder);
+    part(folder);
     std::fs::write(
         folder.join("bare.toml"),
         "[t-seam]\nspeed_m_min = 5.0\npower_w = 2000.0\n",
@@ -132,7 +132,7 @@ fn what_cannot_be_taught_is_refused_before_the_machine_moves() {
     std::fs::write(folder.join("other.csv"), "# machine: gantry\n# part: other\n").unwrap();
     let teach = |words: &[&str]| {
         let words = [&["teach", "--boards", "simulated"], words].concat();
-        let output = host_link(&folder, &words, "");
+        let output = host_link(folder, &words, "");
         assert!(!output.status.success());
         said(&output)
     };

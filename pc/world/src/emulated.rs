@@ -66,7 +66,7 @@ pub fn connect(session: &Session, tracked: bool, patience: Timeouts) -> Result<N
     Ok(boards.paced_by(move || drop(pace.handled())))
 }
 
-/// There are none on this system.
+/// Emulated boards are not available on this system.
 ///
 /// # Errors
 /// [`BoardsError::NeedsLinux`] always.

@@ -291,7 +291,7 @@ fn tracking_at(path: &PlannedPath, s: f64) -> Option<bool> {
     tracking.next_back()
 }
 
-/// A line in the middle of a NURBS is none of its own.
+/// A line in the middle of a NURBS is not a block of its own.
 fn check_whole(program: &Program, line: u32) -> Result<(), FromLineError> {
     for path in &program.paths {
         for next in Arc::new(path.clone()).moves() {

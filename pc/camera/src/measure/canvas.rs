@@ -94,7 +94,7 @@ impl Canvas {
             dash: pen.dash.and_then(|length| StrokeDash::new(vec![length; 2], 0.0)),
             ..Stroke::default()
         };
-        // There is none of a single place, nor one with numbers that are not finite.
+        // No path of a single place, nor with numbers that are not finite.
         if let Some(path) = path.finish() {
             let paint = paint(pen.colour, pen.opacity);
             self.pixels

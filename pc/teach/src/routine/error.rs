@@ -20,7 +20,7 @@ pub enum PointError {
         /// Why.
         source: RangingError,
     },
-    /// Numbers that are none.
+    /// Values that are not finite numbers.
     #[error(transparent)]
     Ring(#[from] RingError),
     /// An edge, most likely.

@@ -132,6 +132,6 @@ impl Cameras {
 
 /// `pose` with its head along `normal`, across the tangent as it is.
 fn turned(pose: &Pose, normal: &Vector3<f64>) -> Pose {
-    // A skin along the tangent is none.
+    // A skin along the tangent is not possible.
     Pose::new(pose.position, pose.tangent, *normal).unwrap_or(*pose)
 }

@@ -140,7 +140,7 @@ pub enum PlanError {
         /// Why.
         source: LocateError,
     },
-    /// The pose is none.
+    /// The pose is not valid.
     #[error("at {s:.1} mm of seam 1 no pose of the head is possible: {source}")]
     Pose {
         /// Length along seam 1 \[mm\].
