@@ -1,4 +1,4 @@
-//! What a session allows, what it answers by itself, and how long it lasts.
+//! The session of the PC: permitted requests, its own answers, its lease.
 
 use crate::address::Source;
 use crate::counters::Counters;

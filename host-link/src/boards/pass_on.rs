@@ -1,4 +1,4 @@
-//! What boards that stand before others do not do themselves.
+//! Forwarding of [`Boards`](super::Boards) methods by wrappers around other boards.
 
 /// In an `impl Boards`: passes the methods that are named on to the boards in a field.
 ///

@@ -1,4 +1,4 @@
-//! The parts of a job, and what it asks.
+//! The phases of a job, and its questions to the operator.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! Events on their way to subscribers: bounded, and never in the way of the job.
+//! Queues of events for subscribers: bounded, and never delaying the job.
 
 use super::Event;
 use std::collections::VecDeque;

@@ -1,4 +1,5 @@
-//! Pictures to calibrate a camera from: the machine stands, its slides step, the camera looks.
+//! Takes pictures to calibrate a camera from: the machine is at rest, its slides step, the camera takes a
+//! picture at each step.
 //!
 //! Where the camera steps out of the work or into it, the machine continues along travel by as much as the
 //! sharp band would wander on the work. So the band stays where it is: what its texture does to heights is

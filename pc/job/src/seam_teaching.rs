@@ -1,4 +1,4 @@
-//! Teaching both seams of a rib with the machine of a session: it stands, and its cameras look.
+//! Teaching both seams of a rib with the machine of a session: its cameras measure while it is at rest.
 
 use crate::session::Session;
 use crate::tracking::Watched;

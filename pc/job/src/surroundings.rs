@@ -1,4 +1,4 @@
-//! What is around a machine, as far as a job has to do with it.
+//! The surroundings of a machine (cameras, probe, true seams) as a job uses them.
 
 use crate::cameras::SeamCameras;
 use crate::images::ImagesError;

@@ -1,4 +1,4 @@
-//! Which code a word belongs to: P, Q and others mean something else with each code.
+//! Assigns words to codes: P, Q and others have a different meaning with each code.
 
 use super::codes::Code;
 use super::error::{NcError, Problem};

@@ -1,4 +1,4 @@
-//! What holds until a program says otherwise.
+//! Modal state: settings that hold until the program changes them.
 
 use super::claims::Claims;
 use super::codes::Code;

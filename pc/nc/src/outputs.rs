@@ -1,4 +1,4 @@
-//! What a program switches: M62 to M65, M67 and M68 by the number of the output, M3, M4, M5 and S by what it is.
+//! Outputs of a program: M62 to M65, M67 and M68 by the number of the output, M3, M4, M5 and S by what it is.
 
 use super::claims::Claims;
 use super::codes::{Code, Group};

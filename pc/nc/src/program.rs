@@ -1,4 +1,4 @@
-//! A program after reading: motions from rest to rest, as their words say them.
+//! A program after reading: motions from rest to rest, with the values of their words.
 
 use super::error::SourcePosition;
 use super::parser::Block;

@@ -1,4 +1,4 @@
-//! Where the text of a program is, to be read line by line any number of times.
+//! The source of a program's text, which can be read line by line any number of times.
 
 use std::fs::File;
 use std::hash::{DefaultHasher, Hasher};

@@ -1,4 +1,4 @@
-//! A ranging probe as it really is, in front of a panel as it really is.
+//! A simulated ranging probe in front of the true surface of a panel.
 
 use config::probe::{Probe, ProbeUnit, Reading};
 use job::RangingProbe;

@@ -1,4 +1,4 @@
-//! What is around a machine: the seams as they really are, and what sees them.
+//! The surroundings of a simulated machine: its true seams, cameras and probe.
 
 use crate::deviation::{check_facing, check_seam};
 use crate::rendered::RenderedPictures;

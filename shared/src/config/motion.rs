@@ -1,4 +1,4 @@
-//! What a machine file says about the motion board, in human units (mm, degrees, seconds).
+//! Parameters of the motion board from the machine file (mm, degrees, seconds).
 //!
 //! Rotary axes and motors take degrees wherever linear ones take mm; the built forms hold radians.
 

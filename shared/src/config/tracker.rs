@@ -1,4 +1,4 @@
-//! What a machine file says about the tracker board (mm, degrees, seconds).
+//! Parameters of the tracker board from the machine file (mm, degrees, seconds).
 
 use crate::control::HomeConfig;
 use crate::io::{SIDES, SLIDES};

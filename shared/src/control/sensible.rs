@@ -1,4 +1,4 @@
-//! What the parameters of any drive may be, by what they mean.
+//! Permitted ranges of the parameters of drives, derived from their meaning.
 
 use super::HomeConfig;
 use crate::parameter::{ParameterError, within, within_either_sign};

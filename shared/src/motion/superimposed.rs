@@ -1,4 +1,4 @@
-//! Superimposed motion: the pose goes beside the planned one, blended in slowly (mathematics 0.7).
+//! Superimposed motion: an offset of the pose from the planned one, blended in slowly (mathematics 0.7).
 //!
 //! It comes after planner and output filter, which know nothing of it. A blend is a polynomial of fifth degree, so
 //! that its acceleration is continuous and its jerk bounded, and takes so long that no axis gets more than

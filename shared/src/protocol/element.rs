@@ -1,4 +1,4 @@
-//! Elements of a path on the wire, and what the motion board makes of them.
+//! Elements of a path on the wire, and their conversion for the motion board.
 
 use crate::geometry::{Arc, Line, Turn};
 use crate::trajectory::{

@@ -337,7 +337,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         }
     }
 
-    /// A reason to switch the drives off. A limit switch is not one while homing, where it reverses the search.
+    /// A reason to switch the drives off. A limit switch is not one while homing, where it reverses the
+    /// search.
     fn trip(&self) -> Option<TrackerFault> {
         let feedback = &self.feedback;
         if self.estop.is_pressed() {

@@ -1,4 +1,4 @@
-//! Where beams and cameras look, and what a measurement means on the path (mathematics 0.6, 0.7, 0.8.2).
+//! Frames of beams and cameras, and the position of a measurement on the path (mathematics 0.6, 0.7, 0.8.2).
 
 use crate::config::HeadConfig;
 use crate::geometry::Pose;

@@ -1,4 +1,4 @@
-//! The prediction for people.
+//! The prediction as text.
 
 use super::figures::name;
 use super::{DryRun, PATH, PathFigures, Peak, QUANTITIES, ROWS};

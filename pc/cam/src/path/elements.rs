@@ -1,4 +1,4 @@
-//! A planned path as elements: what the motion board is given.
+//! A planned path as elements, as they are sent to the motion board.
 
 use super::blocks::Leg;
 use super::{PathError, PlannedPath};

@@ -1,4 +1,4 @@
-//! How fast the way to each target is to be gone.
+//! Feed of the motion to each target.
 
 use super::PathError;
 use nc::{FeedRate, ProgramPath, SourcePosition, Target};

@@ -1,4 +1,4 @@
-//! What a path asks of the axes and V slides, and the speed that they allow.
+//! Demands of a path on the axes and V slides, and the speed that they allow.
 
 use super::shape::Shape;
 use super::targets::ROTARY;

@@ -1,4 +1,4 @@
-//! What a program switches, on the machine that is there.
+//! Outputs of a program, checked against the machine.
 
 use super::{MAX_EVENTS, PathError, Planner, SpeedStep};
 use nc::{ProgramAction, ProgramEvent, SourcePosition};

@@ -1,4 +1,4 @@
-//! A planned path: what the boards are given.
+//! A planned path, as it is sent to the boards.
 
 use super::blocks::{Blocks, Course, Leg};
 use super::shape::Shape;

@@ -1,4 +1,4 @@
-//! A measured picture as data.
+//! The result of a measured picture, for JSON.
 
 use super::{Outcome, words};
 use serde::Serialize;

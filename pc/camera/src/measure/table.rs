@@ -1,4 +1,4 @@
-//! Measured pictures as a table for people.
+//! Measured pictures as a table.
 
 use super::Record;
 use super::record::Figure;

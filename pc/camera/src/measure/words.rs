@@ -1,4 +1,4 @@
-//! What measurements say, in words.
+//! Explanations of measurements in words.
 
 use vision::{Criterion, Doubt, Measured, Report, State, Status};
 

@@ -1,4 +1,4 @@
-//! Protections that a machine's parameters leave weaker than usual: allowed, and to be known.
+//! Protections that a machine's parameters leave weaker than usual: allowed, but reported.
 
 use super::MachineFile;
 use shared::config::{BeamConfig, MotionConfig, TrackerConfig};

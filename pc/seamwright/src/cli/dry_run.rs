@@ -1,4 +1,4 @@
-//! `seamwright dry-run`: how long a program will take, and what it will ask of the machine.
+//! `seamwright dry-run`: duration of a program, and its demands on the machine.
 
 use super::{OUTSIDE, read_program};
 use crate::console::{out, outln};

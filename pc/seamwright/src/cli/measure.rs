@@ -1,4 +1,4 @@
-//! `seamwright measure`: what a picture says, and why.
+//! `seamwright measure`: the seam measured in pictures, or why it is not accepted.
 
 use super::sentence;
 use crate::console::{errln, outln};

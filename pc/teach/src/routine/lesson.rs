@@ -1,4 +1,4 @@
-//! Teaching while it goes on: the moves of one machine, and what its probe sees.
+//! One run of teaching: the moves of the machine, and the measurements of its probe.
 
 use super::error::{NoDistance, PointError, PointFailure};
 use super::{GuidePoint, ProbeMachine, Teacher, aim};
@@ -19,7 +19,7 @@ const VERTICAL: f64 = 1e-3;
 /// until all move the focus is off.
 const TURNS_SLOWER: f64 = 3.0;
 
-/// Teaching while it goes on.
+/// One run of teaching.
 pub(super) struct Lesson<'t, 'a, A: ProbeMachine> {
     pub(super) teacher: &'t Teacher<'a>,
     pub(super) arm: &'t mut A,

@@ -96,7 +96,7 @@ pub struct GuidePoint {
     pub angles_deg: [f64; 3],
 }
 
-/// A machine with a probe, as teaching uses it.
+/// The interface to a machine with a probe, for teaching.
 pub trait ProbeMachine {
     /// Why it does not do what it is asked.
     type Error: StdError + 'static;

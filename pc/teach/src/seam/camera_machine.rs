@@ -1,4 +1,4 @@
-//! A machine with two cameras, as teaching uses it.
+//! The interface to a machine with two cameras, for teaching.
 
 use super::{MachinePose, SeamPoint};
 use shared::geometry::Pose;

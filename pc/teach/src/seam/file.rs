@@ -1,4 +1,4 @@
-//! Taught seams in a file that people can read, complete after every point.
+//! The file of taught seams (CSV), complete after every point.
 
 use super::{MeasuredSeam, SeamPoint};
 use config::table::{self, Row, TableError};

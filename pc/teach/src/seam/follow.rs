@@ -1,4 +1,4 @@
-//! Following a seam: centre, take down, step along the tangent, to the end of the seam.
+//! Following a seam: centre, record the point, step along the tangent, to the end of the seam.
 
 use super::course::Course;
 use super::{

@@ -1,4 +1,4 @@
-//! What a search that found nothing says.
+//! Error of a search that found nothing.
 
 use shared::io::SIDES;
 use std::fmt::{Display, Formatter, Result as FmtResult};

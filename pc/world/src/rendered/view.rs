@@ -1,4 +1,4 @@
-//! What truly stands before a camera at a strobe.
+//! What is truly in the field of view of a camera at a strobe.
 
 use crate::{TrueSeam, TrueSeams};
 use camera::{CameraFrame, walls};

@@ -1,4 +1,4 @@
-//! A path comes in: its beginning, its elements, its events.
+//! Loading a path: its beginning, its elements, its events.
 
 use super::MotionController;
 use super::loaded::LoadedPath;

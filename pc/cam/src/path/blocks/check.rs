@@ -1,4 +1,4 @@
-//! Going through the blocks of a path once: what is wrong with them, and what they come to.
+//! Checks all blocks of a path once, and sums them up.
 
 use super::walk::Step;
 use crate::path::limits::{CHECK_STEP, Demand, Worst, check_continuous};

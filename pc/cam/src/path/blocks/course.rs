@@ -1,4 +1,4 @@
-//! Where a path is, by its length.
+//! Evaluation of a path at a path length.
 
 use super::{Blocks, Leg};
 use crate::path::{CAPACITY, PathError};

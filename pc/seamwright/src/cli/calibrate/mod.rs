@@ -1,4 +1,4 @@
-//! `seamwright calibrate`: what a camera is, with the machine or from pictures of which something is known.
+//! `seamwright calibrate`: calibration of a camera, with the machine or from pictures with known values.
 
 mod live;
 
