@@ -193,13 +193,13 @@ impl PipePair {
 
     /// A point of M in S \[mm\].
     #[cfg(test)]
-    pub(crate) fn to_branch(&self, main: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn to_branch(self, main: &Vector3<f64>) -> Vector3<f64> {
         self.direction_to_branch(&(main - Vector3::new(self.offset, 0.0, 0.0)))
     }
 
     /// A point of S in M \[mm\].
     #[cfg(test)]
-    pub(crate) fn to_main(&self, branch: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn to_main(self, branch: &Vector3<f64>) -> Vector3<f64> {
         let (x, y, z) = (branch.x, branch.y, branch.z);
         Vector3::new(
             x + self.offset,
