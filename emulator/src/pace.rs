@@ -12,7 +12,8 @@ use std::time::Duration;
 /// Bytes of the page: epoch, then (reached, seen) of both boards and of the PC, each a native i64.
 const BOARDS_AT: u64 = 8;
 const PC_AT: u64 = 40;
-/// Wall time after which a board that is not heard of has died \[ns\], as the boards' plugins see it.
+/// Wall time without a sign of life after which a board is taken to have died \[ns\], as the boards' plugins
+/// see it.
 const PATIENCE_NS: i64 = 1_000_000_000;
 
 /// A program's part in the pace of the boards; it ends when this is dropped.

@@ -125,7 +125,7 @@ struct Operator {
 impl crate::Operator for Operator {
     fn turn(&mut self, remote: &Remote) {
         if let Some(command) = self.word() {
-            // One who says more than the job can take is not heard.
+            // Commands beyond what the job can take are dropped.
             let _ = remote.send(command);
         }
     }

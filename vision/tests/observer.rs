@@ -68,7 +68,7 @@ fn gap(lateral_mm: f64, width_mm: f64, height_mm: f64) -> Scene {
     Scene::new(Work::Gap(Gap::new(plate)), Texture::new(Finish::Plain, 7))
 }
 
-/// Three pictures acquire; then the seam is believed, and from the fourth on its height.
+/// Three pictures acquire; then the seam is accepted, and from the fourth on its height.
 #[test]
 fn three_pictures_acquire() {
     let mut bench = Bench::new(Joint::Gap);
@@ -240,7 +240,7 @@ fn means_begin_anew_after_a_gap() {
     assert!((mean.lateral_mm - 0.15).abs() < 0.003, "{mean:?}");
 }
 
-/// A gap that is suddenly wider is doubted three times and believed then; so is one that jumps.
+/// A gap that is suddenly wider is doubted three times and accepted then; so is one that jumps.
 #[test]
 fn jumps_are_believed_only_when_they_stay() {
     let mut bench = Bench::new(Joint::Gap);

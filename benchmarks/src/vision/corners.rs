@@ -22,7 +22,7 @@ const WAY_MM: f64 = 0.75;
 pub(super) struct Corners {
     name: String,
     pictures: u64,
-    /// Errors of the corners that were believed, one after the other.
+    /// Errors of the corners that were accepted, one after the other.
     runs: Vec<Vec<Errors>>,
 }
 
@@ -67,7 +67,7 @@ impl Corners {
         self.runs.iter().flatten().map(figure).collect()
     }
 
-    /// Means of pictures in a row that were believed.
+    /// Means of pictures in a row that were accepted.
     fn means(&self, figure: fn(&Errors) -> f64) -> Vec<f64> {
         let groups = self.runs.iter().flat_map(|run| run.chunks_exact(AVERAGED));
         groups

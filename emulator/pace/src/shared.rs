@@ -31,7 +31,7 @@ struct Progress {
 }
 
 impl Progress {
-    /// How far it has come, unless it is not there or was not heard of within `patience` ns.
+    /// How far it has come, unless it is not there or has given no sign of life within `patience` ns.
     fn reached(&self, now: i64, patience: i64) -> Option<i64> {
         let seen = self.seen.load(Ordering::Relaxed);
         (seen != 0 && now - seen < patience).then(|| self.reached.load(Ordering::Relaxed))
@@ -102,7 +102,8 @@ impl Shared {
         own.seen.store(now, Ordering::Relaxed);
     }
 
-    /// How far the other board has come, unless it is not there or was not heard of within `patience` ns.
+    /// How far the other board has come, unless it is not there or has given no sign of life within
+    /// `patience` ns.
     pub fn peer(&self, now: i64, patience: i64) -> Option<i64> {
         self.page.boards[1 - self.slot].reached(now, patience)
     }

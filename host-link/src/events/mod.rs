@@ -109,7 +109,7 @@ pub struct MeasuredPicture {
     pub columns: usize,
     /// The pixels, row after row.
     pub pixels: Vec<u8>,
-    /// The seam, if one is believed.
+    /// The seam, if one is accepted.
     pub seam: Option<SeamInPicture>,
 }
 

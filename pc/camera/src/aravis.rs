@@ -30,7 +30,7 @@ pub struct GigeCamera {
     software: bool,
     stream: Stream,
     camera: ::aravis::Camera,
-    /// Aravis has heard nothing of the camera for seconds.
+    /// Aravis has received nothing from the camera for seconds.
     gone: Arc<AtomicBool>,
     matching: Matching,
     /// A frame whose strobe is not known yet.

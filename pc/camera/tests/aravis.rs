@@ -155,7 +155,7 @@ fn a_camera_that_goes_away_is_named() {
     let error = until("error", || camera.next(LOOK, &mut picture).err());
     let said = error.to_string();
     assert!(
-        said.contains("camera 127.0.0.1 is gone") && said.contains("cable"),
+        said.contains("camera 127.0.0.1 was lost") && said.contains("cable"),
         "{said}"
     );
 }

@@ -43,7 +43,7 @@ pub struct PictureRun<'a> {
     pub program: &'a Program,
     /// Side of the camera, 0 or 1.
     pub side: usize,
-    /// What is believed of it.
+    /// Its calibration so far.
     pub before: Calibration,
     /// Places along the seam.
     pub places: u32,

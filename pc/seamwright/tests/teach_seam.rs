@@ -82,7 +82,7 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
     ] {
         assert!(told.contains(words), "{words} is not in\n{told}");
     }
-    // The input ends without a word.
+    // The input ends without `done`.
     let second = host_link(
         folder,
         &teach,

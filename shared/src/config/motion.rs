@@ -22,7 +22,7 @@ pub struct MotionConfig {
     pub gantry: Option<GantryConfig>,
     /// Beam 1 and 2, or whatever else the process switches: an arc, a spindle.
     pub beams: [Option<BeamConfig>; SIDES],
-    /// A running path, or homing, stops when the PC has not been heard for this long \[ms\].
+    /// A running path, or homing, stops when nothing was received from the PC for this long \[ms\].
     pub link_timeout_ms: u32,
 }
 

@@ -84,7 +84,7 @@ pub struct TrackingConfig {
     pub search_speed_mm_s: f64,
     /// Fastest that any path goes \[mm/s\]; path states with more are rejected.
     pub max_path_speed_mm_s: f64,
-    /// How far a seam may lie from its plan, along U and V \[mm\]; what is seen further away is not believed.
+    /// How far a seam may lie from its plan, along U and V \[mm\]; what is seen further away is not accepted.
     pub max_seam_deviation_mm: f64,
     /// Steepest that a seam may lead away from its plan; what was measured on a steeper one is an outlier.
     pub max_seam_slope: f64,

@@ -129,7 +129,7 @@ pub enum Fault {
         /// Path position.
         s_mm: f32,
     },
-    /// The PC was not heard while a path was running, or while homing.
+    /// Nothing was received from the PC while a path was running, or while homing.
     #[error(
         "the PC was silent for {silent_ms} ms while the machine moved, so it was stopped; check the connection, then reset"
     )]
@@ -160,7 +160,7 @@ pub enum Fault {
         /// What was missing.
         why: NoPermit,
     },
-    /// The tracker took back the permit of a beam that was on, or was not heard any more.
+    /// The tracker withdrew the permit of a beam that was on, or nothing was received from it any more.
     #[error("beam {} was switched off at s = {s_mm:.1} mm and the machine stopped, because {why}", side + 1)]
     PermitLost {
         /// 0 or 1.

@@ -94,7 +94,7 @@ pub enum TrackerFault {
         /// How long.
         seconds: u8,
     },
-    /// The motion board was not heard while tracking.
+    /// Nothing was received from the motion board while tracking.
     #[error("the motion board was silent for {silent_ms} ms while tracking")]
     PathStale {
         /// How long.

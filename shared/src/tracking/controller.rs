@@ -59,7 +59,7 @@ pub struct TickOutput {
     pub command: SlideCommand,
     /// Both cameras were triggered: offer this capture to the PC.
     pub capture: Option<Capture>,
-    /// For the motion board, once it is heard.
+    /// For the motion board, once something was received from it.
     pub permit: Option<Permit>,
     /// For telemetry.
     pub sample: TrackerSample,

@@ -25,8 +25,8 @@ pub struct TrackerParameters {
     pub slides: [SlideParameters; SLIDES],
     /// How the maps take and read samples.
     pub map: MapLaw,
-    /// What is believed of what others say.
-    pub belief: PlausibleLimits,
+    /// Limits of plausible datagrams.
+    pub plausible: PlausibleLimits,
     /// How U slides look for a seam that was not seen yet.
     pub search: SearchLaw,
     /// A beam may go on while both slides of its side are no further than this from the seam \[mm\].
@@ -112,7 +112,7 @@ impl TrackerConfig {
         // Faster, and no picture would lie within reach of the map.
         let fastest_path = (window + hold) / (f64::from(tracking.frame_period_ms) * TRACKER_PERIOD_S);
         let slowest_slide = slides.iter().map(|slide| slide.law.max_velocity);
-        let belief = PlausibleLimits {
+        let plausible = PlausibleLimits {
             path_speed: check(
                 "tracking",
                 "max_path_speed_mm_s",
@@ -148,7 +148,7 @@ impl TrackerConfig {
             },
             search,
             lock,
-            belief,
+            plausible,
             preview,
             frame_ticks: tracking.frame_period_ms,
             stale_path_us: u64::from(tracking.stale_path_ms) * 1000,

@@ -96,7 +96,7 @@ impl Seam {
     ) {
         let heads = &parameters.heads;
         let (u, v) = (u_slide(side), u_slide(side) + 1);
-        if !parameters.believes(side, slides, snapshot.speed, seen) {
+        if !parameters.accepts(side, slides, snapshot.speed, seen) {
             return self.disbelieve(side);
         }
         let spot = heads.spot(&snapshot.pose, side);
@@ -108,7 +108,7 @@ impl Seam {
         };
         // U is planned at zero.
         let planned = plan(parameters, path, meeting.sigma, 0.0).map_or(0.0, |plan| plan[v].position);
-        if libm::fabs(meeting.u).max(libm::fabs(meeting.v - planned)) > parameters.belief.deviation {
+        if libm::fabs(meeting.u).max(libm::fabs(meeting.v - planned)) > parameters.plausible.deviation {
             return self.disbelieve(side);
         }
         let add = if snapshot.speed < 0.0 {

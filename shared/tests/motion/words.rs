@@ -82,7 +82,7 @@ impl Job {
         }
     }
 
-    /// Says a word, which may mean nothing now.
+    /// Sends a command, which may have no effect now.
     fn say(&mut self, request: &Request) {
         self.bench.controller.handle(request, 0);
     }

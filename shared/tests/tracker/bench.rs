@@ -132,7 +132,7 @@ pub struct Bench {
     pub pose_error: fn(f64) -> f64,
     /// Noise of the cameras, 1σ \[mm\].
     pub noise: f64,
-    /// The motion board is heard.
+    /// Datagrams of the motion board arrive.
     pub linked: bool,
     pub tracking: bool,
     pub beams: [bool; 2],

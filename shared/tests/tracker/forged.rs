@@ -254,7 +254,7 @@ fn one_measurement_from_far_ahead_blinds_no_side() {
     }
 }
 
-/// All that the cameras say drifts, as fast as it can be believed and faster.
+/// All that the cameras say drifts, as fast as it can be accepted and faster.
 #[test]
 fn measurements_that_drift_lead_no_further_than_a_seam_may_lie_and_no_faster() {
     for drift in [0.1, 0.3, 1.0, 5.0] {

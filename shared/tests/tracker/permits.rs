@@ -73,7 +73,7 @@ fn every_fault_ends_the_permit_of_both_sides_at_the_next_tick() {
             |bench| bench.change_inputs = |feedback| feedback.estop = [true; 2],
             1,
         ),
-        // The motion board is not heard: `stale_path_ms` later.
+        // Nothing is received from the motion board: `stale_path_ms` later.
         (|bench| bench.linked = false, 23),
         (|bench| bench.controller.session_ended(), 1),
     ];

@@ -81,7 +81,7 @@ fn assert_shut_in_time(pair: &Pair, ended: &Ended, last: &MotionSample, whom: &s
             assert!(way <= last.speed_mm_s * 1e-3 * f64::from(LATE_MS), "{way} mm");
             assert_eq!(motion.state, State::Fault);
         }
-        // The PC heard of it first, and stopped the path.
+        // The PC received it first, and stopped the path.
         fault => assert_eq!((motion.state, fault), (State::Off, None), "{error}"),
     }
     assert!(error.contains(whom), "{error}");

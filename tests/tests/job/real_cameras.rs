@@ -353,8 +353,8 @@ fn a_camera_that_is_gone_ends_the_weld_with_its_name_and_the_machine_at_rest() {
     let error = ended.error.as_ref().expect("a camera is gone").to_string();
     assert_eq!(
         error,
-        "camera 2: camera 192.168.10.12 is gone: its cable was cut; check its power and its cable, then start the job \
-         anew"
+        "camera 2: camera 192.168.10.12 was lost: its cable was cut; check its power and its cable, then restart the \
+         job"
     );
     assert_stopped_on_path(&ended, 130.0);
     assert_off(&mut world);

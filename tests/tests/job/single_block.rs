@@ -15,7 +15,7 @@ struct Patient {
     lets_run_after: Option<usize>,
 }
 
-/// Times that the job waits for the boards before a word comes: some seconds.
+/// Times that the job waits for the boards before a command comes: some seconds.
 const PATIENCE: u32 = 1000;
 
 impl Operator for Patient {

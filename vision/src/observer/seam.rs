@@ -21,17 +21,17 @@ pub struct Observation {
     pub report: Report,
     /// What the observer is doing, this picture included.
     pub state: State,
-    /// The seam, if it is believed.
+    /// The seam, if it is accepted.
     pub seam: Option<Seam>,
     /// Why it is not, where the picture shows one.
     pub doubt: Option<Doubt>,
-    /// Whether the seam jumped and is believed at its new place or width from now on.
+    /// Whether the seam jumped and is accepted at its new place or width from now on.
     pub relocked: bool,
     /// Too high or too low, after three pictures in a row that say so.
     pub out_of_view: Option<Status>,
 }
 
-/// A seam that is believed, in the camera's frame (see [`Measured`]).
+/// A seam that is accepted, in the camera's frame (see [`Measured`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seam {
     /// Form it was seen in.
@@ -56,7 +56,7 @@ pub struct Seam {
     pub sigma: Sigma,
 }
 
-/// A point of the seam: the mean of where the last `mean_frames` believed pictures saw it.
+/// A point of the seam: the mean of where the last `mean_frames` accepted pictures saw it.
 ///
 /// In the camera's frame where the camera is now: each picture's (a, u, n) is carried along by what the camera has moved
 /// since ([`Moved`]). The three are means over the same pictures and therefore belong together: on a seam that climbs,

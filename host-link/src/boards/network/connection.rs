@@ -59,7 +59,7 @@ impl Connection {
         }
 
         let board = SocketAddrV4::new(endpoint.address().map_err(unreachable)?, endpoint.datagram_port);
-        // On the interface that leads to the board, so that no other network can put in a word.
+        // On the interface that leads to the board, so that nothing from another network is received.
         let here = stream.socket.local_addr().map_err(unreachable)?.ip();
         let datagrams = UdpSocket::bind((here, 0)).map_err(unreachable)?;
         datagrams

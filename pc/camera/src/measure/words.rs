@@ -71,7 +71,7 @@ pub fn state(state: State) -> &'static str {
     }
 }
 
-/// Why an observer does not believe a seam.
+/// Why an observer does not accept a seam.
 pub fn doubt(doubt: Doubt) -> &'static str {
     match doubt {
         Doubt::New => "not accepted yet: three pictures in a row have to agree",

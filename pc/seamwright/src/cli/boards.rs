@@ -28,7 +28,7 @@ const POLL: Duration = Duration::from_millis(20);
 
 /// Events that wait for the disk: more than half a minute of both boards.
 const LOGGED: usize = 1 << 14;
-/// So many letters are wrong in a word that is meant to be another one.
+/// Largest number of wrong letters in a misspelt word.
 const NEAR: usize = 2;
 
 /// Which boards.

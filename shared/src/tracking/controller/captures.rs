@@ -55,7 +55,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             return;
         };
         // Seen before it was there to see, or a second time.
-        let believed = capture
+        let plausible = capture
             .answered
             .map(|answered| arrived_us >= capture.time_us && !answered);
         let slides = capture.slides;
@@ -66,7 +66,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             .unwrap_or(capture.snapshot);
         for (side, seen) in measurement.sides.iter().enumerate() {
             if let Some(seen) = seen {
-                if !believed[side] {
+                if !plausible[side] {
                     self.seam.disbelieve(side);
                     continue;
                 }
