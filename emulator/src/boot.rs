@@ -2,7 +2,7 @@
 
 use crate::hello;
 use crate::qemu::{Board, PROGRAM, Setup};
-use crate::qmp::Meddling;
+use crate::qmp::BoardAction;
 use crate::session::{Endpoint, PathStatesTo, Session};
 use plant::{DEFAULT_MACHINE, MotionPlant};
 use shared::protocol::{Role, SCHEMA_HASH};
@@ -40,10 +40,10 @@ pub struct Options {
     pub machine: String,
 }
 
-/// Environment variables by which a test is told what to boot, in the order of [`Options`].
+/// Environment variables that say what a test boots, in the order of [`Options`].
 pub const BOOT_VARIABLES: [&str; 3] = ["SEAMWRIGHT_MOTION", "SEAMWRIGHT_TRACKER", "SEAMWRIGHT_PACE"];
 
-/// Environment variables by which a test is told the programs it runs: seamwright and xtask.
+/// Environment variables that name the programs a test runs: seamwright and xtask.
 pub const PROGRAM_VARIABLES: [&str; 2] = ["SEAMWRIGHT_PROGRAM", "SEAMWRIGHT_XTASK"];
 
 impl Options {
@@ -103,7 +103,7 @@ pub enum BootError {
         /// What the system said.
         source: io::Error,
     },
-    /// The environment does not tell what to boot.
+    /// The environment does not say what to boot.
     #[error("{variable} is not set; run these tests by `cargo xtask test`")]
     NotTold {
         /// The variable.
@@ -225,7 +225,7 @@ impl Boards {
         &self.session
     }
 
-    /// Whether both boards still run; an error tells how one ended.
+    /// Whether both boards still run; the error says how one ended.
     pub fn check(&mut self) -> Result<(), BootError> {
         for board in [&mut self.motion, &mut self.tracker] {
             let ended = board.ended().map_err(|source| BootError::Setup {
@@ -247,10 +247,10 @@ impl Boards {
     }
 
     /// Does something to a board from outside.
-    pub fn meddle(&self, role: Role, meddling: Meddling) -> io::Result<()> {
+    pub fn act(&self, role: Role, action: BoardAction) -> io::Result<()> {
         match role {
-            Role::Motion => self.motion.meddle(meddling),
-            Role::Tracker => self.tracker.meddle(meddling),
+            Role::Motion => self.motion.act(action),
+            Role::Tracker => self.tracker.act(action),
         }
     }
 
@@ -351,7 +351,7 @@ fn existing(what: &'static str, path: &Path) -> Result<PathBuf, BootError> {
     })
 }
 
-/// A session on four ports that nobody uses, found by taking all at once and giving them back.
+/// A session on four unused ports, found by taking all at once and giving them back.
 fn free_ports(pace: PathBuf, machine: &str) -> io::Result<Session> {
     let host = Ipv4Addr::LOCALHOST;
     let tcp = [TcpListener::bind((host, 0))?, TcpListener::bind((host, 0))?];
@@ -409,14 +409,13 @@ mod tests {
 
     #[test]
     fn a_directory_serves_one_pair_at_a_time() {
-        let directory = env::temp_dir().join(format!("seamwright-emulator-{}", std::process::id()));
-        fs::create_dir_all(&directory).expect("the temporary directory is writable");
-        let page = shared_page(&directory).expect("is free");
+        let directory = tempfile::tempdir().expect("the temporary directory is writable");
+        let directory = directory.path();
+        let page = shared_page(directory).expect("is free");
         assert_eq!(page.0.metadata().expect("is open").len(), PEERS_LENGTH);
-        assert!(matches!(shared_page(&directory), Err(BootError::InUse { .. })));
+        assert!(matches!(shared_page(directory), Err(BootError::InUse { .. })));
         drop(page);
-        shared_page(&directory).expect("is free again");
-        fs::remove_dir_all(&directory).expect("is there");
+        shared_page(directory).expect("is free again");
     }
 
     #[test]

@@ -29,7 +29,7 @@ pub fn ask(endpoint: &Endpoint) -> io::Result<Identity> {
     stream.read_exact(&mut prefix)?;
     let body = buffer
         .get_mut(..usize::from(u16::from_le_bytes(prefix)))
-        .ok_or_else(|| io::Error::other("an answer too long"))?;
+        .ok_or_else(|| io::Error::other("the answer is too long"))?;
     stream.read_exact(body)?;
     match decode_message(body).map_err(io::Error::other)? {
         Response::Identity(identity) => Ok(identity),

@@ -28,7 +28,7 @@ pub use pace::{BoardTime, Pace};
 #[cfg(target_os = "linux")]
 pub use qemu::{INSTRUCTIONS_PER_US, bound_to_parent};
 #[cfg(target_os = "linux")]
-pub use qmp::Meddling;
+pub use qmp::BoardAction;
 pub use session::{
     Endpoint, JOB_VARIABLE, MACHINE_VARIABLE, PathStatesTo, SEAM_VARIABLE, SESSION_VARIABLE, Session,
     SessionError,

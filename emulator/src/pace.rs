@@ -12,7 +12,8 @@ use std::time::Duration;
 /// Bytes of the page: epoch, then (reached, seen) of both boards and of the PC, each a native i64.
 const BOARDS_AT: u64 = 8;
 const PC_AT: u64 = 40;
-/// Wall time after which a board that is not heard of has died \[ns\], as the boards' plugins see it.
+/// Wall time without a sign of life after which a board is taken to have died \[ns\], as the boards' plugins
+/// see it.
 const PATIENCE_NS: i64 = 1_000_000_000;
 
 /// A program's part in the pace of the boards; it ends when this is dropped.
@@ -31,8 +32,8 @@ impl Pace {
 
     /// Everything that the boards have sent so far has been handled.
     pub fn handled(&self) -> io::Result<()> {
-        let (slowest, now) = slowest(&self.page)?;
-        self.write(slowest, now)
+        let (least_reached, now) = least_reached(&self.page)?;
+        self.write(least_reached, now)
     }
 
     fn write(&self, reached: i64, seen: i64) -> io::Result<()> {
@@ -41,8 +42,9 @@ impl Pace {
     }
 }
 
-/// How far the slower of the boards that run has come in their common time, and when that was told last \[ns\].
-fn slowest(page: &File) -> io::Result<(i64, i64)> {
+/// How far the slower of the boards that run has come in their common time, and when that was reported last
+/// \[ns\].
+fn least_reached(page: &File) -> io::Result<(i64, i64)> {
     let mut bytes = [0; 32];
     page.read_exact_at(&mut bytes, BOARDS_AT)?;
     let number = |index: usize| {
@@ -53,8 +55,8 @@ fn slowest(page: &File) -> io::Result<(i64, i64)> {
     let now = boards[0].1.max(boards[1].1);
     // A board that has died is waited for no more.
     let alive = boards.iter().filter(|(_, seen)| now - seen <= PATIENCE_NS);
-    let slowest = alive.map(|(reached, _)| *reached).min();
-    Ok((slowest.unwrap_or(0), now))
+    let least_reached = alive.map(|(reached, _)| *reached).min();
+    Ok((least_reached.unwrap_or(0), now))
 }
 
 /// The time of the boards, which goes slower than that of the wall on a busy computer. Looking at it does not take part
@@ -74,7 +76,7 @@ impl BoardTime {
 
     /// How far the slower one has come.
     pub fn now(&self) -> io::Result<Duration> {
-        let (reached, _) = slowest(&self.page)?;
+        let (reached, _) = least_reached(&self.page)?;
         Ok(Duration::from_nanos(reached.try_into().unwrap_or(0)))
     }
 }
@@ -92,7 +94,8 @@ mod tests {
 
     #[test]
     fn the_slower_board_is_followed_and_the_end_is_told() {
-        let path = std::env::temp_dir().join(format!("seamwright-pace-{}", std::process::id()));
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("page");
         let mut page = vec![0; 4096];
         for (place, number) in [7_i64, 100, 1_000, 90, 1_005].into_iter().enumerate() {
             page[8 * place..8 * place + 8].copy_from_slice(&number.to_ne_bytes());
@@ -109,6 +112,5 @@ mod tests {
         assert_eq!(time.now().expect("the file"), Duration::from_nanos(90));
         drop(pace);
         assert_eq!(pc(), [0, 0]);
-        std::fs::remove_file(&path).expect("the file");
     }
 }

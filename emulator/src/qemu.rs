@@ -1,6 +1,6 @@
 //! One board: a QEMU process.
 
-use crate::qmp::{self, ADAPTER, Meddling};
+use crate::qmp::{self, ADAPTER, BoardAction};
 use crate::session::Endpoint;
 use shared::protocol::{DATAGRAM_PORT, REQUEST_PORT};
 use std::ffi::OsStr;
@@ -99,8 +99,8 @@ impl Board {
     }
 
     /// Does something to the board from outside.
-    pub fn meddle(&self, meddling: Meddling) -> io::Result<()> {
-        qmp::meddle(&self.directory, &format!("{}.qmp", self.name), meddling)
+    pub fn act(&self, action: BoardAction) -> io::Result<()> {
+        qmp::act(&self.directory, &format!("{}.qmp", self.name), action)
     }
 
     /// Cuts its power for good.

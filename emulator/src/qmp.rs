@@ -13,22 +13,22 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// Name of a board's network adapter.
 pub(crate) const ADAPTER: &str = "net0";
 
-/// What to do to a board.
+/// An action on a board from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Meddling {
+pub enum BoardAction {
     /// Pull its network cable.
     CableOut,
     /// Put it back.
     CableIn,
     /// Freeze it: its processor stands still, and its outputs stay as they are.
     Freeze,
-    /// Let it go on.
+    /// Let it continue.
     GoOn,
     /// Press its reset button.
     Reset,
 }
 
-impl Meddling {
+impl BoardAction {
     fn command(self) -> String {
         let link =
             |up: bool| format!(r#"{{"execute":"set_link","arguments":{{"name":"{ADAPTER}","up":{up}}}}}"#);
@@ -42,15 +42,15 @@ impl Meddling {
     }
 }
 
-/// Does it to the board whose control socket is `name` in `directory`; returns when it is done.
-pub(crate) fn meddle(directory: &Path, name: &str, meddling: Meddling) -> io::Result<()> {
+/// Carries out `action` on the board whose control socket is `name` in `directory`; returns when it is done.
+pub(crate) fn act(directory: &Path, name: &str, action: BoardAction) -> io::Result<()> {
     // The address of a socket has room for 107 bytes, which a long path would not fit into.
     let directory = File::open(directory)?;
     let path = format!("/proc/self/fd/{}/{name}", directory.as_raw_fd());
     let mut socket = UnixStream::connect(path)?;
     socket.set_read_timeout(Some(PATIENCE))?;
     let mut answers = BufReader::new(socket.try_clone()?).lines();
-    for command in [r#"{"execute":"qmp_capabilities"}"#, &meddling.command()] {
+    for command in [r#"{"execute":"qmp_capabilities"}"#, &action.command()] {
         writeln!(socket, "{command}")?;
         // Greeting and events come in between.
         loop {

@@ -8,11 +8,11 @@ use thiserror::Error;
 
 /// Environment variable with the path of the session file.
 pub const SESSION_VARIABLE: &str = "SEAMWRIGHT_EMULATOR";
-/// Environment variable with the machine file that seamwright takes where none is told.
+/// Environment variable with the machine file that seamwright uses if none is given.
 pub const MACHINE_VARIABLE: &str = "SEAMWRIGHT_MACHINE";
-/// Environment variable with the job that seamwright takes where none is told.
+/// Environment variable with the job that seamwright uses if none is given.
 pub const JOB_VARIABLE: &str = "SEAMWRIGHT_JOB";
-/// Environment variable with the seam that seamwright takes where none is told.
+/// Environment variable with the seam that seamwright uses if none is given.
 pub const SEAM_VARIABLE: &str = "SEAMWRIGHT_SEAM";
 
 /// Where a board answers.

@@ -10,12 +10,12 @@ use thiserror::Error;
 /// Commands that wait for the job. A job takes one in every turn, many hundred a second.
 const WAITING: usize = 256;
 
-/// Something that a job is told to do.
+/// A command to a job.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Beams off, and a stop on the path.
     Hold,
-    /// To go on after a hold, or with the next block; nothing where the machine does not wait.
+    /// To continue after a hold, or with the next block; nothing where the machine does not wait.
     Resume,
     /// Back along the path, from a hold.
     Back,
@@ -27,7 +27,7 @@ pub enum Command {
     SingleBlock(bool),
     /// A line for a lesson that is led by lines.
     Answer(String),
-    /// There is nobody any more who could answer a question.
+    /// There is no operator any more who could answer a question.
     Unattended,
 }
 
@@ -38,11 +38,11 @@ pub enum CommandError {
     #[error("the job has ended")]
     Ended,
     /// Too many wait already.
-    #[error("the job has {WAITING} commands to take before this one")]
+    #[error("{WAITING} commands are waiting for the job already; send this one again later")]
     Full,
 }
 
-/// The end of whoever drives or watches a job; any number of them.
+/// The end from which a job is driven and watched; there may be any number of clones.
 #[derive(Clone, Debug)]
 pub struct Remote {
     commands: SyncSender<Command>,
@@ -89,7 +89,8 @@ pub fn control() -> (Remote, Control) {
 }
 
 impl Remote {
-    /// Tells the job. Orders are taken one after the other; a stop, single block and that nobody is there count at once.
+    /// Sends `command` to the job. Commands are taken one after the other; a stop, single block and
+    /// [`Command::Unattended`] take effect at once.
     ///
     /// # Errors
     /// [`CommandError`], of orders only.
@@ -114,7 +115,7 @@ impl Remote {
         Ok(())
     }
 
-    /// Set when the job is told to stop, for what waits on its behalf.
+    /// Set when the job is to stop, for threads that wait on its behalf.
     pub fn stop_flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.states.stop)
     }
@@ -136,7 +137,7 @@ impl Control {
         self.events.publish(event);
     }
 
-    /// Whether the job is told to stop.
+    /// Whether the job is to stop.
     pub fn stopped(&self) -> bool {
         self.states.stop.load(Ordering::Relaxed)
     }
@@ -146,7 +147,7 @@ impl Control {
         self.states.single_block.load(Ordering::Relaxed)
     }
 
-    /// Whether nobody is there any more who could answer.
+    /// Whether there is no operator any more who could answer.
     pub fn unattended(&self) -> bool {
         self.states.unattended.load(Ordering::Relaxed)
     }
@@ -157,13 +158,13 @@ impl Control {
         self.orders.pop_front()
     }
 
-    /// The next answer that waits, for whoever asked.
+    /// The next answer that waits, for the part of the job that asked.
     pub fn answer(&mut self) -> Option<String> {
         self.sort();
         self.answers.pop_front()
     }
 
-    /// No more are taken than may wait, so that whoever sends too much is told.
+    /// No more are taken than may wait, so that too many commands are an error for their sender.
     fn sort(&mut self) {
         while self.orders.len().max(self.answers.len()) < WAITING {
             match self.commands.try_recv() {
@@ -224,7 +225,7 @@ mod tests {
         }
         assert_eq!(control.order(), None);
         assert!(control.single_block() && control.unattended());
-        // Somebody is there again.
+        // There is an operator again.
         remote.send(Command::Override(0.5)).unwrap();
         assert_eq!(control.order(), Some(Command::Override(0.5)));
         assert!(!control.unattended());

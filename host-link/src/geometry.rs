@@ -1,4 +1,4 @@
-//! Where the tool really is.
+//! True position of the tool, from the positions of the axes.
 
 use crate::record::MachinePosition;
 use shared::config::MotionConfig;

@@ -2,7 +2,7 @@
 //!
 //! - [`boards`]: connections to a motion board and a tracker board. [`boards::Boards`] is what jobs are written against; it is
 //!   implemented for boards in a network here, and for simulated ones elsewhere.
-//! - [`control`]: the two ends of a job's control. Whoever has a [`Remote`] sends [`Command`]s and subscribes to
+//! - [`control`]: the two ends of a job's control. The owner of a [`Remote`] sends [`Command`]s and subscribes to
 //!   [`events`]; the job has the [`Control`].
 //! - [`record`], [`clock`], [`geometry`]: what the boards told by tick, how their clocks are related, and where the tool was
 //!   by it.
@@ -16,7 +16,7 @@
 //! let (remote, mut control) = control();
 //! let events = remote.subscribe(Interest::Milestones, 100);
 //! let job = std::thread::spawn(move || {
-//!     // A job would move a machine here; it takes orders between two turns, and tells what it does.
+//!     // A job would move a machine here; it takes commands between two turns, and publishes events.
 //!     while control.order() != Some(Command::Resume) {}
 //!     control.publish(Event::Phase(Phase::Welding));
 //! });

@@ -1,4 +1,4 @@
-//! Who is where on the network.
+//! Addresses on the network.
 
 /// Addresses of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

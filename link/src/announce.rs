@@ -1,4 +1,4 @@
-//! Tells the network where the board is before anyone asks: a first datagram to a board that nobody knows
+//! Announces the board's address to the network at boot: a first datagram to an unknown board
 //! would wait a second for the repeated ARP request.
 
 use smoltcp::phy::{Device, TxToken};

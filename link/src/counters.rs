@@ -1,4 +1,4 @@
-//! What the link counts.
+//! Counters of the link.
 
 /// What has happened since boot; all counters wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,9 +2,9 @@
 //!
 //! A [`Link`] holds one session with a PC at a time. It does by itself what no firmware should do
 //! differently: it compares the schema at [`Request::Hello`](shared::protocol::Request::Hello) and refuses
-//! everything before, gives the session a number and a lease that every request renews, tells the [`Node`] when it
-//! ends, takes datagrams of its PC and of the other board only, answers clock requests, counts what goes wrong, and
-//! announces the board by ARP until the first session. Everything else goes to the [`Node`].
+//! everything before, gives the session a number and a lease that every request renews, informs the [`Node`]
+//! when it ends, takes datagrams of its PC and of the other board only, answers clock requests, counts what
+//! goes wrong, and announces the board by ARP until the first session. Everything else goes to the [`Node`].
 //!
 //! A network task is then a few lines. It runs on the Ethernet interrupt and at least every 10 ms, because
 //! retransmissions and keep-alives fall due without a frame:

@@ -1,4 +1,4 @@
-//! What a session allows, what it answers by itself, and how long it lasts.
+//! The session of the PC: permitted requests, its own answers, its lease.
 
 use crate::address::Source;
 use crate::counters::Counters;
@@ -85,7 +85,7 @@ impl Session {
 
 /// The number of the `count`-th session of the board with this Ethernet address, begun at `now_us`: another one than
 /// those of the sessions before it, of the other board, and of the boots before this one. It keeps apart what belongs
-/// to different sessions; it is no secret to somebody who listens in.
+/// to different sessions; it is no secret to a listener on the network.
 pub(crate) fn number(mac: [u8; 6], count: u32, now_us: u64) -> u32 {
     let [a, b, c, d, e, f] = mac;
     let mut mixed = u64::from_le_bytes([a, b, c, d, e, f, 0, 0]) ^ now_us.rotate_left(24) ^ u64::from(count);

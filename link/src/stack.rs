@@ -122,7 +122,7 @@ impl<'a> Link<'a> {
 
     /// Takes the frames that wait in `device`, answers what there is to answer, sends what there is to send.
     ///
-    /// `arrived` tells when the device received the frame it handed out last \[µs\], `clock` the time now
+    /// `arrived` is when the device received the frame it handed out last \[µs\], `clock` the time now
     /// \[µs\], both on the board's one timebase. True if frames may be left in the device: call again soon.
     pub fn poll<D: Device + ?Sized>(
         &mut self,
@@ -174,8 +174,8 @@ impl<'a> Link<'a> {
         queued
     }
 
-    /// Where the other board is. The tracker board needs not be told: it finds it by the first path state that carries
-    /// the number of its session.
+    /// Where the other board is. The tracker board does not need it: it finds it by the first path state that
+    /// carries the number of its session.
     pub fn set_partner(&mut self, partner: Partner) {
         if self.partner != Some(partner) {
             // What waits for the old one must not hold up the new one.
@@ -266,7 +266,7 @@ impl<'a> Link<'a> {
         }
     }
 
-    /// Who sent a datagram, if that is somebody who may: by address, port and number of the session.
+    /// The sender of a datagram, if it may send: by address, port and number of the session.
     fn sender(&mut self, from: Source, number: u32, datagram: &Datagram) -> Option<Sender> {
         let session = self.session?;
         let finds_partner = self.identity.role == Role::Tracker
@@ -332,7 +332,7 @@ impl<'a> Link<'a> {
                 break;
             };
             if length == 0 || length > MAX_MESSAGE {
-                // Nothing that follows could be told from the rest of this message.
+                // What follows could not be separated from the rest of this message.
                 count(&mut self.counters.broken_streams);
                 stream.abort();
                 break;

@@ -41,7 +41,7 @@ struct Failed {
     from: i64,
 }
 
-/// What a grating and its switches tell at one tick.
+/// Signals of a grating and its switches at one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
     /// Counts since power-up.
@@ -95,7 +95,7 @@ impl Grating {
 }
 
 impl Failed {
-    /// What is told where a sound grating would tell `counts`.
+    /// What is read where a grating without fault would read `counts`.
     fn tells(&self, counts: i64) -> i64 {
         match self.fault {
             GratingFault::Dead => self.from,

@@ -14,7 +14,7 @@ pub struct MotionPlant {
     motors: [Option<RunningMotor>; MOTORS],
     /// What the sources give, as part of full power.
     power: [f64; SIDES],
-    /// What they give whatever they are told.
+    /// Their power, regardless of commands.
     stuck: [Option<DacCode>; SIDES],
 }
 
@@ -46,8 +46,8 @@ impl MotionPlant {
         }
     }
 
-    /// From now on the source of `side` gives so much power whatever it is told, until `None`: with a gate whose line is
-    /// bridged, for instance, or at 0 with its interlock open.
+    /// From now on the source of `side` gives this power regardless of commands, until `None`: with a gate
+    /// whose line is bridged, for instance, or at 0 with its interlock open.
     pub fn stick_beam(&mut self, side: usize, power: Option<DacCode>) {
         self.stuck[side] = power;
     }

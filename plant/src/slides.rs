@@ -34,7 +34,7 @@ pub struct Slide {
     oldest: usize,
     velocity: f64,
     position: f64,
-    /// Where the drive goes whatever it is told \[mm/s\].
+    /// Speed of the drive regardless of commands \[mm/s\].
     runaway: Option<f64>,
 }
 
@@ -43,7 +43,7 @@ pub struct Slide {
 pub enum SlideFault {
     /// Its encoder.
     Encoder(GratingFault),
-    /// Its drive goes at this speed \[mm/s\], whatever it is told, until it is disabled.
+    /// Its drive goes at this speed \[mm/s\], regardless of commands, until it is disabled.
     Runaway(f64),
 }
 

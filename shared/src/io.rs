@@ -1,4 +1,5 @@
-//! What passes between the control laws and a board once per tick: the axis facade in plain values.
+//! Inputs and outputs of the control laws, exchanged with a board once per tick: the axis facade in plain
+//! values.
 //!
 //! A board crate turns these into registers; the emulated board turns them into a step of its plant. The
 //! control laws know nothing else of the machine.

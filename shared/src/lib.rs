@@ -9,10 +9,10 @@
 //! (configuration, NC text, reports) is mm, degrees and mm/min. Names of fields carry the unit wherever it
 //! is not one of the first kind.
 //!
-//! Modules use one another one way only, which a test holds. From the ground up: [`units`], [`parameter`] and [`ticks`];
-//! [`geometry`] and [`io`]; [`kinematics`], and [`state`] with the states and faults that everybody names; [`control`];
-//! [`config`] (what is told to a board) and [`trajectory`]; [`protocol`]; and on top the two boards, [`motion`] and
-//! [`tracking`], which do not know each other.
+//! Modules use one another one way only, which a test holds. From the ground up: [`units`], [`parameter`] and
+//! [`ticks`]; [`geometry`] and [`io`]; [`kinematics`], and [`state`] with the states and faults that
+//! everybody names; [`control`]; [`config`] (parameters sent to a board) and [`trajectory`]; [`protocol`];
+//! and on top the two boards, [`motion`] and [`tracking`], which do not know each other.
 #![no_std]
 
 pub mod alive_supervision;

@@ -207,7 +207,7 @@ pub fn not_negative(owner: &str, field: &str, value: f64) -> Result<f64, Paramet
     check(owner, field, value, |x| x >= 0.0).map_err(|error| error.allowing(Allowed::NotNegative))
 }
 
-/// As [`check`], for a value that must be in a range, which the error tells.
+/// As [`check`], for a value that must be in a range, which the error names.
 pub fn within(
     owner: &str,
     field: &str,

@@ -1,5 +1,5 @@
 //! Any number of operators who say anything at any time: `operator-words COUNT [FIRST]`. Exits with 1 where a place
-//! was left out that nobody names.
+//! was left out without being named.
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;

@@ -1,5 +1,6 @@
-//! Digests of the true positions that the shipped job of every machine leaves on simulated boards, to tell whether a change of the PC's
-//! programs changes what machines do: `true-positions` before it and after it has to print the same.
+//! Digests of the true positions that the shipped job of every machine leaves on simulated boards, to show
+//! whether a change of the PC's programs changes what machines do: `true-positions` before it and after it
+//! has to print the same.
 
 use config::machine::JointForm;
 use host_link::boards::{Boards, LinkError};

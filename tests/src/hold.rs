@@ -9,7 +9,7 @@ use shared::state::State;
 
 /// How far into the weld the operator holds it \[mm\].
 const HOLD_AFTER_MM: f64 = 200.0;
-/// How long the machine stands before the operator goes on \[path ticks\].
+/// How long the machine stands before the operator continues \[path ticks\].
 const STANDS: u32 = 300;
 /// Ticks for which drives and gates still go on as they were told before the hold.
 const TOLD: usize = 2;
@@ -17,7 +17,7 @@ const TOLD: usize = 2;
 const DEVIATION_MM: f64 = 0.03;
 const CONTOUR_MM: f64 = 0.05;
 
-/// An operator who holds a weld once, and goes on when the machine has stood for a while.
+/// An operator who holds a weld once, and continues when the machine has stood for a while.
 #[derive(Default)]
 struct Operator {
     /// Where the beams went on \[mm\].
@@ -28,7 +28,7 @@ struct Operator {
 }
 
 impl Operator {
-    fn hear(&mut self, boards: &mut dyn Boards, sample: &MotionSample) {
+    fn on_sample(&mut self, boards: &mut dyn Boards, sample: &MotionSample) {
         if sample.beams == [true; 2] {
             self.on_mm.get_or_insert(sample.s_mm);
         }
@@ -61,7 +61,7 @@ fn ask(boards: &mut dyn Boards, request: &Request) {
 pub fn assert_held_weld_goes_on(boards: &mut dyn Boards, speed_m_per_min: f64) -> Ended {
     let mut operator = Operator::default();
     let ended = with_weld(shipped_seam(), speed_m_per_min, |job| {
-        run_heard(boards, job, |boards, sample| operator.hear(boards, sample))
+        run_heard(boards, job, |boards, sample| operator.on_sample(boards, sample))
     });
     let since = &operator.since;
     let path = since.first().expect("a hold").path_id;

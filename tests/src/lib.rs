@@ -9,9 +9,9 @@ mod prediction;
 mod words;
 
 pub use hold::assert_held_weld_goes_on;
-pub use operator::{Heard, Nobody, Operator, Sleeper, run};
+pub use operator::{NoOperator, Operator, Sleeper, TappedBoards, run};
 pub use pictures::{assert_stops_in_the_dark, weld_before_a_sleeper, weld_disturbed, weld_through_pictures};
-pub use words::{Fate, Meddled, meddled};
+pub use words::{OperatedWeld, WeldOutcome, meddled};
 
 use config::machine::MachineFile;
 use host_link::boards::Boards;

@@ -1,4 +1,4 @@
-//! Whoever takes part in a job of a test, on the job's own thread: so that every run is the same.
+//! Operators of jobs in tests. They act on the job's own thread, so that every run is the same.
 
 use host_link::boards::{Boards, LinkError};
 use host_link::events::{Event, Interest, Subscription};
@@ -14,7 +14,7 @@ use std::time::Duration;
 /// More events than come between two waits for the boards.
 const EVENTS: usize = 100_000;
 
-/// Whoever watches and drives a job.
+/// Watches and drives a job.
 pub trait Operator {
     /// Something happened.
     fn event(&mut self, _event: &Event, _remote: &Remote) {}
@@ -23,11 +23,11 @@ pub trait Operator {
     fn turn(&mut self, _remote: &Remote) {}
 }
 
-/// Does nothing.
+/// An operator who does nothing.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Nobody;
+pub struct NoOperator;
 
-impl Operator for Nobody {}
+impl Operator for NoOperator {}
 
 /// Subscribes to everything, pictures too, and sleeps for a second at each event.
 #[derive(Debug, Default)]
@@ -68,21 +68,21 @@ impl Operator for Sleeper {
 }
 
 /// Boards, and what is done with every sample of the motion board before the job gets it.
-pub struct Heard<'a, F> {
+pub struct TappedBoards<'a, F> {
     /// The boards.
     pub boards: &'a mut dyn Boards,
     /// Gets the boards, too, so that it can act.
-    pub hear: F,
+    pub on_sample: F,
 }
 
-impl<F: FnMut(&mut dyn Boards, &MotionSample)> Boards for Heard<'_, F> {
+impl<F: FnMut(&mut dyn Boards, &MotionSample)> Boards for TappedBoards<'_, F> {
     pass_on!(boards: request, send, now, identity, path_states_target);
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
         let received = self.boards.receive(timeout)?;
         if let Some((_, Datagram::MotionTelemetry(telemetry))) = &received {
             for sample in &telemetry.samples {
-                (self.hear)(self.boards, sample);
+                (self.on_sample)(self.boards, sample);
             }
         }
         Ok(received)
@@ -90,15 +90,15 @@ impl<F: FnMut(&mut dyn Boards, &MotionSample)> Boards for Heard<'_, F> {
 }
 
 /// Boards of a job with an operator.
-struct Attended<'a> {
+struct OperatedBoards<'a> {
     boards: &'a mut dyn Boards,
     events: Subscription,
     remote: Remote,
     operator: &'a mut dyn Operator,
 }
 
-impl Boards for Attended<'_> {
-    pass_on!(boards: request, ask, answer, send, now, identity, path_states_target, waker, absence, dropped_datagrams);
+impl Boards for OperatedBoards<'_> {
+    pass_on!(boards: request, ask, answer, send, now, identity, path_states_target, waker, last_stall, dropped_datagrams);
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
         let received = self.boards.receive(timeout)?;
@@ -116,7 +116,7 @@ impl Boards for Attended<'_> {
 /// As [`job::run`].
 pub fn run(boards: &mut dyn Boards, job: &Job, operator: &mut dyn Operator) -> Result<Ended, JobError> {
     let (remote, mut control) = control();
-    let mut attended = Attended {
+    let mut attended = OperatedBoards {
         boards,
         events: remote.subscribe(Interest::Samples, EVENTS),
         remote,

@@ -75,7 +75,7 @@ fn through_pictures(
     weld(&job(&machine, &program, surroundings, Some(speed_m_per_min)))
 }
 
-/// The same with spatter, scratches, roll, lost and late pictures and a dark spell, as the shipped scene tells.
+/// The same with spatter, scratches, roll, lost and late pictures and a dark spell, as in the shipped scene.
 ///
 /// # Panics
 /// If no picture was lost or none was late on a side.

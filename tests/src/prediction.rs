@@ -1,6 +1,6 @@
 //! What a dry run says of a job beside the run itself.
 
-use crate::{Heard, Nobody};
+use crate::{NoOperator, TappedBoards};
 use cam::dry_run;
 use cam::dry_run::DryRun;
 use cam::path::Planner;
@@ -22,21 +22,21 @@ const MOTION: f64 = 0.001;
 /// Where it does not.
 pub fn run(boards: &mut dyn Boards, job: &Job) -> Ended {
     let mut seen = OnPaths::default();
-    let ended = run_heard(boards, job, |_, sample| seen.hear(sample));
+    let ended = run_heard(boards, job, |_, sample| seen.on_sample(sample));
     if let (Work::Program(program), None) = (&job.work, &ended.error) {
         seen.assert_predicted(&dry_run(job, program));
     }
     ended
 }
 
-/// Does a job; `hear` is told every sample of the motion board, and may act.
+/// Does a job; `on_sample` gets every sample of the motion board, and may act.
 pub fn run_heard(
     boards: &mut dyn Boards,
     job: &Job,
-    hear: impl FnMut(&mut dyn Boards, &MotionSample),
+    on_sample: impl FnMut(&mut dyn Boards, &MotionSample),
 ) -> Ended {
-    let mut heard = Heard { boards, hear };
-    crate::run(&mut heard, job, &mut Nobody).unwrap_or_else(|error| panic!("{error}"))
+    let mut tapped = TappedBoards { boards, on_sample };
+    crate::run(&mut tapped, job, &mut NoOperator).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// What `seamwright dry-run` does.
@@ -59,7 +59,7 @@ struct OnPaths {
 }
 
 impl OnPaths {
-    fn hear(&mut self, sample: &MotionSample) {
+    fn on_sample(&mut self, sample: &MotionSample) {
         if sample.state.on_path() {
             self.first.get_or_insert(sample.tick);
             self.last = sample.tick;

@@ -1,6 +1,6 @@
 //! An operator who says anything at any time, and what has become of the weld.
 
-use crate::Heard;
+use crate::TappedBoards;
 use config::machine::MachineFile;
 use host_link::boards::Boards;
 use host_link::{Command, Remote};
@@ -52,7 +52,7 @@ const RUN_IN: f64 = 40.0;
 const BEGINS: f64 = 900.0;
 /// Longest pause of the operator \[ms\], of several kinds.
 const PAUSES: [u64; 5] = [2, 40, 300, 1000, 3000];
-/// Once the operator has nothing more on their mind they let the machine go on, so often \[ms\].
+/// Once the operator has nothing more on their mind they let the machine continue, so often \[ms\].
 const GOES_ON: u32 = 400;
 /// Where a hold or its end are known: gates have a tick of their own at either end, and the least speed of a beam is
 /// reached in less than 0.04 mm.
@@ -79,8 +79,8 @@ impl Random {
     }
 }
 
-/// A weld that an operator meddled with.
-pub struct Meddled {
+/// A weld during which an operator gave random commands.
+pub struct OperatedWeld {
     /// What they said, and when \[ms since the boards were switched on\].
     pub said: Vec<String>,
     /// What has become of it.
@@ -94,9 +94,9 @@ pub struct Meddled {
     overlap_mm: f64,
 }
 
-/// What can become of a weld.
+/// How a weld ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Fate {
+pub enum WeldOutcome {
     /// Every place was welded once.
     Welded,
     /// The report names what was not, and the exit code is 3.
@@ -125,7 +125,7 @@ struct Operator {
 impl crate::Operator for Operator {
     fn turn(&mut self, remote: &Remote) {
         if let Some(command) = self.word() {
-            // One who says more than the job can take is not heard.
+            // Commands beyond what the job can take are dropped.
             let _ = remote.send(command);
         }
     }
@@ -192,7 +192,7 @@ impl Operator {
 ///
 /// # Panics
 /// Where the job cannot be begun.
-pub fn meddled(seed: u64) -> Meddled {
+pub fn meddled(seed: u64) -> OperatedWeld {
     let mut random = Random(seed);
     let of = random.one_of(&MACHINES);
     let machine = MachineFile::read(&crate::shipped(&format!("machines/{}.toml", of.name)));
@@ -232,9 +232,9 @@ pub fn meddled(seed: u64) -> Meddled {
     }));
     let mut operator = Operator { hand: hand.clone() };
     let mut boards = SimulatedBoards::new(machine.motion.kinematics.name()).expect("a plant");
-    let mut heard = Heard {
+    let mut heard = TappedBoards {
         boards: &mut boards,
-        hear: |_: &mut dyn Boards, sample: &MotionSample| {
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| {
             let mut hand = hand.borrow_mut();
             hand.tick = sample.tick;
             if sample.path_id == 2 && hand.next == u32::MAX {
@@ -251,7 +251,7 @@ pub fn meddled(seed: u64) -> Meddled {
     let overlap = machine.motion.beams.iter().flatten().map(|beam| beam.overlap_mm);
     let overlap_mm = overlap.fold(0.0, f64::max);
     let mut hand = hand.borrow_mut();
-    Meddled {
+    OperatedWeld {
         said: std::mem::take(&mut hand.said),
         ended,
         stopped: hand.stopped,
@@ -296,23 +296,23 @@ fn program(random: &mut Random, of: Machine, feed_mm_s: f64) -> (String, Vec<(us
     (text + "M2\n", programmed)
 }
 
-impl Meddled {
+impl OperatedWeld {
     /// What has become of the weld, by the board's own telemetry.
     ///
     /// # Errors
     /// What is not as it should be, with everything that was said.
-    pub fn fate(&self) -> Result<Fate, String> {
+    pub fn fate(&self) -> Result<WeldOutcome, String> {
         self.judged().map_err(|wrong| {
             let programmed = &self.programmed;
             format!("{wrong}\nprogrammed: {programmed:?}, said: {:#?}", self.said)
         })
     }
 
-    fn judged(&self) -> Result<Fate, String> {
+    fn judged(&self) -> Result<WeldOutcome, String> {
         self.nothing_beside()?;
         match &self.ended.error {
             None => {}
-            Some(JobError::Interrupted) if self.stopped => return Ok(Fate::Stopped),
+            Some(JobError::Interrupted) if self.stopped => return Ok(WeldOutcome::Stopped),
             Some(error) => return Err(error.to_string()),
         }
         let named = &self.ended.report.unwelded;
@@ -329,9 +329,9 @@ impl Meddled {
             }
         }
         match (left_out, named.is_empty()) {
-            (0, true) => Ok(Fate::Welded),
+            (0, true) => Ok(WeldOutcome::Welded),
             (0, false) => Err(format!("welded, and the report says {named:?}")),
-            _ => Ok(Fate::Named),
+            _ => Ok(WeldOutcome::Named),
         }
     }
 

@@ -5,7 +5,7 @@ use shared::io::SIDES;
 use shared::protocol::{Request, Response, Role};
 use std::slice::Iter;
 use system_tests::fuzz::{Message, Said, Session};
-use world::simulated::{SimulatedBoards, Trouble};
+use world::simulated::{InjectedFault, SimulatedBoards};
 
 /// Servo tick of the motion board, control tick of the tracker board, and their time on the network, one way \[µs\].
 const SERVO_US: u64 = 250;
@@ -20,14 +20,14 @@ const LONGEST_US: u64 = 100_000;
 /// Speed of the weld \[mm/s\].
 const SPEED: f64 = 150.0;
 
-/// Boards in mid-weld, and what the PC says next.
+/// State of both boards in mid-weld, and what the PC sends next.
 #[derive(Clone)]
-struct Moment<'a> {
+struct WeldSnapshot<'a> {
     boards: SimulatedBoards,
     next: Iter<'a, Said>,
 }
 
-impl Moment<'_> {
+impl WeldSnapshot<'_> {
     fn now_us(&self) -> u64 {
         self.boards.outputs().now_us
     }
@@ -88,9 +88,9 @@ impl Moment<'_> {
     }
 }
 
-fn moments(session: &Session) -> Vec<Moment<'_>> {
+fn moments(session: &Session) -> Vec<WeldSnapshot<'_>> {
     let (boards, first) = &session.moments[0];
-    let mut now = Moment {
+    let mut now = WeldSnapshot {
         boards: boards.clone(),
         next: session.said[*first..].iter(),
     };
@@ -109,7 +109,7 @@ fn moments(session: &Session) -> Vec<Moment<'_>> {
 
 /// The longest of what `measure` finds at all moments, held to `bound_us`.
 #[track_caller]
-fn hold(moments: &[Moment], what: &str, bound_us: u64, measure: impl Fn(&mut Moment) -> u64) {
+fn hold(moments: &[WeldSnapshot], what: &str, bound_us: u64, measure: impl Fn(&mut WeldSnapshot) -> u64) {
     let longest_us = moments
         .iter()
         .map(|moment| measure(&mut moment.clone()))
@@ -122,9 +122,9 @@ fn hold(moments: &[Moment], what: &str, bound_us: u64, measure: impl Fn(&mut Mom
 
 /// As [`hold`], for what goes wrong on the boards: until beams `sides` are off.
 #[track_caller]
-fn hold_off(moments: &[Moment], what: &str, bound_us: u64, trouble: Trouble, sides: &[usize]) {
+fn hold_off(moments: &[WeldSnapshot], what: &str, bound_us: u64, fault: InjectedFault, sides: &[usize]) {
     hold(moments, what, bound_us, |moment| {
-        moment.boards.befall(trouble);
+        moment.boards.inject(fault);
         moment.until_off(sides)
     });
 }
@@ -145,47 +145,47 @@ fn beams_are_off_in_time_whatever_fails() {
     let both: &[usize] = &[0, 1];
 
     // What the motion board sees itself: at its next servo tick.
-    let own: [(&str, &[usize], Trouble); 6] = [
+    let own: [(&str, &[usize], InjectedFault); 6] = [
         (
             "emergency stop",
             both,
-            Trouble::MotionInputs(|f| f.estop = [true; 2]),
+            InjectedFault::MotionInputs(|f| f.estop = [true; 2]),
         ),
         (
             "drive fault",
             both,
-            Trouble::MotionInputs(|f| f.drive_fault.set(2, true)),
+            InjectedFault::MotionInputs(|f| f.drive_fault.set(2, true)),
         ),
         (
             "limit switch",
             both,
-            Trouble::MotionInputs(|f| f.limit_plus.set(0, true)),
+            InjectedFault::MotionInputs(|f| f.limit_plus.set(0, true)),
         ),
         (
             "encoder jumps",
             both,
-            Trouble::MotionInputs(|f| f.counts[1] += 1_000_000),
+            InjectedFault::MotionInputs(|f| f.counts[1] += 1_000_000),
         ),
         (
             "laser fault, its own beam",
             &[1],
-            Trouble::MotionInputs(|f| f.laser_fault[1] = true),
+            InjectedFault::MotionInputs(|f| f.laser_fault[1] = true),
         ),
-        ("session ended", both, Trouble::SessionEnded),
+        ("session ended", both, InjectedFault::SessionEnded),
     ];
-    for (what, sides, trouble) in own {
+    for (what, sides, fault) in own {
         // The end of a session is an order of the path tick, a millisecond, to the servo tick after it.
-        let bound_us = match trouble {
-            Trouble::SessionEnded => 4 * SERVO_US + SERVO_US,
+        let bound_us = match fault {
+            InjectedFault::SessionEnded => 4 * SERVO_US + SERVO_US,
             _ => SERVO_US,
         };
-        hold_off(&moments, what, bound_us, trouble, sides);
+        hold_off(&moments, what, bound_us, fault, sides);
     }
     hold_off(
         &moments,
         "laser fault, the other beam",
         2 * CONTROL_US,
-        Trouble::MotionInputs(|f| f.laser_fault[1] = true),
+        InjectedFault::MotionInputs(|f| f.laser_fault[1] = true),
         &[0],
     );
     for (what, request) in [("stop", Request::Stop), ("hold", Request::Hold)] {
@@ -197,27 +197,27 @@ fn beams_are_off_in_time_whatever_fails() {
         });
     }
 
-    // What the tracker sees: at its next control tick, told by its permit.
+    // What the tracker sees: at its next control tick, sent with its permit.
     let told_us = CONTROL_US + TRANSIT_US + SERVO_US;
-    for (what, trouble) in [
+    for (what, fault) in [
         (
             "tracker: emergency stop",
-            Trouble::TrackerInputs(|f| f.estop = [true; 2]),
+            InjectedFault::TrackerInputs(|f| f.estop = [true; 2]),
         ),
         (
             "tracker: drive fault",
-            Trouble::TrackerInputs(|f| f.drive_fault.set(0, true)),
+            InjectedFault::TrackerInputs(|f| f.drive_fault.set(0, true)),
         ),
         (
             "tracker: limit switch",
-            Trouble::TrackerInputs(|f| f.limit_minus.set(3, true)),
+            InjectedFault::TrackerInputs(|f| f.limit_minus.set(3, true)),
         ),
         (
             "tracker: encoder jumps",
-            Trouble::TrackerInputs(|f| f.counts[2] += 100_000),
+            InjectedFault::TrackerInputs(|f| f.counts[2] += 100_000),
         ),
     ] {
-        hold_off(&moments, what, told_us, trouble, both);
+        hold_off(&moments, what, told_us, fault, both);
     }
     hold(
         &moments,
@@ -231,12 +231,12 @@ fn beams_are_off_in_time_whatever_fails() {
         },
     );
 
-    // What nobody tells: the permit is not renewed.
-    for (what, trouble) in [
-        ("tracker frozen, reset or off", Trouble::TrackerFrozen),
-        ("tracker cut off", Trouble::CutOff(Role::Tracker)),
-        ("motion board cut off", Trouble::CutOff(Role::Motion)),
+    // No message says this: the permit is not renewed.
+    for (what, fault) in [
+        ("tracker frozen, reset or off", InjectedFault::TrackerFrozen),
+        ("tracker cut off", InjectedFault::CutOff(Role::Tracker)),
+        ("motion board cut off", InjectedFault::CutOff(Role::Motion)),
     ] {
-        hold_off(&moments, what, PERMIT_US + SERVO_US, trouble, both);
+        hold_off(&moments, what, PERMIT_US + SERVO_US, fault, both);
     }
 }

@@ -1,6 +1,6 @@
 //! Operators who say anything at any time: nothing is left out unannounced.
 
-use system_tests::{Fate, meddled};
+use system_tests::{WeldOutcome, meddled};
 
 #[test]
 fn whatever_an_operator_says_every_place_is_welded_once_or_named() {
@@ -12,7 +12,7 @@ fn whatever_an_operator_says_every_place_is_welded_once_or_named() {
     }
     println!("{fates:?}");
     assert!(
-        fates[&Fate::Welded] > 30 && fates[&Fate::Stopped] > 0,
+        fates[&WeldOutcome::Welded] > 30 && fates[&WeldOutcome::Stopped] > 0,
         "{fates:?}"
     );
 }

@@ -3,8 +3,8 @@
 //! A surface gives every cell a depth z, the depth an expected energy P = A·T(z) + noise. Cells count by the
 //! log-logistic likelihood ln P − 2 ln(P + E), whose score ψ = (E − P)/(E + P) no glint or scratch can pull far.
 
+use crate::height_field::HeightField;
 use crate::level::{Level, Sums};
-use crate::surface::Surface;
 use nalgebra::{SMatrix, SVector};
 
 /// Curvature of a cell's likelihood over the square of dlnP.
@@ -47,14 +47,19 @@ pub(crate) struct Band {
 
 impl Band {
     /// Finds the amplitudes of a new picture, from the band where it is thought to be.
-    pub fn start<const N: usize>(&mut self, surface: &impl Surface<N>, at: &[f64; N]) {
+    pub fn start<const N: usize>(&mut self, surface: &impl HeightField<N>, at: &[f64; N]) {
         for level in 0..self.levels.len() {
             self.start_level(level, surface, at);
         }
     }
 
     /// The same on one level.
-    pub fn start_level<const N: usize>(&mut self, level: usize, surface: &impl Surface<N>, at: &[f64; N]) {
+    pub fn start_level<const N: usize>(
+        &mut self,
+        level: usize,
+        surface: &impl HeightField<N>,
+        at: &[f64; N],
+    ) {
         let level = &mut self.levels[level];
         level.reset();
         for _ in 0..WARM_UP {
@@ -63,7 +68,7 @@ impl Band {
     }
 
     /// Runs `iterations` of Fisher scoring on the levels from `finest` up. False if the picture says nothing.
-    pub fn fit<const N: usize, S: Surface<N>>(
+    pub fn fit<const N: usize, S: HeightField<N>>(
         &mut self,
         surface: &S,
         at: &mut [f64; N],
@@ -88,7 +93,7 @@ impl Band {
     }
 
     /// How likely a fit is against no band at all, as a logarithm; what is known before counts too.
-    pub fn evidence<const N: usize, S: Surface<N>>(
+    pub fn evidence<const N: usize, S: HeightField<N>>(
         &self,
         surface: &S,
         at: &[f64; N],
@@ -105,7 +110,7 @@ impl Band {
     }
 
     /// How sure the fit is, and how much better than no band at all.
-    pub fn fitness<const N: usize, S: Surface<N>>(
+    pub fn fitness<const N: usize, S: HeightField<N>>(
         &mut self,
         surface: &S,
         at: &[f64; N],
@@ -141,7 +146,7 @@ impl Band {
     }
 
     /// Score and information of the parameters, priors included.
-    fn score<const N: usize, S: Surface<N>>(
+    fn score<const N: usize, S: HeightField<N>>(
         &mut self,
         surface: &S,
         at: &[f64; N],
@@ -173,7 +178,7 @@ impl Band {
 fn parameters<const N: usize>(
     level: &Level,
     column: usize,
-    surface: &impl Surface<N>,
+    surface: &impl HeightField<N>,
     at: &[f64; N],
 ) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
     let Sums {

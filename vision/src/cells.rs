@@ -1,7 +1,7 @@
 //! Energy of the texture, in square cells of the picture.
 //!
 //! A lens that is out of focus takes the texture away; what is left of its energy, over what the camera's noise adds,
-//! tells the defocus. Only differences across the seam count: travel smears along the rows.
+//! shows the defocus. Only differences across the seam count: travel smears along the rows.
 
 use crate::layer::Layer;
 use crate::noise::PhotonTransfer;

@@ -60,7 +60,7 @@ pub enum DetectorError {
         columns: usize,
     },
     /// Photon transfer or profile are not above zero.
-    #[error("the camera's calibration has {what} of {value}; it has to be above zero")]
+    #[error("the camera's calibration has {what} of {value}; it must be above zero")]
     Calibration {
         /// Which figure.
         what: &'static str,
@@ -157,7 +157,7 @@ impl Detector {
             Joint::Gap => self.measure_gap(prior),
             Joint::Corner(walls) => self.measure_corner(prior, &walls, None),
             Joint::GapOrCorner(walls) => {
-                // The dark line where walls touch looks like a gap; the band tells which of both it is.
+                // The dark line where walls touch looks like a gap; the band shows which of both it is.
                 let gap = self.measure_gap(prior);
                 let gain = |report: &Report| report.measured.map_or(0.0, |measured| measured.gain);
                 let corner = self.measure_corner(prior, &walls, Some(gain(&gap)));

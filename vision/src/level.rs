@@ -1,7 +1,7 @@
 //! One resolution of the picture in the band engine: its cells against what a surface makes them expect.
 
 use crate::cells::Cells;
-use crate::surface::Surface;
+use crate::height_field::HeightField;
 
 /// Cells that one turn of the inner loop takes.
 const LANES: usize = 4;
@@ -82,7 +82,7 @@ impl Level {
     }
 
     /// Compares all cells with `surface`, then moves the amplitudes.
-    pub fn pass<const N: usize, S: Surface<N>>(&mut self, surface: &S, at: &[f64; N]) {
+    pub fn pass<const N: usize, S: HeightField<N>>(&mut self, surface: &S, at: &[f64; N]) {
         let compare = if S::SHARPEST {
             compare::<true>
         } else {
@@ -119,7 +119,7 @@ impl Level {
 
     /// How much better `surface` explains the cells than a picture that is equally sharp everywhere: the logarithm of
     /// the likelihoods' ratio a cell.
-    pub fn gain<const N: usize>(&self, surface: &impl Surface<N>, at: &[f64; N]) -> f64 {
+    pub fn gain<const N: usize>(&self, surface: &impl HeightField<N>, at: &[f64; N]) -> f64 {
         let cells = &self.cells;
         let (mut sum, mut count) = (0.0, 0.0_f64);
         for (group, amplitude) in self.amplitudes.iter().enumerate() {

@@ -10,6 +10,7 @@ mod coarse;
 mod detector;
 mod gap;
 mod geometry;
+mod height_field;
 mod image;
 mod layer;
 mod level;
@@ -21,9 +22,9 @@ mod optics;
 mod precision;
 mod prior;
 mod profile;
+#[cfg(feature = "render")]
 pub mod render;
 mod report;
-mod surface;
 
 pub use detector::{Detector, DetectorError};
 pub use gap::EDGE_ROWS_MM;

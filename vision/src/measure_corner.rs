@@ -2,10 +2,10 @@
 
 use crate::band::{Knowledge, SMALLEST_GAIN};
 use crate::detector::Detector;
+use crate::height_field::Corner;
 use crate::measure_gap::BORDER_MM;
 use crate::prior::{Prior, Walls};
 use crate::report::{Criterion, Form, Measured, Report, Sigma, Status, least, ramp};
-use crate::surface::Corner;
 
 /// Scatter of height and lateral position while tracking, and in an unknown picture \[mm\].
 const TRACKED: f64 = 0.1;

@@ -3,9 +3,9 @@
 use crate::band::{Fitness, Knowledge, SMALLEST_GAIN};
 use crate::detector::Detector;
 use crate::gap::{BandLine, Candidate, Edges, fit_edges};
+use crate::height_field::Plate;
 use crate::prior::Prior;
 use crate::report::{Criterion, Form, Measured, Report, Second, Sigma, Status, least, ramp};
-use crate::surface::Plate;
 
 /// Scatter of parameters while tracking: height \[mm\], roll.
 const TRACKED: [f64; 2] = [0.1, 0.05];

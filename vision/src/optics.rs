@@ -46,7 +46,7 @@ pub struct Optics {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum OpticsError {
     /// A figure is not above zero and finite.
-    #[error("{what} of the camera is {value}; it has to be above zero")]
+    #[error("{what} of the camera is {value}; it must be above zero")]
     NotPositive {
         /// Which one.
         what: &'static str,
@@ -54,7 +54,7 @@ pub enum OpticsError {
         value: f64,
     },
     /// A figure that no lens or sensor has.
-    #[error("{what} of the camera is {value}; it has to be between {} and {}", range[0], range[1])]
+    #[error("{what} of the camera is {value}; it must be between {} and {}", range[0], range[1])]
     Range {
         /// Which one.
         what: &'static str,
@@ -131,7 +131,8 @@ impl Optics {
         self.pixel_mm / self.magnification
     }
 
-    /// How many pixels a side count as one where a picture is measured: finer ones than 2.4 µm tell nothing more.
+    /// How many pixels a side count as one where a picture is measured: finer ones than 2.4 µm add no
+    /// information.
     pub fn binning(&self) -> usize {
         let mut binning = 1;
         while self.object_pixel_mm() * (binning as f64) < FINEST_MM {

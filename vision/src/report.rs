@@ -88,7 +88,7 @@ pub enum Criterion {
     Straightness,
     /// How far the readings scatter about those lines.
     Scatter,
-    /// Whether the dark line goes on, blurred, outside the sharp band.
+    /// Whether the dark line continues, blurred, outside the sharp band.
     Continuity,
     /// How well the height is known.
     Height,

@@ -203,7 +203,7 @@ fn corners_out_of_view_are_told() {
     assert!(said >= 5, "{said}");
 }
 
-/// Two gaps alike in a plate: neither is believed, and the other one is told with a rank near 1.
+/// Two gaps alike in a plate: neither is accepted, and the other one is reported with a rank near 1.
 #[test]
 fn two_equal_gaps_are_ambiguous() {
     let plate = PlateSeam {

@@ -68,7 +68,7 @@ fn gap(lateral_mm: f64, width_mm: f64, height_mm: f64) -> Scene {
     Scene::new(Work::Gap(Gap::new(plate)), Texture::new(Finish::Plain, 7))
 }
 
-/// Three pictures acquire; then the seam is believed, and from the fourth on its height.
+/// Three pictures acquire; then the seam is accepted, and from the fourth on its height.
 #[test]
 fn three_pictures_acquire() {
     let mut bench = Bench::new(Joint::Gap);
@@ -121,9 +121,9 @@ const CLIMB: f64 = 0.03;
 const SLANT: f64 = 0.05;
 const LEAN: f64 = 0.04;
 
-/// The mean point lies on the true line, though the camera goes on and the slides move in between, and though a picture
-/// shows another seam, another one none at all. It lies behind what the last picture shows. The pitch of 16 pictures is that
-/// of the line, to 0.002.
+/// The mean point lies on the true line, though the camera continues and the slides move in between, and
+/// though a picture shows another seam, another one none at all. It lies behind what the last picture shows.
+/// The pitch of 16 pictures is that of the line, to 0.002.
 #[test]
 fn the_mean_point_lies_on_the_seam() {
     let mut bench = Bench::new(Joint::Gap);
@@ -207,7 +207,7 @@ fn a_sweeping_camera_acquires() {
     assert!(believed >= 3, "{believed}");
 }
 
-/// Means begin anew after a jump, and after four pictures in a row without the seam.
+/// Means start again after a jump, and after four pictures in a row without the seam.
 #[test]
 fn means_begin_anew_after_a_gap() {
     let mut bench = Bench::new(Joint::Gap);
@@ -240,7 +240,7 @@ fn means_begin_anew_after_a_gap() {
     assert!((mean.lateral_mm - 0.15).abs() < 0.003, "{mean:?}");
 }
 
-/// A gap that is suddenly wider is doubted three times and believed then; so is one that jumps.
+/// A gap that is suddenly wider is doubted three times and accepted then; so is one that jumps.
 #[test]
 fn jumps_are_believed_only_when_they_stay() {
     let mut bench = Bench::new(Joint::Gap);

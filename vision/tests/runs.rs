@@ -40,9 +40,10 @@ fn lateral(errors: &[Errors]) -> Vec<f64> {
     errors.iter().map(|errors| errors.lateral_mm).collect()
 }
 
-/// 36 seams of 10 pictures each. Those that only wait for three to agree count neither way; of the others that show the
-/// seam at least 88 % are believed, the centre is off by 5 µm at most in 99 %, by 50 µm never, the height of the mean of
-/// four by 12 µm in 99 % on normal textures; nothing is believed where there is no seam.
+/// 36 seams of 10 pictures each. Those that only wait for three to agree count neither way; of the others
+/// that show the seam at least 88 % are accepted, the centre is off by 5 µm at most in 99 %, by 50 µm never,
+/// the height of the mean of four by 12 µm in 99 % on normal textures; nothing is accepted where there is no
+/// seam.
 #[test]
 fn seams_are_followed_to_micrometres() {
     let (mut shown, mut believed) = (0, 0);
@@ -78,8 +79,8 @@ fn seams_are_followed_to_micrometres() {
     assert!(quantile(&heights, 0.99) < 0.012, "{}", quantile(&heights, 0.99));
 }
 
-/// A corner whose walls are told wrong by 0.015 and learnt over 48 pictures: errors in those of the next 24 that are
-/// believed, which 18 are at least.
+/// A corner whose calibrated walls are wrong by 0.015 and learnt over 48 pictures: errors in those of the
+/// next 24 that are accepted, which 18 are at least.
 fn errors_of_corner(finish: Finish, seed: u64) -> Vec<Errors> {
     let mut scene = random_corner(seed, &OPTICS);
     let truth = scene.truth(&OPTICS).expect("a truth");

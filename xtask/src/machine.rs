@@ -16,7 +16,7 @@ fn name_in(text: &str) -> Result<String> {
     let kinematics = file.get("kinematics").and_then(toml::Value::as_table);
     let name = kinematics.and_then(|kinematics| kinematics.keys().next());
     name.cloned()
-        .context("no table [kinematics.NAME] says what machine it is")
+        .context("there is no table [kinematics.NAME], which gives the kind of machine")
 }
 
 #[cfg(test)]

@@ -47,7 +47,7 @@ enum Task {
     },
     /// Boot both emulated boards and keep them until Ctrl-C
     Emulate {
-        /// Machine file: the motion board is wired to its machine; the dual-beam gantry if none is told
+        /// Machine file: the motion board is wired to its machine; the dual-beam gantry if none is given
         #[arg(long, value_name = "FILE")]
         machine: Option<PathBuf>,
     },
@@ -58,9 +58,9 @@ enum Task {
     /// Count instructions, on the PC by valgrind and on the emulated Cortex-M7; run programs through the planner
     #[command(subcommand)]
     Bench(bench::Benchmark),
-    /// Tell both controllers what nobody should: random and mutated requests and datagrams, with overflow checks
+    /// Send both controllers random and mutated requests and datagrams, with overflow checks
     Fuzz(fuzz::Fuzz),
-    /// Change the code of a crate in a copy, one place at a time, and tell which changes no test notices
+    /// Change the code of a crate in a copy, one place at a time, and list the changes that no test detects
     Mutants(mutants::Mutants),
     /// Flash and RAM of all four firmwares against their budgets
     Size,

@@ -29,12 +29,12 @@ const MEMORY: u64 = 8 << 30;
 /// What became of the changes: the files of cargo-mutants, a change a line.
 const OUTCOMES: [(&str, &str); 4] = [
     ("caught.txt", "noticed"),
-    ("timeout.txt", "noticed, as tests do not end any more"),
+    ("timeout.txt", "noticed: the tests do not end"),
     ("unviable.txt", "refused by the compiler"),
     ("missed.txt", "noticed by no test"),
 ];
 
-/// Makes the changes and tells what became of them.
+/// Makes the changes and reports the results.
 pub fn run(arguments: &Mutants) -> Result<ExitCode> {
     let source = folder(&arguments.package)?.join("src");
     let selection = selection(&arguments.package, &source, arguments.module.as_deref())?;

@@ -170,7 +170,7 @@ fn debian(packages: &[&str], present: impl Fn() -> bool, by_hand: &str) -> Resul
 fn rustup(arguments: &[&str]) -> Result<()> {
     let line = format!("rustup {}", arguments.join(" "));
     if !runs("rustup", &["--version"]) {
-        bail!("rustup is missing; get for the compiler in use what `{line}` would install");
+        bail!("rustup is missing; install for the compiler in use what `{line}` would install");
     }
     eprintln!("set-up: {line}");
     let mut command = Command::new("rustup");
@@ -184,7 +184,10 @@ fn sysroot() -> Result<PathBuf> {
         .current_dir(root())
         .output()
         .context("cannot run rustc")?;
-    ensure!(output.status.success(), "rustc cannot say where it is installed");
+    ensure!(
+        output.status.success(),
+        "rustc does not report where it is installed"
+    );
     Ok(PathBuf::from(String::from_utf8_lossy(&output.stdout).trim()))
 }
 

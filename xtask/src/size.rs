@@ -104,7 +104,8 @@ fn fits(bytes: u64, [floor, ceiling]: [u64; 2]) -> bool {
 
 fn measure(image: &Path) -> Result<Size> {
     let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
-    let file = object::File::parse(&*bytes).with_context(|| format!("{} is no firmware", image.display()))?;
+    let file =
+        object::File::parse(&*bytes).with_context(|| format!("{} is not a firmware", image.display()))?;
     let mut size = Size::default();
     for section in file.sections() {
         let SectionFlags::Elf { sh_flags } = section.flags() else {

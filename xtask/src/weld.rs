@@ -1,5 +1,5 @@
-//! `seamwright weld` on two emulated boards. Whatever is told on the command line is seamwright's to judge; this
-//! adds only what is not told.
+//! `seamwright weld` on two emulated boards. Options on the command line are checked by seamwright; this
+//! adds only the missing ones.
 
 use crate::cargo::root;
 use crate::emulate::{self, Running};
@@ -31,7 +31,7 @@ const SEAM: &str = "programs/t-seam-400-deviation.csv";
 
 /// Runs seamwright with `flags` and the defaults; gives back its exit code. `set_up` installs what is missing.
 pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) -> Result<ExitCode> {
-    let told = Told::from(flags);
+    let told = BoardFlags::from(flags);
     let emulated = !told.help && told.boards.as_deref().is_none_or(|boards| boards == "emulated");
     if emulated {
         set_up(&setup::EMULATION)?;
@@ -83,13 +83,13 @@ fn wait(child: &mut Child, interrupts: &Interrupts, mut running: Option<&mut Run
 
 /// What the command line says of the boards and their machine.
 #[derive(Debug, PartialEq, Eq)]
-struct Told {
+struct BoardFlags {
     machine: Option<String>,
     boards: Option<String>,
     help: bool,
 }
 
-impl Told {
+impl BoardFlags {
     fn from(flags: &[String]) -> Self {
         let value = |flag: &str| {
             let place = flags
@@ -107,7 +107,7 @@ impl Told {
         }
     }
 
-    /// Name of the machine; of a file that does not tell it none, which seamwright will refuse in its own words.
+    /// Name of the machine; `None` if the file does not say it, which seamwright reports.
     fn machine_name(&self) -> Option<String> {
         match &self.machine {
             None => Some(DEFAULT_MACHINE.to_owned()),
@@ -115,7 +115,7 @@ impl Told {
         }
     }
 
-    /// What seamwright shall take where its command line says nothing: machine, and job and seam of that machine.
+    /// Defaults of seamwright's command line: the machine, and job and seam of that machine.
     fn defaults(&self) -> Vec<(&'static str, String)> {
         let machine = self.machine_name().unwrap_or_else(|| DEFAULT_MACHINE.to_owned());
         let mut defaults = vec![(
@@ -146,9 +146,9 @@ mod tests {
     use super::*;
     use plant::MotionPlant;
 
-    fn told(line: &str) -> Told {
+    fn told(line: &str) -> BoardFlags {
         let flags: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
-        Told::from(&flags)
+        BoardFlags::from(&flags)
     }
 
     #[test]

@@ -59,7 +59,7 @@ pub const PROGRAMS: [Program; 6] = [
         elements: 40,
         feed: 100.0,
         shape: zigzag,
-        turned: swing,
+        turned: turning_by_sines,
     },
     // A straight seam along which the head turns, in splines, through the kinematics.
     Program {
@@ -68,7 +68,7 @@ pub const PROGRAMS: [Program; 6] = [
         elements: 40,
         feed: 83.0,
         shape: seam,
-        turned: sway_by_eights,
+        turned: wave_every_8_mm,
     },
     // The chain again, through the kinematics, with the head turning.
     Program {
@@ -77,7 +77,7 @@ pub const PROGRAMS: [Program; 6] = [
         elements: 300,
         feed: 100.0,
         shape: wave,
-        turned: sway_by_halves,
+        turned: wave_every_half_mm,
     },
 ];
 
@@ -237,21 +237,21 @@ fn straight(_: usize) -> [f64; SHAPED] {
     [0.0; SHAPED]
 }
 
-fn swing(index: usize) -> [f64; SHAPED] {
+fn turning_by_sines(index: usize) -> [f64; SHAPED] {
     let k = index as f64;
     [0.3, 0.7, 1.1].map(|rate| 0.05 * libm::sin(rate * k))
 }
 
-fn sway_by_eights(index: usize) -> [f64; SHAPED] {
-    sway(8.0 * index as f64)
+fn wave_every_8_mm(index: usize) -> [f64; SHAPED] {
+    attitude_wave(8.0 * index as f64)
 }
 
-fn sway_by_halves(index: usize) -> [f64; SHAPED] {
-    sway(0.5 * index as f64)
+fn wave_every_half_mm(index: usize) -> [f64; SHAPED] {
+    attitude_wave(0.5 * index as f64)
 }
 
 /// As over a curved seam: some degrees back and forth, after `x` \[mm\].
-fn sway(x: f64) -> [f64; SHAPED] {
+fn attitude_wave(x: f64) -> [f64; SHAPED] {
     [
         0.06 * libm::sin(x / 50.0),
         0.08 * libm::cos(x / 80.0),

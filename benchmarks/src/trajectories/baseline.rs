@@ -20,7 +20,7 @@ pub struct Baseline {
     pub s_curve: f64,
 }
 
-/// A line that is none of a baseline.
+/// A line that is not one of a baseline.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("line {line} of the baseline: {why}: {text}")]
 pub struct BaselineError {

@@ -29,7 +29,7 @@ pub enum NoElements {
     Cusp(#[from] Cusp),
 }
 
-/// The elements of a program. The last one ends in a stop, the others go on within [`TOLERANCE`].
+/// The elements of a program. The last one ends in a stop, the others continue within [`TOLERANCE`].
 pub fn elements(moves: &[Move]) -> Result<Vec<Element>, NoElements> {
     let mut elements = Vec::new();
     for one in moves {

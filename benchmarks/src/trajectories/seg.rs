@@ -52,7 +52,7 @@ pub enum Why {
     /// Not a whole number that a program would hold.
     #[error("the turn is {0}; it must be a whole number within ±1000000")]
     Turn(f64),
-    /// The arc is none.
+    /// The arc is not valid.
     #[error(transparent)]
     Arc(#[from] SpiralError),
 }
@@ -60,7 +60,7 @@ pub enum Why {
 /// Reads a program; `file` names it in errors.
 pub fn read(text: &str, file: &str) -> Result<Vec<Move>, SegError> {
     let mut moves = Vec::new();
-    let mut at = Place::default();
+    let mut at = AxesPosition::default();
     for (number, text) in (1..).zip(text.lines()) {
         let error = |why| SegError {
             file: file.to_owned(),
@@ -74,12 +74,12 @@ pub fn read(text: &str, file: &str) -> Result<Vec<Move>, SegError> {
 
 /// Where the axes stand.
 #[derive(Default)]
-struct Place {
+struct AxesPosition {
     position: Vector3<f64>,
     rotary: [f64; ROTARY],
 }
 
-impl Place {
+impl AxesPosition {
     fn segment(&mut self, line: u32, text: &str) -> Result<Option<Move>, Why> {
         let mut words = text.split_whitespace();
         match words.next() {

@@ -88,9 +88,9 @@ struct Gaps {
     measured: u32,
     /// Those in which the observer still waits for three that agree.
     waiting: u32,
-    /// Those that show no seam and in which one was believed.
+    /// Those that show no seam and in which one was accepted.
     wrong: u32,
-    /// Errors of the seams that were believed.
+    /// Errors of the seams that were accepted.
     errors: Vec<Errors>,
 }
 
@@ -116,7 +116,7 @@ impl Gaps {
         100.0 * f64::from(self.measured) / f64::from(self.shown.max(1))
     }
 
-    /// Share of those in which it is believed, where the observer does not wait \[%\].
+    /// Share of those in which it is accepted, where the observer does not wait \[%\].
     fn believed(&self) -> f64 {
         let ready = self.shown - self.waiting;
         100.0 * self.errors.len() as f64 / f64::from(ready.max(1))

@@ -22,11 +22,11 @@ const WAY_MM: f64 = 0.75;
 pub(super) struct Corners {
     name: String,
     pictures: u64,
-    /// Errors of the corners that were believed, one after the other.
+    /// Errors of the corners that were accepted, one after the other.
     runs: Vec<Vec<Errors>>,
 }
 
-/// Corners of a finish whose walls are told wrong by 0.015 and learnt.
+/// Corners of a finish whose calibrated walls are wrong by 0.015 and learnt.
 pub(super) fn corner(finish: Finish, optics: Optics, corners: u64) -> Result<Corners> {
     let name = format!("{finish:?}").to_lowercase();
     let runs = of_seeds(&format!("{name} corners"), corners, |seed| {
@@ -67,7 +67,7 @@ impl Corners {
         self.runs.iter().flatten().map(figure).collect()
     }
 
-    /// Means of pictures in a row that were believed.
+    /// Means of pictures in a row that were accepted.
     fn means(&self, figure: fn(&Errors) -> f64) -> Vec<f64> {
         let groups = self.runs.iter().flat_map(|run| run.chunks_exact(AVERAGED));
         groups

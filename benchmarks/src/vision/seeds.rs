@@ -1,4 +1,4 @@
-//! Work that is shared among the cores, told while it goes on.
+//! Work that is shared among the cores, with its progress printed.
 
 use anyhow::Result;
 use std::sync::Mutex;
@@ -12,7 +12,7 @@ const WORD: Duration = Duration::from_secs(15);
 /// Seeds, and what was made of them.
 type Made<T> = Vec<(u64, Vec<T>)>;
 
-/// What `task` makes of the seeds below `count`, in their order; how many are done is told as "seams: 12 of 200".
+/// What `task` makes of the seeds below `count`, in their order; progress is printed as "seams: 12 of 200".
 pub(super) fn of_seeds<T: Send>(
     what: &str,
     count: u64,

@@ -50,7 +50,7 @@ const LAZY_STACKING: u32 = 1 << 5;
 const ADDRESS_VALID: u32 = 1 << 7;
 
 impl Fault {
-    /// Whether the stack ran over its end.
+    /// Whether the stack overflowed.
     pub fn stack_overflow(&self) -> bool {
         let guard = addr_of!(_stack_guard) as u32..addr_of!(_stack_end) as u32;
         let in_guard = self.status & ADDRESS_VALID != 0 && guard.contains(&self.address);
@@ -87,8 +87,9 @@ fn protect(mpu: &mut MPU) {
 /// Floating-point context control register; its lowest bit says that registers are still to be saved.
 const CONTEXT_CONTROL: u32 = 0xe000_ef34;
 
-/// Entry of every fault. The saved program counter and link register are fetched if the processor's frame lies in the
-/// stack; the stack begins anew; and floating-point registers that are still to be saved into the old one are given up.
+/// Entry of every fault. The saved program counter and link register are fetched if the processor's frame
+/// lies in the stack; the stack starts again; and floating-point registers that are still to be saved into
+/// the old one are given up.
 #[unsafe(naked)]
 #[unsafe(no_mangle)]
 unsafe extern "C" fn HardFault() -> ! {

@@ -1,5 +1,5 @@
-//! What a benchmark has of this board in place of a machine: words and files of whoever emulates it, a console, a
-//! clock, and an end.
+//! What a benchmark has of this board in place of a machine: command line and files of the emulator's host, a
+//! console, a clock, and an end.
 
 pub use crate::semihosting::{COMMAND_LINE, command_line, exit, read_file};
 pub use crate::time::{TICK_NS, now_ticks};

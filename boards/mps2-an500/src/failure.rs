@@ -27,14 +27,14 @@ fn defmt_panic() -> ! {
     exit(EXIT_CODE)
 }
 
-/// Entered from `board_faults`, on a stack that begins anew.
+/// Entered from `board_faults`, on a stack that starts again.
 #[unsafe(no_mangle)]
 extern "Rust" fn board_fault(fault: &Fault) -> ! {
     crate::logger::abandon();
     if fault.stack_overflow() {
         // To the console too, which programs without a logger have.
-        say("the stack ran over its end\n");
-        defmt::error!("the stack ran over its end");
+        say("the stack overflowed\n");
+        defmt::error!("the stack overflowed");
     }
     defmt::error!(
         "hard fault at {=u32:#010x}, called from {=u32:#010x}",

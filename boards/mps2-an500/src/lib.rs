@@ -32,7 +32,7 @@ pub use tick::Tick;
 pub use time::{CYCLES_PER_US, cycles, now_us};
 pub use watchdog::Watchdog;
 
-/// Name of the board, as it tells the PC.
+/// Name of the board, as reported to the PC.
 pub const NAME: &str = "mps2-an500";
 /// The machine behind the axes is simulated on the board.
 pub const SIMULATED_MACHINE: bool = true;

@@ -1,4 +1,4 @@
-//! Calls to whoever emulates the board: QEMU, started with `-semihosting-config enable=on,target=native`.
+//! Calls to the emulator: QEMU, started with `-semihosting-config enable=on,target=native`.
 
 use core::ffi::CStr;
 

@@ -27,7 +27,7 @@ impl Watchdog {
         Self { running: false }
     }
 
-    /// The board works: wait anew.
+    /// The board works: wait again.
     pub fn feed(&mut self) {
         Block::DUAL_TIMER_2.write(LOAD, TIMEOUT_US * TICKS_PER_US as u32);
         if !self.running {

@@ -11,7 +11,7 @@ use embassy_stm32::{peripherals, rcc};
 pub(crate) fn start(mut core: cortex_m::Peripherals) -> (Watchdog, Bus, Parts) {
     outputs::kill();
     board_faults::guard_stack(&mut core);
-    // Should anything below hang, the board starts anew.
+    // Should anything below hang, the board restarts.
     let watchdog = Watchdog::start();
     supply::start();
     let p = clocks::start(&mut core);

@@ -102,7 +102,7 @@ impl Network {
 
     /// Clears the interrupt; afterwards the received frames are to be taken.
     pub fn acknowledge(&mut self) {
-        // SAFETY: it does no more than clear flags and wake the waker, which is none.
+        // SAFETY: it does no more than clear flags and wake the waker, which does nothing.
         unsafe { <InterruptHandler as Handler<ETH>>::on_interrupt() }
     }
 

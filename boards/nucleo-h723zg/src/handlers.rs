@@ -45,7 +45,7 @@ pub(crate) fn report_last() {
         PANIC => defmt::error!("the last run ended in a panic, at line {} of its file", detail),
         FAULT => defmt::error!("the last run ended in a fault at {=u32:#010x}", detail),
         STACK => defmt::error!(
-            "the last run ended when the stack ran over its end, at {=u32:#010x}",
+            "the last run ended when the stack overflowed, at {=u32:#010x}",
             detail
         ),
         SUPPLY => {
@@ -81,7 +81,7 @@ fn panic(info: &PanicInfo) -> ! {
     stop(PANIC, info.location().map_or(0, |location| location.line()))
 }
 
-/// Entered from `board_faults`, on a stack that begins anew.
+/// Entered from `board_faults`, on a stack that starts again.
 #[unsafe(no_mangle)]
 extern "Rust" fn board_fault(fault: &Fault) -> ! {
     stop(if fault.stack_overflow() { STACK } else { FAULT }, fault.at)

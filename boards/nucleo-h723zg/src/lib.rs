@@ -63,7 +63,7 @@ pub use {
     watchdog::Watchdog,
 };
 
-/// Name of the board, as it tells the PC.
+/// Name of the board, as reported to the PC.
 pub const NAME: &str = "nucleo-h723zg";
 /// A real machine hangs on the axes.
 pub const SIMULATED_MACHINE: bool = false;

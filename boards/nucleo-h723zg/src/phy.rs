@@ -41,7 +41,7 @@ impl<S: StationManagement> Phy for Lan8742<S> {
 
     fn poll_link(&mut self, _: &mut Context) -> bool {
         let status = self.0.smi_read(ADDRESS, BASIC_STATUS);
-        // All ones: nobody drives the line.
+        // All ones: the line is not driven.
         status != u16::MAX && status & STATUS_LINK != 0 && status & STATUS_NEGOTIATED != 0
     }
 }

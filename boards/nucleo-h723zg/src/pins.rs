@@ -11,7 +11,7 @@ pub struct Pin {
     pub number: u8,
 }
 
-/// The pin with this name, `"PA5"`; a name that is none does not compile where the result is a constant.
+/// The pin with this name, `"PA5"`; an unknown name does not compile where the result is a constant.
 pub const fn pin(name: &str) -> Pin {
     let name = name.as_bytes();
     assert!(name[0] == b'P' && name[1] >= b'A' && name[1] <= b'H');

@@ -17,9 +17,9 @@ pub(crate) fn start() {
     });
 }
 
-/// From here on both are faults: the supply through an interrupt above every task, and the ST-LINK's clock through
-/// the one that nothing masks. To be called when that clock runs the core. Should it fail, the chip goes on with
-/// its own oscillator at 64 MHz: too slow for the loops, fast enough for the handler.
+/// From here on both are faults: the supply through an interrupt above every task, and the ST-LINK's clock
+/// through the one that nothing masks. To be called when that clock runs the core. Should it fail, the chip
+/// continues with its own oscillator at 64 MHz: too slow for the loops, fast enough for the handler.
 pub(crate) fn watch(core: &mut cortex_m::Peripherals) {
     RCC.cr().modify(|w| w.set_hsecsson(true));
 

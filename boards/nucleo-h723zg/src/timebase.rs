@@ -34,7 +34,7 @@ pub fn cycles() -> u32 {
 /// Time since power-up \[µs\]. May be called at any priority; has to be called every half hour at least, which
 /// the ticks do.
 pub fn now_us() -> u64 {
-    // The order matters: whoever interrupts between the two loads can only have moved `HALVES` on to the half
+    // The order matters: an interrupt between the two loads can only have moved `HALVES` on to the half
     // that the counter, read later, lies in.
     let seen = HALVES.load(Ordering::SeqCst);
     let count = TIM5.cnt().read();

@@ -28,8 +28,8 @@ impl Watchdog {
         Self { fed: false }
     }
 
-    /// The board works: wait anew, 50 ms from the first feed on. To be called by the servo task alone, once it
-    /// has seen the others alive.
+    /// The board works: wait again, 50 ms from the first feed on. To be called by the servo task alone, once
+    /// it has seen the others alive.
     pub fn feed(&mut self) {
         if !self.fed {
             // Taken over a few milliseconds later, with a later feed.

@@ -6,7 +6,7 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiBus;
 
 /// How often in a row an output may read back another code than it was given before that is an error. One reading may
-/// be disturbed on its way back, while the code itself arrived; and every update writes it anew.
+/// be disturbed on its way back, while the code itself arrived; and every update writes it again.
 pub const TOLERATED: u8 = 2;
 
 /// Reads one output after another back, one in several updates.
@@ -35,8 +35,9 @@ impl ReadBack {
         }
     }
 
-    /// To be called after each successful [`Bank::update`], with the same codes. An error of the bus is told at
-    /// once, a code that is not what was written when it was so more than [`TOLERATED`] times in a row.
+    /// To be called after each successful [`Bank::update`], with the same codes. An error of the bus is
+    /// reported at once, a code that is not what was written when it was so more than [`TOLERATED`] times in
+    /// a row.
     pub fn after_update<B: SpiBus, P: OutputPin, D: DelayNs, const CHIPS: usize>(
         &mut self,
         bank: &mut Bank<B, P, D, CHIPS>,

@@ -1,4 +1,4 @@
-//! The supervision of a bank against chips that remember what they were told, and forget it.
+//! The supervision of a bank against chips that keep the codes sent to them, and lose them.
 
 use ad5764r::{Bank, Channel, Error, Output, ReadBack, TOLERATED};
 use embedded_hal::delay::DelayNs;
@@ -110,7 +110,7 @@ fn codes(tick: i16) -> [(Output, i16); 5] {
     })
 }
 
-/// What was told: the tick, the chip, and what was seen.
+/// What was reported: the tick, the chip, and what was seen.
 type Told = (i16, usize, u16);
 
 /// The result of `ticks` updates with a reading in every fourth; `happens` changes the chips before each.

@@ -3,10 +3,9 @@
 //! Each board has come to a point of one common time, its own time plus a constant. It waits until the wall
 //! clock has come there, until its peer is at most [`LEAD_NS`] behind, and until a program on the PC that
 //! takes part is at most [`PC_LEAD_NS`] behind: a PC whose processor is busy elsewhere is not what is to be
-//! tried here. Who comes late by more than
-//! [`LATE_NS`] moves the common epoch, for both: the delay of one is a delay of the pair, and neither races
-//! to catch up. A peer not heard of for [`PATIENCE_NS`] (stopped, ended) is not waited for; when it comes
-//! back it joins where the other is by then.
+//! tried here. Who comes late by more than [`LATE_NS`] moves the common epoch, for both: the delay of one is
+//! a delay of the pair, and neither races to catch up. A peer without a sign of life for [`PATIENCE_NS`]
+//! (stopped, ended) is not waited for; when it comes back it joins where the other is by then.
 
 use crate::shared::Shared;
 

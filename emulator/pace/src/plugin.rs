@@ -106,7 +106,7 @@ impl Arguments {
                 Shared::map(&file, slot).map_err(|e| format!("{}: {e}", file.display()))?
             }
             (None, None) => Shared::alone(),
-            _ => return Err("peers=FILE and slot=0|1 belong together".into()),
+            _ => return Err("peers=FILE and slot=0|1 must be given together".into()),
         };
         Ok(Pace {
             shift,

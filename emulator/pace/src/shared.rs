@@ -1,4 +1,4 @@
-//! What the two boards' plugins tell each other: a page both map.
+//! Shared memory of the plugins of both boards and the program on the PC: how far each of them has come.
 
 use std::fs::OpenOptions;
 use std::io;
@@ -15,23 +15,23 @@ const LENGTH: usize = 4096;
 struct Page {
     /// Wall time at which the common time was zero \[ns\]; zero before the first board starts.
     epoch: AtomicI64,
-    boards: [Place; 2],
+    boards: [Progress; 2],
     /// The program on the PC; it writes the file.
-    pc: Place,
+    pc: Progress,
 }
 
 /// How far one of them has come.
 #[derive(Default)]
 #[repr(C)]
-struct Place {
+struct Progress {
     /// Common time it has reached, for the PC: up to which it has handled everything \[ns\].
     reached: AtomicI64,
     /// Wall time of that \[ns\]; zero before it starts and after it has ended.
     seen: AtomicI64,
 }
 
-impl Place {
-    /// How far it has come, unless it is not there or was not heard of within `patience` ns.
+impl Progress {
+    /// How far it has come, unless it is not there or has given no sign of life within `patience` ns.
     fn reached(&self, now: i64, patience: i64) -> Option<i64> {
         let seen = self.seen.load(Ordering::Relaxed);
         (seen != 0 && now - seen < patience).then(|| self.reached.load(Ordering::Relaxed))
@@ -102,7 +102,8 @@ impl Shared {
         own.seen.store(now, Ordering::Relaxed);
     }
 
-    /// How far the other board has come, unless it is not there or was not heard of within `patience` ns.
+    /// How far the other board has come, unless it is not there or has given no sign of life within
+    /// `patience` ns.
     pub fn peer(&self, now: i64, patience: i64) -> Option<i64> {
         self.page.boards[1 - self.slot].reached(now, patience)
     }

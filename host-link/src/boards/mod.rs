@@ -3,7 +3,7 @@
 mod network;
 mod pass_on;
 
-pub use network::{Endpoint, NetworkBoards, Patience, Waker};
+pub use network::{Endpoint, NetworkBoards, Timeouts, Waker};
 
 use shared::protocol::framing::FrameError;
 use shared::protocol::{Datagram, Identity, Refusal, Request, Response, Role};
@@ -12,14 +12,14 @@ use thiserror::Error;
 
 /// A session with a motion board and, where the machine has one, a tracker board.
 ///
-/// Whoever makes one has said Hello to each, compared the schema hashes, and subscribed to what they send. A job that uses nothing but
-/// this trait for time and data is deterministic on simulated boards.
+/// Its constructor has said Hello to each, compared the schema hashes, and subscribed to what they send. A
+/// job that uses nothing but this trait for time and data is deterministic on simulated boards.
 pub trait Boards {
     /// Sends `request` and waits for the answer.
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError>;
 
     /// Sends `request` and waits for nothing: the answer, if it is there at once, else [`Self::answer`] gives it. The answer to
-    /// what was asked of this board before is nobody's any more. Simulated boards answer at once.
+    /// the answer to an earlier request to this board is dropped. Simulated boards answer at once.
     fn ask(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
         self.request(role, request).map(Some)
     }
@@ -29,9 +29,9 @@ pub trait Boards {
         Ok(None)
     }
 
-    /// The next datagram of either board, in the order of arrival; `None` if none came within `timeout`, or something else is
-    /// to be looked at before: an answer, or what [`Self::waker`] told of. Simulated boards advance their time here, by at most
-    /// `timeout`.
+    /// The next datagram of either board, in the order of arrival; `None` if none came within `timeout`, or
+    /// something else is to be looked at before: an answer, or what [`Self::waker`] announced. Simulated
+    /// boards advance their time here, by at most `timeout`.
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError>;
 
     /// Sends a datagram to a board.
@@ -43,7 +43,8 @@ pub trait Boards {
     /// Who the board says it is; `None` if it is not in this session.
     fn identity(&self, role: Role) -> Option<&Identity>;
 
-    /// How the motion board is told where the tracker board is ([`Request::PathStatesTo`]); `None` without one.
+    /// The request that gives the motion board the address of the tracker board ([`Request::PathStatesTo`]);
+    /// `None` without one.
     fn path_states_target(&self) -> Option<Request>;
 
     /// Ends the wait of [`Self::receive`] from another thread; `None` of simulated boards, whose time is not that of threads.
@@ -56,16 +57,17 @@ pub trait Boards {
         0
     }
 
-    /// The last time in which this program did nothing, if there was one. The time of simulated boards stands still
+    /// The last stall of this program, if there was one. Simulated boards have none: their time stands still
     /// meanwhile.
-    fn absence(&self) -> Option<Absence> {
+    fn last_stall(&self) -> Option<Stall> {
         None
     }
 }
 
-/// A time in which this program did nothing: it was stopped, its computer slept, or was busy with something else.
+/// A time in which this program did not run: it was stopped, its computer slept, or was busy with something
+/// else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Absence {
+pub struct Stall {
     /// When it ended, by [`Boards::now`].
     pub ended: Duration,
     /// How long it was.
@@ -103,7 +105,7 @@ pub enum LinkError {
         source: std::io::Error,
     },
     /// It is there, and does not take the connection.
-    #[error("the {} board at {address} turns the connection away ({source}): another program is connected to it (one that is cut off keeps its place for 5 s), it is booting, or something else has this address", role_name(*.role))]
+    #[error("the {} board at {address} refuses the connection ({source}): another program is connected to it (a lost connection is kept for 5 s), it is booting, or something else has this address", role_name(*.role))]
     Busy {
         /// Which board.
         role: Role,
@@ -152,7 +154,7 @@ pub enum LinkError {
         address: String,
     },
     /// Bytes that are no message.
-    #[error("the {} board sent something that is not understood ({source})", role_name(*.role))]
+    #[error("the {} board sent a message that cannot be decoded ({source})", role_name(*.role))]
     Frame {
         /// Which board.
         role: Role,
@@ -168,7 +170,7 @@ pub enum LinkError {
         refusal: Refusal,
     },
     /// An answer that does not belong to the request.
-    #[error("the {} board gave an answer that does not belong to the question", role_name(*.role))]
+    #[error("the {} board sent an answer of the wrong kind for its request", role_name(*.role))]
     Unexpected {
         /// Which board.
         role: Role,

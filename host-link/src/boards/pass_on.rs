@@ -1,4 +1,4 @@
-//! What boards that stand before others do not do themselves.
+//! Forwarding of [`Boards`](super::Boards) methods by wrappers around other boards.
 
 /// In an `impl Boards`: passes the methods that are named on to the boards in a field.
 ///
@@ -44,9 +44,9 @@ macro_rules! pass_on {
             self.$boards.dropped_datagrams()
         }
     };
-    (@absence $boards:tt) => {
-        fn absence(&self) -> Option<$crate::boards::Absence> {
-            self.$boards.absence()
+    (@last_stall $boards:tt) => {
+        fn last_stall(&self) -> Option<$crate::boards::Stall> {
+            self.$boards.last_stall()
         }
     };
     (@receive $boards:tt) => {

@@ -1,4 +1,4 @@
-//! What a job tells while it runs, for any number of subscribers.
+//! Events of a running job, for any number of subscribers.
 
 mod phase;
 mod stream;
@@ -13,7 +13,7 @@ use shared::state::{Fault, TrackerFault};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Something that happened in a job, or that a board told.
+/// Something that happened in a job, or that a board reported.
 #[derive(Clone, Debug)]
 pub enum Event {
     /// The boards are connected.
@@ -109,7 +109,7 @@ pub struct MeasuredPicture {
     pub columns: usize,
     /// The pixels, row after row.
     pub pixels: Vec<u8>,
-    /// The seam, if one is believed.
+    /// The seam, if one is accepted.
     pub seam: Option<SeamInPicture>,
 }
 

@@ -1,4 +1,4 @@
-//! The parts of a job, and what it asks.
+//! The phases of a job, and its questions to the operator.
 
 use std::fmt;
 
@@ -69,10 +69,10 @@ impl fmt::Display for Phase {
     }
 }
 
-/// What the machine stands for until somebody answers.
+/// What the machine waits for until the operator answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
-    /// May it go on, in single block? [`crate::Command::Resume`] says so.
+    /// May it continue, in single block? [`crate::Command::Resume`] says so.
     GoOn {
         /// With what.
         next: Next,

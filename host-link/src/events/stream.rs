@@ -1,4 +1,4 @@
-//! Events on their way to subscribers: bounded, and never in the way of the job.
+//! Queues of events for subscribers: bounded, and never delaying the job.
 
 use super::Event;
 use std::collections::VecDeque;
@@ -57,7 +57,7 @@ struct State {
     lost: u64,
     /// There will be no more.
     closed: bool,
-    /// Nobody takes them any more.
+    /// The subscription has ended.
     abandoned: bool,
 }
 
@@ -113,7 +113,7 @@ impl Events {
         }
     }
 
-    /// Ends all subscriptions after what has been told by now.
+    /// Ends all subscriptions after the events sent so far.
     pub fn close(&self) {
         for queue in locked(&self.shared.queues).drain(..) {
             locked(&queue.state).closed = true;
@@ -123,7 +123,7 @@ impl Events {
 }
 
 impl Queue {
-    /// Whether somebody still takes events.
+    /// Whether any subscription is left.
     fn push(&self, event: &Arc<Event>) -> bool {
         let mut state = locked(&self.state);
         if state.abandoned {

@@ -184,7 +184,7 @@ impl Bench {
         self.steps(10);
     }
 
-    /// Connects anew, whatever has become of the stream.
+    /// Connects again, whatever has become of the stream.
     pub fn reconnect(&mut self) {
         self.sockets.remove(self.stream);
         self.stream = self.sockets.add(client());

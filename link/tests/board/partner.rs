@@ -4,7 +4,7 @@ use crate::bench::{Bench, PC_PORT, SUBSCRIBER, identity, measurement};
 use link::{Partner, Source};
 use shared::protocol::{BeamPermit, ClockRequest, Datagram, Identity, PathState, Permit, Role};
 
-/// Somebody on the line who is neither the PC nor the other board, as the address of a partner.
+/// Address of a station on the network that is neither the PC nor the other board.
 const NOBODY: Source = Source {
     address: [192, 168, 7, 99],
     port: 7101,
@@ -29,7 +29,7 @@ fn path_state() -> Datagram {
         pose: [0.0; 9],
         tracking: false,
         beams: [false; 2],
-        aside: [0.0; 3],
+        superimposed_rate: [0.0; 3],
     })
 }
 
@@ -73,7 +73,7 @@ fn another_board_that_is_not_there_does_not_hold_up_the_pc() {
 fn datagrams_are_taken_of_the_pc_and_the_other_board_only_and_with_their_number() {
     let clock = Datagram::ClockRequest(ClockRequest { asked_us: 1 });
     let mut bench = Bench::greeted();
-    // Nobody has subscribed: nobody is believed, whatever number is guessed.
+    // Without a subscription no datagram is accepted, whatever number is guessed.
     for number in [0, 1] {
         bench.say(number, &measurement(1));
         bench.say(number, &clock);

@@ -1,4 +1,4 @@
-//! Interpolation of attitude along the shortest way (mathematics 0.4).
+//! Interpolation of attitude along the shortest rotation (mathematics 0.4).
 
 use nalgebra::Vector3;
 use shared::geometry::{Pose, rotate};

@@ -72,7 +72,7 @@ impl<const N: usize> Curve<N> {
         self.x.last().copied().unwrap_or(0.0)
     }
 
-    /// All channels at `t`; outside the points the curve goes on in a straight line.
+    /// All channels at `t`; outside the points the curve continues in a straight line.
     pub fn at(&self, t: f64) -> Jet<N> {
         let mut jet = [[0.0; N]; 3];
         for (c, channel) in self.channels.iter().enumerate() {

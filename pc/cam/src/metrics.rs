@@ -1,8 +1,8 @@
 //! How far measured values are from what they should be (mathematics 4.4).
 //!
-//! Errors of single coordinates contain timing; the distance to the path does not. The percentage error MAPE depends
-//! on where the origin lies and explodes near it: it is here to be compared with published figures; judge by RMSE,
-//! the largest error and the contour error.
+//! Errors of single coordinates contain timing; the distance to the path does not. The percentage error MAPE
+//! depends on the origin and has no bound near it: it is for comparison with published figures; judge by RMSE
+//! and the largest error, and a contour by the distance to it.
 
 use nalgebra::Vector3;
 use thiserror::Error;
@@ -24,9 +24,6 @@ pub enum MetricsError {
     /// Nothing to compare.
     #[error("nothing measured")]
     NothingMeasured,
-    /// No path to compare with.
-    #[error("the path has no points")]
-    NoPath,
     /// A value is infinite or not a number.
     #[error("{what} {index} is not finite")]
     NotFinite {
@@ -54,40 +51,6 @@ pub struct ErrorFigures {
     pub nmae_percent: Option<f64>,
 }
 
-/// Size of errors, distances or deviations, in their unit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Magnitudes {
-    /// Mean.
-    pub mean: f64,
-    /// Root mean square.
-    pub rms: f64,
-    /// Largest.
-    pub max: f64,
-    /// Place of the largest among them, from 0.
-    pub worst: usize,
-}
-
-impl Magnitudes {
-    /// Of at least one value ≥ 0.
-    fn of(values: impl Iterator<Item = f64>) -> Self {
-        let (mut sum, mut squares, mut max, mut worst, mut count) = (0.0, 0.0, 0.0, 0, 0);
-        for (index, value) in values.enumerate() {
-            sum += value;
-            squares += value * value;
-            if value > max {
-                (max, worst) = (value, index);
-            }
-            count = index + 1;
-        }
-        Self {
-            mean: sum / count as f64,
-            rms: libm::sqrt(squares / count as f64),
-            max,
-            worst,
-        }
-    }
-}
-
 /// The errors of `measured` against `reference`, value by value.
 pub fn compare(measured: &[f64], reference: &[f64]) -> Result<ErrorFigures, MetricsError> {
     if measured.len() != reference.len() {
@@ -105,8 +68,10 @@ pub fn compare(measured: &[f64], reference: &[f64]) -> Result<ErrorFigures, Metr
             return Err(MetricsError::NotFinite { what, index });
         }
     }
-    let errors = pairs().map(|(x, y)| libm::fabs(x - y));
-    let Magnitudes { mean, rms, max, .. } = Magnitudes::of(errors);
+    let count = measured.len() as f64;
+    let errors = || pairs().map(|(x, y)| libm::fabs(x - y));
+    let mean = errors().sum::<f64>() / count;
+    let squares = errors().map(|error| error * error).sum::<f64>();
     let relative: Vec<f64> = pairs()
         .filter(|(_, y)| libm::fabs(**y) > ZERO)
         .map(|(x, y)| libm::fabs((x - y) / y))
@@ -115,8 +80,8 @@ pub fn compare(measured: &[f64], reference: &[f64]) -> Result<ErrorFigures, Metr
     let range = reference.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least;
     Ok(ErrorFigures {
         mae: mean,
-        rmse: rms,
-        max,
+        rmse: libm::sqrt(squares / count),
+        max: errors().fold(0.0, f64::max),
         mape_percent: (!relative.is_empty())
             .then(|| 100.0 * relative.iter().sum::<f64>() / relative.len() as f64),
         mape_count: relative.len(),
@@ -147,53 +112,9 @@ fn square_distance(a: &Vector3<f64>, b: &Vector3<f64>, point: &Vector3<f64>) -> 
     (point - a - step * part).norm_squared()
 }
 
-/// The distances of all `measured` points \[mm\] from the polyline through `path`. The polyline itself must be
-/// fine enough: its chords are off a curve of radius ρ by their length squared over 8ρ.
-pub fn contour_error(measured: &[Vector3<f64>], path: &[Vector3<f64>]) -> Result<Magnitudes, MetricsError> {
-    if measured.is_empty() {
-        return Err(MetricsError::NothingMeasured);
-    }
-    if path.is_empty() {
-        return Err(MetricsError::NoPath);
-    }
-    for (what, points) in [("measured point", measured), ("point of the path", path)] {
-        if let Some(index) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-            return Err(MetricsError::NotFinite { what, index });
-        }
-    }
-    let distances = measured
-        .iter()
-        .filter_map(|point| distance_to_polyline(path, point));
-    Ok(Magnitudes::of(distances))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn errors_of_coordinates_contain_timing_and_the_contour_error_does_not() {
-        // A point runs along a straight line at 45°, always 0.1 mm late and 0.01 mm beside it.
-        let path = [Vector3::zeros(), Vector3::new(100.0, 100.0, 0.0)];
-        let along = Vector3::new(0.5f64.sqrt(), 0.5f64.sqrt(), 0.0);
-        let aside = Vector3::new(-along.y, along.x, 0.0);
-        let wanted: Vec<_> = (10..130).map(|s| along * f64::from(s)).collect();
-        let measured: Vec<_> = wanted.iter().map(|p| p - along * 0.1 + aside * 0.01).collect();
-        let x = |points: &[Vector3<f64>]| points.iter().map(|p| p.x).collect::<Vec<f64>>();
-        let in_x = compare(&x(&measured), &x(&wanted)).expect("figures");
-        assert!((in_x.max - 0.11 * along.x).abs() < 1e-12, "{in_x:?}");
-        let contour = contour_error(&measured, &path).expect("figures");
-        assert!((contour.max - 0.01).abs() < 1e-12 && (contour.mean - 0.01).abs() < 1e-12);
-    }
-
-    #[test]
-    fn the_worst_point_is_named() {
-        let path = [Vector3::zeros(), Vector3::x()];
-        let measured = [0.1, -0.3, 0.2].map(|y| Vector3::new(0.5, y, 0.0));
-        let error = contour_error(&measured, &path).expect("figures");
-        assert_eq!((error.max, error.worst), (0.3, 1));
-        assert!((error.rms - (0.14f64 / 3.0).sqrt()).abs() < 1e-15);
-    }
 
     #[test]
     fn a_polyline_ends_at_its_ends_and_may_have_one_point_or_none() {
@@ -217,12 +138,5 @@ mod tests {
             "measured value 1 is not finite"
         );
         assert_eq!(compare(&[], &[]), Err(MetricsError::NothingMeasured));
-        let bad = [Vector3::zeros(), Vector3::x() * f64::NAN];
-        assert_eq!(contour_error(&bad[..1], &[]), Err(MetricsError::NoPath));
-        let what = "point of the path";
-        assert_eq!(
-            contour_error(&bad[..1], &bad),
-            Err(MetricsError::NotFinite { what, index: 1 })
-        );
     }
 }

@@ -23,17 +23,17 @@ const SOFTWARE: &str = "Software";
 /// A GigE Vision camera. How its frames are matched with the captures stands at the head of `matching.rs`.
 #[derive(Debug)]
 pub struct GigeCamera {
-    /// As it was told.
+    /// Its name in the machine file.
     name: String,
     rows: usize,
     columns: usize,
     software: bool,
     stream: Stream,
     camera: ::aravis::Camera,
-    /// Aravis has heard nothing of the camera for seconds.
+    /// Aravis has received nothing from the camera for seconds.
     gone: Arc<AtomicBool>,
     matching: Matching,
-    /// A frame whose strobe has not been told yet.
+    /// A frame whose strobe is not known yet.
     early: Option<Buffer>,
     /// What went wrong at a strobe.
     failed: Option<CameraError>,
@@ -224,7 +224,7 @@ impl Camera for GigeCamera {
 impl Drop for GigeCamera {
     fn drop(&mut self) {
         if !self.gone.load(Ordering::Relaxed) {
-            // Nobody is left to be told that it does not answer.
+            // There is no caller left for the error.
             self.camera.stop_acquisition().ok();
         }
     }

@@ -100,7 +100,7 @@ pub fn parse_captures(name: &str, folder: &Path, text: &str) -> Result<Vec<Recor
             .parse()
             .map_err(|_| wrong("a time must be a whole number of microseconds"))?;
         if recorded.last().is_some_and(|last| last.capture >= capture) {
-            return Err(wrong("captures must stand in their order, each once"));
+            return Err(wrong("captures must be in ascending order, each once"));
         }
         recorded.push(Recorded {
             capture,

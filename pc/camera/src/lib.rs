@@ -1,7 +1,7 @@
 //! Cameras: pictures that belong to the captures of the tracker board.
 //!
-//! The tracker board strobes its cameras and offers a capture for each strobe. A [`Camera`] is told of the captures as they
-//! come, and gives for each of them, in their order, either its picture or the word that it is lost.
+//! The tracker board strobes its cameras and offers a capture for each strobe. A [`Camera`] is notified of
+//! the captures as they come, and gives for each of them, in their order, either its picture or "lost".
 
 #[cfg(feature = "aravis")]
 mod aravis;
@@ -9,10 +9,10 @@ pub mod calibrate;
 mod folder;
 mod frame;
 mod gige;
-mod keeper;
-mod keeping;
 mod matching;
 pub mod measure;
+mod picture_queue;
+mod picture_writer;
 mod png;
 mod recorder;
 mod walls;
@@ -22,9 +22,9 @@ pub use aravis::GigeCamera;
 pub use folder::{Folder, Recorded, parse_captures};
 pub use frame::CameraFrame;
 pub use gige::{GigeConfig, OpenCamera, real};
-pub use keeper::{Keeper, Kept};
-pub use keeping::{Keeping, Shelf};
 pub use matching::{Match, Matching, Strobe};
+pub use picture_queue::{PictureQueue, RecordingCamera};
+pub use picture_writer::{PictureWriter, WrittenPictures};
 pub use png::{PngError, parse_grey, read_grey, write_grey, write_rgb};
 pub use recorder::Recorder;
 pub use walls::{nominal_slopes, walls};
@@ -41,7 +41,7 @@ use vision::{Image, ImageError, OpticsError};
 pub struct Picture {
     /// Number of the capture.
     pub capture: u32,
-    /// Time of the strobe, of the clock that [`Camera::strobed`] was told \[µs\].
+    /// Time of the strobe, by the clock of [`Camera::strobed`] \[µs\].
     pub time_us: u64,
     /// Rows of pixels, from the top.
     pub rows: usize,
@@ -121,7 +121,7 @@ pub enum CameraError {
         "camera {camera} cannot be opened: this seamwright was built without GigE Vision; build it with `--features aravis`"
     )]
     NotBuilt {
-        /// The camera as it was told.
+        /// Its name in the machine file.
         camera: String,
     },
     /// There is no such camera.
@@ -129,7 +129,7 @@ pub enum CameraError {
         "camera {camera} cannot be opened: {reason}; is it powered and in this network? `arv-tool-0.8` lists all cameras"
     )]
     NotFound {
-        /// The camera as it was told.
+        /// Its name in the machine file.
         camera: String,
         /// What Aravis said.
         reason: String,
@@ -137,7 +137,7 @@ pub enum CameraError {
     /// A camera does not take a setting.
     #[error("camera {camera} refuses {what}: {reason}; change [cameras] in the machine file")]
     Refused {
-        /// The camera as it was told.
+        /// Its name in the machine file.
         camera: String,
         /// The setting.
         what: String,
@@ -145,9 +145,9 @@ pub enum CameraError {
         reason: String,
     },
     /// It was there and is not any more.
-    #[error("camera {camera} is gone: {reason}; check its power and its cable, then start the job anew")]
+    #[error("camera {camera} was lost: {reason}; check its power and its cable, then restart the job")]
     Gone {
-        /// The camera as it was told.
+        /// Its name in the machine file.
         camera: String,
         /// What Aravis said.
         reason: String,
@@ -157,7 +157,7 @@ pub enum CameraError {
         "camera {camera} has given no picture for {strobes} strobes; check the wire from the strobe of the tracker board to its trigger, and the trigger in the machine file"
     )]
     NoPictures {
-        /// The camera as it was told.
+        /// Its name in the machine file.
         camera: String,
         /// Strobes since its last picture.
         strobes: usize,

@@ -4,26 +4,26 @@
 //! on together, whenever either of them arrives on the PC:
 //! - The first frame belongs to the first capture. The camera has to be open before the tracker board strobes.
 //! - From then on a frame that is n numbers on belongs to the capture that is n numbers on. A number that is left out is a
-//!   lost frame, and its capture is lost; a capture number that was never told has its frame dropped.
+//!   lost frame, and its capture is lost; the frame of an unknown capture number is dropped.
 //! - Captures whose frame has not come are lost as soon as a later frame has.
-//! - After a pause of the strobes of more than a second, or when captures are numbered anew, the count begins anew, and
+//! - After a pause of the strobes of more than a second, or when captures are numbered anew, the count starts again, and
 //!   what had not come by then is lost. So a trigger that the camera ignored, since it was still reading the last frame, does
-//!   harm until then only. No frame number tells it: exposure and size have to let the camera keep up with the strobes.
+//!   harm until then only. No frame number shows it: exposure and size have to let the camera keep up with the strobes.
 
 use std::collections::VecDeque;
 
-/// Pause of the strobes after which the count begins anew \[µs\].
+/// Pause of the strobes after which the count starts again \[µs\].
 const PAUSE_US: u64 = 1_000_000;
 
 /// Highest frame number of cameras that count in 16 bits; 1 follows.
 const HIGHEST_16_BIT: u64 = 0xffff;
 
-/// A strobe that was told.
+/// A strobe that was notified.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Strobe {
     /// Number of the capture.
     pub capture: u32,
-    /// When, on the clock that the camera is told \[µs\].
+    /// When, by the clock of [`Camera::strobed`](crate::Camera::strobed) \[µs\].
     pub time_us: u64,
 }
 
@@ -34,9 +34,9 @@ pub enum Match {
     Of(Strobe),
     /// It comes after this capture, which is lost; it is asked about again.
     After(u32),
-    /// No strobe is known that it could belong to; it may be told later.
+    /// No strobe is known that it could belong to; it may be notified later.
     NotYet,
-    /// It belongs to no strobe that was told.
+    /// It belongs to no known strobe.
     Stray,
 }
 
@@ -57,7 +57,7 @@ pub struct Matching {
 }
 
 impl Matching {
-    /// Takes a strobe; whether the count of frames begins anew with it.
+    /// Takes a strobe; whether the count of frames starts again with it.
     pub fn strobed(&mut self, strobe: Strobe) -> bool {
         let anew = self.newest.is_none_or(|newest| {
             strobe.capture <= newest.capture || strobe.time_us.abs_diff(newest.time_us) > PAUSE_US
@@ -82,7 +82,7 @@ impl Matching {
         self.waiting.len()
     }
 
-    /// The next capture that was lost as the count began anew.
+    /// The next capture that was lost as the count began again.
     pub fn lost(&mut self) -> Option<u32> {
         self.lost.pop_front()
     }
@@ -110,7 +110,7 @@ impl Matching {
     }
 }
 
-/// How many frames `id` is after `last`. Cameras of GigE Vision 1 count from 1 to 65535 and go on with 1.
+/// How many frames `id` is after `last`. Cameras of GigE Vision 1 count from 1 to 65535 and continue with 1.
 fn steps(last: u64, id: u64) -> u32 {
     let steps = if id >= last {
         id - last
@@ -133,7 +133,7 @@ mod tests {
         }
     }
 
-    /// Captures 10 to 15 are told, frames of these numbers come: the matched captures and the lost ones.
+    /// Captures 10 to 15 are notified, frames of these numbers come: the matched captures and the lost ones.
     fn matched(ids: &[u64]) -> (Vec<u32>, Vec<u32>) {
         let mut matching = Matching::default();
         for capture in 10..16 {
@@ -175,7 +175,7 @@ mod tests {
         assert_eq!(matching.frame(2), Match::NotYet);
         matching.strobed(strobe(6));
         assert_eq!(matching.frame(2), Match::Of(strobe(6)));
-        // Capture 7 is never told: its frame is dropped, and the next is that of capture 8.
+        // Capture 7 is never notified: its frame is dropped, and the next is that of capture 8.
         matching.strobed(strobe(8));
         assert_eq!(matching.frame(3), Match::Stray);
         assert_eq!(matching.frame(4), Match::Of(strobe(8)));
@@ -187,7 +187,7 @@ mod tests {
         let mut matching = Matching::default();
         matching.strobed(strobe(1));
         assert_eq!(matching.frame(1), Match::Of(strobe(1)));
-        // The camera ignores the second strobe, and its numbers go on.
+        // The camera ignores the second strobe, and its numbers continue.
         matching.strobed(strobe(2));
         let later = Strobe {
             capture: 3,

@@ -20,7 +20,7 @@ pub enum PngError {
         source: std::io::Error,
     },
     /// It is no PNG file, or only a part of one.
-    #[error("picture {file} is no PNG file or is damaged: {source}")]
+    #[error("picture {file} is not a PNG file, or is damaged: {source}")]
     Broken {
         /// The file.
         file: String,
@@ -28,9 +28,7 @@ pub enum PngError {
         source: DecodingError,
     },
     /// Its pixels are not what cameras give.
-    #[error(
-        "picture {file} has {kind}; only grey pictures of 8 bits a pixel are measured: convert it to such a one"
-    )]
+    #[error("picture {file} has {kind}; only grey pictures of 8 bits a pixel can be measured: convert it")]
     Kind {
         /// The file.
         file: String,
@@ -39,7 +37,7 @@ pub enum PngError {
     },
     /// It says that it is larger than any camera's.
     #[error(
-        "picture {file} has {columns} × {rows} pixels; at most {} million in all are read: cut it",
+        "picture {file} has {columns} × {rows} pixels; at most {} million in all can be read: crop it",
         MOST_PIXELS / 1_000_000
     )]
     TooLarge {
@@ -152,6 +150,7 @@ fn kind(colour: ColorType, depth: BitDepth) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use tempfile::tempdir;
 
     fn picture(rows: usize, columns: usize) -> Picture {
         Picture {
@@ -163,18 +162,11 @@ mod tests {
         }
     }
 
-    fn scratch(name: &str) -> std::path::PathBuf {
-        let folder = std::env::temp_dir().join(format!("seamwright-png-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a scratch folder");
-        folder.join(name)
-    }
-
     /// A PNG file that says that it has a side of 200,000 pixels, and has none.
     #[test]
     fn a_picture_larger_than_any_camera_s_is_refused_by_its_header() {
-        let folder = std::env::temp_dir().join(format!("seamwright-png-large-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a scratch folder");
-        let path = folder.join("large.png");
+        let folder = tempdir().expect("a folder");
+        let path = folder.path().join("large.png");
         let mut encoder = Encoder::new(File::create(&path).expect("a file"), 200_000, 200_000);
         encoder.set_color(ColorType::Grayscale);
         encoder.set_depth(BitDepth::Eight);
@@ -193,12 +185,12 @@ mod tests {
             "{error}"
         );
         assert!(read.pixels.is_empty());
-        std::fs::remove_dir_all(&folder).expect("removed");
     }
 
     #[test]
     fn a_grey_picture_comes_back_and_keeps_its_room() {
-        let path = scratch("grey.png");
+        let folder = tempdir().expect("a folder");
+        let path = folder.path().join("grey.png");
         let written = picture(60, 80);
         write_grey(&path, &written).expect("written");
         let mut read = picture(60, 80);
@@ -212,6 +204,8 @@ mod tests {
 
     #[test]
     fn what_is_no_grey_picture_is_told_by_its_file() {
+        let folder = tempdir().expect("a folder");
+        let scratch = |name: &str| folder.path().join(name);
         let mut into = picture(1, 1);
         let mut said = |path: &Path| read_grey(path, &mut into).expect_err("refused").to_string();
         assert!(said(&scratch("none.png")).contains("none.png: No such file"));
@@ -219,7 +213,10 @@ mod tests {
         let text = scratch("text.png");
         std::fs::write(&text, "no picture").expect("written");
         let error = said(&text);
-        assert!(error.contains("text.png is no PNG file or is damaged"), "{error}");
+        assert!(
+            error.contains("text.png is not a PNG file, or is damaged"),
+            "{error}"
+        );
 
         let colours = scratch("colours.png");
         write_rgb(&colours, 2, 2, &[9; 12]).expect("written");
@@ -244,19 +241,23 @@ mod tests {
         let cut = scratch("cut.png");
         std::fs::write(&cut, &bytes[..bytes.len() / 2]).expect("written");
         let error = said(&cut);
-        assert!(error.contains("cut.png is no PNG file or is damaged"), "{error}");
+        assert!(
+            error.contains("cut.png is not a PNG file, or is damaged"),
+            "{error}"
+        );
     }
 
     #[test]
     fn a_picture_that_cannot_be_written_is_told() {
-        let nowhere = scratch("no-folder").join("a.png");
+        let folder = tempdir().expect("a folder");
+        let nowhere = folder.path().join("no-folder/a.png");
         let error = write_grey(&nowhere, &picture(2, 2))
             .expect_err("refused")
             .to_string();
         assert!(error.contains("a.png: No such file"), "{error}");
         let mut few = picture(2, 2);
         few.pixels.pop();
-        let error = write_grey(&scratch("few.png"), &few)
+        let error = write_grey(&folder.path().join("few.png"), &few)
             .expect_err("refused")
             .to_string();
         assert!(error.contains("cannot write picture"), "{error}");

@@ -47,7 +47,7 @@ impl Recorder {
     }
 }
 
-/// Whether a folder has pictures, or a list of some; that of a recording which never got one is none.
+/// Whether a folder has pictures, or a list of some; an empty list does not count.
 fn holds_pictures(folder: &Path, list: &Path) -> std::io::Result<bool> {
     for entry in std::fs::read_dir(folder)? {
         if Path::new(&entry?.file_name()).extension() == Some("png".as_ref()) {
@@ -79,7 +79,8 @@ mod tests {
 
     #[test]
     fn what_was_kept_comes_back_to_its_captures_and_what_was_not_is_lost() {
-        let path = std::env::temp_dir().join(format!("seamwright-recorder-{}/deep", std::process::id()));
+        let scratch = tempfile::tempdir().expect("a folder");
+        let path = scratch.path().join("new/deep");
         drop(Recorder::new(&path).expect("a new folder"));
         let mut recorder = Recorder::new(&path).expect("a folder without pictures");
         for capture in [3, 4, 6] {

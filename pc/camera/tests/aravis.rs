@@ -85,7 +85,7 @@ fn open(trigger: &str) -> GigeCamera {
     })
 }
 
-/// The answer to the strobe that was told last.
+/// The answer to the latest strobe.
 #[track_caller]
 fn answer(camera: &mut GigeCamera, picture: &mut Picture) -> Arrival {
     until("answer", || {
@@ -155,7 +155,7 @@ fn a_camera_that_goes_away_is_named() {
     let error = until("error", || camera.next(LOOK, &mut picture).err());
     let said = error.to_string();
     assert!(
-        said.contains("camera 127.0.0.1 is gone") && said.contains("cable"),
+        said.contains("camera 127.0.0.1 was lost") && said.contains("cable"),
         "{said}"
     );
 }

@@ -9,7 +9,7 @@ use shared::io::SIDES;
 pub struct GigeConfig {
     /// Name, serial number or address of camera 1 and 2, as Aravis finds them (`arv-tool-0.8` lists all).
     pub devices: [String; SIDES],
-    /// How many pixels of the sensor a side make one of the picture; 1 if not told.
+    /// How many pixels of the sensor a side make one of the picture; 1 if not given.
     #[serde(default = "one")]
     pub binning: u32,
     /// Exposure \[µs\].

@@ -120,7 +120,7 @@ impl ProbeConfig {
         in_range("max_volts", max_volts, max_volts > 0.0, "above 0")?;
         in_range("mm_per_volt", mm_per_volt, mm_per_volt != 0.0, "other than 0")?;
         let least = mm_per_volt.abs() * max_volts;
-        let ahead = "so large that every voltage is a distance above 0";
+        let ahead = "large enough that every voltage is a distance above 0";
         in_range(
             "distance_at_0v_mm",
             distance_at_0v_mm,

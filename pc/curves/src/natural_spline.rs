@@ -10,7 +10,8 @@ pub enum SplineError {
     Knots,
 }
 
-/// The C² curve y(x) through its knots with no curvature at both ends; outside it goes on in a straight line.
+/// The C² curve y(x) through its knots with no curvature at both ends; outside it continues in a straight
+/// line.
 ///
 /// It borrows the knots and the second derivatives, so it needs no memory of its own.
 #[derive(Clone, Copy, Debug)]

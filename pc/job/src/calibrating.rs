@@ -1,14 +1,15 @@
-//! Pictures to calibrate a camera from: the machine stands, its slides step, the camera looks.
+//! Takes pictures to calibrate a camera from: the machine is at rest, its slides step, the camera takes a
+//! picture at each step.
 //!
-//! Where the camera steps out of the work or into it, the machine goes on along travel by as much as the sharp band would
-//! wander on the work. So the band stays where it is: what its texture does to heights is the same in every picture and
-//! leaves the steps true, and so does work that slopes along travel.
+//! Where the camera steps out of the work or into it, the machine continues along travel by as much as the
+//! sharp band would wander on the work. So the band stays where it is: what its texture does to heights is
+//! the same in every picture and leaves the steps true, and so does work that slopes along travel.
 
 use crate::session::Session;
 use crate::{Job, JobError, Weld};
 use cam::path::CAPACITY;
-use camera::calibrate::Known;
-use camera::{Picture, Shelf};
+use camera::calibrate::ReferencePicture;
+use camera::{Picture, PictureQueue};
 use config::calibration::Calibration;
 use host_link::events::Phase;
 use nc::text::tip_words;
@@ -42,21 +43,21 @@ pub struct PictureRun<'a> {
     pub program: &'a Program,
     /// Side of the camera, 0 or 1.
     pub side: usize,
-    /// What is believed of it.
+    /// Its calibration so far.
     pub before: Calibration,
     /// Places along the seam.
     pub places: u32,
     /// Where its pictures are.
-    pub shelf: Shelf,
+    pub queue: PictureQueue,
 }
 
 /// Pictures of a camera and where the slides were.
 #[derive(Clone, Debug, Default)]
 pub struct CameraPictures {
     /// Through focus: U, V.
-    pub profile: Vec<Known<2>>,
+    pub profile: Vec<ReferencePicture<2>>,
     /// Steps of the slides: place, U, V, and how far the machine is along travel.
-    pub slides: Vec<Known<4>>,
+    pub slides: Vec<ReferencePicture<4>>,
 }
 
 impl Weld {
@@ -76,7 +77,11 @@ impl Weld {
             }
             self.path(session, path, Phase::Approaching)?;
         }
-        let nothing = || JobError::Calibrate("the program has no weld before which to look".to_owned());
+        let nothing = || {
+            JobError::Calibrate(
+                "the program has no weld in front of which the camera could look at the seam".to_owned(),
+            )
+        };
         let weld = weld.ok_or_else(nothing)?;
         let (path, (begin, _)) = (weld.knot_path(), weld.weld().ok_or_else(nothing)?);
         let lead = session
@@ -102,7 +107,7 @@ impl Weld {
                     let [[_, u], [_, v]] = run.before.slides.matrix;
                     let n = DEPTH_STEP_MM * f64::from(k);
                     let (file, picture, values) = look(session, run, [middle[0] + u * n, middle[1] + v * n])?;
-                    pictures.profile.push(Known {
+                    pictures.profile.push(ReferencePicture {
                         file,
                         picture,
                         values,
@@ -122,7 +127,7 @@ impl Weld {
                     send(session, run.side, last)?;
                     last = slides;
                     let (file, picture, [u, v]) = look(session, run, slides)?;
-                    pictures.slides.push(Known {
+                    pictures.slides.push(ReferencePicture {
                         file,
                         picture,
                         values: [f64::from(place), u, v, along_mm],
@@ -218,14 +223,14 @@ fn look(
     if let Some(tracking) = &mut session.tracking {
         tracking.strobed = Some(Default::default());
     }
-    run.shelf.take();
+    run.queue.take();
     let mut taken = None;
     let looked = session.wait_until("a picture of the seam", LIMIT, |session| {
         let strobed = session
             .tracking
             .as_ref()
             .and_then(|tracking| tracking.strobed.as_ref());
-        for picture in run.shelf.take() {
+        for picture in run.queue.take() {
             if let Some(slides) = strobed.and_then(|strobed| strobed.get(&picture.capture)) {
                 taken = Some((picture, [slides[2 * run.side], slides[2 * run.side + 1]]));
             }

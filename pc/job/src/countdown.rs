@@ -1,4 +1,5 @@
-//! A time on the motion board's clock, whose count of milliseconds has 32 bits and begins anew after 49 days.
+//! A time on the motion board's clock, whose count of milliseconds has 32 bits and starts again after 49
+//! days.
 
 /// Milliseconds that are still to go.
 #[derive(Clone, Copy, Debug)]

@@ -135,7 +135,7 @@ impl<'a> Feeding<'a> {
             }
             // There is room.
             let _ = self.batch.push(PathElement::from(&element));
-            // What happens just at its end is told with it: the board may be there before the next one comes.
+            // What happens just at its end is sent with it: the board may be there before the next one comes.
             if let Some(Ok(next)) = self.legs.peek_mut() {
                 let at_end = next.events.partition_point(|event| event.s_mm <= self.end_s);
                 self.events.extend(next.events.drain(..at_end));

@@ -8,7 +8,8 @@ use host_link::events::{Event, Next, Phase, Question};
 use shared::protocol::{MotionSample, MotionStatus, Request, Role};
 use shared::state::State;
 
-/// A machine that shall move and does not for so long never will \[s\]; far longer than a queue runs dry.
+/// A machine that should move, but has not for this time, is taken to be stuck \[s\]; far longer than a queue
+/// runs dry.
 const STANDSTILL_S: u32 = 10;
 /// A path tick is a millisecond.
 const TICKS_PER_S: u32 = 1000;
@@ -40,7 +41,7 @@ pub(super) fn follow(
         let mut stands = false;
         let here = s.record.motion().last().filter(|here| here.tick > begun).copied();
         if let Some(here) = &here {
-            // The telemetry tells it sooner than the next status; at rest it names no path.
+            // The telemetry shows it sooner than the next status; at rest it names no path.
             stands = !on_path(here.state);
         }
         if let Some(here) = here.filter(|here| here.path_id == id) {
@@ -89,23 +90,23 @@ fn rests_after(block: &EndedBlock, here: &MotionSample) -> bool {
     reached && here.speed_mm_s.abs() < STILL && here.state == State::Running
 }
 
-/// Whether the machine stands until somebody says something.
+/// Whether the machine is at rest until the operator gives a command.
 #[derive(Default)]
 struct Standing {
     /// It does.
     for_somebody: bool,
-    /// In a hold that nobody asked for.
+    /// In a hold that was not commanded.
     held_by_board: bool,
-    /// What was said last of hold, back and going on, if the board has not been seen to run since; and when.
+    /// The last command of hold, back and resume, if the board has not been seen to run since; and when.
     said: Option<Command>,
     said_at: u32,
 }
 
 impl Standing {
-    /// Takes what the board says; a hold lasts while the machine goes back before it goes on.
+    /// Takes the state of the board; a hold lasts while the machine goes back before it continues.
     fn watch(&mut self, motion: &MotionStatus) {
         let held = motion.state == State::Holding;
-        // What was told before the word is of another state.
+        // Reports from before the command belong to another state.
         if motion.state == State::Running && motion.path_ticks > self.said_at {
             self.said = None;
         }
@@ -122,7 +123,7 @@ impl Standing {
     }
 }
 
-/// When the machine was last seen to go on, or to have a reason not to.
+/// When the machine was last seen to continue, or to have a reason not to.
 struct Advance {
     s_mm: f64,
     tick: u32,
@@ -220,15 +221,15 @@ mod tests {
             (standing.for_somebody, standing.held_by_board)
         };
         assert_eq!(told(10, Running, 1.0, Some(Command::Hold)), (false, false));
-        // As it was told before the word, and after it.
+        // As reported before the command, and after it.
         assert_eq!(told(10, Running, 1.0, None), (false, false));
         assert_eq!(told(12, Holding, 1.0, None), (true, false));
         assert_eq!(told(13, Holding, 1.0, Some(Command::Back)), (true, false));
         assert_eq!(told(14, Holding, 1.0, Some(Command::Resume)), (true, false));
-        // It goes back before it goes on.
+        // It goes back before it continues.
         assert_eq!(told(15, Holding, 1.0, None), (false, false));
         assert_eq!(told(16, Running, 1.0, None), (false, false));
-        // And nobody asked for this hold, nor for it to end.
+        // And neither this hold nor its end was commanded.
         assert_eq!(told(17, Holding, 0.01, None), (true, true));
         assert_eq!(told(18, Running, 0.0, None), (true, false));
     }

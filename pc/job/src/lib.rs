@@ -1,4 +1,4 @@
-//! Jobs on boards: from boards that are off to what came of it, and the machine at rest whatever happens.
+//! Jobs on boards: from drives off to the result, with the machine at rest at the end whatever happens.
 
 mod calibrating;
 mod cameras;
@@ -126,23 +126,23 @@ pub enum JobError {
     Tracker(TrackerFault),
     /// The boards had to do without this program.
     #[error(
-        "this PC did nothing for {seconds:.1} s (paused, asleep or too busy), and the boards do not go on without it: {source}"
+        "this PC was stalled for {seconds:.1} s (paused, asleep or too busy), and the boards stop without it: {source}"
     )]
     Absent {
         /// For how long.
         seconds: f64,
-        /// What the boards told.
+        /// What the boards reported.
         source: Box<JobError>,
     },
     /// A camera gives no pictures, or none that can be measured.
     #[error(transparent)]
     Camera(#[from] ImagesError),
     /// The operator stopped it.
-    #[error("stopped by the operator; beams are off and the machine stands")]
+    #[error("stopped by the operator; beams are off and the machine is at rest")]
     Interrupted,
-    /// Nobody can say that the next block may begin, or that a hold is over.
+    /// There is no operator who could start the next block or end a hold.
     #[error(
-        "the machine waits for the operator, and nobody is there who could answer; attend to the job, or run it without single block"
+        "the machine waits for the operator, but there is no operator who could answer; run the job in a terminal, or without single block"
     )]
     NoOperator,
     /// Something does not come to an end.
@@ -197,7 +197,7 @@ pub enum JobError {
     /// No pictures to calibrate a camera from.
     #[error("the camera is not calibrated: {0}")]
     Calibrate(String),
-    /// It came to its end, but nobody can tell how good it is.
+    /// It ended, but its quality cannot be judged.
     #[error("the run cannot be judged: {0}")]
     Judge(String),
     /// A machine parameter is out of range.

@@ -1,4 +1,4 @@
-//! Doing what whoever drives the job asks for.
+//! Carries out the commands of the operator.
 
 use crate::JobError;
 use crate::session::Session;
@@ -34,7 +34,7 @@ impl Session<'_> {
         }
     }
 
-    /// A new part of the job begins; one that goes on is told once.
+    /// A new part of the job begins; one that continues is announced once.
     pub fn phase(&mut self, phase: Phase) {
         self.question = None;
         if self.phase.replace(phase) != Some(phase) {
@@ -42,7 +42,7 @@ impl Session<'_> {
         }
     }
 
-    /// The machine stands until somebody answers; what is asked already is asked once.
+    /// The machine is at rest until the operator answers; a question that is open already is not asked again.
     pub fn question(&mut self, question: Question) {
         self.phase = None;
         if self.question.replace(question) != Some(question) {

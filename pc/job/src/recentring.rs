@@ -79,13 +79,13 @@ impl Recentring {
         }
     }
 
-    /// A look at slides at `slides` \[mm\] on path `path_id`, where the pose stands `aside` the plan: where to send it,
-    /// and for which slide.
+    /// A look at slides at `slides` \[mm\] on path `path_id`, where the pose is offset by `superimposed` from
+    /// the plan: where to send it, and for which slide.
     fn look(
         &mut self,
         path_id: u32,
         slides: &[f64; SLIDES],
-        aside: &PoseOffset,
+        superimposed: &PoseOffset,
     ) -> Option<(usize, PoseOffset)> {
         if path_id != self.path_id {
             (self.path_id, self.armed, self.offset) = (path_id, true, PoseOffset::NONE);
@@ -93,8 +93,11 @@ impl Recentring {
         let used = self.all_used(slides);
         self.armed |= used.iter().all(|used| *used < NEAR);
         // While it is on its way, what the slides show is not what will be left.
-        let (aside, wanted) = (aside.numbers(), self.offset.numbers());
-        let there = aside.iter().zip(wanted).all(|(a, b)| (a - b).abs() < REACHED);
+        let (superimposed, wanted) = (superimposed.numbers(), self.offset.numbers());
+        let there = superimposed
+            .iter()
+            .zip(wanted)
+            .all(|(a, b)| (a - b).abs() < REACHED);
         let slide = (0..SLIDES).find(|slide| used[*slide] > FAR)?;
         if !self.armed || !there {
             return None;
@@ -127,12 +130,12 @@ pub(super) fn watch(session: &mut Session, id: u32) -> Result<(), JobError> {
         return Ok(());
     }
     let (slides_mm, s_mm) = (slides.slides_mm, place.s_mm);
-    let Some((slide, offset)) = recentring.look(id, &slides_mm, &session.motion.aside) else {
+    let Some((slide, offset)) = recentring.look(id, &slides_mm, &session.motion.superimposed) else {
         return Ok(());
     };
     let refused = match session.command(Role::Motion, &Request::OffsetPose(offset)) {
         Ok(()) => None,
-        // The slides go on alone, as far as they reach.
+        // The slides continue alone, as far as they reach.
         Err(LinkError::Refused { refusal, .. }) => Some(refusal.to_string()),
         Err(error) => return Err(error.into()),
     };
@@ -180,7 +183,7 @@ mod tests {
         for u2 in [-8.5, -3.0, -8.5] {
             assert_eq!(r.look(3, &[0.0, 0.0, u2, 0.0], &none), None);
         }
-        // There, it goes on from where it is.
+        // There, it continues from where it is.
         let (_, further) = r.look(3, &[0.0, 0.0, -8.5, 0.0], &offset).unwrap();
         assert!(
             further.lateral_mm.abs() > 1.5 * offset.lateral_mm.abs(),

@@ -1,4 +1,4 @@
-//! What is left of a job after its end: what the boards told, and what was done.
+//! The record of a job: samples of the boards, planned paths and actions.
 
 use crate::session::Session;
 use crate::{CameraFigures, DelayFigures, JobError, Taught};

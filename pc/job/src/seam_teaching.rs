@@ -1,4 +1,4 @@
-//! Teaching both seams of a rib with the machine of a session: it stands, and its cameras look.
+//! Teaching both seams of a rib with the machine of a session: its cameras measure while it is at rest.
 
 use crate::session::Session;
 use crate::tracking::Watched;
@@ -14,8 +14,8 @@ use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use teach::seam::{
-    Cameras, Drawing, Ended, Follower, Hand, Head, Rig, SeamFile, SeamPoint, SeamTeachError, SeamTeaching,
-    Seen, Stance, View,
+    CameraMachine, Cameras, Drawing, Ended, Follower, Head, JogOperator, MachinePose, SeamFile, SeamPoint,
+    SeamSighting, SeamTeachError, SeamTeaching, View,
 };
 
 /// Longest time for the pictures of a look.
@@ -24,7 +24,7 @@ const LOOK_LIMIT: Duration = Duration::from_secs(10);
 const PATIENCE: f64 = 2.0;
 /// Part of the pictures that have to show a seam.
 const ENOUGH: f64 = 0.5;
-/// Moves shorter than this are none, of the machine and of its slides \[mm\].
+/// Moves of the machine and of its slides that are shorter than this are left out \[mm\].
 const NO_MOVE: f64 = 1e-4;
 const NO_SLIDE_MOVE: f64 = 2e-3;
 /// Slides that are there come to rest for so long before a look \[s\].
@@ -34,7 +34,7 @@ const SLIDES_SETTLE_S: f64 = 0.03;
 #[derive(Debug)]
 pub struct SeamLesson {
     /// Where to begin.
-    pub start: Stance,
+    pub start: MachinePose,
     /// What is drawn.
     pub drawing: Option<Drawing>,
     /// How to teach.
@@ -152,14 +152,14 @@ impl SeamArm<'_, '_, '_> {
         Ok(())
     }
 
-    /// A B C of a stance \[deg\].
-    fn angles(&self, stance: &Stance) -> Result<[f64; 3], JobError> {
+    /// A B C of a pose of the machine \[deg\].
+    fn angles(&self, machine_pose: &MachinePose) -> Result<[f64; 3], JobError> {
         let axes = self
             .weld
             .planner
             .kinematics()
-            .inverse(&stance.pose, &[0.0; AXES])
-            .map_err(|error| JobError::Teach(format!("the head cannot stand like that: {error}")))?;
+            .inverse(&machine_pose.pose, &[0.0; AXES])
+            .map_err(|error| JobError::Teach(format!("the head cannot take that attitude: {error}")))?;
         Ok([axes[3], axes[4], axes[5]].map(|angle| angle * DEG_PER_RAD))
     }
 
@@ -179,29 +179,33 @@ impl SeamArm<'_, '_, '_> {
     }
 }
 
-impl Rig for SeamArm<'_, '_, '_> {
+impl CameraMachine for SeamArm<'_, '_, '_> {
     type Error = JobError;
 
-    fn approach(&mut self, stance: &Stance) -> Result<(), JobError> {
-        let position = stance.pose.position;
+    fn approach(&mut self, machine_pose: &MachinePose) -> Result<(), JobError> {
+        let position = machine_pose.pose.position;
         let above = [position.x, position.y, self.machine.planning.safe_height_mm];
-        let words = tip_words(&above, &self.angles(stance)?, &extensions(&stance.slides_mm));
+        let words = tip_words(
+            &above,
+            &self.angles(machine_pose)?,
+            &extensions(&machine_pose.slides_mm),
+        );
         let text = format!("G43.4\nG0 {words}\nG0 Z{}\nM2\n", decimal(position.z, 5));
-        self.run(&text, Phase::Approaching, f64::INFINITY, &stance.slides_mm)
+        self.run(&text, Phase::Approaching, f64::INFINITY, &machine_pose.slides_mm)
     }
 
-    fn go(&mut self, stance: &Stance) -> Result<(), JobError> {
-        let angles = self.angles(stance)?;
-        let position: [f64; 3] = stance.pose.position.into();
+    fn go(&mut self, machine_pose: &MachinePose) -> Result<(), JobError> {
+        let angles = self.angles(machine_pose)?;
+        let position: [f64; 3] = machine_pose.pose.position.into();
         let here = self.weld.planner.tip(&self.session.motion.reference);
         let moves = |a: &[f64], b: &[f64], least: f64| a.iter().zip(b).any(|(a, b)| (a - b).abs() > least);
         if moves(&position, &here.position_mm, NO_MOVE) || moves(&angles, &here.angles_deg, NO_MOVE) {
-            let words = tip_words(&position, &angles, &extensions(&stance.slides_mm));
+            let words = tip_words(&position, &angles, &extensions(&machine_pose.slides_mm));
             let speed = self.lesson.config.speed_m_min * MM_S_PER_M_MIN;
             let text = format!("G43.4\nG0 {words}\nM2\n");
-            self.run(&text, self.phase(), speed, &stance.slides_mm)
-        } else if moves(&stance.slides_mm, &self.slides_mm, NO_SLIDE_MOVE) {
-            self.move_slides(&stance.slides_mm)
+            self.run(&text, self.phase(), speed, &machine_pose.slides_mm)
+        } else if moves(&machine_pose.slides_mm, &self.slides_mm, NO_SLIDE_MOVE) {
+            self.move_slides(&machine_pose.slides_mm)
         } else {
             Ok(())
         }
@@ -267,7 +271,7 @@ impl Rig for SeamArm<'_, '_, '_> {
         match self.session.control.answer() {
             Some(text) if text.trim() == "done" => true,
             Some(_) => {
-                self.say("done ends after this point, a stop at once");
+                self.say("type done to end after this point; Ctrl-C stops at once");
                 false
             }
             None => false,
@@ -275,7 +279,7 @@ impl Rig for SeamArm<'_, '_, '_> {
     }
 }
 
-impl Hand for SeamArm<'_, '_, '_> {
+impl JogOperator for SeamArm<'_, '_, '_> {
     fn line(&mut self) -> Result<Option<String>, JobError> {
         self.session.question(Question::Jog);
         let mut said = None;
@@ -316,8 +320,8 @@ fn extensions(slides_mm: &[f64; SLIDES]) -> [f64; SIDES] {
 }
 
 /// The mean of what the pictures show of `side`, if there are enough of them that show it.
-fn mean(pictures: &[Watched], side: usize, wanted: usize) -> Option<Seen> {
-    let seen: Vec<&Seen> = pictures
+fn mean(pictures: &[Watched], side: usize, wanted: usize) -> Option<SeamSighting> {
+    let seen: Vec<&SeamSighting> = pictures
         .iter()
         .filter_map(|picture| picture.sides[side].as_ref())
         .collect();
@@ -325,15 +329,16 @@ fn mean(pictures: &[Watched], side: usize, wanted: usize) -> Option<Seen> {
         return None;
     }
     let count = seen.len() as f64;
-    let mean_of = |value: &dyn Fn(&Seen) -> f64| seen.iter().map(|seen| value(seen)).sum::<f64>() / count;
+    let mean_of =
+        |value: &dyn Fn(&SeamSighting) -> f64| seen.iter().map(|seen| value(seen)).sum::<f64>() / count;
     // Of those that have it.
-    let mean_if = |value: &dyn Fn(&Seen) -> Option<f64>| {
+    let mean_if = |value: &dyn Fn(&SeamSighting) -> Option<f64>| {
         let values: Vec<f64> = seen.iter().filter_map(|seen| value(seen)).collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     };
     let offset_mm = [0, 1].map(|i| mean_of(&|seen| seen.offset_mm[i]));
     let squares = [0, 1].map(|i| mean_of(&|seen| libm::pow(seen.offset_mm[i] - offset_mm[i], 2.0)));
-    Some(Seen {
+    Some(SeamSighting {
         along_mm: mean_of(&|seen| seen.along_mm),
         offset_mm,
         roll: mean_if(&|seen| seen.roll),

@@ -7,7 +7,7 @@ use crate::surroundings::Surroundings;
 use crate::{JobError, Tracking};
 use config::machine::MachineFile;
 use host_link::Control;
-use host_link::boards::{Absence, Boards, LinkError};
+use host_link::boards::{Boards, LinkError, Stall};
 use host_link::events::{Event, Phase, Question};
 use host_link::geometry::MachineGeometry;
 use host_link::record::Record;
@@ -15,12 +15,12 @@ use shared::protocol::{Datagram, MotionStatus, Request, Response, Role};
 use shared::state::{Fault, State};
 use std::time::Duration;
 
-/// How often the boards are asked for their state; it also tells them that the PC is there.
+/// Interval of the status requests to the boards; they also keep the session alive.
 const STATUS_PERIOD: Duration = Duration::from_millis(100);
 /// A motion board whose clock has stood still for so long is broken.
 const STANDSTILL: Duration = Duration::from_secs(10);
-/// What the boards told is due to an absence of this program that ended no longer ago: their state is asked for at once
-/// after it, and comes in a few turns.
+/// An error of the boards is due to a stall of this program that ended no longer ago: their state is asked
+/// for at once after it, and comes in a few turns.
 const JUST_BEFORE: Duration = Duration::from_secs(1);
 /// Longest and shortest wait for a datagram.
 const LONGEST_WAIT: Duration = Duration::from_millis(10);
@@ -30,7 +30,7 @@ const SHORTEST_WAIT: Duration = Duration::from_micros(200);
 pub(super) struct Session<'a> {
     pub boards: &'a mut dyn Boards,
     pub control: &'a mut Control,
-    /// What was told last of the two.
+    /// What was published last of the two.
     pub(super) phase: Option<Phase>,
     pub(super) question: Option<Question>,
     /// What went wrong while a board was asked for something.
@@ -45,7 +45,7 @@ pub(super) struct Session<'a> {
     pub began: Duration,
     lost_before: u32,
     next_status: Duration,
-    /// When the motion board's clock was last seen to go on.
+    /// When the motion board's clock was last seen to continue.
     ticked: Duration,
     /// A PC that does nothing for so long is missed by the motion board.
     missed: Duration,
@@ -107,8 +107,9 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Asks a board, and goes on with everything else until it answers: what boards send is taken, and measurements leave for
-    /// the tracker board. What goes wrong with that meanwhile is for the next turn: a stop needs the motion board only.
+    /// Asks a board, and continues with everything else until it answers: what boards send is taken, and
+    /// measurements leave for the tracker board. What goes wrong with that meanwhile is for the next turn: a
+    /// stop needs the motion board only.
     pub fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         if let (Role::Tracker, Some(tracking)) = (role, &mut self.tracking) {
             tracking.forget_question();
@@ -209,7 +210,7 @@ impl<'a> Session<'a> {
     pub fn tick(&self) -> u32 {
         let asked = self.motion.path_ticks;
         let told = self.record.motion().last().map_or(asked, |sample| sample.tick);
-        // The newer one, where the count begins anew, too.
+        // The newer one, where the count starts again, too.
         if told.wrapping_sub(asked) < 1 << 31 {
             told
         } else {
@@ -246,8 +247,8 @@ impl<'a> Session<'a> {
             error,
             JobError::Link(_) | JobError::Motion(_) | JobError::Tracker(_) | JobError::TooLong { .. }
         );
-        match self.boards.absence() {
-            Some(Absence { ended, lasted })
+        match self.boards.last_stall() {
+            Some(Stall { ended, lasted })
                 if of_boards && lasted >= self.missed && self.boards.now() < ended + JUST_BEFORE =>
             {
                 JobError::Absent {
@@ -285,7 +286,7 @@ impl<'a> Session<'a> {
         self.go_on_until(|s| Ok(dwell.is_over(s.tick())))
     }
 
-    /// The first reason not to go on.
+    /// The first reason not to continue.
     pub fn check(&self) -> Result<(), JobError> {
         let tracking = self.tracking.as_ref();
         let of_tracker = tracking.and_then(|tracking| tracking.fault(&self.record));

@@ -1,4 +1,4 @@
-//! What is around a machine, as far as a job has to do with it.
+//! The surroundings of a machine (cameras, probe, true seams) as a job uses them.
 
 use crate::cameras::SeamCameras;
 use crate::images::ImagesError;
@@ -33,7 +33,7 @@ pub trait Surroundings: Send + Sync {
     /// The ranging probe in front of a part to teach; `None` if there is nothing to measure.
     fn probe(&self, machine: &MachineFile, part: &PartFile) -> Option<Box<dyn RangingProbe>>;
 
-    /// Where the seams truly are, for whoever judges the run afterwards; `None` where nobody knows.
+    /// Where the seams truly are, for the evaluation of the run; `None` where that is unknown.
     fn truth(&self) -> Option<Arc<dyn SeamTruth + Send + Sync>>;
 }
 

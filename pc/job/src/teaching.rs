@@ -16,7 +16,7 @@ use shared::io::AXES;
 use shared::kinematics::Kinematics;
 use shared::protocol::{MotionSample, Role};
 use std::time::Duration;
-use teach::{Arm, Look, TaughtPoint, TeachError, Teacher};
+use teach::{Look, ProbeMachine, TaughtPoint, TeachError, Teacher};
 use thiserror::Error;
 
 /// A ranging probe in the place of the tool.
@@ -49,11 +49,11 @@ pub struct Taught {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoTeaching {
     /// The part is of another kind, or taught before.
-    #[error("the part has nothing to teach: only panels are taught, and only without the key taught")]
+    #[error("the part has nothing to teach: only panels without the key taught are taught")]
     Part,
     /// No guide points.
     #[error("the panel has no guide points to teach")]
-    Guide,
+    GuidePoint,
     /// The machine has no probe.
     #[error("the machine file has no [probe]: the machine cannot teach")]
     Probe,
@@ -64,7 +64,7 @@ pub enum NoTeaching {
     )]
     Input,
     /// Nothing to range.
-    #[error("the panel has no table simulated_surface, and a simulated world has nothing else to measure")]
+    #[error("the panel has no table simulated_surface, so a simulated world has no surface to measure")]
     Surface,
     /// What is to be made of it cannot be, however it is taught.
     #[error("{0}")]
@@ -74,7 +74,7 @@ pub enum NoTeaching {
     Parameter(#[from] RangeError),
 }
 
-/// Whether `part` can be taught with `machine`, as far as that can be told without boards.
+/// Whether `part` can be taught with `machine`, as far as that is known without boards.
 ///
 /// Gives back what a person should know of it.
 ///
@@ -84,7 +84,7 @@ pub fn check_teaching(machine: &MachineFile, part: &PartFile) -> Result<Option<S
     let panel = part.untaught().ok_or(NoTeaching::Part)?;
     let unit = machine.probe.as_ref().ok_or(NoTeaching::Probe)?;
     if panel.guides().is_empty() {
-        return Err(NoTeaching::Guide);
+        return Err(NoTeaching::GuidePoint);
     }
     unit.build()?;
     panel.teaching().check(unit)?;
@@ -168,7 +168,7 @@ struct BoardArm<'w, 's, 'b> {
     count: usize,
 }
 
-impl Arm for BoardArm<'_, '_, '_> {
+impl ProbeMachine for BoardArm<'_, '_, '_> {
     type Error = JobError;
 
     fn run(&mut self, program: &str, slower: f64) -> Result<(), JobError> {

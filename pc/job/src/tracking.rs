@@ -24,7 +24,7 @@ use shared::tracking::frames::Heads;
 use shared::trajectory::{Path, PathSpace};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
-use teach::seam::Seen;
+use teach::seam::SeamSighting;
 use vision::{Form, Seam};
 
 /// How often the boards are asked for their clock.
@@ -40,7 +40,7 @@ pub(super) struct Watched {
     /// U1, V1, U2, V2 at the strobe \[mm\].
     pub slides_mm: [f64; SLIDES],
     /// What is seen of each seam.
-    pub sides: [Option<Seen>; SIDES],
+    pub sides: [Option<SeamSighting>; SIDES],
 }
 
 /// Pictures while somebody watches.
@@ -336,9 +336,9 @@ impl Watch {
 }
 
 /// What is known of one picture.
-fn seen(side: &SideMeasurement, seam: Option<&Seam>) -> Seen {
+fn seen(side: &SideMeasurement, seam: Option<&Seam>) -> SeamSighting {
     let gap = seam.filter(|seam| seam.form == Form::Gap);
-    Seen {
+    SeamSighting {
         along_mm: side.along_mm,
         offset_mm: [side.delta_u_mm, side.delta_v_mm],
         roll: gap.map(|seam| seam.roll),

@@ -2,7 +2,7 @@
 
 use super::claims::Claims;
 use super::codes::Code;
-use super::error::{NcError, Place, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 use super::program::{ArcForm, ArcWay, Plane};
 use shared::geometry::Turn;
 
@@ -12,7 +12,12 @@ const CENTRE_WORDS: [&str; 3] = ["I", "J", "K"];
 const MOST_TURNS: f64 = 10_000.0;
 
 /// The way of the arc `mode`, whose words begin at `place`.
-pub(super) fn way(claims: &Claims, mode: Code, plane: Plane, place: Place) -> Result<ArcWay, NcError> {
+pub(super) fn way(
+    claims: &Claims,
+    mode: Code,
+    plane: Plane,
+    place: SourcePosition,
+) -> Result<ArcWay, NcError> {
     let turn = match mode {
         Code::ArcClockwise => Turn::Clockwise,
         _ => Turn::CounterClockwise,
@@ -32,7 +37,7 @@ pub(super) fn way(claims: &Claims, mode: Code, plane: Plane, place: Place) -> Re
     })
 }
 
-fn form(claims: &Claims, mode: Code, plane: Plane, place: Place) -> Result<ArcForm, NcError> {
+fn form(claims: &Claims, mode: Code, plane: Plane, place: SourcePosition) -> Result<ArcForm, NcError> {
     let centre = CENTRE_WORDS.map(|name| claims.word(mode, name));
     let (code, words) = match plane {
         Plane::Xy => ("G17", "I and J"),
@@ -47,7 +52,7 @@ fn form(claims: &Claims, mode: Code, plane: Plane, place: Place) -> Result<ArcFo
     match (any, claims.word(mode, "R")) {
         (true, Some(r)) => Err(Problem::CentreAndRadius.at(r.place)),
         (true, None) => Ok(ArcForm::Centre(centre.map(|word| word.map_or(0.0, |w| w.value)))),
-        (false, Some(r)) if r.value == 0.0 => Err(r.value_error("a radius is not 0")),
+        (false, Some(r)) if r.value == 0.0 => Err(r.value_error("the radius must not be 0")),
         (false, Some(r)) => Ok(ArcForm::Radius(r.value)),
         (false, None) => {
             let (code, word) = (mode.name(), "a centre (I J K) or R");

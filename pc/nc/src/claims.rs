@@ -1,4 +1,4 @@
-//! Which code a word belongs to: P, Q and others mean something else with each code.
+//! Assigns words to codes: P, Q and others have a different meaning with each code.
 
 use super::codes::Code;
 use super::error::{NcError, Problem};
@@ -13,8 +13,8 @@ const SHARED: [&str; 8] = ["P", "Q", "L", "E", "I", "J", "K", "R"];
 pub(super) struct Claims<'b>(Vec<(&'b Word, Code)>);
 
 impl<'b> Claims<'b> {
-    /// Finds for every word of `block` the code that it belongs to; `modal` is the motion that goes on in a block
-    /// without a code of its own.
+    /// Finds for every word of `block` the code that it belongs to; `modal` is the motion that continues in a
+    /// block without a code of its own.
     pub(super) fn of(block: &'b Block, modal: Option<Code>) -> Result<Self, NcError> {
         let own = block.codes.iter().map(|code| code.code);
         let codes: Vec<Code> = own.chain(modal).collect();

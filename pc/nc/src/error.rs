@@ -3,27 +3,27 @@
 use std::fmt;
 use thiserror::Error;
 
-/// A place in a program; both count from 1.
+/// A position in the text of a program; line and column count from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct SourcePosition {
     /// Line of the file.
     pub line: u32,
     /// Character in the line.
     pub column: u32,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for SourcePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "line {}, column {}", self.line, self.column)
     }
 }
 
-/// A problem and its place.
+/// A problem and its position.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{place}: {problem}")]
 pub struct NcError {
     /// Where.
-    pub place: Place,
+    pub place: SourcePosition,
     /// What.
     pub problem: Problem,
 }
@@ -54,17 +54,17 @@ pub enum Problem {
     Expression,
     /// `O`: subroutines, loops and conditions.
     #[error(
-        "O words (subroutines, loops, conditions) are not supported: write the blocks out, or let what makes the program do so"
+        "O words (subroutines, loops, conditions) are not supported: write the blocks out, or let the CAM system do so"
     )]
     Subroutine,
     /// A number that is out of all proportion.
     #[error("the number of {0} has more than nine digits before the point: correct it")]
     TooLarge(String),
     /// `/` not at the start of a line.
-    #[error("block delete must stand at the start of the line")]
+    #[error("block delete must be at the start of the line")]
     DeleteInside,
     /// `%` with something else in its line, or at a wrong place.
-    #[error("% must stand alone, in the first and in the last line")]
+    #[error("% must be alone on its line, the first and the last of the program")]
     Percent,
     /// N not at the start of a block, or not a whole number.
     #[error("a block number is a whole number at the start of the line")]
@@ -81,7 +81,7 @@ pub enum Problem {
         number: f64,
     },
     /// The same word twice in a block.
-    #[error("{0} stands twice in this block")]
+    #[error("{0} occurs twice in this block")]
     Twice(String),
     /// Two codes of one modal group in a block.
     #[error("{first} and {second} exclude each other in one block")]
@@ -92,7 +92,7 @@ pub enum Problem {
         second: &'static str,
     },
     /// A word that belongs to a code that is not in the block.
-    #[error("{0} has no code in this block that it belongs to")]
+    #[error("{0} belongs to no code of this block")]
     Orphan(String),
     /// A word that could belong to two codes.
     #[error("{word} could belong to {first} or to {second}: write them in two blocks")]
@@ -160,7 +160,7 @@ pub enum Problem {
     #[error("with G93 F means the time of its own block, and this one does not feed: leave F out")]
     InverseTimeAlone,
     /// G4, M62, M63 or M67 without a motion after it.
-    #[error("{0} has no motion after it, before or with which it would take effect")]
+    #[error("{0} has no motion after it with which it could take effect")]
     NoMotionAfter(&'static str),
     /// M66.
     #[error("M66 waits for an input, and the boards have none for programs: wait with G4 P")]
@@ -178,7 +178,7 @@ pub enum Problem {
         /// What closes it.
         close: &'static str,
     },
-    /// A word among control points that is none of theirs.
+    /// A word among control points that does not belong to them.
     #[error("{word} does not belong to {code}: write it in the block that opens the NURBS, or after it")]
     NotInNurbs {
         /// The word.
@@ -222,8 +222,8 @@ pub enum Problem {
         /// Order.
         order: usize,
     },
-    /// A control point after a knot that stands alone.
-    #[error("after a knot that stands alone no control point can follow")]
+    /// A control point after a knot on its own.
+    #[error("after a knot on its own no control point can follow")]
     PointAfterKnots,
     /// Something after the end.
     #[error("nothing may follow the end of the program")]
@@ -238,7 +238,7 @@ pub enum Problem {
 
 impl Problem {
     /// This problem at `place`.
-    pub(super) fn at(self, place: Place) -> NcError {
+    pub(super) fn at(self, place: SourcePosition) -> NcError {
         NcError { place, problem: self }
     }
 }

@@ -3,14 +3,14 @@
 use super::arc;
 use super::claims::Claims;
 use super::codes::{Code, Group};
-use super::error::{NcError, Place, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 use super::lexer::Word;
 use super::modal::Modal;
 use super::nurbs::{OpenNurbs, Progress};
 use super::outputs::{Pending, Spindle, dwell, output};
 use super::parser::Block;
 use super::program::{AXIS_WORDS, EXTENSION_WORDS, FeedRate, Motion, Plane, ProgramPath, Target, Way, Words};
-use super::reading::Rest;
+use super::reading::RemainingBlocks;
 use shared::io::AXES;
 
 /// Choices of the operator.
@@ -31,9 +31,9 @@ pub(super) struct Interpreter {
     spindle: Spindle,
     pending: Vec<Pending>,
     /// s, and where it was programmed.
-    dwell: Option<(f64, Place)>,
+    dwell: Option<(f64, SourcePosition)>,
     paths: Vec<ProgramPath>,
-    /// The next motion that feeds goes on along the last path.
+    /// The next motion that feeds continues along the last path.
     open: bool,
     pub(super) ended: bool,
 }
@@ -92,7 +92,7 @@ impl Interpreter {
     }
 
     /// The paths, if the program that ends at `last` is whole.
-    pub(super) fn end(self, last: Place) -> Result<Vec<ProgramPath>, NcError> {
+    pub(super) fn end(self, last: SourcePosition) -> Result<Vec<ProgramPath>, NcError> {
         if let Some(open) = &self.nurbs {
             return Err(open.left_open(last));
         }
@@ -104,7 +104,7 @@ impl Interpreter {
 
     /// Keeps no more than `count` blocks of the last path; what reads the others again is made of the state between
     /// them.
-    pub(super) fn trim(&mut self, count: usize, rest: impl FnOnce(Self) -> Rest) {
+    pub(super) fn trim(&mut self, count: usize, rest: impl FnOnce(Self) -> RemainingBlocks) {
         let Some(mut path) = self.paths.pop() else { return };
         if self.open && path.rest.is_none() && path.targets.len() >= count {
             let before = std::mem::take(&mut self.paths);
@@ -154,8 +154,8 @@ impl Interpreter {
         }
     }
 
-    /// G53: the axes named go, in axis space, where they are told to.
-    fn axes_motion(&mut self, block: &Block, place: Place) -> Result<(), NcError> {
+    /// G53: the axes named go to their coordinates, in axis space.
+    fn axes_motion(&mut self, block: &Block, place: SourcePosition) -> Result<(), NcError> {
         if self.modal.motion != Some(Code::Rapid) {
             return Err(Problem::AxesNeedRapid.at(place));
         }
@@ -231,7 +231,7 @@ impl Interpreter {
         Ok(true)
     }
 
-    /// A complete NURBS. No motion goes on after it.
+    /// A complete NURBS. No motion continues after it.
     fn end_nurbs(&mut self, way: Way, words: Words) {
         let Some(open) = self.nurbs.take() else { return };
         self.learn(&words);
@@ -240,7 +240,7 @@ impl Interpreter {
         self.modal.motion = None;
     }
 
-    fn rapid(&mut self, way: Way, words: Words, place: Place) {
+    fn rapid(&mut self, way: Way, words: Words, place: SourcePosition) {
         let target = Target {
             way,
             words,
@@ -253,7 +253,7 @@ impl Interpreter {
     }
 
     /// Goes on along an open path, or starts one.
-    fn feed_motion(&mut self, way: Way, words: Words, feed: FeedRate, place: Place) {
+    fn feed_motion(&mut self, way: Way, words: Words, feed: FeedRate, place: SourcePosition) {
         let target = Target {
             way,
             words,

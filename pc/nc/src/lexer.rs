@@ -1,6 +1,6 @@
 //! From a line of text to words.
 
-use super::error::{NcError, Place, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 
 /// Largest number of a program: nine digits before the point. Of more, too few are left behind it.
 const LARGEST: f64 = 999_999_999.999_999_9;
@@ -18,7 +18,7 @@ pub struct Word {
     /// Written with `=`.
     pub named: bool,
     /// Where it starts.
-    pub place: Place,
+    pub place: SourcePosition,
 }
 
 impl Word {
@@ -50,7 +50,7 @@ pub struct Line {
     /// Starts with `/`.
     pub delete: bool,
     /// `%` in this line.
-    pub percent: Option<Place>,
+    pub percent: Option<SourcePosition>,
     /// Words in their order.
     pub words: Vec<Word>,
 }
@@ -107,8 +107,8 @@ impl Scanner {
         self.text.get(self.next).copied()
     }
 
-    fn place(&self) -> Place {
-        Place {
+    fn place(&self) -> SourcePosition {
+        SourcePosition {
             line: self.line,
             column: self.next as u32 + 1,
         }

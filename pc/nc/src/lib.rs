@@ -26,10 +26,10 @@ mod source;
 mod tests;
 pub mod text;
 
-pub use error::{NcError, Place, Problem};
+pub use error::{NcError, Problem, SourcePosition};
 pub use interpreter::Options;
 pub use program::{
     ArcForm, ArcWay, ControlPoint, FeedRate, Motion, Move, NurbsWay, PathControl, Plane, Program,
     ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,
 };
-pub use reading::{KEPT, Rest, interpret, interpret_file};
+pub use reading::{KEPT, RemainingBlocks, interpret, interpret_file};

@@ -1,8 +1,8 @@
-//! What holds until a program says otherwise.
+//! Modal state: settings that hold until the program changes them.
 
 use super::claims::Claims;
 use super::codes::Code;
-use super::error::{NcError, Place, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 use super::parser::Block;
 use super::program::{FeedRate, PathControl, Plane};
 
@@ -91,7 +91,7 @@ impl Modal {
         }
         if let Some(f) = block.word("F") {
             if f.value <= 0.0 {
-                return Err(f.value_error("a feed is above 0"));
+                return Err(f.value_error("the feed must be above 0"));
             }
             if self.feed_mode == FeedMode::PerMinute {
                 self.feed = Some(f.value);
@@ -109,7 +109,12 @@ impl Modal {
     }
 
     /// F for a motion of `mode` in `block`, which begins at `place`.
-    pub(super) fn feed_rate(&self, block: &Block, mode: Code, place: Place) -> Result<FeedRate, NcError> {
+    pub(super) fn feed_rate(
+        &self,
+        block: &Block,
+        mode: Code,
+        place: SourcePosition,
+    ) -> Result<FeedRate, NcError> {
         match self.feed_mode {
             FeedMode::PerMinute => {
                 let feed = self.feed.ok_or(Problem::NoFeed(mode.name()).at(place))?;
@@ -136,10 +141,10 @@ impl Modal {
 fn blend(claims: &Claims) -> Result<PathControl, NcError> {
     let [p, q] = ["P", "Q"].map(|word| claims.word(Code::Continuous, word));
     if let Some(p) = p.filter(|p| p.value <= 0.0) {
-        return Err(p.value_error("a tolerance is above 0 mm; without any, write G61"));
+        return Err(p.value_error("the tolerance must be above 0 mm; for none write G61"));
     }
     if let Some(q) = q.filter(|q| q.value != 0.0) {
-        return Err(q.value_error("no point of a program is left out; write Q0, or no Q"));
+        return Err(q.value_error("points of a program are never left out; write Q0, or no Q"));
     }
     Ok(PathControl::Blend(p.map(|p| p.value)))
 }

@@ -6,7 +6,7 @@
 
 use super::claims::Claims;
 use super::codes::{Code, Group};
-use super::error::{NcError, Place, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 use super::lexer::Word;
 use super::parser::Block;
 use super::program::{ControlPoint, FeedRate, NurbsWay, Words};
@@ -22,15 +22,15 @@ const KNOT_ORDER: usize = 4;
 pub(super) struct OpenNurbs {
     /// G5.2 or G6.2.
     code: Code,
-    pub(super) place: Place,
+    pub(super) place: SourcePosition,
     pub(super) feed: FeedRate,
     order: usize,
     points: Vec<ControlPoint>,
-    knots: Vec<(f64, Place)>,
+    knots: Vec<(f64, SourcePosition)>,
     /// What the last control point says of the end.
     words: Words,
     /// Where a word of an axis or slide beyond X Y Z was said.
-    other_word: Option<(String, Place)>,
+    other_word: Option<(String, SourcePosition)>,
 }
 
 /// What a block did to an open curve.
@@ -52,7 +52,7 @@ impl OpenNurbs {
         block: &Block,
         claims: &Claims,
         code: Code,
-        place: Place,
+        place: SourcePosition,
         feed: FeedRate,
     ) -> Result<Self, NcError> {
         let (word, default) = match code {
@@ -153,7 +153,7 @@ impl OpenNurbs {
     }
 
     /// The program ends at `place` before the curve does.
-    pub(super) fn left_open(&self, place: Place) -> NcError {
+    pub(super) fn left_open(&self, place: SourcePosition) -> NcError {
         let (open, close, line) = (self.code.name(), self.close().name(), self.place.line);
         Problem::NurbsOpen { open, line, close }.at(place)
     }
@@ -195,7 +195,7 @@ impl OpenNurbs {
             let weight = weight(block.word("R"))?;
             self.point(block, weight, place_of(block))?;
         } else if let Some(word) = block.words.iter().find(|word| word.address != "K") {
-            let (word_label, code) = (word.label(), "a knot that stands alone");
+            let (word_label, code) = (word.label(), "a knot on its own");
             return Err(Problem::NotInNurbs {
                 word: word_label,
                 code,
@@ -221,7 +221,7 @@ impl OpenNurbs {
         };
         let k = block.word("K").ok_or(missing.at(place_of(block)))?;
         if self.knots.last().is_some_and(|(before, _)| k.value < *before) {
-            return Err(k.value_error("knots do not decrease"));
+            return Err(k.value_error("knots must not decrease"));
         }
         self.knots.push((k.value, k.place));
         Ok(())
@@ -252,7 +252,7 @@ impl OpenNurbs {
         Ok(())
     }
 
-    fn point(&mut self, block: &Block, weight: f64, place: Place) -> Result<(), NcError> {
+    fn point(&mut self, block: &Block, weight: f64, place: SourcePosition) -> Result<(), NcError> {
         if let Some((word, place)) = &self.other_word {
             let word = word.clone();
             return Err(Problem::TurnInside { word }.at(*place));
@@ -306,18 +306,18 @@ fn is_axis(word: &Word) -> bool {
 
 fn weight(word: Option<&Word>) -> Result<f64, NcError> {
     match word {
-        Some(word) if word.value <= 0.0 => Err(word.value_error("a weight is above 0")),
+        Some(word) if word.value <= 0.0 => Err(word.value_error("the weight must be above 0")),
         Some(word) => Ok(word.value),
         None => Ok(1.0),
     }
 }
 
 /// Where the words of a block begin.
-fn place_of(block: &Block) -> Place {
+fn place_of(block: &Block) -> SourcePosition {
     let words = block.words.iter().map(|word| word.place);
     let codes = block.codes.iter().map(|code| code.place);
     let first = words.chain(codes).min_by_key(|place| place.column);
-    first.unwrap_or(Place {
+    first.unwrap_or(SourcePosition {
         line: block.line,
         column: 1,
     })

@@ -1,8 +1,8 @@
-//! What a program switches: M62 to M65, M67 and M68 by the number of the output, M3, M4, M5 and S by what it is.
+//! Outputs of a program: M62 to M65, M67 and M68 by the number of the output, M3, M4, M5 and S by what it is.
 
 use super::claims::Claims;
 use super::codes::{Code, Group};
-use super::error::{NcError, Place, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 use super::lexer::Word;
 use super::parser::{Block, CodeWord};
 use super::program::{ProgramAction, ProgramEvent};
@@ -17,7 +17,7 @@ const LONGEST_DWELL_S: f64 = 86_400.0;
 pub(super) struct Pending {
     pub(super) action: ProgramAction,
     pub(super) code: &'static str,
-    pub(super) place: Place,
+    pub(super) place: SourcePosition,
     /// It does not need a motion to take effect with: the machine stands anyway.
     pub(super) at_rest: bool,
 }
@@ -65,7 +65,7 @@ impl Spindle {
         let s = block.word("S");
         if let Some(s) = s {
             if s.value < 0.0 {
-                return Err(s.value_error("a spindle speed is 0 r/min or more"));
+                return Err(s.value_error("the spindle speed must be 0 r/min or more"));
             }
             self.speed = Some(s.value);
         }
@@ -125,7 +125,7 @@ pub(super) fn output(block: &Block, claims: &Claims) -> Result<Option<Pending>, 
                 return Err(e.value_error("E0 and E1 are the powers of beam 1 and 2"));
             };
             if q.value < 0.0 {
-                return Err(q.value_error("a power is 0 W or more"));
+                return Err(q.value_error("the power must be 0 W or more"));
             }
             PathAction::Power { side, watt: q.value }
         }
@@ -153,7 +153,7 @@ pub(super) fn output(block: &Block, claims: &Claims) -> Result<Option<Pending>, 
 }
 
 /// The time of a G4 in `block` \[s\].
-pub(super) fn dwell(block: &Block, claims: &Claims) -> Result<Option<(f64, Place)>, NcError> {
+pub(super) fn dwell(block: &Block, claims: &Claims) -> Result<Option<(f64, SourcePosition)>, NcError> {
     let Some(code) = block.code(Group::NonModal).filter(|c| c.code == Code::Dwell) else {
         return Ok(None);
     };
@@ -167,7 +167,7 @@ pub(super) fn dwell(block: &Block, claims: &Claims) -> Result<Option<(f64, Place
     };
     let p = claims.word(Code::Dwell, "P").ok_or(missing.at(code.place))?;
     if !(0.0..=LONGEST_DWELL_S).contains(&p.value) {
-        return Err(p.value_error("a time is 0 s or more, and a day (86400 s) at most"));
+        return Err(p.value_error("the time must be from 0 to 86400 s (a day)"));
     }
     Ok(Some((p.value, code.place)))
 }

@@ -1,7 +1,7 @@
 //! From the words of a line to a block: codes by modal group, and words by their letter.
 
 use super::codes::{CODES, Code, Group};
-use super::error::{NcError, Place, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 use super::lexer::{self, Word};
 
 /// A code in a block.
@@ -12,7 +12,7 @@ pub struct CodeWord {
     /// As people write it.
     pub name: &'static str,
     /// Where.
-    pub place: Place,
+    pub place: SourcePosition,
     group: Group,
 }
 
@@ -47,7 +47,7 @@ pub enum Parsed {
     /// Nothing but blanks and comments.
     Blank,
     /// `%`.
-    Percent(Place),
+    Percent(SourcePosition),
     /// Something to carry out.
     Block(Block),
 }

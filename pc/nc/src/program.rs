@@ -1,8 +1,8 @@
-//! A program after reading: motions from rest to rest, as their words say them.
+//! A program after reading: motions from rest to rest, with the values of their words.
 
-use super::error::Place;
+use super::error::SourcePosition;
 use super::parser::Block;
-use super::reading::Rest;
+use super::reading::RemainingBlocks;
 use shared::geometry::Turn;
 use shared::io::{AXES, SIDES};
 use shared::protocol::PathAction;
@@ -31,8 +31,8 @@ pub struct ProgramPath {
     pub targets: Vec<Target>,
     /// What happens on the way, in the order of the program.
     pub events: Vec<ProgramEvent>,
-    /// The other blocks of a long path.
-    pub rest: Option<Rest>,
+    /// The blocks of a long path that are not in `targets`; they are read again when they are needed.
+    pub rest: Option<RemainingBlocks>,
 }
 
 /// The motion of one block of a path, with what happens at its start.
@@ -64,10 +64,10 @@ pub struct Target {
     pub words: Words,
     /// How fast; none of a rapid.
     pub feed: Option<FeedRate>,
-    /// How the way there is followed, and how it goes on.
+    /// How the way there is followed, and how it continues.
     pub control: PathControl,
     /// Where the program says so.
-    pub place: Place,
+    pub place: SourcePosition,
 }
 
 /// F of a block.
@@ -167,7 +167,7 @@ pub struct ControlPoint {
     /// Its weight, above zero.
     pub weight: f64,
     /// Where the program says so.
-    pub place: Place,
+    pub place: SourcePosition,
 }
 
 /// The words of a block that say where to (mm, degrees); what is not said stays as it was.
@@ -200,7 +200,7 @@ pub struct ProgramEvent {
     /// The code that asks for it.
     pub code: &'static str,
     /// Where the program says so.
-    pub place: Place,
+    pub place: SourcePosition,
 }
 
 /// What an event does.

@@ -1,6 +1,6 @@
 //! Programs of any length: the first blocks of a path are kept, the others are read again whenever they are needed.
 
-use super::error::{NcError, Place, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::{Interpreter, Options};
 use super::parser::{Parsed, parse};
 use super::program::{Move, Program, ProgramEvent, ProgramPath};
@@ -20,7 +20,7 @@ pub const KEPT: usize = 1024;
 /// next one.
 ///
 /// # Errors
-/// The first thing that is wrong, with its place.
+/// The first problem, with its position.
 pub fn interpret(text: &str, options: Options) -> Result<Program, NcError> {
     read(&Source::Text(text.as_bytes().into()), options, KEPT)
 }
@@ -31,7 +31,7 @@ pub fn interpret(text: &str, options: Options) -> Result<Program, NcError> {
 /// # Errors
 /// As of [`interpret`], and what keeps the file from being read.
 pub fn interpret_file(file: File, options: Options) -> Result<Program, NcError> {
-    let first = Place { line: 1, column: 1 };
+    let first = SourcePosition { line: 1, column: 1 };
     let source = Source::of(file).map_err(|error| Problem::Unreadable(error.to_string()).at(first))?;
     read(&source, options, KEPT)
 }
@@ -41,7 +41,7 @@ pub(super) fn read(source: &Source, options: Options, kept: usize) -> Result<Pro
     let mut reader = Reader::new(source, options);
     while reader.block()? {
         let (offset, line) = (reader.lines.offset, reader.line);
-        reader.interpreter.trim(kept, |state| Rest {
+        reader.interpreter.trim(kept, |state| RemainingBlocks {
             kept,
             source: source.clone(),
             options,
@@ -53,9 +53,10 @@ pub(super) fn read(source: &Source, options: Options, kept: usize) -> Result<Pro
     reader.end()
 }
 
-/// Blocks of a path that are not kept.
+/// The blocks of a path that are not kept in memory: where they are in the source, and the state of the
+/// interpreter there.
 #[derive(Clone)]
-pub struct Rest {
+pub struct RemainingBlocks {
     /// Blocks of the path before these.
     kept: usize,
     source: Source,
@@ -63,17 +64,17 @@ pub struct Rest {
     /// Where they begin: bytes and lines before.
     offset: u64,
     line: u32,
-    /// As it is there.
+    /// Its state there.
     state: Arc<Interpreter>,
 }
 
-impl fmt::Debug for Rest {
+impl fmt::Debug for RemainingBlocks {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Rest(after line {})", self.line)
+        write!(f, "RemainingBlocks(after line {})", self.line)
     }
 }
 
-impl PartialEq for Rest {
+impl PartialEq for RemainingBlocks {
     fn eq(&self, other: &Self) -> bool {
         (self.offset, self.line) == (other.offset, other.line)
     }
@@ -87,7 +88,7 @@ impl ProgramPath {
     pub fn moves(self: &Arc<Self>) -> impl Iterator<Item = Result<Move, NcError>> + use<> {
         let path = self.clone();
         let kept = (0..self.kept_count()).map(move |index| Ok(path.kept(index)));
-        let rest = self.rest.as_ref().map(Again::new);
+        let rest = self.rest.as_ref().map(RereadBlocks::new);
         kept.chain(rest.into_iter().flatten())
     }
 
@@ -101,7 +102,7 @@ impl ProgramPath {
             let count = self.kept_count();
             whole.targets.truncate(count);
             whole.events.retain(|event| event.with_target < count);
-            for next in Again::new(&rest) {
+            for next in RereadBlocks::new(&rest) {
                 let Move { target, events } = next?;
                 let with_target = whole.targets.len();
                 whole.targets.push(target);
@@ -144,15 +145,15 @@ impl ProgramPath {
     }
 }
 
-/// The rest of a path, read again.
-struct Again {
+/// Iterator over [`RemainingBlocks`]: reads and interprets them again.
+struct RereadBlocks {
     reader: Reader,
     waiting: VecDeque<Move>,
     ended: bool,
 }
 
-impl Again {
-    fn new(rest: &Rest) -> Self {
+impl RereadBlocks {
+    fn new(rest: &RemainingBlocks) -> Self {
         Self {
             reader: Reader {
                 lines: rest.source.lines(rest.offset),
@@ -160,12 +161,12 @@ impl Again {
                 line: rest.line,
                 interpreter: (*rest.state).clone(),
                 seen: true,
-                last: Place {
+                last: SourcePosition {
                     line: rest.line,
                     column: 1,
                 },
                 // Whether there was one was seen the first time.
-                percent_open: Some(Place { line: 1, column: 1 }),
+                percent_open: Some(SourcePosition { line: 1, column: 1 }),
                 percent_closed: false,
             },
             waiting: VecDeque::new(),
@@ -185,7 +186,7 @@ impl Again {
     }
 }
 
-impl Iterator for Again {
+impl Iterator for RereadBlocks {
     type Item = Result<Move, NcError>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -209,8 +210,8 @@ struct Reader {
     /// Anything but blank lines.
     seen: bool,
     /// The last of these.
-    last: Place,
-    percent_open: Option<Place>,
+    last: SourcePosition,
+    percent_open: Option<SourcePosition>,
     percent_closed: bool,
 }
 
@@ -222,7 +223,7 @@ impl Reader {
             line: 0,
             interpreter: Interpreter::default(),
             seen: false,
-            last: Place { line: 1, column: 1 },
+            last: SourcePosition { line: 1, column: 1 },
             percent_open: None,
             percent_closed: false,
         }
@@ -233,7 +234,7 @@ impl Reader {
         let read = self.lines.next();
         self.line += 1;
         let line = self.line;
-        let here = Place { line, column: 1 };
+        let here = SourcePosition { line, column: 1 };
         let content = match read {
             Ok(Some(content)) => content,
             Ok(None) => {

@@ -1,4 +1,4 @@
-//! Where the text of a program is, to be read line by line any number of times.
+//! The source of a program's text, which can be read line by line any number of times.
 
 use std::fs::File;
 use std::hash::{DefaultHasher, Hasher};
@@ -79,7 +79,7 @@ impl Lines {
 #[derive(Debug)]
 pub(super) struct Checked {
     file: File,
-    /// Of every chunk that has been read. Whoever reads holds them: the place in the file is one.
+    /// Of every chunk that has been read. The reader holds the lock, since there is one file position.
     digests: Mutex<Vec<u64>>,
 }
 
@@ -102,7 +102,7 @@ impl Checked {
         let digest = hasher.finish();
         match digests.get(index) {
             Some(before) if *before != digest => Err(io::Error::other(
-                "the file has changed since it was checked; begin again with the new one",
+                "the file has changed since it was checked; start again with the new one",
             )),
             Some(_) => Ok(chunk),
             None => {

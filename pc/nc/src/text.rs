@@ -30,7 +30,7 @@ pub enum BlockError {
         max: f64,
     },
     /// The feed as it would be written is zero, negative or not a number \[mm/min\].
-    #[error("F{0} is no feed: it must be above zero")]
+    #[error("F{0} is not a feed: it must be above zero")]
     Feed(f64),
 }
 

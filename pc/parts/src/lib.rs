@@ -5,6 +5,7 @@
 //! Seamwright's by its line in the list below.
 
 mod bead;
+mod curved_panel;
 mod judge;
 mod limits;
 mod panel;
@@ -13,10 +14,10 @@ mod saddle;
 mod seam_curves;
 mod seam_limits;
 mod stir;
-mod surface;
 mod t_seam;
 
 pub use bead::{Bead, check_curve, window};
+pub use curved_panel::CurvedPanel;
 pub use judge::{ALONG, Figure, GAP, Judgement, Plot, Run};
 pub use limits::{Limit, Percent};
 pub use panel::{Panel, PanelError};
@@ -24,7 +25,6 @@ pub use saddle::{Saddle, SaddlePartError, TaughtError, pipes};
 pub use seam_curves::{SeamPoint, parse_main_curve, parse_other_curve, read_main_curve, read_other_curve};
 pub use seam_limits::SeamLimits;
 pub use stir::Stir;
-pub use surface::Surface;
 pub use t_seam::TSeam;
 
 use crate::plan::DualBeamPlan;
@@ -37,23 +37,23 @@ use teach::TaughtPoint;
 /// What every kind of part can do. Errors read as one sentence that names the place and what to do.
 pub trait Kind {
     /// Plans the program.
-    fn plan(&self, place: &Place) -> anyhow::Result<Plan>;
+    fn plan(&self, context: &PartContext) -> anyhow::Result<Plan>;
 
     /// Judges a run of the planned program by where the tool truly was.
-    fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement>;
+    fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement>;
 
     /// Most that the speed may fall below the feed with a beam on.
     fn speed_dip(&self) -> Percent;
 }
 
-/// What a part is planned and judged with.
+/// What planning and judging a part need besides the part file.
 #[derive(Clone, Copy, Debug)]
-pub struct Place<'a> {
+pub struct PartContext<'a> {
     /// The machine.
     pub machine: &'a MachineFile,
-    /// Where files lie that the part names.
+    /// Directory to which file names in the part file are relative.
     pub directory: &'a Path,
-    /// What the program is called.
+    /// Title of the program.
     pub title: &'a str,
 }
 
@@ -152,7 +152,7 @@ impl PartFile {
     /// As of [`Panel::check_before_teaching`].
     pub fn check_before_teaching(&self, machine: &MachineFile) -> Result<Option<String>, PanelError> {
         match self.untaught() {
-            Some(panel) => panel.check_before_teaching(&self.place(machine, "")),
+            Some(panel) => panel.check_before_teaching(&self.context(machine, "")),
             None => Ok(None),
         }
     }
@@ -168,7 +168,7 @@ impl PartFile {
     /// The weld of both feet of a rib as it is drawn, if it is one and has a drawing.
     pub fn drawn(&self, machine: &MachineFile) -> anyhow::Result<Option<DualBeamPlan>> {
         match self.t_seam() {
-            Some(seam) => seam.drawn(&self.place(machine, "drawing")),
+            Some(seam) => seam.drawn(&self.context(machine, "drawing")),
             None => Ok(None),
         }
     }
@@ -191,7 +191,7 @@ impl PartFile {
     /// Plans the pass of the measuring heads along both seams of a rib, beams off.
     pub fn plan_measuring(&self, machine: &MachineFile, title: &str) -> anyhow::Result<String> {
         match self.t_seam() {
-            Some(seam) => seam.plan_measuring(&self.place(machine, title)),
+            Some(seam) => seam.plan_measuring(&self.context(machine, title)),
             None => anyhow::bail!("only a part with seams ([t-seam]) has a program for the measuring heads"),
         }
     }
@@ -206,19 +206,19 @@ impl PartFile {
 
     /// Plans the program for `machine`; `title` names it.
     pub fn plan(&self, machine: &MachineFile, title: &str) -> anyhow::Result<Plan> {
-        self.part.kind().plan(&self.place(machine, title))
+        self.part.kind().plan(&self.context(machine, title))
     }
 
     /// Judges a run of the planned program.
     pub fn judge(&self, run: &Run) -> anyhow::Result<Judgement> {
         let kind = self.part.kind();
-        let mut judgement = kind.judge(&self.place(run.machine, ""), run)?;
+        let mut judgement = kind.judge(&self.context(run.machine, ""), run)?;
         judgement.figures.extend(run.speed_dip(kind.speed_dip()));
         Ok(judgement)
     }
 
-    fn place<'a>(&'a self, machine: &'a MachineFile, title: &'a str) -> Place<'a> {
-        Place {
+    fn context<'a>(&'a self, machine: &'a MachineFile, title: &'a str) -> PartContext<'a> {
+        PartContext {
             machine,
             directory: self.path.parent().unwrap_or(Path::new("")),
             title,
@@ -248,7 +248,8 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named_with_its_line() {
-        let path = std::env::temp_dir().join(format!("seamwright-part-{}.toml", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("part.toml");
         std::fs::write(&path, "[t-seam]\nseam_1 = \"a.csv\"\nwobble = 1\n").unwrap();
         let error = PartFile::read(&path).unwrap_err().to_string();
         std::fs::remove_file(&path).unwrap();

@@ -26,7 +26,7 @@ impl TryFrom<f64> for Limit {
         if value.is_finite() && value >= 0.0 {
             Ok(Self(value))
         } else {
-            Err(format!("a limit is a number of 0 or more, not {value}"))
+            Err(format!("a limit must be a number of 0 or more, not {value}"))
         }
     }
 }
@@ -56,7 +56,7 @@ impl TryFrom<f64> for Percent {
             Ok(Self(value))
         } else {
             Err(format!(
-                "a limit in percent is a number from 0 to 100, not {value}"
+                "a limit in percent must be a number from 0 to 100, not {value}"
             ))
         }
     }

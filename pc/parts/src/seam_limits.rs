@@ -16,7 +16,7 @@ pub struct SeamLimits {
     deviation_mm: Limit,
     /// Most that may stay unwelded of what is programmed, each side for itself, all gaps together \[mm\].
     unwelded_mm: Limit,
-    /// Longest single gap in a weld, and longest stretch whose deviation nobody knows \[mm\].
+    /// Longest single gap in a weld, and longest stretch of unknown deviation \[mm\].
     gap_mm: Limit,
     /// Most that the speed may fall below the feed with a beam on \[%\].
     speed_dip_percent: Percent,

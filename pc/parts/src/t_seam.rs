@@ -1,7 +1,7 @@
 //! Both feet of a rib, for the dual-beam head (mathematics 0.5).
 
 use crate::plan::{DualBeamPlan, PlanOptions, TaughtSeams, plan_dual_beam};
-use crate::{Judgement, Kind, Percent, Place, Plan, Run, SeamLimits};
+use crate::{Judgement, Kind, PartContext, Percent, Plan, Run, SeamLimits};
 use crate::{SeamPoint, read_main_curve, read_other_curve};
 use anyhow::{Context, bail};
 use nalgebra::Vector3;
@@ -54,18 +54,18 @@ impl TSeam {
     }
 
     /// The weld as it is drawn, if the part has a drawing.
-    pub fn drawn(&self, place: &Place) -> anyhow::Result<Option<DualBeamPlan>> {
-        let Some(curves) = self.drawing(place)? else {
+    pub fn drawn(&self, context: &PartContext) -> anyhow::Result<Option<DualBeamPlan>> {
+        let Some(curves) = self.drawing(context)? else {
             return Ok(None);
         };
-        Ok(Some(self.plan_of(&curves, place)?))
+        Ok(Some(self.plan_of(&curves, context)?))
     }
 
-    fn drawing(&self, place: &Place) -> anyhow::Result<Option<Curves>> {
+    fn drawing(&self, context: &PartContext) -> anyhow::Result<Option<Curves>> {
         Ok(match (&self.seam_1, &self.seam_2) {
             (Some(first), Some(second)) => Some((
-                read_main_curve(&place.directory.join(first))?,
-                read_other_curve(&place.directory.join(second))?,
+                read_main_curve(&context.directory.join(first))?,
+                read_other_curve(&context.directory.join(second))?,
             )),
             (None, None) => None,
             _ => bail!("a drawing has two seams: seam_1 and seam_2"),
@@ -73,43 +73,43 @@ impl TSeam {
     }
 
     /// The curves that are planned from, and what a person should know of them.
-    fn curves(&self, place: &Place) -> anyhow::Result<(Curves, Vec<String>)> {
+    fn curves(&self, context: &PartContext) -> anyhow::Result<(Curves, Vec<String>)> {
         if let Some(file) = &self.taught {
-            let file = place.directory.join(file);
+            let file = context.directory.join(file);
             let points = read_seam_points(&file)?;
             let seams = TaughtSeams::through(&points, self.teaching.least_quality)
                 .with_context(|| file.display().to_string())?;
             let notes = seams.notes();
             return Ok(((seams.main, seams.other), notes));
         }
-        match self.drawing(place)? {
+        match self.drawing(context)? {
             Some(curves) => Ok((curves, Vec::new())),
             None => bail!("there is nothing to plan from: name seam_1 and seam_2, or taught"),
         }
     }
 
-    fn plan_of(&self, (main, other): &Curves, place: &Place) -> anyhow::Result<DualBeamPlan> {
+    fn plan_of(&self, (main, other): &Curves, context: &PartContext) -> anyhow::Result<DualBeamPlan> {
         let options = PlanOptions {
-            title: place.title.to_owned(),
+            title: context.title.to_owned(),
             speed_m_min: self.speed_m_min,
             power_w: [self.power_w; 2],
             paper: self.paper,
         };
-        Ok(plan_dual_beam(main, other, place.machine, &options)?)
+        Ok(plan_dual_beam(main, other, context.machine, &options)?)
     }
 
     /// Plans the pass of the measuring heads along the whole seam, beams off.
-    pub fn plan_measuring(&self, place: &Place) -> anyhow::Result<String> {
-        let (curves, _) = self.curves(place)?;
-        let plan = self.plan_of(&curves, place)?;
-        Ok(plan.measuring_program(place.machine, place.title, self.speed_m_min)?)
+    pub fn plan_measuring(&self, context: &PartContext) -> anyhow::Result<String> {
+        let (curves, _) = self.curves(context)?;
+        let plan = self.plan_of(&curves, context)?;
+        Ok(plan.measuring_program(context.machine, context.title, self.speed_m_min)?)
     }
 }
 
 impl Kind for TSeam {
-    fn plan(&self, place: &Place) -> anyhow::Result<Plan> {
-        let (curves, mut notes) = self.curves(place)?;
-        let plan = self.plan_of(&curves, place)?;
+    fn plan(&self, context: &PartContext) -> anyhow::Result<Plan> {
+        let (curves, mut notes) = self.curves(context)?;
+        let plan = self.plan_of(&curves, context)?;
         notes.insert(0, format!("{} points", plan.points.len()));
         notes.push(format!(
             "beam axes meet within {:.1e} mm; speed on seam 2 differs by up to {:.2} %",
@@ -122,8 +122,9 @@ impl Kind for TSeam {
         })
     }
 
-    /// The seams as they really are are not the part's: a simulated world, or whoever measured them, tells them.
-    fn judge(&self, _place: &Place, run: &Run) -> anyhow::Result<Judgement> {
+    /// The true seams are not part of the part file: they come from the simulated world, or from a
+    /// measurement.
+    fn judge(&self, _context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {
         Ok(self.limits.judge(run))
     }
 
@@ -137,29 +138,24 @@ mod tests {
     use super::*;
     use crate::PartFile;
     use config::machine::MachineFile;
-    use teach::seam::{Foot, Head, SeamFile, SeamPoint as TaughtPoint};
+    use teach::seam::{Head, MeasuredSeam, SeamFile, SeamPoint as TaughtPoint};
 
     fn shipped(name: &str) -> PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name)
     }
 
     /// Every third point of the shipped seams, as if they had been taught.
-    fn taught() -> PathBuf {
+    fn taught(file: &Path) {
         let main = read_main_curve(&shipped("programs/t-seam-400-seam1.csv")).unwrap();
         let other = read_other_curve(&shipped("programs/t-seam-400-seam2.csv")).unwrap();
-        let name = format!("seamwright-t-seam-{}.csv", std::process::id());
-        let file = std::env::temp_dir().join(name);
         let head = Head {
             machine: "gantry".into(),
             part: "t-seam-400".into(),
         };
-        if file.exists() {
-            std::fs::remove_file(&file).unwrap();
-        }
-        let mut opened = SeamFile::open(&file, &head, false).unwrap();
+        let mut opened = SeamFile::open(file, &head, false).unwrap();
         let mut before = None;
         for (first, second) in main.iter().zip(&other).step_by(3) {
-            let feet = [first.position, *second].map(|position| Foot {
+            let feet = [first.position, *second].map(|position| MeasuredSeam {
                 position,
                 normal: first.normal.normalize(),
                 width_mm: 0.05,
@@ -171,7 +167,6 @@ mod tests {
             opened.file.add(&point).unwrap();
             before = Some(point);
         }
-        file
     }
 
     #[test]
@@ -179,10 +174,11 @@ mod tests {
         let machine = MachineFile::read(&shipped("machines/dual-beam-gantry.toml")).unwrap();
         let part = PartFile::read(&shipped("programs/t-seam-400.toml")).unwrap();
         let drawn = part.plan(&machine, "drawn").unwrap();
-        let file = taught();
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("taught.csv");
+        taught(&file);
         let part = part.with_taught_seams(&file).unwrap();
         let plan = part.plan(&machine, "taught").unwrap();
-        std::fs::remove_file(&file).unwrap();
         assert!(
             plan.notes[1].starts_with("seam 1: 27 taught points lie within 0.00"),
             "{:?}",
@@ -209,13 +205,13 @@ mod tests {
     fn without_a_drawing_and_without_points_there_is_nothing_to_plan() {
         let seam: TSeam = toml::from_str("speed_m_min = 5.0\npower_w = 2000.0").unwrap();
         let machine = MachineFile::read(&shipped("machines/dual-beam-gantry.toml")).unwrap();
-        let place = Place {
+        let context = PartContext {
             machine: &machine,
             directory: Path::new(""),
             title: "",
         };
-        assert!(seam.drawn(&place).unwrap().is_none());
-        let error = seam.plan(&place).unwrap_err().to_string();
+        assert!(seam.drawn(&context).unwrap().is_none());
+        let error = seam.plan(&context).unwrap_err().to_string();
         assert!(error.contains("name seam_1 and seam_2, or taught"), "{error}");
     }
 }

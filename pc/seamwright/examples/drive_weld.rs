@@ -1,4 +1,5 @@
-//! Drives a weld on simulated boards: holds it after 100 mm, lets it go on, and prints what happens. Run it in the project's folder.
+//! Drives a weld on simulated boards: holds it after 100 mm, lets it continue, and prints what happens. Run
+//! it in the project's folder.
 
 use config::machine::MachineFile;
 use host_link::events::{Event, Interest, Phase};

@@ -1,4 +1,4 @@
-//! What the program says: on standard output what it was asked for, on standard error what happens meanwhile.
+//! Output of the program: results on standard output, progress and errors on standard error.
 //!
 //! A reader may leave (`| head -1`), a disk may be full, a terminal may be gone, and the machine moves: nothing here
 //! panics, as `println!` does. What standard error does not take is lost. What standard output does not take is an
@@ -19,7 +19,8 @@ pub fn write_out(text: Arguments) {
 
 /// Writes a line to standard error.
 pub fn write_err(text: Arguments) {
-    // In one piece, so that lines of other programs stay apart from it. There is nowhere to tell that it failed.
+    // In one piece, so that lines of other programs stay apart from it. There is nowhere to report that it
+    // failed.
     let _ = io::stderr().write_all(format!("{text}\n").as_bytes());
 }
 

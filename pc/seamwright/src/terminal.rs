@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 
 /// What may be said.
-const KEYS: &str = "Enter goes on, h holds, b goes back, s switches single block on or off, a number from 0 to 200 is \
+const KEYS: &str = "Enter continues, h holds, b goes back, s switches single block on or off, a number from 0 to 200 is \
                     the feed in %, Ctrl-C stops the job";
 /// Samples that wait to be shown.
 const SAMPLES: usize = 16;
@@ -30,7 +30,7 @@ pub enum Operator {
     },
 }
 
-/// A bar on the terminal; one line for each part of the job if standard error is none.
+/// A bar on the terminal; one line for each part of the job if standard error is not a terminal.
 #[derive(Debug)]
 pub struct Terminal {
     events: Subscription,
@@ -91,7 +91,7 @@ impl Screen {
             Event::Question(question) => self.headline(&asked(question)),
             Event::Message(text) => self.print(text),
             Event::Progress { done_mm, length_mm } => self.travel(*done_mm, *length_mm),
-            // What the boards tell is for other eyes; how the job ended is said when it is evaluated.
+            // Telemetry is not printed; how the job ended is printed after its evaluation.
             _ => {}
         }
     }
@@ -126,11 +126,11 @@ impl Screen {
 /// A question in words.
 fn asked(question: &Question) -> String {
     match question {
-        Question::GoOn { next } => format!("waiting before {next}: Enter goes on"),
+        Question::GoOn { next } => format!("waiting before {next}: Enter continues"),
         Question::FeedTooLow => {
-            "held: the feed is too low for the beam; raise it, then Enter goes on".to_owned()
+            "held: the feed is too low for the beam; raise it, then press Enter".to_owned()
         }
-        Question::Jog => "jog: say what to do".to_owned(),
+        Question::Jog => "jog: type a command".to_owned(),
     }
 }
 
@@ -142,7 +142,7 @@ fn read_words(remote: &Remote, screen: &Screen, mut single_block: bool) {
             Some(Said::SingleBlock) => {
                 single_block = !single_block;
                 screen.print(if single_block {
-                    "single block: on, from the next block that has not gone to the board"
+                    "single block: on, from the next block that was not sent yet"
                 } else {
                     "single block: off"
                 });
@@ -188,7 +188,7 @@ fn meaning(line: &str) -> Option<Said> {
 }
 
 fn style(template: &str) -> ProgressStyle {
-    ProgressStyle::with_template(template).expect("the template is sound")
+    ProgressStyle::with_template(template).expect("the template is valid")
 }
 
 #[cfg(test)]

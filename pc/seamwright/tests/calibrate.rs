@@ -6,6 +6,7 @@ use config::machine::MachineFile;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use tempfile::{TempDir, tempdir};
 use vision::render::{Finish, Gap, Joint, Root, Scene, Texture, TruthRenderer};
 use vision::{Corner, Detector, Image, PhotonTransfer, PlateSeam, Prior};
 
@@ -30,28 +31,6 @@ fn built() -> Calibration {
     let mut built = Calibration::nominal(drawn.optics, noise, (-30.0f64 + 0.7).to_radians());
     built.slides.offset_mm = [0.03, -0.04];
     built
-}
-
-/// A folder of this test, gone at its end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let folder = std::env::temp_dir().join(format!("seamwright-calibrate-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a folder");
-        Self(folder)
-    }
-
-    fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // What is left in the temporary folder harms nobody.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
 }
 
 /// The camera as it is built, over a coupon.
@@ -108,13 +87,13 @@ impl Bench {
 
 /// Pictures and their list.
 struct Album<'a> {
-    folder: &'a Folder,
+    folder: &'a TempDir,
     list: String,
     count: usize,
 }
 
 impl<'a> Album<'a> {
-    fn new(folder: &'a Folder, columns: &str) -> Self {
+    fn new(folder: &'a TempDir, columns: &str) -> Self {
         Self {
             folder,
             list: format!("file,{columns}\n"),
@@ -125,10 +104,10 @@ impl<'a> Album<'a> {
     fn add(&mut self, picture: &Picture, values: &[f64]) {
         self.count += 1;
         let name = format!("{}.png", self.count);
-        write_grey(&self.folder.file(&name), picture).expect("a picture");
+        write_grey(&self.folder.path().join(&name), picture).expect("a picture");
         let values: Vec<String> = values.iter().map(f64::to_string).collect();
         writeln!(self.list, "{name},{}", values.join(",")).expect("text");
-        std::fs::write(self.folder.file("calibration.csv"), &self.list).expect("a list");
+        std::fs::write(self.folder.path().join("calibration.csv"), &self.list).expect("a list");
     }
 }
 
@@ -142,8 +121,8 @@ fn calibrate(arguments: &[&str]) -> Output {
 }
 
 /// Runs it for `what` on the pictures in `folder`; what is known before is in `file`, and what is found goes there.
-fn refine(what: &str, file: &Path, folder: &Folder, more: &[&str]) -> Output {
-    let (file, folder) = (path(file), path(&folder.0));
+fn refine(what: &str, file: &Path, folder: &TempDir, more: &[&str]) -> Output {
+    let (file, folder) = (path(file), path(folder.path()));
     let arguments = [
         what,
         "--calibration",
@@ -176,11 +155,11 @@ fn steps(size: f64) -> Vec<[f64; 2]> {
 #[test]
 fn a_calibrated_camera_measures_what_is_true() {
     let mut bench = Bench::new();
-    let file = Folder::new("file");
-    let output = file.file("camera-1.toml");
+    let file = tempdir().expect("a folder");
+    let output = file.path().join("camera-1.toml");
     let machine = machine_file();
 
-    let folder = Folder::new("noise");
+    let folder = tempdir().expect("a folder");
     let mut album = Album::new(&folder, "pair");
     for (pair, level) in [0.12, 0.25, 0.4].into_iter().enumerate() {
         for _ in 0..2 {
@@ -194,7 +173,7 @@ fn a_calibrated_camera_measures_what_is_true() {
         "--side",
         "1",
         "--pictures",
-        path(&folder.0),
+        path(folder.path()),
     ];
     let ran = calibrate(&[&arguments[..], &["--output", path(&output)]].concat());
     assert!(ran.status.success(), "{}", said(&ran));
@@ -204,11 +183,11 @@ fn a_calibrated_camera_measures_what_is_true() {
         "{told}"
     );
 
-    let go_on = |what: &str, folder: &Folder, more: &[&str]| {
+    let go_on = |what: &str, folder: &TempDir, more: &[&str]| {
         let ran = refine(what, &output, folder, more);
         assert!(ran.status.success(), "{what}: {}", said(&ran));
     };
-    let folder = Folder::new("profile");
+    let folder = tempdir().expect("a folder");
     let mut album = Album::new(&folder, "u_mm,v_mm");
     for k in -5..=5 {
         let slides = [0.0, 0.05 * f64::from(k)];
@@ -217,7 +196,7 @@ fn a_calibrated_camera_measures_what_is_true() {
     }
     go_on("profile", &folder, &[]);
 
-    let folder = Folder::new("slides");
+    let folder = tempdir().expect("a folder");
     let mut album = Album::new(&folder, "place,u_mm,v_mm");
     let meets = [0.02, 0.03];
     for place in 0..4_u32 {
@@ -278,8 +257,8 @@ fn measured_off(bench: &mut Bench, found: &Calibration) -> (f64, f64) {
 #[test]
 fn a_corner_is_calibrated_on_a_coupon() {
     let mut bench = Bench::new();
-    let folder = Folder::new("corner");
-    let known = folder.file("camera-1.toml");
+    let folder = tempdir().expect("a folder");
+    let known = folder.path().join("camera-1.toml");
     std::fs::write(&known, bench.camera.to_toml()).expect("a file");
     let mut album = Album::new(&folder, "corner,u_mm,v_mm");
     let meets = [0.05, 0.1];
@@ -321,8 +300,8 @@ fn a_corner_is_calibrated_on_a_coupon() {
 #[test]
 fn a_poor_fit_leaves_the_file_as_it_was() {
     let mut bench = Bench::new();
-    let folder = Folder::new("poor");
-    let known = folder.file("camera-1.toml");
+    let folder = tempdir().expect("a folder");
+    let known = folder.path().join("camera-1.toml");
     let text = bench.camera.to_toml();
     std::fs::write(&known, &text).expect("a file");
     let mut album = Album::new(&folder, "place,u_mm,v_mm");
@@ -344,7 +323,7 @@ fn a_poor_fit_leaves_the_file_as_it_was() {
         said(&ran)
     );
     assert_eq!(std::fs::read_to_string(&known).expect("a file"), text);
-    assert!(!folder.file("camera-1.toml.new").exists());
+    assert!(!folder.path().join("camera-1.toml.new").exists());
 }
 
 #[test]
@@ -368,8 +347,8 @@ fn what_belongs_to_another_task_is_said() {
     let ran = calibrate(&["corner", "--pictures", "none", "--output", "none.toml"]);
     assert!(said(&ran).contains("--walls"), "{}", said(&ran));
 
-    let folder = Folder::new("corners");
-    let machine = folder.file("machine.toml");
+    let folder = tempdir().expect("a folder");
+    let machine = folder.path().join("machine.toml");
     let text = std::fs::read_to_string(machine_file()).expect("the shipped machine");
     std::fs::write(&machine, text.replace("joint = \"gap\"", "joint = \"corner\"")).expect("a file");
     let arguments = ["camera", "--machine", path(&machine), "--side", "1"];
@@ -390,15 +369,18 @@ fn what_belongs_to_another_task_is_said() {
 /// calibration has to take out; what the texture of four places does to it is 0.1 % rms.
 #[test]
 fn a_machine_calibrates_its_own_camera() {
-    let folder = Folder::new("machine");
-    let (machine, before) = (folder.file("machine.toml"), folder.file("before.toml"));
+    let folder = tempdir().expect("a folder");
+    let (machine, before) = (
+        folder.path().join("machine.toml"),
+        folder.path().join("before.toml"),
+    );
     let text = std::fs::read_to_string(machine_file()).expect("the shipped machine");
     let turned = text.replace("mount_deg = [-30.0, 30.0]", "mount_deg = [-29.3, 30.0]");
     assert_ne!(turned, text);
     std::fs::write(&machine, turned).expect("a file");
     std::fs::write(&before, drawn().to_toml()).expect("a file");
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../programs/t-seam-400.ngc");
-    let output = folder.file("camera-1.toml");
+    let output = folder.path().join("camera-1.toml");
     let arguments = [
         "camera",
         "--machine",

@@ -70,7 +70,7 @@ fn a_signal_stops_the_machine_and_the_report_says_so() {
         assert_eq!(output.status.code(), Some(130), "{signal}: {said}");
         assert!(said.contains("welding\nstopping\n"), "{signal}: {said}");
         assert!(
-            said.ends_with("beams are off and the machine stands\n"),
+            said.ends_with("beams are off and the machine is at rest\n"),
             "{signal}: {said}"
         );
         assert_eq!(outcome(&report), "interrupted", "{signal}");
@@ -79,8 +79,8 @@ fn a_signal_stops_the_machine_and_the_report_says_so() {
 
 #[test]
 fn a_weld_goes_on_without_anybody_who_reads() {
-    // Readers that have left, and a disk that is full: what the job was is not lost, and that it could not be told is an
-    // error if nobody chose it.
+    // Readers that have left, and a disk that is full: the result of the job is not lost, and that it could
+    // not be printed is an error if it was not chosen.
     let full = || {
         File::options()
             .write(true)
@@ -135,7 +135,7 @@ fn a_report_that_cannot_be_written_is_an_error_once_the_machine_stands() {
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(
-        said.contains("welding\nstopping\n") && said.contains("the machine stands"),
+        said.contains("welding\nstopping\n") && said.contains("the machine is at rest"),
         "{said}"
     );
     assert!(
@@ -145,6 +145,6 @@ fn a_report_that_cannot_be_written_is_an_error_once_the_machine_stands() {
             .is_some_and(|last| last.contains("report.json")),
         "{said}"
     );
-    // What is known is told all the same.
+    // What is known is reported all the same.
     assert!(String::from_utf8_lossy(&output.stdout).contains("stopped by the operator"));
 }

@@ -5,6 +5,7 @@ use config::calibration::Calibration;
 use config::machine::MachineFile;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use tempfile::{TempDir, tempdir};
 use vision::render::{Finish, Gap, Joint, Light, Root, Scene, Stripe, Texture, TruthRenderer};
 use vision::{Corner, PlateSeam};
 
@@ -23,22 +24,19 @@ fn drawn() -> Calibration {
     Calibration::nominal(cameras.optics, cameras.photon_transfer, 0.0)
 }
 
-/// A folder of its own for each test, empty.
-struct Scratch(PathBuf);
+/// A temporary folder with a calibration.
+struct Scratch(TempDir);
 
 impl Scratch {
-    fn new(name: &str) -> Self {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("measure-{name}"));
-        // What an earlier run has left.
-        std::fs::remove_dir_all(&folder).ok();
-        std::fs::create_dir_all(&folder).expect("a scratch folder");
+    fn new() -> Self {
+        let folder = tempdir().expect("a folder");
         let calibration = drawn();
-        std::fs::write(folder.join("camera.toml"), calibration.to_toml()).expect("written");
+        std::fs::write(folder.path().join("camera.toml"), calibration.to_toml()).expect("written");
         Self(folder)
     }
 
     fn path(&self, name: &str) -> PathBuf {
-        self.0.join(name)
+        self.0.path().join(name)
     }
 
     /// Renders a scene into a file.
@@ -51,7 +49,7 @@ impl Scratch {
     /// Measures; exit code, output and errors.
     fn measure(&self, words: &[&str]) -> (i32, String, String) {
         let output = Command::new(env!("CARGO_BIN_EXE_seamwright"))
-            .current_dir(&self.0)
+            .current_dir(self.0.path())
             .args(["measure", "--calibration", "camera.toml"])
             .args(words)
             .output()
@@ -117,7 +115,7 @@ fn assert_near(record: &serde_json::Value, figure: &str, truth: f64, tolerance: 
 
 #[test]
 fn a_gap_is_measured_and_drawn() {
-    let scratch = Scratch::new("gap");
+    let scratch = Scratch::new();
     let scene = gap(plate());
     scratch.picture("seam.png", &scene);
     let truth = scene.truth(&drawn().optics).expect("it can be seen");
@@ -143,7 +141,7 @@ fn a_gap_is_measured_and_drawn() {
 
 #[test]
 fn a_corner_is_measured_between_its_walls() {
-    let scratch = Scratch::new("corner");
+    let scratch = Scratch::new();
     let corner = Corner {
         height_mm: -0.15,
         lateral_mm: 0.05,
@@ -171,7 +169,7 @@ fn a_corner_is_measured_between_its_walls() {
 
 #[test]
 fn a_picture_of_no_use_says_why() {
-    let scratch = Scratch::new("refused");
+    let scratch = Scratch::new();
     let closed = gap(PlateSeam {
         width_mm: 0.0,
         ..plate()
@@ -219,7 +217,7 @@ fn a_picture_of_no_use_says_why() {
 
 #[test]
 fn wrong_files_are_told_and_the_others_are_measured() {
-    let scratch = Scratch::new("wrong");
+    let scratch = Scratch::new();
     scratch.picture("good.png", &gap(plate()));
     std::fs::write(scratch.path("text.png"), "no picture").expect("written");
     write_rgb(&scratch.path("colours.png"), 2, 2, &[9; 12]).expect("written");
@@ -240,7 +238,7 @@ fn wrong_files_are_told_and_the_others_are_measured() {
     assert_eq!(lines.len(), wrong.len(), "{errors}");
     let parts = [
         ["cannot read picture none.png", "No such file"],
-        ["text.png is no PNG file", "damaged"],
+        ["text.png is not a PNG file", "damaged"],
         ["colours.png has coloured pixels", "convert it"],
         [
             "small.png: a picture of 100 × 200 pixels",
@@ -260,7 +258,7 @@ fn wrong_files_are_told_and_the_others_are_measured() {
 
 #[test]
 fn a_missing_calibration_is_told_with_the_remedy() {
-    let scratch = Scratch::new("uncalibrated");
+    let scratch = Scratch::new();
     std::fs::remove_file(scratch.path("camera.toml")).expect("removed");
     let (code, said, errors) = scratch.measure(&["seam.png"]);
     assert_eq!((code, said.as_str()), (1, ""));
@@ -272,7 +270,7 @@ fn a_missing_calibration_is_told_with_the_remedy() {
 
 #[test]
 fn an_overlay_overwrites_no_picture() {
-    let scratch = Scratch::new("overwrite");
+    let scratch = Scratch::new();
     let path = scratch.picture("seam.png", &gap(plate()));
     let before = std::fs::read(&path).expect("read");
     let (code, _, errors) = scratch.measure(&["seam.png", "--overlay", "."]);
@@ -292,7 +290,7 @@ fn an_overlay_overwrites_no_picture() {
 
 #[test]
 fn a_folder_of_captures_is_followed_as_a_camera_would() {
-    let scratch = Scratch::new("folder");
+    let scratch = Scratch::new();
     let mut recorder = Recorder::new(&scratch.path("kept")).expect("a folder");
     let camera = drawn();
     let mut renderer = TruthRenderer::new(camera.optics, camera.photon_transfer, 1).expect("a camera");
@@ -318,8 +316,8 @@ fn a_folder_of_captures_is_followed_as_a_camera_would() {
         let pictures: Vec<&str> = said.split("capture-").collect();
         pictures[capture].to_owned()
     };
-    assert_says(&of(1), &["seam", "acquiring; not yet believed"]);
-    assert_says(&of(2), &["acquiring; not yet believed"]);
+    assert_says(&of(1), &["seam", "acquiring; not accepted yet"]);
+    assert_says(&of(2), &["acquiring; not accepted yet"]);
     assert_says(&of(3), &["tracking"]);
     assert!(!of(5).contains("mean"), "{said}");
     assert_says(&of(6), &["tracking; mean: across +0.08"]);

@@ -7,7 +7,7 @@ use config::machine::MachineFile;
 use nc::{Options, interpret_file};
 use std::f64::consts::TAU;
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, Write};
 use std::path::Path;
 
 /// Memory that the process has had so far, at most \[kB\].
@@ -22,8 +22,7 @@ fn most() -> u64 {
 
 /// A program of `count` blocks of about 0.3 mm, with an output and an arc now and then.
 fn write(count: u32) -> File {
-    let name = std::env::temp_dir().join(format!("memory-{}-{count}.ngc", std::process::id()));
-    let mut text = BufWriter::new(File::create(&name).expect("a file"));
+    let mut text = BufWriter::new(tempfile::tempfile().expect("a file"));
     writeln!(
         text,
         "G43.4 G64 P0.02\nG0 X600 Y500 Z150 B-2.5 C0\nG0 Z50\nG1 F600 X650"
@@ -40,9 +39,8 @@ fn write(count: u32) -> File {
         .expect("written");
     }
     writeln!(text, "G1 X600 Y500\nM2").expect("written");
-    text.flush().expect("written");
-    let file = File::open(&name).expect("a file");
-    std::fs::remove_file(&name).expect("removed");
+    let mut file = text.into_inner().expect("written");
+    file.rewind().expect("a file");
     file
 }
 

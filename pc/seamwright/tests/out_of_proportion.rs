@@ -163,7 +163,7 @@ fn numbers_out_of_all_proportion_are_named() {
             "programs/stir-contour.ngc",
             "P2.500",
             "P999999",
-            "a day (86400 s) at most",
+            "from 0 to 86400 s (a day)",
         ),
         ("programs/leaf.json", "30.52", "2147483648", "control_points_mm"),
         (

@@ -8,16 +8,6 @@ fn shipped(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file)
 }
 
-/// A folder of this test, empty.
-fn scratch(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("teach-{test}"));
-    if folder.exists() {
-        std::fs::remove_dir_all(&folder).unwrap();
-    }
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
 fn host_link(folder: &Path, words: &[&str], input: &str) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_seamwright"))
         .current_dir(folder)
@@ -58,8 +48,9 @@ fn part(folder: &Path) {
 
 #[test]
 fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
-    let folder = scratch("hand");
-    part(&folder);
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    part(folder);
     let seam = shipped("programs/t-seam-400-deviation.csv").display().to_string();
     let teach = [
         "teach",
@@ -75,7 +66,7 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
         "geometric",
     ];
     let first = host_link(
-        &folder,
+        folder,
         &teach,
         "x 300000\nx -0.5\ncentre\ntake\nstep 8\ncentre\ntake\nstep 5\ntake\nundo\ndone\n",
     );
@@ -91,21 +82,21 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
     ] {
         assert!(told.contains(words), "{words} is not in\n{told}");
     }
-    // The input ends without a word.
+    // The input ends without `done`.
     let second = host_link(
-        &folder,
+        folder,
         &teach,
         "step\ncentre\ntake\nstep\ntake\nstep 15\ncentre\ntake\n",
     );
     let told = said(&second);
     assert!(second.status.success(), "{told}");
     assert!(
-        told.contains("goes on after point 2") && told.contains("taught.csv: 5 points"),
+        told.contains("continues after point 2") && told.contains("taught.csv: 5 points"),
         "{told}"
     );
 
     let plan = host_link(
-        &folder,
+        folder,
         &[
             "plan",
             "rib.toml",
@@ -130,8 +121,9 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
 
 #[test]
 fn what_cannot_be_taught_is_refused_before_the_machine_moves() {
-    let folder = scratch("refused");
-    part(&folder);
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    part(folder);
     std::fs::write(
         folder.join("bare.toml"),
         "[t-seam]\nspeed_m_min = 5.0\npower_w = 2000.0\n",
@@ -140,18 +132,24 @@ fn what_cannot_be_taught_is_refused_before_the_machine_moves() {
     std::fs::write(folder.join("other.csv"), "# machine: gantry\n# part: other\n").unwrap();
     let teach = |words: &[&str]| {
         let words = [&["teach", "--boards", "simulated"], words].concat();
-        let output = host_link(&folder, &words, "");
+        let output = host_link(folder, &words, "");
         assert!(!output.status.success());
         said(&output)
     };
     let panel = shipped("programs/panel.toml").display().to_string();
     for (words, reason) in [
-        (&["rib.toml"][..], "say where the points go: --output FILE"),
+        (
+            &["rib.toml"][..],
+            "where should the points be written? give --output FILE",
+        ),
         (
             &["bare.toml", "-o", "t.csv"],
-            "nobody knows where to begin: say it by --from",
+            "the start is unknown: give it with --from",
         ),
-        (&["rib.toml", "-o", "t.csv", "--from", "1,2,3"], "say six numbers"),
+        (
+            &["rib.toml", "-o", "t.csv", "--from", "1,2,3"],
+            "must be six numbers",
+        ),
         (
             &["rib.toml", "-o", "other.csv"],
             "other.csv was taught on machine gantry for part other, not on dual-beam-gantry for rib",

@@ -65,7 +65,7 @@ fn a_limit_that_makes_no_sense_is_refused_with_its_line() {
         let (code, text) = told(&weld(wrong));
         assert_eq!(code, Some(1), "{text}");
         assert!(
-            text.contains("line 12") && text.contains("a limit is a number of 0 or more"),
+            text.contains("line 12") && text.contains("a limit must be a number of 0 or more"),
             "{text}"
         );
     }

@@ -226,7 +226,7 @@ fn a_seam_and_boards_that_do_not_suit_the_machine_are_told_with_the_remedy() {
         ..Attempt::new()
     }
     .refusal();
-    assert_says(&said, &["no tracker", "leave the seam out"]);
+    assert_says(&said, &["no tracker", "omit the seam"]);
 
     let said = Attempt {
         more: vec!["--boards", "192.0.2.1"],
@@ -256,7 +256,7 @@ fn cameras_and_scenes_that_do_not_suit_are_told_with_the_remedy() {
     let real = said(vec!["--boards", "192.0.2.1,192.0.2.2"]);
     assert_says(&real, &["no [cameras.gige]", "--camera geometric"]);
     let seen = said(vec!["--boards", "192.0.2.1,192.0.2.2", "--scene", "x.toml"]);
-    assert_says(&seen, &["real cameras", "leave --scene out"]);
+    assert_says(&seen, &["real cameras", "omit --scene with real cameras"]);
     let blind = said(vec![
         "--boards",
         "simulated",
@@ -265,7 +265,7 @@ fn cameras_and_scenes_that_do_not_suit_are_told_with_the_remedy() {
         "--scene",
         "x.toml",
     ]);
-    assert_says(&blind, &["leave --scene out", "--camera images"]);
+    assert_says(&blind, &["omit --scene", "--camera images"]);
     let kept = said(vec![
         "--boards",
         "simulated",
@@ -274,7 +274,7 @@ fn cameras_and_scenes_that_do_not_suit_are_told_with_the_remedy() {
         "--keep-pictures",
         "x",
     ]);
-    assert_says(&kept, &["leave --keep-pictures out", "--camera images"]);
+    assert_says(&kept, &["omit --keep-pictures", "--camera images"]);
     let none = said(vec!["--boards", "simulated", "--scene", "no-scene.toml"]);
     assert_says(&none, &["cannot read scene file no-scene.toml"]);
 }
@@ -472,7 +472,7 @@ fn missing_emulated_boards_are_told_with_the_remedy() {
 
 #[test]
 fn emulated_boards_of_another_machine_are_named_and_asked_for_nothing() {
-    // Nobody listens at these ports.
+    // No program listens at these ports.
     let board = Endpoint {
         host: Ipv4Addr::LOCALHOST,
         tcp: 9,
@@ -609,7 +609,7 @@ fn a_part_file_is_no_program_and_plan_is_named() {
         assert_eq!(code, Some(1), "{said}");
         assert_says(
             &said,
-            &["leaf.toml is a part file, and not a program", "seamwright plan"],
+            &["leaf.toml is a part file, not a program", "seamwright plan"],
         );
     }
 }

@@ -1,10 +1,10 @@
 //! Which radius the ring should have: halved until the normal is good enough (mathematics 2.3, 2.4).
 //!
-//! Two things turn the normal of a ring. Noise turns it by σ/(√2·S): small rings are bad. Third order of the surface
-//! turns it by b·S²: large rings are bad. The change of the normal from S to S/2 is ¾·b·S² and noise, so two rings
-//! tell how much of each there is. [`StopRule::Balance`] measures on until the expected error grows, and keeps the
-//! ring where it was least. The published rule, [`StopRule::Spread`], waits for its three triangles to agree; noise
-//! alone spreads them by 2σ/S, so halving may make it worse for ever.
+//! Two things turn the normal of a ring. Noise turns it by σ/(√2·S): small rings are bad. Third order of the
+//! surface turns it by b·S²: large rings are bad. The change of the normal from S to S/2 is ¾·b·S² and noise,
+//! so two rings show how much of each there is. [`StopRule::Balance`] measures on until the expected error
+//! grows, and keeps the ring where it was least. The published rule, [`StopRule::Spread`], waits for its
+//! three triangles to agree; noise alone spreads them by 2σ/S, so halving may make it worse for ever.
 
 use crate::ring::{NEIGHBOURS, Ring, RingError, Unsmooth};
 use config::{RangeError, in_range};

@@ -15,7 +15,7 @@ mod triples;
 pub use halving::{Halving, HalvingConfig, HalvingError, StopRule, Taught};
 pub use points::{TaughtPoint, parse_points, read_points, write_points};
 pub use ring::{Curvature, Harmonics, Plane, Ring, RingError, Unsmooth};
-pub use routine::{Arm, Guide, Look, PointError, TeachError, Teacher, TeachingConfig, aim};
+pub use routine::{GuidePoint, Look, PointError, ProbeMachine, TeachError, Teacher, TeachingConfig, aim};
 pub use triples::Triples;
 
 #[cfg(test)]

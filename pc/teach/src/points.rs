@@ -1,4 +1,4 @@
-//! Taught points in a file that people can read.
+//! The file of taught points (CSV).
 
 use config::table::{self, TableError};
 use nalgebra::Vector3;

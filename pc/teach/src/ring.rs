@@ -98,7 +98,7 @@ pub struct Plane {
 /// The surface under a ring is neither a plane nor curved evenly: an edge, a step, a crease, or strong third order.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error(
-    "the surface in the ring of {radius} mm is uneven by {rest:.3} mm, which may turn its normal by {:.2}°: an edge? \
+    "the surface in the ring of {radius} mm is uneven by {rest:.3} mm, which may turn its normal by {:.2}°: is there an edge? \
      measure closer, or teach the normal by hand",
     .normal_error.to_degrees()
 )]
@@ -121,11 +121,6 @@ impl Ring {
             Some(index) => Err(RingError::Height { index }),
             None => Ok(Self { radius, heights }),
         }
-    }
-
-    /// The ring that a probe sees \[mm\], `centre` being its distance over the centre: what is nearer is higher.
-    pub fn from_distances(radius: f64, centre: f64, around: [f64; NEIGHBOURS]) -> Result<Self, RingError> {
-        Self::new(radius, around.map(|distance| centre - distance))
     }
 
     /// Radius \[mm\].
@@ -217,7 +212,8 @@ impl Ring {
 
     /// Standard deviation of one height \[mm\] as the ring itself shows it: what second order leaves unexplained,
     /// with three degrees of freedom. Roughness is in it, and so is any third order.
-    pub fn noise_seen(&self) -> f64 {
+    #[cfg(test)]
+    pub(crate) fn noise_seen(&self) -> f64 {
         libm::sqrt(self.rest_squared() / 3.0)
     }
 

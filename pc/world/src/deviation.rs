@@ -9,8 +9,8 @@ use shared::protocol::{PathAction, PathEvent};
 use std::path::Path;
 use thiserror::Error;
 
-/// How far beyond its ends a deviation goes on in a straight line \[mm\], constant from there: enough for the
-/// cameras and the map to see a straight seam, without leading a steep one out of the slides' reach.
+/// How far beyond its ends a deviation continues in a straight line \[mm\], constant from there: enough for
+/// the cameras and the map to see a straight seam, without leading a steep one out of the slides' reach.
 const CONTINUATION: f64 = 20.0;
 /// Rows may begin this much after the weld does and end this much before; the straight continuation is the seam
 /// there \[mm\].
@@ -33,11 +33,11 @@ pub struct Deviation {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SeamError {
     /// A seam is given to a machine that cannot follow it.
-    #[error("this machine has no tracker, and no slides to follow a seam with: leave the seam out")]
+    #[error("this machine has no tracker and no slides to follow a seam: omit the seam")]
     NoTracking,
     /// The program tracks, and no seam is given.
     #[error(
-        "the program follows the seam (M62 P2): say by --seam FILE how the real seams deviate from the programmed ones"
+        "the program follows the seam (M62 P2): give with --seam FILE how the real seams deviate from the programmed ones"
     )]
     NoSeam,
     /// Shorter than the weld.
@@ -118,8 +118,8 @@ impl Deviation {
         (self.s[0], self.s[self.s.len() - 1])
     }
 
-    /// u1, v1, u2, v2 \[mm\] at `s` \[mm\]. Beyond the rows it goes on in a straight line with the slope of the
-    /// last span for 20 mm, then parallel to the plan.
+    /// u1, v1, u2, v2 \[mm\] at `s` \[mm\]. Beyond the rows it continues in a straight line with the slope of
+    /// the last span for 20 mm, then parallel to the plan.
     pub fn at(&self, s: f64) -> [f64; SLIDES] {
         let (first, last) = self.range();
         let s = s.clamp(first - CONTINUATION, last + CONTINUATION);

@@ -5,7 +5,7 @@ use emulator::Pace;
 use emulator::Session;
 #[cfg(target_os = "linux")]
 use host_link::boards::Endpoint;
-use host_link::boards::{LinkError, NetworkBoards, Patience};
+use host_link::boards::{LinkError, NetworkBoards, Timeouts};
 use thiserror::Error;
 
 /// Why emulated or simulated boards cannot be used.
@@ -15,14 +15,14 @@ pub enum BoardsError {
     #[error(transparent)]
     Link(#[from] LinkError),
     /// Simulated boards have no plant of that name.
-    #[error("no plant is known for a machine called {machine}: it runs on real boards only")]
+    #[error("there is no simulation of a machine called {machine}: it runs on real boards only")]
     NoPlant {
         /// Name of its kinematics.
         machine: String,
     },
     /// The emulated boards run another machine.
     #[error(
-        "the emulated boards are wired to a {wired}, but the machine file describes a {wanted}; boot others by `cargo xtask emulate --machine FILE`"
+        "the emulated boards are wired to a {wired}, but the machine file describes a {wanted}; boot others with `cargo xtask emulate --machine FILE`"
     )]
     WrongMachine {
         /// What they run.
@@ -36,7 +36,7 @@ pub enum BoardsError {
     )]
     NoEmulator,
     /// The session file of the emulated boards cannot be used.
-    #[error("the emulated boards cannot be found: {0}; start them by `cargo xtask emulate`")]
+    #[error("the emulated boards cannot be found: {0}; start them with `cargo xtask emulate`")]
     BadSession(#[from] emulator::SessionError),
     /// This computer cannot run them.
     #[error("emulated boards need Linux; use --boards simulated, or the addresses of real boards")]
@@ -49,7 +49,7 @@ pub enum BoardsError {
 /// # Errors
 /// As [`NetworkBoards::connect`], or [`BoardsError::BadSession`] if the boards' page cannot be opened.
 #[cfg(target_os = "linux")]
-pub fn connect(session: &Session, tracked: bool, patience: Patience) -> Result<NetworkBoards, BoardsError> {
+pub fn connect(session: &Session, tracked: bool, patience: Timeouts) -> Result<NetworkBoards, BoardsError> {
     let target = session.path_states_to;
     let tracker = endpoint(session.tracker);
     let boards = NetworkBoards::connect(
@@ -66,12 +66,12 @@ pub fn connect(session: &Session, tracked: bool, patience: Patience) -> Result<N
     Ok(boards.paced_by(move || drop(pace.handled())))
 }
 
-/// There are none on this system.
+/// Emulated boards are not available on this system.
 ///
 /// # Errors
 /// [`BoardsError::NeedsLinux`] always.
 #[cfg(not(target_os = "linux"))]
-pub fn connect(_: &Session, _: bool, _: Patience) -> Result<NetworkBoards, BoardsError> {
+pub fn connect(_: &Session, _: bool, _: Timeouts) -> Result<NetworkBoards, BoardsError> {
     Err(BoardsError::NeedsLinux)
 }
 

@@ -232,7 +232,7 @@ mod tests {
             let at = MachinePosition::Axes(axes);
             answer(&mut cameras, 0, |_| Some(at)).is_some()
         };
-        // The seam is told from 90 to 400 mm along the path.
+        // The seam is given from 90 to 400 mm along the path.
         assert!(sees(250.0, 0.0) && sees(45.0, 0.0) && sees(425.0, 0.0));
         assert!(!sees(35.0, 0.0) && !sees(435.0, 0.0) && !sees(250.0, 30.0));
     }

@@ -1,9 +1,9 @@
 //! Simulated machines and what is around them: boards with plants, where seams and spots really are, what cameras and
 //! probes see.
 //!
-//! Everything around a machine is looked up by the motion board's time, in what the boards told about that time; never by
-//! the wall clock, never in the latest state. So the world is the same for emulated boards, which run in real
-//! time, and for simulated ones, which do not.
+//! Everything around a machine is looked up by the motion board's time, in what the boards reported for that
+//! time; never by the wall clock, never in the latest state. So the world is the same for emulated boards,
+//! which run in real time, and for simulated ones, which do not.
 
 pub mod deviation;
 pub mod emulated;
@@ -21,8 +21,8 @@ pub use emulated::BoardsError;
 pub use geometric::GeometricCameras;
 pub use probe::SimulatedProbe;
 pub use rendered::{
-    Dark, Prospect, RenderedCamera, RenderedPictures, RenderedWorld, SceneError, SceneFile, Scratch,
-    Surface as Texture, View, ViewForm,
+    Dark, FieldOfView, RenderedCamera, RenderedPictures, RenderedWorld, SceneError, SceneFile, Scratch,
+    SurfaceFinish, View, ViewForm,
 };
 pub use seams::{Crossing, SharedSeams, TrueSeam, TrueSeams};
 pub use surroundings::{CameraChoice, DrawingError, PictureChoice, Surroundings, World};

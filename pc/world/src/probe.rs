@@ -1,8 +1,8 @@
-//! A ranging probe as it really is, in front of a panel as it really is.
+//! A simulated ranging probe in front of the true surface of a panel.
 
 use config::probe::{Probe, ProbeUnit, Reading};
 use job::RangingProbe;
-use parts::Surface;
+use parts::CurvedPanel;
 use shared::geometry::{Pose, angle};
 use vision::render::SplitMix64;
 
@@ -12,7 +12,7 @@ const OUTLIER: f64 = 2.0;
 /// A simulated ranging probe in the nozzle's place.
 #[derive(Clone, Debug)]
 pub struct SimulatedProbe {
-    surface: Surface,
+    surface: CurvedPanel,
     output: Probe,
     unit: ProbeUnit,
     noise: SplitMix64,
@@ -21,7 +21,7 @@ pub struct SimulatedProbe {
 impl SimulatedProbe {
     /// A probe with the properties of `unit` in front of `surface`; `output` turns its distances into voltages,
     /// `seed` starts its noise.
-    pub fn new(surface: Surface, output: Probe, unit: &ProbeUnit, seed: u64) -> Self {
+    pub fn new(surface: CurvedPanel, output: Probe, unit: &ProbeUnit, seed: u64) -> Self {
         Self {
             surface,
             output,

@@ -15,11 +15,11 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 const FACING: f64 = 1e-9;
 /// Steps of the search for it.
 const STEPS: usize = 50;
-/// Distance of the places among which the search begins at the nearest \[mm\].
+/// Distance of the search_points among which the search begins at the nearest \[mm\].
 const PLACES: f64 = 1.0;
 /// Least cosine between T of a head and T of a seam that it can follow.
 const SAME_WAY: f64 = 0.5;
-/// How far beyond the ends of its file a seam goes on \[mm\].
+/// How far beyond the ends of its file a seam continues \[mm\].
 const BEYOND_END_MM: f64 = 40.0;
 
 /// All seams of a drawing as they really are, and the heads that follow them.
@@ -65,13 +65,13 @@ pub struct TrueSeam {
     path: Box<Path<CAPACITY>>,
     start_s: f64,
     deviation: Arc<Deviation>,
-    /// Of each side, where the search for a place begins.
-    places: [Vec<Place>; SIDES],
+    /// Of each side: points from which the search for a crossing starts.
+    search_points: [Vec<SearchPoint>; SIDES],
 }
 
-/// A place of a seam.
+/// A point of a seam from which a search starts.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct SearchPoint {
     s: f64,
     point: Vector3<f64>,
     tangent: Vector3<f64>,
@@ -137,13 +137,13 @@ impl TrueSeam {
             path,
             start_s,
             deviation,
-            places: [const { Vec::new() }; SIDES],
+            search_points: [const { Vec::new() }; SIDES],
         };
-        seam.places = std::array::from_fn(|side| seam.places_of(side));
+        seam.search_points = std::array::from_fn(|side| seam.search_points_of(side));
         seam
     }
 
-    fn places_of(&self, side: usize) -> Vec<Place> {
+    fn search_points_of(&self, side: usize) -> Vec<SearchPoint> {
         let (Some(start), Some(end)) = (self.path.start_s(), self.path.end_s()) else {
             return Vec::new();
         };
@@ -151,7 +151,7 @@ impl TrueSeam {
         let place = |i: usize| {
             let s = start + (end - start) * i as f64 / count as f64;
             let (pose, _) = self.planned(s)?;
-            self.exists_at(s, BEYOND_END_MM).then_some(Place {
+            self.exists_at(s, BEYOND_END_MM).then_some(SearchPoint {
                 s,
                 point: self.point(side, s)?,
                 tangent: pose.tangent,
@@ -196,7 +196,7 @@ impl TrueSeam {
     /// is.
     fn nearest(&self, side: usize, frame: &SpotFrame, along: f64) -> Option<(f64, f64)> {
         let ahead = frame.point(along, 0.0, 0.0);
-        self.places[side]
+        self.search_points[side]
             .iter()
             .filter(|place| place.tangent.dot(&frame.tangent) > SAME_WAY)
             .map(|place| (place.s, (place.point - ahead).norm_squared()))

@@ -1,4 +1,4 @@
-//! What is around a machine: the seams as they really are, and what sees them.
+//! The surroundings of a simulated machine: its true seams, cameras and probe.
 
 use crate::deviation::{check_facing, check_seam};
 use crate::rendered::RenderedPictures;
@@ -14,7 +14,7 @@ use shared::tracking::frames::Heads;
 use std::sync::{Arc, Mutex, PoisonError};
 use thiserror::Error;
 
-/// A noise of geometric cameras is told as so many standard deviations.
+/// The uncertainty that geometric cameras report, in standard deviations of their noise.
 const SIGMAS: f64 = 3.0;
 
 /// What is around a machine.
@@ -156,7 +156,7 @@ impl job::Surroundings for World {
                 .filter(|path| path.weld().is_some())
                 .try_for_each(|path| check_facing(seams, path, machine))?,
             (_, seam, _) => match check_seam(paths, machine, seam.as_deref()) {
-                // Real cameras see the seam, and nobody has to say where it is.
+                // Real cameras see the seam; its deviation need not be given.
                 Err(SeamError::NoSeam) if self.settings.cameras.real() => {}
                 checked => checked?,
             },

@@ -3,7 +3,7 @@
 use config::machine::MachineFile;
 use job::RangingProbe;
 use nalgebra::Vector3;
-use parts::Surface;
+use parts::CurvedPanel;
 use shared::geometry::{Pose, angle};
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::{AXIS_UNIT, Kinematics};
@@ -23,7 +23,7 @@ fn machine() -> MachineFile {
     MachineFile::parse("ac-head.toml", MACHINE).unwrap()
 }
 
-fn surface(text: &str) -> Surface {
+fn surface(text: &str) -> CurvedPanel {
     toml::from_str(text).unwrap()
 }
 
@@ -54,7 +54,7 @@ struct Ideal {
 }
 
 impl Ideal {
-    fn new(machine: &MachineFile, surface: &Surface, seed: u64) -> Self {
+    fn new(machine: &MachineFile, surface: &CurvedPanel, seed: u64) -> Self {
         let unit = machine.probe.unwrap();
         Self {
             kinematics: machine.motion.kinematics().unwrap(),
@@ -75,7 +75,7 @@ impl Ideal {
     }
 }
 
-impl Arm for Ideal {
+impl ProbeMachine for Ideal {
     type Error = Infallible;
 
     fn run(&mut self, program: &str, _slower: f64) -> Result<(), Infallible> {
@@ -116,17 +116,21 @@ impl Arm for Ideal {
 }
 
 /// A guide point over the panel at x, y: `height` off it, A `off` degrees off its normal.
-fn guide(surface: &Surface, x: f64, y: f64, height: f64, off: f64) -> Guide {
+fn guide(surface: &CurvedPanel, x: f64, y: f64, height: f64, off: f64) -> GuidePoint {
     let down = -Vector3::z();
     let (distance, normal) = surface.hit(&Vector3::new(x, y, 300.0), &down).unwrap();
     let c = libm::atan2(normal.x, -normal.y).to_degrees();
-    Guide {
+    GuidePoint {
         position: Vector3::new(x, y, 300.0 - distance + height),
         angles_deg: [angle(&normal, &Vector3::z()).to_degrees() + off, 0.0, c],
     }
 }
 
-fn teach(surface: &Surface, guides: &[Guide], seed: u64) -> Result<Vec<TaughtPoint>, TeachError<Infallible>> {
+fn teach(
+    surface: &CurvedPanel,
+    guides: &[GuidePoint],
+    seed: u64,
+) -> Result<Vec<TaughtPoint>, TeachError<Infallible>> {
     let (machine, config) = (machine(), config());
     let mut arm = Ideal::new(&machine, surface, seed);
     let kinematics = arm.kinematics.clone();
@@ -138,7 +142,7 @@ fn teach(surface: &Surface, guides: &[Guide], seed: u64) -> Result<Vec<TaughtPoi
 #[test]
 fn normals_are_within_half_a_degree_up_to_45_degrees_of_inclination() {
     let surface = surface(PANEL);
-    let guides: Vec<Guide> = [0.5, 30.0, 60.0, 90.0, 120.0, 150.0, 170.0]
+    let guides: Vec<GuidePoint> = [0.5, 30.0, 60.0, 90.0, 120.0, 150.0, 170.0]
         .into_iter()
         .zip([3.0, -3.0, 5.0, -5.0, 2.0, 4.0, -4.0])
         .map(|(u, off)| guide(&surface, 500.0 + u, 410.0, off, off))
@@ -215,7 +219,7 @@ fn near_the_vertical_c_stays() {
 }
 
 /// What is said of the last of three guide points.
-fn told(surface: &Surface, last: Guide) -> String {
+fn told(surface: &CurvedPanel, last: GuidePoint) -> String {
     let guides = [
         guide(surface, 520.0, 400.0, 1.0, 1.0),
         guide(surface, 540.0, 400.0, 1.0, 1.0),

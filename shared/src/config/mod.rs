@@ -1,4 +1,4 @@
-//! What a machine file says about each board, as it goes to the board.
+//! Parameters of each board from the machine file, as they are sent to the board.
 //!
 //! What belongs to one law or one machine stands beside it: motors, gantry and reference marks in [`crate::control`], axes
 //! and geometry in [`crate::kinematics`].

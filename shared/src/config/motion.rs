@@ -1,4 +1,4 @@
-//! What a machine file says about the motion board, in human units (mm, degrees, seconds).
+//! Parameters of the motion board from the machine file (mm, degrees, seconds).
 //!
 //! Rotary axes and motors take degrees wherever linear ones take mm; the built forms hold radians.
 
@@ -22,7 +22,7 @@ pub struct MotionConfig {
     pub gantry: Option<GantryConfig>,
     /// Beam 1 and 2, or whatever else the process switches: an arc, a spindle.
     pub beams: [Option<BeamConfig>; SIDES],
-    /// A running path, or homing, stops when the PC has not been heard for this long \[ms\].
+    /// A running path, or homing, stops when nothing was received from the PC for this long \[ms\].
     pub link_timeout_ms: u32,
 }
 
@@ -64,7 +64,7 @@ pub struct ReadbackConfig {
 }
 
 impl BeamConfig {
-    /// An overlap where the machine file tells none: assumed, about the width of a bead.
+    /// The overlap if the machine file gives none: assumed, about the width of a bead.
     pub const fn overlap_mm() -> f64 {
         2.0
     }

@@ -1,4 +1,4 @@
-//! What a machine file says about the tracker board (mm, degrees, seconds).
+//! Parameters of the tracker board from the machine file (mm, degrees, seconds).
 
 use crate::control::HomeConfig;
 use crate::io::{SIDES, SLIDES};
@@ -82,9 +82,9 @@ pub struct TrackingConfig {
     pub search_mm: f64,
     /// Speed of that \[mm/s\].
     pub search_speed_mm_s: f64,
-    /// Fastest that any path goes \[mm/s\]; path states that tell of more are not believed.
+    /// Fastest that any path goes \[mm/s\]; path states with more are rejected.
     pub max_path_speed_mm_s: f64,
-    /// How far a seam may lie from its plan, along U and V \[mm\]; what is seen further away is not believed.
+    /// How far a seam may lie from its plan, along U and V \[mm\]; what is seen further away is not accepted.
     pub max_seam_deviation_mm: f64,
     /// Steepest that a seam may lead away from its plan; what was measured on a steeper one is an outlier.
     pub max_seam_slope: f64,

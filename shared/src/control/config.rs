@@ -1,4 +1,4 @@
-//! What a machine file says about drives, in human units (mm, degrees, seconds).
+//! Parameters of drives from the machine file (mm, degrees, seconds).
 //!
 //! Rotary motors take degrees wherever linear ones take mm; the built laws hold radians.
 

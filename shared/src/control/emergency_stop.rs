@@ -8,7 +8,7 @@ use crate::io::ESTOP_CHANNELS;
 /// electronic outputs such as those of light curtains.
 pub const DISCREPANCY_US: u32 = 500_000;
 
-/// What the channels of the emergency stop tell. Either one open stops; one that is open alone for longer than
+/// State of the channels of the emergency stop. Either one open stops; one that is open alone for longer than
 /// [`DISCREPANCY_US`] shows that one of them does not work. That is remembered until both were open at once, for only
 /// then both contacts are known to open (the switch test of safety inputs), whatever they do in between.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

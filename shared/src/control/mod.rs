@@ -22,7 +22,8 @@ pub use trip::{EncoderCheck, FollowingTrip};
 
 use thiserror::Error;
 
-/// Drives of either board are on for so long with nobody in charge \[s\]: time for a PC to come back after a short loss.
+/// Drives of either board stay on for so long without a session \[s\]: time for a PC to come back after a
+/// short loss.
 pub(crate) const UNATTENDED_S: u8 = 2;
 
 /// An input of a control law is infinite or not a number; the state is as before, hold the last output.

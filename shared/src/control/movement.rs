@@ -1,18 +1,18 @@
-//! A drive that is told to move while its encoder stands still.
+//! Detects a drive that is commanded to move while its encoder does not change.
 //!
 //! A broken encoder at standstill shows no following error: the loop sees the axis where it was, and sends it on and
-//! on to take away a rest of some counts. What gives it away is the way that the commands make.
+//! on to remove an error of some counts. It is detected by the distance that the commands add up to.
 
 /// Counts that a dead encoder may flicker by.
 const FLICKER: u64 = 2;
 /// Part of the speed at 10 V that holds a healthy drive at rest against the offset of its analog input: 10 mV.
 const OFFSET: f64 = 1e-3;
 
-/// Finds a drive whose encoder stands still while it is told to go, ready for the tick.
+/// Detects a drive whose encoder does not change while it is commanded to move, ready for the tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovementCheck {
-    /// Slower commands may be the offset of the drive.
-    slowest: f64,
+    /// Commands below this may be the offset of the drive.
+    min_velocity: f64,
     /// Way that commands may make without a movement.
     limit: f64,
 }
@@ -37,11 +37,11 @@ impl MovementState {
 }
 
 impl MovementCheck {
-    /// Of a drive with the speed `full_scale` at 10 V, which may be told to go `limit` before its encoder must have
-    /// seen it go.
+    /// Of a drive with the speed `full_scale` at 10 V, whose commands may add up to `limit` before its
+    /// encoder must have changed.
     pub fn new(full_scale: f64, limit: f64) -> Self {
         Self {
-            slowest: libm::fabs(full_scale) * OFFSET,
+            min_velocity: libm::fabs(full_scale) * OFFSET,
             limit,
         }
     }
@@ -51,7 +51,7 @@ impl MovementCheck {
         self.limit
     }
 
-    /// One tick of `period` \[s\] with the encoder at `counts`, after the drive was told to go at `velocity`. The way
+    /// One tick of `period` \[s\] with the encoder at `counts`, after the command `velocity`. The distance
     /// that was commanded if that is more than the limit.
     pub fn step(&self, state: &mut MovementState, counts: i64, velocity: f64, period: f64) -> Option<f64> {
         if counts.abs_diff(state.counts) > FLICKER {
@@ -60,7 +60,7 @@ impl MovementCheck {
                 commanded: 0.0,
             };
         }
-        if libm::fabs(velocity) > self.slowest {
+        if libm::fabs(velocity) > self.min_velocity {
             state.commanded += velocity * period;
         }
         let way = libm::fabs(state.commanded);

@@ -67,7 +67,7 @@ pub struct SearchState<const M: usize> {
 /// How far a search is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SearchProgress<const M: usize> {
-    /// Command [`SearchState::velocity`] and go on.
+    /// Command [`SearchState::velocity`] and continue.
     Moving,
     /// At rest; position = counts / counts_per_unit + offset (mm or rad).
     Done {

@@ -1,4 +1,4 @@
-//! What the parameters of any drive may be, by what they mean.
+//! Permitted ranges of the parameters of drives, derived from their meaning.
 
 use super::HomeConfig;
 use crate::parameter::{ParameterError, within, within_either_sign};
@@ -8,7 +8,7 @@ use core::ops::RangeInclusive;
 pub const SHORTEST_TRAVEL: f64 = 0.1;
 /// Counts in one mm or °: from one to ten million, a tenth of a nanometre.
 pub const SCALES: RangeInclusive<f64> = 1.0..=1e7;
-/// Counters of 16 bits must not go half their way round between two looks, or nobody can tell which way it was.
+/// Counters of 16 bits must not go half their way round between two readings, or the direction is ambiguous.
 pub const MOST_COUNTS: f64 = 32_767.0;
 /// Reference marks may stand beside the travel by this part of it.
 const BESIDE: f64 = 0.1;

@@ -1,4 +1,4 @@
-//! What a servo loop must not do without stopping the machine (mathematics 0.10).
+//! Trips: what makes a servo loop stop the machine (mathematics 0.10).
 
 use super::MotorConfig;
 use crate::parameter::{ParameterError, check, not_negative, positive};

@@ -17,7 +17,7 @@ pub enum LineError {
         length: f64,
     },
     /// A coordinate is infinite or not a number.
-    #[error("not finite: a coordinate of the line is no number")]
+    #[error("not finite: a coordinate of the line is not a number")]
     NotFinite,
 }
 

@@ -36,8 +36,8 @@ impl PowerBasis {
         })
     }
 
-    /// Point \[mm\], first and second derivative over `v`, by Horner's rule. Outside −1 to 1 the curve goes on by
-    /// its formula.
+    /// Point \[mm\], first and second derivative over `v`, by Horner's rule. Outside −1 to 1 the curve
+    /// continues by its formula.
     #[inline]
     pub fn at(&self, v: f64) -> Moving {
         let [mut first, mut half_second] = [Vector4::zeros(); 2];

@@ -1,4 +1,4 @@
-//! A pose beside another one.
+//! Offset of a pose from another one.
 
 use super::Pose;
 use nalgebra::Vector3;

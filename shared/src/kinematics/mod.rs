@@ -160,7 +160,7 @@ pub enum KinematicsError {
     BelowHorizon,
     /// The tool stands where the axis, number `axis` of X Y Z A B C, has no effect, and what is asked for needs
     /// that axis to jump.
-    #[error("pole of {}: the axis would have to jump; turn it before, or keep away from the pole", AXIS_NAMES[*.axis])]
+    #[error("pole of {}: the axis would have to jump; turn it earlier, or avoid the pole", AXIS_NAMES[*.axis])]
     Pole {
         /// The axis.
         axis: usize,

@@ -1,4 +1,4 @@
-//! The path tick: where the machine shall be two milliseconds from now, and everything that may change that.
+//! The path tick: the references of the machine two milliseconds ahead, and everything that may change them.
 //!
 //! Time runs in milliseconds k. Path tick k computes the reference of k + 2; together with that of k + 1 it
 //! makes the [`Segment`] which the servo ticks follow from k + 1 on, so the path tick has a whole
@@ -244,10 +244,10 @@ impl MotionController {
                 s_mm: now.s,
                 speed_mm_s: now.v,
                 pose: self.measured_pose(),
-                // On a path that is given up nobody looks for the seam any more.
+                // On a path that is given up the seam is not tracked any more.
                 tracking: on_path && self.state != State::Stopping && self.beams.tracking(),
                 beams: report.gate,
-                aside: self.superimposed.rate(),
+                superimposed_rate: self.superimposed.rate(),
             },
             sample: MotionSample {
                 tick: self.tick as u32,
@@ -380,7 +380,8 @@ impl MotionController {
         self.leave_path();
     }
 
-    /// The emergency stop itself fails: to be told with the drives off too, and in place of that it is pressed.
+    /// A failure of the emergency stop itself: reported with the drives off too, and in place of its being
+    /// pressed.
     fn distrust(&mut self, fault: Fault) {
         if self.fault == Some(Fault::EmergencyStop) {
             self.fault = Some(fault);

@@ -92,8 +92,8 @@ impl Machine {
         [x, motors[2], motors[3], motors[4], motors[5], motors[6]]
     }
 
-    /// The axes for the pose beside the one of `planned`; a tick of `superimposed`, which goes on only where the machine
-    /// `goes` along its path.
+    /// The axes for the pose beside the one of `planned`; a tick of `superimposed`, which continues only
+    /// where the machine `goes` along its path.
     pub fn superimpose(
         &self,
         superimposed: &mut Superimposed,

@@ -2,7 +2,7 @@
 //!
 //! A seam has a gap where a beam goes off and on again at the same place. So the machine goes back before it goes
 //! on, and the beam opens somewhat before the place where it went off, once the machine is at speed again. A beam that
-//! waits for its place goes on waiting through further holds, until it has been open there.
+//! waits for its place continues waiting through further holds, until it has been open there.
 
 use super::beams::{BeamLimits, Beams};
 use crate::io::SIDES;
@@ -60,7 +60,7 @@ impl Overlap {
 
     /// Where to begin from, so that the machine is at speed in time for every beam that waits, and for what happens at
     /// `next_event` \[mm\]; it stands at `stands` \[mm\], and `limits` are those along the path. `None` if it can
-    /// go on from where it stands.
+    /// continue from where it stands.
     pub fn run_up_from(&self, stands: f64, next_event: Option<f64>, limits: &SpeedLimits) -> Option<f64> {
         // It took so long to stop, and takes about that long to start.
         let before = |place: f64, off: &SpeedState| {
@@ -72,7 +72,8 @@ impl Overlap {
         };
         let waits = self.waits.iter().flatten();
         let waits = waits.map(|wait| before(wait.reopen, &wait.off));
-        // What lies between the hold and the place of rest has not happened yet, and shall happen at its place.
+        // What lies between the hold and the place of rest has not happened yet, and must happen at its path
+        // position.
         let event = next_event
             .filter(|event| *event <= stands)
             .map(|event| before(event, &self.held));
@@ -80,7 +81,7 @@ impl Overlap {
     }
 
     /// Takes the next position and speed, and the one that is asked for there \[mm/s\]; which beams are still to be
-    /// kept off. One that may open and is too slow to goes on waiting.
+    /// kept off. One that may open and is too slow to continues waiting.
     pub fn pass(
         &mut self,
         now: &SpeedState,

@@ -10,7 +10,7 @@ const SERVO_US: u64 = (SERVO_PERIOD_S * 1e6) as u64;
 /// Path tick \[µs\].
 const PATH_US: u64 = 1000;
 
-/// For how many servo ticks each gate may stay open unless it is told anew.
+/// For how many servo ticks each gate may stay open unless it is told again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BeamLease(pub [u16; SIDES]);
 

@@ -97,7 +97,7 @@ impl ReadbackCheck {
         let commanded = i32::from(commanded.0);
         let mut least = commanded - self.tolerance;
         if commanded >= 2 * dark {
-            // Off is told however small the power is, as long as it can be told from none.
+            // Off is detected however small the power is, as long as it can be distinguished from zero.
             least = least.max(commanded / 2);
         }
         if measured < least {

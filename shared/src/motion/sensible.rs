@@ -1,5 +1,5 @@
-//! What the motion board's parameters may be, by what they mean: a protection that is set to never act is refused, and
-//! so is what no machine has.
+//! Permitted ranges of the motion board's parameters, derived from their meaning: a protection that is set to
+//! never act is refused, and so is what no machine has.
 
 use super::readback::DARK;
 use crate::config::{BeamConfig, MotionConfig};

@@ -58,7 +58,8 @@ impl Motor {
         })
     }
 
-    /// The fault if motor number `index` is told to go at `velocity` and its grating has not moved for long.
+    /// The fault if motor number `index` is commanded to move at `velocity` and its grating has not moved for
+    /// too long.
     fn moves(
         &self,
         index: usize,
@@ -126,7 +127,7 @@ impl ServoSetup {
     }
 }
 
-/// What the path tick tells the servo ticks.
+/// Data from the path tick to the servo ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ServoOrder {
     /// Drives on.
@@ -145,7 +146,7 @@ pub struct ServoOrder {
     pub offset: [Option<f64>; MOTORS],
 }
 
-/// What the servo ticks tell the path tick.
+/// Data from the servo ticks to the path tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ServoReport {
     /// Positions at the last millisecond (mm or rad).
@@ -394,7 +395,7 @@ impl ServoLoops {
         Ok(())
     }
 
-    /// Starts the next millisecond; without references of its own it goes on at constant speed, once.
+    /// Starts the next millisecond; without references of its own it continues at constant speed, once.
     fn take_next(&mut self) {
         match self.next.take() {
             Some((tick, segment)) if !self.enabled || self.is_due(tick, 1) => {

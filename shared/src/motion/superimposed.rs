@@ -1,4 +1,4 @@
-//! Superimposed motion: the pose goes beside the planned one, blended in slowly (mathematics 0.7).
+//! Superimposed motion: an offset of the pose from the planned one, blended in slowly (mathematics 0.7).
 //!
 //! It comes after planner and output filter, which know nothing of it. A blend is a polynomial of fifth degree, so
 //! that its acceleration is continuous and its jerk bounded, and takes so long that no axis gets more than
@@ -93,8 +93,8 @@ impl Superimposed {
         core::array::from_fn(|axis| axes[axis] - self.added[axis])
     }
 
-    /// One path tick: the axes for the pose beside the one of `planned`. A blend goes on only where the machine
-    /// `goes` along its path.
+    /// One path tick: the axes for the pose beside the one of `planned`. A blend continues only where the
+    /// machine `goes` along its path.
     ///
     /// # Errors
     /// The machine cannot take the pose.
@@ -137,7 +137,7 @@ impl Superimposed {
         Ok(axes)
     }
 
-    /// The blend goes on by a tick.
+    /// The blend continues by a tick.
     fn advance(&mut self, goes: bool) {
         let step = PATH_PERIOD_S / RAMP_S;
         self.pace = (self.pace + if goes { step } else { -step }).clamp(0.0, 1.0);

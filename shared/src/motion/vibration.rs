@@ -1,4 +1,4 @@
-//! A level meter for the following error: read by people, acted on by nobody.
+//! A level meter for the following error, for display only: no controller acts on it.
 
 use micromath::F32Ext;
 

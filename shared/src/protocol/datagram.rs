@@ -74,8 +74,8 @@ pub struct PathState {
     pub tracking: bool,
     /// Gates that are open.
     pub beams: [bool; SIDES],
-    /// How fast the pose moves beside the planned one on purpose: along M and N \[mm/s\], about T \[rad/s\].
-    pub aside: [f64; 3],
+    /// Rate of the superimposed offset of the pose: along M and N \[mm/s\], about T \[rad/s\].
+    pub superimposed_rate: [f64; 3],
 }
 
 /// Whether the tracker lets the beams burn. Where the path tracks, the motion board opens a gate only on this, and
@@ -99,7 +99,7 @@ pub enum BeamPermit {
     /// Nothing: the slides do not follow the seam, or the tracker has a fault.
     #[default]
     No,
-    /// Stay on, but not go on: the seam is followed, but the spot is not on it yet, or not known to be.
+    /// Stay on, but not continue: the seam is followed, but the spot is not on it yet, or not known to be.
     Keep,
     /// Go on: the seam was seen where the spot is, and both slides of the side are on it.
     Open,

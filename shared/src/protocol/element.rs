@@ -1,4 +1,4 @@
-//! Elements of a path on the wire, and what the motion board makes of them.
+//! Elements of a path on the wire, and their conversion for the motion board.
 
 use crate::geometry::{Arc, Line, Turn};
 use crate::trajectory::{
@@ -79,7 +79,7 @@ pub enum PathChannel {
 pub enum PathJoin {
     /// Rest, exactly at the end.
     Stop,
-    /// The path goes on, and a corner is rounded.
+    /// The path continues, and a corner is rounded.
     Blend {
         /// By at most this much in position \[mm\].
         position_mm: f64,
@@ -90,9 +90,7 @@ pub enum PathJoin {
 
 /// The numbers of an element are no piece of path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error(
-    "line {line}: the numbers of the element are no line, arc or curve of its length, or its tolerance is none"
-)]
+#[error("line {line}: the element is not a line, arc or curve of its length, or its tolerance is not valid")]
 pub struct BadElement {
     /// Line of the program.
     pub line: u32,

@@ -1,4 +1,4 @@
-//! What the PC and the boards say to each other: one table, used by both ends.
+//! Messages between the PC and the boards: one table, used by both ends.
 //!
 //! Requests and responses travel in order on a TCP stream ([`framing`]); cyclic data travel as UDP datagrams
 //! where the newest wins ([`Datagram`]). Everything is postcard. The hash of all types is compared at

@@ -92,7 +92,7 @@ pub enum Request {
     /// Append elements to the path, before or while it runs; answered by [`Response::Room`]. Those before one that
     /// is refused are taken.
     LoadElements {
-        /// They go on where the last one ends; the first one begins where the axes stand.
+        /// They continue where the last one ends; the first one begins where the axes stand.
         elements: Vec<PathElement, LOAD_ELEMENTS>,
         /// The path is complete; its last element comes to rest.
         last: bool,
@@ -264,7 +264,7 @@ pub enum Refusal {
     },
     /// An event is not finite, or not positive where it must be, or for a beam that does not exist, out of order,
     /// or the path has come past it.
-    #[error("event {index} of the path makes no sense, is out of order, or came too late")]
+    #[error("event {index} of the path is not possible, out of order, or too late")]
     BadEvent {
         /// Number of the event.
         index: u32,
@@ -276,7 +276,7 @@ pub enum Refusal {
         room: Room,
     },
     /// An element is no piece of path.
-    #[error("line {line}: no line, arc or curve can be made of the element's numbers")]
+    #[error("line {line}: the numbers of the element do not define a line, arc or curve")]
     BadElement {
         /// Line of the program.
         line: u32,
@@ -314,10 +314,10 @@ pub enum Refusal {
         max_mm: f32,
     },
     /// The path does not ask for tracking.
-    #[error("the pose can be moved beside the path only where that asks for tracking")]
+    #[error("the pose can be offset from the path only where the path has tracking on")]
     NotTracking,
     /// An offset that is not finite, or more than slides could ever ask for.
-    #[error("the pose can be moved beside the path by {most_mm} mm and {most_deg}° at most")]
+    #[error("the pose can be offset from the path by {most_mm} mm and {most_deg}° at most")]
     OffsetTooFar {
         /// Along M and N.
         most_mm: f32,
@@ -325,10 +325,10 @@ pub enum Refusal {
         most_deg: f32,
     },
     /// The machine has no axes for the pose beside the path.
-    #[error("the machine cannot take the pose beside the path")]
+    #[error("the machine cannot reach the pose with this offset from the path")]
     OffsetUnreachable,
     /// An axis would leave its travel.
-    #[error("beside the path, axis {} would be at {position:.3} mm (or °), beyond its travel", crate::io::AXIS_NAMES[*axis as usize])]
+    #[error("with this offset from the path, axis {} would be at {position:.3} mm (or °), beyond its travel", crate::io::AXIS_NAMES[*axis as usize])]
     OffsetBeyondTravel {
         /// Index of the axis.
         axis: u8,
@@ -433,8 +433,8 @@ pub struct MotionStatus {
     pub room: Room,
     /// Part of the programmed speed that is asked for.
     pub speed_override: f64,
-    /// Where the pose stands beside the planned one.
-    pub aside: PoseOffset,
+    /// Superimposed offset of the pose from the planned one.
+    pub superimposed: PoseOffset,
     /// Servo ticks since boot, and how many came too late to be served.
     pub servo_ticks: u32,
     /// Servo ticks lost.

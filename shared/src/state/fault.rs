@@ -13,7 +13,7 @@ pub enum Fault {
     #[error("emergency stop is pressed; release it, then reset")]
     EmergencyStop,
     /// One channel of the emergency stop was open for long while the other one stayed closed.
-    #[error("emergency-stop channel {} stayed closed while channel {} was open: the wire of the open one is broken, or the contact of the other one welded or bridged; mend it, press the button fully, release it, then reset", closed + 1, 2 - closed)]
+    #[error("emergency-stop channel {} stayed closed while channel {} was open: the wire of the open one is broken, or the contact of the other one welded or bridged; repair it, press the button fully, release it, then reset", closed + 1, 2 - closed)]
     EmergencyStopChannels {
         /// The channel that stayed closed, 0 or 1.
         closed: u8,
@@ -31,7 +31,7 @@ pub enum Fault {
         side: u8,
     },
     /// The power of a beam that is on is not the commanded one.
-    #[error("beam {} gives {measured_w:.0} W, and {commanded_w:.0} W are commanded: look at the source, at its interlock, and at the lines of gate, power and readback", side + 1)]
+    #[error("beam {} gives {measured_w:.0} W, and {commanded_w:.0} W are commanded: check the source, its interlock, and the lines of gate, power and readback", side + 1)]
     BeamPower {
         /// 0 or 1.
         side: u8,
@@ -41,7 +41,7 @@ pub enum Fault {
         measured_w: f32,
     },
     /// A beam gives power with its gate closed.
-    #[error("beam {} gives {measured_w:.0} W with its gate closed: cut its interlock, then look at the source and at the lines of gate and readback", side + 1)]
+    #[error("beam {} gives {measured_w:.0} W with its gate closed: open its interlock, then check the source and the lines of gate and readback", side + 1)]
     BeamNotOff {
         /// 0 or 1.
         side: u8,
@@ -49,7 +49,7 @@ pub enum Fault {
         measured_w: f32,
     },
     /// The power of a beam is not measured any more.
-    #[error("the power of beam {} is not measured any more: look at its readback and at the converter", side + 1)]
+    #[error("the power of beam {} is not measured any more: check its readback and the converter", side + 1)]
     BeamPowerUnknown {
         /// 0 or 1.
         side: u8,
@@ -76,7 +76,7 @@ pub enum Fault {
     },
     /// X1 − X2 left its square position.
     #[error(
-        "the gantry is out of square by {seen_um:.0} µm, the limit is {limit_um:.0}: both X drives are off; square it before going on"
+        "the gantry is out of square by {seen_um:.0} µm, the limit is {limit_um:.0}: both X drives are off; square it before the next motion"
     )]
     GantrySkew {
         /// What was seen.
@@ -118,7 +118,7 @@ pub enum Fault {
     },
     /// The path asks an axis for more in a millisecond than twice its speed.
     #[error(
-        "the path asks {} to jump by {distance:.3} mm (or °) at s = {s_mm:.3} mm; keep it away from poles and half turns",
+        "the path requires {} to jump by {distance:.3} mm (or °) at s = {s_mm:.3} mm; keep it away from poles and half turns",
         AXIS_NAMES[*axis as usize]
     )]
     Jump {
@@ -129,9 +129,9 @@ pub enum Fault {
         /// Path position.
         s_mm: f32,
     },
-    /// The PC was not heard while a path was running, or while homing.
+    /// Nothing was received from the PC while a path was running, or while homing.
     #[error(
-        "the PC was silent for {silent_ms} ms while the machine moved, which was stopped; look at the connection, then reset"
+        "the PC was silent for {silent_ms} ms while the machine moved, so it was stopped; check the connection, then reset"
     )]
     LinkLost {
         /// How long.
@@ -139,18 +139,18 @@ pub enum Fault {
     },
     /// The session of the PC ended while a path was running, or while homing.
     #[error(
-        "the PC's session ended while the machine moved, which was stopped; look at the PC and its cable, then reset"
+        "the PC's session ended while the machine moved, so it was stopped; check the PC and its cable, then reset"
     )]
     SessionEnded,
     /// The session of the PC ended and no other one began.
-    #[error("nobody was in charge for {seconds} s: the drives were switched off; connect, then reset")]
+    #[error("no PC was connected for {seconds} s: the drives were switched off; connect, then reset")]
     Unattended {
         /// How long.
         seconds: u8,
     },
     /// A beam should go on where the tracker does not let it.
     #[error(
-        "beam {} should go on at s = {s_mm:.1} mm, but {why}: look at camera and lights, or give the path a longer run-in", side + 1
+        "beam {} was to be switched on at s = {s_mm:.1} mm, but {why}: check camera and lights, or give the path a longer run-in", side + 1
     )]
     NotLocked {
         /// 0 or 1.
@@ -160,8 +160,8 @@ pub enum Fault {
         /// What was missing.
         why: NoPermit,
     },
-    /// The tracker took back the permit of a beam that was on, or was not heard any more.
-    #[error("beam {} was shut at s = {s_mm:.1} mm and the machine stopped, for {why}", side + 1)]
+    /// The tracker withdrew the permit of a beam that was on, or nothing was received from it any more.
+    #[error("beam {} was switched off at s = {s_mm:.1} mm and the machine stopped, because {why}", side + 1)]
     PermitLost {
         /// 0 or 1.
         side: u8,
@@ -174,10 +174,12 @@ pub enum Fault {
     #[error("a control law got a value that is not a number; check the machine parameters")]
     NotANumber,
     /// The path task did not deliver references in time, twice in a row or three times within 100 ms.
-    #[error("the path task was late twice in a row, or three times within 100 ms; the references ran dry")]
+    #[error(
+        "the path task was late twice in a row, or three times within 100 ms; the servo loops had no references"
+    )]
     ReferencesLate,
-    /// A motor was told to go, and its grating stood still.
-    #[error("the drive of {} was told to go {commanded_um:.0} µm (or m°) and its grating stands still: check grating and its cable, drive and brake, and the offset of the drive", MOTOR_NAMES[*motor as usize])]
+    /// A motor was commanded to move, and its grating did not change.
+    #[error("the drive of {} was commanded to move by {commanded_um:.0} µm (or m°), but its grating did not move: check grating and its cable, drive and brake, and the offset of the drive", MOTOR_NAMES[*motor as usize])]
     NoMovement {
         /// Index of the motor.
         motor: u8,
@@ -186,14 +188,14 @@ pub enum Fault {
     },
     /// A stop on the path took longer than any can.
     #[error(
-        "the machine was not at rest {limit_ms} ms after it was told to stop: the drives were switched off; report it"
+        "the machine was not at rest {limit_ms} ms after the stop command: the drives were switched off; please report it"
     )]
     StopTooLong {
         /// How long it may have taken.
         limit_ms: u32,
     },
     /// An axis is further beyond its travel than a stop on the path takes it.
-    #[error("{} stands at {position:.3}, beyond its travel and the way of a stop; look at its drive and its grating", AXIS_NAMES[*axis as usize])]
+    #[error("{} is at {position:.3}, beyond its travel and its stopping distance; check its drive and its grating", AXIS_NAMES[*axis as usize])]
     BeyondTravel {
         /// Index of the axis.
         axis: u8,
@@ -206,7 +208,7 @@ pub enum Fault {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema, Error)]
 pub enum NoPermit {
     /// No permit came in time.
-    #[error("the tracker board is not heard")]
+    #[error("nothing is received from the tracker board")]
     Silent,
     /// The tracker refuses.
     #[error("the tracker board does not permit it")]

@@ -1,4 +1,4 @@
-//! States and faults of both boards: what the controllers are in, and what everybody else is told of it.
+//! States and faults of both boards, as the controllers use and report them.
 
 mod fault;
 mod motion;

@@ -36,7 +36,7 @@ pub enum Event {
     PathEnd,
     /// The operator holds the path.
     Hold,
-    /// The operator goes on after a hold.
+    /// The operator continues after a hold.
     Resume,
     /// The operator, or a fault that allows it, stops on the path; a search for the marks is given up.
     Stop,

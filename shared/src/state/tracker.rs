@@ -28,7 +28,7 @@ pub enum TrackerFault {
     #[error("emergency stop is pressed; release it, then reset")]
     EmergencyStop,
     /// One channel of the emergency stop was open for long while the other one stayed closed.
-    #[error("emergency-stop channel {} stayed closed while channel {} was open: the wire of the open one is broken, or the contact of the other one welded or bridged; mend it, press the button fully, release it, then reset", closed + 1, 2 - closed)]
+    #[error("emergency-stop channel {} stayed closed while channel {} was open: the wire of the open one is broken, or the contact of the other one welded or bridged; repair it, press the button fully, release it, then reset", closed + 1, 2 - closed)]
     EmergencyStopChannels {
         /// The channel that stayed closed, 0 or 1.
         closed: u8,
@@ -54,7 +54,7 @@ pub enum TrackerFault {
         slide: u8,
     },
     /// A beam burns where its seam was never seen.
-    #[error("beam {} is on at s = {s_mm:.1} mm, but its camera has not seen the seam yet: look at camera and lights, or give the path a longer run-in", side + 1)]
+    #[error("beam {} is on at s = {s_mm:.1} mm, but its camera has not seen the seam yet: check camera and lights, or give the path a longer run-in", side + 1)]
     SeamNotSeen {
         /// 0 or 1.
         side: u8,
@@ -86,22 +86,22 @@ pub enum TrackerFault {
         position_mm: f32,
     },
     /// The session of the PC ended while a path was tracked, or while homing.
-    #[error("the PC's session ended while the slides moved; look at the PC and its cable, then reset")]
+    #[error("the PC's session ended while the slides moved; check the PC and its cable, then reset")]
     SessionEnded,
     /// The session of the PC ended and no other one began.
-    #[error("nobody was in charge for {seconds} s: the slide drives were switched off; connect, then reset")]
+    #[error("no PC was connected for {seconds} s: the slide drives were switched off; connect, then reset")]
     Unattended {
         /// How long.
         seconds: u8,
     },
-    /// The motion board was not heard while tracking.
+    /// Nothing was received from the motion board while tracking.
     #[error("the motion board was silent for {silent_ms} ms while tracking")]
     PathStale {
         /// How long.
         silent_ms: u32,
     },
     /// A slide did not go where its commands lead.
-    #[error("slide {} is {seen_um:.0} µm away from where its commands lead, the limit is {limit_um:.0}: check encoder, drive and slide, and preview_s; then reset and home", SLIDE_NAMES[*slide as usize])]
+    #[error("slide {} is {seen_um:.0} µm away from the commanded position, the limit is {limit_um:.0}: check encoder, drive and slide, and preview_s; then reset and home", SLIDE_NAMES[*slide as usize])]
     FollowingError {
         /// Index of the slide.
         slide: u8,
@@ -120,7 +120,7 @@ pub enum TrackerFault {
         /// Largest believable step.
         limit: i32,
     },
-    /// A slide went faster than it is ever told to.
+    /// A slide moved faster than it is ever commanded to.
     #[error("slide {} went at {seen_mm_s:.0} mm/s, the limit is {limit_mm_s:.0}: check its drive and the encoder's scale; then reset and home", SLIDE_NAMES[*slide as usize])]
     Overspeed {
         /// Index of the slide.
@@ -130,8 +130,8 @@ pub enum TrackerFault {
         /// The trip.
         limit_mm_s: f32,
     },
-    /// A slide was told to go, and its encoder stood still.
-    #[error("slide {} was told to go {commanded_um:.0} µm and its encoder stands still: check encoder and its cable, drive and brake, and the offset of the drive; then reset and home", SLIDE_NAMES[*slide as usize])]
+    /// A slide was commanded to move, and its encoder did not change.
+    #[error("slide {} was commanded to move by {commanded_um:.0} µm, but its encoder did not move: check encoder and its cable, drive and brake, and the offset of the drive; then reset and home", SLIDE_NAMES[*slide as usize])]
     NoMovement {
         /// Index of the slide.
         slide: u8,

@@ -123,9 +123,9 @@ impl ClockRelation {
     }
 
     /// This board asked at `asked_us` of its clock, the other received it at `received_us` and replied at
-    /// `replied_us` of its own, and the reply was back at `back_us`. False if that cannot be: nobody asked, it took too
-    /// long or less than no time, or the two ways took longer than both together, which is how far a round trip may
-    /// be wrong.
+    /// `replied_us` of its own, and the reply was back at `back_us`. False if that cannot be: no request was
+    /// open, it took too long or less than no time, or the two ways took longer than both together, which is
+    /// how far a round trip may be wrong.
     pub fn add_round_trip(&mut self, asked_us: u64, received_us: u64, replied_us: u64, back_us: u64) -> bool {
         let Some(question) = self.asked.iter().position(|asked| *asked == asked_us) else {
             return false;
@@ -208,7 +208,7 @@ impl Filter {
             return;
         }
         self.far = 0;
-        // A datagram that was overtaken tells nothing new about time passed.
+        // A datagram that was overtaken says nothing new about the time passed.
         let dt = (sent_us.saturating_sub(self.last_sent_us) as f64 * 1e-6).min(MAX_STEP);
         self.last_sent_us = self.last_sent_us.max(sent_us);
         self.offset += self.rate * dt;

@@ -15,7 +15,7 @@ mod strobes;
 mod supervising;
 
 use super::clock::ClockRelation;
-use super::history::{CaptureHistory, PathHistory, Place, Pushed};
+use super::history::{CaptureHistory, PathHistory, PathSnapshot, Pushed};
 use super::law::LawState;
 use super::parameters::TrackerParameters;
 use super::plausible::{Arrival, PathStateGate};
@@ -59,7 +59,7 @@ pub struct TickOutput {
     pub command: SlideCommand,
     /// Both cameras were triggered: offer this capture to the PC.
     pub capture: Option<Capture>,
-    /// For the motion board, once it is heard.
+    /// For the motion board, once something was received from it.
     pub permit: Option<Permit>,
     /// For telemetry.
     pub sample: TrackerSample,
@@ -191,21 +191,21 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         self.feedback = input.feedback;
         self.watch_estop(input.periods);
         let motion_now = self.clock.to_remote(input.now_us);
-        let place = motion_now.and_then(|now| self.place(now));
+        let snapshot = motion_now.and_then(|now| self.snapshot(now));
         // Taken out for the tick, so that it can be read while the rest changes.
         let parameters = self.parameters.take();
         let mut command = Command::SAFE;
         let mut capture = None;
         if let Some(parameters) = &parameters {
             self.read_slides(parameters);
-            command = self.control(parameters, input.periods, motion_now, place.as_ref());
+            command = self.control(parameters, input.periods, motion_now, snapshot.as_ref());
             self.told(parameters, &command);
         }
         if let Some(strobed_us) = input.strobed_us {
             capture = self.capture(input, strobed_us);
         }
         // A capture needs to know where the slides are, and where on the path the machine is.
-        self.strobes.armed = place.is_some() && self.homed();
+        self.strobes.armed = snapshot.is_some() && self.homed();
         self.parameters = parameters;
         let permit = self.permit();
         if let Some(permit) = &permit {
@@ -293,7 +293,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
 
     /// Where the machine is on its path at the motion board's time `motion_now_us`; `None` if the newest path
     /// state is stale.
-    fn place(&self, motion_now_us: u64) -> Option<Place> {
+    fn snapshot(&self, motion_now_us: u64) -> Option<PathSnapshot> {
         let stale = self.parameters.as_ref()?.stale_path_us;
         (self.silent_us(motion_now_us) <= stale)
             .then(|| self.history.at(motion_now_us))
@@ -319,7 +319,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         parameters: &TrackerParameters,
         periods: u32,
         motion_now: Option<u64>,
-        place: Option<&Place>,
+        snapshot: Option<&PathSnapshot>,
     ) -> SlideCommand {
         let on = !matches!(self.state, TrackerState::Off | TrackerState::Fault);
         self.unattended_ticks = match on && !self.attended {
@@ -333,11 +333,12 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         match self.state {
             TrackerState::Off | TrackerState::Fault => self.rest(),
             TrackerState::Homing => self.search(parameters),
-            TrackerState::Ready | TrackerState::Tracking => self.follow(parameters, motion_now, place),
+            TrackerState::Ready | TrackerState::Tracking => self.follow(parameters, motion_now, snapshot),
         }
     }
 
-    /// A reason to switch the drives off. A limit switch is none while homing, where it turns the search round.
+    /// A reason to switch the drives off. A limit switch is not one while homing, where it reverses the
+    /// search.
     fn trip(&self) -> Option<TrackerFault> {
         let feedback = &self.feedback;
         if self.estop.is_pressed() {
@@ -363,8 +364,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         })
     }
 
-    /// Compares the channels of the emergency stop. That they disagree is told with the drives off too, and in place of
-    /// that it is pressed.
+    /// Compares the channels of the emergency stop. That they disagree is reported with the drives off too,
+    /// and in place of that it is pressed.
     fn watch_estop(&mut self, periods: u32) {
         let elapsed_us = periods.saturating_mul(TICK_US);
         self.estop.step(self.feedback.estop, elapsed_us);

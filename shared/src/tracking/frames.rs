@@ -1,4 +1,4 @@
-//! Where beams and cameras look, and what a measurement means on the path (mathematics 0.6, 0.7, 0.8.2).
+//! Frames of beams and cameras, and the position of a measurement on the path (mathematics 0.6, 0.7, 0.8.2).
 
 use crate::config::HeadConfig;
 use crate::geometry::Pose;
@@ -107,7 +107,7 @@ const MEETS: f64 = 1e-3;
 
 /// A seam point seen from the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting {
+pub struct SeamCrossing {
     /// Path position where the beam passes the point \[mm\].
     pub sigma: f64,
     /// Slide positions that meet it there \[mm\].
@@ -118,12 +118,16 @@ pub struct Meeting {
 
 /// Finds where on the path the beam passes the seam point `point`, starting at path position `start` \[mm\];
 /// `spot_at` gives the frame of the head at a path position. `None` if there is no such place near.
-pub fn meet(point: &Vector3<f64>, start: f64, spot_at: impl Fn(f64) -> Option<SpotFrame>) -> Option<Meeting> {
+pub fn meet(
+    point: &Vector3<f64>,
+    start: f64,
+    spot_at: impl Fn(f64) -> Option<SpotFrame>,
+) -> Option<SeamCrossing> {
     let mut sigma = start;
     for _ in 0..MAX_STEPS {
         let (rest, u, v) = spot_at(sigma)?.coordinates(point);
         if libm::fabs(rest) < MEETS {
-            return (u.is_finite() && v.is_finite()).then_some(Meeting { sigma, u, v });
+            return (u.is_finite() && v.is_finite()).then_some(SeamCrossing { sigma, u, v });
         }
         sigma += rest;
     }

@@ -1,4 +1,4 @@
-//! What was a moment ago: path states of the motion board, and captures.
+//! The latest path states of the motion board, and the latest captures.
 
 use crate::geometry::{Pose, PoseOffset};
 use crate::io::{SIDES, SLIDES};
@@ -13,9 +13,9 @@ pub const CAPTURES: usize = 256;
 /// A path state this much older than the newest is not late: the motion board was restarted \[µs\].
 pub(super) const RESTARTED: u64 = 1_000_000;
 
-/// Where the machine is or was on its path.
+/// State of the motion board on its path at one time: a received path state, interpolated or extrapolated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct PathSnapshot {
     /// Number of the path.
     pub path_id: u32,
     /// Path position \[mm\].
@@ -28,8 +28,8 @@ pub struct Place {
     pub tracking: bool,
     /// Gates that are open.
     pub beams: [bool; SIDES],
-    /// How fast the pose moves beside the planned one on purpose \[mm/s, rad/s\].
-    pub aside: PoseOffset,
+    /// Rate of the superimposed offset of the pose \[mm/s, rad/s\].
+    pub superimposed_rate: PoseOffset,
 }
 
 /// The last path states, in order of their time.
@@ -45,7 +45,7 @@ pub struct PathHistory {
 pub enum Pushed {
     /// It is the newest.
     Newest,
-    /// It is the newest and the path began anew: another number, or s went back.
+    /// It is the newest and the path began again: another number, or s went back.
     Restarted,
     /// It came too late or is not finite; ignored.
     Ignored,
@@ -67,7 +67,7 @@ impl PathHistory {
     /// Takes a path state.
     pub fn push(&mut self, state: &PathState) -> Pushed {
         self.received = self.received.wrapping_add(1);
-        let Some(place) = place(state) else {
+        let Some(snapshot) = snapshot(state) else {
             return Pushed::Ignored;
         };
         let mut pushed = Pushed::Newest;
@@ -80,7 +80,7 @@ impl PathHistory {
                 let gap = state.tick.wrapping_sub(last.tick);
                 self.missing = self.missing.wrapping_add(gap.saturating_sub(1));
             }
-            if board_restarted || place.path_id != last.path_id || place.s < last.s_mm - NEW_RUN {
+            if board_restarted || snapshot.path_id != last.path_id || snapshot.s < last.s_mm - NEW_RUN {
                 self.states.clear();
                 pushed = Pushed::Restarted;
             }
@@ -95,9 +95,9 @@ impl PathHistory {
     }
 
     /// The newest place, and the motion board's time it belongs to \[µs\].
-    pub fn newest(&self) -> Option<(Place, u64)> {
+    pub fn newest(&self) -> Option<(PathSnapshot, u64)> {
         let last = self.states.back()?;
-        Some((place(last)?, last.time_us))
+        Some((snapshot(last)?, last.time_us))
     }
 
     /// Tick and path number of the newest path state.
@@ -107,10 +107,10 @@ impl PathHistory {
 
     /// The place at the motion board's time `time_us`: between two states interpolated, after the newest one
     /// moved on with its speed. `None` before the oldest.
-    pub fn at(&self, time_us: u64) -> Option<Place> {
+    pub fn at(&self, time_us: u64) -> Option<PathSnapshot> {
         let last = self.states.back()?;
         if time_us >= last.time_us {
-            let mut ahead = place(last)?;
+            let mut ahead = snapshot(last)?;
             let distance = ahead.speed * (time_us - last.time_us) as f64 * 1e-6;
             ahead.s += distance;
             ahead.pose.position += ahead.pose.tangent * distance;
@@ -120,7 +120,7 @@ impl PathHistory {
     }
 
     /// As [`Self::at`], but only between two states.
-    pub fn between(&self, time_us: u64) -> Option<Place> {
+    pub fn between(&self, time_us: u64) -> Option<PathSnapshot> {
         let mut newer: Option<&PathState> = None;
         for older in self.states.iter().rev() {
             if older.time_us <= time_us {
@@ -137,7 +137,7 @@ impl PathHistory {
     }
 }
 
-fn place(state: &PathState) -> Option<Place> {
+fn snapshot(state: &PathState) -> Option<PathSnapshot> {
     let p = &state.pose;
     let pose = Pose::new(
         Vector3::new(p[0], p[1], p[2]),
@@ -146,21 +146,21 @@ fn place(state: &PathState) -> Option<Place> {
     );
     let finite = [state.s_mm, state.speed_mm_s]
         .iter()
-        .chain(&state.aside)
+        .chain(&state.superimposed_rate)
         .all(|x| x.is_finite());
-    Some(Place {
+    Some(PathSnapshot {
         path_id: state.path_id,
         s: state.s_mm,
         speed: state.speed_mm_s,
         pose: pose.ok().filter(|_| finite)?,
         tracking: state.tracking,
         beams: state.beams,
-        aside: PoseOffset::of(state.aside),
+        superimposed_rate: PoseOffset::of(state.superimposed_rate),
     })
 }
 
 /// Linear in every number: a millisecond apart, the bend of the path between them is nanometres.
-fn interpolate(older: &PathState, newer: &PathState, time_us: u64) -> Option<Place> {
+fn interpolate(older: &PathState, newer: &PathState, time_us: u64) -> Option<PathSnapshot> {
     let span = newer.time_us.wrapping_sub(older.time_us) as f64;
     let part = time_us.wrapping_sub(older.time_us) as f64 / span;
     let mix = |a: f64, b: f64| a + (b - a) * part;
@@ -170,7 +170,7 @@ fn interpolate(older: &PathState, newer: &PathState, time_us: u64) -> Option<Pla
     for (i, channel) in state.pose.iter_mut().enumerate() {
         *channel = mix(older.pose[i], newer.pose[i]);
     }
-    place(&state)
+    snapshot(&state)
 }
 
 /// What was latched at a strobe.
@@ -179,7 +179,7 @@ pub struct CaptureRecord {
     /// Motion board's time \[µs\].
     pub motion_time_us: u64,
     /// Place as known at the strobe; a little extrapolated.
-    pub place: Place,
+    pub snapshot: PathSnapshot,
     /// This board's time \[µs\].
     pub time_us: u64,
     /// Slide positions \[mm\].
@@ -255,7 +255,7 @@ mod tests {
             pose: [s_mm, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
             tracking: true,
             beams: [false; SIDES],
-            aside: [0.0; 3],
+            superimposed_rate: [0.0; 3],
         }
     }
 
@@ -306,11 +306,11 @@ mod tests {
         let mut captures = CaptureHistory::new();
         let mut path = PathHistory::new();
         path.push(&state(0, 1, 0.0));
-        let place = path.newest().unwrap().0;
+        let snapshot = path.newest().unwrap().0;
         for number in 0..300 {
             let record = CaptureRecord {
                 motion_time_us: u64::from(number),
-                place,
+                snapshot,
                 time_us: 0,
                 slides: [0.0; SLIDES],
                 answered: [false; SIDES],

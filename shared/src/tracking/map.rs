@@ -5,7 +5,7 @@ use heapless::Vec;
 /// Samples a map can hold.
 pub const MAP_CAPACITY: usize = 128;
 
-/// Consecutive outliers after which the seam is believed to have jumped.
+/// Consecutive outliers after which the seam is taken to have jumped.
 const OUTLIERS_TO_RELOCK: u8 = 3;
 /// Part of the gate that samples on the steepest seam may be off by.
 const STEEP_MARGIN: f64 = 0.25;
@@ -105,7 +105,7 @@ impl SeamMap {
         self.samples.is_empty()
     }
 
-    /// The seam is believed to have jumped: the next sample takes the place of all others.
+    /// The seam is taken to have jumped: the next sample takes the place of all others.
     pub fn relocks(&self) -> bool {
         self.consecutive_outliers >= OUTLIERS_TO_RELOCK
     }
@@ -367,7 +367,7 @@ mod tests {
             for i in 1..200 {
                 let sigma = 19.5 + 0.5 * f64::from(i);
                 if map.estimate(&law, sigma).is_none() {
-                    // Too far from the last that was believed: the seam is lost.
+                    // Too far from the last that was accepted: the seam is lost.
                     break;
                 }
                 map.add(&law, sigma, from + drift * f64::from(i));

@@ -6,7 +6,7 @@ use super::law::SlideLaw;
 use super::map::{MAP_CAPACITY, MapLaw};
 use super::search::SearchLaw;
 use super::sensible;
-use super::supervision::{Supervised, Supervision};
+use super::supervision::{SupervisedSlide, Supervision};
 use crate::config::{SlideConfig, TrackerConfig, TrackingConfig};
 use crate::control::ReferenceSearch;
 use crate::io::{SLIDE_NAMES, SLIDES};
@@ -25,8 +25,8 @@ pub struct TrackerParameters {
     pub slides: [SlideParameters; SLIDES],
     /// How the maps take and read samples.
     pub map: MapLaw,
-    /// What is believed of what others say.
-    pub belief: Belief,
+    /// Limits of plausible datagrams.
+    pub plausible: PlausibleLimits,
     /// How U slides look for a seam that was not seen yet.
     pub search: SearchLaw,
     /// A beam may go on while both slides of its side are no further than this from the seam \[mm\].
@@ -56,16 +56,16 @@ pub struct SlideParameters {
     pub supervision: Supervision,
 }
 
-/// What can be on this machine, ready for use (mm, s).
+/// Limits of what is plausible on this machine, ready for use (mm, s).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Belief {
+pub struct PlausibleLimits {
     /// Fastest path \[mm/s\].
     pub path_speed: f64,
     /// How far a seam, or the pose, may be off the plan \[mm\].
     pub deviation: f64,
     /// How far from the plane of the lead a camera sees \[mm\].
     pub along: f64,
-    /// How far beyond the travel of a slide a seam is still told \[mm\].
+    /// How far beyond the travel of a slide a seam is still accepted \[mm\].
     pub gate: f64,
     /// How fast the pose may move beside the plan \[mm/s\]: faster, and no slide follows.
     pub pose_speed: f64,
@@ -112,7 +112,7 @@ impl TrackerConfig {
         // Faster, and no picture would lie within reach of the map.
         let fastest_path = (window + hold) / (f64::from(tracking.frame_period_ms) * TRACKER_PERIOD_S);
         let slowest_slide = slides.iter().map(|slide| slide.law.max_velocity);
-        let belief = Belief {
+        let plausible = PlausibleLimits {
             path_speed: check(
                 "tracking",
                 "max_path_speed_mm_s",
@@ -148,7 +148,7 @@ impl TrackerConfig {
             },
             search,
             lock,
-            belief,
+            plausible,
             preview,
             frame_ticks: tracking.frame_period_ms,
             stale_path_us: u64::from(tracking.stale_path_ms) * 1000,
@@ -170,7 +170,7 @@ impl SlideConfig {
         let max_velocity = positive(name, "max_velocity_mm_s", self.max_velocity_mm_s)?;
         let full_scale = not_zero("velocity_at_10v_mm_s", self.velocity_at_10v_mm_s)?;
         let counts_per_mm = not_zero("counts_per_mm", self.counts_per_mm)?;
-        let supervised = Supervised {
+        let supervised = SupervisedSlide {
             slide: index as u8,
             counts_per_mm,
             full_scale,

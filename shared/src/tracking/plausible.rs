@@ -1,4 +1,4 @@
-//! What is believed of datagrams: what can be. The rest is counted and dropped.
+//! Plausibility of datagrams: what cannot be is counted and dropped.
 //!
 //! A path state is *sound* if it can be on any machine of that kind: finite, T and N of unit length, no faster than
 //! any path, its times near the relation of the clocks, its pose as near to the plan as a seam may lie. It *fits* if it
@@ -8,7 +8,7 @@
 //! when two states in a row say so.
 
 use super::history::RESTARTED;
-use super::parameters::{Belief, TrackerParameters};
+use super::parameters::{PlausibleLimits, TrackerParameters};
 use crate::geometry::Pose;
 use crate::io::{SIDES, SLIDES};
 use crate::protocol::{PathState, SideMeasurement};
@@ -35,7 +35,7 @@ impl TrackerParameters {
     /// Whether the camera of `side` can have seen the seam there, with the slides at `slides` \[mm\] and the machine going
     /// at `speed` \[mm/s\]. The mean of several pictures lies behind the last one, and means over more than the window
     /// would bend the seam.
-    pub fn believes(&self, side: usize, slides: &[f64; SLIDES], speed: f64, seen: &SideMeasurement) -> bool {
+    pub fn accepts(&self, side: usize, slides: &[f64; SLIDES], speed: f64, seen: &SideMeasurement) -> bool {
         let ahead = if speed < 0.0 {
             -seen.along_mm
         } else {
@@ -43,11 +43,11 @@ impl TrackerParameters {
         };
         let reaches = |slide: usize, delta: f64| {
             let (min, max) = self.slides[slide].law.travel;
-            (min - self.belief.gate..=max + self.belief.gate).contains(&(slides[slide] + delta))
+            (min - self.plausible.gate..=max + self.plausible.gate).contains(&(slides[slide] + delta))
         };
         // Comparisons with what is not a number are false.
-        ahead <= self.belief.along
-            && ahead >= -self.belief.along - self.map.window
+        ahead <= self.plausible.along
+            && ahead >= -self.plausible.along - self.map.window
             && reaches(2 * side, seen.delta_u_mm)
             && reaches(2 * side + 1, seen.delta_v_mm)
     }
@@ -111,7 +111,7 @@ impl PathStateGate {
     pub fn sound<const N: usize>(&mut self, arrival: &Arrival<'_, N>, state: &PathState) -> bool {
         let sound = arrival
             .parameters
-            .is_none_or(|parameters| is_sound(&parameters.belief, arrival, state));
+            .is_none_or(|parameters| is_sound(&parameters.plausible, arrival, state));
         if !sound {
             self.count_dropped();
         }
@@ -126,11 +126,11 @@ impl PathStateGate {
             pass.extend([*state]);
             return pass;
         };
-        let belief = &parameters.belief;
+        let plausible = &parameters.plausible;
         // What came from another clock is for the relation of the clocks alone.
         let in_time = arrival
             .lateness_us
-            .is_none_or(|late| late >= -EARLY && late <= belief.stale_us as f64);
+            .is_none_or(|late| late >= -EARLY && late <= plausible.stale_us as f64);
         if !in_time {
             self.count_dropped();
             return pass;
@@ -143,7 +143,7 @@ impl PathStateGate {
                 pass.extend([*state]);
                 return pass;
             }
-            if fits(belief, &last, state, off.as_ref()) {
+            if fits(plausible, &last, state, off.as_ref()) {
                 self.misfits_since_us = None;
                 if flags(state) != flags(&last.state) && !self.confirms(state) {
                     self.held.clear();
@@ -153,7 +153,7 @@ impl PathStateGate {
                 pass.extend(self.held.pop().filter(|held| flags(held) == flags(state)));
             } else {
                 let since = *self.misfits_since_us.get_or_insert(arrival.arrived_us);
-                if arrival.arrived_us.saturating_sub(since) < belief.stale_us / 4 {
+                if arrival.arrived_us.saturating_sub(since) < plausible.stale_us / 4 {
                     self.count_dropped();
                     return pass;
                 }
@@ -182,19 +182,23 @@ fn flags(state: &PathState) -> Flags {
     (state.path_id, state.tracking, state.beams)
 }
 
-fn is_sound<const N: usize>(belief: &Belief, arrival: &Arrival<'_, N>, state: &PathState) -> bool {
+fn is_sound<const N: usize>(
+    plausible: &PlausibleLimits,
+    arrival: &Arrival<'_, N>,
+    state: &PathState,
+) -> bool {
     let p = &state.pose;
     let in_time = state
         .sent_us
         .checked_sub(state.time_us)
-        .is_some_and(|delay| delay <= belief.stale_us);
-    let [along_m, along_n, about_t] = state.aside.map(libm::fabs);
+        .is_some_and(|delay| delay <= plausible.stale_us);
+    let [along_m, along_n, about_t] = state.superimposed_rate.map(libm::fabs);
     let finite = state.s_mm.is_finite() && p.iter().all(|x| x.is_finite());
     // Comparisons with what is not a number are false.
-    let slow = libm::fabs(state.speed_mm_s) <= belief.path_speed
-        && along_m <= belief.pose_speed
-        && along_n <= belief.pose_speed
-        && about_t * belief.lever <= belief.pose_speed;
+    let slow = libm::fabs(state.speed_mm_s) <= plausible.path_speed
+        && along_m <= plausible.pose_speed
+        && along_n <= plausible.pose_speed
+        && about_t * plausible.lever <= plausible.pose_speed;
     if !(finite && in_time && slow) {
         return false;
     }
@@ -210,7 +214,7 @@ fn is_sound<const N: usize>(belief: &Belief, arrival: &Arrival<'_, N>, state: &P
     off_plan(arrival.path, state).is_none_or(|[position, t_off, n_off]| {
         // |a − b|² = 2 − 2 cos of unit vectors.
         let near = |off: &Vector3<f64>| off.norm_squared() <= 2.0 * (1.0 - TURNED);
-        position.norm() <= belief.deviation && near(&t_off) && near(&n_off)
+        position.norm() <= plausible.deviation && near(&t_off) && near(&n_off)
     })
 }
 
@@ -230,7 +234,7 @@ fn off_plan<const N: usize>(path: &Path<N>, state: &PathState) -> Option<OffPlan
 }
 
 /// Whether `state`, with its pose `off` the plan, can come after `last`, which is older.
-fn fits(belief: &Belief, last: &Taken, state: &PathState, off: Option<&OffPlan>) -> bool {
+fn fits(plausible: &PlausibleLimits, last: &Taken, state: &PathState, off: Option<&OffPlan>) -> bool {
     let before = &last.state;
     let Some(dt_us) = state.time_us.checked_sub(before.time_us) else {
         return false;
@@ -245,7 +249,7 @@ fn fits(belief: &Belief, last: &Taken, state: &PathState, off: Option<&OffPlan>)
     let dt = dt_us as f64 * 1e-6;
     let mean = 0.5 * (before.speed_mm_s + state.speed_mm_s);
     let change = libm::fabs(state.speed_mm_s - before.speed_mm_s);
-    let gain = GAIN * belief.path_speed * ticks as f64;
+    let gain = GAIN * plausible.path_speed * ticks as f64;
     let unsure = NOISE + (change + gain) * dt;
     if change > gain || libm::fabs(state.s_mm - before.s_mm - mean * dt) > unsure {
         return false;
@@ -253,7 +257,7 @@ fn fits(belief: &Belief, last: &Taken, state: &PathState, off: Option<&OffPlan>)
     let Some((now, then)) = off.zip(last.off.as_ref()) else {
         return true;
     };
-    let most = NOISE + belief.pose_speed * dt;
+    let most = NOISE + plausible.pose_speed * dt;
     let [position, t, n] = [0, 1, 2].map(|i| (now[i] - then[i]).norm());
-    position <= most && t.max(n) * belief.lever <= most
+    position <= most && t.max(n) * plausible.lever <= most
 }

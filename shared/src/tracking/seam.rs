@@ -1,7 +1,7 @@
 //! The seam of both sides: from measurements to where the slides should be.
 
 use super::frames::{Heads, SpotFrame, meet};
-use super::history::Place;
+use super::history::PathSnapshot;
 use super::law::SlideTarget;
 use super::map::{Added, SeamMap};
 use super::parameters::TrackerParameters;
@@ -15,11 +15,11 @@ const fn u_slide(side: usize) -> usize {
     2 * side
 }
 
-/// Maps of the four channels, and what became of the measurements.
+/// Maps of the four channels, and counts of accepted and rejected measurements.
 #[derive(Clone, Debug, Default)]
 pub struct Seam {
     maps: [SeamMap; SLIDES],
-    /// What the maps held before they locked on to the seam anew: the spot has yet to pass that.
+    /// What the maps held before they locked on to the seam again: the spot has yet to pass that.
     before: [SeamMap; SLIDES],
     /// Where each slide last met the seam since tracking began \[mm\].
     met: [Option<f64>; SLIDES],
@@ -28,9 +28,9 @@ pub struct Seam {
     implausible: [u32; SIDES],
 }
 
-/// Where a slide should be, as far as the seam tells.
+/// Where a slide should be, as far as it is known from the seam.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sight {
+pub enum SeamTarget {
     /// The seam, in the frame of the planned path.
     Seam(SlideTarget),
     /// The same, where the seam has just jumped to.
@@ -83,34 +83,35 @@ impl Seam {
         self.implausible[side] = self.implausible[side].saturating_add(1);
     }
 
-    /// Enters what the camera of `side` saw when the machine was at `place` and the slides at `slides` \[mm\].
+    /// Enters what the camera of `side` saw when the machine was in the state `snapshot` and the slides at
+    /// `slides` \[mm\].
     pub fn add<const N: usize>(
         &mut self,
         parameters: &TrackerParameters,
         path: &Path<N>,
         side: usize,
-        place: &Place,
+        snapshot: &PathSnapshot,
         slides: &[f64; SLIDES],
         seen: &SideMeasurement,
     ) {
         let heads = &parameters.heads;
         let (u, v) = (u_slide(side), u_slide(side) + 1);
-        if !parameters.believes(side, slides, place.speed, seen) {
+        if !parameters.accepts(side, slides, snapshot.speed, seen) {
             return self.disbelieve(side);
         }
-        let spot = heads.spot(&place.pose, side);
+        let spot = heads.spot(&snapshot.pose, side);
         let point = heads.seam_point(&spot, slides[u], slides[v], seen);
-        let start = place.s + heads.camera_lead() + seen.along_mm;
+        let start = snapshot.s + heads.camera_lead() + seen.along_mm;
         let Some(meeting) = meet(&point, start, |s| planned_spot(heads, path, side, s)) else {
             self.rejected[side] = self.rejected[side].saturating_add(1);
             return;
         };
         // U is planned at zero.
         let planned = plan(parameters, path, meeting.sigma, 0.0).map_or(0.0, |plan| plan[v].position);
-        if libm::fabs(meeting.u).max(libm::fabs(meeting.v - planned)) > parameters.belief.deviation {
+        if libm::fabs(meeting.u).max(libm::fabs(meeting.v - planned)) > parameters.plausible.deviation {
             return self.disbelieve(side);
         }
-        let add = if place.speed < 0.0 {
+        let add = if snapshot.speed < 0.0 {
             SeamMap::add_going_back
         } else {
             SeamMap::add
@@ -131,9 +132,14 @@ impl Seam {
         }
     }
 
-    /// Where `slide` should be when the machine is at `place`.
-    pub fn sight(&mut self, parameters: &TrackerParameters, slide: usize, place: &Place) -> Sight {
-        let (law, s, speed) = (&parameters.map, place.s, place.speed);
+    /// Where `slide` should be when the machine is in the state `snapshot`.
+    pub fn sight(
+        &mut self,
+        parameters: &TrackerParameters,
+        slide: usize,
+        snapshot: &PathSnapshot,
+    ) -> SeamTarget {
+        let (law, s, speed) = (&parameters.map, snapshot.s, snapshot.speed);
         let before = &mut self.before[slide];
         // It has jumped ahead, but not where the spot is.
         let behind = self.maps[slide].begins_after(s) && before.estimate(law, s).is_some();
@@ -147,18 +153,18 @@ impl Seam {
             let ahead = map.estimate(law, s + speed * parameters.preview);
             let target = SlideTarget::seam(now, ahead, speed);
             return if jumps {
-                Sight::Jump(target)
+                SeamTarget::Jump(target)
             } else {
-                Sight::Seam(target)
+                SeamTarget::Seam(target)
             };
         }
         // Back along the path after a hold, the map begins ahead.
-        if place.beams[slide / 2] && self.met[slide].is_some() && !map.begins_after(s) {
-            return Sight::Lost;
+        if snapshot.beams[slide / 2] && self.met[slide].is_some() && !map.begins_after(s) {
+            return SeamTarget::Lost;
         }
         match map.next_after(law, s) {
-            Some(position) => Sight::Ahead(SlideTarget::rest(position)),
-            None => Sight::Nowhere(self.met[slide].map(SlideTarget::rest)),
+            Some(position) => SeamTarget::Ahead(SlideTarget::rest(position)),
+            None => SeamTarget::Nowhere(self.met[slide].map(SlideTarget::rest)),
         }
     }
 }
@@ -199,17 +205,22 @@ pub struct RealHead {
     real: SpotFrame,
     pose: Pose,
     /// How fast the pose moves beside the planned one on purpose.
-    aside: PoseOffset,
+    superimposed_rate: PoseOffset,
 }
 
 impl RealHead {
-    /// Of `side`, with the machine at `place`.
-    pub fn new<const N: usize>(heads: &Heads, path: &Path<N>, place: &Place, side: usize) -> Option<Self> {
+    /// Of `side`, with the machine in the state `snapshot`.
+    pub fn new<const N: usize>(
+        heads: &Heads,
+        path: &Path<N>,
+        snapshot: &PathSnapshot,
+        side: usize,
+    ) -> Option<Self> {
         Some(Self {
-            planned: planned_spot(heads, path, side, place.s)?,
-            real: heads.spot(&place.pose, side),
-            pose: place.pose,
-            aside: place.aside,
+            planned: planned_spot(heads, path, side, snapshot.s)?,
+            real: heads.spot(&snapshot.pose, side),
+            pose: snapshot.pose,
+            superimposed_rate: snapshot.superimposed_rate,
         })
     }
 
@@ -223,7 +234,9 @@ impl RealHead {
     pub fn targets(&self, in_plan: [SlideTarget; 2]) -> [SlideTarget; 2] {
         let point = self.planned.point(0.0, in_plan[0].position, in_plan[1].position);
         let (_, u, v) = self.real.coordinates(&point);
-        let moves = self.aside.velocity_at(&self.pose, &(point - self.pose.position));
+        let moves = self
+            .superimposed_rate
+            .velocity_at(&self.pose, &(point - self.pose.position));
         [
             SlideTarget {
                 position: u,

@@ -42,7 +42,7 @@ pub struct Supervision {
 
 /// What [`Supervision::build`] needs to know of a slide, checked already.
 #[derive(Clone, Copy, Debug)]
-pub struct Supervised {
+pub struct SupervisedSlide {
     /// Index of the slide.
     pub slide: u8,
     /// Encoder counts in one mm, signed.
@@ -62,7 +62,7 @@ impl Supervision {
     ///
     /// That must be more than the model may be wrong by: a turn round at full speed behind a dead time of `preview_s`
     /// is 2·v·`preview_s`/e away from the same behind a lag. And no more than a tenth of the travel.
-    pub fn build(owner: &str, of: &Supervised, following_error_mm: f64) -> Result<Self, ParameterError> {
+    pub fn build(owner: &str, of: &SupervisedSlide, following_error_mm: f64) -> Result<Self, ParameterError> {
         let least = 2.0 * of.max_velocity * of.preview / core::f64::consts::E;
         let most = MOST_OF_TRAVEL * of.travel;
         let following_error = check(owner, "following_error_mm", following_error_mm, |v| {
@@ -83,11 +83,11 @@ impl Supervision {
     }
 }
 
-/// What a slide did and was told to.
+/// Position and command of a slide.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SlideWatch {
     counts: i64,
-    /// What the drive was told at the last tick \[mm/s\].
+    /// Command to the drive at the last tick \[mm/s\].
     command: f64,
     /// What the drive makes of its commands \[mm/s\].
     expected: f64,
@@ -119,7 +119,7 @@ impl SlideWatch {
         };
     }
 
-    /// The drive is told to go at `velocity` \[mm/s\].
+    /// The drive gets the command `velocity` \[mm/s\].
     pub fn command(&mut self, velocity: f64) {
         self.command = velocity;
     }

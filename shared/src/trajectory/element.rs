@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 /// Channels that a [`Shape`] gives; the rest are [`Cubic`]s.
 pub const SHAPED: usize = 3;
 
-/// A piece of path that is smooth in itself: where, how fast at most, and how it goes on.
+/// A piece of path that is smooth in itself: where, how fast at most, and how it continues.
 ///
 /// Elements follow one another: each begins where the one before it ends. Path length s counts the way of the
 /// tool (of axes X Y Z in axis space), or, where it stands, the way of the channel that goes farthest; channels

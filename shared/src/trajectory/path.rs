@@ -31,8 +31,8 @@ pub struct Knot {
     pub slope: [f64; CHANNELS],
 }
 
-/// Up to `N` knots; between two of them every channel is a cubic Hermite span over s, outside it goes on in a
-/// straight line.
+/// Up to `N` knots; between two of them every channel is a cubic Hermite span over s, outside it continues in
+/// a straight line.
 #[derive(Clone, Debug)]
 pub struct Path<const N: usize> {
     id: u32,

@@ -13,7 +13,7 @@ pub enum ReferenceError {
     #[error("the path is empty")]
     EmptyPath,
     /// The path is no pose there.
-    #[error("the path is no pose there: {0}")]
+    #[error("the path does not define a pose there: {0}")]
     Pose(#[from] PoseError),
     /// The machine cannot realise the pose.
     #[error("the machine cannot take the pose: {0}")]

@@ -72,7 +72,7 @@ fn an_upright_ac_head_keeps_c_and_tilts_only_about_its_a_axis() {
     }
     assert_eq!(
         pole.to_string(),
-        "pole of C: the axis would have to jump; turn it before, or keep away from the pole"
+        "pole of C: the axis would have to jump; turn it earlier, or avoid the pole"
     );
 }
 

@@ -113,7 +113,7 @@ fn no_event_asks_for_more_power_than_there_is() {
     bench.loaded(&events(4000.0));
 }
 
-/// Both come between two path ticks: the servo ticks must not go on with what they were told.
+/// Both come between two path ticks: the servo ticks must not continue with what they were told.
 #[test]
 fn drives_and_beams_that_are_switched_off_go_off_though_homing_is_asked_for_at_once() {
     let mut bench = Bench::welding();

@@ -226,7 +226,7 @@ fn with_nobody_in_charge_the_drives_go_off_also_at_rest() {
     bench.run_ms(200);
     assert_eq!(bench.command, MotionCommand::SAFE);
     assert_eq!(bench.fault(), Some(Fault::Unattended { seconds: 2 }));
-    // Who comes back in time goes on.
+    // Who comes back in time continues.
     let mut bench = Bench::homed();
     bench.controller.session_ended();
     bench.run_ms(1000);

@@ -28,7 +28,8 @@ fn code(part: f64) -> Option<DacCode> {
     Some(DacCode::from_ratio(part, 1.0))
 }
 
-/// With a source that gives what it was told a tick before, and `error` of full power more where its gate is open.
+/// With a source that gives the power commanded a tick before, and `error` of full power more where its gate
+/// is open.
 struct Welder {
     bench: Bench,
     error: f64,
@@ -114,7 +115,7 @@ fn a_power_that_is_off_for_too_long_shuts_the_gate_and_stops_on_the_path() {
         let mut welder = Welder::welding();
         welder.error = error;
         let ticks = welder.ticks_until_closed(1000);
-        // The tick at which it is told is the first one after the time.
+        // It is reported at the first tick after the time.
         assert_eq!(ticks, Some(TIME_TICKS + 1), "{error}");
         assert_eq!(welder.bench.command.beam_power, MotionCommand::SAFE.beam_power);
         assert!(welder.bench.command.enable);
@@ -152,7 +153,7 @@ fn a_power_that_is_off_for_a_short_time_again_and_again_is_none() {
     assert_eq!(welder.bench.fault(), None);
 }
 
-/// One that stays on through holds and stops does not go on again on the way to this one.
+/// One that stays on through holds and stops does not continue again on the way to this one.
 #[test]
 fn a_beam_that_stays_on_at_rest_stays_off_once_its_power_was_wrong() {
     let mut config = supervised();
@@ -166,7 +167,7 @@ fn a_beam_that_stays_on_at_rest_stays_off_once_its_power_was_wrong() {
     welder.bench.stops_on_the_path_then_faults();
 }
 
-/// Off is told where the tolerance is larger than the power.
+/// Off is detected where the tolerance is larger than the power.
 #[test]
 fn a_beam_that_is_off_is_told_however_small_its_power() {
     let mut welder = Welder::homed();

@@ -107,7 +107,7 @@ fn disable_on_the_path_switches_everything_off_and_publishes_no_speed() {
     ));
 }
 
-/// Between places that are told by the axes no beam opens and nothing is tracked.
+/// On paths in axis space no beam opens and nothing is tracked.
 #[test]
 fn a_path_in_axis_space_takes_no_beam_and_no_tracking() {
     let mut bench = Bench::homed();

@@ -77,7 +77,7 @@ fn an_offset_is_blended_in_slowly_and_the_path_goes_on_beside_itself() {
     let (mut bench, start) = tracked_line(450.0, 450.0);
     run_ms(&mut bench, 500);
     bench.done(&Request::OffsetPose(OFFSET));
-    let (mut fastest, mut told) = (0.0f64, [0.0; 3]);
+    let (mut fastest, mut expected) = (0.0f64, [0.0; 3]);
     let mut before = beside(&bench, &start);
     for ms in 0..3000 {
         bench.run_ms(1);
@@ -90,15 +90,15 @@ fn an_offset_is_blended_in_slowly_and_the_path_goes_on_beside_itself() {
             before = now;
             bench.status();
         }
-        let aside = bench.path_state.unwrap().aside;
-        told = std::array::from_fn(|i| told[i] + aside[i] * 1e-3);
+        let aside = bench.path_state.unwrap().superimposed_rate;
+        expected = std::array::from_fn(|i| expected[i] + aside[i] * 1e-3);
     }
     assert!(fastest > 1.0 && fastest <= 5.1, "{fastest} mm/s");
-    near(told, OFFSET.numbers(), 0.001);
-    assert_eq!(bench.status().aside, OFFSET);
+    near(expected, OFFSET.numbers(), 0.001);
+    assert_eq!(bench.status().superimposed, OFFSET);
     near(beside(&bench, &start), OFFSET.numbers(), FOLLOWED);
     assert_eq!(bench.status().state, State::Running);
-    assert_eq!(bench.path_state.unwrap().aside, [0.0; 3]);
+    assert_eq!(bench.path_state.unwrap().superimposed_rate, [0.0; 3]);
 }
 
 #[test]
@@ -236,7 +236,7 @@ fn an_offset_is_refused_where_nothing_is_tracked_or_the_machine_ends() {
     }
     run_ms(&mut bench, 2500);
     assert_eq!(bench.refused(&offset), Refusal::NotTracking);
-    assert_eq!(bench.path_state.unwrap().aside, [0.0; 3]);
+    assert_eq!(bench.path_state.unwrap().superimposed_rate, [0.0; 3]);
     // 4 mm below the end of the travel of Z.
     let mut bench = Bench::homed();
     let z = bench.status().reference[2];

@@ -5,7 +5,7 @@ use shared::motion::{MotionController, PathTickInput, ServoReport};
 use shared::protocol::Request;
 use shared::state::State;
 
-/// Path ticks are counted in 32 bits for people, 49 days of them; their time goes on.
+/// Path ticks are counted in 32 bits for people, 49 days of them; their time continues.
 #[test]
 fn the_time_of_path_ticks_goes_on_when_their_counter_wraps() {
     let mut controller = Box::new(MotionController::new());

@@ -82,7 +82,7 @@ impl Job {
         }
     }
 
-    /// Says a word, which may mean nothing now.
+    /// Sends a command, which may have no effect now.
     fn say(&mut self, request: &Request) {
         self.bench.controller.handle(request, 0);
     }
@@ -225,7 +225,7 @@ fn random_words_leave_nothing_out() {
     }
 }
 
-/// Says words, each after a pause \[ms\], then goes on to the end.
+/// Says words, each after a pause \[ms\], then continues to the end.
 fn nothing_is_left_out_after(step: f64, words: &[(u32, Request)]) {
     let mut job = Job::of_elements(step);
     for (pause, word) in words {

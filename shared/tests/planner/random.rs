@@ -154,7 +154,7 @@ fn cases(cases: u32) -> ProptestConfig {
     }
 }
 
-/// Programs on a machine: nobody disturbs them, or somebody is at the controls.
+/// Programs on a machine, with and without an operator at the controls.
 macro_rules! on {
     ($($name:ident: $bench:path;)+) => {
         $(

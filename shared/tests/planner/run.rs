@@ -4,7 +4,7 @@ use super::bench::Bench;
 use shared::trajectory::{BoardPlanner, Element, Output, PushError, Unreachable, Way};
 use thiserror::Error;
 
-/// What somebody does at the controls, or what befalls the link.
+/// What an operator does at the controls, or a disturbance of the link.
 #[derive(Clone, Copy, Debug)]
 pub enum Act {
     Override(f64),
@@ -51,7 +51,7 @@ const AFTER: usize = 700;
 const CREDITS: usize = 8;
 
 /// Runs `elements` from rest at home to their end. All that is done is undone after the last of `acts`: then the
-/// machine goes on to the end as programmed.
+/// machine continues to the end as programmed.
 pub fn run(bench: &Bench, elements: &[Element], acts: &Acts) -> Result<Vec<Sample>, Stuck> {
     run_with(bench, elements, acts, CREDITS)
 }

@@ -46,7 +46,7 @@ fn leaning(bench: &Bench) -> Vec<Element> {
     ]
 }
 
-/// Runs until the planner says that it cannot go on; the positions until then, and where that was.
+/// Runs until the planner says that it cannot continue; the positions until then, and where that was.
 fn run(mut hand: impl FnMut(&mut BoardPlanner, usize)) -> (Vec<[f64; AXES]>, f64, Unreachable) {
     let bench = bench::stir_gantry();
     let mut planner = Box::new(BoardPlanner::new());

@@ -117,7 +117,7 @@ pub struct Bench {
     pub controller: Box<TrackerController<KNOTS>>,
     pub plant: SlidePlant,
     /// Changes what the plant reads, for faults.
-    pub meddle: fn(&mut SlideFeedback),
+    pub change_inputs: fn(&mut SlideFeedback),
     pub shape: Shape,
     pub seam: SeamFn,
     /// Whether the camera of a side sees the seam at s.
@@ -132,7 +132,7 @@ pub struct Bench {
     pub pose_error: fn(f64) -> f64,
     /// Noise of the cameras, 1σ \[mm\].
     pub noise: f64,
-    /// The motion board is heard.
+    /// Datagrams of the motion board arrive.
     pub linked: bool,
     pub tracking: bool,
     pub beams: [bool; 2],
@@ -168,7 +168,7 @@ impl Bench {
         Self {
             controller,
             plant: SlidePlant::dual_beam_tracker(),
-            meddle: |_| {},
+            change_inputs: |_| {},
             shape,
             seam,
             visible: |_, _| true,
@@ -258,7 +258,7 @@ impl Bench {
                 pose: core::array::from_fn(|i| flat[i / 3][i % 3]),
                 tracking: self.tracking,
                 beams: self.beams,
-                aside: [0.0; 3],
+                superimposed_rate: [0.0; 3],
             };
             self.controller
                 .datagram(&Datagram::PathState(state), t + 370 + TRACKER_CLOCK);
@@ -271,7 +271,7 @@ impl Bench {
                 .datagram(&Datagram::Measurement(measurement), now + TRACKER_CLOCK);
         }
         let mut feedback = self.plant.advance(&self.command);
-        (self.meddle)(&mut feedback);
+        (self.change_inputs)(&mut feedback);
         let truth = self.plant.truth();
         let input = self.input(feedback);
         self.last = self.controller.tick(&input);

@@ -10,16 +10,16 @@ use shared::state::{TrackerFault, TrackerState};
 /// The longest time that the channels may differ \[ms\].
 const LONGEST_MS: u32 = DISCREPANCY_US / 1000;
 
-type Meddle = fn(&mut SlideFeedback);
+type ChangeInputs = fn(&mut SlideFeedback);
 
-const CLOSED: Meddle = |f| f.estop = [false; 2];
-const FIRST: Meddle = |f| f.estop = [true, false];
-const SECOND: Meddle = |f| f.estop = [false, true];
-const PRESSED: Meddle = |f| f.estop = [true; 2];
+const CLOSED: ChangeInputs = |f| f.estop = [false; 2];
+const FIRST: ChangeInputs = |f| f.estop = [true, false];
+const SECOND: ChangeInputs = |f| f.estop = [false, true];
+const PRESSED: ChangeInputs = |f| f.estop = [true; 2];
 
 impl Bench {
-    fn channels(&mut self, open: Meddle, ms: u32) {
-        self.meddle = open;
+    fn channels(&mut self, open: ChangeInputs, ms: u32) {
+        self.change_inputs = open;
         self.run_ms(ms);
     }
 

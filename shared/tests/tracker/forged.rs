@@ -96,7 +96,7 @@ impl Random {
                 5 => state.speed_mm_s = self.number(state.speed_mm_s),
                 6 => state.tracking = !state.tracking,
                 7 => state.beams[self.below(2) as usize] ^= true,
-                8 => state.aside[self.below(3) as usize] = self.number(0.0),
+                8 => state.superimposed_rate[self.below(3) as usize] = self.number(0.0),
                 _ => {
                     let i = self.below(9) as usize;
                     state.pose[i] = self.number(state.pose[i]);
@@ -134,16 +134,16 @@ impl Random {
     }
 }
 
-/// What a bench went through.
+/// Largest error and first fault of a bench.
 #[derive(Debug, Default)]
-struct Seen {
+struct Extremes {
     /// Furthest that a spot was off its seam \[mm\].
     off: f64,
     fault: Option<TrackerFault>,
 }
 
 /// One tick; nothing but what a slide can do comes of it.
-fn tick(bench: &mut Bench, seen: &mut Seen) {
+fn tick(bench: &mut Bench, extremes: &mut Extremes) {
     bench.tick();
     let sample = &bench.last.sample;
     for (slide, error) in bench.spot_errors().into_iter().enumerate() {
@@ -153,10 +153,10 @@ fn tick(bench: &mut Bench, seen: &mut Seen) {
             (-12.0..=12.0).contains(&target) || target == at,
             "target {target} mm"
         );
-        seen.off = seen.off.max(error.abs());
+        extremes.off = extremes.off.max(error.abs());
     }
     assert!(bench.plant.truth().iter().all(|slide| slide.abs() <= 12.5));
-    seen.fault = seen.fault.or(sample.fault);
+    extremes.fault = extremes.fault.or(sample.fault);
 }
 
 #[test]
@@ -165,22 +165,23 @@ fn one_bad_datagram_here_and_there_makes_no_fault_and_moves_no_spot_far() {
     let mut worst = 0.0f64;
     for seed in 0..150 {
         let mut random = Random(seed);
-        let (mut bench, mut seen) = (good.clone(), Seen::default());
+        let (mut bench, mut extremes) = (good.clone(), Extremes::default());
         while bench.s < 180.0 {
-            tick(&mut bench, &mut seen);
+            tick(&mut bench, &mut extremes);
             if random.below(20) == 0 {
                 let datagram = random.datagram(&bench);
                 let arrived = bench.now_us() + 100;
                 bench.controller.datagram(&datagram, arrived);
             }
-            assert_eq!(seen.fault, None, "seed {seed} at {} mm", bench.s);
+            assert_eq!(extremes.fault, None, "seed {seed} at {} mm", bench.s);
         }
         assert_eq!(bench.controller.state(), TrackerState::Tracking, "seed {seed}");
         let status = bench.status();
         assert!(status.implausible_path_states > 0 && status.implausible_clock_replies > 0);
-        worst = worst.max(seen.off);
+        worst = worst.max(extremes.off);
     }
-    // A measurement within what a camera sees, of the right capture and before the true one, cannot be told from it.
+    // A measurement within what a camera sees, of the right capture and before the true one, cannot be
+    // distinguished from it.
     println!("5 % forged: {worst:.3} mm at most");
     assert!(worst <= 0.35, "{worst} mm");
 }
@@ -190,9 +191,9 @@ fn a_flood_of_them_never_sends_a_slide_beyond_its_travel() {
     let good = welding(sine);
     for seed in 0..40 {
         let mut random = Random(seed);
-        let (mut bench, mut seen) = (good.clone(), Seen::default());
+        let (mut bench, mut extremes) = (good.clone(), Extremes::default());
         for _ in 0..1000 {
-            tick(&mut bench, &mut seen);
+            tick(&mut bench, &mut extremes);
             for _ in 0..random.below(8) {
                 let datagram = random.datagram(&bench);
                 let arrived = bench.now_us() + random.below(1000);
@@ -205,9 +206,9 @@ fn a_flood_of_them_never_sends_a_slide_beyond_its_travel() {
 #[test]
 fn path_states_with_a_pose_beside_the_true_one_move_no_spot() {
     for (off, index) in [(2.6, 1), (0.3, 2), (-11.0, 1), (0.1, 7), (0.05, 4)] {
-        let (mut bench, mut seen) = (welding(sine), Seen::default());
+        let (mut bench, mut extremes) = (welding(sine), Extremes::default());
         while bench.s < 180.0 {
-            tick(&mut bench, &mut seen);
+            tick(&mut bench, &mut extremes);
             let mut forged = bench.path_state.unwrap();
             forged.tick += 1;
             forged.time_us += 1000;
@@ -217,8 +218,12 @@ fn path_states_with_a_pose_beside_the_true_one_move_no_spot() {
             let arrived = bench.now_us() + 200;
             bench.controller.datagram(&Datagram::PathState(forged), arrived);
         }
-        assert_eq!(seen.fault, None);
-        assert!(seen.off <= 0.03, "pose[{index}] {off} off: {} mm", seen.off);
+        assert_eq!(extremes.fault, None);
+        assert!(
+            extremes.off <= 0.03,
+            "pose[{index}] {off} off: {} mm",
+            extremes.off
+        );
         assert!(bench.status().implausible_path_states > 700);
     }
 }
@@ -234,7 +239,7 @@ fn a_pose_beside_the_plan_turns_no_faster_than_the_slides_follow() {
         bench.tick();
         let before = bench.status().implausible_path_states;
         let mut forged = bench.path_state.unwrap();
-        forged.aside[2] = turn * most;
+        forged.superimposed_rate[2] = turn * most;
         let arrived = bench.now_us() + 200;
         bench.controller.datagram(&Datagram::PathState(forged), arrived);
         let now = bench.status().implausible_path_states;
@@ -245,7 +250,7 @@ fn a_pose_beside_the_plan_turns_no_faster_than_the_slides_follow() {
 #[test]
 fn one_measurement_from_far_ahead_blinds_no_side() {
     for along_mm in [100.0, 1e6, f64::INFINITY, -4.1, 2.9, 0.9, -0.9, -3.9] {
-        let (mut bench, mut seen) = (welding(sine), Seen::default());
+        let (mut bench, mut extremes) = (welding(sine), Extremes::default());
         let forged = Measurement {
             capture: bench.captures - 1,
             sides: [Some(SideMeasurement {
@@ -257,27 +262,27 @@ fn one_measurement_from_far_ahead_blinds_no_side() {
         let arrived = bench.now_us() + 100;
         bench.controller.datagram(&Datagram::Measurement(forged), arrived);
         while bench.s < 180.0 {
-            tick(&mut bench, &mut seen);
+            tick(&mut bench, &mut extremes);
         }
-        assert_eq!(seen.fault, None, "{along_mm} mm");
+        assert_eq!(extremes.fault, None, "{along_mm} mm");
         // What a camera can see leaves a gap in the map, and is a point of the seam that is not one.
         // A mean of several pictures lies behind the last one, by the window at most.
         let can_be = (-4.0..=1.0).contains(&along_mm);
         let most = if can_be { 0.2 } else { 0.03 };
-        assert!(seen.off <= most, "{along_mm} mm ahead: {} mm", seen.off);
+        assert!(extremes.off <= most, "{along_mm} mm ahead: {} mm", extremes.off);
     }
 }
 
-/// All that the cameras say drifts, as fast as it can be believed and faster.
+/// All that the cameras say drifts, as fast as it can be accepted and faster.
 #[test]
 fn measurements_that_drift_lead_no_further_than_a_seam_may_lie_and_no_faster() {
     for drift in [0.1, 0.3, 1.0, 5.0] {
         let mut bench = welding(|_, _| (0.0, 0.0));
         let mut off = [0.0; SLIDES];
-        let (begin, mut seen) = (bench.s, Seen::default());
+        let (begin, mut extremes) = (bench.s, Extremes::default());
         let mut furthest = 0.0f64;
         while bench.s < 400.0 {
-            tick(&mut bench, &mut seen);
+            tick(&mut bench, &mut extremes);
             // Each picture, once: relative to where the slides stand, further than the last.
             if let Some(capture) = bench.last.capture {
                 bench.measurements.pop_back();
@@ -302,22 +307,22 @@ fn measurements_that_drift_lead_no_further_than_a_seam_may_lie_and_no_faster() {
             let slide = bench.plant.truth()[0];
             furthest = furthest.max(slide);
             // At most what half a window's 1.5 mm allow, and a quarter of the gate; it is seen 10 mm ahead.
-            if seen.fault.is_none() {
+            if extremes.fault.is_none() {
                 let most = (0.3 + 0.25) / 1.5 * (bench.s - begin + 10.0);
                 assert!(slide <= most, "{drift}: {slide} mm after {} mm", bench.s - begin);
             }
         }
-        println!("a drift of {drift}: {furthest:.2} mm, {:?}", seen.fault);
-        // The soft limit, and what a slide goes on within the lag of its drive.
+        println!("a drift of {drift}: {furthest:.2} mm, {:?}", extremes.fault);
+        // The soft limit, and what a slide continues within the lag of its drive.
         assert!(furthest <= 12.5, "{furthest} mm");
         if drift > 0.3 {
             assert!(
                 matches!(
-                    seen.fault,
+                    extremes.fault,
                     Some(TrackerFault::LostSeam { .. } | TrackerFault::Saturated { .. })
                 ),
                 "{drift}: {:?}",
-                seen.fault
+                extremes.fault
             );
         }
     }
@@ -325,10 +330,10 @@ fn measurements_that_drift_lead_no_further_than_a_seam_may_lie_and_no_faster() {
 
 #[test]
 fn clock_replies_that_are_off_stop_no_weld() {
-    let (mut bench, mut seen) = (welding(sine), Seen::default());
+    let (mut bench, mut extremes) = (welding(sine), Extremes::default());
     let residual = bench.status().clock_residual_us;
     for _ in 0..20 {
-        tick(&mut bench, &mut seen);
+        tick(&mut bench, &mut extremes);
         // What was asked of it, though before it was sent.
         let asked_us = bench.now_us() + 50;
         bench.controller.asks_clock(asked_us);
@@ -344,26 +349,26 @@ fn clock_replies_that_are_off_stop_no_weld() {
     }
     assert_eq!(bench.status().implausible_clock_replies, 20);
     while bench.s < 180.0 {
-        tick(&mut bench, &mut seen);
+        tick(&mut bench, &mut extremes);
     }
-    assert_eq!(seen.fault, None);
-    assert!(seen.off <= 0.03, "{} mm", seen.off);
+    assert_eq!(extremes.fault, None);
+    assert!(extremes.off <= 0.03, "{} mm", extremes.off);
     assert!((bench.status().clock_residual_us - residual).abs() < 1.0);
 }
 
 #[test]
 fn one_path_state_from_another_time_is_dropped_and_a_restarted_board_is_believed() {
-    let (mut bench, mut seen) = (welding(sine), Seen::default());
+    let (mut bench, mut extremes) = (welding(sine), Extremes::default());
     for time in [1_000_000_000_000, 0, 5] {
         let mut forged = bench.path_state.unwrap();
         (forged.time_us, forged.sent_us) = (time, time + 100);
         let arrived = bench.now_us() + 100;
         bench.controller.datagram(&Datagram::PathState(forged), arrived);
         for _ in 0..100 {
-            tick(&mut bench, &mut seen);
+            tick(&mut bench, &mut extremes);
         }
-        assert_eq!(seen.fault, None);
+        assert_eq!(extremes.fault, None);
     }
-    assert!(seen.off <= 0.03, "{} mm", seen.off);
+    assert!(extremes.off <= 0.03, "{} mm", extremes.off);
     assert_eq!(bench.status().implausible_path_states, 3);
 }

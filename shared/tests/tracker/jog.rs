@@ -144,7 +144,7 @@ fn only_a_ready_tracker_moves_its_slides() {
     );
 }
 
-/// What a slide was told before its drive went off is no speed to slow down from.
+/// A command from before the drive went off is not a speed to slow down from.
 #[test]
 fn slides_that_were_switched_off_on_the_way_start_from_rest() {
     let mut bench = ready();

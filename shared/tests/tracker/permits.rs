@@ -66,11 +66,14 @@ fn every_fault_ends_the_permit_of_both_sides_at_the_next_tick() {
     type Fails = fn(&mut Bench);
     let faults: [(Fails, u32); 4] = [
         (
-            |bench| bench.meddle = |feedback| feedback.drive_fault.set(1, true),
+            |bench| bench.change_inputs = |feedback| feedback.drive_fault.set(1, true),
             1,
         ),
-        (|bench| bench.meddle = |feedback| feedback.estop = [true; 2], 1),
-        // The motion board is not heard: `stale_path_ms` later.
+        (
+            |bench| bench.change_inputs = |feedback| feedback.estop = [true; 2],
+            1,
+        ),
+        // Nothing is received from the motion board: `stale_path_ms` later.
         (|bench| bench.linked = false, 23),
         (|bench| bench.controller.session_ended(), 1),
     ];

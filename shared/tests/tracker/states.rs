@@ -337,8 +337,8 @@ fn disable_switches_off_from_every_state() {
 
 #[test]
 fn estop_drive_and_limit_switch_lead_to_fault_and_reset_leads_out() {
-    type Meddle = fn(&mut shared::io::SlideFeedback);
-    let causes: [(Meddle, TrackerFault); 3] = [
+    type ChangeInputs = fn(&mut shared::io::SlideFeedback);
+    let causes: [(ChangeInputs, TrackerFault); 3] = [
         (|f| f.estop = [false, true], TrackerFault::EmergencyStop),
         (|f| f.drive_fault.set(3, true), TrackerFault::Drive { slide: 3 }),
         (
@@ -351,7 +351,7 @@ fn estop_drive_and_limit_switch_lead_to_fault_and_reset_leads_out() {
     ];
     for (cause, fault) in causes {
         for mut bench in [ready(), tracking()] {
-            bench.meddle = cause;
+            bench.change_inputs = cause;
             bench.run_ms(1);
             assert_eq!(bench.controller.state(), TrackerState::Fault);
             assert_eq!(bench.last.sample.fault, Some(fault));
@@ -365,7 +365,7 @@ fn estop_drive_and_limit_switch_lead_to_fault_and_reset_leads_out() {
                     Response::Refused(Refusal::CauseRemains)
                 );
             }
-            bench.meddle = |_| {};
+            bench.change_inputs = |_| {};
             bench.run_ms(1);
             bench.accept(Request::Reset);
             assert_eq!(bench.controller.state(), TrackerState::Off);
@@ -380,13 +380,13 @@ fn homing_ends_in_fault_by_estop_or_without_a_mark() {
     stopped.accept(Request::ConfigureTracker(config()));
     stopped.accept(Request::Home);
     stopped.run_ms(10);
-    stopped.meddle = |f| f.estop = [false, true];
+    stopped.change_inputs = |f| f.estop = [false, true];
     stopped.run_ms(1);
     assert_eq!(stopped.last.sample.fault, Some(TrackerFault::EmergencyStop));
     assert_eq!(stopped.controller.state(), TrackerState::Fault);
 
     let mut blind = bench();
-    blind.meddle = |f| f.mark[2] = None;
+    blind.change_inputs = |f| f.mark[2] = None;
     blind.accept(Request::ConfigureTracker(config()));
     blind.accept(Request::Home);
     blind.run_ms(20_000);

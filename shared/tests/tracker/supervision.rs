@@ -1,4 +1,4 @@
-//! Slides that do not do what they are told are switched off, and how far they go until then.
+//! Slides that do not follow their commands are switched off, and how far they go until then.
 
 use crate::bench::{Bench, Shape, config};
 use plant::{GratingFault, SlideFault};

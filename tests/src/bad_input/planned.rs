@@ -9,11 +9,12 @@ use config::machine::MachineFile;
 use nc::{Motion, Options, interpret};
 use parts::PartFile;
 use std::io::Cursor;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::LazyLock;
 use std::time::Duration;
+use tempfile::{NamedTempFile, TempPath};
 use vision::{Detector, Image, Joint, Prior};
-use world::{Deviation, Prospect, RenderedWorld, SceneFile, View, ViewForm, check_seam};
+use world::{Deviation, FieldOfView, RenderedWorld, SceneFile, View, ViewForm, check_seam};
 
 /// Rows and columns of a picture above which it is not measured here: that takes a share of a second.
 const LARGEST: usize = 256;
@@ -73,64 +74,52 @@ fn plan(machine: &str, path: &Path, text: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A file of a folder that is removed again.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(text: &str) -> anyhow::Result<Self> {
-        let thread = std::thread::current().id();
-        let name = format!("seamwright-bad-input-{}-{thread:?}", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        std::fs::write(&path, text)?;
-        Ok(Self(path))
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.0);
-    }
+/// A temporary file with `text`.
+fn written(text: &str) -> anyhow::Result<TempPath> {
+    let file = NamedTempFile::new()?;
+    std::fs::write(&file, text)?;
+    Ok(file.into_temp_path())
 }
 
 /// A rib with one of its files in the place of the shipped one.
 pub fn rib(key: &str, text: &str) -> anyhow::Result<()> {
-    let file = Scratch::new(text)?;
+    let file = written(text)?;
     let mut part = String::from("[t-seam]\nspeed_m_min = 5.0\npower_w = 2000.0\n");
     for seam in ["seam_1", "seam_2"].into_iter().filter(|_| key != "taught") {
         let path = match seam == key {
-            true => file.0.clone(),
+            true => file.to_path_buf(),
             false => shipped(&format!("programs/t-seam-400-{}.csv", seam.replace('_', ""))),
         };
         part += &format!("{seam} = '{}'\n", path.display());
     }
     if key == "taught" {
-        part += &format!("taught = '{}'\n", file.0.display());
+        part += &format!("taught = '{}'\n", file.display());
     }
     plan("dual-beam-gantry", Path::new("a.toml"), &part)
 }
 
 /// A panel that was taught.
 pub fn panel(text: &str) -> anyhow::Result<()> {
-    let file = Scratch::new(text)?;
-    let taught = format!("[panel]\ntaught = '{}'", file.0.display());
+    let file = written(text)?;
+    let taught = format!("[panel]\ntaught = '{}'", file.display());
     let part = shipped_text("programs/panel.toml").replacen("[panel]", &taught, 1);
     plan("ac-head", Path::new("a.toml"), &part)
 }
 
 /// A saddle that was taught.
 pub fn saddle(text: &str) -> anyhow::Result<()> {
-    let file = Scratch::new(text)?;
+    let file = written(text)?;
     let part = shipped_text("programs/saddle-taught.toml");
-    let part = part.replace("\"saddle-taught.csv\"", &format!("'{}'", file.0.display()));
+    let part = part.replace("\"saddle-taught.csv\"", &format!("'{}'", file.display()));
     plan("pipe-welder", Path::new("a.toml"), &part)
 }
 
 /// A bead along the curve.
 pub fn bead(text: &str) -> anyhow::Result<()> {
-    let file = Scratch::new(text)?;
+    let file = written(text)?;
     let part = format!(
         "[bead]\nnurbs_file = '{}'\nwindow_mm_s = [4.0, 16.0]\npower_w = 2000.0\nlead_mm = 3.0\noverlap_mm = 2.0\n",
-        file.0.display()
+        file.display()
     );
     plan("wire-arc", Path::new("a.toml"), &part)
 }
@@ -168,7 +157,7 @@ pub fn scene(text: &str) -> anyhow::Result<()> {
     };
     let mut picture = Picture::default();
     for (capture, along_mm) in [(1, 10.0), (2, 160.0)] {
-        tell.send(Prospect::Seam(View {
+        tell.send(FieldOfView::Seam(View {
             along_mm,
             lateral_mm: 0.1,
             height_mm: 0.05,

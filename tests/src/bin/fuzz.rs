@@ -1,4 +1,4 @@
-//! Tells both controllers what nobody should, and judges what they do; run by `cargo xtask fuzz`.
+//! Sends both controllers random and mutated messages, and judges what they do; run by `cargo xtask fuzz`.
 
 use anyhow::{Result, bail};
 use clap::Parser;

@@ -1,4 +1,4 @@
-//! One case: boards at a moment of a job, and what they are told from there on.
+//! One case: boards at a moment of a job, and the messages sent to them from there on.
 
 use super::corpus::{Message, Session, any, seldom};
 use super::judge::Judge;
@@ -186,7 +186,7 @@ impl<'a> Case<'a> {
             if let Message::Request(request) = &said.message {
                 // The job was a good one: nothing was refused.
                 judge
-                    .hear(said.to, request, &shared::protocol::Response::Done, shipped)
+                    .answered(said.to, request, &shared::protocol::Response::Done, shipped)
                     .expect("a good job");
             }
         }
@@ -212,7 +212,7 @@ impl<'a> Case<'a> {
                 let response = timed("a request", || boards.ask(*role, &request))?;
                 tally.accepted += u64::from(!matches!(response, shared::protocol::Response::Refused(_)));
                 let shipped = (&self.session.motion, self.session.tracker.as_ref());
-                judge.hear(*role, &request, &response, shipped)
+                judge.answered(*role, &request, &response, shipped)
             }
             Step::Datagram(role, bytes) => {
                 let Ok((_, datagram)) = decode_datagram(bytes) else {

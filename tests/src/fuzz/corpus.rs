@@ -61,7 +61,7 @@ pub struct Session {
     pub moments: Vec<(SimulatedBoards, usize)>,
 }
 
-/// Boards that keep what they are told.
+/// Boards that record the messages sent to them.
 struct Recorder {
     boards: SimulatedBoards,
     said: Vec<Said>,

@@ -1,4 +1,4 @@
-//! What must be true of the boards' outputs at every tick, whatever they were told.
+//! What must be true of the boards' outputs at every tick, whatever messages they got.
 
 use super::wire::Wire;
 use serde::Serialize;
@@ -54,7 +54,7 @@ impl Clone for Wire {
 
 impl Judge {
     /// Takes note of what was accepted; `shipped` are the true parameters.
-    pub fn hear(
+    pub fn answered(
         &mut self,
         role: Role,
         request: &Request,

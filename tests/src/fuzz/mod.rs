@@ -1,8 +1,9 @@
 //! Random and mutated requests and datagrams against both controllers, on simulated boards.
 //!
-//! Cases begin at moments of the shipped jobs, and go on with what the PC said then: some of it changed in one number,
-//! or in any byte, some of it twice or not at all, and between it what belongs elsewhere. At every tick the outputs
-//! are judged. Messages are changed in their postcard bytes, so that this file knows none of them by name.
+//! Cases begin at moments of the shipped jobs, and continue with what the PC said then: some of it changed in
+//! one number, or in any byte, some of it twice or not at all, and between it what belongs elsewhere. At
+//! every tick the outputs are judged. Messages are changed in their postcard bytes, so that this file knows
+//! none of them by name.
 
 mod case;
 mod corpus;
@@ -27,7 +28,7 @@ fn last_panic() -> Option<String> {
     PANIC.take()
 }
 
-/// From now on panics print nothing: they are told with their case.
+/// From now on panics print nothing: they are reported with their case.
 pub fn quiet() {
     std::panic::set_hook(Box::new(|info| {
         PANIC.set(info.location().map(|place| format!("at {place}")));

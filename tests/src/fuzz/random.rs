@@ -1,6 +1,6 @@
 //! Random numbers that are the same in every run, and what is done with them to the bytes of a message.
 
-use super::wire::{Kind, Place, Wire, varint};
+use super::wire::{Kind, NumberSpan, Wire, varint};
 
 /// SplitMix64.
 #[derive(Clone, Debug)]
@@ -93,8 +93,8 @@ pub fn mutate(random: &mut Random, wire: &Wire, bytes: &mut Vec<u8>) {
     bytes.clear();
     bytes.extend_from_slice(&wire.bytes);
     for _ in 0..[1, 1, 1, 2, 4][random.below(5)] {
-        if random.percent(80) && !wire.places.is_empty() {
-            // From the last one on places would have moved, but for numbers of fixed length.
+        if random.percent(80) && !wire.numbers.is_empty() {
+            // From the last one on numbers would have moved, but for numbers of fixed length.
             number(random, wire, bytes);
         } else {
             raw(random, bytes);
@@ -104,7 +104,7 @@ pub fn mutate(random: &mut Random, wire: &Wire, bytes: &mut Vec<u8>) {
 
 /// Another number at one place.
 fn number(random: &mut Random, wire: &Wire, bytes: &mut Vec<u8>) {
-    let Place { kind, at, length } = *random.of(&wire.places);
+    let NumberSpan { kind, at, length } = *random.of(&wire.numbers);
     if at + length > bytes.len() {
         return;
     }

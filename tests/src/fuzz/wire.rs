@@ -19,7 +19,7 @@ pub enum Kind {
 
 /// A number in the bytes of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct NumberSpan {
     /// What it is.
     pub kind: Kind,
     /// Where it begins.
@@ -28,20 +28,20 @@ pub struct Place {
     pub length: usize,
 }
 
-/// Postcard bytes of a message and the places of its numbers; kept, so that its memory is used again.
+/// Postcard bytes of a message and where its numbers are; kept, so that its memory is used again.
 #[derive(Debug, Default)]
 pub struct Wire {
     /// The bytes.
     pub bytes: Vec<u8>,
     /// The numbers in them, in order.
-    pub places: Vec<Place>,
+    pub numbers: Vec<NumberSpan>,
 }
 
 impl Wire {
     /// Of another message.
     pub fn write(&mut self, message: &impl Serialize) {
         self.bytes.clear();
-        self.places.clear();
+        self.numbers.clear();
         message
             .serialize(&mut *self)
             .expect("messages have no maps and no sequences of unknown length");
@@ -50,7 +50,7 @@ impl Wire {
     /// Whether all numbers of `message` are finite.
     pub fn finite(&mut self, message: &impl Serialize) -> bool {
         self.write(message);
-        self.places.iter().all(|place| {
+        self.numbers.iter().all(|place| {
             let bytes = &self.bytes[place.at..place.at + place.length];
             match place.kind {
                 Kind::Double => f64::from_le_bytes(bytes.try_into().expect("8 bytes")).is_finite(),
@@ -61,7 +61,7 @@ impl Wire {
     }
 
     fn put(&mut self, kind: Kind, bytes: &[u8]) {
-        self.places.push(Place {
+        self.numbers.push(NumberSpan {
             kind,
             at: self.bytes.len(),
             length: bytes.len(),
@@ -277,11 +277,11 @@ mod tests {
     };
     use shared::state::State;
 
-    fn same(message: &impl Serialize) -> Vec<Place> {
+    fn same(message: &impl Serialize) -> Vec<NumberSpan> {
         let mut wire = Wire::default();
         wire.write(message);
         assert_eq!(wire.bytes, postcard::to_stdvec(message).expect("bytes"));
-        wire.places
+        wire.numbers
     }
 
     #[test]
@@ -292,10 +292,10 @@ mod tests {
         };
         let events = std::iter::repeat_n(event, LOAD_EVENTS).collect();
         // Which request, how many; then s, which action, side and power of each.
-        let places = same(&Request::LoadEvents(events));
-        assert_eq!(places.len(), 2 + 4 * LOAD_EVENTS);
+        let numbers = same(&Request::LoadEvents(events));
+        assert_eq!(numbers.len(), 2 + 4 * LOAD_EVENTS);
         assert_eq!(
-            places[2..6].iter().map(|place| place.kind).collect::<Vec<_>>(),
+            numbers[2..6].iter().map(|place| place.kind).collect::<Vec<_>>(),
             [Kind::Double, Kind::Varint, Kind::Byte, Kind::Double]
         );
         same(&Request::Hello {

@@ -26,7 +26,7 @@ fn the_pipe_welder_homes_to_its_own_marks() {
     let mut last: Option<MotionSample> = None;
     let end = Instant::now() + Duration::from_secs(60);
     while last.is_none_or(|sample| sample.state != State::Idle) {
-        // It also tells the board that the PC is there.
+        // It also renews the session.
         let (motion, _) = status(&mut boards);
         assert_eq!(motion.fault, None);
         assert!(Instant::now() < end, "not homed: {motion:?}");

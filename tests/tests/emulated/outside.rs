@@ -4,7 +4,7 @@
 
 use crate::pair::{Pair, assert_served, status};
 use crate::process::Process;
-use emulator::{BoardTime, Meddling, Session};
+use emulator::{BoardAction, BoardTime, Session};
 use host_link::boards::Boards;
 use nix::sys::signal::Signal;
 use report::Ended;
@@ -21,7 +21,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
-use system_tests::{Heard, assert_on_seam, shipped_seam, weld};
+use system_tests::{TappedBoards, assert_on_seam, shipped_seam, weld};
 
 /// No crowd lasts longer than this.
 const LONGEST: Duration = Duration::from_secs(180);
@@ -39,13 +39,13 @@ const AFTER_MM: f64 = 150.0;
 /// A permit is valid for so long on emulated boards \[ms\].
 const PERMIT_MS: u32 = 10;
 
-/// Welds, and does `act` once the beams have been on for a while; what the motion board had told last before.
+/// Welds, and does `act` once the beams have been on for a while; the last sample of the motion board before.
 fn weld_and(pair: &mut Pair, act: impl FnOnce(&mut Pair)) -> (Ended, MotionSample) {
     let mut boards = pair.connect();
     let (mut on_mm, mut last, mut act) = (None, None, Some(act));
-    let mut overheard = Heard {
+    let mut overheard = TappedBoards {
         boards: &mut boards as &mut dyn Boards,
-        hear: |_: &mut dyn Boards, sample: &MotionSample| {
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| {
             if sample.beams == [true; 2] {
                 on_mm.get_or_insert(sample.s_mm);
             }
@@ -81,7 +81,7 @@ fn assert_shut_in_time(pair: &Pair, ended: &Ended, last: &MotionSample, whom: &s
             assert!(way <= last.speed_mm_s * 1e-3 * f64::from(LATE_MS), "{way} mm");
             assert_eq!(motion.state, State::Fault);
         }
-        // The PC heard of it first, and stopped the path.
+        // The PC received it first, and stopped the path.
         fault => assert_eq!((motion.state, fault), (State::Off, None), "{error}"),
     }
     assert!(error.contains(whom), "{error}");
@@ -89,16 +89,16 @@ fn assert_shut_in_time(pair: &Pair, ended: &Ended, last: &MotionSample, whom: &s
 
 #[test]
 fn a_tracker_that_freezes_is_reset_dies_or_is_cut_off_shuts_the_beams_in_time() {
-    for meddling in [
-        Some(Meddling::Freeze),
-        Some(Meddling::Reset),
-        Some(Meddling::CableOut),
+    for action in [
+        Some(BoardAction::Freeze),
+        Some(BoardAction::Reset),
+        Some(BoardAction::CableOut),
         None,
     ] {
-        println!("{meddling:?}");
+        println!("{action:?}");
         let mut pair = Pair::boot("tracker-fails");
-        let (ended, last) = weld_and(&mut pair, |pair| match meddling {
-            Some(meddling) => pair.boards.meddle(Role::Tracker, meddling).expect("a board"),
+        let (ended, last) = weld_and(&mut pair, |pair| match action {
+            Some(action) => pair.boards.act(Role::Tracker, action).expect("a board"),
             None => pair.boards.kill(Role::Tracker).expect("a board"),
         });
         assert_shut_in_time(&pair, &ended, &last, "tracker");
@@ -107,19 +107,19 @@ fn a_tracker_that_freezes_is_reset_dies_or_is_cut_off_shuts_the_beams_in_time() 
 
 #[test]
 fn a_motion_board_that_freezes_is_reset_or_dies_is_blamed_and_the_slides_stop() {
-    for meddling in [Some(Meddling::Freeze), Some(Meddling::Reset), None] {
-        println!("{meddling:?}");
+    for action in [Some(BoardAction::Freeze), Some(BoardAction::Reset), None] {
+        println!("{action:?}");
         let mut pair = Pair::boot("motion-fails");
-        let (ended, last) = weld_and(&mut pair, |pair| match meddling {
-            Some(meddling) => pair.boards.meddle(Role::Motion, meddling).expect("a board"),
+        let (ended, last) = weld_and(&mut pair, |pair| match action {
+            Some(action) => pair.boards.act(Role::Motion, action).expect("a board"),
             None => pair.boards.kill(Role::Motion).expect("a board"),
         });
         let error = ended.error.as_ref().expect("an error").to_string();
         println!("{error}");
         assert!(error.contains("motion"), "{error}");
-        match meddling {
-            Some(Meddling::Freeze) => {
-                pair.boards.meddle(Role::Motion, Meddling::GoOn).expect("a board");
+        match action {
+            Some(BoardAction::Freeze) => {
+                pair.boards.act(Role::Motion, BoardAction::GoOn).expect("a board");
             }
             Some(_) => {}
             None => continue,
@@ -129,9 +129,9 @@ fn a_motion_board_that_freezes_is_reset_or_dies_is_blamed_and_the_slides_stop() 
             matches!(tracker.fault, Some(TrackerFault::PathStale { .. })),
             "{tracker:?}"
         );
-        match meddling {
+        match action {
             // The time of its plant stood still with it, so its first tick afterwards is the one in which no permit comes.
-            Some(Meddling::Freeze) => {
+            Some(BoardAction::Freeze) => {
                 let Some(Fault::PermitLost { s_mm, .. }) = motion.fault else {
                     panic!("{:?}", motion.fault);
                 };
@@ -165,7 +165,7 @@ fn assert_blames_itself(seamwright: Process, pair: &Pair) {
     println!("{said:#?}");
     assert_eq!(status.code(), Some(1), "{said:#?}");
     let last = said.last().expect("an error");
-    assert!(last.contains("this PC did nothing for"), "{last}");
+    assert!(last.contains("this PC was stalled for"), "{last}");
     let report = fs::read_to_string(pair.report().join("report.json")).expect("a report");
     let report: Value = serde_json::from_str(&report).expect("JSON");
     let welded = report["weld_length_mm"].as_f64().expect("a number");
@@ -203,12 +203,12 @@ fn a_motion_board_that_is_cut_off_stops_by_itself() {
     let mut pair = Pair::boot("motion-cut-off");
     let cut = |pair: &mut Pair| {
         pair.boards
-            .meddle(Role::Motion, Meddling::CableOut)
+            .act(Role::Motion, BoardAction::CableOut)
             .expect("a board");
     };
     let (ended, last) = weld_and(&mut pair, cut);
     pair.boards
-        .meddle(Role::Motion, Meddling::CableIn)
+        .act(Role::Motion, BoardAction::CableIn)
         .expect("a board");
     // The session that was cut off keeps its place until its lease has run out.
     assert_shut_in_time(&pair, &ended, &last, "motion");
@@ -307,7 +307,7 @@ fn forged() -> Vec<Vec<u8>> {
             pose,
             tracking: true,
             beams: [true; 2],
-            aside: [0.0; 3],
+            superimposed_rate: [0.0; 3],
         }),
         Datagram::Permit(Permit {
             tick: 1_000_000,

@@ -1,7 +1,7 @@
 //! A pair of emulated boards for one test.
 
 use emulator::{INSTRUCTIONS_PER_US, Options, PROGRAM_VARIABLES, SESSION_VARIABLE, bound_to_parent};
-use host_link::boards::{Boards, NetworkBoards, Patience};
+use host_link::boards::{Boards, NetworkBoards, Timeouts};
 use plant::DEFAULT_MACHINE;
 use report::Report;
 use shared::protocol::{MotionStatus, Request, Response, Role, TrackerStatus};
@@ -38,13 +38,13 @@ impl Pair {
     }
 
     pub fn connect(&self) -> NetworkBoards {
-        emulated::connect(self.boards.session(), true, Patience::default())
+        emulated::connect(self.boards.session(), true, Timeouts::default())
             .unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// A connection to the motion board only, as machines without a tracker have it.
     pub fn connect_motion(&self) -> NetworkBoards {
-        emulated::connect(self.boards.session(), false, Patience::default())
+        emulated::connect(self.boards.session(), false, Timeouts::default())
             .unwrap_or_else(|error| panic!("{error}"))
     }
 

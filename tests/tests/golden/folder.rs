@@ -49,13 +49,11 @@ fn every_file_is_known_and_every_known_file_is_there() {
 
 #[test]
 fn a_stray_file_and_missing_ones_are_named() {
-    let folder = std::env::temp_dir().join(format!("seamwright-golden-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder");
+    let folder = tempfile::tempdir().expect("a folder");
     for name in FILES.iter().skip(1).chain(&["stray"]) {
-        std::fs::write(folder.join(name).with_extension("json"), "{}").expect("a file");
+        std::fs::write(folder.path().join(name).with_extension("json"), "{}").expect("a file");
     }
-    let faults = faults(&folder).expect("a list of faults");
-    std::fs::remove_dir_all(&folder).expect("to tidy up");
+    let faults = faults(folder.path()).expect("a list of faults");
     let missing = format!("{}.json is missing", FILES[0]);
     assert_eq!(faults, ["stray.json is of no known name", missing.as_str()]);
 }

@@ -1,7 +1,7 @@
 //! The seam of two pipes (mathematics 1.1–1.3).
 
 use super::file::{Golden, near, near_all, number};
-use parts::pipes::{Meeting, PipePair, SaddleError, SeamFrame, SeamPoint, Sheet};
+use parts::pipes::{Intersection, PipePair, SaddleError, SeamFrame, SeamPoint, Sheet};
 use serde_json::Value;
 
 /// Tolerances of the file.
@@ -71,10 +71,10 @@ fn is(case: &Value, error: &SaddleError, wanted: &Value) {
 
 fn meeting(case: &Value, pair: &PipePair, tolerance: &Tolerance) {
     let kind = match pair.meeting() {
-        Meeting::None => "none",
-        Meeting::Full => "full",
-        Meeting::Tangent => "tangent",
-        Meeting::Partial => "partial",
+        Intersection::None => "none",
+        Intersection::Full => "full",
+        Intersection::Tangent => "tangent",
+        Intersection::Partial => "partial",
     };
     assert_eq!(case["out"]["kind"], kind, "case {}", case["id"]);
     let wanted = case["out"]["thetas"].as_array().expect("thetas");

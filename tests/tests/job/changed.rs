@@ -5,7 +5,7 @@ use nc::interpret_file;
 use shared::protocol::MotionSample;
 use std::path::PathBuf;
 
-/// Somebody who writes another program over the one that runs.
+/// Overwrites the program that runs with another one.
 struct Careless {
     file: PathBuf,
     text: String,
@@ -31,15 +31,16 @@ fn a_program_that_changes_while_it_runs_ends_with_the_machine_at_rest_on_the_pat
         text += &format!("G1 X{x:.1} ({})\n", "-".repeat(400));
     }
     text += "M2\n";
-    let file = std::env::temp_dir().join(format!("careless-{}.ngc", std::process::id()));
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("program.ngc");
     std::fs::write(&file, &text).unwrap();
     let options = Options::default();
     let program = interpret_file(std::fs::File::open(&file).unwrap(), options).unwrap();
     let mut last: Option<MotionSample> = None;
     let mut simulated = SimulatedBoards::new("stir-gantry").unwrap();
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut simulated,
-        hear: |_: &mut dyn Boards, sample: &MotionSample| {
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| {
             if sample.path_id == 3 {
                 last = Some(*sample);
             }
@@ -52,7 +53,6 @@ fn a_program_that_changes_while_it_runs_ends_with_the_machine_at_rest_on_the_pat
         text: text.replace("X62", "X92"),
     };
     let ended = run(&mut boards, &job(&machine, &program, None), &mut careless).unwrap();
-    std::fs::remove_file(&file).unwrap();
     let error = ended.error.expect("it cannot go on").to_string();
     assert!(
         error.starts_with("line ") && error.contains("the file has changed"),

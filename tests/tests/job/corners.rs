@@ -9,9 +9,9 @@ fn rectangle(mode: &str) -> (Vec<MotionSample>, Ended) {
         format!("G43.4\nG0 X600 Y500 Z150 B-2.5 C0\nG0 Z50\n{mode}\nF1200\nG1 X620\nY510\nX600\nY500\nM2\n");
     let mut samples = Vec::new();
     let mut simulated = SimulatedBoards::new("stir-gantry").unwrap();
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut simulated,
-        hear: |_: &mut dyn Boards, sample: &MotionSample| {
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| {
             if sample.path_id == 3 {
                 samples.push(*sample);
             }
@@ -19,12 +19,13 @@ fn rectangle(mode: &str) -> (Vec<MotionSample>, Ended) {
     };
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../machines/stir-gantry.toml");
     let machine = MachineFile::read(std::path::Path::new(file)).unwrap();
-    let ended = run_on(&mut boards, &machine, &body, None, &mut Nobody).unwrap();
+    let ended = run_on(&mut boards, &machine, &body, None, &mut NoOperator).unwrap();
     assert!(ended.error.is_none(), "{mode}: {:?}", ended.error);
     (samples, ended)
 }
 
-/// Rounded within the tolerance the path goes on at its corners, and takes less time than with a stop at each.
+/// Rounded within the tolerance the path continues at its corners, and takes less time than with a stop at
+/// each.
 #[test]
 fn a_rectangle_with_a_tolerance_passes_its_corners_without_a_stop() {
     let (rounded, ended) = rectangle("G64 P0.05");

@@ -23,7 +23,7 @@ fn weld_beside(seam: Arc<Deviation>) -> Ended {
     let program = interpret(&beside(), Options::default()).unwrap();
     let mut job = job(&machine, &program, None);
     job.surroundings = beside_drawing(seam, Some(drawing));
-    run(&mut SimulatedBoards::default(), &job, &mut Nobody).unwrap()
+    run(&mut SimulatedBoards::default(), &job, &mut NoOperator).unwrap()
 }
 
 #[test]

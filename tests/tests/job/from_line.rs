@@ -26,18 +26,18 @@ fn shipped(name: &str) -> MachineFile {
     MachineFile::read(&file).unwrap()
 }
 
-/// Runs `program` from `line`; what the motion board told, and how it ended.
+/// Runs `program` from `line`; the samples of the motion board, and how it ended.
 fn started(machine: &MachineFile, text: &str, line: Option<u32>) -> (Ended, Vec<MotionSample>) {
     let program = interpret(text, Options::default()).unwrap();
     let mut samples = Vec::new();
     let kinematics = machine.motion.kinematics.name();
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut SimulatedBoards::new(kinematics).unwrap(),
-        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let mut job = job(machine, &program, None);
     job.from_line = line;
-    let ended = run(&mut boards, &job, &mut Nobody).unwrap();
+    let ended = run(&mut boards, &job, &mut NoOperator).unwrap();
     (ended, samples)
 }
 
@@ -182,7 +182,7 @@ fn a_tracked_weld_is_started_with_its_run_in_only() {
         let mut job = job(&machine, &program, Some(seam()));
         job.from_line = Some(line);
         let mut boards = SimulatedBoards::default();
-        let ended = run(&mut boards, &job, &mut Nobody).unwrap();
+        let ended = run(&mut boards, &job, &mut NoOperator).unwrap();
         assert!(ended.error.is_none(), "line {line}: {:?}", ended.error);
         let report = &ended.report;
         assert!((report.weld_length_mm - length_mm).abs() < 0.2, "line {line}");

@@ -9,9 +9,9 @@ use shared::state::State;
 fn a_low_override_and_a_long_hold_take_what_they_take() {
     let program = "G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nF5000\nG1 X1180\nM2";
     let mut held = 0;
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut SimulatedBoards::default(),
-        hear: |boards: &mut dyn Boards, sample: &MotionSample| {
+        on_sample: |boards: &mut dyn Boards, sample: &MotionSample| {
             let feeds = sample.path_id == 2;
             held += i32::from(feeds && sample.state == State::Holding);
             let request = match (feeds, held, sample.s_mm) {
@@ -24,7 +24,7 @@ fn a_low_override_and_a_long_hold_take_what_they_take() {
             command(boards, Role::Motion, &request).unwrap();
         },
     };
-    let ended = run_on(&mut boards, &machine(), program, None, &mut Nobody).unwrap();
+    let ended = run_on(&mut boards, &machine(), program, None, &mut NoOperator).unwrap();
     assert!(ended.error.is_none(), "{:?}", ended.error);
     // 280 mm at 5 m/min are 3.36 s.
     let motion_s = ended.report.motion_s;

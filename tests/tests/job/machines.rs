@@ -46,7 +46,7 @@ fn untracked() -> String {
 fn a_machine_without_a_tracker_needs_the_motion_board_only() {
     let mut boards = MotionOnly(SimulatedBoards::default());
     let (machine, program) = (without_tracker(), untracked());
-    let ended = run_on(&mut boards, &machine, &program, None, &mut Nobody).unwrap();
+    let ended = run_on(&mut boards, &machine, &program, None, &mut NoOperator).unwrap();
     assert!(ended.error.is_none(), "{:?}", ended.error);
     let report = &ended.report;
     assert_eq!((report.outcome, &report.seam), (Outcome::Finished, &None));
@@ -84,7 +84,7 @@ fn a_seam_is_asked_for_where_the_program_tracks_and_refused_where_the_machine_ca
 #[test]
 fn a_machine_with_a_tracker_does_not_begin_without_it() {
     let mut boards = MotionOnly(SimulatedBoards::default());
-    let error = run_on(&mut boards, &machine(), PROGRAM, Some(seam()), &mut Nobody).unwrap_err();
+    let error = run_on(&mut boards, &machine(), PROGRAM, Some(seam()), &mut NoOperator).unwrap_err();
     assert!(
         error
             .to_string()
@@ -120,7 +120,7 @@ fn every_machine_runs_from_its_marks_to_its_park_position_on_its_motion_board() 
         let machine = MachineFile::read(&file).unwrap();
         let mut boards = MotionOnly(SimulatedBoards::new(name).unwrap());
         let program = format!("G43.4\n{way}\nM2");
-        let ended = run_on(&mut boards, &machine, &program, None, &mut Nobody).unwrap();
+        let ended = run_on(&mut boards, &machine, &program, None, &mut NoOperator).unwrap();
         assert!(ended.error.is_none(), "{name}: {:?}", ended.error);
         let report = &ended.report;
         assert!(report.max_contour_error_mm.unwrap() < 0.02, "{name}\n{report}");
@@ -155,13 +155,13 @@ fn a_spindle_runs_up_before_the_motion_and_stops_before_the_next() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../machines/stir-gantry.toml");
     let machine = MachineFile::read(&file).unwrap();
     let mut samples = Vec::new();
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut MotionOnly(SimulatedBoards::new("stir-gantry").unwrap()),
-        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let program =
         "G43.4\nG0 X300 Y200 Z50 B-3 C0\nM3 S600\nG4 P2\nG1 Z45 F120\nG0 Z60\nM5\nG4 P1\nG0 X310\nM2";
-    let ended = run_on(&mut boards, &machine, program, None, &mut Nobody).unwrap();
+    let ended = run_on(&mut boards, &machine, program, None, &mut NoOperator).unwrap();
     assert!(ended.error.is_none(), "{:?}", ended.error);
     // Paths: approach, spindle on, plunge, retract, spindle off, across.
     let of_path = |id: u32| samples.iter().filter(move |sample| sample.path_id == id);
@@ -188,7 +188,7 @@ fn the_machine_stands_for_the_time_of_a_dwell() {
     let machine = without_tracker();
     let duration = |program: &str| {
         let mut boards = MotionOnly(SimulatedBoards::default());
-        let ended = run_on(&mut boards, &machine, program, None, &mut Nobody).unwrap();
+        let ended = run_on(&mut boards, &machine, program, None, &mut NoOperator).unwrap();
         assert!(ended.error.is_none(), "{:?}", ended.error);
         ended.report.duration_s
     };

@@ -27,7 +27,7 @@ use shared::protocol::{Datagram, Identity, Request, Response, Role};
 use shared::state::{State, TrackerFault, TrackerState};
 use std::sync::Arc;
 use std::time::Duration;
-use system_tests::{Heard, Nobody, Operator, run};
+use system_tests::{NoOperator, Operator, TappedBoards, run};
 use world::simulated::SimulatedBoards;
 use world::{Deviation, SeamError, Surroundings, check_seam};
 
@@ -110,7 +110,7 @@ fn seam_of(report: &Report) -> &SeamFigures {
 }
 
 fn undisturbed(boards: &mut dyn Boards) -> Ended {
-    weld(boards, &mut Nobody)
+    weld(boards, &mut NoOperator)
 }
 
 /// What can go wrong, from a path position of the welding path on.

@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex};
 use world::{
-    CameraChoice, PictureChoice, Prospect, RenderedCamera, RenderedWorld, SceneFile, TrueSeams, View,
+    CameraChoice, FieldOfView, PictureChoice, RenderedCamera, RenderedWorld, SceneFile, TrueSeams, View,
 };
 
 /// So many strobes later a frame is with the session at the latest.
@@ -42,9 +42,9 @@ fn waves() -> Arc<Deviation> {
 enum Wire {
     /// Nothing: it stays.
     Whole,
-    /// No frame comes any more, and nobody says why.
+    /// No frame comes any more, without an error.
     Silent { side: usize, from_s_mm: f64 },
-    /// The camera tells that it is gone.
+    /// The camera reports that it was lost.
     Gone { side: usize, from_s_mm: f64 },
 }
 
@@ -76,7 +76,7 @@ enum Frame {
 struct Outside {
     matching: Matching,
     frames: Receiver<Frame>,
-    /// Came before its strobe was told.
+    /// Came before its strobe was notified.
     early: Option<(u64, Picture)>,
     given: u64,
     done: Arc<Done>,
@@ -134,21 +134,21 @@ impl Drop for Outside {
 
 /// The world's end of a camera.
 struct Lens {
-    strobes: Sender<(u64, Prospect)>,
+    strobes: Sender<(u64, FieldOfView)>,
     frames: Sender<Frame>,
     done: Arc<Done>,
 }
 
 /// A camera, both ends of it, and a thread that takes its pictures.
-fn camera(camera: (RenderedCamera, Sender<Prospect>)) -> (Lens, Outside) {
+fn camera(camera: (RenderedCamera, Sender<FieldOfView>)) -> (Lens, Outside) {
     let (mut rendered, tell) = camera;
     let (strobes, strobed) = channel();
     let (frames, came) = channel();
     let to_session = frames.clone();
     std::thread::spawn(move || {
-        for (number, prospect) in strobed {
+        for (number, field_of_view) in strobed {
             rendered.strobed(number as u32, 5_000 * number);
-            tell.send(prospect).unwrap();
+            tell.send(field_of_view).unwrap();
             let mut picture = Picture::default();
             let taken = rendered.next(PATIENCE, &mut picture).unwrap();
             assert_eq!(taken, Arrival::Picture);
@@ -174,7 +174,7 @@ fn camera(camera: (RenderedCamera, Sender<Prospect>)) -> (Lens, Outside) {
     (lens, outside)
 }
 
-/// Simulated boards, and a world that sees what they tell the PC.
+/// Simulated boards, and a world that sees what they send to the PC.
 struct World {
     boards: SimulatedBoards,
     file: MachineFile,
@@ -250,8 +250,8 @@ impl World {
                 }
                 let cameras = &self.file.tracking.as_ref().unwrap().cameras;
                 let view = View::of(cameras, &self.machine, &self.seams, &position, &slides, side);
-                let prospect = view.map_or(Prospect::Nothing, Prospect::Seam);
-                lens.strobes.send((self.frames, prospect)).unwrap();
+                let field_of_view = view.map_or(FieldOfView::Nothing, FieldOfView::Seam);
+                lens.strobes.send((self.frames, field_of_view)).unwrap();
             }
             self.strobed.pop_front();
         }
@@ -262,7 +262,7 @@ impl Boards for World {
     pass_on!(boards: request, send, now, identity, path_states_target);
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
-        // Time goes on only if the pictures keep pace; the boards are much faster than the cameras.
+        // Time continues only if the pictures keep pace; the boards are much faster than the cameras.
         for (side, lens) in self.lenses.iter().enumerate() {
             if self.cut != Some(side) {
                 lens.done.wait(self.frames.saturating_sub(LATE));
@@ -276,7 +276,7 @@ impl Boards for World {
     }
 }
 
-/// Welds with cameras that are outside; a session that is not told of the seam does not judge its distance.
+/// Welds with cameras that are outside; a session without the true seam does not judge its distance.
 fn weld_outside(wire: Wire, told: Option<Arc<Deviation>>) -> (Ended, World) {
     let machine = machine();
     let program = interpret(PROGRAM, Options::default()).unwrap();
@@ -297,7 +297,7 @@ fn weld_outside(wire: Wire, told: Option<Arc<Deviation>>) -> (Ended, World) {
         ..around(told)
     }
     .into();
-    let ended = run(&mut world, &job, &mut Nobody).unwrap();
+    let ended = run(&mut world, &job, &mut NoOperator).unwrap();
     (ended, world)
 }
 
@@ -353,8 +353,8 @@ fn a_camera_that_is_gone_ends_the_weld_with_its_name_and_the_machine_at_rest() {
     let error = ended.error.as_ref().expect("a camera is gone").to_string();
     assert_eq!(
         error,
-        "camera 2: camera 192.168.10.12 is gone: its cable was cut; check its power and its cable, then start the job \
-         anew"
+        "camera 2: camera 192.168.10.12 was lost: its cable was cut; check its power and its cable, then restart the \
+         job"
     );
     assert_stopped_on_path(&ended, 130.0);
     assert_off(&mut world);

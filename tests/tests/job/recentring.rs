@@ -43,7 +43,7 @@ fn followed(seams: [[f64; 2]; 4]) -> (Report, [f64; 4]) {
         &machine(),
         LONG,
         Some(straight(seams)),
-        &mut Nobody,
+        &mut NoOperator,
     )
     .unwrap();
     assert!(ended.error.is_none(), "{:?}", ended.error);

@@ -1,7 +1,7 @@
 //! A tracker board that does not answer, and a PC that was not there.
 
 use super::*;
-use host_link::boards::Absence;
+use host_link::boards::Stall;
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -19,7 +19,7 @@ impl Operator for StopsWhen {
 /// What goes wrong once the beam is on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Wrong {
-    /// The tracker board tells its state no more, and the operator stops the job.
+    /// The tracker board does not report its state any more, and the operator stops the job.
     TrackerSilent,
     /// This program is paused.
     Paused,
@@ -34,7 +34,7 @@ struct Alone {
     wrong: Wrong,
     interrupted: Rc<Cell<bool>>,
     begun: bool,
-    absence: Option<Absence>,
+    last_stall: Option<Stall>,
     /// What was asked with an answer waited for, since it went wrong.
     asked: Vec<(Role, Request)>,
     polled: usize,
@@ -47,7 +47,7 @@ impl Alone {
             wrong,
             interrupted: interrupted.clone(),
             begun: false,
-            absence: None,
+            last_stall: None,
             asked: Vec::new(),
             polled: 0,
         }
@@ -80,7 +80,7 @@ impl Boards for Alone {
 
     fn answer(&mut self, role: Role) -> Result<Option<Response>, LinkError> {
         assert_eq!(role, Role::Tracker);
-        // The job goes on meanwhile, until the operator has enough.
+        // The job continues meanwhile, until the operator has enough.
         self.polled += 1;
         if self.polled <= 20 {
             return Ok(None);
@@ -101,7 +101,7 @@ impl Boards for Alone {
                 while self.now() < end {
                     self.boards.receive(Duration::from_millis(1))?;
                 }
-                self.absence = Some(Absence {
+                self.last_stall = Some(Stall {
                     ended: self.now(),
                     lasted: PAUSE,
                 });
@@ -110,8 +110,8 @@ impl Boards for Alone {
         Ok(received)
     }
 
-    fn absence(&self) -> Option<Absence> {
-        self.absence
+    fn last_stall(&self) -> Option<Stall> {
+        self.last_stall
     }
 }
 
@@ -140,14 +140,14 @@ fn a_tracker_that_does_not_answer_keeps_nobody_from_stopping() {
 /// Welds with a pause.
 fn paused(boards: &mut Alone, interrupted: &Rc<Cell<bool>>) {
     let ended = weld(boards, &mut StopsWhen(interrupted.clone()));
-    let told = ended.error.expect("the boards do not go on").to_string();
+    let told = ended.error.expect("the boards stop without the PC").to_string();
     assert!(
-        told.starts_with("this PC did nothing for 3.0 s (paused") && told.contains("board"),
+        told.starts_with("this PC was stalled for 3.0 s (paused") && told.contains("board"),
         "{told}"
     );
     assert_eq!(ended.report.outcome, Outcome::Failed);
     assert!(
-        ended.report.faults[0].contains("this PC did nothing"),
+        ended.report.faults[0].contains("this PC was stalled"),
         "{:?}",
         ended.report.faults
     );
@@ -235,7 +235,7 @@ fn a_lost_tracker_board_does_not_keep_the_machine_from_standing_before_its_drive
         answer: None,
         off_from: None,
     };
-    let ended = weld(&mut boards, &mut Nobody);
+    let ended = weld(&mut boards, &mut NoOperator);
     let error = ended.error.expect("the tracker board is lost").to_string();
     assert!(
         error.contains("the connection to the tracker board was lost"),

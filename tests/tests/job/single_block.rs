@@ -9,13 +9,13 @@ struct Patient {
     /// What the machine waited before.
     waited: Vec<Next>,
     waiting: u32,
-    /// After so many waits nobody is there.
+    /// After so many waits there is no operator any more.
     leaves_after: Option<usize>,
     /// Or no single block is wanted.
     lets_run_after: Option<usize>,
 }
 
-/// Times that the job waits for the boards before a word comes: some seconds.
+/// Times that the job waits for the boards before a command comes: some seconds.
 const PATIENCE: u32 = 1000;
 
 impl Operator for Patient {
@@ -48,12 +48,12 @@ impl Operator for Patient {
     }
 }
 
-/// The welding job block by block, and all that the motion board told.
+/// The welding job block by block, and all samples of the motion board.
 fn block_by_block(operator: &mut Patient) -> (Ended, Vec<MotionSample>) {
     let mut samples = Vec::new();
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut SimulatedBoards::default(),
-        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let ended = weld(&mut boards, operator);
     (ended, samples)
@@ -121,9 +121,9 @@ fn single_block_can_be_switched_off_on_the_way() {
 fn a_weld_goes_on_over_the_end_of_a_block() {
     let program = PROGRAM.replace("X1140", "X1040\nX1140");
     let mut samples = Vec::new();
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut SimulatedBoards::default(),
-        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let mut operator = Patient::default();
     let ended = run_on(&mut boards, &machine(), &program, Some(seam()), &mut operator).unwrap();
@@ -144,13 +144,13 @@ fn a_weld_goes_on_over_the_end_of_a_block() {
     assert!((1.5..=2.2).contains(&overlap), "{overlap} mm");
 }
 
-/// Whether the machine, so far along its path \[mm\], has come to a place.
-type Place = fn(f64) -> bool;
+/// Whether the machine, at this path position \[mm\], has come far enough.
+type Reached = fn(f64) -> bool;
 
 /// Says its words when the machine has come to their places.
 struct Steering {
     done_mm: f64,
-    words: Vec<(Place, Command)>,
+    words: Vec<(Reached, Command)>,
 }
 
 impl Operator for Steering {
@@ -185,9 +185,9 @@ fn words_hold_the_machine_lead_it_back_and_change_its_feed() {
         ],
     };
     let mut samples = Vec::new();
-    let mut boards = Heard {
+    let mut boards = TappedBoards {
         boards: &mut SimulatedBoards::default(),
-        hear: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
+        on_sample: |_: &mut dyn Boards, sample: &MotionSample| samples.push(*sample),
     };
     let ended = run_on(&mut boards, &machine(), program, None, &mut operator).unwrap();
     assert!(

@@ -3,7 +3,7 @@
 use super::*;
 use host_link::control;
 use host_link::events::Interest;
-use system_tests::{Nobody, Operator, Sleeper, run};
+use system_tests::{NoOperator, Operator, Sleeper, run};
 
 #[test]
 fn a_subscriber_that_sleeps_changes_nothing_and_is_told_what_it_lost() {
@@ -16,7 +16,7 @@ fn a_subscriber_that_sleeps_changes_nothing_and_is_told_what_it_lost() {
     };
     let mut sleeper = Sleeper::default();
     assert!(
-        weld(&mut Nobody) == weld(&mut sleeper),
+        weld(&mut NoOperator) == weld(&mut sleeper),
         "the boards told something else"
     );
     let lost = sleeper.end();

@@ -5,7 +5,7 @@ use job::{ImageCameras, SeamLesson};
 use nalgebra::Vector3;
 use parts::SeamPoint;
 use parts::plan::{DualBeamPlan, PlanOptions, TaughtSeams, plan_dual_beam};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Mutex;
 use teach::seam::{
     Cameras, Ended as Lesson, Head, SeamFile, SeamPoint as Taught, SeamTeaching, read_seam_points,
@@ -89,7 +89,7 @@ impl Case {
         }
     }
 
-    /// Teaches into `output`, or goes on there, from a start that is wrong by some mm and degrees.
+    /// Teaches into `output`, or continues there, from a start that is wrong by some mm and degrees.
     fn teach(&self, output: &Path, operator: &mut dyn Operator) -> Ended {
         let drawing = self.drawn();
         let cameras = Cameras::of(self.machine.tracking.as_ref().unwrap()).unwrap();
@@ -136,7 +136,7 @@ impl Case {
         let (program, of_drawing) = (read(&taught), read(&self.drawn()));
         let job = self.job(&program, &of_drawing);
         let mut boards = SimulatedBoards::default();
-        run(&mut boards, &job, &mut Nobody).unwrap()
+        run(&mut boards, &job, &mut NoOperator).unwrap()
     }
 
     /// From its beginning to its end as drawn, and denser where it bends; welded as well as a drawn one.
@@ -204,18 +204,6 @@ impl Operator for Stops {
     }
 }
 
-/// A file in a folder of its own, which is not there yet.
-fn fresh(test: &str) -> PathBuf {
-    let folder = format!("seamwright-taught-seam-{test}-{}", std::process::id());
-    let folder = std::env::temp_dir().join(folder);
-    std::fs::create_dir_all(&folder).unwrap();
-    let file = folder.join("taught.csv");
-    if file.exists() {
-        std::fs::remove_file(&file).unwrap();
-    }
-    file
-}
-
 #[test]
 fn a_seam_taught_from_a_wrong_start_in_two_goes_is_welded_as_well_as_a_drawn_one() {
     let case = Case {
@@ -226,7 +214,8 @@ fn a_seam_taught_from_a_wrong_start_in_two_goes_is_welded_as_well_as_a_drawn_one
         straight: 120.0,
         start: [-1.5, 1.2, -0.7],
     };
-    let output = fresh("geometric");
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("taught.csv");
     let mut enough = Enough(Phase::TeachingSeam { number: 5 });
     let taught = case.teach(&output, &mut enough).taught;
     let first = taught.seam.unwrap();
@@ -234,14 +223,13 @@ fn a_seam_taught_from_a_wrong_start_in_two_goes_is_welded_as_well_as_a_drawn_one
     // Something cuts the file in the middle of a row.
     let text = std::fs::read_to_string(&output).unwrap();
     std::fs::write(&output, &text[..text.len() - 30]).unwrap();
-    let second = case.teach(&output, &mut Nobody);
+    let second = case.teach(&output, &mut NoOperator);
     assert!(second.error.is_none(), "{:?}", second.error);
     let second = second.taught.seam.unwrap();
     assert_eq!(second.ended, Lesson::Drawn);
     assert!(second.points > first.points);
     assert_eq!(read_seam_points(&output).unwrap().len(), second.points);
     case.assert_taught_and_welded(&output);
-    std::fs::remove_dir_all(output.parent().unwrap()).unwrap();
 }
 
 /// Cameras see a band 0.4 mm deep and 1.4 mm wide: no place of the machine has both seams in it.
@@ -265,7 +253,8 @@ fn a_seam_is_taught_and_welded_through_pictures_as_well_after_an_interruption() 
         straight: 30.0,
         start: [-1.0, 1.2, 0.3],
     };
-    let output = fresh("pictures");
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("taught.csv");
     let first = case.teach(&output, &mut Stops(Phase::TeachingSeam { number: 4 }));
     assert!(
         matches!(first.error, Some(JobError::Interrupted)),
@@ -273,9 +262,8 @@ fn a_seam_is_taught_and_welded_through_pictures_as_well_after_an_interruption() 
         first.error
     );
     assert_eq!(read_seam_points(&output).unwrap().len(), 3);
-    let second = case.teach(&output, &mut Nobody);
+    let second = case.teach(&output, &mut NoOperator);
     assert!(second.error.is_none(), "{:?}", second.error);
     assert_eq!(second.taught.seam.unwrap().ended, Lesson::Drawn);
     case.assert_taught_and_welded(&output);
-    std::fs::remove_dir_all(output.parent().unwrap()).unwrap();
 }

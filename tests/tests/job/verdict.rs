@@ -3,7 +3,7 @@
 use super::*;
 use report::{JudgedBy, sentence};
 
-/// Simulated boards whose gate of side 2 is told shut on a stretch of the path \[mm\].
+/// Simulated boards whose gate of side 2 is reported shut on a stretch of the path \[mm\].
 struct Shut {
     boards: SimulatedBoards,
     from_s_mm: f64,

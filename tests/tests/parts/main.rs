@@ -12,7 +12,7 @@ use job::{Job, JobError, Names, Work};
 use nc::{Options, interpret};
 use parts::PartFile;
 use report::{Ended, Outcome, Report};
-use system_tests::{Nobody, Operator, shipped};
+use system_tests::{NoOperator, Operator, shipped};
 use world::Surroundings;
 use world::simulated::SimulatedBoards;
 
@@ -58,7 +58,7 @@ fn made(machine: &MachineFile, work: Work, part: &PartFile, operator: &mut dyn O
 /// Runs a program, judged by `part`, to its end.
 fn welded(machine: &MachineFile, program: &str, part: &PartFile) -> Report {
     let program = interpret(program, Options::default()).unwrap();
-    let report = made(machine, Work::Program(&program), part, &mut Nobody).report;
+    let report = made(machine, Work::Program(&program), part, &mut NoOperator).report;
     assert_eq!(report.outcome, Outcome::Finished, "{report}");
     report
 }

@@ -22,13 +22,13 @@ fn taught(part: &PartFile, work: Work, operator: &mut dyn Operator) -> Ended {
 }
 
 fn teach(part: &PartFile) -> Ended {
-    taught(part, Work::Teach, &mut Nobody)
+    taught(part, Work::Teach, &mut NoOperator)
 }
 
 #[test]
 fn a_panel_is_taught_and_cut_within_its_limits() {
     let part = part(3, |_| {});
-    let ended = taught(&part, Work::TeachAndMake, &mut Nobody);
+    let ended = taught(&part, Work::TeachAndMake, &mut NoOperator);
     let report = &ended.report;
     assert!(ended.error.is_none(), "{:?}", ended.error);
     assert_eq!(report.outcome, Outcome::Finished, "{report}");

@@ -50,7 +50,7 @@ pub enum CornerError {
     },
     /// The offset is too large.
     #[error(
-        "the corner reads {offset_um:.0} µm beside where it is (may be 100 µm): do both measurements show the same seam?"
+        "the measured corner is {offset_um:.0} µm off (at most 100 µm are possible): do both measurements show the same seam?"
     )]
     Large {
         /// The larger of both coordinates' \[µm\].

@@ -3,13 +3,13 @@
 use super::fading::Fading;
 use super::least_squares::LeastSquares;
 use crate::detector::{Detector, DetectorError};
+use crate::height_field::{HeightField, Plate};
 use crate::image::Image;
 use crate::noise::PhotonTransfer;
 use crate::optics::Optics;
 use crate::prior::{Joint, Prior};
 use crate::profile::Profile;
 use crate::report::Measured;
-use crate::surface::{Plate, Surface};
 use thiserror::Error;
 
 /// Fewest pictures that show a band.
@@ -25,7 +25,7 @@ const FAINTEST: f64 = 40.0;
 /// Largest scatter of a width from picture to picture, as a share.
 const SCATTER: f64 = 0.25;
 
-/// Largest deviation of the measured way from the told one, as a share.
+/// Largest relative deviation of the measured travel from the commanded one.
 const WAY: f64 = 0.05;
 
 /// How many times wider or narrower than by the drawing a band may be.
@@ -54,7 +54,7 @@ pub struct DepthFit {
     pub pictures: usize,
     /// Energy of the sharp texture over the noise, mean of the pictures.
     pub contrast: f64,
-    /// Way of the plate that the pictures showed, over the told one: 1 if the tilt is right.
+    /// Travel of the plate measured in the pictures, over the commanded travel: 1 if the tilt is right.
     pub way: f64,
 }
 
@@ -114,12 +114,12 @@ pub enum DepthError {
         /// Found over expected.
         factor: f64,
     },
-    /// The plate did not move as told.
+    /// The plate did not move as commanded.
     #[error(
-        "the pictures show {percent:.1} % of the way that the slides were told (may be 5 % off): is tilt_deg right, and was it this camera's slide V?"
+        "the pictures show {percent:.1} % of the commanded travel of the slides (at most 5 % off is possible): is tilt_deg right, and was it this camera's slide V?"
     )]
     Way {
-        /// Shown over told \[%\].
+        /// Measured over commanded travel \[%\].
         percent: f64,
     },
 }

@@ -25,7 +25,7 @@ impl<const N: usize, const M: usize> LeastSquares<N, M> {
         self.sums += x * SVector::from(values).transpose() * weight;
     }
 
-    /// Leaves a coefficient at 0 that no reading tells anything of.
+    /// Leaves a coefficient at 0 if the readings do not depend on it.
     pub fn hold(&mut self, k: usize) {
         self.information.row_mut(k).fill(0.0);
         self.information.column_mut(k).fill(0.0);
@@ -33,7 +33,7 @@ impl<const N: usize, const M: usize> LeastSquares<N, M> {
         self.sums.row_mut(k).fill(0.0);
     }
 
-    /// Coefficients, a column for each of the M values; `None` if the readings do not tell them apart.
+    /// Coefficients, a column for each of the M values; `None` if the readings do not determine them.
     pub fn solve(&self) -> Option<SMatrix<f64, N, M>> {
         let solution = self.information.cholesky()?.solve(&self.sums);
         solution.iter().all(|x| x.is_finite()).then_some(solution)

@@ -86,7 +86,7 @@ pub enum SlideError {
     },
     /// The readings do not fit any matrix.
     #[error(
-        "what the camera saw does not fit the slides' steps: {residual_um:.1} µm rms are left (may be 5 µm), reading {worst} is off by {worst_um:.1} µm; did the work or the machine move, or was another seam measured?"
+        "the measured positions do not fit the slides' steps: {residual_um:.1} µm rms are left (may be 5 µm), reading {worst} is off by {worst_um:.1} µm; did the work or the machine move, or was another seam measured?"
     )]
     Residual {
         /// Root of the mean square \[µm\].
@@ -104,7 +104,7 @@ pub enum SlideError {
         "the picture is mirrored: what the camera sees moves the wrong way across or up; switch the camera's flip"
     )]
     Mirrored,
-    /// The camera is not mounted as told.
+    /// The camera is not mounted as configured.
     #[error(
         "the camera is turned by {degrees:.1}° against its nominal mount (may be 10°): put the true angle into mount_deg of the machine file, or turn the picture"
     )]
@@ -112,7 +112,7 @@ pub enum SlideError {
         /// About travel \[°\].
         degrees: f64,
     },
-    /// The scale is not as told.
+    /// The scale is not as configured.
     #[error(
         "the slides move {percent:.1} % more than the picture says along {along} (may be 10 %): put the true magnification, pixel and tilt into the machine file"
     )]
@@ -124,9 +124,9 @@ pub enum SlideError {
     },
 }
 
-/// The camera–slide matrix from readings in the order they were taken, by least squares. A seam at rest moves through
-/// the picture against the camera: seen = −matrix⁻¹ · slides + constant. Play of a slide is told apart by the direction
-/// it last moved in. `nominal` is the matrix by the drawing.
+/// The camera–slide matrix from readings in the order they were taken, by least squares. A seam at rest moves
+/// through the picture against the camera: seen = −matrix⁻¹ · slides + constant. Play of a slide is separated
+/// by the direction it last moved in. `nominal` is the matrix by the drawing.
 ///
 /// Each place has a constant of its own: only what differs from the place's mean counts.
 pub fn slide_matrix(readings: &[SlideReading], nominal: [[f64; 2]; 2]) -> Result<SlideFit, SlideError> {
@@ -228,7 +228,7 @@ fn skew(matrix: &Matrix2<f64>) -> f64 {
     (u.dot(&n) / (u.norm() * n.norm())).clamp(-1.0, 1.0).asin()
 }
 
-/// Whether the camera is built about as told.
+/// Whether the camera is built about as configured.
 fn check_mount(matrix: &Matrix2<f64>, fit: &SlideFit) -> Result<(), SlideError> {
     if fit.scale.iter().any(|scale| *scale > STILL) {
         return Err(SlideError::Still);

@@ -24,7 +24,7 @@ pub(crate) struct Candidate {
     pub core: [usize; 2],
     /// Depth over the brightness beside it.
     pub depth: f64,
-    /// How it goes on outside the strip, 0 to 1.
+    /// How it continues outside the strip, 0 to 1.
     pub continuity: f64,
     /// Its rank.
     pub score: f64,

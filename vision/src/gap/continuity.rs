@@ -1,4 +1,4 @@
-//! Whether a dark run goes on beyond the strip, as a gap does and a blob does not.
+//! Whether a dark run continues beyond the strip, as a gap does and a blob does not.
 //!
 //! Out of focus the gap is wide and pale, but the light it lacks, ∫(1 − I/I0) du, stays.
 
@@ -14,7 +14,7 @@ const DISTANCES_MM: [f64; 6] = [-0.22, -0.16, -0.11, 0.11, 0.16, 0.22];
 const ROWS_MM: f64 = 0.0105;
 const BAND_MM: f64 = 0.05;
 
-/// Columns beside the run that tell the light \[mm\].
+/// Columns beside the run from which the light is measured \[mm\].
 const BESIDE_MM: f64 = 0.03;
 
 /// Margin of the window beyond edge and blur \[mm\].
@@ -45,7 +45,7 @@ impl Continuity {
         }
     }
 
-    /// Share of the distances at which a gap of this slant goes on.
+    /// Share of the distances at which a gap of this slant continues.
     pub fn of(&mut self, layer: &Layer, line: BandLine, candidate: &Candidate, slant: f64) -> f64 {
         let width = candidate.width() * layer.pitch_mm;
         let Some(here) = self.deficit(layer, line, candidate, slant, 0.0, BAND_MM) else {

@@ -1,4 +1,4 @@
-//! The visible gap: found in a strip along the sharp band, and told from what is only dark.
+//! The visible gap: found in a strip along the sharp band, and distinguished from what is only dark.
 
 mod candidate;
 mod continuity;

@@ -18,7 +18,7 @@ const AGREEING_JUMP: u32 = 4;
 /// Pictures in a row without any seam that a doubted one outlives.
 const UNSEEN: u32 = 1;
 
-/// Why a measured seam is not believed.
+/// Why a measured seam is not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
     /// It has not been seen often enough yet.
@@ -31,15 +31,15 @@ pub enum Doubt {
 
 /// What becomes of a measured seam.
 pub(super) enum Verdict {
-    /// It is believed; what was remembered of another place or width is not.
-    Believe { jumped: bool },
+    /// It is accepted; what was remembered of another place or width is not.
+    Accept { jumped: bool },
     /// It is not.
     Doubt(Doubt),
 }
 
-/// A seam as it was seen.
+/// One measurement of the seam.
 #[derive(Clone, Copy, Debug)]
-struct Seen {
+struct Sighting {
     form: Form,
     lateral_mm: f64,
     width_mm: f64,
@@ -52,10 +52,10 @@ pub(super) struct Gate {
     widths: Running,
     /// Median of the widths.
     width_mm: f64,
-    /// The seam that was believed last.
-    believed: Option<Seen>,
+    /// The seam that was accepted last.
+    accepted: Option<Sighting>,
     /// The last one that was not, and how many before it were like it.
-    doubted: Option<(Seen, u32)>,
+    doubted: Option<(Sighting, u32)>,
     /// Pictures in a row without any seam.
     unseen: u32,
 }
@@ -67,7 +67,7 @@ impl Gate {
             gate_mm,
             widths: Running::new(WIDTHS),
             width_mm: 0.0,
-            believed: None,
+            accepted: None,
             doubted: None,
             unseen: 0,
         }
@@ -80,14 +80,14 @@ impl Gate {
 
     /// Forgets all.
     pub fn forget(&mut self) {
-        self.believed = None;
+        self.accepted = None;
         self.doubted = None;
         self.widths.clear();
     }
 
     /// Sees from where the camera is now.
     pub fn follow(&mut self, moved: &Moved) {
-        if let Some(seen) = &mut self.believed {
+        if let Some(seen) = &mut self.accepted {
             seen.lateral_mm -= moved.lateral_mm;
         }
         if let Some((seen, _)) = &mut self.doubted {
@@ -106,18 +106,18 @@ impl Gate {
     /// Judges a seam.
     pub fn judge(&mut self, measured: &Measured, state: State) -> Verdict {
         self.unseen = 0;
-        let seen = Seen {
+        let seen = Sighting {
             form: measured.form,
             lateral_mm: measured.lateral_mm,
             width_mm: measured.width_mm,
         };
-        let doubt = match self.believed.filter(|_| state == State::Tracking) {
+        let doubt = match self.accepted.filter(|_| state == State::Tracking) {
             None => Some(Doubt::New),
-            Some(believed) => self.differs(
+            Some(accepted) => self.differs(
                 &seen,
-                &Seen {
+                &Sighting {
                     width_mm: self.width_mm,
-                    ..believed
+                    ..accepted
                 },
             ),
         };
@@ -138,19 +138,19 @@ impl Gate {
             self.widths.clear();
         }
         self.doubted = None;
-        self.believed = Some(seen);
+        self.accepted = Some(seen);
         // Of a corner there is no width; the gap's stays in mind.
         if seen.form == Form::Gap {
             self.widths.push(seen.width_mm);
             self.width_mm = self.widths.median().unwrap_or(seen.width_mm);
         }
-        Verdict::Believe {
+        Verdict::Accept {
             jumped: doubt.is_some(),
         }
     }
 
     /// In what a seam differs from another.
-    fn differs(&self, seen: &Seen, other: &Seen) -> Option<Doubt> {
+    fn differs(&self, seen: &Sighting, other: &Sighting) -> Option<Doubt> {
         let wider = (seen.width_mm - other.width_mm).abs();
         if (seen.lateral_mm - other.lateral_mm).abs() > self.gate_mm {
             Some(Doubt::Position)

@@ -37,7 +37,7 @@ const VOTES: u32 = 3;
 pub struct ObserverConfig {
     /// How far the seam may lie from where it was in the last picture \[mm\].
     pub gate_mm: f64,
-    /// Pictures without a believed seam after which it is lost.
+    /// Pictures without an accepted seam after which it is lost.
     pub hold_frames: u32,
     /// Pictures of which the mean point and roll are means; at least 4 count.
     pub mean_frames: usize,
@@ -129,12 +129,7 @@ impl Observer {
         self.joint
     }
 
-    /// Takes the joint of a new pose; what was learnt of the walls is gone.
-    pub fn set_joint(&mut self, joint: Joint) {
-        self.joint = joint;
-    }
-
-    /// Forgets where the seam was, and acquires it anew.
+    /// Forgets where the seam was, and acquires it again.
     pub fn forget(&mut self) {
         self.lose(State::Acquiring);
     }
@@ -160,7 +155,7 @@ impl Observer {
                     doubt = Some(why);
                     self.miss();
                 }
-                Verdict::Believe { jumped } => {
+                Verdict::Accept { jumped } => {
                     relocked = jumped && self.state == State::Tracking;
                     if jumped {
                         self.restart();
@@ -213,7 +208,7 @@ impl Observer {
         }
     }
 
-    /// Takes a believed measurement.
+    /// Takes an accepted measurement.
     fn accept(&mut self, measured: &Measured) -> Seam {
         self.state = State::Tracking;
         self.missed = 0;
@@ -265,7 +260,7 @@ impl Observer {
         }
     }
 
-    /// A picture without a believed seam.
+    /// A picture without an accepted seam.
     fn miss(&mut self) {
         self.missed += 1;
         if self.state == State::Tracking && self.missed > self.config.hold_frames {
@@ -285,7 +280,7 @@ impl Observer {
         self.restart();
     }
 
-    /// Begins all means anew.
+    /// Begins all means again.
     fn restart(&mut self) {
         self.places.clear();
         self.rolls.clear();

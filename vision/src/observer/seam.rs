@@ -1,4 +1,4 @@
-//! What an observer is told, and what it tells.
+//! Inputs and results of an observer.
 
 use super::{Doubt, State};
 use crate::report::{Form, Report, Sigma, Status};
@@ -21,17 +21,17 @@ pub struct Observation {
     pub report: Report,
     /// What the observer is doing, this picture included.
     pub state: State,
-    /// The seam, if it is believed.
+    /// The seam, if it is accepted.
     pub seam: Option<Seam>,
     /// Why it is not, where the picture shows one.
     pub doubt: Option<Doubt>,
-    /// Whether the seam jumped and is believed at its new place or width from now on.
+    /// Whether the seam jumped and is accepted at its new place or width from now on.
     pub relocked: bool,
     /// Too high or too low, after three pictures in a row that say so.
     pub out_of_view: Option<Status>,
 }
 
-/// A seam that is believed, in the camera's frame (see [`Measured`]).
+/// A seam that is accepted, in the camera's frame (see [`Measured`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seam {
     /// Form it was seen in.
@@ -56,12 +56,12 @@ pub struct Seam {
     pub sigma: Sigma,
 }
 
-/// A point of the seam: the mean of where the last `mean_frames` believed pictures saw it.
+/// A point of the seam: the mean of where the last `mean_frames` accepted pictures saw it.
 ///
 /// In the camera's frame where the camera is now: each picture's (a, u, n) is carried along by what the camera has moved
 /// since ([`Moved`]). The three are means over the same pictures and therefore belong together: on a seam that climbs,
 /// slants or bends the point lies on the seam, somewhat behind what the last picture shows. After a jump of the seam, a
-/// loss, or as many pictures in a row without the seam as a mean has, means begin anew.
+/// loss, or as many pictures in a row without the seam as a mean has, means start again.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MeanPoint {
     /// a \[mm\].

@@ -4,7 +4,7 @@ use super::scene::{Joint, Scene};
 use crate::observer::{MeanPoint, Observation};
 use crate::optics::Optics;
 
-/// Errors of a seam that an observer believes.
+/// Errors of a seam that an observer accepts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
     /// Of the lateral position in this picture \[mm\].
@@ -20,8 +20,8 @@ pub struct Errors {
 }
 
 impl Scene {
-    /// Errors of what an observer made of this scene's picture. None if it believes nothing, or if there is no surface
-    /// to be seen. A mean point is held against the seam as it is in this scene: straight.
+    /// Errors of what an observer made of this scene's picture. None if it accepts nothing, or if there is no
+    /// surface to be seen. A mean point is held against the seam as it is in this scene: straight.
     pub fn errors(&self, seen: &Observation, optics: &Optics) -> Option<Errors> {
         let truth = self.truth(optics)?;
         let (seam, measured) = (seen.seam?, seen.report.measured?);

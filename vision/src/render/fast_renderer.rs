@@ -33,11 +33,11 @@ pub struct FastRenderer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum RenderError {
     /// The scene has another texture than the tiles.
-    #[error("the scene's texture is not that of the tiles; make tiles of it")]
+    #[error("the scene's texture is not that of the tiles; make its tiles first")]
     Texture,
     /// The tiles left and right are of different cameras or textures.
     #[error(
-        "the tiles left and right of the seam are of different cameras or textures; make both of the same"
+        "the tiles left and right of the seam belong to different cameras or textures; make both for the same"
     )]
     Tiles,
 }

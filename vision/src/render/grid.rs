@@ -10,7 +10,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// The row of values in which a row goes on so many periods of columns further right.
+    /// The row of values in which a row continues so many periods of columns further right.
     pub fn row(&self, row: i64, periods: i64) -> usize {
         (row - periods * self.lower).rem_euclid(self.size[0] as i64) as usize
     }

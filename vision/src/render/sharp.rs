@@ -1,7 +1,7 @@
 //! The work as it would look without lens, pixels and travel.
 
 use super::scene::{Gap, Joint, Root, Scene};
-use super::surface::Point;
+use super::sight_line::Point;
 use super::texture::{Field, roughness};
 
 /// Light from wall to wall fades by 1/e over this \[mm\].

@@ -4,7 +4,7 @@ use super::blur::{Discs, Kernel, Lens, Part};
 use super::random::SplitMix64;
 use super::scene::Scene;
 use super::sharp::Sharp;
-use super::surface::Surface;
+use super::sight_line::WorkSurface;
 use crate::noise::PhotonTransfer;
 use crate::optics::{Optics, OpticsError};
 
@@ -78,7 +78,7 @@ impl TruthRenderer {
         let Optics { rows, columns, .. } = self.optics;
         let lens = Lens::new(&self.optics);
         let sample = lens.pixel_mm / self.samples as f64;
-        let surface = Surface::new(&scene.joint, &self.optics);
+        let surface = WorkSurface::new(&scene.joint, &self.optics);
         let [r0, c0] = self.optics.centre();
         self.depths.clear();
         for row in 0..rows {
@@ -106,7 +106,7 @@ impl TruthRenderer {
         self.gather(scene, stretch, lens.spread / sample)
     }
 
-    fn sample(&mut self, scene: &Scene, surface: &Surface, stretch: Stretch, sample: f64) {
+    fn sample(&mut self, scene: &Scene, surface: &WorkSurface, stretch: Stretch, sample: f64) {
         self.sharp.prepare(scene);
         self.samples_of_work.clear();
         let middle = |count: usize| (count as f64 - 1.0) / 2.0;

@@ -118,7 +118,7 @@ proptest! {
     }
 }
 
-/// Slides whose camera lags by 6 and 10 µm of play: the play is told, and does not move the matrix.
+/// Slides whose camera lags by 6 and 10 µm of play: the play is reported, and does not move the matrix.
 #[test]
 fn play_of_the_slides_is_told() {
     let truth = matrix(MOUNT, 1.0);

@@ -11,13 +11,13 @@ const EMULATOR: &str = "qemu-system-arm";
 const LIMIT: Duration = Duration::from_secs(300);
 
 /// What the board says, and QEMU ends with, when its handler of faults runs although the stack ran over.
-const OVERFLOW_SAID: &str = "the stack ran over its end";
+const OVERFLOW_SAID: &str = "the stack overflowed";
 const OVERFLOW_STATUS: &str = "exit status: 101";
 
 /// Runs the stack over its end: the handler of faults has to run all the same.
 pub fn overflow_stack(image: &Path, folder: &Path) -> Result<()> {
     let Err(end) = say(image, "stack-overflow", folder) else {
-        bail!("the board went on without a stack");
+        bail!("the board continued after its stack overflowed");
     };
     let end = end.to_string();
     if end.contains(OVERFLOW_SAID) && end.contains(OVERFLOW_STATUS) {

@@ -88,12 +88,14 @@ mod tests {
     use super::*;
 
     fn shell(script: &str, limit: Duration) -> Result<String> {
-        let name = format!("bounded-{}-{}", std::process::id(), script.len());
-        let folder = std::env::temp_dir().join(name);
-        fs::create_dir_all(&folder).expect("a folder");
-        let result = run("sh", &["-c".into(), script.into()], &folder, "console", limit);
-        fs::remove_dir_all(&folder).expect("removed");
-        result
+        let folder = tempfile::tempdir().expect("a folder");
+        run(
+            "sh",
+            &["-c".into(), script.into()],
+            folder.path(),
+            "console",
+            limit,
+        )
     }
 
     #[test]

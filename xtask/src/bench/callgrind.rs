@@ -42,7 +42,7 @@ pub fn count(program: &Path, arguments: &[&str], folder: &Path) -> Result<(Strin
     let arguments: Vec<String> = flags.into_iter().chain(words.map(str::to_owned)).collect();
     let path = folder.join(FILE);
     let cannot = || format!("cannot read {}", path.display());
-    // Callgrind would go on with the file of a run that did not come to its end.
+    // Callgrind would continue with the file of a run that did not come to its end.
     if path.exists() {
         fs::remove_file(&path).with_context(cannot)?;
     }

@@ -203,7 +203,7 @@ impl Counts {
                 Record::Checksum(checksum) => return Ok(Self { rows, checksum }),
             }
         }
-        bail!("the benchmark did not come to its end; it printed:\n{text}")
+        bail!("the benchmark did not end; it printed:\n{text}")
     }
 
     /// The rows less what counting itself costs, which is what the function that does nothing costs.

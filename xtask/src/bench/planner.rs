@@ -76,7 +76,7 @@ impl Log {
         }
         let from = text.len().saturating_sub(500);
         let end = text.get(from..).unwrap_or_default();
-        anyhow::bail!("the benchmark did not come to its end; it printed at last:\n{end}")
+        anyhow::bail!("the benchmark did not end; its last output:\n{end}")
     }
 
     /// The same with what was counted from outside.

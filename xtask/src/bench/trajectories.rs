@@ -167,13 +167,11 @@ mod tests {
 
     #[test]
     fn segments_come_first_and_curves_at_every_feed() {
-        let folder = std::env::temp_dir().join(format!("programs-{}", std::process::id()));
-        fs::create_dir_all(&folder).expect("a folder");
+        let folder = tempfile::tempdir().expect("a folder");
         for file in ["b.seg", "a.json", "a.seg", "baseline.csv"] {
-            fs::write(folder.join(file), "").expect("a file");
+            fs::write(folder.path().join(file), "").expect("a file");
         }
-        let programs = all(&folder).expect("programs");
-        fs::remove_dir_all(&folder).expect("removed");
+        let programs = all(folder.path()).expect("programs");
         let names: Vec<&str> = programs.iter().map(|program| program.name.as_str()).collect();
         assert_eq!(
             names,

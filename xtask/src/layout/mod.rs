@@ -40,7 +40,7 @@ pub fn check(image: &Path, board: Board) -> Result<Vec<String>> {
     let text = fs::read_to_string(&script).with_context(|| format!("cannot read {}", script.display()))?;
     let regions = read::regions(&text).with_context(|| format!("{} is not understood", script.display()))?;
     let bytes = fs::read(image).with_context(|| format!("cannot read {}", image.display()))?;
-    let image = read::image(&bytes).with_context(|| format!("{} is no firmware", image.display()))?;
+    let image = read::image(&bytes).with_context(|| format!("{} is not a firmware", image.display()))?;
     Ok(findings(&image, &regions))
 }
 
@@ -162,10 +162,7 @@ fn guard(image: &Image, regions: &[Region], findings: &mut Vec<String>) {
         .iter()
         .filter(|region| region.begin < end && begin < region.end)
     {
-        findings.push(format!(
-            "the guard below the stack takes memory of {}",
-            region.name
-        ));
+        findings.push(format!("the guard below the stack overlaps {}", region.name));
     }
 }
 
@@ -306,6 +303,6 @@ mod tests {
         let findings = found(|image| {
             image.symbols.insert("_stack_guard".to_string(), 0x0808_0000);
         });
-        assert_eq!(findings, ["the guard below the stack takes memory of FLASH"]);
+        assert_eq!(findings, ["the guard below the stack overlaps FLASH"]);
     }
 }

@@ -89,7 +89,7 @@ pub fn image(bytes: &[u8]) -> Result<Image> {
     let mut image = Image::default();
     for section in file.sections() {
         let SectionFlags::Elf { sh_flags } = section.flags() else {
-            bail!("it is no ELF file");
+            bail!("it is not an ELF file");
         };
         if sh_flags & u64::from(elf::SHF_ALLOC) == 0 || section.size() == 0 {
             continue;
@@ -123,10 +123,10 @@ pub fn image(bytes: &[u8]) -> Result<Image> {
     Ok(image)
 }
 
-/// What of each segment is flashed, where. The object crate tells addresses in memory only.
+/// What of each segment is flashed, where. The object crate gives addresses in memory only.
 fn loads(file: &object::File<'_>) -> Result<Vec<Part>> {
     let object::File::Elf32(elf) = file else {
-        bail!("it is no 32-bit ELF file");
+        bail!("it is not a 32-bit ELF file");
     };
     let endian = elf.endian();
     let headers = elf.elf_program_headers().iter();

@@ -1,7 +1,7 @@
 //! The connection to one board: its request stream, its UDP socket and the thread that empties it.
 
 use super::stream::{Stream, read_answers};
-use super::{Endpoint, Incoming, Patience, waits};
+use super::{Endpoint, Incoming, Timeouts, waits};
 use crate::boards::LinkError;
 use shared::protocol::framing;
 use shared::protocol::{Datagram, Identity, Request, Response, Role, SCHEMA_HASH};
@@ -16,7 +16,7 @@ use std::time::Duration;
 /// How often a reader looks whether it is still wanted.
 const READER_WAKES: Duration = Duration::from_millis(50);
 
-/// One board. Each has a UDP socket of its own: of an emulated board the source port tells nothing.
+/// One board. Each has a UDP socket of its own: of an emulated board the source port is arbitrary.
 pub(super) struct Connection {
     pub(super) stream: Stream,
     pub(super) datagrams: UdpSocket,
@@ -32,7 +32,7 @@ impl Connection {
     pub(super) fn open(
         role: Role,
         endpoint: &Endpoint,
-        patience: Patience,
+        patience: Timeouts,
         sender: &SyncSender<Incoming>,
         bad: &Arc<AtomicU32>,
     ) -> Result<Self, LinkError> {
@@ -59,7 +59,7 @@ impl Connection {
         }
 
         let board = SocketAddrV4::new(endpoint.address().map_err(unreachable)?, endpoint.datagram_port);
-        // On the interface that leads to the board, so that no other network can put in a word.
+        // On the interface that leads to the board, so that nothing from another network is received.
         let here = stream.socket.local_addr().map_err(unreachable)?.ip();
         let datagrams = UdpSocket::bind((here, 0)).map_err(unreachable)?;
         datagrams

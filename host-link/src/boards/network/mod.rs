@@ -1,17 +1,17 @@
 //! Boards in a network, real or emulated: requests over TCP, datagrams over UDP.
 
-mod attention;
 mod connection;
 mod frames;
+mod stall;
 mod stream;
 #[cfg(test)]
 mod tests;
 
-use super::{Absence, Boards, LinkError};
-use attention::Attention;
+use super::{Boards, LinkError, Stall};
 use connection::Connection;
 use shared::protocol::framing;
 use shared::protocol::{DATAGRAM_PORT, Datagram, Identity, REQUEST_PORT, Request, Response, Role};
+use stall::StallDetector;
 use std::collections::VecDeque;
 use std::fmt;
 use std::io;
@@ -25,7 +25,7 @@ use stream::{Answer, Stream};
 /// Datagrams that wait for [`Boards::receive`]; about ten seconds of both boards. More are dropped and counted.
 const WAITING: usize = 4096;
 
-/// How often somebody who waits for an answer looks whether the machine is to stop.
+/// How often a thread that waits for an answer checks whether the machine is to stop.
 const LOOK: Duration = Duration::from_millis(10);
 
 /// How often emulated boards hear that this program keeps up, while it waits.
@@ -70,16 +70,16 @@ impl fmt::Display for Endpoint {
     }
 }
 
-/// How long the PC waits for a board.
+/// Longest times that the PC waits for a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Patience {
+pub struct Timeouts {
     /// For a connection: long enough for a board that boots or gives up the last session.
     pub connect: Duration,
     /// For the answer to a request.
     pub answer: Duration,
 }
 
-impl Default for Patience {
+impl Default for Timeouts {
     fn default() -> Self {
         Self {
             connect: Duration::from_secs(7),
@@ -101,11 +101,11 @@ pub struct NetworkBoards {
     began: Instant,
     /// See [`Self::paced_by`].
     handled: Option<Box<dyn Fn() + Send>>,
-    /// Set by whoever wants the machine to stop.
+    /// Set to stop the machine.
     interrupted: Arc<AtomicBool>,
-    /// The motion board was told to, while an answer was waited for.
+    /// A stop was sent to the motion board while an answer was waited for.
     stopped: bool,
-    attention: Attention,
+    stall_detector: StallDetector,
 }
 
 /// What the readers pass on.
@@ -141,7 +141,7 @@ impl NetworkBoards {
         motion: &Endpoint,
         tracker: Option<&Endpoint>,
         path_states_target: Option<([u8; 4], u16)>,
-        patience: Patience,
+        patience: Timeouts,
     ) -> Result<Self, LinkError> {
         let (sender, incoming) = sync_channel(WAITING);
         let bad = Arc::new(AtomicU32::new(0));
@@ -163,18 +163,18 @@ impl NetworkBoards {
             handled: None,
             interrupted: Arc::default(),
             stopped: false,
-            attention: Attention::new(),
+            stall_detector: StallDetector::new(),
         })
     }
 
-    /// As soon as `interrupted` is set the motion board is told to stop, whatever else is being waited for.
+    /// As soon as `interrupted` is set a stop is sent to the motion board, whatever else is being waited for.
     #[must_use]
     pub fn stopped_by(self, interrupted: Arc<AtomicBool>) -> Self {
         Self { interrupted, ..self }
     }
 
     /// `handled` is called whenever everything that the boards sent has been taken and this program is about to wait or to ask:
-    /// emulated boards, which wait while this program has no processor, are told so.
+    /// this is for emulated boards, which wait while this program has no processor.
     #[must_use]
     pub fn paced_by(self, handled: impl Fn() + Send + 'static) -> Self {
         Self {
@@ -240,7 +240,7 @@ impl NetworkBoards {
         match taken {
             Some(Incoming::Datagram(role, datagram)) => self.came.push_back((role, datagram)),
             Some(Incoming::Answer(role, answer)) => {
-                // The session ends with its boards, so that of each that told something there is a stream.
+                // The session ends with its boards, so that there is a stream for each that sent something.
                 if let Ok(stream) = self.stream(role) {
                     stream.deliver(answer);
                 }
@@ -258,14 +258,14 @@ impl Boards for NetworkBoards {
                 return Ok(answer);
             }
             self.take(LOOK);
-            self.attention.paid(self.began.elapsed(), LOOK);
+            self.stall_detector.check(self.began.elapsed(), LOOK);
             self.stop_if_interrupted();
             answer = self.stream(role)?.answer()?;
         }
     }
 
     fn ask(&mut self, role: Role, request: &Request) -> Result<Option<Response>, LinkError> {
-        self.attention.paid(self.began.elapsed(), Duration::ZERO);
+        self.stall_detector.check(self.began.elapsed(), Duration::ZERO);
         self.stop_if_interrupted();
         self.stream(role)?.ask(request)?;
         Ok(None)
@@ -284,16 +284,16 @@ impl Boards for NetworkBoards {
         self.bad.load(Ordering::Relaxed)
     }
 
-    fn absence(&self) -> Option<Absence> {
-        self.attention.absence()
+    fn last_stall(&self) -> Option<Stall> {
+        self.stall_detector.last_stall()
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
-        self.attention.paid(self.began.elapsed(), Duration::ZERO);
+        self.stall_detector.check(self.began.elapsed(), Duration::ZERO);
         self.stop_if_interrupted();
         if self.came.is_empty() {
             self.take(timeout);
-            self.attention.paid(self.began.elapsed(), timeout);
+            self.stall_detector.check(self.began.elapsed(), timeout);
         }
         match self.came.pop_front() {
             Some((role, Ok(datagram))) => Ok(Some((role, *datagram))),

@@ -3,7 +3,7 @@
 //! Once the session has begun, a thread of its own reads the answers.
 
 use super::frames::Frames;
-use super::{Endpoint, Incoming, Patience, waits};
+use super::{Endpoint, Incoming, Timeouts, waits};
 use crate::boards::LinkError;
 use shared::protocol::framing::{self, FrameError, MAX_MESSAGE};
 use shared::protocol::{Identity, Request, Response, Role, SCHEMA_HASH};
@@ -27,17 +27,17 @@ pub(super) struct Stream {
     pub(super) socket: TcpStream,
     patience: Duration,
     /// What the board has not answered yet, oldest first.
-    owed: VecDeque<Owed>,
-    /// What has come of an answer that somebody waits for, or what ended the stream.
+    pending: VecDeque<PendingAnswer>,
+    /// The answer that a caller waits for, once received, or what ended the stream.
     answered: Option<Result<Response, LinkError>>,
     /// Since when an answer was seen to be overdue.
     overdue: Option<Instant>,
 }
 
-/// An answer that is yet to come.
-struct Owed {
+/// A request that the board has not answered yet.
+struct PendingAnswer {
     deadline: Instant,
-    /// Somebody waits for it.
+    /// A caller waits for it.
     wanted: bool,
 }
 
@@ -47,7 +47,7 @@ impl Stream {
     pub(super) fn open(
         role: Role,
         endpoint: &Endpoint,
-        patience: Patience,
+        patience: Timeouts,
     ) -> Result<(Self, Frames, Identity), LinkError> {
         let deadline = Instant::now() + patience.connect;
         loop {
@@ -87,7 +87,7 @@ impl Stream {
     fn try_open(
         role: Role,
         endpoint: &Endpoint,
-        patience: Patience,
+        patience: Timeouts,
         deadline: Instant,
     ) -> Result<(Self, Frames, Identity), LinkError> {
         let lost = |source| LinkError::Lost { role, source };
@@ -103,7 +103,7 @@ impl Stream {
             role,
             socket,
             patience: patience.answer.min(left),
-            owed: VecDeque::new(),
+            pending: VecDeque::new(),
             answered: None,
             overdue: None,
         };
@@ -139,10 +139,11 @@ impl Stream {
         }
     }
 
-    /// Sends a request whose answer [`Self::answer`] gives. An answer that is still owed is nobody's any more.
+    /// Sends a request whose answer [`Self::answer`] gives. The answer to an earlier request is dropped when
+    /// it comes.
     pub(super) fn ask(&mut self, request: &Request) -> Result<(), LinkError> {
-        for owed in &mut self.owed {
-            owed.wanted = false;
+        for pending in &mut self.pending {
+            pending.wanted = false;
         }
         if let Some(Ok(_)) = self.answered {
             self.answered = None;
@@ -150,7 +151,7 @@ impl Stream {
         self.post(request, true)
     }
 
-    /// Sends a request whose answer nobody waits for. Those asked before keep theirs.
+    /// Sends a request whose answer is not waited for. Earlier requests are still waited for.
     pub(super) fn tell(&mut self, request: &Request) -> Result<(), LinkError> {
         self.post(request, false)
     }
@@ -159,10 +160,10 @@ impl Stream {
     pub(super) fn deliver(&mut self, answer: Answer) {
         let role = self.role;
         let found = match answer {
-            Ok(Ok(response)) => match self.owed.pop_front() {
-                Some(Owed { wanted: true, .. }) => Ok(response),
-                // Of a request that nobody waits for.
-                Some(Owed { wanted: false, .. }) | None => return,
+            Ok(Ok(response)) => match self.pending.pop_front() {
+                Some(PendingAnswer { wanted: true, .. }) => Ok(response),
+                // Of a request whose answer is not waited for.
+                Some(PendingAnswer { wanted: false, .. }) | None => return,
             },
             Ok(Err(source)) => Err(LinkError::Frame { role, source }),
             Err(error) => {
@@ -183,7 +184,11 @@ impl Stream {
             return answered.map(Some);
         }
         let now = Instant::now();
-        if self.owed.front().is_some_and(|owed| now >= owed.deadline) {
+        if self
+            .pending
+            .front()
+            .is_some_and(|pending| now >= pending.deadline)
+        {
             let since = *self.overdue.get_or_insert(now);
             if now.duration_since(since) >= SECOND_LOOK {
                 self.close();
@@ -219,7 +224,7 @@ impl Stream {
             let source = self.explain(error);
             return Err(LinkError::Lost { role, source });
         }
-        self.owed.push_back(Owed {
+        self.pending.push_back(PendingAnswer {
             deadline: Instant::now() + self.patience,
             wanted,
         });

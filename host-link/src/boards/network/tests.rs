@@ -6,7 +6,7 @@ use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream, UdpSocket};
 use std::thread::JoinHandle;
 
-const BRIEF: Patience = Patience {
+const BRIEF: Timeouts = Timeouts {
     connect: Duration::from_millis(500),
     answer: Duration::from_millis(300),
 };
@@ -228,7 +228,7 @@ fn a_board_that_takes_no_connection_is_named_with_its_address() {
     let error = message(NetworkBoards::connect(&nowhere, Some(&nowhere), None, BRIEF));
     assert!(
         error.starts_with(&format!(
-            "the motion board at 127.0.0.1:{port} turns the connection away"
+            "the motion board at 127.0.0.1:{port} refuses the connection"
         )),
         "{error}"
     );
@@ -326,7 +326,7 @@ fn an_answer_that_is_no_message_is_an_error_not_a_panic() {
 }
 
 /// Longer than any test waits on purpose, shorter than for ever.
-const LONG: Patience = Patience {
+const LONG: Timeouts = Timeouts {
     connect: Duration::from_secs(2),
     answer: Duration::from_secs(2),
 };
@@ -365,7 +365,7 @@ fn a_stop_does_not_wait_for_a_board_that_does_not_answer() {
         })
     ));
     assert_eq!(stops.recv_timeout(AMPLE), Ok(false));
-    // The answer to the stop is nobody's: the next one is that of the next request.
+    // The answer to the stop is dropped: the next one is that of the next request.
     let refused = Response::Refused(Refusal::NotHomed);
     drop((boards, motion));
     let motion = Fake::board(Role::Motion, {
@@ -433,10 +433,10 @@ fn a_program_that_was_paused_takes_the_answer_that_waited_for_it_and_knows_of_it
         boards.answer(Role::Motion).unwrap()
     });
     assert_eq!(answer.take(20).flatten().next(), Some(Response::Done));
-    let absence = boards.absence().expect("it did nothing for a while");
+    let last_stall = boards.last_stall().expect("it did nothing for a while");
     assert!(
-        absence.ended >= before && absence.lasted >= BRIEF.answer * 2,
-        "{absence:?}"
+        last_stall.ended >= before && last_stall.lasted >= BRIEF.answer * 2,
+        "{last_stall:?}"
     );
 }
 

@@ -20,9 +20,9 @@ pub enum DryRunError {
     /// There is no reference for the axes.
     #[error(transparent)]
     Reference(#[from] Unreachable),
-    /// The planner does not go on.
+    /// The planner does not continue.
     #[error(
-        "line {line}: the planner stands still {s_mm:.3} mm along path {path}; please report the program"
+        "line {line}: the planner does not move on, {s_mm:.3} mm along path {path}; please report the program"
     )]
     Stuck {
         /// Line of the program.

@@ -1,4 +1,4 @@
-//! What is known after a dry run.
+//! Results of a dry run.
 
 use super::differences::Rates;
 use super::trace::Trace;

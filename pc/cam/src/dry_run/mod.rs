@@ -1,4 +1,4 @@
-//! What a program will do on the machine, from the planner of the motion board itself, without boards and world.
+//! Prediction of a program's run by the planner of the motion board, without boards.
 //!
 //! The same code in the same size as on the board plans the speed ([`shared::trajectory::BoardPlanner`]), it is given
 //! elements as the board is, in batches and no more than it has room for, and its outputs are looked at as any

@@ -18,9 +18,9 @@ const PATIENCE: u32 = 60_000;
 /// What moves less is at rest [units of people per second].
 const REST: f64 = 1e-6;
 
-/// What is seen on one path.
+/// Extremes of speed, acceleration and jerk on one path.
 #[derive(Default)]
-struct Seen {
+struct PathExtremes {
     highest: Highest,
     rulers: Rulers,
 }
@@ -113,13 +113,13 @@ impl Runner {
             None => dwell_ticks(path),
         });
         let start = self.ticks;
-        let mut seen = Seen::default();
+        let mut extremes = PathExtremes::default();
         self.differences.count_from(PATH, path.start_s);
         let (mut arrived, mut idle, mut last_s) = (0, 0, path.start_s);
         while arrived < ARRIVED {
             let output = self.planner.tick(&self.board.kinematics)?;
             let feed = feeds.at(output.along.s) * self.factor;
-            self.tick(&output, [feed, acceleration, jerk], &mut seen);
+            self.tick(&output, [feed, acceleration, jerk], &mut extremes);
             stream.tick(&mut self.planner, |element| feeds.add(element))?;
             arrived = if output.at_rest { arrived + 1 } else { 0 };
             idle = if output.along.s > last_s { 0 } else { idle + 1 };
@@ -132,7 +132,7 @@ impl Runner {
                 });
             }
         }
-        self.result.highest.take(&seen.highest);
+        self.result.highest.take(&extremes.highest);
         let lines = path.first_and_last_line();
         self.result.paths.push(PathFigures {
             motion: path.motion,
@@ -143,14 +143,14 @@ impl Runner {
             start_s: start as f64 * PATH_PERIOD_S,
             duration_s: (self.ticks - start) as f64 * PATH_PERIOD_S,
             corner_deg: path.corner_deg,
-            highest: seen.highest,
-            ruled: seen.rulers.of(self.ticks - start),
+            highest: extremes.highest,
+            ruled: extremes.rulers.of(self.ticks - start),
         });
         Ok(())
     }
 
     /// One tick of a path, whose speed, acceleration and jerk may be `path`.
-    fn tick(&mut self, output: &Output, path: Rates, seen: &mut Seen) {
+    fn tick(&mut self, output: &Output, path: Rates, extremes: &mut PathExtremes) {
         self.axes = output.axes.position;
         let rates = self.differences.push(&positions(output.along.s, &self.axes));
         let limits = std::array::from_fn(|row| match row {
@@ -161,8 +161,8 @@ impl Runner {
             }
         });
         let time_s = self.ticks as f64 * PATH_PERIOD_S;
-        let ruler = seen.highest.tick(&rates, &limits, output.line, time_s);
-        seen.rulers.count(ruler);
+        let ruler = extremes.highest.tick(&rates, &limits, output.line, time_s);
+        extremes.rulers.count(ruler);
         let moves = (0..ROWS).any(|row| rates[row][0].abs() > REST * row_unit(row));
         if moves {
             self.end_stop();

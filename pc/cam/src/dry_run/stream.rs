@@ -28,7 +28,7 @@ pub fn ticks_between(path: &PlannedPath, requests: u32, tracker: bool) -> u64 {
 /// Ticks that the PC waits before a path.
 pub fn dwell_ticks(path: &PlannedPath) -> u64 {
     if path.dwell_before_s > 0.0 {
-        // It asks for the time first, and telemetry tells it in batches.
+        // It asks for the time first, and telemetry comes in batches.
         (path.dwell_before_s * 1e3).ceil() as u64 + u64::from(REQUEST) + TELEMETRY_BATCH as u64 / 2
     } else {
         0

@@ -1,4 +1,4 @@
-//! The prediction for people.
+//! The prediction as text.
 
 use super::figures::name;
 use super::{DryRun, PATH, PathFigures, Peak, QUANTITIES, ROWS};
@@ -9,7 +9,7 @@ use std::fmt::{Display, Formatter, Result};
 
 /// The last row that is not rotary.
 const ROTARY: usize = 3;
-/// Most limits that are told of a path.
+/// Most limits that are printed for a path.
 const RULERS: usize = 3;
 /// They rule for this part of its time at least.
 const TOLD: f64 = 0.005;
@@ -22,7 +22,7 @@ pub fn row_name(row: usize) -> &'static str {
     }
 }
 
-/// Speeds below this are told in mm/min \[mm/s\].
+/// Speeds below this are printed in mm/min \[mm/s\].
 const SLOW: f64 = 0.995 * MM_S_PER_M_MIN;
 
 /// Unit of a quantity of a row, and how many of the inner ones (mm or degrees, s) it is; `largest` is the largest value.

@@ -7,7 +7,7 @@ use super::{PathError, Planner, Tip};
 use crate::attitude::interpolate;
 use config::table::FARTHEST_MM;
 use nalgebra::Vector3;
-use nc::{Motion, Place, Target, Way};
+use nc::{Motion, SourcePosition, Target, Way};
 use shared::geometry::{Arc, Moving, Pose, angle};
 use shared::io::SIDES;
 use shared::trajectory::CHANNELS;
@@ -34,7 +34,7 @@ pub(super) struct Block {
     pub(super) length: f64,
     /// Sum of the rates at which rotary axes turn \[rad/mm\].
     pub(super) turning: f64,
-    pub(super) place: Place,
+    pub(super) place: SourcePosition,
 }
 
 pub(super) enum BlockWay {

@@ -1,4 +1,4 @@
-//! A planned path as elements: what the motion board is given.
+//! A planned path as elements, as they are sent to the motion board.
 
 use super::blocks::Leg;
 use super::{PathError, PlannedPath};
@@ -134,7 +134,7 @@ mod tests {
     use super::*;
     use crate::path::SpeedStep;
     use crate::path::shape;
-    use nc::{Motion, Place};
+    use nc::{Motion, SourcePosition};
     use shared::trajectory::PathSpace;
 
     /// A path of three spans whose speed steps at a knot, inside a span twice, and next to a knot.
@@ -150,7 +150,7 @@ mod tests {
             knots,
             speed_error: 0.0,
             targets: [(4.0, 7), (10.0, 9)]
-                .map(|(s, line)| shape::Goal::exact(s, Place { line, column: 1 }))
+                .map(|(s, line)| shape::Goal::exact(s, SourcePosition { line, column: 1 }))
                 .to_vec(),
         };
         let mut planned = PlannedPath::untimed(&shape, PathSpace::Tool, Motion::Feed);

@@ -5,7 +5,7 @@ use crate::attitude::AttitudeError;
 use config::table::FARTHEST_MM;
 use curves::SplineError;
 use curves::nurbs::NurbsError;
-use nc::{NcError, Place};
+use nc::{NcError, SourcePosition};
 use shared::geometry::{ArcError, PoseError};
 use shared::io::AXIS_NAMES;
 use shared::kinematics::KinematicsError;
@@ -24,7 +24,7 @@ pub enum PathError {
     )]
     TooFar {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// How long \[mm\].
         length: f64,
     },
@@ -32,7 +32,7 @@ pub enum PathError {
     #[error("{place}: {machine} has no {word}; its words are {fitted}, and X Y Z of the tip")]
     NotFitted {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// The word.
         word: &'static str,
         /// The machine.
@@ -42,11 +42,11 @@ pub enum PathError {
     },
     /// The first motion of the tip leaves something open.
     #[error(
-        "{place}: the first motion of the tip must say how all axes of {machine} stand: {missing} missing"
+        "{place}: the first motion of the tip must give the positions of all axes of {machine}: {missing} missing"
     )]
     Incomplete {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Words that it needs.
         missing: String,
         /// The machine.
@@ -56,7 +56,7 @@ pub enum PathError {
     #[error("{place}: {machine} has no {output}")]
     NoOutput {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// What is missing.
         output: String,
         /// The machine.
@@ -66,7 +66,7 @@ pub enum PathError {
     #[error("{place}: {axis} would come to {reached:.3}°, not to {programmed:.3}°: {advice}")]
     Turned {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// The axis.
         axis: &'static str,
         /// Where it should stand \[°\].
@@ -82,7 +82,7 @@ pub enum PathError {
     )]
     Jump {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// The axis.
         axis: &'static str,
         /// Where it is (mm or °).
@@ -94,7 +94,7 @@ pub enum PathError {
     #[error("{place}: no arc here: {source}")]
     Arc {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Why.
         source: ArcError,
     },
@@ -102,7 +102,7 @@ pub enum PathError {
     #[error("{place}: no NURBS here: {source}")]
     Nurbs {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Why.
         source: NurbsError,
     },
@@ -112,7 +112,7 @@ pub enum PathError {
     )]
     NurbsStart {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// How far \[mm\].
         distance: f64,
     },
@@ -122,7 +122,7 @@ pub enum PathError {
     )]
     NurbsCorner {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// The corner \[°\].
         degrees: f64,
         /// Where on the curve \[mm\].
@@ -132,15 +132,15 @@ pub enum PathError {
     #[error("{place}: the NURBS has no direction after {s:.3} mm: move control points that coincide apart")]
     NurbsStands {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Where on the curve \[mm\].
         s: f64,
     },
     /// R for an arc whose ends are the same.
-    #[error("{place}: R tells no centre for a full circle; use I J K")]
+    #[error("{place}: R does not define the centre of a full circle; use I J K")]
     CircleByRadius {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
     },
     /// R that does not reach.
     #[error(
@@ -148,7 +148,7 @@ pub enum PathError {
     )]
     SmallRadius {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// R \[mm\].
         radius: f64,
         /// Distance of the ends in the plane of the arc \[mm\].
@@ -160,7 +160,7 @@ pub enum PathError {
     )]
     Travel {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Axis or V slide.
         axis: &'static str,
         /// Where it would go.
@@ -180,7 +180,7 @@ pub enum PathError {
     )]
     Feed {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Wanted \[mm/min\].
         feed: f64,
         /// Possible \[mm/min\].
@@ -196,7 +196,7 @@ pub enum PathError {
     )]
     NoSpindle {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// The code.
         code: &'static str,
         /// The machine.
@@ -206,25 +206,25 @@ pub enum PathError {
     #[error("{place}: the spindle of {machine} turns clockwise only: write M3")]
     SpindleSense {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// The machine.
         machine: String,
     },
     /// The spindle is not that fast.
-    #[error("{place}: {rpm} r/min are more than the spindle gives, at most {largest} r/min")]
+    #[error("{place}: {rpm} r/min is more than the maximum of the spindle, {largest} r/min")]
     SpindleSpeed {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Wanted.
         rpm: f64,
         /// Speed at +10 V.
         largest: f64,
     },
     /// A beam cannot give that much.
-    #[error("{place}: {watt} W are more than beam {} gives, at most {largest} W", side + 1)]
+    #[error("{place}: {watt} W is more than the maximum of beam {}, {largest} W", side + 1)]
     Power {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// 0 or 1.
         side: u8,
         /// Wanted.
@@ -236,7 +236,7 @@ pub enum PathError {
     #[error("{place}: a feed of {mm_min} mm/min is not possible")]
     NoFeed {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// The feed.
         mm_min: f64,
     },
@@ -246,7 +246,7 @@ pub enum PathError {
     )]
     TooSlow {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// The feed.
         mm_min: f64,
         /// Length of the block \[mm\].
@@ -254,17 +254,17 @@ pub enum PathError {
     },
     /// One speed for a path with several feeds.
     #[error(
-        "{place}: the path has several feeds, one speed cannot take their place; leave the speed out, or write one F"
+        "{place}: the path has several feeds, which one speed cannot replace; leave the speed out, or write one F"
     )]
     SeveralFeeds {
         /// Where its path begins.
-        place: Place,
+        place: SourcePosition,
     },
     /// G1 without travel of the tip.
     #[error("{place}: G1 must move the tip; turn axes alone with G0")]
     NoTravel {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
     },
     /// A corner within a smooth path.
     #[error(
@@ -272,7 +272,7 @@ pub enum PathError {
     )]
     Corner {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Its angle.
         degrees: f64,
     },
@@ -280,7 +280,7 @@ pub enum PathError {
     #[error("{place}: the head cannot turn there: {source}")]
     Attitude {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Why.
         source: AttitudeError,
     },
@@ -288,15 +288,15 @@ pub enum PathError {
     #[error("{place}: the machine cannot take this pose: {source}")]
     Kinematics {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Why.
         source: KinematicsError,
     },
     /// The channels are no pose.
-    #[error("{place}: the path is no pose there: {source}")]
+    #[error("{place}: the path does not define a pose there: {source}")]
     Pose {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Why.
         source: PoseError,
     },
@@ -304,7 +304,7 @@ pub enum PathError {
     #[error("{place}: no smooth curve through these points: {source}")]
     Spline {
         /// Where in the program.
-        place: Place,
+        place: SourcePosition,
         /// Why.
         source: SplineError,
     },
@@ -312,7 +312,7 @@ pub enum PathError {
     #[error("{place}: the path has {knots} points, the boards hold {CAPACITY}; use fewer blocks")]
     TooLong {
         /// Where its path begins.
-        place: Place,
+        place: SourcePosition,
         /// How many.
         knots: usize,
     },
@@ -322,7 +322,7 @@ pub enum PathError {
     )]
     TooManyEvents {
         /// Where its path begins.
-        place: Place,
+        place: SourcePosition,
         /// How many.
         events: usize,
     },
@@ -330,12 +330,12 @@ pub enum PathError {
 
 impl PathError {
     /// Axis slot `axis` stands at `reached` instead of `programmed` \[°\].
-    pub(super) fn turned(place: Place, axis: usize, programmed: f64, reached: f64) -> Self {
+    pub(super) fn turned(place: SourcePosition, axis: usize, programmed: f64, reached: f64) -> Self {
         let turns = (reached - programmed) / 360.0;
         let advice = if (turns - turns.round()).abs() < 1e-6 {
             "a block turns the short way; write it as several blocks of less than 180°"
         } else {
-            "the tip decides how this axis stands; correct the word, or X Y Z"
+            "the position of this axis follows from the tip; correct the word, or X Y Z"
         };
         Self::Turned {
             place,

@@ -1,9 +1,9 @@
 //! Single blocks, paths with arcs or NURBS, and those of G61: every block is followed exactly.
 //!
-//! At a join the tip goes on in the same direction, or the path ends there. The rotary axes may begin to turn
-//! at once, though, as where an arc follows a line; they cannot, so their rates, and the last hundredths of a
-//! degree between two directions, go over from one to the other within a short length around the join, at the
-//! acceleration that the axes have.
+//! At a join the tip continues in the same direction, or the path ends there. The rotary axes may begin to
+//! turn at once, though, as where an arc follows a line; they cannot, so their rates, and the last hundredths
+//! of a degree between two directions, go over from one to the other within a short length around the join,
+//! at the acceleration that the axes have.
 
 use super::block::{Block, Jet};
 use super::feeds::Feeds;

@@ -1,7 +1,7 @@
-//! How fast the way to each target is to be gone.
+//! Feed of the motion to each target.
 
 use super::PathError;
-use nc::{FeedRate, Place, ProgramPath, Target};
+use nc::{FeedRate, ProgramPath, SourcePosition, Target};
 
 /// Longest time that a block may take \[s\]: a day, as a dwell. A feed with which one takes longer is a slip.
 const LONGEST_BLOCK_S: f64 = 86_400.0;
@@ -12,7 +12,7 @@ pub(super) struct Feeds {
     /// Takes the place of the programmed ones \[mm/s\].
     replaced: Option<f64>,
     /// Of the first block gone through, and where its path begins.
-    first: Option<(FeedRate, Place)>,
+    first: Option<(FeedRate, SourcePosition)>,
 }
 
 impl Feeds {

@@ -26,7 +26,7 @@ pub enum FromLineError {
         /// The last one with a motion.
         last: u32,
     },
-    /// A curve is told in several lines.
+    /// A curve takes several lines.
     #[error(
         "line {line} is in the middle of the NURBS of line {begins}: start there, or after its G5.3 or last point"
     )]
@@ -60,8 +60,8 @@ pub enum FromLineError {
     Path(#[from] PathError),
 }
 
-/// Where a line begins, and what is on there.
-struct Place {
+/// Where a program is started in its middle: the begin of a line, and what is switched on there.
+struct RestartPoint {
     /// Index of its path.
     path: usize,
     /// Path length there \[mm\].
@@ -131,7 +131,12 @@ impl Planner {
     }
 
     /// Follows the axes and all that is switched to the first motion in or after `line`.
-    fn find(&self, paths: &[PlannedPath], line: u32, from: &[f64; AXES]) -> Result<Place, FromLineError> {
+    fn find(
+        &self,
+        paths: &[PlannedPath],
+        line: u32,
+        from: &[f64; AXES],
+    ) -> Result<RestartPoint, FromLineError> {
         let (mut axes, mut clear) = (*from, *from);
         let mut last = 0;
         let mut spindle = Spindle::default();
@@ -150,7 +155,7 @@ impl Planner {
                 let Leg { events, element } = leg?;
                 if element.line >= line {
                     let value = element.at(0.0).value;
-                    return Ok(Place {
+                    return Ok(RestartPoint {
                         path: index,
                         s,
                         line: element.line,
@@ -222,7 +227,7 @@ impl Planner {
     fn approach(
         &self,
         from: &[f64; AXES],
-        place: &Place,
+        place: &RestartPoint,
         slow: Option<f64>,
     ) -> Result<Vec<PlannedPath>, FromLineError> {
         let park = inner(&self.planning.park_axes());
@@ -261,7 +266,7 @@ impl Planner {
     }
 
     /// The spindle goes on while the axes stand at `axes`.
-    fn spun_up(&self, axes: &[f64; AXES], place: &Place) -> Result<PlannedPath, PathError> {
+    fn spun_up(&self, axes: &[f64; AXES], place: &RestartPoint) -> Result<PlannedPath, PathError> {
         let pose = self.kinematics.forward(axes);
         let shape = Shape::standing(channels(&pose, &place.extension_mm), NOWHERE);
         let mut planned = PlannedPath::untimed(&shape, PathSpace::Tool, Motion::Stand);
@@ -286,7 +291,7 @@ fn tracking_at(path: &PlannedPath, s: f64) -> Option<bool> {
     tracking.next_back()
 }
 
-/// A line in the middle of a NURBS is none of its own.
+/// A line in the middle of a NURBS is not a block of its own.
 fn check_whole(program: &Program, line: u32) -> Result<(), FromLineError> {
     for path in &program.paths {
         for next in Arc::new(path.clone()).moves() {

@@ -1,11 +1,11 @@
-//! What a path asks of the axes and V slides, and the speed that they allow.
+//! Demands of a path on the axes and V slides, and the speed that they allow.
 
 use super::shape::Shape;
 use super::targets::ROTARY;
 use super::{Bound, PathError, PlannedPath, Planner};
 use config::machine::MachineFile;
 use config::table::FARTHEST_MM;
-use nc::Place;
+use nc::SourcePosition;
 use shared::config::SlideConfig;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
@@ -83,7 +83,7 @@ impl DriveLimits {
     }
 }
 
-/// The worst of all that is wrong, which is told.
+/// The worst of several errors, which is reported.
 #[derive(Debug, Default)]
 pub(super) struct Worst(Option<(f64, PathError)>);
 
@@ -138,7 +138,7 @@ impl Planner {
         s: f64,
         point: &PathPoint,
         space: PathSpace,
-        place: Place,
+        place: SourcePosition,
         near: &[f64; AXES],
     ) -> Result<(Demand, [f64; AXES]), PathError> {
         let axes = match space {
@@ -175,7 +175,7 @@ impl Planner {
     }
 
     /// Tells `worst` how far the drives are outside their travel, in their own units.
-    pub(super) fn see_travel(&self, demand: &Demand, place: Place, worst: &mut Worst) {
+    pub(super) fn see_travel(&self, demand: &Demand, place: SourcePosition, worst: &mut Worst) {
         for (i, limits) in self.drives.iter().enumerate() {
             let position = demand.position[i];
             let beyond = (position - limits.max).max(limits.min - position) / limits.unit;
@@ -194,7 +194,7 @@ impl Planner {
     }
 
     /// Tells `worst` how much faster than each drive allows `speed` \[mm/s\] is, as a part.
-    pub(super) fn see_feed(&self, demand: &Demand, speed: f64, place: Place, worst: &mut Worst) {
+    pub(super) fn see_feed(&self, demand: &Demand, speed: f64, place: SourcePosition, worst: &mut Worst) {
         for i in 0..DRIVES {
             for (largest, quantity) in self.allowed(demand, i) {
                 if speed / largest > TOO_FAST {
@@ -307,7 +307,7 @@ impl Planner {
 }
 
 /// Whether the axes go from one place to the next, as their rates say, and do not jump.
-pub(super) fn check_continuous(from: &Demand, to: &Demand, place: Place) -> Result<(), PathError> {
+pub(super) fn check_continuous(from: &Demand, to: &Demand, place: SourcePosition) -> Result<(), PathError> {
     for (axis, unit) in AXIS_UNIT.into_iter().enumerate() {
         let fastest = from.first[axis].abs().max(to.first[axis].abs());
         let way = (to.position[axis] - from.position[axis]).abs();

@@ -28,13 +28,13 @@ pub use targets::Tip;
 
 use config::machine::{MachineFile, PlanningConfig};
 use limits::{DRIVES, DriveLimits};
-use nc::{Place, Program};
+use nc::{Program, SourcePosition};
 use outputs::Switched;
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, Kinematics};
 use shared::parameter::ParameterError;
-use targets::Stand;
+use targets::RestState;
 
 /// Most knots of one path: what the boards hold.
 pub const CAPACITY: usize = 512;
@@ -42,7 +42,7 @@ pub const CAPACITY: usize = 512;
 pub const MAX_EVENTS: usize = 128;
 
 /// Of a path that no program asks for.
-pub const NOWHERE: Place = Place { line: 0, column: 0 };
+pub const NOWHERE: SourcePosition = SourcePosition { line: 0, column: 0 };
 
 /// Plans program paths for one machine.
 #[derive(Clone, Debug)]
@@ -122,7 +122,7 @@ impl Planner {
         extension_mm: [f64; SIDES],
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
-        let mut stand = Stand {
+        let mut stand = RestState {
             tip: Tip {
                 extension_mm,
                 ..self.tip(from)

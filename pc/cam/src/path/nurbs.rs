@@ -4,7 +4,7 @@ use super::{PathError, Tip};
 use curves::nurbs::{Curve, Nurbs, RationalBezier, length, parameter_at_length};
 use curves::tabulate;
 use nalgebra::Vector3;
-use nc::{NurbsWay, Place};
+use nc::{NurbsWay, SourcePosition};
 use shared::geometry::{Moving, angle};
 use shared::trajectory::ArcLengthCurve;
 
@@ -34,7 +34,7 @@ struct Span {
 
 impl LongCurve {
     /// The curve of `way`, which begins at `from`; `place` is where it was opened.
-    pub(super) fn build(way: &NurbsWay, from: &Tip, place: Place) -> Result<Self, PathError> {
+    pub(super) fn build(way: &NurbsWay, from: &Tip, place: SourcePosition) -> Result<Self, PathError> {
         let invalid = |source| PathError::Nurbs { place, source };
         let points = control_points(way, from)?;
         let weights: Vec<f64> = way.points.iter().map(|point| point.weight).collect();
@@ -154,8 +154,8 @@ impl Span {
         Some(part)
     }
 
-    /// Whether it goes on from where the last one went, `before`, and has a direction at both ends.
-    fn check(&self, before: Option<Vector3<f64>>, place: Place) -> Result<(), PathError> {
+    /// Whether it continues from where the last one went, `before`, and has a direction at both ends.
+    fn check(&self, before: Option<Vector3<f64>>, place: SourcePosition) -> Result<(), PathError> {
         let polygon = self.curve.points().windows(2).map(|two| (two[1] - two[0]).norm());
         let least = NO_SPEED * polygon.sum::<f64>();
         for (t, s) in [(0.0, self.start), (1.0, self.start + self.length)] {

@@ -1,7 +1,7 @@
-//! What a program switches, on the machine that is there.
+//! Outputs of a program, checked against the machine.
 
 use super::{MAX_EVENTS, PathError, Planner, SpeedStep};
-use nc::{Place, ProgramAction, ProgramEvent};
+use nc::{ProgramAction, ProgramEvent, SourcePosition};
 use shared::geometry::Turn;
 use shared::io::SIDES;
 use shared::protocol::{PathAction, PathEvent};
@@ -65,7 +65,7 @@ impl Planner {
         })
     }
 
-    fn check_output(&self, action: &PathAction, place: Place) -> Result<(), PathError> {
+    fn check_output(&self, action: &PathAction, place: SourcePosition) -> Result<(), PathError> {
         let missing = |output: String| PathError::NoOutput {
             place,
             output,
@@ -145,7 +145,7 @@ pub(super) fn on_the_way(
     first: usize,
     starts: &[f64],
     speeds: &[f64],
-    place: Place,
+    place: SourcePosition,
 ) -> Result<(Vec<PathEvent>, Vec<SpeedStep>), PathError> {
     let before = on.actions().into_iter();
     let mut found: Vec<PathEvent> = before.map(|action| PathEvent { s_mm: 0.0, action }).collect();

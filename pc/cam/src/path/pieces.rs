@@ -7,9 +7,9 @@ use super::feeds::Feeds;
 use super::limits::{Demand, axes_at};
 use super::outputs::{Switched, Switching, on_the_way};
 use super::shape::{Goal, Shape, channels};
-use super::targets::{ROTARY, Stand};
+use super::targets::{ROTARY, RestState};
 use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip};
-use nc::{Motion, PathControl, Place, ProgramPath, Target, Way};
+use nc::{Motion, PathControl, ProgramPath, SourcePosition, Target, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
 use shared::trajectory::PathSpace;
@@ -26,7 +26,7 @@ impl Planner {
     pub(super) fn path(
         &self,
         path: &ProgramPath,
-        stand: &mut Stand,
+        stand: &mut RestState,
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
         let whole;
@@ -53,7 +53,7 @@ impl Planner {
         from: &[f64; AXES],
         to: &[f64; AXES],
         extension: &[f64; SIDES],
-        place: Place,
+        place: SourcePosition,
     ) -> Result<PlannedPath, PathError> {
         let shape = Shape::of_axes(from, to, extension, place);
         let mut planned = PlannedPath::untimed(&shape, PathSpace::Axes, Motion::Rapid);
@@ -68,7 +68,7 @@ impl Planner {
         &self,
         path: &ProgramPath,
         events: &[Switching],
-        stand: &mut Stand,
+        stand: &mut RestState,
     ) -> Result<PlannedPath, PathError> {
         let place = path.events.first().map_or(NOWHERE, |event| event.place);
         // Not in axis space, where boards open no gates.
@@ -87,7 +87,7 @@ impl Planner {
         &self,
         target: &Target,
         events: &[Switching],
-        stand: &mut Stand,
+        stand: &mut RestState,
     ) -> Result<PlannedPath, PathError> {
         let to = self.axes_target(target, stand)?;
         let extension_mm = stand.tip.extension_mm;
@@ -109,7 +109,7 @@ impl Planner {
         &self,
         path: &ProgramPath,
         events: &[Switching],
-        stand: &mut Stand,
+        stand: &mut RestState,
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
         if path.motion == Motion::Feed && !self.tracks && !self.is_smooth(path, stand)? {
@@ -129,7 +129,7 @@ impl Planner {
 
     /// Whether a path is one smooth curve through its points: straight blocks with G64 alone, no more of them than a
     /// board holds knots, and no corner.
-    fn is_smooth(&self, path: &ProgramPath, from: &Stand) -> Result<bool, PathError> {
+    fn is_smooth(&self, path: &ProgramPath, from: &RestState) -> Result<bool, PathError> {
         let targets = &path.targets;
         let asked = |target: &Target| target.way == Way::Line && target.control == PathControl::Blend(None);
         if path.rest.is_some() || targets.len() < 2 || targets.len() >= CAPACITY || !targets.iter().all(asked)
@@ -219,7 +219,7 @@ impl Planner {
         events: &[Switching],
         piece: &Piece,
         tips: &[Tip],
-        stand: &mut Stand,
+        stand: &mut RestState,
     ) -> Result<PlannedPath, PathError> {
         let (shape, first) = (&piece.shape, piece.first);
         let place = shape.targets[0].place;
@@ -264,8 +264,8 @@ impl Planner {
 
     /// Where the machine stands at the end. At every target the rotary axes must stand as it says, not a turn away;
     /// where its pose leaves an axis free, that stands as it was.
-    fn reached(&self, demands: &[Demand], shape: &Shape, tips: &[Tip]) -> Result<Stand, PathError> {
-        let mut stand = Stand {
+    fn reached(&self, demands: &[Demand], shape: &Shape, tips: &[Tip]) -> Result<RestState, PathError> {
+        let mut stand = RestState {
             tip: Tip::default(),
             axes: [0.0; AXES],
             placed: true,
@@ -273,7 +273,7 @@ impl Planner {
         };
         for (tip, goal) in tips.iter().zip(&shape.targets) {
             let axes = axes_at(demands, goal.s);
-            stand = Stand {
+            stand = RestState {
                 tip: self.settled(tip, &axes, goal)?,
                 axes,
                 ..stand

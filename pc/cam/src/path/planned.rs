@@ -1,4 +1,4 @@
-//! A planned path: what the boards are given.
+//! A planned path, as it is sent to the boards.
 
 use super::blocks::{Blocks, Course, Leg};
 use super::shape::Shape;
@@ -16,15 +16,16 @@ pub struct PlannedPath {
     pub space: PathSpace,
     /// The machine stands for this long before the path begins \[s\] (G4).
     pub dwell_before_s: f64,
-    /// The path begins at a corner of this much within a path of the program, which is too sharp to go on without
-    /// a stop \[°\].
+    /// The path begins at a corner of this much within a path of the program, which is too sharp to continue
+    /// without a stop \[°\].
     pub corner_deg: Option<f64>,
     /// Value and slope of every channel, s from 0; none of blocks that are followed exactly.
     pub knots: Vec<Knot>,
     /// Where the motion of each target of the program ends \[mm\], and its line; s not decreasing. Of blocks that
     /// are followed exactly only the last.
     pub lines: Vec<(f64, u32)>,
-    /// What happens on the way, s not decreasing; of blocks that are followed exactly [`PlannedPath::legs`] tell it.
+    /// What happens on the way, s not decreasing; of blocks that are followed exactly they are in
+    /// [`PlannedPath::legs`].
     pub events: Vec<PathEvent>,
     /// Changes of the programmed speed on the way, in order; of blocks that are followed exactly the elements tell
     /// them.

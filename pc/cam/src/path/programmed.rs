@@ -1,4 +1,4 @@
-//! What a path is programmed to do where: its feeds, and where beams burn and seams are followed.
+//! The programmed feed, beams and tracking over the length of a path.
 
 use super::PlannedPath;
 use shared::io::SIDES;

@@ -3,7 +3,7 @@
 use super::{PathError, Planner, Tip};
 use crate::curve::{Curve, distance};
 use nalgebra::Vector3;
-use nc::{Place, Target};
+use nc::{SourcePosition, Target};
 use shared::geometry::{Pose, angle};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
@@ -29,14 +29,14 @@ pub(super) struct Shape {
 pub(super) struct Goal {
     pub(super) s: f64,
     /// Where in the program.
-    pub(super) place: Place,
+    pub(super) place: SourcePosition,
     /// By how much the rotary axes may be off their words there, as they change their rates \[rad\].
     pub(super) slack: f64,
 }
 
 impl Goal {
     /// The place is met exactly.
-    pub(super) fn exact(s: f64, place: Place) -> Self {
+    pub(super) fn exact(s: f64, place: SourcePosition) -> Self {
         Self { s, place, slack: 0.0 }
     }
 }
@@ -47,7 +47,7 @@ impl Shape {
         from: &[f64; AXES],
         to: &[f64; AXES],
         extension: &[f64; SIDES],
-        place: Place,
+        place: SourcePosition,
     ) -> Self {
         let way = |i: usize| (to[i] - from[i]) / AXIS_UNIT[i];
         let longest = (0..AXES).map(|i| way(i).abs()).fold(SHORTEST, f64::max);
@@ -72,7 +72,7 @@ impl Shape {
     }
 
     /// No way at all, in which the tool stands at `value`.
-    pub(super) fn standing(value: [f64; CHANNELS], place: Place) -> Self {
+    pub(super) fn standing(value: [f64; CHANNELS], place: SourcePosition) -> Self {
         let slope = [0.0; CHANNELS];
         let knot = |s_mm| Knot { s_mm, value, slope };
         Self {
@@ -98,7 +98,7 @@ impl Shape {
     }
 
     /// Place in the program of the motion at `s`.
-    pub(super) fn place(&self, s: f64) -> Place {
+    pub(super) fn place(&self, s: f64) -> SourcePosition {
         self.targets[self.target(s)].place
     }
 }

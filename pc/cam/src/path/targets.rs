@@ -4,7 +4,7 @@
 use super::outputs::Switched;
 use super::{PathError, Planner};
 use nalgebra::Vector3;
-use nc::{ArcForm, ArcWay, Place, ProgramPath, Target, Way};
+use nc::{ArcForm, ArcWay, ProgramPath, SourcePosition, Target, Way};
 use shared::geometry::{Arc, Turn};
 use shared::io::{AXES, AXIS_NAMES, SIDES};
 use shared::kinematics::AXIS_UNIT;
@@ -28,9 +28,9 @@ pub struct Tip {
     pub extension_mm: [f64; SIDES],
 }
 
-/// Where the machine stands between two paths.
+/// State of the machine at rest between two paths.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stand {
+pub(super) struct RestState {
     pub(super) tip: Tip,
     /// mm, rad.
     pub(super) axes: [f64; AXES],
@@ -42,7 +42,7 @@ pub(super) struct Stand {
 
 impl Planner {
     /// The tips that `path` leads to, one after the other.
-    pub(super) fn tips(&self, path: &ProgramPath, from: &Stand) -> Result<Vec<Tip>, PathError> {
+    pub(super) fn tips(&self, path: &ProgramPath, from: &RestState) -> Result<Vec<Tip>, PathError> {
         let mut tip = from.tip;
         let mut placed = from.placed;
         let mut tips = Vec::with_capacity(path.targets.len());
@@ -73,7 +73,7 @@ impl Planner {
     }
 
     /// Where a G53 block leads the axes (mm, rad).
-    pub(super) fn axes_target(&self, target: &Target, from: &Stand) -> Result<[f64; AXES], PathError> {
+    pub(super) fn axes_target(&self, target: &Target, from: &RestState) -> Result<[f64; AXES], PathError> {
         self.check_fitted(target)?;
         let word = |i: usize| target.words.axes[i].map(|word| word * AXIS_UNIT[i]);
         Ok(std::array::from_fn(|i| word(i).unwrap_or(from.axes[i])))
@@ -99,7 +99,7 @@ impl Planner {
         }
     }
 
-    /// The first words must say all that the machine can be told.
+    /// The first motion must have words for all axes of the machine.
     fn check_complete(&self, target: &Target) -> Result<(), PathError> {
         let missing = ROTARY.filter(|&i| self.fitted[i] && target.words.axes[i].is_none());
         let missing: Vec<_> = missing.map(|i| AXIS_NAMES[i]).collect();
@@ -122,7 +122,7 @@ impl Planner {
 }
 
 /// The arc of a G2 or G3 block between two tips (RS274/NGC).
-pub(super) fn arc(from: &Tip, to: &Tip, way: &ArcWay, place: Place) -> Result<Arc, PathError> {
+pub(super) fn arc(from: &Tip, to: &Tip, way: &ArcWay, place: SourcePosition) -> Result<Arc, PathError> {
     let [start, end]: [Vector3<f64>; 2] = [from.position_mm.into(), to.position_mm.into()];
     let mut axis = Vector3::zeros();
     axis[way.plane.axis()] = 1.0;
@@ -141,7 +141,7 @@ fn radius_to_centre(
     axis: &Vector3<f64>,
     radius: f64,
     turn: Turn,
-    place: Place,
+    place: SourcePosition,
 ) -> Result<Vector3<f64>, PathError> {
     let across = axis.cross(&chord);
     let distance = across.norm();

@@ -3,5 +3,5 @@
 mod pictures;
 pub mod procedure;
 
-pub use pictures::{Known, PICTURES, parse_list, read_pictures};
+pub use pictures::{PICTURES, ReferencePicture, parse_list, read_pictures};
 pub use procedure::CalibrateError;

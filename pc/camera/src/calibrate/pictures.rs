@@ -8,24 +8,24 @@ use std::path::{Path, PathBuf};
 /// Name of the list of pictures in a folder.
 pub const PICTURES: &str = "calibration.csv";
 
-/// A picture and N numbers known of it.
+/// A picture to calibrate from, with N known values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Known<const N: usize> {
+pub struct ReferencePicture<const N: usize> {
     /// Its file, for messages.
     pub file: PathBuf,
     /// The picture.
     pub picture: Picture,
-    /// The numbers, in the order of their columns.
+    /// The values, in the order of the columns.
     pub values: [f64; N],
 }
 
-impl Known<3> {
-    /// The same of a machine that stood still: it had gone 0 mm.
-    pub fn at_rest(self) -> Known<4> {
+impl ReferencePicture<3> {
+    /// The same with a fourth value: 0 mm of travel of the machine.
+    pub fn at_rest(self) -> ReferencePicture<4> {
         let [a, b, c] = self.values;
         let (file, picture) = (self.file, self.picture);
         let values = [a, b, c, 0.0];
-        Known {
+        ReferencePicture {
             file,
             picture,
             values,
@@ -37,14 +37,14 @@ impl Known<3> {
 pub fn read_pictures<const N: usize>(
     folder: &Path,
     columns: [&str; N],
-) -> Result<Vec<Known<N>>, CalibrateError> {
+) -> Result<Vec<ReferencePicture<N>>, CalibrateError> {
     let list = folder.join(PICTURES);
     let text = table::read(&list)?;
     let known = |(file, values)| {
         let file: PathBuf = folder.join(file);
         let mut picture = Picture::default();
         read_grey(&file, &mut picture)?;
-        Ok(Known {
+        Ok(ReferencePicture {
             file,
             picture,
             values,

@@ -1,6 +1,6 @@
-//! What is found from pictures of which something is known, told beside what was believed before.
+//! Calibration from pictures with known values; results are listed beside the previous calibration.
 
-use super::Known;
+use super::ReferencePicture;
 use crate::PngError;
 use config::calibration::Calibration;
 use config::table::TableError;
@@ -49,40 +49,40 @@ pub enum CalibrateError {
     },
     /// Where the corner is remains unknown.
     #[error(
-        "where the corner is remains unknown: list pictures of its open end with 0 in the column corner, or say --meets U,V, the slides at which the beam meets it"
+        "the position of the corner is unknown: list pictures of its open end with 0 in the column corner, or say --meets U,V, the slides at which the beam meets it"
     )]
     NoPlace,
     /// The noise is not that of photons.
     #[error(transparent)]
     Transfer(#[from] TransferError),
-    /// The band tells no profile.
+    /// No profile can be determined from the band.
     #[error(transparent)]
     Depth(#[from] DepthError),
-    /// The steps tell no matrix.
+    /// No matrix can be determined from the steps.
     #[error(transparent)]
     Slides(#[from] SlideError),
-    /// The coupon tells no offset.
+    /// No offset can be determined from the coupon.
     #[error(transparent)]
     Corner(#[from] CornerError),
 }
 
-/// A calibration and what people want to know of it.
+/// A calibration, and the figures to print with it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct CalibrationResult {
     /// The calibration with what was found in it.
     pub calibration: Calibration,
     /// What was found.
     pub figures: Vec<Figure>,
 }
 
-/// A line of what was found.
+/// One line of the printed result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// What it is.
+    /// Name of the figure.
     pub text: &'static str,
-    /// What was found, with its unit.
+    /// The value found, with its unit.
     pub found: String,
-    /// What was believed before, or what may be.
+    /// The value before, or the permitted range.
     pub beside: String,
 }
 
@@ -96,7 +96,10 @@ impl Figure {
 pub const NOISE: [&str; 1] = ["pair"];
 
 /// Photon transfer from pairs of equal pictures.
-pub fn noise(listed: &[Known<1>], before: &Calibration) -> Result<Found, CalibrateError> {
+pub fn noise(
+    listed: &[ReferencePicture<1>],
+    before: &Calibration,
+) -> Result<CalibrationResult, CalibrateError> {
     let mut numbers: Vec<f64> = Vec::new();
     for known in listed {
         if !numbers.contains(&known.values[0]) {
@@ -141,14 +144,17 @@ pub fn noise(listed: &[Known<1>], before: &Calibration) -> Result<Found, Calibra
         photon_transfer: is,
         ..*before
     };
-    Ok(Found { calibration, figures })
+    Ok(CalibrationResult { calibration, figures })
 }
 
 /// What is known of a picture for [`profile`]: where the slides are.
 pub const PROFILE: [&str; 2] = ["u_mm", "v_mm"];
 
 /// Depth profile from pictures of a plate that the slides stepped through focus.
-pub fn profile(listed: &[Known<2>], before: &Calibration) -> Result<Found, CalibrateError> {
+pub fn profile(
+    listed: &[ReferencePicture<2>],
+    before: &Calibration,
+) -> Result<CalibrationResult, CalibrateError> {
     let mut steps = Vec::new();
     for known in listed {
         let [u, v] = known.values;
@@ -187,7 +193,7 @@ pub fn profile(listed: &[Known<2>], before: &Calibration) -> Result<Found, Calib
             "at least 40".to_owned(),
         ),
         Figure::new(
-            "way shown over told",
+            "measured over commanded travel",
             format!("{:.3}", fit.way),
             "0.95 to 1.05".to_owned(),
         ),
@@ -196,7 +202,7 @@ pub fn profile(listed: &[Known<2>], before: &Calibration) -> Result<Found, Calib
         profile: is,
         ..*before
     };
-    Ok(Found { calibration, figures })
+    Ok(CalibrationResult { calibration, figures })
 }
 
 /// What is known of a picture for [`slides`]: which place of the seam it shows, where the slides are.
@@ -206,10 +212,10 @@ pub const SLIDES: [&str; 3] = ["place", "u_mm", "v_mm"];
 /// the machine had gone along travel \[mm\]. With `meets_mm`, the slides at which the beam meets that seam, the offset between
 /// beam and camera too.
 pub fn slides(
-    listed: &[Known<4>],
+    listed: &[ReferencePicture<4>],
     before: &Calibration,
     meets_mm: Option<[f64; 2]>,
-) -> Result<Found, CalibrateError> {
+) -> Result<CalibrationResult, CalibrateError> {
     let mut seen = Vec::new();
     for known in listed {
         if let Some(measured) = seam(before, known, Joint::Gap)? {
@@ -226,10 +232,11 @@ pub fn slides(
     }
     let mm_per_m = |share: f64| format!("{:+.1} mm/m", 1e3 * share);
     let um = |mm: f64| format!("{:.1} µm", 1e3 * mm);
-    let play = |axis: usize| fit.backlash_mm[axis].map_or("not seen: step both ways".to_owned(), um);
+    let play =
+        |axis: usize| fit.backlash_mm[axis].map_or("not measured: step in both directions".to_owned(), um);
     let [offset_u, offset_v] = calibration.slides.offset_mm;
     let (was_u, was_v) = (before.slides.offset_mm[0], before.slides.offset_mm[1]);
-    let as_before = "of the calibration before".to_owned();
+    let as_before = "of the previous calibration".to_owned();
     let figures = vec![
         Figure::new(
             "scale across",
@@ -242,7 +249,7 @@ pub fn slides(
             "at most ±100 mm/m".to_owned(),
         ),
         Figure::new(
-            "turn against the mount before",
+            "rotation against the previous mount",
             format!("{:+.2}°", fit.rotation_rad.to_degrees()),
             "at most ±10°".to_owned(),
         ),
@@ -252,7 +259,7 @@ pub fn slides(
             String::new(),
         ),
         Figure::new(
-            "left of the pictures",
+            "residual in the pictures",
             format!(
                 "{} rms, {} in picture {}",
                 um(fit.residual_mm),
@@ -277,7 +284,7 @@ pub fn slides(
             },
         ),
     ];
-    Ok(Found { calibration, figures })
+    Ok(CalibrationResult { calibration, figures })
 }
 
 /// What is known of a picture for [`corner`]: 1 where it is closed, 0 where the same line is an open gap; the slides.
@@ -286,11 +293,11 @@ pub const CORNER: [&str; 3] = ["corner", "u_mm", "v_mm"];
 /// Offset of a corner from pictures of a coupon whose walls have the slopes `walls`. Where the corner is comes from the
 /// open pictures, or from `meets_mm`, the slides at which the beam meets it.
 pub fn corner(
-    listed: &[Known<3>],
+    listed: &[ReferencePicture<3>],
     before: &Calibration,
     walls: [f64; 2],
     meets_mm: Option<[f64; 2]>,
-) -> Result<Found, CalibrateError> {
+) -> Result<CalibrationResult, CalibrateError> {
     let closed = Joint::Corner(Walls {
         slopes: walls,
         sigma: WALL_SIGMA,
@@ -347,15 +354,16 @@ pub fn corner(
         corner_offset_mm: Some(fit.offset_mm),
         ..*before
     };
-    Ok(Found { calibration, figures })
+    Ok(CalibrationResult { calibration, figures })
 }
 
-/// A picture of a place of the seam: its number, the slides, how far the machine was along travel, what was measured.
-type Seen = (u32, [f64; 2], f64, Measured);
+/// A picture taken at a step of the slides: number of the place along the seam, position of the slides,
+/// offset of the machine along travel, measurement.
+type SlidePicture = (u32, [f64; 2], f64, Measured);
 
 /// The readings of a straight seam: its angle is the mean of each place's pictures, and takes what a height or the machine
 /// shifts the place that is seen along it.
-fn on_axis(seen: &[Seen]) -> Vec<SlideReading> {
+fn on_axis(seen: &[SlidePicture]) -> Vec<SlideReading> {
     let yaw = |place: u32| {
         let of = seen
             .iter()
@@ -364,7 +372,7 @@ fn on_axis(seen: &[Seen]) -> Vec<SlideReading> {
         let (sum, count) = of.fold((0.0, 0.0), |(sum, count), yaw| (sum + yaw, count + 1.0));
         sum / count
     };
-    let reading = |&(place, slides_mm, along_mm, measured): &Seen| SlideReading {
+    let reading = |&(place, slides_mm, along_mm, measured): &SlidePicture| SlideReading {
         place,
         slides_mm,
         seen_mm: [
@@ -378,7 +386,7 @@ fn on_axis(seen: &[Seen]) -> Vec<SlideReading> {
 /// The seam in a picture, if it shows one.
 fn seam<const N: usize>(
     calibration: &Calibration,
-    known: &Known<N>,
+    known: &ReferencePicture<N>,
     joint: Joint,
 ) -> Result<Option<Measured>, CalibrateError> {
     let picture = |reason| CalibrateError::Picture {
@@ -402,7 +410,7 @@ fn seam<const N: usize>(
 }
 
 /// The picture as it is measured.
-fn image<const N: usize>(known: &Known<N>) -> Result<vision::Image<'_>, CalibrateError> {
+fn image<const N: usize>(known: &ReferencePicture<N>) -> Result<vision::Image<'_>, CalibrateError> {
     known.picture.image().map_err(|reason| CalibrateError::Image {
         file: known.file.display().to_string(),
         reason,

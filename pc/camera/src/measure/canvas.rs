@@ -2,6 +2,7 @@
 
 use crate::{Picture, PngError, write_rgb};
 use std::path::Path;
+use tiny_skia::{Color, LineJoin, Paint, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform};
 
 /// Red, green, blue.
 pub type Colour = [u8; 3];
@@ -10,9 +11,7 @@ pub type Colour = [u8; 3];
 #[derive(Clone, Debug)]
 pub struct Canvas {
     enlarged: usize,
-    rows: usize,
-    columns: usize,
-    pixels: Vec<u8>,
+    pixels: Pixmap,
 }
 
 /// How a line is drawn.
@@ -21,16 +20,16 @@ pub struct Pen {
     /// Its colour.
     pub colour: Colour,
     /// Width \[pixels of the canvas\].
-    pub width: f64,
+    pub width: f32,
     /// How much of the picture it covers, 0 to 1.
-    pub opacity: f64,
+    pub opacity: f32,
     /// Length of dashes and of the gaps between them \[pixels of the canvas\].
-    pub dash: Option<f64>,
+    pub dash: Option<f32>,
 }
 
 impl Pen {
     /// A full line that covers what is under it.
-    pub fn new(colour: Colour, width: f64) -> Self {
+    pub fn new(colour: Colour, width: f32) -> Self {
         Self {
             colour,
             width,
@@ -40,7 +39,7 @@ impl Pen {
     }
 
     /// The same in dashes.
-    pub fn dashed(self, length: f64) -> Self {
+    pub fn dashed(self, length: f32) -> Self {
         Self {
             dash: Some(length),
             ..self
@@ -48,95 +47,83 @@ impl Pen {
     }
 
     /// The same, through which the picture is seen.
-    pub fn faint(self, opacity: f64) -> Self {
+    pub fn faint(self, opacity: f32) -> Self {
         Self { opacity, ..self }
     }
 }
 
 impl Canvas {
-    /// Shows a picture, each of its pixels as `enlarged` × `enlarged`.
+    /// Shows a picture of one pixel or more, each of its pixels as `enlarged` × `enlarged`.
     pub fn new(picture: &Picture, enlarged: usize) -> Self {
-        let (rows, columns) = (picture.rows * enlarged, picture.columns * enlarged);
-        let mut pixels = Vec::with_capacity(3 * rows * columns);
-        for row in 0..rows {
-            let line = &picture.pixels[row / enlarged * picture.columns..][..picture.columns];
-            for column in 0..columns {
-                pixels.extend([line[column / enlarged]; 3]);
-            }
-        }
-        Self {
-            enlarged,
-            rows,
-            columns,
-            pixels,
-        }
+        let [columns, rows] = [picture.columns, picture.rows].map(|count| (count * enlarged) as u32);
+        let mut pixels = Pixmap::new(columns, rows).expect("a picture with pixels");
+        let enlarge = |(k, pixel): (usize, &mut [u8])| {
+            let (row, column) = (k / columns as usize / enlarged, k % columns as usize / enlarged);
+            let grey = picture.pixels[row * picture.columns + column];
+            pixel.copy_from_slice(&[grey, grey, grey, u8::MAX]);
+        };
+        pixels
+            .data_mut()
+            .chunks_exact_mut(4)
+            .enumerate()
+            .for_each(enlarge);
+        Self { enlarged, pixels }
     }
 
     /// Writes it.
     pub fn write(&self, path: &Path) -> Result<(), PngError> {
-        write_rgb(path, self.rows, self.columns, &self.pixels)
+        let opaque = self.pixels.pixels().iter();
+        let colours: Vec<u8> = opaque.flat_map(|p| [p.red(), p.green(), p.blue()]).collect();
+        let [rows, columns] = [self.pixels.height(), self.pixels.width()].map(|count| count as usize);
+        write_rgb(path, rows, columns, &colours)
     }
 
-    /// Draws a straight line between two places; what lies outside is left out.
-    pub fn line(&mut self, from: [f64; 2], to: [f64; 2], pen: Pen) {
-        let (from, to) = (self.on_canvas(from), self.on_canvas(to));
-        let along = [to[0] - from[0], to[1] - from[1]];
-        let length = along[0].hypot(along[1]).max(1e-9);
-        let reach = pen.width / 2.0 + 1.0;
-        let span = |axis: usize, end: usize| {
-            let low = from[axis].min(to[axis]) - reach;
-            let high = from[axis].max(to[axis]) + reach;
-            (low.max(0.0) as usize)..(high.clamp(0.0, end as f64) as usize)
-        };
-        for row in span(0, self.rows) {
-            for column in span(1, self.columns) {
-                let off = [row as f64 - from[0], column as f64 - from[1]];
-                let way = (off[0] * along[0] + off[1] * along[1]) / length;
-                if pen.dash.is_some_and(|dash| (way / dash).rem_euclid(2.0) >= 1.0) {
-                    continue;
-                }
-                let beside = (off[0] * along[1] - off[1] * along[0]).abs() / length;
-                let beyond = (way - length).max(-way).max(0.0);
-                let across = (pen.width / 2.0 + 0.5 - beside).clamp(0.0, 1.0);
-                let cover = across * (1.0 - beyond).clamp(0.0, 1.0);
-                self.blend(row, column, pen.colour, cover * pen.opacity);
+    /// Draws lines from place to place; what lies outside is left out.
+    pub fn lines(&mut self, places: &[[f64; 2]], pen: Pen) {
+        let mut path = PathBuilder::new();
+        for (k, place) in places.iter().enumerate() {
+            let [y, x] = place.map(|pixel| ((pixel + 0.5) * self.enlarged as f64) as f32);
+            match k {
+                0 => path.move_to(x, y),
+                _ => path.line_to(x, y),
             }
         }
-    }
-
-    /// Draws lines from place to place.
-    pub fn lines(&mut self, places: &[[f64; 2]], pen: Pen) {
-        for pair in places.windows(2) {
-            self.line(pair[0], pair[1], pen);
+        let stroke = Stroke {
+            width: pen.width,
+            line_join: LineJoin::Round,
+            dash: pen.dash.and_then(|length| StrokeDash::new(vec![length; 2], 0.0)),
+            ..Stroke::default()
+        };
+        // No path of a single place, nor with numbers that are not finite.
+        if let Some(path) = path.finish() {
+            let paint = paint(pen.colour, pen.opacity);
+            self.pixels
+                .stroke_path(&path, &paint, &stroke, Transform::identity(), None);
         }
     }
 
     /// Draws a frame inside the border.
-    pub fn frame(&mut self, colour: Colour, width: usize) {
-        for row in 0..self.rows {
-            for column in 0..self.columns {
-                let inside = row
-                    .min(column)
-                    .min(self.rows - 1 - row)
-                    .min(self.columns - 1 - column);
-                if inside < width {
-                    self.blend(row, column, colour, 1.0);
-                }
+    pub fn frame(&mut self, colour: Colour, width: f32) {
+        let [right, bottom] = [self.pixels.width(), self.pixels.height()].map(|count| count as f32);
+        for [x, y, w, h] in [
+            [0.0, 0.0, right, width],
+            [0.0, bottom - width, right, width],
+            [0.0, 0.0, width, bottom],
+            [right - width, 0.0, width, bottom],
+        ] {
+            if let Some(side) = Rect::from_xywh(x, y, w, h) {
+                self.pixels
+                    .fill_rect(side, &paint(colour, 1.0), Transform::identity(), None);
             }
         }
     }
+}
 
-    fn on_canvas(&self, place: [f64; 2]) -> [f64; 2] {
-        place.map(|pixel| (pixel + 0.5) * self.enlarged as f64 - 0.5)
-    }
-
-    fn blend(&mut self, row: usize, column: usize, colour: Colour, cover: f64) {
-        let at = 3 * (row * self.columns + column);
-        for (pixel, colour) in self.pixels[at..at + 3].iter_mut().zip(colour) {
-            let value = f64::from(*pixel) * (1.0 - cover) + f64::from(colour) * cover;
-            *pixel = value.round() as u8;
-        }
-    }
+fn paint(colour: Colour, opacity: f32) -> Paint<'static> {
+    let [red, green, blue] = colour.map(|part| f32::from(part) / 255.0);
+    let mut paint = Paint::default();
+    paint.set_color(Color::from_rgba(red, green, blue, opacity).unwrap_or(Color::BLACK));
+    paint
 }
 
 #[cfg(test)]
@@ -156,16 +143,16 @@ mod tests {
     }
 
     fn at(canvas: &Canvas, row: usize, column: usize) -> Colour {
-        let at = 3 * (row * canvas.columns + column);
-        canvas.pixels[at..at + 3].try_into().expect("three")
+        let at = 4 * (row * canvas.pixels.width() as usize + column);
+        canvas.pixels.data()[at..at + 3].try_into().expect("three")
     }
 
     #[test]
     fn a_line_lies_where_it_was_put_and_nowhere_else() {
         let mut canvas = canvas();
-        assert_eq!((canvas.rows, canvas.columns), (20, 40));
+        assert_eq!((canvas.pixels.height(), canvas.pixels.width()), (20, 40));
         // The middle of pixel 4 is between pixels 8 and 9 of the canvas.
-        canvas.line([4.0, -50.0], [4.0, 50.0], Pen::new(RED, 2.0));
+        canvas.lines(&[[4.0, -50.0], [4.0, 50.0]], Pen::new(RED, 2.0));
         for column in 0..40 {
             for row in 0..20 {
                 let colour = if row == 8 || row == 9 { RED } else { [100; 3] };
@@ -177,19 +164,19 @@ mod tests {
     #[test]
     fn dashes_and_faint_lines_leave_the_picture_to_be_seen() {
         let mut canvas = canvas();
-        canvas.line([4.0, 0.0], [4.0, 19.0], Pen::new(RED, 2.0).dashed(6.0));
+        canvas.lines(&[[4.0, 0.0], [4.0, 19.0]], Pen::new(RED, 2.0).dashed(6.0));
         let covered = (0..40).filter(|column| at(&canvas, 8, *column) == RED).count();
         assert!((15..=25).contains(&covered), "{covered}");
-        canvas.line([8.0, 0.0], [8.0, 19.0], Pen::new(RED, 2.0).faint(0.5));
+        canvas.lines(&[[8.0, 0.0], [8.0, 19.0]], Pen::new(RED, 2.0).faint(0.5));
         assert_eq!(at(&canvas, 16, 20), [178, 50, 50]);
     }
 
     #[test]
     fn a_line_outside_is_left_out() {
         let mut canvas = canvas();
-        let before = canvas.pixels.clone();
-        canvas.line([-30.0, -30.0], [-3.0, -9.0], Pen::new(RED, 1.0));
-        canvas.line([60.0, 60.0], [90.0, 90.0], Pen::new(RED, 1.0));
-        assert_eq!(canvas.pixels, before);
+        let before = canvas.pixels.data().to_vec();
+        canvas.lines(&[[-30.0, -30.0], [-3.0, -9.0]], Pen::new(RED, 1.0));
+        canvas.lines(&[[60.0, 60.0], [90.0, 90.0]], Pen::new(RED, 1.0));
+        assert_eq!(canvas.pixels.data(), before);
     }
 }

@@ -56,10 +56,10 @@ pub fn draw(
         _ => None,
     };
     if let Some(row) = beyond {
-        canvas.line([row, 0.2 * right], [row, 0.8 * right], Pen::new(YELLOW, 24.0));
+        canvas.lines(&[[row, 0.2 * right], [row, 0.8 * right]], Pen::new(YELLOW, 24.0));
     }
     scale_bar(&mut canvas, optics);
-    canvas.frame(if report.seam().is_some() { GREEN } else { RED }, 3);
+    canvas.frame(if report.seam().is_some() { GREEN } else { RED }, 3.0);
     Ok(canvas)
 }
 
@@ -168,15 +168,14 @@ fn draw_second(canvas: &mut Canvas, features: &PlateFeatures, optics: &Optics, s
 /// A line through `place` that gains `slope` columns a row, `reach` rows up and down.
 fn edge(canvas: &mut Canvas, [row, column]: [f64; 2], slope: f64, reach: f64, pen: Pen) {
     let end = |rows: f64| [row + rows, column + slope * rows];
-    canvas.line(end(-reach), end(reach), pen);
+    canvas.lines(&[end(-reach), end(reach)], pen);
 }
 
 fn cross(canvas: &mut Canvas, [row, column]: [f64; 2]) {
     for [down, right] in [[CROSS, 0.0], [0.0, CROSS]] {
-        let from = [row - down, column - right];
-        let to = [row + down, column + right];
-        canvas.line(from, to, Pen::new(BLACK, 3.5).faint(0.6));
-        canvas.line(from, to, Pen::new(RED, 1.5));
+        let bar = [[row - down, column - right], [row + down, column + right]];
+        canvas.lines(&bar, Pen::new(BLACK, 3.5).faint(0.6));
+        canvas.lines(&bar, Pen::new(RED, 1.5));
     }
 }
 
@@ -184,6 +183,6 @@ fn scale_bar(canvas: &mut Canvas, optics: &Optics) {
     let length = BAR_MM / optics.object_pixel_mm();
     let (row, column) = (optics.rows as f64 - 10.0, 10.0);
     let end = column + length;
-    canvas.line([row, column - 1.0], [row, end + 1.0], Pen::new(BLACK, 8.0));
-    canvas.line([row, column], [row, end], Pen::new(WHITE, 4.0));
+    canvas.lines(&[[row, column - 1.0], [row, end + 1.0]], Pen::new(BLACK, 8.0));
+    canvas.lines(&[[row, column], [row, end]], Pen::new(WHITE, 4.0));
 }

@@ -1,4 +1,4 @@
-//! A measured picture as data.
+//! The result of a measured picture, for JSON.
 
 use super::{Outcome, words};
 use serde::Serialize;
@@ -78,7 +78,7 @@ pub struct SecondRecord {
 pub struct ObservedRecord {
     /// `acquiring`, `tracking` or `lost`.
     pub state: &'static str,
-    /// Whether the seam is believed.
+    /// Whether the seam is accepted.
     pub believed: bool,
     /// Why it is not, where one was seen.
     pub doubt: Option<&'static str>,

@@ -1,4 +1,4 @@
-//! Measured pictures as a table for people.
+//! Measured pictures as a table.
 
 use super::Record;
 use super::record::Figure;
@@ -37,7 +37,7 @@ impl Table {
         .to_owned()
     }
 
-    /// What is said of a picture whose name is told as `name`.
+    /// The lines printed for a picture, under the name `name`.
     pub fn lines(&self, name: &str, record: &Record) -> String {
         let mut text = format!("{name:<width$}  {:<11}", record.status, width = self.name);
         if let Some(measured) = &record.measured {

@@ -1,4 +1,4 @@
-//! What measurements say, in words.
+//! Explanations of measurements in words.
 
 use vision::{Criterion, Doubt, Measured, Report, State, Status};
 
@@ -32,7 +32,7 @@ pub fn why(report: &Report) -> Option<String> {
             "no sharp band; the work is probably lower than the picture reaches: move the camera towards it"
         }
         Status::NoBand => "nothing in the picture is sharp",
-        Status::Ambiguous => "two things may be the seam",
+        Status::Ambiguous => "there are two candidates for the seam",
         Status::NoSeam => return Some(report.measured.as_ref().map_or_else(String::new, weakness)),
     };
     Some(plain.to_owned())
@@ -47,13 +47,15 @@ fn weakness(measured: &Measured) -> String {
         Criterion::Depth => "the line is not dark enough against the plate",
         Criterion::Straightness => "too little of the edges lies on straight lines",
         Criterion::Scatter => "the edges are too rough",
-        Criterion::Continuity => "the line does not go on outside the sharp band: a spot or a scratch?",
-        Criterion::Height => "the height is not known well enough: too little texture?",
+        Criterion::Continuity => {
+            "the line does not continue outside the sharp band: is it a spot or a scratch?"
+        }
+        Criterion::Height => "the height is too uncertain: too little texture?",
         Criterion::Width => "the line is too narrow",
         Criterion::Border => "it is too close to the left or right border",
         Criterion::Band => "the band is too close to the upper or lower border",
-        Criterion::Ambiguity => "something else may as well be the seam",
-        Criterion::Lateral => "the place across is not known well enough: too little texture?",
+        Criterion::Ambiguity => "another candidate is as good",
+        Criterion::Lateral => "the position across the seam is too uncertain: too little texture?",
         Criterion::Gain => "the band explains too little of the picture",
         Criterion::Walls => "too little of one wall is in the picture",
     };
@@ -69,11 +71,11 @@ pub fn state(state: State) -> &'static str {
     }
 }
 
-/// Why an observer does not believe a seam.
+/// Why an observer does not accept a seam.
 pub fn doubt(doubt: Doubt) -> &'static str {
     match doubt {
-        Doubt::New => "not yet believed: three pictures in a row have to agree",
-        Doubt::Position => "not believed: it is not where the seam was",
-        Doubt::Width => "not believed: it is not as wide as the seam was",
+        Doubt::New => "not accepted yet: three pictures in a row have to agree",
+        Doubt::Position => "not accepted: its position differs from that of the seam before",
+        Doubt::Width => "not accepted: its width differs from that of the seam before",
     }
 }

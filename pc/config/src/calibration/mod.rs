@@ -72,7 +72,8 @@ impl SlideMap {
         a * d - b * c
     }
 
-    /// Whether the matrix tells every motion of the slides, and the picture is not mirrored.
+    /// Whether the matrix is invertible, so that it shows every motion of the slides, and the picture is not
+    /// mirrored.
     pub fn is_regular(&self) -> bool {
         let finite = |row: &[f64; 2]| row.iter().all(|x| x.is_finite());
         self.matrix.iter().all(finite) && self.determinant() >= SMALLEST_DETERMINANT
@@ -111,8 +112,8 @@ impl Calibration {
         file::write(self)
     }
 
-    /// What the tracker is told of a seam seen at `lateral_mm` (u), `travel_mm` (a) and `height_mm` (n) of the camera's
-    /// frame.
+    /// The measurement for the tracker of a seam seen at `lateral_mm` (u), `travel_mm` (a) and `height_mm`
+    /// (n) of the camera's frame.
     pub fn side_measurement(&self, lateral_mm: f64, travel_mm: f64, height_mm: f64) -> SideMeasurement {
         let [delta_u_mm, delta_v_mm] = self.slides.deltas(lateral_mm, height_mm);
         SideMeasurement {

@@ -217,7 +217,7 @@ fn a_value_that_makes_no_sense_is_named_with_its_line() {
             "magnification = 4.0",
             "magnification = 0.2",
             "[optics]",
-            "it has to be between 0.000001 and 0.05",
+            "it must be between 0.000001 and 0.05",
         ),
     ];
     for (right, wrong, table, says) in cases {

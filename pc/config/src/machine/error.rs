@@ -44,7 +44,7 @@ pub enum Mistake {
         machine: &'static str,
     },
     /// A key for an axis that the machine does not have.
-    #[error("{key} is told, but a {machine} has no such axis")]
+    #[error("{key} is given, but a {machine} has no such axis")]
     NoSuchAxis {
         /// Dotted name of the key.
         key: String,
@@ -58,7 +58,9 @@ pub enum Mistake {
         reason: vision::OpticsError,
     },
     /// Some of the tables of a tracker, but not all.
-    #[error("[{table}] is missing; what follows a seam has [head], [slides], [tracking] and [cameras]")]
+    #[error(
+        "[{table}] is missing; a machine that follows a seam needs [head], [slides], [tracking] and [cameras]"
+    )]
     TrackerIncomplete {
         /// The first that is missing.
         table: &'static str,

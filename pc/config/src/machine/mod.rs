@@ -1,4 +1,4 @@
-//! The machine file: everything that is true of one machine, in TOML, mm and degrees.
+//! The machine file: all parameters of one machine, in TOML, mm and degrees.
 
 mod cameras;
 mod check;

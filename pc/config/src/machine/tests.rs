@@ -222,12 +222,12 @@ fn axes_that_the_machine_has_not_are_named_and_so_are_those_that_are_missing() {
     let error = error_of(&pipe.replace("[axes.Z]", "[axes.Y]"));
     assert_eq!(
         error,
-        "machine file m.toml: axes.Y is told, but a pipe-welder has no such axis"
+        "machine file m.toml: axes.Y is given, but a pipe-welder has no such axis"
     );
     let error = error_of(&pipe.replace("[motors.B]", "[motors.A]"));
     assert_eq!(
         error,
-        "machine file m.toml: motors.A is told, but a pipe-welder has no such axis"
+        "machine file m.toml: motors.A is given, but a pipe-welder has no such axis"
     );
     let error = error_of(&pipe.replace(", B = 0.0, C = 0.0 }", ", B = 0.0 }"));
     assert_eq!(
@@ -237,7 +237,7 @@ fn axes_that_the_machine_has_not_are_named_and_so_are_those_that_are_missing() {
     let error = error_of(&pipe.replace("park_first = [\"X\"]", "park_first = [\"A\"]"));
     assert_eq!(
         error,
-        "machine file m.toml: planning.park_first A is told, but a pipe-welder has no such axis"
+        "machine file m.toml: planning.park_first A is given, but a pipe-welder has no such axis"
     );
     let error = error_of(&pipe.replace("park = { X = 190.0", "park = { X = 210.0"));
     assert_eq!(
@@ -307,8 +307,8 @@ fn cameras_are_as_drawn_until_they_are_calibrated() {
         }
     }
 
-    let folder = std::env::temp_dir().join(format!("seamwright-cameras-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
     let measured = Calibration {
         corner_offset_mm: Some([0.001, 0.005]),
         ..first
@@ -316,9 +316,8 @@ fn cameras_are_as_drawn_until_they_are_calibrated() {
     std::fs::write(folder.join("camera-1.toml"), measured.to_toml()).unwrap();
     std::fs::write(folder.join("camera-2.toml"), second.to_toml()).unwrap();
     let files = shipped_with("# calibration = ", "calibration = ");
-    let read = cameras(&files).calibrations(&folder);
+    let read = cameras(&files).calibrations(folder);
     let missing = cameras(&files).calibrations(&folder.join("none"));
-    std::fs::remove_dir_all(&folder).unwrap();
     let [read, _] = read.unwrap();
     assert_eq!(read.corner_offset_mm, Some([0.001, 0.005]));
     assert_eq!(read.to_toml(), measured.to_toml());

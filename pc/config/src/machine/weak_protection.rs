@@ -1,4 +1,4 @@
-//! Protections that a machine's parameters leave weaker than usual: allowed, and to be known.
+//! Protections that a machine's parameters leave weaker than usual: allowed, but reported.
 
 use super::MachineFile;
 use shared::config::{BeamConfig, MotionConfig, TrackerConfig};
@@ -12,14 +12,14 @@ const LAG_S: f64 = 0.1;
 const YAW: f64 = 3e-4;
 /// Silence of the PC that stops late \[ms\].
 const SILENCE_MS: u32 = 1000;
-/// Part of full power by which a beam may be off, that is told late.
+/// Part of full power by which a beam may be off: more is detected late.
 const POWER: f64 = 0.2;
-/// Way without sight of the seam that is told late \[mm\].
+/// Distance without sight of the seam: more is detected late \[mm\].
 const BLIND_MM: f64 = 10.0;
 /// Outliers that are taken for the seam \[mm\], and deviations that are left alone.
 const OUTLIER_MM: f64 = 2.0;
 const LEFT_ALONE_MM: f64 = 0.05;
-/// Silence of the motion board that stops the slides late, and saturation that is told late \[ms\].
+/// Silence of the motion board that stops the slides late, and saturation: more is detected late \[ms\].
 const STALE_MS: u32 = 50;
 const SATURATED_MS: u32 = 500;
 
@@ -27,7 +27,7 @@ const SATURATED_MS: u32 = 500;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum WeakProtection {
     /// A motor that stands elsewhere is noticed late.
-    #[error("following_error_base of {} is {limit} mm (or °): a motor that does not follow is noticed late; {ERROR} is usual at most", MOTOR_NAMES[*.motor as usize])]
+    #[error("following_error_base of {} is {limit} mm (or °): a motor that does not follow is detected late; usual values are up to {ERROR}", MOTOR_NAMES[*.motor as usize])]
     FollowingError {
         /// Index of the motor.
         motor: u8,
@@ -35,7 +35,7 @@ pub enum WeakProtection {
         limit: f64,
     },
     /// The same in motion.
-    #[error("following_error_time_s of {} is {time_s} s: a motor that does not follow in motion is noticed late; {LAG_S} is usual at most", MOTOR_NAMES[*.motor as usize])]
+    #[error("following_error_time_s of {} is {time_s} s: a motor that does not follow in motion is detected late; usual values are up to {LAG_S}", MOTOR_NAMES[*.motor as usize])]
     FollowingErrorInMotion {
         /// Index of the motor.
         motor: u8,
@@ -43,16 +43,16 @@ pub enum WeakProtection {
         time_s: f64,
     },
     /// A gantry may be far from square.
-    #[error("skew_trip_mm of gantry is {trip_mm} mm, {:.2} mrad over its width: guides may be forced before it trips; {} mrad is usual at most", yaw * 1e3, YAW * 1e3)]
+    #[error("skew_trip_mm of gantry is {trip_mm} mm, {:.2} mrad over its width: the guides may be forced before it trips; usual values are up to {} mrad", yaw * 1e3, YAW * 1e3)]
     Skew {
         /// The trip \[mm\].
         trip_mm: f64,
         /// The yaw at which it trips \[rad\].
         yaw: f64,
     },
-    /// A machine without its PC goes on for long.
+    /// A machine without its PC continues for long.
     #[error(
-        "link_timeout_ms is {timeout_ms}: a weld goes on for so long without its PC; {SILENCE_MS} is usual at most"
+        "link_timeout_ms is {timeout_ms}: a weld continues for this time without its PC; usual values are up to {SILENCE_MS}"
     )]
     Link {
         /// The timeout \[ms\].
@@ -64,8 +64,8 @@ pub enum WeakProtection {
         /// 0 or 1.
         side: u8,
     },
-    /// A beam may burn with another power than it was told.
-    #[error("readback.tolerance of beam {} is {tolerance}: the power may be off by so much of full power; {POWER} is usual at most", side + 1)]
+    /// A beam may burn with another power than commanded.
+    #[error("readback.tolerance of beam {} is {tolerance}: the power may be off by this part of full power; usual values are up to {POWER}", side + 1)]
     Power {
         /// 0 or 1.
         side: u8,
@@ -74,7 +74,7 @@ pub enum WeakProtection {
     },
     /// A beam goes on for long without sight of its seam.
     #[error(
-        "window_mm and hold_mm of tracking are {way_mm} mm together: a beam goes so far without sight of its seam; {BLIND_MM} is usual at most"
+        "window_mm and hold_mm of tracking are {way_mm} mm together: a beam goes this far while its seam is not seen; usual values are up to {BLIND_MM}"
     )]
     LostSeam {
         /// The way \[mm\].
@@ -82,7 +82,7 @@ pub enum WeakProtection {
     },
     /// What is far from the seam is taken for it.
     #[error(
-        "gate_mm of tracking is {gate_mm} mm: what is so far from the seam is taken for it; {OUTLIER_MM} is usual at most"
+        "gate_mm of tracking is {gate_mm} mm: a measurement this far from the seam is accepted; usual values are up to {OUTLIER_MM}"
     )]
     Outliers {
         /// The gate \[mm\].
@@ -90,7 +90,7 @@ pub enum WeakProtection {
     },
     /// Deviations are left alone.
     #[error(
-        "dead_band_mm of tracking is {band_mm} mm: a spot may stay so far beside its seam; {LEFT_ALONE_MM} is usual at most"
+        "dead_band_mm of tracking is {band_mm} mm: a spot may stay this far beside its seam; usual values are up to {LEFT_ALONE_MM}"
     )]
     DeadBand {
         /// The band \[mm\].
@@ -98,15 +98,15 @@ pub enum WeakProtection {
     },
     /// Slides follow old path states for long.
     #[error(
-        "stale_path_ms of tracking is {stale_ms}: slides go on for so long without the motion board; {STALE_MS} is usual at most"
+        "stale_path_ms of tracking is {stale_ms}: the slides continue for this time without the motion board; usual values are up to {STALE_MS}"
     )]
     StalePath {
         /// The time \[ms\].
         stale_ms: u32,
     },
-    /// A slide that cannot follow is told late.
+    /// A slide that cannot follow is reported late.
     #[error(
-        "saturation_trip_ms of tracking is {trip_ms}: a slide that cannot follow its seam is told late; {SATURATED_MS} is usual at most"
+        "saturation_trip_ms of tracking is {trip_ms}: a slide that cannot follow its seam is reported late; usual values are up to {SATURATED_MS}"
     )]
     Saturation {
         /// The time \[ms\].

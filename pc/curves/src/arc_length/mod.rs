@@ -56,7 +56,7 @@ const SETTLED: f64 = 1e-9;
 /// The parameter varies too much over the length of the curve for its table.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error(
-    "too uneven: the speed along the curve would be off by {fluctuation:e} of itself, {FLUCTUATION:e} is allowed; \
+    "too uneven: the speed along the curve would vary by a factor of {fluctuation:e}, {FLUCTUATION:e} is allowed; \
      split the curve"
 )]
 pub struct TooUneven {

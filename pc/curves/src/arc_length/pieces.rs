@@ -45,12 +45,12 @@ pub struct ArcLengthPiece {
 pub struct ArcLengthPieces<'a> {
     /// Nothing after an error.
     spans: Option<Pieces<'a>>,
-    rest: Option<Rest>,
+    rest: Option<SpanRemainder>,
 }
 
-/// What is left of a span.
+/// The part of a span that is not yet cut into pieces.
 #[derive(Clone, Debug)]
-struct Rest {
+struct SpanRemainder {
     curve: RationalBezier,
     span: Piece,
     /// Part of the span that is left, and that `curve` is; it and `step` are sums of few powers of two, so there is no rounding.
@@ -76,7 +76,7 @@ impl Iterator for ArcLengthPieces<'_> {
         let spans = self.spans.as_mut()?;
         let rest = match self.rest.take() {
             Some(rest) => rest,
-            None => Rest::of(spans.find(|span| polygon(&span.curve) > STANDING)?),
+            None => SpanRemainder::of(spans.find(|span| polygon(&span.curve) > STANDING)?),
         };
         Some(match rest.cut() {
             Ok((piece, rest)) => {
@@ -91,7 +91,7 @@ impl Iterator for ArcLengthPieces<'_> {
     }
 }
 
-impl Rest {
+impl SpanRemainder {
     fn of(span: Piece) -> Self {
         Self {
             curve: span.curve,

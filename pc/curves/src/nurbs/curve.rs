@@ -1,4 +1,4 @@
-//! What all parametric curves have, and their curvature (mathematics 3.2).
+//! The interface of parametric curves, and their curvature (mathematics 3.2).
 
 use nalgebra::Vector3;
 use shared::geometry::Moving;

@@ -24,7 +24,7 @@ pub enum DiscretiseError {
     #[error("tolerance, turn and chord of a discretisation must be 1e-9 (mm, rad) or more")]
     Limits,
     /// A span is so large that halving does not get from it to parts fine enough.
-    #[error("the curve or its knots are too large to be cut finely enough: scale them")]
+    #[error("the curve or its knots are too large to be discretised: scale them")]
     Depth,
 }
 

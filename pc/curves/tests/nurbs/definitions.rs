@@ -75,7 +75,7 @@ pub fn any_curve() -> impl Strategy<Value = Definition> {
         let n = degree + 1 + extra;
         let points = prop::collection::vec((point(), prop::bool::weighted(0.05)), n);
         let weights = prop::collection::vec((-1.0..1.0f64).prop_map(|e| 10f64.powf(e)), n);
-        // Steps between knots; some are none.
+        // Steps between knots; some are zero.
         let steps = prop::collection::vec((0.02..1.0f64, prop::bool::weighted(0.2)), n + degree);
         (points, weights, steps).prop_map(move |(points, weights, steps)| Definition {
             degree,

@@ -7,11 +7,11 @@
 
 mod worker;
 
-pub use worker::{Seen, WorkerError};
+pub use worker::{MeasuredStrobe, WorkerError};
 
 use crate::cameras::{Answer, CameraFigures, Moment, PictureSource, SeamCameras};
 use camera::{CameraFrame, nominal_slopes};
-use camera::{Keeping, Shelf};
+use camera::{PictureQueue, RecordingCamera};
 use config::calibration::Calibration;
 use config::machine::{CameraConfig, JointForm, TrackingUnit};
 use host_link::boards::Waker;
@@ -41,7 +41,7 @@ pub struct ImageCameras {
     /// What is known of camera 1 and 2.
     pub calibrations: [Calibration; SIDES],
     /// Where every picture is kept, if it is.
-    pub kept: Option<[Shelf; SIDES]>,
+    pub kept: Option<[PictureQueue; SIDES]>,
 }
 
 /// Both cameras.
@@ -69,7 +69,7 @@ struct Side {
 
 /// An answer, and when it was due by the motion board's clock \[µs\].
 struct Held {
-    seen: Seen,
+    seen: MeasuredStrobe,
     due_us: u64,
 }
 
@@ -109,7 +109,7 @@ impl Images {
             let calibration = of.calibrations[side];
             let camera = source.open(side)?;
             let camera = match &of.kept {
-                Some(shelves) => Box::new(Keeping::new(camera, shelves[side].clone())),
+                Some(queues) => Box::new(RecordingCamera::new(camera, queues[side].clone())),
                 None => camera,
             };
             let (optics, noise) = (calibration.optics, calibration.photon_transfer);
@@ -309,7 +309,7 @@ impl Side {
         Ok(())
     }
 
-    fn hold(&mut self, seen: Seen) {
+    fn hold(&mut self, seen: MeasuredStrobe) {
         count(&mut self.figures, &seen);
         let due_us = self.waiting.pop_front().map_or(0, |waiting| waiting.due_us);
         self.held = Some(Held { seen, due_us });
@@ -321,7 +321,7 @@ impl Side {
     }
 }
 
-fn count(figures: &mut CameraFigures, seen: &Seen) {
+fn count(figures: &mut CameraFigures, seen: &MeasuredStrobe) {
     let Some(observation) = &seen.observation else {
         figures.lost += 1;
         return;

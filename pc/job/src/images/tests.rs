@@ -1,9 +1,9 @@
 //! How far a camera moves from capture to capture, and pictures that are measured again.
 
 use super::*;
-use camera::{Arrival, Camera, CameraError, Folder, Keeper, Picture, Shelf};
+use camera::{Arrival, Camera, CameraError, Folder, Picture, PictureQueue, PictureWriter};
 use config::machine::MachineFile;
-use world::{Prospect, RenderedWorld, SceneFile, View, ViewForm};
+use world::{FieldOfView, RenderedWorld, SceneFile, View, ViewForm};
 
 /// Cameras that see nothing.
 struct Blind;
@@ -83,7 +83,7 @@ fn nothing_is_known_of_a_way_that_is_too_far_or_begins_nowhere() {
 }
 
 /// What comes of 60 strobes of a camera; `tell` is called after each.
-fn seen(camera: Box<dyn Camera>, unit: &TrackingUnit, tell: impl Fn(u32)) -> Vec<Seen> {
+fn seen(camera: Box<dyn Camera>, unit: &TrackingUnit, tell: impl Fn(u32)) -> Vec<MeasuredStrobe> {
     let calibration = unit.cameras.nominal(0);
     let (optics, noise) = (calibration.optics, calibration.photon_transfer);
     let detector = Detector::new(optics, noise, calibration.profile).unwrap();
@@ -116,10 +116,10 @@ fn what_was_kept_is_measured_again_to_the_same_figures() {
     };
     let (camera, tell) = RenderedWorld::new(&scene, &unit.cameras, &heads, 1).camera(0);
     let folder = std::env::temp_dir().join(format!("seamwright-kept-{}", std::process::id()));
-    let shelf = Shelf::default();
-    let keeper = Keeper::start(&folder, shelf.clone()).unwrap();
+    let queue = PictureQueue::default();
+    let writer = PictureWriter::start(&folder, queue.clone()).unwrap();
     let first = seen(
-        Box::new(Keeping::new(Box::new(camera), shelf)),
+        Box::new(RecordingCamera::new(Box::new(camera), queue)),
         &unit,
         |capture| {
             let along_mm = 0.4 * f64::from(capture);
@@ -133,16 +133,16 @@ fn what_was_kept_is_measured_again_to_the_same_figures() {
                     yaw_rad: 0.0,
                 },
             };
-            tell.send(Prospect::Seam(view)).unwrap();
+            tell.send(FieldOfView::Seam(view)).unwrap();
         },
     );
-    let kept = keeper.end();
+    let kept = writer.end();
     assert!(kept.error.is_none() && kept.dropped == 0, "{kept:?}");
     let arrived = first.iter().filter(|seen| seen.observation.is_some());
     assert_eq!(kept.pictures, arrived.count() as u32);
     assert!((40..60).contains(&kept.pictures), "{kept:?}");
     let again = seen(Box::new(Folder::open(&folder).unwrap()), &unit, |_| {});
-    let contents = |seen: &[Seen]| -> Vec<_> {
+    let contents = |seen: &[MeasuredStrobe]| -> Vec<_> {
         seen.iter()
             .map(|seen| (seen.capture, seen.observation, seen.measurement))
             .collect()

@@ -25,9 +25,9 @@ pub(super) struct Strobe {
     pub moved: Option<Moved>,
 }
 
-/// What came of a strobe.
+/// The result of one strobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct MeasuredStrobe {
     /// Number of the capture.
     pub capture: u32,
     /// What the picture says; `None` if it was lost.
@@ -51,7 +51,7 @@ pub enum WorkerError {
     #[error(transparent)]
     Image(#[from] ImageError),
     /// The thread is gone, or hangs.
-    #[error("its pictures are not measured any more: please report this, with the command line")]
+    #[error("the thread that measures its pictures has ended: please report this, with the command line")]
     Gone,
 }
 
@@ -65,7 +65,7 @@ struct Outlet {
 pub(super) struct Worker {
     outlet: Arc<OnceLock<Outlet>>,
     strobes: Option<Sender<Strobe>>,
-    answers: Receiver<Result<Seen, WorkerError>>,
+    answers: Receiver<Result<MeasuredStrobe, WorkerError>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -116,14 +116,14 @@ impl Worker {
     }
 
     /// The next answer, which there is exactly one of for every strobe, in their order.
-    pub fn wait(&self, timeout: Duration) -> Result<Seen, WorkerError> {
+    pub fn wait(&self, timeout: Duration) -> Result<MeasuredStrobe, WorkerError> {
         self.answers
             .recv_timeout(timeout)
             .unwrap_or(Err(WorkerError::Gone))
     }
 
     /// The next answer, if it is there.
-    pub fn poll(&self) -> Result<Option<Seen>, WorkerError> {
+    pub fn poll(&self) -> Result<Option<MeasuredStrobe>, WorkerError> {
         match self.answers.try_recv() {
             Ok(answer) => answer.map(Some),
             Err(TryRecvError::Empty) => Ok(None),
@@ -163,7 +163,7 @@ impl Work {
     fn run(
         &mut self,
         strobes: &Receiver<Strobe>,
-        answer: &Sender<Result<Seen, WorkerError>>,
+        answer: &Sender<Result<MeasuredStrobe, WorkerError>>,
     ) -> Result<(), WorkerError> {
         loop {
             let next = if self.waiting.is_empty() {
@@ -193,7 +193,7 @@ impl Work {
                 let seen = if arrived {
                     self.look(at)?
                 } else {
-                    Seen {
+                    MeasuredStrobe {
                         capture: strobe.capture,
                         observation: None,
                         measurement: None,
@@ -222,7 +222,7 @@ impl Work {
     }
 
     /// Tells who is interested of the picture and of what is seen in it, after the answer has left.
-    fn show(&self, seen: &Seen) {
+    fn show(&self, seen: &MeasuredStrobe) {
         let Some(Outlet { events, .. }) = self.outlet.get() else {
             return;
         };
@@ -265,7 +265,7 @@ impl Work {
     }
 
     /// Measures the picture that arrived at `arrived`.
-    fn look(&mut self, arrived: Instant) -> Result<Seen, WorkerError> {
+    fn look(&mut self, arrived: Instant) -> Result<MeasuredStrobe, WorkerError> {
         let moved = self.moved.replace(Moved::default());
         if moved.is_none() {
             self.observer.forget();
@@ -287,7 +287,7 @@ impl Work {
                 }
                 (None, _) => None,
             });
-        Ok(Seen {
+        Ok(MeasuredStrobe {
             capture: self.picture.capture,
             observation: Some(observation),
             measurement: place

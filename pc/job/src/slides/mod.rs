@@ -1,4 +1,4 @@
-//! Slides that the PC moves while the machine stands.
+//! Moves of the slides by the PC while the machine is at rest.
 
 use crate::JobError;
 use crate::session::Session;

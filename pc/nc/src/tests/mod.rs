@@ -36,7 +36,10 @@ fn g1_blocks_make_one_path_and_each_g0_its_own() {
     let (feed, rapid) = (Motion::Feed, Motion::Rapid);
     assert_eq!(shape, [(rapid, 1), (rapid, 1), (feed, 3), (rapid, 1)]);
     let end = &program.paths[2].targets[2];
-    assert_eq!((&end.way, end.place), (&Way::Line, Place { line: 8, column: 1 }));
+    assert_eq!(
+        (&end.way, end.place),
+        (&Way::Line, SourcePosition { line: 8, column: 1 })
+    );
     assert_eq!(
         end.words.axes,
         [Some(30.0), Some(3.0), None, Some(1.0), None, None]

@@ -26,7 +26,7 @@ fn g5_2_takes_control_points_up_to_g5_3() {
     assert_eq!(way.points[0].position, [None; 3]);
     assert_eq!(way.points[2].position, [Some(2.0), Some(2.0), None]);
     assert_eq!(target.words.axes[..3], [Some(0.0), Some(0.0), None]);
-    assert_eq!(target.place, Place { line: 6, column: 1 });
+    assert_eq!(target.place, SourcePosition { line: 6, column: 1 });
     assert_eq!(target.feed, Some(FeedRate::PerMinute(10.0)));
 }
 
@@ -88,7 +88,7 @@ fn what_does_not_belong_to_a_curve_is_named() {
     );
     assert_eq!(
         problem("F10\nG6.2 P3 K0\nK0 X1\nK0 X2\nK1 R2\nM2"),
-        (foreign("R", "a knot that stands alone"), 5)
+        (foreign("R", "a knot on its own"), 5)
     );
     assert_eq!(problem("F10\nG5.2 X1 Y1 Z1\nG5.3\nM2"), (Problem::FlatNurbs, 2));
     assert_eq!(

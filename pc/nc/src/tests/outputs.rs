@@ -4,9 +4,9 @@ use super::*;
 use shared::protocol::PathAction;
 
 /// Motion, targets and events of the paths after the header.
-type Seen = (Motion, usize, Vec<(usize, ProgramAction, &'static str)>);
+type PathSummary = (Motion, usize, Vec<(usize, ProgramAction, &'static str)>);
 
-fn seen(body: &str) -> Vec<Seen> {
+fn seen(body: &str) -> Vec<PathSummary> {
     let program = run(body).unwrap();
     let paths = program.paths[2..].iter();
     paths
@@ -58,7 +58,7 @@ fn immediate_outputs_end_the_path() {
     let program = run(body).unwrap();
     let dwells: Vec<f64> = program.paths[2..].iter().map(|p| p.dwell_before_s).collect();
     assert_eq!(dwells, [0.0, 0.0, 0.0, 1.0, 0.0]);
-    // What is synchronised with motion goes on waiting.
+    // What is synchronised with motion continues waiting.
     let body = "F600\nM62 P1\nM64 P0\nG4 P1\nG1 X10\nM2";
     let expected = [
         (Motion::Stand, 0, vec![(0, beam(0, true), "M64")]),

@@ -7,6 +7,7 @@ use std::fmt::Write;
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
+use tempfile::NamedTempFile;
 
 /// Every kind of word that lasts from block to block, on three long paths.
 fn long() -> String {
@@ -34,6 +35,13 @@ fn long() -> String {
     }
     text += "M2\n%\n";
     text
+}
+
+/// A temporary file with `text`.
+fn written(text: &str) -> NamedTempFile {
+    let file = NamedTempFile::new().unwrap();
+    std::fs::write(&file, text).unwrap();
+    file
 }
 
 fn in_file(name: &Path) -> Source {
@@ -72,10 +80,7 @@ fn what_is_not_kept_is_read_again_as_it_was() {
 
 #[test]
 fn a_file_is_read_as_a_text() {
-    let name = std::env::temp_dir().join(format!("reading-{}.ngc", std::process::id()));
-    std::fs::write(&name, long()).unwrap();
-    let source = in_file(&name);
-    std::fs::remove_file(&name).unwrap();
+    let source = in_file(written(&long()).path());
     let wanted = all(&interpret(&long(), Options::default()).unwrap());
     let program = read(&source, Options::default(), 10).unwrap();
     assert_eq!(
@@ -128,14 +133,12 @@ fn a_file_that_changes_is_an_error_and_gives_no_other_block() {
     let longer = text.clone() + "\n";
     let other = text.replace("X1500.0", "X1500.1");
     for changed in [shorter, aligned, longer, other] {
-        let name = std::env::temp_dir().join(format!("changed-{}.ngc", std::process::id()));
-        std::fs::write(&name, &text).unwrap();
-        let program = read(&in_file(&name), Options::default(), KEPT).unwrap();
+        let file = written(&text);
+        let program = read(&in_file(file.path()), Options::default(), KEPT).unwrap();
         let path = Arc::new(program.paths[1].clone());
         let before: Vec<_> = path.moves().map(Result::unwrap).collect();
         assert_eq!(before.len(), 20_000);
-        std::fs::write(&name, changed).unwrap();
-        std::fs::remove_file(&name).unwrap();
+        std::fs::write(&file, changed).unwrap();
         let mut after: Vec<_> = path.moves().collect();
         let error = after.pop().unwrap().unwrap_err();
         assert!(
@@ -152,11 +155,9 @@ fn a_file_that_changes_is_an_error_and_gives_no_other_block() {
 
 #[test]
 fn a_short_file_may_change() {
-    let name = std::env::temp_dir().join(format!("short-{}.ngc", std::process::id()));
     let text = "G43.4\nG0 X0 Y0 Z0 A0 B0 C0\nF600\n".to_owned() + &"G1 X1\nX2\n".repeat(KEPT) + "M2\n";
-    std::fs::write(&name, &text).unwrap();
-    let program = interpret_file(File::open(&name).unwrap(), Options::default()).unwrap();
-    std::fs::write(&name, "M2\n").unwrap();
-    std::fs::remove_file(&name).unwrap();
+    let file = written(&text);
+    let program = interpret_file(File::open(&file).unwrap(), Options::default()).unwrap();
+    std::fs::write(&file, "M2\n").unwrap();
     assert_eq!(all(&program)[1].2.len(), 2 * KEPT);
 }

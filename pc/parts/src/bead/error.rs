@@ -64,13 +64,13 @@ pub(super) enum BeadError {
     #[error("no smooth curve through the points: {0}")]
     Spline(SplineError),
     #[error(
-        "the bead needs more than {CAPACITY} points, which is what the boards hold: after {places} points the worst \
-         place is still near ({x:.3}, {y:.3}, {z:.3}) mm; part the bead in two, or round its sharp corners"
+        "the bead needs more than the {CAPACITY} points that the boards hold: after {places} points the worst \
+         place is still near ({x:.3}, {y:.3}, {z:.3}) mm; split the bead in two, or round its sharp corners"
     )]
     TooManyPoints { places: usize, x: f64, y: f64, z: f64 },
     #[error(
         "the path through the points is {distance:.4} mm off the NURBS near ({x:.3}, {y:.3}, {z:.3}) mm; this is a \
-         mistake of the planner, please report it"
+         defect of the planner, please report it"
     )]
     Inexact { distance: f64, x: f64, y: f64, z: f64 },
     #[error(

@@ -27,7 +27,7 @@ const SAME_LENGTH: f64 = 0.5;
 
 /// The tip at one tick with the arc burning.
 #[derive(Clone, Copy, Debug)]
-struct Laid {
+struct BeadSample {
     /// Bead laid before, all layers together \[mm\].
     along: f64,
     /// Path length through all paths, for the plots \[mm\].
@@ -66,7 +66,7 @@ pub(super) fn judge(
     );
     let [_, end] = route.domain();
     let near = Near::build(route);
-    let mut laid: Vec<Laid> = Vec::new();
+    let mut laid: Vec<BeadSample> = Vec::new();
     let mut count = 0.0;
     for (id, layer) in burnt.into_iter().zip(layers) {
         if let Some(length) = run.paths.get(&id).map(|path| path.length_mm()) {
@@ -95,7 +95,7 @@ pub(super) fn judge(
 /// Adds what was laid on one path; `path_mm` gives the length through all paths, `nearest` the distance from the curve,
 /// and its radius.
 fn add_layer(
-    laid: &mut Vec<Laid>,
+    laid: &mut Vec<BeadSample>,
     samples: &[&RunSample],
     before: f64,
     path_mm: impl Fn(f64) -> f64,
@@ -116,7 +116,7 @@ fn add_layer(
         let same = |s: &&RunSample| (s.speed_mm_s - programmed).abs() <= CONSTANT * programmed;
         let next = &around[HALF..=HALF + 1];
         let (contour, radius) = nearest(now.s_mm, &now.pose.position);
-        let entry = Laid {
+        let entry = BeadSample {
             along,
             path_mm: path_mm(now.s_mm),
             begins: std::mem::take(&mut begins),
@@ -160,11 +160,12 @@ impl<'a> Near<'a> {
     }
 }
 
-fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow, limits: &BeadLimits) -> Vec<Figure> {
-    let outside =
-        |laid: &&Laid| laid.speed < window.low * (1.0 - EDGE) || laid.speed > window.high * (1.0 + EDGE);
-    let sum = |value: fn(&Laid) -> f64| laid.iter().map(value).sum::<f64>();
-    let sum_outside = |value: fn(&Laid) -> f64| laid.iter().filter(outside).map(value).sum::<f64>();
+fn figures(laid: &[BeadSample], layers: f64, window: &ProcessWindow, limits: &BeadLimits) -> Vec<Figure> {
+    let outside = |laid: &&BeadSample| {
+        laid.speed < window.low * (1.0 - EDGE) || laid.speed > window.high * (1.0 + EDGE)
+    };
+    let sum = |value: fn(&BeadSample) -> f64| laid.iter().map(value).sum::<f64>();
+    let sum_outside = |value: fn(&BeadSample) -> f64| laid.iter().filter(outside).map(value).sum::<f64>();
     let (length, time) = (sum(|l| l.length), sum(|l| l.time));
     let off: Vec<f64> = laid
         .iter()
@@ -245,8 +246,8 @@ fn figures(laid: &[Laid], layers: f64, window: &ProcessWindow, limits: &BeadLimi
     figures
 }
 
-fn plots(laid: &[Laid], window: &ProcessWindow, limits: &BeadLimits) -> Vec<Plot> {
-    let line = |value: &dyn Fn(&Laid) -> f64| {
+fn plots(laid: &[BeadSample], window: &ProcessWindow, limits: &BeadLimits) -> Vec<Plot> {
+    let line = |value: &dyn Fn(&BeadSample) -> f64| {
         let mut line = Vec::with_capacity(laid.len());
         for l in laid {
             line.extend(l.begins.then_some(GAP));

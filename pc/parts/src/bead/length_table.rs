@@ -62,7 +62,7 @@ impl Cell {
         Self {
             s: [s, s + length_between(nurbs, u[0], u[1])],
             u,
-            // From the piece, because at its end the curve itself tells what comes after.
+            // From the piece, because at its end the curve itself gives the derivative of the next piece.
             slope: [t0, t1].map(|t| width / piece.curve.at(t).first.norm()),
         }
     }

@@ -19,7 +19,7 @@ mod tests;
 pub mod window;
 
 use crate::limits::SPEED_DIP;
-use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
+use crate::{Judgement, Kind, Limit, PartContext, Percent, Plan, Run};
 use cam::path::{PlannedPath, Planner};
 use config::in_range;
 use curve_file::CurveFile;
@@ -66,7 +66,7 @@ pub struct Bead {
     layer_height_mm: f64,
     /// Way without arc on which the tip gets up to speed, and to rest again \[mm\].
     lead_mm: f64,
-    /// A closed bead goes on over its beginning for this long \[mm\].
+    /// A closed bead continues over its beginning for this long \[mm\].
     #[serde(default)]
     overlap_mm: f64,
     /// What the turntable does.
@@ -134,10 +134,10 @@ impl Bead {
         1
     }
 
-    fn curve(&self, place: &Place) -> Result<(Cow<'_, CurveFile>, String), BeadError> {
+    fn curve(&self, context: &PartContext) -> Result<(Cow<'_, CurveFile>, String), BeadError> {
         match (&self.nurbs_file, &self.nurbs) {
             (Some(file), None) => {
-                let path = place.directory.join(file);
+                let path = context.directory.join(file);
                 Ok((Cow::Owned(CurveFile::read(&path)?), path.display().to_string()))
             }
             (None, Some(table)) => Ok((Cow::Borrowed(table), "[bead.nurbs]".to_owned())),
@@ -145,8 +145,8 @@ impl Bead {
         }
     }
 
-    fn window(&self, place: &Place) -> Result<ProcessWindow, BeadError> {
-        let of_machine = place
+    fn window(&self, context: &PartContext) -> Result<ProcessWindow, BeadError> {
+        let of_machine = context
             .machine
             .process
             .map(|process| [process.min_speed_mm_s, process.max_speed_mm_s]);
@@ -195,12 +195,12 @@ impl Bead {
 }
 
 impl Kind for Bead {
-    fn plan(&self, place: &Place) -> anyhow::Result<Plan> {
+    fn plan(&self, context: &PartContext) -> anyhow::Result<Plan> {
         self.check()?;
-        let window = self.window(place)?;
-        let (curve, name) = self.curve(place)?;
+        let window = self.window(context)?;
+        let (curve, name) = self.curve(context)?;
         let route = Route::build(curve.nurbs(&name)?, &name, self.lead_mm, self.overlap_mm)?;
-        let planner = Planner::build(place.machine)?;
+        let planner = Planner::build(context.machine)?;
         let places = points::choose(&route, self.attitude)?;
         let creep = FeedStep {
             target: 0,
@@ -209,20 +209,20 @@ impl Kind for Bead {
         let mut passes = Vec::new();
         for layer in self.layers() {
             passes.push(Pass {
-                stations: stations::stations(&route, &places, &layer, self.attitude, place, &planner)?,
+                stations: stations::stations(&route, &places, &layer, self.attitude, context, &planner)?,
                 feeds: vec![creep],
             });
         }
-        self.check_height(&passes, place)?;
+        self.check_height(&passes, context)?;
 
-        // The boards' own path tells how exact it is, and what it asks of the drives.
-        let draft = program::write(self, &passes, route.bead(), place, &[]);
-        let drafts = feed_paths(&planner, place, &draft)?;
+        // The path that the boards run shows its error, and what it requires of the drives.
+        let draft = program::write(self, &passes, route.bead(), context, &[]);
+        let drafts = feed_paths(&planner, context, &draft)?;
         let mut plans = Vec::new();
         let mut deviation = 0.0_f64;
         for ((pass, path), layer) in passes.iter_mut().zip(&drafts).zip(self.layers()) {
             deviation = deviation.max(deviation_of(path, &route, &layer)?);
-            let limits = speed::limits(path, place.machine, planner.kinematics(), window.high)?;
+            let limits = speed::limits(path, context.machine, planner.kinematics(), window.high)?;
             let targets: Vec<f64> = path.knots[1..].iter().map(|knot| knot.s_mm).collect();
             let plan = speed::plan(&limits, &targets, &window)?;
             pass.feeds.clone_from(&plan.feeds);
@@ -232,17 +232,17 @@ impl Kind for Bead {
         notes.push(format!(
             "the path through them is within {deviation:.1e} mm of the NURBS"
         ));
-        notes.extend(notes::of_speeds(&plans, &window, &place.machine.planning));
-        let program = program::write(self, &passes, route.bead(), place, &notes);
-        for path in feed_paths(&planner, place, &program)? {
+        notes.extend(notes::of_speeds(&plans, &window, &context.machine.planning));
+        let program = program::write(self, &passes, route.bead(), context, &notes);
+        for path in feed_paths(&planner, context, &program)? {
             self.check_lead(&path)?;
         }
         Ok(Plan { program, notes })
     }
 
-    fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement> {
-        let window = self.window(place)?;
-        let (curve, name) = self.curve(place)?;
+    fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {
+        let window = self.window(context)?;
+        let (curve, name) = self.curve(context)?;
         let route = Route::build(curve.nurbs(&name)?, &name, self.lead_mm, self.overlap_mm)?;
         judge::judge(&route, self.layers(), &window, &self.limits, run)
     }
@@ -253,9 +253,9 @@ impl Kind for Bead {
 }
 
 /// The paths of the layers, as the boards will run them.
-fn feed_paths(planner: &Planner, place: &Place, program: &str) -> anyhow::Result<Vec<PlannedPath>> {
+fn feed_paths(planner: &Planner, context: &PartContext, program: &str) -> anyhow::Result<Vec<PlannedPath>> {
     let program = interpret(program, Options::default())?;
-    let paths = planner.program(&program, &place.machine.planning.park_axes(), None)?;
+    let paths = planner.program(&program, &context.machine.planning.park_axes(), None)?;
     Ok(paths
         .into_iter()
         .filter(|path| path.motion == Motion::Feed)
@@ -286,12 +286,12 @@ fn deviation_of(planned: &PlannedPath, route: &Route, layer: &Layer) -> Result<f
 }
 
 impl Bead {
-    fn check_height(&self, passes: &[Pass], place: &Place) -> Result<(), BeadError> {
+    fn check_height(&self, passes: &[Pass], context: &PartContext) -> Result<(), BeadError> {
         let tips = passes.iter().flat_map(|pass| &pass.stations);
         let top = tips
             .map(|station| station.tip.z)
             .fold(f64::NEG_INFINITY, f64::max);
-        if place.machine.planning.safe_height_mm < top + CLEARANCE {
+        if context.machine.planning.safe_height_mm < top + CLEARANCE {
             let clearance = CLEARANCE;
             return Err(BeadError::SafeHeight { top, clearance });
         }

@@ -3,7 +3,7 @@
 use super::speed::FeedStep;
 use super::stations::Station;
 use super::{Bead, CLEARANCE};
-use crate::Place;
+use crate::PartContext;
 use nc::text::{NcText, decimal, words};
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::AXIS_UNIT;
@@ -47,15 +47,15 @@ pub(super) fn write(
     part: &Bead,
     passes: &[Pass],
     [start, end]: [f64; 2],
-    place: &Place,
+    context: &PartContext,
     notes: &[String],
 ) -> String {
-    let fitted = place.machine.motion.kinematics.fitted();
-    let safe = place.machine.planning.safe_height_mm;
+    let fitted = context.machine.motion.kinematics.fitted();
+    let safe = context.machine.planning.safe_height_mm;
     let mut nc = NcText::default();
     nc.line("%");
-    nc.comment(place.title);
-    nc.comment(&format!("machine {}", place.machine.name));
+    nc.comment(context.title);
+    nc.comment(&format!("machine {}", context.machine.name));
     for note in notes {
         nc.comment(note);
     }

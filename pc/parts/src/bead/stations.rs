@@ -3,7 +3,7 @@
 use super::error::BeadError;
 use super::route::Route;
 use super::{Attitude, Layer};
-use crate::Place;
+use crate::PartContext;
 use cam::path::Planner;
 use config::machine::MachineFile;
 use curves::nurbs::Curve;
@@ -28,13 +28,13 @@ pub(super) struct Station {
     pub(super) axes: [f64; AXES],
 }
 
-/// The points of a layer, with C going on from point to point and, all in all, within its travel.
+/// The points of a layer, with C continuing from point to point and, all in all, within its travel.
 pub(super) fn stations(
     route: &Route,
     places: &[f64],
     layer: &Layer,
     attitude: Attitude,
-    place: &Place,
+    context: &PartContext,
     planner: &Planner,
 ) -> anyhow::Result<Vec<Station>> {
     let mut near = [0.0; AXES];
@@ -50,7 +50,7 @@ pub(super) fn stations(
         near = planner.kinematics().inverse(&pose, &near)?;
         stations.push(Station { t, tip, axes: near });
     }
-    turn_into_travel(&mut stations, place.machine)?;
+    turn_into_travel(&mut stations, context.machine)?;
     Ok(stations)
 }
 

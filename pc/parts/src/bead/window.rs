@@ -44,10 +44,10 @@ pub enum WindowError {
     #[error("limits of a speed plan must be finite and above zero, not {0}")]
     Limit(f64),
     /// A radius of curvature is negative or not a number.
-    #[error("a radius of curvature is zero or more, not {0} mm")]
+    #[error("a radius of curvature must be zero or more, not {0} mm")]
     Radius(f64),
     /// The window's lower speed is above its upper one.
-    #[error("the process window from {low} to {high} mm/s is empty: exchange its ends")]
+    #[error("the process window from {low} to {high} mm/s is empty: swap its ends")]
     Empty {
         /// Lower end.
         low: f64,

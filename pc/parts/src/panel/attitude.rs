@@ -1,8 +1,9 @@
 //! A and C along a line of normals.
 //!
-//! N = (sinC sinA, −cosC sinA, cosA). Where the normal is well inclined it gives C; near the vertical its direction
-//! means little and C would have to turn fast. There C goes on smoothly from one side to the other, A changes its
-//! sign where that is the shorter way, and the tool leans off the normal by less than the inclination.
+//! N = (sinC sinA, −cosC sinA, cosA). Where the normal is well inclined it gives C; near the vertical its
+//! direction means little and C would have to turn fast. There C continues smoothly from one side to the
+//! other, A changes its sign where that is the shorter way, and the tool leans off the normal by less than
+//! the inclination.
 
 use super::PanelError;
 use super::line::Station;

@@ -1,7 +1,7 @@
 //! What a cut on a panel was worth: by where the focus truly was, and in a simulated world by the panel itself.
 
 use super::{Panel, PanelLimits};
-use crate::Surface;
+use crate::CurvedPanel;
 use crate::{ALONG, Figure, GAP, Judgement, Plot, Run};
 use cam::path::{Course, PlannedPath};
 use evaluate::RunSample;
@@ -87,7 +87,7 @@ fn focus(run: &Run, limits: &PanelLimits, judgement: &mut Judgement) {
 }
 
 /// The focus and the axis of the tool against the true panel while cutting.
-fn tool(run: &Run, surface: &Surface, limits: &PanelLimits, judgement: &mut Judgement) {
+fn tool(run: &Run, surface: &CurvedPanel, limits: &PanelLimits, judgement: &mut Judgement) {
     let (mut distance, mut off) = (Largest::default(), Largest::default());
     for sample in run.samples.iter().filter(|sample| sample.beams[0]) {
         if let Some((foot, normal)) = surface.nearest(&sample.pose.position) {
@@ -108,7 +108,7 @@ fn tool(run: &Run, surface: &Surface, limits: &PanelLimits, judgement: &mut Judg
 }
 
 /// Taught normals against the true ones.
-fn normals(points: &[TaughtPoint], surface: &Surface, limits: &PanelLimits, judgement: &mut Judgement) {
+fn normals(points: &[TaughtPoint], surface: &CurvedPanel, limits: &PanelLimits, judgement: &mut Judgement) {
     let seen: Vec<(f64, f64)> = points
         .iter()
         .filter_map(|point| {

@@ -31,7 +31,8 @@ pub struct Station {
 }
 
 impl Line {
-    /// The line through `points`. Where it is open it goes on curved as at its ends; a closed one goes round.
+    /// The line through `points`. Where it is open it continues curved as at its ends; a closed one goes
+    /// round.
     pub fn through(points: &[TaughtPoint], closed: bool) -> Result<Self, PanelError> {
         let least = if closed { LEAST + 1 } else { LEAST };
         if points.len() < least {

@@ -8,9 +8,9 @@ mod speed;
 #[cfg(test)]
 mod tests;
 
-use crate::Surface;
+use crate::CurvedPanel;
 use crate::limits::SPEED_DIP;
-use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
+use crate::{Judgement, Kind, Limit, PartContext, Percent, Plan, Run};
 use config::table::FARTHEST_MM;
 use config::{RangeError, in_range};
 use nalgebra::Vector3;
@@ -18,7 +18,7 @@ use serde::Deserialize;
 use shared::kinematics::KinematicsError;
 use std::borrow::Cow;
 use std::path::PathBuf;
-use teach::{Guide, TaughtPoint, TeachingConfig, read_points};
+use teach::{GuidePoint, TaughtPoint, TeachingConfig, read_points};
 use thiserror::Error;
 
 /// Points of a program that are nearer to each other say nothing more \[mm\].
@@ -50,7 +50,7 @@ pub struct Panel {
     #[serde(default)]
     limits: PanelLimits,
     /// The panel as it really is. Only simulated worlds look at it, and the judgement of a run in one.
-    simulated_surface: Option<Surface>,
+    simulated_surface: Option<CurvedPanel>,
     /// Points taught in this session.
     #[serde(skip)]
     points: Option<Vec<TaughtPoint>>,
@@ -84,14 +84,14 @@ impl Default for PanelLimits {
 /// Why there is no program. Reads as one sentence.
 #[derive(Debug, Error)]
 pub enum PanelError {
-    /// Nobody knows the surface.
+    /// The surface is unknown.
     #[error(
         "the panel is not taught: `seamwright teach` writes its points, and taught = \"FILE\" in the part file names \
          them; `seamwright weld` teaches and cuts in one go"
     )]
     Untaught,
     /// Not enough points for a curve.
-    #[error("{found} taught points make no curve, at least {least} are needed")]
+    #[error("{found} taught points are too few for a curve, at least {least} are needed")]
     TooFew {
         /// How many there are.
         found: usize,
@@ -156,7 +156,7 @@ pub enum PanelError {
     },
 }
 
-/// Down to two decimals, so that what is told can be cut.
+/// Rounded down to two decimals, so that the value in the message can be used.
 fn floor(m_min: f64) -> f64 {
     libm::floor(100.0 * m_min) / 100.0
 }
@@ -168,8 +168,8 @@ impl Panel {
     }
 
     /// Where to teach.
-    pub fn guides(&self) -> Vec<Guide> {
-        let guide = |[x, y, z, a, c]: &[f64; 5]| Guide {
+    pub fn guides(&self) -> Vec<GuidePoint> {
+        let guide = |[x, y, z, a, c]: &[f64; 5]| GuidePoint {
             position: Vector3::new(*x, *y, *z),
             angles_deg: [*a, 0.0, *c],
         };
@@ -182,7 +182,7 @@ impl Panel {
     }
 
     /// The panel as it really is, in a simulated world.
-    pub fn simulated_surface(&self) -> Option<&Surface> {
+    pub fn simulated_surface(&self) -> Option<&CurvedPanel> {
         self.simulated_surface.as_ref()
     }
 
@@ -192,10 +192,10 @@ impl Panel {
     }
 
     /// The taught points: of this session, or of the file.
-    fn points(&self, place: &Place) -> anyhow::Result<Cow<'_, [TaughtPoint]>> {
+    fn points(&self, context: &PartContext) -> anyhow::Result<Cow<'_, [TaughtPoint]>> {
         match (&self.points, &self.taught) {
             (Some(points), _) => Ok(Cow::Borrowed(points)),
-            (None, Some(file)) => Ok(Cow::Owned(read_points(&place.directory.join(file))?)),
+            (None, Some(file)) => Ok(Cow::Owned(read_points(&context.directory.join(file))?)),
             (None, None) => Err(PanelError::Untaught.into()),
         }
     }
@@ -219,15 +219,15 @@ impl Panel {
 }
 
 impl Kind for Panel {
-    fn plan(&self, place: &Place) -> anyhow::Result<Plan> {
+    fn plan(&self, context: &PartContext) -> anyhow::Result<Plan> {
         self.check()?;
-        let points = self.points(place)?;
-        self.check_speed(place, &points)?;
-        Ok(self.program(place, &points)?)
+        let points = self.points(context)?;
+        self.check_speed(context, &points)?;
+        Ok(self.program(context, &points)?)
     }
 
-    fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement> {
-        Ok(self.figures(run, &self.points(place)?))
+    fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {
+        Ok(self.figures(run, &self.points(context)?))
     }
 
     fn speed_dip(&self) -> Percent {

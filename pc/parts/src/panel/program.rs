@@ -3,7 +3,7 @@
 use super::attitude::{Attitudes, tool_axis};
 use super::line::{Line, Station};
 use super::{Panel, PanelError};
-use crate::{Place, Plan};
+use crate::{PartContext, Plan};
 use config::in_range;
 use config::table::FARTHEST_MM;
 use nalgebra::Vector3;
@@ -33,15 +33,15 @@ struct Stop {
 
 impl Panel {
     /// The program through `points`.
-    pub(super) fn program(&self, place: &Place, points: &[TaughtPoint]) -> Result<Plan, PanelError> {
-        let machine = place.machine;
+    pub(super) fn program(&self, context: &PartContext, points: &[TaughtPoint]) -> Result<Plan, PanelError> {
+        let machine = context.machine;
         let limits = AxisLimits::build_all(&machine.motion.axes).map_err(|_| PanelError::NoHead)?;
         let kinematics = match machine.motion.kinematics.build(&limits) {
             Ok(kinematics @ Kinematics::AcHead(_)) => kinematics,
             _ => return Err(PanelError::NoHead),
         };
         let line = Line::through(points, self.closed)?;
-        let (stations, cut) = self.stations(&line, place)?;
+        let (stations, cut) = self.stations(&line, context)?;
         let near = self.guide.first().map_or(0.0, |guide| guide[4].to_radians());
         let upright = self.teaching.upright_deg.to_radians();
         let attitudes = Attitudes::along(&stations, upright, near, &limits[C])?;
@@ -78,14 +78,14 @@ impl Panel {
             ));
         }
         Ok(Plan {
-            program: self.text(place, &stops, cut, &kinematics, &line, points.len())?,
+            program: self.text(context, &stops, cut, &kinematics, &line, points.len())?,
             notes,
         })
     }
 
     /// Places on the line from the lead-in to the lead-out, and which of them are the ends of the cut.
-    fn stations(&self, line: &Line, place: &Place) -> Result<(Vec<Station>, [usize; 2]), PanelError> {
-        let planning = &place.machine.planning;
+    fn stations(&self, line: &Line, context: &PartContext) -> Result<(Vec<Station>, [usize; 2]), PanelError> {
+        let planning = &context.machine.planning;
         let velocity = self.speed_m_min * MM_S_PER_M_MIN;
         let lead = self.lead_mm.max(planning.speed_up_length(velocity));
         let requirement =
@@ -131,14 +131,14 @@ impl Panel {
 
     fn text(
         &self,
-        place: &Place,
+        context: &PartContext,
         stops: &[Stop],
         cut: [usize; 2],
         kinematics: &Kinematics,
         line: &Line,
         count: usize,
     ) -> Result<String, PanelError> {
-        let machine = place.machine;
+        let machine = context.machine;
         let (first, last) = (&stops[0], &stops[stops.len() - 1]);
         let off = |stop: &Stop| stop.station.position + tool_axis(stop.angles) * self.teaching.approach_mm;
         let safe = machine.planning.safe_height_mm;
@@ -154,7 +154,7 @@ impl Panel {
 
         let mut nc = NcText::default();
         nc.line("%");
-        nc.comment(place.title);
+        nc.comment(context.title);
         nc.comment(&format!(
             "machine {}, {} m/min, {count} taught points",
             machine.name, self.speed_m_min

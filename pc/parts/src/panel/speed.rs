@@ -1,8 +1,8 @@
-//! How fast a line can be cut, told before anything moves.
+//! How fast a line can be cut: checked before anything moves.
 
 use super::program::C;
 use super::{Panel, PanelError};
-use crate::Place;
+use crate::PartContext;
 use cam::path::{Bound, Planner};
 use nc::{Options, interpret};
 use shared::io::AXIS_NAMES;
@@ -17,8 +17,12 @@ const GUIDES: f64 = 2.0;
 
 impl Panel {
     /// Whether every drive is fast enough on the line through `points`.
-    pub(super) fn check_speed(&self, place: &Place, points: &[TaughtPoint]) -> Result<(), PanelError> {
-        match self.bound(place, points)? {
+    pub(super) fn check_speed(
+        &self,
+        context: &PartContext,
+        points: &[TaughtPoint],
+    ) -> Result<(), PanelError> {
+        match self.bound(context, points)? {
             Some(bound) if self.speed_m_min > bound.largest_mm_s / MM_S_PER_M_MIN => {
                 Err(self.too_fast(&bound, points, "taught"))
             }
@@ -26,16 +30,16 @@ impl Panel {
         }
     }
 
-    /// Whether the feed can be cut, as far as the guide points tell that before anything is taught; what a person
-    /// should know of it, if it is not sure.
+    /// Whether the feed can be cut, as far as the guide points show that before anything is taught; what a
+    /// person should know of it, if it is not sure.
     ///
     /// # Errors
     /// [`PanelError::Value`], [`PanelError::Speed`].
-    pub fn check_before_teaching(&self, place: &Place) -> Result<Option<String>, PanelError> {
+    pub fn check_before_teaching(&self, context: &PartContext) -> Result<Option<String>, PanelError> {
         self.check()?;
         let points: Vec<TaughtPoint> = self.guides().iter().map(as_taught).collect();
         // A line that cannot be planned through rough points may well be through taught ones.
-        let Ok(Some(bound)) = self.bound(place, &points) else {
+        let Ok(Some(bound)) = self.bound(context, &points) else {
             return Ok(None);
         };
         let largest = bound.largest_mm_s / MM_S_PER_M_MIN;
@@ -45,7 +49,7 @@ impl Panel {
         }
         let unsure = || {
             format!(
-                "{}; whether that is so of the panel shows when it is taught",
+                "{}; whether this holds for the panel is only known when it is taught",
                 too_fast()
             )
         };
@@ -53,17 +57,17 @@ impl Panel {
     }
 
     /// The drive that allows the least speed on the line through `points`.
-    fn bound(&self, place: &Place, points: &[TaughtPoint]) -> Result<Option<Bound>, PanelError> {
+    fn bound(&self, context: &PartContext, points: &[TaughtPoint]) -> Result<Option<Bound>, PanelError> {
         let creeping = Self {
             speed_m_min: CREEP,
             ..self.clone()
         };
-        let plan = creeping.program(place, points)?;
-        // What else is wrong with the program is told by whoever runs it.
+        let plan = creeping.program(context, points)?;
+        // Other errors of the program are reported when it is planned.
         let program = interpret(&plan.program, Options::default()).ok();
         let paths = program.and_then(|program| {
-            let planner = Planner::build(place.machine).ok()?;
-            let from = place.machine.planning.park_axes();
+            let planner = Planner::build(context.machine).ok()?;
+            let from = context.machine.planning.park_axes();
             planner.program(&program, &from, None).ok()
         });
         let bounds = paths.into_iter().flatten().filter_map(|path| path.bound);
@@ -96,7 +100,7 @@ impl Panel {
 }
 
 /// A guide as if the panel were there.
-fn as_taught(guide: &teach::Guide) -> TaughtPoint {
+fn as_taught(guide: &teach::GuidePoint) -> TaughtPoint {
     let [a, _, c] = guide.angles_deg.map(f64::to_radians);
     TaughtPoint {
         position: guide.position,

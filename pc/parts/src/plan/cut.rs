@@ -101,7 +101,7 @@ impl OtherSeam for Polyline {
     }
 }
 
-/// Seam 2 as a smooth curve, which goes on straight for a while beyond its ends.
+/// Seam 2 as a smooth curve, which continues straight for a while beyond its ends.
 #[derive(Clone, Debug)]
 pub struct SmoothSeam {
     curve: Curve<3>,
@@ -111,7 +111,7 @@ pub struct SmoothSeam {
     begin: f64,
 }
 
-/// How far seam 2 goes on beyond its ends \[mm\].
+/// How far seam 2 continues beyond its ends \[mm\].
 const EXTENSION: f64 = 20.0;
 /// Length of the coarse segments \[mm\].
 const SEGMENT: f64 = 1.0;

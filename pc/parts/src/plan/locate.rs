@@ -61,7 +61,7 @@ pub enum LocateError {
     #[error("a direction has no length")]
     ZeroVector,
     /// The symmetric plane was not found.
-    #[error("no plane lies evenly across both seams")]
+    #[error("no plane is symmetric to both seams")]
     NoConvergence,
 }
 

@@ -5,7 +5,7 @@ use crate::SeamPoint;
 use nalgebra::Vector3;
 use shared::geometry::angle;
 use shared::io::SIDES;
-use teach::seam::{Foot, SeamPoint as TaughtPoint};
+use teach::seam::{MeasuredSeam, SeamPoint as TaughtPoint};
 use thiserror::Error;
 
 /// Points that a curve needs.
@@ -34,7 +34,7 @@ pub enum TaughtSeamError {
     },
     /// Seen too badly.
     #[error(
-        "line {line}: the quality of side {side} is {quality}, but must be {least} at least: teach this point anew, or \
+        "line {line}: the quality of side {side} is {quality}, but must be {least} at least: teach this point again, or \
          take it out of the file"
     )]
     Quality {
@@ -50,7 +50,7 @@ pub enum TaughtSeamError {
     /// A place that does not belong to the others.
     #[error(
         "line {line}: side {side} jumps there, {away_mm:.3} mm off the course of the other points: take the point out \
-         of the file, or teach it anew"
+         of the file, or teach it again"
     )]
     Jump {
         /// Line of the file.
@@ -62,8 +62,8 @@ pub enum TaughtSeamError {
     },
     /// Bends too much between two chords.
     #[error(
-        "line {line}: side {side} turns by {turn_deg:.0}° there: no seam bends so much from point to point, teach it \
-         anew with closer points"
+        "line {line}: side {side} turns by {turn_deg:.0}° there: too sharp a bend from one point to the next, teach it \
+         again with closer points"
     )]
     Bend {
         /// Line of the file.
@@ -225,7 +225,7 @@ fn chords(points: &[(usize, TaughtPoint)], side: usize) -> Vec<f64> {
 }
 
 /// Standard deviation of a point.
-fn sigma(foot: &Foot) -> f64 {
+fn sigma(foot: &MeasuredSeam) -> f64 {
     (foot.scatter_mm / libm::sqrt(foot.pictures as f64)).hypot(IN_COMMON)
 }
 
@@ -316,7 +316,7 @@ mod tests {
                 let mut noise = || scatter_mm / 8f64.sqrt() * noise.gauss()[0];
                 let (x, y) = (radius * phi.sin(), -radius * phi.cos());
                 let normal = Vector3::new(0.3 * scatter_mm.signum() * noise(), noise(), 1.0).normalize();
-                Foot {
+                MeasuredSeam {
                     position: Vector3::new(x + noise(), y + noise(), 100.0 + noise()),
                     normal,
                     width_mm: 0.05,

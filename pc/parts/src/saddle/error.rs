@@ -72,7 +72,7 @@ pub enum SaddlePartError {
         /// What is needed.
         needed_mm: f64,
     },
-    /// The seam bends too sharply to go on without a stop.
+    /// The seam bends too sharply to continue without a stop.
     #[error(
         "branch_diameter_mm, offset_mm: the seam bends by {degrees:.0}° between two points, too near to tangent"
     )]
@@ -129,12 +129,12 @@ pub enum TaughtError {
     },
     /// Collinear.
     #[error(
-        "the taught points lie on a line: none is further than {aside_mm:.2} mm aside of its {spread_mm:.1} mm; teach \
+        "the taught points lie on a line: all are within {off_line_mm:.2} mm of it over its {spread_mm:.1} mm; teach \
          them all around the branch"
     )]
     OnLine {
         /// Largest distance from the line through the two farthest.
-        aside_mm: f64,
+        off_line_mm: f64,
         /// Distance of these two.
         spread_mm: f64,
     },

@@ -16,9 +16,9 @@ const KEYS: [&str; 3] = ["offset_mm", "angle_deg", "main_diameter_mm"];
 
 /// Points that are not further apart than this part of their radius are at one place.
 const ONE_PLACE: f64 = 0.1;
-/// Points that are not further aside than this part of their spread are on a line: 14° of a circle.
+/// Points whose distance from a line is less than this part of their spread are on the line: 14° of a circle.
 const ON_LINE: f64 = 0.03;
-/// Fits whose sums of squares differ by less than so many variances of the noise cannot be told apart.
+/// Fits whose sums of squares differ by less than so many variances of the noise cannot be distinguished.
 const ALIKE: f64 = 9.0;
 /// Noise of a taught point at least \[mm\]: what hands and eyes are good for.
 const NOISE: f64 = 0.05;
@@ -106,12 +106,15 @@ fn check_points(points: &[Vector3<f64>], free: &[bool; UNKNOWNS]) -> Result<(), 
     if spread_mm < ONE_PLACE * radius {
         return Err(TaughtError::OnePlace { spread_mm });
     }
-    let aside = points
+    let off_line = points
         .iter()
         .map(|point| (point - from).cross(&chord).norm() / spread_mm);
-    let aside_mm = aside.fold(0.0, f64::max);
-    if aside_mm < ON_LINE * spread_mm {
-        return Err(TaughtError::OnLine { aside_mm, spread_mm });
+    let off_line_mm = off_line.fold(0.0, f64::max);
+    if off_line_mm < ON_LINE * spread_mm {
+        return Err(TaughtError::OnLine {
+            off_line_mm,
+            spread_mm,
+        });
     }
     Ok(())
 }

@@ -26,9 +26,9 @@ const ARC: usize = 0;
 /// Slot of C.
 const WAIST: usize = 5;
 
-/// What all passes were worth together.
+/// Figures of all passes together.
 #[derive(Default)]
-struct Worth {
+struct PassFigures {
     samples: u32,
     max_distance: f64,
     sum_of_squares: f64,
@@ -51,20 +51,20 @@ pub(super) fn judge(part: &Saddle, seam: &Seam, run: &Run) -> anyhow::Result<Jud
     if paths != passes {
         return Err(SaddlePartError::Passes { paths, passes }.into());
     }
-    let mut worth = Worth::default();
+    let mut figures = PassFigures::default();
     for (pass, id) in part.passes.iter().zip(welds) {
         let burning = run
             .samples
             .iter()
             .filter(|sample| sample.path_id == id && sample.beams[ARC]);
-        worth.add(pass, seam, &burning.collect::<Vec<_>>(), |s| {
+        figures.add(pass, seam, &burning.collect::<Vec<_>>(), |s| {
             run.along().at(id, s)
         })?;
     }
-    Ok(worth.judgement(&part.limits))
+    Ok(figures.judgement(&part.limits))
 }
 
-impl Worth {
+impl PassFigures {
     /// `along` gives the path length through all paths of a place of this one.
     fn add(
         &mut self,

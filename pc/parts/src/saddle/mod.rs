@@ -19,7 +19,7 @@ mod tests;
 pub use error::{SaddlePartError, TaughtError};
 
 use crate::limits::SPEED_DIP;
-use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
+use crate::{Judgement, Kind, Limit, PartContext, Percent, Plan, Run};
 use config::in_range;
 use fit::Known;
 use pipes::PipePair;
@@ -55,7 +55,7 @@ pub struct Saddle {
     taught_within_mm: f64,
     /// Waist where the passes begin \[°\]; where the machine has most travel to either side, if not given.
     start_deg: Option<f64>,
-    /// How far a pass goes on past its start \[mm of the seam\].
+    /// How far a pass continues past its start \[mm of the seam\].
     #[serde(default = "default_overlap")]
     overlap_mm: f64,
     /// In the order of welding, each once around.
@@ -202,13 +202,13 @@ impl Saddle {
 }
 
 impl Kind for Saddle {
-    fn plan(&self, place: &Place) -> anyhow::Result<Plan> {
-        let (seam, notes) = self.seam(place.directory, &place.machine.motion.kinematics()?)?;
-        program::plan(self, &seam, notes, place)
+    fn plan(&self, context: &PartContext) -> anyhow::Result<Plan> {
+        let (seam, notes) = self.seam(context.directory, &context.machine.motion.kinematics()?)?;
+        program::plan(self, &seam, notes, context)
     }
 
-    fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement> {
-        let (seam, _) = self.seam(place.directory, run.kinematics)?;
+    fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {
+        let (seam, _) = self.seam(context.directory, run.kinematics)?;
         judge::judge(self, &seam, run)
     }
 

@@ -6,7 +6,7 @@ use super::Saddle;
 use super::error::SaddlePartError;
 use super::round::Round;
 use super::seam::{Seam, Station};
-use crate::{Place, Plan};
+use crate::{PartContext, Plan};
 use anyhow::Context;
 use cam::path::{PlannedPath, Planner};
 use config::machine::MachineFile;
@@ -29,14 +29,14 @@ const Z: usize = 2;
 const B: usize = 4;
 const C: usize = 5;
 
-/// Plans the program; `notes` tell of the seam.
+/// Plans the program; `notes` are those of the seam.
 pub(super) fn plan(
     part: &Saddle,
     seam: &Seam,
     mut notes: Vec<String>,
-    place: &Place,
+    context: &PartContext,
 ) -> anyhow::Result<Plan> {
-    let machine = place.machine;
+    let machine = context.machine;
     let KinematicsConfig::PipeWelder(config) = &machine.motion.kinematics else {
         return Err(SaddlePartError::Machine {
             machine: machine.name.clone(),
@@ -47,7 +47,7 @@ pub(super) fn plan(
     let rounds = rounds.collect::<Result<Vec<_>, _>>()?;
     check_height(seam, &rounds, machine)?;
     notes.extend(notes_of(seam, &rounds));
-    let program = write(part, &rounds, config.torch_mm, place, &notes);
+    let program = write(part, &rounds, config.torch_mm, context, &notes);
 
     let read = interpret(&program, Options::default()).context("the planned program")?;
     let park = machine.planning.park_axes();
@@ -104,13 +104,13 @@ fn tip_words(station: &Station, back: f64) -> String {
     ])
 }
 
-fn write(part: &Saddle, rounds: &[Round], torch_mm: f64, place: &Place, notes: &[String]) -> String {
+fn write(part: &Saddle, rounds: &[Round], torch_mm: f64, context: &PartContext, notes: &[String]) -> String {
     // At this height of the tilt axis the tip is high enough at any tilt.
-    let high = words([("Z", place.machine.planning.safe_height_mm + torch_mm)]);
+    let high = words([("Z", context.machine.planning.safe_height_mm + torch_mm)]);
     let mut nc = NcText::default();
     nc.line("%");
-    nc.comment(place.title);
-    nc.comment(&format!("machine {}", place.machine.name));
+    nc.comment(context.title);
+    nc.comment(&format!("machine {}", context.machine.name));
     for note in notes {
         nc.comment(&note.replace('°', " deg"));
     }

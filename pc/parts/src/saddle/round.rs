@@ -41,7 +41,7 @@ impl Saddle {
         let run = RUN_POINTS.max((RUN_MARGIN * ramp / step).ceil());
         let weld = (length + self.overlap_mm) / step;
 
-        // Far more than the waist can turn: the exact ends are told where they can be computed.
+        // Far more than the waist can turn: the exact ends are reported where they can be computed.
         let [min, max] = travel;
         let around = TAU * ((weld + 2.0 * run) / POINTS);
         if around > 2.0 * (max - min) + TAU || around.is_nan() {

@@ -1,7 +1,7 @@
 //! The seam as the machine sees it: in the frame of the branch it is clamped to, with waist and tilt.
 
 use super::error::SaddlePartError;
-use super::pipes::{Meeting, PipePair, SaddleCurve, SaddleError, SeamPoint, Sheet};
+use super::pipes::{Intersection, PipePair, SaddleCurve, SaddleError, SeamPoint, Sheet};
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::units::{next_to, wrap};
@@ -80,11 +80,11 @@ impl Seam {
     /// The seam around the branch where it leaves the main pipe.
     pub fn new(pair: PipePair, offset_mm: f64, placement: Placement) -> Result<Self, SaddlePartError> {
         match pair.meeting() {
-            Meeting::Tangent | Meeting::Partial => Err(SaddlePartError::NotAround {
+            Intersection::Tangent | Intersection::Partial => Err(SaddlePartError::NotAround {
                 reach_mm: pair.branch_radius() + offset_mm.abs(),
                 main_mm: pair.main_radius(),
             }),
-            Meeting::None | Meeting::Full => Ok(Self {
+            Intersection::None | Intersection::Full => Ok(Self {
                 curve: pair.curve(Sheet::Plus).map_err(SaddlePartError::of_pipes)?,
                 pair,
                 placement,

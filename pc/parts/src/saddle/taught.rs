@@ -103,7 +103,10 @@ impl Fit {
         ];
         [
             format!("fitted: {} (±: two standard deviations)", values.join(", ")),
-            format!("the seam is sure to ±{:.3} mm everywhere", self.seam_sure),
+            format!(
+                "the position of the seam is known to ±{:.3} mm everywhere",
+                self.seam_sure
+            ),
         ]
     }
 }

@@ -85,7 +85,7 @@ pub enum StirError {
     },
     /// The safe height is not above the plate.
     #[error(
-        "planning.safe_height_mm of the machine is {safe_mm}, but the pin comes from {top_mm} mm: raise it, or lower the \
+        "planning.safe_height_mm of the machine is {safe_mm}, but the pin starts at {top_mm} mm: raise it, or lower the \
          plate or clearance_mm"
     )]
     SafeHeight {
@@ -96,7 +96,7 @@ pub enum StirError {
     },
     /// Another kind of machine.
     #[error(
-        "machine {machine} has no pin that leans and turns: friction-stir welding needs kinematics.stir-gantry"
+        "machine {machine} has no pin with tilt and rotation axes: friction-stir welding needs kinematics.stir-gantry"
     )]
     Machine {
         /// Its name.

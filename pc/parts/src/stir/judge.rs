@@ -33,7 +33,7 @@ struct Stirring {
 
 /// What the samples tell.
 #[derive(Default)]
-struct Seen {
+struct Traces {
     /// Of the last sample.
     path_id: u32,
     /// Ticks in which the pin travelled, and those of them with the spindle off.
@@ -62,7 +62,7 @@ pub(super) fn judge(part: &Stir, job: &Job, run: &Run) -> anyhow::Result<Judgeme
     if (run_mm - part_mm).abs() > SAME_LENGTH {
         return Err(StirError::OtherProgram { run_mm, part_mm }.into());
     }
-    let mut seen = Seen::default();
+    let mut seen = Traces::default();
     let along = run.along();
     for sample in run.samples.iter().filter(|sample| sample.speed_mm_s > 0.0) {
         if let Some(stirring) = stirring.iter().find(|path| path.id == sample.path_id) {
@@ -130,7 +130,7 @@ fn preheat(samples: &[RunSample], id: u32) -> f64 {
     }
 }
 
-impl Seen {
+impl Traces {
     fn add(
         &mut self,
         job: &Job,

@@ -10,7 +10,7 @@ mod program;
 mod tests;
 
 use crate::limits::SPEED_DIP;
-use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
+use crate::{Judgement, Kind, Limit, PartContext, Percent, Plan, Run};
 use config::in_range;
 use config::machine::MachineFile;
 use contour::{Contour, SegmentEntry};
@@ -108,17 +108,17 @@ struct Job {
 }
 
 impl Kind for Stir {
-    fn plan(&self, place: &Place) -> anyhow::Result<Plan> {
-        let job = self.job(place.machine)?;
-        self.check_joins(&job, place.machine)?;
+    fn plan(&self, context: &PartContext) -> anyhow::Result<Plan> {
+        let job = self.job(context.machine)?;
+        self.check_joins(&job, context.machine)?;
         Ok(Plan {
-            program: program::write(self, &job, place),
-            notes: program::notes(self, &job, place.machine),
+            program: program::write(self, &job, context),
+            notes: program::notes(self, &job, context.machine),
         })
     }
 
-    fn judge(&self, place: &Place, run: &Run) -> anyhow::Result<Judgement> {
-        let job = self.job(place.machine)?;
+    fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {
+        let job = self.job(context.machine)?;
         judge::judge(self, &job, run)
     }
 

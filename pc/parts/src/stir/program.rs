@@ -3,7 +3,7 @@
 use super::contour::{Form, Segment};
 use super::passes::Pass;
 use super::{C, Job, Stir};
-use crate::Place;
+use crate::PartContext;
 use config::machine::MachineFile;
 use nc::text::{NcText, decimal, words};
 use shared::units::DEG_PER_RAD;
@@ -16,13 +16,13 @@ const SAME_PLACE: f64 = 1e-6;
 const TURN_SHARE: f64 = 0.5;
 
 /// Writes the program.
-pub(super) fn write(part: &Stir, job: &Job, place: &Place) -> String {
+pub(super) fn write(part: &Stir, job: &Job, context: &PartContext) -> String {
     let mut nc = NcText::default();
     nc.line("%");
-    nc.comment(place.title);
+    nc.comment(context.title);
     nc.comment(&format!(
         "machine {}, {} mm/min, {} r/min, tilt {} deg",
-        place.machine.name, part.travel_mm_min, part.spindle_r_min, part.tilt_deg
+        context.machine.name, part.travel_mm_min, part.spindle_r_min, part.tilt_deg
     ));
     nc.comment("X Y Z: tip of the pin [mm], B C: tilt and turn of the head [deg], E0: spindle [r/min]");
     nc.block("G21 G17 G90 G94 G40 G54 G64");
@@ -31,7 +31,7 @@ pub(super) fn write(part: &Stir, job: &Job, place: &Place) -> String {
         if index > 0 {
             nc.comment("C ends here: the head turns back above the plate");
         }
-        stir(&mut nc, part, job, pass, place.machine.planning.safe_height_mm);
+        stir(&mut nc, part, job, pass, context.machine.planning.safe_height_mm);
     }
     nc.block("M2");
     nc.line("%");
@@ -109,7 +109,7 @@ pub(super) fn notes(part: &Stir, job: &Job, machine: &MachineFile) -> Vec<String
             .map(|pass| format!("{:.2}", pass.from))
             .collect();
         notes.push(format!(
-            "C comes to the end of its travel: the pin is lifted after {} mm, C turned back, and the pin plunges \
+            "C reaches the end of its travel: the pin is lifted after {} mm, C turned back, and the pin plunges \
              again there",
             places.join(", ")
         ));

@@ -5,7 +5,7 @@ use crate::terminal::{Operator, Terminal};
 use anyhow::{Context, bail};
 use config::machine::MachineFile;
 use emulator::{SESSION_VARIABLE, Session};
-use host_link::boards::{Boards, Endpoint, NetworkBoards, Patience};
+use host_link::boards::{Boards, Endpoint, NetworkBoards, Timeouts};
 use host_link::events::Interest;
 use host_link::{Command, control};
 use job::{Job, JobError, run};
@@ -28,7 +28,7 @@ const POLL: Duration = Duration::from_millis(20);
 
 /// Events that wait for the disk: more than half a minute of both boards.
 const LOGGED: usize = 1 << 14;
-/// So many letters are wrong in a word that is meant to be another one.
+/// Largest number of wrong letters in a misspelt word.
 const NEAR: usize = 2;
 
 /// Which boards.
@@ -59,7 +59,7 @@ impl FromStr for BoardChoice {
             "emulated" => Ok(Self::Emulated),
             "simulated" => Ok(Self::Simulated),
             _ if motion.is_empty() || tracker == Some("") || is_meant(text) => {
-                Err("say emulated, simulated, or the addresses MOTION,TRACKER (MOTION without a tracker)")
+                Err("must be emulated, simulated, or the addresses MOTION,TRACKER (MOTION without a tracker)")
             }
             _ => Ok(Self::At {
                 motion: motion.to_owned(),
@@ -97,11 +97,13 @@ impl BoardChoice {
     pub fn check(&self, machine: &MachineFile) -> anyhow::Result<()> {
         match (self, &machine.tracking) {
             (Self::At { tracker: None, .. }, Some(_)) => {
-                bail!("this machine has a tracker: say the addresses of both boards, --boards MOTION,TRACKER")
+                bail!(
+                    "this machine has a tracker: give the addresses of both boards, --boards MOTION,TRACKER"
+                )
             }
             (Self::At { tracker: Some(_), .. }, None) => {
                 bail!(
-                    "this machine has no tracker: say the address of the motion board only, --boards MOTION"
+                    "this machine has no tracker: give the address of the motion board only, --boards MOTION"
                 )
             }
             _ => Ok(()),
@@ -110,7 +112,7 @@ impl BoardChoice {
 
     /// Connects and does `job` with an `operator` at the terminal, while Ctrl-C, SIGTERM and SIGHUP are watched, which stop the
     /// machine and never this program, however often they come; the exit code if that was before anything was asked of the
-    /// boards. What the motion board tells is written to the folder `log` as it comes.
+    /// boards. The telemetry of the motion board is written to the folder `log` as it comes.
     pub fn run(
         &self,
         job: &Job,
@@ -126,7 +128,7 @@ impl BoardChoice {
         let stop = remote.stop_flag();
         let connect = move || choice.connect(wanted, tracked, stop);
         let Some(mut boards) = unless_interrupted(connect, &remote.stop_flag())? else {
-            errln!("seamwright: stopped by the operator; the boards were not asked for anything");
+            errln!("seamwright: stopped by the operator; nothing was sent to the boards");
             return Ok(Err(ExitCode::from(INTERRUPTED)));
         };
         let log = log.map(|folder| {
@@ -146,9 +148,9 @@ impl BoardChoice {
         match log.map(LogWriter::end) {
             None | Some(Ok(0)) => {}
             Some(Ok(lost)) => {
-                errln!("seamwright: writing the log could not keep pace: {lost} events are missing")
+                errln!("seamwright: writing the log was too slow: {lost} events are missing")
             }
-            // What can be known of the run is written anew.
+            // The log is rewritten with what is known after the evaluation.
             Some(Err(error)) => errln!("seamwright: cannot write the log while the job runs: {error}"),
         }
         Ok(Ok(ended(job, record)))
@@ -163,7 +165,7 @@ impl BoardChoice {
         tracked: bool,
         interrupted: Arc<AtomicBool>,
     ) -> Result<Box<dyn Boards + Send>, BoardsError> {
-        let patience = Patience::default();
+        let patience = Timeouts::default();
         match self {
             Self::Simulated => Ok(Box::new(SimulatedBoards::new(wanted)?)),
             Self::At { motion, tracker } => {
@@ -193,7 +195,7 @@ fn unless_interrupted<T: Send + 'static>(
     interrupted: &AtomicBool,
 ) -> Result<Option<T>, BoardsError> {
     let (sender, connected) = channel();
-    // An attempt that nobody waits for any more ends with this program.
+    // An attempt that is not waited for any more ends with this program.
     std::thread::spawn(move || sender.send(connect()));
     loop {
         match connected.recv_timeout(POLL) {
@@ -230,7 +232,7 @@ mod tests {
         assert_eq!(one.name(), "192.168.7.10");
         for wrong in ["", "192.168.7.10,", ",x", "simulatd", "Simulated", "emulator"] {
             let said = wrong.parse::<BoardChoice>().unwrap_err();
-            assert!(said.starts_with("say emulated, simulated, or"), "{wrong}");
+            assert!(said.starts_with("must be emulated, simulated, or"), "{wrong}");
         }
         assert!("gantry-motion".parse::<BoardChoice>().is_ok());
     }

@@ -3,7 +3,7 @@
 use super::boards::BoardChoice;
 use crate::console::{errln, outln};
 use anyhow::bail;
-use camera::{CameraError, Keeper, Shelf};
+use camera::{CameraError, PictureQueue, PictureWriter};
 use clap::{Args, ValueEnum};
 use config::machine::{CameraConfig, MachineFile};
 use job::ImageCameras;
@@ -32,7 +32,7 @@ enum Camera {
 }
 
 impl CameraArgs {
-    /// The first option that has no meaning without pictures, if one is told.
+    /// The first option that has no meaning without pictures, if one is given.
     pub fn of_pictures(&self) -> Option<&'static str> {
         let told = [
             (self.scene.is_some(), "--scene"),
@@ -50,23 +50,23 @@ impl CameraArgs {
     ) -> anyhow::Result<CameraChoice> {
         let Some(unit) = &machine.tracking else {
             if let Some(told) = self.of_pictures() {
-                bail!("this machine has no cameras: leave {told} out");
+                bail!("this machine has no cameras: omit {told}");
             }
             return Ok(CameraChoice::Geometric);
         };
         match (self.camera, self.of_pictures()) {
             (Camera::Geometric, Some(told)) => {
-                bail!("--camera geometric has no pictures: leave {told} out, or say --camera images")
+                bail!("--camera geometric has no pictures: omit {told}, or use --camera images")
             }
             (Camera::Geometric, None) => Ok(CameraChoice::Geometric),
             (Camera::Images, _) => {
                 let folder = path.parent().unwrap_or(Path::new(""));
                 // The time of simulated boards stands still meanwhile.
-                let shelf = || match boards {
-                    BoardChoice::Simulated => Shelf::patient(),
-                    BoardChoice::Emulated | BoardChoice::At { .. } => Shelf::default(),
+                let queue = || match boards {
+                    BoardChoice::Simulated => PictureQueue::blocking(),
+                    BoardChoice::Emulated | BoardChoice::At { .. } => PictureQueue::default(),
                 };
-                let kept = self.keep_pictures.is_some().then(|| [shelf(), shelf()]);
+                let kept = self.keep_pictures.is_some().then(|| [queue(), queue()]);
                 let images = ImageCameras {
                     calibrations: unit.cameras.calibrations(folder)?,
                     kept,
@@ -78,32 +78,32 @@ impl CameraArgs {
     }
 
     /// Begins to keep the pictures of `cameras`, where that is asked for.
-    pub fn keep(&self, cameras: &CameraChoice) -> Result<Keepers, CameraError> {
+    pub fn keep(&self, cameras: &CameraChoice) -> Result<PictureWriters, CameraError> {
         let (Some(folder), CameraChoice::Images(images, _)) = (&self.keep_pictures, cameras) else {
-            return Ok(Keepers::default());
+            return Ok(PictureWriters::default());
         };
-        let mut keepers = Vec::new();
-        for (side, shelf) in (1..).zip(images.kept.iter().flatten()) {
+        let mut writers = Vec::new();
+        for (side, queue) in (1..).zip(images.kept.iter().flatten()) {
             let folder = folder.join(format!("side-{side}"));
-            keepers.push((Keeper::start(&folder, shelf.clone())?, folder));
+            writers.push((PictureWriter::start(&folder, queue.clone())?, folder));
         }
-        Ok(Keepers(keepers))
+        Ok(PictureWriters(writers))
     }
 }
 
 /// What keeps the pictures of both sides, and where.
 #[derive(Default)]
-pub struct Keepers(Vec<(Keeper, PathBuf)>);
+pub struct PictureWriters(Vec<(PictureWriter, PathBuf)>);
 
-impl Keepers {
-    /// Waits until what came is written, and tells what became of it.
+impl PictureWriters {
+    /// Waits until all queued pictures are written, and prints the result.
     pub fn end(self) {
-        for (keeper, folder) in self.0 {
-            let kept = keeper.end();
+        for (writer, folder) in self.0 {
+            let kept = writer.end();
             let dropped = match (kept.dropped, &kept.error) {
                 (0, _) => String::new(),
                 (dropped, Some(_)) => format!(", {dropped} dropped"),
-                (dropped, None) => format!(", {dropped} dropped: writing them could not keep pace"),
+                (dropped, None) => format!(", {dropped} dropped: writing them was too slow"),
             };
             outln!(
                 "  {} pictures kept in {}{dropped}",
@@ -125,9 +125,7 @@ pub fn source(
 ) -> anyhow::Result<PictureChoice> {
     match (boards, scene) {
         (BoardChoice::At { .. }, Some(_)) => {
-            bail!(
-                "real cameras see what is before them, and a scene is of rendered pictures: leave --scene out"
-            )
+            bail!("a scene is for rendered pictures only: omit --scene with real cameras")
         }
         (BoardChoice::At { .. }, None) => Ok(PictureChoice::Real(camera::real(cameras)?)),
         (BoardChoice::Emulated | BoardChoice::Simulated, scene) => {

@@ -1,4 +1,4 @@
-//! `seamwright dry-run`: how long a program will take, and what it will ask of the machine.
+//! `seamwright dry-run`: duration of a program, and its demands on the machine.
 
 use super::{OUTSIDE, read_program};
 use crate::console::{out, outln};
@@ -43,7 +43,7 @@ pub struct DryRun {
 fn feed_override(text: &str) -> Result<f64, &'static str> {
     match text.parse() {
         Ok(factor) if factor > 0.0 && factor <= 2.0 => Ok(factor),
-        _ => Err("say a factor above 0 and up to 2; 1 is the programmed feed"),
+        _ => Err("must be a factor above 0 and up to 2; 1 is the programmed feed"),
     }
 }
 

@@ -1,4 +1,4 @@
-//! `seamwright measure`: what a picture says, and why.
+//! `seamwright measure`: the seam measured in pictures, or why it is not accepted.
 
 use super::sentence;
 use crate::console::{errln, outln};
@@ -74,7 +74,7 @@ impl Measure {
     /// Measures all that can be measured; fails at the end if a picture could not.
     pub fn run(self) -> anyhow::Result<ExitCode> {
         let (calibration, joint) = self.known()?;
-        let mut measuring = Measuring::new(calibration, joint).context("the calibration is of no use")?;
+        let mut measuring = Measuring::new(calibration, joint).context("the calibration cannot be used")?;
         if let Some(folder) = &self.overlay {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("cannot make folder {}", folder.display()))?;

@@ -60,7 +60,7 @@ fn read_program(path: &Path, block_delete: bool) -> anyhow::Result<Program> {
     let name = path.display();
     if path.extension().is_some_and(|extension| extension == "toml") {
         bail!(
-            "{name} is a part file, and not a program: make one of it with seamwright plan {name} --machine FILE -o PROGRAM.ngc"
+            "{name} is a part file, not a program: plan it with seamwright plan {name} --machine FILE -o PROGRAM.ngc"
         );
     }
     let file = File::open(path).with_context(|| format!("cannot read program {name}"))?;

@@ -17,10 +17,11 @@ use world::Surroundings;
 
 /// Teach a part: seams with the cameras, a panel with the ranging probe
 ///
-/// Seams ([t-seam]): the machine homes, goes to where the seams are drawn to begin, searches them around there, brings
-/// both to the middle of the cameras' bands, and goes on along their tangent from point to point, farther where they
-/// are straight. Every point is written at once: the same command goes on after the last one. done and Enter ends.
-/// With --jog the operator drives; help lists the words. `seamwright plan PART --taught FILE` makes a program of it.
+/// Seams ([t-seam]): the machine homes, goes to where the seams are drawn to begin, searches them around
+/// there, brings both to the middle of the cameras' bands, and continues along their tangent from point to
+/// point, farther where they are straight. Every point is written at once: the same command continues after
+/// the last one. done and Enter ends. With --jog the operator drives; help lists the words. `seamwright plan
+/// PART --taught FILE` makes a program of it.
 ///
 /// Panels ([panel]): the machine homes, goes from guide point to guide point, measures rings of eight neighbours around
 /// each, turns the probe to the normal they show, and parks. With taught = "taught.csv" in its part file the panel can
@@ -58,7 +59,9 @@ impl Teach {
                 .teach(&self.boards, machine, &part, self.output.as_deref(), self.seed);
         }
         self.seams.refuse()?;
-        let output = self.output.context("say where the points go: --output FILE")?;
+        let output = self
+            .output
+            .context("where should the points be written? give --output FILE")?;
         let note =
             check_teaching(&machine, &part).with_context(|| format!("part {}", self.part.display()))?;
         if let Some(note) = note {

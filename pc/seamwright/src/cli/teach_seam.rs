@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex};
-use teach::seam::{Cameras, Drawing, Ended, Head, SeamFile, Stance};
+use teach::seam::{Cameras, Drawing, Ended, Head, MachinePose, SeamFile};
 use world::Deviation;
 use world::Surroundings;
 
@@ -28,13 +28,14 @@ const ENDS_EARLY: f64 = 5.0;
 /// What only seams are taught with.
 #[derive(Debug, Args)]
 pub struct SeamArgs {
-    /// Seams: where the tip shall begin, a camera lead before the first point, in place of the drawing's beginning
+    /// Seams: start position of the tip, one camera lead before the first point, in place of the beginning of
+    /// the drawing
     #[arg(long, value_name = "X,Y,Z,A,B,C", allow_hyphen_values = true)]
-    from: Option<Place>,
-    /// Seams: the operator drives, by words on standard input
+    from: Option<TipPose>,
+    /// Seams: the operator jogs the machine, by commands on standard input
     #[arg(long)]
     jog: bool,
-    /// Seams: begin anew; the points taught before stay under another name
+    /// Seams: start over; the points taught before are kept under another name
     #[arg(long)]
     restart: bool,
     /// Seams: how the real ones deviate from the drawing (CSV), for emulated and simulated boards
@@ -49,25 +50,27 @@ pub struct SeamArgs {
 
 /// X Y Z \[mm\] A B C \[deg\] of the tip.
 #[derive(Clone, Copy, Debug)]
-struct Place([f64; 6]);
+struct TipPose([f64; 6]);
 
-impl FromStr for Place {
+impl FromStr for TipPose {
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let numbers = text.split(',').map(|number| number.trim().parse::<f64>());
-        let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().map_err(|_| "say six numbers")?;
+        let numbers: Vec<f64> = numbers
+            .collect::<Result<_, _>>()
+            .map_err(|_| "must be six finite numbers")?;
         let place: [f64; 6] = numbers
             .try_into()
-            .map_err(|_| "say six numbers: X,Y,Z in mm and A,B,C in degrees")?;
+            .map_err(|_| "must be six numbers: X,Y,Z in mm and A,B,C in degrees")?;
         let finite = place.iter().all(|number| number.is_finite());
-        finite.then_some(Self(place)).ok_or("say six numbers")
+        finite.then_some(Self(place)).ok_or("must be six finite numbers")
     }
 }
 
 /// What the part and its drawing say.
 struct Lesson {
-    start: Stance,
+    start: MachinePose,
     drawing: Option<Drawing>,
     cameras: Cameras,
     /// The program of the drawing, to which a simulated seam belongs.
@@ -121,7 +124,7 @@ impl SeamArgs {
         opened.notes.iter().for_each(|note| outln!("{note}"));
         if !opened.points.is_empty() {
             outln!(
-                "{}: goes on after point {}",
+                "{}: continues after point {}",
                 output.display(),
                 opened.points.len()
             );
@@ -167,7 +170,7 @@ impl SeamArgs {
             (Some(taught), None) => tell(&output, &taught),
             (_, error) => {
                 outln!(
-                    "{}: what is taught so far; the same command goes on after it",
+                    "{}: the points taught so far; the same command continues after them",
                     output.display()
                 );
                 exit_code(error)
@@ -202,35 +205,35 @@ impl SeamArgs {
         machine: &MachineFile,
         drawn: Option<&DualBeamPlan>,
         cameras: &Cameras,
-    ) -> anyhow::Result<(Stance, Option<Drawing>)> {
+    ) -> anyhow::Result<(MachinePose, Option<Drawing>)> {
         let drawing = drawn.map(DualBeamPlan::drawing);
         let start = match (self.from, drawn) {
-            (Some(Place([x, y, z, a, b, c])), _) => {
+            (Some(TipPose([x, y, z, a, b, c])), _) => {
                 let tip = Tip {
                     position_mm: [x, y, z],
                     angles_deg: [a, b, c],
                     ..Tip::default()
                 };
-                Stance {
+                MachinePose {
                     pose: Planner::build(machine)?.pose(&tip),
                     slides_mm: [0.0; SLIDES],
                 }
             }
             (None, Some(plan)) => plan.stance_before(cameras.heads.camera_lead()),
             (None, None) => {
-                bail!("the part has no drawing, so nobody knows where to begin: say it by --from")
+                bail!("the part has no drawing, so the start is unknown: give it with --from")
             }
         };
         Ok((start, drawing))
     }
 }
 
-/// Where the points go: as told, or where the part file expects them.
+/// Where the points are written: as given, or where the part file expects them.
 fn output_of(told: Option<&Path>, part: &PartFile, seam: &TSeam) -> anyhow::Result<PathBuf> {
     match (told, seam.taught()) {
         (Some(told), _) => Ok(told.to_owned()),
         (None, Some(taught)) => Ok(part.path().parent().unwrap_or(Path::new("")).join(taught)),
-        (None, None) => bail!("say where the points go: --output FILE"),
+        (None, None) => bail!("where should the points be written? give --output FILE"),
     }
 }
 
@@ -239,7 +242,7 @@ fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
     outln!("{}: {} points", output.display(), taught.points);
     match taught.ended {
         Ended::Drawn => outln!("  the seam is taught as far as it is drawn"),
-        Ended::Operator => outln!("  ended by the operator; the same command goes on after the last point"),
+        Ended::Operator => outln!("  ended by the operator; the same command continues after the last point"),
         Ended::SeamEnds {
             s_mm,
             missing_mm,
@@ -253,8 +256,8 @@ fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
                 };
                 return exit_code(Some(JobError::Teach(format!(
                     "the seam is lost {s_mm:.1} mm from its beginning, {side}, {missing:.1} mm before its drawing ends: \
-                     if it does not end there, look what covers it and whether the light works; the same command goes \
-                     on after the last point"
+                     if it does not end there, check what covers it and whether the light works; the same command continues \
+                     after the last point"
                 ))));
             }
             _ => outln!("  the seam ends {s_mm:.1} mm from its beginning"),

@@ -23,7 +23,7 @@ use world::{Deviation, DrawingError, SeamError, Surroundings};
 const PROGRAM: &str = "program.ngc";
 const TAUGHT: &str = "taught.csv";
 
-/// Weld: run a program on the machine and judge what came of it
+/// Weld: run a program on the machine and judge the result
 ///
 /// A machine with a tracker follows the seam on two boards; every other machine needs the motion board only.
 #[derive(Debug, Args)]
@@ -64,7 +64,7 @@ pub struct Weld {
     /// Leave out blocks that start with /
     #[arg(long)]
     block_delete: bool,
-    /// Wait after every block of the program until the operator goes on
+    /// Wait after every block of the program until the operator continues
     #[arg(long)]
     single_block: bool,
     /// Start at this line of the program (its first motion in or after it); no part but a seam is judged then
@@ -76,7 +76,7 @@ pub struct Weld {
 pub(super) fn speed(text: &str) -> Result<f64, &'static str> {
     match text.parse() {
         Ok(speed) if f64::is_finite(speed) && speed > 0.0 => Ok(speed),
-        _ => Err("say a number of m/min above 0"),
+        _ => Err("must be a number of m/min above 0"),
     }
 }
 

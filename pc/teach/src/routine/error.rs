@@ -20,7 +20,7 @@ pub enum PointError {
         /// Why.
         source: RangingError,
     },
-    /// Numbers that are none.
+    /// Values that are not finite numbers.
     #[error(transparent)]
     Ring(#[from] RingError),
     /// An edge, most likely.
@@ -28,7 +28,7 @@ pub enum PointError {
     Unsmooth(Unsmooth),
     /// The normal is not known well enough.
     #[error(
-        "the normal is known within {error_deg:.2}° only, {limit_deg}° are asked for: clean the surface, take more \
+        "the normal is known within {error_deg:.2}° only, {limit_deg}° are required: clean the surface, take more \
          readings, or let the rings be larger"
     )]
     Uncertain {
@@ -47,7 +47,7 @@ pub enum PointError {
     },
     /// Turning does not help.
     #[error(
-        "after {turns} turns the probe still stands {off_deg:.1}° off the normal: give a better attitude"
+        "after {turns} corrections the probe is still {off_deg:.1}° off the normal: give a better attitude"
     )]
     Aim {
         /// Turns.
@@ -89,33 +89,33 @@ pub enum TeachError<E: StdError + 'static> {
 
 /// What ends one point.
 #[derive(Debug, Error)]
-pub(super) enum Trouble<E: StdError + 'static> {
+pub(super) enum PointFailure<E: StdError + 'static> {
     #[error(transparent)]
     Machine(E),
     #[error(transparent)]
     Point(#[from] PointError),
 }
 
-/// Why there is no distance.
-pub(super) enum Seen<E> {
+/// Why the probe gave no distance.
+pub(super) enum NoDistance<E> {
     Machine(E),
     Refused(RangingError),
 }
 
-impl<E: StdError + 'static> Seen<E> {
-    pub(super) fn in_ring(self, radius: f64) -> Trouble<E> {
+impl<E: StdError + 'static> NoDistance<E> {
+    pub(super) fn in_ring(self, radius: f64) -> PointFailure<E> {
         match self {
-            Self::Machine(error) => Trouble::Machine(error),
-            Self::Refused(source) => Trouble::Point(PointError::Neighbour { radius, source }),
+            Self::Machine(error) => PointFailure::Machine(error),
+            Self::Refused(source) => PointFailure::Point(PointError::Neighbour { radius, source }),
         }
     }
 }
 
-impl<E: StdError + 'static> Trouble<E> {
-    pub(super) fn distance(seen: Seen<E>) -> Self {
+impl<E: StdError + 'static> PointFailure<E> {
+    pub(super) fn distance(seen: NoDistance<E>) -> Self {
         match seen {
-            Seen::Machine(error) => Self::Machine(error),
-            Seen::Refused(source) => Self::Point(PointError::Distance(source)),
+            NoDistance::Machine(error) => Self::Machine(error),
+            NoDistance::Refused(source) => Self::Point(PointError::Distance(source)),
         }
     }
 }

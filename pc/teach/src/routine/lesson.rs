@@ -1,7 +1,7 @@
-//! Teaching while it goes on: the moves of one machine, and what its probe sees.
+//! One run of teaching: the moves of the machine, and the measurements of its probe.
 
-use super::error::{PointError, Seen, Trouble};
-use super::{Arm, Guide, Teacher, aim};
+use super::error::{NoDistance, PointError, PointFailure};
+use super::{GuidePoint, ProbeMachine, Teacher, aim};
 use crate::halving::HalvingError;
 use crate::ring::{DIRECTIONS, NEIGHBOURS};
 use crate::{Ring, Taught, TaughtPoint};
@@ -19,8 +19,8 @@ const VERTICAL: f64 = 1e-3;
 /// until all move the focus is off.
 const TURNS_SLOWER: f64 = 3.0;
 
-/// Teaching while it goes on.
-pub(super) struct Lesson<'t, 'a, A: Arm> {
+/// One run of teaching.
+pub(super) struct Lesson<'t, 'a, A: ProbeMachine> {
     pub(super) teacher: &'t Teacher<'a>,
     pub(super) arm: &'t mut A,
     /// Where the axes were sent last (mm, rad).
@@ -29,11 +29,11 @@ pub(super) struct Lesson<'t, 'a, A: Arm> {
     pub(super) time_us: u64,
 }
 
-type Attempt<T, A> = Result<T, Trouble<<A as Arm>::Error>>;
+type Attempt<T, A> = Result<T, PointFailure<<A as ProbeMachine>::Error>>;
 
-impl<A: Arm> Lesson<'_, '_, A> {
+impl<A: ProbeMachine> Lesson<'_, '_, A> {
     /// To the safe height over the first point, in axis space, Z first if it has to rise.
-    pub(super) fn approach(&mut self, guide: &Guide) -> Attempt<(), A> {
+    pub(super) fn approach(&mut self, guide: &GuidePoint) -> Attempt<(), A> {
         let teacher = self.teacher;
         let mut over = guide.position;
         over.z = teacher.safe_height.max(over.z + teacher.config.approach_mm);
@@ -45,7 +45,7 @@ impl<A: Arm> Lesson<'_, '_, A> {
     }
 
     /// Teaches one point.
-    pub(super) fn point(&mut self, guide: &Guide) -> Attempt<TaughtPoint, A> {
+    pub(super) fn point(&mut self, guide: &GuidePoint) -> Attempt<TaughtPoint, A> {
         let teacher = self.teacher;
         let over = teacher.axes_of(&guide.position, &guide.angles_deg);
         let normal = teacher.kinematics.forward(&over).normal;
@@ -53,7 +53,7 @@ impl<A: Arm> Lesson<'_, '_, A> {
         // In axis space: so attitude to attitude is a short way, whatever C means on it.
         self.axes_to(teacher.axes_of(&over, &guide.angles_deg))?;
         self.shift_to(&guide.position)?;
-        let mut centre = self.surface_here().map_err(Trouble::distance)?;
+        let mut centre = self.surface_here().map_err(PointFailure::distance)?;
         let mut normal = self.first_normal(&centre)?;
         let mut off = 0.0;
         for _ in 0..=teacher.config.most_turns {
@@ -62,7 +62,7 @@ impl<A: Arm> Lesson<'_, '_, A> {
             // The point of the tangent plane that is nearest to the guide.
             let foot = guide.position - normal * normal.dot(&(guide.position - centre));
             self.shift_to(&foot)?;
-            centre = self.surface_here().map_err(Trouble::distance)?;
+            centre = self.surface_here().map_err(PointFailure::distance)?;
             let taught = self.rings(&centre)?;
             normal = self.to_work(&taught.ring.normal());
             off = self.off(&normal)?;
@@ -70,7 +70,7 @@ impl<A: Arm> Lesson<'_, '_, A> {
                 return self.finish(centre, normal, &taught);
             }
         }
-        Err(Trouble::Point(PointError::Aim {
+        Err(PointFailure::Point(PointError::Aim {
             turns: teacher.config.most_turns,
             off_deg: off.to_degrees(),
         }))
@@ -90,13 +90,13 @@ impl<A: Arm> Lesson<'_, '_, A> {
         let taught = teacher.halving.run(|radius| self.ring(centre, radius));
         let taught = taught.map_err(|error| match error {
             HalvingError::Measure { source, .. } => source,
-            HalvingError::Ring(reason) => Trouble::Point(reason.into()),
+            HalvingError::Ring(reason) => PointFailure::Point(reason.into()),
         })?;
         if let Some(unsmooth) = taught.unsmooth {
             return Err(PointError::Unsmooth(unsmooth).into());
         }
         if !taught.ok {
-            return Err(Trouble::Point(PointError::Uncertain {
+            return Err(PointFailure::Point(PointError::Uncertain {
                 error_deg: taught.error.to_degrees(),
                 limit_deg: teacher.config.rings.limit_deg,
             }));
@@ -123,7 +123,7 @@ impl<A: Arm> Lesson<'_, '_, A> {
             self.teacher.config.steepest_deg,
         );
         if found_deg > limit_deg {
-            return Err(Trouble::Point(PointError::Steep { found_deg, limit_deg }));
+            return Err(PointFailure::Point(PointError::Steep { found_deg, limit_deg }));
         }
         Ok(TaughtPoint {
             position: centre,
@@ -135,11 +135,14 @@ impl<A: Arm> Lesson<'_, '_, A> {
     }
 
     /// The surface point in the beam.
-    fn surface_here(&mut self) -> Result<Vector3<f64>, Seen<A::Error>> {
+    fn surface_here(&mut self) -> Result<Vector3<f64>, NoDistance<A::Error>> {
         let teacher = self.teacher;
-        let look = self.arm.look(teacher.config.readings).map_err(Seen::Machine)?;
+        let look = self
+            .arm
+            .look(teacher.config.readings)
+            .map_err(NoDistance::Machine)?;
         self.time_us = look.time_us;
-        let ranging = teacher.probe.range(&look.readings).map_err(Seen::Refused)?;
+        let ranging = teacher.probe.range(&look.readings).map_err(NoDistance::Refused)?;
         let tool = teacher.kinematics.forward(&look.axes);
         Ok(tool.position - tool.normal * (ranging.distance_mm - teacher.reference))
     }
@@ -216,7 +219,9 @@ impl<A: Arm> Lesson<'_, '_, A> {
 
     fn run(&mut self, mut nc: NcText, axes: [f64; AXES], slower: f64) -> Attempt<(), A> {
         nc.block("M2");
-        self.arm.run(&nc.finish(), slower).map_err(Trouble::Machine)?;
+        self.arm
+            .run(&nc.finish(), slower)
+            .map_err(PointFailure::Machine)?;
         self.axes = axes;
         Ok(())
     }

@@ -14,7 +14,7 @@ use crate::{Halving, HalvingConfig, TaughtPoint};
 use config::machine::MachineFile;
 use config::probe::{Probe, ProbeUnit, Reading};
 use config::{RangeError, in_range};
-use error::Trouble;
+use error::PointFailure;
 use lesson::Lesson;
 use nalgebra::Vector3;
 use nc::text::decimal;
@@ -89,15 +89,15 @@ impl TeachingConfig {
 
 /// Where an operator would jog to: the tip a few mm, the attitude a few degrees off.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Guide {
+pub struct GuidePoint {
     /// Tip \[mm\].
     pub position: Vector3<f64>,
     /// A B C \[deg\].
     pub angles_deg: [f64; 3],
 }
 
-/// A machine with a probe, as teaching uses it.
-pub trait Arm {
+/// The interface to a machine with a probe, for teaching.
+pub trait ProbeMachine {
     /// Why it does not do what it is asked.
     type Error: StdError + 'static;
 
@@ -108,7 +108,7 @@ pub trait Arm {
     /// The axes at rest, and `readings` of the probe meanwhile.
     fn look(&mut self, readings: usize) -> Result<Look, Self::Error>;
 
-    /// `done` points are taught; they can be told to whoever waits.
+    /// `done` points are taught; an implementation can report them.
     fn taught(&mut self, done: &[TaughtPoint]);
 }
 
@@ -181,10 +181,10 @@ impl<'a> Teacher<'a> {
     }
 
     /// Teaches all points. The axes stand still before and afterwards.
-    pub fn teach<A: Arm>(
+    pub fn teach<A: ProbeMachine>(
         &self,
         arm: &mut A,
-        guides: &[Guide],
+        guides: &[GuidePoint],
     ) -> Result<Vec<TaughtPoint>, TeachError<A::Error>> {
         let Some(first) = guides.first() else {
             return Ok(Vec::new());
@@ -202,11 +202,11 @@ impl<'a> Teacher<'a> {
         for (index, guide) in guides.iter().enumerate() {
             let place = guide.position;
             let name = |trouble| match trouble {
-                Trouble::Machine(source) => TeachError::Machine {
+                PointFailure::Machine(source) => TeachError::Machine {
                     number: index + 1,
                     source,
                 },
-                Trouble::Point(reason) => TeachError::Point {
+                PointFailure::Point(reason) => TeachError::Point {
                     number: index + 1,
                     x: place.x,
                     y: place.y,

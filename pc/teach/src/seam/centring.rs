@@ -1,7 +1,7 @@
-//! From what the cameras see to places in the world, and to the stance that has both seams in the middle of their
-//! bands.
+//! From what the cameras see to places in the world, and to the pose of the machine that has both seams in
+//! the middle of their bands.
 
-use super::{Foot, Seen, View};
+use super::{MeasuredSeam, SeamSighting, View};
 use nalgebra::Vector3;
 use shared::geometry::{Pose, angle, rotate};
 use shared::io::{SIDES, SLIDES};
@@ -12,9 +12,9 @@ const ROOM: f64 = 0.7;
 /// The head turns to the skin only where it leans more than this from it \[rad\]: a picture shows its slope to 0.02.
 const LEAN: f64 = 0.05;
 
-/// Where the machine stands to look.
+/// Where the machine is: pose of the tip, and slides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stance {
+pub struct MachinePose {
     /// Of the tip.
     pub pose: Pose,
     /// U1, V1, U2, V2 \[mm\].
@@ -34,10 +34,10 @@ pub struct Cameras {
 
 impl Cameras {
     /// What a camera sees, in the world: its place, and the skin there.
-    pub fn foot(&self, view: &View, side: usize, seen: &Seen) -> Foot {
+    pub fn foot(&self, view: &View, side: usize, seen: &SeamSighting) -> MeasuredSeam {
         let spot = self.heads.spot(&view.pose, side);
         let [u, v] = [0, 1].map(|i| view.slides_mm[2 * side + i] + seen.offset_mm[i]);
-        Foot {
+        MeasuredSeam {
             position: spot.point(self.heads.camera_lead() + seen.along_mm, u, v),
             normal: self.skin(view, side, seen.roll),
             width_mm: seen.width_mm.unwrap_or(0.0),
@@ -63,33 +63,42 @@ impl Cameras {
     }
 
     /// Where the camera of `side` looks: the middle of its band \[mm\].
-    pub fn looks_at(&self, stance: &Stance, side: usize) -> Vector3<f64> {
-        let [u, v] = [0, 1].map(|i| stance.slides_mm[2 * side + i]);
-        let spot = self.heads.spot(&stance.pose, side);
+    pub fn looks_at(&self, machine_pose: &MachinePose, side: usize) -> Vector3<f64> {
+        let [u, v] = [0, 1].map(|i| machine_pose.slides_mm[2 * side + i]);
+        let spot = self.heads.spot(&machine_pose.pose, side);
         spot.point(self.heads.camera_lead(), u, v)
     }
 
-    /// The stance in which both cameras look at their `points`: each goes there by its own slides. The pose moves, as
-    /// in [`Self::centred`], only where a slide would go too far or the head leans from `normal`, that of the skin.
-    pub fn aimed(&self, stance: &Stance, normal: &Vector3<f64>, points: [Vector3<f64>; SIDES]) -> Stance {
-        let aimed = self.with_slides(&stance.pose, &points);
+    /// The pose of the machine in which both cameras look at their `points`: each goes there by its own
+    /// slides. The pose moves, as in [`Self::centred`], only where a slide would go too far or the head leans
+    /// from `normal`, that of the skin.
+    pub fn aimed(
+        &self,
+        machine_pose: &MachinePose,
+        normal: &Vector3<f64>,
+        points: [Vector3<f64>; SIDES],
+    ) -> MachinePose {
+        let aimed = self.with_slides(&machine_pose.pose, &points);
         let too_far = |(at, (min, max)): (&f64, (f64, f64))| *at < ROOM * min || *at > ROOM * max;
-        let leans = angle(&stance.pose.normal, &turned(&stance.pose, normal).normal) > LEAN;
+        let leans = angle(
+            &machine_pose.pose.normal,
+            &turned(&machine_pose.pose, normal).normal,
+        ) > LEAN;
         if leans || aimed.slides_mm.iter().zip(self.travel_mm).any(too_far) {
-            self.centred(&stance.pose, normal, points)
+            self.centred(&machine_pose.pose, normal, points)
         } else {
             aimed
         }
     }
 
-    /// The stance with its head along `normal`, in which both cameras look at their `points` and the slides are as near
-    /// to zero as a move of `pose` across and up can bring them: Σ(u² + v²) is least.
+    /// The pose of the machine with its head along `normal`, in which both cameras look at their `points` and
+    /// the slides are as near to zero as a move of `pose` across and up can bring them: Σ(u² + v²) is least.
     ///
     /// The turn about T of mathematics 0.7 is left out: the feet are a few mm apart, and a rib that is not straight
-    /// would turn the head by degrees; the skin says better how the head shall stand.
-    pub fn centred(&self, pose: &Pose, normal: &Vector3<f64>, points: [Vector3<f64>; SIDES]) -> Stance {
+    /// would turn the head by degrees; the skin gives a better attitude of the head.
+    pub fn centred(&self, pose: &Pose, normal: &Vector3<f64>, points: [Vector3<f64>; SIDES]) -> MachinePose {
         let pose = turned(pose, normal);
-        let zero = Stance {
+        let zero = MachinePose {
             pose,
             slides_mm: [0.0; SLIDES],
         };
@@ -105,7 +114,7 @@ impl Cameras {
     }
 
     /// The slides that have both cameras look at their `points`, as far as they reach.
-    fn with_slides(&self, pose: &Pose, points: &[Vector3<f64>; SIDES]) -> Stance {
+    fn with_slides(&self, pose: &Pose, points: &[Vector3<f64>; SIDES]) -> MachinePose {
         let mut slides_mm = [0.0; SLIDES];
         for side in 0..SIDES {
             let (_, u, v) = self.heads.spot(pose, side).coordinates(&points[side]);
@@ -114,7 +123,7 @@ impl Cameras {
                 slides_mm[slide] = at.clamp(min, max);
             }
         }
-        Stance {
+        MachinePose {
             pose: *pose,
             slides_mm,
         }
@@ -123,6 +132,6 @@ impl Cameras {
 
 /// `pose` with its head along `normal`, across the tangent as it is.
 fn turned(pose: &Pose, normal: &Vector3<f64>) -> Pose {
-    // A skin along the tangent is none.
+    // A skin along the tangent is not possible.
     Pose::new(pose.position, pose.tangent, *normal).unwrap_or(*pose)
 }

@@ -1,4 +1,4 @@
-//! How seams are taught.
+//! Settings of seam teaching.
 
 use config::{RangeError, in_range};
 use serde::Deserialize;

@@ -15,7 +15,7 @@ const FIRST: f64 = 2.0;
 
 /// A seam on one side of the rib, at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foot {
+pub struct MeasuredSeam {
     /// In the world \[mm\].
     pub position: Vector3<f64>,
     /// Unit normal of the skin, up to the head.
@@ -36,12 +36,12 @@ pub struct SeamPoint {
     /// Sum of the chords of seam 1 up to here \[mm\].
     pub s_mm: f64,
     /// Side 1 and 2.
-    pub feet: [Foot; SIDES],
+    pub feet: [MeasuredSeam; SIDES],
 }
 
 impl SeamPoint {
     /// The point after `before` on both seams.
-    pub fn after(before: Option<&Self>, feet: [Foot; SIDES]) -> Self {
+    pub fn after(before: Option<&Self>, feet: [MeasuredSeam; SIDES]) -> Self {
         let s_mm = before.map_or(0.0, |b| b.s_mm + (feet[0].position - b.feet[0].position).norm());
         Self { s_mm, feet }
     }
@@ -74,7 +74,7 @@ impl Course {
     }
 
     /// See [`Local::chord_distance`]: that of the seam that bends more.
-    pub fn chord_distance(&self, step: f64, found: &[Foot; SIDES]) -> f64 {
+    pub fn chord_distance(&self, step: f64, found: &[MeasuredSeam; SIDES]) -> f64 {
         let sides = self.0.iter().zip(found);
         let distances = sides.map(|(side, foot)| side.chord_distance(step, &foot.position));
         distances.fold(0.0, f64::max)

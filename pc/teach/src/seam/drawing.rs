@@ -1,4 +1,4 @@
-//! What machine and drawing say of a lesson.
+//! Data of machine and drawing for teaching.
 
 use super::Cameras;
 use config::machine::TrackingUnit;

@@ -1,6 +1,6 @@
-//! Taught seams in a file that people can read, complete after every point.
+//! The file of taught seams (CSV), complete after every point.
 
-use super::{Foot, SeamPoint};
+use super::{MeasuredSeam, SeamPoint};
 use config::table::{self, Row, TableError};
 use nalgebra::Vector3;
 use nc::text::decimal;
@@ -76,7 +76,7 @@ pub enum SeamFileError {
     },
     /// Taught for something else.
     #[error(
-        "{path} was taught on machine {} for part {}, not on {} for {}: choose another output, or begin anew with \
+        "{path} was taught on machine {} for part {}, not on {} for {}: choose another output, or start over with \
          --restart",
         found.machine, found.part, wanted.machine, wanted.part
     )]
@@ -90,7 +90,7 @@ pub enum SeamFileError {
     },
     /// Something else.
     #[error(
-        "{path} exists and is no file of taught seams: choose another output, or begin anew with --restart"
+        "{path} exists and is not a file of taught seams: choose another output, or start over with --restart"
     )]
     Unknown {
         /// The file.
@@ -154,7 +154,7 @@ impl SeamFile {
                 .collect();
             if cut {
                 notes.push(format!(
-                    "the last point in {name} was not complete: it is taught anew"
+                    "the last point in {name} was not complete: it is taught again"
                 ));
                 replace(path, &complete).map_err(written)?;
             }
@@ -237,7 +237,7 @@ fn complete(text: &str) -> (String, bool) {
 
 /// The two rows of a point.
 fn rows(number: usize, point: &SeamPoint) -> String {
-    let row = |(index, foot): (usize, &Foot)| {
+    let row = |(index, foot): (usize, &MeasuredSeam)| {
         let head = [
             number.to_string(),
             (index + 1).to_string(),
@@ -305,7 +305,7 @@ pub fn parse_seam_points(path: &str, text: &str) -> Result<Vec<(usize, SeamPoint
     Ok(points)
 }
 
-fn read_foot(row: &Row<13>) -> Result<Foot, &'static str> {
+fn read_foot(row: &Row<13>) -> Result<MeasuredSeam, &'static str> {
     let [
         _,
         _,
@@ -334,7 +334,7 @@ fn read_foot(row: &Row<13>) -> Result<Foot, &'static str> {
     if width_mm < 0.0 || scatter_mm < 0.0 {
         return Err("width_mm and scatter_mm are 0 or more");
     }
-    Ok(Foot {
+    Ok(MeasuredSeam {
         position: Vector3::new(x, y, z),
         normal: normal.normalize(),
         width_mm,
@@ -355,8 +355,8 @@ mod tests {
         }
     }
 
-    fn foot(x: f64, y: f64) -> Foot {
-        Foot {
+    fn foot(x: f64, y: f64) -> MeasuredSeam {
+        MeasuredSeam {
             position: Vector3::new(x, y, 100.25),
             normal: Vector3::new(0.0, 0.6, 0.8),
             width_mm: 0.05,
@@ -375,15 +375,6 @@ mod tests {
         points
     }
 
-    /// A path of a file of this test, which is gone.
-    fn fresh(test: &str) -> PathBuf {
-        let name = format!("seamwright-{test}-{}", std::process::id());
-        let folder = std::env::temp_dir().join(name);
-        let _ = std::fs::remove_dir_all(&folder);
-        std::fs::create_dir_all(&folder).unwrap();
-        folder.join("taught.csv")
-    }
-
     fn teach(path: &Path, points: &[SeamPoint]) {
         let mut opened = SeamFile::open(path, &head(), false).unwrap();
         points.iter().for_each(|point| opened.file.add(point).unwrap());
@@ -391,7 +382,8 @@ mod tests {
 
     #[test]
     fn points_come_back_and_new_ones_follow_them() {
-        let path = fresh("follow");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("taught.csv");
         let all = points(5);
         teach(&path, &all[..2]);
         let opened = SeamFile::open(&path, &head(), false).unwrap();
@@ -405,7 +397,8 @@ mod tests {
 
     #[test]
     fn a_file_cut_at_any_byte_keeps_its_complete_points() {
-        let path = fresh("cut");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("taught.csv");
         let all = points(3);
         teach(&path, &all);
         let text = std::fs::read_to_string(&path).unwrap();
@@ -423,7 +416,8 @@ mod tests {
 
     #[test]
     fn a_file_of_another_part_is_left_alone() {
-        let path = fresh("foreign");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("taught.csv");
         teach(&path, &points(2));
         let other = Head {
             part: "other".into(),

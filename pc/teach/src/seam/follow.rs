@@ -1,7 +1,9 @@
-//! Following a seam: centre, take down, step along the tangent, to the end of the seam.
+//! Following a seam: centre, record the point, step along the tangent, to the end of the seam.
 
 use super::course::Course;
-use super::{Cameras, Drawing, Foot, NotFound, Rig, SeamPoint, SeamTeaching, Stance, View};
+use super::{
+    CameraMachine, Cameras, Drawing, MachinePose, MeasuredSeam, NotFound, SeamPoint, SeamTeaching, View,
+};
 use config::RangeError;
 use shared::geometry::Pose;
 use shared::io::SIDES;
@@ -50,35 +52,39 @@ pub enum SeamTeachError<E: StdError + 'static> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Centred {
     /// Where the machine stood.
-    pub stance: Stance,
+    pub machine_pose: MachinePose,
     /// What it saw there.
-    pub feet: [Foot; SIDES],
+    pub feet: [MeasuredSeam; SIDES],
 }
 
-/// What is seen where the machine stands.
+/// What both cameras measure at one pose of the machine.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sight {
+pub(super) struct SeamView {
     /// Where it stands.
-    pub stance: Stance,
+    pub machine_pose: MachinePose,
     /// What it sees there.
-    pub feet: [Option<Foot>; SIDES],
+    pub feet: [Option<MeasuredSeam>; SIDES],
 }
 
-impl Sight {
+impl SeamView {
     /// If it is both seams.
     pub fn both(&self) -> Option<Centred> {
         let [Some(first), Some(second)] = self.feet else {
             return None;
         };
         Some(Centred {
-            stance: self.stance,
+            machine_pose: self.machine_pose,
             feet: [first, second],
         })
     }
 }
 
 /// Takes down what is seen `here`.
-pub(super) fn take<R: Rig>(rig: &mut R, points: &mut Vec<SeamPoint>, here: &Centred) -> Result<(), R::Error> {
+pub(super) fn take<R: CameraMachine>(
+    rig: &mut R,
+    points: &mut Vec<SeamPoint>,
+    here: &Centred,
+) -> Result<(), R::Error> {
     let point = SeamPoint::after(points.last(), here.feet);
     rig.taught(&point)?;
     points.push(point);
@@ -114,12 +120,12 @@ impl<'a> Follower<'a> {
         })
     }
 
-    /// Teaches from `start` on, or goes on after the `points` that are taught already. New points are given to the
-    /// rig one by one; the machine stands at the last of them.
-    pub fn teach<R: Rig>(
+    /// Teaches from `start` on, or continues after the `points` that are taught already. New points are given
+    /// to the rig one by one; the machine stands at the last of them.
+    pub fn teach<R: CameraMachine>(
         &self,
         rig: &mut R,
-        start: &Stance,
+        start: &MachinePose,
         points: &[SeamPoint],
     ) -> Result<Ended, SeamTeachError<R::Error>> {
         let mut points = points.to_vec();
@@ -140,7 +146,7 @@ impl<'a> Follower<'a> {
                 return Ok(Ended::Drawn);
             }
             let at = points.last().map_or(0.0, |last| last.s_mm);
-            here = match self.advance(rig, &here.stance, &points, before, missing_mm)? {
+            here = match self.advance(rig, &here.machine_pose, &points, before, missing_mm)? {
                 Ok(next) => next,
                 Err(seen) => {
                     return Ok(Ended::SeamEnds {
@@ -156,7 +162,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Looks until both sides are seen, a few times.
-    pub(super) fn look<R: Rig>(&self, rig: &mut R) -> Result<View, R::Error> {
+    pub(super) fn look<R: CameraMachine>(&self, rig: &mut R) -> Result<View, R::Error> {
         let mut view = self.sure(rig.look(self.config.pictures)?);
         for _ in 1..LOOKS {
             if view.sides.iter().all(Option::is_some) {
@@ -178,7 +184,7 @@ impl<'a> Follower<'a> {
         view
     }
 
-    pub(super) fn feet(&self, view: &View) -> [Option<Foot>; SIDES] {
+    pub(super) fn feet(&self, view: &View) -> [Option<MeasuredSeam>; SIDES] {
         std::array::from_fn(|k| view.sides[k].map(|seen| self.cameras.foot(view, k, &seen)))
     }
 
@@ -191,13 +197,17 @@ impl<'a> Follower<'a> {
     }
 
     /// Brings both seams to the middle of their bands, as long as both are seen; what is seen at last.
-    pub(super) fn centre<R: Rig>(&self, rig: &mut R, stance: &Stance) -> Result<Sight, R::Error> {
-        let mut stance = *stance;
-        let mut before: Option<Sight> = None;
+    pub(super) fn centre<R: CameraMachine>(
+        &self,
+        rig: &mut R,
+        machine_pose: &MachinePose,
+    ) -> Result<SeamView, R::Error> {
+        let mut machine_pose = *machine_pose;
+        let mut before: Option<SeamView> = None;
         for _ in 0..MOVES {
             let view = self.look(rig)?;
-            let sight = Sight {
-                stance,
+            let sight = SeamView {
+                machine_pose,
                 feet: self.feet(&view),
             };
             let Some(Centred { feet, .. }) = sight.both() else {
@@ -208,20 +218,20 @@ impl<'a> Follower<'a> {
                 break;
             }
             let normal = feet[0].normal + feet[1].normal;
-            stance = self
+            machine_pose = self
                 .cameras
-                .aimed(&stance, &normal, feet.map(|foot| foot.position));
-            rig.go(&stance)?;
+                .aimed(&machine_pose, &normal, feet.map(|foot| foot.position));
+            rig.go(&machine_pose)?;
         }
-        let nothing = Sight {
-            stance,
+        let nothing = SeamView {
+            machine_pose,
             feet: [None; SIDES],
         };
         Ok(before.unwrap_or(nothing))
     }
 
     /// Goes along the seam to where the drawing begins, if that is near.
-    fn begin_as_drawn<R: Rig>(
+    fn begin_as_drawn<R: CameraMachine>(
         &self,
         rig: &mut R,
         here: Centred,
@@ -232,14 +242,14 @@ impl<'a> Follower<'a> {
         else {
             return Ok(here);
         };
-        let stance = here.stance;
-        let tangent = stance.pose.tangent;
-        let [first, second] = [0, 1].map(|side| self.cameras.looks_at(&stance, side));
+        let machine_pose = here.machine_pose;
+        let tangent = machine_pose.pose.tangent;
+        let [first, second] = [0, 1].map(|side| self.cameras.looks_at(&machine_pose, side));
         let away = (at - (first + second) / 2.0).dot(&along) / tangent.dot(&along);
         if away.abs() < SAME_PLACE || away.abs() > self.config.search_mm {
             return Ok(here);
         }
-        let mut there = stance;
+        let mut there = machine_pose;
         there.pose.position += tangent * away;
         rig.go(&there)?;
         self.find(rig, &there)
@@ -257,21 +267,21 @@ impl<'a> Follower<'a> {
         })
     }
 
-    fn course(points: &[SeamPoint], stance: &Stance) -> Option<Course> {
-        Course::of(points, &stance.pose.tangent)
+    fn course(points: &[SeamPoint], machine_pose: &MachinePose) -> Option<Course> {
+        Course::of(points, &machine_pose.pose.tangent)
     }
 
     /// Goes on to the next point, as far as the course so far allows and nearer if the seam bends more than was
     /// foreseen. Where the seams end: which of them is seen further on.
-    fn advance<R: Rig>(
+    fn advance<R: CameraMachine>(
         &self,
         rig: &mut R,
-        stance: &Stance,
+        machine_pose: &MachinePose,
         points: &[SeamPoint],
         before: Option<f64>,
         missing_mm: Option<f64>,
     ) -> Result<Result<Centred, [bool; SIDES]>, R::Error> {
-        let (Some(course), Some(last)) = (Self::course(points, stance), points.last()) else {
+        let (Some(course), Some(last)) = (Self::course(points, machine_pose), points.last()) else {
             return Ok(Err([false; SIDES]));
         };
         let smallest = self.config.smallest_step_mm;
@@ -285,7 +295,7 @@ impl<'a> Follower<'a> {
             }
         }
         loop {
-            let there = self.ahead(stance, &course, last, step);
+            let there = self.ahead(machine_pose, &course, last, step);
             rig.go(&there)?;
             let sight = self.centre(rig, &there)?;
             let Some(centred) = sight.both() else {
@@ -307,17 +317,22 @@ impl<'a> Follower<'a> {
 
     /// Where a step from the last of the `points` leads, `by` so much or by the spacing rule; `None` if there is no
     /// point yet.
-    pub(super) fn stepped(&self, stance: &Stance, points: &[SeamPoint], by: Option<f64>) -> Option<Stance> {
-        let course = Self::course(points, stance)?;
+    pub(super) fn stepped(
+        &self,
+        machine_pose: &MachinePose,
+        points: &[SeamPoint],
+        by: Option<f64>,
+    ) -> Option<MachinePose> {
+        let course = Self::course(points, machine_pose)?;
         let step = by.unwrap_or_else(|| course.step(self.config, last_step(points)));
-        Some(self.ahead(stance, &course, points.last()?, step))
+        Some(self.ahead(machine_pose, &course, points.last()?, step))
     }
 
-    /// The stance that looks where the course leads, `step` \[mm\] after its `last` point, with the head along the skin
-    /// there; it stands as `stance` does where that is not possible.
-    fn ahead(&self, stance: &Stance, course: &Course, last: &SeamPoint, step: f64) -> Stance {
+    /// The pose of the machine that looks where the course leads, `step` \[mm\] after its `last` point, with
+    /// the head along the skin there; it stands as `machine_pose` does where that is not possible.
+    fn ahead(&self, machine_pose: &MachinePose, course: &Course, last: &SeamPoint, step: f64) -> MachinePose {
         let (points, tangent) = course.ahead(step);
-        let old = stance.pose;
+        let old = machine_pose.pose;
         let position = (points[0] + points[1]) / 2.0 - tangent * self.cameras.heads.camera_lead();
         // A course does not turn so much that the head would lie along it.
         let pose = Pose::new(position, tangent, old.normal).unwrap_or(old);
@@ -325,8 +340,8 @@ impl<'a> Follower<'a> {
         self.cameras.centred(&pose, &normal, points)
     }
 
-    /// The stance that looks at the last of the `points`; `start` if there is none.
-    pub(super) fn start(&self, start: &Stance, points: &[SeamPoint]) -> Stance {
+    /// The pose of the machine that looks at the last of the `points`; `start` if there is none.
+    pub(super) fn start(&self, start: &MachinePose, points: &[SeamPoint]) -> MachinePose {
         match (Self::course(points, start), points.last()) {
             (Some(course), Some(last)) => self.ahead(start, &course, last, 0.0),
             _ => *start,

@@ -1,12 +1,12 @@
-//! Teaching by hand: the operator says moves and what to take, a line each.
+//! Teaching by hand: the operator types jog commands, one per line.
 
 use super::follow::{Centred, SAME_PLACE, take};
-use super::{Ended, Follower, Rig, SeamPoint, SeamTeachError, Stance, View};
+use super::{CameraMachine, Ended, Follower, MachinePose, SeamPoint, SeamTeachError, View};
 use nalgebra::Vector3;
 use shared::geometry::{Pose, rotate};
 use shared::io::SIDES;
 
-/// What may be said.
+/// The jog commands.
 pub const JOG_WORDS: &str = "\
 x y z DISTANCE     moves along an axis of the work [mm]
 a b c ANGLE        turns the head about the tip [deg]
@@ -25,11 +25,11 @@ const FARTHEST: f64 = 100.0;
 const WIDEST: f64 = 15.0;
 
 /// An operator who teaches by hand.
-pub trait Hand: Rig {
-    /// The next line that the operator says; `None` when there are no more.
+pub trait JogOperator: CameraMachine {
+    /// The next line of the operator; `None` when there are no more.
     fn line(&mut self) -> Result<Option<String>, Self::Error>;
 
-    /// Tells the operator something.
+    /// Prints a message to the operator.
     fn say(&mut self, text: &str);
 
     /// The last point does not count; `points` are those that stay.
@@ -39,7 +39,7 @@ pub trait Hand: Rig {
     fn is_refusal(&self, error: &Self::Error) -> bool;
 }
 
-/// A line that the operator said.
+/// A jog command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Jog {
     /// To move along X, Y or Z \[mm\].
@@ -50,7 +50,7 @@ pub enum Jog {
     Head(usize, f64),
     /// To move a slide \[mm\].
     Slide(usize, f64),
-    /// To go on along the seam \[mm\].
+    /// To continue along the seam \[mm\].
     Step(Option<f64>),
     /// To centre both seams.
     Centre,
@@ -60,7 +60,7 @@ pub enum Jog {
     Take,
     /// To take the last one out.
     Undo,
-    /// To tell what is seen.
+    /// To print what is seen.
     Look,
     /// To end.
     Done,
@@ -75,11 +75,11 @@ impl Jog {
         };
         let value = words.next();
         if let Some(rest) = words.next() {
-            return Err(format!("{rest} is too much: a word and a number"));
+            return Err(format!("{rest} is too much: type a command and one number"));
         }
         let number = |most: f64, unit: &str| -> Result<f64, String> {
             let text = value.ok_or_else(|| format!("{word} needs a number [{unit}]"))?;
-            let number: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
+            let number: f64 = text.parse().map_err(|_| format!("{text} is not a number"))?;
             if number.abs() <= most {
                 Ok(number)
             } else {
@@ -113,25 +113,25 @@ impl Jog {
             "undo" => Ok(Self::Undo),
             "look" => Ok(Self::Look),
             "done" => Ok(Self::Done),
-            _ => Err(format!("{word} means nothing here\n{JOG_WORDS}")),
+            _ => Err(format!("{word} is not a command here\n{JOG_WORDS}")),
         }
     }
 
-    /// Where a move leads from `stance`; `None` if it is no move of machine or slides.
-    fn moved(self, stance: &Stance) -> Option<Stance> {
+    /// Where a move leads from `machine_pose`; `None` if it is no move of machine or slides.
+    fn moved(self, machine_pose: &MachinePose) -> Option<MachinePose> {
         let Pose {
             position,
             tangent,
             normal,
-        } = stance.pose;
+        } = machine_pose.pose;
         let pose = match self {
             Self::Axis(axis, by) => Pose {
                 position: position + Vector3::ith(axis, by),
-                ..stance.pose
+                ..machine_pose.pose
             },
             Self::Head(way, by) => Pose {
                 position: position + [normal.cross(&tangent), normal, tangent][way] * by,
-                ..stance.pose
+                ..machine_pose.pose
             },
             Self::Turn(axis, by) => {
                 let heading = libm::atan2(tangent.y, tangent.x);
@@ -147,7 +147,7 @@ impl Jog {
                 }
             }
             Self::Slide(slide, by) => {
-                let mut there = *stance;
+                let mut there = *machine_pose;
                 there.slides_mm[slide] += by;
                 return Some(there);
             }
@@ -161,21 +161,24 @@ impl Jog {
                 return None;
             }
         };
-        Some(Stance { pose, ..*stance })
+        Some(MachinePose {
+            pose,
+            ..*machine_pose
+        })
     }
 }
 
 impl Follower<'_> {
     /// Lets the operator teach by hand from `start` on, or from the last of the `points` that are taught already.
-    pub fn jog<R: Hand>(
+    pub fn jog<R: JogOperator>(
         &self,
         rig: &mut R,
-        start: &Stance,
+        start: &MachinePose,
         points: &[SeamPoint],
     ) -> Result<Ended, SeamTeachError<R::Error>> {
         let mut points = points.to_vec();
-        let mut stance = self.start(start, &points);
-        rig.approach(&stance)?;
+        let mut machine_pose = self.start(start, &points);
+        rig.approach(&machine_pose)?;
         self.tell(rig)?;
         while let Some(line) = rig.line()? {
             let jog = match Jog::parse(&line) {
@@ -186,12 +189,12 @@ impl Follower<'_> {
                     continue;
                 }
             };
-            match self.obey(rig, jog, &stance, &mut points) {
-                Ok(there) => stance = there,
+            match self.obey(rig, jog, &machine_pose, &mut points) {
+                Ok(there) => machine_pose = there,
                 Err(SeamTeachError::Machine(error)) if rig.is_refusal(&error) => rig.say(&error.to_string()),
                 Err(SeamTeachError::Machine(error)) => return Err(error.into()),
                 Err(not_found @ SeamTeachError::NotFound(_)) => {
-                    rig.go(&stance)?;
+                    rig.go(&machine_pose)?;
                     rig.say(&not_found.to_string());
                 }
             }
@@ -200,55 +203,55 @@ impl Follower<'_> {
     }
 
     /// Does what the operator says; where the machine stands then.
-    fn obey<R: Hand>(
+    fn obey<R: JogOperator>(
         &self,
         rig: &mut R,
         jog: Jog,
-        stance: &Stance,
+        machine_pose: &MachinePose,
         points: &mut Vec<SeamPoint>,
-    ) -> Result<Stance, SeamTeachError<R::Error>> {
-        if let Some(there) = jog.moved(stance) {
+    ) -> Result<MachinePose, SeamTeachError<R::Error>> {
+        if let Some(there) = jog.moved(machine_pose) {
             rig.go(&there)?;
             self.tell(rig)?;
             return Ok(there);
         }
         let there = match jog {
             Jog::Step(by) => {
-                let Some(there) = self.stepped(stance, points, by) else {
-                    rig.say("step goes on after the last point that is taken, and there is none yet");
-                    return Ok(*stance);
+                let Some(there) = self.stepped(machine_pose, points, by) else {
+                    rig.say("step continues after the last point taken, and no point is taken yet");
+                    return Ok(*machine_pose);
                 };
                 rig.go(&there)?;
                 there
             }
-            Jog::Search => self.find(rig, stance)?.stance,
-            Jog::Centre => match self.centre(rig, stance)?.both() {
-                Some(centred) => centred.stance,
+            Jog::Search => self.find(rig, machine_pose)?.machine_pose,
+            Jog::Centre => match self.centre(rig, machine_pose)?.both() {
+                Some(centred) => centred.machine_pose,
                 None => {
-                    rig.say("both seams have to be seen to be centred: move nearer, or say search");
-                    *stance
+                    rig.say("both seams must be visible to be centred: move nearer, or type search");
+                    *machine_pose
                 }
             },
             Jog::Take => {
                 let view = self.look(rig)?;
                 let [Some(first), Some(second)] = self.feet(&view) else {
-                    rig.say("both seams have to be seen to be taken");
-                    return Ok(*stance);
+                    rig.say("both seams must be visible to take a point");
+                    return Ok(*machine_pose);
                 };
                 let here = Centred {
-                    stance: *stance,
+                    machine_pose: *machine_pose,
                     feet: [first, second],
                 };
                 let middle = (first.position + second.position) / 2.0;
                 let behind = |last: &SeamPoint| (middle - last.middle()).dot(&view.pose.tangent) < SAME_PLACE;
                 if points.last().is_some_and(behind) {
-                    rig.say("this is not beyond the last point: step goes on, undo takes the last one out");
-                    return Ok(*stance);
+                    rig.say("this is not beyond the last point: type step to continue, or undo to remove the last point");
+                    return Ok(*machine_pose);
                 }
                 take(rig, points, &here)?;
                 let s_mm = points.last().map_or(0.0, |point| point.s_mm);
                 rig.say(&format!("point {} at s {s_mm:.2} mm", points.len()));
-                return Ok(*stance);
+                return Ok(*machine_pose);
             }
             Jog::Undo => {
                 match points.pop() {
@@ -256,16 +259,16 @@ impl Follower<'_> {
                     None => rig.say("no point is taken"),
                 }
                 rig.say(&format!("{} points", points.len()));
-                return Ok(*stance);
+                return Ok(*machine_pose);
             }
-            _ => *stance,
+            _ => *machine_pose,
         };
         self.tell(rig)?;
         Ok(there)
     }
 
     /// Tells the operator what the cameras see.
-    fn tell<R: Hand>(&self, rig: &mut R) -> Result<(), R::Error> {
+    fn tell<R: JogOperator>(&self, rig: &mut R) -> Result<(), R::Error> {
         let view = self.look(rig)?;
         let text = described(&view);
         rig.say(&text);

@@ -1,4 +1,4 @@
-//! What a search that found nothing says.
+//! Error of a search that found nothing.
 
 use shared::io::SIDES;
 use std::fmt::{Display, Formatter, Result as FmtResult};
@@ -27,13 +27,13 @@ impl Display for NotFound {
                 f,
                 "no seam is seen on either side: camera 1 looked for it within {reach} mm of {at}, camera 2 of {}, \
                  across and in height; begin nearer to the seams (--from), search farther (search_mm in \
-                 [t-seam.teaching]), or see whether lights and cameras work",
+                 [t-seam.teaching]), or check lights and cameras",
                 place(self.expected[other])
             ),
             Some(seen) => write!(
                 f,
                 "no seam is seen on side {}: its camera looked for it within {reach} mm of {at}, across and in height, \
-                 while side {} is seen at {}; look what covers the seam there and whether the camera's light works, \
+                 while side {} is seen at {}; check what covers the seam there and whether the camera's light works, \
                  begin elsewhere (--from), or search farther (search_mm in [t-seam.teaching])",
                 missing + 1,
                 other + 1,

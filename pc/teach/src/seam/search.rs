@@ -1,7 +1,7 @@
 //! Searching seams that are not seen where they should be: each side by itself, around its own place.
 
 use super::follow::{Centred, Follower};
-use super::{Cameras, NotFound, Rig, SeamTeachError, SeamTeaching, Stance};
+use super::{CameraMachine, Cameras, MachinePose, NotFound, SeamTeachError, SeamTeaching};
 use nalgebra::Vector3;
 use shared::io::SIDES;
 
@@ -21,11 +21,11 @@ struct Search {
 }
 
 impl Search {
-    fn new(config: &SeamTeaching, cameras: &Cameras, stance: &Stance, side: usize) -> Self {
-        let up = cameras.axis(&stance.pose, side);
+    fn new(config: &SeamTeaching, cameras: &Cameras, machine_pose: &MachinePose, side: usize) -> Self {
+        let up = cameras.axis(&machine_pose.pose, side);
         let mut search = Self {
-            expected: cameras.looks_at(stance, side),
-            axes: [up.cross(&stance.pose.tangent), up],
+            expected: cameras.looks_at(machine_pose, side),
+            axes: [up.cross(&machine_pose.pose.tangent), up],
             left: places(config),
             found: None,
         };
@@ -64,16 +64,16 @@ fn places(config: &SeamTeaching) -> Vec<[f64; 2]> {
 }
 
 impl Follower<'_> {
-    /// Centres the seams at `stance`, where the machine stands, after a search if they are not seen: the slides of
-    /// each side look around for its seam, and the machine helps where they do not reach.
-    pub(super) fn find<R: Rig>(
+    /// Centres the seams at `machine_pose`, where the machine stands, after a search if they are not seen:
+    /// the slides of each side look around for its seam, and the machine helps where they do not reach.
+    pub(super) fn find<R: CameraMachine>(
         &self,
         rig: &mut R,
-        stance: &Stance,
+        machine_pose: &MachinePose,
     ) -> Result<Centred, SeamTeachError<R::Error>> {
-        let mut sight = self.centre(rig, stance)?;
-        let mut stance = sight.stance;
-        let mut sides = [0, 1].map(|side| Search::new(self.config, self.cameras, &stance, side));
+        let mut sight = self.centre(rig, machine_pose)?;
+        let mut machine_pose = sight.machine_pose;
+        let mut sides = [0, 1].map(|side| Search::new(self.config, self.cameras, &machine_pose, side));
         loop {
             if let Some(centred) = sight.both() {
                 return Ok(centred);
@@ -89,8 +89,10 @@ impl Follower<'_> {
                         found: sides.each_ref().map(|side| side.found.map(Vector3::into)),
                     }));
                 };
-                stance = self.cameras.aimed(&stance, &stance.pose.normal, [first, second]);
-                rig.go(&stance)?;
+                machine_pose = self
+                    .cameras
+                    .aimed(&machine_pose, &machine_pose.pose.normal, [first, second]);
+                rig.go(&machine_pose)?;
                 let view = self.sure(rig.look(PICTURES.min(self.config.pictures))?);
                 let feet = self.feet(&view);
                 for k in 0..SIDES {
@@ -104,9 +106,11 @@ impl Follower<'_> {
                 }
             }
             let points = sides.each_ref().map(|side| side.found.unwrap_or(side.expected));
-            stance = self.cameras.aimed(&stance, &stance.pose.normal, points);
-            rig.go(&stance)?;
-            sight = self.centre(rig, &stance)?;
+            machine_pose = self
+                .cameras
+                .aimed(&machine_pose, &machine_pose.pose.normal, points);
+            rig.go(&machine_pose)?;
+            sight = self.centre(rig, &machine_pose)?;
         }
     }
 }

@@ -131,7 +131,7 @@ fn an_edge_beside_the_point_is_left_out_or_warned_of() {
     assert!(error < 1.0, "{error}");
     let (_, taught) = teach(noise(0.01), &step(0.5), &Vector3::z(), &mut random);
     let warning = taught.unsmooth.expect("a warning").to_string();
-    assert!(warning.contains("an edge? measure closer"), "{warning}");
+    assert!(warning.contains("is there an edge? measure closer"), "{warning}");
     assert!(!taught.ok);
 }
 

@@ -32,7 +32,7 @@ fn a_reading_that_is_no_distance_is_refused_with_its_reason() {
     assert_eq!(refused(Reading { valid: false, ..good }), Refused::NotValid);
     assert_eq!(refused(Reading { near: true, ..good }), Refused::Near);
     assert_eq!(refused(Reading { far: true, ..good }), Refused::Far);
-    // A surface out of range sends no light back: the switch that helps more is told.
+    // A surface out of range sends no light back: the remedy that helps more is reported.
     let nothing = Reading {
         valid: false,
         far: true,
@@ -117,7 +117,7 @@ fn a_probe_that_makes_no_sense_is_refused_by_its_key() {
             distance_at_0v_mm: 15.0,
             ..good
         }),
-        "distance_at_0v_mm is 15, but must be so large that every voltage is a distance above 0"
+        "distance_at_0v_mm is 15, but must be large enough that every voltage is a distance above 0"
     );
     assert_eq!(
         refused(ProbeConfig {

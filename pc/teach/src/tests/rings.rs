@@ -154,13 +154,6 @@ fn a_crease_through_the_centre_shows_unless_midway_between_the_points() {
 }
 
 #[test]
-fn what_is_nearer_to_the_probe_is_higher() {
-    let ring = Ring::from_distances(2.0, 80.0, DIRECTIONS.map(|[cos, _]| 80.0 - cos)).expect("a ring");
-    near(ring.gradient()[0], 0.5, 1e-14);
-    assert_eq!(ring.point(4), Vector3::new(-2.0, 0.0, -1.0));
-}
-
-#[test]
 fn what_is_no_ring_is_refused() {
     assert_eq!(
         Ring::new(0.0, [0.0; 8]).unwrap_err().to_string(),

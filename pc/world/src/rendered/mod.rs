@@ -7,7 +7,7 @@ mod source;
 mod tiles;
 mod view;
 
-pub use scene_file::{Dark, SceneError, SceneFile, Scratch, Surface};
+pub use scene_file::{Dark, SceneError, SceneFile, Scratch, SurfaceFinish};
 pub use source::RenderedPictures;
 pub use view::{View, ViewForm};
 
@@ -27,14 +27,14 @@ use vision::render::{FastRenderer, RenderError, SplitMix64};
 /// How far beside and above the seam a camera is blind \[mm\]: its light does not reach the work.
 const REACH_MM: [f64; 2] = [8.0, 1.5];
 
-/// What a camera had before it at a strobe.
+/// What was in the field of view of a camera at a strobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Prospect {
-    /// This.
+pub enum FieldOfView {
+    /// The seam.
     Seam(View),
     /// No seam anywhere near.
     Nothing,
-    /// Nobody knows where the machine was: the picture is lost.
+    /// Unknown, since the position of the machine is unknown: the picture is lost.
     Unknown,
 }
 
@@ -46,7 +46,8 @@ pub struct RenderedWorld {
     seed: u64,
 }
 
-/// One camera. It is told what stands before it through a channel, since only who talks with the boards knows that.
+/// One camera. What is in its field of view arrives through a channel, from the job, which knows the position
+/// of the machine.
 pub struct RenderedCamera {
     file: Arc<SceneFile>,
     side: usize,
@@ -57,7 +58,7 @@ pub struct RenderedCamera {
     tiles: Tiles,
     /// Made when the tiles are.
     renderer: Option<FastRenderer>,
-    prospects: Receiver<Prospect>,
+    fields_of_view: Receiver<FieldOfView>,
     strobes: VecDeque<(u32, u64)>,
     /// Since when each light of the file is off \[µs\].
     off_since: Vec<Option<u64>>,
@@ -83,9 +84,10 @@ impl RenderedWorld {
         }
     }
 
-    /// The camera of `side` (0 or 1), and where it is told what stands before it, once a strobe and in their order.
-    pub fn camera(&self, side: usize) -> (RenderedCamera, Sender<Prospect>) {
-        let (tell, prospects) = channel();
+    /// The camera of `side` (0 or 1), and the sender of what is in its field of view: one message for each
+    /// strobe, in order.
+    pub fn camera(&self, side: usize) -> (RenderedCamera, Sender<FieldOfView>) {
+        let (tell, fields_of_view) = channel();
         let camera = RenderedCamera {
             file: self.file.clone(),
             side,
@@ -95,7 +97,7 @@ impl RenderedWorld {
             columns: self.cameras.optics.columns,
             tiles: self.tiles[side].clone(),
             renderer: None,
-            prospects,
+            fields_of_view,
             strobes: VecDeque::new(),
             off_since: vec![None; self.file.dark.len()],
         };
@@ -132,8 +134,8 @@ impl Camera for RenderedCamera {
         let Some(&(capture, time_us)) = self.strobes.front() else {
             return Ok(Arrival::Nothing);
         };
-        let prospect = match self.prospects.recv_timeout(timeout) {
-            Ok(prospect) => prospect,
+        let field_of_view = match self.fields_of_view.recv_timeout(timeout) {
+            Ok(field_of_view) => field_of_view,
             Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => return Ok(Arrival::Nothing),
         };
         self.strobes.pop_front();
@@ -142,10 +144,10 @@ impl Camera for RenderedCamera {
             let [beside, above] = REACH_MM;
             view.lateral_mm.abs() < beside && view.height_mm.abs() < above
         };
-        let view = match prospect {
-            Prospect::Seam(view) => Some(view).filter(in_reach),
-            Prospect::Nothing => None,
-            Prospect::Unknown => return Ok(Arrival::Lost { capture }),
+        let view = match field_of_view {
+            FieldOfView::Seam(view) => Some(view).filter(in_reach),
+            FieldOfView::Nothing => None,
+            FieldOfView::Unknown => return Ok(Arrival::Lost { capture }),
         };
         let dark = view.is_some_and(|view| self.dark(view.along_mm, time_us));
         if lost {

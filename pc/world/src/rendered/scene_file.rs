@@ -17,7 +17,7 @@ const WHAT: &str = "scene file";
 #[serde(deny_unknown_fields, default)]
 pub struct SceneFile {
     /// How the work beside seam 1 and 2 was made.
-    pub texture: [Surface; SIDES],
+    pub texture: [SurfaceFinish; SIDES],
     /// Mean brightness of the work, 0…1 of full scale.
     pub light: f64,
     /// How far the work travels during an exposure: 7.5 µm are 50 µs at 9 m/min.
@@ -48,10 +48,10 @@ pub struct SceneFile {
     pub dark: Vec<Dark>,
 }
 
-/// How a surface was made.
+/// Finish of the work beside a seam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Surface {
+pub enum SurfaceFinish {
     /// Ground.
     Ground,
     /// Rolled, with streaks along the seam.
@@ -66,7 +66,7 @@ pub enum Surface {
     Coarse,
 }
 
-impl Surface {
+impl SurfaceFinish {
     /// What renders it.
     pub fn finish(self) -> Finish {
         match self {
@@ -114,7 +114,7 @@ impl Default for SceneFile {
     /// Ground plates, gaps of 0.10 to 0.15 mm, nothing that disturbs.
     fn default() -> Self {
         Self {
-            texture: [Surface::Ground; SIDES],
+            texture: [SurfaceFinish::Ground; SIDES],
             light: 0.5,
             smear_um: 7.5,
             gap_mm: 0.125,

@@ -1,4 +1,4 @@
-//! From what stands before a camera to the scene that is rendered.
+//! Makes the scene to render from what is in the field of view of a camera.
 
 use super::scene_file::SceneFile;
 use super::view::{View, ViewForm};

@@ -1,7 +1,7 @@
 //! Rendered pictures for a job: of where the machine truly was at each strobe.
 
 use super::background::Background;
-use super::{Prospect, RenderedWorld, SceneFile, View};
+use super::{FieldOfView, RenderedWorld, SceneFile, View};
 use crate::SharedSeams;
 use camera::{Camera, CameraError};
 use config::machine::CameraConfig;
@@ -18,8 +18,8 @@ pub struct RenderedPictures {
     world: RenderedWorld,
     cameras: CameraConfig,
     seams: SharedSeams,
-    /// Where each camera is told what stands before it.
-    tell: [Option<Sender<Prospect>>; SIDES],
+    /// Senders of the field of view of each camera.
+    tell: [Option<Sender<FieldOfView>>; SIDES],
 }
 
 impl RenderedPictures {
@@ -56,17 +56,17 @@ impl PictureSource for RenderedPictures {
     }
 
     fn tell(&mut self, side: usize, capture: &Capture, at: Option<(&MachineGeometry, &MachinePosition)>) {
-        let prospect = match at {
+        let field_of_view = match at {
             Some((machine, position)) => {
                 let slides = capture.truth_mm.unwrap_or(capture.slides_mm);
                 View::of(&self.cameras, machine, &self.seams.get(), position, &slides, side)
-                    .map_or(Prospect::Nothing, Prospect::Seam)
+                    .map_or(FieldOfView::Nothing, FieldOfView::Seam)
             }
-            None => Prospect::Unknown,
+            None => FieldOfView::Unknown,
         };
         if let Some(tell) = &self.tell[side] {
-            // A camera that is gone has told why.
-            let _ = tell.send(prospect);
+            // A camera that was lost has reported its error.
+            let _ = tell.send(field_of_view);
         }
     }
 }

@@ -38,13 +38,13 @@ fn standing(seams: &TrueSeams, s: f64, off: [f64; 2]) -> (MachinePosition, [f64;
 
 fn picture(
     camera: &mut RenderedCamera,
-    tell: &Sender<Prospect>,
+    tell: &Sender<FieldOfView>,
     capture: u32,
     view: View,
 ) -> (Arrival, Picture) {
     let mut picture = Picture::default();
     camera.strobed(capture, u64::from(capture) * 5_000);
-    tell.send(Prospect::Seam(view)).unwrap();
+    tell.send(FieldOfView::Seam(view)).unwrap();
     let arrival = camera.next(Duration::from_secs(10), &mut picture).unwrap();
     (arrival, picture)
 }
@@ -58,7 +58,7 @@ fn measured(calibration: &Calibration, joint: Joint, picture: &Picture) -> Measu
     *report.seam().unwrap_or_else(|| panic!("{report:?}"))
 }
 
-/// How far what is told of a picture lies beside the true seam, across and along the camera's view \[mm\].
+/// How far the measurement of a picture is beside the true seam, across and along the camera's view \[mm\].
 fn miss(
     seams: &TrueSeams,
     calibration: &Calibration,
@@ -77,7 +77,7 @@ fn miss(
 }
 
 /// For gaps seen along the skin's normal and a little beside it, and for corners along their bisector and beside it. One
-/// picture of a corner without learnt walls is good for 5 µm; the tracker is told means.
+/// picture of a corner without learnt walls is good for 5 µm; the tracker gets means.
 #[test]
 fn what_is_measured_in_rendered_pictures_is_where_the_seam_truly_is() {
     const PICTURES: u32 = 6;
@@ -196,14 +196,14 @@ fn far_from_any_seam_it_is_dark_and_without_a_known_place_the_picture_is_lost() 
     camera.strobed(1, 0);
     let nothing = camera.next(Duration::ZERO, &mut picture).unwrap();
     assert_eq!(nothing, Arrival::Nothing);
-    tell.send(Prospect::Nothing).unwrap();
+    tell.send(FieldOfView::Nothing).unwrap();
     assert_eq!(
         camera.next(Duration::ZERO, &mut picture).unwrap(),
         Arrival::Picture
     );
     assert!(picture.pixels.len() == 120_000 && picture.pixels.iter().all(|pixel| *pixel == 0));
     camera.strobed(2, 0);
-    tell.send(Prospect::Unknown).unwrap();
+    tell.send(FieldOfView::Unknown).unwrap();
     let lost = camera.next(Duration::ZERO, &mut picture).unwrap();
     assert_eq!(lost, Arrival::Lost { capture: 2 });
 }

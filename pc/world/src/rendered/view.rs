@@ -1,4 +1,4 @@
-//! What truly stands before a camera at a strobe.
+//! What is truly in the field of view of a camera at a strobe.
 
 use crate::{TrueSeam, TrueSeams};
 use camera::{CameraFrame, walls};
@@ -63,7 +63,7 @@ impl View {
         let ahead = [lead, cameras.focus_above_mm()];
         let frame = CameraFrame::new(&spot, mount, ahead, slides[2 * side], slides[2 * side + 1]);
         let (seam, crossing) = seams.facing(side, &spot, lead)?;
-        let seen = Seen { seam, side, frame };
+        let seen = SeamAtCamera { seam, side, frame };
         match cameras.joint {
             JointForm::Gap => seen.plate(crossing.s),
             JointForm::Corner => seen.corner(crossing.s, cameras.optics.tilt_rad.tan(), heads),
@@ -71,14 +71,14 @@ impl View {
     }
 }
 
-/// A seam before a camera.
-struct Seen<'a> {
+/// A seam in the frame of a camera.
+struct SeamAtCamera<'a> {
     seam: &'a TrueSeam,
     side: usize,
     frame: CameraFrame,
 }
 
-impl Seen<'_> {
+impl SeamAtCamera<'_> {
     fn at(&self, s: f64) -> Option<[f64; 3]> {
         Some(self.frame.coordinates(&self.seam.point(self.side, s)?))
     }

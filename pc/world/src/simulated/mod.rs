@@ -5,13 +5,13 @@
 //! one queue: the ticks of both boards, and datagrams under way. The tracker's clock and tick are offset
 //! from the motion board's, as on real boards, so that the relation of the clocks has to be found here too.
 
+mod injected_fault;
 mod motion;
 mod outputs;
 mod tracker;
-mod trouble;
 
+pub use injected_fault::InjectedFault;
 pub use outputs::Outputs;
-pub use trouble::Trouble;
 
 use crate::emulated::BoardsError;
 use host_link::boards::{Boards, LinkError};
@@ -40,9 +40,9 @@ const CONTROL_PHASE_US: u64 = 637;
 /// What the tracker's clock shows when the motion board's shows 0 \[µs\].
 const TRACKER_CLOCK_US: u64 = 40_123_456;
 
-/// Something that happens at a time.
+/// An event of the simulation.
 #[derive(Clone, Debug)]
-enum Happening {
+enum SimulationEvent {
     ServoTick,
     ControlTick,
     /// A datagram arrives at a board, or at the PC.
@@ -61,7 +61,7 @@ enum Node {
 
 /// Sorted by time, then by order of entry.
 #[derive(Clone)]
-struct Entry(Reverse<(u64, u64)>, Happening);
+struct Entry(Reverse<(u64, u64)>, SimulationEvent);
 
 impl PartialEq for Entry {
     fn eq(&self, other: &Self) -> bool {
@@ -124,8 +124,8 @@ impl SimulatedBoards {
             identities: [identity(Role::Motion), identity(Role::Tracker)],
             cut_off: None,
         };
-        boards.enter(SERVO_US, Happening::ServoTick);
-        boards.enter(CONTROL_PHASE_US, Happening::ControlTick);
+        boards.enter(SERVO_US, SimulationEvent::ServoTick);
+        boards.enter(CONTROL_PHASE_US, SimulationEvent::ControlTick);
         boards
     }
 
@@ -135,7 +135,7 @@ impl SimulatedBoards {
         self.tracker.estop = [pressed; ESTOP_CHANNELS];
     }
 
-    fn enter(&mut self, at_us: u64, happening: Happening) {
+    fn enter(&mut self, at_us: u64, happening: SimulationEvent) {
         self.entered += 1;
         self.queue.push(Entry(Reverse((at_us, self.entered)), happening));
     }
@@ -144,7 +144,7 @@ impl SimulatedBoards {
         if self.cut_off(from) || self.cut_off(to) {
             return;
         }
-        let arrival = Happening::Arrival {
+        let arrival = SimulationEvent::Arrival {
             from,
             to,
             datagram: Box::new(datagram),
@@ -167,15 +167,15 @@ impl SimulatedBoards {
         };
         self.now_us = at_us;
         match happening {
-            Happening::ServoTick => self.servo_tick(),
-            Happening::ControlTick => self.control_tick(),
-            Happening::Arrival { from, to, datagram } => self.arrive(from, to, *datagram),
+            SimulationEvent::ServoTick => self.servo_tick(),
+            SimulationEvent::ControlTick => self.control_tick(),
+            SimulationEvent::Arrival { from, to, datagram } => self.arrive(from, to, *datagram),
         }
         true
     }
 
     fn servo_tick(&mut self) {
-        self.enter(self.now_us + SERVO_US, Happening::ServoTick);
+        self.enter(self.now_us + SERVO_US, SimulationEvent::ServoTick);
         let motion = Node::Board(Role::Motion);
         if let Some(path_state) = self.motion.tick(self.now_us) {
             self.post(
@@ -190,7 +190,7 @@ impl SimulatedBoards {
     }
 
     fn control_tick(&mut self) {
-        self.enter(self.now_us + CONTROL_US, Happening::ControlTick);
+        self.enter(self.now_us + CONTROL_US, SimulationEvent::ControlTick);
         let tracker = Node::Board(Role::Tracker);
         if self.tracker.frozen {
             self.tracker.plant.advance(&self.tracker.command);

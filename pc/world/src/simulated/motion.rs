@@ -20,7 +20,7 @@ pub struct MotionBoard {
     /// Channels of the emergency stop that are open.
     pub estop: [bool; ESTOP_CHANNELS],
     /// What its inputs read otherwise than its machine is.
-    pub meddle: Option<fn(&mut MotionFeedback)>,
+    pub changed_inputs: Option<fn(&mut MotionFeedback)>,
 }
 
 impl MotionBoard {
@@ -35,7 +35,7 @@ impl MotionBoard {
             telemetry: None,
             published: None,
             estop: [false; ESTOP_CHANNELS],
-            meddle: None,
+            changed_inputs: None,
         }
     }
 
@@ -43,7 +43,7 @@ impl MotionBoard {
     pub fn tick(&mut self, now_us: u64) -> Option<PathState> {
         let mut feedback = self.plant.advance(&self.command);
         feedback.estop = self.estop;
-        if let Some(change) = self.meddle {
+        if let Some(change) = self.changed_inputs {
             change(&mut feedback);
         }
         let truth = Some(self.plant.truth());

@@ -18,7 +18,7 @@ pub struct TrackerBoard {
     /// Channels of the emergency stop that are open.
     pub estop: [bool; ESTOP_CHANNELS],
     /// What its inputs read otherwise than its machine is.
-    pub meddle: Option<fn(&mut SlideFeedback)>,
+    pub changed_inputs: Option<fn(&mut SlideFeedback)>,
     /// Its processor stands still.
     pub frozen: bool,
 }
@@ -33,7 +33,7 @@ impl TrackerBoard {
             telemetry: None,
             published: None,
             estop: [false; ESTOP_CHANNELS],
-            meddle: None,
+            changed_inputs: None,
             frozen: false,
         }
     }
@@ -43,7 +43,7 @@ impl TrackerBoard {
         let strobes = self.controller.strobe(1);
         let mut feedback = self.plant.advance(&self.command);
         feedback.estop = self.estop;
-        if let Some(change) = self.meddle {
+        if let Some(change) = self.changed_inputs {
             change(&mut feedback);
         }
         let truth = Some(self.plant.truth());

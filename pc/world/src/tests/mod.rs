@@ -1,4 +1,4 @@
-//! What tests of several files share: a machine, and what its boards tell.
+//! Shared by tests of several files: a machine, and telemetry of its boards.
 
 mod evaluation;
 

@@ -31,10 +31,10 @@ pub enum ArcError {
     #[error("zero radius: the start of the arc is its centre")]
     ZeroRadius,
     /// The axis has no direction.
-    #[error("zero axis: the arc lies in no plane")]
+    #[error("zero axis: the plane of the arc is undefined")]
     ZeroAxis,
     /// A coordinate is infinite or not a number.
-    #[error("not finite: a coordinate of the arc is no number")]
+    #[error("not finite: a coordinate of the arc is not a number")]
     NotFinite,
 }
 

@@ -13,7 +13,7 @@ pub(super) struct LoadedPath {
     pub space: PathSpace,
     /// Limits along it, for run-ups, and the highest feed so far.
     pub limits: SpeedLimits,
-    /// Where it begins: the planner was started there, and nobody moved since.
+    /// Where it begins: the planner was started there, and the axes have not moved since.
     pub start: Option<[f64; AXES]>,
     /// Elements taken.
     pub elements: u32,

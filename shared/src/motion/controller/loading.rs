@@ -1,4 +1,4 @@
-//! A path comes in: its beginning, its elements, its events.
+//! Loading a path: its beginning, its elements, its events.
 
 use super::MotionController;
 use super::loaded::LoadedPath;
@@ -16,7 +16,7 @@ use core::ops::RangeInclusive;
 const ACCELERATION: RangeInclusive<f64> = 1.0..=1e7;
 /// Jerks \[mm/s³\]: from none to the full acceleration within a second at least, and within a servo tick at most.
 const JERK: RangeInclusive<f64> = 1.0..=4e10;
-/// Tolerances \[mm\]: less than a grating tells, and more than a machine is long, is a mistake.
+/// Tolerances \[mm\]: less than a grating resolves, and more than a machine is long, is a mistake.
 const TOLERANCE: RangeInclusive<f64> = 1e-6..=1e4;
 /// A path begins where the axes stand, to this much (mm or rad).
 const START_TOLERANCE: f64 = 2e-6;

@@ -49,7 +49,7 @@ impl MotionController {
         let running = self.state == State::Running;
         let ends = output.at_rest && self.path.complete && output.along.s >= self.path.end_s - AT_END;
         if running && (ends || !self.beams.tracking()) {
-            // Back on the path before it ends: the next one goes on there.
+            // Back on the path before it ends: the next one continues there.
             self.superimposed.want(PoseOffset::NONE);
         }
         let goes = running && (ends || !output.at_rest);
@@ -158,7 +158,7 @@ impl MotionController {
         }
     }
 
-    /// How far to go back before the path goes on, if it has to be at all \[mm\].
+    /// How far to go back before the path continues, if it has to be at all \[mm\].
     fn run_up(&self) -> Option<f64> {
         let next = self.path.events.front().map(|event| event.s_mm);
         let overlap = self.path.overlap.as_ref()?;

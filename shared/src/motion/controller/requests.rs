@@ -1,4 +1,4 @@
-//! What the PC may ask of the motion board, and what it is told.
+//! Requests of the PC to the motion board, and their responses.
 
 use super::MotionController;
 use super::loaded::LoadedPath;
@@ -220,7 +220,7 @@ impl MotionController {
             elements: self.path.elements,
             room: self.room(),
             speed_override: self.factor,
-            aside: self.superimposed.now(),
+            superimposed: self.superimposed.now(),
             servo_ticks,
             servo_lost,
             path_ticks: self.tick as u32,

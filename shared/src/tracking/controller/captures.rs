@@ -23,12 +23,12 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         let late_us = strobed_us.saturating_sub(input.now_us) + self.strobes.overdue_us;
         self.strobes.was(u32::try_from(late_us).unwrap_or(u32::MAX));
         let motion_time_us = self.clock.to_remote(strobed_us)?;
-        let newest = || self.history.newest().map(|(place, _)| place);
-        let place = self.history.at(motion_time_us).or_else(newest)?;
+        let newest = || self.history.newest().map(|(snapshot, _)| snapshot);
+        let snapshot = self.history.at(motion_time_us).or_else(newest)?;
         let slides = self.slides.map(|slide| slide.position);
         let number = self.captures.push(CaptureRecord {
             motion_time_us,
-            place,
+            snapshot,
             time_us: strobed_us,
             slides,
             answered: [false; SIDES],
@@ -37,8 +37,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             number,
             time_us: strobed_us,
             motion_time_us,
-            s_mm: place.s,
-            path_id: place.path_id,
+            s_mm: snapshot.s,
+            path_id: snapshot.path_id,
             slides_mm: slides,
             truth_mm: input.truth,
         })
@@ -49,29 +49,30 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         let capture = self
             .captures
             .get(measurement.capture)
-            .filter(|capture| capture.place.path_id == self.path.id());
+            .filter(|capture| capture.snapshot.path_id == self.path.id());
         let Some((parameters, capture)) = self.parameters.as_ref().zip(capture) else {
             self.too_old = self.too_old.saturating_add(1);
             return;
         };
         // Seen before it was there to see, or a second time.
-        let believed = capture
+        let plausible = capture
             .answered
             .map(|answered| arrived_us >= capture.time_us && !answered);
         let slides = capture.slides;
         // By now the path states around the strobe are there.
-        let place = self
+        let snapshot = self
             .history
             .between(capture.motion_time_us)
-            .unwrap_or(capture.place);
+            .unwrap_or(capture.snapshot);
         for (side, seen) in measurement.sides.iter().enumerate() {
             if let Some(seen) = seen {
-                if !believed[side] {
+                if !plausible[side] {
                     self.seam.disbelieve(side);
                     continue;
                 }
                 self.captures.answer(measurement.capture, side);
-                self.seam.add(parameters, &self.path, side, &place, &slides, seen);
+                self.seam
+                    .add(parameters, &self.path, side, &snapshot, &slides, seen);
             }
         }
     }

@@ -3,10 +3,10 @@
 use super::TrackerController;
 use crate::io::{Command, DacCode, SIDES, SLIDES, SlideCommand};
 use crate::state::{TrackerFault, TrackerState};
-use crate::tracking::history::Place;
+use crate::tracking::history::PathSnapshot;
 use crate::tracking::law::{LawFlag, SlideTarget};
 use crate::tracking::parameters::TrackerParameters;
-use crate::tracking::seam::{RealHead, Sight, plan};
+use crate::tracking::seam::{RealHead, SeamTarget, plan};
 
 /// A slide that should go beyond its travel and is as near as this to the end has gone as far as it can \[mm\].
 const AT_THE_END: f64 = 0.1;
@@ -17,15 +17,15 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         &mut self,
         parameters: &TrackerParameters,
         motion_now: Option<u64>,
-        place: Option<&Place>,
+        snapshot: Option<&PathSnapshot>,
     ) -> SlideCommand {
-        let on_path = place.filter(|p| p.path_id == self.path.id());
+        let on_path = snapshot.filter(|p| p.path_id == self.path.id());
         if on_path.is_some() && !self.on_path {
             self.jog = None;
         }
         self.on_path = on_path.is_some();
         let tracking = on_path.is_some_and(|p| p.tracking) && self.path.len() >= 2;
-        if self.state == TrackerState::Tracking && place.is_none() {
+        if self.state == TrackerState::Tracking && snapshot.is_none() {
             let silent_ms = motion_now.map_or(u64::MAX, |now| self.silent_us(now)) / 1000;
             self.report(TrackerFault::PathStale {
                 silent_ms: u32::try_from(silent_ms).unwrap_or(u32::MAX),
@@ -53,7 +53,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         };
         let plan = on_path.and_then(|p| plan(parameters, &self.path, p.s, p.speed));
         let targets = match (plan, on_path, self.jog) {
-            (Some(plan), Some(place), _) if tracking => self.seam_targets(parameters, place, &plan),
+            (Some(plan), Some(snapshot), _) if tracking => self.seam_targets(parameters, snapshot, &plan),
             (_, _, Some(jog)) => jog.map(|position| Some(SlideTarget::rest(position))),
             (Some(plan), ..) => plan.map(Some),
             (None, ..) => self.slides.map(|slide| Some(SlideTarget::rest(slide.target))),
@@ -72,7 +72,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     fn seam_targets(
         &mut self,
         parameters: &TrackerParameters,
-        place: &Place,
+        snapshot: &PathSnapshot,
         plan: &[SlideTarget; SLIDES],
     ) -> [Option<SlideTarget>; SLIDES] {
         // Of the newest state as it was: an extrapolated pose would show a bend of the path as a deviation.
@@ -84,11 +84,12 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 .as_ref()
                 .and_then(|(newest, _)| RealHead::new(&parameters.heads, &self.path, newest, side));
             let off = head.map_or([0.0; 2], |head| head.off());
-            let sights = [u, v].map(|slide| self.seam.sight(parameters, slide, place));
+            let sights = [u, v].map(|slide| self.seam.sight(parameters, slide, snapshot));
             let mut in_plan =
                 [u, v].map(|slide| SlideTarget::rest(self.slides[slide].position + off[slide - u]));
             for (i, sight) in sights.iter().enumerate() {
-                if let Some(target) = self.in_plan(parameters, place, (u + i, off[i]), sight, &plan[u + i]) {
+                if let Some(target) = self.in_plan(parameters, snapshot, (u + i, off[i]), sight, &plan[u + i])
+                {
                     in_plan[i] = target;
                 }
             }
@@ -96,10 +97,10 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             for (i, sight) in sights.into_iter().enumerate() {
                 let slide = &mut self.slides[u + i];
                 let away = libm::fabs(real[i].position - slide.position);
-                let seen = matches!(sight, Sight::Seam(_));
+                let seen = matches!(sight, SeamTarget::Seam(_));
                 slide.arrived |= seen && away <= parameters.map.gate;
                 slide.on_seam = seen && away <= parameters.lock;
-                targets[u + i] = (!matches!(sight, Sight::Lost)).then_some(real[i]);
+                targets[u + i] = (!matches!(sight, SeamTarget::Lost)).then_some(real[i]);
             }
         }
         targets
@@ -110,38 +111,38 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     fn in_plan(
         &mut self,
         parameters: &TrackerParameters,
-        place: &Place,
+        snapshot: &PathSnapshot,
         (slide, off): (usize, f64),
-        sight: &Sight,
+        sight: &SeamTarget,
         plan: &SlideTarget,
     ) -> Option<SlideTarget> {
         let side = slide / 2;
         match sight {
-            Sight::Seam(seam) => Some(*seam),
-            Sight::Jump(seam) => {
+            SeamTarget::Seam(seam) => Some(*seam),
+            SeamTarget::Jump(seam) => {
                 self.slides[slide].arrived = false;
                 Some(*seam)
             }
-            Sight::Ahead(beginning) => {
-                self.not_there_yet(slide, place);
+            SeamTarget::Ahead(beginning) => {
+                self.not_there_yet(slide, snapshot);
                 Some(*beginning)
             }
-            Sight::Nowhere(last) => {
-                self.not_there_yet(slide, place);
+            SeamTarget::Nowhere(last) => {
+                self.not_there_yet(slide, snapshot);
                 let about = last.unwrap_or(*plan);
                 if slide % 2 == 1 {
                     return Some(about);
                 }
-                let goes = place.speed > 0.0 && !place.beams[side];
+                let goes = snapshot.speed > 0.0 && !snapshot.beams[side];
                 // Its travel, seen from where the planned path would have the head.
                 let (min, max) = parameters.slides[slide].law.travel;
                 let travel = (min + off, max + off);
                 Some(self.seam_searches[side].step(&parameters.search, about, travel, goes))
             }
-            Sight::Lost => {
+            SeamTarget::Lost => {
                 self.report(TrackerFault::LostSeam {
                     side: side as u8,
-                    s_mm: place.s as f32,
+                    s_mm: snapshot.s as f32,
                 });
                 None
             }
@@ -149,11 +150,11 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     }
 
     /// Slide `i` is on its way to a seam that was not seen where its spot is.
-    fn not_there_yet(&mut self, i: usize, place: &Place) {
-        if place.beams[i / 2] {
+    fn not_there_yet(&mut self, i: usize, snapshot: &PathSnapshot) {
+        if snapshot.beams[i / 2] {
             self.report(TrackerFault::SeamNotSeen {
                 side: i as u8 / 2,
-                s_mm: place.s as f32,
+                s_mm: snapshot.s as f32,
             });
         }
         self.slides[i].arrived = false;

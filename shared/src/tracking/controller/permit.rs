@@ -5,8 +5,9 @@ use crate::protocol::{BeamPermit, Permit};
 use crate::state::TrackerState;
 
 impl<const KNOTS: usize> TrackerController<KNOTS> {
-    /// The permit of this tick; `None` until the motion board was heard. No beam burns on a tracked path unless the
-    /// slides follow the seam and nothing is wrong; none goes on unless its slides are on the seam.
+    /// The permit of this tick; `None` until something was received from the motion board. No beam burns on a
+    /// tracked path unless the slides follow the seam and nothing is wrong; none goes on unless its slides
+    /// are on the seam.
     pub(super) fn permit(&self) -> Option<Permit> {
         let (tick, path_id) = self.history.newest_tick()?;
         let follows = self.state == TrackerState::Tracking && self.faults.is_empty();

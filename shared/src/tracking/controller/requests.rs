@@ -1,4 +1,4 @@
-//! What the PC may ask of the tracker board, and what it is told.
+//! Requests of the PC to the tracker board, and their responses.
 
 use super::TrackerController;
 use crate::io::SLIDES;

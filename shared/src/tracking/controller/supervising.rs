@@ -1,4 +1,4 @@
-//! Slides that do not do what they are told.
+//! Supervision of slides that do not follow their commands.
 
 use super::TrackerController;
 use crate::io::SlideCommand;
@@ -6,8 +6,8 @@ use crate::state::TrackerFault;
 use crate::tracking::parameters::TrackerParameters;
 
 impl<const KNOTS: usize> TrackerController<KNOTS> {
-    /// A slide that does not do what it was told since the last call, `periods` ticks ago, with the drives on. Where
-    /// it stands nobody knows then, until it is homed.
+    /// A slide that did not follow its command since the last call, `periods` ticks ago, with the drives on.
+    /// Its position is unknown then, until it is homed.
     pub(super) fn supervise(&mut self, parameters: &TrackerParameters, periods: u32) -> Option<TrackerFault> {
         let counts = self.feedback.counts;
         for (i, (slide, of)) in self.slides.iter_mut().zip(&parameters.slides).enumerate() {
@@ -19,7 +19,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         None
     }
 
-    /// What the slides are told now.
+    /// The commands to the slides now.
     pub(super) fn told(&mut self, parameters: &TrackerParameters, command: &SlideCommand) {
         for (i, (slide, of)) in self.slides.iter_mut().zip(&parameters.slides).enumerate() {
             if command.enable {

@@ -26,7 +26,7 @@ const OFF: f64 = 1e-3;
 /// The numbers of the curve are none over its arc length: there are none, one is not finite, or somewhere the curve is not as
 /// fast as it should be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("the numbers of the curve are none over its arc length")]
+#[error("the curve is not parametrised by its arc length")]
 pub struct NoCurve;
 
 /// A rational Bézier curve over its arc length, of fixed size.
@@ -76,7 +76,7 @@ impl ArcLengthCurve {
     /// Point \[mm\] and its derivatives over the length `s` \[mm\] gone: unit tangent and curvature vector.
     ///
     /// They are those of the curve at one parameter, to rounding; that parameter belongs to the length `s` as closely as
-    /// it was tabulated. A little outside 0 to the length the curve goes on by its formula.
+    /// it was tabulated. A little outside 0 to the length the curve continues by its formula.
     pub fn at(&self, s: f64) -> Moving {
         let (v, rate) = self.parameter.at(s - self.half_length);
         let over_v = self.curve.at(v);

@@ -1,8 +1,9 @@
 //! Braking, or how slow the machine can be: the speeds that a plan to stop, or one for a lower override, is not below.
 //!
-//! First forward in time, from the commit to rest: at every node the lowest acceleration that the boxes and the past
-//! allow. Where all speeds have come down to what they shall be, the plan settles; from there back in time, so that the
-//! acceleration is let go in time too. If that does not lead back to the speed at the commit, it settles later.
+//! First forward in time, from the commit to rest: at every node the lowest acceleration that the boxes and
+//! the past allow. Where all speeds have come down to the programmed ones, the plan settles; from there back
+//! in time, so that the acceleration is let go in time too. If that does not lead back to the speed at the
+//! commit, it settles later.
 
 use super::horizon::{Horizon, LEAST_WINDOW, Phase};
 use super::jerk_limit::LOOK;
@@ -48,7 +49,7 @@ impl Horizon {
                     node.floor = f32::NEG_INFINITY;
                 }
             }
-            if !self.wish.stop {
+            if !self.wanted.stop {
                 // Nodes far beyond would only take time now; they are planned when it is obeyed.
                 let near = i.max(self.settled) + LEAST_WINDOW;
                 if near < self.last && nodes.at(near - 1).limit > 0.0 {
@@ -97,7 +98,7 @@ impl Horizon {
         }
     }
 
-    /// Opens the boxes of node `i`, once: they were made for going on.
+    /// Opens the boxes of node `i`, once: they were made for continuing.
     fn open<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
         if i < self.opened {
             return;
@@ -112,7 +113,7 @@ impl Horizon {
     /// Begins to let go of the acceleration before node `settled`.
     fn settle<const N: usize>(&mut self, nodes: &mut Nodes<N>, settled: u32) {
         self.settled = settled;
-        if self.wish.stop {
+        if self.wanted.stop {
             self.last = settled;
         }
         let node = nodes.at_mut(settled);
@@ -162,7 +163,7 @@ impl Horizon {
         self.work += (self.settled - self.commit) / LOOKED_AT_FOR_ONE;
         let mut way = 0.5 * lacks / f64::from(steepest);
         let mut settled = self.settled;
-        let end = if self.wish.stop {
+        let end = if self.wanted.stop {
             self.in_force()
         } else {
             self.last - 1

@@ -44,7 +44,7 @@ pub(super) struct Search {
     seen: u32,
     /// Way to the end of the elements seen \[mm\].
     way: f64,
-    door: Door,
+    door: DirectionRange,
     /// What is found if nothing comes before.
     next: Break,
 }
@@ -62,7 +62,7 @@ impl<const E: usize> Ground<'_, E> {
             hint,
             seen: 0,
             way: 0.0,
-            door: Door::open(self.track.along(hint, s)),
+            door: DirectionRange::open(self.track.along(hint, s)),
             next: Break {
                 way: direction * (end - s),
                 real: stop,
@@ -172,13 +172,13 @@ impl<const E: usize> Ground<'_, E> {
 
 /// Directions in which a straight line through the start passes all points so far.
 #[derive(Clone, Copy, Debug)]
-struct Door {
+struct DirectionRange {
     start: Vector3<f64>,
     low: Vector3<f64>,
     high: Vector3<f64>,
 }
 
-impl Door {
+impl DirectionRange {
     fn open(start: Vector3<f64>) -> Self {
         Self {
             start,

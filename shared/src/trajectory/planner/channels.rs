@@ -8,7 +8,7 @@ pub(super) const POSE_CHANNELS: usize = 9;
 pub(super) const ATTITUDE: core::ops::Range<usize> = SHAPED..CHANNELS - 2;
 /// Places nearer than this are one \[mm\].
 pub(super) const SAME: f64 = 1e-9;
-/// A change of direction below this is none.
+/// Smaller changes of direction do not count.
 pub(super) const SMOOTH: f64 = 1e-9;
 
 /// Length of the change of the first channels.

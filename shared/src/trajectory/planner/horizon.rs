@@ -18,7 +18,8 @@ const RELAXED: u32 = 2;
 /// Most nodes that a plan goes beyond the one in force, and the fewest if it has them.
 pub(super) const WINDOW: u32 = 64;
 pub(super) const LEAST_WINDOW: u32 = 32;
-/// Time before the slowing at the end of the plan in force that may be planned anew, in lengths of the output filter,
+/// Time before the slowing at the end of the plan in force that may be planned again, in lengths of the
+/// output filter,
 const SLACK: f64 = 14.0;
 /// and that is, from the first round on.
 const NEAR: f64 = 2.0;
@@ -78,7 +79,7 @@ pub(super) enum Phase {
 
 /// What a plan is for.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wish {
+pub(super) struct PlanRequest {
     /// To come to rest as soon as possible, not at the end of what is known.
     pub stop: bool,
     /// Feed override; 0 to stop.
@@ -118,8 +119,8 @@ pub(super) struct Horizon {
     /// The boxes are those of an earlier plan.
     pub(super) warm: bool,
     /// What the plan being made is for.
-    pub(super) wish: Wish,
-    /// First node at which all speeds are again what they shall be.
+    pub(super) wanted: PlanRequest,
+    /// First node at which all speeds are the wanted ones again.
     pub(super) settled: u32,
     /// First node whose boxes are still those of the plan in force.
     pub(super) opened: u32,
@@ -171,7 +172,7 @@ impl Horizon {
         round: 0,
         relaxed: RELAXED,
         warm: false,
-        wish: Wish {
+        wanted: PlanRequest {
             stop: false,
             factor: 1.0,
         },
@@ -213,16 +214,16 @@ impl Horizon {
 
     /// A plan being made is of no use when the machine is to be slower than that; one for a lower override is finished,
     /// else an override that keeps falling would never be obeyed.
-    pub fn obey(&mut self, wish: Wish) {
-        let faster = self.wish.factor >= self.factor || wish.stop;
-        if wish.factor < self.wish.factor && faster {
+    pub fn obey(&mut self, wanted: PlanRequest) {
+        let faster = self.wanted.factor >= self.factor || wanted.stop;
+        if wanted.factor < self.wanted.factor && faster {
             self.phase = Phase::Waiting;
         }
     }
 
-    /// The plan in force goes on as wished, and it is not yet time to look whether another has to be begun.
-    pub fn early(&mut self, wish: &Wish) -> bool {
-        self.early = if self.goes_on(wish) {
+    /// The plan in force continues as wished, and it is not yet time to look whether another has to be begun.
+    pub fn early(&mut self, wanted: &PlanRequest) -> bool {
+        self.early = if self.goes_on(wanted) {
             self.early.saturating_sub(1)
         } else {
             0
@@ -230,8 +231,8 @@ impl Horizon {
         self.early > 0
     }
 
-    fn goes_on(&self, wish: &Wish) -> bool {
-        !wish.stop && wish.factor == self.factor
+    fn goes_on(&self, wanted: &PlanRequest) -> bool {
+        !wanted.stop && wanted.factor == self.factor
     }
 
     /// Begins a plan, if there is something new, and says so.
@@ -240,14 +241,14 @@ impl Horizon {
         nodes: &mut Nodes<N>,
         player: &mut Player,
         rested: bool,
-        wish: Wish,
+        wanted: PlanRequest,
         bounds: &Bounds,
     ) -> bool {
         // On the way to node `next`, reached in `left`.
         let left = player.left(nodes, self.in_force);
         let mut next = (player.node + 1).min(self.in_force);
-        let goes_on = self.goes_on(&wish);
-        if wish.factor != self.wish.factor {
+        let goes_on = self.goes_on(&wanted);
+        if wanted.factor != self.wanted.factor {
             self.patience = 1;
         }
         // A window that is long enough to stop in, and short enough to be planned before it is passed.
@@ -257,12 +258,12 @@ impl Horizon {
             false => last,
         };
         // A lower override is a matter of the plan in force alone.
-        let slower = !wish.stop && wish.factor < self.factor && player.node < self.in_force;
+        let slower = !wanted.stop && wanted.factor < self.factor && player.node < self.in_force;
         let mut last = match slower {
             true => self.in_force,
             false => ends((nodes.end - 1).min(self.in_force + WINDOW)),
         };
-        let nothing = match wish.stop {
+        let nothing = match wanted.stop {
             true => self.stopping,
             false => last <= self.in_force && goes_on,
         };
@@ -285,7 +286,7 @@ impl Horizon {
             // Where the machine creeps there is time for any number.
             last = ends(last.min(self.in_force.saturating_add(LEAST_WINDOW.max(beyond))));
         }
-        let work = match wish.stop {
+        let work = match wanted.stop {
             true => f64::from(self.patience) * WORK_OF_STOP,
             false => f64::from(last - slowing) * work_of_node,
         };
@@ -302,7 +303,7 @@ impl Horizon {
         }
         let earliest = nodes.before(slowing, next, SLACK * bounds.filter);
         let commit = self.commit(nodes, next, left, lead, earliest);
-        if wish.stop && nodes.at(commit).x <= 0.0 {
+        if wanted.stop && nodes.at(commit).x <= 0.0 {
             // The machine comes to rest there anyway; now it stays.
             (self.in_force, self.stopping) = (commit, true);
             return false;
@@ -315,15 +316,15 @@ impl Horizon {
         let remembered = if rest { 0.0 } else { REMEMBERED * bounds.filter };
         self.history = nodes.before(commit, nodes.first, remembered);
         self.start = nodes.before(slowing.max(commit), commit, NEAR * bounds.filter);
-        (self.commit, self.last) = (commit, if wish.stop { commit + 1 } else { last });
+        (self.commit, self.last) = (commit, if wanted.stop { commit + 1 } else { last });
         (self.warm, self.excess, self.spent) = (true, REST, 0);
         for i in commit..=last {
             let node = nodes.at_mut(i);
-            (node.factor, node.brake, node.floor) = (wish.factor, 0.0, f32::NEG_INFINITY);
+            (node.factor, node.brake, node.floor) = (wanted.factor, 0.0, f32::NEG_INFINITY);
         }
         let node = nodes.at_mut(self.history);
         (node.time, node.trial, node.speed) = (0.0, node.x, libm::sqrt(node.x));
-        self.wish = wish;
+        self.wanted = wanted;
         self.phase = Phase::Ready(self.history);
         true
     }
@@ -357,7 +358,7 @@ impl Horizon {
         };
         let (commit, time) = after(lead, earliest);
         if commit == self.in_force && time < lead {
-            // Little is left: there must be time to go on without a stop.
+            // Little is left: there must be time to continue without a stop.
             return after(0.6 * time, player).0;
         }
         commit
@@ -386,7 +387,7 @@ impl Horizon {
     pub(super) fn restart<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
         let node = nodes.at_mut(self.commit);
         node.brake = node.x;
-        self.braking = self.wish.stop || node.x > 0.0 && self.wish.factor < self.factor;
+        self.braking = self.wanted.stop || node.x > 0.0 && self.wanted.factor < self.factor;
         if self.braking {
             self.start = self.commit;
         }
@@ -453,7 +454,7 @@ impl Horizon {
             node.lasts = end - node.time;
         }
         self.work += self.taking();
-        if !self.wish.stop {
+        if !self.wanted.stop {
             let more = f64::from(self.spent) / f64::from(self.last - self.start) - self.work_of_node;
             self.work_of_node += if more > 0.0 { RISE } else { FALL } * more;
         }
@@ -461,8 +462,8 @@ impl Horizon {
         self.taken += 1;
         self.relaxed = RELAXED;
         self.patience = 1;
-        self.stopping = self.wish.stop;
-        self.factor = self.wish.factor;
+        self.stopping = self.wanted.stop;
+        self.factor = self.wanted.factor;
         self.phase = Phase::Waiting;
     }
 }

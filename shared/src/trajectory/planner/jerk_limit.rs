@@ -205,7 +205,8 @@ mod tests {
     use crate::trajectory::planner::node::{Node, Side};
     use proptest::prelude::*;
 
-    /// Boxes that the machine keeps only by coming to all but a rest, in an interval behind which it could go on.
+    /// Boxes that the machine keeps only by coming to all but a rest, in an interval behind which it could
+    /// continue.
     #[test]
     fn boxes_do_not_bring_it_to_rest() {
         let side = Side {

@@ -36,7 +36,7 @@ use crate::kinematics::{AxisMotion, Kinematics};
 use channels::POSE_CHANNELS;
 use filter::Filter;
 use grid::{Grid, most_work};
-use horizon::{Horizon, WINDOW, WORK, Wish};
+use horizon::{Horizon, PlanRequest, WINDOW, WORK};
 use limits::Bounds;
 use node::Nodes;
 use player::Player;
@@ -99,7 +99,7 @@ pub enum Way {
     Back,
 }
 
-/// What the machine shall do at one tick.
+/// References of the machine at one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Output {
     /// References of the axes.
@@ -207,7 +207,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     /// One path tick: a bounded share of the planning, and the next references.
     ///
     /// # Errors
-    /// A place ahead that the machine cannot be at, as soon as it rests before that and shall go on.
+    /// A place ahead that the machine cannot be at, as soon as it is at rest before that and is to continue.
     pub fn tick(&mut self, kinematics: &Kinematics) -> Result<Output, Unreachable> {
         self.plan(kinematics)?;
         self.play(kinematics)
@@ -218,7 +218,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         let mut work = WORK;
         self.idle = false;
         if !self.horizon.waiting() {
-            self.horizon.obey(self.wish());
+            self.horizon.obey(self.wanted());
         }
         // Not only when no more nodes can be had.
         if self.horizon.waiting() && self.nodes.end > self.horizon.in_force() + WINDOW {
@@ -283,7 +283,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         }
     }
 
-    /// The nodes lead the way that the machine shall go.
+    /// The nodes lead in the direction in which the machine is to go.
     fn along(&self) -> bool {
         match self.way {
             Way::Forward => self.grid.direction() > 0.0,
@@ -292,10 +292,10 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         }
     }
 
-    /// What a plan shall be for now.
-    fn wish(&self) -> Wish {
+    /// What the plan is for now.
+    fn wanted(&self) -> PlanRequest {
         let stop = !self.along() || self.factor <= 0.0;
-        Wish {
+        PlanRequest {
             stop,
             factor: if stop { 0.0 } else { self.factor },
         }
@@ -306,7 +306,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         self.resting >= self.bounds.filter_ticks as u32
     }
 
-    /// At rest at the end of the plan in force, and not because it shall be.
+    /// At rest at the end of the plan in force, without a hold or stop.
     fn rests(&self) -> bool {
         let ended = self.player.node >= self.horizon.in_force();
         self.rested() && ended && self.way != Way::Hold && self.factor > 0.0
@@ -316,16 +316,16 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     /// it was: none if it did not.
     #[inline]
     fn begin(&mut self) -> u32 {
-        let wish = self.wish();
-        if self.horizon.early(&wish) {
+        let wanted = self.wanted();
+        if self.horizon.early(&wanted) {
             return 0;
         }
-        self.begin_for(wish)
+        self.begin_for(wanted)
     }
 
     /// A call of its own: in most ticks it is too early for it.
     #[inline(never)]
-    fn begin_for(&mut self, wish: Wish) -> u32 {
+    fn begin_for(&mut self, wanted: PlanRequest) -> u32 {
         let along = self.along();
         let last = self.horizon.in_force();
         let inside = last + 1 < self.nodes.end && self.nodes.at(last).limit > 0.0;
@@ -341,7 +341,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
         let node = self.player.node;
         let begun = self
             .horizon
-            .begin(&mut self.nodes, &mut self.player, rested, wish, &self.bounds);
+            .begin(&mut self.nodes, &mut self.player, rested, wanted, &self.bounds);
         match (begun, self.player.node < node) {
             (_, true) => BEGIN + SPLIT,
             (true, false) => BEGIN,

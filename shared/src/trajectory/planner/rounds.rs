@@ -69,7 +69,7 @@ impl Horizon {
     }
 
     /// The rounds have not led to a good plan. One from rest may be slower as a whole: accelerations go with x, and
-    /// so do their changes of acceleration. Otherwise the plan in force goes on, to rest.
+    /// so do their changes of acceleration. Otherwise the plan in force continues, to rest.
     fn last_resort<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
         if nodes.at(self.commit).x > 0.0 {
             self.give_up();

@@ -10,7 +10,7 @@ use crate::trajectory::reference::at_unit_speed;
 use crate::trajectory::{PathSpace, ReferenceError, Unreachable};
 use core::array::from_fn;
 
-/// Acceleration by a bend that is none, as a share of the limit.
+/// Acceleration by a bend that does not count, as a share of the limit.
 const NO_BEND: f32 = 1e-6;
 
 /// What the grid is made of.

@@ -8,13 +8,13 @@ use thiserror::Error;
 
 /// Channels of two elements that meet may differ by this much (mm, rad).
 const GAP: f64 = 1e-5;
-/// No path is longer than this \[mm\], 1000 km, and no channel farther from 0: single micrometres are still told apart
-/// there.
+/// No path is longer than this \[mm\], 1000 km, and no channel farther from 0: single micrometres are still
+/// resolved there.
 pub const LONGEST: f64 = 1e9;
 /// No channel changes by more than this for each mm of path length: a turn of some degrees about a tip that stands may be
 /// a short path.
 const STEEPEST: f64 = 1e6;
-/// Nobody goes so fast \[mm/s\], or so slowly: beyond that squares are none that single precision tells from others.
+/// Highest and lowest feed \[mm/s\]: beyond them the squares cannot be resolved in single precision.
 const FASTEST: f64 = 1e6;
 const SLOWEST: f64 = 1e-6;
 /// Elements that are kept behind the one that the machine is on.
@@ -50,12 +50,12 @@ pub(super) struct Piece {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum PushError {
     /// No room for another element now; there will be when some have been passed.
-    #[error("the planner holds all the elements it can; wait until it has room")]
+    #[error("the planner is full; send the element again when it has room")]
     Full,
     /// Length or feed is not above zero, a number is not finite, or one is out of all proportion: a path of more than
     /// 1000 km, a feed above 1 km/s or below 1 nm/s, a channel that changes by more than 10⁶ for each mm.
     #[error(
-        "line {line}: the element has no length, no feed, or a number that is not finite or out of all proportion"
+        "line {line}: the element has no length, no feed, or a number that is not finite or far too large"
     )]
     Unsound {
         /// Line of the program.
@@ -78,7 +78,7 @@ impl Piece {
     }
 }
 
-/// A queue of up to `E` elements, a power of two. Elements have serial numbers, which go on for ever.
+/// A queue of up to `E` elements, a power of two. Elements have serial numbers, which continue for ever.
 #[derive(Clone, Debug)]
 pub(super) struct Track<const E: usize> {
     pieces: [Option<Piece>; E],

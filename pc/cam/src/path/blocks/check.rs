@@ -1,9 +1,9 @@
-//! Going through the blocks of a path once: what is wrong with them, and what they come to.
+//! Checks all blocks of a path once, and sums them up.
 
 use super::walk::Step;
 use crate::path::limits::{CHECK_STEP, Demand, Worst, check_continuous};
 use crate::path::shape::Goal;
-use crate::path::targets::Stand;
+use crate::path::targets::RestState;
 use crate::path::{Bound, MAX_EVENTS, PathError, Planner, Speeds};
 use shared::protocol::PathAction;
 use shared::trajectory::{Element, Join, PathSpace};
@@ -36,7 +36,7 @@ pub struct Summary {
 /// What is known of the blocks gone through.
 pub(super) struct Check<'a> {
     planner: &'a Planner,
-    stand: Stand,
+    stand: RestState,
     before: Option<Demand>,
     travel: Worst,
     feed: Worst,
@@ -46,7 +46,7 @@ pub(super) struct Check<'a> {
 
 impl<'a> Check<'a> {
     /// Nothing yet of a path that begins where the machine stands.
-    pub(super) fn new(planner: &'a Planner, stand: &Stand) -> Self {
+    pub(super) fn new(planner: &'a Planner, stand: &RestState) -> Self {
         Self {
             planner,
             stand: *stand,
@@ -136,7 +136,7 @@ impl<'a> Check<'a> {
     }
 
     /// The sum of it, and the drive that allows the least speed; the machine then stands at the end.
-    pub(super) fn finish(self, stand: &mut Stand) -> Result<(Summary, Option<Bound>), PathError> {
+    pub(super) fn finish(self, stand: &mut RestState) -> Result<(Summary, Option<Bound>), PathError> {
         self.travel.found()?;
         self.feed.found()?;
         let mut summary = self.summary;

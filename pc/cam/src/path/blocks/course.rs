@@ -1,4 +1,4 @@
-//! Where a path is, by its length.
+//! Evaluation of a path at a path length.
 
 use super::{Blocks, Leg};
 use crate::path::{CAPACITY, PathError};
@@ -10,7 +10,7 @@ use std::fmt;
 /// Elements that are kept behind the farthest place looked at.
 const KEPT: usize = 64;
 
-/// A path by its length. Looking at places one after the other is cheap; going far back begins anew.
+/// A path by its length. Looking at places one after the other is cheap; going far back starts again.
 #[derive(Debug)]
 pub enum Course {
     /// By its knots.

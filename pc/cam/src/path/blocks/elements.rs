@@ -11,8 +11,9 @@ use std::f64::consts::TAU;
 const SAME: f64 = 1e-9;
 
 impl Block {
-    /// The motion at `speed` \[mm/s\], going on by `join`; its attitude comes and goes on by `turns`. Where that turns
-    /// there are so many elements that their cubics are off by [`MAX_ERROR`] at most in every component of T and N.
+    /// The motion at `speed` \[mm/s\], continuing by `join`; its attitude comes and continues by `turns`.
+    /// Where that turns there are so many elements that their cubics are off by [`MAX_ERROR`] at most in
+    /// every component of T and N.
     pub(super) fn elements(
         &self,
         planner: &Planner,

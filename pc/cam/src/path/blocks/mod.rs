@@ -12,7 +12,7 @@ pub use check::Summary;
 pub use course::Course;
 
 use super::feeds::Feeds;
-use super::targets::Stand;
+use super::targets::RestState;
 use super::{PathError, PlannedPath, Planner};
 use check::Check;
 use nc::{Motion, Move};
@@ -40,7 +40,7 @@ pub struct Leg {
 pub struct Blocks {
     planner: Arc<Planner>,
     moves: Arc<dyn Fn() -> Moves + Send + Sync>,
-    from: Stand,
+    from: RestState,
     feeds: Feeds,
     summary: Summary,
 }
@@ -60,7 +60,7 @@ impl Planner {
     pub(super) fn exact_path(
         &self,
         moves: Arc<dyn Fn() -> Moves + Send + Sync>,
-        stand: &mut Stand,
+        stand: &mut RestState,
         speed_mm_s: Option<f64>,
     ) -> Result<PlannedPath, PathError> {
         let planner = Arc::new(self.clone());

@@ -1,10 +1,10 @@
-//! From moves to blocks, and how each of them goes on into the next.
+//! From moves to blocks, and how each of them continues into the next.
 
 use super::Moves;
 use crate::path::block::Block;
 use crate::path::exact::{Join as Turning, MAX_TURN};
 use crate::path::feeds::Feeds;
-use crate::path::targets::Stand;
+use crate::path::targets::RestState;
 use crate::path::{PathError, Planner, TOLERANCE, Tip};
 use nc::{Move, PathControl};
 use shared::geometry::angle;
@@ -12,7 +12,7 @@ use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{Element, Join, Tolerance};
 use std::sync::Arc;
 
-/// A block of a path, and how it goes on.
+/// A block of a path, and how it continues.
 pub(super) struct Step {
     pub(super) block: Block,
     /// Where it leads.
@@ -50,7 +50,7 @@ impl Step {
         self.actions.iter().map(event).collect()
     }
 
-    /// Decides how it goes on into `next`.
+    /// Decides how it continues into `next`.
     fn go_on_to(&mut self, next: &mut Step, planner: &Planner) {
         let direction = self.block.direction(self.block.length);
         let turn = angle(&direction, &next.block.direction(0.0));
@@ -96,7 +96,7 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    pub(super) fn new(planner: Arc<Planner>, moves: Moves, from: &Stand, feeds: Feeds) -> Self {
+    pub(super) fn new(planner: Arc<Planner>, moves: Moves, from: &RestState, feeds: Feeds) -> Self {
         Self {
             planner,
             moves,

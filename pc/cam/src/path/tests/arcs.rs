@@ -11,7 +11,7 @@ fn stir(body: &str) -> Result<Vec<PlannedPath>, PathError> {
     plan_on("stir-gantry", &format!("{STIR}{body}\nM2"))
 }
 
-/// Largest value of `error` along a path, in steps of 0.05 mm; it is told s, position and T.
+/// Largest value of `error` along a path, in steps of 0.05 mm; its arguments are s, position and T.
 fn largest(planned: &PlannedPath, error: impl Fn(f64, Vector3<f64>, Vector3<f64>) -> f64) -> f64 {
     let path = planned.path();
     let count = (planned.length_mm() / 0.05) as usize;
@@ -116,12 +116,12 @@ fn arcs_that_do_not_exist_are_named() {
     );
     assert_eq!(
         message("G3 R10"),
-        "line 5, column 4: R tells no centre for a full circle; use I J K"
+        "line 5, column 4: R does not define the centre of a full circle; use I J K"
     );
     assert!(message("G3 X650 I0 J0").contains("zero radius"));
 }
 
-/// With G61 the path stops exactly at a corner and goes on; what is switched is at its place.
+/// With G61 the path stops exactly at a corner and continues; what is switched is at its place.
 #[test]
 fn a_corner_stops_exactly_with_g61() {
     let body =

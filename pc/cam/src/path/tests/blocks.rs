@@ -136,7 +136,8 @@ fn the_attitude_along_a_line_is_as_close_as_said() {
     assert!(value < 1e-9 && slope < 1e-9, "{value} {slope}");
 }
 
-/// Line, arc and three turns with the head turning: where they join smoothly nothing steps, and C goes on as it was.
+/// Line, arc and three turns with the head turning: where they join smoothly nothing steps, and C continues
+/// as it was.
 #[test]
 fn rotary_axes_come_and_go_evenly_at_joins() {
     let paths = stir("G64 P0.05\nG1 X650\nG3 X700 Y550 J50 C90\nG3 X700 Y550 I-50 P3 C180\nG1 Y600");
@@ -210,7 +211,7 @@ fn a_nurbs_reaches_the_board_as_curves() {
     }
 }
 
-/// The worst of the whole path is told, with its line.
+/// The worst of the whole path is reported, with its line.
 #[test]
 fn what_the_axes_cannot_do_is_told_with_the_line_of_its_block() {
     let message = |body: &str| {

@@ -73,7 +73,7 @@ fn g61_and_a_close_tolerance_stop_at_bends() {
     // The closest one counts, and corners that no spline takes need no other word.
     let mixed = plan("F3000\nG64 P1\nG1 X1100\nG64 P0.01\nX1200 Y1010\nX1300\nY1100").unwrap();
     assert_eq!(mixed.len(), 5);
-    // What is in line goes on.
+    // What is in line continues.
     assert_eq!(plan("F3000\nG61\nG1 X1100\nX1200\nX1300").unwrap().len(), 2);
 }
 
@@ -117,7 +117,7 @@ fn g93_gives_blocks_their_time() {
 fn a_time_that_the_axes_cannot_keep_is_named() {
     let error = plan("G93\nG1 X1100 F4\nX1500 F120").unwrap_err();
     assert!(
-        matches!(error, PathError::Feed { place: Place { line: 5, .. }, feed, .. } if (feed - 48_000.0).abs() < 1e-6),
+        matches!(error, PathError::Feed { place: SourcePosition { line: 5, .. }, feed, .. } if (feed - 48_000.0).abs() < 1e-6),
         "{error}"
     );
 }

@@ -52,7 +52,7 @@ fn pieces_begin_with_the_feed_of_their_first_block() {
 fn a_feed_that_the_axes_cannot_follow_is_named_by_its_block() {
     let error = plan("F600\nG1 X1010 Y1010\nF40000\nX1300 Y1300\nF600\nX1310 Y1310").unwrap_err();
     assert!(
-        matches!(error, PathError::Feed { place: Place { line: 6, .. }, feed, .. } if (feed - 40_000.0).abs() < 1e-6),
+        matches!(error, PathError::Feed { place: SourcePosition { line: 6, .. }, feed, .. } if (feed - 40_000.0).abs() < 1e-6),
         "{error}"
     );
 }
@@ -68,7 +68,7 @@ fn one_speed_does_not_replace_several_feeds() {
         |body: &str| planner.program(&program(body), &[100.0, 100.0, 900.0, 0.0, 0.0, 0.0], Some(40.0));
     assert_eq!(
         plan("F600\nG1 X1100\nF900 X1200").unwrap_err().to_string(),
-        "line 4, column 4: the path has several feeds, one speed cannot take their place; leave the speed out, or write one F"
+        "line 4, column 4: the path has several feeds, which one speed cannot replace; leave the speed out, or write one F"
     );
     let paths = plan("F600\nG1 X1100\nG0 Z150\nF900 G1 X1200").unwrap();
     assert_eq!((paths[1].limits.velocity, paths[3].limits.velocity), (40.0, 40.0));
@@ -85,7 +85,7 @@ fn more_changes_than_the_board_holds_are_refused() {
     assert_eq!((path.steps.len(), path.events.len()), (MAX_EVENTS, 0));
     let error = plan(&blocks(MAX_EVENTS + 2)).unwrap_err();
     assert!(
-        matches!(error, PathError::TooManyEvents { place: Place { line: 4, .. }, events } if events == MAX_EVENTS + 1)
+        matches!(error, PathError::TooManyEvents { place: SourcePosition { line: 4, .. }, events } if events == MAX_EVENTS + 1)
     );
 }
 

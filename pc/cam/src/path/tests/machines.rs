@@ -42,11 +42,11 @@ fn the_first_motion_says_how_all_rotary_axes_stand() {
     let error = plan_on("pipe-welder", "G43.4\nG0 X100 Y0 Z240 B0\nM2").unwrap_err();
     assert_eq!(
         error.to_string(),
-        "line 2, column 4: the first motion of the tip must say how all axes of pipe-welder stand: C missing"
+        "line 2, column 4: the first motion of the tip must give the positions of all axes of pipe-welder: C missing"
     );
     let error = plan_on("wire-arc", "G53 G0 B0\nG43.4\nG0 X0 Y0 Z150\nM2").unwrap_err();
     assert!(
-        matches!(error, PathError::Incomplete { place: Place { line: 3, .. }, missing, .. } if missing == "A B C")
+        matches!(error, PathError::Incomplete { place: SourcePosition { line: 3, .. }, missing, .. } if missing == "A B C")
     );
 }
 
@@ -100,7 +100,7 @@ fn an_axis_turns_on_with_the_tip_and_comes_back_in_axis_space() {
 fn a_tip_that_contradicts_its_axis_is_named() {
     assert_eq!(
         pipe("G0 X0 Y40 C80").unwrap_err().to_string(),
-        "line 4, column 4: C would come to 90.000°, not to 80.000°: the tip decides how this axis stands; correct the \
+        "line 4, column 4: C would come to 90.000°, not to 80.000°: the position of this axis follows from the tip; correct the \
          word, or X Y Z"
     );
     assert!(pipe("G0 X0 Y40 C90").is_ok());
@@ -113,7 +113,7 @@ fn a_block_that_turns_more_than_half_a_turn_is_refused() {
     let plan = |body: &str| plan_on("ac-head", &format!("{start}{body}\nM2"));
     let error = plan("G0 C100").unwrap_err();
     assert!(
-        matches!(error, PathError::Turned { place: Place { line: 4, .. }, axis: "C", programmed, reached, .. }
+        matches!(error, PathError::Turned { place: SourcePosition { line: 4, .. }, axis: "C", programmed, reached, .. }
             if (programmed - 100.0).abs() < 1e-9 && (reached + 260.0).abs() < 1e-6),
         "{error}"
     );
@@ -121,12 +121,12 @@ fn a_block_that_turns_more_than_half_a_turn_is_refused() {
     assert!((end("ac-head", &paths)[5] - 100.0).abs() < 1e-6);
 }
 
-/// The tool would go on turning evenly, but no axis can follow from one end of its turn to the other.
+/// The tool would continue turning evenly, but no axis can follow from one end of its turn to the other.
 #[test]
 fn an_axis_that_would_jump_is_named() {
     let error = crate::path::tests::plan("G0 Z300\nG0 A-90\nG0 A95").unwrap_err();
     assert!(
-        matches!(error, PathError::Jump { place: Place { line: 5, .. }, axis: "A", from, to } if from < -175.0 && to > 175.0),
+        matches!(error, PathError::Jump { place: SourcePosition { line: 5, .. }, axis: "A", from, to } if from < -175.0 && to > 175.0),
         "{error}"
     );
     assert!(crate::path::tests::plan("G0 Z300\nG0 A-90\nG0 A0\nG0 A95").is_ok());
@@ -152,7 +152,7 @@ fn where_the_pose_leaves_an_axis_free_it_stays() {
         matches!(
             error,
             PathError::Kinematics {
-                place: Place { line: 3, .. },
+                place: SourcePosition { line: 3, .. },
                 ..
             }
         ),
@@ -160,7 +160,7 @@ fn where_the_pose_leaves_an_axis_free_it_stays() {
     );
 }
 
-/// Named axes go straight in axis space, the others stay, and the program goes on from there.
+/// Named axes go straight in axis space, the others stay, and the program continues from there.
 #[test]
 fn g53_moves_the_axes_named_and_the_tip_goes_on_from_there() {
     let body = "G43.4\nG0 X30 Y20 Z150 A5 B10 C20\nG53 G0 Z500 C-100\nG0 X30 Y20 Z160\nM2";
@@ -192,7 +192,7 @@ fn g53_moves_the_axes_named_and_the_tip_goes_on_from_there() {
         matches!(
             error,
             PathError::Travel {
-                place: Place { line: 1, .. },
+                place: SourcePosition { line: 1, .. },
                 axis: "Z",
                 ..
             }

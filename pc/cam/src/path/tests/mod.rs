@@ -11,7 +11,7 @@ mod outputs;
 use super::*;
 use crate::attitude::interpolate;
 use nalgebra::Vector3;
-use nc::{Options, Place, interpret};
+use nc::{Options, SourcePosition, interpret};
 use shared::geometry::angle;
 use shared::trajectory::{SpeedLimits, at_unit_speed, axes_at};
 use std::fmt::Write;
@@ -205,12 +205,12 @@ fn a_feed_above_the_axes_names_the_limiting_one() {
 fn what_is_not_smooth_is_refused_with_its_line() {
     let error = plan("F600\nG1 X1010\nY1010").unwrap_err();
     assert!(
-        matches!(error, PathError::Corner { place: Place { line: 5, .. }, degrees } if (degrees - 90.0).abs() < 1e-9)
+        matches!(error, PathError::Corner { place: SourcePosition { line: 5, .. }, degrees } if (degrees - 90.0).abs() < 1e-9)
     );
     assert_eq!(
         plan("F600\nG1 A10").unwrap_err(),
         PathError::NoTravel {
-            place: Place { line: 4, column: 4 }
+            place: SourcePosition { line: 4, column: 4 }
         }
     );
     assert!(plan("F600\nG61.1\nG1 X1010\nY1010").is_ok());
@@ -222,7 +222,7 @@ fn what_is_not_smooth_is_refused_with_its_line() {
     assert_eq!(
         error,
         PathError::TooLong {
-            place: Place { line: 4, column: 4 },
+            place: SourcePosition { line: 4, column: 4 },
             knots: CAPACITY + 1
         }
     );
@@ -255,7 +255,7 @@ fn more_power_than_the_beam_gives_is_refused_with_its_line() {
     let error = plan("M67 E1 Q4000.5\nF600\nG1 X1010").unwrap_err();
     assert_eq!(
         error.to_string(),
-        "line 3, column 1: 4000.5 W are more than beam 2 gives, at most 4000 W"
+        "line 3, column 1: 4000.5 W is more than the maximum of beam 2, 4000 W"
     );
     assert!(plan("M67 E1 Q4000\nF600\nG1 X1010").is_ok());
 }

@@ -113,7 +113,7 @@ fn a_curve_has_its_time_with_g93_and_its_limit_by_its_bends() {
         matches!(
             error,
             PathError::Feed {
-                place: Place { line: 4, column: 1 },
+                place: SourcePosition { line: 4, column: 1 },
                 ..
             }
         ),

@@ -94,7 +94,7 @@ fn machines_say_what_their_spindle_does_not_do() {
     );
     assert_eq!(
         message("M3 S3001"),
-        "line 5, column 1: 3001 r/min are more than the spindle gives, at most 3000 r/min"
+        "line 5, column 1: 3001 r/min is more than the maximum of the spindle, 3000 r/min"
     );
     for machine in ["dual-beam-gantry", "pipe-welder", "ac-head", "wire-arc"] {
         let error = plan_on(machine, "S500\nM3\nM2").unwrap_err().to_string();

@@ -5,7 +5,7 @@ mod runs;
 mod speeds;
 mod wrong;
 
-use crate::{Part, Place, Plan};
+use crate::{Part, PartContext, Plan};
 use cam::path::{PlannedPath, Planner};
 use config::machine::MachineFile;
 use nc::{Motion, Options, interpret};
@@ -40,12 +40,12 @@ fn leaf() -> String {
 fn plan(part: &str, machine: &MachineFile) -> anyhow::Result<Plan> {
     let part: Part = toml::from_str(part)?;
     let directory = shipped("programs");
-    let place = Place {
+    let context = PartContext {
         machine,
         directory: &directory,
         title: "leaf",
     };
-    part.kind().plan(&place)
+    part.kind().plan(&context)
 }
 
 /// The paths of the layers.

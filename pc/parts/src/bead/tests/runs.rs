@@ -45,7 +45,7 @@ fn judged(
     }
     let part: Part = toml::from_str(part)?;
     let directory = shipped("programs");
-    let place = Place {
+    let context = PartContext {
         machine: &machine,
         directory: &directory,
         title: "",
@@ -57,7 +57,7 @@ fn judged(
         samples: &samples,
         evaluation: &Default::default(),
     };
-    part.kind().judge(&place, &run)
+    part.kind().judge(&context, &run)
 }
 
 fn figure(judgement: &Judgement, key: &str) -> f64 {
@@ -185,13 +185,13 @@ fn a_run_without_arc_or_of_another_program_is_no_bead() {
             evaluation: &Default::default(),
         };
         let directory = shipped("programs");
-        let place = Place {
+        let context = PartContext {
             machine: &machine,
             directory: &directory,
             title: "",
         };
         let part: Part = toml::from_str(part).unwrap();
-        part.kind().judge(&place, &run).unwrap_err().to_string()
+        part.kind().judge(&context, &run).unwrap_err().to_string()
     };
     assert!(judge(QUARTER, &[]).contains("arc never burnt"));
     let sample = RunSample {

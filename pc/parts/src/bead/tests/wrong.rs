@@ -183,7 +183,7 @@ fn a_bead_of_too_many_points_is_refused_with_the_number() {
     );
     let error = error(&part);
     assert!(
-        error.contains("more than 512 points") && error.contains("near ("),
+        error.contains("more than the 512 points") && error.contains("near ("),
         "{error}"
     );
 }

@@ -46,7 +46,7 @@ fn shipped(panel: &Panel) -> Vec<TaughtPoint> {
 fn plan(panel: &Panel, points: Vec<TaughtPoint>, machine: &MachineFile) -> anyhow::Result<Plan> {
     let mut panel = panel.clone();
     panel.set_points(points);
-    panel.plan(&Place {
+    panel.plan(&PartContext {
         machine,
         directory: Path::new(""),
         title: "panel",
@@ -172,12 +172,12 @@ fn a_closed_cut_ends_where_it_begins() {
 #[test]
 fn an_untaught_panel_says_how_to_teach_it() {
     let machine = machine();
-    let place = Place {
+    let context = PartContext {
         machine: &machine,
         directory: Path::new(""),
         title: "panel",
     };
-    let error = panel().plan(&place).unwrap_err().to_string();
+    let error = panel().plan(&context).unwrap_err().to_string();
     assert!(error.contains("seamwright teach"), "{error}");
 }
 

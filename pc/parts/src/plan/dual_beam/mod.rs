@@ -21,7 +21,7 @@ use shared::geometry::{Pose, PoseError, angle};
 use shared::kinematics::KinematicsError;
 use shared::parameter::ParameterError;
 use shared::units::DEG_PER_RAD;
-use teach::seam::{Drawing, Stance};
+use teach::seam::{Drawing, MachinePose};
 use thiserror::Error;
 
 /// Largest chord \[mm\], distance of the curve from it \[mm\] and turn over it \[rad\].
@@ -102,10 +102,10 @@ impl DualBeamPlan {
     }
 
     /// The stance in which cameras that look `lead_mm` ahead see the beginning of the weld.
-    pub fn stance_before(&self, lead_mm: f64) -> Stance {
+    pub fn stance_before(&self, lead_mm: f64) -> MachinePose {
         let first = self.points[self.seam.0];
         let pose = first.pose;
-        Stance {
+        MachinePose {
             pose: Pose {
                 position: pose.position - pose.tangent * lead_mm,
                 ..pose
@@ -140,8 +140,8 @@ pub enum PlanError {
         /// Why.
         source: LocateError,
     },
-    /// The pose is none.
-    #[error("at {s:.1} mm of seam 1 the head has no pose: {source}")]
+    /// The pose is not valid.
+    #[error("at {s:.1} mm of seam 1 no pose of the head is possible: {source}")]
     Pose {
         /// Length along seam 1 \[mm\].
         s: f64,
@@ -172,7 +172,7 @@ pub enum PlanError {
     },
     /// Runs before and after the seam that are longer than a path.
     #[error(
-        "the machine takes {run_mm:.0} mm to speed up and to find the seam, and a path of {CAPACITY} points has no room for \
+        "the machine takes {run_mm:.0} mm to speed up and to find the seam; a path of {CAPACITY} points is too short for \
          that: correct planning, tracking and slides of the machine file"
     )]
     LongRun {

@@ -1,6 +1,6 @@
-//! The closed seams of two pipes over a parameter that goes on evenly all around.
+//! The closed seams of two pipes over a parameter that continues evenly all around.
 
-use super::{Meeting, PipePair, Sheet, TANGENT};
+use super::{Intersection, PipePair, Sheet, TANGENT};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -23,7 +23,7 @@ impl Closed {
     /// The closed seam of `pair` on `sheet`; where a partial meeting has two, that with y_S of this sign.
     pub fn of(pair: &PipePair, sheet: Sheet) -> Self {
         let (beside, main, branch) = (libm::fabs(pair.offset), pair.main_radius, pair.branch_radius);
-        if pair.meeting == Meeting::Full {
+        if pair.meeting == Intersection::Full {
             Self::AroundBranch(sheet.sign())
         } else if branch - beside > main * (1.0 + TANGENT) {
             Self::AroundMain(sheet.sign())

@@ -1,7 +1,7 @@
 //! The closed seam over its length.
 
 use super::closed::{Closed, ROUND};
-use super::{Meeting, PipePair, SaddleError, SeamFrame, SeamPoint, Sheet};
+use super::{Intersection, PipePair, SaddleError, SeamFrame, SeamPoint, Sheet};
 use nalgebra::Vector3;
 use shared::geometry::Moving;
 
@@ -57,7 +57,7 @@ impl PipePair {
     /// values of `sheet`, unless the main pipe passes all through the branch: then [`Sheet::Plus`] is the one
     /// with y_S > 0, [`Sheet::Minus`] the other.
     pub fn curve(&self, sheet: Sheet) -> Result<SaddleCurve, SaddleError> {
-        if self.meeting == Meeting::None {
+        if self.meeting == Intersection::None {
             return Err(SaddleError::Apart {
                 offset: libm::fabs(self.offset),
                 reach: self.main_radius + self.branch_radius,

@@ -12,7 +12,7 @@ pub enum SaddleError {
         angle_deg: f64,
     },
     /// A radius is not above zero.
-    #[error("radius: a {pipe} radius of {radius} mm makes no pipe")]
+    #[error("radius: a {pipe} radius of {radius} mm is not possible; it must be above 0")]
     Radius {
         /// Which pipe.
         pipe: &'static str,
@@ -20,7 +20,7 @@ pub enum SaddleError {
         radius: f64,
     },
     /// The angle or the offset is no number.
-    #[error("not finite: the angle or the offset of the pipes is no number")]
+    #[error("not finite: the angle or the offset of the pipes is not a number")]
     NotFinite,
     /// The branch passes beside the main pipe.
     #[error("the pipes do not meet: the offset of {offset} mm is not below the sum of the radii, {reach} mm")]
@@ -51,8 +51,10 @@ pub enum SaddleError {
         /// x_M \[mm\].
         x: f64,
     },
-    /// Both sheets meet here and the seam does not go on with θ: |W| < 1e-9 R.
-    #[error("vertical tangent in theta at {theta_deg}°: the seam stands still in theta; walk it by length")]
+    /// Both sheets meet here and the seam does not continue with θ: |W| < 1e-9 R.
+    #[error(
+        "vertical tangent in theta at {theta_deg}°: theta does not change along the seam there; use the length as parameter"
+    )]
     VerticalTangent {
         /// θ \[°\].
         theta_deg: f64,

@@ -26,10 +26,10 @@ use std::f64::consts::TAU;
 /// Relative tolerance of tangency: r + |δ| = R within this part of R.
 const TANGENT: f64 = 1e-9;
 
-/// How two pipes meet.
+/// How two pipes intersect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Meeting {
-    /// They do not.
+pub enum Intersection {
+    /// They do not intersect.
     None,
     /// All of the branch goes into the main pipe: one closed seam a sheet.
     Full,
@@ -68,13 +68,13 @@ pub struct PipePair {
     offset: f64,
     sin: f64,
     cos: f64,
-    meeting: Meeting,
+    meeting: Intersection,
 }
 
 impl PipePair {
     /// A main pipe of radius `main_radius` and a branch of `branch_radius` \[mm\], whose axis is at `angle` β
     /// \[rad\] to the main axis and passes it at `offset` δ \[mm\] towards +X. Pipes that do not meet are a
-    /// pair as well, with [`Meeting::None`].
+    /// pair as well, with [`Intersection::None`].
     pub fn new(main_radius: f64, branch_radius: f64, angle: f64, offset: f64) -> Result<Self, SaddleError> {
         for (pipe, radius) in [("main", main_radius), ("branch", branch_radius)] {
             if !(radius.is_finite() && radius > 0.0) {
@@ -92,13 +92,13 @@ impl PipePair {
         }
         let (beside, free) = (libm::fabs(offset), TANGENT * main_radius);
         let meeting = if beside - branch_radius >= main_radius {
-            Meeting::None
+            Intersection::None
         } else if libm::fabs(branch_radius + beside - main_radius) <= free {
-            Meeting::Tangent
+            Intersection::Tangent
         } else if branch_radius + beside < main_radius {
-            Meeting::Full
+            Intersection::Full
         } else {
-            Meeting::Partial
+            Intersection::Partial
         };
         Ok(Self {
             main_radius,
@@ -121,7 +121,7 @@ impl PipePair {
     }
 
     /// How the pipes meet.
-    pub fn meeting(&self) -> Meeting {
+    pub fn meeting(&self) -> Intersection {
         self.meeting
     }
 
@@ -131,9 +131,9 @@ impl PipePair {
         let mut intervals = Vec::new();
         let mut add = |from: f64, to: f64| intervals.push([from, to]);
         match self.meeting {
-            Meeting::None => {}
-            Meeting::Full | Meeting::Tangent => add(0.0, TAU),
-            Meeting::Partial => {
+            Intersection::None => {}
+            Intersection::Full | Intersection::Tangent => add(0.0, TAU),
+            Intersection::Partial => {
                 let upper = (self.main_radius - self.offset) / self.branch_radius;
                 let lower = (-self.main_radius - self.offset) / self.branch_radius;
                 match (upper < 1.0, lower > -1.0) {
@@ -182,7 +182,8 @@ impl PipePair {
     }
 
     /// Distances of a point in M from the walls of branch and main pipe \[mm\], positive outside.
-    pub fn wall_distances(&self, main: &Vector3<f64>) -> [f64; 2] {
+    #[cfg(test)]
+    pub(crate) fn wall_distances(&self, main: &Vector3<f64>) -> [f64; 2] {
         let branch = self.to_branch(main);
         [
             libm::hypot(branch.x, branch.y) - self.branch_radius,
@@ -191,12 +192,14 @@ impl PipePair {
     }
 
     /// A point of M in S \[mm\].
-    pub fn to_branch(&self, main: &Vector3<f64>) -> Vector3<f64> {
+    #[cfg(test)]
+    pub(crate) fn to_branch(self, main: &Vector3<f64>) -> Vector3<f64> {
         self.direction_to_branch(&(main - Vector3::new(self.offset, 0.0, 0.0)))
     }
 
     /// A point of S in M \[mm\].
-    pub fn to_main(&self, branch: &Vector3<f64>) -> Vector3<f64> {
+    #[cfg(test)]
+    pub(crate) fn to_main(self, branch: &Vector3<f64>) -> Vector3<f64> {
         let (x, y, z) = (branch.x, branch.y, branch.z);
         Vector3::new(
             x + self.offset,

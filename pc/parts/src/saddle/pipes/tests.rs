@@ -171,7 +171,7 @@ fn the_prototype_has_the_published_figures() {
 #[test]
 fn equal_pipes_meet_in_ellipses_with_corners_where_they_touch() {
     let pair = PipePair::new(100.0, 100.0, PI / 2.0, 0.0).unwrap();
-    assert_eq!(pair.meeting(), Meeting::Tangent);
+    assert_eq!(pair.meeting(), Intersection::Tangent);
     let curve = pair.curve(Sheet::Plus).unwrap();
     // Perimeter of an ellipse of half axes 100 and 100·√2: 4·100·√2·E(1/2), E(1/2) = 1.350643881047675.
     let perimeter = 400.0 * libm::sqrt(2.0) * 1.350_643_881_047_675;
@@ -198,7 +198,7 @@ fn equal_pipes_meet_in_ellipses_with_corners_where_they_touch() {
 fn a_partial_seam_joins_the_sheets() {
     for (offset, start) in [(70.0, PI / 3.0), (-70.0, -2.0 * PI / 3.0)] {
         let pair = PipePair::new(100.0, 60.0, 80.0f64.to_radians(), offset).unwrap();
-        assert_eq!(pair.meeting(), Meeting::Partial);
+        assert_eq!(pair.meeting(), Intersection::Partial);
         let curve = pair.curve(Sheet::Plus).unwrap();
         assert_eq!(curve, pair.curve(Sheet::Minus).unwrap());
         let begin = curve.at(0.0).unwrap();
@@ -267,7 +267,7 @@ fn pipes_without_a_seam_are_refused_with_the_reason() {
     assert!(refused(PipePair::new(9.0, f64::NAN, 1.0, 0.0)).starts_with("radius: a branch radius"));
     assert!(refused(PipePair::new(9.0, 5.0, f64::NAN, 0.0)).starts_with("not finite"));
     let apart = PipePair::new(100.0, 50.0, 1.0, -150.0).unwrap();
-    assert_eq!(apart.meeting(), Meeting::None);
+    assert_eq!(apart.meeting(), Intersection::None);
     let error = apart.curve(Sheet::Plus).unwrap_err().to_string();
     assert!(
         error.starts_with("the pipes do not meet: the offset of 150 mm"),

@@ -12,8 +12,8 @@ fn with(key: &str, value: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-fn refusal(name: &str, text: &str) -> String {
-    Scratch::new(name, text).plan(&machine()).unwrap_err()
+fn refusal(text: &str) -> String {
+    plan_text(text, &machine()).unwrap_err()
 }
 
 #[test]
@@ -70,8 +70,8 @@ fn dimensions_that_make_no_seam_are_refused_by_their_key() {
         ),
         ("axial_mm", "nan", "axial_mm of pass 2 is NaN"),
     ];
-    for (index, (key, value, wanted)) in cases.into_iter().enumerate() {
-        let error = refusal(&format!("wrong-{index}.toml"), &with(key, value));
+    for (key, value, wanted) in cases {
+        let error = refusal(&with(key, value));
         assert!(error.starts_with(wanted), "{key} = {value}: {error}");
         assert_eq!(error.lines().count(), 1);
     }
@@ -80,12 +80,12 @@ fn dimensions_that_make_no_seam_are_refused_by_their_key() {
 #[test]
 fn a_missing_dimension_or_pass_is_named() {
     let without = text().replace("offset_mm = 10.0", "");
-    let error = refusal("missing.toml", &without);
+    let error = refusal(&without);
     assert!(
         error.starts_with("offset_mm is missing: give it, or teach points"),
         "{error}"
     );
     let start = text().find("# Root.").unwrap();
-    let error = refusal("passless.toml", &format!("{}\npasses = []\n", &text()[..start]));
+    let error = refusal(&format!("{}\npasses = []\n", &text()[..start]));
     assert!(error.starts_with("no passes: add [[saddle.passes]]"), "{error}");
 }

@@ -10,6 +10,7 @@ use super::*;
 use crate::PartFile;
 use config::machine::MachineFile;
 use std::path::PathBuf;
+use tempfile::NamedTempFile;
 
 fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name)
@@ -23,26 +24,17 @@ fn text() -> String {
     std::fs::read_to_string(shipped("programs/saddle-320-80.toml")).unwrap()
 }
 
-/// A part file that exists while this does.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(name: &str, text: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("seamwright-{}-{name}", std::process::id()));
-        std::fs::write(&path, text).unwrap();
-        Self(path)
-    }
-
-    fn plan(&self, machine: &MachineFile) -> Result<Plan, String> {
-        let part = PartFile::read(&self.0).map_err(|error| error.to_string())?;
-        part.plan(machine, "saddle").map_err(|error| format!("{error:#}"))
-    }
+/// A temporary file with `text`.
+fn written(text: &str) -> NamedTempFile {
+    let file = NamedTempFile::new().unwrap();
+    std::fs::write(&file, text).unwrap();
+    file
 }
 
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        std::fs::remove_file(&self.0).unwrap();
-    }
+/// Plans the part file `text`.
+fn plan_text(text: &str, machine: &MachineFile) -> Result<Plan, String> {
+    let part = PartFile::read(written(text).path()).map_err(|error| error.to_string())?;
+    part.plan(machine, "saddle").map_err(|error| format!("{error:#}"))
 }
 
 /// The prototype of mathematics 1.3: main pipe 320, branch 80, offset 10, 5° off square.
@@ -91,7 +83,7 @@ fn an_offset_pass_is_nearest_where_its_own_points_are() {
         let ahead = seam.at_length(f64::from(i) * 6.7 + 1e-4, &offset, 0.0).unwrap();
         let behind = seam.at_length(f64::from(i) * 6.7 - 1e-4, &offset, 0.0).unwrap();
         let along = (ahead.tip - behind.tip).normalize();
-        // A tip aside of the pass, across it.
+        // A tip beside the pass, across it.
         let across = along.cross(&station.outward()).normalize() * 0.5;
         let found = seam.nearest(&(station.tip + across), &offset).unwrap();
         assert!((found.tip - station.tip).norm() < 1e-5);

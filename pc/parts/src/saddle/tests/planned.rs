@@ -242,12 +242,12 @@ fn other_pipes_are_planned_as_exactly_or_refused_as_too_near_to_tangent() {
             Err("branch_diameter_mm, offset_mm: the seam bends by 80°"),
         ),
     ];
-    for (index, (main, branch, angle, offset, wanted)) in pipes.into_iter().enumerate() {
+    for (main, branch, angle, offset, wanted) in pipes {
         let text = format!(
             "[saddle]\nmain_diameter_mm = {main:?}\nbranch_diameter_mm = {branch:?}\nangle_deg = {angle:?}\n\
              offset_mm = {offset:?}\n[[saddle.passes]]\nspeed_mm_s = 5.0\npower_w = 4000.0\n"
         );
-        let plan = Scratch::new(&format!("pipes-{index}.toml"), &text).plan(&machine);
+        let plan = plan_text(&text, &machine);
         let said = plan.map(|plan| plan.notes.join("; "));
         match (&said, wanted) {
             (Ok(said), Ok(wanted)) | (Err(said), Err(wanted)) => assert!(said.starts_with(wanted), "{said}"),

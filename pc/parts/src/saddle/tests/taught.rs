@@ -210,18 +210,17 @@ fn table(joints: &[[f64; 4]]) -> String {
 }
 
 /// The shipped part with offset and angle to be found from the points in `file`.
-fn part_with(file: &Scratch) -> String {
+fn part_with(file: &Path) -> String {
     text()
-        .replace("angle_deg = 85.0", &format!("taught = {:?}", file.0))
+        .replace("angle_deg = 85.0", &format!("taught = {:?}", file))
         .replace("offset_mm = 10.0", "")
 }
 
 #[test]
 fn a_seam_from_taught_points_is_planned_where_the_pipes_truly_are() {
     let truth = prototype(CLAMPED);
-    let points = Scratch::new("truth.csv", &table(&joints(&truth, &all_around(16), 0.05, 5)));
-    let part = Scratch::new("truth.toml", &part_with(&points));
-    let plan = part.plan(&machine()).unwrap();
+    let points = written(&table(&joints(&truth, &all_around(16), 0.05, 5)));
+    let plan = plan_text(&part_with(points.path()), &machine()).unwrap();
     let notes = plan.notes.join("\n");
     assert!(notes.starts_with("16 taught points lie within 0."), "{notes}");
     assert!(
@@ -263,20 +262,17 @@ fn the_shipped_points_tell_where_the_machine_is_clamped() {
 fn a_point_that_is_off_is_named_with_its_line() {
     let mut taught = joints(&prototype(CLAMPED), &all_around(16), 0.05, 3);
     taught[6][1] += 2.0;
-    let points = Scratch::new("off.csv", &table(&taught));
-    let part = Scratch::new("off.toml", &part_with(&points));
-    let error = part.plan(&machine()).unwrap_err();
+    let points = written(&table(&taught));
+    let error = plan_text(&part_with(points.path()), &machine()).unwrap_err();
     assert!(error.starts_with("line 8: this taught point is 1."), "{error}");
-    // With as few points as there can be, too: the one that is off is told before what it leaves open.
+    // With as few points as there can be, too: the one that is off is reported before what it leaves open.
     let mut few = joints(&prototype(CLAMPED), &all_around(5), 0.0, 3);
     few[2][0] += 3.0;
-    let points = Scratch::new("few.csv", &table(&few));
-    let part = Scratch::new("few.toml", &part_with(&points));
-    let error = part.plan(&machine()).unwrap_err();
+    let points = written(&table(&few));
+    let error = plan_text(&part_with(points.path()), &machine()).unwrap_err();
     assert!(error.starts_with("line 4: this taught point"), "{error}");
-    let points = Scratch::new("header.csv", "X,Z\n1,2\n");
-    let part = Scratch::new("header.toml", &part_with(&points));
-    let error = part.plan(&machine()).unwrap_err();
+    let points = written("X,Z\n1,2\n");
+    let error = plan_text(&part_with(points.path()), &machine()).unwrap_err();
     assert!(
         error.contains("the header must be X_mm,Z_mm,B_deg,C_deg"),
         "{error}"

@@ -7,7 +7,8 @@ fn refusal(part: &Stir, machine: &MachineFile) -> String {
     plan(part, machine).unwrap_err().to_string()
 }
 
-/// Point and heading go on without a jump, also where the heading passes ±180°, and the heading is the direction.
+/// Point and heading continue without a jump, also where the heading passes ±180°, and the heading is the
+/// direction.
 #[test]
 fn the_heading_is_the_direction_and_never_jumps() {
     let spiral = part_along(

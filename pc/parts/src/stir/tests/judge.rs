@@ -76,7 +76,7 @@ fn judged_on(
         samples: &samples,
         evaluation: &Default::default(),
     };
-    let judgement = parts[1].judge(&place(machine), &run)?;
+    let judgement = parts[1].judge(&context(machine), &run)?;
     assert_eq!(judgement.plots.len(), 3);
     for plot in &judgement.plots {
         assert!(

@@ -49,8 +49,8 @@ fn part_along(start: &str, contour: &str) -> Stir {
     part_of(&format!("{head}start = {start}\ncontour = [{contour}]\n"))
 }
 
-fn place(machine: &MachineFile) -> Place<'_> {
-    Place {
+fn context(machine: &MachineFile) -> PartContext<'_> {
+    PartContext {
         machine,
         directory: Path::new(""),
         title: "stir-contour",
@@ -58,7 +58,7 @@ fn place(machine: &MachineFile) -> Place<'_> {
 }
 
 fn plan(part: &Stir, machine: &MachineFile) -> anyhow::Result<Plan> {
-    part.plan(&place(machine))
+    part.plan(&context(machine))
 }
 
 /// The planned paths of a part, from the park position.

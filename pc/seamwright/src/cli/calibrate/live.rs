@@ -6,9 +6,9 @@ use super::super::read_program;
 use super::{Camera, Meets};
 use crate::terminal::Operator;
 use anyhow::{Context, bail};
-use camera::Shelf;
+use camera::PictureQueue;
 use camera::calibrate::procedure;
-use camera::calibrate::procedure::Found;
+use camera::calibrate::procedure::CalibrationResult;
 use clap::Args;
 use config::machine::{JointForm, MachineFile};
 use job::{ImageCameras, Job, Names, PictureRun, Work};
@@ -57,10 +57,10 @@ impl Live {
         &self.camera
     }
 
-    /// Takes the pictures and finds what they tell; an exit code if it was interrupted.
-    pub fn find(&self) -> anyhow::Result<Result<Found, ExitCode>> {
+    /// Takes the pictures and calibrates from them; an exit code if it was interrupted.
+    pub fn find(&self) -> anyhow::Result<Result<CalibrationResult, ExitCode>> {
         let (Some(machine_file), Some(side)) = (&self.camera.machine, self.camera.side) else {
-            bail!("say which camera: --machine FILE --side 1|2");
+            bail!("which camera? give --machine FILE --side 1|2");
         };
         let machine = MachineFile::read(machine_file)?;
         self.boards.check(&machine)?;
@@ -84,20 +84,20 @@ impl Live {
         let seam = match (&self.seam, &source) {
             (Some(file), _) => Some(Deviation::read(file)?),
             (None, PictureChoice::Rendered(_)) => Some(Deviation::parse("coupon", COUPON)?),
-            // Nobody has to say where it is.
+            // A real camera sees the seam.
             (None, PictureChoice::Real(_)) => None,
         };
-        let shelves = <[Shelf; SIDES]>::default();
+        let queues = <[PictureQueue; SIDES]>::default();
         let picture_run = PictureRun {
             program: &program,
             side,
             before,
             places: self.places,
-            shelf: shelves[side].clone(),
+            queue: queues[side].clone(),
         };
         let images = ImageCameras {
             calibrations,
-            kept: Some(shelves),
+            kept: Some(queues),
         };
         let name = |path: &Path| path.display().to_string();
         let job = Job {
@@ -132,7 +132,7 @@ impl Live {
         let profile = procedure::profile(&pictures.profile, &before).with_context(not_written)?;
         let slides = procedure::slides(&pictures.slides, &profile.calibration, self.meets.meets)
             .with_context(not_written)?;
-        Ok(Ok(Found {
+        Ok(Ok(CalibrationResult {
             calibration: slides.calibration,
             figures: [profile.figures, slides.figures].concat(),
         }))

@@ -1,12 +1,12 @@
-//! `seamwright calibrate`: what a camera is, with the machine or from pictures of which something is known.
+//! `seamwright calibrate`: calibration of a camera, with the machine or from pictures with known values.
 
 mod live;
 
 use crate::console::{out, outln};
 use anyhow::{Context, bail};
 use camera::calibrate::procedure;
-use camera::calibrate::procedure::Found;
-use camera::calibrate::{CalibrateError, Known, read_pictures};
+use camera::calibrate::procedure::CalibrationResult;
+use camera::calibrate::{CalibrateError, ReferencePicture, read_pictures};
 use clap::{Args, Subcommand};
 use config::calibration::Calibration;
 use config::machine::MachineFile;
@@ -17,8 +17,8 @@ use std::process::ExitCode;
 
 /// Calibrate a camera, with the machine or from pictures in a folder
 ///
-/// What was found is told beside what was believed before. A poor fit is refused with the reason, and the file is then left
-/// as it was.
+/// Results are printed beside the previous values. A poor fit is refused with the reason, and the file is
+/// then left as it was.
 #[derive(Debug, Args)]
 pub struct Calibrate {
     #[command(subcommand)]
@@ -93,12 +93,12 @@ fn two(text: &str) -> Result<[f64; 2], &'static str> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|x| x.trim().parse()).collect();
     match numbers.as_deref() {
         Ok(&[a, b]) if a.is_finite() && b.is_finite() => Ok([a, b]),
-        _ => Err("say two numbers with a comma between them"),
+        _ => Err("must be two numbers with a comma between them"),
     }
 }
 
 impl Calibrate {
-    /// Finds it, tells it and writes the file.
+    /// Calibrates, prints the result and writes the file.
     pub fn run(self) -> anyhow::Result<ExitCode> {
         let (camera, found) = match &self.what {
             What::Camera(live) => match live.find()? {
@@ -113,7 +113,7 @@ impl Calibrate {
             })?,
             What::Slides { folder, meets } => folder.find(|pictures, before| {
                 let listed = read_pictures(pictures, procedure::SLIDES)?.into_iter();
-                let listed: Vec<_> = listed.map(Known::at_rest).collect();
+                let listed: Vec<_> = listed.map(ReferencePicture::at_rest).collect();
                 procedure::slides(&listed, before, meets.meets)
             })?,
             What::Corner { folder, meets, walls } => folder.find(|pictures, before| {
@@ -132,8 +132,8 @@ impl Calibrate {
 impl Folder {
     fn find(
         &self,
-        procedure: impl Fn(&Path, &Calibration) -> Result<Found, CalibrateError>,
-    ) -> anyhow::Result<(&Camera, Found)> {
+        procedure: impl Fn(&Path, &Calibration) -> Result<CalibrationResult, CalibrateError>,
+    ) -> anyhow::Result<(&Camera, CalibrationResult)> {
         let found = procedure(&self.pictures, &self.camera.before()?);
         Ok((&self.camera, found.with_context(|| self.camera.not_written())?))
     }
@@ -146,7 +146,7 @@ impl Camera {
             return Ok(Calibration::read(file)?);
         }
         let (Some(machine), Some(side)) = (&self.machine, self.side) else {
-            bail!("say what the camera was: --calibration FILE, or --machine FILE --side 1|2");
+            bail!("which camera was it? give --calibration FILE, or --machine FILE --side 1|2");
         };
         let Some(unit) = MachineFile::read(machine)?.tracking else {
             bail!("machine file {}: it has no cameras", machine.display());
@@ -160,7 +160,7 @@ impl Camera {
 }
 
 /// What was found, a line each.
-fn table(found: &Found) -> String {
+fn table(found: &CalibrationResult) -> String {
     let mut text = String::new();
     for figure in &found.figures {
         let line = format!("  {:<36} {:<28} {}", figure.text, figure.found, figure.beside);

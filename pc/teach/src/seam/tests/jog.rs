@@ -12,18 +12,18 @@ struct OutOfReach;
 /// A world with limits.
 struct ByHand(World);
 
-impl Rig for ByHand {
+impl CameraMachine for ByHand {
     type Error = OutOfReach;
 
-    fn approach(&mut self, stance: &Stance) -> Result<(), OutOfReach> {
-        self.go(stance)
+    fn approach(&mut self, machine_pose: &MachinePose) -> Result<(), OutOfReach> {
+        self.go(machine_pose)
     }
 
-    fn go(&mut self, stance: &Stance) -> Result<(), OutOfReach> {
-        if stance.pose.position.y > REACH {
+    fn go(&mut self, machine_pose: &MachinePose) -> Result<(), OutOfReach> {
+        if machine_pose.pose.position.y > REACH {
             return Err(OutOfReach);
         }
-        let Ok(()) = self.0.go(stance);
+        let Ok(()) = self.0.go(machine_pose);
         Ok(())
     }
 
@@ -42,7 +42,7 @@ impl Rig for ByHand {
     }
 }
 
-impl Hand for ByHand {
+impl JogOperator for ByHand {
     fn line(&mut self) -> Result<Option<String>, OutOfReach> {
         Ok(self.0.lines.next().map(str::to_owned))
     }
@@ -110,13 +110,13 @@ fn what_cannot_be_done_is_said_and_nothing_is_lost() {
     let told = world.told.join("\n");
     for said in [
         "no point is taken",
-        "fly means nothing here",
+        "fly is not a command here",
         "x needs a number [mm]",
         "300 mm is more than 100 mm at once",
         "out of reach",
-        "both seams have to be seen to be taken",
+        "both seams must be visible to take a point",
         "no seam is seen on either side",
-        "u3 means nothing here",
+        "u3 is not a command here",
         "not beyond the last point",
         "2 points",
         "2 is too much",

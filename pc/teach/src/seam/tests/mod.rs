@@ -41,7 +41,7 @@ struct World {
     missing: Option<usize>,
     end: f64,
     cameras: Cameras,
-    stance: Option<Stance>,
+    machine_pose: Option<MachinePose>,
     noise: SplitMix64,
     sigma: f64,
     /// Every so many looks nothing is seen.
@@ -51,7 +51,7 @@ struct World {
     taught: Vec<SeamPoint>,
     /// The operator says that it is enough after so many points.
     enough: usize,
-    /// What the operator says, and is told.
+    /// Lines of the operator, and messages to the operator.
     lines: std::vec::IntoIter<&'static str>,
     told: Vec<String>,
 }
@@ -77,7 +77,7 @@ impl World {
             missing: None,
             end: 1e9,
             cameras: cameras(),
-            stance: None,
+            machine_pose: None,
             noise: SplitMix64::new(3),
             sigma,
             lost_every: usize::MAX,
@@ -98,9 +98,9 @@ impl World {
         at + left * if side == 0 { -beside } else { beside }
     }
 
-    /// What camera `side` sees with the machine in `stance`.
-    fn seen(&mut self, stance: &Stance, side: usize) -> Option<Seen> {
-        let spot = self.cameras.heads.spot(&stance.pose, side);
+    /// What camera `side` sees with the machine in `machine_pose`.
+    fn seen(&mut self, machine_pose: &MachinePose, side: usize) -> Option<SeamSighting> {
+        let spot = self.cameras.heads.spot(&machine_pose.pose, side);
         let lead = self.cameras.heads.camera_lead();
         let mut s = 0.0;
         for _ in 0..60 {
@@ -109,17 +109,17 @@ impl World {
         }
         let point = self.foot(side, s);
         let (_, u, v) = spot.coordinates(&point);
-        let [u0, v0] = [0, 1].map(|i| stance.slides_mm[2 * side + i]);
+        let [u0, v0] = [0, 1].map(|i| machine_pose.slides_mm[2 * side + i]);
         let offset = [u - u0, v - v0];
         let mean = self.sigma / 8f64.sqrt();
         let offset_mm = offset.map(|x| x + mean * self.noise.gauss()[0]);
-        let axis = self.cameras.axis(&stance.pose, side);
+        let axis = self.cameras.axis(&machine_pose.pose, side);
         let skin = Vector3::z();
-        let roll = -skin.dot(&axis.cross(&stance.pose.tangent)) / skin.dot(&axis);
+        let roll = -skin.dot(&axis.cross(&machine_pose.pose.tangent)) / skin.dot(&axis);
         let away = spot.u * offset[0] + spot.v * offset[1];
-        let across = away.dot(&axis.cross(&stance.pose.tangent));
+        let across = away.dot(&axis.cross(&machine_pose.pose.tangent));
         let inside = across.abs() < VIEW[0] && away.dot(&axis).abs() < VIEW[1];
-        (inside && self.missing != Some(side) && s <= self.end).then_some(Seen {
+        (inside && self.missing != Some(side) && s <= self.end).then_some(SeamSighting {
             along_mm: 0.0,
             offset_mm,
             roll: Some(roll),
@@ -131,27 +131,27 @@ impl World {
     }
 }
 
-impl Rig for World {
+impl CameraMachine for World {
     type Error = Infallible;
 
-    fn approach(&mut self, stance: &Stance) -> Result<(), Infallible> {
-        self.go(stance)
+    fn approach(&mut self, machine_pose: &MachinePose) -> Result<(), Infallible> {
+        self.go(machine_pose)
     }
 
-    fn go(&mut self, stance: &Stance) -> Result<(), Infallible> {
+    fn go(&mut self, machine_pose: &MachinePose) -> Result<(), Infallible> {
         self.moves += 1;
-        self.stance = Some(*stance);
+        self.machine_pose = Some(*machine_pose);
         Ok(())
     }
 
     fn look(&mut self, _pictures: usize) -> Result<View, Infallible> {
-        let stance = self.stance.expect("the machine was sent somewhere");
+        let machine_pose = self.machine_pose.expect("the machine was sent somewhere");
         self.looks += 1;
         let dark = self.looks.is_multiple_of(self.lost_every);
-        let sides = [0, 1].map(|side| self.seen(&stance, side).filter(|_| !dark));
+        let sides = [0, 1].map(|side| self.seen(&machine_pose, side).filter(|_| !dark));
         Ok(View {
-            pose: stance.pose,
-            slides_mm: stance.slides_mm,
+            pose: machine_pose.pose,
+            slides_mm: machine_pose.slides_mm,
             sides,
         })
     }
@@ -178,13 +178,13 @@ fn drawing(shape: Shape) -> Drawing {
 }
 
 /// The tip so that the cameras look `beside` (along X, Y, Z) the beginning of the seam.
-fn start(shape: Shape, beside: [f64; 3]) -> Stance {
+fn start(shape: Shape, beside: [f64; 3]) -> MachinePose {
     let (at, along) = shape(0.0);
     let tangent = along.normalize();
     let pose = Pose::new(at + Vector3::from(beside), tangent, Vector3::z()).unwrap();
     // The beams cross below the skin.
     let depth = 2.0 / 30f64.to_radians().tan();
-    Stance {
+    MachinePose {
         pose: Pose {
             position: pose.position - tangent * 10.0 - pose.normal * depth,
             ..pose
@@ -193,7 +193,7 @@ fn start(shape: Shape, beside: [f64; 3]) -> Stance {
     }
 }
 
-fn teach(world: &mut World, from: &Stance, before: &[SeamPoint]) -> Ended {
+fn teach(world: &mut World, from: &MachinePose, before: &[SeamPoint]) -> Ended {
     let (cameras, config) = (cameras(), SeamTeaching::default());
     let follower = Follower::build(&cameras, &config, Some(drawing(world.shape))).unwrap();
     follower.teach(world, from, before).unwrap()
@@ -270,14 +270,14 @@ fn both_seams_are_centred_and_the_normal_is_that_of_the_skin() {
     )
     .unwrap();
     teach(&mut world, &from, &[]);
-    let stance = world.stance.unwrap();
+    let machine_pose = world.machine_pose.unwrap();
     for side in 0..2 {
-        let seen = world.seen(&stance, side).unwrap();
+        let seen = world.seen(&machine_pose, side).unwrap();
         assert!(seen.offset_mm.iter().all(|x| x.abs() < 0.06), "{seen:?}");
     }
     for point in &world.taught {
         for foot in &point.feet {
-            // Across the seam; along it the curve tells.
+            // Across the seam; along it by the curve.
             let lean = foot.normal.x.hypot(foot.normal.y).atan2(foot.normal.z);
             assert!(lean < 0.06, "{:?}", foot.normal);
         }
@@ -314,7 +314,7 @@ fn where_there_is_no_seam_it_is_said_and_the_machine_has_not_gone_far() {
     let (cameras, config) = (cameras(), SeamTeaching::default());
     let follower = Follower::build(&cameras, &config, None).unwrap();
     let far = start(straight, [0.0, 9.0, 0.0]);
-    let fails = |world: &mut World, from: &Stance| {
+    let fails = |world: &mut World, from: &MachinePose| {
         let taught = follower.teach(world, from, &[]).map(|_| ());
         assert!(world.taught.is_empty() && world.moves < 300, "{}", world.moves);
         taught.unwrap_err().to_string()
@@ -358,7 +358,7 @@ fn each_side_is_searched_and_followed_by_its_own_slides() {
             "{beside:?}: {chord} {off}"
         );
         // The pose stands where the slides are nearest to their middle.
-        let [u1, v1, u2, v2] = world.stance.unwrap().slides_mm;
+        let [u1, v1, u2, v2] = world.machine_pose.unwrap().slides_mm;
         let (sin, cos) = 30f64.to_radians().sin_cos();
         let half = (beside[0] + beside[1]) / 2.0;
         for (slide, wanted) in [
@@ -378,23 +378,23 @@ fn each_side_is_searched_and_followed_by_its_own_slides() {
 #[test]
 fn the_machine_takes_what_slides_cannot() {
     let mut cameras = cameras();
-    let stance = start(straight, [0.0; 3]);
-    let looks_at = [0, 1].map(|side| cameras.looks_at(&stance, side));
+    let machine_pose = start(straight, [0.0; 3]);
+    let looks_at = [0, 1].map(|side| cameras.looks_at(&machine_pose, side));
     let points = looks_at.map(|point| point + Vector3::y() * 3.0);
-    let same = |cameras: &Cameras, stance: &Stance| {
-        (0..2).all(|side| (cameras.looks_at(stance, side) - points[side]).norm() < 1e-9)
+    let same = |cameras: &Cameras, machine_pose: &MachinePose| {
+        (0..2).all(|side| (cameras.looks_at(machine_pose, side) - points[side]).norm() < 1e-9)
     };
-    let near = cameras.aimed(&stance, &Vector3::z(), points);
-    assert_eq!(near.pose, stance.pose);
+    let near = cameras.aimed(&machine_pose, &Vector3::z(), points);
+    assert_eq!(near.pose, machine_pose.pose);
     assert!(same(&cameras, &near));
     cameras.travel_mm = [(-3.0, 3.0); SLIDES];
-    let far = cameras.aimed(&stance, &Vector3::z(), points);
-    assert!((far.pose.position - stance.pose.position - Vector3::y() * 3.0).norm() < 1e-9);
+    let far = cameras.aimed(&machine_pose, &Vector3::z(), points);
+    assert!((far.pose.position - machine_pose.pose.position - Vector3::y() * 3.0).norm() < 1e-9);
     assert!(same(&cameras, &far) && far.slides_mm.iter().all(|slide| slide.abs() < 1e-9));
     // A skin that leans turns the head, a picture's doubt does not.
     for (lean, turns) in [(0.02, false), (0.1, true)] {
         let normal = Vector3::new(0.0, lean, 1.0).normalize();
-        let there = cameras.aimed(&stance, &normal, looks_at);
+        let there = cameras.aimed(&machine_pose, &normal, looks_at);
         assert_eq!(angle(&there.pose.normal, &normal) < 1e-9, turns, "{lean}");
     }
 }
@@ -453,10 +453,10 @@ fn an_interrupted_lesson_goes_on_after_its_last_point() {
 #[test]
 fn slides_take_what_no_pose_can() {
     let cameras = cameras();
-    let stance = start(straight, [0.0; 3]);
+    let machine_pose = start(straight, [0.0; 3]);
     // A rib of 6 mm in place of 4.
     let points = [-3.0, 3.0].map(|y| Vector3::new(500.0, 800.0 + y, 100.0));
-    let centred = cameras.centred(&stance.pose, &Vector3::z(), points);
+    let centred = cameras.centred(&machine_pose.pose, &Vector3::z(), points);
     for (side, point) in points.iter().enumerate() {
         assert!((cameras.looks_at(&centred, side) - point).norm() < 1e-9);
     }
@@ -464,7 +464,7 @@ fn slides_take_what_no_pose_can() {
     for (slide, wanted) in centred.slides_mm.iter().zip([cos, -sin, -cos, -sin]) {
         assert!((slide - wanted).abs() < 1e-9, "{:?}", centred.slides_mm);
     }
-    assert!((centred.pose.position - stance.pose.position).norm() < 1e-9);
+    assert!((centred.pose.position - machine_pose.pose.position).norm() < 1e-9);
     assert!(angle(&centred.pose.normal, &Vector3::z()) < 1e-6);
 }
 

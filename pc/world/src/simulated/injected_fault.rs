@@ -1,13 +1,13 @@
-//! What befalls simulated boards from outside, for tests of what they make of it.
+//! Faults that tests inject into simulated boards.
 
 use super::{Node, SimulatedBoards};
 use shared::io::{MotionFeedback, SlideFeedback};
 use shared::protocol::Role;
 
-/// Something that goes wrong, and stays so.
+/// A fault from outside the boards; it is permanent.
 #[derive(Clone, Copy, Debug)]
-pub enum Trouble {
-    /// Inputs of the motion board read otherwise than its machine is.
+pub enum InjectedFault {
+    /// The inputs of the motion board are changed by this function after they were read.
     MotionInputs(fn(&mut MotionFeedback)),
     /// The same of the tracker board.
     TrackerInputs(fn(&mut SlideFeedback)),
@@ -20,21 +20,21 @@ pub enum Trouble {
 }
 
 impl SimulatedBoards {
-    /// Lets something go wrong from now on.
-    pub fn befall(&mut self, trouble: Trouble) {
-        match trouble {
-            Trouble::MotionInputs(change) => self.motion.meddle = Some(change),
-            Trouble::TrackerInputs(change) => self.tracker.meddle = Some(change),
-            Trouble::TrackerFrozen => self.tracker.frozen = true,
-            Trouble::CutOff(role) => self.cut_off = Some(role),
-            Trouble::SessionEnded => {
+    /// Injects `fault` from now on.
+    pub fn inject(&mut self, fault: InjectedFault) {
+        match fault {
+            InjectedFault::MotionInputs(change) => self.motion.changed_inputs = Some(change),
+            InjectedFault::TrackerInputs(change) => self.tracker.changed_inputs = Some(change),
+            InjectedFault::TrackerFrozen => self.tracker.frozen = true,
+            InjectedFault::CutOff(role) => self.cut_off = Some(role),
+            InjectedFault::SessionEnded => {
                 self.motion.controller.session_ended();
                 self.tracker.controller.session_ended();
             }
         }
     }
 
-    /// Whether nothing gets to `node`, or away from it.
+    /// Whether `node` is disconnected: nothing is received from it or sent to it.
     pub(super) fn cut_off(&self, node: Node) -> bool {
         matches!(node, Node::Board(role) if self.cut_off == Some(role))
     }

@@ -1,11 +1,11 @@
-//! Which point of the work a line of sight meets.
+//! Intersection of lines of sight with the work.
 
 use super::scene::{Gap, Joint, Root};
 use crate::optics::Optics;
 
 /// A joint, prepared for lines of sight of a camera.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Surface {
+pub(super) struct WorkSurface {
     joint: Joint,
     sin: f64,
     cos: f64,
@@ -28,7 +28,7 @@ pub(super) struct Point {
     pub side: usize,
 }
 
-impl Surface {
+impl WorkSurface {
     pub fn new(joint: &Joint, optics: &Optics) -> Self {
         let (sin, cos) = optics.tilt_rad.sin_cos();
         let (tangent, squareness) = match joint {

@@ -1,13 +1,13 @@
-//! A machine with two cameras, as teaching uses it.
+//! The interface to a machine with two cameras, for teaching.
 
-use super::{SeamPoint, Stance};
+use super::{MachinePose, SeamPoint};
 use shared::geometry::Pose;
 use shared::io::{SIDES, SLIDES};
 use std::error::Error as StdError;
 
-/// The seam of one side, as a camera saw it in several pictures.
+/// The seam of one side, measured by its camera in several pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct SeamSighting {
     /// Beyond the plane of the lead, along T \[mm\].
     pub along_mm: f64,
     /// Beside the centre of the camera, along U and V of its head \[mm\].
@@ -32,19 +32,19 @@ pub struct View {
     /// U1, V1, U2, V2 by the encoders \[mm\].
     pub slides_mm: [f64; SLIDES],
     /// What each camera sees.
-    pub sides: [Option<Seen>; SIDES],
+    pub sides: [Option<SeamSighting>; SIDES],
 }
 
 /// A machine with two cameras.
-pub trait Rig {
+pub trait CameraMachine {
     /// Why it does not do what it is asked.
     type Error: StdError + 'static;
 
-    /// Goes to `stance` from above the work.
-    fn approach(&mut self, stance: &Stance) -> Result<(), Self::Error>;
+    /// Goes to `machine_pose` from above the work.
+    fn approach(&mut self, machine_pose: &MachinePose) -> Result<(), Self::Error>;
 
-    /// Goes straight to `stance`, and stands there.
-    fn go(&mut self, stance: &Stance) -> Result<(), Self::Error>;
+    /// Goes straight to `machine_pose`, and stands there.
+    fn go(&mut self, machine_pose: &MachinePose) -> Result<(), Self::Error>;
 
     /// Looks at the seams from where the machine stands: the mean of `pictures`, or of as many as saw them.
     fn look(&mut self, pictures: usize) -> Result<View, Self::Error>;

@@ -1,4 +1,4 @@
-//! A curved panel as it really is, for simulated worlds.
+//! The true shape of a curved panel, for simulated worlds.
 //!
 //! z = z₀ − sag(u, Rx) − sag(v, Ry) + a (cos(2πu/λ) − 1) with u, v counted from the crown along x and y,
 //! sag(u, R) = R − √(R² − u²), inside a rectangle around the crown.
@@ -21,7 +21,7 @@ const REACH: f64 = 0.95;
 /// A curved panel.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "Document")]
-pub struct Surface {
+pub struct CurvedPanel {
     crown: Vector3<f64>,
     size: [f64; 2],
     radius: [f64; 2],
@@ -52,7 +52,7 @@ fn some_length() -> f64 {
     1.0
 }
 
-impl TryFrom<Document> for Surface {
+impl TryFrom<Document> for CurvedPanel {
     type Error = &'static str;
 
     fn try_from(d: Document) -> Result<Self, &'static str> {
@@ -64,7 +64,7 @@ impl TryFrom<Document> for Surface {
         ]
         .concat();
         if !all.iter().all(|x| x.is_finite()) {
-            return Err("a panel has finite numbers only");
+            return Err("all numbers of a panel must be finite");
         }
         if sx <= 0.0 || sy <= 0.0 || d.wave_length_mm <= 0.0 {
             return Err("size_mm and wave_length_mm must be above 0");
@@ -82,7 +82,7 @@ impl TryFrom<Document> for Surface {
     }
 }
 
-impl Surface {
+impl CurvedPanel {
     /// Whether the panel is there, over or under x, y \[mm\].
     fn covers(&self, x: f64, y: f64) -> bool {
         2.0 * (x - self.crown.x).abs() <= self.size[0] && 2.0 * (y - self.crown.y).abs() <= self.size[1]
@@ -156,7 +156,7 @@ impl Surface {
 mod tests {
     use super::*;
 
-    fn surface() -> Surface {
+    fn surface() -> CurvedPanel {
         toml::from_str(
             "crown_mm = [500.0, 400.0, 150.0]\nsize_mm = [360.0, 300.0]\nradius_mm = [250.0, 600.0]\n\
              wave_mm = 0.4\nwave_length_mm = 90.0\n",
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn a_panel_beyond_its_radius_is_refused() {
         let text = "crown_mm = [0.0, 0.0, 0.0]\nsize_mm = [100.0, 10.0]\nradius_mm = [50.0, 50.0]\n";
-        let error = toml::from_str::<Surface>(text).unwrap_err().to_string();
+        let error = toml::from_str::<CurvedPanel>(text).unwrap_err().to_string();
         assert!(error.contains("0.95 of radius_mm"), "{error}");
     }
 }

@@ -1,12 +1,12 @@
-//! Surfaces a band can lie on.
+//! Models of the work's height over u, along which the sharp band lies: a plate, a corner.
 
 /// A height field n(u) of N parameters, the last of which is l, the logarithm of the profile's width over the expected.
-pub(crate) trait Surface<const N: usize> {
+pub(crate) trait HeightField<const N: usize> {
     /// Longest step of each parameter in one iteration.
     const STEP: [f64; N];
 
     /// Whether cells count the more the sharper they are. Streaks along the seam are not equally bright from end to end:
-    /// far off the band that pulls it more than it tells.
+    /// far off the band that adds more bias than information.
     const SHARPEST: bool;
 
     /// What cells of half the resolution count beside those of the full one.
@@ -34,7 +34,7 @@ pub(crate) struct Plate {
     pub gap: Option<[f64; 2]>,
 }
 
-impl Surface<4> for Plate {
+impl HeightField<4> for Plate {
     const STEP: [f64; 4] = [STEP_MM, STEP_SLOPE, STEP_MM, STEP_FOCUS];
 
     /// A plate's roll and focus need the whole picture.
@@ -67,7 +67,7 @@ pub(crate) struct Corner {
     pub spoilt: f64,
 }
 
-impl Surface<5> for Corner {
+impl HeightField<5> for Corner {
     const STEP: [f64; 5] = [STEP_MM, STEP_MM, STEP_SLOPE, STEP_SLOPE, STEP_FOCUS];
 
     const SHARPEST: bool = true;
