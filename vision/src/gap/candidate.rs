@@ -15,6 +15,9 @@ const CORE: f32 = 0.25;
 const PLATEAU_MM: f64 = 0.015;
 const BLUR_MM: f64 = 0.006;
 
+/// From an edge so far into the gap its blur reaches, and its roughness \[mm\].
+const INSIDE_MM: f64 = 0.010;
+
 /// A dark run.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Candidate {
@@ -81,6 +84,28 @@ impl Candidates {
         let second = others.max_by(|a, b| list[*a].score.total_cmp(&list[*b].score));
         Some((list[best], second.map(|second| list[second])))
     }
+}
+
+/// How much brighter the gap is next to its edges than where it is darkest, of the way up to the plate; None of a gap too narrow
+/// to tell.
+pub(crate) fn unevenness(quiet: &[f32], candidate: &Candidate, pitch_mm: f64) -> Option<f64> {
+    let [left, right] = candidate.edges;
+    let (skip, count) = (INSIDE_MM / pitch_mm, (PLATEAU_MM / pitch_mm / 2.0).round().max(2.0));
+    let ends = [(left + skip).ceil(), (right - skip).floor() - count + 1.0];
+    if ends[1] - ends[0] < count {
+        return None;
+    }
+    let level = |start: f64| {
+        let start = start as usize;
+        middle_value(&quiet[start..start + count as usize])
+    };
+    let (mut darkest, mut at) = (f32::INFINITY, ends[0]);
+    while at <= ends[1] {
+        darkest = darkest.min(level(at));
+        at += 1.0;
+    }
+    let brightest = level(ends[0]).max(level(ends[1]));
+    Some(f64::from((brightest - darkest) / (1.0 - darkest).max(0.05)))
 }
 
 /// Core, depth and edges of a run. None if an edge is not in the picture.
