@@ -178,6 +178,7 @@ impl Detector {
                 * expected;
         }
         let (best, second) = candidates.best()?;
+        let best = best.split(&strip.quiet, g);
         let edges = fit_edges(strip, &best, g)?;
         Some((edges, best, second))
     }

@@ -1,6 +1,6 @@
 //! Measures random pictures of each effect with the detector, and prints what was accepted and how far it is off.
 //!
-//! `cargo run --release -p seamwright-raytracer --example effects -- [PICTURES] [FIRST SEED]`
+//! `cargo run --release -p seamwright-raytracer --example effects -- [PICTURES] [FIRST SEED] [EFFECT…]`
 
 use raytracer::{Camera, Effect, subject};
 use vision::{Detector, Image, Joint, Optics, PhotonTransfer, Prior, Profile};
@@ -30,7 +30,11 @@ fn main() {
     let mut detector = Detector::new(optics, noise, Profile::expected(&optics)).expect("a camera");
     println!("{count} pictures of each from seed {first}; errors of accepted ones in µm, 1 sigma as told");
     println!("| effect | accepted | u rms | u worst | h rms | h worst | w rms | t rms | q of the worst |");
+    let only: Vec<String> = std::env::args().skip(3).collect();
     for effect in Effect::ALL {
+        if !only.is_empty() && !only.contains(&format!("{effect:?}")) {
+            continue;
+        }
         let (mut u, mut h, mut w, mut t) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (mut accepted, mut worst) = (0, (0.0, 0.0, 0));
         for seed in first..first + count {
