@@ -2,7 +2,7 @@
 
 use crate::band::{Fitness, Knowledge, SMALLEST_GAIN};
 use crate::detector::Detector;
-use crate::gap::{BandLine, Candidate, Edges, fit_edges};
+use crate::gap::{BandLine, Candidate, Edges, fit_edges, unevenness};
 use crate::height_field::Plate;
 use crate::prior::Prior;
 use crate::report::{Criterion, Form, Measured, Report, Second, Sigma, Status, least, ramp};
@@ -25,6 +25,13 @@ pub(crate) const BORDER_MM: [f64; 2] = [0.05, 0.15];
 
 /// What a gap spoils beyond its edges \[mm\].
 const SPOILT_MM: f64 = 0.06;
+
+/// Plate beside the gap that has to be lit \[mm\], and its brightness over that of the other side at which it is not trusted, and is.
+const PLATE_MM: f64 = 0.25;
+const DIM: [f64; 2] = [0.2, 0.35];
+
+/// Unevenness of the gap at which it is not trusted, and is.
+const UNEVEN: [f64; 2] = [0.10, 0.04];
 
 /// Scatter of the seam's position while tracking \[mm\].
 const LATERAL: f64 = 0.1;
@@ -86,7 +93,10 @@ impl Detector {
             return self.without_band();
         }
         match seam {
-            Some((edges, best, second)) => self.seam(&at, &fitness, line, &edges, &best, second),
+            Some((edges, best, second)) => {
+                let both = self.both_sides(&best);
+                self.seam(&at, &fitness, line, &edges, &best, second, both)
+            }
             None => Report {
                 status: Status::NoSeam,
                 measured: Some(self.plate(&at, &fitness)),
@@ -168,6 +178,7 @@ impl Detector {
                 * expected;
         }
         let (best, second) = candidates.best()?;
+        let best = best.split(&strip.quiet, g);
         let edges = fit_edges(strip, &best, g)?;
         Some((edges, best, second))
     }
@@ -211,6 +222,18 @@ impl Detector {
         }
     }
 
+    /// Brightness of the darker plate over that of the brighter one, and how unevenly dark the gap is.
+    fn both_sides(&mut self, best: &Candidate) -> [f64; 2] {
+        let g = self.layer().pitch_mm;
+        let lights = self.strip.lights(best.edges, SPOILT_MM / g, PLATE_MM / g);
+        let ratio = match lights {
+            [Some(left), Some(right)] => f64::from(left.min(right) / left.max(right).max(1.0)),
+            _ => 0.0,
+        };
+        let uneven = unevenness(&self.strip.quiet, best, g).unwrap_or(0.0);
+        [ratio, uneven]
+    }
+
     /// Band and gap.
     fn seam(
         &self,
@@ -220,6 +243,7 @@ impl Detector {
         edges: &Edges,
         best: &Candidate,
         second: Option<Candidate>,
+        both: [f64; 2],
     ) -> Report {
         let layer = self.layer();
         let g = layer.pitch_mm;
@@ -271,6 +295,8 @@ impl Detector {
             (Criterion::Continuity, ramp(best.continuity, 0.45, 0.75)),
             (Criterion::Height, ramp(measured.sigma.height_mm, 0.028, 0.010)),
             (Criterion::Width, ramp(edges.width * g, 0.006, 0.012)),
+            (Criterion::Sides, ramp(both[0], DIM[0], DIM[1])),
+            (Criterion::Interior, ramp(both[1], UNEVEN[0], UNEVEN[1])),
             (Criterion::Border, ramp(from_border * g, 0.010, 0.030)),
             (
                 Criterion::Band,

@@ -106,6 +106,10 @@ pub enum Criterion {
     Gain,
     /// How much of each wall is in the picture.
     Walls,
+    /// Whether there is a plate on both sides: the darker one over the brighter one.
+    Sides,
+    /// Whether the gap is equally dark over its whole width: beside a shadow or spatter it is not.
+    Interior,
 }
 
 /// Standard deviations of a measurement.

@@ -5,7 +5,7 @@ mod continuity;
 mod edges;
 mod strip;
 
-pub(crate) use candidate::{Candidate, Candidates};
+pub(crate) use candidate::{Candidate, Candidates, unevenness};
 pub(crate) use continuity::Continuity;
 pub(crate) use edges::{Edges, fit_edges};
 pub use strip::EDGE_ROWS_MM;

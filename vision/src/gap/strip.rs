@@ -94,6 +94,23 @@ impl Strip {
         (group as f64 - (self.groups as f64 - 1.0) / 2.0) * self.rows as f64
     }
 
+    /// Brightness of the plate to the left of a column and to the right, before it is divided by the light: that which most
+    /// columns within `reach` of them do not exceed, from `margin` columns on. None of a side without any.
+    pub fn lights(&mut self, columns: [f64; 2], margin: f64, reach: f64) -> [Option<f32>; 2] {
+        let [left, right] = columns;
+        let clamp = |column: f64| (column.round().max(0.0) as usize).min(self.medians.len());
+        let sides = [
+            clamp(left - margin - reach)..clamp(left - margin),
+            clamp(right + margin)..clamp(right + margin + reach),
+        ];
+        sides.map(|side| {
+            self.sorted.clear();
+            let medians = self.medians[side].iter().filter(|median| !median.is_nan());
+            self.sorted.extend(medians);
+            quantile(&mut self.sorted, LIGHT)
+        })
+    }
+
     /// Cuts the strip out. False if not half of it lies in the picture.
     pub fn fill(&mut self, layer: &Layer, line: BandLine) -> bool {
         let height = self.groups * self.rows;

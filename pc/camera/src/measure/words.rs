@@ -58,6 +58,8 @@ fn weakness(measured: &Measured) -> String {
         Criterion::Lateral => "the position across the seam is too uncertain: too little texture?",
         Criterion::Gain => "the band explains too little of the picture",
         Criterion::Walls => "too little of one wall is in the picture",
+        Criterion::Sides => "a plate is lit on one side of the gap only",
+        Criterion::Interior => "the gap is not equally dark: a shadow or spatter beside it?",
     };
     format!("{what} (quality {:.2}, {NEEDED} needed)", measured.quality)
 }
