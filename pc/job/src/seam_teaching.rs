@@ -220,7 +220,7 @@ impl Rig for SeamArm<'_, '_, '_> {
                 let stands = session
                     .record
                     .motion()
-                    .last()
+                    .back()
                     .is_some_and(|sample| sample.tick > rests);
                 Ok(stands && (seen >= pictures || session.tick() > end))
             })?;

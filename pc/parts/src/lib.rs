@@ -7,6 +7,7 @@
 mod bead;
 mod judge;
 mod limits;
+mod line;
 mod panel;
 pub mod plan;
 mod saddle;
@@ -19,6 +20,7 @@ mod t_seam;
 pub use bead::{Bead, check_curve, window};
 pub use judge::{ALONG, Figure, GAP, Judgement, Plot, Run};
 pub use limits::{Limit, Percent};
+pub use line::Line;
 pub use panel::{Panel, PanelError};
 pub use saddle::{Saddle, SaddlePartError, TaughtError, pipes};
 pub use seam_curves::{SeamPoint, parse_main_curve, parse_other_curve, read_main_curve, read_other_curve};

@@ -17,6 +17,7 @@ mod stations;
 #[cfg(test)]
 mod tests;
 pub mod window;
+mod worth;
 
 use crate::limits::SPEED_DIP;
 use crate::{Judgement, Kind, Limit, Percent, Place, Plan, Run};
