@@ -6,6 +6,7 @@
 //!   [`events`]; the job has the [`Control`].
 //! - [`record`], [`clock`], [`geometry`]: what the boards told by tick, how their clocks are related, and where the tool was
 //!   by it.
+//! - [`spool`]: sequences that are too long for memory, as records are.
 //!
 //! A job runs on a thread of its own; any number of others watch it:
 //!
@@ -36,5 +37,6 @@ mod control;
 pub mod events;
 pub mod geometry;
 pub mod record;
+pub mod spool;
 
 pub use control::{Command, CommandError, Control, Remote, control};

@@ -136,6 +136,7 @@ fn job<'a>(
         speed_m_per_min,
         from_line: None,
         part: None,
+        spooling: Default::default(),
         names: Names {
             program: PROGRAM.into(),
             machine: MACHINE.into(),
@@ -180,6 +181,7 @@ pub fn weld_job(boards: &mut dyn Boards, machine: &str, job: &str) -> Ended {
         speed_m_per_min: None,
         from_line: None,
         surroundings: Surroundings::default().into(),
+        spooling: Default::default(),
         names: Names {
             program: job.into(),
             machine: machine.into(),

@@ -112,13 +112,13 @@ pub fn assert_stops_in_the_dark(boards: &mut dyn Boards, joint: JointForm, speed
     assert!(error.to_string().contains("side 2"), "{error}");
     let ticks = &ended.evaluation.ticks;
     let welded = || ticks.iter().filter(|tick| tick.beams[1]);
-    let off_mm = welded().next_back().expect("a weld").along_mm;
+    let off_mm = welded().last().expect("a weld").along_mm;
     println!("beam 2 off at {off_mm:.1} mm");
     assert!(
         (DARK_FROM_MM..DARK_FROM_MM + BLIND_MM).contains(&off_mm),
         "beam 2 on to {off_mm} mm"
     );
-    let last = ticks.last().expect("ticks");
+    let last = ticks.iter().last().expect("ticks");
     assert_eq!(last.beams, [false; SIDES]);
     assert!(last.speed_mm_s < 1.0, "{}", last.speed_mm_s);
     let deviation = welded()

@@ -207,6 +207,7 @@ pub fn meddled(seed: u64) -> OperatedWeld {
         speed_m_per_min: None,
         from_line: None,
         part: None,
+        spooling: Default::default(),
         names: Names {
             program: "words.ngc".into(),
             machine: of.name.into(),

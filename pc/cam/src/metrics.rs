@@ -59,34 +59,102 @@ pub fn compare(measured: &[f64], reference: &[f64]) -> Result<ErrorFigures, Metr
             reference: reference.len(),
         });
     }
-    if measured.is_empty() {
-        return Err(MetricsError::NothingMeasured);
-    }
-    let pairs = || measured.iter().zip(reference);
-    for (what, values) in [("measured value", measured), ("reference", reference)] {
-        if let Some(index) = values.iter().position(|x| !x.is_finite()) {
-            return Err(MetricsError::NotFinite { what, index });
+    let mut comparison = Comparison::default();
+    let pairs = measured.iter().zip(reference);
+    pairs.for_each(|(measured, reference)| comparison.add(*measured, *reference));
+    comparison.figures()
+}
+
+/// Errors of measured values against references, one after another: of any number of them.
+#[derive(Clone, Copy, Debug)]
+pub struct Comparison {
+    count: usize,
+    sum: f64,
+    squares: f64,
+    max: f64,
+    relative: f64,
+    relative_count: usize,
+    /// Of the references.
+    least: f64,
+    greatest: f64,
+    /// Places of the first values that are not finite.
+    bad_measured: Option<usize>,
+    bad_reference: Option<usize>,
+}
+
+impl Default for Comparison {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            sum: 0.0,
+            squares: 0.0,
+            max: 0.0,
+            relative: 0.0,
+            relative_count: 0,
+            least: f64::INFINITY,
+            greatest: f64::NEG_INFINITY,
+            bad_measured: None,
+            bad_reference: None,
         }
     }
-    let count = measured.len() as f64;
-    let errors = || pairs().map(|(x, y)| libm::fabs(x - y));
-    let mean = errors().sum::<f64>() / count;
-    let squares = errors().map(|error| error * error).sum::<f64>();
-    let relative: Vec<f64> = pairs()
-        .filter(|(_, y)| libm::fabs(**y) > ZERO)
-        .map(|(x, y)| libm::fabs((x - y) / y))
-        .collect();
-    let least = reference.iter().copied().fold(f64::INFINITY, f64::min);
-    let range = reference.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least;
-    Ok(ErrorFigures {
-        mae: mean,
-        rmse: libm::sqrt(squares / count),
-        max: errors().fold(0.0, f64::max),
-        mape_percent: (!relative.is_empty())
-            .then(|| 100.0 * relative.iter().sum::<f64>() / relative.len() as f64),
-        mape_count: relative.len(),
-        nmae_percent: (range > 0.0).then_some(100.0 * mean / range),
-    })
+}
+
+impl Comparison {
+    /// Adds a value.
+    pub fn add(&mut self, measured: f64, reference: f64) {
+        for (value, bad) in [
+            (measured, &mut self.bad_measured),
+            (reference, &mut self.bad_reference),
+        ] {
+            if !value.is_finite() {
+                bad.get_or_insert(self.count);
+            }
+        }
+        let error = libm::fabs(measured - reference);
+        self.count += 1;
+        self.sum += error;
+        self.squares += error * error;
+        self.max = self.max.max(error);
+        if libm::fabs(reference) > ZERO {
+            self.relative += libm::fabs((measured - reference) / reference);
+            self.relative_count += 1;
+        }
+        self.least = self.least.min(reference);
+        self.greatest = self.greatest.max(reference);
+    }
+
+    /// Number of values so far.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Of all values so far.
+    ///
+    /// # Errors
+    /// There are none, or one of them is no number.
+    pub fn figures(&self) -> Result<ErrorFigures, MetricsError> {
+        if self.count == 0 {
+            return Err(MetricsError::NothingMeasured);
+        }
+        let what = [
+            ("measured value", self.bad_measured),
+            ("reference", self.bad_reference),
+        ];
+        if let Some((what, index)) = what.into_iter().find_map(|(what, bad)| Some((what, bad?))) {
+            return Err(MetricsError::NotFinite { what, index });
+        }
+        let mae = self.sum / self.count as f64;
+        let range = self.greatest - self.least;
+        Ok(ErrorFigures {
+            mae,
+            rmse: libm::sqrt(self.squares / self.count as f64),
+            max: self.max,
+            mape_percent: (self.relative_count > 0)
+                .then(|| 100.0 * self.relative / self.relative_count as f64),
+            mape_count: self.relative_count,
+            nmae_percent: (range > 0.0).then_some(100.0 * mae / range),
+        })
+    }
 }
 
 /// Distance of `point` from the nearest place of a polyline, corners and ends included \[mm\]; `None` if the

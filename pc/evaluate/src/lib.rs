@@ -4,34 +4,36 @@
 mod load;
 mod nearest;
 mod peak;
+mod samples;
 mod speeds;
 mod tick;
 mod welded;
 
 pub use load::{ExecutionTimes, Load};
+pub use samples::{RecordedRun, RunSample, RunSamples};
 pub use tick::WorkTick;
 pub use welded::{SpeedShares, Welded};
 
 use cam::along::Along;
 use cam::path::PlannedPath;
 use host_link::geometry::MachineGeometry;
-use host_link::record::Record;
-use nalgebra::Vector3;
+use host_link::record::Recorded;
+use host_link::spool::Spool;
+use load::Loads;
 use peak::Peak;
 use shared::geometry::Pose;
-use shared::io::{AXES, MOTORS, SIDES, SLIDES};
+use shared::io::{MOTORS, SLIDES};
 use shared::protocol::MotionSample;
-use shared::state::State;
 use shared::ticks::PATH_PERIOD_S;
-use speeds::add_true_speeds;
+use speeds::TrueSpeeds;
 use std::collections::BTreeMap;
 use tick::{work_tick, working};
 
 /// Figures of a job.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub struct Evaluation {
     /// Every tick on a path that works.
-    pub ticks: Vec<WorkTick>,
+    pub ticks: Spool<WorkTick>,
     /// Ticks with a beam on; all of them if no beam ever was.
     pub weld_ticks: u32,
     /// Length of path between them \[mm\].
@@ -74,45 +76,29 @@ pub struct Followed<'a> {
     pub tracker_ahead_us: i64,
 }
 
-/// The machine at one tick of the motion board.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RunSample {
-    /// Time on the motion board's clock \[µs\].
-    pub time_us: u64,
-    /// Number of the path.
-    pub path_id: u32,
-    /// Programmed position on it \[mm\].
-    pub s_mm: f64,
-    /// Programmed speed along it \[mm/s\].
-    pub speed_mm_s: f64,
-    /// Gates that are open.
-    pub beams: [bool; SIDES],
-    /// Where the axes truly stood (mm, rad); by the gratings on a real machine.
-    pub axes: [f64; AXES],
-    /// Where the tool truly was, in the frame of the work.
-    pub pose: Pose,
-}
-
 /// Evaluates a record of a job that ran `paths`, by their numbers, beside the seams that it `followed`, where they are known.
 pub fn evaluate(
-    record: &Record,
+    record: &Recorded,
     machine: &MachineGeometry,
     paths: &BTreeMap<u32, PlannedPath>,
     followed: Option<Followed>,
 ) -> Evaluation {
     let along = Along::of(paths);
     let working = working(paths, &along);
-    let mut tips: Vec<Option<Vector3<f64>>> = Vec::new();
     let any_beam = on_paths(record).any(|s| working.contains_key(&s.path_id) && s.beams.contains(&true));
     let mut result = Evaluation {
+        ticks: Spool::new(record.spooling().clone()),
         seams_known: followed.is_some(),
         ..Evaluation::default()
     };
     let mut deviation = [Peak::default(); SLIDES];
     let mut contour = Peak::default();
-    let mut welded_to: Option<&MotionSample> = None;
-    let mut before: Option<&MotionSample> = None;
+    let (mut speeds, mut loads) = (TrueSpeeds::default(), Loads::default());
+    let mut slides = record.slides();
+    let mut welded_to: Option<MotionSample> = None;
+    let mut before: Option<MotionSample> = None;
     for sample in on_paths(record) {
+        sample.load.iter().for_each(|load| loads.add(load));
         for (max, seen) in result.max_following_error.iter_mut().zip(sample.following_error) {
             *max = max.max(f64::from(seen));
         }
@@ -126,8 +112,7 @@ pub fn evaluate(
         let Some(work) = working.get(&sample.path_id) else {
             continue;
         };
-        let (tick, tip) = work_tick(sample, record, machine, work, followed);
-        tips.push(tip);
+        let (tick, tip) = work_tick(&sample, &mut slides, machine, work, followed);
         if any_beam && !sample.beams.contains(&true) {
             welded_to = None;
         } else {
@@ -145,41 +130,16 @@ pub fn evaluate(
                 peak.add(tick.deviation_mm[i]);
             }
         }
-        result.ticks.push(tick);
+        speeds.push(tick, tip, &mut result.ticks);
     }
-    add_true_speeds(&mut result.ticks, &tips);
+    speeds.end_path(&mut result.ticks);
     result.max_deviation_mm = deviation.map(|peak| peak.max());
     result.rms_deviation_mm = deviation.map(|peak| peak.rms());
     result.max_contour_error_mm = contour.max();
-    result.load = Load::of(on_paths(record).filter_map(|sample| sample.load));
+    result.load = loads.all();
     result
 }
 
-/// The machine at every tick on one of `paths`.
-pub fn run_samples(
-    record: &Record,
-    machine: &MachineGeometry,
-    paths: &BTreeMap<u32, PlannedPath>,
-) -> Vec<RunSample> {
-    on_paths(record)
-        .filter(|sample| paths.contains_key(&sample.path_id))
-        .filter_map(|sample| {
-            let (position, _) = record.machine_at(sample.time_us)?;
-            let axes = machine.axes(&position);
-            Some(RunSample {
-                time_us: sample.time_us,
-                path_id: sample.path_id,
-                s_mm: sample.s_mm,
-                speed_mm_s: sample.speed_mm_s,
-                beams: sample.beams,
-                axes,
-                pose: machine.kinematics().forward(&axes),
-            })
-        })
-        .collect()
-}
-
-fn on_paths(record: &Record) -> impl Iterator<Item = &MotionSample> {
-    let on_path = |s: &&MotionSample| matches!(s.state, State::Running | State::Holding | State::Stopping);
-    record.motion().iter().filter(on_path)
+fn on_paths(record: &Recorded) -> impl Iterator<Item = MotionSample> {
+    record.motion().iter().filter(|sample| sample.state.on_path())
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 use shared::protocol::BoardLoad;
 use shared::ticks::{PATH_PERIOD_S, SERVO_PERIOD_S};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Execution times of the ticks, and the clock they are counted by.
@@ -29,32 +30,56 @@ pub struct ExecutionTimes {
     pub period: u32,
 }
 
-impl Load {
-    /// Of the ticks that told theirs; `None` if none did.
-    pub fn of(told: impl IntoIterator<Item = BoardLoad>) -> Option<Self> {
-        let told: Vec<BoardLoad> = told.into_iter().collect();
-        let cycles_per_us = told.first()?.cycles_per_us;
-        let times = |period_s: f64, of: fn(&BoardLoad) -> u32| {
+/// Loads of many ticks, by how often each time was seen: they lie within a few periods, however many ticks there are.
+#[derive(Default)]
+pub(super) struct Loads {
+    cycles_per_us: Option<u16>,
+    path_ticks: BTreeMap<u32, u64>,
+    servo_ticks: BTreeMap<u32, u64>,
+}
+
+impl Loads {
+    pub(super) fn add(&mut self, told: &BoardLoad) {
+        self.cycles_per_us.get_or_insert(told.cycles_per_us);
+        *self.path_ticks.entry(told.path_tick).or_default() += 1;
+        *self.servo_ticks.entry(told.servo_tick).or_default() += 1;
+    }
+
+    /// `None` if no tick told its load.
+    pub(super) fn all(&self) -> Option<Load> {
+        let cycles_per_us = self.cycles_per_us?;
+        let times = |period_s: f64, counts| {
             let period = period_s * 1e6 * f64::from(cycles_per_us);
-            ExecutionTimes::of(told.iter().map(of).collect(), period as u32)
+            ExecutionTimes::of(counts, period as u32)
         };
-        Some(Self {
+        Some(Load {
             cycles_per_us,
-            path_tick: times(PATH_PERIOD_S, |load| load.path_tick),
-            servo_tick: times(SERVO_PERIOD_S, |load| load.servo_tick),
+            path_tick: times(PATH_PERIOD_S, &self.path_ticks),
+            servo_tick: times(SERVO_PERIOD_S, &self.servo_ticks),
         })
     }
 }
 
 impl ExecutionTimes {
-    /// Of at least one tick.
-    fn of(mut cycles: Vec<u32>, period: u32) -> Self {
-        cycles.sort_unstable();
-        let sum: u64 = cycles.iter().copied().map(u64::from).sum();
+    /// Of at least one tick, by its cycles.
+    fn of(counts: &BTreeMap<u32, u64>, period: u32) -> Self {
+        let ticks: u64 = counts.values().sum();
+        let sum: u64 = counts
+            .iter()
+            .map(|(cycles, ticks)| u64::from(*cycles) * ticks)
+            .sum();
+        // All but the longest hundredth.
+        let most = (ticks - 1) * 99 / 100;
+        let mut seen = 0;
+        let percentile = counts.iter().find(|(_, ticks)| {
+            seen += **ticks;
+            seen > most
+        });
+        let cycles = |found: Option<(&u32, &u64)>| found.map_or(0, |(cycles, _)| *cycles);
         Self {
-            mean: (sum / cycles.len() as u64) as u32,
-            percentile_99: cycles[(cycles.len() - 1) * 99 / 100],
-            worst: cycles[cycles.len() - 1],
+            mean: (sum / ticks) as u32,
+            percentile_99: cycles(percentile),
+            worst: cycles(counts.last_key_value()),
             period,
         }
     }
@@ -87,7 +112,10 @@ mod tests {
             path_tick: 10 * (1001 - n),
             servo_tick: 5000,
         });
-        let load = Load::of(ticks).unwrap();
+        let mut loads = Loads::default();
+        assert_eq!(loads.all(), None);
+        ticks.for_each(|tick| loads.add(&tick));
+        let load = loads.all().unwrap();
         let expected = ExecutionTimes {
             mean: 5005,
             percentile_99: 9900,
@@ -98,6 +126,5 @@ mod tests {
         assert_eq!((load.servo_tick.worst, load.servo_tick.period), (5000, 31_250));
         let words = " 10000 cycles at worst (8.0 % of 125000), 9900 in 99 %, 5005 mean";
         assert_eq!(load.path_tick.to_string(), words);
-        assert_eq!(Load::of([]), None);
     }
 }

@@ -5,14 +5,15 @@ use crate::nearest::nearest;
 use cam::along::Along;
 use cam::path::{Course, PlannedPath, Programmed};
 use host_link::geometry::MachineGeometry;
-use host_link::record::Record;
+use host_link::record::{MachinePosition, SlidePositions};
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 use shared::io::{MOTORS, SIDES, SLIDES};
 use shared::protocol::MotionSample;
 use std::collections::BTreeMap;
 
 /// A tick of the motion board on a path that works: one of G1, or with a beam.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WorkTick {
     /// Path tick.
     pub tick: u32,
@@ -26,7 +27,7 @@ pub struct WorkTick {
     pub speed_mm_s: f64,
     /// Programmed feed at that place \[mm/s\].
     pub feed_mm_s: f64,
-    /// True speed of the tip \[mm/s\]; `None` in a gap of the telemetry.
+    /// True speed of the tip \[mm/s\]; `None` if its path has no other tick.
     pub true_speed_mm_s: Option<f64>,
     /// Gates that are open.
     pub beams: [bool; SIDES],
@@ -60,20 +61,19 @@ pub(super) fn working(paths: &BTreeMap<u32, PlannedPath>, along: &Along) -> BTre
     paths.iter().filter_map(work).collect()
 }
 
+/// A tick, and where the tip was; its true speed is not known yet. `slides` are those of the run.
 pub(super) fn work_tick(
     sample: &MotionSample,
-    record: &Record,
+    slides: &mut SlidePositions,
     machine: &MachineGeometry,
     work: &Work,
     followed: Option<Followed>,
-) -> (WorkTick, Option<Vector3<f64>>) {
-    let pose = record
-        .machine_at(sample.time_us)
-        .map(|(position, _)| machine.pose(&position));
+) -> (WorkTick, Vector3<f64>) {
+    let pose = machine.pose(&MachinePosition::of(sample));
     let slides_mm =
-        followed.and_then(|f| record.slides_at(sample.time_us.checked_add_signed(f.tracker_ahead_us)?));
+        followed.and_then(|f| slides.at(sample.time_us.checked_add_signed(f.tracker_ahead_us)?));
     let mut deviation_mm = [None; SLIDES];
-    if let (Some(pose), Some(slides), Some(followed)) = (pose, slides_mm, followed) {
+    if let (Some(slides), Some(followed)) = (slides_mm, followed) {
         for side in 0..SIDES {
             if let Some([u, v]) = followed.seams.on_seam(side, &pose) {
                 deviation_mm[2 * side] = Some(slides[2 * side] - u);
@@ -81,8 +81,8 @@ pub(super) fn work_tick(
             }
         }
     }
-    let tip = pose.map(|pose| pose.position);
-    let nearest = tip.and_then(|tip| nearest(&work.path, &tip, sample.s_mm));
+    let tip = pose.position;
+    let nearest = nearest(&work.path, &tip, sample.s_mm);
     let tick = WorkTick {
         tick: sample.tick,
         path_id: sample.path_id,

@@ -34,7 +34,7 @@ pub struct SpeedShares {
 impl SpeedShares {
     /// Of the ticks on `paths`; `None` if there are none with a beam on.
     pub fn of(
-        ticks: &[WorkTick],
+        ticks: impl IntoIterator<Item = WorkTick>,
         paths: &BTreeMap<u32, PlannedPath>,
         beams: &[Option<BeamConfig>; SIDES],
     ) -> Option<Self> {
@@ -55,10 +55,10 @@ impl SpeedShares {
                 let path = &paths[&path_id];
                 let new = tick.s_mm > farthest[side];
                 farthest[side] = farthest[side].max(tick.s_mm);
-                counts |= new && path.motion == Motion::Feed && !(rests[side] && near_rest(path, tick));
+                counts |= new && path.motion == Motion::Feed && !(rests[side] && near_rest(path, &tick));
             }
             if let (true, Some(speed)) = (counts && tick.feed_mm_s > 0.0, tick.true_speed_mm_s) {
-                let (slow, fast) = programmed.feeds_around(tick.s_mm, transition(&paths[&path_id], tick));
+                let (slow, fast) = programmed.feeds_around(tick.s_mm, transition(&paths[&path_id], &tick));
                 let (low, high) = (100.0 * speed / slow, 100.0 * speed / fast);
                 let shares = shares.get_or_insert(Self {
                     lowest_percent: low,
@@ -115,15 +115,19 @@ impl Welded {
     ///
     /// Only the way between two ticks that both have the gate open counts as welded, so a gap appears longer than it is
     /// by up to the way of two ticks.
-    pub fn of(ticks: &[WorkTick], paths: &BTreeMap<u32, PlannedPath>, side: usize) -> Self {
+    pub fn of(
+        ticks: impl IntoIterator<Item = WorkTick>,
+        paths: &BTreeMap<u32, PlannedPath>,
+        side: usize,
+    ) -> Self {
         let along = Along::of(paths);
+        let burnt = burnt(ticks, side);
         let mut welded = Self::default();
         for (id, path) in paths {
-            let mut burnt = burnt(ticks, *id, side);
-            burnt.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let ways = burnt.get(id).map_or(&[][..], |ways| &ways.pieces);
             for (start, end) in &path.programmed().beams[side] {
                 welded.programmed_mm += end - start;
-                for (from, to) in gaps((*start, *end), &burnt) {
+                for (from, to) in gaps((*start, *end), ways) {
                     welded.unwelded_mm += to - from;
                     if to - from > welded.gap_mm {
                         welded.gap_mm = to - from;
@@ -136,21 +140,53 @@ impl Welded {
     }
 }
 
-/// The ways of `side` between two ticks on path `id` with its gate open \[mm\].
-fn burnt(ticks: &[WorkTick], id: u32, side: usize) -> Vec<(f64, f64)> {
-    let mut ways: Vec<(f64, f64)> = Vec::new();
-    for pair in ticks.windows(2) {
-        let open = |tick: &WorkTick| tick.path_id == id && tick.beams[side];
-        let near = pair[1].tick.wrapping_sub(pair[0].tick) <= LONGEST_GAP_TICKS;
-        if near && pair.iter().all(open) {
-            let (a, b) = (pair[0].s_mm, pair[1].s_mm);
-            match ways.last_mut() {
-                // Ways that go on from each other are one.
-                Some(last) if last.1 == a && b >= a => last.1 = b,
-                _ => ways.push((a.min(b), a.max(b))),
+/// Ways along a path \[mm\].
+#[derive(Debug, Default)]
+struct Ways {
+    /// Not touching and in order, once they are merged.
+    pieces: Vec<(f64, f64)>,
+    /// How many there were when that was done last.
+    merged: usize,
+}
+
+impl Ways {
+    fn add(&mut self, a: f64, b: f64) {
+        let (from, to) = (a.min(b), a.max(b));
+        match self.pieces.last_mut() {
+            Some(last) if from <= last.1 && last.0 <= to => *last = (last.0.min(from), last.1.max(to)),
+            _ => self.pieces.push((from, to)),
+        }
+        if self.pieces.len() > 2 * self.merged + 1000 {
+            self.merge();
+        }
+    }
+
+    fn merge(&mut self) {
+        self.pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.pieces.dedup_by(|next, last| {
+            let touches = next.0 <= last.1;
+            if touches {
+                last.1 = last.1.max(next.1);
+            }
+            touches
+        });
+        self.merged = self.pieces.len();
+    }
+}
+
+/// The ways of `side` between two ticks with its gate open, by path.
+fn burnt(ticks: impl IntoIterator<Item = WorkTick>, side: usize) -> BTreeMap<u32, Ways> {
+    let mut ways: BTreeMap<u32, Ways> = BTreeMap::new();
+    let mut before: Option<WorkTick> = None;
+    for tick in ticks {
+        if let Some(before) = before.replace(tick) {
+            let near = tick.tick.wrapping_sub(before.tick) <= LONGEST_GAP_TICKS;
+            if near && before.path_id == tick.path_id && before.beams[side] && tick.beams[side] {
+                ways.entry(tick.path_id).or_default().add(before.s_mm, tick.s_mm);
             }
         }
     }
+    ways.values_mut().for_each(Ways::merge);
     ways
 }
 
@@ -205,11 +241,11 @@ mod tests {
     fn where_telemetry_is_missing_nothing_counts_as_welded() {
         let at = |k: u32| tick(k, 0.1 * f64::from(k), true);
         let ticks = [at(0), at(1), at(2), at(30), at(31)];
-        let ways = burnt(&ticks, 3, 0);
-        assert_eq!(ways.len(), 2, "{ways:?}");
-        assert_eq!((ways[0].0, ways[1].0), (0.0, ticks[3].s_mm));
-        assert_eq!(burnt(&ticks, 3, 1), []);
-        assert_eq!(burnt(&ticks, 4, 0), []);
+        let ways = burnt(ticks, 0);
+        let pieces = [(0.0, ticks[2].s_mm), (ticks[3].s_mm, ticks[4].s_mm)];
+        assert_eq!(ways[&3].pieces, pieces, "{ways:?}");
+        assert_eq!(ways.len(), 1, "{ways:?}");
+        assert!(burnt(ticks, 1).is_empty());
     }
 
     #[test]
@@ -224,7 +260,27 @@ mod tests {
             (0.4, true),
             (0.9, true),
         ];
-        let ticks: Vec<WorkTick> = (0..).zip(places).map(|(k, (s, beam))| tick(k, s, beam)).collect();
-        assert_eq!(gaps((0.0, 1.0), &burnt(&ticks, 3, 0)), [(0.9, 1.0)]);
+        let ticks = (0..).zip(places).map(|(k, (s, beam))| tick(k, s, beam));
+        assert_eq!(gaps((0.0, 1.0), &burnt(ticks, 0)[&3].pieces), [(0.9, 1.0)]);
+    }
+
+    /// As a pin with gratings that are noisy, or a beam that goes over a hatch again and again.
+    #[test]
+    fn ways_to_and_fro_are_few_pieces_and_cover_the_same() {
+        let mut ways = Ways::default();
+        // 100 places apart from each other, each gone over thousands of times in no order.
+        for k in 0..500_000_u64 {
+            let place = k * 7919 % 100;
+            let from = place as f64 + 0.3 * (k % 13) as f64 / 13.0;
+            ways.add(from, from - 0.1);
+            assert!(ways.pieces.len() <= 1200, "{}", ways.pieces.len());
+        }
+        ways.merge();
+        assert_eq!(ways.pieces.len(), 100);
+        let covered: f64 = ways.pieces.iter().map(|(from, to)| to - from).sum();
+        assert!(
+            (covered - 100.0 * (0.1 + 0.3 * 12.0 / 13.0)).abs() < 1e-9,
+            "{covered}"
+        );
     }
 }

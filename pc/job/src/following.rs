@@ -39,7 +39,7 @@ pub(super) fn follow(
         advance.watch(&s.motion)?;
         recentring::watch(s, id)?;
         let mut stands = false;
-        let here = s.record.motion().last().filter(|here| here.tick > begun).copied();
+        let here = s.record.motion().back().filter(|here| here.tick > begun).copied();
         if let Some(here) = &here {
             // The telemetry shows it sooner than the next status; at rest it names no path.
             stands = !on_path(here.state);

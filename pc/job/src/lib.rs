@@ -34,6 +34,7 @@ use following::follow;
 use host_link::Control;
 use host_link::boards::{Boards, LinkError};
 use host_link::events::{Event, Next, Phase};
+use host_link::spool::Spooling;
 use nc::Program;
 use parts::PartFile;
 use session::Session;
@@ -71,6 +72,8 @@ pub struct Job<'a> {
     pub surroundings: Arc<dyn Surroundings>,
     /// What the report calls everything.
     pub names: Names,
+    /// Where what the boards told is kept, and what is computed of it.
+    pub spooling: Spooling,
 }
 
 /// What to do between homing and parking.
@@ -219,7 +222,8 @@ impl JobError {
 /// Runs a job on boards that may be in any state. They are off afterwards, if they can be reached at all.
 pub fn run(boards: &mut dyn Boards, job: &Job, control: &mut Control) -> Result<RunRecord, JobError> {
     let planner = Planner::build(job.machine)?;
-    let mut session = Session::begin(boards, job.machine, job.surroundings.as_ref(), control)?;
+    let around = job.surroundings.as_ref();
+    let mut session = Session::begin(boards, job.machine, around, job.spooling.clone(), control)?;
     let mut weld = Weld {
         planner,
         paths: BTreeMap::new(),

@@ -120,8 +120,8 @@ pub(super) fn watch(session: &mut Session, id: u32) -> Result<(), JobError> {
     let newest = session
         .record
         .tracker()
-        .last()
-        .zip(session.record.motion().last());
+        .back()
+        .zip(session.record.motion().back());
     let (Some((slides, place)), Some(recentring)) = (newest, &mut session.recentring) else {
         return Ok(());
     };

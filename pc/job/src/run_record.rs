@@ -5,7 +5,7 @@ use crate::{CameraFigures, DelayFigures, JobError, Taught};
 use cam::along::Along;
 use cam::path::PlannedPath;
 use host_link::geometry::MachineGeometry;
-use host_link::record::Record;
+use host_link::record::Recorded;
 use serde::Serialize;
 use shared::io::SIDES;
 use shared::protocol::{Identity, Role, TrackerStatus};
@@ -21,7 +21,7 @@ pub struct RunRecord {
     /// The paths that were begun, by the numbers that the boards know them by.
     pub paths: BTreeMap<u32, PlannedPath>,
     /// What the boards told.
-    pub record: Record,
+    pub record: Recorded,
     /// The machine.
     pub machine: MachineGeometry,
     /// The motion board.
@@ -132,7 +132,7 @@ pub(crate) fn run_record(
         dropped_datagrams: session.boards.dropped_datagrams(),
         duration: session.boards.now() - session.began,
         machine: session.machine,
-        record: session.record,
+        record: session.record.finish(),
         paths,
         taught,
     }

@@ -224,7 +224,7 @@ impl CameraMachine for SeamArm<'_, '_, '_> {
                 let stands = session
                     .record
                     .motion()
-                    .last()
+                    .back()
                     .is_some_and(|sample| sample.tick > rests);
                 Ok(stands && (seen >= pictures || session.tick() > end))
             })?;

@@ -11,6 +11,7 @@ use host_link::boards::{Boards, LinkError, Stall};
 use host_link::events::{Event, Phase, Question};
 use host_link::geometry::MachineGeometry;
 use host_link::record::Record;
+use host_link::spool::Spooling;
 use shared::protocol::{Datagram, MotionStatus, Request, Response, Role};
 use shared::state::{Fault, State};
 use std::time::Duration;
@@ -52,11 +53,12 @@ pub(super) struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Begins with the boards as they are, before the cameras of `around`.
+    /// Begins with the boards as they are, before the cameras of `around`. `spooling` is for the record.
     pub fn begin(
         boards: &'a mut dyn Boards,
         machine: &MachineFile,
         around: &dyn Surroundings,
+        spooling: Spooling,
         control: &'a mut Control,
     ) -> Result<Self, JobError> {
         let geometry = MachineGeometry::build(&machine.motion)?;
@@ -80,7 +82,7 @@ impl<'a> Session<'a> {
             machine: geometry,
             tracking,
             recentring: unit.map(Recentring::new).transpose()?,
-            record: Record::default(),
+            record: Record::new(spooling),
             lost_before: lost(&motion),
             motion,
             began,
@@ -209,7 +211,7 @@ impl<'a> Session<'a> {
     /// Newest known path tick of the motion board, one a millisecond: the clock of the job.
     pub fn tick(&self) -> u32 {
         let asked = self.motion.path_ticks;
-        let told = self.record.motion().last().map_or(asked, |sample| sample.tick);
+        let told = self.record.motion().back().map_or(asked, |sample| sample.tick);
         // The newer one, where the count starts again, too.
         if told.wrapping_sub(asked) < 1 << 31 {
             told
@@ -388,7 +390,7 @@ impl<'a> Session<'a> {
     fn welding(&self) -> bool {
         self.record
             .motion()
-            .last()
+            .back()
             .is_some_and(|sample| sample.beams.contains(&true))
     }
 }

@@ -161,7 +161,7 @@ impl Tracking {
 
     /// The first reason not to go on.
     pub fn fault(&self, record: &Record) -> Option<TrackerFault> {
-        let newest = record.tracker().last();
+        let newest = record.tracker().back();
         let told = newest
             .filter(|sample| sample.state == TrackerState::Tracking)
             .and_then(|sample| sample.fault);

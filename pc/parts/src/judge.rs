@@ -4,7 +4,7 @@ use crate::limits::Percent;
 use cam::along::Along;
 use cam::path::PlannedPath;
 use config::machine::MachineFile;
-use evaluate::{Evaluation, RunSample};
+use evaluate::{Evaluation, RunSamples};
 use serde::Serialize;
 use shared::kinematics::Kinematics;
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ pub struct Run<'a> {
     /// What was run, by path number.
     pub paths: &'a BTreeMap<u32, PlannedPath>,
     /// Every tick of the motion board on a path, in order of time.
-    pub samples: &'a [RunSample],
+    pub samples: &'a dyn RunSamples,
     /// What can be told of any run.
     pub evaluation: &'a Evaluation,
 }

@@ -3,8 +3,7 @@
 
 use crate::limits::{Limit, Percent, SPEED_DIP};
 use crate::{Figure, Judgement, Run};
-use evaluate::Welded;
-use evaluate::WorkTick;
+use evaluate::{Evaluation, Welded, WorkTick};
 use serde::Deserialize;
 use shared::io::{SIDES, SLIDES};
 
@@ -73,14 +72,13 @@ impl SeamLimits {
     /// Judges the paths that were begun. Nothing of a program without beams.
     pub fn judge(&self, run: &Run) -> Judgement {
         let mut figures = Vec::new();
-        let ticks = &run.evaluation.ticks;
         for side in 0..SIDES {
-            let welded = Welded::of(ticks, run.paths, side);
+            let welded = Welded::of(&run.evaluation.ticks, run.paths, side);
             if welded.programmed_mm == 0.0 {
                 continue;
             }
             if run.evaluation.seams_known {
-                figures.extend(self.deviations(ticks, side));
+                figures.extend(self.deviations(run.evaluation, side));
             }
             let [programmed, unwelded, gap] = [PROGRAMMED[side], UNWELDED[side], GAP[side]];
             let mm = |(key, text), value| Figure::new(key, text, value, "mm");
@@ -99,18 +97,31 @@ impl SeamLimits {
     }
 
     /// Largest deviations of a side with its beam on, and what is not known of them.
-    fn deviations(&self, ticks: &[WorkTick], side: usize) -> Vec<Figure> {
-        let on = || ticks.iter().filter(|tick| tick.beams[side]);
+    fn deviations(&self, evaluation: &Evaluation, side: usize) -> Vec<Figure> {
+        let slides = [2 * side, 2 * side + 1];
+        // With where they were.
+        let mut largest: [Option<(f64, f64)>; 2] = [None; 2];
+        let mut unknown = Unknown::default();
+        for tick in &evaluation.ticks {
+            unknown.add(&tick, side);
+            for (slide, largest) in slides.into_iter().zip(&mut largest) {
+                let deviation = tick.deviation_mm[slide].filter(|_| tick.beams[side]);
+                if let Some(deviation) = deviation.map(f64::abs)
+                    && largest.is_none_or(|(before, _)| deviation.total_cmp(&before).is_ge())
+                {
+                    *largest = Some((deviation, tick.along_mm));
+                }
+            }
+        }
         let mut figures = Vec::new();
-        for slide in [2 * side, 2 * side + 1] {
-            let seen = on().filter_map(|tick| Some((tick.deviation_mm[slide]?.abs(), tick.along_mm)));
-            if let Some((largest, along_mm)) = seen.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        for (slide, largest) in slides.into_iter().zip(largest) {
+            if let Some((largest, along_mm)) = largest {
                 let (key, text) = DEVIATION[slide];
                 let figure = Figure::new(key, text, largest, "mm");
                 figures.push(figure.limited(self.deviation_mm.get()).at(along_mm));
             }
         }
-        let (unknown, at_mm) = longest_unknown(ticks, side);
+        let (unknown, at_mm) = unknown.longest();
         if unknown > 0.0 {
             let (key, text) = UNKNOWN[side];
             let figure = Figure::new(key, text, unknown, "mm");
@@ -120,19 +131,43 @@ impl SeamLimits {
     }
 }
 
-/// The longest way with the beam of `side` on whose deviation is not known, and where it begins \[mm\].
-fn longest_unknown(ticks: &[WorkTick], side: usize) -> (f64, f64) {
-    let known = |tick: &WorkTick| !tick.beams[side] || tick.deviation_mm[2 * side].is_some();
-    let unknown = ticks
-        .chunk_by(|a, b| a.path_id == b.path_id && known(a) == known(b))
-        .filter(|chunk| !known(&chunk[0]));
-    let ways = unknown.map(|chunk| {
-        // A tick stands for its own way.
-        let own = chunk[0].speed_mm_s * shared::ticks::PATH_PERIOD_S;
-        (
-            chunk[chunk.len() - 1].s_mm - chunk[0].s_mm + own,
-            chunk[0].along_mm,
-        )
-    });
-    ways.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0))
+/// The longest way with the beam of a side on whose deviation is not known.
+#[derive(Default)]
+struct Unknown {
+    /// First tick of the way that the last one belongs to, and the place of that one \[mm\].
+    here: Option<(WorkTick, f64)>,
+    /// Length, and where it begins \[mm\].
+    longest: Option<(f64, f64)>,
+}
+
+impl Unknown {
+    fn add(&mut self, tick: &WorkTick, side: usize) {
+        let known = !tick.beams[side] || tick.deviation_mm[2 * side].is_some();
+        match &mut self.here {
+            Some((first, end)) if !known && first.path_id == tick.path_id => *end = tick.s_mm,
+            _ => {
+                self.end();
+                self.here = (!known).then_some((*tick, tick.s_mm));
+            }
+        }
+    }
+
+    fn end(&mut self) {
+        if let Some((first, end)) = self.here.take() {
+            // A tick stands for its own way.
+            let own = first.speed_mm_s * shared::ticks::PATH_PERIOD_S;
+            let way = end - first.s_mm + own;
+            if self
+                .longest
+                .is_none_or(|(longest, _)| way.total_cmp(&longest).is_ge())
+            {
+                self.longest = Some((way, first.along_mm));
+            }
+        }
+    }
+
+    fn longest(mut self) -> (f64, f64) {
+        self.end();
+        self.longest.unwrap_or((0.0, 0.0))
+    }
 }

@@ -32,6 +32,15 @@ pub(super) struct Curve {
     pub points: Vec<(f64, f64)>,
 }
 
+impl Curve {
+    pub(super) fn new(name: &str, points: Vec<(f64, f64)>) -> Self {
+        Self {
+            name: name.to_owned(),
+            points,
+        }
+    }
+}
+
 /// One set of axes.
 #[derive(Default)]
 pub(super) struct Panel {

@@ -7,14 +7,14 @@ use crate::{
 use cam::along::{Along, works};
 use cam::dry_run::{self, DryRunError};
 use cam::path::{PathError, PlannedPath};
-use evaluate::{Evaluation, Followed, SpeedShares, evaluate, run_samples};
-use host_link::record::Record;
+use evaluate::{Evaluation, Followed, RecordedRun, SpeedShares, evaluate};
+use host_link::record::Recorded;
 use job::{ByBoard, Job, JobError, RunRecord, Taught, TrackingRecord};
 use parts::{Judgement, PartFile, Plot, Run, SeamLimits};
 use shared::io::MOTOR_AXIS;
 use shared::kinematics::AXIS_UNIT;
 use shared::protocol::Identity;
-use shared::state::{State, TrackerFault};
+use shared::state::TrackerFault;
 use shared::units::MM_S_PER_M_MIN;
 
 /// A job after its end.
@@ -33,7 +33,7 @@ pub struct Ended {
     /// What was taught, as far as it came.
     pub taught: Taught,
     /// What the boards told.
-    pub record: Record,
+    pub record: Recorded,
     /// Columns of its log.
     pub columns: LogColumns,
 }
@@ -59,7 +59,10 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
         Err(reason) => error = Some(JobError::Judge(format!("{reason:#}"))),
     }
     let along = Along::of(paths);
-    let mut error = error.map(|error| along_all_paths(error, &run, &along));
+    // A place of the path that was run last, as path length through all paths.
+    let last = last_path(&run);
+    let here = |s_mm: f64| last.and_then(|last| along.at(last, s_mm)).unwrap_or(s_mm);
+    let mut error = error.map(|error| along_all_paths(error, &here));
     let planned_motion_s = dry_run::motion_s(job.machine, paths.values());
     // Here, as for all figures above, long programs are read again.
     if let Err(DryRunError::Path(lost @ PathError::Program(_))) = &planned_motion_s {
@@ -69,6 +72,14 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
         error.get_or_insert(JobError::Judge(lost.to_string()));
         Vec::new()
     });
+    // All figures above come of what was kept.
+    let ticks = evaluation
+        .ticks
+        .check()
+        .map_err(|lost| format!("the evaluated ticks are not complete: {lost}"));
+    if let Err(lost) = run.record.check().map_err(|lost| lost.to_string()).and(ticks) {
+        error.get_or_insert(JobError::Judge(lost));
+    }
     let outcome = match &error {
         None => Outcome::Finished,
         Some(JobError::Interrupted) => Outcome::Interrupted,
@@ -133,7 +144,7 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
         unwelded,
         planned_motion_s: planned_motion_s.unwrap_or(f64::NAN),
         motion_s: evaluation.motion_s,
-        faults: faults(&run, error.as_ref(), &along),
+        faults: faults(&run, error.as_ref(), &here),
         duration_s: run.duration.as_secs_f64(),
     };
     Ended {
@@ -159,7 +170,11 @@ fn judge(
         machine: job.machine,
         kinematics: record.machine.kinematics(),
         paths: &record.paths,
-        samples: &run_samples(&record.record, &record.machine, &record.paths),
+        samples: &RecordedRun {
+            record: &record.record,
+            machine: &record.machine,
+            paths: &record.paths,
+        },
         evaluation,
     };
     if let Some(part) = part {
@@ -174,10 +189,9 @@ fn judge(
 }
 
 /// The error with its place as plots and log have it: path length through all paths.
-fn along_all_paths(error: JobError, run: &RunRecord, along: &Along) -> JobError {
-    let here = |s_mm: f64| here(run, along, s_mm);
+fn along_all_paths(error: JobError, here: &impl Fn(f64) -> f64) -> JobError {
     match error {
-        JobError::Tracker(fault) => JobError::Tracker(placed(fault, &here)),
+        JobError::Tracker(fault) => JobError::Tracker(placed(fault, here)),
         JobError::Standstill { line, s_mm, seconds } => JobError::Standstill {
             line,
             s_mm: here(s_mm),
@@ -196,11 +210,10 @@ fn placed(fault: TrackerFault, here: &impl Fn(f64) -> f64) -> TrackerFault {
     fault
 }
 
-/// A place of the path that was run last, as path length through all paths.
-fn here(run: &RunRecord, along: &Along, s_mm: f64) -> f64 {
-    let on_path = |state| matches!(state, State::Running | State::Holding | State::Stopping);
-    let last = run.record.motion().iter().rfind(|sample| on_path(sample.state));
-    last.and_then(|last| along.at(last.path_id, s_mm)).unwrap_or(s_mm)
+/// Number of the path that was run last.
+fn last_path(run: &RunRecord) -> Option<u32> {
+    let on_paths = run.record.motion().iter().filter(|sample| sample.state.on_path());
+    on_paths.last().map(|sample| sample.path_id)
 }
 
 fn board_name(identity: &Identity) -> String {
@@ -242,12 +255,12 @@ fn seam_figures(tracking: &TrackingRecord, job: &Job, evaluation: &Evaluation) -
 }
 
 /// Why the job ended early, and the faults that the boards tell, each once.
-fn faults(run: &RunRecord, error: Option<&JobError>, along: &Along) -> Vec<String> {
+fn faults(run: &RunRecord, error: Option<&JobError>, here: &impl Fn(f64) -> f64) -> Vec<String> {
     let mut faults: Vec<String> = error.iter().map(ToString::to_string).collect();
     let tracker = run.tracking.as_ref().and_then(|t| t.status.fault);
     let told = [
         run.motion_fault.map(|fault| fault.to_string()),
-        tracker.map(|fault| placed(fault, &|s_mm| here(run, along, s_mm)).to_string()),
+        tracker.map(|fault| placed(fault, here).to_string()),
     ];
     for fault in told.into_iter().flatten() {
         if !faults.iter().any(|known| known.contains(&fault)) {

@@ -285,11 +285,21 @@ pub fn write(directory: &Path, ended: &Ended) -> Result<(), ReportError> {
     std::fs::write(&file, json + "\n").map_err(|e| ReportError::new(&file, e))?;
     let file = directory.join(LOG);
     let samples = ended.record.motion();
-    log::write(&file, &ended.columns, samples, &evaluation.ticks).map_err(|e| ReportError::new(&file, e))?;
+    let lost = || (samples.check(), evaluation.ticks.check());
+    let known = lost();
+    let written = log::write(&file, &ended.columns, samples, &evaluation.ticks);
+    written.map_err(|e| ReportError::new(&file, e))?;
     if !evaluation.ticks.is_empty() {
         plots::draw(directory, report, &evaluation.ticks)?;
     }
-    plots::draw_more(directory, report, &ended.plots)
+    plots::draw_more(directory, report, &ended.plots)?;
+    // What was lost before that is among the errors of the job.
+    let now = lost();
+    if now == known {
+        Ok(())
+    } else {
+        now.0.and(now.1).map_err(|e| ReportError::new(&file, e))
+    }
 }
 
 /// Checks that a report can be written into `directory`, before anything moves.

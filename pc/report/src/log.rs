@@ -9,7 +9,6 @@ use host_link::events::{Event, Subscription};
 use shared::io::{AXES, AXIS_NAMES, MOTOR_NAMES, MOTORS, SLIDE_NAMES};
 use shared::protocol::MotionSample;
 use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -127,25 +126,42 @@ pub(super) fn is_rotary(motor: usize) -> bool {
 pub(super) fn write(
     path: &Path,
     columns: &LogColumns,
-    samples: &[MotionSample],
-    ticks: &[WorkTick],
+    samples: impl IntoIterator<Item = MotionSample>,
+    ticks: impl IntoIterator<Item = WorkTick>,
 ) -> io::Result<()> {
-    let mut out = BufWriter::new(File::create(path)?);
-    all(&mut out, columns, samples, ticks)?;
-    out.flush()
+    // Of a long run this takes minutes, in which the one written while the job ran stays.
+    let new = path.with_extension("csv.new");
+    let mut out = BufWriter::new(File::create(&new)?);
+    let written = all(&mut out, columns, samples, ticks).and_then(|()| out.flush());
+    drop(out);
+    let replaced = written.and_then(|()| std::fs::rename(&new, path));
+    if replaced.is_err() {
+        // What there is of it is of no use.
+        let _ = std::fs::remove_file(&new);
+    }
+    replaced
 }
 
 fn all(
     out: &mut impl Write,
     columns: &LogColumns,
-    samples: &[MotionSample],
-    ticks: &[WorkTick],
+    samples: impl IntoIterator<Item = MotionSample>,
+    ticks: impl IntoIterator<Item = WorkTick>,
 ) -> io::Result<()> {
     columns.heading(out)?;
-    let ticks: BTreeMap<u32, &WorkTick> = ticks.iter().map(|tick| (tick.tick, tick)).collect();
-    samples
-        .iter()
-        .try_for_each(|sample| columns.line(out, sample, ticks.get(&sample.tick).copied()))
+    let mut ticks = ticks.into_iter().peekable();
+    for sample in samples {
+        // The tick of a sample that cannot be read again.
+        while ticks.next_if(|tick| is_before(tick.tick, sample.tick)).is_some() {}
+        let work = ticks.next_if(|tick| tick.tick == sample.tick);
+        columns.line(out, &sample, work.as_ref())?;
+    }
+    Ok(())
+}
+
+/// Whether a tick comes before another one; they begin anew after 49 days.
+fn is_before(tick: u32, other: u32) -> bool {
+    (tick.wrapping_sub(other) as i32) < 0
 }
 
 /// Writes a log while the job runs.
@@ -245,7 +261,7 @@ pub(crate) mod tests {
 
     fn text(columns: &LogColumns) -> String {
         let mut out = Vec::new();
-        all(&mut out, columns, &[sample(3), sample(4)], &[tick(4)]).unwrap();
+        all(&mut out, columns, [sample(3), sample(4)], [tick(4)]).unwrap();
         String::from_utf8(out).unwrap()
     }
 
@@ -269,6 +285,20 @@ pub(crate) mod tests {
         // Of a tick that does not work.
         assert_eq!((value(1, "tick"), value(1, "along_mm")), ("3", ""));
         assert_eq!(value(1, "s_mm"), "0.300000");
+    }
+
+    #[test]
+    fn ticks_go_to_the_lines_of_their_samples_whatever_is_missing() {
+        let mut out = Vec::new();
+        let samples = [u32::MAX, 1, 2, 4].map(sample);
+        all(&mut out, &ALL, samples, [u32::MAX, 0, 2, 3, 4].map(tick)).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        let along: Vec<&str> = text
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').nth(4).unwrap())
+            .collect();
+        assert_eq!(along, ["429496729.500000", "", "0.200000", "0.400000"]);
     }
 
     #[test]

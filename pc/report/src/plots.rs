@@ -5,7 +5,8 @@ use crate::log::is_rotary;
 use crate::table::speed;
 use crate::{Report, ReportError};
 use evaluate::WorkTick;
-use parts::{ALONG, GAP, Plot};
+use host_link::spool::Spool;
+use parts::{ALONG, GAP, Line, Plot};
 use shared::io::SIDES;
 use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
 use std::path::Path;
@@ -24,7 +25,7 @@ const ROW: u32 = 220;
 
 /// Draws `following-error.svg`, `speed.svg` and either `seam-deviation.svg` or, without a tracker,
 /// `contour-error.svg` into `directory`.
-pub(super) fn draw(directory: &Path, report: &Report, ticks: &[WorkTick]) -> Result<(), ReportError> {
+pub(super) fn draw(directory: &Path, report: &Report, ticks: &Spool<WorkTick>) -> Result<(), ReportError> {
     let subject = format!("{} at {}", report.program, speed(report.speed_m_per_min));
     let following = following_panels(report, ticks);
     let rows = following.len() / 2;
@@ -80,10 +81,7 @@ pub(super) fn draw(directory: &Path, report: &Report, ticks: &[WorkTick]) -> Res
 /// Draws the plots of the part.
 pub(super) fn draw_more(directory: &Path, report: &Report, plots: &[Plot]) -> Result<(), ReportError> {
     for plot in plots {
-        let curve = |(name, points): &(&str, Vec<(f64, f64)>)| Curve {
-            name: (*name).to_owned(),
-            points: points.clone(),
-        };
+        let curve = |(name, points): &(&'static str, _)| Curve::new(name, Vec::clone(points));
         let panel = Panel {
             title: String::new(),
             x: plot.x,
@@ -132,28 +130,31 @@ fn with_limits(mut panel: Panel, limits: &[f64]) -> Panel {
     panel
 }
 
-/// A value of each tick over the path, open where `value` has none and between paths.
-fn over_path(ticks: &[WorkTick], value: impl Fn(&WorkTick) -> Option<f64>) -> Vec<(f64, f64)> {
-    let mut points = Vec::with_capacity(ticks.len());
+/// Values of each tick over the path, open where there is none and between paths.
+fn over_path<const N: usize>(
+    ticks: &Spool<WorkTick>,
+    values: impl Fn(&WorkTick) -> [Option<f64>; N],
+) -> [Vec<(f64, f64)>; N] {
+    let mut lines = [const { Line::new() }; N];
     let mut path_id = None;
     for tick in ticks {
-        if path_id.replace(tick.path_id).is_some_and(|id| id != tick.path_id) {
-            points.push(GAP);
+        let begins = path_id.replace(tick.path_id).is_some_and(|id| id != tick.path_id);
+        for (line, value) in lines.iter_mut().zip(values(&tick)) {
+            if begins {
+                line.push(GAP);
+            }
+            line.push(value.map_or(GAP, |value| (tick.along_mm, value)));
         }
-        points.push(value(tick).map_or(GAP, |value| (tick.along_mm, value)));
     }
-    points
+    lines.map(Line::into_points)
 }
 
-fn deviation_panel(side: usize, report: &Report, ticks: &[WorkTick]) -> Panel {
-    let curve = |name: &str, slide: usize| Curve {
-        name: name.to_owned(),
-        points: over_path(ticks, |tick| {
-            tick.deviation_mm[slide]
-                .filter(|_| tick.beams[side])
-                .map(|deviation| deviation * 1e3)
-        }),
-    };
+fn deviation_panel(side: usize, report: &Report, ticks: &Spool<WorkTick>) -> Panel {
+    let slides = [2 * side, 2 * side + 1];
+    let [u, v] = over_path(ticks, |tick| {
+        let on = |slide: usize| tick.deviation_mm[slide].filter(|_| tick.beams[side]);
+        slides.map(|slide| on(slide).map(|deviation| deviation * 1e3))
+    });
     let judged = report
         .figures
         .iter()
@@ -166,8 +167,8 @@ fn deviation_panel(side: usize, report: &Report, ticks: &[WorkTick]) -> Panel {
         x: ALONG,
         y: "µm",
         curves: vec![
-            curve("U, across the beam", 2 * side),
-            curve("V, along the beam", 2 * side + 1),
+            Curve::new("U, across the beam", u),
+            Curve::new("V, along the beam", v),
         ],
         least: (-1.2 * limit, 1.2 * limit),
         marks: vec![-limit, limit],
@@ -176,9 +177,12 @@ fn deviation_panel(side: usize, report: &Report, ticks: &[WorkTick]) -> Panel {
 }
 
 /// Only with a beam on, if one ever was.
-fn contour_panel(ticks: &[WorkTick]) -> Panel {
+fn contour_panel(ticks: &Spool<WorkTick>) -> Panel {
     let beams = ticks.iter().any(|tick| tick.beams.contains(&true));
     let counts = |tick: &WorkTick| !beams || tick.beams.contains(&true);
+    let [distance] = over_path(ticks, |tick| {
+        [tick.contour_error_mm.filter(|_| counts(tick)).map(|mm| mm * 1e3)]
+    });
     Panel {
         title: format!(
             "True tip from programmed path{}",
@@ -186,12 +190,7 @@ fn contour_panel(ticks: &[WorkTick]) -> Panel {
         ),
         x: ALONG,
         y: "µm",
-        curves: vec![Curve {
-            name: "distance".to_owned(),
-            points: over_path(ticks, |tick| {
-                tick.contour_error_mm.filter(|_| counts(tick)).map(|mm| mm * 1e3)
-            }),
-        }],
+        curves: vec![Curve::new("distance", distance)],
         least: (0.0, 1.0),
         ..Panel::default()
     }
@@ -199,21 +198,22 @@ fn contour_panel(ticks: &[WorkTick]) -> Panel {
 
 /// Linear drives in the left column, rotary ones in the right, row by row; with the error at which the board trips at
 /// standstill.
-fn following_panels(report: &Report, ticks: &[WorkTick]) -> Vec<Option<Panel>> {
+fn following_panels(report: &Report, ticks: &Spool<WorkTick>) -> Vec<Option<Panel>> {
+    let errors = over_path(ticks, |tick| {
+        tick.following_error.map(|error| Some(f64::from(error)))
+    });
     let panel = |(motor, name, _): (usize, &'static str, f64)| {
         let (unit, scale, of_trip) = if is_rotary(motor) {
             ("arc seconds", DEG_PER_RAD * 3600.0, 3600.0)
         } else {
             ("µm", 1e3, 1e3)
         };
+        let points = errors[motor].iter().map(|(along, error)| (*along, error * scale));
         let panel = Panel {
             title: name.to_owned(),
             x: ALONG,
             y: unit,
-            curves: vec![Curve {
-                name: name.to_owned(),
-                points: over_path(ticks, |tick| Some(f64::from(tick.following_error[motor]) * scale)),
-            }],
+            curves: vec![Curve::new(name, points.collect())],
             least: (0.0, 1.0),
             ..Panel::default()
         };
@@ -232,7 +232,7 @@ fn following_panels(report: &Report, ticks: &[WorkTick]) -> Vec<Option<Panel>> {
 }
 
 /// True speed beside the feed; dashed is what it may fall to with a beam on.
-fn speed_panel(report: &Report, ticks: &[WorkTick]) -> Panel {
+fn speed_panel(report: &Report, ticks: &Spool<WorkTick>) -> Panel {
     let programmed = report.speed_m_per_min;
     // Slow processes are told in mm/min.
     let (unit, scale) = if programmed < 0.995 {
@@ -246,18 +246,9 @@ fn speed_panel(report: &Report, ticks: &[WorkTick]) -> Panel {
         .iter()
         .find(|figure| figure.key == "speed_dip_percent");
     let limit = judged.and_then(|figure| figure.limit);
-    let level = |tick: &WorkTick| (tick.path_id, tick.feed_mm_s, tick.beams.contains(&true));
-    let dashed = |share: f64| {
-        let chunks = ticks.chunk_by(|a, b| level(a) == level(b));
-        let lowest = move |chunk: &[WorkTick]| {
-            let lowest = told(chunk[0].feed_mm_s) * share;
-            vec![
-                (chunk[0].along_mm, lowest),
-                (chunk[chunk.len() - 1].along_mm, lowest),
-            ]
-        };
-        chunks.filter(|chunk| level(&chunk[0]).2).map(lowest).collect()
-    };
+    let [speed, feed] = over_path(ticks, |tick| {
+        [tick.true_speed_mm_s.map(told), Some(told(tick.feed_mm_s))]
+    });
     Panel {
         title: match limit {
             Some(limit) => {
@@ -268,19 +259,47 @@ fn speed_panel(report: &Report, ticks: &[WorkTick]) -> Panel {
         x: ALONG,
         y: unit,
         curves: vec![
-            Curve {
-                name: "true speed".to_owned(),
-                points: over_path(ticks, |tick| tick.true_speed_mm_s.map(told)),
-            },
-            Curve {
-                name: "programmed feed".to_owned(),
-                points: over_path(ticks, |tick| Some(told(tick.feed_mm_s))),
-            },
+            Curve::new("true speed", speed),
+            Curve::new("programmed feed", feed),
         ],
         least: (0.0, 1.1 * scale * programmed),
-        dashed: limit.map_or(Vec::new(), |limit| dashed(1.0 - limit / 100.0)),
+        dashed: limit.map_or(Vec::new(), |limit| {
+            lowest(ticks, |feed_mm_s| told(feed_mm_s) * (1.0 - limit / 100.0))
+        }),
         ..Panel::default()
     }
+}
+
+/// What the speed may fall to with a beam on, for as long as path and feed are the same, by the feed.
+fn lowest(ticks: &Spool<WorkTick>, of: impl Fn(f64) -> f64) -> Vec<Vec<(f64, f64)>> {
+    let level = |tick: &WorkTick| (tick.path_id, tick.feed_mm_s, tick.beams.contains(&true));
+    let mut line = Line::new();
+    let mut add = |first: &WorkTick, last: &WorkTick| {
+        if level(first).2 {
+            let lowest = of(first.feed_mm_s);
+            line.push((first.along_mm, lowest));
+            line.push((last.along_mm, lowest));
+            line.push(GAP);
+        }
+    };
+    // Of a stretch at one level.
+    let mut ends: Option<(WorkTick, WorkTick)> = None;
+    for tick in ticks {
+        match &mut ends {
+            Some((first, last)) if level(first) == level(&tick) => *last = tick,
+            _ => {
+                if let Some((first, last)) = ends.replace((tick, tick)) {
+                    add(&first, &last);
+                }
+            }
+        }
+    }
+    if let Some((first, last)) = ends {
+        add(&first, &last);
+    }
+    let points = line.into_points();
+    let parts = points.split(|point| !point.0.is_finite());
+    parts.filter(|part| !part.is_empty()).map(<[_]>::to_vec).collect()
 }
 
 #[cfg(test)]
@@ -295,7 +314,7 @@ mod tests {
         directory
     }
 
-    fn ticks() -> Vec<WorkTick> {
+    fn ticks() -> Spool<WorkTick> {
         (0..4000).map(crate::log::tests::tick).collect()
     }
 

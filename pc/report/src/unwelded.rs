@@ -2,12 +2,11 @@
 
 use cam::path::{PathError, PlannedPath};
 use config::machine::MachineFile;
-use host_link::record::Record;
+use host_link::record::Recorded;
 use serde::Serialize;
 use shared::config::BeamConfig;
 use shared::io::SIDES;
 use shared::protocol::{MotionSample, PathAction};
-use shared::state::State;
 use shared::ticks::PATH_PERIOD_S;
 use shared::trajectory::SpeedLimits;
 use std::collections::BTreeMap;
@@ -51,18 +50,18 @@ impl fmt::Display for Unwelded {
 /// # Errors
 /// A long program, which is read again, has changed.
 pub fn unwelded(
-    record: &Record,
+    record: &Recorded,
     machine: &MachineFile,
     paths: &BTreeMap<u32, PlannedPath>,
 ) -> Result<Vec<Unwelded>, PathError> {
     let burnt = burnt(record);
     let mut left_out = Vec::new();
     for (id, path) in paths.iter().filter(|(_, path)| path.weld().is_some()) {
-        let nothing = <[Vec<Piece>; SIDES]>::default();
+        let nothing = <[Pieces; SIDES]>::default();
         let burnt = burnt.get(id).unwrap_or(&nothing);
         let sides = (0..SIDES).filter_map(|side| {
             let beam = machine.motion.beams[side].as_ref()?;
-            let burnt = burnt[side].as_slice();
+            let burnt = burnt[side].all.as_slice();
             (!beam.stays_on_at_rest).then(|| Side::new(side, *id, edge(beam, path), burnt))
         });
         let mut sides: Vec<Side> = sides.collect();
@@ -107,35 +106,57 @@ fn edge(beam: &BeamConfig, path: &PlannedPath) -> f64 {
 type Piece = (f64, f64);
 
 /// What was gone over with the beam of each side open, by path: in order, and not touching.
-fn burnt(record: &Record) -> BTreeMap<u32, [Vec<Piece>; SIDES]> {
-    let mut burnt: BTreeMap<u32, [Vec<Piece>; SIDES]> = BTreeMap::new();
-    for pair in record.motion().windows(2) {
-        let [now, next] = [&pair[0], &pair[1]];
-        let on_path = matches!(now.state, State::Running | State::Holding | State::Stopping);
-        let ticks = next.tick - now.tick;
+fn burnt(record: &Recorded) -> BTreeMap<u32, [Pieces; SIDES]> {
+    let mut burnt: BTreeMap<u32, [Pieces; SIDES]> = BTreeMap::new();
+    let samples = record.motion().iter();
+    for (now, next) in samples.zip(record.motion().iter().skip(1)) {
+        let on_path = now.state.on_path();
+        let ticks = next.tick.wrapping_sub(now.tick);
         for side in (0..SIDES).filter(|side| on_path && now.beams[*side]) {
             let bridged = ticks == 1 || ticks <= MOST_MISSING && next.beams[side];
             // At its end, the board names no path any more.
             let same = next.path_id == now.path_id || next.path_id == 0;
-            let to = if bridged && same { next.s_mm } else { reached(now) };
-            let pieces = &mut burnt.entry(now.path_id).or_default()[side];
-            match pieces.last_mut() {
-                Some(last) if (last.1 - now.s_mm).abs() < SAME => last.1 = last.1.max(to),
-                _ => pieces.push((now.s_mm, to)),
-            }
+            let to = if bridged && same { next.s_mm } else { reached(&now) };
+            burnt.entry(now.path_id).or_default()[side].add(now.s_mm, to);
         }
     }
-    for pieces in burnt.values_mut().flatten() {
-        pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
-        pieces.dedup_by(|next, last| {
+    burnt.values_mut().flatten().for_each(Pieces::merge);
+    burnt
+}
+
+/// Pieces of a path, as few as they are once they are merged and not many more before.
+#[derive(Default)]
+struct Pieces {
+    all: Vec<Piece>,
+    /// How many there were when they were merged last.
+    merged: usize,
+}
+
+impl Pieces {
+    /// Goes over a piece; back is no way of welding.
+    fn add(&mut self, from: f64, to: f64) {
+        match self.all.last_mut() {
+            Some(last) if (last.1 - from).abs() < SAME => last.1 = last.1.max(to),
+            _ if to < from => {}
+            _ => self.all.push((from, to)),
+        }
+        if self.all.len() > 2 * self.merged + 1000 {
+            self.merge();
+        }
+    }
+
+    /// Puts them in order, and those into one that touch.
+    fn merge(&mut self) {
+        self.all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.all.dedup_by(|next, last| {
             let touches = next.0 <= last.1 + SAME;
             if touches {
                 last.1 = last.1.max(next.1);
             }
             touches
         });
+        self.merged = self.all.len();
     }
-    burnt
 }
 
 /// Where the machine is a tick later.
@@ -229,5 +250,36 @@ impl<'a> Side<'a> {
     fn end(mut self) -> Vec<Unwelded> {
         self.close();
         self.found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_to_and_fro_and_with_gaps_are_few_in_memory() {
+        let mut pieces = Pieces::default();
+        // To and fro between 0 and 100 mm by 0.1 mm; every other time the beam is shut from 40 to 50 mm.
+        for round in 0..400 {
+            for k in 0..1000 {
+                let s = 0.1 * f64::from(k);
+                if round % 2 == 0 || !(40.0..50.0).contains(&s) {
+                    pieces.add(s, s + 0.1);
+                }
+            }
+            for k in (0..1000).rev() {
+                pieces.add(0.1 * f64::from(k + 1), 0.1 * f64::from(k));
+            }
+            // A stretch of its own, never next to what was gone over before.
+            pieces.add(200.0 + f64::from(round % 3), 200.5 + f64::from(round % 3));
+            assert!(pieces.all.len() < 1010, "{}", pieces.all.len());
+        }
+        pieces.merge();
+        let [all, own @ ..] = pieces.all.as_slice() else {
+            panic!("nothing");
+        };
+        assert!(all.0 == 0.0 && (all.1 - 100.0).abs() < 1e-9, "{all:?}");
+        assert_eq!(own, [(200.0, 200.5), (201.0, 201.5), (202.0, 202.5)]);
     }
 }

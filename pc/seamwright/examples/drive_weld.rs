@@ -27,6 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         speed_m_per_min: None,
         from_line: None,
         surroundings: surroundings.into(),
+        spooling: Default::default(),
         names: Names::default(),
     };
     let (remote, mut control) = control();

@@ -45,6 +45,7 @@ fn weld(mut control: Control) -> Result<(), Box<dyn std::error::Error>> {
         speed_m_per_min: None,
         from_line: None,
         surroundings: Surroundings::default().into(),
+        spooling: Default::default(),
         names: Names::default(),
     };
     job::run(&mut SimulatedBoards::new("pipe-welder")?, &job, &mut control)?;

@@ -57,7 +57,7 @@ fn a_machine_without_a_tracker_needs_the_motion_board_only() {
     assert!((0.0..0.02).contains(&report.max_contour_error_mm.unwrap()));
     let late = report.motion_s - report.planned_motion_s;
     assert!((-0.01..0.01).contains(&late), "{late} s");
-    assert_eq!(ended.evaluation.ticks.last().unwrap().slides_mm, None);
+    assert_eq!(ended.evaluation.ticks.iter().last().unwrap().slides_mm, None);
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod real_cameras;
 mod recentring;
 mod silence;
 mod single_block;
+mod spooled;
 mod subscribers;
 mod taught_seam;
 mod verdict;
@@ -89,6 +90,7 @@ fn job<'a>(machine: &'a MachineFile, program: &'a Program, seam: Option<Arc<Devi
         speed_m_per_min: None,
         from_line: None,
         surroundings: around(seam).into(),
+        spooling: Default::default(),
         names: Names {
             program: "job.ngc".into(),
             machine: "m.toml".into(),
@@ -232,7 +234,7 @@ fn assert_off(boards: &mut dyn Boards) {
 
 /// The beams are off at the end, and the machine stood there without having left its path.
 fn assert_stopped_on_path(ended: &Ended, before_along_mm: f64) {
-    let last = ended.evaluation.ticks.last().unwrap();
+    let last = ended.evaluation.ticks.iter().last().unwrap();
     assert_eq!(last.beams, [false, false]);
     assert!(last.speed_mm_s.abs() < 0.5, "{} mm/s", last.speed_mm_s);
     assert!(last.along_mm < before_along_mm, "{} mm", last.along_mm);

@@ -53,7 +53,7 @@ fn followed(seams: [[f64; 2]; 4]) -> (Report, [f64; 4]) {
         assert!(most <= 0.05, "slide {slide}: {most} mm, {:?}", seam.recentred);
     }
     assert_eq!(ended.evaluation.unknown_ticks, 0);
-    let slides = ended.evaluation.ticks.iter().rfind(|t| t.beams[0]);
+    let slides = ended.evaluation.ticks.iter().filter(|t| t.beams[0]).last();
     let slides = slides.and_then(|t| t.slides_mm).unwrap();
     (ended.report, slides)
 }

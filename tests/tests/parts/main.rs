@@ -44,6 +44,7 @@ fn made(machine: &MachineFile, work: Work, part: &PartFile, operator: &mut dyn O
         speed_m_per_min: None,
         from_line: None,
         surroundings: Surroundings::default().into(),
+        spooling: Default::default(),
         names: Names {
             program: "part".into(),
             machine: "machine".into(),

@@ -84,6 +84,7 @@ fn ready(boards: &mut dyn Boards, then: impl FnOnce(&mut Session)) {
         speed_m_per_min: None,
         from_line: None,
         surroundings: Arc::new(Dark),
+        spooling: Default::default(),
         names: Names {
             program: String::new(),
             machine: String::new(),
@@ -92,7 +93,7 @@ fn ready(boards: &mut dyn Boards, then: impl FnOnce(&mut Session)) {
         },
     };
     let (_remote, mut control) = host_link::control();
-    let mut session = Session::begin(boards, &machine, &Dark, &mut control).unwrap();
+    let mut session = Session::begin(boards, &machine, &Dark, job.spooling.clone(), &mut control).unwrap();
     make_ready(&mut session, &job).unwrap();
     then(&mut session);
 }
@@ -106,12 +107,8 @@ fn slides_are_where_they_were_sent_and_what_they_went_through_is_recorded() {
         for (there, target) in session.slides_mm().iter().zip(target) {
             assert!((there - target).abs() <= 0.005, "{there} instead of {target} mm");
         }
-        let newest = &session.record.tracker()[before..];
-        assert!(
-            newest
-                .iter()
-                .any(|sample| (-9.0..-2.0).contains(&sample.slides_mm[3]))
-        );
+        let mut newest = session.record.tracker().iter().skip(before);
+        assert!(newest.any(|sample| (-9.0..-2.0).contains(&sample.slides_mm[3])));
     });
 }
 

@@ -6,6 +6,7 @@
 
 mod curve_file;
 mod error;
+mod figures;
 mod judge;
 mod length_table;
 mod notes;

@@ -2,12 +2,13 @@
 
 use super::{Panel, PanelLimits};
 use crate::CurvedPanel;
-use crate::{ALONG, Figure, GAP, Judgement, Plot, Run};
+use crate::{ALONG, Figure, GAP, Judgement, Line, Plot, Run};
 use cam::path::{Course, PlannedPath};
 use evaluate::RunSample;
 use nalgebra::Vector3;
 use shared::geometry::angle;
 use shared::trajectory::PathSpace;
+use std::collections::BTreeMap;
 use teach::TaughtPoint;
 
 /// Turning A and C with the focus held: the tip of the plan moves less than this \[mm\], the tool turns more \[rad\].
@@ -32,31 +33,54 @@ impl Panel {
     }
 }
 
+/// Where the focus should be on a path.
+enum Aim {
+    /// On the path, cutting.
+    Cut(Course),
+    /// Here, while A and C turn.
+    Held(Vector3<f64>),
+}
+
+impl Aim {
+    fn of(path: &PlannedPath) -> Option<Self> {
+        match path.weld() {
+            Some(_) => Some(Self::Cut(path.path())),
+            None => held_tip(path).map(Self::Held),
+        }
+    }
+}
+
 /// Distances of the focus from where it should be, over the length of the cut; and while it is held.
 fn focus(run: &Run, limits: &PanelLimits, judgement: &mut Judgement) {
     let along = run.along();
+    let tool_paths = run.paths.iter().filter(|(_, path)| path.space == PathSpace::Tool);
+    let aims: BTreeMap<u32, Aim> = tool_paths
+        .filter_map(|(id, path)| Some((*id, Aim::of(path)?)))
+        .collect();
     let (mut cut, mut held) = (Largest::default(), Largest::default());
-    let mut line = Vec::new();
-    for (id, path) in run.paths.iter().filter(|(_, path)| path.space == PathSpace::Tool) {
-        let samples = || run.samples.iter().filter(|sample| sample.path_id == *id);
-        if path.weld().is_some() {
-            let course = path.path();
-            for (index, sample) in samples().enumerate() {
-                let off = beside(&course, sample).filter(|_| sample.beams[0]);
-                let Some((off, along_mm)) = off.zip(along.at(*id, sample.s_mm)) else {
+    let mut line = Line::default();
+    // Path of the last sample, and its samples so far.
+    let (mut path_id, mut count) = (None, 0);
+    for sample in run.samples.iter() {
+        if path_id.replace(sample.path_id) != Some(sample.path_id) {
+            count = 0;
+        }
+        count += 1;
+        match aims.get(&sample.path_id) {
+            Some(Aim::Cut(course)) => {
+                let off = beside(course, &sample).filter(|_| sample.beams[0]);
+                let Some((off, along_mm)) = off.zip(along.at(sample.path_id, sample.s_mm)) else {
                     // Nothing is drawn where nothing is cut.
-                    line.extend((line.last() != Some(&GAP)).then_some(GAP));
+                    line.push(GAP);
                     continue;
                 };
                 cut.add(off);
-                if index % THIN == 0 {
+                if count % THIN == 1 {
                     line.push((along_mm, off));
                 }
             }
-        } else if let Some(tip) = held_tip(path) {
-            for sample in samples() {
-                held.add((sample.pose.position - tip).norm());
-            }
+            Some(Aim::Held(tip)) => held.add((sample.pose.position - tip).norm()),
+            None => {}
         }
     }
     let figures = [
@@ -80,7 +104,7 @@ fn focus(run: &Run, limits: &PanelLimits, judgement: &mut Judgement) {
         title: "Focus beside the programmed path while A and C turn",
         x: ALONG,
         y: "distance [mm]",
-        lines: vec![("focus", line)],
+        lines: vec![("focus", line.into_points())],
         limits: vec![limits.focus_mm.get()],
         to_scale: false,
     });

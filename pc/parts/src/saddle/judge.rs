@@ -2,10 +2,12 @@
 
 use super::error::SaddlePartError;
 use super::seam::{Deviation, Seam};
-use super::{Pass, Saddle, SaddleLimits};
-use crate::{ALONG, Figure, GAP, Judgement, Plot, Run};
+use super::{Saddle, SaddleLimits};
+use crate::{ALONG, Figure, Judgement, Line, Plot, Run};
+use cam::along::Along;
 use evaluate::RunSample;
 use shared::units::next_to;
+use std::collections::{BTreeMap, VecDeque};
 
 /// Arc off for longer than this leaves a gap in the lines of the plots \[µs\].
 const GAP_US: u64 = 1500;
@@ -29,6 +31,7 @@ const WAIST: usize = 5;
 /// Figures of all passes together.
 #[derive(Default)]
 struct PassFigures {
+    along: Along,
     samples: u32,
     max_distance: f64,
     sum_of_squares: f64,
@@ -36,13 +39,16 @@ struct PassFigures {
     max_out_of_plane_deg: f64,
     length: f64,
     speed_fluctuation: f64,
-    /// One of each pass.
-    distances: Vec<Line>,
-    tilt_errors: Vec<Line>,
-    out_of_plane: Vec<Line>,
+    passes: Vec<Lines>,
 }
 
-type Line = (&'static str, Vec<(f64, f64)>);
+/// One pass, in plots.
+#[derive(Default)]
+struct Lines {
+    distance: Line,
+    tilt_error: Line,
+    out_of_plane: Line,
+}
 
 pub(super) fn judge(part: &Saddle, seam: &Seam, run: &Run) -> anyhow::Result<Judgement> {
     let welds = run.paths.iter().filter(|(_, path)| path.weld().is_some());
@@ -51,58 +57,70 @@ pub(super) fn judge(part: &Saddle, seam: &Seam, run: &Run) -> anyhow::Result<Jud
     if paths != passes {
         return Err(SaddlePartError::Passes { paths, passes }.into());
     }
-    let mut figures = PassFigures::default();
-    for (pass, id) in part.passes.iter().zip(welds) {
-        let burning = run
-            .samples
-            .iter()
-            .filter(|sample| sample.path_id == id && sample.beams[ARC]);
-        figures.add(pass, seam, &burning.collect::<Vec<_>>(), |s| {
-            run.along().at(id, s)
-        })?;
+    let numbers: BTreeMap<u32, usize> = welds.into_iter().zip(0..).collect();
+    let mut figures = PassFigures {
+        along: run.along(),
+        passes: part.passes.iter().map(|_| Lines::default()).collect(),
+        ..PassFigures::default()
+    };
+    let mut pass = None;
+    let mut window = VecDeque::new();
+    for sample in run.samples.iter().filter(|sample| sample.beams[ARC]) {
+        let Some(number) = numbers.get(&sample.path_id).copied() else {
+            continue;
+        };
+        if pass.replace(number) != Some(number) {
+            window.clear();
+        }
+        let offset = part.passes[number].offset();
+        let deviation = seam.deviation(&sample.pose, &offset)?;
+        figures.add(number, &sample, &deviation, &mut window);
     }
     Ok(figures.judgement(&part.limits))
 }
 
 impl PassFigures {
-    /// `along` gives the path length through all paths of a place of this one.
+    /// Adds the next sample with the arc on; `window` has those of its pass before it.
     fn add(
         &mut self,
-        pass: &Pass,
-        seam: &Seam,
-        burning: &[&RunSample],
-        along: impl Fn(f64) -> Option<f64>,
-    ) -> anyhow::Result<()> {
-        let [mut distances, mut tilt_errors, mut out_of_plane] = [const { Vec::new() }; 3];
-        let mut before: Option<&RunSample> = None;
-        for sample in burning {
-            if let Some(before) = before.replace(sample) {
-                if sample.time_us.saturating_sub(before.time_us) > GAP_US {
-                    for line in [&mut distances, &mut tilt_errors, &mut out_of_plane] {
-                        line.push(GAP);
-                    }
+        pass: usize,
+        sample: &RunSample,
+        deviation: &Deviation,
+        window: &mut VecDeque<RunSample>,
+    ) {
+        let lines = &mut self.passes[pass];
+        if let Some(before) = window.back() {
+            if sample.time_us.saturating_sub(before.time_us) > GAP_US {
+                for line in [
+                    &mut lines.distance,
+                    &mut lines.tilt_error,
+                    &mut lines.out_of_plane,
+                ] {
+                    line.gap();
                 }
-                self.length += (sample.pose.position - before.pose.position).norm();
             }
-            let deviation = seam.deviation(&sample.pose, &pass.offset())?;
-            self.add_deviation(&deviation);
-            let waist = next_to(deviation.station.waist, sample.axes[WAIST]).to_degrees();
-            distances.push((along(sample.s_mm).unwrap_or(f64::NAN), deviation.distance));
-            tilt_errors.push((waist, deviation.tilt_error.to_degrees()));
-            out_of_plane.push((waist, deviation.station.out_of_plane.to_degrees()));
+            self.length += (sample.pose.position - before.pose.position).norm();
         }
-        let name = PASSES[self.distances.len().min(PASSES.len() - 1)];
-        self.distances.push((name, distances));
-        self.tilt_errors.push((name, tilt_errors));
-        self.out_of_plane.push((name, out_of_plane));
-        for window in burning.windows(SPEED_WINDOW) {
-            let (first, last) = (window[0], window[SPEED_WINDOW - 1]);
-            let time = last.time_us.saturating_sub(first.time_us) as f64 * 1e-6;
-            let speed = (last.pose.position - first.pose.position).norm() / time;
-            let wanted = (first.speed_mm_s + last.speed_mm_s) / 2.0;
-            self.speed_fluctuation = self.speed_fluctuation.max((speed / wanted - 1.0).abs());
+        let waist = next_to(deviation.station.waist, sample.axes[WAIST]).to_degrees();
+        let along_mm = self.along.at(sample.path_id, sample.s_mm).unwrap_or(f64::NAN);
+        lines.distance.push((along_mm, deviation.distance));
+        lines.tilt_error.push((waist, deviation.tilt_error.to_degrees()));
+        let out_of_plane = deviation.station.out_of_plane.to_degrees();
+        lines.out_of_plane.push((waist, out_of_plane));
+        self.add_deviation(deviation);
+        window.push_back(*sample);
+        if window.len() == SPEED_WINDOW {
+            self.add_speed(&window[0], sample);
+            window.pop_front();
         }
-        Ok(())
+    }
+
+    /// Adds the mean speed between two samples.
+    fn add_speed(&mut self, first: &RunSample, last: &RunSample) {
+        let time = last.time_us.saturating_sub(first.time_us) as f64 * 1e-6;
+        let speed = (last.pose.position - first.pose.position).norm() / time;
+        let wanted = (first.speed_mm_s + last.speed_mm_s) / 2.0;
+        self.speed_fluctuation = self.speed_fluctuation.max((speed / wanted - 1.0).abs());
     }
 
     fn add_deviation(&mut self, deviation: &Deviation) {
@@ -176,13 +194,20 @@ impl PassFigures {
             to_scale: false,
         };
         let tilt = limits.bisector_deg.get();
+        let [mut distances, mut tilt_errors, mut out_of_plane] = [const { Vec::new() }; 3];
+        for (pass, lines) in self.passes.into_iter().enumerate() {
+            let name = PASSES[pass.min(PASSES.len() - 1)];
+            distances.push((name, lines.distance.into_points()));
+            tilt_errors.push((name, lines.tilt_error.into_points()));
+            out_of_plane.push((name, lines.out_of_plane.into_points()));
+        }
         let plots = vec![
             plot(
                 "saddle-distance",
                 "Tip against the exact saddle",
                 ALONG,
                 "distance [mm]",
-                self.distances,
+                distances,
                 vec![limits.distance_mm.get()],
             ),
             plot(
@@ -190,7 +215,7 @@ impl PassFigures {
                 "Torch against the bisector, in the plane of the tilt",
                 "waist [°]",
                 "angle [°]",
-                self.tilt_errors,
+                tilt_errors,
                 vec![-tilt, tilt],
             ),
             plot(
@@ -198,7 +223,7 @@ impl PassFigures {
                 "Torch against the bisector, across the plane of the tilt",
                 "waist [°]",
                 "angle [°]",
-                self.out_of_plane,
+                out_of_plane,
                 Vec::new(),
             ),
         ];

@@ -7,19 +7,18 @@
 
 use super::error::StirError;
 use super::{B, C, Job, SPINDLE, Stir, StirLimits};
-use crate::{ALONG, Figure, GAP, Judgement, Plot, Run};
-use cam::metrics::compare;
+use crate::{ALONG, Figure, Judgement, Line, Plot, Run};
+use cam::metrics::Comparison;
 use cam::path::{Course, PlannedPath};
 use evaluate::RunSample;
 use nc::Motion;
 use shared::units::{DEG_PER_RAD, wrap};
+use std::collections::BTreeMap;
 
 /// The program may stir more or less than the contour by this much \[mm\].
 const SAME_LENGTH: f64 = 0.01;
 /// The nearest place of the contour is looked for so far around the programmed one \[mm\].
 const REACH: f64 = 10.0;
-/// Points of a plot, at most.
-const PLOTTED: usize = 2000;
 /// A path leads along the plate if this much of its direction does.
 const LEVEL: f64 = 0.5;
 
@@ -31,26 +30,34 @@ struct Stirring {
     start_s: f64,
 }
 
-/// What the samples tell.
+/// Errors of the pin while it stirs, against contour and program.
 #[derive(Default)]
-struct Traces {
+struct StirErrors {
     /// Of the last sample.
     path_id: u32,
     /// Ticks in which the pin travelled, and those of them with the spindle off.
     travelled: usize,
     off: usize,
-    /// Path length through all paths, for the plots \[mm\].
-    path_mm: Vec<f64>,
-    /// Numbers of samples of which nothing was seen right before: a gap in the plots.
-    begins: Vec<usize>,
-    /// True and programmed tip, X and Y \[mm\].
-    tip: [Vec<f64>; 2],
-    programmed: [Vec<f64>; 2],
+    /// The next sample begins a part of the lines.
+    begins: bool,
+    /// True tip against the programmed one, X and Y \[mm\].
+    tip: [Comparison; 2],
     /// Distance from the contour \[mm\].
-    distance: Vec<f64>,
+    distance: Comparison,
     /// C against the heading there, and B \[°\].
-    heading: Vec<f64>,
-    tilt: Vec<f64>,
+    heading: Comparison,
+    tilt: Comparison,
+    lines: Lines,
+}
+
+/// What is plotted of them.
+#[derive(Default)]
+struct Lines {
+    tip: [Line; 2],
+    heading: Line,
+    /// In plan view.
+    programmed: Line,
+    true_tip: Line,
 }
 
 pub(super) fn judge(part: &Stir, job: &Job, run: &Run) -> anyhow::Result<Judgement> {
@@ -62,20 +69,31 @@ pub(super) fn judge(part: &Stir, job: &Job, run: &Run) -> anyhow::Result<Judgeme
     if (run_mm - part_mm).abs() > SAME_LENGTH {
         return Err(StirError::OtherProgram { run_mm, part_mm }.into());
     }
-    let mut seen = Traces::default();
+    let mut errors = StirErrors::default();
     let along = run.along();
-    for sample in run.samples.iter().filter(|sample| sample.speed_mm_s > 0.0) {
-        if let Some(stirring) = stirring.iter().find(|path| path.id == sample.path_id) {
+    // Of each path with samples, how long the pin stood before it.
+    let mut stood: BTreeMap<u32, f64> = BTreeMap::new();
+    let mut before: Option<RunSample> = None;
+    for sample in run.samples.iter() {
+        let before = before.replace(sample);
+        stood
+            .entry(sample.path_id)
+            .or_insert_with(|| before.map_or(0.0, |before| preheat(&before, &sample)));
+        if sample.speed_mm_s > 0.0
+            && let Some(stirring) = stirring.iter().find(|path| path.id == sample.path_id)
+        {
             let path_mm = along.at(stirring.id, sample.s_mm);
-            seen.add(job, stirring, sample, path_mm.unwrap_or(f64::NAN))?;
+            errors.add(job, stirring, &sample, path_mm.unwrap_or(f64::NAN))?;
         }
     }
-    if seen.path_mm.is_empty() {
+    if errors.distance.count() == 0 {
         return Err(StirError::NothingWelded.into());
     }
-    let preheat = stirring.iter().map(|path| preheat(run.samples, path.id));
+    let preheat = stirring
+        .iter()
+        .map(|path| stood.get(&path.id).copied().unwrap_or(0.0));
     let preheat_s = preheat.fold(f64::INFINITY, f64::min);
-    let mut figures = seen.figures(&part.limits)?;
+    let mut figures = errors.figures(&part.limits)?;
     figures.extend([
         figure("preheat_s", "preheat", preheat_s, "s", None),
         figure(
@@ -88,7 +106,7 @@ pub(super) fn judge(part: &Stir, job: &Job, run: &Run) -> anyhow::Result<Judgeme
     ]);
     Ok(Judgement {
         figures,
-        plots: seen.plots(&part.limits),
+        plots: errors.lines.plots(&part.limits),
     })
 }
 
@@ -114,23 +132,16 @@ fn stirring(run: &Run) -> Vec<Stirring> {
         .collect()
 }
 
-/// How long the pin stood before path `id`, the spindle on before and after \[s\].
-fn preheat(samples: &[RunSample], id: u32) -> f64 {
-    let Some(first) = samples.iter().position(|sample| sample.path_id == id) else {
-        return 0.0;
-    };
-    match (
-        first.checked_sub(1).map(|before| &samples[before]),
-        &samples[first],
-    ) {
-        (Some(before), after) if before.beams[SPINDLE] && after.beams[SPINDLE] => {
-            (after.time_us - before.time_us) as f64 * 1e-6
-        }
-        _ => 0.0,
+/// How long the pin stood between the last sample before a path and the first one on it, the spindle on in both \[s\].
+fn preheat(before: &RunSample, first: &RunSample) -> f64 {
+    if before.beams[SPINDLE] && first.beams[SPINDLE] {
+        (first.time_us - before.time_us) as f64 * 1e-6
+    } else {
+        0.0
     }
 }
 
-impl Traces {
+impl StirErrors {
     fn add(
         &mut self,
         job: &Job,
@@ -141,11 +152,11 @@ impl Traces {
         self.travelled += 1;
         if !sample.beams[SPINDLE] {
             self.off += 1;
-            self.begins.push(self.path_mm.len());
+            self.begins = true;
             return Ok(());
         }
         if sample.path_id != std::mem::replace(&mut self.path_id, sample.path_id) {
-            self.begins.push(self.path_mm.len());
+            self.begins = true;
         }
         let Some(point) = stirring.path.at(sample.s_mm) else {
             return Ok(());
@@ -156,23 +167,30 @@ impl Traces {
         let (place, heading) = job.contour.at(along);
         // All passes have the same offset, but for whole turns.
         let offset = job.passes[0].offset;
-        self.path_mm.push(path_mm);
-        for i in 0..2 {
-            self.tip[i].push(tip[i]);
-            self.programmed[i].push(programmed[i]);
+        let heading = wrap(sample.axes[C] - heading - offset) * DEG_PER_RAD;
+        if std::mem::take(&mut self.begins) {
+            self.lines.gap();
         }
-        self.distance.push((tip - place).norm());
-        self.heading
-            .push(wrap(sample.axes[C] - heading - offset) * DEG_PER_RAD);
-        self.tilt.push((sample.axes[B] - job.b) * DEG_PER_RAD);
+        let lines = &mut self.lines;
+        for i in 0..2 {
+            self.tip[i].add(tip[i], programmed[i]);
+            lines.tip[i].push((path_mm, tip[i] - programmed[i]));
+        }
+        self.distance.add((tip - place).norm(), 0.0);
+        self.heading.add(heading, 0.0);
+        self.tilt.add((sample.axes[B] - job.b) * DEG_PER_RAD, 0.0);
+        lines.heading.push((path_mm, heading));
+        lines.programmed.push((programmed[0], programmed[1]));
+        lines.true_tip.push((tip[0], tip[1]));
         Ok(())
     }
 
     fn figures(&self, limits: &StirLimits) -> anyhow::Result<Vec<Figure>> {
-        let zeros = vec![0.0; self.path_mm.len()];
-        let [distance, heading, tilt] =
-            [&self.distance, &self.heading, &self.tilt].map(|errors| compare(errors, &zeros));
-        let (distance, heading, tilt) = (distance?, heading?, tilt?);
+        let (distance, heading, tilt) = (
+            self.distance.figures()?,
+            self.heading.figures()?,
+            self.tilt.figures()?,
+        );
         let mut figures = vec![
             figure(
                 "max_heading_error_deg",
@@ -225,7 +243,7 @@ impl Traces {
             ],
         ];
         for (i, [mae, max, mape, nmae]) in texts.into_iter().enumerate() {
-            let errors = compare(&self.tip[i], &self.programmed[i])?;
+            let errors = self.tip[i].figures()?;
             let of = |(key, text), value, unit, limit| figure(key, text, value, unit, limit);
             figures.push(of(mae, errors.mae, "mm", Some(limits.axis_mm.get())));
             figures.push(of(max, errors.max, "mm", Some(limits.axis_mm.get())));
@@ -245,32 +263,27 @@ impl Traces {
         ));
         Ok(figures)
     }
+}
 
-    fn plots(&self, limits: &StirLimits) -> Vec<Plot> {
-        let over_path = |values: Vec<f64>| {
-            let line: Vec<_> = self.path_mm.iter().copied().zip(values).collect();
-            self.broken(worst_of_each, &line)
-        };
-        let error = |i: usize| {
-            let pairs = self.tip[i].iter().zip(&self.programmed[i]);
-            over_path(pairs.map(|(tip, programmed)| tip - programmed).collect())
-        };
-        let plan = |points: &[Vec<f64>; 2]| {
-            let line: Vec<_> = points[0].iter().copied().zip(points[1].iter().copied()).collect();
-            let every = |part: &[(f64, f64)], all: usize| {
-                let step = all.div_ceil(PLOTTED).max(1);
-                part.iter().copied().step_by(step).collect()
-            };
-            self.broken(every, &line)
-        };
+impl Lines {
+    /// All of them are open here.
+    fn gap(&mut self) {
+        let [x, y] = &mut self.tip;
+        for line in [x, y, &mut self.heading, &mut self.programmed, &mut self.true_tip] {
+            line.gap();
+        }
+    }
+
+    fn plots(self, limits: &StirLimits) -> Vec<Plot> {
         let both = |limit: f64| vec![-limit, limit];
+        let [x, y] = self.tip.map(Line::into_points);
         vec![
             Plot {
                 file: "stir-error",
                 title: "Tip of the pin against the programmed one at the same time",
                 x: ALONG,
                 y: "error [mm]",
-                lines: vec![("X", error(0)), ("Y", error(1))],
+                lines: vec![("X", x), ("Y", y)],
                 limits: both(limits.axis_mm.get()),
                 to_scale: false,
             },
@@ -279,7 +292,7 @@ impl Traces {
                 title: "Heading of the tool against the contour",
                 x: ALONG,
                 y: "error [°]",
-                lines: vec![("C", over_path(self.heading.clone()))],
+                lines: vec![("C", self.heading.into_points())],
                 limits: both(limits.heading_deg.get()),
                 to_scale: false,
             },
@@ -289,43 +302,14 @@ impl Traces {
                 x: "X [mm]",
                 y: "Y [mm]",
                 lines: vec![
-                    ("programmed", plan(&self.programmed)),
-                    ("true tip", plan(&self.tip)),
+                    ("programmed", self.programmed.into_points()),
+                    ("true tip", self.true_tip.into_points()),
                 ],
                 limits: Vec::new(),
                 to_scale: true,
             },
         ]
     }
-
-    /// A line that is open where nothing was seen; each of its parts becomes what `few` makes of it, told how many
-    /// points there are in all.
-    fn broken(
-        &self,
-        few: impl Fn(&[(f64, f64)], usize) -> Vec<(f64, f64)>,
-        line: &[(f64, f64)],
-    ) -> Vec<(f64, f64)> {
-        let mut parts = Vec::new();
-        let ends = self.begins.iter().copied().chain([line.len()]);
-        let mut from = 0;
-        for to in ends.filter(|to| *to > 0) {
-            if to > from {
-                parts.extend((!parts.is_empty()).then_some(GAP));
-                parts.extend(few(&line[from..to], line.len()));
-                from = to;
-            }
-        }
-        parts
-    }
-}
-
-/// So few points that a plot can hold `all`: of each bunch the one with the largest value, whatever its sign.
-fn worst_of_each(points: &[(f64, f64)], all: usize) -> Vec<(f64, f64)> {
-    let bunch = all.div_ceil(PLOTTED).max(1);
-    let worst = points
-        .chunks(bunch)
-        .filter_map(|bunch| bunch.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())));
-    worst.copied().collect()
 }
 
 fn figure(

@@ -78,6 +78,7 @@ impl Teach {
                 ..Surroundings::default()
             }
             .into(),
+            spooling: Default::default(),
             names: Names {
                 program: self.part.display().to_string(),
                 machine: self.machine.display().to_string(),

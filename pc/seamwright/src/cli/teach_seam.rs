@@ -154,6 +154,7 @@ impl SeamArgs {
                 seed,
             }
             .into(),
+            spooling: Default::default(),
             names: Names {
                 program: name(part.path()),
                 machine: name(machine_path),

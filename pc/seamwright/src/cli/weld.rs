@@ -10,6 +10,7 @@ use cam::path::Planner;
 use clap::Args;
 use config::machine::MachineFile;
 use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
+use host_link::spool::Spooling;
 use job::{Job, JobError, Names, NoTeaching, Taught, Work, check_teaching};
 use nc::Program;
 use parts::PartFile;
@@ -125,6 +126,7 @@ impl Weld {
                 seed: self.seed,
             }
             .into(),
+            spooling: Spooling::in_folder(&self.report),
             names: Names {
                 program: match (&task, self.from_line) {
                     (Task::Program(file, _), None) => name(file),

@@ -4,11 +4,11 @@ use super::{axes_at, machine, motion_sample, tracker_sample};
 use crate::TrueSeams;
 use crate::seams::tests::{bent_path, heads, wavy_seam};
 use cam::path::PlannedPath;
-use evaluate::{Evaluation, Followed, evaluate, run_samples};
-use host_link::record::{MachinePosition, Record};
+use evaluate::{Evaluation, Followed, RecordedRun, RunSample, RunSamples, WorkTick, evaluate};
+use host_link::record::{MachinePosition, Record, Recorded};
 use nc::Motion;
 use shared::io::{SIDES, SLIDES};
-use shared::protocol::{PathAction, PathEvent};
+use shared::protocol::{MotionSample, PathAction, PathEvent};
 use shared::trajectory::{PathSpace, SpeedLimits};
 use std::collections::BTreeMap;
 
@@ -39,7 +39,7 @@ fn follow(record: &mut Record, tick: u32, s: f64, off: [f64; SLIDES], tracker_ah
     record.add_tracker(&[sample]);
 }
 
-fn job(off: [f64; SLIDES], tracker_ahead_us: u64) -> Record {
+fn job(off: [f64; SLIDES], tracker_ahead_us: u64) -> Recorded {
     let mut record = Record::default();
     for tick in 1..=50 {
         follow(
@@ -50,10 +50,27 @@ fn job(off: [f64; SLIDES], tracker_ahead_us: u64) -> Record {
             tracker_ahead_us,
         );
     }
-    record
+    record.finish()
 }
 
-fn evaluated(record: &Record, tracker_ahead_us: i64) -> Evaluation {
+/// The samples of `job`, each of the motion board's changed.
+fn changed(job: &Recorded, change: impl Fn(&mut MotionSample)) -> Recorded {
+    let mut record = Record::default();
+    for mut sample in job.motion() {
+        change(&mut sample);
+        record.add_motion(&[sample]);
+    }
+    job.tracker()
+        .iter()
+        .for_each(|sample| record.add_tracker(&[sample]));
+    record.finish()
+}
+
+fn ticks(result: &Evaluation) -> Vec<WorkTick> {
+    result.ticks.iter().collect()
+}
+
+fn evaluated(record: &Recorded, tracker_ahead_us: i64) -> Evaluation {
     let seams = TrueSeams::of([wavy_seam()]);
     let followed = Followed {
         seams: &seams,
@@ -121,7 +138,7 @@ fn deviation_is_spot_minus_seam_of_each_slide() {
     let off = [0.03, -0.02, 0.01, 0.04];
     let result = evaluated(&job(off, 0), 0);
     for (i, off) in off.into_iter().enumerate() {
-        assert!((result.ticks[20].deviation_mm[i].unwrap() - off).abs() < 1e-8);
+        assert!((ticks(&result)[20].deviation_mm[i].unwrap() - off).abs() < 1e-8);
         assert!((result.max_deviation_mm[i].unwrap() - off.abs()).abs() < 1e-8);
         assert!((result.rms_deviation_mm[i].unwrap() - off.abs()).abs() < 1e-8);
     }
@@ -137,55 +154,55 @@ fn the_clocks_of_the_boards_may_differ() {
 
 #[test]
 fn a_side_counts_only_with_its_beam_on() {
-    let mut record = Record::default();
-    for sample in job([0.03; 4], 0).motion() {
-        let mut sample = *sample;
-        sample.beams = [true, false];
-        record.add_motion(&[sample]);
-    }
-    record.add_tracker(job([0.03; 4], 0).tracker());
+    let record = changed(&job([0.03; 4], 0), |sample| sample.beams = [true, false]);
     let result = evaluated(&record, 0);
     assert!(result.max_deviation_mm[0].is_some() && result.max_deviation_mm[1].is_some());
     assert_eq!(result.max_deviation_mm[2..], [None, None]);
-    assert!(result.ticks[0].deviation_mm[2].is_some(), "but it is in the log");
+    assert!(
+        ticks(&result)[0].deviation_mm[2].is_some(),
+        "but it is in the log"
+    );
 }
 
 #[test]
 fn without_a_tracker_there_is_still_the_path() {
-    let mut record = Record::default();
-    for sample in job([0.0; 4], 0).motion() {
-        record.add_motion(&[*sample]);
-    }
+    let record = job([0.0; 4], 0);
     let paths = BTreeMap::from([(7, planned())]);
     let result = evaluate(&record, &machine(), &paths, None);
     assert_eq!((result.weld_ticks, result.unknown_ticks), (50, 0));
     assert_eq!(result.max_deviation_mm, [None; SLIDES]);
     assert!(result.max_contour_error_mm.unwrap() < 1e-8);
     assert!(
-        (result.ticks[0].along_mm - 50.1).abs() < 1e-9,
+        (ticks(&result)[0].along_mm - 50.1).abs() < 1e-9,
         "{}",
-        result.ticks[0].along_mm
+        ticks(&result)[0].along_mm
     );
     assert!((result.motion_s - 0.050).abs() < 1e-9);
-    let samples = run_samples(&record, &machine(), &paths);
+    let machine = machine();
+    let samples = |paths| -> Vec<RunSample> {
+        let run = RecordedRun {
+            record: &record,
+            machine: &machine,
+            paths,
+        };
+        run.iter().collect()
+    };
+    let nothing = BTreeMap::new();
+    let none = samples(&nothing);
+    let samples = samples(&paths);
     assert_eq!((samples.len(), samples[9].path_id), (50, 7));
     let (pose, _) = wavy_seam().planned(samples[9].s_mm).unwrap();
     assert!((samples[9].pose.position - pose.position).norm() < 1e-8);
-    assert!(run_samples(&record, &machine(), &BTreeMap::new()).is_empty());
+    assert!(none.is_empty());
 }
 
 #[test]
 fn without_beams_every_tick_of_a_feed_counts() {
-    let mut record = Record::default();
-    for sample in job([0.0; 4], 0).motion() {
-        let mut sample = *sample;
-        sample.beams = [false; SIDES];
-        record.add_motion(&[sample]);
-    }
+    let record = changed(&job([0.0; 4], 0), |sample| sample.beams = [false; SIDES]);
     let mut path = planned();
     path.events.clear();
     let result = evaluate(&record, &machine(), &BTreeMap::from([(7, path)]), None);
     assert_eq!(result.weld_ticks, 50);
     assert!(result.max_contour_error_mm.unwrap() < 1e-8);
-    assert!((result.ticks[0].along_mm - 150.1).abs() < 1e-9);
+    assert!((ticks(&result)[0].along_mm - 150.1).abs() < 1e-9);
 }

@@ -181,7 +181,7 @@ fn a_run_without_arc_or_of_another_program_is_no_bead() {
             machine: &machine,
             kinematics: &kinematics,
             paths: &paths,
-            samples,
+            samples: &samples.to_vec(),
             evaluation: &Default::default(),
         };
         let directory = shipped("programs");

@@ -73,7 +73,7 @@ fn judge(paths: &BTreeMap<u32, PlannedPath>, samples: &[RunSample]) -> anyhow::R
         machine: &machine,
         kinematics: &machine.motion.kinematics().unwrap(),
         paths,
-        samples,
+        samples: &samples.to_vec(),
         evaluation: &Default::default(),
     })
 }

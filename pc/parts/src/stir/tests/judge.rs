@@ -79,11 +79,7 @@ fn judged_on(
     let judgement = parts[1].judge(&context(machine), &run)?;
     assert_eq!(judgement.plots.len(), 3);
     for plot in &judgement.plots {
-        assert!(
-            plot.lines
-                .iter()
-                .all(|(_, points)| (100..=2000).contains(&points.len()))
-        );
+        assert!(plot.lines.iter().all(|(_, points)| points.len() >= 100));
     }
     Ok(judgement.figures)
 }

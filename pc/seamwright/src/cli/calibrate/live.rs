@@ -113,6 +113,7 @@ impl Live {
                 seed: self.seed,
             }
             .into(),
+            spooling: Default::default(),
             names: Names {
                 program: name(&self.at),
                 machine: name(machine_file),
