@@ -36,14 +36,14 @@ pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) 
     if emulated {
         set_up(&setup::EMULATION)?;
     }
-    let host_link = build_seamwright()?;
+    let seamwright = build_seamwright()?;
     let interrupts = Interrupts::watch()?;
     let mut running = match told.machine_name() {
         Some(machine) if emulated => Some(emulate::boot(rate, machine)?),
         _ => None,
     };
 
-    let mut command = bound_to_parent(host_link);
+    let mut command = bound_to_parent(seamwright);
     command.arg("weld").args(flags).envs(told.defaults());
     if let Some(Running { session_file, .. }) = &running {
         command.env(SESSION_VARIABLE, session_file);

@@ -1,9 +1,10 @@
 //! Both feet of a rib, for the dual-beam head (mathematics 0.5).
 
-use crate::plan::{DualBeamPlan, PlanOptions, TaughtSeams, plan_dual_beam};
 use crate::{Judgement, Kind, PartContext, Percent, Plan, Run, SeamLimits};
-use crate::{SeamPoint, read_main_curve, read_other_curve};
 use anyhow::{Context, bail};
+use dual_beam::{
+    DualBeamPlan, PlanOptions, SeamPoint, TaughtSeams, plan_dual_beam, read_main_curve, read_other_curve,
+};
 use nalgebra::Vector3;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};

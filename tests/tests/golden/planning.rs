@@ -2,7 +2,7 @@
 
 use super::file::{Golden, near, near_all, number, vector};
 use super::kinematics::machine;
-use parts::plan::{
+use dual_beam::{
     LocateError, Location, Polyline, SeamPlace, closest_approach, locate, locate_symmetric, slide_extension,
 };
 use serde_json::Value;

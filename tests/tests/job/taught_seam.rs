@@ -1,10 +1,9 @@
 //! A seam beside its drawing: taught from a wrong start, planned, and welded with tracking on.
 
 use super::*;
+use dual_beam::{DualBeamPlan, PlanOptions, SeamPoint, TaughtSeams, plan_dual_beam};
 use job::{ImageCameras, SeamLesson};
 use nalgebra::Vector3;
-use parts::SeamPoint;
-use parts::plan::{DualBeamPlan, PlanOptions, TaughtSeams, plan_dual_beam};
 use std::path::Path;
 use std::sync::Mutex;
 use teach::seam::{

@@ -7,10 +7,10 @@ mod program;
 #[cfg(test)]
 mod tests;
 
-use super::beams::slide_extension;
-use super::cut::SmoothSeam;
-use super::locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
 use crate::SeamPoint;
+use crate::beams::slide_extension;
+use crate::cut::SmoothSeam;
+use crate::locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
 use cam::curve::Curve;
 use cam::path::CAPACITY;
 use config::machine::{MachineFile, TrackingUnit};

@@ -1,7 +1,7 @@
 //! Plans of the shipped seams: the program, where the spots are, and what is refused.
 
 use super::*;
-use crate::plan::OtherSeam;
+use crate::OtherSeam;
 use crate::{read_main_curve, read_other_curve};
 use cam::path::Planner;
 use nc::{Options, interpret};
