@@ -13,8 +13,9 @@ use crate::shared::Shared;
 pub const QUANTUM_NS: u64 = 250_000;
 /// Common time a board may be ahead of its peer \[ns\].
 const LEAD_NS: i64 = 250_000;
-/// Common time a board may be ahead of what the PC has handled \[ns\].
-const PC_LEAD_NS: i64 = 5_000_000;
+/// Common time a board may be ahead of what the PC has handled \[ns\]: a program that waits for the boards says every
+/// millisecond that it keeps up, and is late by another one where its thread is woken late.
+const PC_LEAD_NS: i64 = 3_000_000;
 /// Delay against the wall clock that is caught up; more is forgiven \[ns\]: a board that races meanwhile lets the datagrams
 /// under way to it grow old.
 const LATE_NS: i64 = 250_000;
