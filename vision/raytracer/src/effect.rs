@@ -230,7 +230,7 @@ fn apply(effect: Effect, subject: &mut Subject, draw: &mut Draw) {
             let across = draw.sign() * (half + draw.between(-0.02, 0.05));
             // Where the band crosses the seam.
             work.blobs.push(Blob {
-                middle_mm: [work.height_mm * 1.0 + draw.between(-0.05, 0.05), across],
+                middle_mm: [work.height_mm + draw.between(-0.05, 0.05), across],
                 radius_mm: draw.between(0.06, 0.2),
                 brightness: draw.log_between(0.05, 1.8),
             });

@@ -130,10 +130,9 @@ fn inner_edge(quiet: &[f32], run: &Candidate, side: usize, pitch_mm: f64) -> Opt
         (INSIDE_MM / pitch_mm).round() as isize,
         if side == 0 { 1 } else { -1 },
     );
-    // From just inside the edge as far as it is no darker than half of what it is there.
+    // Just inside the edge, where its blur does not reach.
     let outer = [left, right][side] as isize + sign * skip;
-    let inside = |column: isize| (outer - column) * sign <= 0 && (darkest as isize - column) * sign > 0;
-    if !inside(outer) {
+    if (darkest as isize - outer) * sign <= 0 {
         return None;
     }
     let level = smoothed(quiet, outer as usize);
@@ -144,12 +143,8 @@ fn inner_edge(quiet: &[f32], run: &Candidate, side: usize, pitch_mm: f64) -> Opt
     let edge = crossing(quiet, darkest, side, half)?;
     // It has a level of its own: near the inner edge it is what it is near the outer one.
     let near = edge.round() as isize - sign * skip;
-    let flat = if (outer - near) * sign <= 0 {
-        let there = smoothed(quiet, near as usize);
-        (there - level).abs() < FLAT * (level - bottom)
-    } else {
-        false
-    };
+    let flat = (outer - near) * sign <= 0
+        && (smoothed(quiet, near as usize) - level).abs() < FLAT * (level - bottom);
     let core = crossing(quiet, darkest, side, bottom + CORE * (level - bottom))?;
     flat.then_some((edge, core.round() as usize))
 }
