@@ -18,6 +18,12 @@ const DEPTH: usize = 40;
 const RELATIVE: f64 = 1e-10;
 const OF_WHOLE: f64 = 1e-12;
 
+/// What halving an interval divides the error of the 8-point rule by, at most: its order is 16.
+///
+/// Two values of an integrand that the points do not resolve yet can agree by chance; then the error of the interval
+/// around it is larger than this times what is allowed.
+const GAIN_OF_HALVING: f64 = 65536.0;
+
 /// Rounding of a length, of the coordinates: where control points coincide there is nothing else.
 const ROUNDING: f64 = 1e-13;
 
@@ -40,18 +46,21 @@ fn span_length<C: Curve>(curve: &C, from: f64, to: f64) -> f64 {
     let whole = gauss(curve, from, to);
     let rounding = ROUNDING * (curve.point(from).norm() + curve.point(to).norm());
     let (mut sum, mut intervals) = (0.0, 0);
-    let mut stack: Vec<(f64, f64, f64, usize), { DEPTH + 1 }> = Vec::new();
-    let mut next = Some((from, to, whole, 0));
-    while let Some((from, to, coarse, depth)) = next {
+    // An interval, its length by one rule, the error of the interval that it is half of, and how often that was halved.
+    let mut stack: Vec<(f64, f64, f64, f64, usize), { DEPTH + 1 }> = Vec::new();
+    let mut next = Some((from, to, whole, f64::INFINITY, 0));
+    while let Some((from, to, coarse, error_before, depth)) = next {
         let middle = (from + to) / 2.0;
         let halves = [gauss(curve, from, middle), gauss(curve, middle, to)];
         let fine = halves[0] + halves[1];
         let allowed = RELATIVE * fine + OF_WHOLE * whole + rounding;
         intervals += 1;
-        let split = libm::fabs(fine - coarse) > allowed && depth < DEPTH && intervals < INTERVALS;
+        let error = libm::fabs(fine - coarse);
+        let settled = error <= allowed && error_before <= GAIN_OF_HALVING * allowed;
+        let split = !settled && depth < DEPTH && intervals < INTERVALS;
         // The stack has a place for each depth, so this always finds one.
-        if split && stack.push((middle, to, halves[1], depth + 1)).is_ok() {
-            next = Some((from, middle, halves[0], depth + 1));
+        if split && stack.push((middle, to, halves[1], error, depth + 1)).is_ok() {
+            next = Some((from, middle, halves[0], error, depth + 1));
         } else {
             sum += fine;
             next = stack.pop();

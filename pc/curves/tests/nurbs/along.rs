@@ -44,6 +44,56 @@ fn a_point_of_rest_does_not_spoil_the_length() {
     assert!((curve.point(parameter_at_length(&curve, 0.0, 0.75)).x).abs() < 1e-8);
 }
 
+/// The first span of a rational cubic, cut where the two rules of a quadrature agree by chance on
+/// a value that is off by 1.7e-8.
+#[test]
+fn rules_that_agree_by_chance_are_not_believed() {
+    let points = [
+        (
+            -58.415_600_932_945_64,
+            -15.206_959_243_708_502,
+            -75.201_483_537_112_01,
+        ),
+        (
+            -25.895_527_992_877_575,
+            40.590_107_980_740_71,
+            89.939_653_018_450_44,
+        ),
+        (
+            28.705_346_428_660_004,
+            -5.290_481_667_167_265,
+            -9.301_640_085_621_703,
+        ),
+        (
+            -52.028_593_183_591_28,
+            10.296_365_655_659_79,
+            -49.845_734_820_405_596,
+        ),
+        (0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0),
+    ]
+    .map(|(x, y, z)| Vector3::new(x, y, z));
+    let weights = [
+        0.558_052_836_932_926_5,
+        0.132_085_733_347_879_9,
+        2.808_880_677_359_227_6,
+        8.811_092_441_969_368,
+        1.0,
+        1.0,
+    ];
+    let [a, b, c, d] = [
+        0.936_854_011_648_349,
+        1.483_721_827_628_791_3,
+        2.007_451_530_166_908_2,
+        2.074_440_013_796_276,
+    ];
+    let knots = [a, a, a, a, b, c, d, d, d, d];
+    let curve = Nurbs::new(3, &points, &weights, &knots).unwrap();
+    let cut = 1.189_343_607_789_493_4;
+    let parts = length_between(&curve, a, cut) + length_between(&curve, cut, b);
+    assert!((parts / length_between(&curve, a, b) - 1.0).abs() < 1e-12);
+}
+
 #[test]
 fn a_curve_that_crosses_the_middle_of_its_chord_is_cut() {
     let points = [(0.0, 0.0), (1.0, 3.0), (2.0, -3.0), (3.0, 0.0)].map(|(x, y)| Vector3::new(x, y, 0.0));
