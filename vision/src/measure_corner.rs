@@ -98,6 +98,7 @@ impl Detector {
                     lateral_mm: sigmas[1],
                     height_mm: sigmas[0],
                     width_mm: f64::INFINITY,
+                    step_mm: f64::INFINITY,
                     roll: wall_sigmas[0].hypot(wall_sigmas[1]) / 2.0,
                     walls: wall_sigmas,
                     yaw_rad: f64::INFINITY,

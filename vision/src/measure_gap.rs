@@ -214,6 +214,7 @@ impl Detector {
                 lateral_mm: f64::INFINITY,
                 height_mm: HONEST * covariance[(0, 0)].sqrt(),
                 width_mm: f64::INFINITY,
+                step_mm: HONEST * covariance[(2, 2)].max(0.0).sqrt(),
                 roll: sigma_roll,
                 walls: [sigma_roll, sigma_roll],
                 yaw_rad: f64::INFINITY,

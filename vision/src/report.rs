@@ -121,6 +121,8 @@ pub struct Sigma {
     pub height_mm: f64,
     /// Of the width \[mm\].
     pub width_mm: f64,
+    /// Of the step between the sides \[mm\].
+    pub step_mm: f64,
     /// Of the roll slope.
     pub roll: f64,
     /// Of the slopes left and right.

@@ -83,9 +83,10 @@ pub struct Observer {
     focus: f64,
     /// Where the camera is, as the sum of its moves \[mm\].
     place: Moved,
-    /// Where the seam was seen, of a camera that stays; roll slopes of the same pictures.
+    /// Where the seam was seen, of a camera that stays; roll slopes and steps of the same pictures.
     places: Places,
     rolls: Running,
+    steps: Running,
     /// The same of more pictures, for the pitch.
     way: Places,
     /// What the last pictures without a band said, and how often.
@@ -109,6 +110,7 @@ impl Observer {
             place: Moved::default(),
             places: Places::new(frames),
             rolls: Running::new(frames),
+            steps: Running::new(frames),
             way: Places::new(PITCH_FRAMES),
             votes: (Status::NoBand, 0),
         }
@@ -218,6 +220,7 @@ impl Observer {
         self.places.push(measured, &self.place);
         self.way.push(measured, &self.place);
         self.rolls.push(measured.roll);
+        self.steps.push(measured.step_mm);
         self.track = Some(Track {
             lateral_mm: measured.lateral_mm,
             height_mm: measured.height_mm,
@@ -231,12 +234,14 @@ impl Observer {
             travel_mm: measured.travel_mm,
             mean: self.places.mean(FEWEST_PLACES, &self.place),
             width_mm: measured.width_mm,
+            step_mm: self.steps.mean(1).unwrap_or(measured.step_mm),
             roll: self.rolls.mean(1).unwrap_or(measured.roll),
             pitch: self.way.pitch(PITCH_FRAMES),
             yaw_rad: measured.yaw_rad,
             quality: measured.quality,
             sigma: Sigma {
                 height_mm: measured.sigma.height_mm * averaged,
+                step_mm: measured.sigma.step_mm * averaged,
                 roll: measured.sigma.roll * averaged,
                 ..measured.sigma
             },
@@ -284,6 +289,7 @@ impl Observer {
     fn restart(&mut self) {
         self.places.clear();
         self.rolls.clear();
+        self.steps.clear();
         self.way.clear();
     }
 

@@ -44,6 +44,8 @@ pub struct Seam {
     pub mean: Option<MeanPoint>,
     /// Width of the gap in this picture, 0 of a corner \[mm\].
     pub width_mm: f64,
+    /// t: how much higher the right side of a gap lies, the mean of the same pictures; 0 of a corner \[mm\].
+    pub step_mm: f64,
     /// q: slope across the seam, the mean of the same pictures.
     pub roll: f64,
     /// p: slope along travel, from the heights of 16 pictures; none before there are so many or without travel.
@@ -52,7 +54,7 @@ pub struct Seam {
     pub yaw_rad: f64,
     /// Quality of this picture, 0.5 to 1.
     pub quality: f64,
-    /// Standard deviations in this picture, but of height and roll those of the means.
+    /// Standard deviations in this picture, but of height, step and roll those of the means.
     pub sigma: Sigma,
 }
 
