@@ -4,7 +4,7 @@
 //! shows the defocus. Only differences across the seam count: travel smears along the rows.
 
 use crate::layer::Layer;
-use crate::noise::PhotonTransfer;
+use crate::noise::{LayerNoise, PhotonTransfer};
 
 /// Expected energy of a cell that has no say: no model explains it and none is moved by it. It is not larger than that
 /// needs: squares of what is left of a faint band beside it have to stay normal numbers, for others are slow.
@@ -41,9 +41,8 @@ pub(crate) struct Cells {
     pub noise: Vec<f32>,
     /// Pixels along a side.
     side: usize,
-    /// Variance of a pixel of the layer is `slope` · level + `offset`, in its own steps.
-    slope: f32,
-    offset: f32,
+    /// Of a pixel of the layer.
+    pixel_noise: LayerNoise,
     /// Levels that count, in steps of the layer: neither black nor saturated.
     usable: [f32; 2],
     /// Sums over a row of cells, for every column of pixels: squared differences, levels.
@@ -63,10 +62,6 @@ impl Cells {
         let rows = (layer.rows - 2) / side;
         let stride = rows.next_multiple_of(LANES);
         let middle = layer.pitch_mm * (1.0 + (side as f64 - 1.0) / 2.0);
-        let scale = f64::from(layer.scale);
-        // The mean of `binned` pixels, in steps of the layer.
-        let offset = transfer.variance(0.0) / layer.binned;
-        let slope = transfer.variance(1.0) / layer.binned - offset;
         Self {
             columns,
             rows,
@@ -76,8 +71,7 @@ impl Cells {
             energy: vec![0.0; columns * stride],
             noise: vec![SILENT; columns * stride],
             side,
-            slope: (slope / scale) as f32,
-            offset: (offset / scale / scale) as f32,
+            pixel_noise: LayerNoise::new(transfer, layer),
             usable: [2.0 / layer.scale, 250.0 / layer.scale],
             squares: vec![0; layer.columns],
             levels: vec![0; layer.columns],
@@ -118,7 +112,7 @@ impl Cells {
                 let place = column * self.stride + cell_row;
                 if level > self.usable[0] && level < self.usable[1] {
                     let one = 1.0 / (level * level);
-                    let variance = level * self.slope + self.offset;
+                    let variance = self.pixel_noise.variance(level);
                     let light = &mut self.columns_light[column];
                     *light = [light[0] + level, light[1] + 1.0];
                     self.energy[place] = square * one;

@@ -7,7 +7,7 @@ use crate::gap::{Candidates, Continuity, Strip};
 use crate::image::Image;
 use crate::layer::Layer;
 use crate::level::Level;
-use crate::noise::PhotonTransfer;
+use crate::noise::{LayerNoise, PhotonTransfer};
 use crate::optics::{Optics, OpticsError};
 use crate::prior::{Joint, Prior};
 use crate::profile::Profile;
@@ -116,7 +116,7 @@ impl Detector {
         Ok(Self {
             band: Band { levels },
             coarse,
-            strip: Strip::new(&layers[base]),
+            strip: Strip::new(&layers[base], LayerNoise::new(&noise, &layers[base])),
             candidates: Candidates::default(),
             continuity: Continuity::new(layers[base].columns, tilt, optics.aperture),
             optics,

@@ -2,7 +2,7 @@
 
 use crate::band::{Fitness, Knowledge, SMALLEST_GAIN};
 use crate::detector::Detector;
-use crate::gap::{BandLine, Candidate, Edges, fit_edges, unevenness};
+use crate::gap::{BandLine, Candidate, Edges, Interior, fit_edges, unevenness, without_shadow};
 use crate::height_field::Plate;
 use crate::prior::Prior;
 use crate::report::{Criterion, Form, Measured, Report, Second, Sigma, Status, least, ramp};
@@ -29,6 +29,9 @@ const SPOILT_MM: f64 = 0.06;
 /// Plate beside the gap that has to be lit \[mm\], and its brightness over that of the other side at which it is not trusted, and is.
 const PLATE_MM: f64 = 0.25;
 const DIM: [f64; 2] = [0.2, 0.35];
+
+/// Depth of the gap at which it is not trusted, and is. A veil takes as much off it as there is light in the veil.
+const DEPTH: [f64; 2] = [0.3, 0.6];
 
 /// Unevenness of the gap at which it is not trusted, and is.
 const UNEVEN: [f64; 2] = [0.10, 0.04];
@@ -166,6 +169,7 @@ impl Detector {
         }
         candidates.find(&strip.quiet, g);
         for candidate in candidates.list_mut() {
+            candidate.interior = Interior::of(strip, candidate, g).unwrap_or_default();
             candidate.continuity = continuity.of(layer, line, candidate, strip.slant);
             let lateral = layer.origin_mm[1] + candidate.middle() * g;
             let expected = prior.track.map_or(1.0, |track| {
@@ -177,8 +181,23 @@ impl Detector {
                 * (0.15 + 0.85 * candidate.continuity)
                 * expected;
         }
+        if std::env::var_os("DBG").is_some() {
+            for c in candidates.list_mut() {
+                println!(
+                    "   run {:.1} w {:.1} depth {:.2} cont {:.2} score {:.3} {:.3} {:?} empty {:.2}",
+                    1e3 * (layer.origin_mm[1] + c.middle() * g),
+                    1e3 * c.width() * g,
+                    c.depth,
+                    c.continuity,
+                    c.score,
+                    c.interior.brightness,
+                    c.interior.texture,
+                    c.interior.emptiness()
+                );
+            }
+        }
         let (best, second) = candidates.best()?;
-        let best = best.split(&strip.quiet, g);
+        let best = without_shadow(strip, best, g);
         let edges = fit_edges(strip, &best, g)?;
         Some((edges, best, second))
     }
@@ -287,7 +306,8 @@ impl Detector {
             (middle - edges.width / 2.0).min(layer.columns as f64 - 1.0 - middle - edges.width / 2.0);
         let half_view_mm = layer.rows as f64 * g / 2.0;
         let others = [
-            (Criterion::Depth, ramp(best.depth, 0.5, 0.8)),
+            (Criterion::Depth, ramp(best.depth, DEPTH[0], DEPTH[1])),
+            (Criterion::Emptiness, best.interior.emptiness()),
             (Criterion::Straightness, ramp(edges.inliers, 0.45, 0.75)),
             (
                 Criterion::Scatter,

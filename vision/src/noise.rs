@@ -1,5 +1,6 @@
 //! Noise of the camera.
 
+use crate::layer::Layer;
 use serde::{Deserialize, Serialize};
 
 /// Photon transfer of a camera that gives 8 bits a pixel, as its calibration measured it.
@@ -16,5 +17,31 @@ impl PhotonTransfer {
     pub fn variance(&self, level: f64) -> f64 {
         let step = 255.0 / self.full_well;
         level * step + (self.read_noise * step).powi(2) + 1.0 / 12.0
+    }
+}
+
+/// Variance of a pixel of a layer, in the layer's own steps: `slope` · level + `offset`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LayerNoise {
+    slope: f32,
+    offset: f32,
+}
+
+impl LayerNoise {
+    /// That of `transfer` in the pixels of `layer`.
+    pub fn new(transfer: &PhotonTransfer, layer: &Layer) -> Self {
+        let scale = f64::from(layer.scale);
+        // The mean of `binned` pixels.
+        let offset = transfer.variance(0.0) / layer.binned;
+        let slope = transfer.variance(1.0) / layer.binned - offset;
+        Self {
+            slope: (slope / scale) as f32,
+            offset: (offset / scale / scale) as f32,
+        }
+    }
+
+    /// Variance of a pixel whose mean is `level`.
+    pub fn variance(&self, level: f32) -> f32 {
+        level * self.slope + self.offset
     }
 }

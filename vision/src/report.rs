@@ -108,6 +108,8 @@ pub enum Criterion {
     Walls,
     /// Whether there is a plate on both sides: the darker one over the brighter one.
     Sides,
+    /// Whether it is empty: scratches, grooves and shadows have the texture of the plate.
+    Emptiness,
     /// Whether the gap is equally dark over its whole width: beside a shadow or spatter it is not.
     Interior,
 }

@@ -1,5 +1,6 @@
 //! Dark runs along the strip: what may be the gap.
 
+use super::interior::Interior;
 use super::{between, median};
 
 /// Most candidates.
@@ -12,15 +13,11 @@ const DARK: f32 = 0.65;
 const CORE: f32 = 0.25;
 
 /// Columns of plate whose brightness counts beside an edge \[mm\], and what of them the blur takes \[mm\].
-const PLATEAU_MM: f64 = 0.015;
+pub(super) const PLATEAU_MM: f64 = 0.015;
 const BLUR_MM: f64 = 0.006;
 
-/// Light of the second level of a run over the darker one, of the way up to the plate; and what it may differ by over its width.
-const SECOND_LEVEL: f64 = 0.04;
-const FLAT: f32 = 0.3;
-
-/// From an edge so far into the gap its blur reaches, and its roughness \[mm\].
-const INSIDE_MM: f64 = 0.010;
+/// What a run counts that has a plate's texture, over one that is empty.
+const TEXTURED: f64 = 0.1;
 
 /// A dark run.
 #[derive(Clone, Copy, Debug, Default)]
@@ -31,6 +28,8 @@ pub(crate) struct Candidate {
     pub core: [usize; 2],
     /// Depth over the brightness beside it.
     pub depth: f64,
+    /// What is inside it.
+    pub interior: Interior,
     /// How it continues outside the strip, 0 to 1.
     pub continuity: f64,
     /// Its rank.
@@ -80,104 +79,17 @@ impl Candidates {
         &mut self.list[..self.count]
     }
 
-    /// The best by score, and the second.
+    /// The best by score, those that are empty before those that are not; and the best of the others but for what is clearly a
+    /// surface beside it.
     pub fn best(&self) -> Option<(Candidate, Option<Candidate>)> {
         let list = &self.list[..self.count];
-        let best = (0..list.len()).max_by(|a, b| list[*a].score.total_cmp(&list[*b].score))?;
-        let others = (0..list.len()).filter(|other| *other != best);
+        let rank = |candidate: &Candidate| candidate.score * (TEXTURED + candidate.interior.emptiness());
+        let best = (0..list.len()).max_by(|a, b| rank(&list[*a]).total_cmp(&rank(&list[*b])))?;
+        let others = (0..list.len())
+            .filter(|other| *other != best && !list[*other].interior.is_surface_beside(&list[best].interior));
         let second = others.max_by(|a, b| list[*a].score.total_cmp(&list[*b].score));
         Some((list[best], second.map(|second| list[second])))
     }
-}
-
-impl Candidate {
-    /// The gap without a shadow or a chamfer beside it, if it is one run with them: within a run of two levels the gap is the
-    /// darker one. A lit wall of the gap has no level of its own, as it fades, and is left in.
-    pub fn split(self, quiet: &[f32], pitch_mm: f64) -> Self {
-        let mut split = self;
-        for side in 0..2 {
-            if let Some((edge, core)) = inner_edge(quiet, &self, side, pitch_mm) {
-                split.edges[side] = edge;
-                split.core[side] = core;
-            }
-        }
-        if split.core[0] > split.core[1] || split.edges == self.edges {
-            return self;
-        }
-        let bottom = middle_value(&quiet[split.core[0]..=split.core[1]]);
-        let beside = [0, 1].map(|side| {
-            plateau(
-                |column| quiet[column],
-                quiet.len(),
-                split.edges[side],
-                side,
-                pitch_mm,
-            )
-            .unwrap_or(0.0)
-        });
-        let beside = beside[0].min(beside[1]).max(0.01);
-        split.depth = f64::from((1.0 - bottom / beside).clamp(0.0, 1.0));
-        split
-    }
-}
-
-/// Where the darker level of a run ends on a side, and the last column of its core there; None if there is one level only.
-fn inner_edge(quiet: &[f32], run: &Candidate, side: usize, pitch_mm: f64) -> Option<(f64, usize)> {
-    let [left, right] = [run.edges[0].ceil() as usize, run.edges[1].floor() as usize];
-    let darkest = (left..=right).min_by(|a, b| smoothed(quiet, *a).total_cmp(&smoothed(quiet, *b)))?;
-    let bottom = smoothed(quiet, darkest);
-    let (skip, sign) = (
-        (INSIDE_MM / pitch_mm).round() as isize,
-        if side == 0 { 1 } else { -1 },
-    );
-    // Just inside the edge, where its blur does not reach.
-    let outer = [left, right][side] as isize + sign * skip;
-    if (darkest as isize - outer) * sign <= 0 {
-        return None;
-    }
-    let level = smoothed(quiet, outer as usize);
-    if f64::from((level - bottom) / (1.0 - bottom).max(0.05)) < SECOND_LEVEL {
-        return None;
-    }
-    let half = (level + bottom) / 2.0;
-    let edge = crossing(quiet, darkest, side, half)?;
-    // It has a level of its own: near the inner edge it is what it is near the outer one.
-    let near = edge.round() as isize - sign * skip;
-    let flat = (outer - near) * sign <= 0
-        && (smoothed(quiet, near as usize) - level).abs() < FLAT * (level - bottom);
-    let core = crossing(quiet, darkest, side, bottom + CORE * (level - bottom))?;
-    flat.then_some((edge, core.round() as usize))
-}
-
-/// Mean of a column and its neighbours.
-fn smoothed(line: &[f32], column: usize) -> f32 {
-    let around = &line[column.saturating_sub(1)..(column + 2).min(line.len())];
-    around.iter().sum::<f32>() / around.len() as f32
-}
-
-/// How much brighter the gap is next to its edges than where it is darkest, of the way up to the plate; None of a gap too narrow
-/// to tell.
-pub(crate) fn unevenness(quiet: &[f32], candidate: &Candidate, pitch_mm: f64) -> Option<f64> {
-    let [left, right] = candidate.edges;
-    let (skip, count) = (
-        INSIDE_MM / pitch_mm,
-        (PLATEAU_MM / pitch_mm / 2.0).round().max(2.0),
-    );
-    let ends = [(left + skip).ceil(), (right - skip).floor() - count + 1.0];
-    if ends[1] - ends[0] < count {
-        return None;
-    }
-    let level = |start: f64| {
-        let start = start as usize;
-        middle_value(&quiet[start..start + count as usize])
-    };
-    let (mut darkest, mut at) = (f32::INFINITY, ends[0]);
-    while at <= ends[1] {
-        darkest = darkest.min(level(at));
-        at += 1.0;
-    }
-    let brightest = level(ends[0]).max(level(ends[1]));
-    Some(f64::from((brightest - darkest) / (1.0 - darkest).max(0.05)))
 }
 
 /// Core, depth and edges of a run. None if an edge is not in the picture.
@@ -201,6 +113,7 @@ fn measure(quiet: &[f32], run: [usize; 2], pitch_mm: f64) -> Option<Candidate> {
         edges,
         core,
         depth: f64::from((1.0 - bottom / beside.max(0.05)).clamp(0.0, 1.0)),
+        interior: Interior::default(),
         continuity: 0.0,
         score: 0.0,
     })
@@ -244,7 +157,7 @@ pub(super) fn plateau(
 }
 
 /// Where the line first rises over a level, from a column to the left (0) or right (1).
-fn crossing(line: &[f32], from: usize, side: usize, level: f32) -> Option<f64> {
+pub(super) fn crossing(line: &[f32], from: usize, side: usize, level: f32) -> Option<f64> {
     rise(|column| line[column], line.len(), from, side, level, line.len())
 }
 

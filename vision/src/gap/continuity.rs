@@ -2,23 +2,38 @@
 //!
 //! Out of focus the gap is wide and pale, but the light it lacks, ∫(1 − I/I0) du, stays.
 
-use super::median;
+use super::quantile;
 use super::strip::BandLine;
 use super::{Candidate, between};
 use crate::layer::Layer;
+use crate::report::ramp;
 
 /// Distances from the band at which the run is looked for again \[mm along the rows\].
-const DISTANCES_MM: [f64; 6] = [-0.22, -0.16, -0.11, 0.11, 0.16, 0.22];
+const DISTANCES_MM: [f64; 8] = [-0.30, -0.22, -0.16, -0.11, 0.11, 0.16, 0.22, 0.30];
 
 /// Half the height of the rows taken there, and in the band \[mm\].
 const ROWS_MM: f64 = 0.0105;
 const BAND_MM: f64 = 0.05;
 
-/// Columns beside the run from which the light is measured \[mm\].
-const BESIDE_MM: f64 = 0.03;
+/// Columns beside the run from which the light is measured \[mm\], and the share of them darker than what counts as the light:
+/// there may be scratches among them.
+const BESIDE_MM: f64 = 0.1;
+const LIGHT: f64 = 0.6;
 
 /// Margin of the window beyond edge and blur \[mm\].
 const MARGIN_MM: f64 = 0.012;
+
+/// What a gap's missing light and its middle may differ by from those in the band: a share of it, what the texture beside it does
+/// (three standard deviations of plates that are ground, rolled or blasted), pixels, and what the slant is not known by.
+const AREA_SHARE: f64 = 0.12;
+const AREA_MM: f64 = 0.012;
+const MIDDLE_SHARE: f64 = 0.03;
+const MIDDLE_MM: f64 = 0.014;
+const PIXELS: f64 = 0.8;
+const YAW: f64 = 0.035;
+
+/// How far off, over that, a run does not continue, and does.
+const OFF: [f64; 2] = [1.5, 0.75];
 
 /// Looks for a run beyond the strip.
 #[derive(Clone, Debug)]
@@ -57,18 +72,12 @@ impl Continuity {
             let Some(there) = self.deficit(layer, line, candidate, slant, distance, ROWS_MM) else {
                 continue;
             };
-            let area = 0.27 * here.area + 0.006 + 0.8 * g;
-            let middle = 0.11 * width + 0.009 + 0.8 * g + 0.035 * distance.abs();
+            let area = AREA_SHARE * here.area + AREA_MM + PIXELS * g;
+            let middle = MIDDLE_SHARE * width + MIDDLE_MM + PIXELS * g + YAW * distance.abs();
             let off =
                 ((there.area - here.area).abs() / area).max((there.middle - here.middle).abs() / middle);
             count += 1.0;
-            points += if off < 1.0 {
-                1.0
-            } else if off < 2.0 {
-                0.5
-            } else {
-                0.0
-            };
+            points += ramp(off, OFF[0], OFF[1]);
         }
         if count > 0.0 { points / count } else { 0.0 }
     }
@@ -134,7 +143,7 @@ impl Continuity {
     }
 }
 
-/// Median of the columns to one side, if there are any.
+/// Light of the columns to one side, if there are any.
 fn side_light(values: &[f32]) -> Option<f32> {
     let mut sorted = [0.0; 64];
     let count = values.len().min(64);
@@ -142,6 +151,6 @@ fn side_light(values: &[f32]) -> Option<f32> {
     if count < 2 {
         None
     } else {
-        median(&mut sorted[..count])
+        quantile(&mut sorted[..count], LIGHT)
     }
 }

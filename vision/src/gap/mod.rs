@@ -3,11 +3,15 @@
 mod candidate;
 mod continuity;
 mod edges;
+mod interior;
+mod levels;
 mod strip;
 
-pub(crate) use candidate::{Candidate, Candidates, unevenness};
+pub(crate) use candidate::{Candidate, Candidates};
 pub(crate) use continuity::Continuity;
 pub(crate) use edges::{Edges, fit_edges};
+pub(crate) use interior::Interior;
+pub(crate) use levels::{unevenness, without_shadow};
 pub use strip::EDGE_ROWS_MM;
 pub(crate) use strip::{BandLine, Strip};
 

@@ -2,6 +2,7 @@
 
 use super::{between, quantile};
 use crate::layer::Layer;
+use crate::noise::LayerNoise;
 
 /// Half the height of the strip along the band in which a gap's edges are read \[mm along the rows\].
 pub const EDGE_ROWS_MM: f64 = 0.08;
@@ -24,6 +25,9 @@ const WINDOWS: usize = 9;
 /// Slants of a seam that are tried \[columns a row\].
 const SLANTS: [f64; 5] = [-0.12, -0.06, 0.0, 0.06, 0.12];
 
+/// Noise over what was calibrated that is believed: of coarse pixels it is mostly texture.
+const NOISIEST: f32 = 3.0;
+
 /// The strip: for every column the brightness of groups of rows over the light.
 #[derive(Clone, Debug)]
 pub(crate) struct Strip {
@@ -31,6 +35,10 @@ pub(crate) struct Strip {
     pub groups: usize,
     /// Rows of a group.
     rows: usize,
+    /// What the camera was calibrated to.
+    calibrated: LayerNoise,
+    /// Variance of a pixel in each column by what differs from row to row: noise, as texture is coarser than fine pixels.
+    noise: Vec<f32>,
     /// Brightness of each group in a column over the light there.
     pub values: Vec<[f32; GROUPS]>,
     /// Which columns lie in the picture over the whole height of the strip.
@@ -39,11 +47,23 @@ pub(crate) struct Strip {
     pub quiet: Vec<f32>,
     /// That slant \[columns a row\].
     pub slant: f64,
+    /// What a column's values were multiplied by.
+    gains: Vec<f32>,
     /// Medians of columns, and room to sort them.
     medians: Vec<f32>,
     sorted: Vec<f32>,
     /// `quiet` of a slant being tried.
     tried: Vec<f32>,
+}
+
+/// Brightness of a column over the light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Texture {
+    pub brightness: f32,
+    /// Along the seam.
+    pub variance: f32,
+    /// What of it the camera's noise makes.
+    pub noise: f32,
 }
 
 /// Where the band lies in a layer: row of its middle for a column.
@@ -72,17 +92,20 @@ impl BandLine {
 
 impl Strip {
     /// Room for strips of a layer.
-    pub fn new(layer: &Layer) -> Self {
+    pub fn new(layer: &Layer, calibrated: LayerNoise) -> Self {
         let rows = ((GROUP_MM / layer.pitch_mm).round() as usize).max(1);
         let groups = (2.0 * EDGE_ROWS_MM / layer.pitch_mm / rows as f64).round() as usize;
         let columns = layer.columns;
         Self {
             groups: groups.clamp(3, GROUPS),
             rows,
+            calibrated,
+            noise: vec![0.0; columns],
             values: vec![[0.0; GROUPS]; columns],
             seen: vec![false; columns],
             quiet: vec![1.0; columns],
             slant: 0.0,
+            gains: vec![1.0; columns],
             medians: vec![0.0; columns],
             sorted: Vec::with_capacity(columns),
             tried: vec![1.0; columns],
@@ -111,6 +134,29 @@ impl Strip {
         })
     }
 
+    /// Brightness along the seam in a column.
+    pub fn texture(&self, column: usize) -> Texture {
+        let columns = self.values.len() as f64;
+        let values: [f32; GROUPS] = std::array::from_fn(|group| {
+            let from = column as f64 + (self.slant * self.offset(group)).round();
+            self.values[from.clamp(0.0, columns - 1.0) as usize][group]
+        });
+        let values = &values[..self.groups];
+        let count = values.len() as f32;
+        let mean = values.iter().sum::<f32>() / count;
+        // Of second differences, which light that changes along the seam leaves small.
+        let bend = |at: &[f32]| (at[0] - 2.0 * at[1] + at[2]).powi(2) / 6.0;
+        let variance = values.windows(3).map(bend).sum::<f32>() / (count - 2.0);
+        let (rows, gain) = (self.rows as f32, self.gains[column]);
+        let expected = self.calibrated.variance((mean / gain / rows).max(0.0));
+        let noise = self.noise[column].min(NOISIEST * expected);
+        Texture {
+            brightness: mean,
+            variance,
+            noise: rows * noise * gain * gain,
+        }
+    }
+
     /// Cuts the strip out. False if not half of it lies in the picture.
     pub fn fill(&mut self, layer: &Layer, line: BandLine) -> bool {
         let height = self.groups * self.rows;
@@ -125,14 +171,21 @@ impl Strip {
             seen += 1;
             let mut place = first as usize * layer.columns + column;
             let values = &mut self.values[column];
-            for value in &mut values[..self.groups] {
+            let (mut before, mut bends) = ([0; 2], 0);
+            for (group, value) in values[..self.groups].iter_mut().enumerate() {
                 let mut sum = 0;
-                for _ in 0..self.rows {
-                    sum += u32::from(layer.pixels[place]);
+                for row in 0..self.rows {
+                    let pixel = i32::from(layer.pixels[place]);
+                    sum += pixel;
+                    if group * self.rows + row >= 2 {
+                        bends += i64::from(pixel - 2 * before[0] + before[1]).pow(2);
+                    }
+                    before = [pixel, before[0]];
                     place += layer.columns;
                 }
                 *value = sum as f32;
             }
+            self.noise[column] = bends as f32 / (6 * (height - 2)) as f32;
             let mut sorted = *values;
             self.medians[column] = kth(&mut sorted[..self.groups], self.groups / 2);
         }
@@ -163,6 +216,7 @@ impl Strip {
             let left = (window as usize).min(WINDOWS - 2);
             let light = between([lights[left], lights[left + 1]], window - left as f32);
             let one = 1.0 / light.max(0.05 * brightest);
+            self.gains[column] = one;
             if self.seen[column] {
                 self.values[column].iter_mut().for_each(|value| *value *= one);
             } else {

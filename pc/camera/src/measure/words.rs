@@ -59,6 +59,7 @@ fn weakness(measured: &Measured) -> String {
         Criterion::Gain => "the band explains too little of the picture",
         Criterion::Walls => "too little of one wall is in the picture",
         Criterion::Sides => "a plate is lit on one side of the gap only",
+        Criterion::Emptiness => "it has a plate's texture: a scratch, a groove or a shadow",
         Criterion::Interior => "the gap is not equally dark: a shadow or spatter beside it?",
     };
     format!("{what} (quality {:.2}, {NEEDED} needed)", measured.quality)

@@ -1,0 +1,147 @@
+//! Levels within a dark run: a gap beside a shadow or a chamfer, or with a lit wall.
+
+use super::candidate::{Candidate, PLATEAU_MM, crossing, middle_value, plateau};
+use super::interior::{INSIDE_MM, columns, relative_texture};
+use super::strip::Strip;
+
+/// Light of the second level of a run over the darker one, of the way up to the plate.
+const SECOND_LEVEL: f32 = 0.04;
+
+/// What a second level may differ by over its width, of what it differs by from the darker one.
+const FLAT: f32 = 0.3;
+
+/// Texture of a second level that is a surface, over that of the plate were it as dark.
+const SURFACE: f32 = 0.4;
+
+/// The gap without a shadow or a chamfer beside it, if it is one run with them: within a run of two levels the gap is the darker
+/// one. A lit wall of the gap has no level of its own, as it fades, and is left in.
+pub(crate) fn without_shadow(strip: &Strip, run: Candidate, pitch_mm: f64) -> Candidate {
+    let mut gap = run;
+    for side in 0..2 {
+        if let Some(edge) = inner_edge(strip, &gap, side, pitch_mm) {
+            gap.edges[side] = edge;
+            gap.core[side] =
+                gap.core[side].clamp(gap.edges[0].ceil() as usize, gap.edges[1].floor() as usize);
+        }
+    }
+    if gap.edges == run.edges {
+        return run;
+    }
+    let quiet = &strip.quiet;
+    let inset = INSIDE_MM / pitch_mm;
+    let inside = columns(strip, gap.edges[0] + inset, gap.edges[1] - inset);
+    let inside = if inside.is_empty() {
+        gap.core[0]..gap.core[1] + 1
+    } else {
+        inside
+    };
+    gap.core = [inside.start, inside.end - 1];
+    let bottom = middle_value(&quiet[inside]);
+    let beside = |side: usize| {
+        plateau(
+            |column| quiet[column],
+            quiet.len(),
+            gap.edges[side],
+            side,
+            pitch_mm,
+        )
+    };
+    let beside = beside(0).unwrap_or(0.0).min(beside(1).unwrap_or(0.0)).max(0.01);
+    gap.depth = f64::from((1.0 - bottom / beside).clamp(0.0, 1.0));
+    gap
+}
+
+/// Where the darker level of a run ends on a side. None if there is one level only.
+fn inner_edge(strip: &Strip, run: &Candidate, side: usize, pitch_mm: f64) -> Option<f64> {
+    let quiet = &strip.quiet;
+    let skip = (INSIDE_MM / pitch_mm).round() as usize;
+    let [left, right] = [
+        run.edges[0].ceil() as usize + skip,
+        (run.edges[1].floor() as usize).checked_sub(skip)?,
+    ];
+    let inside = quiet.get(left..=right)?;
+    let cut = left + step_of(inside)?;
+    // The blur of the inner edge reaches into both.
+    let (outer, inner) = match side {
+        0 => (left..cut.saturating_sub(skip), (cut + skip).min(right)..right + 1),
+        _ => (
+            cut + skip..right + 1,
+            left..cut.saturating_sub(skip).max(left + 1),
+        ),
+    };
+    if outer.len() < 2 || inner.is_empty() {
+        return None;
+    }
+    let near = (PLATEAU_MM / pitch_mm).round().max(2.0) as usize;
+    let (first, last) = (
+        outer.start..(outer.start + near).min(outer.end),
+        outer.end.saturating_sub(near).max(outer.start)..outer.end,
+    );
+    let ends = [middle_value(&quiet[first]), middle_value(&quiet[last])];
+    let (at_gap, at_plate) = if side == 0 {
+        (ends[1], ends[0])
+    } else {
+        (ends[0], ends[1])
+    };
+    let bottom = middle_value(&quiet[inner]);
+    if at_gap - bottom < SECOND_LEVEL * (1.0 - bottom).max(0.05) {
+        return None;
+    }
+    let flat = (at_plate - at_gap).abs() < FLAT * (at_gap - bottom);
+    let textured = relative_texture(strip, outer)
+        .zip(run.interior.plate)
+        .is_some_and(|(texture, plate)| texture > SURFACE * plate);
+    if !flat && !textured {
+        return None;
+    }
+    crossing(quiet, inner_end(cut, skip, side), side, (at_gap + bottom) / 2.0)
+}
+
+/// A column on the dark side of a step.
+fn inner_end(cut: usize, skip: usize, side: usize) -> usize {
+    if side == 0 {
+        cut + skip
+    } else {
+        cut.saturating_sub(skip)
+    }
+}
+
+/// The place at which a line is best cut into two levels.
+fn step_of(line: &[f32]) -> Option<usize> {
+    let all: f32 = line.iter().sum();
+    let (mut sum, mut best) = (0.0, (0.0, None));
+    for (k, value) in line.iter().enumerate().take(line.len().checked_sub(1)?) {
+        sum += value;
+        let (before, after) = ((k + 1) as f32, (line.len() - k - 1) as f32);
+        let apart = (sum / before - (all - sum) / after).powi(2) * before * after;
+        if apart > best.0 {
+            best = (apart, Some(k + 1));
+        }
+    }
+    best.1
+}
+
+/// How much brighter the gap is next to its edges than where it is darkest, of the way up to the plate; None of a gap too narrow
+/// to tell.
+pub(crate) fn unevenness(quiet: &[f32], candidate: &Candidate, pitch_mm: f64) -> Option<f64> {
+    let [left, right] = candidate.edges;
+    let (skip, count) = (
+        INSIDE_MM / pitch_mm,
+        (PLATEAU_MM / pitch_mm / 2.0).round().max(2.0),
+    );
+    let ends = [(left + skip).ceil(), (right - skip).floor() - count + 1.0];
+    if ends[1] - ends[0] < count {
+        return None;
+    }
+    let level = |start: f64| {
+        let start = start as usize;
+        middle_value(&quiet[start..start + count as usize])
+    };
+    let (mut darkest, mut at) = (f32::INFINITY, ends[0]);
+    while at <= ends[1] {
+        darkest = darkest.min(level(at));
+        at += 1.0;
+    }
+    let brightest = level(ends[0]).max(level(ends[1]));
+    Some(f64::from((brightest - darkest) / (1.0 - darkest).max(0.05)))
+}
