@@ -53,6 +53,10 @@ pub fn run() -> Result<()> {
             let options = benchmarks::vision::effects::Options::parse(arguments)?;
             return benchmarks::vision::effects::run(&options);
         }
+        "vision-effect-runs" => {
+            let options = benchmarks::vision::effects::Options::parse(arguments)?;
+            return benchmarks::vision::effect_runs::run(&options);
+        }
         _ => {}
     }
     let file = MACHINES_FILE.to_str()?;

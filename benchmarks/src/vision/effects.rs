@@ -76,7 +76,8 @@ impl Options {
         Ok(options)
     }
 
-    fn groups(&self) -> Vec<(String, Option<Effect>)> {
+    /// Groups of pictures: their names, and the effect if it is one alone.
+    pub(super) fn groups(&self) -> Vec<(String, Option<Effect>)> {
         let all = if self.only.is_empty() {
             &Effect::ALL[..]
         } else {
@@ -94,7 +95,7 @@ impl Options {
 }
 
 /// The effect of that name.
-pub(super) fn effect(name: &str) -> Result<Effect> {
+fn effect(name: &str) -> Result<Effect> {
     let named = |effect: &&Effect| format!("{effect:?}").eq_ignore_ascii_case(name);
     match Effect::ALL.iter().find(named) {
         Some(effect) => Ok(*effect),
@@ -175,8 +176,16 @@ pub fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
+/// Effects of a picture of a group.
+pub(super) fn effects_of(group: &(String, Option<Effect>), random: &mut SplitMix64) -> Vec<Effect> {
+    match group.1 {
+        Some(effect) => vec![effect],
+        None => Effect::mixed(random),
+    }
+}
+
 /// Effects of a mixed picture; long exposures have their own textures.
-pub(super) fn mixture(random: &mut SplitMix64, smeared: bool) -> Vec<Effect> {
+fn mixture(random: &mut SplitMix64, smeared: bool) -> Vec<Effect> {
     loop {
         let effects = Effect::mixed(random);
         if effects.contains(&Effect::Smear) == smeared {

@@ -33,7 +33,9 @@ pub(super) struct Dress {
     wall: Vec<f32>,
     /// The same three of one side.
     side: [Vec<f32>; 3],
-    /// Whether there are marks along and across.
+    /// One over the softness of edges across the seam, where there are such marks \[1/mm\].
+    sharpness: Vec<f32>,
+    /// Whether there are marks.
     marked: bool,
 }
 
@@ -46,6 +48,7 @@ impl Dress {
             cover: row(),
             wall: row(),
             side: [row(), row(), row()],
+            sharpness: row(),
             marked: false,
         }
     }
@@ -71,7 +74,16 @@ impl Dress {
         self.marked = !line.scene.marks.is_empty();
         if self.marked {
             self.marks.iter_mut().for_each(|marks| marks.fill(0.0));
-            for mark in &line.scene.marks {
+            if line.scene.marks.iter().any(|mark| mark.run == Run::Across) {
+                for (column, one) in self.sharpness.iter_mut().enumerate() {
+                    *one = (1.0 / line.soft_along(column)) as f32;
+                }
+            }
+            // Parallel marks lie side by side; others may cross them.
+            let (beside, slanted): (fn(&&Mark) -> bool, fn(&&Mark) -> bool) =
+                (|mark| mark.slope == 0.0, |mark| mark.slope != 0.0);
+            let marks = line.scene.marks.iter();
+            for mark in marks.clone().filter(beside).chain(marks.filter(slanted)) {
                 match mark.run {
                     Run::Along => self.mark_along(line, mark, open),
                     Run::Across => self.mark_across(line, mark),
@@ -158,14 +170,14 @@ impl Dress {
             }
             let row = self.marks[0][columns.clone()].iter_mut();
             row.zip(strip.shares(columns))
-                .for_each(|(sum, share)| *sum += gain * share);
+                .for_each(|(sum, share)| *sum = added(*sum, gain * share, mark));
         }
     }
 
     fn mark_across(&mut self, line: &Line, mark: &Mark) {
         let (sketch, scene, r) = (line.sketch, line.scene, line.r);
         let seam = sketch.seam_column(r);
-        let soft = line.soft_along();
+        let soft = line.most_along();
         let half = mark.width_mm / 2.0;
         let side = |column: usize| usize::from(column as f64 >= seam);
         let far = |column: usize| {
@@ -179,11 +191,12 @@ impl Dress {
         if ends.iter().all(|&far| far > reach) || ends.iter().all(|&far| far < -reach) {
             return;
         }
-        let (gain, one) = ((mark.factor - 1.0) as f32, (1.0 / soft) as f32);
-        for (column, sum) in self.marks[1].iter_mut().enumerate() {
+        let gain = (mark.factor - 1.0) as f32;
+        let row = self.marks[1].iter_mut().zip(&self.sharpness);
+        for (column, (sum, one)) in row.enumerate() {
             let far = far(column);
             let share = smooth((half + far) as f32 * one) - smooth((far - half) as f32 * one);
-            *sum += gain * share;
+            *sum = added(*sum, gain * share, mark);
         }
     }
 
@@ -221,10 +234,20 @@ impl Line<'_> {
         softness(self.sketch, self.radii_squared, column)
     }
 
-    /// How far an edge across the seam is soft to each side, along travel \[mm\].
-    fn soft_along(&self) -> f64 {
-        let soft = self.softness(self.sketch.seam_column(self.r));
+    /// How far an edge across the seam is soft to each side of a column, along travel \[mm\].
+    fn soft_along(&self, column: usize) -> f64 {
+        let soft = self.softness(column as f64);
         self.sketch.travel(soft * self.sketch.lens.pixel_mm)
+    }
+
+    /// The most of that over the row: the blur is largest at one of its ends, or at the seam beside a step.
+    fn most_along(&self) -> f64 {
+        let seam = self.sketch.seam_column(self.r).max(0.0) as usize;
+        let last = self.sketch.columns - 1;
+        [0, seam.saturating_sub(1), seam, last]
+            .map(|column| self.soft_along(column.min(last)))
+            .into_iter()
+            .fold(0.0, f64::max)
     }
 
     /// Column of a line on a side, so far outwards from the middle of the seam \[mm\].
@@ -238,7 +261,7 @@ impl Line<'_> {
         if from == f64::NEG_INFINITY && to == f64::INFINITY {
             return Reach::Everywhere;
         }
-        let soft = self.soft_along();
+        let soft = self.most_along();
         let places = [0, self.sketch.columns - 1].map(|column| self.place(column, side));
         let (least, most) = (places[0].min(places[1]), places[0].max(places[1]));
         if from > to || most < from - soft || least > to + soft {
@@ -246,8 +269,7 @@ impl Line<'_> {
         } else if least > from + soft && most < to - soft {
             Reach::Everywhere
         } else {
-            let one = 1.0 / soft;
-            Reach::Part(Ends { from, to, one })
+            Reach::Part(Ends { from, to })
         }
     }
 
@@ -277,6 +299,16 @@ impl Line<'_> {
             };
             brightness[column] += (bright * plain[column] - brightness[column]) * share;
         }
+    }
+}
+
+/// What a mark makes of what others have made of the surface's factor: one that is parallel to the seam or square to it lies
+/// beside them, others cross them.
+fn added(sum: f32, gain: f32, mark: &Mark) -> f32 {
+    if mark.slope == 0.0 {
+        sum + gain
+    } else {
+        sum + gain * (1.0 + sum)
     }
 }
 
@@ -341,16 +373,15 @@ enum Reach {
 struct Ends {
     from: f64,
     to: f64,
-    /// One over the way over which they are soft.
-    one: f64,
 }
 
 impl Ends {
     /// Share of a column that lies between them.
     fn share(&self, line: &Line, side: usize, column: usize) -> f32 {
         let place = line.place(column, side);
-        let after = smooth(((place - self.from) * self.one) as f32);
-        let before = smooth(((self.to - place) * self.one) as f32);
+        let soft = line.soft_along(column);
+        let after = smooth(((place - self.from) / soft) as f32);
+        let before = smooth(((self.to - place) / soft) as f32);
         (after + before - 1.0).max(0.0)
     }
 }

@@ -173,16 +173,15 @@ impl Row {
             .for_each(|(brightness, share)| *brightness *= 1.0 + gain * share);
     }
 
-    /// How far its edges are off straight lines in this row, outwards \[mm\].
-    fn roughness(&self, sketch: &Sketch, scene: &Scene, gap: &Gap, r: f64) -> [f64; 2] {
+    /// How far its edges are off straight lines in this row, outwards \[mm\]; `along` is where on the work it shows them.
+    fn roughness(&self, sketch: &Sketch, scene: &Scene, gap: &Gap, along: [f64; 2], r: f64) -> [f64; 2] {
         if gap.roughness_mm <= 0.0 {
             return [0.0; 2];
         }
         let column = (sketch.seam_column(r).max(0.0) as usize).min(sketch.columns - 1);
         let blur = f64::from(self.radii_squared[column].sqrt()) * sketch.lens.pixel_mm;
-        let along = scene.position_mm[0] + sketch.seam_along(r);
         [0, 1].map(|edge| {
-            let at = |k: f64| roughness(scene.texture.seed, edge, along + sketch.travel(k * blur));
+            let at = |k: f64| roughness(scene.texture.seed, edge, along[edge] + sketch.travel(k * blur));
             let rough = ROUGHNESS_AT.iter().map(|&k| at(k)).sum::<f64>() / ROUGHNESS_AT.len() as f64;
             gap.roughness_mm * rough
         })
@@ -191,7 +190,11 @@ impl Row {
     /// Lays marks on the surface, gives both sides of a gap what they have, and closes it where there are tacks.
     pub fn dress(&mut self, sketch: &Sketch, scene: &Scene, gap: Option<&Gap>, r: f64) {
         let rough = match gap {
-            Some(gap) if gap.plate.width_mm > 0.0 => self.roughness(sketch, scene, gap, r),
+            Some(gap) if gap.plate.width_mm > 0.0 => {
+                let seam = (sketch.seam_column(r).max(0.0) as usize).min(sketch.columns - 1);
+                let along = [0, 1].map(|side| scene.position_mm[0] + sketch.along(r, seam, side));
+                self.roughness(sketch, scene, gap, along, r)
+            }
             _ => [0.0; 2],
         };
         let line = Line {
@@ -213,7 +216,8 @@ impl Row {
         if gap.plate.width_mm <= 0.0 {
             return;
         }
-        let rough = self.roughness(sketch, scene, gap, r);
+        let along = scene.position_mm[0] + sketch.seam_along(r);
+        let rough = self.roughness(sketch, scene, gap, [along; 2], r);
         let out = |edge: usize| gap.plate.width_mm / 2.0 + rough[edge];
         let strip = self.strip(sketch, r, [-out(0), out(1)]);
         let columns = strip.columns(sketch.columns);
