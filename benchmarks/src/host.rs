@@ -49,6 +49,14 @@ pub fn run() -> Result<()> {
             let pictures = arguments.next().context("how many pictures?")?.parse()?;
             return benchmarks::vision::accuracy::run(pictures);
         }
+        "vision-effects" => {
+            let options = benchmarks::vision::effects::Options::parse(arguments)?;
+            return benchmarks::vision::effects::run(&options);
+        }
+        "vision-effect-runs" => {
+            let options = benchmarks::vision::effects::Options::parse(arguments)?;
+            return benchmarks::vision::effect_runs::run(&options);
+        }
         _ => {}
     }
     let file = MACHINES_FILE.to_str()?;

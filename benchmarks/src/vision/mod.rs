@@ -3,6 +3,8 @@
 pub mod accuracy;
 mod corners;
 pub mod cost;
+pub mod effect_runs;
+pub mod effects;
 mod figures;
 mod groups;
 mod limits;

@@ -5,9 +5,15 @@
 //! camera, from a [`Tile`] of textured work that was blurred beforehand.
 
 mod blur;
+mod dress;
+mod effect;
+mod effect_run;
 mod errors;
 mod fast_renderer;
+mod film;
 mod grid;
+mod marks;
+mod motion;
 mod parallel;
 mod protocol;
 mod random;
@@ -15,6 +21,7 @@ mod row;
 mod run;
 mod scene;
 mod sharp;
+mod side;
 mod sight_line;
 mod sketch;
 mod source;
@@ -24,12 +31,17 @@ mod tile;
 mod truth;
 mod truth_renderer;
 
+pub use effect::{Effect, random_joint};
+pub use effect_run::EffectRun;
 pub use errors::Errors;
 pub use fast_renderer::{FastRenderer, RenderError};
+pub use film::{Dirt, Film, Glare, Sensor};
+pub use marks::{Mark, Run, Tack};
 pub use protocol::{random_corner, random_gap};
 pub use random::SplitMix64;
 pub use run::RandomRun;
 pub use scene::{Blob, Gap, Joint, Light, Root, Scene, Stripe};
+pub use side::Side;
 pub use texture::{Finish, PERIOD_MM, Texture};
 pub use tile::Tile;
 pub use truth::{Shown, Truth};

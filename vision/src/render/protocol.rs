@@ -10,7 +10,7 @@ use crate::optics::Optics;
 pub(super) const EXPOSURE_S: f64 = 50e-6;
 
 /// Speeds of 5 and 9 m/min \[mm/s\].
-const SPEEDS_MM_S: [f64; 2] = [5000.0 / 60.0, 9000.0 / 60.0];
+pub(super) const SPEEDS_MM_S: [f64; 2] = [5000.0 / 60.0, 9000.0 / 60.0];
 
 /// What lies in sight of a camera to each side of its axis \[mm\].
 #[derive(Clone, Copy, Debug)]

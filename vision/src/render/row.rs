@@ -1,5 +1,7 @@
 //! One row of a picture in the making.
 
+use super::dress::{Dress, Line};
+use super::film::{Film, fading};
 use super::scene::{Blob, Gap, Light, Scene, Stripe};
 use super::sketch::Sketch;
 use super::source::Source;
@@ -21,12 +23,22 @@ pub(super) struct Row {
     other: Vec<f32>,
     /// The surface as it is without stripes.
     plain: Vec<f32>,
+    dress: Dress,
 }
 
 /// Share of a blurred edge at `t` of its half width.
-fn smooth(t: f32) -> f32 {
+pub(super) fn smooth(t: f32) -> f32 {
     let t = t.clamp(-1.0, 1.0);
     0.5 + t * (0.75 - 0.25 * t * t)
+}
+
+/// How many columns a blurred edge at a column reaches to each side: a cubic step of the same variance as disc,
+/// diffraction and pixel.
+pub(super) fn softness(sketch: &Sketch, radii_squared: &[f32], column: f64) -> f64 {
+    let column = (column.max(0.0) as usize).min(sketch.columns - 1);
+    let diffraction = sketch.lens.diffraction_mm / sketch.lens.pixel_mm;
+    let variance = f64::from(radii_squared[column]) / 4.0 + diffraction.powi(2) + 1.0 / 12.0;
+    (5.0 * variance).sqrt()
 }
 
 /// Height of a disc of so many half widths of its blur, such that it keeps its light: blurred with the profile
@@ -42,20 +54,20 @@ fn flattened(radius: f64) -> f64 {
 }
 
 /// A blurred strip across a row: its edges \[columns\], and how far to each side they are soft.
-struct Strip {
-    edges: [f64; 2],
-    softness: [f64; 2],
+pub(super) struct Strip {
+    pub edges: [f64; 2],
+    pub softness: [f64; 2],
 }
 
 impl Strip {
     /// The columns it touches.
-    fn columns(&self, count: usize) -> Range<usize> {
+    pub fn columns(&self, count: usize) -> Range<usize> {
         let bound = |x: f64| (x.ceil().max(0.0) as usize).min(count);
         bound(self.edges[0] - self.softness[0])..bound(self.edges[1] + self.softness[1])
     }
 
     /// Share of each of these columns that lies in it.
-    fn shares(&self, columns: Range<usize>) -> impl Iterator<Item = f32> {
+    pub fn shares(&self, columns: Range<usize>) -> impl Iterator<Item = f32> {
         let start = columns.start as f64;
         let [left, right] = [0, 1].map(|k| {
             let (at, gain) = ((start - self.edges[k]) / self.softness[k], 1.0 / self.softness[k]);
@@ -75,6 +87,7 @@ impl Row {
             radii_squared: vec![0.0; columns],
             other: vec![0.0; columns],
             plain: vec![0.0; columns],
+            dress: Dress::new(columns),
         }
     }
 
@@ -86,7 +99,7 @@ impl Row {
         let (depth, radius) = ((sketch.depth(r) * radius) as f32, radius as f32);
         let rows = sketch.tile_rows(row);
         for (side, columns) in [0..split, split..sketch.columns].into_iter().enumerate() {
-            let falls = &sketch.fall[side][columns.clone()];
+            let falls = &sketch.focus[side][columns.clone()];
             for (squared, fall) in self.radii_squared[columns.clone()].iter_mut().zip(falls) {
                 let defocus = depth - fall * radius;
                 *squared = defocus * defocus;
@@ -137,13 +150,9 @@ impl Row {
         }
     }
 
-    /// How many columns a blurred edge at a column reaches to each side: a cubic step of the same variance as disc,
-    /// diffraction and pixel.
+    /// How many columns a blurred edge at a column reaches to each side.
     fn softness(&self, sketch: &Sketch, column: f64) -> f64 {
-        let column = (column.max(0.0) as usize).min(sketch.columns - 1);
-        let diffraction = sketch.lens.diffraction_mm / sketch.lens.pixel_mm;
-        let variance = f64::from(self.radii_squared[column]) / 4.0 + diffraction.powi(2) + 1.0 / 12.0;
-        (5.0 * variance).sqrt()
+        softness(sketch, &self.radii_squared, column)
     }
 
     /// A strip between two ways from the seam, square to it \[mm\].
@@ -164,26 +173,52 @@ impl Row {
             .for_each(|(brightness, share)| *brightness *= 1.0 + gain * share);
     }
 
+    /// How far its edges are off straight lines in this row, outwards \[mm\]; `along` is where on the work it shows them.
+    fn roughness(&self, sketch: &Sketch, scene: &Scene, gap: &Gap, along: [f64; 2], r: f64) -> [f64; 2] {
+        if gap.roughness_mm <= 0.0 {
+            return [0.0; 2];
+        }
+        let column = (sketch.seam_column(r).max(0.0) as usize).min(sketch.columns - 1);
+        let blur = f64::from(self.radii_squared[column].sqrt()) * sketch.lens.pixel_mm;
+        [0, 1].map(|edge| {
+            let at = |k: f64| roughness(scene.texture.seed, edge, along[edge] + sketch.travel(k * blur));
+            let rough = ROUGHNESS_AT.iter().map(|&k| at(k)).sum::<f64>() / ROUGHNESS_AT.len() as f64;
+            gap.roughness_mm * rough
+        })
+    }
+
+    /// Lays marks on the surface, gives both sides of a gap what they have, and closes it where there are tacks.
+    pub fn dress(&mut self, sketch: &Sketch, scene: &Scene, gap: Option<&Gap>, r: f64) {
+        let rough = match gap {
+            Some(gap) if gap.plate.width_mm > 0.0 => {
+                let seam = (sketch.seam_column(r).max(0.0) as usize).min(sketch.columns - 1);
+                let along = [0, 1].map(|side| scene.position_mm[0] + sketch.along(r, seam, side));
+                self.roughness(sketch, scene, gap, along, r)
+            }
+            _ => [0.0; 2],
+        };
+        let line = Line {
+            sketch,
+            scene,
+            r,
+            radii_squared: &self.radii_squared,
+        };
+        self.dress.prepare(&line, gap, rough);
+        let floor = gap.map(|gap| gap.brightness as f32);
+        self.dress.lay(&mut self.brightness, &self.plain, floor);
+        for tack in &scene.tacks {
+            line.close(tack, &self.plain, &mut self.brightness);
+        }
+    }
+
     /// Opens the gap beside the stripes.
     pub fn open_gap(&mut self, sketch: &Sketch, scene: &Scene, gap: &Gap, r: f64) {
         if gap.plate.width_mm <= 0.0 {
             return;
         }
-        let column = (sketch.seam_column(r).max(0.0) as usize).min(sketch.columns - 1);
-        let blur = f64::from(self.radii_squared[column].sqrt()) * sketch.lens.pixel_mm;
         let along = scene.position_mm[0] + sketch.seam_along(r);
-        let rough = |edge: usize| {
-            let at = |k: f64| roughness(scene.texture.seed, edge, along + sketch.travel(k * blur));
-            ROUGHNESS_AT.iter().map(|&k| at(k)).sum::<f64>() / ROUGHNESS_AT.len() as f64
-        };
-        let out = |edge: usize| {
-            let out = if gap.roughness_mm > 0.0 {
-                gap.roughness_mm * rough(edge)
-            } else {
-                0.0
-            };
-            gap.plate.width_mm / 2.0 + out
-        };
+        let rough = self.roughness(sketch, scene, gap, [along; 2], r);
+        let out = |edge: usize| gap.plate.width_mm / 2.0 + rough[edge];
         let strip = self.strip(sketch, r, [-out(0), out(1)]);
         let columns = strip.columns(sketch.columns);
         let row = self.brightness[columns.clone()]
@@ -233,6 +268,31 @@ impl Row {
             let light = (base + slope * x) * (middle - fall * square);
             *brightness = light * ((1.0 - haze) * *brightness + haze);
         }
+    }
+
+    /// Lays veil, glare and dirt over the row at `y` (−1…1), which is lit.
+    pub fn cover(&mut self, sketch: &Sketch, film: &Film, y: f64) {
+        let (glares, dirt) = sketch.bells.split_at(film.glares.len() * sketch.columns);
+        for (spot, bell) in film.dirt.iter().zip(dirt.chunks_exact(sketch.columns)) {
+            let gain = ((spot.factor - 1.0) * fading(y, spot.middle[1], spot.radius)) as f32;
+            let row = self.brightness.iter_mut().zip(bell);
+            row.for_each(|(brightness, bell)| *brightness *= 1.0 + gain * bell);
+        }
+        let veil = (255.0 * film.veil) as f32;
+        self.brightness
+            .iter_mut()
+            .for_each(|brightness| *brightness += veil);
+        for (glare, bell) in film.glares.iter().zip(glares.chunks_exact(sketch.columns)) {
+            let level = (255.0 * glare.level * fading(y, glare.middle[1], glare.radius)) as f32;
+            let row = self.brightness.iter_mut().zip(bell);
+            row.for_each(|(brightness, bell)| *brightness += level * bell);
+        }
+    }
+
+    /// Multiplies each pixel by its own gain: normally distributed numbers with this standard deviation.
+    pub fn pattern(&mut self, gauss: &[f32], deviation: f32) {
+        let row = self.brightness.iter_mut().zip(gauss);
+        row.for_each(|(brightness, gauss)| *brightness *= 1.0 + deviation * gauss);
     }
 
     /// Counts and reads electrons: `step` is what one of them is in 8 bits, `read` the variance of reading.

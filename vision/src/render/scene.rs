@@ -1,7 +1,11 @@
 //! What stands before the camera.
 
+use super::film::{Film, Sensor};
+use super::marks::{Mark, Tack};
+use super::side::Side;
 use super::texture::Texture;
 use crate::geometry::{Corner, PlateSeam};
+use crate::optics::Optics;
 
 /// Work, marks on it, and light. Directions are those of mathematics 0.12: a along travel, u across, n out
 /// of the plate, origin where the optical axis meets the focal plane.
@@ -11,17 +15,32 @@ pub struct Scene {
     pub joint: Joint,
     /// How the work's surface looks close up.
     pub texture: Texture,
+    /// How it looks right of a gap, if not the same.
+    pub right_texture: Option<Texture>,
+    /// The two sides of a gap.
+    pub sides: [Side; 2],
     /// Where on the work the frame's origin is: along travel and across \[mm\]. The texture and the blobs keep their
     /// place on the work when this changes from frame to frame.
     pub position_mm: [f64; 2],
     /// Lines and strips parallel to the seam.
     pub stripes: Vec<Stripe>,
+    /// Scratches and grooves with a place on the work.
+    pub marks: Vec<Mark>,
+    /// Beads that close the gap.
+    pub tacks: Vec<Tack>,
     /// Spatter.
     pub blobs: Vec<Blob>,
     /// The light.
     pub light: Light,
+    /// What lies over the picture.
+    pub film: Film,
     /// How far the work travels during the exposure \[mm\].
     pub smear_mm: f64,
+    /// Curvature of the field: how much nearer to the camera than in the middle best focus lies in the picture's corners
+    /// \[mm\]; between it goes with the square of the distance from the middle.
+    pub curvature_mm: f64,
+    /// The sensor, where it is not as calibrated.
+    pub sensor: Sensor,
 }
 
 /// The two forms of a joint.
@@ -117,11 +136,37 @@ impl Scene {
             joint,
             texture,
             position_mm: [0.0; 2],
+            right_texture: None,
+            sides: [Side::default(); 2],
             stripes: Vec::new(),
+            marks: Vec::new(),
+            tacks: Vec::new(),
             blobs: Vec::new(),
             light: Light::even(0.5),
+            film: Film::default(),
             smear_mm: 0.0,
+            curvature_mm: 0.0,
+            sensor: Sensor::default(),
         }
+    }
+
+    /// Textures left and right of the seam.
+    pub fn textures(&self) -> [Texture; 2] {
+        [self.texture, self.right_texture.unwrap_or(self.texture)]
+    }
+
+    /// What the curvature of the field adds to the depth of a point of the picture, from its middle \[mm\].
+    pub(super) fn curved(&self, r: f64, u: f64, optics: &Optics) -> f64 {
+        if self.curvature_mm == 0.0 {
+            return 0.0;
+        }
+        let half = [optics.rows, optics.columns].map(|count| count as f64 * optics.object_pixel_mm() / 2.0);
+        self.curvature_mm * ((r / half[0]).powi(2) + (u / half[1]).powi(2)) / 2.0
+    }
+
+    /// Whether sides, marks or tacks are to be rendered: a bare gap is quicker.
+    pub(super) fn is_dressed(&self) -> bool {
+        !self.marks.is_empty() || !self.tacks.is_empty() || self.sides != [Side::default(); 2]
     }
 }
 

@@ -1,31 +1,41 @@
 //! The work as it would look without lens, pixels and travel.
 
+use super::marks::within;
 use super::scene::{Gap, Joint, Root, Scene};
+use super::side::{Face, slant};
 use super::sight_line::Point;
 use super::texture::{Field, roughness};
+use crate::optics::Optics;
 
 /// Light from wall to wall fades by 1/e over this \[mm\].
 const FADING_MM: f64 = 0.1;
 
-/// Textures of a scene: one for a plate, one for each wall of a corner.
+/// Textures of a scene, and how its sides appear.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sharp {
+    /// One for a plate, one for the right wall of a corner, one for the right plate if it has its own.
     fields: Vec<Field>,
+    /// Of the sides of a gap, if there is anything about them.
+    faces: Option<[Face; 2]>,
 }
 
 impl Sharp {
     /// Makes the textures of a scene, unless they are those of the last one.
-    pub fn prepare(&mut self, scene: &Scene) {
-        if self
-            .fields
-            .first()
-            .is_some_and(|field| field.texture() == scene.texture)
-        {
+    pub fn prepare(&mut self, scene: &Scene, optics: &Optics) {
+        self.faces = match &scene.joint {
+            Joint::Gap(gap) if scene.is_dressed() => {
+                Some(Face::both(&scene.sides, slant(&gap.plate, optics)))
+            }
+            _ => None,
+        };
+        let made = |k: usize| self.fields.get(k).map(Field::texture);
+        if made(0) == Some(scene.texture) && made(2) == scene.right_texture {
             return;
         }
         let mut other = scene.texture;
         other.seed = !other.seed;
-        self.fields = vec![Field::new(scene.texture), Field::new(other)];
+        let textures = [scene.texture, other].into_iter().chain(scene.right_texture);
+        self.fields = textures.map(Field::new).collect();
     }
 
     /// Brightness at a point of the work, its usual mean being 1. Edges are as soft as a sample of `sample` mm is wide.
@@ -34,22 +44,36 @@ impl Sharp {
             scene.position_mm[0] + point.along,
             scene.position_mm[1] + point.across,
         ];
-        let wall = match scene.joint {
+        let field = match scene.joint {
+            Joint::Gap(_) if point.side == 1 && self.fields.len() > 2 => 2,
             Joint::Gap(_) => 0,
             Joint::Corner(_) => point.side,
         };
-        let mut brightness = f64::from(self.fields[wall].at(along, across));
+        let texture = f64::from(self.fields[field].at(along, across));
+        let mut brightness = texture;
         for stripe in &scene.stripes {
             let inside = (stripe.width_mm / 2.0 - (point.lateral - stripe.offset_mm).abs()) / sample + 0.5;
             brightness *= 1.0 + (stripe.factor - 1.0) * inside.clamp(0.0, 1.0);
         }
-        match &scene.joint {
-            Joint::Gap(gap) if gap.plate.width_mm > 0.0 => {
+        for mark in &scene.marks {
+            brightness *= 1.0 + (mark.factor - 1.0) * mark.share(along, point.lateral, sample);
+        }
+        match (&scene.joint, &self.faces) {
+            (Joint::Gap(gap), Some(faces)) => {
+                let seed = scene.texture.seed;
+                let [surface, open, wall] = dressed(scene, gap, faces, seed, along, point.lateral, sample);
+                brightness = brightness * surface + gap.brightness * open + wall;
+            }
+            (Joint::Gap(gap), None) if gap.plate.width_mm > 0.0 => {
                 let open = opening(gap, scene.texture.seed, along, point.lateral, sample);
                 brightness += (gap.brightness - brightness) * open;
             }
-            Joint::Gap(_) => {}
-            Joint::Corner(root) => brightness *= root.lit(point.lateral, point.side),
+            (Joint::Gap(_), None) => {}
+            (Joint::Corner(root), _) => brightness *= root.lit(point.lateral, point.side),
+        }
+        for tack in &scene.tacks {
+            let share = tack.share(along, point.lateral, sample);
+            brightness += (tack.brightness * texture - brightness) * share;
         }
         for blob in &scene.blobs {
             let [a, u] = blob.middle_mm;
@@ -59,6 +83,40 @@ impl Sharp {
         }
         brightness as f32
     }
+}
+
+/// What two sides make of a sample: what multiplies the surface, the share that lies in the gap or where a plate is
+/// missing, and the light of the walls.
+fn dressed(
+    scene: &Scene,
+    gap: &Gap,
+    faces: &[Face; 2],
+    seed: u64,
+    along: f64,
+    lateral: f64,
+    sample: f64,
+) -> [f64; 3] {
+    let mut seen = [0.0, 1.0, 0.0];
+    let width = gap.plate.width_mm;
+    for (edge, (side, face)) in scene.sides.iter().zip(faces).enumerate() {
+        let there = within(side.reaches_mm, along, sample);
+        let out = if width > 0.0 && gap.roughness_mm > 0.0 {
+            gap.roughness_mm * roughness(seed, edge, along)
+        } else {
+            0.0
+        };
+        let outward = if edge == 0 { -lateral } else { lateral };
+        let x = outward - width / 2.0 - out;
+        let covered = ((x - face.begins) / sample + 0.5).clamp(0.0, 1.0) * there;
+        seen[0] += covered * face.factor(x, sample);
+        seen[1] -= covered;
+        if width > 0.0 {
+            seen[2] += face.wall_at(x) * there;
+        }
+    }
+    seen[1] = seen[1].max(0.0);
+    seen[2] *= seen[1];
+    seen
 }
 
 /// Share of a sample that lies in the gap.

@@ -1,9 +1,12 @@
 //! A scene, prepared column by column for rows to be rendered.
 
 use super::blur::Lens;
+use super::film::{Film, fading};
 use super::grid::Grid;
 use super::scene::{Joint, Scene};
+use super::side::{Face, Side, slant};
 use super::tile::Tile;
+use crate::optics::Optics;
 use std::sync::Arc;
 
 /// What rows of a picture have in common. Lengths are millimetres.
@@ -28,6 +31,15 @@ pub(super) struct Sketch {
     /// What the surface's height takes from the depth in each column, on a plate left and right of the seam; a corner's
     /// are the same.
     pub fall: [Vec<f32>; 2],
+    /// The same with what the curvature of the field adds in a column.
+    pub focus: [Vec<f32>; 2],
+    /// What it adds along rows: for r².
+    curvature: f64,
+    /// The sides of a gap as they appear.
+    pub faces: [Face; 2],
+    /// How each glare and then each spot of dirt fades over the columns, one after the other.
+    pub bells: Vec<f32>,
+    optics: Optics,
     /// Brightness of each column's wall relative to the left and right one, root far away.
     pub lit: Vec<f32>,
     /// Brightness of the walls.
@@ -68,6 +80,11 @@ impl Sketch {
             steepness: 1.0,
             divisor: 1.0,
             fall: [vec![0.0; columns], vec![0.0; columns]],
+            focus: [vec![0.0; columns], vec![0.0; columns]],
+            curvature: 0.0,
+            faces: Face::both(&[Side::default(); 2], 0.0),
+            bells: Vec::new(),
+            optics: *optics,
             lit: vec![1.0; columns],
             walls: [1.0; 2],
             corner: false,
@@ -111,6 +128,9 @@ impl Sketch {
                     self.fall[1][column] = ((level + gap.step_mm / 2.0) / divisor) as f32;
                 }
                 self.corner = false;
+                if scene.is_dressed() {
+                    self.faces = Face::both(&scene.sides, slant(&gap.plate, &self.optics));
+                }
                 h
             }
             Joint::Corner(root) => {
@@ -135,6 +155,8 @@ impl Sketch {
                 h
             }
         };
+        self.bend(scene);
+        self.frame(&scene.film);
         // The texture goes with the work, along travel as the rows of the picture see it, and across: on a wall as far
         // as from the root. Of the right wall it is another part.
         let [lateral, part] = match &scene.joint {
@@ -156,6 +178,31 @@ impl Sketch {
         }
     }
 
+    /// Takes up the curvature of the field.
+    fn bend(&mut self, scene: &Scene) {
+        let (g, middle) = (self.lens.pixel_mm, self.middle);
+        self.curvature = scene.curved(1.0, 0.0, &self.optics);
+        for (focus, fall) in self.focus.iter_mut().zip(&self.fall) {
+            focus.copy_from_slice(fall);
+            if scene.curvature_mm != 0.0 {
+                for (column, focus) in focus.iter_mut().enumerate() {
+                    *focus -= scene.curved(0.0, (column as f64 - middle) * g, &self.optics) as f32;
+                }
+            }
+        }
+    }
+
+    /// Takes up what lies over the picture.
+    fn frame(&mut self, film: &Film) {
+        self.bells.clear();
+        let glares = film.glares.iter().map(|glare| (glare.middle, glare.radius));
+        let dirt = film.dirt.iter().map(|dirt| (dirt.middle, dirt.radius));
+        for (middle, radius) in glares.chain(dirt) {
+            let bell = |x: &f32| fading(f64::from(*x), middle[0], radius) as f32;
+            self.bells.extend(self.shading[0].iter().map(bell));
+        }
+    }
+
     /// Rows of the tiles that a row of the picture shows, on each side of the seam.
     pub fn tile_rows(&self, row: usize) -> [usize; 2] {
         [0, 1].map(|side| (self.begin[side][0] + row) % self.grids[side].size[0])
@@ -163,7 +210,7 @@ impl Sketch {
 
     /// Depth at `r` over a height of 0.
     pub fn depth(&self, r: f64) -> f64 {
-        r * self.steepness
+        r * self.steepness + self.curvature * r * r
     }
 
     /// Column in which the middle of the seam lies at `r`.
@@ -173,8 +220,17 @@ impl Sketch {
 
     /// Column of a line that runs `lateral` mm from the seam, square to it.
     pub fn line_column(&self, r: f64, lateral: f64) -> f64 {
-        let shift = self.shift[usize::from(lateral >= 0.0)];
-        self.seam_column(r) + (lateral / self.squareness + shift) / self.lens.pixel_mm
+        self.side_column(r, lateral, usize::from(lateral >= 0.0))
+    }
+
+    /// The same of a line on the plate of a side, whichever side of the seam it runs on.
+    pub fn side_column(&self, r: f64, lateral: f64, side: usize) -> f64 {
+        self.seam_column(r) + (lateral / self.squareness + self.shift[side]) / self.lens.pixel_mm
+    }
+
+    /// How far from the middle of the seam a column is, square to it \[mm\].
+    pub fn lateral(&self, r: f64, column: usize) -> f64 {
+        (column as f64 - self.seam_column(r)) * self.lens.pixel_mm * self.squareness
     }
 
     /// a of the seam at `r`.

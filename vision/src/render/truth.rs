@@ -1,5 +1,6 @@
 //! What a measurement should find in the picture of a scene.
 
+use super::marks::Tack;
 use super::scene::{Joint, Scene};
 use crate::optics::Optics;
 
@@ -10,6 +11,8 @@ pub enum Shown {
     Seam,
     /// A plate without a gap.
     NoGap,
+    /// A plate is missing on one side of the seam or on both.
+    NoPlate,
     /// Too little light.
     Dark,
     /// Too much light.
@@ -48,18 +51,29 @@ const DARK: f64 = 7.0 / 255.0;
 const BRIGHT: f64 = 1.02;
 
 impl Scene {
+    /// What there is of a gap of that width at a place along travel on the work.
+    fn shown_at(&self, place: f64, width_mm: f64) -> Shown {
+        let closes = |tack: &Tack| (tack.reaches_mm[0]..=tack.reaches_mm[1]).contains(&place);
+        if !self.sides.iter().all(|side| side.is_at(place)) {
+            Shown::NoPlate
+        } else if width_mm <= 0.0 || self.tacks.iter().any(closes) {
+            Shown::NoGap
+        } else {
+            Shown::Seam
+        }
+    }
+
     /// What a camera's picture of it holds. None if no picture can show a plate tilted like that.
     pub fn truth(&self, optics: &Optics) -> Option<Truth> {
         let middle = optics.centre()[1];
         let mut truth = match &self.joint {
             Joint::Gap(gap) => {
                 let seam = gap.plate.features(optics).ok()?.seam;
+                // Where the seam meets the focal plane.
+                let r = (seam[0] - optics.centre()[0]) * optics.object_pixel_mm();
+                let place = self.position_mm[0] + r * optics.tilt_rad.cos();
                 Truth {
-                    shown: if gap.plate.width_mm > 0.0 {
-                        Shown::Seam
-                    } else {
-                        Shown::NoGap
-                    },
+                    shown: self.shown_at(place, gap.plate.width_mm),
                     seam,
                     centre_mm: (seam[1] - middle) * optics.object_pixel_mm(),
                     height_mm: gap.plate.height_mm,

@@ -12,7 +12,8 @@ use crate::optics::{Optics, OpticsError};
 /// pixels' area, and each pixel gathers it over the disc that its own depth makes of a point. Then the light, the
 /// electrons that are counted and read, and 8 bits.
 ///
-/// Not in the model: rays that the other side of a step or wall cuts off, an entocentric lens, aberrations, true glints.
+/// Not in the model: rays that the other side of a step or wall cuts off, an entocentric lens, aberrations but
+/// a curved field, true glints.
 #[derive(Debug)]
 pub struct TruthRenderer {
     optics: Optics,
@@ -62,12 +63,19 @@ impl TruthRenderer {
     /// The picture of `scene`, rows from the top; the same seed gives the same noise.
     pub fn render(&mut self, scene: &Scene, seed: u64) -> Vec<u8> {
         let mut noise = SplitMix64::new(seed);
-        let step = 255.0 / self.noise.full_well;
+        let sensor = scene.sensor.noise.unwrap_or(self.noise);
+        let step = 255.0 / sensor.full_well;
         self.light(scene)
             .iter()
-            .map(|&share| {
-                let electrons = noise.count(f64::from(share.max(0.0)) * self.noise.full_well);
-                let read = electrons + self.noise.read_noise * noise.gauss()[0];
+            .enumerate()
+            .map(|(pixel, &share)| {
+                let share = if scene.sensor.pattern > 0.0 {
+                    f64::from(share.max(0.0)) * scene.sensor.gain(pixel)
+                } else {
+                    f64::from(share.max(0.0))
+                };
+                let electrons = noise.count(share * sensor.full_well);
+                let read = electrons + sensor.read_noise * noise.gauss()[0];
                 (read * step).round().clamp(0.0, 255.0) as u8
             })
             .collect()
@@ -83,7 +91,10 @@ impl TruthRenderer {
         self.depths.clear();
         for row in 0..rows {
             let r = (row as f64 - r0) * lens.pixel_mm;
-            let depth = |column: usize| surface.at(r, (column as f64 - c0) * lens.pixel_mm).depth as f32;
+            let depth = |column: usize| {
+                let x = (column as f64 - c0) * lens.pixel_mm;
+                (surface.at(r, x).depth + scene.curved(r, x, &self.optics)) as f32
+            };
             self.depths.extend((0..columns).map(depth));
         }
         let deepest = self.depths.iter().fold(0.0f32, |d, z| d.max(z.abs()));
@@ -107,7 +118,7 @@ impl TruthRenderer {
     }
 
     fn sample(&mut self, scene: &Scene, surface: &WorkSurface, stretch: Stretch, sample: f64) {
-        self.sharp.prepare(scene);
+        self.sharp.prepare(scene, &self.optics);
         self.samples_of_work.clear();
         let middle = |count: usize| (count as f64 - 1.0) / 2.0;
         for row in 0..stretch.rows {
@@ -163,7 +174,7 @@ impl TruthRenderer {
         let Optics { rows, columns, .. } = self.optics;
         let [r0, c0] = self.optics.centre();
         let line = stretch.columns + 1;
-        let haze = scene.light.haze;
+        let (haze, clear) = (scene.light.haze, scene.film.is_clear());
         let mut picture = Vec::with_capacity(rows * columns);
         for row in 0..rows {
             for column in 0..columns {
@@ -180,11 +191,15 @@ impl TruthRenderer {
                 for (k, part) in disc.parts.iter().enumerate().skip(1) {
                     sum += within(i - k, part) + within(i + k, part);
                 }
-                let light = scene.light.at(
-                    (column as f64 - c0) / c0.max(1.0),
-                    (row as f64 - r0) / r0.max(1.0),
-                );
-                picture.push((light * ((1.0 - haze) * sum / disc.area + haze)) as f32);
+                let x = (column as f64 - c0) / c0.max(1.0);
+                let y = (row as f64 - r0) / r0.max(1.0);
+                let light = scene.light.at(x, y) * ((1.0 - haze) * sum / disc.area + haze);
+                let light = if clear {
+                    light
+                } else {
+                    scene.film.through(light, x, y)
+                };
+                picture.push(light as f32);
             }
         }
         picture

@@ -1,0 +1,169 @@
+//! Sequences of pictures with an effect that comes and goes: whether what is wrong is believed, and how soon the seam is
+//! found again.
+
+use super::NOISE;
+use super::camera;
+use super::effects::{Options, compared, effects_of, renderer, shown};
+use super::figures::{micrometres, quantile};
+use super::seeds::of_seeds;
+use anyhow::Result;
+use vision::render::{Effect, EffectRun, SplitMix64};
+use vision::{Detector, Image, Joint, Observer, ObserverConfig, Profile};
+
+/// Pictures of a sequence, and those that have the effects.
+const PICTURES: usize = 40;
+const LASTING: std::ops::Range<usize> = 14..26;
+
+/// Sequences that share the texture of their plates.
+const SHARE: u64 = 16;
+
+/// More than this nothing may be off that is believed \[mm\].
+const WRONG_MM: f64 = 0.05;
+
+/// What became of a sequence.
+struct Taken {
+    group: usize,
+    seed: u64,
+    effects: Vec<Effect>,
+    /// Errors of the centres that were believed \[mm\].
+    centres: Vec<f64>,
+    /// Pictures with a seam before and after the effects, and those of them that were believed; the same with effects.
+    plain: [usize; 2],
+    affected: [usize; 2],
+    /// Most pictures in a row that were believed and wrong, or without a seam.
+    wrong_in_a_row: usize,
+    /// Pictures after the effects until the first that is believed.
+    found_after: usize,
+}
+
+/// Renders and observes sequences, and prints a table.
+pub fn run(options: &Options) -> Result<()> {
+    let optics = camera(400);
+    let groups = options.groups();
+    let share = SHARE.min(options.pictures.max(1));
+    let taken = of_seeds("textures", options.pictures.div_ceil(share), |number| {
+        let number = options.first + number;
+        let mut random = SplitMix64::new(!number);
+        let mut smear_mm = random.between(0.004, 0.0075);
+        let smears = |effects: &[Effect]| effects.contains(&Effect::Smear);
+        let sequences: Vec<(u64, usize, Vec<Effect>)> = (0..share)
+            .map(|k| {
+                let group = ((number * share + k) % groups.len() as u64) as usize;
+                (
+                    number * 1_000_000 + k,
+                    group,
+                    effects_of(&groups[group], &mut random),
+                )
+            })
+            .collect();
+        let mut all = Vec::new();
+        for smeared in [false, true] {
+            let mut these = sequences
+                .iter()
+                .filter(|(_, _, effects)| smears(effects) == smeared)
+                .peekable();
+            if these.peek().is_none() {
+                continue;
+            }
+            if smeared {
+                smear_mm = random.between(0.015, 0.04);
+            }
+            let (mut renderer, textures) = renderer(optics, number, smear_mm)?;
+            for (seed, group, effects) in these {
+                let detector = Detector::new(optics, NOISE, Profile::expected(&optics))?;
+                let mut observer = Observer::new(detector, ObserverConfig::default(), Joint::Gap);
+                let mut taken = Taken {
+                    group: *group,
+                    seed: *seed,
+                    effects: effects.clone(),
+                    centres: Vec::new(),
+                    plain: [0; 2],
+                    affected: [0; 2],
+                    wrong_in_a_row: 0,
+                    found_after: PICTURES - LASTING.end,
+                };
+                let (mut wrong_in_a_row, mut found) = (0, false);
+                let pictures = EffectRun::new(effects, LASTING, &optics, NOISE, *seed);
+                for (k, (mut scene, moved)) in pictures.take(PICTURES).enumerate() {
+                    (scene.texture, scene.right_texture) = (textures[0], Some(textures[1]));
+                    let pixels = renderer.render(&scene, seed * 100 + k as u64)?;
+                    let image = Image::new(pixels, optics.rows, optics.columns)?;
+                    let seen = observer.observe(&image, moved)?;
+                    let believed = seen.seam.and(seen.report.measured.as_ref());
+                    let there = shown(&scene, &optics);
+                    let errors = believed.and_then(|seen| compared(&scene, &optics, seen));
+                    let is_wrong = |errors: &[f64; 5]| errors[0].abs() > WRONG_MM || there == Some(false);
+                    let wrong = errors.is_some_and(|(errors, _)| is_wrong(&errors));
+                    wrong_in_a_row = if wrong { wrong_in_a_row + 1 } else { 0 };
+                    taken.wrong_in_a_row = taken.wrong_in_a_row.max(wrong_in_a_row);
+                    taken.centres.extend(errors.map(|(errors, _)| errors[0]));
+                    if there == Some(true) {
+                        let count = if LASTING.contains(&k) {
+                            &mut taken.affected
+                        } else {
+                            &mut taken.plain
+                        };
+                        count[0] += 1;
+                        count[1] += usize::from(believed.is_some());
+                    }
+                    if k >= LASTING.end && !found && believed.is_some() && !wrong {
+                        found = true;
+                        taken.found_after = k - LASTING.end;
+                    }
+                }
+                all.push(taken);
+            }
+        }
+        Ok(all)
+    })?;
+    println!(
+        "{PICTURES} pictures each, of them {} with effects; centres in µm.\n",
+        LASTING.len()
+    );
+    println!(
+        "| effect | sequences | believed before and after % | with effects % | centre 99 % | worst | wrong twice running | most running | found again after 95 % | at most |"
+    );
+    println!("|---{}|", "|--:".repeat(9));
+    for (k, (name, _)) in groups.iter().enumerate() {
+        let group: Vec<&Taken> = taken.iter().filter(|taken| taken.group == k).collect();
+        println!("{}", line(name, &group));
+    }
+    println!("{}\n", line("all", &taken.iter().collect::<Vec<_>>()));
+    for taken in taken.iter().filter(|taken| taken.wrong_in_a_row > 1) {
+        let Taken {
+            seed,
+            effects,
+            wrong_in_a_row,
+            ..
+        } = taken;
+        println!("wrong: {effects:?}, seed {seed}: {wrong_in_a_row} pictures running");
+    }
+    Ok(())
+}
+
+fn line(name: &str, group: &[&Taken]) -> String {
+    let centres: Vec<f64> = group.iter().flat_map(|taken| taken.centres.clone()).collect();
+    let share = |counts: fn(&Taken) -> [usize; 2]| {
+        let sum = |k: usize| group.iter().map(|taken| counts(taken)[k]).sum::<usize>() as f64;
+        format!("{:.1}", 100.0 * sum(1) / sum(0))
+    };
+    let found: Vec<f64> = group.iter().map(|taken| taken.found_after as f64).collect();
+    let most = group.iter().map(|taken| taken.wrong_in_a_row).max().unwrap_or(0);
+    let cells = [
+        name.to_owned(),
+        group.len().to_string(),
+        share(|taken| taken.plain),
+        share(|taken| taken.affected),
+        micrometres(quantile(&centres, 0.99)),
+        micrometres(quantile(&centres, 1.0)),
+        group
+            .iter()
+            .filter(|taken| taken.wrong_in_a_row > 1)
+            .count()
+            .to_string(),
+        most.to_string(),
+        format!("{:.0}", quantile(&found, 0.95)),
+        format!("{:.0}", quantile(&found, 1.0)),
+    ];
+    format!("| {} |", cells.join(" | "))
+}
