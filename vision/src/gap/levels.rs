@@ -13,28 +13,31 @@ const FLAT: f32 = 0.3;
 /// Texture of a second level that is a surface, over that of the plate were it as dark.
 const SURFACE: f32 = 0.4;
 
+/// Columns of the narrowest gap.
+const NARROWEST: f64 = 2.0;
+
 /// The gap without a shadow or a chamfer beside it, if it is one run with them: within a run of two levels the gap is the darker
 /// one. A lit wall of the gap has no level of its own, as it fades, and is left in.
 pub(crate) fn without_shadow(strip: &Strip, run: Candidate, pitch_mm: f64) -> Candidate {
     let mut gap = run;
     for side in 0..2 {
         if let Some(edge) = inner_edge(strip, &gap, side, pitch_mm) {
-            gap.edges[side] = edge;
-            gap.core[side] =
-                gap.core[side].clamp(gap.edges[0].ceil() as usize, gap.edges[1].floor() as usize);
+            let mut inner = gap;
+            inner.edges[side] = edge;
+            if inner.width() >= NARROWEST {
+                gap = inner;
+            }
         }
     }
     if gap.edges == run.edges {
         return run;
     }
     let quiet = &strip.quiet;
-    let inset = INSIDE_MM / pitch_mm;
+    let inset = (INSIDE_MM / pitch_mm).min((gap.width() - NARROWEST) / 2.0);
     let inside = columns(strip, gap.edges[0] + inset, gap.edges[1] - inset);
-    let inside = if inside.is_empty() {
-        gap.core[0]..gap.core[1] + 1
-    } else {
-        inside
-    };
+    if inside.is_empty() {
+        return run;
+    }
     gap.core = [inside.start, inside.end - 1];
     let bottom = middle_value(&quiet[inside]);
     let beside = |side: usize| {
