@@ -2,7 +2,7 @@
 
 use crate::band::{Fitness, Knowledge, SMALLEST_GAIN};
 use crate::detector::Detector;
-use crate::gap::{BandLine, Candidate, Edges, Interior, fit_edges, unevenness, without_shadow};
+use crate::gap::{BandLine, Candidate, Edges, Interior, fit_edges, softness, unevenness, without_shadow};
 use crate::height_field::Plate;
 use crate::prior::Prior;
 use crate::report::{Criterion, Form, Measured, Report, Second, Sigma, Status, least, ramp};
@@ -47,6 +47,12 @@ const ROUGH: f64 = 1.8;
 
 /// Score over the highest from which a band on the coarse grid is tried.
 const WORTH_A_TRY: f64 = 0.6;
+
+/// Standard deviation of where a soft edge begins, of how soft it is.
+const SOFT: f64 = 0.6;
+
+/// What light that changes across the picture, and a lens with a curved field, move the band by \[mm\].
+const HEIGHT_MM: f64 = 0.004;
 
 /// Smallest standard deviations: what no scatter shows \[mm\].
 const FLOOR_MM: f64 = 0.0005;
@@ -181,21 +187,6 @@ impl Detector {
                 * (0.15 + 0.85 * candidate.continuity)
                 * expected;
         }
-        if std::env::var_os("DBG").is_some() {
-            for c in candidates.list_mut() {
-                println!(
-                    "   run {:.1} w {:.1} depth {:.2} cont {:.2} score {:.3} {:.3} {:?} empty {:.2}",
-                    1e3 * (layer.origin_mm[1] + c.middle() * g),
-                    1e3 * c.width() * g,
-                    c.depth,
-                    c.continuity,
-                    c.score,
-                    c.interior.brightness,
-                    c.interior.texture,
-                    c.interior.emptiness()
-                );
-            }
-        }
         let (best, second) = candidates.best()?;
         let best = without_shadow(strip, best, g);
         let edges = fit_edges(strip, &best, g)?;
@@ -286,11 +277,12 @@ impl Detector {
         let covariance = &fitness.covariance;
         let variance =
             covariance[(0, 0)] + 2.0 * lateral * covariance[(0, 1)] + lateral.powi(2) * covariance[(1, 1)];
+        let [left, right] = softness(&self.strip, best, g);
         let edge = edges.residual * g / (edges.readings as f64).sqrt();
         measured.sigma = Sigma {
-            lateral_mm: ROUGH * edge.hypot(FLOOR_MM),
-            height_mm: HONEST * variance.max(0.0).sqrt(),
-            width_mm: ROUGH * (2.0 * edge).hypot(4.0 * FLOOR_MM),
+            lateral_mm: (ROUGH * edge.hypot(FLOOR_MM)).hypot(SOFT * left.hypot(right) / 2.0),
+            height_mm: (HONEST * variance.max(0.0).sqrt()).hypot(HEIGHT_MM),
+            width_mm: (ROUGH * (2.0 * edge).hypot(4.0 * FLOOR_MM)).hypot(SOFT * (left + right)),
             yaw_rad: edges.slant_sigma * cos,
             ..measured.sigma
         };

@@ -32,6 +32,9 @@ const MIDDLE_MM: f64 = 0.014;
 const PIXELS: f64 = 0.8;
 const YAW: f64 = 0.035;
 
+/// Light along the edges, of the width of a run, from which there are bright lines; and what of them is left out of the band.
+const RIM: f64 = 0.15;
+
 /// How far off, over that, a run does not continue, and does.
 const OFF: [f64; 2] = [1.5, 0.75];
 
@@ -49,6 +52,9 @@ pub(crate) struct Continuity {
 struct Deficit {
     area: f64,
     middle: f64,
+    /// Light that is missing or too much, and where.
+    unlike: f64,
+    unlike_middle: f64,
 }
 
 impl Continuity {
@@ -67,6 +73,8 @@ impl Continuity {
             return 0.0;
         };
         let g = layer.pitch_mm;
+        // Bright lines along the edges are cut off where they saturate, and then show more light out of the band than in it.
+        let rimmed = here.unlike - here.area > RIM * width;
         let (mut points, mut count) = (0.0, 0.0);
         for distance in DISTANCES_MM {
             let Some(there) = self.deficit(layer, line, candidate, slant, distance, ROWS_MM) else {
@@ -74,8 +82,11 @@ impl Continuity {
             };
             let area = AREA_SHARE * here.area + AREA_MM + PIXELS * g;
             let middle = MIDDLE_SHARE * width + MIDDLE_MM + PIXELS * g + YAW * distance.abs();
-            let off =
+            let mut off =
                 ((there.area - here.area).abs() / area).max((there.middle - here.middle).abs() / middle);
+            if rimmed && there.unlike > RIM * here.unlike {
+                off = off.min((there.unlike_middle - here.middle).abs() / middle);
+            }
             count += 1.0;
             points += ramp(off, OFF[0], OFF[1]);
         }
@@ -124,21 +135,28 @@ impl Continuity {
             [Some(light), None] | [None, Some(light)] => [light, light],
             [None, None] => return None,
         };
-        let (mut area, mut moment) = (0.0, 0.0);
+        let (mut area, mut moment, mut unlike, mut unlike_moment) = (0.0, 0.0, 0.0, 0.0);
         for (k, value) in window[left..=right].iter().enumerate() {
             let share = (k as f32 + 0.5) / (right - left + 1) as f32;
             let missing = f64::from(1.0 - value / between(lights, share).max(1.0));
             area += missing;
-            moment += missing * ((first + left + k) as f64 - middle);
+            let off = (first + left + k) as f64 - middle;
+            moment += missing * off;
+            unlike += missing.abs();
+            unlike_moment += missing.abs() * off;
         }
-        let middle = if area.abs() > 1e-3 {
-            moment / area * g
-        } else {
-            f64::INFINITY
+        let middle_of = |moment: f64, area: f64| {
+            if area.abs() > 1e-3 {
+                moment / area * g
+            } else {
+                f64::INFINITY
+            }
         };
         Some(Deficit {
             area: area * g,
-            middle,
+            middle: middle_of(moment, area),
+            unlike: unlike * g,
+            unlike_middle: middle_of(unlike_moment, unlike),
         })
     }
 }

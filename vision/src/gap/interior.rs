@@ -1,11 +1,12 @@
 //! Whether a dark run is a gap or the surface of a plate that is dark there: a scratch, a groove, a shadow.
 //!
 //! Whatever darkens a surface leaves it its texture, darker by the same factor; a gap has none. A veil over both adds
-//! brightness and no texture. Texture is the variance of the brightness along the seam, in the columns of the strip.
+//! brightness and no texture. Texture is the variance of the brightness along the seam, and across it in runs wide enough.
 
 use super::candidate::{Candidate, middle_value};
 use super::strip::Strip;
 use crate::report::ramp;
+use std::ops::Range;
 
 /// From an edge so far into the run its blur reaches, and its roughness \[mm\].
 pub(super) const INSIDE_MM: f64 = 0.010;
@@ -20,15 +21,19 @@ const WINDOW_MM: f64 = 0.010;
 /// Columns that have to be left of a run after its edges for its texture to be seen.
 const FEWEST: f64 = 1.5;
 
+/// Darkest surface over the plate: scratches and grooves have 0.05 of its brightness or more; and how much of a surface's
+/// brightness is not a veil's.
+const DARKEST: f64 = 0.05;
+const VEILED: f64 = 0.5;
+
+/// Variance of the texture that a surface would have, over that of the noise, below which the two cannot be told apart.
+const UNSURE: f64 = 0.3;
+
 /// What is taken for noise over what the noise is: both are seen in few pixels.
 const NOISE: f32 = 1.5;
 
-/// Least variance of a plate, over the square of its brightness: below it there is no texture to compare with.
-const LEAST: f32 = 1e-5;
-
-/// Texture over the plate's at which a run is a surface, and is not: scratches and grooves have 0.05 of the plate's brightness
-/// or more.
-const SURFACE: [f64; 2] = [0.04, 0.02];
+/// Variance over that of a surface at which a run is one, and is not.
+const SURFACE: [f64; 2] = [0.30, 0.10];
 
 /// Brightness over the plate at which a run too narrow to show texture is taken for a surface, and is not.
 const BLACK: [f64; 2] = [0.10, 0.05];
@@ -42,8 +47,8 @@ const ROUGHER: f64 = 0.3;
 pub(crate) struct Interior {
     /// Brightness over the plate.
     pub brightness: f64,
-    /// Texture over that of the plate: a surface that is darker by a factor has that factor, a gap 0. None of a run so narrow
-    /// that the blur of its edges fills it.
+    /// Variance of its texture over the least that a surface so dark would have: 0 of a gap. None of a run so narrow that the
+    /// blur of its edges fills it, and where it would be lost in noise.
     pub texture: Option<f64>,
     /// Variance of the plate beside it, over the square of its brightness.
     pub plate: Option<f32>,
@@ -54,26 +59,38 @@ impl Interior {
     pub fn of(strip: &Strip, run: &Candidate, pitch_mm: f64) -> Option<Self> {
         let [left, right] = run.edges;
         let bottom = middle_value(&strip.quiet[run.core[0]..=run.core[1]]);
+        let unseen = Self {
+            brightness: f64::from(bottom),
+            texture: None,
+            plate: None,
+        };
         let inset = INSIDE_MM / pitch_mm;
         if right - left < 2.0 * inset + FEWEST {
-            return Some(Self {
-                brightness: f64::from(bottom),
-                texture: None,
-                plate: None,
-            });
+            return Some(unseen);
         }
+        let inside = columns(strip, left + inset, right - inset);
+        // Differences across reach a column further.
+        let across = inside.start + 1..inside.end - 1;
         let [near, far] = [BESIDE_MM, BESIDE_MM + PLATE_MM].map(|mm| mm / pitch_mm);
-        let beside = |from: f64, to: f64| mean(strip, columns(strip, from, to), 1.0).map(|of| of[0]);
-        let sides = [beside(left - far, left - near), beside(right + near, right + far)];
-        let plate = sides.into_iter().flatten().reduce(f32::min)?.max(LEAST);
-        let all = columns(strip, left + inset, right - inset);
-        let window = ((WINDOW_MM / pitch_mm).round() as usize).clamp(1, all.len());
-        let darkest = (all.start..=all.end - window)
-            .filter_map(|first| mean(strip, first..first + window, NOISE))
-            .min_by(|a, b| a[1].total_cmp(&b[1]))?;
+        let all = 0..if across.is_empty() { 0 } else { strip.values.len() };
+        let sides = [
+            Roughness::of(strip, columns(strip, left - far, left - near), &all),
+            Roughness::of(strip, columns(strip, right + near, right + far), &all),
+        ];
+        let plate = sides.into_iter().flatten().map(|side| side.variance - side.noise);
+        let plate = plate.reduce(f32::min)?;
+        let window = ((WINDOW_MM / pitch_mm).round() as usize).clamp(1, inside.len());
+        let darkest = (inside.start..=inside.end - window)
+            .filter_map(|first| Roughness::of(strip, first..first + window, &across))
+            .min_by(|a, b| a.brightness.total_cmp(&b.brightness))?;
+        let brightness = f64::from(darkest.brightness);
+        let least = (DARKEST.max(VEILED * brightness)).powi(2) * f64::from(plate);
+        if least < UNSURE * f64::from(darkest.noise) {
+            return Some(Self { brightness, ..unseen });
+        }
         Some(Self {
-            brightness: f64::from(darkest[1]),
-            texture: Some(f64::from((darkest[0].max(0.0) / plate).sqrt())),
+            brightness,
+            texture: Some(f64::from(darkest.excess()) / least),
             plate: Some(plate),
         })
     }
@@ -98,26 +115,54 @@ impl Interior {
 }
 
 /// The columns between two places.
-pub(super) fn columns(strip: &Strip, from: f64, to: f64) -> std::ops::Range<usize> {
+pub(super) fn columns(strip: &Strip, from: f64, to: f64) -> Range<usize> {
     let count = strip.values.len() as f64;
     let first = from.ceil().clamp(0.0, count) as usize;
     first..((to.floor() + 1.0).clamp(0.0, count) as usize).max(first)
 }
 
-/// Mean texture of columns, with `noise` times what the camera's noise adds taken away, and their mean brightness.
-fn mean(strip: &Strip, columns: std::ops::Range<usize>, noise: f32) -> Option<[f32; 2]> {
-    let (mut texture, mut brightness, mut count) = (0.0, 0.0, 0.0);
-    for column in columns.filter(|column| strip.seen[*column]) {
-        let of = strip.texture(column);
-        texture += of.variance - noise * of.noise;
-        brightness += of.brightness;
-        count += 1.0;
+/// Roughness of some columns of the strip.
+#[derive(Clone, Copy, Debug)]
+struct Roughness {
+    /// Mean brightness over the light.
+    brightness: f32,
+    /// Variance of the brightness, along the seam and, of the columns asked for, across.
+    variance: f32,
+    /// What of it noise makes.
+    noise: f32,
+}
+
+impl Roughness {
+    fn of(strip: &Strip, columns: Range<usize>, across: &Range<usize>) -> Option<Self> {
+        let mut sum = Self {
+            brightness: 0.0,
+            variance: 0.0,
+            noise: 0.0,
+        };
+        let mut count = 0.0;
+        for column in columns.filter(|column| strip.seen[*column]) {
+            let of = strip.texture(column);
+            let across = of.across.filter(|_| across.contains(&column));
+            sum.brightness += of.brightness;
+            sum.variance += of.along + across.unwrap_or(0.0);
+            sum.noise += of.noise * if across.is_some() { 2.0 } else { 1.0 };
+            count += 1.0;
+        }
+        (count > 0.0).then(|| Self {
+            brightness: sum.brightness / count,
+            variance: sum.variance / count,
+            noise: sum.noise / count,
+        })
     }
-    (count > 0.0).then(|| [texture / count, brightness / count])
+
+    /// Variance that noise does not make.
+    fn excess(&self) -> f32 {
+        (self.variance - NOISE * self.noise).max(0.0)
+    }
 }
 
 /// Texture of columns over the square of their brightness: of a surface that of the plate, however dark it is.
-pub(super) fn relative_texture(strip: &Strip, columns: std::ops::Range<usize>) -> Option<f32> {
-    let [texture, brightness] = mean(strip, columns, NOISE)?;
-    Some(texture.max(0.0) / brightness.powi(2).max(f32::MIN_POSITIVE))
+pub(super) fn relative_texture(strip: &Strip, columns: Range<usize>) -> Option<f32> {
+    let of = Roughness::of(strip, columns.clone(), &columns)?;
+    Some(of.excess() / of.brightness.powi(2).max(f32::MIN_POSITIVE))
 }

@@ -1,5 +1,6 @@
 //! Levels within a dark run: a gap beside a shadow or a chamfer, or with a lit wall.
 
+use super::between;
 use super::candidate::{Candidate, PLATEAU_MM, crossing, middle_value, plateau};
 use super::interior::{INSIDE_MM, columns, relative_texture};
 use super::strip::Strip;
@@ -12,6 +13,10 @@ const FLAT: f32 = 0.3;
 
 /// Texture of a second level that is a surface, over that of the plate were it as dark.
 const SURFACE: f32 = 0.4;
+
+/// Way from a quarter to three quarters up a sharp edge: what lens and defocus make of it \[mm\], and columns.
+const SHARP_MM: f64 = 0.004;
+const SHARP_PIXELS: f64 = 0.6;
 
 /// Columns of the narrowest gap.
 const NARROWEST: f64 = 2.0;
@@ -147,4 +152,24 @@ pub(crate) fn unevenness(quiet: &[f32], candidate: &Candidate, pitch_mm: f64) ->
     }
     let brightest = level(ends[0]).max(level(ends[1]));
     Some(f64::from((brightest - darkest) / (1.0 - darkest).max(0.05)))
+}
+
+/// How far it is from a quarter of the way up an edge to three quarters, beyond what the lens and pixels make of a sharp one, left
+/// and right \[mm\]. A lit wall, a chamfer or a rolled edge is soft, and where it begins is not known better than that.
+pub(crate) fn softness(strip: &Strip, gap: &Candidate, pitch_mm: f64) -> [f64; 2] {
+    let quiet = &strip.quiet;
+    let bottom = middle_value(&quiet[gap.core[0]..=gap.core[1]]);
+    [0, 1].map(|side| {
+        let from = gap.core[side];
+        let at = |share: f32, top: f32| crossing(quiet, from, side, between([bottom, top], share));
+        let top = plateau(
+            |column| quiet[column],
+            quiet.len(),
+            gap.edges[side],
+            side,
+            pitch_mm,
+        );
+        let way = top.and_then(|top| Some((at(0.75, top)? - at(0.25, top)?).abs()));
+        (way.unwrap_or(0.0) * pitch_mm - SHARP_MM - SHARP_PIXELS * pitch_mm).max(0.0)
+    })
 }

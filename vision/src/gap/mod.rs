@@ -11,7 +11,7 @@ pub(crate) use candidate::{Candidate, Candidates};
 pub(crate) use continuity::Continuity;
 pub(crate) use edges::{Edges, fit_edges};
 pub(crate) use interior::Interior;
-pub(crate) use levels::{unevenness, without_shadow};
+pub(crate) use levels::{softness, unevenness, without_shadow};
 pub use strip::EDGE_ROWS_MM;
 pub(crate) use strip::{BandLine, Strip};
 

@@ -60,9 +60,10 @@ pub(crate) struct Strip {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Texture {
     pub brightness: f32,
-    /// Along the seam.
-    pub variance: f32,
-    /// What of it the camera's noise makes.
+    /// Variance along the seam, and across; none of the latter at the border.
+    pub along: f32,
+    pub across: Option<f32>,
+    /// What of either the camera's noise makes.
     pub noise: f32,
 }
 
@@ -134,25 +135,35 @@ impl Strip {
         })
     }
 
-    /// Brightness along the seam in a column.
+    /// Brightness and texture of a column, in the strip with its slant taken out.
     pub fn texture(&self, column: usize) -> Texture {
-        let columns = self.values.len() as f64;
-        let values: [f32; GROUPS] = std::array::from_fn(|group| {
-            let from = column as f64 + (self.slant * self.offset(group)).round();
-            self.values[from.clamp(0.0, columns - 1.0) as usize][group]
-        });
+        let columns = self.values.len();
+        let shifts: [isize; GROUPS] =
+            std::array::from_fn(|group| (self.slant * self.offset(group)).round() as isize);
+        let value = |column: usize, group: usize| {
+            let from = column as isize + shifts[group];
+            self.values[from.clamp(0, columns as isize - 1) as usize][group]
+        };
+        let count = self.groups as f32;
+        let values: [f32; GROUPS] = std::array::from_fn(|group| value(column, group));
         let values = &values[..self.groups];
-        let count = values.len() as f32;
         let mean = values.iter().sum::<f32>() / count;
-        // Of second differences, which light that changes along the seam leaves small.
-        let bend = |at: &[f32]| (at[0] - 2.0 * at[1] + at[2]).powi(2) / 6.0;
-        let variance = values.windows(3).map(bend).sum::<f32>() / (count - 2.0);
+        // Of second differences, which light that changes across the picture leaves small.
+        let bend = |a: f32, b: f32, c: f32| (a - 2.0 * b + c).powi(2) / 6.0;
+        let along = values.windows(3).map(|at| bend(at[0], at[1], at[2])).sum::<f32>();
+        let across = (0 < column && column + 1 < columns).then(|| {
+            let groups = values.iter().enumerate();
+            let bends =
+                groups.map(|(group, here)| bend(value(column - 1, group), *here, value(column + 1, group)));
+            bends.sum::<f32>() / count
+        });
         let (rows, gain) = (self.rows as f32, self.gains[column]);
         let expected = self.calibrated.variance((mean / gain / rows).max(0.0));
         let noise = self.noise[column].min(NOISIEST * expected);
         Texture {
             brightness: mean,
-            variance,
+            along: along / (count - 2.0),
+            across,
             noise: rows * noise * gain * gain,
         }
     }
