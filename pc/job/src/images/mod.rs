@@ -272,7 +272,7 @@ impl SeamCameras for Images {
                 let arrived = held.iter().flatten().map(|held| self.arrived_us(held, at.now_us));
                 return Ok(Some(Answer {
                     measurement: Measurement { capture, sides },
-                    seams: seen.map(|seen| seen?.observation?.seam),
+                    seams: seen.map(|seen| seen?.seen),
                     arrived_us: arrived.max().filter(|_| self.in_real_time),
                 }));
             }
