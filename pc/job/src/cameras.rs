@@ -79,6 +79,8 @@ pub struct CameraFigures {
     pub measured: u32,
     /// Pictures with a seam that was not where or as it should be.
     pub refused: u32,
+    /// Pictures that arrived and showed no seam, as all that are taken away from the work.
+    pub without_seam: u32,
     /// Pictures that never arrived.
     pub lost: u32,
     /// Pictures that arrived late.

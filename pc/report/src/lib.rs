@@ -389,6 +389,7 @@ pub(crate) mod tests {
                         pictures: 900,
                         measured: 880,
                         refused: 9,
+                        without_seam: 4,
                         lost: 7,
                         late: 4,
                         relocked: 1,

@@ -246,11 +246,12 @@ fn boards_served(f: &mut Formatter, r: &Report) -> Result {
     {
         writeln!(
             f,
-            "  {:<28}{} taken, {} measured, {} refused, {} lost, {} late, re-locked {} times",
+            "  {:<28}{} taken, {} measured, {} refused, {} without a seam, {} lost, {} late, re-locked {} times",
             format!("pictures of camera {}", side + 1),
             p.pictures,
             p.measured,
             p.refused,
+            p.without_seam,
             p.lost,
             p.late,
             p.relocked
@@ -325,7 +326,7 @@ mod tests {
                 "  side 2, width of its gap           –      –        –      –        – mm\n",
                 "following error C             0.1719 °",
                 "gantry skew                      4.2 µm",
-                "pictures of camera 2        900 taken, 880 measured, 9 refused, 7 lost, 4 late, re-locked 1 times",
+                "pictures of camera 2        900 taken, 880 measured, 9 refused, 4 without a seam, 7 lost, 4 late, re-locked 1 times",
                 "fault: laser 1 reports",
             ],
         );

@@ -328,6 +328,8 @@ fn count(figures: &mut CameraFigures, seen: &MeasuredStrobe) {
     };
     figures.measured += u32::from(observation.seam.is_some());
     figures.refused += u32::from(observation.doubt.is_some());
+    let shows = observation.seam.is_some() || observation.doubt.is_some();
+    figures.without_seam += u32::from(!shows);
     figures.relocked += u32::from(observation.relocked);
 }
 
