@@ -261,3 +261,54 @@ fn scale_bar(canvas: &mut Canvas, optics: &Optics) {
     canvas.lines(&[[row, column - 1.0], [row, end + 1.0]], Pen::new(BLACK, 8.0));
     canvas.lines(&[[row, column], [row, end]], Pen::new(WHITE, 4.0));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::verdict::tests::{measured, outcome, refused};
+    use config::machine::MachineFile;
+
+    fn calibration() -> Calibration {
+        let text = include_str!("../../../../machines/dual-beam-gantry.toml");
+        let machine = MachineFile::parse("m.toml", text).unwrap();
+        machine.tracking.unwrap().cameras.nominal(0)
+    }
+
+    /// Words lie below the picture, in the colour of the verdict, and cover nothing of it.
+    #[test]
+    fn words_stand_below_the_picture_whatever_its_size() {
+        let calibration = calibration();
+        let (rows, columns) = (calibration.optics.rows, calibration.optics.columns);
+        let picture = Picture {
+            rows,
+            columns,
+            pixels: vec![100; rows * columns],
+            ..Picture::default()
+        };
+        for (seen, wanted) in [
+            (outcome(measured(1.0)), GREEN),
+            (outcome(measured(0.6)), AMBER),
+            (outcome(measured(0.3)), RED),
+            (refused(), RED),
+        ] {
+            for enlarged in [1, 2, 3] {
+                let plain = draw_plain(&picture, &seen, &calibration, enlarged).unwrap();
+                let drawn = draw(&picture, &seen, &calibration, enlarged).unwrap();
+                let ([height, width], [total, same]) = (plain.size_pixels(), drawn.size_pixels());
+                assert_eq!(
+                    (height, width, same),
+                    (rows * enlarged, columns * enlarged, width)
+                );
+                let all = |rows: std::ops::Range<usize>| {
+                    rows.flat_map(move |row| (0..width).map(move |column| [row, column]))
+                };
+                assert!(all(0..height).all(|at| plain.at(at) == drawn.at(at)));
+                let lit = all(height..total).filter(|at| drawn.at(*at) == wanted).count();
+                assert!(lit > 50, "{lit} pixels of the verdict, enlarged {enlarged}");
+                // Nothing is cut off at the right.
+                let at_border = |at: &[usize; 2]| at[1] + ROOM >= width && drawn.at(*at) != PAPER;
+                assert_eq!(all(height..total).filter(at_border).count(), 0);
+            }
+        }
+    }
+}

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use vision::{Form, Measured};
 
-/// Counts of verdicts, and what was measured in the pictures that show a seam.
+/// Counts of verdicts, and what was measured in the pictures that show a seam without doubt.
 #[derive(Clone, Debug, Default)]
 pub struct Summary {
     counts: BTreeMap<Verdict, usize>,
@@ -29,7 +29,7 @@ impl Summary {
     pub fn add(&mut self, outcome: &Outcome) -> Verdict {
         let verdict = Verdict::of(outcome);
         *self.counts.entry(verdict).or_default() += 1;
-        if let Some(seam) = outcome.report.seam() {
+        if let (Verdict::Seam, Some(seam)) = (verdict, outcome.report.seam()) {
             self.measured(seam);
         }
         verdict
@@ -108,5 +108,36 @@ impl Spread {
 
     fn mean(&self) -> Option<f64> {
         (self.number > 0).then(|| self.sum / self.number as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::verdict::tests::{measured, outcome, refused};
+
+    #[test]
+    fn verdicts_are_counted_by_reason_and_ranges_are_of_seams_without_doubt() {
+        let mut summary = Summary::default();
+        for (quality, width_mm) in [(1.0, 0.1), (0.9, 0.2), (0.6, 0.9)] {
+            let seam = vision::Measured {
+                width_mm,
+                ..measured(quality)
+            };
+            summary.add(&outcome(seam));
+        }
+        summary.add(&refused());
+        summary.add(&refused());
+        let text = summary.to_string();
+        for line in [
+            "5 pictures: 2 with a seam, 1 doubtful, 2 refused\n",
+            "  doubtful      1  the edges are too rough\n",
+            "  refused       2  nothing is sharp\n",
+            "  quality    0.90 to 1.00, mean 0.95\n",
+            "  gap width  0.1000 to 0.2000 mm, mean 0.1500 mm\n",
+            "  step       0.0100 to 0.0100 mm, mean 0.0100 mm\n",
+        ] {
+            assert!(text.contains(line), "{line} is missing in\n{text}");
+        }
     }
 }

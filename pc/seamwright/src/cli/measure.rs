@@ -172,6 +172,13 @@ fn name(file: &Path) -> String {
     )
 }
 
+/// Name and quality of a picture on a contact sheet.
+fn label(outcome: &Outcome) -> String {
+    let measured = outcome.report.measured.filter(|measured| measured.quality > 0.0);
+    let quality = measured.map(|measured| format!(" q {:.2}", measured.quality));
+    name(&outcome.file) + &quality.unwrap_or_default()
+}
+
 /// How many letters the longest name of a picture has, or of those in a folder of captures.
 fn letters(image: &Path) -> usize {
     if image.is_dir() {
@@ -238,7 +245,7 @@ impl Output<'_> {
         if let (Some(_), Some(reason)) = (self.sheets, verdict.reason()) {
             let drawn = || draw_plain(picture, outcome, calibration, 1);
             sheet
-                .add(reason, name(&outcome.file), drawn)
+                .add(reason, label(outcome), drawn)
                 .with_context(|| format!("picture {}", outcome.file.display()))?;
         }
         Ok(())
