@@ -166,7 +166,7 @@ fn limits_of_a_gap_are_in_their_order_and_refused_with_their_line() {
         let (code, text) = told(&joint("geometric", wrong, "wrong"));
         assert_eq!(code, Some(1), "{text}");
         assert!(
-            text.contains("the smaller one first") && text.contains("line 1"),
+            text.contains("the smaller one first") && text.contains("line 22"),
             "{text}"
         );
     }
