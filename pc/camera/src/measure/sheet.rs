@@ -48,10 +48,10 @@ impl Sheet {
         let sampled = self.reasons.entry(reason).or_default();
         let number = sampled.seen;
         sampled.seen += 1;
-        if number % (sampled.skipped + 1) == 0 {
+        if number.is_multiple_of(sampled.skipped + 1) {
             if sampled.kept.len() == MOST {
                 sampled.thin();
-                if number % (sampled.skipped + 1) != 0 {
+                if !number.is_multiple_of(sampled.skipped + 1) {
                     return Ok(());
                 }
             }
