@@ -1,20 +1,16 @@
 //! Samples of one board by tick: the newest in memory, and those before them on their way into a spool.
 
-use crate::spool::{Spool, Spooling};
+use crate::spool::{Spool, Spooling, Writer};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use shared::protocol::{MotionSample, TrackerSample};
 use std::collections::VecDeque;
-use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
-use std::thread::JoinHandle;
 
 /// Samples that a job finds at any time: 20 s, for the longest look back is that of teaching, 10 s. A datagram that is late has
 /// been on its way for milliseconds; one of before that is no use any more.
 pub(super) const NEWEST: usize = 20_000;
 /// Samples that leave at once.
 const BATCH: usize = 1000;
-/// Batches that may wait for the disk: a minute, 15 MB.
-const WAITING: usize = 60;
 
 /// What a board tells each tick.
 pub(super) trait Sample: Serialize + DeserializeOwned + Copy + Send + 'static {
@@ -45,28 +41,17 @@ impl Sample for TrackerSample {
 #[derive(Debug)]
 pub(super) struct Series<S> {
     newest: VecDeque<S>,
-    spooling: Spooling,
-    /// Writes what has left `newest`, so that the job never waits for the disk.
-    writer: Option<Writer<S>>,
-    /// Samples that the writer had no room for.
-    too_slow: u64,
+    /// Writes what has left `newest`.
+    writer: Writer<S>,
     /// Ticks of the first and the last sample that have left.
     left: Option<(u32, u32)>,
-}
-
-#[derive(Debug)]
-struct Writer<S> {
-    queue: SyncSender<Vec<S>>,
-    thread: JoinHandle<Spool<S>>,
 }
 
 impl<S: Sample> Series<S> {
     pub(super) fn new(spooling: Spooling) -> Self {
         Self {
             newest: VecDeque::new(),
-            spooling,
-            writer: None,
-            too_slow: 0,
+            writer: Writer::new(spooling),
             left: None,
         }
     }
@@ -102,13 +87,7 @@ impl<S: Sample> Series<S> {
         let batch: Vec<S> = self.newest.drain(..BATCH).collect();
         let (first, last) = (batch[0].tick(), batch[BATCH - 1].tick());
         self.left = Some((self.left.map_or(first, |(first, _)| first), last));
-        let spooling = &self.spooling;
-        let writer = self.writer.get_or_insert_with(|| Writer::start(spooling.clone()));
-        if let Err(TrySendError::Full(batch) | TrySendError::Disconnected(batch)) =
-            writer.queue.try_send(batch)
-        {
-            self.too_slow += batch.len() as u64;
-        }
+        self.writer.hand_over(batch);
     }
 
     /// All samples, and how many ticks between the first and the last one are missing.
@@ -116,41 +95,11 @@ impl<S: Sample> Series<S> {
         let first = self.left.map(|(first, _)| first);
         let first = first.or(self.newest.front().map(S::tick));
         let last = self.newest.back().map(S::tick);
-        let mut spool = match self.writer {
-            Some(Writer { queue, thread }) => {
-                drop(queue);
-                thread
-                    .join()
-                    .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-            }
-            None => Spool::new(self.spooling),
-        };
-        self.newest.into_iter().for_each(|sample| spool.push(sample));
-        if self.too_slow > 0 {
-            spool.lose(self.too_slow, "the disk did not keep pace");
-        }
+        let spool = self.writer.finish(self.newest);
         let ticks = first
             .zip(last)
             .map_or(0, |(first, last)| u64::from(last.wrapping_sub(first)) + 1);
         let missing = ticks.saturating_sub(spool.len());
         (spool, missing as u32)
-    }
-}
-
-impl<S: Sample> Writer<S> {
-    fn start(spooling: Spooling) -> Self {
-        let (queue, batches) = sync_channel::<Vec<S>>(WAITING);
-        let write = move || {
-            let mut spool = Spool::new(spooling);
-            batches
-                .into_iter()
-                .flatten()
-                .for_each(|sample| spool.push(sample));
-            spool
-        };
-        Self {
-            queue,
-            thread: std::thread::spawn(write),
-        }
     }
 }

@@ -6,8 +6,10 @@
 mod iter;
 #[cfg(test)]
 mod tests;
+mod writer;
 
 pub use iter::Iter;
+pub use writer::Writer;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

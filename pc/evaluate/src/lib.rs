@@ -1,6 +1,7 @@
 //! What a run truly was, tick by tick: the true tool against the programmed path, and the true spots against the
 //! true seams.
 
+mod joint;
 mod load;
 mod nearest;
 mod peak;
@@ -9,6 +10,9 @@ mod speeds;
 mod tick;
 mod welded;
 
+pub use joint::{
+    JOINT_QUANTITIES, JointCourse, JointFigures, JointPoint, JointQuantity, JointSample, joint_course,
+};
 pub use load::{ExecutionTimes, Load};
 pub use samples::{RecordedRun, RunSample, RunSamples};
 pub use tick::WorkTick;
@@ -56,6 +60,8 @@ pub struct Evaluation {
     pub max_skew_mm: f64,
     /// Time on the paths by the motion board's clock \[s\].
     pub motion_s: f64,
+    /// The joint along both seams, as the cameras saw it; nothing without pictures.
+    pub joint: JointCourse,
     /// What the ticks on the paths took, if the board has a processor of its own.
     pub load: Option<Load>,
 }

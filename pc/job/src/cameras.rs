@@ -1,6 +1,7 @@
 //! What a job needs to know of what sees the seams.
 
 use crate::images::ImagesError;
+use crate::joint::SeenSeam;
 use camera::{Camera, CameraError, OpenCamera};
 use host_link::boards::Waker;
 use host_link::events::Events;
@@ -10,7 +11,6 @@ use serde::Serialize;
 use shared::geometry::Pose;
 use shared::io::SIDES;
 use shared::protocol::{Capture, Measurement};
-use vision::Seam;
 
 /// The cameras of a session, whatever they are: captures in, measurements out.
 pub trait SeamCameras: Send {
@@ -54,7 +54,7 @@ pub struct Answer {
     /// For the tracker board.
     pub measurement: Measurement,
     /// What was seen in the pictures, where there are some.
-    pub seams: [Option<Seam>; SIDES],
+    pub seams: [Option<SeenSeam>; SIDES],
     /// When the later of its pictures was here, by the motion board's clock \[µs\]; a rendered one not before it is due. `None`
     /// without pictures, and where time stands still while they are waited for.
     pub arrived_us: Option<u64>,
@@ -79,6 +79,8 @@ pub struct CameraFigures {
     pub measured: u32,
     /// Pictures with a seam that was not where or as it should be.
     pub refused: u32,
+    /// Pictures that arrived and showed no seam, as all that are taken away from the work.
+    pub without_seam: u32,
     /// Pictures that never arrived.
     pub lost: u32,
     /// Pictures that arrived late.

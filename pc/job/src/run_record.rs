@@ -4,8 +4,10 @@ use crate::session::Session;
 use crate::{CameraFigures, DelayFigures, JobError, Taught};
 use cam::along::Along;
 use cam::path::PlannedPath;
+use evaluate::JointSample;
 use host_link::geometry::MachineGeometry;
 use host_link::record::Recorded;
+use host_link::spool::Spool;
 use serde::Serialize;
 use shared::io::SIDES;
 use shared::protocol::{Identity, Role, TrackerStatus};
@@ -63,6 +65,8 @@ pub struct TrackingRecord {
     pub clock_difference_us: Option<f64>,
     /// Where the six axes took over from slides that had gone far.
     pub recentred: Vec<Recentred>,
+    /// What the cameras saw of the joint; nothing without pictures.
+    pub joint: Spool<JointSample>,
 }
 
 /// One count a board.
@@ -127,6 +131,7 @@ pub(crate) fn run_record(
             clock_difference_us: tracking.clock_difference_us,
             status: tracking.status,
             recentred: recentred.unwrap_or_default(),
+            joint: tracking.joint.finish(),
         }),
         lost_ticks,
         dropped_datagrams: session.boards.dropped_datagrams(),

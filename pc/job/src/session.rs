@@ -65,7 +65,7 @@ impl<'a> Session<'a> {
         let began = boards.now();
         let unit = machine.tracking.as_ref();
         let tracking = unit
-            .map(|unit| Tracking::begin(boards, unit, around, control))
+            .map(|unit| Tracking::begin(boards, unit, around, &spooling, control))
             .transpose()?;
         let motion = motion(boards.request(Role::Motion, &Request::Status)?)?;
         let identity = |role| boards.identity(role).cloned();

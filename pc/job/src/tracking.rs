@@ -3,6 +3,7 @@
 use crate::JobError;
 use crate::cameras::{Answer, Moment, SeamCameras};
 use crate::delays::Delays;
+use crate::joint::{JointRecord, SeenSeam};
 use crate::session::unexpected;
 use crate::surroundings::Surroundings;
 use cam::path::{CAPACITY, PlannedPath};
@@ -13,6 +14,7 @@ use host_link::clock::BoardClocks;
 use host_link::events::Event;
 use host_link::geometry::MachineGeometry;
 use host_link::record::Record;
+use host_link::spool::Spooling;
 use shared::geometry::Pose;
 use shared::io::{SIDES, SLIDES};
 use shared::protocol::{
@@ -25,7 +27,7 @@ use shared::trajectory::{Path, PathSpace};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 use teach::seam::SeamSighting;
-use vision::{Form, Seam};
+use vision::Form;
 
 /// How often the boards are asked for their clock.
 const CLOCK_PERIOD: Duration = Duration::from_millis(50);
@@ -56,7 +58,9 @@ pub(super) struct Tracking {
     pub status: TrackerStatus,
     pub cameras: Box<dyn SeamCameras>,
     /// The newest captures, and when each was strobed by the motion board's clock \[µs\].
-    strobes: VecDeque<(u32, u64)>,
+    strobes: VecDeque<(Capture, u64)>,
+    /// What is seen of the joint.
+    pub joint: JointRecord,
     /// From the strobe to the sent measurement.
     pub delays: Delays,
     /// From the arrival of the picture to the sent measurement.
@@ -73,7 +77,7 @@ pub(super) struct Tracking {
     /// Where the slides were at the strobe of each capture, while somebody asks for that \[mm\].
     pub strobed: Option<BTreeMap<u32, [f64; SLIDES]>>,
     /// The latest paths, by their numbers.
-    paths: VecDeque<(u32, PathSpace, Box<Path<CAPACITY>>)>,
+    paths: VecDeque<KnownPath>,
     clocks: BoardClocks,
     lost_before: u32,
     next_clock: Duration,
@@ -82,11 +86,12 @@ pub(super) struct Tracking {
 }
 
 impl Tracking {
-    /// Begins with the board as it is, before the cameras of `around`.
+    /// Begins with the board as it is, before the cameras of `around`. `spooling` is for what they see.
     pub fn begin(
         boards: &mut dyn Boards,
         unit: &TrackingUnit,
         around: &dyn Surroundings,
+        spooling: &Spooling,
         control: &Control,
     ) -> Result<Self, JobError> {
         let heads = unit.board.head.build()?;
@@ -100,6 +105,7 @@ impl Tracking {
             status,
             cameras,
             strobes: VecDeque::new(),
+            joint: JointRecord::new(spooling.clone()),
             delays: Delays::default(),
             picture_delays: Delays::default(),
             strobed: None,
@@ -193,12 +199,27 @@ impl Tracking {
 
     /// The planned pose of a capture.
     fn planned(&self, machine: &MachineGeometry, capture: &Capture) -> Option<Pose> {
-        let (_, space, path) = self.paths.iter().rev().find(|(id, ..)| *id == capture.path_id)?;
+        let (_, space, path) = path_of(&self.paths, capture)?;
         let (start, end) = (path.start_s()?, path.end_s()?);
-        let point = path.at(capture.s_mm.clamp(start, end))?;
-        match space {
-            PathSpace::Tool => point.pose().ok(),
-            PathSpace::Axes => Some(machine.kinematics().forward(&point.axes().position)),
+        pose_on(machine, *space, path, capture.s_mm.clamp(start, end))
+    }
+
+    /// Notes what an answer tells of the joint.
+    fn note_joint(&mut self, machine: &MachineGeometry, answer: &Answer) {
+        if answer.seams.iter().all(Option::is_none) {
+            return;
+        }
+        let number = answer.measurement.capture;
+        let strobed = self
+            .strobes
+            .iter()
+            .rev()
+            .find(|(capture, _)| capture.number == number);
+        if let Some((capture, _)) = strobed
+            && let Some((_, space, path)) = path_of(&self.paths, capture)
+        {
+            let pose_at = |s_mm| pose_on(machine, *space, path, s_mm);
+            self.joint.add(&answer.seams, capture, &self.heads, pose_at);
         }
     }
 
@@ -228,14 +249,14 @@ impl Tracking {
         if self.strobes.len() == STROBES {
             self.strobes.pop_front();
         }
-        self.strobes.push_back((capture.number, on_motion));
+        self.strobes.push_back((capture, on_motion));
         self.cameras.strobe(capture, on_motion, pose);
     }
 
     /// Notes that a measurement has left for the tracker board.
     fn sent(&mut self, answer: &Answer, now: Duration, control: &Control) {
         let measurement = answer.measurement;
-        let strobed = |(number, _): &&(u32, u64)| *number == measurement.capture;
+        let strobed = |(capture, _): &&(Capture, u64)| capture.number == measurement.capture;
         let strobe = self.strobes.iter().rev().find(strobed);
         let sent = self.clocks.motion_now_us(now.as_micros() as u64);
         if let (Some(&(_, strobe_us)), Some(sent_us)) = (strobe, sent) {
@@ -311,6 +332,7 @@ impl Tracking {
             }
             boards.send(Role::Tracker, &Datagram::Measurement(answer.measurement))?;
             self.sent(&answer, boards.now(), control);
+            self.note_joint(machine, &answer);
         }
         Ok(())
     }
@@ -336,7 +358,8 @@ impl Watch {
 }
 
 /// What is known of one picture.
-fn seen(side: &SideMeasurement, seam: Option<&Seam>) -> SeamSighting {
+fn seen(side: &SideMeasurement, seen: Option<&SeenSeam>) -> SeamSighting {
+    let seam = seen.map(|seen| &seen.seam);
     let gap = seam.filter(|seam| seam.form == Form::Gap);
     SeamSighting {
         along_mm: side.along_mm,
@@ -346,6 +369,22 @@ fn seen(side: &SideMeasurement, seam: Option<&Seam>) -> SeamSighting {
         quality: seam.map_or(1.0, |seam| seam.quality),
         scatter_mm: 0.0,
         pictures: 1,
+    }
+}
+
+type KnownPath = (u32, PathSpace, Box<Path<CAPACITY>>);
+
+/// The path that a capture was taken on, if it is still known.
+fn path_of<'a>(paths: &'a VecDeque<KnownPath>, capture: &Capture) -> Option<&'a KnownPath> {
+    paths.iter().rev().find(|(id, ..)| *id == capture.path_id)
+}
+
+/// Planned pose at a place of a path.
+fn pose_on(machine: &MachineGeometry, space: PathSpace, path: &Path<CAPACITY>, s_mm: f64) -> Option<Pose> {
+    let point = path.at(s_mm)?;
+    match space {
+        PathSpace::Tool => point.pose().ok(),
+        PathSpace::Axes => Some(machine.kinematics().forward(&point.axes().position)),
     }
 }
 

@@ -46,6 +46,8 @@ pub struct Judgement {
     pub figures: Vec<Figure>,
     /// Plots for the report.
     pub plots: Vec<Plot>,
+    /// Limits of the part that nothing was known to judge by: which, and why, a sentence each.
+    pub not_judged: Vec<String>,
 }
 
 /// A figure of a run.
@@ -61,6 +63,9 @@ pub struct Figure {
     pub unit: &'static str,
     /// What it may be at most, if there is a bound.
     pub limit: Option<f64>,
+    /// What it may be at least, if there is such a bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least: Option<f64>,
     /// Where that was, as [`Along`] has it \[mm\], if it was somewhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_mm: Option<f64>,
@@ -75,6 +80,7 @@ impl Figure {
             value,
             unit,
             limit: None,
+            least: None,
             at_mm: None,
         }
     }
@@ -83,6 +89,19 @@ impl Figure {
     pub const fn limited(mut self, limit: f64) -> Self {
         self.limit = Some(limit);
         self
+    }
+
+    /// It may be `least` at least.
+    pub const fn at_least(mut self, least: f64) -> Self {
+        self.least = Some(least);
+        self
+    }
+
+    /// Whether it is beyond a bound that it has; a figure that is no number keeps none.
+    pub fn is_exceeded(&self) -> bool {
+        let above = self.limit.is_some_and(|limit| self.value > limit);
+        let below = self.least.is_some_and(|least| self.value < least);
+        above || below || self.value.is_nan() && (self.limit.is_some() || self.least.is_some())
     }
 
     /// It was so at `along_mm`.

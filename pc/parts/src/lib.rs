@@ -6,6 +6,7 @@
 
 mod bead;
 mod curved_panel;
+mod joint_limits;
 mod judge;
 mod limits;
 mod line;
@@ -17,8 +18,9 @@ mod t_seam;
 
 pub use bead::{Bead, check_curve, window};
 pub use curved_panel::CurvedPanel;
+pub use joint_limits::JointLimits;
 pub use judge::{ALONG, Figure, GAP, Judgement, Plot, Run};
-pub use limits::{Limit, Percent};
+pub use limits::{Limit, Percent, Range};
 pub use line::Line;
 pub use panel::{Panel, PanelError};
 pub use saddle::{Saddle, SaddlePartError, TaughtError, pipes};

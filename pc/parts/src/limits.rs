@@ -31,6 +31,42 @@ impl TryFrom<f64> for Limit {
     }
 }
 
+/// What something may be at least and at most, in the unit of its key: `[least, most]`.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "[f64; 2]")]
+pub struct Range([f64; 2]);
+
+impl Range {
+    /// From `least` to `most`.
+    pub const fn new(least: f64, most: f64) -> Self {
+        Self([least, most])
+    }
+
+    /// What it may be at least.
+    pub const fn least(self) -> f64 {
+        self.0[0]
+    }
+
+    /// What it may be at most.
+    pub const fn most(self) -> f64 {
+        self.0[1]
+    }
+}
+
+impl TryFrom<[f64; 2]> for Range {
+    type Error = String;
+
+    fn try_from([least, most]: [f64; 2]) -> Result<Self, String> {
+        if most.is_finite() && 0.0 <= least && least <= most {
+            Ok(Self([least, most]))
+        } else {
+            Err(format!(
+                "limits [least, most] must be numbers of 0 or more, the smaller one first, not [{least}, {most}]"
+            ))
+        }
+    }
+}
+
 /// A limit that is a share \[%\].
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "f64")]

@@ -1,8 +1,8 @@
 //! The verdict on a seam that was followed: how far the spots were beside it, what was left unwelded, and how slow
 //! the weld became.
 
-use crate::limits::{Limit, Percent, SPEED_DIP};
-use crate::{Figure, Judgement, Run};
+use crate::limits::{Limit, Percent, Range, SPEED_DIP};
+use crate::{Figure, JointLimits, Judgement, Run};
 use evaluate::{Evaluation, Welded, WorkTick};
 use serde::Deserialize;
 use shared::io::{SIDES, SLIDES};
@@ -19,6 +19,10 @@ pub struct SeamLimits {
     gap_mm: Limit,
     /// Most that the speed may fall below the feed with a beam on \[%\].
     speed_dip_percent: Percent,
+    /// Least and largest width of the joint's gap \[mm\]; left out: not judged.
+    gap_width_mm: Option<Range>,
+    /// Largest step between the sides of the gap \[mm\]; left out: not judged.
+    hi_lo_mm: Option<Limit>,
 }
 
 impl Default for SeamLimits {
@@ -28,6 +32,8 @@ impl Default for SeamLimits {
             unwelded_mm: Limit::new(1.0),
             gap_mm: Limit::new(0.5),
             speed_dip_percent: SPEED_DIP,
+            gap_width_mm: None,
+            hi_lo_mm: None,
         }
     }
 }
@@ -69,14 +75,27 @@ impl SeamLimits {
         judgement
     }
 
-    /// Judges the paths that were begun. Nothing of a program without beams.
+    /// Limits of the joint.
+    pub fn joint(&self) -> JointLimits {
+        JointLimits {
+            gap_width_mm: self.gap_width_mm,
+            hi_lo_mm: self.hi_lo_mm,
+        }
+    }
+
+    /// Judges the paths that were begun; of a program without beams only the joint, if it was seen.
     pub fn judge(&self, run: &Run) -> Judgement {
-        let mut figures = Vec::new();
+        let mut judgement = Judgement::default();
         for side in 0..SIDES {
+            let seen = &run.evaluation.joint.figures[side];
             let welded = Welded::of(&run.evaluation.ticks, run.paths, side);
             if welded.programmed_mm == 0.0 {
+                if seen.iter().any(Option::is_some) {
+                    self.joint().judge(side, seen, &mut judgement);
+                }
                 continue;
             }
+            let figures = &mut judgement.figures;
             if run.evaluation.seams_known {
                 figures.extend(self.deviations(run.evaluation, side));
             }
@@ -89,11 +108,9 @@ impl SeamLimits {
                     .limited(self.gap_mm.get())
                     .at(welded.gap_at_mm),
             ]);
+            self.joint().judge(side, seen, &mut judgement);
         }
-        Judgement {
-            figures,
-            plots: Vec::new(),
-        }
+        judgement
     }
 
     /// Largest deviations of a side with its beam on, and what is not known of them.

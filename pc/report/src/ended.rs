@@ -7,7 +7,7 @@ use crate::{
 use cam::along::{Along, works};
 use cam::dry_run::{self, DryRunError};
 use cam::path::{PathError, PlannedPath};
-use evaluate::{Evaluation, Followed, RecordedRun, SpeedShares, evaluate};
+use evaluate::{Evaluation, Followed, RecordedRun, SpeedShares, evaluate, joint_course};
 use host_link::record::Recorded;
 use job::{ByBoard, Job, JobError, RunRecord, Taught, TrackingRecord};
 use parts::{Judgement, PartFile, Plot, Run, SeamLimits};
@@ -50,6 +50,9 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
     });
     let mut evaluation = evaluate(&run.record, &run.machine, paths, followed);
     evaluation.speed = SpeedShares::of(&evaluation.ticks, paths, &job.machine.motion.beams);
+    if let Some(tracking) = &run.tracking {
+        evaluation.joint = joint_course(&tracking.joint, paths, run.record.spooling());
+    }
     let mut judgement = Judgement::default();
     let mut judged_by = None;
     match judge(&run, job, &evaluation, run.taught.part.as_ref().or(job.part)) {
@@ -77,7 +80,14 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
         .ticks
         .check()
         .map_err(|lost| format!("the evaluated ticks are not complete: {lost}"));
-    if let Err(lost) = run.record.check().map_err(|lost| lost.to_string()).and(ticks) {
+    let joint = run
+        .tracking
+        .as_ref()
+        .map_or(Ok(()), |tracking| tracking.joint.check());
+    let joint = joint.and(evaluation.joint.points.check());
+    let joint = joint.map_err(|lost| format!("what was seen of the joint is not complete: {lost}"));
+    let told = run.record.check().map_err(|lost| lost.to_string());
+    if let Err(lost) = told.and(ticks).and(joint) {
         error.get_or_insert(JobError::Judge(lost));
     }
     let outcome = match &error {
@@ -141,6 +151,7 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
             .as_ref()
             .map(|tracking| seam_figures(tracking, job, &evaluation)),
         figures: judgement.figures,
+        not_judged: judgement.not_judged,
         unwelded,
         planned_motion_s: planned_motion_s.unwrap_or(f64::NAN),
         motion_s: evaluation.motion_s,
@@ -239,6 +250,7 @@ fn seam_figures(tracking: &TrackingRecord, job: &Job, evaluation: &Evaluation) -
         seam: job.names.seam.clone(),
         max_deviation_mm: evaluation.max_deviation_mm.into(),
         rms_deviation_mm: evaluation.rms_deviation_mm.into(),
+        joint: evaluation.joint.figures.map(Into::into),
         measurements: Measurements {
             accepted: tracking.status.accepted,
             rejected: tracking.status.rejected,

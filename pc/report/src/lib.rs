@@ -3,6 +3,7 @@
 mod draw;
 mod dry_run;
 mod ended;
+mod joint;
 mod log;
 mod plots;
 mod table;
@@ -13,11 +14,11 @@ pub use ended::{Ended, ended};
 pub use log::{LOG, LogColumns, LogWriter};
 
 use crate::unwelded::Unwelded;
-use evaluate::{Load, SpeedShares};
+use evaluate::{JOINT_QUANTITIES, JointFigures, Load, SpeedShares};
 use job::{ByBoard, CameraFigures, DelayFigures, Recentred};
 use parts::Figure;
 use serde::{Serialize, Serializer};
-use shared::io::{MOTOR_NAMES, MOTORS, SLIDES};
+use shared::io::{MOTOR_NAMES, MOTORS, SIDES, SLIDES};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -71,6 +72,9 @@ pub struct Report {
     /// What the part says of the run, by key.
     #[serde(serialize_with = "by_key")]
     pub figures: Vec<Figure>,
+    /// Limits of the part that nothing was known to judge by, a sentence each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_judged: Vec<String>,
     /// Places where the program has a beam on that were not gone over with it.
     pub unwelded: Vec<Unwelded>,
     /// Time that the paths should take by a dry run, without the dwells between them.
@@ -86,26 +90,24 @@ pub struct Report {
 impl Report {
     /// Figures beyond their limit.
     pub fn exceeded(&self) -> impl Iterator<Item = &Figure> {
-        self.figures.iter().filter(|figure| is_exceeded(figure))
+        self.figures.iter().filter(|figure| figure.is_exceeded())
     }
-}
-
-/// A figure that is no number keeps no limit.
-fn is_exceeded(figure: &Figure) -> bool {
-    figure
-        .limit
-        .is_some_and(|limit| figure.value > limit || figure.value.is_nan())
 }
 
 /// An exceeded figure in words.
 pub fn sentence(figure: &Figure) -> String {
     let Figure { text, unit, .. } = figure;
-    let limit = table::number(figure.limit.unwrap_or(f64::NAN));
+    let most = figure.limit.map(|most| format!("{} {unit}", table::number(most)));
+    let least = figure
+        .least
+        .map(|least| format!("{} {unit} at least", table::number(least)));
+    let limits: Vec<String> = most.into_iter().chain(least).collect();
     let at = figure.at_mm.map(|at| format!(" at s = {at:.1} mm"));
     format!(
-        "{text} {} {unit}{} (may be {limit} {unit})",
+        "{text} {} {unit}{} (may be {})",
         table::number(figure.value),
-        at.unwrap_or_default()
+        at.unwrap_or_default(),
+        limits.join(", ")
     )
 }
 
@@ -133,6 +135,8 @@ pub struct SeamFigures {
     pub max_deviation_mm: BySlide,
     /// Root mean square of the same.
     pub rms_deviation_mm: BySlide,
+    /// Gap and step of the joint along the seam of side 1 and 2, as the cameras saw them.
+    pub joint: [JointOfSide; SIDES],
     /// Measurements of the cameras as the tracker board took them.
     pub measurements: Measurements,
     /// What became of the pictures of camera 1 and 2, if there were any.
@@ -151,6 +155,21 @@ pub struct SeamFigures {
     /// Where the six axes took over from slides that had gone far.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub recentred: Vec<Recentred>,
+}
+
+/// The joint along one seam; `None` of what was not seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct JointOfSide {
+    /// Width of its gap.
+    pub gap_width: Option<JointFigures>,
+    /// How much higher its side at larger u lies.
+    pub step: Option<JointFigures>,
+}
+
+impl From<[Option<JointFigures>; JOINT_QUANTITIES]> for JointOfSide {
+    fn from([gap_width, step]: [Option<JointFigures>; JOINT_QUANTITIES]) -> Self {
+        Self { gap_width, step }
+    }
 }
 
 /// How a job ended.
@@ -271,7 +290,7 @@ impl ReportError {
     }
 }
 
-/// Writes all of it into `directory`: `report.json`, `log.csv`, and the plots.
+/// Writes all of it into `directory`: `report.json`, `log.csv`, `joint.csv`, and the plots.
 ///
 /// # Errors
 /// [`ReportError`] with the file.
@@ -285,13 +304,15 @@ pub fn write(directory: &Path, ended: &Ended) -> Result<(), ReportError> {
     std::fs::write(&file, json + "\n").map_err(|e| ReportError::new(&file, e))?;
     let file = directory.join(LOG);
     let samples = ended.record.motion();
-    let lost = || (samples.check(), evaluation.ticks.check());
+    let computed = || evaluation.ticks.check().and(evaluation.joint.points.check());
+    let lost = || (samples.check(), computed());
     let known = lost();
     let written = log::write(&file, &ended.columns, samples, &evaluation.ticks);
     written.map_err(|e| ReportError::new(&file, e))?;
     if !evaluation.ticks.is_empty() {
         plots::draw(directory, report, &evaluation.ticks)?;
     }
+    joint::write(directory, report, &evaluation.joint.points)?;
     plots::draw_more(directory, report, &ended.plots)?;
     // What was lost before that is among the errors of the job.
     let now = lost();
@@ -361,12 +382,14 @@ pub(crate) mod tests {
                 seam: Some("seam.csv".into()),
                 max_deviation_mm: [Some(0.0123), Some(0.011), Some(0.009), None].into(),
                 rms_deviation_mm: [Some(0.003), Some(0.002), Some(0.002), None].into(),
+                joint: [joint::tests::seen(), JointOfSide::default()],
                 measurements: Measurements::default(),
                 pictures: Some(
                     [CameraFigures {
                         pictures: 900,
                         measured: 880,
                         refused: 9,
+                        without_seam: 4,
                         lost: 7,
                         late: 4,
                         relocked: 1,
@@ -391,6 +414,7 @@ pub(crate) mod tests {
                 }],
             }),
             figures: Vec::new(),
+            not_judged: Vec::new(),
             unwelded: Vec::new(),
             planned_motion_s: 20.0,
             motion_s: 20.1,
@@ -419,6 +443,10 @@ pub(crate) mod tests {
         assert_eq!(json["outcome"], "finished");
         assert_eq!(json["truth"], "simulated machine");
         assert_eq!(json["seam"], "seam.csv");
+        assert_eq!(json["joint"][0]["gap_width"]["max_mm"], 0.16);
+        assert_eq!(json["joint"][0]["step"]["min_at_mm"], 210.0);
+        assert!(json["joint"][1]["gap_width"].is_null() && json["joint"][1]["step"].is_null());
+        assert_eq!(json.pointer("/not_judged"), None);
         assert_eq!(json["figures"], serde_json::json!({}));
     }
 
@@ -451,6 +479,7 @@ pub(crate) mod tests {
             "/seam",
             "/max_deviation_mm",
             "/measurements",
+            "/joint",
             "/clock_residual_us",
             "/boards/tracker",
             "/lost_ticks/tracker",
@@ -474,6 +503,30 @@ pub(crate) mod tests {
         report.figures[0].value = f64::NAN;
         report.figures[1].value = 0.2;
         assert_eq!(keys(&report), ["max_distance_mm"]);
+    }
+
+    #[test]
+    fn a_figure_below_its_least_is_exceeded_and_told_so() {
+        let mut report = without_tracker();
+        report.figures = vec![
+            Figure::new(
+                "gap_width_min_1_mm",
+                "side 1, gap of the joint, narrowest",
+                0.04,
+                "mm",
+            )
+            .at_least(0.05)
+            .at(123.45),
+        ];
+        let told = "the weld is outside its limits: side 1, gap of the joint, narrowest 0.0400 mm at s = 123.5 mm \
+                    (may be 0.0500 mm at least)";
+        assert_eq!(verdict(&report).as_deref(), Some(told));
+        report.figures[0].value = 0.05;
+        assert_eq!(verdict(&report), None);
+        report.figures[0].value = f64::NAN;
+        assert!(verdict(&report).is_some());
+        let json = serde_json::to_value(report).unwrap();
+        assert_eq!(json["figures"]["gap_width_min_1_mm"]["least"], 0.05);
     }
 
     #[test]

@@ -19,7 +19,7 @@ const NEAR: f64 = 5.0;
 /// Beyond a limit that is drawn is so much of it.
 const BEYOND: f64 = 1.1;
 /// Width of a figure.
-const WIDTH: u32 = 1000;
+pub(super) const WIDTH: u32 = 1000;
 /// Height of a row of plots below each other.
 const ROW: u32 = 220;
 
@@ -101,7 +101,7 @@ pub(super) fn draw_more(directory: &Path, report: &Report, plots: &[Plot]) -> Re
 }
 
 /// A panel with `limits` of what it shows, and what they are in its title.
-fn with_limits(mut panel: Panel, limits: &[f64]) -> Panel {
+pub(super) fn with_limits(mut panel: Panel, limits: &[f64]) -> Panel {
     let values = panel.curves.iter().flat_map(|curve| &curve.points);
     let peak = values.map(|point| point.1.abs()).filter(|y| y.is_finite());
     let peak = peak.fold(0.0, f64::max);

@@ -1,7 +1,9 @@
 //! The table for people.
 
 use crate::log::is_rotary;
-use crate::{JudgedBy, Outcome, Report, SeamFigures, Truth, is_exceeded};
+use crate::{JudgedBy, Outcome, Report, SeamFigures, Truth};
+use evaluate::JointFigures;
+use parts::Figure;
 use std::fmt::{Formatter, Result};
 
 pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
@@ -54,9 +56,13 @@ pub(super) fn write(f: &mut Formatter, r: &Report) -> Result {
     for place in &r.unwelded {
         writeln!(f, "  LEFT OUT        {place}")?;
     }
+    for limit in &r.not_judged {
+        writeln!(f, "  NOT JUDGED      {limit}")?;
+    }
     part(f, r)?;
     if let Some(seam) = &r.seam {
         spots(f, seam)?;
+        joint(f, seam)?;
     }
     axes(f, r)?;
     boards_served(f, r)?;
@@ -79,14 +85,53 @@ fn part(f: &mut Formatter, r: &Report) -> Result {
     for figure in &r.figures {
         let (value, unit) = (number(figure.value), figure.unit);
         write!(f, "  {:<width$}{value:>9} ", figure.text)?;
-        match figure.limit {
-            Some(limit) if is_exceeded(figure) => {
+        match bound(figure) {
+            Some(limit) if figure.is_exceeded() => {
                 let at = figure.at_mm.map(|at| format!(" at s = {at:.1} mm"));
-                let (limit, at) = (number(limit), at.unwrap_or_default());
-                writeln!(f, "{unit:<7}{limit:>7}  EXCEEDED{at}")?;
+                writeln!(f, "{unit:<7}{limit:>7}  EXCEEDED{}", at.unwrap_or_default())?;
             }
-            Some(limit) => writeln!(f, "{unit:<7}{:>7}", number(limit))?,
+            Some(limit) => writeln!(f, "{unit:<7}{limit:>7}")?,
             None => writeln!(f, "{unit}")?,
+        }
+    }
+    Ok(())
+}
+
+/// What a figure may be, if there is a bound.
+fn bound(figure: &Figure) -> Option<String> {
+    match (figure.least, figure.limit) {
+        (None, None) => None,
+        (None, Some(most)) => Some(number(most)),
+        (Some(least), None) => Some(format!("≥{}", number(least))),
+        (Some(least), Some(most)) => Some(format!("{}…{}", number(least), number(most))),
+    }
+}
+
+/// The joint, as the cameras saw it.
+fn joint(f: &mut Formatter, seam: &SeamFigures) -> Result {
+    let head = "Joint, as the cameras saw it";
+    writeln!(f, "\n{head:<30}     max   at s      min   at s     mean")?;
+    for (side, joint) in (1..).zip(&seam.joint) {
+        for (name, seen) in [
+            ("width of its gap", &joint.gap_width),
+            ("step, +u higher", &joint.step),
+        ] {
+            let of = |pick: fn(&JointFigures) -> f64| seen.as_ref().map(pick);
+            let place = |at: Option<f64>| at.map_or(format!("{:>6}", "–"), |at| format!("{at:6.1}"));
+            write!(
+                f,
+                "  {:<28}{} {} {} {} {} mm",
+                format!("side {side}, {name}"),
+                known(of(|seen| seen.max_mm), 4),
+                place(of(|seen| seen.max_at_mm)),
+                known(of(|seen| seen.min_mm), 4),
+                place(of(|seen| seen.min_at_mm)),
+                known(of(|seen| seen.mean_mm), 4)
+            )?;
+            match seen {
+                Some(seen) => writeln!(f, ", each ±{:.4}", seen.sigma_mm)?,
+                None => writeln!(f)?,
+            }
         }
     }
     Ok(())
@@ -201,11 +246,12 @@ fn boards_served(f: &mut Formatter, r: &Report) -> Result {
     {
         writeln!(
             f,
-            "  {:<28}{} taken, {} measured, {} refused, {} lost, {} late, re-locked {} times",
+            "  {:<28}{} taken, {} measured, {} refused, {} without a seam, {} lost, {} late, re-locked {} times",
             format!("pictures of camera {}", side + 1),
             p.pictures,
             p.measured,
             p.refused,
+            p.without_seam,
             p.lost,
             p.late,
             p.relocked
@@ -274,9 +320,13 @@ mod tests {
                 "job.ngc at 5.00 m/min: finished",
                 "side 1, across (U)            0.0123   0.0030 mm",
                 "side 2, along the beam (V)         –        – mm",
+                "Joint, as the cameras saw it       max   at s      min   at s     mean\n",
+                "  side 1, width of its gap      0.1600  120.0   0.0800  210.0   0.1200 mm, each ±0.0020\n",
+                "  side 1, step, +u higher       0.0050  120.0  -0.0060  210.0   0.0010 mm, each ±0.0020\n",
+                "  side 2, width of its gap           –      –        –      –        – mm\n",
                 "following error C             0.1719 °",
                 "gantry skew                      4.2 µm",
-                "pictures of camera 2        900 taken, 880 measured, 9 refused, 7 lost, 4 late, re-locked 1 times",
+                "pictures of camera 2        900 taken, 880 measured, 9 refused, 4 without a seam, 7 lost, 4 late, re-locked 1 times",
                 "fault: laser 1 reports",
             ],
         );
@@ -298,6 +348,26 @@ mod tests {
         for absent in ["seam", "Spot", "X2", "skew", "tracker", "measurements", "clock"] {
             assert!(!text.contains(absent), "{absent} in\n{text}");
         }
+    }
+
+    #[test]
+    fn the_table_has_least_values_and_names_limits_that_were_not_judged() {
+        let mut report = without_tracker();
+        let figure = Figure::new(
+            "gap_width_min_1_mm",
+            "side 1, gap of the joint, narrowest",
+            0.04,
+            "mm",
+        );
+        report.figures = vec![figure.at_least(0.05).at(7.0)];
+        report.not_judged = vec!["side 2, hi_lo_mm: no picture showed a gap".into()];
+        assert_says(
+            &report.to_string(),
+            &[
+                "side 1, gap of the joint, narrowest   0.0400 mm     ≥0.0500  EXCEEDED at s = 7.0 mm\n",
+                "  NOT JUDGED      side 2, hi_lo_mm: no picture showed a gap\n",
+            ],
+        );
     }
 
     #[test]

@@ -136,7 +136,10 @@ fn a_gap_is_measured_and_drawn() {
     let colours = read_grey(&scratch.path("drawn/seam.png"), &mut grey).expect_err("coloured");
     assert_says(&colours.to_string(), &["coloured pixels"]);
     let header = std::fs::read(scratch.path("drawn/seam.png")).expect("drawn");
-    assert_eq!(header[16..24], [0, 0, 4, 176, 0, 0, 3, 132], "1200 × 900 pixels");
+    // Two lines of words stand below.
+    assert_eq!(header[16..24], [0, 0, 4, 176, 0, 0, 3, 184], "1200 × 952 pixels");
+    assert_eq!(record["verdict"], "seam");
+    assert!(!said.contains("pictures:"), "no summary of one: {said}");
 }
 
 #[test]
@@ -213,6 +216,14 @@ fn a_picture_of_no_use_says_why() {
     for picture in pictures {
         assert!(scratch.path("drawn").join(picture).is_file(), "{picture}");
     }
+    assert_says(
+        &said,
+        &[
+            "4 pictures: 1 with a seam, 0 doubtful, 3 refused",
+            "refused       1  there is a sharp band, but no dark line across it",
+            "gap width  0.1",
+        ],
+    );
 }
 
 #[test]
@@ -322,6 +333,22 @@ fn a_folder_of_captures_is_followed_as_a_camera_would() {
     assert!(!of(5).contains("mean"), "{said}");
     assert_says(&of(6), &["tracking; mean: across +0.08"]);
     assert_says(&of(8), &["tracking; mean: across +0.08"]);
+    // The last but one.
+    assert_says(
+        &said,
+        &[
+            "8 pictures: 7 with a seam, 1 doubtful, 0 refused",
+            "doubtful      1  its position differs from that of the seam before",
+        ],
+    );
+    let (code, said, _) = scratch.measure(&["kept", "--sheets", "sheets"]);
+    assert_eq!(code, 0);
+    assert_says(&said, &["contact sheet sheets/doubtful.png: 1 of 1"]);
+    assert!(scratch.path("sheets/doubtful.png").is_file());
+    assert!(
+        !scratch.path("sheets/refused.png").exists(),
+        "nothing was refused"
+    );
     let (code, said, _) = scratch.measure(&["kept", "--json"]);
     let records: serde_json::Value = serde_json::from_str(&said).expect("JSON");
     assert_eq!((code, records.as_array().map(Vec::len)), (0, Some(8)));

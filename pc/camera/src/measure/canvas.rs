@@ -70,6 +70,74 @@ impl Canvas {
         Self { enlarged, pixels }
     }
 
+    /// One of a single colour.
+    pub fn blank(rows: usize, columns: usize, colour: Colour) -> Self {
+        let mut pixels =
+            Pixmap::new(columns.max(1) as u32, rows.max(1) as u32).expect("a canvas with pixels");
+        let [red, green, blue] = colour;
+        pixels.fill(Color::from_rgba8(red, green, blue, u8::MAX));
+        Self { enlarged: 1, pixels }
+    }
+
+    /// Rows and columns \[pixels of the canvas\].
+    pub fn size_pixels(&self) -> [usize; 2] {
+        [self.pixels.height(), self.pixels.width()].map(|count| count as usize)
+    }
+
+    /// Colour of a pixel at \[row, column\] of the canvas.
+    pub fn at(&self, [row, column]: [usize; 2]) -> Colour {
+        let at = 4 * (row * self.pixels.width() as usize + column);
+        let pixel = &self.pixels.data()[at..at + 3];
+        [pixel[0], pixel[1], pixel[2]]
+    }
+
+    /// Colours a pixel at \[row, column\] of the canvas; one outside is left out.
+    pub fn set(&mut self, [row, column]: [usize; 2], [red, green, blue]: Colour) {
+        let [rows, columns] = self.size_pixels();
+        if row < rows && column < columns {
+            let at = 4 * (row * columns + column);
+            self.pixels.data_mut()[at..at + 4].copy_from_slice(&[red, green, blue, u8::MAX]);
+        }
+    }
+
+    /// Puts another canvas on this one, its upper left corner at \[row, column\]; what does not fit is left out.
+    pub fn paste(&mut self, other: &Self, [row, column]: [usize; 2]) {
+        let [rows, columns] = other.size_pixels();
+        for r in 0..rows {
+            for c in 0..columns {
+                self.set([row + r, column + c], other.at([r, c]));
+            }
+        }
+    }
+
+    /// The same with `rows` more below it, in one colour.
+    pub fn extended(&self, rows: usize, colour: Colour) -> Self {
+        let [height, width] = self.size_pixels();
+        let mut canvas = Self::blank(height + rows, width, colour);
+        canvas.paste(self, [0, 0]);
+        canvas.enlarged = self.enlarged;
+        canvas
+    }
+
+    /// Each pixel the mean of `times` × `times` of these.
+    pub fn shrunk(&self, times: usize) -> Self {
+        let [rows, columns] = self.size_pixels().map(|count| count / times);
+        let mut canvas = Self::blank(rows, columns, [0; 3]);
+        for row in 0..rows {
+            for column in 0..columns {
+                let mut sum = [0_usize; 3];
+                for k in 0..times * times {
+                    let colour = self.at([row * times + k / times, column * times + k % times]);
+                    sum.iter_mut()
+                        .zip(colour)
+                        .for_each(|(sum, part)| *sum += usize::from(part));
+                }
+                canvas.set([row, column], sum.map(|sum| (sum / (times * times)) as u8));
+            }
+        }
+        canvas
+    }
+
     /// Writes it.
     pub fn write(&self, path: &Path) -> Result<(), PngError> {
         let opaque = self.pixels.pixels().iter();
@@ -143,8 +211,7 @@ mod tests {
     }
 
     fn at(canvas: &Canvas, row: usize, column: usize) -> Colour {
-        let at = 4 * (row * canvas.pixels.width() as usize + column);
-        canvas.pixels.data()[at..at + 3].try_into().expect("three")
+        canvas.at([row, column])
     }
 
     #[test]
@@ -169,6 +236,24 @@ mod tests {
         assert!((15..=25).contains(&covered), "{covered}");
         canvas.lines(&[[8.0, 0.0], [8.0, 19.0]], Pen::new(RED, 2.0).faint(0.5));
         assert_eq!(at(&canvas, 16, 20), [178, 50, 50]);
+    }
+
+    #[test]
+    fn a_canvas_is_shrunk_extended_and_pasted() {
+        let mut canvas = canvas();
+        for place in [[0, 0], [0, 1], [1, 0], [1, 1], [0, 2]] {
+            canvas.set(place, RED);
+        }
+        let half = canvas.shrunk(2);
+        assert_eq!(half.size_pixels(), [10, 20]);
+        assert_eq!(at(&half, 0, 0), RED);
+        assert_eq!(at(&half, 0, 1), [138, 75, 75]);
+        let longer = half.extended(3, [9; 3]);
+        assert_eq!(longer.size_pixels(), [13, 20]);
+        assert_eq!((at(&longer, 9, 19), at(&longer, 10, 0)), ([100; 3], [9; 3]));
+        let mut sheet = Canvas::blank(12, 12, [0; 3]);
+        sheet.paste(&half, [5, 6]);
+        assert_eq!((at(&sheet, 5, 6), at(&sheet, 4, 6)), (RED, [0; 3]));
     }
 
     #[test]

@@ -3,13 +3,21 @@
 mod canvas;
 mod overlay;
 mod record;
+mod sheet;
+mod summary;
 mod table;
+mod text;
+mod verdict;
 mod words;
 
 pub use canvas::{Canvas, Colour, Pen};
-pub use overlay::draw;
+pub use overlay::{draw, draw_plain};
 pub use record::{Figure, MeasuredRecord, ObservedRecord, Record, SecondRecord};
+pub use sheet::Sheet;
+pub use summary::Summary;
 pub use table::Table;
+pub use text::{Font, wrapped};
+pub use verdict::Verdict;
 
 use crate::{Arrival, Camera, CameraError, Folder, Picture, read_grey};
 use config::calibration::Calibration;

@@ -1,6 +1,6 @@
 //! The result of a measured picture, for JSON.
 
-use super::{Outcome, words};
+use super::{Outcome, Verdict, words};
 use serde::Serialize;
 use vision::{Form, Measured, Observation};
 
@@ -11,6 +11,8 @@ pub struct Record {
     pub file: String,
     /// How it ended: `seam`, or why not, in a word or two.
     pub status: &'static str,
+    /// What is to be thought of it: `seam`, `doubtful` or `refused`.
+    pub verdict: &'static str,
     /// Why it is of no use, in words.
     pub why: Option<String>,
     /// What was measured, also where it is not trusted.
@@ -92,6 +94,7 @@ impl Record {
         Self {
             file: outcome.file.display().to_string(),
             status: words::status(outcome.report.status),
+            verdict: Verdict::of(outcome).name(),
             why: words::why(&outcome.report),
             measured: outcome.report.measured.as_ref().map(MeasuredRecord::of),
             observed: outcome.observation.as_ref().map(ObservedRecord::of),

@@ -3,7 +3,7 @@
 use vision::{Criterion, Doubt, Measured, Report, State, Status};
 
 /// Quality from which a measurement is used.
-const NEEDED: f64 = 0.5;
+pub const NEEDED: f64 = 0.5;
 
 /// A status in a word or two.
 pub fn status(status: Status) -> &'static str {
@@ -38,12 +38,44 @@ pub fn why(report: &Report) -> Option<String> {
     Some(plain.to_owned())
 }
 
-/// What speaks against a measured seam.
+/// What speaks against a measured seam, with its quality.
 fn weakness(measured: &Measured) -> String {
-    let Some(weakest) = measured.weakest else {
-        return "there is a sharp band, but no dark line across it".to_owned();
-    };
-    let what = match weakest {
+    match measured.weakest {
+        Some(weakest) => format!(
+            "{} (quality {:.2}, {NEEDED} needed)",
+            criterion(weakest),
+            measured.quality
+        ),
+        None => NO_LINE.to_owned(),
+    }
+}
+
+/// Of a band without anything that may be a seam.
+const NO_LINE: &str = "there is a sharp band, but no dark line across it";
+
+/// Why a picture is of no use, without figures.
+pub fn reason(report: &Report) -> &'static str {
+    match (report.status, report.measured) {
+        (Status::Seam, _) => "",
+        (Status::Dark, _) => "nearly black: no light, or no work before the camera",
+        (Status::TooHigh, _) => "nothing is sharp: work probably too high",
+        (Status::TooLow, _) => "nothing is sharp: work probably too low",
+        (Status::NoBand, _) => "nothing is sharp",
+        (
+            Status::NoSeam,
+            Some(Measured {
+                weakest: Some(weakest),
+                ..
+            }),
+        ) => criterion(weakest),
+        (Status::NoSeam, _) => NO_LINE,
+        (other, _) => status(other),
+    }
+}
+
+/// What speaks against a seam whose quality a criterion holds down.
+pub fn criterion(weakest: Criterion) -> &'static str {
+    match weakest {
         Criterion::Depth => "the line is not dark enough against the plate",
         Criterion::Straightness => "too little of the edges lies on straight lines",
         Criterion::Scatter => "the edges are too rough",
@@ -61,8 +93,7 @@ fn weakness(measured: &Measured) -> String {
         Criterion::Sides => "a plate is lit on one side of the gap only",
         Criterion::Emptiness => "it has a plate's texture: a scratch, a groove or a shadow",
         Criterion::Interior => "the gap is not equally dark: a shadow or spatter beside it?",
-    };
-    format!("{what} (quality {:.2}, {NEEDED} needed)", measured.quality)
+    }
 }
 
 /// What an observer is doing.

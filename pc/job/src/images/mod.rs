@@ -272,7 +272,7 @@ impl SeamCameras for Images {
                 let arrived = held.iter().flatten().map(|held| self.arrived_us(held, at.now_us));
                 return Ok(Some(Answer {
                     measurement: Measurement { capture, sides },
-                    seams: seen.map(|seen| seen?.observation?.seam),
+                    seams: seen.map(|seen| seen?.seen),
                     arrived_us: arrived.max().filter(|_| self.in_real_time),
                 }));
             }
@@ -328,6 +328,8 @@ fn count(figures: &mut CameraFigures, seen: &MeasuredStrobe) {
     };
     figures.measured += u32::from(observation.seam.is_some());
     figures.refused += u32::from(observation.doubt.is_some());
+    let shows = observation.seam.is_some() || observation.doubt.is_some();
+    figures.without_seam += u32::from(!shows);
     figures.relocked += u32::from(observation.relocked);
 }
 

@@ -1,5 +1,6 @@
 //! The thread that turns the pictures of one camera into measurements.
 
+use crate::joint::SeenSeam;
 use camera::{Arrival, Camera, CameraError, Picture};
 use config::calibration::Calibration;
 use host_link::boards::Waker;
@@ -32,6 +33,8 @@ pub struct MeasuredStrobe {
     pub capture: u32,
     /// What the picture says; `None` if it was lost.
     pub observation: Option<Observation>,
+    /// The seam, if it is believed, and where this picture shows it.
+    pub seen: Option<SeenSeam>,
     /// What the tracker is told: the mean of the latest pictures, or the first pictures of a seam just found.
     pub measurement: Option<SideMeasurement>,
     /// When its picture had arrived here, or was known to be lost.
@@ -196,6 +199,7 @@ impl Work {
                     MeasuredStrobe {
                         capture: strobe.capture,
                         observation: None,
+                        seen: None,
                         measurement: None,
                         arrived: at,
                     }
@@ -274,6 +278,12 @@ impl Work {
             .observer
             .observe(&self.picture.image()?, moved.unwrap_or_default())?;
         self.settled &= observation.state == State::Tracking;
+        let to_side = |(lateral, travel, height)| self.calibration.side_measurement(lateral, travel, height);
+        let both = observation.seam.zip(observation.report.measured);
+        let seen = both.map(|(seam, measured)| SeenSeam {
+            seam,
+            here: to_side((seam.lateral_mm, seam.travel_mm, measured.height_mm)),
+        });
         let place = observation
             .seam
             .and_then(|seam| match (seam.mean, observation.report.measured) {
@@ -290,8 +300,8 @@ impl Work {
         Ok(MeasuredStrobe {
             capture: self.picture.capture,
             observation: Some(observation),
-            measurement: place
-                .map(|(lateral, travel, height)| self.calibration.side_measurement(lateral, travel, height)),
+            seen,
+            measurement: place.map(to_side),
             arrived,
         })
     }

@@ -84,6 +84,7 @@ impl BeadFigures {
         Judgement {
             figures: self.figures(layers as f64, limits),
             plots: self.lines.plots(window, limits),
+            ..Judgement::default()
         }
     }
 

@@ -142,7 +142,7 @@ impl PassFigures {
         if self.samples == 0 {
             return Judgement {
                 figures: vec![length],
-                plots: Vec::new(),
+                ..Judgement::default()
             };
         }
         let rms = libm::sqrt(self.sum_of_squares / f64::from(self.samples));
@@ -227,6 +227,10 @@ impl PassFigures {
                 Vec::new(),
             ),
         ];
-        Judgement { figures, plots }
+        Judgement {
+            figures,
+            plots,
+            ..Judgement::default()
+        }
     }
 }

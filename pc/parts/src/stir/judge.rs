@@ -107,6 +107,7 @@ pub(super) fn judge(part: &Stir, job: &Job, run: &Run) -> anyhow::Result<Judgeme
     Ok(Judgement {
         figures,
         plots: errors.lines.plots(&part.limits),
+        ..Judgement::default()
     })
 }
 

@@ -1,10 +1,10 @@
 //! `seamwright measure`: the seam measured in pictures, or why it is not accepted.
 
 use super::sentence;
-use crate::console::{errln, outln};
+use crate::console::{errln, out, outln};
 use anyhow::{Context, bail, ensure};
 use camera::Picture;
-use camera::measure::{Measuring, Outcome, Record, Table, draw};
+use camera::measure::{Measuring, Outcome, Record, Sheet, Summary, Table, Verdict, draw, draw_plain};
 use clap::Args;
 use config::calibration::Calibration;
 use config::machine::{JointForm, MachineFile};
@@ -25,7 +25,11 @@ const WALLS_SIGMA: f64 = 0.03;
 /// A folder with a captures.csv is measured as a sequence, the seam followed from picture to picture.
 ///
 /// In an overlay the sharp band is yellow, the edges of the gap green, its middle or the corner a red cross, the next best
-/// thing that may be the seam cyan; the white bar is 0.1 mm long. The frame is green if the seam may be used.
+/// thing that may be the seam cyan; the white bar is 0.1 mm long. The words below say whether the seam may be used, and what
+/// speaks against it; they and the frame are green if it may, amber if it is doubtful, red if not.
+///
+/// After several pictures a summary follows: how many show a seam, are doubtful, were refused for which reason, and the range of
+/// gap widths and steps. Doubtful is an accepted seam of low quality, or in a sequence another one than before.
 #[derive(Debug, Args)]
 pub struct Measure {
     /// Grey pictures of 8 bits a pixel (PNG), or folders of captures
@@ -54,6 +58,9 @@ pub struct Measure {
     /// Folder to draw the pictures into with what was measured
     #[arg(long, value_name = "DIR")]
     overlay: Option<PathBuf>,
+    /// Folder for contact sheets of the refused and of the doubtful pictures: refused.png, doubtful.png
+    #[arg(long, value_name = "DIR")]
+    sheets: Option<PathBuf>,
     /// Pixels of an overlay for each of the picture, a side
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
     enlarge: u8,
@@ -75,7 +82,7 @@ impl Measure {
     pub fn run(self) -> anyhow::Result<ExitCode> {
         let (calibration, joint) = self.known()?;
         let mut measuring = Measuring::new(calibration, joint).context("the calibration cannot be used")?;
-        if let Some(folder) = &self.overlay {
+        for folder in self.overlay.iter().chain(&self.sheets) {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("cannot make folder {}", folder.display()))?;
         }
@@ -85,6 +92,10 @@ impl Measure {
             json: self.json,
             table: Table::new(self.images.iter().map(|image| letters(image)).max().unwrap_or(0)),
             drawn: BTreeSet::new(),
+            sheets: self.sheets.as_deref(),
+            refused: Sheet::default(),
+            doubtful: Sheet::default(),
+            summary: Summary::default(),
             records: Vec::new(),
             failed: 0,
         };
@@ -161,6 +172,13 @@ fn name(file: &Path) -> String {
     )
 }
 
+/// Name and quality of a picture on a contact sheet.
+fn label(outcome: &Outcome) -> String {
+    let measured = outcome.report.measured.filter(|measured| measured.quality > 0.0);
+    let quality = measured.map(|measured| format!(" q {:.2}", measured.quality));
+    name(&outcome.file) + &quality.unwrap_or_default()
+}
+
 /// How many letters the longest name of a picture has, or of those in a folder of captures.
 fn letters(image: &Path) -> usize {
     if image.is_dir() {
@@ -177,6 +195,10 @@ struct Output<'a> {
     json: bool,
     table: Table,
     drawn: BTreeSet<PathBuf>,
+    sheets: Option<&'a Path>,
+    refused: Sheet,
+    doubtful: Sheet,
+    summary: Summary,
     records: Vec<Record>,
     failed: usize,
 }
@@ -199,9 +221,34 @@ impl Output<'_> {
         } else {
             outln!("{}", self.table.lines(&name(&outcome.file), &record));
         }
-        if let Err(error) = self.draw(&outcome, picture, calibration) {
+        let drawn = self
+            .draw(&outcome, picture, calibration)
+            .and(self.thumb(&outcome, picture, calibration));
+        if let Err(error) = drawn {
             self.fail(&error);
         }
+    }
+
+    /// Counts a picture, and puts it on its contact sheet.
+    fn thumb(
+        &mut self,
+        outcome: &Outcome,
+        picture: &Picture,
+        calibration: &Calibration,
+    ) -> anyhow::Result<()> {
+        let verdict = self.summary.add(outcome);
+        let sheet = match verdict {
+            Verdict::Seam => return Ok(()),
+            Verdict::Doubtful(_) => &mut self.doubtful,
+            Verdict::Refused(_) => &mut self.refused,
+        };
+        if let (Some(_), Some(reason)) = (self.sheets, verdict.reason()) {
+            let drawn = || draw_plain(picture, outcome, calibration, 1);
+            sheet
+                .add(reason, label(outcome), drawn)
+                .with_context(|| format!("picture {}", outcome.file.display()))?;
+        }
+        Ok(())
     }
 
     /// Draws a picture into the folder of overlays, under its own name.
@@ -227,7 +274,7 @@ impl Output<'_> {
             outcome.file.display(),
             folder.display()
         );
-        let canvas = draw(picture, &outcome.report, calibration, self.enlarge)
+        let canvas = draw(picture, outcome, calibration, self.enlarge)
             .with_context(|| format!("picture {}", outcome.file.display()))?;
         Ok(canvas.write(&file)?)
     }
@@ -240,6 +287,28 @@ impl Output<'_> {
     fn end(self) -> anyhow::Result<ExitCode> {
         if self.json {
             outln!("{}", serde_json::to_string_pretty(&self.records)?);
+        } else if self.summary.pictures() > 1 {
+            out!("\n{}", self.summary);
+        }
+        if let Some(folder) = self.sheets {
+            for (file, title, sheet) in [
+                ("refused.png", "Refused", &self.refused),
+                ("doubtful.png", "Doubtful", &self.doubtful),
+            ] {
+                let path = folder.join(file);
+                if sheet.is_empty() {
+                    continue;
+                }
+                let (all, shown) = (sheet.len(), sheet.shown());
+                let title = format!(
+                    "{title}: {all} of {} pictures, {shown} shown",
+                    self.summary.pictures()
+                );
+                sheet.write(&path, &title)?;
+                if !self.json {
+                    outln!("  contact sheet {}: {shown} of {all}", path.display());
+                }
+            }
         }
         Ok(if self.failed == 0 {
             ExitCode::SUCCESS

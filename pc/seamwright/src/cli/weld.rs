@@ -169,6 +169,9 @@ impl Weld {
         if ended.began {
             outln!("  report in {}", self.report.display());
         }
+        for limit in &ended.report.not_judged {
+            errln!("seamwright: not judged: {limit}");
+        }
         if ended.error.is_none()
             && let Some(outside) = report::verdict(&ended.report)
         {
