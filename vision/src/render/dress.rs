@@ -175,13 +175,13 @@ impl Dress {
     }
 
     fn mark_across(&mut self, line: &Line, mark: &Mark) {
-        let (sketch, scene, r) = (line.sketch, line.scene, line.r);
+        let (sketch, r) = (line.sketch, line.r);
         let seam = sketch.seam_column(r);
         let soft = line.most_along();
         let half = mark.width_mm / 2.0;
         let side = |column: usize| usize::from(column as f64 >= seam);
         let far = |column: usize| {
-            let place = scene.position_mm[0] + sketch.along(r, column, side(column));
+            let place = line.place(column, side(column));
             place - mark.middle(sketch.lateral(r, column))
         };
         let ends = [far(0), far(sketch.columns - 1)];
@@ -273,9 +273,10 @@ impl Line<'_> {
         }
     }
 
-    /// Place along travel on the work that a column shows \[mm\].
+    /// Place along travel on the work where the seam is beside what a column shows \[mm\].
     fn place(&self, column: usize, side: usize) -> f64 {
-        self.scene.position_mm[0] + self.sketch.along(self.r, column, side)
+        let along = self.sketch.along(self.r, column, side);
+        self.scene.position_mm[0] + along + self.sketch.lateral(self.r, column) * self.sketch.yaw_sin
     }
 
     /// Lays a tack over the row.

@@ -22,6 +22,8 @@ pub(super) struct Sketch {
     shift: [f64; 2],
     /// Way square to the seam for a way along u.
     pub squareness: f64,
+    /// sin ψ.
+    pub yaw_sin: f64,
     /// a of the seam at r = 0 and what it gains along r.
     along: [f64; 2],
     /// Depth gained along r.
@@ -76,6 +78,7 @@ impl Sketch {
             seam: [0.0; 2],
             shift: [0.0; 2],
             squareness: 1.0,
+            yaw_sin: 0.0,
             along: [0.0; 2],
             steepness: 1.0,
             divisor: 1.0,
@@ -120,6 +123,7 @@ impl Sketch {
                 let divisor = cos + p * sin;
                 self.divisor = divisor;
                 self.squareness = gap.plate.squareness() * (1.0 + tangent * q * sin / divisor);
+                self.yaw_sin = gap.plate.yaw_rad.sin();
                 self.steepness = (sin - p * cos) / divisor;
                 for column in 0..self.columns {
                     let level = h + q * u(column);
@@ -138,6 +142,7 @@ impl Sketch {
                 self.seam = [u0, 0.0];
                 self.shift = [0.0; 2];
                 self.squareness = 1.0;
+                self.yaw_sin = 0.0;
                 self.along = [-h * sin / cos, 1.0 / cos];
                 self.divisor = cos;
                 self.steepness = sin / cos;
