@@ -191,11 +191,18 @@ impl Dress {
         if ends.iter().all(|&far| far > reach) || ends.iter().all(|&far| far < -reach) {
             return;
         }
+        let there = line.reach(0, mark.reaches_mm);
+        if matches!(there, Reach::Nowhere) {
+            return;
+        }
         let gain = (mark.factor - 1.0) as f32;
         let row = self.marks[1].iter_mut().zip(&self.sharpness);
         for (column, (sum, one)) in row.enumerate() {
             let far = far(column);
-            let share = smooth((half + far) as f32 * one) - smooth((far - half) as f32 * one);
+            let mut share = smooth((half + far) as f32 * one) - smooth((far - half) as f32 * one);
+            if let Reach::Part(ends) = &there {
+                share *= ends.share(line, 0, column);
+            }
             *sum = added(*sum, gain * share, mark);
         }
     }

@@ -34,6 +34,8 @@ pub enum Effect {
     Tack,
     /// Spatter hides one edge.
     SpatterOnEdge,
+    /// A closed joint.
+    Closed,
     /// A closed joint with a dark scratch along it.
     ClosedScratched,
     /// A closed joint with regular grooves along it.
@@ -82,7 +84,7 @@ pub enum Effect {
 
 impl Effect {
     /// All of them.
-    pub const ALL: [Self; 32] = [
+    pub const ALL: [Self; 33] = [
         Self::Plain,
         Self::Ratio,
         Self::DimPlate,
@@ -93,6 +95,7 @@ impl Effect {
         Self::PlateEnds,
         Self::Tack,
         Self::SpatterOnEdge,
+        Self::Closed,
         Self::ClosedScratched,
         Self::ClosedGrooved,
         Self::Scratch,
@@ -120,7 +123,10 @@ impl Effect {
     /// Whether a joint with it may have a seam to be measured; what a picture shows, its
     /// [`truth`](Scene::truth) says.
     pub fn has_seam(self) -> bool {
-        !matches!(self, Self::OnePlate | Self::ClosedScratched | Self::ClosedGrooved)
+        !matches!(
+            self,
+            Self::OnePlate | Self::Closed | Self::ClosedScratched | Self::ClosedGrooved
+        )
     }
 
     /// Two to four different effects, with a seam to be measured.
@@ -210,7 +216,7 @@ impl Draw {
     /// What an effect makes of the gap itself.
     fn alter(&mut self, effect: Effect, gap: &mut Gap) {
         match effect {
-            Effect::ClosedScratched | Effect::ClosedGrooved => gap.plate.width_mm = 0.0,
+            Effect::Closed | Effect::ClosedScratched | Effect::ClosedGrooved => gap.plate.width_mm = 0.0,
             Effect::LitWalls => gap.plate.roll = self.sign() * self.between(6.0, 10.0).to_radians().tan(),
             _ => {}
         }
@@ -222,7 +228,7 @@ impl Draw {
         // Where the band crosses the seam (45°).
         let band = scene.position_mm[0] + gap.plate.height_mm + gap.plate.roll * gap.plate.lateral_mm;
         match effect {
-            Effect::Plain => {}
+            Effect::Plain | Effect::Closed => {}
             Effect::Ratio => self.side(scene).brightness = self.between(0.3, 0.9),
             Effect::DimPlate => self.side(scene).brightness = self.random.log_between(0.03, 0.2),
             Effect::Step => self.step(scene, [0.02, 0.1]),
