@@ -7,6 +7,7 @@ use super::scene::{Joint, Scene};
 use super::side::{Face, Side, slant};
 use super::tile::Tile;
 use crate::optics::Optics;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What rows of a picture have in common. Lengths are millimetres.
@@ -246,6 +247,24 @@ impl Sketch {
     /// Way along travel for a way along r.
     pub fn travel(&self, r: f64) -> f64 {
         r / self.divisor
+    }
+
+    /// Way square to the seam for one column \[mm\].
+    pub fn lateral_per_column(&self) -> f64 {
+        self.lens.pixel_mm * self.squareness
+    }
+
+    /// Variance of what blurs edges that are in focus \[pixels²\].
+    pub fn sharp_variance(&self) -> f64 {
+        (self.lens.diffraction_mm / self.lens.pixel_mm).powi(2) + 1.0 / 12.0
+    }
+
+    /// a of the surface in some columns at `r`, on a side of the seam.
+    pub fn places(&self, r: f64, side: usize, columns: Range<usize>, out: &mut [f32]) {
+        let (first, sin) = (self.travel(r) as f32, self.tilt[0] as f32);
+        for (out, fall) in out.iter_mut().zip(&self.fall[side][columns]) {
+            *out = first - fall * sin;
+        }
     }
 
     /// a of a column's surface at `r`, on a side of the seam.
