@@ -69,10 +69,9 @@ impl Dress {
                 self.places.take(line);
             }
             // Parallel marks lie side by side; others may cross them.
-            let (beside, slanted): (fn(&&Mark) -> bool, fn(&&Mark) -> bool) =
-                (|mark| mark.slope == 0.0, |mark| mark.slope != 0.0);
             let marks = line.scene.marks.iter();
-            for mark in marks.clone().filter(beside).chain(marks.filter(slanted)) {
+            let parallel = marks.clone().filter(|mark| mark.slope == 0.0);
+            for mark in parallel.chain(marks.filter(|mark| mark.slope != 0.0)) {
                 match mark.run {
                     Run::Along => self.mark_along(line, mark, open),
                     Run::Across => self.mark_across(line, mark),
