@@ -206,7 +206,9 @@ pub(super) fn effects_of(group: &Group, random: &mut SplitMix64) -> Vec<Effect> 
         Kind::Mixed => Effect::mixed(random),
         Kind::Seamless => {
             let mut effects = Effect::mixed(random);
-            effects[0] = SEAMLESS[(random.uniform() * SEAMLESS.len() as f64) as usize];
+            // The last has the last word.
+            let last = effects.len() - 1;
+            effects[last] = SEAMLESS[(random.uniform() * SEAMLESS.len() as f64) as usize];
             effects
         }
     }
