@@ -69,7 +69,7 @@ fn through_pictures(
     };
     let program = program();
     let surroundings = Surroundings {
-        cameras: CameraChoice::Images(Box::new(images), PictureChoice::Rendered(scene)),
+        cameras: CameraChoice::Images(Box::new(images), PictureChoice::Rendered(Box::new(scene))),
         ..with_seam(Some(shipped_seam()))
     };
     weld(&job(&machine, &program, surroundings, Some(speed_m_per_min)))

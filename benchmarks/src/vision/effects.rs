@@ -38,11 +38,33 @@ pub struct Options {
     pub pictures: u64,
     /// Of the first texture.
     pub first: u64,
-    /// Only these effects; all of them and mixtures if there are none.
+    /// Only these effects; all of them and mixtures if there is none.
     pub only: Vec<Effect>,
     /// Whether the detector knows from the picture before where the seam is.
     pub tracked: bool,
 }
+
+/// What is in the pictures of a group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// One effect.
+    Alone(Effect),
+    /// Two to four, and a seam.
+    Mixed,
+    /// One to four, and no seam.
+    Seamless,
+}
+
+/// A group of pictures and its name.
+pub(super) type Group = (String, Kind);
+
+/// What leaves no seam.
+const SEAMLESS: [Effect; 4] = [
+    Effect::Closed,
+    Effect::ClosedScratched,
+    Effect::ClosedGrooved,
+    Effect::OnePlate,
+];
 
 /// What became of a picture.
 struct Taken {
@@ -77,18 +99,19 @@ impl Options {
     }
 
     /// Groups of pictures: their names, and the effect if it is one alone.
-    pub(super) fn groups(&self) -> Vec<(String, Option<Effect>)> {
+    pub(super) fn groups(&self) -> Vec<Group> {
         let all = if self.only.is_empty() {
             &Effect::ALL[..]
         } else {
             &self.only[..]
         };
-        let mut groups: Vec<_> = all
+        let mut groups: Vec<Group> = all
             .iter()
-            .map(|effect| (format!("{effect:?}"), Some(*effect)))
+            .map(|effect| (format!("{effect:?}"), Kind::Alone(*effect)))
             .collect();
         if self.only.is_empty() {
-            groups.push(("mixed, 2–4".to_owned(), None));
+            groups.push(("mixed, 2–4".to_owned(), Kind::Mixed));
+            groups.push(("mixed, no seam".to_owned(), Kind::Seamless));
         }
         groups
     }
@@ -118,7 +141,10 @@ pub fn run(options: &Options) -> Result<()> {
     let optics = camera(400);
     let groups = options.groups();
     let textures = (options.pictures / SHARE).clamp(TEXTURES[0], TEXTURES[1]);
-    let weight = |group: &(String, Option<Effect>)| if group.1.is_some() { 1 } else { MIXED };
+    let weight = |group: &Group| match group.1 {
+        Kind::Alone(_) => 1,
+        Kind::Mixed | Kind::Seamless => MIXED,
+    };
     let weights: u64 = groups.iter().map(weight).sum();
     let share = (options.pictures as f64 / (textures * weights) as f64)
         .round()
@@ -139,17 +165,14 @@ pub fn run(options: &Options) -> Result<()> {
         for (k, group) in groups.iter().enumerate() {
             let count = match group.1 {
                 // What is smeared has its own textures.
-                Some(Effect::Smear) if smeared => share * SMEARED,
-                Some(Effect::Smear) => 0,
-                Some(_) if smeared => 0,
+                Kind::Alone(Effect::Smear) if smeared => share * SMEARED,
+                Kind::Alone(Effect::Smear) => 0,
+                Kind::Alone(_) if smeared => 0,
                 _ => share * weight(group),
             };
             for _ in 0..count {
                 seed += 1;
-                let effects = match group.1 {
-                    Some(effect) => vec![effect],
-                    None => mixture(&mut random, smeared),
-                };
+                let effects = mixture(group, &mut random, smeared);
                 let mut scene = random_joint(&effects, &optics, NOISE, seed);
                 (scene.texture, scene.right_texture) = (textures[0], Some(textures[1]));
                 let pixels = renderer.render(&scene, seed)?;
@@ -177,18 +200,25 @@ pub fn run(options: &Options) -> Result<()> {
 }
 
 /// Effects of a picture of a group.
-pub(super) fn effects_of(group: &(String, Option<Effect>), random: &mut SplitMix64) -> Vec<Effect> {
+pub(super) fn effects_of(group: &Group, random: &mut SplitMix64) -> Vec<Effect> {
     match group.1 {
-        Some(effect) => vec![effect],
-        None => Effect::mixed(random),
+        Kind::Alone(effect) => vec![effect],
+        Kind::Mixed => Effect::mixed(random),
+        Kind::Seamless => {
+            let mut effects = Effect::mixed(random);
+            // The last has the last word.
+            let last = effects.len() - 1;
+            effects[last] = SEAMLESS[(random.uniform() * SEAMLESS.len() as f64) as usize];
+            effects
+        }
     }
 }
 
-/// Effects of a mixed picture; long exposures have their own textures.
-fn mixture(random: &mut SplitMix64, smeared: bool) -> Vec<Effect> {
+/// The same; long exposures have their own textures.
+fn mixture(group: &Group, random: &mut SplitMix64, smeared: bool) -> Vec<Effect> {
     loop {
-        let effects = Effect::mixed(random);
-        if effects.contains(&Effect::Smear) == smeared {
+        let effects = effects_of(group, random);
+        if effects.contains(&Effect::Smear) == smeared || group.1 == Kind::Seamless {
             return effects;
         }
     }
@@ -258,7 +288,7 @@ fn is_wrong(taken: &Taken) -> bool {
     })
 }
 
-fn print(groups: &[(String, Option<Effect>)], taken: &[Taken]) {
+fn print(groups: &[Group], taken: &[Taken]) {
     println!(
         "Errors in µm, of roll in 1/1000; e/σ: what 95 % do not pass, of centre, height, width, step, roll.\n"
     );

@@ -21,8 +21,9 @@ pub use emulated::BoardsError;
 pub use geometric::GeometricCameras;
 pub use probe::SimulatedProbe;
 pub use rendered::{
-    Dark, FieldOfView, RenderedCamera, RenderedPictures, RenderedWorld, SceneError, SceneFile, Scratch,
-    SurfaceFinish, View, ViewForm,
+    Dark, Direction, DirtSpot, FieldOfView, Grooves, JointStretch, Plate, Plates, RenderedCamera,
+    RenderedPictures, RenderedWorld, SceneError, SceneFile, Scratch, SensorFile, StrayLight, SurfaceFinish,
+    TackStretch, View, ViewForm,
 };
 pub use seams::{Crossing, SharedSeams, TrueSeam, TrueSeams};
 pub use surroundings::{CameraChoice, DrawingError, PictureChoice, Surroundings, World};

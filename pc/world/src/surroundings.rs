@@ -55,7 +55,7 @@ pub enum CameraChoice {
 #[derive(Clone)]
 pub enum PictureChoice {
     /// They are rendered.
-    Rendered(SceneFile),
+    Rendered(Box<SceneFile>),
     /// From real cameras, which see real seams.
     Real(OpenCamera),
 }

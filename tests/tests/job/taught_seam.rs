@@ -9,7 +9,7 @@ use std::sync::Mutex;
 use teach::seam::{
     Cameras, Ended as Lesson, Head, SeamFile, SeamPoint as Taught, SeamTeaching, read_seam_points,
 };
-use world::{CameraChoice, PictureChoice, SceneFile};
+use world::{CameraChoice, PictureChoice};
 
 /// How long the real seam bends to the left, and its radius there \[mm\].
 const BEND: f64 = 100.0;
@@ -241,7 +241,7 @@ fn a_seam_is_taught_and_welded_through_pictures_as_well_after_an_interruption() 
         kept: None,
     };
     let case = Case {
-        cameras: CameraChoice::Images(Box::new(pictures), PictureChoice::Rendered(SceneFile::default())),
+        cameras: CameraChoice::Images(Box::new(pictures), PictureChoice::Rendered(Box::default())),
         config: SeamTeaching {
             // Each millisecond on the way has to be rendered.
             speed_m_min: 5.0,

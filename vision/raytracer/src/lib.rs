@@ -17,4 +17,5 @@ mod work;
 
 pub use camera::{Camera, Exposure};
 pub use effect::{Effect, Finish, Subject, subject};
+pub use texture::{Grain, Texture};
 pub use work::{Blob, Glare, Mark, Shadow, Side, Truth, Work};

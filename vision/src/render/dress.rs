@@ -1,25 +1,16 @@
 //! What marks, the sides of a gap and tacks make of a row of a picture.
 
-use super::marks::{Mark, Run, Tack};
-use super::row::{Strip, smooth, softness};
-use super::scene::{Gap, Scene};
+use super::line::{Line, Places, Reach};
+use super::marks::{Mark, Run};
+use super::row::{Strip, smooth};
+use super::scene::Gap;
 use super::side::Face;
-use super::sketch::Sketch;
 
 /// The surface's share below which what marks it is no more looked up there: a gap.
 const HARDLY: f32 = 0.05;
 
 /// Where the light on a wall is divided into even strips, in lengths over which it fades by 1/e.
 const WALL: [f64; 6] = [0.0, 0.25, 0.6, 1.1, 1.8, 3.0];
-
-/// The row at `r` and what it is of.
-pub(super) struct Line<'a> {
-    pub sketch: &'a Sketch,
-    pub scene: &'a Scene,
-    pub r: f64,
-    /// Squares of the blurs' radii, column by column \[pixels\].
-    pub radii_squared: &'a [f32],
-}
 
 /// Column by column of one row.
 #[derive(Clone, Debug, Default)]
@@ -33,8 +24,8 @@ pub(super) struct Dress {
     wall: Vec<f32>,
     /// The same three of one side.
     side: [Vec<f32>; 3],
-    /// One over the softness of edges across the seam, where there are such marks \[1/mm\].
-    sharpness: Vec<f32>,
+    /// Where its columns are, if there are marks across.
+    places: Places,
     /// Whether there are marks.
     marked: bool,
 }
@@ -48,7 +39,7 @@ impl Dress {
             cover: row(),
             wall: row(),
             side: [row(), row(), row()],
-            sharpness: row(),
+            places: Places::new(columns),
             marked: false,
         }
     }
@@ -75,15 +66,12 @@ impl Dress {
         if self.marked {
             self.marks.iter_mut().for_each(|marks| marks.fill(0.0));
             if line.scene.marks.iter().any(|mark| mark.run == Run::Across) {
-                for (column, one) in self.sharpness.iter_mut().enumerate() {
-                    *one = (1.0 / line.soft_along(column)) as f32;
-                }
+                self.places.take(line);
             }
             // Parallel marks lie side by side; others may cross them.
-            let (beside, slanted): (fn(&&Mark) -> bool, fn(&&Mark) -> bool) =
-                (|mark| mark.slope == 0.0, |mark| mark.slope != 0.0);
             let marks = line.scene.marks.iter();
-            for mark in marks.clone().filter(beside).chain(marks.filter(slanted)) {
+            let parallel = marks.clone().filter(|mark| mark.slope == 0.0);
+            for mark in parallel.chain(marks.filter(|mark| mark.slope != 0.0)) {
                 match mark.run {
                     Run::Along => self.mark_along(line, mark, open),
                     Run::Across => self.mark_across(line, mark),
@@ -154,6 +142,7 @@ impl Dress {
             Reach::Part(ends) => ends.share(line, k, column.min(sketch.columns - 1)),
         };
         let gain = (mark.factor - 1.0) as f32 * share;
+        let crossed = if mark.slope == 0.0 { 0.0 } else { gain };
         // It does not reach into the gap.
         let pieces = match open {
             Some([left, right]) => [[from, to.min(left)], [from.max(right), to]],
@@ -170,33 +159,41 @@ impl Dress {
             }
             let row = self.marks[0][columns.clone()].iter_mut();
             row.zip(strip.shares(columns))
-                .for_each(|(sum, share)| *sum = added(*sum, gain * share, mark));
+                .for_each(|(sum, share)| *sum += share * (gain + crossed * *sum));
         }
     }
 
     fn mark_across(&mut self, line: &Line, mark: &Mark) {
-        let (sketch, scene, r) = (line.sketch, line.scene, line.r);
-        let seam = sketch.seam_column(r);
-        let soft = line.most_along();
-        let half = mark.width_mm / 2.0;
-        let side = |column: usize| usize::from(column as f64 >= seam);
-        let far = |column: usize| {
-            let place = scene.position_mm[0] + sketch.along(r, column, side(column));
-            place - mark.middle(sketch.lateral(r, column))
-        };
-        let ends = [far(0), far(sketch.columns - 1)];
+        let Places {
+            along,
+            lateral,
+            sharpness,
+        } = &self.places;
+        let middle = (mark.offset_mm - line.scene.position_mm[0]) as f32;
+        let (half, slope) = ((mark.width_mm / 2.0) as f32, mark.slope as f32);
+        let far = |column: usize| along[column] - middle - slope * lateral[column];
+        let ends = [far(0), far(along.len() - 1)];
         // A step between the sides shifts one of them against the other.
-        let step = sketch.along(r, 0, 0) - sketch.along(r, 0, 1);
-        let reach = half + soft + step.abs();
+        let step = (line.sketch.along(line.r, 0, 0) - line.sketch.along(line.r, 0, 1)).abs() as f32;
+        let reach = half + line.most_along() as f32 + step;
         if ends.iter().all(|&far| far > reach) || ends.iter().all(|&far| far < -reach) {
             return;
         }
+        let there = line.reach(0, mark.reaches_mm);
+        if matches!(there, Reach::Nowhere) {
+            return;
+        }
         let gain = (mark.factor - 1.0) as f32;
-        let row = self.marks[1].iter_mut().zip(&self.sharpness);
-        for (column, (sum, one)) in row.enumerate() {
-            let far = far(column);
-            let share = smooth((half + far) as f32 * one) - smooth((far - half) as f32 * one);
-            *sum = added(*sum, gain * share, mark);
+        // What it adds, and multiplies what others have made of the surface by.
+        let crossed = if mark.slope == 0.0 { 0.0 } else { gain };
+        let row = self.marks[1].iter_mut().zip(along).zip(lateral).zip(sharpness);
+        for (column, (((sum, along), lateral), one)) in row.enumerate() {
+            let far = along - middle - slope * lateral;
+            let mut share = smooth((half + far) * one) - smooth((far - half) * one);
+            if let Reach::Part(ends) = &there {
+                share *= ends.share(line, 0, column);
+            }
+            *sum += share * (gain + crossed * *sum);
         }
     }
 
@@ -225,90 +222,6 @@ impl Dress {
                 *brightness = (plain * factor + beside).max(0.0) + floor * (1.0 - cover).max(0.0) + wall;
             }
         }
-    }
-}
-
-impl Line<'_> {
-    /// How far to each side an edge at a column is soft \[columns\].
-    fn softness(&self, column: f64) -> f64 {
-        softness(self.sketch, self.radii_squared, column)
-    }
-
-    /// How far an edge across the seam is soft to each side of a column, along travel \[mm\].
-    fn soft_along(&self, column: usize) -> f64 {
-        let soft = self.softness(column as f64);
-        self.sketch.travel(soft * self.sketch.lens.pixel_mm)
-    }
-
-    /// The most of that over the row: the blur is largest at one of its ends, or at the seam beside a step.
-    fn most_along(&self) -> f64 {
-        let seam = self.sketch.seam_column(self.r).max(0.0) as usize;
-        let last = self.sketch.columns - 1;
-        [0, seam.saturating_sub(1), seam, last]
-            .map(|column| self.soft_along(column.min(last)))
-            .into_iter()
-            .fold(0.0, f64::max)
-    }
-
-    /// Column of a line on a side, so far outwards from the middle of the seam \[mm\].
-    fn side_column(&self, outward: f64, side: usize) -> f64 {
-        let lateral = if side == 0 { -outward } else { outward };
-        self.sketch.side_column(self.r, lateral, side)
-    }
-
-    /// What it shows on a side of something between two places along travel on the work.
-    fn reach(&self, side: usize, [from, to]: [f64; 2]) -> Reach {
-        if from == f64::NEG_INFINITY && to == f64::INFINITY {
-            return Reach::Everywhere;
-        }
-        let soft = self.most_along();
-        let places = [0, self.sketch.columns - 1].map(|column| self.place(column, side));
-        let (least, most) = (places[0].min(places[1]), places[0].max(places[1]));
-        if from > to || most < from - soft || least > to + soft {
-            Reach::Nowhere
-        } else if least > from + soft && most < to - soft {
-            Reach::Everywhere
-        } else {
-            Reach::Part(Ends { from, to })
-        }
-    }
-
-    /// Place along travel on the work that a column shows \[mm\].
-    fn place(&self, column: usize, side: usize) -> f64 {
-        self.scene.position_mm[0] + self.sketch.along(self.r, column, side)
-    }
-
-    /// Lays a tack over the row.
-    pub fn close(&self, tack: &Tack, plain: &[f32], brightness: &mut [f32]) {
-        let there = self.reach(0, tack.reaches_mm);
-        if matches!(there, Reach::Nowhere) {
-            return;
-        }
-        let half = tack.width_mm / 2.0;
-        let edges = [-half, half].map(|lateral| self.sketch.line_column(self.r, lateral));
-        let strip = Strip {
-            edges,
-            softness: edges.map(|column| self.softness(column)),
-        };
-        let columns = strip.columns(self.sketch.columns);
-        let bright = tack.brightness as f32;
-        for (column, share) in columns.clone().zip(strip.shares(columns)) {
-            let share = match &there {
-                Reach::Part(ends) => share * ends.share(self, 0, column),
-                _ => share,
-            };
-            brightness[column] += (bright * plain[column] - brightness[column]) * share;
-        }
-    }
-}
-
-/// What a mark makes of what others have made of the surface's factor: one that is parallel to the seam or square to it lies
-/// beside them, others cross them.
-fn added(sum: f32, gain: f32, mark: &Mark) -> f32 {
-    if mark.slope == 0.0 {
-        sum + gain
-    } else {
-        sum + gain * (1.0 + sum)
     }
 }
 
@@ -360,28 +273,4 @@ fn light_wall(
     }
     let end = at(WALL.len() - 1);
     add_step(wall, (end, soft), !outwards, (-brightness * before) as f32);
-}
-
-/// What a row shows of something between two places along travel.
-enum Reach {
-    Nowhere,
-    Everywhere,
-    Part(Ends),
-}
-
-/// Two ends along travel on the work \[mm\].
-struct Ends {
-    from: f64,
-    to: f64,
-}
-
-impl Ends {
-    /// Share of a column that lies between them.
-    fn share(&self, line: &Line, side: usize, column: usize) -> f32 {
-        let place = line.place(column, side);
-        let soft = line.soft_along(column);
-        let after = smooth(((place - self.from) / soft) as f32);
-        let before = smooth(((self.to - place) / soft) as f32);
-        (after + before - 1.0).max(0.0)
-    }
 }

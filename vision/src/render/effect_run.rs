@@ -1,6 +1,7 @@
 //! Random seams from picture to picture, with effects that come and go.
 
-use super::effect::{Draw, Effect, random_joint};
+use super::effect::Effect;
+use super::joints::{Draw, random_joint};
 use super::marks::{Mark, Run};
 use super::motion::{CYCLE_S, Motion};
 use super::protocol::{SPEEDS_MM_S, Sight};

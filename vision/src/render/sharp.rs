@@ -49,6 +49,11 @@ impl Sharp {
             Joint::Gap(_) => 0,
             Joint::Corner(_) => point.side,
         };
+        // Where along travel the seam is beside the point.
+        let place = match &scene.joint {
+            Joint::Gap(gap) if self.faces.is_some() => along + point.lateral * gap.plate.yaw_rad.sin(),
+            _ => along,
+        };
         let texture = f64::from(self.fields[field].at(along, across));
         let mut brightness = texture;
         for stripe in &scene.stripes {
@@ -56,12 +61,12 @@ impl Sharp {
             brightness *= 1.0 + (stripe.factor - 1.0) * inside.clamp(0.0, 1.0);
         }
         for mark in &scene.marks {
-            brightness *= 1.0 + (mark.factor - 1.0) * mark.share(along, point.lateral, sample);
+            brightness *= 1.0 + (mark.factor - 1.0) * mark.share(place, point.lateral, sample);
         }
         match (&scene.joint, &self.faces) {
             (Joint::Gap(gap), Some(faces)) => {
-                let seed = scene.texture.seed;
-                let [surface, open, wall] = dressed(scene, gap, faces, seed, along, point.lateral, sample);
+                let places = [along, place];
+                let [surface, open, wall] = dressed(scene, gap, faces, places, point.lateral, sample);
                 brightness = brightness * surface + gap.brightness * open + wall;
             }
             (Joint::Gap(gap), None) if gap.plate.width_mm > 0.0 => {
@@ -72,7 +77,7 @@ impl Sharp {
             (Joint::Corner(root), _) => brightness *= root.lit(point.lateral, point.side),
         }
         for tack in &scene.tacks {
-            let share = tack.share(along, point.lateral, sample);
+            let share = tack.share(place, point.lateral, sample);
             brightness += (tack.brightness * texture - brightness) * share;
         }
         for blob in &scene.blobs {
@@ -86,22 +91,21 @@ impl Sharp {
 }
 
 /// What two sides make of a sample: what multiplies the surface, the share that lies in the gap or where a plate is
-/// missing, and the light of the walls.
+/// missing, and the light of the walls. Its places are along travel on the work: its own, and that of the seam beside it.
 fn dressed(
     scene: &Scene,
     gap: &Gap,
     faces: &[Face; 2],
-    seed: u64,
-    along: f64,
+    [along, place]: [f64; 2],
     lateral: f64,
     sample: f64,
 ) -> [f64; 3] {
     let mut seen = [0.0, 1.0, 0.0];
     let width = gap.plate.width_mm;
     for (edge, (side, face)) in scene.sides.iter().zip(faces).enumerate() {
-        let there = within(side.reaches_mm, along, sample);
+        let there = within(side.reaches_mm, place, sample);
         let out = if width > 0.0 && gap.roughness_mm > 0.0 {
-            gap.roughness_mm * roughness(seed, edge, along)
+            gap.roughness_mm * roughness(scene.texture.seed, edge, along)
         } else {
             0.0
         };

@@ -40,7 +40,7 @@ pub struct Side {
     pub rim: [f64; 2],
     /// Width \[mm\] and factor of the shadow that a higher plate throws.
     pub shadow: [f64; 2],
-    /// From where to where along travel on the work there is a plate \[mm\].
+    /// From where to where along travel on the work there is a plate \[mm\]; it ends square to the seam.
     pub reaches_mm: [f64; 2],
 }
 

@@ -7,6 +7,7 @@ use super::scene::{Joint, Scene};
 use super::side::{Face, Side, slant};
 use super::tile::Tile;
 use crate::optics::Optics;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What rows of a picture have in common. Lengths are millimetres.
@@ -22,6 +23,8 @@ pub(super) struct Sketch {
     shift: [f64; 2],
     /// Way square to the seam for a way along u.
     pub squareness: f64,
+    /// sin ψ.
+    pub yaw_sin: f64,
     /// a of the seam at r = 0 and what it gains along r.
     along: [f64; 2],
     /// Depth gained along r.
@@ -76,6 +79,7 @@ impl Sketch {
             seam: [0.0; 2],
             shift: [0.0; 2],
             squareness: 1.0,
+            yaw_sin: 0.0,
             along: [0.0; 2],
             steepness: 1.0,
             divisor: 1.0,
@@ -120,6 +124,7 @@ impl Sketch {
                 let divisor = cos + p * sin;
                 self.divisor = divisor;
                 self.squareness = gap.plate.squareness() * (1.0 + tangent * q * sin / divisor);
+                self.yaw_sin = gap.plate.yaw_rad.sin();
                 self.steepness = (sin - p * cos) / divisor;
                 for column in 0..self.columns {
                     let level = h + q * u(column);
@@ -138,6 +143,7 @@ impl Sketch {
                 self.seam = [u0, 0.0];
                 self.shift = [0.0; 2];
                 self.squareness = 1.0;
+                self.yaw_sin = 0.0;
                 self.along = [-h * sin / cos, 1.0 / cos];
                 self.divisor = cos;
                 self.steepness = sin / cos;
@@ -241,6 +247,24 @@ impl Sketch {
     /// Way along travel for a way along r.
     pub fn travel(&self, r: f64) -> f64 {
         r / self.divisor
+    }
+
+    /// Way square to the seam for one column \[mm\].
+    pub fn lateral_per_column(&self) -> f64 {
+        self.lens.pixel_mm * self.squareness
+    }
+
+    /// Variance of what blurs edges that are in focus \[pixels²\].
+    pub fn sharp_variance(&self) -> f64 {
+        (self.lens.diffraction_mm / self.lens.pixel_mm).powi(2) + 1.0 / 12.0
+    }
+
+    /// a of the surface in some columns at `r`, on a side of the seam.
+    pub fn places(&self, r: f64, side: usize, columns: Range<usize>, out: &mut [f32]) {
+        let (first, sin) = (self.travel(r) as f32, self.tilt[0] as f32);
+        for (out, fall) in out.iter_mut().zip(&self.fall[side][columns]) {
+            *out = first - fall * sin;
+        }
     }
 
     /// a of a column's surface at `r`, on a side of the seam.

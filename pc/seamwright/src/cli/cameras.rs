@@ -130,7 +130,7 @@ pub fn source(
         (BoardChoice::At { .. }, None) => Ok(PictureChoice::Real(camera::real(cameras)?)),
         (BoardChoice::Emulated | BoardChoice::Simulated, scene) => {
             let scene = scene.map(SceneFile::read).transpose()?;
-            Ok(PictureChoice::Rendered(scene.unwrap_or_default()))
+            Ok(PictureChoice::Rendered(Box::new(scene.unwrap_or_default())))
         }
     }
 }

@@ -1,18 +1,23 @@
 //! Cameras of a simulated world that give pictures: rendered from where the machine and its slides truly were.
 
 mod background;
+mod dress;
+mod scene_effects;
 mod scene_file;
 mod sketch;
 mod source;
 mod tiles;
 mod view;
 
+pub use scene_effects::{
+    Direction, DirtSpot, Grooves, JointStretch, Plate, Plates, SensorFile, StrayLight, TackStretch,
+};
 pub use scene_file::{Dark, SceneError, SceneFile, Scratch, SurfaceFinish};
 pub use source::RenderedPictures;
 pub use view::{View, ViewForm};
 
 use camera::{Arrival, Camera, CameraError, Picture};
-use config::machine::CameraConfig;
+use config::machine::{CameraConfig, JointForm};
 use shared::io::SIDES;
 use shared::tracking::frames::Heads;
 use sketch::Draw;
@@ -20,7 +25,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
-use tiles::{Tiles, texture};
+use tiles::{Tiles, textures};
 use vision::PhotonTransfer;
 use vision::render::{FastRenderer, RenderError, SplitMix64};
 
@@ -53,6 +58,7 @@ pub struct RenderedCamera {
     side: usize,
     seed: u64,
     noise: PhotonTransfer,
+    joint: JointForm,
     rows: usize,
     columns: usize,
     tiles: Tiles,
@@ -93,6 +99,7 @@ impl RenderedWorld {
             side,
             seed: self.seed,
             noise: self.cameras.photon_transfer,
+            joint: self.cameras.joint,
             rows: self.cameras.optics.rows,
             columns: self.cameras.optics.columns,
             tiles: self.tiles[side].clone(),
@@ -187,7 +194,8 @@ impl RenderedCamera {
         let draw = Draw {
             file: &self.file,
             side: self.side,
-            texture: texture(&self.file, self.side, self.seed),
+            textures: textures(&self.file, self.joint, self.side, self.seed),
+            noise: self.noise,
             dark,
         };
         let scene = draw.scene(view, &mut random);

@@ -1,5 +1,8 @@
 //! The scene file: what the seams of a simulated world look like, and what disturbs their pictures.
 
+use super::scene_effects::{
+    DirtSpot, Grooves, JointStretch, Plate, SensorFile, StrayLight, Stretch, TackStretch,
+};
 use config::table::FARTHEST_MM;
 use config::toml_file::{self, TomlError};
 use config::{RangeError, in_range};
@@ -18,10 +21,16 @@ const WHAT: &str = "scene file";
 pub struct SceneFile {
     /// How the work beside seam 1 and 2 was made.
     pub texture: [SurfaceFinish; SIDES],
+    /// How the work right of gap 1 and 2 was made, in place of going on as it is left of it.
+    pub right_texture: Option<[SurfaceFinish; SIDES]>,
     /// Mean brightness of the work, 0…1 of full scale.
     pub light: f64,
+    /// Standard deviation of the light from picture to picture, a share of it.
+    pub flicker_share: f64,
     /// How far the work travels during an exposure: 7.5 µm are 50 µs at 9 m/min.
     pub smear_um: f64,
+    /// How much nearer best focus lies in the corners of a picture than in its middle \[µm\].
+    pub field_curvature_um: f64,
     /// Width of the gaps \[mm\], and by how much it goes up and down over which length of seam.
     pub gap_mm: f64,
     /// See `gap_mm`.
@@ -46,6 +55,20 @@ pub struct SceneFile {
     pub scratch: Vec<Scratch>,
     /// Lights that fail.
     pub dark: Vec<Dark>,
+    /// Plates that look otherwise over a stretch, or end.
+    pub plate: Vec<Plate>,
+    /// Joints that are closed or stepped over a stretch.
+    pub joint: Vec<JointStretch>,
+    /// Beads that close a gap.
+    pub tack: Vec<TackStretch>,
+    /// Regular grooves.
+    pub grooves: Vec<Grooves>,
+    /// Light that does not come from the work.
+    pub stray_light: Vec<StrayLight>,
+    /// Spots on the windows.
+    pub dirt: Vec<DirtSpot>,
+    /// The sensors, where they are not as calibrated.
+    pub sensor: SensorFile,
 }
 
 /// Finish of the work beside a seam.
@@ -115,8 +138,11 @@ impl Default for SceneFile {
     fn default() -> Self {
         Self {
             texture: [SurfaceFinish::Ground; SIDES],
+            right_texture: None,
             light: 0.5,
+            flicker_share: 0.0,
             smear_um: 7.5,
+            field_curvature_um: 0.0,
             gap_mm: 0.125,
             gap_wave_mm: 0.025,
             gap_wave_length_mm: 90.0,
@@ -129,6 +155,13 @@ impl Default for SceneFile {
             late_ms: 0.0,
             scratch: Vec::new(),
             dark: Vec::new(),
+            plate: Vec::new(),
+            joint: Vec::new(),
+            tack: Vec::new(),
+            grooves: Vec::new(),
+            stray_light: Vec::new(),
+            dirt: Vec::new(),
+            sensor: SensorFile::default(),
         }
     }
 }
@@ -171,6 +204,19 @@ impl SceneFile {
     fn values(&self) -> Vec<(String, f64, Range)> {
         let mut values: Vec<(String, f64, Range)> = [
             ("light", self.light, Range::Light),
+            ("flicker_share", self.flicker_share, Range::Share),
+            ("field_curvature_um", self.field_curvature_um, Range::Curvature),
+            (
+                "full_well_factor of sensor",
+                self.sensor.full_well_factor,
+                Range::Factor,
+            ),
+            (
+                "read_noise_factor of sensor",
+                self.sensor.read_noise_factor,
+                Range::Factor,
+            ),
+            ("pattern of sensor", self.sensor.pattern, Range::Share),
             ("smear_um", self.smear_um, Range::Smear),
             ("gap_mm", self.gap_mm, Range::Gap),
             ("gap_wave_mm", self.gap_wave_mm, Range::Gap),
@@ -205,25 +251,44 @@ impl SceneFile {
                 (key("for_ms"), dark.for_ms.unwrap_or(0.0), Range::Dark),
             ]);
         }
+        fn checked(all: &[impl Stretch]) -> impl Iterator<Item = (String, f64, Range)> {
+            all.iter()
+                .enumerate()
+                .flat_map(|(i, stretch)| stretch.checked(i + 1))
+        }
+        values.extend(checked(&self.plate));
+        values.extend(checked(&self.joint));
+        values.extend(checked(&self.tack));
+        values.extend(checked(&self.grooves));
+        values.extend(checked(&self.stray_light));
+        values.extend(checked(&self.dirt));
         values
     }
 }
 
 /// What a value may be.
 #[derive(Clone, Copy)]
-enum Range {
+pub(super) enum Range {
     Along,
     Beside,
     Brightness,
+    Curvature,
     Dark,
+    Edge,
+    Factor,
     Gap,
     Late,
+    Length,
     Light,
     Noise,
+    Pitch,
+    Place,
+    Radius,
     Roll,
     Share,
     Side,
     Smear,
+    Step,
     WaveLength,
     Width,
 }
@@ -236,11 +301,22 @@ impl Range {
             // A picture shows some millimetres.
             Self::Beside => (-100.0, 100.0),
             Self::Brightness => (0.0, 100.0),
+            // As much as the whole picture is deep.
+            Self::Curvature => (-500.0, 500.0),
             Self::Dark => (0.0, 1e9),
+            // A picture shows some millimetres.
+            Self::Edge => (0.0, 1000.0),
+            Self::Factor => (0.01, 100.0),
             Self::Gap | Self::Share => (0.0, 1.0),
             // Long after that the tracker has given up.
             Self::Late => (0.0, 1e4),
+            Self::Length => (0.0, 2.0 * FARTHEST_MM),
             Self::Light => (0.0, 2.0),
+            // Finer ones no camera sees.
+            Self::Pitch => (0.01, 10.0),
+            Self::Place => (-2.0, 2.0),
+            Self::Radius => (0.01, 10.0),
+            Self::Step => (-1.0, 1.0),
             // Beyond half a millimetre nothing of the work is in focus.
             Self::Noise => (0.0, 500.0),
             Self::Roll => (0.0, 15.0),
@@ -258,10 +334,18 @@ impl Range {
             Self::Along => "from -100000 to 100000 mm",
             Self::Beside => "from -100 to 100 mm",
             Self::Brightness => "from 0 to 100",
+            Self::Curvature => "from -500 to 500 µm",
             Self::Dark => "from 0 to 1000000000 ms",
+            Self::Edge => "from 0 to 1000 µm",
+            Self::Factor => "from 0.01 to 100",
             Self::Gap => "from 0 to 1 mm",
             Self::Late => "from 0 to 10000 ms",
+            Self::Length => "0 mm or more",
             Self::Light => "from 0 to 2",
+            Self::Pitch => "from 0.01 to 10 mm",
+            Self::Place => "from -2 to 2",
+            Self::Radius => "from 0.01 to 10",
+            Self::Step => "from -1 to 1 mm",
             Self::Noise => "from 0 to 500 µm",
             Self::Roll => "from 0 to 15 degrees",
             Self::Share => "from 0 to 1",

@@ -1,10 +1,11 @@
 //! Makes the scene to render from what is in the field of view of a camera.
 
+use super::dress::Dress;
 use super::scene_file::SceneFile;
 use super::view::{View, ViewForm};
 use std::f64::consts::TAU;
 use vision::render::{Blob, Gap, Joint, Light, Root, Scene, SplitMix64, Stripe, Texture};
-use vision::{Corner, PlateSeam};
+use vision::{Corner, PhotonTransfer, PlateSeam};
 
 /// How far apart on the texture the two sides are, so that they show different places of it \[mm\].
 const APART_MM: f64 = 3.1;
@@ -20,7 +21,10 @@ pub(super) struct Draw<'a> {
     pub file: &'a SceneFile,
     /// 0 or 1.
     pub side: usize,
-    pub texture: Texture,
+    /// Textures left and right of the seam.
+    pub textures: [Texture; 2],
+    /// Electrons that are calibrated.
+    pub noise: PhotonTransfer,
     /// Whether the light is off.
     pub dark: bool,
 }
@@ -59,8 +63,11 @@ impl Draw<'_> {
             position_mm,
             light: Light::even(if self.dark { 0.0 } else { file.light }),
             smear_mm: 1e-3 * file.smear_um,
-            ..Scene::new(joint, self.texture)
+            ..Scene::new(joint, self.textures[0])
         };
+        if self.textures[1] != self.textures[0] {
+            scene.right_texture = Some(self.textures[1]);
+        }
         if let ViewForm::Corner { .. } = view.form {
             let (width_mm, factor) = CONTACT;
             scene.stripes.push(Stripe {
@@ -73,6 +80,13 @@ impl Draw<'_> {
         if random.chance(file.spatter_share) {
             self.spatter(&mut scene, view, random);
         }
+        let dress = Dress {
+            file,
+            side: self.side,
+            along_mm: view.along_mm,
+            noise: self.noise,
+        };
+        dress.give(&mut scene, random);
         scene
     }
 

@@ -237,8 +237,130 @@ fn a_wrong_scene_is_told_by_key_value_and_what_it_may_be() {
             "[[scratch]]\nside = 1\noffset_mm = 0.2\nwidth_mm = 0.0\nbrightness = 0.5",
             "width_mm of scratch 1 is 0",
         ),
+        (
+            "[[plate]]\nbrightness = 0.1",
+            "side of plate 1 is 0, but must be 1 or 2",
+        ),
+        (
+            "[[plate]]\nside = 1\nplate = \"upper\"",
+            "line 3: unknown variant `upper`",
+        ),
+        (
+            "[[plate]]\nside = 1\n[[plate]]\nside = 2\nchamfer_um = -5",
+            "chamfer_um of plate 2 is -5, but must be from 0 to 1000 µm",
+        ),
+        (
+            "[[tack]]\nside = 1\nwidth_mm = 0.3\nbrightness = 1\nfrom_s_mm = 20\nto_s_mm = 10",
+            "to_s_mm - from_s_mm of tack 1 is -10, but must be 0 mm or more",
+        ),
+        (
+            "[[grooves]]\nside = 1\npitch_mm = 0.1\nwidth_mm = 0.2\nbrightness = 0.1",
+            "pitch_mm - width_mm of grooves 1 is -0.1",
+        ),
+        (
+            "[[joint]]\nside = 2\nstep_mm = 3",
+            "step_mm of joint 1 is 3, but must be from -1 to 1 mm",
+        ),
+        (
+            "[sensor]\nfull_well_factor = 0",
+            "full_well_factor of sensor is 0, but must be from 0.01 to 100",
+        ),
     ] {
         let error = scene(text).unwrap_err();
         assert!(error.contains(said), "{error}");
     }
+}
+
+/// Means of a picture over the left part of it, the right part, and the middle of the row of the seam.
+fn parts(picture: &Picture) -> [f64; 3] {
+    let mean = |rows: std::ops::Range<usize>, columns: std::ops::Range<usize>| {
+        let count = rows.len() * columns.len();
+        let lines = rows.map(|row| &picture.pixels[row * picture.columns..][columns.clone()]);
+        lines.flatten().map(|&x| f64::from(x)).sum::<f64>() / count as f64
+    };
+    let (rows, columns) = (picture.rows, picture.columns);
+    [
+        mean(0..rows, 0..columns / 3),
+        mean(0..rows, 2 * columns / 3..columns),
+        mean(rows / 2 - 5..rows / 2 + 5, columns / 2 - 4..columns / 2 + 4),
+    ]
+}
+
+#[test]
+fn a_stretch_of_the_seam_looks_as_the_file_says() {
+    // Pictures every 2 mm, of 0.7 mm to each side: those at 4, 6 and 8 mm have it.
+    let look = |table: &str| -> Vec<[f64; 3]> {
+        let text = format!("{table}\nside = 1\nfrom_s_mm = 2.9\nto_s_mm = 9.1");
+        let pictures = run(&text, 1, (0..40).step_by(5));
+        pictures.iter().map(|(_, picture)| parts(picture)).collect()
+    };
+    let plain = look("[[plate]]");
+    assert_eq!(plain, look("[[plate]]\nbrightness = 1.0"));
+    // Of the part of a picture that there is most to see in: as bright as without it, times a factor.
+    let check = |table: &str, part: usize, factor: std::ops::Range<f64>| {
+        for (k, (seen, plain)) in look(table).iter().zip(&plain).enumerate() {
+            let ratio = seen[part] / plain[part];
+            let here = [2, 3, 4].contains(&k);
+            let wanted = if here { &factor } else { &(0.99..1.01) };
+            assert!(wanted.contains(&ratio), "{table}, picture {k}: {ratio}");
+        }
+    };
+    check("[[plate]]\nplate = \"left\"\nbrightness = 0.1", 0, 0.08..0.12);
+    check("[[plate]]\nplate = \"left\"\nbrightness = 0.1", 1, 0.99..1.01);
+    check("[[plate]]\nplate = \"right\"\nbrightness = 0.3", 1, 0.28..0.32);
+    check("[[joint]]\ngap_mm = 0.0", 2, 8.0..60.0);
+    check("[[tack]]\nwidth_mm = 0.3\nbrightness = 0.5", 2, 4.0..30.0);
+    check("[[stray_light]]\nveil = 0.25", 0, 1.4..1.6);
+    check("[[stray_light]]\nglare = 0.25\nat = [1, 0]", 1, 1.1..1.6);
+    check(
+        "[[dirt]]\nat = [-0.7, 0]\nradius = 0.5\nfactor = 0.2",
+        0,
+        0.3..0.8,
+    );
+    check(
+        "[[grooves]]\npitch_mm = 0.2\nwidth_mm = 0.1\nbrightness = 0.1",
+        0,
+        0.5..0.6,
+    );
+    check(
+        "[[grooves]]\nrun = \"across\"\npitch_mm = 0.2\nwidth_mm = 0.1\nbrightness = 0.1",
+        1,
+        0.5..0.6,
+    );
+    // A plate that is not there from 2.9 to 9.1 mm: none of it is seen in the middle of that.
+    let missing = look("[[plate]]\nplate = \"right\"\nmissing = true");
+    assert!(missing[3][1] < 0.1 * plain[3][1] && missing[3][0] > 0.99 * plain[3][0]);
+    assert!(missing[0][1] > 0.99 * plain[0][1] && missing[6][1] > 0.99 * plain[6][1]);
+}
+
+#[test]
+fn light_sensor_and_textures_differ_where_the_file_says() {
+    let level = |text: &str| -> Vec<f64> {
+        let pictures = run(text, 1, (0..40).step_by(4));
+        pictures.iter().map(|(_, picture)| parts(picture)[0]).collect()
+    };
+    let deviation = |levels: &[f64]| {
+        let mean = levels.iter().sum::<f64>() / levels.len() as f64;
+        let squares = levels.iter().map(|level| (level / mean - 1.0).powi(2));
+        (squares.sum::<f64>() / levels.len() as f64).sqrt()
+    };
+    assert!(deviation(&level("")) < 0.03);
+    assert!((0.1..0.4).contains(&deviation(&level("flicker_share = 0.2"))));
+    let noisy = |text: &str| {
+        let pictures = run(text, 1, 3..4);
+        let row = pictures[0].1.pixels.chunks_exact(400).next().unwrap().to_vec();
+        row.windows(2)
+            .map(|v| (f64::from(v[0]) - f64::from(v[1])).powi(2))
+            .sum::<f64>()
+    };
+    // The first row is far out of focus: what differs between neighbours is noise.
+    assert!(noisy("[sensor]\nfull_well_factor = 0.1") > 4.0 * noisy(""));
+    assert!(noisy("[sensor]\npattern = 0.03") > 4.0 * noisy(""));
+    let other = run("right_texture = [\"rolled\", \"rolled\"]", 1, 3..4);
+    let same = run("", 1, 3..4);
+    let row = |pictures: &[(Arrival, Picture)]| pictures[0].1.pixels[150 * 400..][..400].to_vec();
+    let (other, same) = (row(&other), row(&same));
+    let differ =
+        |columns: std::ops::Range<usize>| columns.filter(|&k| other[k].abs_diff(same[k]) > 3).count();
+    assert!(differ(0..150) == 0 && differ(250..400) > 75);
 }

@@ -2,7 +2,7 @@
 
 use super::scene_file::SceneFile;
 use camera::nominal_slopes;
-use config::machine::CameraConfig;
+use config::machine::{CameraConfig, JointForm};
 use shared::io::SIDES;
 use shared::tracking::frames::Heads;
 use std::sync::{Arc, LazyLock};
@@ -31,26 +31,25 @@ impl Tiles {
     pub fn of(cameras: &CameraConfig, heads: &Heads, scene: &SceneFile, seed: u64) -> [Self; SIDES] {
         let mut made: Vec<(Recipe, Arc<Making>)> = Vec::new();
         let tiles = std::array::from_fn(|side| {
-            let texture = texture(scene, side, seed);
+            let textures = textures(scene, cameras.joint, side, seed);
             let mount_rad = cameras.mount_deg[side].to_radians();
-            Self(
-                nominal_slopes(cameras.joint, mount_rad, heads, side).map(|slope| {
-                    let recipe = Recipe {
-                        texture,
-                        optics: cameras.optics,
-                        slope,
-                        smear_mm: 1e-3 * scene.smear_um,
-                    };
-                    match made.iter().find(|(other, _)| *other == recipe) {
-                        Some((_, tile)) => tile.clone(),
-                        None => {
-                            let tile: Arc<Making> = Arc::new(LazyLock::new(Box::new(move || recipe.make())));
-                            made.push((recipe, tile.clone()));
-                            tile
-                        }
+            let slopes = nominal_slopes(cameras.joint, mount_rad, heads, side);
+            Self([0, 1].map(|k| {
+                let recipe = Recipe {
+                    texture: textures[k],
+                    optics: cameras.optics,
+                    slope: slopes[k],
+                    smear_mm: 1e-3 * scene.smear_um,
+                };
+                match made.iter().find(|(other, _)| *other == recipe) {
+                    Some((_, tile)) => tile.clone(),
+                    None => {
+                        let tile: Arc<Making> = Arc::new(LazyLock::new(Box::new(move || recipe.make())));
+                        made.push((recipe, tile.clone()));
+                        tile
                     }
-                }),
-            )
+                }
+            }))
         });
         std::thread::spawn(move || {
             for (_, tile) in made {
@@ -73,7 +72,12 @@ impl Recipe {
     }
 }
 
-/// How the work of a side looks close up.
-pub(super) fn texture(scene: &SceneFile, side: usize, seed: u64) -> Texture {
-    Texture::new(scene.texture[side].finish(), seed)
+/// How the work of a side looks close up, left and right of the seam.
+pub(super) fn textures(scene: &SceneFile, joint: JointForm, side: usize, seed: u64) -> [Texture; 2] {
+    let left = Texture::new(scene.texture[side].finish(), seed);
+    match (scene.right_texture, joint) {
+        // Another piece, of whatever finish.
+        (Some(right), JointForm::Gap) => [left, Texture::new(right[side].finish(), !seed)],
+        _ => [left; 2],
+    }
 }
