@@ -271,6 +271,18 @@ fn a_wrong_scene_is_told_by_key_value_and_what_it_may_be() {
     }
 }
 
+#[test]
+fn shipped_scenes_are_understood() {
+    let disturbed = include_str!("../../../../programs/t-seam-400-disturbed.toml");
+    assert_eq!(scene(disturbed).unwrap().scratch.len(), 2);
+    let stretches = scene(include_str!("../../../../programs/t-seam-400-stretches.toml")).unwrap();
+    let [dim, chamfered] = stretches.plate[..] else {
+        panic!("{:?}", stretches.plate);
+    };
+    assert_eq!((dim.side, dim.plate, dim.brightness), (1, Plates::Right, 0.08));
+    assert_eq!((chamfered.plate, chamfered.brightness), (Plates::Left, 1.0));
+}
+
 /// Means of a picture over the left part of it, the right part, and the middle of the row of the seam.
 fn parts(picture: &Picture) -> [f64; 3] {
     let mean = |rows: std::ops::Range<usize>, columns: std::ops::Range<usize>| {
