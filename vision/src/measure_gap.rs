@@ -30,6 +30,9 @@ const SPOILT_MM: f64 = 0.06;
 const PLATE_MM: f64 = 0.25;
 const DIM: [f64; 2] = [0.2, 0.35];
 
+/// Share of a gap in which no texture may be seen: the rest may be a lit wall.
+const DARKEST: f64 = 0.34;
+
 /// Depth of the gap at which it is not trusted, and is. A veil takes as much off it as there is light in the veil.
 const DEPTH: [f64; 2] = [0.3, 0.6];
 
@@ -175,7 +178,7 @@ impl Detector {
         }
         candidates.find(&strip.quiet, g);
         for candidate in candidates.list_mut() {
-            candidate.interior = Interior::of(strip, candidate, g).unwrap_or_default();
+            candidate.interior = Interior::of(strip, candidate, 0.0, g).unwrap_or_default();
             candidate.continuity = continuity.of(layer, line, candidate, strip.slant);
             let lateral = layer.origin_mm[1] + candidate.middle() * g;
             let expected = prior.track.map_or(1.0, |track| {
@@ -188,7 +191,8 @@ impl Detector {
                 * expected;
         }
         let (best, second) = candidates.best()?;
-        let best = without_shadow(strip, best, g);
+        let mut best = without_shadow(strip, best, g);
+        best.interior = Interior::of(strip, &best, DARKEST, g).unwrap_or(best.interior);
         let edges = fit_edges(strip, &best, g)?;
         Some((edges, best, second))
     }

@@ -15,7 +15,10 @@ pub(super) const INSIDE_MM: f64 = 0.010;
 const BESIDE_MM: f64 = 0.03;
 const PLATE_MM: f64 = 0.25;
 
-/// Columns that are judged together \[mm\].
+/// Farthest that differences of texture across the seam reach \[mm\].
+const ACROSS_MM: f64 = 0.010;
+
+/// Columns that are judged together, at least \[mm\].
 const WINDOW_MM: f64 = 0.010;
 
 /// Columns that have to be left of a run after its edges for its texture to be seen.
@@ -27,7 +30,7 @@ const DARKEST: f64 = 0.05;
 const VEILED: f64 = 0.5;
 
 /// Variance of the texture that a surface would have, over that of the noise, below which the two cannot be told apart.
-const UNSURE: f64 = 0.3;
+const UNSURE: f64 = 0.8;
 
 /// What is taken for noise over what the noise is: both are seen in few pixels.
 const NOISE: f32 = 1.5;
@@ -36,7 +39,7 @@ const NOISE: f32 = 1.5;
 const SURFACE: [f64; 2] = [0.30, 0.10];
 
 /// Brightness over the plate at which a run too narrow to show texture is taken for a surface, and is not.
-const BLACK: [f64; 2] = [0.10, 0.05];
+const BLACK: [f64; 2] = [0.24, 0.12];
 
 /// Brightness and texture of a gap over those of a surface that are not the same thing.
 const LIGHTER: f64 = 0.6;
@@ -55,8 +58,8 @@ pub(crate) struct Interior {
 }
 
 impl Interior {
-    /// Inside `run`. None if there is no plate beside it.
-    pub fn of(strip: &Strip, run: &Candidate, pitch_mm: f64) -> Option<Self> {
+    /// Inside `run`, where the darkest `share` of it is. None if there is no plate beside it.
+    pub fn of(strip: &Strip, run: &Candidate, share: f64, pitch_mm: f64) -> Option<Self> {
         let [left, right] = run.edges;
         let bottom = middle_value(&strip.quiet[run.core[0]..=run.core[1]]);
         let unseen = Self {
@@ -69,19 +72,23 @@ impl Interior {
             return Some(unseen);
         }
         let inside = columns(strip, left + inset, right - inset);
-        // Differences across reach a column further.
-        let across = inside.start + 1..inside.end - 1;
+        let reach = ((ACROSS_MM / pitch_mm).round() as usize).clamp(1, 1 + inside.len() / 4);
+        // Differences across reach further.
+        let across = inside.start + reach..inside.end.saturating_sub(reach);
         let [near, far] = [BESIDE_MM, BESIDE_MM + PLATE_MM].map(|mm| mm / pitch_mm);
         let all = 0..if across.is_empty() { 0 } else { strip.values.len() };
         let sides = [
-            Roughness::of(strip, columns(strip, left - far, left - near), &all),
-            Roughness::of(strip, columns(strip, right + near, right + far), &all),
+            Roughness::of(strip, columns(strip, left - far, left - near), &all, reach),
+            Roughness::of(strip, columns(strip, right + near, right + far), &all, reach),
         ];
         let plate = sides.into_iter().flatten().map(|side| side.variance - side.noise);
         let plate = plate.reduce(f32::min)?;
-        let window = ((WINDOW_MM / pitch_mm).round() as usize).clamp(1, inside.len());
+        let window = (WINDOW_MM / pitch_mm).round() as usize;
+        let window = window
+            .max((share * inside.len() as f64) as usize)
+            .clamp(1, inside.len());
         let darkest = (inside.start..=inside.end - window)
-            .filter_map(|first| Roughness::of(strip, first..first + window, &across))
+            .filter_map(|first| Roughness::of(strip, first..first + window, &across, reach))
             .min_by(|a, b| a.brightness.total_cmp(&b.brightness))?;
         let brightness = f64::from(darkest.brightness);
         let least = (DARKEST.max(VEILED * brightness)).powi(2) * f64::from(plate);
@@ -133,7 +140,7 @@ struct Roughness {
 }
 
 impl Roughness {
-    fn of(strip: &Strip, columns: Range<usize>, across: &Range<usize>) -> Option<Self> {
+    fn of(strip: &Strip, columns: Range<usize>, across: &Range<usize>, reach: usize) -> Option<Self> {
         let mut sum = Self {
             brightness: 0.0,
             variance: 0.0,
@@ -141,7 +148,7 @@ impl Roughness {
         };
         let mut count = 0.0;
         for column in columns.filter(|column| strip.seen[*column]) {
-            let of = strip.texture(column);
+            let of = strip.texture(column, reach);
             let across = of.across.filter(|_| across.contains(&column));
             sum.brightness += of.brightness;
             sum.variance += of.along + across.unwrap_or(0.0);
@@ -163,6 +170,6 @@ impl Roughness {
 
 /// Texture of columns over the square of their brightness: of a surface that of the plate, however dark it is.
 pub(super) fn relative_texture(strip: &Strip, columns: Range<usize>) -> Option<f32> {
-    let of = Roughness::of(strip, columns.clone(), &columns)?;
+    let of = Roughness::of(strip, columns.clone(), &columns, 1)?;
     Some(of.excess() / of.brightness.powi(2).max(f32::MIN_POSITIVE))
 }

@@ -25,6 +25,12 @@ const WINDOWS: usize = 9;
 /// Slants of a seam that are tried \[columns a row\].
 const SLANTS: [f64; 5] = [-0.12, -0.06, 0.0, 0.06, 0.12];
 
+/// Groups from one to the next of a second difference along the seam.
+const ALONG: usize = 2;
+
+/// Median of the absolute values of normal numbers, over their standard deviation.
+const MEDIAN: f32 = 0.6745;
+
 /// Noise over what was calibrated that is believed: of coarse pixels it is mostly texture.
 const NOISIEST: f32 = 3.0;
 
@@ -135,8 +141,8 @@ impl Strip {
         })
     }
 
-    /// Brightness and texture of a column, in the strip with its slant taken out.
-    pub fn texture(&self, column: usize) -> Texture {
+    /// Brightness and texture of a column, in the strip with its slant taken out; across the seam over `reach` columns.
+    pub fn texture(&self, column: usize, reach: usize) -> Texture {
         let columns = self.values.len();
         let shifts: [isize; GROUPS] =
             std::array::from_fn(|group| (self.slant * self.offset(group)).round() as isize);
@@ -144,25 +150,32 @@ impl Strip {
             let from = column as isize + shifts[group];
             self.values[from.clamp(0, columns as isize - 1) as usize][group]
         };
-        let count = self.groups as f32;
-        let values: [f32; GROUPS] = std::array::from_fn(|group| value(column, group));
-        let values = &values[..self.groups];
-        let mean = values.iter().sum::<f32>() / count;
-        // Of second differences, which light that changes across the picture leaves small.
-        let bend = |a: f32, b: f32, c: f32| (a - 2.0 * b + c).powi(2) / 6.0;
-        let along = values.windows(3).map(|at| bend(at[0], at[1], at[2])).sum::<f32>();
-        let across = (0 < column && column + 1 < columns).then(|| {
-            let groups = values.iter().enumerate();
-            let bends =
-                groups.map(|(group, here)| bend(value(column - 1, group), *here, value(column + 1, group)));
-            bends.sum::<f32>() / count
+        let mut bends = [0.0; GROUPS];
+        // Second differences, which light that changes across the picture leaves small; the median of them, which no glint
+        // beside the column pulls far.
+        let mut variance = |count: usize, at: &dyn Fn(usize) -> [f32; 3]| {
+            for (k, bend) in bends[..count].iter_mut().enumerate() {
+                let [a, b, c] = at(k);
+                *bend = (a - 2.0 * b + c).abs();
+            }
+            (kth(&mut bends[..count], count / 2) / MEDIAN).powi(2) / 6.0
+        };
+        let apart = ALONG.min((self.groups - 1) / 2);
+        let along = variance(self.groups - 2 * apart, &|k| {
+            [k, k + apart, k + 2 * apart].map(|group| value(column, group))
         });
+        let across = (reach > 0 && reach <= column && column + reach < columns).then(|| {
+            variance(self.groups, &|group| {
+                [column - reach, column, column + reach].map(|column| value(column, group))
+            })
+        });
+        let mean = (0..self.groups).map(|group| value(column, group)).sum::<f32>() / self.groups as f32;
         let (rows, gain) = (self.rows as f32, self.gains[column]);
         let expected = self.calibrated.variance((mean / gain / rows).max(0.0));
         let noise = self.noise[column].min(NOISIEST * expected);
         Texture {
             brightness: mean,
-            along: along / (count - 2.0),
+            along,
             across,
             noise: rows * noise * gain * gain,
         }
