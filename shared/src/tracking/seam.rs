@@ -3,7 +3,7 @@
 use super::frames::{Heads, SpotFrame, meet};
 use super::history::PathSnapshot;
 use super::law::SlideTarget;
-use super::map::{Added, SeamMap};
+use super::map::{Added, Off, SeamMap};
 use super::parameters::TrackerParameters;
 use crate::geometry::{Pose, PoseOffset};
 use crate::io::{SIDES, SLIDES};
@@ -129,6 +129,17 @@ impl Seam {
             self.rejected[side] = self.rejected[side].saturating_add(1);
         } else if added != [Added::TooClose; 2] {
             self.accepted[side] = self.accepted[side].saturating_add(1);
+        }
+    }
+
+    /// How far the spot of `slide`, which will be at `position` \[mm\] in the frame of the planned path, may be off the seam
+    /// at path position `s` \[mm\], by what was seen next to it. `None` where the seam begins ahead.
+    pub fn off(&self, parameters: &TrackerParameters, slide: usize, s: f64, position: f64) -> Option<Off> {
+        let (map, before) = (&self.maps[slide], &self.before[slide]);
+        if map.begins_after(s) && !before.is_empty() {
+            before.off(map, &parameters.map, s, position)
+        } else {
+            map.off(&SeamMap::new(), &parameters.map, s, position)
         }
     }
 
