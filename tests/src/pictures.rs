@@ -17,14 +17,15 @@ const BLIND_DEVIATION_MM: f64 = 0.1;
 
 /// What closed corners change in the shipped machine's file (docs/commissioning.md): the heads are 30° off the skin's normal,
 /// the bisector of skin and rib is 45° off it, and walls take more room in a picture than a gap does.
-const CORNER_CAMERAS: [(&str, &str); 3] = [
+const CORNER_CAMERAS: [(&str, &str); 4] = [
     ("joint = \"gap\"", "joint = \"corner\""),
     ("mount_deg = [-30.0, 30.0]", "mount_deg = [15.0, -15.0]"),
-    ("magnification = 4.0", "magnification = 3.0"),
+    ("magnification = 2.0", "magnification = 3.0"),
+    ("view_mm = [0.5, 0.45]", "view_mm = [0.3, 0.18]"),
 ];
 
 /// The shipped machine, or what closed corners make of it.
-fn machine_for(joint: JointForm) -> MachineFile {
+pub(crate) fn machine_for(joint: JointForm) -> MachineFile {
     if joint == JointForm::Gap {
         return machine();
     }

@@ -9,6 +9,9 @@ pub const MAP_CAPACITY: usize = 128;
 const OUTLIERS_TO_RELOCK: u8 = 3;
 /// Part of the gate that samples on the steepest seam may be off by.
 const STEEP_MARGIN: f64 = 0.25;
+/// Samples are missing between two that lie so many times as far apart as usual: who looks at pictures believes the fourth
+/// of another place, and leaves three out before it.
+const MISSING: f64 = 3.5;
 /// Fewest samples the window should hold before the nearest ones around it are taken instead.
 const FEW: usize = 4;
 
@@ -232,11 +235,11 @@ impl SeamMap {
     /// it, of this map and of `next`, which begins where the seam was found again: by what a straight line through more of
     /// them would hide. `None` before the first sample, where nothing speaks against the map, and if there is none.
     ///
-    /// Samples count as on a straight line between them, as everywhere in a map, while they are no further apart than the
-    /// window. Further apart, a seam that turns one way only lies in the triangle of their chord and the tangents at
+    /// Neighbours that lie as far apart as samples do, `usual` \[mm\], count as joined by a straight line. Where
+    /// several are missing between them, a seam that turns one way only lies in the triangle of their chord and the tangents at
     /// both: no further from the chord than a quarter of its length times the sum of the angles to them. Of what lies beyond
     /// the last sample nothing is known. One sample that is wrong has no say.
-    pub fn off(&self, next: &Self, law: &MapLaw, sigma: f64, position: f64) -> Option<Off> {
+    pub fn off(&self, next: &Self, law: &MapLaw, usual: f64, sigma: f64, position: f64) -> Option<Off> {
         let end = self.samples.partition_point(|s| s.sigma <= sigma);
         let before = self.samples.get(end.checked_sub(1)?)?;
         let ahead = self.samples.get(end..).filter(|ahead| !ahead.is_empty());
@@ -258,7 +261,7 @@ impl SeamMap {
             libm::fmin(least, libm::fabs(*off))
         });
         let way = after.sigma - before.sigma;
-        let unsure = if way > law.window {
+        let unsure = if way > MISSING * libm::fmax(usual, law.spacing) {
             let tangents = [
                 fit(
                     self.within_of(before.sigma - law.window, before.sigma),

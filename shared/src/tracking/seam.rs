@@ -8,6 +8,7 @@ use super::parameters::TrackerParameters;
 use crate::geometry::{Pose, PoseOffset};
 use crate::io::{SIDES, SLIDES};
 use crate::protocol::SideMeasurement;
+use crate::ticks::TRACKER_PERIOD_S;
 use crate::trajectory::Path;
 
 /// Index of the U slide of a side; its V slide is the next.
@@ -133,13 +134,20 @@ impl Seam {
     }
 
     /// How far the spot of `slide`, which will be at `position` \[mm\] in the frame of the planned path, may be off the seam
-    /// at path position `s` \[mm\], by what was seen next to it. `None` where the seam begins ahead.
-    pub fn off(&self, parameters: &TrackerParameters, slide: usize, s: f64, position: f64) -> Option<Off> {
+    /// at path position `s` \[mm\], going there at `speed` \[mm/s\], by what was seen next to it. `None` where the seam begins ahead.
+    pub fn off(
+        &self,
+        parameters: &TrackerParameters,
+        slide: usize,
+        (s, speed): (f64, f64),
+        position: f64,
+    ) -> Option<Off> {
+        let usual = libm::fabs(speed) * f64::from(parameters.frame_ticks) * TRACKER_PERIOD_S;
         let (map, before) = (&self.maps[slide], &self.before[slide]);
         if map.begins_after(s) && !before.is_empty() {
-            before.off(map, &parameters.map, s, position)
+            before.off(map, &parameters.map, usual, s, position)
         } else {
-            map.off(&SeamMap::new(), &parameters.map, s, position)
+            map.off(&SeamMap::new(), &parameters.map, usual, s, position)
         }
     }
 

@@ -195,6 +195,20 @@ fn beams_are_off_before_a_spot_leaves_a_seam_that_jumps_out_of_sight() {
 }
 
 #[test]
+fn beams_are_off_before_a_jump_behind_which_pictures_were_refused() {
+    // An observer does not believe the first four pictures of another place, and the map sees a gap that the seam might go
+    // through on a slant.
+    let seen: fn(usize, f64) -> bool = |_, s| !(200.0..201.8).contains(&s);
+    for speed in [1000.0 / 60.0, FIVE_M_MIN, NINE_M_MIN] {
+        let (fault, worst) = until_off(|_, s| (0.3, if s < 200.0 { 0.1 } else { 0.5 }), seen, speed);
+        assert!(
+            fault.is_some() && worst <= 0.1,
+            "{speed} mm/s: {fault:?}, {worst} mm"
+        );
+    }
+}
+
+#[test]
 fn a_gap_in_what_was_seen_is_bridged_where_the_seam_goes_on_as_before() {
     // Dark for 5 mm, with a kink of 1 % in the dark: seen again before the beam comes to what was seen last.
     let seam: SeamFn = |_, s| (0.005 * (s - 203.0).abs(), 0.1);

@@ -134,7 +134,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             .into_iter()
             .filter_map(|ahead| {
                 let there = position + target.velocity * ahead;
-                self.seam.off(parameters, slide, s + speed * ahead, there)
+                self.seam
+                    .off(parameters, slide, (s + speed * ahead, speed), there)
             })
             .fold(Off::By(0.0), |worst, off| match (worst, off) {
                 (Off::By(a), Off::By(b)) => Off::By(libm::fmax(a, b)),
