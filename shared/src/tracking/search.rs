@@ -3,7 +3,8 @@
 //!
 //! A camera sees a millimetre or so around it, and a real seam may begin some millimetres beside the planned one, higher or
 //! lower. The search goes along rows: U from one end to the other at one height, V on to the next row, no further from
-//! the last than the camera sees up and down together. The row of the planned height comes first.
+//! the last than the camera sees up and down together. The row of the planned height comes first; while the machine goes
+//! it is the only one, for a seam that comes into being on the way is passed there soonest.
 
 use super::law::SlideTarget;
 use crate::ticks::TRACKER_PERIOD_S;
@@ -52,9 +53,9 @@ pub enum Meanwhile {
 /// How far the search of one side has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SeamSearch {
-    /// Control ticks of the search without sight of the seam.
+    /// Control ticks on the way without sight of the seam.
     ticks: u32,
-    /// Those of them since the machine stands.
+    /// And since the machine stands.
     at_rest: u32,
 }
 
@@ -76,25 +77,21 @@ impl SeamSearch {
         if law.none {
             return centre;
         }
-        let given_up = f64::from(self.at_rest) * TRACKER_PERIOD_S > law.longest_at_rest();
-        let goes = match meanwhile {
+        let seconds = |ticks: u32| f64::from(ticks) * TRACKER_PERIOD_S;
+        let (law, ticks, goes) = match meanwhile {
             Meanwhile::Goes => {
                 self.at_rest = 0;
-                true
+                self.ticks = self.ticks.saturating_add(1);
+                (law.level(), self.ticks, true)
             }
+            Meanwhile::Stands if seconds(self.at_rest) > law.longest_at_rest() => return centre,
             Meanwhile::Stands => {
                 self.at_rest = self.at_rest.saturating_add(1);
-                !given_up
+                (*law, self.at_rest, true)
             }
-            Meanwhile::Other => false,
+            Meanwhile::Other => (law.level(), self.ticks, false),
         };
-        if given_up && meanwhile == Meanwhile::Stands {
-            return centre;
-        }
-        if goes {
-            self.ticks = self.ticks.saturating_add(1);
-        }
-        let time = f64::from(self.ticks) * TRACKER_PERIOD_S - BEGIN_AFTER_S;
+        let time = seconds(ticks) - BEGIN_AFTER_S;
         let (now, _) = law.at(time);
         let (_, rate) = law.at(time + law.preview);
         core::array::from_fn(|i| {
@@ -124,6 +121,11 @@ impl SearchLaw {
             preview,
             none: reach == [0.0; 2],
         })
+    }
+
+    /// The row of the planned height alone.
+    fn level(&self) -> Self {
+        Self { rows: 0, ..*self }
     }
 
     /// Time in which all is looked at once, from a beginning in the middle \[s\].
@@ -226,11 +228,11 @@ mod tests {
     }
 
     /// Positions of so many milliseconds.
-    fn sweep(law: &SearchLaw, travels: [(f64, f64); 2], ms: usize) -> Vec<[f64; 2]> {
+    fn sweep(law: &SearchLaw, travels: [(f64, f64); 2], ms: usize, meanwhile: Meanwhile) -> Vec<[f64; 2]> {
         let mut search = SeamSearch::new();
         let mut last = [0.0; 2];
         let place = |_| {
-            let target = search.step(law, REST, travels, Goes);
+            let target = search.step(law, REST, travels, meanwhile);
             for i in 0..2 {
                 let moved = (target[i].position - last[i]).abs();
                 assert!(moved <= law.speed * TRACKER_PERIOD_S + 1e-9, "{moved} mm");
@@ -263,7 +265,7 @@ mod tests {
             let law = law(reach);
             let ms = (law.round_s() * 1000.0).ceil() as usize;
             // Also the second round, from where the first one ended.
-            let places = sweep(&law, [TRAVEL; 2], 2 * ms);
+            let places = sweep(&law, [TRAVEL; 2], 2 * ms - 2, Stands);
             for places in [&places[..ms + 1], &places[ms..]] {
                 for i in 0..=20 {
                     for k in 0..=20 {
@@ -282,22 +284,22 @@ mod tests {
 
     #[test]
     fn it_waits_first_and_without_a_reach_it_rests() {
-        assert!(
-            sweep(&law([3.0, 2.0]), [TRAVEL; 2], 60)
-                .iter()
-                .all(|p| *p == [0.0; 2])
-        );
-        assert!(
-            sweep(&law([0.0; 2]), [TRAVEL; 2], 1000)
-                .iter()
-                .all(|p| *p == [0.0; 2])
-        );
+        for meanwhile in [Goes, Stands] {
+            let rests = |reach, ms| {
+                let places = sweep(&law(reach), [TRAVEL; 2], ms, meanwhile);
+                places.iter().all(|place| *place == [0.0; 2])
+            };
+            assert!(rests([3.0, 2.0], 60) && rests([0.0; 2], 1000));
+        }
+        // On the way at the planned height.
+        let places = sweep(&law([3.0, 2.0]), [TRAVEL; 2], 1000, Goes);
+        assert!(places.iter().all(|p| p[1] == 0.0) && places.iter().any(|p| p[0] < -1.7));
         assert_eq!(SearchLaw::new([3.0, 11.0], [1.2, 0.6], 40.0, 0.005, 0.01), None);
     }
 
     #[test]
     fn it_stays_within_the_travels() {
-        let places = sweep(&law([3.0, 2.0]), [(-1.0, 20.0), (-20.0, 1.0)], 3000);
+        let places = sweep(&law([3.0, 2.0]), [(-1.0, 20.0), (-20.0, 1.0)], 1500, Stands);
         let low = places.iter().fold(0.0, |low: f64, p| low.min(p[0]));
         let high = places.iter().fold(0.0, |high: f64, p| high.max(p[1]));
         assert_eq!((low, high), (-0.5, 0.5));
@@ -315,8 +317,10 @@ mod tests {
         assert!(held[0].position > 1.0 && held[0].velocity == 0.0);
         assert_eq!(step(Other), held);
         let ms = (2.0 * law.round_s() * 1000.0) as usize;
-        for _ in 0..ms {
-            assert_ne!(step(Stands), REST);
+        for k in 0..ms {
+            let looks = step(Stands);
+            // It waits first.
+            assert!(k <= 61 || looks != REST, "{k} ms");
         }
         for _ in 0..10 {
             step(Stands);
