@@ -37,6 +37,9 @@ const STILL: f64 = 1e-6;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SeamSearchFigures {
     lock_mm: f64,
+    /// Slides that are this near to their seams are on them when the beams go on: what is left of the way shrinks with
+    /// their gain \[mm\].
+    soon_mm: f64,
     /// To either side, and above and below \[mm\].
     reach_mm: [f64; 2],
     /// The boards look so long while the machine stands \[s\].
@@ -50,6 +53,7 @@ impl SeamSearchFigures {
         let tracking = &unit.board.tracking;
         Ok(Self {
             lock_mm: tracking.lock_mm,
+            soon_mm: tracking.lock_mm * (tracking.kp * LATENCY_S).exp(),
             reach_mm: [tracking.search_mm, tracking.search_height_mm],
             longest_s: search.longest_at_rest(),
         })
@@ -112,7 +116,8 @@ impl RunIn {
     /// # Errors
     /// [`JobError::SeamNotFound`].
     pub fn watch(&mut self, session: &mut Session, here: &MotionSample) -> Result<Option<Command>, JobError> {
-        let Some((search, missing)) = missing(session) else {
+        let held = self.state != Waiting::NotYet;
+        let Some((search, missing)) = missing(session, held) else {
             return Ok(None);
         };
         let stands = here.speed_mm_s.abs() < STILL && here.state == State::Holding;
@@ -186,15 +191,16 @@ impl RunIn {
 }
 
 /// The search of the machine, and the sides whose seam is not found: it is not in the latest pictures, or the slides are not
-/// where it is. `None` while nothing is tracked.
-fn missing(session: &Session) -> Option<(SeamSearchFigures, [bool; SIDES])> {
+/// where it is, or will not be when the beams go on. `None` while nothing is tracked.
+fn missing(session: &Session, held: bool) -> Option<(SeamSearchFigures, [bool; SIDES])> {
     let tracking = session.tracking.as_ref()?;
     let search = tracking.search;
     let slides = session.record.tracker().back()?;
     if slides.state != TrackerState::Tracking {
         return None;
     }
-    let away = |slide: usize| (slides.target_mm[slide] - slides.slides_mm[slide]).abs() > search.lock_mm;
+    let near_mm = if held { search.lock_mm } else { search.soon_mm };
+    let away = |slide: usize| (slides.target_mm[slide] - slides.slides_mm[slide]).abs() > near_mm;
     let missing =
         std::array::from_fn(|side| !tracking.in_sight(side) || away(2 * side) || away(2 * side + 1));
     Some((search, missing))
