@@ -252,14 +252,10 @@ impl SeamMap {
             (one.y + chord * (sigma - one.sigma) - position, chord)
         };
         let (nearest, chord) = from(before, after);
-        let (second_before, second_after) =
-            (end.checked_sub(2).and_then(|i| self.samples.get(i)), ahead.get(1));
         let without = [
-            second_before.map(|one| from(one, after).0),
-            second_after.map(|other| from(before, other).0),
-            second_before
-                .zip(second_after)
-                .map(|(one, other)| from(one, other).0),
+            end.checked_sub(2)
+                .and_then(|i| Some(from(self.samples.get(i)?, after).0)),
+            ahead.get(1).map(|second| from(before, second).0),
         ];
         let least = without.iter().flatten().fold(libm::fabs(nearest), |least, off| {
             libm::fmin(least, libm::fabs(*off))

@@ -94,7 +94,6 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             let sights = [u, v].map(|slide| self.seam.sight(parameters, slide, snapshot));
             let mut in_plan =
                 [u, v].map(|slide| SlideTarget::rest(self.slides[slide].position + off[slide - u]));
-            let here = in_plan;
             let looks = self.looks(parameters, snapshot, side, off, &sights, [&plan[u], &plan[v]]);
             for (i, sight) in sights.iter().enumerate() {
                 if let Some(target) = self.in_plan(snapshot, u + i, sight, looks[i]) {
@@ -104,14 +103,17 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             let real = head.map_or(in_plan, |head| head.targets(in_plan));
             for (i, sight) in sights.into_iter().enumerate() {
                 let slide = &mut self.slides[u + i];
-                let away = libm::fabs(real[i].position - slide.position);
+                let short = real[i].position - slide.position;
+                let away = libm::fabs(short);
                 let seen = matches!(sight, SeamTarget::Seam(_));
                 slide.arrived |= seen && away <= parameters.map.gate;
                 slide.on_seam = seen && away <= parameters.lock;
                 targets[u + i] = (!matches!(sight, SeamTarget::Lost)).then_some(real[i]);
                 let follows = matches!(sight, SeamTarget::Seam(_) | SeamTarget::Jump(_));
                 if follows && snapshot.speed >= 0.0 {
-                    self.stay_on_seam(parameters, snapshot, u + i, here[i].position, &in_plan[i]);
+                    // As far from its target there as here, where the head may be turned.
+                    let here = in_plan[i].position - short;
+                    self.stay_on_seam(parameters, snapshot, u + i, here, &in_plan[i]);
                 }
             }
         }
