@@ -149,6 +149,9 @@ const FIELDS: &[&str] = &[
     "overlap_mm",
     "readback.tolerance",
     "readback.time_ms",
+    "unlock_mm",
+    "search_height_mm",
+    "view_mm",
 ];
 
 impl ParameterError {

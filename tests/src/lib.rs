@@ -6,6 +6,7 @@ mod hold;
 mod operator;
 mod pictures;
 mod prediction;
+pub mod range;
 mod words;
 
 pub use hold::assert_held_weld_goes_on;
@@ -48,6 +49,9 @@ fn program() -> Program {
 pub fn shipped_seam() -> Deviation {
     Deviation::read(&shipped(SEAM)).expect("the shipped seam")
 }
+
+/// Deviation of u1, v1, u2, v2 over the weld \[mm\].
+pub type SeamShape = fn(f64) -> [f64; 4];
 
 /// A file with a deviation of u1, v1, u2, v2 over the whole weld \[mm\].
 pub fn seam_file(deviation: impl Fn(f64) -> [f64; 4]) -> String {

@@ -15,6 +15,8 @@ pub enum Phase {
     Approaching,
     /// On the path of a weld, with the beams off.
     RunningIn,
+    /// The path is held before a weld, until the slides have found the seams.
+    SearchingSeam,
     /// A beam is on.
     Welding,
     /// Between two welds.
@@ -56,6 +58,7 @@ impl fmt::Display for Phase {
             Self::RelatingClocks => f.write_str("relating the clocks"),
             Self::Approaching => f.write_str("approaching"),
             Self::RunningIn => f.write_str("running in"),
+            Self::SearchingSeam => f.write_str("searching the seam"),
             Self::Welding => f.write_str("welding"),
             Self::MovingOn => f.write_str("moving on"),
             Self::Dwelling => f.write_str("dwelling"),

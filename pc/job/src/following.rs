@@ -1,8 +1,10 @@
 //! A path while the motion board runs it: the rest of it is given, and the machine is watched.
 
 use crate::feeding::{EndedBlock, Feeding};
+use crate::run_in::RunIn;
 use crate::session::{Session, on_path};
 use crate::{JobError, recentring};
+use cam::path::PlannedPath;
 use host_link::Command;
 use host_link::events::{Event, Next, Phase, Question};
 use shared::protocol::{MotionSample, MotionStatus, Request, Role};
@@ -18,12 +20,12 @@ const TICKS_PER_S: u32 = 1000;
 const REACHED: f64 = 1e-3;
 const STILL: f64 = 1e-6;
 
-/// Runs a path of `length_mm` that has been begun as `id` to its end, and gives the rest of it meanwhile; in single
+/// Runs `path`, which has been begun as `id`, to its end, and gives the rest of it meanwhile; in single
 /// block the operator is asked after every block of the program.
 pub(super) fn follow(
     session: &mut Session,
     mut feeding: Feeding,
-    length_mm: f64,
+    path: &PlannedPath,
     id: u32,
 ) -> Result<(), JobError> {
     session.command(Role::Motion, &Request::Run)?;
@@ -34,6 +36,8 @@ pub(super) fn follow(
     // Line of the next block, while the machine waits before that.
     let mut waits: Option<u32> = None;
     let mut standing = Standing::default();
+    let mut run_in = RunIn::new(path);
+    let length_mm = path.length_mm();
     session.go_on_until(|s| {
         feeding.go_on(s)?;
         advance.watch(&s.motion)?;
@@ -53,6 +57,11 @@ pub(super) fn follow(
                 done_mm: here.s_mm,
                 length_mm,
             });
+            if waits.is_none()
+                && let Some(order) = run_in.watch(s, &here)?
+            {
+                standing.hear(Some(&order), s.tick());
+            }
             if let (None, Some(block)) = (waits, feeding.ended_block())
                 && rests_after(&block, &here)
             {
@@ -64,11 +73,15 @@ pub(super) fn follow(
             }
         }
         standing.watch(&s.motion);
-        if standing.held_by_board && waits.is_none() {
+        if standing.held_by_board && waits.is_none() && !run_in.waits() {
             s.question(Question::FeedTooLow);
             welding = false;
         }
-        let order = s.obey(waits.is_some() || standing.for_somebody)?;
+        let for_somebody = standing.for_somebody && !run_in.waits();
+        let order = s.obey(waits.is_some() || for_somebody)?;
+        if let Some(Command::Hold | Command::Back | Command::Resume) = order {
+            run_in.leave();
+        }
         standing.hear(order.as_ref(), s.tick());
         if order == Some(Command::Resume) {
             if let Some(line) = waits.take() {

@@ -11,6 +11,7 @@ mod joint;
 mod operator;
 mod planned;
 mod recentring;
+mod run_in;
 mod run_record;
 mod seam_teaching;
 mod session;
@@ -40,6 +41,7 @@ use host_link::spool::Spooling;
 use nc::Program;
 use parts::PartFile;
 use session::Session;
+use shared::io::SIDES;
 use shared::parameter::ParameterError;
 use shared::protocol::{LOAD_BATCH, Request, Role};
 use shared::state::{Fault, State, TrackerFault, TrackerState};
@@ -168,6 +170,16 @@ pub enum JobError {
         /// How far it is off \[mm\].
         away_mm: f64,
     },
+    /// The slides looked everywhere they may, and a seam is not there.
+    #[error("{}", not_found(sides, *s_mm, reach_mm))]
+    SeamNotFound {
+        /// Those without a seam.
+        sides: [bool; SIDES],
+        /// Path length at which the machine stood \[mm\].
+        s_mm: f64,
+        /// How far to either side of the plan, and above and below it, it was looked for \[mm\].
+        reach_mm: [f64; 2],
+    },
     /// The machine should move, and does not.
     #[error(
         "the machine has stood still for {seconds} s in line {line}, {s_mm:.1} mm along the path, and nothing holds \
@@ -208,6 +220,19 @@ pub enum JobError {
     /// A machine parameter is out of range.
     #[error("a machine parameter is out of range: {0}")]
     Parameter(#[from] ParameterError),
+}
+
+fn not_found(sides: &[bool; SIDES], s_mm: f64, [across, up]: &[f64; 2]) -> String {
+    let side = match sides {
+        [true, true] => "neither side",
+        [true, false] => "side 1 not",
+        [false, _] => "side 2 not",
+    };
+    format!(
+        "{side} found its seam: it was looked for {across} mm to either side of the plan and {up} mm above and below it, \
+         with the tip at s = {s_mm:.1} mm; check that there is a seam where the program has it, camera and lights, or \
+         search farther (search_mm and search_height_mm of the machine file)"
+    )
 }
 
 impl JobError {
@@ -309,7 +334,7 @@ impl Weld {
             session.dwell(path.dwell_before_s)?;
         }
         session.phase(phase);
-        let ran = follow(session, feeding, path.length_mm(), id);
+        let ran = follow(session, feeding, &path, id);
         self.paths.insert(id, path);
         ran.map_err(|error| {
             session.phase(Phase::Stopping);

@@ -4,6 +4,7 @@ use crate::JobError;
 use crate::cameras::{Answer, Moment, SeamCameras};
 use crate::delays::Delays;
 use crate::joint::{JointRecord, SeenSeam};
+use crate::run_in::SeamSearchFigures;
 use crate::session::unexpected;
 use crate::surroundings::Surroundings;
 use cam::path::{CAPACITY, PlannedPath};
@@ -31,6 +32,10 @@ use vision::Form;
 
 /// How often the boards are asked for their clock.
 const CLOCK_PERIOD: Duration = Duration::from_millis(50);
+/// The latest 20 answers, and how many of them have to show a seam for it to be in sight: as many pictures as it takes to
+/// believe it.
+const LATELY: u32 = 0xf_ffff;
+const ENOUGH: u32 = 3;
 /// Paths that are remembered.
 const PATHS: usize = 4;
 /// Strobes that are remembered until their measurements leave.
@@ -72,6 +77,10 @@ pub(super) struct Tracking {
     /// Where the heads are on the tool.
     pub heads: Heads,
     watch: Option<Watch>,
+    /// How the slides look for seams.
+    pub search: SeamSearchFigures,
+    /// Of the latest answers that had each side in sight, a bit each.
+    in_sight: [u32; SIDES],
     /// Planned pose of the newest capture.
     stands: Option<Pose>,
     /// Where the slides were at the strobe of each capture, while somebody asks for that \[mm\].
@@ -114,6 +123,8 @@ impl Tracking {
             clock_difference_us: None,
             heads,
             watch: None,
+            search: SeamSearchFigures::new(unit)?,
+            in_sight: [0; SIDES],
             stands: None,
             clocks: BoardClocks::default(),
             next_clock: boards.now(),
@@ -256,6 +267,9 @@ impl Tracking {
     /// Notes that a measurement has left for the tracker board.
     fn sent(&mut self, answer: &Answer, now: Duration, control: &Control) {
         let measurement = answer.measurement;
+        for (bits, side) in self.in_sight.iter_mut().zip(&measurement.sides) {
+            *bits = *bits << 1 | u32::from(side.is_some());
+        }
         let strobed = |(capture, _): &&(Capture, u64)| capture.number == measurement.capture;
         let strobe = self.strobes.iter().rev().find(strobed);
         let sent = self.clocks.motion_now_us(now.as_micros() as u64);
@@ -270,6 +284,11 @@ impl Tracking {
                 sent_us,
             });
         }
+    }
+
+    /// Whether the seam of `side` was seen lately.
+    pub fn in_sight(&self, side: usize) -> bool {
+        (self.in_sight[side] & LATELY).count_ones() >= ENOUGH
     }
 
     /// From now on the pictures are kept, those strobed from now on.

@@ -215,7 +215,10 @@ fn along_all_paths(error: JobError, here: &impl Fn(f64) -> f64) -> JobError {
 /// A fault of the tracker board with its place as plots and log have it.
 fn placed(fault: TrackerFault, here: &impl Fn(f64) -> f64) -> TrackerFault {
     let mut fault = fault;
-    if let TrackerFault::LostSeam { s_mm, .. } | TrackerFault::SeamNotSeen { s_mm, .. } = &mut fault {
+    if let TrackerFault::LostSeam { s_mm, .. }
+    | TrackerFault::SeamNotSeen { s_mm, .. }
+    | TrackerFault::BesideSeam { s_mm, .. } = &mut fault
+    {
         *s_mm = here(f64::from(*s_mm)) as f32;
     }
     fault

@@ -85,6 +85,14 @@ pub enum SeamError {
 }
 
 impl Deviation {
+    /// No deviation, over `length` \[mm\].
+    pub(crate) fn none(length: f64) -> Self {
+        Self {
+            s: vec![0.0, length],
+            value: vec![[0.0; SLIDES]; 2],
+        }
+    }
+
     /// Reads `s_mm,u1_mm,v1_mm,u2_mm,v2_mm` at `path`.
     pub fn read(path: &Path) -> Result<Self, TableError> {
         Self::parse(&path.display().to_string(), &table::read(path)?)

@@ -7,6 +7,7 @@
 
 pub mod deviation;
 pub mod emulated;
+mod followed;
 mod geometric;
 mod probe;
 mod rendered;
@@ -18,6 +19,7 @@ mod tests;
 
 pub use deviation::{Deviation, SeamError, check_seam};
 pub use emulated::BoardsError;
+pub use followed::{NotFollowed, not_followed};
 pub use geometric::GeometricCameras;
 pub use probe::SimulatedProbe;
 pub use rendered::{

@@ -68,6 +68,8 @@ pub struct TrackingConfig {
     pub gate_mm: f64,
     /// A beam may go on while both slides of its side are no further than this from the seam \[mm\].
     pub lock_mm: f64,
+    /// A beam goes off where its spot would be further than this from the seam by what was measured of it \[mm\].
+    pub unlock_mm: f64,
     /// Preview time t_pre: lag and dead time of the slide drives \[s\].
     pub preview_s: f64,
     /// Time between two strobes \[ms\].
@@ -78,10 +80,14 @@ pub struct TrackingConfig {
     pub stale_path_ms: u32,
     /// Time in saturation that is reported as a fault \[ms\].
     pub saturation_trip_ms: u32,
-    /// While the seam was not seen yet, the U slide looks for it this far to either side \[mm\]; 0 for not at all.
+    /// While the seam was not seen yet, it is looked for this far to either side of the plan \[mm\].
     pub search_mm: f64,
-    /// Speed of that \[mm/s\].
+    /// And this far above and below it \[mm\]; not at all if both are 0.
+    pub search_height_mm: f64,
+    /// Speed of the slides meanwhile \[mm/s\].
     pub search_speed_mm_s: f64,
+    /// What a camera surely sees to either side of where it looks, and above and below that \[mm\].
+    pub view_mm: [f64; 2],
     /// Fastest that any path goes \[mm/s\]; path states with more are rejected.
     pub max_path_speed_mm_s: f64,
     /// How far a seam may lie from its plan, along U and V \[mm\]; what is seen further away is not accepted.

@@ -69,6 +69,16 @@ pub enum TrackerFault {
         /// Path position.
         s_mm: f32,
     },
+    /// A spot would have been beside its seam: that jumps or bends more than the slide follows, or was not seen there.
+    #[error("beam {} went off at s = {s_mm:.1} mm: the spot may be {off_mm:.2} mm beside the seam from there on by {}: the seam jumps, bends too sharply or is out of sight; look at the seam there, go slower, or see to camera and lights", slide / 2 + 1, SLIDE_NAMES[*slide as usize])]
+    BesideSeam {
+        /// Index of the slide.
+        slide: u8,
+        /// How far at most.
+        off_mm: f32,
+        /// Path position.
+        s_mm: f32,
+    },
     /// A slide could not keep up.
     #[error("slide {} was at its speed limit for {ms} ms", SLIDE_NAMES[*slide as usize])]
     Saturated {

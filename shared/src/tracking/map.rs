@@ -9,6 +9,9 @@ pub const MAP_CAPACITY: usize = 128;
 const OUTLIERS_TO_RELOCK: u8 = 3;
 /// Part of the gate that samples on the steepest seam may be off by.
 const STEEP_MARGIN: f64 = 0.25;
+/// Samples are missing between two that lie so many times as far apart as usual: who looks at pictures believes the fourth
+/// of another place, and leaves three out before it.
+const MISSING: f64 = 3.5;
 /// Fewest samples the window should hold before the nearest ones around it are taken instead.
 const FEW: usize = 4;
 
@@ -60,6 +63,15 @@ pub struct Estimate {
     pub value: f64,
     /// Its derivative over path position.
     pub slope: f64,
+}
+
+/// How far a slide may be off the seam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Off {
+    /// So far at most \[mm\].
+    By(f64),
+    /// Any distance: nothing was seen from there on.
+    Lost,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -198,8 +210,13 @@ impl SeamMap {
 
     /// The samples within the window about `sigma`.
     fn within(&self, law: &MapLaw, sigma: f64) -> &[Sample] {
-        let from = self.samples.partition_point(|s| s.sigma < sigma - law.window);
-        let to = self.samples.partition_point(|s| s.sigma <= sigma + law.window);
+        self.within_of(sigma - law.window, sigma + law.window)
+    }
+
+    /// The samples from one path position to another.
+    fn within_of(&self, first: f64, last: f64) -> &[Sample] {
+        let from = self.samples.partition_point(|s| s.sigma < first);
+        let to = self.samples.partition_point(|s| s.sigma <= last);
         self.samples.get(from..to).unwrap_or(&[])
     }
 
@@ -212,6 +229,60 @@ impl SeamMap {
         } else {
             fit(self.nearest(sigma, law.window + law.hold), sigma, law)
         }
+    }
+
+    /// How far a slide that is at `position` \[mm\] at path position `sigma` \[mm\] may be off the seam by the samples next to
+    /// it, of this map and of `next`, which begins where the seam was found again: by what a straight line through more of
+    /// them would hide. `None` before the first sample, where nothing speaks against the map, and if there is none.
+    ///
+    /// Neighbours that lie as far apart as samples do, `usual` \[mm\], count as joined by a straight line. Where
+    /// several are missing between them, a seam that turns one way only lies in the triangle of their chord and the tangents at
+    /// both: no further from the chord than a quarter of its length times the sum of the angles to them. Of what lies beyond
+    /// the last sample nothing is known. One sample that is wrong has no say.
+    pub fn off(&self, next: &Self, law: &MapLaw, usual: f64, sigma: f64, position: f64) -> Option<Off> {
+        let end = self.samples.partition_point(|s| s.sigma <= sigma);
+        let before = self.samples.get(end.checked_sub(1)?)?;
+        let ahead = self.samples.get(end..).filter(|ahead| !ahead.is_empty());
+        let (map, ahead) = ahead.map_or((next, &next.samples[..]), |ahead| (self, ahead));
+        let Some(after) = ahead.first() else {
+            return Some(Off::Lost);
+        };
+        let from = |one: &Sample, other: &Sample| {
+            let chord = (other.y - one.y) / (other.sigma - one.sigma);
+            (one.y + chord * (sigma - one.sigma) - position, chord)
+        };
+        let (nearest, chord) = from(before, after);
+        let without = [
+            end.checked_sub(2)
+                .and_then(|i| Some(from(self.samples.get(i)?, after).0)),
+            ahead.get(1).map(|second| from(before, second).0),
+        ];
+        let least = without.iter().flatten().fold(libm::fabs(nearest), |least, off| {
+            libm::fmin(least, libm::fabs(*off))
+        });
+        let way = after.sigma - before.sigma;
+        let unsure = if way > MISSING * libm::fmax(usual, law.spacing) {
+            let tangents = [
+                fit(
+                    self.within_of(before.sigma - law.window, before.sigma),
+                    before.sigma,
+                    law,
+                ),
+                fit(
+                    map.within_of(after.sigma, after.sigma + law.window),
+                    after.sigma,
+                    law,
+                ),
+            ];
+            let angles = tangents
+                .iter()
+                .flatten()
+                .map(|tangent| libm::fabs(tangent.slope - chord));
+            angles.sum::<f64>() * way / 4.0
+        } else {
+            0.0
+        };
+        Some(Off::By(least + unsure))
     }
 
     /// The up to four samples nearest to `sigma` within `reach`, of two equally near ones the older. They are

@@ -27,10 +27,12 @@ pub struct TrackerParameters {
     pub map: MapLaw,
     /// Limits of plausible datagrams.
     pub plausible: PlausibleLimits,
-    /// How U slides look for a seam that was not seen yet.
+    /// How slides look for a seam that was not seen yet.
     pub search: SearchLaw,
     /// A beam may go on while both slides of its side are no further than this from the seam \[mm\].
     pub lock: f64,
+    /// A beam goes off where its spot would be further than this from the seam as it was measured \[mm\].
+    pub unlock: f64,
     /// Preview time \[s\].
     pub preview: f64,
     /// Control ticks between two strobes.
@@ -92,21 +94,27 @@ impl TrackerConfig {
         }
         let preview = positive("tracking", "preview_s", tracking.preview_s)?;
         // A sweep at the slides' full speed is as fast as it can be.
-        let slowest = slides.iter().step_by(2).map(|u| u.law.max_velocity);
+        let slowest = slides.iter().map(|slide| slide.law.max_velocity);
         let fastest = slowest.fold(f64::INFINITY, f64::min);
         let search_speed = tracking.search_speed_mm_s;
-        let search = SearchLaw {
-            amplitude: not_negative("tracking", "search_mm", tracking.search_mm)?,
-            speed: check("tracking", "search_speed_mm_s", search_speed, |v| {
-                v > 0.0 && v <= fastest
-            })?,
-            preview,
-        };
+        let reach = [
+            not_negative("tracking", "search_mm", tracking.search_mm)?,
+            not_negative("tracking", "search_height_mm", tracking.search_height_mm)?,
+        ];
+        let speed = check("tracking", "search_speed_mm_s", search_speed, |v| {
+            v > 0.0 && v <= fastest
+        })?;
         sensible::check(self)?;
+        let frame = f64::from(tracking.frame_period_ms) * TRACKER_PERIOD_S;
+        let search = SearchLaw::new(reach, tracking.view_mm, speed, frame, preview)
+            .ok_or_else(|| ParameterError::new("tracking", "search_height_mm", reach[1]))?;
         // Spaced so that the map reaches from behind the beam to the camera at any path speed.
         let reach = heads.camera_lead() + 2.0 * window + hold;
         let gate = positive("tracking", "gate_mm", tracking.gate_mm)?;
         let lock = check("tracking", "lock_mm", tracking.lock_mm, |v| v > 0.0 && v <= gate)?;
+        let unlock = check("tracking", "unlock_mm", tracking.unlock_mm, |v| {
+            v >= lock && v <= gate
+        })?;
         let ends = slides.iter().map(|slide| slide.law.travel);
         let furthest = ends.fold(0.0, |most: f64, (min, max)| most.max(-min).max(max));
         // Faster, and no picture would lie within reach of the map.
@@ -148,6 +156,7 @@ impl TrackerConfig {
             },
             search,
             lock,
+            unlock,
             plausible,
             preview,
             frame_ticks: tracking.frame_period_ms,

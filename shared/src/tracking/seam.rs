@@ -3,11 +3,12 @@
 use super::frames::{Heads, SpotFrame, meet};
 use super::history::PathSnapshot;
 use super::law::SlideTarget;
-use super::map::{Added, SeamMap};
+use super::map::{Added, Off, SeamMap};
 use super::parameters::TrackerParameters;
 use crate::geometry::{Pose, PoseOffset};
 use crate::io::{SIDES, SLIDES};
 use crate::protocol::SideMeasurement;
+use crate::ticks::TRACKER_PERIOD_S;
 use crate::trajectory::Path;
 
 /// Index of the U slide of a side; its V slide is the next.
@@ -129,6 +130,24 @@ impl Seam {
             self.rejected[side] = self.rejected[side].saturating_add(1);
         } else if added != [Added::TooClose; 2] {
             self.accepted[side] = self.accepted[side].saturating_add(1);
+        }
+    }
+
+    /// How far the spot of `slide`, which will be at `position` \[mm\] in the frame of the planned path, may be off the seam
+    /// at path position `s` \[mm\], going there at `speed` \[mm/s\], by what was seen next to it. `None` where the seam begins ahead.
+    pub fn off(
+        &self,
+        parameters: &TrackerParameters,
+        slide: usize,
+        (s, speed): (f64, f64),
+        position: f64,
+    ) -> Option<Off> {
+        let usual = libm::fabs(speed) * f64::from(parameters.frame_ticks) * TRACKER_PERIOD_S;
+        let (map, before) = (&self.maps[slide], &self.before[slide]);
+        if map.begins_after(s) && !before.is_empty() {
+            before.off(map, &parameters.map, usual, s, position)
+        } else {
+            map.off(&SeamMap::new(), &parameters.map, usual, s, position)
         }
     }
 

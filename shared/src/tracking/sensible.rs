@@ -27,6 +27,8 @@ const PREVIEWS_S: RangeInclusive<f64> = 1e-3..=0.2;
 const FRAMES_MS: RangeInclusive<f64> = 1.0..=1000.0;
 /// Left alone \[mm\]: more than this is no seam followed.
 const DEAD_BANDS_MM: RangeInclusive<f64> = 0.0..=0.5;
+/// What a camera sees around where it looks \[mm\].
+const VIEWS_MM: RangeInclusive<f64> = 0.05..=100.0;
 /// Path states come every ms: two may be lost, and longer than half a second is a stop of the whole machine \[ms\].
 const STALE_MS: RangeInclusive<f64> = 3.0..=500.0;
 /// Time in saturation \[ms\].
@@ -35,12 +37,15 @@ const SATURATIONS_MS: RangeInclusive<f64> = 1.0..=5000.0;
 /// Checks all of a configuration that can be built.
 pub fn check(config: &TrackerConfig) -> Result<(), ParameterError> {
     within("head", "camera_lead_mm", config.head.camera_lead_mm, LEADS_MM)?;
-    let mut narrowest = f64::INFINITY;
+    let (mut narrowest, mut lowest) = (f64::INFINITY, f64::INFINITY);
     for (number, slide) in config.slides.iter().enumerate() {
         check_slide(SLIDE_NAMES[number], slide)?;
-        if number % 2 == 0 {
-            narrowest = libm::fmin(narrowest, slide.travel_max_mm - slide.travel_min_mm);
-        }
+        let least = if number % 2 == 0 {
+            &mut narrowest
+        } else {
+            &mut lowest
+        };
+        *least = libm::fmin(*least, slide.travel_max_mm - slide.travel_min_mm);
     }
     let tracking = &config.tracking;
     let of = |field, value, range| within("tracking", field, value, range);
@@ -59,6 +64,10 @@ pub fn check(config: &TrackerConfig) -> Result<(), ParameterError> {
         SATURATIONS_MS,
     )?;
     of("search_mm", tracking.search_mm, 0.0..=narrowest)?;
+    of("search_height_mm", tracking.search_height_mm, 0.0..=lowest)?;
+    for view in tracking.view_mm {
+        of("view_mm", view, VIEWS_MM)?;
+    }
     Ok(())
 }
 

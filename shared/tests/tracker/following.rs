@@ -1,7 +1,8 @@
 //! How near the spots stay to the seam.
 
 use crate::bench::{Bench, SeamFn, Shape, config};
-use shared::state::TrackerState;
+use shared::protocol::BeamPermit;
+use shared::state::{TrackerFault, TrackerState};
 
 const FIVE_M_MIN: f64 = 5000.0 / 60.0;
 const NINE_M_MIN: f64 = 150.0;
@@ -110,7 +111,6 @@ fn a_seam_that_jumps_is_followed_to_the_jump_and_locked_on_to_anew_behind_it() {
         bench.tracking = true;
         bench.speed = FIVE_M_MIN;
         while bench.s < 300.0 {
-            bench.beams = [bench.s > 40.0; 2];
             bench.tick();
             assert_eq!(bench.last.sample.fault, None, "{} mm", bench.s);
             let s = bench.s_now();
@@ -120,6 +120,104 @@ fn a_seam_that_jumps_is_followed_to_the_jump_and_locked_on_to_anew_behind_it() {
             }
         }
         assert_eq!(bench.status().rejected, [3, 3]);
+    }
+}
+
+/// Welds along a seam that is not to be followed, until its beams have no permit any more; the fault, and how far a spot
+/// was beside its seam until the motion board had to have the beams off.
+fn until_off(seam: SeamFn, visible: fn(usize, f64) -> bool, speed: f64) -> (Option<TrackerFault>, f64) {
+    let mut bench = Bench::new(Shape::Straight, seam);
+    bench.noise = NOISE;
+    bench.visible = visible;
+    let mut config = config();
+    // As shipped.
+    (config.tracking.lock_mm, config.tracking.unlock_mm) = (0.05, 0.08);
+    config.tracking.max_seam_slope = 0.2;
+    bench.prepare_with(config);
+    bench.tracking = true;
+    bench.speed = speed;
+    let (mut worst, mut left_ms) = (0.0f64, 5);
+    while bench.s < 300.0 && left_ms > 0 {
+        bench.beams = [bench.s > 40.0; 2];
+        bench.tick();
+        if bench.beams[0] {
+            worst = bench
+                .spot_errors()
+                .iter()
+                .fold(worst, |worst, off| worst.max(off.abs()));
+            let permit = bench.last.permit.expect("the motion board is heard");
+            left_ms -= u32::from(permit.sides[0] == BeamPermit::No);
+        }
+    }
+    (bench.last.sample.fault, worst)
+}
+
+#[test]
+fn beams_are_off_before_a_spot_is_a_tenth_beside_a_seam_that_jumps() {
+    let seams: [SeamFn; 6] = [
+        |_, s| (if s < 200.0 { 0.3 } else { 2.3 }, 0.1),
+        |_, s| (if s < 200.0 { 0.3 } else { -0.3 }, 0.1),
+        |_, s| (if s < 200.0 { 0.3 } else { 0.6 }, 0.1),
+        |_, s| (0.3, if s < 200.0 { 0.1 } else { 0.5 }),
+        |_, s| (if s < 200.0 { 0.3 } else { 0.45 }, 0.1),
+        // A kink of 30 %, which a line through 6 mm rounds by 0.17 mm.
+        |_, s| (0.15 * (s.clamp(180.0, 220.0) - 200.0).abs(), 0.1),
+    ];
+    for speed in [1000.0 / 60.0, FIVE_M_MIN, NINE_M_MIN] {
+        for (number, seam) in seams.into_iter().enumerate() {
+            let (fault, worst) = until_off(seam, |_, _| true, speed);
+            // 0.15 mm within what a line through 6 mm rounds off may pass.
+            assert!(
+                matches!(
+                    fault,
+                    Some(TrackerFault::BesideSeam { .. } | TrackerFault::LostSeam { .. })
+                ) || number == 4,
+                "seam {number} at {speed} mm/s: {fault:?}, {worst} mm"
+            );
+            assert!(worst <= 0.1, "seam {number} at {speed} mm/s: {worst} mm");
+        }
+    }
+}
+
+#[test]
+fn beams_are_off_before_a_spot_leaves_a_seam_that_jumps_out_of_sight() {
+    // Nothing is seen from the jump on; or again from 7 mm further.
+    let seen: [fn(usize, f64) -> bool; 2] = [|_, s| s < 200.0, |_, s| !(200.0..207.0).contains(&s)];
+    for (number, visible) in seen.into_iter().enumerate() {
+        for speed in [1000.0 / 60.0, FIVE_M_MIN, NINE_M_MIN] {
+            let (fault, worst) = until_off(|_, s| (if s < 200.0 { 0.3 } else { 0.9 }, 0.1), visible, speed);
+            assert!(
+                fault.is_some() && worst <= 0.1,
+                "{number} at {speed} mm/s: {fault:?}, {worst} mm"
+            );
+        }
+    }
+}
+
+#[test]
+fn beams_are_off_before_a_jump_behind_which_pictures_were_refused() {
+    // An observer does not believe the first four pictures of another place, and the map sees a gap that the seam might go
+    // through on a slant.
+    let seen: fn(usize, f64) -> bool = |_, s| !(200.0..201.8).contains(&s);
+    for speed in [1000.0 / 60.0, FIVE_M_MIN, NINE_M_MIN] {
+        let (fault, worst) = until_off(|_, s| (0.3, if s < 200.0 { 0.1 } else { 0.5 }), seen, speed);
+        assert!(
+            fault.is_some() && worst <= 0.1,
+            "{speed} mm/s: {fault:?}, {worst} mm"
+        );
+    }
+}
+
+#[test]
+fn a_gap_in_what_was_seen_is_bridged_where_the_seam_goes_on_as_before() {
+    // Dark for 5 mm, with a kink of 1 % in the dark: seen again before the beam comes to what was seen last.
+    let seam: SeamFn = |_, s| (0.005 * (s - 203.0).abs(), 0.1);
+    for speed in [1000.0 / 60.0, FIVE_M_MIN, NINE_M_MIN] {
+        let (fault, worst) = until_off(seam, |_, s| !(200.0..205.0).contains(&s), speed);
+        assert!(
+            fault.is_none() && worst <= 0.06,
+            "{speed} mm/s: {fault:?}, {worst} mm"
+        );
     }
 }
 

@@ -162,7 +162,7 @@ fn tick(bench: &mut Bench, extremes: &mut Extremes) {
 #[test]
 fn one_bad_datagram_here_and_there_makes_no_fault_and_moves_no_spot_far() {
     let good = welding(sine);
-    let mut worst = 0.0f64;
+    let (mut worst, mut beside) = (0.0f64, 0);
     for seed in 0..150 {
         let mut random = Random(seed);
         let (mut bench, mut extremes) = (good.clone(), Extremes::default());
@@ -173,17 +173,24 @@ fn one_bad_datagram_here_and_there_makes_no_fault_and_moves_no_spot_far() {
                 let arrived = bench.now_us() + 100;
                 bench.controller.datagram(&datagram, arrived);
             }
+            if let Some(TrackerFault::BesideSeam { .. }) = extremes.fault {
+                beside += 1;
+                break;
+            }
             assert_eq!(extremes.fault, None, "seed {seed} at {} mm", bench.s);
+        }
+        worst = worst.max(extremes.off);
+        if extremes.fault.is_some() {
+            continue;
         }
         assert_eq!(bench.controller.state(), TrackerState::Tracking, "seed {seed}");
         let status = bench.status();
         assert!(status.implausible_path_states > 0 && status.implausible_clock_replies > 0);
-        worst = worst.max(extremes.off);
     }
     // A measurement within what a camera sees, of the right capture and before the true one, cannot be
-    // distinguished from it.
-    println!("5 % forged: {worst:.3} mm at most");
-    assert!(worst <= 0.35, "{worst} mm");
+    // distinguished from it: two in a row may send a slide beside the seam, and end the weld.
+    println!("5 % forged: {worst:.3} mm at most, {beside} ended with their beams off");
+    assert!(worst <= 0.2 && beside <= 7, "{worst} mm, {beside}");
 }
 
 #[test]
@@ -315,11 +322,15 @@ fn measurements_that_drift_lead_no_further_than_a_seam_may_lie_and_no_faster() {
         println!("a drift of {drift}: {furthest:.2} mm, {:?}", extremes.fault);
         // The soft limit, and what a slide continues within the lag of its drive.
         assert!(furthest <= 12.5, "{furthest} mm");
-        if drift > 0.3 {
+        if drift >= 0.3 {
             assert!(
                 matches!(
                     extremes.fault,
-                    Some(TrackerFault::LostSeam { .. } | TrackerFault::Saturated { .. })
+                    Some(
+                        TrackerFault::LostSeam { .. }
+                            | TrackerFault::BesideSeam { .. }
+                            | TrackerFault::Saturated { .. }
+                    )
                 ),
                 "{drift}: {:?}",
                 extremes.fault

@@ -217,7 +217,7 @@ fn a_beam_that_burns_where_no_seam_was_seen_is_reported_with_its_side() {
 }
 
 #[test]
-fn a_lost_seam_is_reported_where_the_map_ends_and_only_that_side_stops() {
+fn a_lost_seam_is_reported_where_it_was_seen_last_and_only_that_side_stops() {
     let mut bench = ready();
     bench.visible = |side, s| side == 0 || s < 100.0;
     bench.tracking = true;
@@ -226,7 +226,7 @@ fn a_lost_seam_is_reported_where_the_map_ends_and_only_that_side_stops() {
         bench.tick();
     }
     bench.beams = [true; 2];
-    while bench.s < 103.0 {
+    while bench.s < 98.5 {
         bench.tick();
         assert_eq!(bench.last.sample.fault, None, "s = {}", bench.s);
     }
@@ -236,8 +236,8 @@ fn a_lost_seam_is_reported_where_the_map_ends_and_only_that_side_stops() {
     let Some(TrackerFault::LostSeam { side: 1, s_mm }) = bench.last.sample.fault else {
         panic!("{:?}", bench.last.sample.fault);
     };
-    // Window and hold of 5 mm beyond the last sample before 100 mm.
-    assert!((103.5..=105.5).contains(&s_mm), "{s_mm}");
+    // The last sample lies before 100 mm, and a beam burns on for 6 ms.
+    assert!((98.5..=100.0).contains(&s_mm), "{s_mm}");
     assert_eq!(bench.controller.state(), TrackerState::Tracking);
     assert_eq!(bench.last.sample.dac[2..], [0, 0]);
     assert!((bench.plant.truth()[0] - 0.2).abs() < 0.005);

@@ -1,8 +1,8 @@
 //! Checks of a machine file that the boards cannot do: that it is complete, and what only the PC uses.
 
-use super::{CameraConfig, MachineFile, Mistake, PlanningConfig};
+use super::{CameraConfig, MachineFile, Mistake, PlanningConfig, TrackingUnit};
 use crate::{RangeError, in_range};
-use shared::io::{AXES, AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
+use shared::io::{AXES, AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES, MOTORS, SIDES};
 use std::borrow::Cow;
 
 /// The second motor of X, which only a gantry has.
@@ -15,6 +15,7 @@ pub fn machine(machine: &MachineFile) -> Result<(), Mistake> {
     park(machine)?;
     if let Some(unit) = &machine.tracking {
         cameras(&unit.cameras)?;
+        view(unit)?;
     }
     if let Some(probe) = &machine.probe {
         probe.build().map_err(|error| error.within("probe"))?;
@@ -52,6 +53,27 @@ fn same(machine: &MachineFile, key: &str, told: bool, fitted: bool) -> Result<()
         (true, false) => Err(Mistake::NoSuchAxis { key, machine }),
         (true, true) | (false, false) => Ok(()),
     }
+}
+
+/// What the search takes a camera to see lies in its picture, as it is turned against the slides.
+fn view(unit: &TrackingUnit) -> Result<(), Mistake> {
+    let (optics, [u, v]) = (&unit.cameras.optics, unit.board.tracking.view_mm);
+    let pixel = optics.object_pixel_mm();
+    let across = optics.columns as f64 * pixel / 2.0;
+    let up = optics.rows as f64 * pixel * optics.tilt_rad.sin() / 2.0;
+    for side in 0..SIDES {
+        let camera = unit.cameras.nominal(side);
+        for v in [v, -v] {
+            let [lateral, height] = camera.camera_step(u, v).map(f64::abs);
+            in_range(
+                "tracking.view_mm",
+                if height > up { v.abs() } else { u },
+                lateral <= across && height <= up,
+                "less: that rectangle is not in the pictures of cameras.optics, turned by mount_deg",
+            )?;
+        }
+    }
+    Ok(())
 }
 
 fn cameras(cameras: &CameraConfig) -> Result<(), Mistake> {

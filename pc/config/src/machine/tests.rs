@@ -281,7 +281,7 @@ fn cameras_are_as_drawn_until_they_are_calibrated() {
     };
     let drawn = cameras(SHIPPED);
     assert_eq!(drawn.joint, JointForm::Gap);
-    assert!((drawn.optics.object_pixel_mm() - 0.00345).abs() < 1e-12);
+    assert!((drawn.optics.object_pixel_mm() - 0.0069).abs() < 1e-12);
     let [first, second] = drawn.calibrations(Path::new("none")).unwrap();
     assert_eq!((first, second), (drawn.nominal(0), drawn.nominal(1)));
     // Both look along the normal of the skin: what is across for one is across for the other, mirrored in the heads.

@@ -74,7 +74,7 @@ pub enum WeakProtection {
     },
     /// A beam goes on for long without sight of its seam.
     #[error(
-        "window_mm and hold_mm of tracking are {way_mm} mm together: a beam goes this far while its seam is not seen; usual values are up to {BLIND_MM}"
+        "window_mm and hold_mm of tracking are {way_mm} mm together: a beam goes over twice this way between two places where its seam was seen; usual values are up to {BLIND_MM}"
     )]
     LostSeam {
         /// The way \[mm\].

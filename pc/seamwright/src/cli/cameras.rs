@@ -32,6 +32,11 @@ enum Camera {
 }
 
 impl CameraArgs {
+    /// Whether they measure in pictures.
+    pub fn pictures(&self) -> bool {
+        self.camera == Camera::Images
+    }
+
     /// The first option that has no meaning without pictures, if one is given.
     pub fn of_pictures(&self) -> Option<&'static str> {
         let told = [

@@ -2,7 +2,7 @@
 
 use super::read_program;
 use crate::console::{out, outln};
-use anyhow::Context;
+use anyhow::{Context, bail};
 use cam::dry_run;
 use cam::dry_run::DryRun;
 use cam::path::{Blocks, PlannedPath, Planner};
@@ -10,10 +10,9 @@ use clap::Args;
 use config::machine::MachineFile;
 use nc::Motion;
 use std::path::PathBuf;
-use world::check_seam;
-use world::{Deviation, SeamError};
+use world::{Deviation, SeamError, check_seam, not_followed};
 
-/// Check a program against a machine: travel, speeds, and the reach of the slides
+/// Check a program against a machine: travel, speeds, the reach of the slides, and what the cameras see of a seam
 #[derive(Debug, Args)]
 pub struct Check {
     /// NC program
@@ -53,6 +52,20 @@ impl Check {
         let ran = dry_run::run(&machine, &planner, &paths, 1.0).with_context(|| format!("program {name}"))?;
         print(&paths, &ran);
         print_weakened(&machine);
+        let found = not_followed(&paths, &machine, seam.as_ref())?;
+        if !found.is_empty() {
+            let seam = self.seam.as_deref();
+            let of = seam.map_or(format!("program {name}"), |seam| {
+                format!("seam {}", seam.display())
+            });
+            for found in &found {
+                outln!("cannot be followed by cameras: {found}");
+            }
+            bail!(
+                "{of} cannot be followed by cameras in {} places, see above",
+                found.len()
+            );
+        }
         Ok(())
     }
 }

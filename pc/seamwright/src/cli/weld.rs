@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use teach::write_points;
-use world::{Deviation, DrawingError, SeamError, Surroundings};
+use world::{Deviation, DrawingError, SeamError, Surroundings, not_followed};
 
 /// Names of the planned program and of the taught points in the report.
 const PROGRAM: &str = "program.ngc";
@@ -103,7 +103,12 @@ impl Weld {
             // Of a seam what is programmed from there on is judged; every other part is judged as a whole.
             part = part.filter(|part| part.t_seam().is_some());
         }
-        let seam = self.seam.as_deref().map(Deviation::read).transpose()?;
+        let seam = self
+            .seam
+            .as_deref()
+            .map(Deviation::read)
+            .transpose()?
+            .map(Arc::new);
         let drawing = match &self.seam_of {
             Some(file) => Some(read_program(file, self.block_delete)?),
             None => None,
@@ -120,7 +125,7 @@ impl Weld {
             speed_m_per_min: self.speed,
             from_line: self.from_line,
             surroundings: Surroundings {
-                seam: seam.map(Arc::new),
+                seam: seam.clone(),
                 drawing: drawing.map(Arc::new),
                 cameras: cameras.clone(),
                 seed: self.seed,
@@ -138,7 +143,7 @@ impl Weld {
                 boards: self.boards.name(),
             },
         };
-        self.check(&job)?;
+        self.check(&job, seam.as_deref())?;
         report::prepare(&self.report)?;
         let keepers = self.cameras.keep(&cameras)?;
         let operator = Operator::SaysWords {
@@ -225,7 +230,7 @@ impl Weld {
 
     /// Whether the machine can run the program and the slides reach the seam, from the park position. The boards
     /// are asked to move only if so.
-    fn check(&self, job: &Job) -> anyhow::Result<()> {
+    fn check(&self, job: &Job, seam: Option<&Deviation>) -> anyhow::Result<()> {
         let planner = Planner::build(job.machine)
             .with_context(|| format!("machine file {}", self.machine.display()))?;
         let program = match (job.work, job.part) {
@@ -260,7 +265,13 @@ impl Weld {
             }
             _ => format!("program {}", job.names.program),
         };
-        planned.map(drop).context(owner)
+        let paths = planned.context(owner)?;
+        if self.seam_of.is_none() && self.cameras.pictures() {
+            for found in not_followed(&paths, job.machine, seam)? {
+                errln!("seamwright: warning: {found}");
+            }
+        }
+        Ok(())
     }
 }
 

@@ -2,14 +2,21 @@
 
 use super::TrackerController;
 use crate::io::{Command, DacCode, SIDES, SLIDES, SlideCommand};
+use crate::protocol::PERMIT_US;
 use crate::state::{TrackerFault, TrackerState};
 use crate::tracking::history::PathSnapshot;
 use crate::tracking::law::{LawFlag, SlideTarget};
+use crate::tracking::map::Off;
 use crate::tracking::parameters::TrackerParameters;
 use crate::tracking::seam::{RealHead, SeamTarget, plan};
+use crate::tracking::search::Meanwhile;
 
 /// A slide that should go beyond its travel and is as near as this to the end has gone as far as it can \[mm\].
 const AT_THE_END: f64 = 0.1;
+/// A path that goes no faster stands \[mm/s\].
+const STANDS: f64 = 1e-3;
+/// A beam may still burn for so long when its permit is withdrawn: until the last one given has ended, a tick after it \[s\].
+const BURNS_ON_S: f64 = PERMIT_US as f64 * 1e-6 + 1e-3;
 
 impl<const KNOTS: usize> TrackerController<KNOTS> {
     /// Ready and tracking: one tick of the control law toward seam, plan or rest.
@@ -87,34 +94,119 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             let sights = [u, v].map(|slide| self.seam.sight(parameters, slide, snapshot));
             let mut in_plan =
                 [u, v].map(|slide| SlideTarget::rest(self.slides[slide].position + off[slide - u]));
+            let looks = self.looks(parameters, snapshot, side, off, &sights, [&plan[u], &plan[v]]);
             for (i, sight) in sights.iter().enumerate() {
-                if let Some(target) = self.in_plan(parameters, snapshot, (u + i, off[i]), sight, &plan[u + i])
-                {
+                if let Some(target) = self.in_plan(snapshot, u + i, sight, looks[i]) {
                     in_plan[i] = target;
                 }
             }
             let real = head.map_or(in_plan, |head| head.targets(in_plan));
             for (i, sight) in sights.into_iter().enumerate() {
                 let slide = &mut self.slides[u + i];
-                let away = libm::fabs(real[i].position - slide.position);
+                let short = real[i].position - slide.position;
+                let away = libm::fabs(short);
                 let seen = matches!(sight, SeamTarget::Seam(_));
                 slide.arrived |= seen && away <= parameters.map.gate;
                 slide.on_seam = seen && away <= parameters.lock;
                 targets[u + i] = (!matches!(sight, SeamTarget::Lost)).then_some(real[i]);
+                let follows = matches!(sight, SeamTarget::Seam(_) | SeamTarget::Jump(_));
+                if follows && snapshot.speed >= 0.0 {
+                    // As far from its target there as here, where the head may be turned.
+                    let here = in_plan[i].position - short;
+                    self.stay_on_seam(parameters, snapshot, u + i, here, &in_plan[i]);
+                }
             }
         }
         targets
     }
 
-    /// Where a slide should be in the frame of the plan, by what its camera saw; `off` is how far its spot is off the
-    /// planned place \[mm\]. `None` where the seam was lost.
-    fn in_plan(
+    /// A beam goes off before its spot is beside the seam, and does not go on there: by what was seen of where it would be
+    /// until a permit that is withdrawn now has ended. The slide is at `position` \[mm\] in the frame of the plan, and
+    /// goes on with its target.
+    fn stay_on_seam(
         &mut self,
         parameters: &TrackerParameters,
         snapshot: &PathSnapshot,
-        (slide, off): (usize, f64),
+        slide: usize,
+        position: f64,
+        target: &SlideTarget,
+    ) {
+        let (s, speed) = (snapshot.s, snapshot.speed);
+        let worst = [0.0, BURNS_ON_S]
+            .into_iter()
+            .filter_map(|ahead| {
+                let there = position + target.velocity * ahead;
+                self.seam
+                    .off(parameters, slide, (s + speed * ahead, speed), there)
+            })
+            .fold(Off::By(0.0), |worst, off| match (worst, off) {
+                (Off::By(a), Off::By(b)) => Off::By(libm::fmax(a, b)),
+                _ => Off::Lost,
+            });
+        let s_mm = s as f32;
+        let fault = match worst {
+            Off::By(off) if off <= parameters.unlock => return,
+            Off::By(off) => TrackerFault::BesideSeam {
+                slide: slide as u8,
+                off_mm: off as f32,
+                s_mm,
+            },
+            Off::Lost => TrackerFault::LostSeam {
+                side: slide as u8 / 2,
+                s_mm,
+            },
+        };
+        self.slides[slide].on_seam = false;
+        if snapshot.beams[slide / 2] {
+            self.report(fault);
+        }
+    }
+
+    /// Where the slides of `side` look for a seam that neither its picture nor the map shows, in the frame of the plan: about
+    /// where they met it last, or the plan. `off` is how far the spot is off its planned place \[mm\].
+    fn looks(
+        &mut self,
+        parameters: &TrackerParameters,
+        snapshot: &PathSnapshot,
+        side: usize,
+        off: [f64; 2],
+        sights: &[SeamTarget; 2],
+        plan: [&SlideTarget; 2],
+    ) -> [SlideTarget; 2] {
+        let last = [0, 1].map(|i| match sights[i] {
+            SeamTarget::Nowhere(last) => (true, last),
+            _ => (false, None),
+        });
+        let about = [0, 1].map(|i| last[i].1.unwrap_or(*plan[i]));
+        if !(last[0].0 && last[1].0) {
+            return about;
+        }
+        let never_met = last[0].1.is_none() && last[1].1.is_none();
+        let meanwhile = if snapshot.beams[side] {
+            Meanwhile::Other
+        } else if snapshot.speed > STANDS {
+            Meanwhile::Goes
+        } else if never_met && snapshot.speed >= -STANDS {
+            Meanwhile::Stands
+        } else {
+            Meanwhile::Other
+        };
+        // The travels, seen from where the planned path would have the head.
+        let travels = [0, 1].map(|i| {
+            let (min, max) = parameters.slides[2 * side + i].law.travel;
+            (min + off[i], max + off[i])
+        });
+        self.seam_searches[side].step(&parameters.search, about, travels, meanwhile)
+    }
+
+    /// Where a slide should be in the frame of the plan, by what its camera saw, or where it `looks` for the seam. `None`
+    /// where the seam was lost.
+    fn in_plan(
+        &mut self,
+        snapshot: &PathSnapshot,
+        slide: usize,
         sight: &SeamTarget,
-        plan: &SlideTarget,
+        looks: SlideTarget,
     ) -> Option<SlideTarget> {
         let side = slide / 2;
         match sight {
@@ -127,17 +219,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 self.not_there_yet(slide, snapshot);
                 Some(*beginning)
             }
-            SeamTarget::Nowhere(last) => {
+            SeamTarget::Nowhere(_) => {
                 self.not_there_yet(slide, snapshot);
-                let about = last.unwrap_or(*plan);
-                if slide % 2 == 1 {
-                    return Some(about);
-                }
-                let goes = snapshot.speed > 0.0 && !snapshot.beams[side];
-                // Its travel, seen from where the planned path would have the head.
-                let (min, max) = parameters.slides[slide].law.travel;
-                let travel = (min + off, max + off);
-                Some(self.seam_searches[side].step(&parameters.search, about, travel, goes))
+                Some(looks)
             }
             SeamTarget::Lost => {
                 self.report(TrackerFault::LostSeam {
