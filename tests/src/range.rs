@@ -97,7 +97,7 @@ pub fn weld_by_pictures(boards: &mut dyn Boards, shape: SeamShape, speed_m_per_m
     };
     let program = program();
     let surroundings = Surroundings {
-        cameras: CameraChoice::Images(Box::new(images), PictureChoice::Rendered(SceneFile::default())),
+        cameras: CameraChoice::Images(Box::new(images), PictureChoice::Rendered(Box::default())),
         ..with_seam(Some(seam(shape)))
     };
     let job = job(&machine, &program, surroundings, Some(speed_m_per_min));
