@@ -8,7 +8,7 @@ use job::ImageCameras;
 use report::Ended;
 use shared::io::SLIDES;
 use std::f64::consts::TAU;
-use world::{CameraChoice, PictureChoice, SceneFile, Surroundings};
+use world::{CameraChoice, PictureChoice, Surroundings};
 
 /// Seams that are followed, with the largest deviation of a spot \[mm\].
 pub const FOLLOWED: [(&str, SeamShape, f64); 6] = [

@@ -42,6 +42,9 @@ const UNEVEN: [f64; 2] = [0.10, 0.04];
 /// Scatter of the seam's position while tracking \[mm\].
 const LATERAL: f64 = 0.1;
 
+/// Width that a gap may differ by from what it was in the pictures before: a share of it, and two pixels.
+const WIDTH_SHARE: f64 = 0.2;
+
 /// True errors over those the scores predict.
 const HONEST: f64 = 1.6;
 
@@ -185,6 +188,10 @@ impl Detector {
                 let off = (lateral - track.lateral_mm) / LATERAL;
                 1.0 / (1.0 + off * off)
             });
+            candidate.expected = prior.track.is_some_and(|track| {
+                let wider = (candidate.width() * g - track.width_mm).abs();
+                (lateral - track.lateral_mm).abs() < LATERAL && wider < WIDTH_SHARE * track.width_mm + 2.0 * g
+            });
             candidate.score = candidate.depth.powi(2)
                 * (0.7 + 0.3 * (candidate.width() / 2.5).min(1.0))
                 * (0.15 + 0.85 * candidate.continuity)
@@ -303,7 +310,7 @@ impl Detector {
         let half_view_mm = layer.rows as f64 * g / 2.0;
         let others = [
             (Criterion::Depth, ramp(best.depth, DEPTH[0], DEPTH[1])),
-            (Criterion::Emptiness, best.interior.emptiness()),
+            (Criterion::Emptiness, best.interior.emptiness(best.expected)),
             (Criterion::Straightness, ramp(edges.inliers, 0.45, 0.75)),
             (
                 Criterion::Scatter,

@@ -30,6 +30,8 @@ pub(crate) struct Candidate {
     pub depth: f64,
     /// What is inside it.
     pub interior: Interior,
+    /// Whether it lies where the gap of the pictures before has to be, and is as wide.
+    pub expected: bool,
     /// How it continues outside the strip, 0 to 1.
     pub continuity: f64,
     /// Its rank.
@@ -83,7 +85,9 @@ impl Candidates {
     /// surface beside it.
     pub fn best(&self) -> Option<(Candidate, Option<Candidate>)> {
         let list = &self.list[..self.count];
-        let rank = |candidate: &Candidate| candidate.score * (TEXTURED + candidate.interior.emptiness());
+        let rank = |candidate: &Candidate| {
+            candidate.score * (TEXTURED + candidate.interior.emptiness(candidate.expected))
+        };
         let best = (0..list.len()).max_by(|a, b| rank(&list[*a]).total_cmp(&rank(&list[*b])))?;
         let others = (0..list.len())
             .filter(|other| *other != best && !list[*other].interior.is_surface_beside(&list[best].interior));
@@ -114,6 +118,7 @@ fn measure(quiet: &[f32], run: [usize; 2], pitch_mm: f64) -> Option<Candidate> {
         core,
         depth: f64::from((1.0 - bottom / beside.max(0.05)).clamp(0.0, 1.0)),
         interior: Interior::default(),
+        expected: false,
         continuity: 0.0,
         score: 0.0,
     })

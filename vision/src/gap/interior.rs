@@ -24,22 +24,29 @@ const WINDOW_MM: f64 = 0.010;
 /// Columns that have to be left of a run after its edges for its texture to be seen.
 const FEWEST: f64 = 1.5;
 
-/// Darkest surface over the plate: scratches and grooves have 0.05 of its brightness or more; and how much of a surface's
-/// brightness is not a veil's.
+/// Darkest surface over the plate: scratches and grooves have 0.05 of its brightness or more; what is so dark that it is none; and
+/// how much of a surface's brightness is not a veil's.
 const DARKEST: f64 = 0.05;
+const BLACKEST: f64 = 0.035;
 const VEILED: f64 = 0.5;
 
-/// Variance of the texture that a surface would have, over that of the noise, below which the two cannot be told apart.
-const UNSURE: f64 = 0.8;
+/// Variance of the texture that a surface would have, in standard errors of the noise's, below which the two cannot be told apart.
+const UNSURE: f32 = 3.0;
 
-/// What is taken for noise over what the noise is: both are seen in few pixels.
-const NOISE: f32 = 1.5;
+/// Standard errors over the noise that are taken for noise.
+const MARGIN: f32 = 1.5;
 
-/// Variance over that of a surface at which a run is one, and is not.
+/// Relative standard error of a variance from the median of n differences that overlap: this over √n.
+const MEDIAN_ERROR: f32 = 2.9;
+
+/// Variance over that of a surface at which a run is one, and is not: of a run that nothing is known of, and of one where a
+/// gap is expected.
 const SURFACE: [f64; 2] = [0.30, 0.10];
+const EXPECTED: [f64; 2] = [0.9, 0.5];
 
-/// Brightness over the plate at which a run too narrow to show texture is taken for a surface, and is not.
+/// Brightness over the plate at which a run too narrow to show texture is taken for a surface, and is not; the same.
 const BLACK: [f64; 2] = [0.24, 0.12];
+const EXPECTED_BLACK: [f64; 2] = [0.5, 0.3];
 
 /// Brightness and texture of a gap over those of a surface that are not the same thing.
 const LIGHTER: f64 = 0.6;
@@ -92,7 +99,7 @@ impl Interior {
             .min_by(|a, b| a.brightness.total_cmp(&b.brightness))?;
         let brightness = f64::from(darkest.brightness);
         let least = (DARKEST.max(VEILED * brightness)).powi(2) * f64::from(plate);
-        if least < UNSURE * f64::from(darkest.noise) {
+        if least < f64::from(UNSURE * darkest.error()) {
             return Some(Self { brightness, ..unseen });
         }
         Some(Self {
@@ -109,15 +116,20 @@ impl Interior {
             (Some(gap), Some(own)) => gap < ROUGHER * own,
             _ => false,
         };
-        self.emptiness() < 0.5 && gap.emptiness() >= 0.5 && (lighter || rougher)
+        self.emptiness(false) < 0.5 && gap.emptiness(false) >= 0.5 && (lighter || rougher)
     }
 
-    /// How sure it is that this is no surface: 0 to 1.
-    pub fn emptiness(&self) -> f64 {
-        match self.texture {
+    /// How sure it is that this is no surface: 0 to 1. Less is needed of what is `expected`: a run where the gap of the
+    /// pictures before has to be, and as wide as that was.
+    pub fn emptiness(&self, expected: bool) -> f64 {
+        let blackness = ramp(self.brightness, DARKEST, BLACKEST);
+        let emptiness = match self.texture {
+            Some(texture) if expected => ramp(texture, EXPECTED[0], EXPECTED[1]),
             Some(texture) => ramp(texture, SURFACE[0], SURFACE[1]),
+            None if expected => ramp(self.brightness, EXPECTED_BLACK[0], EXPECTED_BLACK[1]),
             None => ramp(self.brightness, BLACK[0], BLACK[1]),
-        }
+        };
+        emptiness.max(blackness)
     }
 }
 
@@ -137,6 +149,8 @@ struct Roughness {
     variance: f32,
     /// What of it noise makes.
     noise: f32,
+    /// Differences of which it is the variance.
+    count: f32,
 }
 
 impl Roughness {
@@ -145,26 +159,36 @@ impl Roughness {
             brightness: 0.0,
             variance: 0.0,
             noise: 0.0,
+            count: 0.0,
         };
+        let groups = strip.groups as f32;
         let mut count = 0.0;
         for column in columns.filter(|column| strip.seen[*column]) {
             let of = strip.texture(column, reach);
             let across = of.across.filter(|_| across.contains(&column));
             sum.brightness += of.brightness;
             sum.variance += of.along + across.unwrap_or(0.0);
-            sum.noise += of.noise * if across.is_some() { 2.0 } else { 1.0 };
+            let sides = if across.is_some() { 2.0 } else { 1.0 };
+            sum.noise += of.noise * sides;
+            sum.count += groups * sides;
             count += 1.0;
         }
         (count > 0.0).then(|| Self {
             brightness: sum.brightness / count,
             variance: sum.variance / count,
             noise: sum.noise / count,
+            count: sum.count,
         })
+    }
+
+    /// Standard error of the noise's variance.
+    fn error(&self) -> f32 {
+        MEDIAN_ERROR * self.noise / self.count.sqrt()
     }
 
     /// Variance that noise does not make.
     fn excess(&self) -> f32 {
-        (self.variance - NOISE * self.noise).max(0.0)
+        (self.variance - self.noise - MARGIN * self.error()).max(0.0)
     }
 }
 
