@@ -14,7 +14,7 @@ const TRACKED: [f64; 2] = [0.1, 0.05];
 const UNKNOWN: [f64; 2] = [1.0, 0.2];
 
 /// Scatter of the step between the sides \[mm\], of the focus.
-const STEP: f64 = 0.03;
+const STEP: f64 = 0.08;
 const FOCUS: f64 = 0.3;
 
 /// Focus beyond which it is no band any more.
@@ -47,6 +47,8 @@ const WIDTH_SHARE: f64 = 0.2;
 
 /// True errors over those the scores predict.
 const HONEST: f64 = 1.6;
+/// The same of roll and step, which take what differs between left and right.
+const HONEST_SLOPE: f64 = 1.9;
 
 /// The same of edges, whose roughness is alike in neighbouring rows.
 const ROUGH: f64 = 1.8;
@@ -109,7 +111,7 @@ impl Detector {
         }
         match seam {
             Some((edges, best, second)) => {
-                let both = self.both_sides(&best);
+                let both = self.both_sides(&best, at[2]);
                 self.seam(&at, &fitness, line, &edges, &best, second, both)
             }
             None => Report {
@@ -181,7 +183,7 @@ impl Detector {
         }
         candidates.find(&strip.quiet, g);
         for candidate in candidates.list_mut() {
-            candidate.interior = Interior::of(strip, candidate, 0.0, g).unwrap_or_default();
+            candidate.interior = Interior::of(strip, candidate, 0.0, g);
             candidate.continuity = continuity.of(layer, line, candidate, strip.slant);
             let lateral = layer.origin_mm[1] + candidate.middle() * g;
             let expected = prior.track.map_or(1.0, |track| {
@@ -199,7 +201,7 @@ impl Detector {
         }
         let (best, second) = candidates.best()?;
         let mut best = without_shadow(strip, best, g);
-        best.interior = Interior::of(strip, &best, DARKEST, g).unwrap_or(best.interior);
+        best.interior = Interior::of(strip, &best, DARKEST, g);
         let edges = fit_edges(strip, &best, g)?;
         Some((edges, best, second))
     }
@@ -215,7 +217,7 @@ impl Detector {
     fn plate(&self, at: &[f64; 4], fitness: &Fitness<4>) -> Measured {
         let [height, roll, step, focus] = *at;
         let covariance = &fitness.covariance;
-        let sigma_roll = HONEST * covariance[(1, 1)].sqrt();
+        let sigma_roll = HONEST_SLOPE * covariance[(1, 1)].sqrt();
         Measured {
             form: Form::Gap,
             lateral_mm: 0.0,
@@ -235,7 +237,7 @@ impl Detector {
                 lateral_mm: f64::INFINITY,
                 height_mm: HONEST * covariance[(0, 0)].sqrt(),
                 width_mm: f64::INFINITY,
-                step_mm: HONEST * covariance[(2, 2)].max(0.0).sqrt(),
+                step_mm: HONEST_SLOPE * covariance[(2, 2)].max(0.0).sqrt(),
                 roll: sigma_roll,
                 walls: [sigma_roll, sigma_roll],
                 yaw_rad: f64::INFINITY,
@@ -245,14 +247,16 @@ impl Detector {
     }
 
     /// Brightness of the darker plate over that of the brighter one, and how unevenly dark the gap is.
-    fn both_sides(&mut self, best: &Candidate) -> [f64; 2] {
+    fn both_sides(&mut self, best: &Candidate, step_mm: f64) -> [f64; 2] {
         let g = self.layer().pitch_mm;
         let lights = self.strip.lights(best.edges, SPOILT_MM / g, PLATE_MM / g);
         let ratio = match lights {
             [Some(left), Some(right)] => f64::from(left.min(right) / left.max(right).max(1.0)),
             _ => 0.0,
         };
-        let uneven = unevenness(&self.strip.quiet, best, g).unwrap_or(0.0);
+        // Half a step out of focus lies the plate on either side.
+        let blur = self.optics.aperture * step_mm.abs() / 2.0 / self.optics.tilt_rad.cos();
+        let uneven = unevenness(&self.strip.quiet, best, blur, g).unwrap_or(0.0);
         [ratio, uneven]
     }
 

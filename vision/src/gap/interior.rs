@@ -9,7 +9,7 @@ use crate::report::ramp;
 use std::ops::Range;
 
 /// From an edge so far into the run its blur reaches, and its roughness \[mm\].
-pub(super) const INSIDE_MM: f64 = 0.010;
+pub(super) const INSIDE_MM: f64 = 0.008;
 
 /// From an edge so far onto the plate its blur and its bright lines reach, and how much of the plate is taken \[mm\].
 const BESIDE_MM: f64 = 0.03;
@@ -65,8 +65,8 @@ pub(crate) struct Interior {
 }
 
 impl Interior {
-    /// Inside `run`, where the darkest `share` of it is. None if there is no plate beside it.
-    pub fn of(strip: &Strip, run: &Candidate, share: f64, pitch_mm: f64) -> Option<Self> {
+    /// Inside `run`, where the darkest `share` of it is.
+    pub fn of(strip: &Strip, run: &Candidate, share: f64, pitch_mm: f64) -> Self {
         let [left, right] = run.edges;
         let bottom = middle_value(&strip.quiet[run.core[0]..=run.core[1]]);
         let unseen = Self {
@@ -75,10 +75,10 @@ impl Interior {
             plate: None,
         };
         let inset = INSIDE_MM / pitch_mm;
-        if right - left < 2.0 * inset + FEWEST {
-            return Some(unseen);
-        }
         let inside = columns(strip, left + inset, right - inset);
+        if right - left < 2.0 * inset + FEWEST || inside.is_empty() {
+            return unseen;
+        }
         let reach = ((ACROSS_MM / pitch_mm).round() as usize).clamp(1, 1 + inside.len() / 4);
         // Differences across reach further.
         let across = inside.start + reach..inside.end.saturating_sub(reach);
@@ -89,24 +89,29 @@ impl Interior {
             Roughness::of(strip, columns(strip, right + near, right + far), &all, reach),
         ];
         let plate = sides.into_iter().flatten().map(|side| side.variance - side.noise);
-        let plate = plate.reduce(f32::min)?;
+        let Some(plate) = plate.reduce(f32::min) else {
+            return unseen;
+        };
         let window = (WINDOW_MM / pitch_mm).round() as usize;
         let window = window
             .max((share * inside.len() as f64) as usize)
             .clamp(1, inside.len());
         let darkest = (inside.start..=inside.end - window)
             .filter_map(|first| Roughness::of(strip, first..first + window, &across, reach))
-            .min_by(|a, b| a.brightness.total_cmp(&b.brightness))?;
+            .min_by(|a, b| a.brightness.total_cmp(&b.brightness));
+        let Some(darkest) = darkest else {
+            return unseen;
+        };
         let brightness = f64::from(darkest.brightness);
         let least = (DARKEST.max(VEILED * brightness)).powi(2) * f64::from(plate);
         if least < f64::from(UNSURE * darkest.error()) {
-            return Some(Self { brightness, ..unseen });
+            return Self { brightness, ..unseen };
         }
-        Some(Self {
+        Self {
             brightness,
             texture: Some(f64::from(darkest.excess()) / least),
             plate: Some(plate),
-        })
+        }
     }
 
     /// Whether a run with this inside is so clearly a surface beside a gap with `gap` inside that the two are not mistaken.

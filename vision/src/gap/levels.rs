@@ -102,16 +102,13 @@ fn inner_edge(strip: &Strip, run: &Candidate, side: usize, pitch_mm: f64) -> Opt
     if !flat && !textured {
         return None;
     }
-    crossing(quiet, inner_end(cut, skip, side), side, (at_gap + bottom) / 2.0)
-}
-
-/// A column on the dark side of a step.
-fn inner_end(cut: usize, skip: usize, side: usize) -> usize {
-    if side == 0 {
+    // From the dark side of the step.
+    let from = if side == 0 {
         cut + skip
     } else {
         cut.saturating_sub(skip)
-    }
+    };
+    crossing(quiet, from.clamp(left, right), side, (at_gap + bottom) / 2.0)
 }
 
 /// The place at which a line is best cut into two levels.
@@ -131,10 +128,10 @@ fn step_of(line: &[f32]) -> Option<usize> {
 
 /// How much brighter the gap is next to its edges than where it is darkest, of the way up to the plate; None of a gap too narrow
 /// to tell.
-pub(crate) fn unevenness(quiet: &[f32], candidate: &Candidate, pitch_mm: f64) -> Option<f64> {
+pub(crate) fn unevenness(quiet: &[f32], candidate: &Candidate, blur_mm: f64, pitch_mm: f64) -> Option<f64> {
     let [left, right] = candidate.edges;
     let (skip, count) = (
-        INSIDE_MM / pitch_mm,
+        (INSIDE_MM + blur_mm) / pitch_mm,
         (PLATEAU_MM / pitch_mm / 2.0).round().max(2.0),
     );
     let ends = [(left + skip).ceil(), (right - skip).floor() - count + 1.0];
