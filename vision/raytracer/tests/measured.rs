@@ -3,7 +3,7 @@
 use raytracer::{Camera, Effect, Subject, subject};
 use vision::{Detector, Image, Joint, Measured, Optics, PhotonTransfer, Prior, Profile};
 
-/// The camera of machines/dual-beam-gantry.toml.
+/// A camera with the published lens.
 const OPTICS: Optics = Optics {
     magnification: 4.0,
     pixel_mm: 0.0138,
@@ -77,5 +77,35 @@ fn where_one_plate_is_dark_or_missing_nothing_is_believed() {
         let wrong = all.iter().filter(|picture| errors(picture)[0].abs() > 0.010);
         assert_eq!(wrong.count(), 0, "{effect:?}");
         assert!(effect.has_seam() || all.is_empty(), "{effect:?}");
+    }
+}
+
+#[test]
+fn a_scratch_beside_a_gap_is_no_rival_of_it() {
+    for effect in [Effect::Scratch, Effect::BrightEdges, Effect::Veil] {
+        let all = believed(effect, 100..106);
+        assert!(all.len() >= 4, "{effect:?}: {} of 6", all.len());
+        for picture in &all {
+            let [centre, ..] = errors(picture);
+            let seed = picture.0.exposure.seed;
+            assert!(centre.abs() < 0.005, "{effect:?} {seed}: {centre} mm");
+        }
+    }
+}
+
+/// Scratches wide enough for their texture to be seen between the blur of their edges.
+#[test]
+fn scratches_and_grooves_of_a_closed_joint_are_no_gap() {
+    for effect in [Effect::ClosedScratched, Effect::ClosedGrooved] {
+        for (subject, seen) in believed(effect, 100..110) {
+            let widest = subject
+                .work
+                .marks
+                .iter()
+                .map(|mark| mark.width_mm)
+                .fold(0.0, f64::max);
+            let seed = subject.exposure.seed;
+            assert!(widest < 0.03, "{effect:?} {seed}: {:.3} mm wide", seen.width_mm);
+        }
     }
 }
