@@ -8,7 +8,7 @@ use super::figures::{micrometres, quantile};
 use super::seeds::of_seeds;
 use anyhow::Result;
 use vision::render::{Effect, EffectRun, SplitMix64};
-use vision::{Detector, Image, Joint, Observer, ObserverConfig, Profile};
+use vision::{Detector, Image, Joint, Observer, ObserverConfig, Optics, Profile};
 
 /// Pictures of a sequence, and those that have the effects.
 const PICTURES: usize = 40;
@@ -38,7 +38,10 @@ struct Taken {
 
 /// Renders and observes sequences, and prints a table.
 pub fn run(options: &Options) -> Result<()> {
-    let optics = camera(400);
+    let optics = Optics {
+        magnification: options.magnification,
+        ..camera(400)
+    };
     let groups = options.groups();
     let share = SHARE.min(options.pictures.max(1));
     let taken = of_seeds("textures", options.pictures.div_ceil(share), |number| {

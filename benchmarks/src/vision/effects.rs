@@ -40,6 +40,8 @@ pub struct Options {
     pub first: u64,
     /// Only these effects; all of them and mixtures if there is none.
     pub only: Vec<Effect>,
+    /// Magnification of the lens.
+    pub magnification: f64,
     /// Whether the detector knows from the picture before where the seam is.
     pub tracked: bool,
 }
@@ -79,18 +81,22 @@ struct Taken {
 }
 
 impl Options {
-    /// Understands `PICTURES [--first SEED] [--tracked] [EFFECT…]`.
+    /// Understands `PICTURES [--first SEED] [--magnification M] [--tracked] [EFFECT…]`.
     pub fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Self> {
         let pictures = arguments.next().context("how many pictures?")?;
         let mut options = Self {
             pictures: pictures.parse().context("how many pictures?")?,
             first: 0,
             only: Vec::new(),
+            magnification: 4.0,
             tracked: false,
         };
         while let Some(argument) = arguments.next() {
             match argument.as_str() {
                 "--tracked" => options.tracked = true,
+                "--magnification" => {
+                    options.magnification = arguments.next().context("which magnification?")?.parse()?;
+                }
                 "--first" => options.first = arguments.next().context("which is first?")?.parse()?,
                 name => options.only.push(effect(name)?),
             }
@@ -138,7 +144,10 @@ pub(super) fn renderer(optics: Optics, number: u64, smear_mm: f64) -> Result<(Fa
 
 /// Renders and measures them, and prints a table with a line for each group, and the seeds of what is wrong.
 pub fn run(options: &Options) -> Result<()> {
-    let optics = camera(400);
+    let optics = Optics {
+        magnification: options.magnification,
+        ..camera(400)
+    };
     let groups = options.groups();
     let textures = (options.pictures / SHARE).clamp(TEXTURES[0], TEXTURES[1]);
     let weight = |group: &Group| match group.1 {
