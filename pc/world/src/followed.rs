@@ -371,19 +371,12 @@ mod tests {
     #[test]
     fn what_cannot_is_named_by_its_side_place_and_reason() {
         use NotFollowed::{Beside, Fast, OutOfView, Sharp, Steep};
-        let all = found(|s| [0.0, 0.0, 0.11 * (s - 30.0).max(0.0), 0.0]);
-        let [
-            OutOfView {
-                side: 2,
-                s,
-                height: true,
-                ..
-            },
-        ] = all[..]
-        else {
-            panic!("{all:?}");
-        };
-        assert!((20.0..=100.0).contains(&s), "{s}");
+        let all = found(|s| [0.0, 0.0, 0.14 * s - 2.0, 0.0]);
+        assert!(
+            all.iter()
+                .any(|found| matches!(found, OutOfView { side: 2, height: true, s, .. } if (0.0..=100.0).contains(s))),
+            "{all:?}"
+        );
         let all = found(|s| [0.0, 0.0, 0.0, if s < 40.0 { 0.0 } else { 0.3 }]);
         let [
             Sharp {

@@ -24,10 +24,9 @@ const WINDOW_MM: f64 = 0.010;
 /// Columns that have to be left of a run after its edges for its texture to be seen.
 const FEWEST: f64 = 1.5;
 
-/// Darkest surface over the plate: scratches and grooves have 0.05 of its brightness or more; what is so dark that it is none; and
-/// how much of a surface's brightness is not a veil's.
+/// Darkest surface over the plate: scratches and grooves have 0.05 of its brightness or more; and how much of a surface's
+/// brightness is not a veil's.
 const DARKEST: f64 = 0.05;
-const BLACKEST: f64 = 0.035;
 const VEILED: f64 = 0.5;
 
 /// Variance of the texture that a surface would have, in standard errors of the noise's, below which the two cannot be told apart.
@@ -41,11 +40,14 @@ const MEDIAN_ERROR: f32 = 2.9;
 
 /// Variance over that of a surface at which a run is one, and is not: of a run that nothing is known of, and of one where a
 /// gap is expected.
-const SURFACE: [f64; 2] = [0.30, 0.10];
+const SURFACE: [f64; 2] = [0.40, 0.10];
 const EXPECTED: [f64; 2] = [0.9, 0.5];
 
+/// Brightness over the plate at which a run may be a surface, with what lies over all of a picture, and is too dark for one.
+const BLACKEST: [f64; 2] = [0.07, 0.05];
+
 /// Brightness over the plate at which a run too narrow to show texture is taken for a surface, and is not; the same.
-const BLACK: [f64; 2] = [0.24, 0.12];
+const BLACK: [f64; 2] = [0.28, 0.16];
 const EXPECTED_BLACK: [f64; 2] = [0.5, 0.3];
 
 /// Brightness and texture of a gap over those of a surface that are not the same thing.
@@ -127,7 +129,7 @@ impl Interior {
     /// How sure it is that this is no surface: 0 to 1. Less is needed of what is `expected`: a run where the gap of the
     /// pictures before has to be, and as wide as that was.
     pub fn emptiness(&self, expected: bool) -> f64 {
-        let blackness = ramp(self.brightness, DARKEST, BLACKEST);
+        let blackness = ramp(self.brightness, BLACKEST[0], BLACKEST[1]);
         let emptiness = match self.texture {
             Some(texture) if expected => ramp(texture, EXPECTED[0], EXPECTED[1]),
             Some(texture) => ramp(texture, SURFACE[0], SURFACE[1]),
