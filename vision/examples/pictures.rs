@@ -10,7 +10,7 @@ fn main() {
     std::fs::create_dir_all(&folder).expect("a folder");
     // The camera of machines/dual-beam-gantry.toml.
     let optics = Optics {
-        magnification: 4.0,
+        magnification: 2.0,
         pixel_mm: 0.0138,
         tilt_rad: 45f64.to_radians(),
         aperture: 0.10,
@@ -111,10 +111,10 @@ fn scenes() -> Vec<(&'static str, Scene)> {
             },
         ),
         (
-            "too-high",
+            "out-of-view",
             Scene {
                 joint: gap(PlateSeam {
-                    height_mm: 0.45,
+                    height_mm: 0.95,
                     ..plate
                 }),
                 ..seam.clone()

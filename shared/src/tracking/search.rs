@@ -35,8 +35,9 @@ pub struct SearchLaw {
     rest: f64,
     /// The search is this far ahead in its velocity, as drives need it \[s\].
     preview: f64,
-    /// Nothing is looked for.
-    none: bool,
+    /// Farthest that is looked to either side or up and down \[mm\]; 0 for no search. Not a truth value, which would keep an empty
+    /// controller from being all zeros, and put it into the flash.
+    reach: f64,
 }
 
 /// What the machine does while the seam is not seen.
@@ -74,7 +75,7 @@ impl SeamSearch {
         travels: [(f64, f64); 2],
         meanwhile: Meanwhile,
     ) -> [SlideTarget; 2] {
-        if law.none {
+        if law.reach == 0.0 {
             return centre;
         }
         let seconds = |ticks: u32| f64::from(ticks) * TRACKER_PERIOD_S;
@@ -119,7 +120,7 @@ impl SearchLaw {
             // The drives come there later.
             rest: PICTURES_AT_TURNS * frame + preview,
             preview,
-            none: reach == [0.0; 2],
+            reach: libm::fmax(reach[0], reach[1]),
         })
     }
 
@@ -135,7 +136,7 @@ impl SearchLaw {
 
     /// How long the search goes on while the machine stands \[s\].
     pub fn longest_at_rest(&self) -> f64 {
-        if self.none {
+        if self.reach == 0.0 {
             0.0
         } else {
             ROUNDS_AT_REST * self.round_s()
