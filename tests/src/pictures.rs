@@ -7,7 +7,7 @@ use job::{ImageCameras, Job, JobError};
 use report::Ended;
 use shared::io::SIDES;
 use shared::state::TrackerFault;
-use world::{CameraChoice, Dark, PictureChoice, SceneFile, Surroundings};
+use world::{CameraChoice, Dark, Deviation, PictureChoice, SceneFile, Surroundings};
 
 /// Where the light of side 2 fails \[mm\], and how far before it its beam may go off: at 9 m/min a picture is taken every
 /// 0.75 mm, the mean of four lies behind the last, and a permit is withdrawn 0.9 mm before its beam has to be off.
@@ -46,20 +46,28 @@ pub fn weld_through_pictures(
     speed_m_per_min: f64,
 ) -> Ended {
     let weld = |job: &Job| prediction::run(boards, job);
-    through_pictures(joint, scene, speed_m_per_min, weld)
+    through_pictures(joint, scene, shipped_seam(), speed_m_per_min, weld)
 }
 
 /// The same along a gap, of which a subscriber of events gets each second one at most; and how many it lost.
 pub fn weld_before_a_sleeper(boards: &mut dyn Boards, speed_m_per_min: f64) -> (Ended, u64) {
     let mut sleeper = Sleeper::default();
     let weld = |job: &Job| crate::run(boards, job, &mut sleeper).unwrap_or_else(|error| panic!("{error}"));
-    let ended = through_pictures(JointForm::Gap, SceneFile::default(), speed_m_per_min, weld);
+    let ended = through_pictures(
+        JointForm::Gap,
+        SceneFile::default(),
+        shipped_seam(),
+        speed_m_per_min,
+        weld,
+    );
     (ended, sleeper.end())
 }
 
-fn through_pictures(
+/// Welds by pictures of `scene` along `seam`.
+pub(crate) fn through_pictures(
     joint: JointForm,
     scene: SceneFile,
+    seam: Deviation,
     speed_m_per_min: f64,
     weld: impl FnOnce(&Job) -> Ended,
 ) -> Ended {
@@ -72,7 +80,7 @@ fn through_pictures(
     let program = program();
     let surroundings = Surroundings {
         cameras: CameraChoice::Images(Box::new(images), PictureChoice::Rendered(Box::new(scene))),
-        ..with_seam(Some(shipped_seam()))
+        ..with_seam(Some(seam))
     };
     weld(&job(&machine, &program, surroundings, Some(speed_m_per_min)))
 }

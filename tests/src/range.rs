@@ -1,14 +1,14 @@
 //! Seams at the edges of what the shipped machine follows by pictures, and beyond them.
 
-use crate::pictures::machine_for;
-use crate::{NoOperator, SeamShape, job, program, run, seam, with_seam};
+use crate::pictures::through_pictures;
+use crate::{NoOperator, SeamShape, run, seam};
 use config::machine::JointForm;
 use host_link::boards::Boards;
-use job::ImageCameras;
+use job::Job;
 use report::Ended;
 use shared::io::SLIDES;
 use std::f64::consts::TAU;
-use world::{CameraChoice, PictureChoice, Surroundings};
+use world::SceneFile;
 
 /// Seams that are followed, with the largest deviation of a spot \[mm\].
 pub const FOLLOWED: [(&str, SeamShape, f64); 6] = [
@@ -89,19 +89,14 @@ fn sharp_kinks(s: f64) -> [f64; SLIDES] {
 
 /// Welds the shipped program by pictures along a seam of that shape. The path may be held on the way, until a seam is found.
 pub fn weld_by_pictures(boards: &mut dyn Boards, shape: SeamShape, speed_m_per_min: f64) -> Ended {
-    let machine = machine_for(JointForm::Gap);
-    let cameras = &machine.tracking.as_ref().expect("a tracker").cameras;
-    let images = ImageCameras {
-        calibrations: std::array::from_fn(|side| cameras.nominal(side)),
-        kept: None,
-    };
-    let program = program();
-    let surroundings = Surroundings {
-        cameras: CameraChoice::Images(Box::new(images), PictureChoice::Rendered(Box::default())),
-        ..with_seam(Some(seam(shape)))
-    };
-    let job = job(&machine, &program, surroundings, Some(speed_m_per_min));
-    run(boards, &job, &mut NoOperator).unwrap_or_else(|error| panic!("{error}"))
+    let weld = |job: &Job| run(boards, job, &mut NoOperator).unwrap_or_else(|error| panic!("{error}"));
+    through_pictures(
+        JointForm::Gap,
+        SceneFile::default(),
+        seam(shape),
+        speed_m_per_min,
+        weld,
+    )
 }
 
 /// Largest deviation of U1, V1, U2, V2 with the beam of their side on \[mm\].

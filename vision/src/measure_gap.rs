@@ -31,7 +31,7 @@ const PLATE_MM: f64 = 0.25;
 const DIM: [f64; 2] = [0.2, 0.35];
 
 /// Share of a gap in which no texture may be seen: the rest may be a lit wall.
-const DARKEST: f64 = 0.34;
+const EMPTY_SHARE: f64 = 0.34;
 
 /// Depth of the gap at which it is not trusted, and is. A veil takes as much off it as there is light in the veil.
 const DEPTH: [f64; 2] = [0.3, 0.6];
@@ -201,7 +201,7 @@ impl Detector {
         }
         let (best, second) = candidates.best()?;
         let mut best = without_shadow(strip, best, g);
-        best.interior = Interior::of(strip, &best, DARKEST, g);
+        best.interior = Interior::of(strip, &best, EMPTY_SHARE, g);
         let edges = fit_edges(strip, &best, g)?;
         Some((edges, best, second))
     }

@@ -64,7 +64,7 @@ pub(crate) struct Strip {
 
 /// Brightness of a column over the light.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Texture {
+pub(crate) struct ColumnTexture {
     pub brightness: f32,
     /// Variance along the seam, and across; none of the latter at the border.
     pub along: f32,
@@ -142,7 +142,7 @@ impl Strip {
     }
 
     /// Brightness and texture of a column, in the strip with its slant taken out; across the seam over `reach` columns.
-    pub fn texture(&self, column: usize, reach: usize) -> Texture {
+    pub fn texture(&self, column: usize, reach: usize) -> ColumnTexture {
         let columns = self.values.len();
         let shifts: [isize; GROUPS] =
             std::array::from_fn(|group| (self.slant * self.offset(group)).round() as isize);
@@ -173,7 +173,7 @@ impl Strip {
         let (rows, gain) = (self.rows as f32, self.gains[column]);
         let expected = self.calibrated.variance((mean / gain / rows).max(0.0));
         let noise = self.noise[column].min(NOISIEST * expected);
-        Texture {
+        ColumnTexture {
             brightness: mean,
             along,
             across,

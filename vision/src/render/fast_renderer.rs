@@ -83,7 +83,7 @@ impl FastRenderer {
         let noise = scene.sensor.noise.unwrap_or(self.noise);
         let step = (255.0 / noise.full_well) as f32;
         let read = (noise.read_noise * 255.0 / noise.full_well).powi(2) as f32;
-        let dressed = scene.is_dressed();
+        let has_effects = scene.has_effects();
         for (row, pixels) in self.pixels.chunks_exact_mut(optics.columns).enumerate() {
             let r = (row as f64 - r0) * self.sketch.lens.pixel_mm;
             self.row.see(&self.tiles, &self.sketch, row, r);
@@ -91,9 +91,11 @@ impl FastRenderer {
                 self.row.lay_stripe(&self.sketch, r, stripe);
             }
             match &scene.joint {
-                Joint::Gap(gap) if dressed => self.row.dress(&self.sketch, scene, Some(gap), r),
+                Joint::Gap(gap) if has_effects => {
+                    self.row.fill_with_effects(&self.sketch, scene, Some(gap), r)
+                }
                 Joint::Gap(gap) => self.row.open_gap(&self.sketch, scene, gap, r),
-                Joint::Corner(_) if dressed => self.row.dress(&self.sketch, scene, None, r),
+                Joint::Corner(_) if has_effects => self.row.fill_with_effects(&self.sketch, scene, None, r),
                 Joint::Corner(_) => {}
             }
             for blob in &scene.blobs {

@@ -5,7 +5,6 @@
 //! camera, from a [`Tile`] of textured work that was blurred beforehand.
 
 mod blur;
-mod dress;
 mod effect;
 mod effect_run;
 mod errors;
@@ -21,6 +20,7 @@ mod parallel;
 mod protocol;
 mod random;
 mod row;
+mod row_effects;
 mod run;
 mod scene;
 mod sharp;

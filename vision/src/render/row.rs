@@ -1,7 +1,7 @@
 //! One row of a picture in the making.
 
-use super::dress::Dress;
 use super::line::Line;
+use super::row_effects::RowEffects;
 use super::scene::{Blob, Gap, Scene, Stripe};
 use super::sketch::Sketch;
 use super::source::Source;
@@ -23,7 +23,7 @@ pub(super) struct Row {
     other: Vec<f32>,
     /// The surface as it is without stripes.
     plain: Vec<f32>,
-    dress: Dress,
+    effects: RowEffects,
 }
 
 /// Share of a blurred edge at `t` of its half width.
@@ -87,7 +87,7 @@ impl Row {
             radii_squared: vec![0.0; columns],
             other: vec![0.0; columns],
             plain: vec![0.0; columns],
-            dress: Dress::new(columns),
+            effects: RowEffects::new(columns),
         }
     }
 
@@ -188,7 +188,7 @@ impl Row {
     }
 
     /// Lays marks on the surface, gives both sides of a gap what they have, and closes it where there are tacks.
-    pub fn dress(&mut self, sketch: &Sketch, scene: &Scene, gap: Option<&Gap>, r: f64) {
+    pub fn fill_with_effects(&mut self, sketch: &Sketch, scene: &Scene, gap: Option<&Gap>, r: f64) {
         let rough = match gap {
             Some(gap) if gap.plate.width_mm > 0.0 => {
                 let seam = (sketch.seam_column(r).max(0.0) as usize).min(sketch.columns - 1);
@@ -203,9 +203,9 @@ impl Row {
             r,
             radii_squared: &self.radii_squared,
         };
-        self.dress.prepare(&line, gap, rough);
+        self.effects.prepare(&line, gap, rough);
         let floor = gap.map(|gap| gap.brightness as f32);
-        self.dress.lay(&mut self.brightness, &self.plain, floor);
+        self.effects.lay(&mut self.brightness, &self.plain, floor);
         for tack in &scene.tacks {
             line.close(tack, &self.plain, &mut self.brightness);
         }

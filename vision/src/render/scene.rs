@@ -165,7 +165,7 @@ impl Scene {
     }
 
     /// Whether sides, marks or tacks are to be rendered: a bare gap is quicker.
-    pub(super) fn is_dressed(&self) -> bool {
+    pub(super) fn has_effects(&self) -> bool {
         !self.marks.is_empty() || !self.tacks.is_empty() || self.sides != [Side::default(); 2]
     }
 }

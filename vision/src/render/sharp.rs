@@ -23,7 +23,7 @@ impl Sharp {
     /// Makes the textures of a scene, unless they are those of the last one.
     pub fn prepare(&mut self, scene: &Scene, optics: &Optics) {
         self.faces = match &scene.joint {
-            Joint::Gap(gap) if scene.is_dressed() => {
+            Joint::Gap(gap) if scene.has_effects() => {
                 Some(Face::both(&scene.sides, slant(&gap.plate, optics)))
             }
             _ => None,
@@ -66,7 +66,7 @@ impl Sharp {
         match (&scene.joint, &self.faces) {
             (Joint::Gap(gap), Some(faces)) => {
                 let places = [along, place];
-                let [surface, open, wall] = dressed(scene, gap, faces, places, point.lateral, sample);
+                let [surface, open, wall] = with_effects(scene, gap, faces, places, point.lateral, sample);
                 brightness = brightness * surface + gap.brightness * open + wall;
             }
             (Joint::Gap(gap), None) if gap.plate.width_mm > 0.0 => {
@@ -92,7 +92,7 @@ impl Sharp {
 
 /// What two sides make of a sample: what multiplies the surface, the share that lies in the gap or where a plate is
 /// missing, and the light of the walls. Its places are along travel on the work: its own, and that of the seam beside it.
-fn dressed(
+fn with_effects(
     scene: &Scene,
     gap: &Gap,
     faces: &[Face; 2],

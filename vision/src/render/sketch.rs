@@ -133,7 +133,7 @@ impl Sketch {
                     self.fall[1][column] = ((level + gap.step_mm / 2.0) / divisor) as f32;
                 }
                 self.corner = false;
-                if scene.is_dressed() {
+                if scene.has_effects() {
                     self.faces = Face::both(&scene.sides, slant(&gap.plate, &self.optics));
                 }
                 h

@@ -1,11 +1,11 @@
 //! Cameras of a simulated world that give pictures: rendered from where the machine and its slides truly were.
 
 mod background;
-mod dress;
 mod scene_effects;
 mod scene_file;
 mod sketch;
 mod source;
+mod stretches;
 mod tiles;
 mod view;
 

@@ -1,7 +1,7 @@
 //! Makes the scene to render from what is in the field of view of a camera.
 
-use super::dress::Dress;
 use super::scene_file::SceneFile;
+use super::stretches::Stretches;
 use super::view::{View, ViewForm};
 use std::f64::consts::TAU;
 use vision::render::{Blob, Gap, Joint, Light, Root, Scene, SplitMix64, Stripe, Texture};
@@ -80,13 +80,13 @@ impl Draw<'_> {
         if random.chance(file.spatter_share) {
             self.spatter(&mut scene, view, random);
         }
-        let dress = Dress {
+        let stretches = Stretches {
             file,
             side: self.side,
             along_mm: view.along_mm,
             noise: self.noise,
         };
-        dress.give(&mut scene, random);
+        stretches.give(&mut scene, random);
         scene
     }
 

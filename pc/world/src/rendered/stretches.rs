@@ -9,7 +9,7 @@ use vision::render::{Joint, Mark, Scene, Side, SplitMix64, Tack};
 const REACH_MM: f64 = 1.5;
 
 /// One picture of a seam.
-pub(super) struct Dress<'a> {
+pub(super) struct Stretches<'a> {
     pub file: &'a SceneFile,
     /// 0 or 1.
     pub side: usize,
@@ -19,7 +19,7 @@ pub(super) struct Dress<'a> {
     pub noise: PhotonTransfer,
 }
 
-impl Dress<'_> {
+impl Stretches<'_> {
     /// Gives it all that is there.
     pub fn give(&self, scene: &mut Scene, random: &mut SplitMix64) {
         if let Joint::Gap(_) = scene.joint {

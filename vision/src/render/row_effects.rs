@@ -14,7 +14,7 @@ const WALL: [f64; 6] = [0.0, 0.25, 0.6, 1.1, 1.8, 3.0];
 
 /// Column by column of one row.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Dress {
+pub(super) struct RowEffects {
     /// What marks along the seam add to the surface's factor, and those across it.
     marks: [Vec<f32>; 2],
     /// Factor of the surface, and the share that it takes.
@@ -30,7 +30,7 @@ pub(super) struct Dress {
     marked: bool,
 }
 
-impl Dress {
+impl RowEffects {
     pub fn new(columns: usize) -> Self {
         let row = || vec![0.0; columns];
         Self {
