@@ -5,6 +5,7 @@ mod continuity;
 mod edges;
 mod interior;
 mod levels;
+mod roughness;
 mod strip;
 
 pub(crate) use candidate::{Candidate, Candidates};
