@@ -282,19 +282,18 @@ impl GapLine {
             return f32::NAN;
         }
         let (mut sum, mut count) = (0, 0);
+        // Rows by which each column lies further down, in parts of 2^16.
+        let step = (self.tilt * 65536.0) as i32;
+        let mut shift = (self.tilt * (from as f64 - column) * 65536.0) as i32 + (1 << 15);
         for at in from..to {
-            let shift = (self.tilt * (at as f64 - column)).round() as isize;
-            let Some(top) = rows.start.checked_add_signed(shift) else {
-                continue;
-            };
-            let bottom = top + rows.len();
-            if bottom > layer.rows {
+            let top = rows.start as i32 + (shift >> 16);
+            shift += step;
+            if top < 0 || top as usize + rows.len() > layer.rows {
                 continue;
             }
-            let mut place = top * layer.columns + at;
-            for _ in top..bottom {
-                sum += u32::from(layer.pixels[place]);
-                place += layer.columns;
+            let column = layer.pixels[top as usize * layer.columns + at..].iter();
+            for pixel in column.step_by(layer.columns).take(rows.len()) {
+                sum += u32::from(*pixel);
             }
             count += rows.len();
         }
