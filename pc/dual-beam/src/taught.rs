@@ -323,6 +323,7 @@ mod tests {
                     quality: 0.9,
                     scatter_mm,
                     pictures: 8,
+                    end: None,
                 }
             };
             let feet = [at(598.0), at(602.0)];

@@ -3,7 +3,7 @@
 use crate::JobError;
 use crate::cameras::{Answer, Moment, SeamCameras};
 use crate::delays::Delays;
-use crate::joint::{JointRecord, SeenSeam};
+use crate::joint::{JointRecord, SeenEnd, SeenSeam};
 use crate::run_in::SeamSearchFigures;
 use crate::session::unexpected;
 use crate::surroundings::Surroundings;
@@ -27,8 +27,8 @@ use shared::tracking::frames::Heads;
 use shared::trajectory::{Path, PathSpace};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
-use teach::seam::SeamSighting;
-use vision::Form;
+use teach::seam::{EndSighting, SeamEnd, SeamSighting};
+use vision::{EndKind, Form};
 
 /// How often the boards are asked for their clock.
 const CLOCK_PERIOD: Duration = Duration::from_millis(50);
@@ -294,6 +294,7 @@ impl Tracking {
     /// From now on the pictures are kept, those strobed from now on.
     pub fn watch(&mut self) {
         self.watch = Some(Watch::default());
+        self.cameras.look_for_ends(true);
     }
 
     /// Pictures kept so far.
@@ -303,6 +304,7 @@ impl Tracking {
 
     /// Gives the pictures that were kept.
     pub fn end_watch(&mut self) -> Vec<Watched> {
+        self.cameras.look_for_ends(false);
         let answered = self.watch.take().map(|watch| watch.answered);
         answered.unwrap_or_default().into_values().collect()
     }
@@ -388,6 +390,18 @@ fn seen(side: &SideMeasurement, seen: Option<&SeenSeam>) -> SeamSighting {
         quality: seam.map_or(1.0, |seam| seam.quality),
         scatter_mm: 0.0,
         pictures: 1,
+        ends: seen.map_or([None; 2], |seen| seen.ends.map(|end| end.map(end_of))),
+    }
+}
+
+fn end_of(end: SeenEnd) -> EndSighting {
+    EndSighting {
+        end: match end.kind {
+            EndKind::Plate => SeamEnd::Plate,
+            EndKind::Closed => SeamEnd::Tack,
+        },
+        along_mm: end.here.along_mm,
+        offset_mm: [end.here.delta_u_mm, end.here.delta_v_mm],
     }
 }
 

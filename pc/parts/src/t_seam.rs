@@ -163,6 +163,7 @@ mod tests {
                 quality: 0.9,
                 scatter_mm: 0.001,
                 pictures: 8,
+                end: None,
             });
             let point = TaughtPoint::after(before.as_ref(), feet);
             opened.file.add(&point).unwrap();

@@ -54,6 +54,8 @@ pub struct Images {
     /// Of the last capture.
     last: Option<(Pose, Capture)>,
     given_up: u32,
+    /// Whether it is asked where the seams end.
+    ends: bool,
     /// Time goes on while pictures are waited for.
     in_real_time: bool,
 }
@@ -141,6 +143,7 @@ impl Images {
             source,
             last: None,
             given_up: 0,
+            ends: false,
             in_real_time: false,
         })
     }
@@ -228,9 +231,14 @@ impl SeamCameras for Images {
                 capture: capture.number,
                 time_us: strobe_us,
                 moved,
+                ends: self.ends,
             });
         }
         self.last = pose.map(|pose| (pose, capture));
+    }
+
+    fn look_for_ends(&mut self, wanted: bool) {
+        self.ends = wanted;
     }
 
     fn next_due_us(&self) -> Option<u64> {

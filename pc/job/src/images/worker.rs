@@ -1,6 +1,6 @@
 //! The thread that turns the pictures of one camera into measurements.
 
-use crate::joint::SeenSeam;
+use crate::joint::{SeenEnd, SeenSeam};
 use camera::{Arrival, Camera, CameraError, Picture};
 use config::calibration::Calibration;
 use host_link::boards::Waker;
@@ -27,6 +27,8 @@ pub(super) struct Strobe {
     pub time_us: u64,
     /// How far the camera moved since the strobe before; `None` if what was seen before tells nothing any more.
     pub moved: Option<Moved>,
+    /// Whether it is asked where the seam ends in its picture.
+    pub ends: bool,
 }
 
 /// The result of one strobe.
@@ -197,7 +199,7 @@ impl Work {
                 self.note(strobe.moved);
                 let arrived = strobe.capture == capture && arrival == Arrival::Picture;
                 let seen = if arrived {
-                    self.look(at)?
+                    self.look(at, strobe.ends)?
                 } else {
                     MeasuredStrobe {
                         capture: strobe.capture,
@@ -271,8 +273,8 @@ impl Work {
         };
     }
 
-    /// Measures the picture that arrived at `arrived`.
-    fn look(&mut self, arrived: Instant) -> Result<MeasuredStrobe, WorkerError> {
+    /// Measures the picture that arrived at `arrived`, and looks for ends of the seam in it if they are asked for.
+    fn look(&mut self, arrived: Instant, ends: bool) -> Result<MeasuredStrobe, WorkerError> {
         let moved = self.moved.replace(Moved::default());
         if moved.is_none() {
             self.observer.forget();
@@ -286,6 +288,18 @@ impl Work {
         let seen = both.map(|(seam, measured)| SeenSeam {
             seam,
             here: to_side((seam.lateral_mm, seam.travel_mm, measured.height_mm)),
+            ends: if ends {
+                let ends = self.observer.detector().gap_ends(&measured);
+                ends.map(|end| {
+                    let end = end?;
+                    Some(SeenEnd {
+                        kind: end.kind,
+                        here: to_side((end.lateral_mm, end.travel_mm, end.height_mm)),
+                    })
+                })
+            } else {
+                [None; 2]
+            },
         });
         let place = observation
             .seam
