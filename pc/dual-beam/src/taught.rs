@@ -84,6 +84,17 @@ pub struct TaughtSeams {
     pub other: Vec<Vector3<f64>>,
     /// How far the points are from them.
     pub fit: [Deviations; SIDES],
+    /// Which of them begin, and which end, with what the cameras saw there.
+    pub marked: Marked,
+}
+
+/// Seams that begin, and that end, at a plate or a tack.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Marked {
+    /// At their first point.
+    pub begins: [bool; SIDES],
+    /// At their last one.
+    pub ends: [bool; SIDES],
 }
 
 /// Distances of the points from their curve.
@@ -114,6 +125,7 @@ impl TaughtSeams {
                 .collect(),
             other: second,
             fit,
+            marked: Marked::of(points),
         })
     }
 
@@ -270,6 +282,20 @@ fn normals(points: &[(usize, TaughtPoint)]) -> Vec<Vector3<f64>> {
     let smooth = scattered.smoothed().into_iter().map(Vector3::from);
     let inside = smooth.skip(count - 1).take(count);
     inside.map(|normal| normal.normalize()).collect()
+}
+
+impl Marked {
+    fn of(points: &[(usize, TaughtPoint)]) -> Self {
+        let marked = |point: Option<&(usize, TaughtPoint)>| {
+            point.map_or([false; SIDES], |(_, point)| {
+                point.feet.map(|foot| foot.end.is_some())
+            })
+        };
+        Self {
+            begins: marked(points.first()),
+            ends: marked(points.last()),
+        }
+    }
 }
 
 impl Deviations {

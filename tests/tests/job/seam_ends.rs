@@ -2,7 +2,7 @@
 //! welded from there to there.
 
 use super::*;
-use dual_beam::{DualBeamPlan, PlanOptions, SeamPoint, TaughtSeams, plan_dual_beam};
+use dual_beam::{DualBeamPlan, PlanOptions, SeamPoint, TaughtSeams, plan_dual_beam, plan_taught};
 use job::{ImageCameras, SeamLesson};
 use nalgebra::Vector3;
 use std::path::Path;
@@ -12,20 +12,17 @@ use teach::seam::{
 };
 use world::{CameraChoice, PictureChoice, SceneFile};
 
-/// Length of the drawing \[mm\].
-const LENGTH: f64 = 60.0;
 /// Where the plates begin, and where they end or a tack begins, on side 1 and 2, from where the drawing begins \[mm\].
 const BEGIN: [f64; 2] = [5.3, 5.3];
 const END: [f64; 2] = [54.2, 53.7];
 
-fn plan(main: &[SeamPoint], other: &[Vector3<f64>], machine: &MachineFile) -> DualBeamPlan {
-    let options = PlanOptions {
+fn options() -> PlanOptions {
+    PlanOptions {
         title: "rib".into(),
         speed_m_min: 5.0,
         power_w: [2000.0; 2],
         paper: false,
-    };
-    plan_dual_beam(main, other, machine, &options).unwrap()
+    }
 }
 
 /// Both feet straight along X on a flat skin.
@@ -35,7 +32,7 @@ fn drawn(machine: &MachineFile) -> DualBeamPlan {
     let main: Vec<SeamPoint> = foot(898.0)
         .map(|position| SeamPoint { position, normal })
         .collect();
-    plan(&main, &foot(902.0).collect::<Vec<_>>(), machine)
+    plan_dual_beam(&main, &foot(902.0).collect::<Vec<_>>(), machine, &options()).unwrap()
 }
 
 /// What the cameras see: on side 1 plates that begin and end, on side 2 plates that begin and a tack.
@@ -119,15 +116,48 @@ fn a_seam_is_taught_and_welded_from_where_its_plates_begin_to_where_they_end() {
     let Lesson::SeamEnds { ends, missing_mm, .. } = told.ended else {
         panic!("{:?}", told.ended)
     };
-    println!("{}", std::fs::read_to_string(&output).unwrap());
     assert_eq!(ends, [Some(SeamEnd::Plate), Some(SeamEnd::Tack)]);
-    println!("{missing_mm:?} {:?}", told.begins);
+    let missing = missing_mm.unwrap();
+    assert!(
+        (missing - (60.0 - (END[0] + END[1]) / 2.0)).abs() < 0.03,
+        "{missing}"
+    );
+    let (begins, after) = told.begins.unwrap();
+    assert_eq!(begins, [Some(SeamEnd::Plate); 2]);
+    assert!((after - BEGIN[0]).abs() < 0.03, "{after}");
     let points = read_seam_points(&output).unwrap();
     let x = |point: &(usize, Taught), side: usize| point.1.feet[side].position.x - 900.0;
     for side in 0..2 {
         let (begin, end) = (x(&points[0], side), x(&points[points.len() - 1], side));
-        println!("side {side}: {begin} {end}");
         assert!((begin - BEGIN[side]).abs() < 0.03, "side {side}: {begin}");
         assert!((end - END[side]).abs() < 0.03, "side {side}: {end}");
+    }
+
+    let seams = TaughtSeams::through(&points, 0.5).unwrap();
+    let taught = plan_taught(&seams, &machine, &options()).unwrap();
+    let read = |plan: &DualBeamPlan| interpret(&plan.program, Options::default()).unwrap();
+    let (program, drawing) = (read(&taught), read(&drawn(&machine)));
+    let mut boards = SimulatedBoards::default();
+    let ended = run(
+        &mut boards,
+        &job_before(&machine, &program, &drawing),
+        &mut NoOperator,
+    )
+    .unwrap();
+    assert!(ended.error.is_none(), "{:?}", ended.error);
+    assert_off(&mut boards);
+    println!(
+        "{:?} {:?} {:?}",
+        ended.evaluation.max_deviation_mm, ended.report.weld_length_mm, ended.report.unwelded
+    );
+    let from = taught.points[0].pose.position.x - 900.0;
+    for side in 0..2 {
+        let on = ended.evaluation.ticks.iter().filter(|tick| tick.beams[side]);
+        let on: Vec<f64> = on.map(|tick| from + tick.s_mm).collect();
+        println!("side {side}: {:?} {:?}", on[0], on[on.len() - 1]);
+        // A millisecond at 5 m/min.
+        assert!((on[0] - BEGIN[side]).abs() < 0.1, "side {side}: {}", on[0]);
+        let last = on[on.len() - 1];
+        assert!((last - END[side]).abs() < 0.1, "side {side}: {last}");
     }
 }
