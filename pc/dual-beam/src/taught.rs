@@ -152,6 +152,7 @@ fn check(points: &[(usize, TaughtPoint)], least: f64) -> Result<(), TaughtSeamEr
     if found < FEWEST {
         return Err(TaughtSeamError::Few { found });
     }
+    let along = [0, 1].map(|side| chords(points, side));
     for (index, (first_line, point)) in points.iter().enumerate() {
         for (side, foot) in point.feet.iter().enumerate() {
             let (line, side, k) = (first_line + side, side + 1, side);
@@ -169,7 +170,7 @@ fn check(points: &[(usize, TaughtPoint)], least: f64) -> Result<(), TaughtSeamEr
             } else {
                 BESIDE
             };
-            let away_mm = beside_neighbours(points, index, k);
+            let away_mm = beside_neighbours(points, &along[k], index, k);
             if away_mm > limit {
                 return Err(TaughtSeamError::Jump { line, side, away_mm });
             }
@@ -202,26 +203,23 @@ fn check(points: &[(usize, TaughtPoint)], least: f64) -> Result<(), TaughtSeamEr
     Ok(())
 }
 
-/// How far a point is from the curve through the nearest other ones: a cubic through four of them, at the ends a
-/// parabola through three \[mm\].
-fn beside_neighbours(points: &[(usize, TaughtPoint)], index: usize, side: usize) -> f64 {
+/// How far a point is from the curve through the nearest other ones over the chords of its side: a cubic through four of them, at
+/// the ends a parabola through three \[mm\].
+fn beside_neighbours(points: &[(usize, TaughtPoint)], along: &[f64], index: usize, side: usize) -> f64 {
     let last = points.len() - 1;
     let at_end = index == 0 || index == last;
     let count = if at_end { 3 } else { 4.min(last) };
     let first = index.saturating_sub(2).min(last - count);
-    let others: Vec<&TaughtPoint> = (first..=first + count)
+    let others: Vec<usize> = (first..=first + count)
         .filter(|i| *i != index)
-        .map(|i| &points[i].1)
         .take(count)
         .collect();
-    let s = points[index].1.s_mm;
+    let s = along[index];
     let mut expected = Vector3::zeros();
-    for (i, point) in others.iter().enumerate() {
-        let weights = others.iter().enumerate().filter(|(j, _)| *j != i);
-        let weight: f64 = weights
-            .map(|(_, other)| (s - other.s_mm) / (point.s_mm - other.s_mm))
-            .product();
-        expected += point.feet[side].position * weight;
+    for &i in &others {
+        let weights = others.iter().filter(|j| **j != i);
+        let weight: f64 = weights.map(|&j| (s - along[j]) / (along[i] - along[j])).product();
+        expected += points[i].1.feet[side].position * weight;
     }
     (points[index].1.feet[side].position - expected).norm()
 }
