@@ -38,6 +38,8 @@ const LATELY: u32 = 0xf_ffff;
 const ENOUGH: u32 = 3;
 /// Paths that are remembered.
 const PATHS: usize = 4;
+/// So near to where a weld begins and ends it is looked for ends of the seam in pictures \[mm\].
+const NEAR_END_MM: f64 = 8.0;
 /// Strobes that are remembered until their measurements leave.
 const STROBES: usize = 256;
 
@@ -85,6 +87,8 @@ pub(super) struct Tracking {
     stands: Option<Pose>,
     /// Where the slides were at the strobe of each capture, while somebody asks for that \[mm\].
     pub strobed: Option<BTreeMap<u32, [f64; SLIDES]>>,
+    /// The newest path that welds, and from where to where \[mm\].
+    weld: Option<(u32, (f64, f64))>,
     /// The latest paths, by their numbers.
     paths: VecDeque<KnownPath>,
     clocks: BoardClocks,
@@ -119,6 +123,7 @@ impl Tracking {
             picture_delays: Delays::default(),
             strobed: None,
             paths: VecDeque::new(),
+            weld: None,
             clock_residual_us: None,
             clock_difference_us: None,
             heads,
@@ -206,6 +211,18 @@ impl Tracking {
             self.paths.pop_front();
         }
         self.paths.push_back((id, path.space, path.knot_path()));
+        self.weld = path.weld().map(|places| (id, places));
+    }
+
+    /// Whether the cameras look at where the weld begins or ends.
+    fn near_an_end(&self, capture: &Capture) -> bool {
+        let Some((_, (begin, end))) = self.weld.filter(|(id, _)| *id == capture.path_id) else {
+            return false;
+        };
+        let looks_at = capture.s_mm + self.heads.camera_lead();
+        [begin, end]
+            .iter()
+            .any(|place| (looks_at - place).abs() < NEAR_END_MM)
     }
 
     /// The planned pose of a capture.
@@ -261,6 +278,8 @@ impl Tracking {
             self.strobes.pop_front();
         }
         self.strobes.push_back((capture, on_motion));
+        let wanted = self.watch.is_some() || self.near_an_end(&capture);
+        self.cameras.look_for_ends(wanted);
         self.cameras.strobe(capture, on_motion, pose);
     }
 
@@ -294,7 +313,6 @@ impl Tracking {
     /// From now on the pictures are kept, those strobed from now on.
     pub fn watch(&mut self) {
         self.watch = Some(Watch::default());
-        self.cameras.look_for_ends(true);
     }
 
     /// Pictures kept so far.
@@ -304,7 +322,6 @@ impl Tracking {
 
     /// Gives the pictures that were kept.
     pub fn end_watch(&mut self) -> Vec<Watched> {
-        self.cameras.look_for_ends(false);
         let answered = self.watch.take().map(|watch| watch.answered);
         answered.unwrap_or_default().into_values().collect()
     }

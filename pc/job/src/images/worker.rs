@@ -1,5 +1,6 @@
 //! The thread that turns the pictures of one camera into measurements.
 
+use super::ends::SeamEnds;
 use crate::joint::{SeenEnd, SeenSeam};
 use camera::{Arrival, Camera, CameraError, Picture};
 use config::calibration::Calibration;
@@ -79,7 +80,13 @@ pub(super) struct Worker {
 
 impl Worker {
     /// Starts the thread.
-    pub fn start(side: usize, camera: Box<dyn Camera>, observer: Observer, calibration: Calibration) -> Self {
+    pub fn start(
+        side: usize,
+        camera: Box<dyn Camera>,
+        observer: Observer,
+        calibration: Calibration,
+        reach_mm: f64,
+    ) -> Self {
         let (strobes, told) = channel();
         let (answer, answers) = channel();
         let outlet = Arc::<OnceLock<Outlet>>::default();
@@ -93,6 +100,7 @@ impl Worker {
             moved: Some(Moved::default()),
             picture: Picture::default(),
             settled: false,
+            ends: SeamEnds::new(reach_mm),
         };
         let thread = std::thread::spawn(move || {
             // The end of the session is no error.
@@ -164,6 +172,7 @@ struct Work {
     picture: Picture,
     /// Means have been told since the seam was found.
     settled: bool,
+    ends: SeamEnds,
 }
 
 impl Work {
@@ -278,28 +287,29 @@ impl Work {
         let moved = self.moved.replace(Moved::default());
         if moved.is_none() {
             self.observer.forget();
+            self.ends.forget();
         }
-        let observation = self
-            .observer
-            .observe(&self.picture.image()?, moved.unwrap_or_default())?;
+        let moved = moved.unwrap_or_default();
+        let observation = self.observer.observe(&self.picture.image()?, moved)?;
+        let seen_ends = if ends {
+            self.ends.look(self.observer.detector(), &observation, &moved)
+        } else {
+            self.ends.forget();
+            [None; 2]
+        };
         self.settled &= observation.state == State::Tracking;
         let to_side = |(lateral, travel, height)| self.calibration.side_measurement(lateral, travel, height);
         let both = observation.seam.zip(observation.report.measured);
         let seen = both.map(|(seam, measured)| SeenSeam {
             seam,
             here: to_side((seam.lateral_mm, seam.travel_mm, measured.height_mm)),
-            ends: if ends {
-                let ends = self.observer.detector().gap_ends(&measured);
-                ends.map(|end| {
-                    let end = end?;
-                    Some(SeenEnd {
-                        kind: end.kind,
-                        here: to_side((end.lateral_mm, end.travel_mm, end.height_mm)),
-                    })
+            ends: seen_ends.map(|end| {
+                let end = end?;
+                Some(SeenEnd {
+                    kind: end.kind,
+                    here: to_side((end.lateral_mm, end.travel_mm, end.height_mm)),
                 })
-            } else {
-                [None; 2]
-            },
+            }),
         });
         let place = observation
             .seam
@@ -322,7 +332,10 @@ impl Work {
             capture: self.picture.capture,
             observation: Some(observation),
             seen,
-            measurement: place.map(to_side),
+            measurement: self
+                .ends
+                .told(place, observation.seam.is_some(), &moved)
+                .map(to_side),
             arrived,
         })
     }
