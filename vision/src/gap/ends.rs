@@ -576,7 +576,7 @@ impl Courses {
         };
         match (gone, closed) {
             // Where a plate ends there is no gap to close.
-            (Some((gone, _)), Some(closed)) if closed.place < gone.place - same => {
+            (Some((gone, _)), Some(closed)) if closed.place < gone.place - CLOSED_MM * rule.per_mm => {
                 Some((EndKind::Closed, closed, false))
             }
             (Some((gone, of_one)), _) => Some((EndKind::Plate, gone, of_one)),
