@@ -1,8 +1,8 @@
-//! Looks for ends of the gap in random pictures, and prints how many are found, how far off, and how many are none.
+//! Looks for ends of the gap in random pictures, and prints how many are found, how far off they are, and how many are none.
 //!
 //! `cargo run --release -p seamwright-vision --features render --example ends -- [PICTURES] [FIRST SEED] [MAGNIFICATION]`
 
-use vision::render::{Effect, Scene, SplitMix64, Tack, TruthRenderer, random_joint};
+use vision::render::{Effect, Joint as Work, Scene, SplitMix64, Tack, TruthRenderer, random_joint};
 use vision::{Detector, EndKind, Image, Joint, Optics, PhotonTransfer, Prior, Profile};
 
 const NOISE: PhotonTransfer = PhotonTransfer {
@@ -10,24 +10,83 @@ const NOISE: PhotonTransfer = PhotonTransfer {
     read_noise: 15.0,
 };
 
-/// Ends of the gap on the work \[mm\], each with its kind: the nearest behind a place, and ahead of it.
+/// What is seen nearer to a true end than this is that end \[mm\].
+const SAME_MM: f64 = 0.25;
+/// What of an end has to be in the picture beyond it: of plates, of tacks \[mm\].
+const BEYOND_MM: [f64; 2] = [0.35, 0.6];
+
+/// What ends the gap of a plain joint, up to the border of the picture.
+#[derive(Clone, Copy, Debug)]
+enum Ended {
+    BothPlates,
+    OnePlate,
+    Tack,
+}
+
+/// What a group of pictures shows.
+#[derive(Clone, Copy, Debug)]
+enum Group {
+    Ended(Ended),
+    Effect(Effect),
+    /// One of the three, with a random effect.
+    Mixed,
+}
+
+impl Ended {
+    const ALL: [Self; 3] = [Self::BothPlates, Self::OnePlate, Self::Tack];
+
+    /// Ends the gap anywhere up to `view` mm from the band, before it or behind it.
+    fn give(self, scene: &mut Scene, view: f64, random: &mut SplitMix64) {
+        let Work::Gap(gap) = scene.joint else { return };
+        let band = scene.position_mm[0] + gap.plate.height_mm + gap.plate.roll * gap.plate.lateral_mm;
+        let way = random.between(0.12, view - 0.1);
+        let (there, gone) = if random.chance(0.5) {
+            ([f64::NEG_INFINITY, band + way], [band + way, band + way + 4.0])
+        } else {
+            ([band - way, f64::INFINITY], [band - way - 4.0, band - way])
+        };
+        match self {
+            Self::BothPlates => scene.sides.iter_mut().for_each(|side| side.reaches_mm = there),
+            Self::OnePlate => scene.sides[usize::from(random.chance(0.5))].reaches_mm = there,
+            Self::Tack => scene.tacks.push(Tack {
+                reaches_mm: gone,
+                width_mm: gap.plate.width_mm + random.between(0.05, 0.3),
+                brightness: random.log_between(0.4, 1.6),
+            }),
+        }
+    }
+}
+
+impl Group {
+    fn scene(self, optics: &Optics, view: f64, seed: u64) -> Scene {
+        let mut random = SplitMix64::new(seed ^ 0xe0d5);
+        let mut any = |count: usize| (random.uniform() * count as f64) as usize;
+        let (effect, ended) = match self {
+            Self::Ended(ended) => (Effect::Plain, Some(ended)),
+            Self::Effect(effect) => (effect, None),
+            Self::Mixed => (Effect::ALL[any(Effect::ALL.len())], Some(Ended::ALL[any(3)])),
+        };
+        let mut scene = random_joint(&[effect], optics, NOISE, seed);
+        if let Some(ended) = ended {
+            ended.give(&mut scene, view, &mut random);
+        }
+        scene
+    }
+}
+
+/// Ends of the gap on the work: the nearest behind a place along travel, and ahead of it \[mm\].
 fn ends(scene: &Scene, place: f64) -> [Option<(EndKind, f64)>; 2] {
-    let mut all = Vec::new();
-    for side in &scene.sides {
-        all.extend(side.reaches_mm.map(|end| (EndKind::Plate, end)));
-    }
-    for tack in &scene.tacks {
-        all.extend(tack.reaches_mm.map(|end| (EndKind::Closed, end)));
-    }
-    let near = |ahead: bool| {
-        let beyond = all
+    let plates = scene.sides.iter().flat_map(|side| side.reaches_mm);
+    let tacks = scene.tacks.iter().flat_map(|tack| tack.reaches_mm);
+    let plates = plates.map(|end| (EndKind::Plate, end));
+    let all: Vec<_> = plates.chain(tacks.map(|end| (EndKind::Closed, end))).collect();
+    [false, true].map(|ahead| {
+        let there = all
             .iter()
             .filter(|(_, end)| end.is_finite() && (*end > place) == ahead);
-        beyond
-            .min_by(|a, b| (a.1 - place).abs().total_cmp(&(b.1 - place).abs()))
-            .copied()
-    };
-    [near(false), near(true)]
+        let far = |end: &f64| (end - place).abs();
+        there.min_by(|a, b| far(&a.1).total_cmp(&far(&b.1))).copied()
+    })
 }
 
 #[derive(Default)]
@@ -35,31 +94,29 @@ struct Tally {
     pictures: usize,
     expected: usize,
     found: usize,
-    wrong_kind: usize,
-    false_alarms: Vec<(u64, f64)>,
-    errors: Vec<f64>,
+    other_kind: usize,
+    none: usize,
+    errors_um: Vec<f64>,
     ratios: Vec<f64>,
 }
 
 fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted: Vec<f64> = values.iter().map(|value| value.abs()).collect();
     sorted.sort_by(f64::total_cmp);
-    if sorted.is_empty() {
-        0.0
-    } else {
-        sorted[((sorted.len() - 1) as f64 * share).round() as usize]
-    }
+    let place = (sorted.len().saturating_sub(1) as f64 * share).round() as usize;
+    sorted.get(place).copied().unwrap_or(0.0)
 }
 
 fn main() {
-    let arguments: Vec<f64> = std::env::args()
+    let mut arguments = std::env::args()
         .skip(1)
-        .map(|text| text.parse().expect("a number"))
-        .collect();
-    let number = |k: usize, default: f64| arguments.get(k).copied().unwrap_or(default);
-    let (count, first) = (number(0, 20.0) as u64, number(1, 1.0) as u64);
+        .map(|text| text.parse::<f64>().expect("a number"));
+    let (count, first) = (
+        arguments.next().unwrap_or(20.0) as u64,
+        arguments.next().unwrap_or(1.0) as u64,
+    );
     let optics = Optics {
-        magnification: number(2, 2.0),
+        magnification: arguments.next().unwrap_or(2.0),
         pixel_mm: 0.0138,
         tilt_rad: std::f64::consts::FRAC_PI_4,
         aperture: 0.10,
@@ -70,69 +127,14 @@ fn main() {
     let view = optics.rows as f64 * optics.object_pixel_mm() / optics.tilt_rad.cos() / 2.0;
     let mut detector = Detector::new(optics, NOISE, Profile::expected(&optics)).expect("a camera");
     let mut renderer = TruthRenderer::new(optics, NOISE, 1).expect("a renderer");
-    println!(
-        "{:<20} {:>4} {:>4} {:>5} {:>5} {:>5} {:>7} {:>7} {:>7} {:>6}",
-        "effect", "seam", "ends", "found", "kind", "false", "rms", "p95", "max um", "ratio"
-    );
-    let mut groups: Vec<(String, usize)> = ["both plates", "one plate", "tack"]
-        .iter()
-        .enumerate()
-        .map(|(k, x)| ((*x).to_owned(), k))
-        .collect();
-    groups.extend(
-        Effect::ALL
-            .iter()
-            .enumerate()
-            .map(|(k, effect)| (format!("{effect:?}"), 3 + k)),
-    );
-    groups.push(("ends + effect".to_owned(), 3 + Effect::ALL.len()));
-    let only = std::env::var("ONLY").ok();
-    for (name, group) in groups {
-        if only.as_ref().is_some_and(|only| !name.contains(only.as_str())) {
-            continue;
-        }
+    println!("{count} pictures of each from seed {first}; errors in µm; error over its standard deviation");
+    println!("| group | seams | ends | found | other kind | no end | rms | p95 | worst | ratio, p95 |");
+    let groups = Ended::ALL.into_iter().map(Group::Ended);
+    let groups = groups.chain(Effect::ALL.into_iter().map(Group::Effect));
+    for group in groups.chain([Group::Mixed]) {
         let mut tally = Tally::default();
         for seed in first..first + count {
-            let mut random = SplitMix64::new(seed ^ 0xe0d5);
-            let mixed = group == 3 + Effect::ALL.len();
-            let effect = if mixed {
-                Effect::ALL[(random.uniform() * Effect::ALL.len() as f64) as usize]
-            } else if group >= 3 {
-                Effect::ALL[group - 3]
-            } else {
-                Effect::Plain
-            };
-            let mut scene = random_joint(&[effect], &optics, NOISE, seed);
-            let vision::render::Joint::Gap(gap) = scene.joint else {
-                continue;
-            };
-            let band = scene.position_mm[0] + gap.plate.height_mm + gap.plate.roll * gap.plate.lateral_mm;
-            let what = if mixed {
-                (random.uniform() * 3.0) as usize
-            } else {
-                group
-            };
-            let way = random.between(0.12, view - 0.1);
-            let ahead = random.chance(0.5);
-            let reaches = if ahead {
-                [f64::NEG_INFINITY, band + way]
-            } else {
-                [band - way, f64::INFINITY]
-            };
-            match what {
-                0 => scene.sides.iter_mut().for_each(|side| side.reaches_mm = reaches),
-                1 => scene.sides[usize::from(random.chance(0.5))].reaches_mm = reaches,
-                2 => scene.tacks.push(Tack {
-                    reaches_mm: if ahead {
-                        [band + way, band + way + 4.0]
-                    } else {
-                        [band - way - 4.0, band - way]
-                    },
-                    width_mm: gap.plate.width_mm + random.between(0.05, 0.3),
-                    brightness: random.log_between(0.4, 1.6),
-                }),
-                _ => {}
-            }
+            let scene = group.scene(&optics, view, seed);
             let pixels = renderer.render(&scene, seed);
             let image = Image::new(&pixels, optics.rows, optics.columns).expect("its size");
             let prior = Prior {
@@ -143,70 +145,40 @@ fn main() {
             let report = detector.measure(&image, &prior).expect("a picture");
             let Some(measured) = report.seam() else { continue };
             tally.pictures += 1;
-            let place = scene.position_mm[0] + measured.travel_mm;
-            let truth = ends(&scene, place);
-            let seen = detector.gap_ends(measured);
-            // How far the picture reaches at the seam.
-            for k in 0..2 {
+            let begin = scene.position_mm[0];
+            let truth = ends(&scene, begin + measured.travel_mm);
+            for (k, seen) in detector.gap_ends(measured).into_iter().enumerate() {
                 let sign = if k == 0 { -1.0 } else { 1.0 };
-                let border = view - sign * 0.0 * measured.travel_mm;
-                let expected = truth[k].filter(|(kind, end)| {
-                    let beyond = border - sign * (end - scene.position_mm[0]) - measured.height_mm * sign;
-                    beyond > if *kind == EndKind::Plate { 0.35 } else { 0.6 }
-                });
-                tally.expected += usize::from(expected.is_some());
-                let Some(end) = seen[k] else { continue };
-                let near = truth
-                    .iter()
-                    .flatten()
-                    .copied()
-                    .find(|(_, at)| (at - scene.position_mm[0] - end.travel_mm).abs() < 0.25);
-                match near {
-                    Some((kind, at)) => {
-                        let off = end.travel_mm - (at - scene.position_mm[0]);
-                        tally.found += usize::from(expected.is_some());
-                        tally.wrong_kind += usize::from(kind != end.kind);
-                        if std::env::var("ERR").is_ok() {
-                            println!(
-                                "  {seed} {:?} at {:.3} off {off:.4} sigma {:.4} height {:.4} truth {:.4} yaw {:.3} q {:.2}",
-                                end.kind,
-                                end.travel_mm - measured.travel_mm,
-                                end.sigma_mm,
-                                measured.height_mm,
-                                gap.plate.height_mm + gap.plate.roll * measured.lateral_mm,
-                                gap.plate.yaw_rad,
-                                measured.quality
-                            );
-                        }
-                        tally.errors.push(1e3 * off);
-                        tally.ratios.push(off / end.sigma_mm);
-                    }
-                    _ => tally
-                        .false_alarms
-                        .push((seed, end.travel_mm - measured.travel_mm)),
-                }
+                let is_in_view = |(kind, end): &(EndKind, f64)| {
+                    let beyond = view - sign * (end - begin + measured.height_mm);
+                    beyond > BEYOND_MM[usize::from(*kind == EndKind::Closed)]
+                };
+                let expected = truth[k].filter(is_in_view).is_some();
+                tally.expected += usize::from(expected);
+                let Some(seen) = seen else { continue };
+                let off = |(_, end): &&(EndKind, f64)| seen.travel_mm - (end - begin);
+                let Some(end) = truth.iter().flatten().find(|end| off(end).abs() < SAME_MM) else {
+                    tally.none += 1;
+                    continue;
+                };
+                tally.found += usize::from(expected);
+                tally.other_kind += usize::from(end.0 != seen.kind);
+                tally.errors_um.push(1e3 * off(&end));
+                tally.ratios.push(off(&end) / seen.sigma_mm);
             }
         }
-        let rms = (tally.errors.iter().map(|x| x * x).sum::<f64>() / tally.errors.len().max(1) as f64).sqrt();
+        let squares: f64 = tally.errors_um.iter().map(|error| error * error).sum();
         println!(
-            "{:<20} {:>4} {:>4} {:>5} {:>5} {:>5} {:>7.1} {:>7.1} {:>7.1} {:>6.1}  {}",
-            name,
+            "| {group:?} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {:.1} | {:.1} |",
             tally.pictures,
             tally.expected,
             tally.found,
-            tally.wrong_kind,
-            tally.false_alarms.len(),
-            rms,
-            quantile(&tally.errors, 0.95),
-            quantile(&tally.errors, 1.0),
-            quantile(&tally.ratios, 0.95),
-            tally
-                .false_alarms
-                .iter()
-                .take(4)
-                .map(|(seed, at)| format!("{seed}@{at:.2}"))
-                .collect::<Vec<_>>()
-                .join(" ")
+            tally.other_kind,
+            tally.none,
+            (squares / tally.errors_um.len().max(1) as f64).sqrt(),
+            quantile(&tally.errors_um, 0.95),
+            quantile(&tally.errors_um, 1.0),
+            quantile(&tally.ratios, 0.95)
         );
     }
 }

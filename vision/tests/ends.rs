@@ -75,8 +75,8 @@ fn end(scene: &mut Scene, ended: Ended, way: f64, random: &mut SplitMix64) -> f6
     at
 }
 
-/// 0.15 to 0.3 mm from the band, where who looks for an end comes to: all plates and nine of ten tacks are found, on the right side
-/// and of the right kind, within 0.03 and 0.05 mm, and 2.2 standard deviations cover 95 %.
+/// 0.15 to 0.3 mm from the band, where who looks for an end comes to: all plates and six of seven tacks are found, on the right side
+/// and of the right kind, within 0.03 to 0.05 mm, and 2.2 standard deviations cover 95 %.
 #[test]
 fn ends_near_the_band_are_seen_where_they_are() {
     let mut ratios = Vec::new();
@@ -107,13 +107,7 @@ fn ends_near_the_band_are_seen_where_they_are() {
                 pictures += 1;
                 let [other, this] = if way > 0.0 { ends } else { [ends[1], ends[0]] };
                 assert_eq!(other, None, "{magnification}× {ended:?} {seed}");
-                let Some(this) = this else {
-                    println!(
-                        "missed {magnification} {ended:?} {seed} {way} {:?} {:?}",
-                        scene.tacks, scene.joint
-                    );
-                    continue;
-                };
+                let Some(this) = this else { continue };
                 found += 1;
                 let kind = if ended == Ended::Tack {
                     EndKind::Closed
@@ -174,6 +168,7 @@ fn plates_that_end_anywhere_in_the_picture_are_seen() {
             "{seed}, {way}: {off}"
         );
     }
+    assert!(pictures >= 18, "{pictures}");
 }
 
 /// Joints that go on: no end is seen in plain ones, and in at most one of fifty of all effects that leave the seam as it is.

@@ -52,7 +52,7 @@ impl Centred {
     }
 
     /// How far the nearest end is from where the cameras look, along the way \[mm\].
-    fn to_end(&self, way: Way) -> Option<f64> {
+    fn end_distance(&self, way: Way) -> Option<f64> {
         let tangent = self.machine_pose.pose.tangent;
         let ends = self.ends(way).into_iter().zip(self.feet);
         let distances =
@@ -63,7 +63,7 @@ impl Centred {
     /// Both seams where the first of them ends: each in its own end, if that is seen, or beside that of the other.
     fn at_end(&self, way: Way) -> Option<Self> {
         let tangent = self.machine_pose.pose.tangent;
-        let distance = self.to_end(way)? * way.sign();
+        let distance = self.end_distance(way)? * way.sign();
         let mut there = *self;
         for (foot, end) in there.feet.iter_mut().zip(self.ends(way)) {
             match end {
@@ -176,7 +176,7 @@ impl Follower<'_> {
         mut beyond: f64,
         way: Way,
     ) -> Result<Centred, R::Error> {
-        while here.to_end(way).is_none() && beyond > NEAR {
+        while here.end_distance(way).is_none() && beyond > NEAR {
             beyond /= 2.0;
             let there = moved(&here.machine_pose, way.sign() * beyond);
             rig.go(&there)?;
@@ -184,7 +184,7 @@ impl Follower<'_> {
                 here = nearer;
             }
         }
-        if here.to_end(way).is_some() {
+        if here.end_distance(way).is_some() {
             return Ok(here);
         }
         // Perhaps it is too near.
@@ -203,7 +203,7 @@ impl Follower<'_> {
     ) -> Result<Option<Centred>, R::Error> {
         let mut here = near;
         for _ in 0..MOVES {
-            let Some(distance) = here.to_end(way) else {
+            let Some(distance) = here.end_distance(way) else {
                 return Ok(None);
             };
             let off = distance - STAND_OFF;

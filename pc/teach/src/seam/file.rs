@@ -354,11 +354,9 @@ pub fn parse_seam_points(path: &str, text: &str) -> Result<Vec<(usize, SeamPoint
         }
         points.push((first.line, point));
     }
-    let inner = points.iter().skip(1).rev().skip(1);
-    if let Some((line, _)) = inner
-        .filter(|(_, point)| point.feet.iter().any(|foot| foot.end.is_some()))
-        .last()
-    {
+    let inner = points.get(1..points.len().saturating_sub(1)).unwrap_or_default();
+    let has_end = |(_, point): &&(usize, SeamPoint)| point.feet.iter().any(|foot| foot.end.is_some());
+    if let Some((line, _)) = inner.iter().find(has_end) {
         return Err(wrong(
             *line,
             "only the first and the last point are where a seam begins or ends: end is - between them",
