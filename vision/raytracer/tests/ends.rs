@@ -22,11 +22,11 @@ fn ends_are_seen_where_rays_see_them() {
             rows: 300,
             columns: 400,
         };
-        let camera = Camera::new(optics, 10);
+        let camera = Camera::new(optics, 24);
         let mut detector = Detector::new(optics, NOISE, Profile::expected(&optics)).unwrap();
         for kind in [None, Some(EndKind::Plate), Some(EndKind::Closed)] {
             let (mut pictures, mut found) = (0, 0);
-            for seed in 400..404 {
+            for seed in 400..403 {
                 let mut subject = subject(&[Effect::Plain], &optics, NOISE, seed);
                 let work = &mut subject.work;
                 work.height_mm *= 0.3;
@@ -80,7 +80,7 @@ fn ends_are_seen_where_rays_see_them() {
                     ahead.sigma_mm
                 );
             }
-            assert!(pictures >= 3, "{magnification}× {kind:?}: {pictures}");
+            assert!(pictures >= 2, "{magnification}× {kind:?}: {pictures}");
             assert!(
                 kind.is_none() || found + 1 >= pictures,
                 "{magnification}× {kind:?}: {found} of {pictures}"
