@@ -142,7 +142,17 @@ impl TaughtSeams {
                 fit.rms_mm
             )
         };
-        sides.map(note).collect()
+        let marked = (0..SIDES).filter_map(|side| {
+            let number = side + 1;
+            let said = match (self.marked.begins[side], self.marked.ends[side]) {
+                (true, true) => "on where its seam begins, and off where it ends",
+                (true, false) => "on where its seam begins",
+                (false, true) => "off where its seam ends",
+                (false, false) => return None,
+            };
+            Some(format!("beam {number} goes {said}, as the cameras saw it"))
+        });
+        sides.map(note).chain(marked).collect()
     }
 }
 
@@ -328,6 +338,7 @@ fn deviations(points: &[(usize, TaughtPoint)], side: usize, curve: &[Vector3<f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use teach::seam::SeamEnd;
     use vision::render::SplitMix64;
 
     /// Feet 4 mm apart on an arc of 600 mm radius, taught every 12 mm with a scatter of 0.007 mm in 8 pictures.
@@ -375,6 +386,18 @@ mod tests {
                 "{fit:?}"
             );
         }
+        let mut ended = taught(0.0);
+        ended[0].1.feet[1].end = Some(SeamEnd::Plate);
+        ended[29].1.feet[0].end = Some(SeamEnd::Tack);
+        let notes = TaughtSeams::through(&ended, 0.5).unwrap().notes();
+        assert_eq!(
+            notes[2..],
+            [
+                "beam 1 goes off where its seam ends, as the cameras saw it",
+                "beam 2 goes on where its seam begins, as the cameras saw it"
+            ]
+        );
+        assert_eq!(exact.notes().len(), 2);
         let note = &noisy.notes()[1];
         assert!(
             note.starts_with("seam 2: 30 taught points lie within 0.0"),

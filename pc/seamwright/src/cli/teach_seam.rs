@@ -294,3 +294,24 @@ fn ends_of(ends: &[Option<SeamEnd>; SIDES], verb: &str) -> Option<String> {
         [None, Some(end)] => Some(said(end, "side 2")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_ends_each_side_is_said() {
+        let (plate, tack) = (Some(SeamEnd::Plate), Some(SeamEnd::Tack));
+        for (ends, said) in [
+            ([plate, plate], "a plate ends there on both sides"),
+            (
+                [plate, tack],
+                "a plate ends there on side 1, the gap is closed there on side 2, as by a tack",
+            ),
+            ([None, tack], "the gap is closed there on side 2, as by a tack"),
+        ] {
+            assert_eq!(ends_of(&ends, "ends").as_deref(), Some(said));
+        }
+        assert_eq!(ends_of(&[None; SIDES], "ends"), None);
+    }
+}
