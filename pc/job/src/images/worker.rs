@@ -1,6 +1,7 @@
 //! The thread that turns the pictures of one camera into measurements.
 
-use crate::joint::SeenSeam;
+use super::ends::SeamEnds;
+use crate::joint::{SeenEnd, SeenSeam};
 use camera::{Arrival, Camera, CameraError, Picture};
 use config::calibration::Calibration;
 use host_link::boards::Waker;
@@ -27,6 +28,8 @@ pub(super) struct Strobe {
     pub time_us: u64,
     /// How far the camera moved since the strobe before; `None` if what was seen before tells nothing any more.
     pub moved: Option<Moved>,
+    /// Whether it is asked where the seam ends in its picture.
+    pub ends: bool,
 }
 
 /// The result of one strobe.
@@ -77,7 +80,13 @@ pub(super) struct Worker {
 
 impl Worker {
     /// Starts the thread.
-    pub fn start(side: usize, camera: Box<dyn Camera>, observer: Observer, calibration: Calibration) -> Self {
+    pub fn start(
+        side: usize,
+        camera: Box<dyn Camera>,
+        observer: Observer,
+        calibration: Calibration,
+        reach_mm: f64,
+    ) -> Self {
         let (strobes, told) = channel();
         let (answer, answers) = channel();
         let outlet = Arc::<OnceLock<Outlet>>::default();
@@ -91,6 +100,7 @@ impl Worker {
             moved: Some(Moved::default()),
             picture: Picture::default(),
             settled: false,
+            ends: SeamEnds::new(reach_mm),
         };
         let thread = std::thread::spawn(move || {
             // The end of the session is no error.
@@ -162,6 +172,7 @@ struct Work {
     picture: Picture,
     /// Means have been told since the seam was found.
     settled: bool,
+    ends: SeamEnds,
 }
 
 impl Work {
@@ -197,7 +208,7 @@ impl Work {
                 self.note(strobe.moved);
                 let arrived = strobe.capture == capture && arrival == Arrival::Picture;
                 let seen = if arrived {
-                    self.look(at)?
+                    self.look(at, strobe.ends)?
                 } else {
                     MeasuredStrobe {
                         capture: strobe.capture,
@@ -271,21 +282,34 @@ impl Work {
         };
     }
 
-    /// Measures the picture that arrived at `arrived`.
-    fn look(&mut self, arrived: Instant) -> Result<MeasuredStrobe, WorkerError> {
+    /// Measures the picture that arrived at `arrived`, and looks for ends of the seam in it if they are asked for.
+    fn look(&mut self, arrived: Instant, ends: bool) -> Result<MeasuredStrobe, WorkerError> {
         let moved = self.moved.replace(Moved::default());
         if moved.is_none() {
             self.observer.forget();
+            self.ends.forget();
         }
-        let observation = self
-            .observer
-            .observe(&self.picture.image()?, moved.unwrap_or_default())?;
+        let moved = moved.unwrap_or_default();
+        let observation = self.observer.observe(&self.picture.image()?, moved)?;
+        let seen_ends = if ends {
+            self.ends.look(self.observer.detector(), &observation, &moved)
+        } else {
+            self.ends.forget();
+            [None; 2]
+        };
         self.settled &= observation.state == State::Tracking;
         let to_side = |(lateral, travel, height)| self.calibration.side_measurement(lateral, travel, height);
         let both = observation.seam.zip(observation.report.measured);
         let seen = both.map(|(seam, measured)| SeenSeam {
             seam,
             here: to_side((seam.lateral_mm, seam.travel_mm, measured.height_mm)),
+            ends: seen_ends.map(|end| {
+                let end = end?;
+                Some(SeenEnd {
+                    kind: end.kind,
+                    here: to_side((end.lateral_mm, end.travel_mm, end.height_mm)),
+                })
+            }),
         });
         let place = observation
             .seam
@@ -308,7 +332,10 @@ impl Work {
             capture: self.picture.capture,
             observation: Some(observation),
             seen,
-            measurement: place.map(to_side),
+            measurement: self
+                .ends
+                .told(place, observation.seam.is_some(), &moved)
+                .map(to_side),
             arrived,
         })
     }
