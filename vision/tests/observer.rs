@@ -6,7 +6,7 @@ use common::{NOISE, OPTICS, detector};
 use vision::render::{Finish, Gap, Joint as Work, Root, Scene, Texture, TruthRenderer};
 use vision::{
     Corner, Doubt, Form, Image, Joint, MeanPoint, Moved, Observation, Observer, ObserverConfig, PlateSeam,
-    Seam, State, Walls,
+    State, Walls,
 };
 
 /// The camera looks 4 mm ahead.

@@ -144,7 +144,11 @@ impl Followed {
         let sigma = measured.sigma;
         let known = if self.sightings > 2 { TURN } else { SLOPE };
         let way = PLACE_MM + known * (seen.travel_mm - self.last.travel_mm).abs();
-        let way = way.min(gate_mm / 2.0);
+        // Streaks along the walls pull a corner from picture to picture; nothing else looks like one.
+        let way = match seen.form {
+            Form::Gap => way.min(gate_mm / 2.0),
+            Form::Corner => gate_mm / 3.0,
+        };
         let off = |figure: fn(&Sighting) -> f64, sigma: f64| {
             let expected = self.line(figure, seen.travel_mm, sigma);
             (figure(seen) - expected.value).powi(2) / (expected.variance + way.powi(2) + sigma.powi(2))

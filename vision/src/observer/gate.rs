@@ -241,7 +241,10 @@ impl Gate {
         let as_high = followed.off(seen, measured, self.gate_mm).height < LIKE;
         let about = wider && as_high && (seen.lateral_mm - lateral).abs() < ABOUT_MM;
         let waited = (camera.travel_mm - candidate.since_mm).abs() >= self.jump_mm;
-        candidate.count >= AGREEING_JUMP && (about || waited || candidate.count >= AGREEING_STANDING)
+        // Little looks like a corner that is none.
+        let corner = seen.form == Form::Corner;
+        candidate.count >= AGREEING_JUMP
+            && (corner || about || waited || candidate.count >= AGREEING_STANDING)
     }
 
     /// A picture without the candidate.
@@ -280,8 +283,13 @@ fn says(
         return says;
     };
     let off = followed.off(seen, measured, gate_mm);
-    let worth = 2.0 * measured.quality - 1.0 - off.squared() / LIKE;
     let trusted = measured.quality >= 0.5;
+    // The quality of a corner says how exactly it is known, that of a gap also whether it is one.
+    let quality = match measured.form {
+        Form::Corner if trusted => 1.0,
+        _ => measured.quality,
+    };
+    let worth = 2.0 * quality - 1.0 - off.squared() / LIKE;
     if off.squared() < LIKE && (worth > 0.0 || !trusted) {
         says.worth = worth.max(-1.0);
         says.is_it = true;
