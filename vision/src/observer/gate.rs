@@ -284,12 +284,12 @@ fn says(
     };
     let off = followed.off(seen, measured, gate_mm);
     let trusted = measured.quality >= 0.5;
-    // The quality of a corner says how exactly it is known, that of a gap also whether it is one.
-    let quality = match measured.form {
-        Form::Corner if trusted => 1.0,
-        _ => measured.quality,
+    // Little looks like a corner that is none: its quality only says how exactly it is known.
+    let worth = if trusted && measured.form == Form::Corner {
+        EVIDENCE[1] - EVIDENCE[0]
+    } else {
+        2.0 * measured.quality - 1.0 - off.squared() / LIKE
     };
-    let worth = 2.0 * quality - 1.0 - off.squared() / LIKE;
     if off.squared() < LIKE && (worth > 0.0 || !trusted) {
         says.worth = worth.max(-1.0);
         says.is_it = true;
