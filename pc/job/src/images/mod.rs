@@ -121,6 +121,7 @@ impl Images {
             let (optics, noise) = (calibration.optics, calibration.photon_transfer);
             let detector = Detector::new(optics, noise, calibration.profile)?;
             let config = ObserverConfig {
+                jump_mm: heads.camera_lead(),
                 corner_offset_mm: calibration.corner_offset_mm,
                 ..ObserverConfig::default()
             };

@@ -16,9 +16,6 @@ use vision::{DetectorError, ImageError, Moved, Observation, Observer, State};
 
 /// How long a camera is waited for before new captures are looked for.
 const PATIENCE: Duration = Duration::from_millis(2);
-/// A picture that shows the seam so much higher or lower than the mean of the latest is beyond a jump \[mm\]: its own
-/// height scatters by 0.011 mm rms at the shipped pixel.
-const HEIGHT_JUMP_MM: f64 = 0.06;
 
 /// A strobe of the camera.
 #[derive(Clone, Copy, Debug)]
@@ -314,10 +311,6 @@ impl Work {
         let place = observation
             .seam
             .and_then(|seam| match (seam.mean, observation.report.measured) {
-                // A mean over a jump is the height of neither side of it.
-                (Some(mean), Some(seen)) if (mean.height_mm - seen.height_mm).abs() > HEIGHT_JUMP_MM => {
-                    Some((seam.lateral_mm, seam.travel_mm, seen.height_mm))
-                }
                 (Some(mean), _) => {
                     self.settled = true;
                     Some((mean.lateral_mm, mean.travel_mm, mean.height_mm))
