@@ -33,6 +33,9 @@ const DIM: [f64; 2] = [0.2, 0.35];
 /// Share of a gap in which no texture may be seen: the rest may be a lit wall.
 const EMPTY_SHARE: f64 = 0.34;
 
+/// Width from which a gap may be one with a wide shadow \[mm\].
+const WIDE_MM: f64 = 0.05;
+
 /// Depth of the gap at which it is not trusted, and is. A veil takes as much off it as there is light in the veil.
 const DEPTH: [f64; 2] = [0.3, 0.6];
 
@@ -203,13 +206,14 @@ impl Detector {
         }
         let (best, second) = candidates.best()?;
         let mut best = without_shadow(strip, best, g);
-        // Beside a wide shadow the darkest part is empty, and most of the run is not.
-        let [darkest, all] = [EMPTY_SHARE, 1.0].map(|share| Interior::of(strip, &best, share, g));
-        best.interior = if all.emptiness(best.expected) < darkest.emptiness(best.expected) {
-            all
-        } else {
-            darkest
-        };
+        best.interior = Interior::of(strip, &best, EMPTY_SHARE, g);
+        if best.width() * g > WIDE_MM {
+            // Beside a wide shadow the darkest part is empty, and most of the run is not.
+            let all = Interior::of(strip, &best, 1.0, g);
+            if all.emptiness(best.expected) < best.interior.emptiness(best.expected) {
+                best.interior = all;
+            }
+        }
         let edges = fit_edges(strip, &best, g)?;
         Some((edges, best, second))
     }
