@@ -42,7 +42,7 @@ const SURFACE: [f64; 2] = [0.45, 0.20];
 const EXPECTED: [f64; 2] = [0.9, 0.5];
 
 /// Brightness over the plate at which a run may be a surface, with what lies over all of a picture, and is too dark for one.
-const BLACKEST: [f64; 2] = [0.05, 0.04];
+const BLACKEST: [f64; 2] = [0.055, 0.052];
 
 /// Brightness over the plate at which a run too narrow to show texture is taken for a surface, and is not; the same.
 const BLACK: [f64; 2] = [0.28, 0.16];
