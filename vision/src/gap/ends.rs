@@ -93,6 +93,12 @@ const SLOPE: f64 = 0.01;
 /// \[mm\].
 const SPOILT_MM: [f64; 2] = [0.18, 0.04];
 
+/// Bins to either side over which the light is taken.
+const SMOOTH: usize = 5;
+
+/// Two ends that are nearer are the same \[mm\].
+const SAME_MM: f64 = 0.12;
+
 /// What is seen along the seam, from one end of the picture to the other: sums of a quantity times its weight, and of weights.
 struct Course {
     sums: [[f64; 2]; MOST + 1],
@@ -584,9 +590,3 @@ impl Courses {
         }
     }
 }
-
-/// Bins to either side over which the light is taken.
-const SMOOTH: usize = 5;
-
-/// Two ends that are nearer are the same \[mm\].
-const SAME_MM: f64 = 0.12;

@@ -190,14 +190,20 @@ impl Observer {
         self.place.lateral_mm += moved.lateral_mm;
         self.place.height_mm += moved.height_mm;
         let expected = self.gate.expected_mm(&self.place);
-        self.track = self
-            .track
-            .zip(expected)
-            .map(|(track, [lateral_mm, height_mm])| Track {
+        let of_gap = self.form == Some(Form::Gap);
+        self.track = self.track.zip(expected).map(|(track, expected)| {
+            // Of a corner where it was seen last is the better guess: its heights scatter more than they turn.
+            let last = [
+                track.lateral_mm - moved.lateral_mm,
+                track.height_mm - moved.height_mm,
+            ];
+            let [lateral_mm, height_mm] = if of_gap { expected } else { last };
+            Track {
                 lateral_mm,
                 height_mm,
                 ..track
-            });
+            }
+        });
     }
 
     /// What the next picture may show: both forms only if their places can be compared.
