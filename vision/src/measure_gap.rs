@@ -2,7 +2,9 @@
 
 use crate::band::{Fitness, Knowledge, SMALLEST_GAIN};
 use crate::detector::Detector;
-use crate::gap::{BandLine, Candidate, Edges, Interior, fit_edges, softness, unevenness, without_shadow};
+use crate::gap::{
+    BandLine, Candidate, Edges, Interior, fit_edges, ledges, softness, unevenness, without_shadow,
+};
 use crate::height_field::Plate;
 use crate::prior::Prior;
 use crate::report::{Criterion, Form, Measured, Report, Second, Sigma, Status, least, ramp};
@@ -41,6 +43,9 @@ const DEPTH: [f64; 2] = [0.3, 0.6];
 
 /// Unevenness of the gap at which it is not trusted, and is.
 const UNEVEN: [f64; 2] = [0.10, 0.04];
+
+/// What the middle may be off by at which an uneven gap is not trusted, and is \[mm\].
+const UNSURE_MM: [f64; 2] = [0.016, 0.008];
 
 /// Scatter of the seam's position while tracking \[mm\].
 const LATERAL: f64 = 0.1;
@@ -259,7 +264,7 @@ impl Detector {
     }
 
     /// Brightness of the darker plate over that of the brighter one, and how unevenly dark the gap is.
-    fn both_sides(&mut self, best: &Candidate, step_mm: f64) -> [f64; 2] {
+    fn both_sides(&mut self, best: &Candidate, step_mm: f64) -> [f64; 3] {
         let g = self.layer().pitch_mm;
         let lights = self.strip.lights(best.edges, SPOILT_MM / g, PLATE_MM / g);
         let ratio = match lights {
@@ -269,7 +274,8 @@ impl Detector {
         // Half a step out of focus lies the plate on either side.
         let blur = self.optics.aperture * step_mm.abs() / 2.0 / self.optics.tilt_rad.cos();
         let uneven = unevenness(&self.strip.quiet, best, blur, g).unwrap_or(0.0);
-        [ratio, uneven]
+        let ledges = ledges(&self.strip, best, blur, UNEVEN[1], g);
+        [ratio, uneven, ledges[0].hypot(ledges[1]) / 12f64.sqrt()]
     }
 
     /// Band and gap.
@@ -281,7 +287,7 @@ impl Detector {
         edges: &Edges,
         best: &Candidate,
         second: Option<Candidate>,
-        both: [f64; 2],
+        both: [f64; 3],
     ) -> Report {
         let layer = self.layer();
         let g = layer.pitch_mm;
@@ -308,7 +314,7 @@ impl Detector {
         let edge = edges.residual * g / (edges.readings as f64).sqrt();
         measured.sigma = Sigma {
             lateral_mm: (ROUGH * edge.hypot(FLOOR_MM))
-                .hypot(SOFT * left.hypot(right) / 2.0)
+                .hypot((SOFT * left.hypot(right) / 2.0).max(both[2]))
                 .hypot(ROLLED_MM),
             height_mm: (HONEST * variance.max(0.0).sqrt()).hypot(HEIGHT_MM),
             width_mm: (ROUGH * (2.0 * edge).hypot(4.0 * FLOOR_MM))
@@ -340,7 +346,10 @@ impl Detector {
             (Criterion::Height, ramp(measured.sigma.height_mm, 0.028, 0.010)),
             (Criterion::Width, ramp(edges.width * g, 0.006, 0.012)),
             (Criterion::Sides, ramp(both[0], DIM[0], DIM[1])),
-            (Criterion::Interior, ramp(both[1], UNEVEN[0], UNEVEN[1])),
+            (
+                Criterion::Interior,
+                ramp(both[1], UNEVEN[0], UNEVEN[1]).max(ramp(both[2], UNSURE_MM[0], UNSURE_MM[1])),
+            ),
             (Criterion::Border, ramp(from_border * g, 0.010, 0.030)),
             (
                 Criterion::Band,

@@ -5,9 +5,10 @@ use super::figures::{micrometres, quantile, rms};
 use super::seeds::of_seeds;
 use super::{NOISE, camera};
 use anyhow::{Context, Result, bail};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use vision::render::{Effect, FastRenderer, Finish, Scene, Shown, SplitMix64, Texture, Tile, random_joint};
-use vision::{Detector, Image, Joint, Measured, Optics, Prior, Profile, Track};
+use vision::{Detector, Image, Joint, Measured, Optics, Prior, Profile, Report, Track};
 
 /// Finishes of the plates, one after the other.
 const FINISHES: [Finish; 4] = [Finish::Plain, Finish::Rolled, Finish::Blasted, Finish::Specular];
@@ -78,6 +79,8 @@ struct Taken {
     /// What was accepted: errors, and standard deviations as told, of centre, height, width, step \[mm\] and roll.
     accepted: Option<([f64; 5], [f64; 5])>,
     quality: f64,
+    /// Why not, of what was refused.
+    refused: Option<String>,
 }
 
 impl Options {
@@ -199,6 +202,7 @@ pub fn run(options: &Options) -> Result<()> {
                     shown: shown(&scene, &optics),
                     accepted: report.seam().and_then(|seen| compared(&scene, &optics, seen)),
                     quality: report.measured.map_or(0.0, |seen| seen.quality),
+                    refused: report.seam().is_none().then(|| reason(&report)),
                 });
             }
         }
@@ -287,6 +291,14 @@ fn track(scene: &Scene, optics: &Optics, random: &mut SplitMix64) -> Track {
     }
 }
 
+/// What a picture was refused for: the weakest criterion if a seam was measured at all, otherwise the status.
+fn reason(report: &Report) -> String {
+    match report.measured.and_then(|seen| seen.weakest) {
+        Some(weakest) => format!("{weakest:?}"),
+        None => format!("{:?}", report.status),
+    }
+}
+
 fn is_wrong(taken: &Taken) -> bool {
     taken.accepted.is_some_and(|(errors, _)| {
         taken.shown == Some(false)
@@ -320,6 +332,10 @@ fn print(groups: &[Group], taken: &[Taken]) {
         println!("{}", line(name, group));
     }
     println!();
+    for (name, group) in &all {
+        println!("refused: {name}: {}", reasons(group));
+    }
+    println!();
     for (name, group) in all.iter().take(groups.len()) {
         let mut wrong: Vec<_> = group.iter().filter(|taken| is_wrong(taken)).collect();
         wrong.sort_by(|a, b| b.quality.total_cmp(&a.quality));
@@ -336,6 +352,20 @@ fn print(groups: &[Group], taken: &[Taken]) {
             );
         }
     }
+}
+
+/// How many pictures with a seam were refused for what, most first.
+fn reasons(group: &[&Taken]) -> String {
+    let mut counts = BTreeMap::<&str, usize>::new();
+    for taken in group.iter().filter(|taken| taken.shown == Some(true)) {
+        if let Some(reason) = &taken.refused {
+            *counts.entry(reason).or_default() += 1;
+        }
+    }
+    let mut counts: Vec<_> = counts.into_iter().collect();
+    counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let counts = counts.iter().map(|(reason, count)| format!("{reason} {count}"));
+    counts.collect::<Vec<_>>().join(", ")
 }
 
 /// A line of the table.

@@ -59,9 +59,9 @@ pub(crate) struct Continuity {
 struct Deficit {
     area: f64,
     middle: f64,
-    /// Light that is missing or too much, and where.
-    unlike: f64,
-    unlike_middle: f64,
+    /// Light that is missing where it is darker than beside, and where.
+    dark: f64,
+    dark_middle: f64,
     /// Light to the left and to the right.
     lights: [f32; 2],
 }
@@ -82,8 +82,6 @@ impl Continuity {
             return 0.0;
         };
         let g = layer.pitch_mm;
-        // Bright lines along the edges are cut off where they saturate, and then show more light out of the band than in it.
-        let rimmed = here.unlike - here.area > RIM * width;
         let (mut points, mut count) = (0.0, 0.0);
         let mut hidden = [[0; 2]; 2];
         for distance in DISTANCES_MM {
@@ -94,8 +92,11 @@ impl Continuity {
             let middle = MIDDLE_SHARE * width + MIDDLE_MM + PIXELS * g + YAW * distance.abs();
             let mut off =
                 ((there.area - here.area).abs() / area).max((there.middle - here.middle).abs() / middle);
-            if rimmed && there.unlike > RIM * here.unlike {
-                off = off.min((there.unlike_middle - here.middle).abs() / middle);
+            // Bright lines along the edges are cut off where they saturate, and then show more light out of the band than in it.
+            let bright = (here.dark - here.area).max(there.dark - there.area);
+            if bright > RIM * width {
+                let dark = (there.dark - here.dark).abs() / area;
+                off = off.min(dark.max((there.dark_middle - here.dark_middle).abs() / middle));
             }
             for (side, hidden) in hidden.iter_mut().enumerate() {
                 let share = |lights: [f32; 2]| lights[side] / lights[1 - side].max(1.0);
@@ -155,15 +156,15 @@ impl Continuity {
             [Some(light), None] | [None, Some(light)] => [light, light],
             [None, None] => return None,
         };
-        let (mut area, mut moment, mut unlike, mut unlike_moment) = (0.0, 0.0, 0.0, 0.0);
+        let (mut area, mut moment, mut dark, mut dark_moment) = (0.0, 0.0, 0.0, 0.0);
         for (k, value) in window[left..=right].iter().enumerate() {
             let share = (k as f32 + 0.5) / (right - left + 1) as f32;
             let missing = f64::from(1.0 - value / between(lights, share).max(1.0));
             area += missing;
             let off = (first + left + k) as f64 - middle;
             moment += missing * off;
-            unlike += missing.abs();
-            unlike_moment += missing.abs() * off;
+            dark += missing.max(0.0);
+            dark_moment += missing.max(0.0) * off;
         }
         let middle_of = |moment: f64, area: f64| {
             if area.abs() > 1e-3 {
@@ -175,8 +176,8 @@ impl Continuity {
         Some(Deficit {
             area: area * g,
             middle: middle_of(moment, area),
-            unlike: unlike * g,
-            unlike_middle: middle_of(unlike_moment, unlike),
+            dark: dark * g,
+            dark_middle: middle_of(dark_moment, dark),
             lights,
         })
     }

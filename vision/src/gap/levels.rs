@@ -167,6 +167,22 @@ pub(crate) fn unevenness(quiet: &[f32], candidate: &Candidate, blur_mm: f64, pit
     Some(f64::from((brightest - darkest) / (1.0 - darkest).max(0.05)))
 }
 
+/// Width of what is brighter than the rest of the gap, next to its left and right edge, where [`unevenness`] is more than
+/// `least` \[mm\]: a lit wall of the gap, a part of its shadow, or a surface that is dark.
+pub(crate) fn ledges(strip: &Strip, gap: &Candidate, blur_mm: f64, least: f64, pitch_mm: f64) -> [f64; 2] {
+    let quiet = &strip.quiet;
+    let [first, last] = [gap.edges[0].ceil(), gap.edges[1].floor()].map(|edge| edge.max(0.0) as usize);
+    let inside = (first..=last).filter_map(|column| Some((column, *quiet.get(column)?)));
+    let Some((from, bottom)) = inside.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+        return [0.0; 2];
+    };
+    let level = between([bottom, 1.0], least as f32);
+    [0, 1].map(|side| {
+        let begins = crossing(quiet, from, side, level).unwrap_or(gap.edges[side]);
+        ((gap.edges[side] - begins).abs() * pitch_mm - INSIDE_MM - blur_mm).max(0.0)
+    })
+}
+
 /// Brightness next to an edge, and that of the plate farther out if it is more.
 fn lights(quiet: &[f32], gap: &Candidate, side: usize, pitch_mm: f64) -> Option<[f32; 2]> {
     let ledge = plateau(

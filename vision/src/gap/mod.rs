@@ -14,7 +14,7 @@ pub(crate) use continuity::Continuity;
 pub(crate) use edges::{Edges, fit_edges};
 pub use ends::{EndKind, GapEnd};
 pub(crate) use interior::Interior;
-pub(crate) use levels::{softness, unevenness, without_shadow};
+pub(crate) use levels::{ledges, softness, unevenness, without_shadow};
 pub use strip::EDGE_ROWS_MM;
 pub(crate) use strip::{BandLine, Strip};
 
