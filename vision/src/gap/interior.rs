@@ -45,7 +45,7 @@ const EXPECTED: [f64; 2] = [0.9, 0.5];
 const BLACKEST: [f64; 2] = [0.055, 0.052];
 
 /// Brightness over the plate at which a run too narrow to show texture is taken for a surface, and is not; the same.
-const BLACK: [f64; 2] = [0.16, 0.10];
+const BLACK: [f64; 2] = [0.19, 0.14];
 const EXPECTED_BLACK: [f64; 2] = [0.5, 0.3];
 
 /// Brightness and texture of a gap over those of a surface that are not the same thing.
