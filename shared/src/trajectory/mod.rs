@@ -14,7 +14,7 @@ mod speed;
 pub use curve::{ArcLengthCurve, CurveNumbers, NoCurve, PARAMETER_COEFFICIENTS};
 pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
 pub use path::{Knot, Path, PathError, PathPoint, PathSpace};
-pub use planner::{LONGEST_PATH, Output, PlanLimits, Planner, PushError, Way};
+pub use planner::{LONGEST_PATH, Output, PlanLimits, Planner, Planning, Player, PushError, Way};
 pub use reference::{ReferenceError, Unreachable, at_unit_speed, axes_at};
 pub use rest_to_rest::RestToRest;
 pub use speed::{SpeedLimits, SpeedState};
