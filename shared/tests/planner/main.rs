@@ -5,6 +5,7 @@ mod bench;
 mod contour;
 mod fixed;
 mod judge;
+mod late;
 mod program;
 mod random;
 mod regressions;

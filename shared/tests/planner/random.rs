@@ -108,7 +108,7 @@ pub fn frame() -> impl Strategy<Value = Frame> {
 }
 
 /// Programs of up to ten moves, of the sizes and feeds of a workshop.
-fn moves() -> impl Strategy<Value = Vec<Move>> {
+pub fn moves() -> impl Strategy<Value = Vec<Move>> {
     let mix = Mix {
         size: -1.0..1.5,
         feed: 0.0..3.0,
@@ -142,7 +142,7 @@ pub fn check(bench: &Bench, moves: &[Move], acts: &Acts) -> Result<(), TestCaseE
 }
 
 /// So many cases, always the same, unless the environment says otherwise.
-fn cases(cases: u32) -> ProptestConfig {
+pub fn cases(cases: u32) -> ProptestConfig {
     let config = ProptestConfig::default();
     match std::env::var_os("PROPTEST_CASES") {
         Some(_) => config,

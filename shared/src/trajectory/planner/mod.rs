@@ -30,7 +30,7 @@ mod track;
 
 pub use limits::PlanLimits;
 pub use planning::Planning;
-pub use player::Player;
+pub use player::{Player, PlayerAccess};
 pub use track::{LONGEST as LONGEST_PATH, PushError};
 
 use super::{Element, PathSpace, SpeedState, Unreachable};

@@ -9,8 +9,8 @@ use super::grid::{Grid, most_work};
 use super::horizon::{Horizon, PlanRequest, WINDOW, WORK};
 use super::limits::Bounds;
 use super::node::Nodes;
-use super::plan::{Knot, Place};
-use super::player::{News, Player, Progress};
+use super::plan::{Knot, Place, Plan};
+use super::player::{News, PlayerAccess, Progress};
 use super::sample::Ground;
 use crate::io::AXES;
 use crate::kinematics::Kinematics;
@@ -74,7 +74,7 @@ impl<const NODES: usize> Planning<NODES> {
     /// One turn: a bounded share of the work, for the `player` as it was left by its last tick.
     pub fn turn<const ELEMENTS: usize>(
         &mut self,
-        player: &mut Player<ELEMENTS, NODES>,
+        player: &mut impl PlayerAccess<ELEMENTS, NODES>,
         kinematics: &Kinematics,
     ) {
         self.follow(player);
@@ -87,21 +87,21 @@ impl<const NODES: usize> Planning<NODES> {
             done: idle && last + 1 == self.nodes.end && self.along(),
             blocked: self.blocked.filter(|_| idle && self.rests()),
         };
-        player.tell(self.progress.path, news);
+        player.with(|player| player.tell(self.progress.path, news));
     }
 
     /// Learns where the player is, and what became of the plan that was offered to it.
-    fn follow<const ELEMENTS: usize>(&mut self, player: &Player<ELEMENTS, NODES>) {
-        let before = core::mem::replace(&mut self.progress, player.progress());
+    fn follow<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) {
+        let before = core::mem::replace(&mut self.progress, player.with(|player| player.progress()));
         let now = &self.progress;
         if now.path != before.path {
-            self.bounds = player.bounds;
+            self.bounds = player.with(|player| player.bounds);
             (self.offered, self.laid, self.blocked) = (None, false, None);
             self.grid.start(now.s, &now.axes, &mut self.nodes);
             self.horizon = Horizon::at(self.nodes.first);
             return;
         }
-        let on = now.place.node == before.place.node && now.stands;
+        let on = now.place.node == before.place.node && !now.stands;
         self.laid &= on && now.elements == before.elements;
         match self.offered.take() {
             Some(Offer::New) if now.taken == self.offers => self.horizon.take(&mut self.nodes, &self.bounds),
@@ -114,7 +114,7 @@ impl<const NODES: usize> Planning<NODES> {
     /// A share of the work; says whether nothing is left to do.
     fn plan<const ELEMENTS: usize>(
         &mut self,
-        player: &mut Player<ELEMENTS, NODES>,
+        player: &mut impl PlayerAccess<ELEMENTS, NODES>,
         kinematics: &Kinematics,
     ) -> bool {
         let mut work = WORK;
@@ -133,7 +133,7 @@ impl<const NODES: usize> Planning<NODES> {
                     return false;
                 }
                 done
-            } else if work >= CORNER && !self.laid && player.track.decide(&self.bounds) {
+            } else if work >= CORNER && !self.laid && self.decide(player) {
                 CORNER
             } else if work < most_work(self.progress.space) {
                 return false;
@@ -152,10 +152,15 @@ impl<const NODES: usize> Planning<NODES> {
         }
     }
 
+    /// Moves or shapes a corner, if there is one whose neighbours are known.
+    fn decide<const ELEMENTS: usize>(&self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) -> bool {
+        player.with(|player| player.track.decide(&self.bounds))
+    }
+
     /// Appends a node, if there is room and the path is settled far enough; says how much work that was.
     fn extend<const ELEMENTS: usize>(
         &mut self,
-        player: &Player<ELEMENTS, NODES>,
+        player: &mut impl PlayerAccess<ELEMENTS, NODES>,
         kinematics: &Kinematics,
     ) -> u32 {
         if self.laid {
@@ -165,14 +170,14 @@ impl<const NODES: usize> Planning<NODES> {
         if self.blocked.is_some() {
             return 0;
         }
-        let ground = Ground {
-            track: &player.track,
+        let mut ground = Ground {
+            player,
             space: self.progress.space,
             kinematics,
             bounds: &self.bounds,
         };
         let in_force = self.horizon.in_force();
-        match self.grid.extend(&ground, &mut self.nodes, in_force) {
+        match self.grid.extend(&mut ground, &mut self.nodes, in_force) {
             Ok(work) => {
                 self.laid = work == 0;
                 work
@@ -212,7 +217,7 @@ impl<const NODES: usize> Planning<NODES> {
     /// Begins a plan, or turns where the machine has come to rest and is to go the other way; says how much work
     /// it was: none if it did not.
     #[inline]
-    fn begin<const ELEMENTS: usize>(&mut self, player: &mut Player<ELEMENTS, NODES>) -> u32 {
+    fn begin<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) -> u32 {
         let wanted = self.wanted();
         if self.horizon.early(&wanted) {
             return 0;
@@ -224,7 +229,7 @@ impl<const NODES: usize> Planning<NODES> {
     #[inline(never)]
     fn begin_for<const ELEMENTS: usize>(
         &mut self,
-        player: &mut Player<ELEMENTS, NODES>,
+        player: &mut impl PlayerAccess<ELEMENTS, NODES>,
         wanted: PlanRequest,
     ) -> u32 {
         let along = self.along();
@@ -261,35 +266,51 @@ impl<const NODES: usize> Planning<NODES> {
     }
 
     /// Offers the plan in force again, which has `more` nodes now, and may rest before its `last`.
-    fn change<const ELEMENTS: usize>(&mut self, player: &mut Player<ELEMENTS, NODES>, last: u32, more: u32) {
+    fn change<const ELEMENTS: usize>(
+        &mut self,
+        player: &mut impl PlayerAccess<ELEMENTS, NODES>,
+        last: u32,
+        more: u32,
+    ) {
         let rest = Some(self.horizon.in_force()).filter(|rest| *rest < last);
         for i in self.progress.place.node..=last {
             let node = self.nodes.at(i);
-            player.next_plan().set(i, Knot::of(node, (node.x, node.lasts)));
+            let knot = Knot::of(node, (node.x, node.lasts));
+            player.with(|player| player.next_plan().set(i, knot));
         }
-        let plan = player.next_plan();
-        (plan.last, plan.rest, plan.commit) = (last, rest, None);
-        plan.moved = [self.horizon.moved_to, more];
-        self.hand_over(player, Offer::Changed);
+        let moved = [self.horizon.moved_to, more];
+        self.hand_over(player, Offer::Changed, |plan| {
+            (plan.last, plan.rest, plan.commit, plan.moved) = (last, rest, None, moved);
+        });
     }
 
     /// Offers the plan that is whole.
-    fn offer<const ELEMENTS: usize>(&mut self, player: &mut Player<ELEMENTS, NODES>) {
+    fn offer<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) {
         let last = self.horizon.last;
         for i in self.progress.place.node..=last {
             let planned = self.horizon.whole(&self.nodes, i, &self.bounds);
-            player.next_plan().set(i, Knot::of(self.nodes.at(i), planned));
+            let knot = Knot::of(self.nodes.at(i), planned);
+            player.with(|player| player.next_plan().set(i, knot));
         }
-        let plan = player.next_plan();
-        (plan.last, plan.rest, plan.commit) = (last, None, Some(self.horizon.commit));
-        plan.moved = [0; 2];
-        self.hand_over(player, Offer::New);
+        let commit = Some(self.horizon.commit);
+        self.hand_over(player, Offer::New, |plan| {
+            (plan.last, plan.rest, plan.commit, plan.moved) = (last, None, commit, [0; 2]);
+        });
     }
 
-    fn hand_over<const ELEMENTS: usize>(&mut self, player: &mut Player<ELEMENTS, NODES>, offer: Offer) {
+    /// Offers the plan of which the nodes are there, completed by `complete`.
+    fn hand_over<const ELEMENTS: usize>(
+        &mut self,
+        player: &mut impl PlayerAccess<ELEMENTS, NODES>,
+        offer: Offer,
+        complete: impl FnOnce(&mut Plan<NODES>),
+    ) {
         self.offers = self.offers.wrapping_add(1);
         self.offered = Some(offer);
-        player.offer(self.progress.path, self.offers);
+        player.with(|player| {
+            complete(player.next_plan());
+            player.offer(self.progress.path, self.offers);
+        });
     }
 
     /// Lets go of nodes that lie behind.

@@ -47,6 +47,24 @@ pub struct Player<const ELEMENTS: usize, const NODES: usize> {
     /// Ticks since the plan has come to rest.
     resting: u32,
     news: News,
+    /// The turn of planning after the last tick has not ended.
+    turn: bool,
+    /// Turns that had not ended at the next tick.
+    missed: u32,
+}
+
+/// How planning reaches the player, which path ticks use too: on a board behind a lock, each time for no longer than it
+/// takes to evaluate the path at one place.
+pub trait PlayerAccess<const ELEMENTS: usize, const NODES: usize> {
+    /// Calls `use_it` with the player; no path tick comes meanwhile.
+    fn with<R>(&mut self, use_it: impl FnOnce(&mut Player<ELEMENTS, NODES>) -> R) -> R;
+}
+
+/// In step with the ticks there is nobody else.
+impl<const ELEMENTS: usize, const NODES: usize> PlayerAccess<ELEMENTS, NODES> for Player<ELEMENTS, NODES> {
+    fn with<R>(&mut self, use_it: impl FnOnce(&mut Self) -> R) -> R {
+        use_it(self)
+    }
 }
 
 /// What is asked of the machine.
@@ -135,6 +153,8 @@ impl<const ELEMENTS: usize, const NODES: usize> Player<ELEMENTS, NODES> {
             filter: Filter::new(),
             resting: 0,
             news: News::NONE,
+            turn: false,
+            missed: 0,
         }
     }
 
@@ -156,7 +176,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Player<ELEMENTS, NODES> {
         let rest = AxisMotion::at_rest(axes);
         self.filter.settle(self.bounds.filter_ticks, &rest, &self.planned);
         self.resting = self.bounds.filter_ticks as u32;
-        self.news = News::NONE;
+        (self.news, self.turn) = (News::NONE, false);
     }
 
     /// How many elements there is room for now.
@@ -198,11 +218,24 @@ impl<const ELEMENTS: usize, const NODES: usize> Player<ELEMENTS, NODES> {
         self.resting >= self.bounds.filter_ticks as u32
     }
 
-    /// One path tick: the next references.
+    /// Counts the paths begun.
+    pub fn path(&self) -> u32 {
+        self.path
+    }
+
+    /// How often a turn of planning had not ended at the tick after the one that it followed. What it offers is taken
+    /// later then.
+    pub fn missed(&self) -> u32 {
+        self.missed
+    }
+
+    /// One path tick: the next references. A turn of planning is due after it.
     ///
     /// # Errors
     /// A place ahead that the machine cannot be at, as soon as it is at rest before that and is to continue.
     pub fn tick(&mut self, kinematics: &Kinematics) -> Result<Output, Unreachable> {
+        self.missed = self.missed.wrapping_add(u32::from(self.turn));
+        self.turn = true;
         self.take();
         self.release();
         if let (Some(place), true) = (self.news.blocked, self.is_up_to_date()) {
@@ -329,10 +362,10 @@ impl<const ELEMENTS: usize, const NODES: usize> Player<ELEMENTS, NODES> {
         }
     }
 
-    /// From planning of `path`.
+    /// From planning of `path`, at the end of its turn.
     pub(super) fn tell(&mut self, path: u32, news: News) {
         if path == self.path {
-            self.news = news;
+            (self.news, self.turn) = (news, false);
         }
     }
 }
