@@ -191,6 +191,11 @@ impl MotionController {
         self.state.on_path()
     }
 
+    /// How often a turn of planning had not ended at the next path tick.
+    pub fn missed_turns(&self) -> u32 {
+        self.player.missed()
+    }
+
     /// The turn of `planning` after a path tick, if it is due, where both run in step.
     pub fn plan(&mut self, planning: &mut BoardPlanning) {
         if let (Some(machine), true) = (&self.machine, self.plans()) {
