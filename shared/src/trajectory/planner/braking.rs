@@ -6,10 +6,16 @@
 //! commit, it settles later.
 
 use super::horizon::{Horizon, LEAST_WINDOW, Phase};
+use super::jerk_limit::LOOK;
 use super::limits::{Bounds, PATH_ROW, ROWS};
 use super::node::{Lanes, Node, Nodes, least, most, pause};
+use super::rounds::{ITERATION, OPEN, REACH};
 use super::scan::{lowest, reach};
 
+/// Work of a step forward, and of one back beside the search for a reach; nodes looked at for a unit of it.
+const BRAKE: u32 = 5;
+const LET_GO: u32 = 5;
+const LOOKED_AT_FOR_ONE: u32 = 16;
 /// Share of ṡ² at the commit that may be too much,
 const SPARE: f64 = 0.02;
 /// share of what is too much that is taken away, and the most of ṡ² at the last interval.
@@ -57,6 +63,7 @@ impl Horizon {
 
     /// One step of it.
     fn slow_down<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        self.work += BRAKE;
         self.open(nodes, i, bounds);
         nodes.at_mut(i).floor = f32::NEG_INFINITY;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
@@ -97,6 +104,7 @@ impl Horizon {
             return;
         }
         self.opened = i + 1;
+        self.work += OPEN;
         for side in &mut nodes.at_mut(i).sides {
             side.open(bounds);
         }
@@ -152,6 +160,7 @@ impl Horizon {
         for i in self.commit..self.settled {
             steepest = most(steepest, -nodes.at(i).sides[0].allowed[PATH_ROW]);
         }
+        self.work += (self.settled - self.commit) / LOOKED_AT_FOR_ONE;
         let mut way = 0.5 * lacks / f64::from(steepest);
         let mut settled = self.settled;
         let end = if self.wanted.stop {
@@ -178,7 +187,8 @@ impl Horizon {
         let length = 2.0 * node.delta;
         let first = i == self.commit;
         let most_x = if first { 1.5 * node.x } else { node.x };
-        let mut x = reach(node, next.brake, most_x, node.floor);
+        let (mut x, iterations) = reach(node, next.brake, most_x, node.floor);
+        self.work += LET_GO + REACH + iterations * ITERATION;
         let lasts = length / (speed + libm::sqrt(x));
         let from = libm::fmax(next.time - lasts + bounds.filter, next.time);
         let to = next.time + bounds.filter;
@@ -188,7 +198,9 @@ impl Horizon {
         let will = self.along_path(nodes, [self.away, self.settled], [from, to], bounds);
         let floor = most(node.floor, least(demanded(node, &will, bounds), 0.0));
         if ((next.brake - x) / length) < f64::from(floor) {
-            x = reach(node, next.brake, most_x, floor);
+            let iterations;
+            (x, iterations) = reach(node, next.brake, most_x, floor);
+            self.work += REACH + iterations * ITERATION;
         }
         if i + 1 == self.settled {
             x -= self.trim.unwrap_or(0.0);
@@ -227,6 +239,7 @@ impl Horizon {
         }
         let mut i = first;
         while i < beyond && nodes.at(i).time <= to {
+            self.work += LOOK;
             for side in &nodes.at(i).sides {
                 include(&side.alpha, side.allowed[PATH_ROW]);
             }

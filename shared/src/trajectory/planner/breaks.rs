@@ -8,7 +8,7 @@ use crate::trajectory::SHAPED;
 use nalgebra::Vector3;
 
 /// Most junctions that are looked at.
-const MOST_LOOKS: u32 = 16;
+pub(super) const MOST_LOOKS: u32 = 16;
 /// A turn of a sharp corner \[rad\].
 const SHARP: f64 = 0.5;
 /// Another feed for a shorter time than this is as good as the lower one \[s\].

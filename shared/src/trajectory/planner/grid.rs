@@ -1,6 +1,6 @@
 //! Where nodes stand: dense where limits change, far apart where they do not.
 
-use super::breaks::Break;
+use super::breaks::{Break, MOST_LOOKS, Search};
 use super::channels::SAME;
 use super::limits::{Bounds, ROWS};
 use super::node::{Lanes, Node, Nodes, Side, greater, highest, least, lesser, most};
@@ -31,9 +31,15 @@ const STRAIGHT: f32 = 0.06;
 const INSET: f64 = 1e-4;
 /// Most times that an interval is halved to follow the limits.
 const HALVINGS: u32 = 6;
-/// What a sample counts for in visits of nodes, and how many junctions looked at count for one.
-const SAMPLE: u32 = 3;
-const LOOKS: u32 = 4;
+/// Work to try an interval, for a sample, and for a junction looked at, in hundreds of instructions of a PC.
+const EXTEND: u32 = 12;
+const SAMPLE: u32 = 7;
+const SAMPLE_OF_TOOL: u32 = 20;
+const LOOK: u32 = 2;
+/// Elements passed over for one more.
+const PASSED_FOR_ONE: u32 = 2;
+/// Junctions looked at in one go.
+const LOOKS: u32 = 6;
 
 /// Where the grid has got to.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +59,21 @@ pub(super) struct Grid {
     from: Option<Sample>,
     /// The next change of limits from there, if it is known.
     next: Option<Break>,
+    /// How far the look for it has got.
+    search: Option<Search>,
+    /// The next interval, as far as it has been tried.
+    trial: Option<Trial>,
+}
+
+/// An interval that may be too long.
+#[derive(Clone, Copy, Debug)]
+struct Trial {
+    /// Its length \[mm\].
+    delta: f64,
+    /// How often it has been halved.
+    halvings: u32,
+    /// What the path asks for at its end, and the axes there, if that is known.
+    to: Option<(Sample, [f64; AXES])>,
 }
 
 impl Grid {
@@ -65,6 +86,8 @@ impl Grid {
         near: [0.0; AXES],
         from: None,
         next: None,
+        search: None,
+        trial: None,
     };
 
     /// The first node, at rest at `s` with the axes at `axes`.
@@ -105,8 +128,11 @@ impl Grid {
         };
     }
 
-    /// Appends an interval, if the path is settled far enough; says how many visits of nodes that counts for: none
-    /// where there is nothing to do. The plan in force ends at node `in_force`.
+    /// Goes on to append an interval, if the path is settled far enough; says how much work that was: none where
+    /// there is nothing to do. The plan in force ends at node `in_force`.
+    ///
+    /// Where the next change of limits is, what the path asks for after one, and an interval that is too long, are
+    /// steps of their own.
     pub fn extend<P: PlayerAccess<E, N>, const E: usize, const N: usize>(
         &mut self,
         ground: &mut Ground<P, E, N>,
@@ -117,7 +143,7 @@ impl Grid {
         if nodes.room() == 0 {
             return Ok(0);
         }
-        let beyond = self.s + direction * SAME;
+        let (was, beyond) = (self.hint, self.s + direction * SAME);
         let (end, piece) = ground.player.with(|player| {
             let end = player.track.end_in(direction);
             let piece = player.track.find(beyond, &mut self.hint);
@@ -130,79 +156,91 @@ impl Grid {
         let (Some((feed, bend, is_line)), true) = (piece, settled > SAME) else {
             return Ok(0);
         };
-        let mut work = 1;
-        let next = match self.next {
-            // More may be settled than when the end was looked for.
-            Some(next) if !(next.end && next.way < settled - SAME) => next,
-            _ => {
-                let (next, looks) = self.look(ground);
-                work += looks / LOOKS;
-                *self.next.insert(next)
-            }
+        let mut work = 0;
+        // More may be settled than when the end was looked for.
+        if self.next.is_none_or(|next| next.end && next.way < settled - SAME) {
+            work = passed(was, self.hint) + LOOK * self.look(ground);
+        }
+        let Some(next) = self.next else {
+            return Ok(work);
         };
         if next.end && !next.real && next.way < MERGE * feed {
             return Ok(0);
         }
-        let from = match self.from {
-            Some(from) => from,
-            None => {
-                work += SAMPLE;
-                let inset = INSET * lesser(next.way, feed * CURVE_STEP);
-                let from = self.sample(ground, inset, &mut self.hint.clone())?.0;
-                *self.from.insert(from)
-            }
+        let Some(from) = self.from else {
+            let inset = INSET * lesser(next.way, feed * CURVE_STEP);
+            self.from = Some(self.sample(ground, inset, &mut self.hint.clone())?.0);
+            return Ok(work + sampling(ground.space));
         };
+        if work > 0 {
+            return Ok(work);
+        }
         let rests = in_force + 1 == nodes.end;
-        let mut delta = step(&next, self, rests, &from, feed, bounds);
+        let begun = self.trial.take();
+        let Trial { delta, halvings, to } = begun.unwrap_or_else(|| Trial {
+            delta: step(&next, self, rests, &from, feed, bounds),
+            halvings: 0,
+            to: None,
+        });
         // Nothing changes along a line of axes between two changes of limits.
-        let known =
-            from.is_straight(bounds) && !next.merged && bend == 0.0 && ground.space == PathSpace::Axes;
-        let (mut halvings, mut halved) = (0, None);
-        let (mid, to, near, hint, feed_cap, limit) = loop {
-            let inside = delta * (1.0 - INSET);
-            let mut hint = self.hint;
-            let (to, near) = match halved {
-                Some(halved) => halved,
-                None if known => {
-                    let s = self.s + direction * inside;
-                    (ground.farther(&from, s, self.hint), self.near)
-                }
-                None => {
-                    work += SAMPLE;
-                    self.sample(ground, inside, &mut hint)?
-                }
-            };
-            let straight = from.is_straight(bounds) && is_line && to.is_straight(bounds);
-            halved = None;
-            let mid = if straight {
-                to
-            } else if !next.merged {
-                // What lies between is smooth.
-                Sample::between(&from, &to)
-            } else {
-                work += SAMPLE;
-                halved.insert(self.sample(ground, 0.5 * delta, &mut hint)?).0
-            };
-            let quickest = most(
-                mid.quickest(bounds),
-                most(from.quickest(bounds), to.quickest(bounds)),
-            );
-            let feed_cap = lesser(
-                lesser(mid.feed, next.feed * next.feed),
-                lesser(from.feed, to.feed),
-            );
-            let limit = lesser(
-                f64::from(1.0 / (quickest * quickest)),
-                lesser(mid.limit, lesser(from.limit, to.limit)),
-            );
-            let short = next.merged && delta <= MERGE * feed;
-            let fine = straight || short || halvings == HALVINGS;
-            if fine || even(&[from, mid, to], lesser(feed_cap, limit) as f32, bounds) {
-                break (mid, to, near, hint, feed_cap, limit);
+        let straight = from.is_straight(bounds);
+        let known = straight && !next.merged && bend == 0.0 && ground.space == PathSpace::Axes;
+        let inside = delta * (1.0 - INSET);
+        let sampled = to.is_some();
+        let mut hint = self.hint;
+        let (to, near) = match to {
+            Some(to) => to,
+            None if known => {
+                let s = self.s + direction * inside;
+                (ground.farther(&from, s, self.hint), self.near)
             }
-            delta *= 0.5;
-            halvings += 1;
+            None => self.sample(ground, inside, &mut hint)?,
         };
+        let work = passed(was, hint) + EXTEND + if known { 0 } else { sampling(ground.space) };
+        let straight = straight && is_line && to.is_straight(bounds);
+        let mut halved = None;
+        let mid = if straight {
+            to
+        } else if !next.merged {
+            // What lies between is smooth.
+            Sample::between(&from, &to)
+        } else if sampled {
+            let mid = self.sample(ground, 0.5 * delta, &mut hint)?;
+            halved = Some(mid);
+            mid.0
+        } else {
+            self.trial = Some(Trial {
+                delta,
+                halvings,
+                to: Some((to, near)),
+            });
+            return Ok(work);
+        };
+        let quickest = most(
+            mid.quickest(bounds),
+            most(from.quickest(bounds), to.quickest(bounds)),
+        );
+        let feed_cap = lesser(
+            lesser(mid.feed, next.feed * next.feed),
+            lesser(from.feed, to.feed),
+        );
+        let limit = lesser(
+            f64::from(1.0 / (quickest * quickest)),
+            lesser(mid.limit, lesser(from.limit, to.limit)),
+        );
+        let short = next.merged && delta <= MERGE * feed;
+        if !straight
+            && !short
+            && halvings < HALVINGS
+            && !even(&[from, mid, to], lesser(feed_cap, limit) as f32, bounds)
+        {
+            self.trial = Some(Trial {
+                delta: 0.5 * delta,
+                halvings: halvings + 1,
+                to: halved,
+            });
+            return Ok(work);
+        }
         let at_break = next.way - delta < SAME;
         let delta = if at_break { next.way } else { delta };
         let end = self.s + direction * delta;
@@ -231,25 +269,28 @@ impl Grid {
         Ok(work)
     }
 
-    /// Looks for the next change of limits; says after how many junctions.
+    /// Looks on for the next change of limits; says at how many junctions.
     fn look<P: PlayerAccess<E, N>, const E: usize, const N: usize>(
-        &self,
+        &mut self,
         ground: &mut Ground<P, E, N>,
-    ) -> (Break, u32) {
+    ) -> u32 {
+        let begun = self.search.take();
         let (s, direction, hint, bounds) = (self.s, self.direction, self.hint, ground.bounds);
-        let mut search = ground
-            .player
-            .with(|player| player.track.search_breaks(s, direction, hint));
-        let mut looks = 0;
-        loop {
-            looks += 1;
-            if let Some(next) = ground
+        let mut search = begun.unwrap_or_else(|| {
+            ground
                 .player
-                .with(|player| player.track.look(&mut search, bounds))
-            {
-                return (next, looks);
+                .with(|player| player.track.search_breaks(s, direction, hint))
+        });
+        for looks in 1..=LOOKS {
+            self.next = ground
+                .player
+                .with(|player| player.track.look(&mut search, bounds));
+            if self.next.is_some() {
+                return looks;
             }
         }
+        self.search = Some(search);
+        LOOKS
     }
 
     /// What the path asks for after a `way` from the newest node, and the axes there; `hint` is left at the serial of
@@ -262,6 +303,23 @@ impl Grid {
     ) -> Result<(Sample, [f64; AXES]), Unreachable> {
         let s = self.s + self.direction * way;
         ground.sample(s, self.direction, hint, &self.near)
+    }
+}
+
+/// Most work of one step.
+pub(super) fn most_work(space: PathSpace) -> u32 {
+    EXTEND.max(LOOKS * LOOK) + sampling(space) + MOST_LOOKS / PASSED_FOR_ONE
+}
+
+/// Work of passing over elements.
+fn passed(from: u32, to: u32) -> u32 {
+    from.abs_diff(to) / PASSED_FOR_ONE
+}
+
+fn sampling(space: PathSpace) -> u32 {
+    match space {
+        PathSpace::Axes => SAMPLE,
+        PathSpace::Tool => SAMPLE_OF_TOOL,
     }
 }
 

@@ -11,11 +11,8 @@ use super::plan::Place;
 use super::split::split;
 use crate::ticks::PATH_PERIOD_S;
 
-/// Visits of nodes in a turn, each about a thousand instructions: twice as many are half as late, and take twice as
-/// much of the processor.
-pub(super) const VISITS: u32 = 28;
-/// Nodes taken over or begun with count for one visit.
-const NODES_FOR_ONE: u32 = 4;
+/// Work of planning in one tick, in hundreds of instructions of a PC.
+pub(super) const WORK: u32 = 95;
 /// Rounds in which boxes may also grow.
 const RELAXED: u32 = 2;
 /// Most nodes that a plan goes beyond the one in force, and the fewest if it has them.
@@ -37,23 +34,35 @@ const MOST_EARLY: f64 = 100.0;
 const MARGIN: f64 = 1.7;
 /// and at least in this many.
 const TIGHT: f64 = 1.2;
-/// Visits that a plan is expected to need for each of its nodes, as long as nothing else is known.
-const WORK_OF_NODE: f64 = 11.0;
-/// Visits that a plan to stop is expected to need, and one where the machine is speeding up: the way in which it lets go
-/// of the acceleration takes several attempts. With too few the first plans come too late, with too many each waits.
-const WORK_OF_STOP: f64 = 150.0;
-const WORK_OF_STOP_SPEEDING_UP: f64 = 600.0;
+/// Work that a plan is expected to need for each node, as long as nothing else is known.
+const WORK_OF_NODE: f64 = 105.0;
+/// Work that a plan to stop is expected to need.
+const WORK_OF_STOP: f64 = 800.0;
 /// How fast what is expected goes to what was needed, if that was more or less.
 const RISE: f64 = 0.5;
 const FALL: f64 = 0.125;
 /// Largest factor of the time that a plan is given.
 const MOST_PATIENCE: u32 = 8;
 
+/// Most work of a step of the pass forward or of a repair, of the pass back, and of the two that look for how slow the
+/// machine can be, but for rare ones; that of all others.
+const FORWARD_STEP: u32 = 11;
+const BACK_STEP: u32 = 27;
+const BRAKE_STEP: u32 = 12;
+const SETTLE_STEP: u32 = 26;
+const SHORT_STEP: u32 = 3;
+/// Work of a node of the plan in force that stays as it is.
+const READY: u32 = 2;
+/// Nodes taken over for a unit of work.
+pub(super) const TAKEN_FOR_ONE: u32 = 6;
+
 /// What the planner does next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Phase {
     /// Nothing is being planned.
     Waiting,
+    /// The plan in force is being taken over as the start of the new one, and this node is next.
+    Ready(u32),
     /// The search for the lowest speeds that are possible has come to this node.
     Brake(u32),
     /// What shapes the end of the slowing has come to this node.
@@ -129,7 +138,7 @@ pub(super) struct Horizon {
     pub(super) moved_to: u32,
     /// Feed override of the plan in force.
     factor: f64,
-    /// Visits for the plan being made, and what plans have taken for each node, in the mean.
+    /// Work on the plan being made, and what plans have taken for each node, in the mean.
     spent: u32,
     work_of_node: f64,
     /// Ticks until it is worth looking again whether a plan has to be begun.
@@ -140,6 +149,8 @@ pub(super) struct Horizon {
     pub(super) excess: Lanes,
     /// Node before the time one filter length away.
     pub(super) away: u32,
+    /// Work of this step.
+    pub(super) work: u32,
     /// Plans given up, for display.
     pub given_up: u32,
     /// Plans taken.
@@ -182,6 +193,7 @@ impl Horizon {
         patience: 1,
         excess: REST,
         away: 0,
+        work: 0,
         given_up: 0,
         taken: 0,
     };
@@ -297,9 +309,7 @@ impl Horizon {
             // Where the machine creeps there is time for any number.
             last = ends(last.min(self.in_force.saturating_add(LEAST_WINDOW.max(beyond))));
         }
-        let speeds_up = next < self.in_force && nodes.at(next + 1).x > nodes.at(next).x;
         let work = match wanted.stop {
-            true if speeds_up => f64::from(self.patience) * WORK_OF_STOP_SPEEDING_UP,
             true => f64::from(self.patience) * WORK_OF_STOP,
             false => f64::from(last - slowing) * work_of_node,
         };
@@ -339,11 +349,7 @@ impl Horizon {
         let node = nodes.at_mut(self.history);
         (node.time, node.trial, node.speed) = (0.0, node.x, libm::sqrt(node.x));
         self.wanted = wanted;
-        for i in self.history..self.start {
-            self.ready(nodes, i, bounds);
-        }
-        self.spent = (self.start - self.history) / NODES_FOR_ONE;
-        self.restart(nodes);
+        self.phase = Phase::Ready(self.history);
         true
     }
 
@@ -382,8 +388,13 @@ impl Horizon {
         commit
     }
 
-    /// Times and accelerations of node `i`, before the start, are as they are.
-    fn ready<const N: usize>(&self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+    /// Times and accelerations up to the start are as they are.
+    pub(super) fn ready<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        if i == self.start {
+            self.restart(nodes);
+            return;
+        }
+        self.work += READY;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let (x, end) = (node.x, next.x);
         let time = node.time + node.lasts + pause(next, bounds);
@@ -393,6 +404,7 @@ impl Horizon {
         for side in &mut nodes.at_mut(i).sides {
             side.allowed = side.accelerations(a, x as f32);
         }
+        self.phase = Phase::Ready(i + 1);
     }
 
     /// Begins the first round: with a look at how slow the machine can be.
@@ -430,12 +442,24 @@ impl Horizon {
         self.phase = Phase::Waiting;
     }
 
-    /// Goes on with the plan being made for as many visits of nodes as are `left`.
-    pub fn run<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds, left: &mut u32) {
-        while self.plans() && *left > 0 {
+    /// Goes on with the plan being made for as long as there is `most` work; says how much it was.
+    pub fn run<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds, most: u32) -> u32 {
+        self.work = 0;
+        while self.plans() && self.work + self.step_work() <= most {
             self.visit(nodes, bounds);
-            self.spent += 1;
-            *left -= 1;
+        }
+        self.spent += self.work;
+        self.work
+    }
+
+    /// Most work that the next step may be.
+    fn step_work(&self) -> u32 {
+        match self.phase {
+            Phase::Forward(_) | Phase::Repair(_) => FORWARD_STEP,
+            Phase::Back(_) => BACK_STEP,
+            Phase::Brake(_) => BRAKE_STEP,
+            Phase::Settle(_) => SETTLE_STEP,
+            Phase::Waiting | Phase::Whole | Phase::Ready(_) => SHORT_STEP,
         }
     }
 
@@ -471,7 +495,7 @@ impl Horizon {
     }
 }
 
-/// Time that so many visits take \[s\].
+/// Time that an amount of work takes \[s\].
 fn time_of(work: f64) -> f64 {
-    work / f64::from(VISITS) * PATH_PERIOD_S
+    work / f64::from(WORK) * PATH_PERIOD_S
 }

@@ -6,12 +6,19 @@ use super::limits::{Bounds, ROWS};
 use super::node::{Lanes, Nodes, REST, least, most, pause};
 use super::scan::advance;
 
+/// Work of a step of the pass forward, of a repair, of another box in it, and of each interval one filter length away
+/// that they look at.
+const FORWARD: u32 = 7;
+const REPAIR: u32 = 6;
+const RESIZE: u32 = 3;
+pub(super) const LOOK: u32 = 1;
 /// Least ṡ² at the end of an interval, as a share of that at its start and of what is possible.
 const CREEP: f64 = 1e-3;
 
 impl Horizon {
     /// Speed, time and accelerations of the interval of node `i`, and what its past allows them to be.
     pub(super) fn forward<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        self.work += FORWARD;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let x = if self.scaled {
             next.trial
@@ -53,6 +60,7 @@ impl Horizon {
     /// What the future allows the accelerations of node `i` to be; changes its boxes by that and its past, and
     /// says whether it did.
     pub(super) fn repair<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) -> bool {
+        self.work += REPAIR;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let end = next.time - pause(next, bounds);
         let a = ((next.trial - node.trial) / (2.0 * node.delta)) as f32;
@@ -76,6 +84,7 @@ impl Horizon {
                 place.shrink(&is, &by_past, &by_future, bounds),
             ] {
                 changed |= resized;
+                self.work += u32::from(resized) * RESIZE;
             }
         }
         changed
@@ -140,6 +149,7 @@ impl Horizon {
             include(&REST);
         }
         while i < beyond {
+            self.work += LOOK;
             let (node, next) = (nodes.at(i), nodes.at(i + 1));
             let end = next.time - pause(next, bounds);
             if node.time <= to && end >= from {

@@ -5,8 +5,8 @@
 //! before the next tick, whatever they were interrupted by.
 
 use super::Way;
-use super::grid::Grid;
-use super::horizon::{Horizon, PlanRequest, VISITS, WINDOW};
+use super::grid::{Grid, most_work};
+use super::horizon::{Horizon, PlanRequest, WINDOW, WORK};
 use super::limits::Bounds;
 use super::node::Nodes;
 use super::plan::{Knot, Place, Plan};
@@ -16,8 +16,11 @@ use crate::io::AXES;
 use crate::kinematics::Kinematics;
 use crate::trajectory::{PathSpace, Unreachable};
 
-/// What the beginning of a plan counts for in visits of nodes.
-const BEGIN: u32 = 8;
+/// Work to shape a corner, and to begin a plan.
+const CORNER: u32 = 5;
+const BEGIN: u32 = 40;
+/// Work to split an interval for it.
+const SPLIT: u32 = 45;
 
 /// The end of the planner that looks ahead.
 #[derive(Clone, Debug)]
@@ -108,43 +111,45 @@ impl<const NODES: usize> Planning<NODES> {
         self.horizon.watch(now.place.node);
     }
 
-    /// A share of the work: the plan being made, then corners, then nodes, then the next plan; says whether nothing
-    /// is left to do.
+    /// A share of the work; says whether nothing is left to do.
     fn plan<const ELEMENTS: usize>(
         &mut self,
         player: &mut impl PlayerAccess<ELEMENTS, NODES>,
         kinematics: &Kinematics,
     ) -> bool {
-        let mut left = VISITS;
+        let mut work = WORK;
         self.horizon.obey(self.wanted());
         // Not only when no more nodes can be had.
-        if self.horizon.waiting() && self.nodes.end > self.horizon.in_force() + WINDOW && self.begin(player) {
-            left -= BEGIN;
+        if self.horizon.waiting() && self.nodes.end > self.horizon.in_force() + WINDOW {
+            work = work.saturating_sub(self.begin(player));
         }
-        while left > 0 {
-            self.horizon.run(&mut self.nodes, &self.bounds, &mut left);
+        loop {
             if self.horizon.is_whole() && self.offered.is_none() {
                 self.offer(player);
             }
-            if left == 0 {
-                break;
-            }
-            let work = if !self.laid && self.decide(player) {
-                1
-            } else {
-                self.extend(player, kinematics)
-            };
-            if work > 0 {
-                left = left.saturating_sub(work);
-            } else if self.offered.is_some() {
+            let cost = if self.horizon.plans() {
+                let done = self.horizon.run(&mut self.nodes, &self.bounds, work);
+                if self.horizon.plans() {
+                    return false;
+                }
+                done
+            } else if work >= CORNER && !self.laid && self.decide(player) {
+                CORNER
+            } else if work < most_work(self.progress.space) {
                 return false;
-            } else if self.begin(player) {
-                left = left.saturating_sub(BEGIN);
             } else {
-                return true;
-            }
+                if let extended @ 1.. = self.extend(player, kinematics) {
+                    extended
+                } else if work < BEGIN || self.offered.is_some() {
+                    return false;
+                } else if let begun @ 1.. = self.begin(player) {
+                    begun
+                } else {
+                    return self.offered.is_none();
+                }
+            };
+            work = work.saturating_sub(cost);
         }
-        false
     }
 
     /// Moves or shapes a corner, if there is one whose neighbours are known.
@@ -152,7 +157,7 @@ impl<const NODES: usize> Planning<NODES> {
         player.with(|player| player.track.decide(&self.bounds))
     }
 
-    /// Appends a node, if there is room and the path is settled far enough; says how many visits that counts for.
+    /// Appends a node, if there is room and the path is settled far enough; says how much work that was.
     fn extend<const ELEMENTS: usize>(
         &mut self,
         player: &mut impl PlayerAccess<ELEMENTS, NODES>,
@@ -209,12 +214,24 @@ impl<const NODES: usize> Planning<NODES> {
         self.progress.rested && ended && !self.progress.wish.stands()
     }
 
-    /// Begins a plan, or turns where the machine has come to rest and is to go the other way; says whether it did.
-    fn begin<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) -> bool {
+    /// Begins a plan, or turns where the machine has come to rest and is to go the other way; says how much work
+    /// it was: none if it did not.
+    #[inline]
+    fn begin<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) -> u32 {
         let wanted = self.wanted();
         if self.horizon.early(&wanted) {
-            return false;
+            return 0;
         }
+        self.begin_for(player, wanted)
+    }
+
+    /// A call of its own: in most turns it is too early for it.
+    #[inline(never)]
+    fn begin_for<const ELEMENTS: usize>(
+        &mut self,
+        player: &mut impl PlayerAccess<ELEMENTS, NODES>,
+        wanted: PlanRequest,
+    ) -> u32 {
         let along = self.along();
         let last = self.horizon.in_force();
         let inside = last + 1 < self.nodes.end && self.nodes.at(last).limit > 0.0;
@@ -225,7 +242,7 @@ impl<const NODES: usize> Planning<NODES> {
             self.grid
                 .again(last, direction, &self.progress.axes, &mut self.nodes);
             (self.blocked, self.laid) = (None, false);
-            return true;
+            return BEGIN;
         }
         let node = self.progress.place.node;
         // At the end of the plan, not at a stop before it.
@@ -241,7 +258,11 @@ impl<const NODES: usize> Planning<NODES> {
         if more > 0 || self.horizon.in_force() < last {
             self.change(player, last, more);
         }
-        begun || more > 0
+        match (begun, more > 0) {
+            (_, true) => BEGIN + SPLIT,
+            (true, false) => BEGIN,
+            (false, false) => 0,
+        }
     }
 
     /// Offers the plan in force again, which has `more` nodes now, and may rest before its `last`.

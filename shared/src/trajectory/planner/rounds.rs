@@ -1,7 +1,7 @@
 //! Rounds of passes over the nodes of a plan being made. Only where boxes have changed, or what is one filter length
 //! away from that, is looked at again.
 
-use super::horizon::{Horizon, Phase};
+use super::horizon::{Horizon, Phase, TAKEN_FOR_ONE};
 use super::limits::Bounds;
 use super::node::{Nodes, REST, most};
 use super::scan::reach;
@@ -10,6 +10,16 @@ use super::scan::reach;
 const ROUNDS: u32 = 12;
 /// A plan is good if no change of acceleration is above its limit by more than this share.
 const GOOD: f32 = 0.025;
+/// Work of a step of the pass back.
+const BACK: u32 = 1;
+/// Work of the search for a reach, and of each of its iterations.
+pub(super) const REACH: u32 = 5;
+pub(super) const ITERATION: u32 = 3;
+/// Work of opening the boxes of a node.
+pub(super) const OPEN: u32 = 2;
+/// Nodes whose times are shifted for a unit of work.
+const SHIFTED_FOR_ONE: u32 = 16;
+
 impl Horizon {
     /// One visit of one node, or a step from one pass to the next.
     pub(super) fn visit<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
@@ -17,6 +27,7 @@ impl Horizon {
             Phase::Waiting | Phase::Whole => {}
             Phase::Brake(i) => self.brake(nodes, i, bounds),
             Phase::Settle(i) => self.shape(nodes, i, bounds),
+            Phase::Ready(i) => self.ready(nodes, i, bounds),
             Phase::Back(i) if self.goes_back(nodes, i, bounds) => {
                 self.back(nodes, i - 1, bounds);
                 self.phase = Phase::Back(i - 1);
@@ -70,6 +81,7 @@ impl Horizon {
         }
         self.scaled = true;
         self.excess = REST;
+        self.work += (self.last - self.commit) / TAKEN_FOR_ONE;
         self.from = self.commit;
         self.begin_forward(nodes, bounds);
     }
@@ -94,6 +106,7 @@ impl Horizon {
 
     /// One step of the pass back: boxes and reach of node `i`.
     fn back<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
+        self.work += BACK;
         self.renew(nodes, i, bounds);
         let first = self.round == 0 || self.braking;
         let repaired = !first && self.repair(nodes, i, bounds);
@@ -106,11 +119,12 @@ impl Horizon {
             let next = nodes.at(i + 1);
             let (next, follows) = (next.reach, next.reach >= next.brake);
             let node = nodes.at_mut(i);
-            let mut x = reach(node, next, node.cap(), node.floor);
+            let (mut x, iterations) = reach(node, next, node.cap(), node.floor);
             if self.braking && follows && i < self.settled {
                 // From there it can settle, but for rounding.
                 x = libm::fmax(x, libm::fmin(node.brake, node.cap()));
             }
+            self.work += REACH + iterations * ITERATION;
             self.reach_changed = x != node.reach;
             node.reach = x;
         }
@@ -153,6 +167,7 @@ impl Horizon {
         for later in i + 1..=self.last {
             nodes.at_mut(later).time += self.shift;
         }
+        self.work += (self.last - i) / SHIFTED_FOR_ONE;
         self.reach_changed = false;
         if self.braking || self.scaled {
             self.away = i - 1;
@@ -189,6 +204,7 @@ impl Horizon {
         if self.warm || self.round > 0 {
             return;
         }
+        self.work += OPEN;
         for side in &mut nodes.at_mut(i).sides {
             side.open(bounds);
         }

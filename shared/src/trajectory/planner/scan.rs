@@ -83,8 +83,8 @@ impl<'a> Lines<'a> {
 }
 
 /// The highest x at the start of the interval of `node` from which some a keeps every limit and arrives at no more
-/// than `next`, with x at most `cap` and a at least `floor`.
-pub(super) fn reach(node: &Node, next: f64, cap: f64, floor: f32) -> f64 {
+/// than `next`, with x at most `cap` and a at least `floor`; and how many iterations that took.
+pub(super) fn reach(node: &Node, next: f64, cap: f64, floor: f32) -> (f64, u32) {
     let lines = Lines {
         floor,
         ..Lines::new(node, next)
@@ -100,10 +100,10 @@ pub(super) fn reach(node: &Node, next: f64, cap: f64, floor: f32) -> f64 {
     }
     // The room between the limits is concave in x, and there is some at 0: from above, the crossings of the
     // limits in force come down to where there is none.
-    for _ in 0..ITERATIONS {
+    for iteration in 0..ITERATIONS {
         let (high, low) = (lines.highest(x), lines.lowest(x));
         if high >= low {
-            return f64::from(x);
+            return (f64::from(x), iteration);
         }
         let (upper, falls) = lines.upper(x, high);
         let (lower, rises) = lines.lower(x, low);
@@ -111,11 +111,11 @@ pub(super) fn reach(node: &Node, next: f64, cap: f64, floor: f32) -> f64 {
         let crossing = (upper - lower) / (falls - rises);
         if !(crossing > 0.0 && crossing < x) {
             // Rounding: there is nothing between this x and the last one.
-            return if crossing > 0.0 { f64::from(x) } else { 0.0 };
+            return (if crossing > 0.0 { f64::from(x) } else { 0.0 }, iteration);
         }
         x = crossing;
     }
-    f64::from(x)
+    (f64::from(x), ITERATIONS)
 }
 
 /// x at the end of the interval of `node` if it begins at `x` and ends no faster than `next`, as fast as the
@@ -182,7 +182,7 @@ mod tests {
             cap in 0.1..10.0f64, next in 0.0..5.0f64,
         ) {
             let node = node(rows, cap);
-            let x = reach(&node, next, cap, f32::NEG_INFINITY);
+            let (x, _) = reach(&node, next, cap, f32::NEG_INFINITY);
             prop_assert!((0.0..=cap * (1.0 + 1e-6)).contains(&x));
             prop_assert!(possible(&node, x * 0.999, next, 0.02), "{x} is not possible");
             if x < cap * 0.99 {
