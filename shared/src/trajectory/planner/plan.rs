@@ -20,7 +20,7 @@ pub(super) struct Knot {
     /// Time to the next \[s\].
     pub lasts: f64,
     /// +1 if it leads on along the path, −1 back.
-    pub direction: f64,
+    pub direction: i8,
     /// The machine stops here, until the output filter has come to rest.
     pub stop: bool,
 }
@@ -33,7 +33,7 @@ impl Knot {
             delta: node.delta,
             x,
             lasts,
-            direction: node.direction,
+            direction: if node.direction < 0.0 { -1 } else { 1 },
             stop: node.limit <= 0.0,
         }
     }
@@ -60,7 +60,7 @@ impl<const N: usize> Plan<N> {
             delta: 0.0,
             x: 0.0,
             lasts: 0.0,
-            direction: 1.0,
+            direction: 0,
             stop: false,
         }; N],
         last: 0,
@@ -78,7 +78,7 @@ impl<const N: usize> Plan<N> {
                 delta: 0.0,
                 x: 0.0,
                 lasts: 0.0,
-                direction: 1.0,
+                direction: 1,
                 stop: true,
             },
         );
@@ -169,14 +169,15 @@ impl Place {
             return SpeedState::at_rest(from.s);
         }
         let a = (plan.at(self.node + 1).x - from.x) / (2.0 * from.delta);
+        let direction = f64::from(from.direction);
         // √x without a root: some processors have none of this precision.
         let v = from.delta / from.lasts - 0.5 * a * from.lasts;
         SpeedState {
-            s: from.s + from.direction * self.time * (v + 0.5 * a * self.time),
-            v: from.direction * (v + a * self.time),
+            s: from.s + direction * self.time * (v + 0.5 * a * self.time),
+            v: direction * (v + a * self.time),
             // Where it rests, s does not say which of two elements that meet there it will move on.
             a: if from.x + self.time > 0.0 {
-                from.direction * a
+                direction * a
             } else {
                 0.0
             },
