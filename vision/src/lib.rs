@@ -27,7 +27,7 @@ pub mod render;
 mod report;
 
 pub use detector::{Detector, DetectorError};
-pub use gap::EDGE_ROWS_MM;
+pub use gap::{EDGE_ROWS_MM, EndKind, GapEnd};
 pub use geometry::{Corner, CornerFeatures, GeometryError, PlateFeatures, PlateSeam};
 pub use image::{Image, ImageError};
 pub use noise::PhotonTransfer;

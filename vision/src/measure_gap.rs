@@ -33,6 +33,9 @@ const DIM: [f64; 2] = [0.2, 0.35];
 /// Share of a gap in which no texture may be seen: the rest may be a lit wall.
 const EMPTY_SHARE: f64 = 0.34;
 
+/// Width from which a gap may be one with a wide shadow \[mm\].
+const WIDE_MM: f64 = 0.05;
+
 /// Depth of the gap at which it is not trusted, and is. A veil takes as much off it as there is light in the veil.
 const DEPTH: [f64; 2] = [0.3, 0.6];
 
@@ -62,8 +65,10 @@ const SOFT: f64 = 0.6;
 /// What light that changes across the picture, and a lens with a curved field, move the band by \[mm\].
 const HEIGHT_MM: f64 = 0.004;
 
-/// Smallest standard deviations: what no scatter shows \[mm\].
+/// Smallest standard deviations: what no scatter shows, and what a rolled or chamfered edge moves the middle by that looks
+/// sharp \[mm\].
 const FLOOR_MM: f64 = 0.0005;
+const ROLLED_MM: f64 = 0.0015;
 
 /// Iterations: on half resolution, on both, with the gap left out.
 const ITERATIONS: [usize; 3] = [6, 3, 8];
@@ -202,6 +207,13 @@ impl Detector {
         let (best, second) = candidates.best()?;
         let mut best = without_shadow(strip, best, g);
         best.interior = Interior::of(strip, &best, EMPTY_SHARE, g);
+        if best.width() * g > WIDE_MM {
+            // Beside a wide shadow the darkest part is empty, and most of the run is not.
+            let all = Interior::of(strip, &best, 1.0, g);
+            if all.emptiness(best.expected) < best.interior.emptiness(best.expected) {
+                best.interior = all;
+            }
+        }
         let edges = fit_edges(strip, &best, g)?;
         Some((edges, best, second))
     }
@@ -295,9 +307,13 @@ impl Detector {
         let [left, right] = softness(&self.strip, best, g);
         let edge = edges.residual * g / (edges.readings as f64).sqrt();
         measured.sigma = Sigma {
-            lateral_mm: (ROUGH * edge.hypot(FLOOR_MM)).hypot(SOFT * left.hypot(right) / 2.0),
+            lateral_mm: (ROUGH * edge.hypot(FLOOR_MM))
+                .hypot(SOFT * left.hypot(right) / 2.0)
+                .hypot(ROLLED_MM),
             height_mm: (HONEST * variance.max(0.0).sqrt()).hypot(HEIGHT_MM),
-            width_mm: (ROUGH * (2.0 * edge).hypot(4.0 * FLOOR_MM)).hypot(SOFT * (left + right)),
+            width_mm: (ROUGH * (2.0 * edge).hypot(4.0 * FLOOR_MM))
+                .hypot(SOFT * (left + right))
+                .hypot(2.0 * ROLLED_MM),
             yaw_rad: edges.slant_sigma * cos,
             ..measured.sigma
         };

@@ -39,7 +39,8 @@ fn measuring_allocates_nothing_after_the_first_picture() {
                         track,
                         focus: 0.0,
                     };
-                    detector.measure(&image, &prior).expect("a measurement");
+                    let report = detector.measure(&image, &prior).expect("a measurement");
+                    report.measured.map(|measured| detector.gap_ends(&measured));
                 }
             }
             for _ in 0..6 {

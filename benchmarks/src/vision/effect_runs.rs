@@ -20,13 +20,17 @@ const SHARE: u64 = 16;
 /// More than this nothing may be off that is believed \[mm\].
 const WRONG_MM: f64 = 0.05;
 
+/// After so many pictures without the effects the seam has to be believed again.
+const SOON: usize = 5;
+
 /// What became of a sequence.
 struct Taken {
     group: usize,
     seed: u64,
     effects: Vec<Effect>,
-    /// Errors of the centres that were believed \[mm\].
+    /// Errors of the centres and heights that were believed \[mm\].
     centres: Vec<f64>,
+    heights: Vec<f64>,
     /// Pictures with a seam before and after the effects, and those of them that were believed; the same with effects.
     plain: [usize; 2],
     affected: [usize; 2],
@@ -80,6 +84,7 @@ pub fn run(options: &Options) -> Result<()> {
                     seed: *seed,
                     effects: effects.clone(),
                     centres: Vec::new(),
+                    heights: Vec::new(),
                     plain: [0; 2],
                     affected: [0; 2],
                     wrong_in_a_row: 0,
@@ -100,6 +105,7 @@ pub fn run(options: &Options) -> Result<()> {
                     wrong_in_a_row = if wrong { wrong_in_a_row + 1 } else { 0 };
                     taken.wrong_in_a_row = taken.wrong_in_a_row.max(wrong_in_a_row);
                     taken.centres.extend(errors.map(|(errors, _)| errors[0]));
+                    taken.heights.extend(errors.map(|(errors, _)| errors[1]));
                     if there == Some(true) {
                         let count = if LASTING.contains(&k) {
                             &mut taken.affected
@@ -120,13 +126,13 @@ pub fn run(options: &Options) -> Result<()> {
         Ok(all)
     })?;
     println!(
-        "{PICTURES} pictures each, of them {} with effects; centres in µm.\n",
+        "{PICTURES} pictures each, of them {} with effects; centres and heights in µm.\n",
         LASTING.len()
     );
     println!(
-        "| effect | sequences | believed before and after % | with effects % | centre 99 % | worst | wrong twice running | most running | found again after 95 % | at most |"
+        "| effect | sequences | believed before and after % | with effects % | centre 99 % | worst | height 99 % | worst | wrong twice running | most running | found again after 95 % | at most |"
     );
-    println!("|---{}|", "|--:".repeat(9));
+    println!("|---{}|", "|--:".repeat(11));
     for (k, (name, _)) in groups.iter().enumerate() {
         let group: Vec<&Taken> = taken.iter().filter(|taken| taken.group == k).collect();
         println!("{}", line(name, &group));
@@ -141,11 +147,21 @@ pub fn run(options: &Options) -> Result<()> {
         } = taken;
         println!("wrong: {effects:?}, seed {seed}: {wrong_in_a_row} pictures running");
     }
+    for taken in taken.iter().filter(|taken| taken.found_after > SOON) {
+        let Taken {
+            seed,
+            effects,
+            found_after,
+            ..
+        } = taken;
+        println!("late: {effects:?}, seed {seed}: {found_after} pictures");
+    }
     Ok(())
 }
 
 fn line(name: &str, group: &[&Taken]) -> String {
     let centres: Vec<f64> = group.iter().flat_map(|taken| taken.centres.clone()).collect();
+    let heights: Vec<f64> = group.iter().flat_map(|taken| taken.heights.clone()).collect();
     let share = |counts: fn(&Taken) -> [usize; 2]| {
         let sum = |k: usize| group.iter().map(|taken| counts(taken)[k]).sum::<usize>() as f64;
         format!("{:.1}", 100.0 * sum(1) / sum(0))
@@ -159,6 +175,8 @@ fn line(name: &str, group: &[&Taken]) -> String {
         share(|taken| taken.affected),
         micrometres(quantile(&centres, 0.99)),
         micrometres(quantile(&centres, 1.0)),
+        micrometres(quantile(&heights, 0.99)),
+        micrometres(quantile(&heights, 1.0)),
         group
             .iter()
             .filter(|taken| taken.wrong_in_a_row > 1)

@@ -11,6 +11,6 @@ mod taught;
 pub use beams::{Approach, closest_approach, slide_extension};
 pub use cut::{Crossing, OtherSeam, Polyline, SmoothSeam};
 pub use locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
-pub use planning::{DualBeamPlan, PlanError, PlanOptions, PlannedPoint, plan_dual_beam};
+pub use planning::{DualBeamPlan, PlanError, PlanOptions, PlannedPoint, plan_dual_beam, plan_taught};
 pub use seam_curves::{SeamPoint, parse_main_curve, parse_other_curve, read_main_curve, read_other_curve};
-pub use taught::{Deviations, TaughtSeamError, TaughtSeams};
+pub use taught::{Deviations, Marked, TaughtSeamError, TaughtSeams};

@@ -84,6 +84,17 @@ pub struct TaughtSeams {
     pub other: Vec<Vector3<f64>>,
     /// How far the points are from them.
     pub fit: [Deviations; SIDES],
+    /// Which of them begin, and which end, with what the cameras saw there.
+    pub marked: Marked,
+}
+
+/// Seams that begin, and that end, at a plate or a tack.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Marked {
+    /// At their first point.
+    pub begins: [bool; SIDES],
+    /// At their last one.
+    pub ends: [bool; SIDES],
 }
 
 /// Distances of the points from their curve.
@@ -114,6 +125,7 @@ impl TaughtSeams {
                 .collect(),
             other: second,
             fit,
+            marked: Marked::of(points),
         })
     }
 
@@ -130,7 +142,17 @@ impl TaughtSeams {
                 fit.rms_mm
             )
         };
-        sides.map(note).collect()
+        let marked = (0..SIDES).filter_map(|side| {
+            let number = side + 1;
+            let said = match (self.marked.begins[side], self.marked.ends[side]) {
+                (true, true) => "on where its seam begins, and off where it ends",
+                (true, false) => "on where its seam begins",
+                (false, true) => "off where its seam ends",
+                (false, false) => return None,
+            };
+            Some(format!("beam {number} goes {said}, as the cameras saw it"))
+        });
+        sides.map(note).chain(marked).collect()
     }
 }
 
@@ -140,6 +162,7 @@ fn check(points: &[(usize, TaughtPoint)], least: f64) -> Result<(), TaughtSeamEr
     if found < FEWEST {
         return Err(TaughtSeamError::Few { found });
     }
+    let along = [0, 1].map(|side| chords(points, side));
     for (index, (first_line, point)) in points.iter().enumerate() {
         for (side, foot) in point.feet.iter().enumerate() {
             let (line, side, k) = (first_line + side, side + 1, side);
@@ -157,7 +180,7 @@ fn check(points: &[(usize, TaughtPoint)], least: f64) -> Result<(), TaughtSeamEr
             } else {
                 BESIDE
             };
-            let away_mm = beside_neighbours(points, index, k);
+            let away_mm = beside_neighbours(points, &along[k], index, k);
             if away_mm > limit {
                 return Err(TaughtSeamError::Jump { line, side, away_mm });
             }
@@ -190,26 +213,23 @@ fn check(points: &[(usize, TaughtPoint)], least: f64) -> Result<(), TaughtSeamEr
     Ok(())
 }
 
-/// How far a point is from the curve through the nearest other ones: a cubic through four of them, at the ends a
-/// parabola through three \[mm\].
-fn beside_neighbours(points: &[(usize, TaughtPoint)], index: usize, side: usize) -> f64 {
+/// How far a point is from the curve through the nearest other ones over the chords of its side: a cubic through four of them, at
+/// the ends a parabola through three \[mm\].
+fn beside_neighbours(points: &[(usize, TaughtPoint)], along: &[f64], index: usize, side: usize) -> f64 {
     let last = points.len() - 1;
     let at_end = index == 0 || index == last;
     let count = if at_end { 3 } else { 4.min(last) };
     let first = index.saturating_sub(2).min(last - count);
-    let others: Vec<&TaughtPoint> = (first..=first + count)
+    let others: Vec<usize> = (first..=first + count)
         .filter(|i| *i != index)
-        .map(|i| &points[i].1)
         .take(count)
         .collect();
-    let s = points[index].1.s_mm;
+    let s = along[index];
     let mut expected = Vector3::zeros();
-    for (i, point) in others.iter().enumerate() {
-        let weights = others.iter().enumerate().filter(|(j, _)| *j != i);
-        let weight: f64 = weights
-            .map(|(_, other)| (s - other.s_mm) / (point.s_mm - other.s_mm))
-            .product();
-        expected += point.feet[side].position * weight;
+    for &i in &others {
+        let weights = others.iter().filter(|j| **j != i);
+        let weight: f64 = weights.map(|&j| (s - along[j]) / (along[i] - along[j])).product();
+        expected += points[i].1.feet[side].position * weight;
     }
     (points[index].1.feet[side].position - expected).norm()
 }
@@ -272,6 +292,20 @@ fn normals(points: &[(usize, TaughtPoint)]) -> Vec<Vector3<f64>> {
     inside.map(|normal| normal.normalize()).collect()
 }
 
+impl Marked {
+    fn of(points: &[(usize, TaughtPoint)]) -> Self {
+        let marked = |point: Option<&(usize, TaughtPoint)>| {
+            point.map_or([false; SIDES], |(_, point)| {
+                point.feet.map(|foot| foot.end.is_some())
+            })
+        };
+        Self {
+            begins: marked(points.first()),
+            ends: marked(points.last()),
+        }
+    }
+}
+
 impl Deviations {
     fn of(distances: impl Iterator<Item = (usize, f64)>) -> Self {
         let mut all = Self {
@@ -304,6 +338,7 @@ fn deviations(points: &[(usize, TaughtPoint)], side: usize, curve: &[Vector3<f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use teach::seam::SeamEnd;
     use vision::render::SplitMix64;
 
     /// Feet 4 mm apart on an arc of 600 mm radius, taught every 12 mm with a scatter of 0.007 mm in 8 pictures.
@@ -323,6 +358,7 @@ mod tests {
                     quality: 0.9,
                     scatter_mm,
                     pictures: 8,
+                    end: None,
                 }
             };
             let feet = [at(598.0), at(602.0)];
@@ -350,6 +386,18 @@ mod tests {
                 "{fit:?}"
             );
         }
+        let mut ended = taught(0.0);
+        ended[0].1.feet[1].end = Some(SeamEnd::Plate);
+        ended[29].1.feet[0].end = Some(SeamEnd::Tack);
+        let notes = TaughtSeams::through(&ended, 0.5).unwrap().notes();
+        assert_eq!(
+            notes[2..],
+            [
+                "beam 1 goes off where its seam ends, as the cameras saw it",
+                "beam 2 goes on where its seam begins, as the cameras saw it"
+            ]
+        );
+        assert_eq!(exact.notes().len(), 2);
         let note = &noisy.notes()[1];
         assert!(
             note.starts_with("seam 2: 30 taught points lie within 0.0"),

@@ -21,6 +21,9 @@ pub trait SeamCameras: Send {
     /// that time, if it is known.
     fn strobe(&mut self, capture: Capture, strobe_us: u64, pose: Option<Pose>);
 
+    /// From now on answers tell, or do not tell, where the seams end in the pictures that are strobed.
+    fn look_for_ends(&mut self, _wanted: bool) {}
+
     /// When the next answer is due by the motion board's clock \[µs\]; `None` if nothing is waited for.
     fn next_due_us(&self) -> Option<u64>;
 

@@ -8,7 +8,7 @@ use shared::geometry::Pose;
 use shared::io::SIDES;
 use shared::protocol::{Capture, SideMeasurement};
 use shared::tracking::frames::{Heads, meet};
-use vision::{Form, Seam};
+use vision::{EndKind, Form, Seam};
 
 /// Samples that leave for the spool at once.
 const BATCH: usize = 1000;
@@ -18,6 +18,17 @@ const BATCH: usize = 1000;
 pub struct SeenSeam {
     /// The seam.
     pub seam: Seam,
+    /// Where this picture shows it.
+    pub here: SideMeasurement,
+    /// Where it ends in this picture, behind that place and ahead of it, if somebody asked.
+    pub ends: [Option<SeenEnd>; 2],
+}
+
+/// Where a seam ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenEnd {
+    /// How.
+    pub kind: EndKind,
     /// Where this picture shows it.
     pub here: SideMeasurement,
 }
@@ -47,7 +58,7 @@ impl JointRecord {
         pose_at: impl Fn(f64) -> Option<Pose>,
     ) {
         for (side, seen) in seen.iter().enumerate() {
-            let Some(SeenSeam { seam, here }) = seen.filter(|seen| seen.seam.form == Form::Gap) else {
+            let Some(SeenSeam { seam, here, .. }) = seen.filter(|seen| seen.seam.form == Form::Gap) else {
                 continue;
             };
             let spot_at = |s_mm: f64| Some(heads.spot(&pose_at(s_mm)?, side));
@@ -165,6 +176,7 @@ mod tests {
                 delta_u_mm: 0.05,
                 delta_v_mm: 0.0,
             },
+            ends: [None; 2],
         }
     }
 

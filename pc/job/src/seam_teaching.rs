@@ -14,8 +14,8 @@ use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use teach::seam::{
-    CameraMachine, Cameras, Drawing, Ended, Follower, Head, JogOperator, MachinePose, SeamFile, SeamPoint,
-    SeamSighting, SeamTeachError, SeamTeaching, View,
+    CameraMachine, Cameras, Drawing, EndSighting, Ended, Follower, Head, JogOperator, MachinePose, SeamEnd,
+    SeamFile, SeamPoint, SeamSighting, SeamTeachError, SeamTeaching, View,
 };
 
 /// Longest time for the pictures of a look.
@@ -73,6 +73,7 @@ impl Weld {
             slides_mm: [0.0; SLIDES],
             settle_s: 0.0,
             count: lesson.points.len(),
+            first: lesson.points.first().copied(),
         };
         let ended = if lesson.by_jog {
             follower.jog(&mut arm, &lesson.start, &lesson.points)
@@ -80,8 +81,14 @@ impl Weld {
             follower.teach(&mut arm, &lesson.start, &lesson.points)
         };
         let count = arm.count;
+        let begins = arm.first.and_then(|first| {
+            let ends = first.feet.map(|foot| foot.end);
+            let (at, along) = lesson.drawing?.begin;
+            (ends != [None; SIDES]).then(|| (ends, (first.middle() - at).dot(&along)))
+        });
         self.taught.seam = Some(TaughtSeam {
             points: count,
+            begins,
             ended: match ended {
                 Ok(ended) => ended,
                 Err(SeamTeachError::Machine(error)) => return Err(error),
@@ -101,6 +108,8 @@ pub struct TaughtSeam {
     pub points: usize,
     /// Why there are no more.
     pub ended: Ended,
+    /// What is seen to begin the seam of each side at the first point, and how far that is after its drawing begins \[mm\].
+    pub begins: Option<([Option<SeamEnd>; SIDES], f64)>,
 }
 
 /// The machine of a session.
@@ -113,8 +122,9 @@ struct SeamArm<'w, 's, 'b> {
     slides_mm: [f64; SLIDES],
     /// What moved last comes to rest for so long \[s\].
     settle_s: f64,
-    /// Points in the file.
+    /// Points in the file, and the first of them.
     count: usize,
+    first: Option<SeamPoint>,
 }
 
 impl SeamArm<'_, '_, '_> {
@@ -264,6 +274,7 @@ impl CameraMachine for SeamArm<'_, '_, '_> {
             .add(point)
             .map_err(|error| JobError::Teach(error.to_string()))?;
         self.count += 1;
+        self.first.get_or_insert(*point);
         Ok(())
     }
 
@@ -296,6 +307,7 @@ impl JogOperator for SeamArm<'_, '_, '_> {
 
     fn untaught(&mut self, points: &[SeamPoint]) -> Result<(), JobError> {
         self.count = points.len();
+        self.first = points.first().copied();
         self.lesson
             .file
             .lock()
@@ -347,5 +359,25 @@ fn mean(pictures: &[Watched], side: usize, wanted: usize) -> Option<SeamSighting
         // Of both offsets, from picture to picture.
         scatter_mm: libm::sqrt((squares[0] + squares[1]) / 2.0 * count / (count - 1.0).max(1.0)),
         pictures: seen.len(),
+        ends: [0, 1].map(|way| mean_end(&seen, way)),
+    })
+}
+
+/// The mean of where pictures show an end of the seam, if enough of them show the same.
+fn mean_end(seen: &[&SeamSighting], way: usize) -> Option<EndSighting> {
+    let of = |end: SeamEnd| -> Vec<EndSighting> {
+        let ends = seen.iter().filter_map(|seen| seen.ends[way]);
+        ends.filter(|seen| seen.end == end).collect()
+    };
+    let same = [of(SeamEnd::Plate), of(SeamEnd::Tack)];
+    let same = same.into_iter().max_by_key(Vec::len)?;
+    if (same.len() as f64) < ENOUGH * seen.len() as f64 {
+        return None;
+    }
+    let mean = |value: &dyn Fn(&EndSighting) -> f64| same.iter().map(value).sum::<f64>() / same.len() as f64;
+    Some(EndSighting {
+        end: same.first()?.end,
+        along_mm: mean(&|end| end.along_mm),
+        offset_mm: [0, 1].map(|i| mean(&|end| end.offset_mm[i])),
     })
 }

@@ -3,7 +3,7 @@
 use crate::JobError;
 use crate::cameras::{Answer, Moment, SeamCameras};
 use crate::delays::Delays;
-use crate::joint::{JointRecord, SeenSeam};
+use crate::joint::{JointRecord, SeenEnd, SeenSeam};
 use crate::run_in::SeamSearchFigures;
 use crate::session::unexpected;
 use crate::surroundings::Surroundings;
@@ -27,8 +27,8 @@ use shared::tracking::frames::Heads;
 use shared::trajectory::{Path, PathSpace};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
-use teach::seam::SeamSighting;
-use vision::Form;
+use teach::seam::{EndSighting, SeamEnd, SeamSighting};
+use vision::{EndKind, Form};
 
 /// How often the boards are asked for their clock.
 const CLOCK_PERIOD: Duration = Duration::from_millis(50);
@@ -38,6 +38,8 @@ const LATELY: u32 = 0xf_ffff;
 const ENOUGH: u32 = 3;
 /// Paths that are remembered.
 const PATHS: usize = 4;
+/// So near to where a weld begins and ends it is looked for ends of the seam in pictures \[mm\].
+const NEAR_END_MM: f64 = 8.0;
 /// Strobes that are remembered until their measurements leave.
 const STROBES: usize = 256;
 
@@ -85,6 +87,8 @@ pub(super) struct Tracking {
     stands: Option<Pose>,
     /// Where the slides were at the strobe of each capture, while somebody asks for that \[mm\].
     pub strobed: Option<BTreeMap<u32, [f64; SLIDES]>>,
+    /// The newest path that welds, and from where to where \[mm\].
+    weld: Option<(u32, (f64, f64))>,
     /// The latest paths, by their numbers.
     paths: VecDeque<KnownPath>,
     clocks: BoardClocks,
@@ -119,6 +123,7 @@ impl Tracking {
             picture_delays: Delays::default(),
             strobed: None,
             paths: VecDeque::new(),
+            weld: None,
             clock_residual_us: None,
             clock_difference_us: None,
             heads,
@@ -206,6 +211,18 @@ impl Tracking {
             self.paths.pop_front();
         }
         self.paths.push_back((id, path.space, path.knot_path()));
+        self.weld = path.weld().map(|places| (id, places));
+    }
+
+    /// Whether the cameras look at where the weld begins or ends.
+    fn near_an_end(&self, capture: &Capture) -> bool {
+        let Some((_, (begin, end))) = self.weld.filter(|(id, _)| *id == capture.path_id) else {
+            return false;
+        };
+        let looks_at = capture.s_mm + self.heads.camera_lead();
+        [begin, end]
+            .iter()
+            .any(|place| (looks_at - place).abs() < NEAR_END_MM)
     }
 
     /// The planned pose of a capture.
@@ -261,6 +278,8 @@ impl Tracking {
             self.strobes.pop_front();
         }
         self.strobes.push_back((capture, on_motion));
+        let wanted = self.watch.is_some() || self.near_an_end(&capture);
+        self.cameras.look_for_ends(wanted);
         self.cameras.strobe(capture, on_motion, pose);
     }
 
@@ -388,6 +407,18 @@ fn seen(side: &SideMeasurement, seen: Option<&SeenSeam>) -> SeamSighting {
         quality: seam.map_or(1.0, |seam| seam.quality),
         scatter_mm: 0.0,
         pictures: 1,
+        ends: seen.map_or([None; 2], |seen| seen.ends.map(|end| end.map(end_of))),
+    }
+}
+
+fn end_of(end: SeenEnd) -> EndSighting {
+    EndSighting {
+        end: match end.kind {
+            EndKind::Plate => SeamEnd::Plate,
+            EndKind::Closed => SeamEnd::Tack,
+        },
+        along_mm: end.here.along_mm,
+        offset_mm: [end.here.delta_u_mm, end.here.delta_v_mm],
     }
 }
 

@@ -3,7 +3,8 @@
 use crate::{Judgement, Kind, PartContext, Percent, Plan, Run, SeamLimits};
 use anyhow::{Context, bail};
 use dual_beam::{
-    DualBeamPlan, PlanOptions, SeamPoint, TaughtSeams, plan_dual_beam, read_main_curve, read_other_curve,
+    DualBeamPlan, PlanOptions, SeamPoint, TaughtSeams, plan_dual_beam, plan_taught, read_main_curve,
+    read_other_curve,
 };
 use nalgebra::Vector3;
 use serde::Deserialize;
@@ -73,44 +74,52 @@ impl TSeam {
         })
     }
 
-    /// The curves that are planned from, and what a person should know of them.
-    fn curves(&self, context: &PartContext) -> anyhow::Result<(Curves, Vec<String>)> {
+    /// The weld, and what a person should know of the curves that it is planned from.
+    fn planned(&self, context: &PartContext) -> anyhow::Result<(DualBeamPlan, Vec<String>)> {
         if let Some(file) = &self.taught {
             let file = context.directory.join(file);
             let points = read_seam_points(&file)?;
             let seams = TaughtSeams::through(&points, self.teaching.least_quality)
                 .with_context(|| file.display().to_string())?;
-            let notes = seams.notes();
-            return Ok(((seams.main, seams.other), notes));
+            return Ok((
+                plan_taught(&seams, context.machine, &self.options(context))?,
+                seams.notes(),
+            ));
         }
         match self.drawing(context)? {
-            Some(curves) => Ok((curves, Vec::new())),
+            Some(curves) => Ok((self.plan_of(&curves, context)?, Vec::new())),
             None => bail!("there is nothing to plan from: name seam_1 and seam_2, or taught"),
         }
     }
 
-    fn plan_of(&self, (main, other): &Curves, context: &PartContext) -> anyhow::Result<DualBeamPlan> {
-        let options = PlanOptions {
+    fn options(&self, context: &PartContext) -> PlanOptions {
+        PlanOptions {
             title: context.title.to_owned(),
             speed_m_min: self.speed_m_min,
             power_w: [self.power_w; 2],
             paper: self.paper,
-        };
-        Ok(plan_dual_beam(main, other, context.machine, &options)?)
+        }
+    }
+
+    fn plan_of(&self, (main, other): &Curves, context: &PartContext) -> anyhow::Result<DualBeamPlan> {
+        Ok(plan_dual_beam(
+            main,
+            other,
+            context.machine,
+            &self.options(context),
+        )?)
     }
 
     /// Plans the pass of the measuring heads along the whole seam, beams off.
     pub fn plan_measuring(&self, context: &PartContext) -> anyhow::Result<String> {
-        let (curves, _) = self.curves(context)?;
-        let plan = self.plan_of(&curves, context)?;
+        let (plan, _) = self.planned(context)?;
         Ok(plan.measuring_program(context.machine, context.title, self.speed_m_min)?)
     }
 }
 
 impl Kind for TSeam {
     fn plan(&self, context: &PartContext) -> anyhow::Result<Plan> {
-        let (curves, mut notes) = self.curves(context)?;
-        let plan = self.plan_of(&curves, context)?;
+        let (plan, mut notes) = self.planned(context)?;
         notes.insert(0, format!("{} points", plan.points.len()));
         notes.push(format!(
             "beam axes meet within {:.1e} mm; speed on seam 2 differs by up to {:.2} %",
@@ -163,6 +172,7 @@ mod tests {
                 quality: 0.9,
                 scatter_mm: 0.001,
                 pictures: 8,
+                end: None,
             });
             let point = TaughtPoint::after(before.as_ref(), feet);
             opened.file.add(&point).unwrap();

@@ -8,6 +8,7 @@ mod holds;
 mod machines;
 mod real_cameras;
 mod recentring;
+mod seam_ends;
 mod silence;
 mod single_block;
 mod spooled;

@@ -19,11 +19,17 @@ const BLUR_MM: f64 = 0.006;
 /// What a run counts that has a plate's texture, over one that is empty.
 const TEXTURED: f64 = 0.1;
 
+/// Width that two runs may differ by that are alike: a share of it, and columns.
+const ALIKE: f64 = 0.2;
+const ALIKE_COLUMNS: f64 = 0.5;
+
 /// A dark run.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Candidate {
     /// Columns of its edges, at half level.
     pub edges: [f64; 2],
+    /// Brightness at its edges, left and right.
+    pub levels: [f32; 2],
     /// First and last column of its core.
     pub core: [usize; 2],
     /// Depth over the brightness beside it.
@@ -89,10 +95,28 @@ impl Candidates {
             candidate.score * (TEXTURED + candidate.interior.emptiness(candidate.expected))
         };
         let best = (0..list.len()).max_by(|a, b| rank(&list[*a]).total_cmp(&rank(&list[*b])))?;
-        let others = (0..list.len())
-            .filter(|other| *other != best && !list[*other].interior.is_surface_beside(&list[best].interior));
-        let second = others.max_by(|a, b| list[*a].score.total_cmp(&list[*b].score));
-        Some((list[best], second.map(|second| list[second])))
+        let gap = &list[best];
+        let others = (0..list.len()).filter(|other| {
+            let run = &list[*other];
+            let alike = (run.width() - gap.width()).abs() < ALIKE * gap.width() + ALIKE_COLUMNS;
+            *other != best && !run.interior.is_surface_beside(&gap.interior, alike)
+        });
+        let likeness = |run: &Candidate| {
+            // What is seen to be empty is not passed over for what is merely dark.
+            let emptier = gap.interior.texture.is_none() && run.interior.is_emptier_than(&gap.interior);
+            if emptier {
+                run.score.max(gap.score)
+            } else {
+                run.score
+            }
+        };
+        let second = others
+            .map(|other| Candidate {
+                score: likeness(&list[other]),
+                ..list[other]
+            })
+            .max_by(|a, b| a.score.total_cmp(&b.score));
+        Some((list[best], second))
     }
 }
 
@@ -105,16 +129,18 @@ fn measure(quiet: &[f32], run: [usize; 2], pitch_mm: f64) -> Option<Candidate> {
     let core = [core_start, core_end];
     let bottom = middle_value(&quiet[core[0]..=core[1]]);
     let mut edges = [0.0; 2];
-    let mut plateaus = [1.0; 2];
+    let (mut plateaus, mut levels) = ([1.0; 2], [1.0; 2]);
     for side in 0..2 {
         let first = crossing(quiet, core[side], side, (bottom + 1.0) / 2.0);
         let first = first.unwrap_or(run[side] as f64);
         plateaus[side] = plateau(|column| quiet[column], quiet.len(), first, side, pitch_mm)?;
-        edges[side] = crossing(quiet, core[side], side, between([bottom, plateaus[side]], 0.5))?;
+        levels[side] = between([bottom, plateaus[side]], 0.5);
+        edges[side] = crossing(quiet, core[side], side, levels[side])?;
     }
     let beside = plateaus[0].min(plateaus[1]);
     Some(Candidate {
         edges,
+        levels,
         core,
         depth: f64::from((1.0 - bottom / beside.max(0.05)).clamp(0.0, 1.0)),
         interior: Interior::default(),

@@ -35,6 +35,13 @@ const YAW: f64 = 0.035;
 /// Light along the edges, of the width of a run, from which there are bright lines; and what of them is left out of the band.
 const RIM: f64 = 0.15;
 
+/// Light to one side of the run over that to the other, against the same in the band, below which the gap is there.
+const SPATTER: f32 = 0.5;
+
+/// At how many of the distances beyond this, ahead and behind \[mm\].
+const FAR_MM: f64 = 0.14;
+const DARK: u32 = 2;
+
 /// How far off, over that, a run does not continue, and does.
 const OFF: [f64; 2] = [1.5, 0.75];
 
@@ -55,6 +62,8 @@ struct Deficit {
     /// Light that is missing or too much, and where.
     unlike: f64,
     unlike_middle: f64,
+    /// Light to the left and to the right.
+    lights: [f32; 2],
 }
 
 impl Continuity {
@@ -76,6 +85,7 @@ impl Continuity {
         // Bright lines along the edges are cut off where they saturate, and then show more light out of the band than in it.
         let rimmed = here.unlike - here.area > RIM * width;
         let (mut points, mut count) = (0.0, 0.0);
+        let mut hidden = [[0; 2]; 2];
         for distance in DISTANCES_MM {
             let Some(there) = self.deficit(layer, line, candidate, slant, distance, ROWS_MM) else {
                 continue;
@@ -87,10 +97,20 @@ impl Continuity {
             if rimmed && there.unlike > RIM * here.unlike {
                 off = off.min((there.unlike_middle - here.middle).abs() / middle);
             }
+            for (side, hidden) in hidden.iter_mut().enumerate() {
+                let share = |lights: [f32; 2]| lights[side] / lights[1 - side].max(1.0);
+                let dark = share(there.lights) < SPATTER * share(here.lights);
+                hidden[usize::from(distance > 0.0)] += u32::from(dark && distance.abs() > FAR_MM);
+            }
             count += 1.0;
             points += ramp(off, OFF[0], OFF[1]);
         }
-        if count > 0.0 { points / count } else { 0.0 }
+        // A plate that is dark both ahead and behind is none: something bright hides the edge in the band.
+        if count > 0.0 && !hidden.iter().any(|ways| ways.iter().all(|dark| *dark >= DARK)) {
+            points / count
+        } else {
+            0.0
+        }
     }
 
     /// Light missing at a distance from the band; its middle counts from the seam's line. None outside the picture.
@@ -157,6 +177,7 @@ impl Continuity {
             middle: middle_of(moment, area),
             unlike: unlike * g,
             unlike_middle: middle_of(unlike_moment, unlike),
+            lights,
         })
     }
 }

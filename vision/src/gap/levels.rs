@@ -2,11 +2,16 @@
 
 use super::between;
 use super::candidate::{Candidate, PLATEAU_MM, crossing, middle_value, plateau};
-use super::interior::{INSIDE_MM, columns, relative_texture};
+use super::interior::{INSIDE_MM, beside, columns};
+use super::roughness::{has_texture, relative_texture};
 use super::strip::Strip;
+use std::ops::Range;
 
 /// Light of the second level of a run over the darker one, of the way up to the plate.
 const SECOND_LEVEL: f32 = 0.04;
+
+/// The same of one that is told by its texture.
+const FAINTEST: f32 = 0.015;
 
 /// What a second level may differ by over its width, of what it differs by from the darker one.
 const FLAT: f32 = 0.3;
@@ -18,6 +23,9 @@ const SURFACE: f32 = 0.4;
 const SHARP_MM: f64 = 0.004;
 const SHARP_PIXELS: f64 = 0.6;
 
+/// Plate whose brightness an edge should rise to: from an edge so far \[mm\].
+const PLATE_MM: [f64; 2] = [0.04, 0.10];
+
 /// Columns of the narrowest gap.
 const NARROWEST: f64 = 2.0;
 
@@ -26,9 +34,9 @@ const NARROWEST: f64 = 2.0;
 pub(crate) fn without_shadow(strip: &Strip, run: Candidate, pitch_mm: f64) -> Candidate {
     let mut gap = run;
     for side in 0..2 {
-        if let Some(edge) = inner_edge(strip, &gap, side, pitch_mm) {
+        if let Some((edge, level)) = inner_edge(strip, &gap, side, pitch_mm) {
             let mut inner = gap;
-            inner.edges[side] = edge;
+            (inner.edges[side], inner.levels[side]) = (edge, level);
             if inner.width() >= NARROWEST {
                 gap = inner;
             }
@@ -45,7 +53,7 @@ pub(crate) fn without_shadow(strip: &Strip, run: Candidate, pitch_mm: f64) -> Ca
     }
     gap.core = [inside.start, inside.end - 1];
     let bottom = middle_value(&quiet[inside]);
-    let beside = |side: usize| {
+    let light = |side: usize| {
         plateau(
             |column| quiet[column],
             quiet.len(),
@@ -54,13 +62,13 @@ pub(crate) fn without_shadow(strip: &Strip, run: Candidate, pitch_mm: f64) -> Ca
             pitch_mm,
         )
     };
-    let beside = beside(0).unwrap_or(0.0).min(beside(1).unwrap_or(0.0)).max(0.01);
-    gap.depth = f64::from((1.0 - bottom / beside).clamp(0.0, 1.0));
+    let light = light(0).unwrap_or(0.0).min(light(1).unwrap_or(0.0)).max(0.01);
+    gap.depth = f64::from((1.0 - bottom / light).clamp(0.0, 1.0));
     gap
 }
 
-/// Where the darker level of a run ends on a side. None if there is one level only.
-fn inner_edge(strip: &Strip, run: &Candidate, side: usize, pitch_mm: f64) -> Option<f64> {
+/// Where the darker level of a run ends on a side, and the brightness there. None if there is one level only.
+fn inner_edge(strip: &Strip, run: &Candidate, side: usize, pitch_mm: f64) -> Option<(f64, f32)> {
     let quiet = &strip.quiet;
     let skip = (INSIDE_MM / pitch_mm).round() as usize;
     let [left, right] = [
@@ -91,15 +99,22 @@ fn inner_edge(strip: &Strip, run: &Candidate, side: usize, pitch_mm: f64) -> Opt
     } else {
         (ends[0], ends[1])
     };
-    let bottom = middle_value(&quiet[inner]);
-    if at_gap - bottom < SECOND_LEVEL * (1.0 - bottom).max(0.05) {
+    let bottom = middle_value(&quiet[inner.clone()]);
+    let (level, flat) = (
+        at_gap - bottom,
+        (at_plate - at_gap).abs() < FLAT * (at_gap - bottom),
+    );
+    let scale = (1.0 - bottom).max(0.05);
+    if level < FAINTEST * scale {
         return None;
     }
-    let flat = (at_plate - at_gap).abs() < FLAT * (at_gap - bottom);
-    let textured = relative_texture(strip, outer)
-        .zip(run.interior.plate)
-        .is_some_and(|(texture, plate)| texture > SURFACE * plate);
-    if !flat && !textured {
+    let textured = |columns: Range<usize>| is_surface(strip, run, columns, pitch_mm);
+    let second = if level < SECOND_LEVEL * scale {
+        textured(outer) == Some(true) && textured(inner) == Some(false)
+    } else {
+        flat || textured(outer) == Some(true)
+    };
+    if !second {
         return None;
     }
     // From the dark side of the step.
@@ -108,7 +123,8 @@ fn inner_edge(strip: &Strip, run: &Candidate, side: usize, pitch_mm: f64) -> Opt
     } else {
         cut.saturating_sub(skip)
     };
-    crossing(quiet, from.clamp(left, right), side, (at_gap + bottom) / 2.0)
+    let level = (at_gap + bottom) / 2.0;
+    Some((crossing(quiet, from.clamp(left, right), side, level)?, level))
 }
 
 /// The place at which a line is best cut into two levels.
@@ -151,6 +167,28 @@ pub(crate) fn unevenness(quiet: &[f32], candidate: &Candidate, blur_mm: f64, pit
     Some(f64::from((brightest - darkest) / (1.0 - darkest).max(0.05)))
 }
 
+/// Brightness next to an edge, and that of the plate farther out if it is more.
+fn lights(quiet: &[f32], gap: &Candidate, side: usize, pitch_mm: f64) -> Option<[f32; 2]> {
+    let ledge = plateau(
+        |column| quiet[column],
+        quiet.len(),
+        gap.edges[side],
+        side,
+        pitch_mm,
+    )?;
+    let [near, far] = PLATE_MM.map(|mm| mm / pitch_mm);
+    let [from, to] = if side == 0 {
+        [gap.edges[0] - far, gap.edges[0] - near]
+    } else {
+        [gap.edges[1] + near, gap.edges[1] + far]
+    };
+    let plate = quiet.get(from.max(0.0) as usize..(to.max(0.0) as usize).min(quiet.len()));
+    let plate = plate
+        .filter(|plate| !plate.is_empty())
+        .map_or(ledge, middle_value);
+    Some([ledge, ledge.max(plate)])
+}
+
 /// How far it is from a quarter of the way up an edge to three quarters, beyond what the lens and pixels make of a sharp one, left
 /// and right \[mm\]. A lit wall, a chamfer or a rolled edge is soft, and where it begins is not known better than that.
 pub(crate) fn softness(strip: &Strip, gap: &Candidate, pitch_mm: f64) -> [f64; 2] {
@@ -159,14 +197,16 @@ pub(crate) fn softness(strip: &Strip, gap: &Candidate, pitch_mm: f64) -> [f64; 2
     [0, 1].map(|side| {
         let from = gap.core[side];
         let at = |share: f32, top: f32| crossing(quiet, from, side, between([bottom, top], share));
-        let top = plateau(
-            |column| quiet[column],
-            quiet.len(),
-            gap.edges[side],
-            side,
-            pitch_mm,
-        );
-        let way = top.and_then(|top| Some((at(0.75, top)? - at(0.25, top)?).abs()));
+        // A ledge of less light beside the gap may be its wall, or a shadow or a chamfer of the plate.
+        let way = lights(quiet, gap, side, pitch_mm)
+            .and_then(|[ledge, plate]| Some((at(0.75, plate)? - at(0.25, ledge)?).abs()));
         (way.unwrap_or(0.0) * pitch_mm - SHARP_MM - SHARP_PIXELS * pitch_mm).max(0.0)
     })
+}
+
+/// Whether columns in a run have the texture of the plate; None if that could not be seen there.
+fn is_surface(strip: &Strip, run: &Candidate, columns: Range<usize>, pitch_mm: f64) -> Option<bool> {
+    let plates = beside(strip, run.edges, pitch_mm).into_iter();
+    let plate = plates.filter_map(|plate| relative_texture(strip, plate));
+    has_texture(strip, columns, SURFACE * plate.reduce(f32::min)?)
 }

@@ -3,13 +3,16 @@
 mod candidate;
 mod continuity;
 mod edges;
+mod ends;
 mod interior;
 mod levels;
+mod roughness;
 mod strip;
 
 pub(crate) use candidate::{Candidate, Candidates};
 pub(crate) use continuity::Continuity;
 pub(crate) use edges::{Edges, fit_edges};
+pub use ends::{EndKind, GapEnd};
 pub(crate) use interior::Interior;
 pub(crate) use levels::{softness, unevenness, without_shadow};
 pub use strip::EDGE_ROWS_MM;

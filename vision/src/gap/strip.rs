@@ -25,12 +25,6 @@ const WINDOWS: usize = 9;
 /// Slants of a seam that are tried \[columns a row\].
 const SLANTS: [f64; 5] = [-0.12, -0.06, 0.0, 0.06, 0.12];
 
-/// Groups from one to the next of a second difference along the seam.
-const ALONG: usize = 2;
-
-/// Median of the absolute values of normal numbers, over their standard deviation.
-const MEDIAN: f32 = 0.6745;
-
 /// Noise over what was calibrated that is believed: of coarse pixels it is mostly texture.
 const NOISIEST: f32 = 3.0;
 
@@ -60,17 +54,6 @@ pub(crate) struct Strip {
     sorted: Vec<f32>,
     /// `quiet` of a slant being tried.
     tried: Vec<f32>,
-}
-
-/// Brightness of a column over the light.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ColumnTexture {
-    pub brightness: f32,
-    /// Variance along the seam, and across; none of the latter at the border.
-    pub along: f32,
-    pub across: Option<f32>,
-    /// What of either the camera's noise makes.
-    pub noise: f32,
 }
 
 /// Where the band lies in a layer: row of its middle for a column.
@@ -141,44 +124,11 @@ impl Strip {
         })
     }
 
-    /// Brightness and texture of a column, in the strip with its slant taken out; across the seam over `reach` columns.
-    pub fn texture(&self, column: usize, reach: usize) -> ColumnTexture {
-        let columns = self.values.len();
-        let shifts: [isize; GROUPS] =
-            std::array::from_fn(|group| (self.slant * self.offset(group)).round() as isize);
-        let value = |column: usize, group: usize| {
-            let from = column as isize + shifts[group];
-            self.values[from.clamp(0, columns as isize - 1) as usize][group]
-        };
-        let mut bends = [0.0; GROUPS];
-        // Second differences, which light that changes across the picture leaves small; the median of them, which no glint
-        // beside the column pulls far.
-        let mut variance = |count: usize, at: &dyn Fn(usize) -> [f32; 3]| {
-            for (k, bend) in bends[..count].iter_mut().enumerate() {
-                let [a, b, c] = at(k);
-                *bend = (a - 2.0 * b + c).abs();
-            }
-            (kth(&mut bends[..count], count / 2) / MEDIAN).powi(2) / 6.0
-        };
-        let apart = ALONG.min((self.groups - 1) / 2);
-        let along = variance(self.groups - 2 * apart, &|k| {
-            [k, k + apart, k + 2 * apart].map(|group| value(column, group))
-        });
-        let across = (reach > 0 && reach <= column && column + reach < columns).then(|| {
-            variance(self.groups, &|group| {
-                [column - reach, column, column + reach].map(|column| value(column, group))
-            })
-        });
-        let mean = (0..self.groups).map(|group| value(column, group)).sum::<f32>() / self.groups as f32;
+    /// Variance that the camera's noise makes of the values of a column, if they are as bright as that.
+    pub fn noise(&self, column: usize, brightness: f32) -> f32 {
         let (rows, gain) = (self.rows as f32, self.gains[column]);
-        let expected = self.calibrated.variance((mean / gain / rows).max(0.0));
-        let noise = self.noise[column].min(NOISIEST * expected);
-        ColumnTexture {
-            brightness: mean,
-            along,
-            across,
-            noise: rows * noise * gain * gain,
-        }
+        let expected = self.calibrated.variance((brightness / gain / rows).max(0.0));
+        rows * self.noise[column].min(NOISIEST * expected) * gain * gain
     }
 
     /// Cuts the strip out. False if not half of it lies in the picture.

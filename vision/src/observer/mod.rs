@@ -1,5 +1,6 @@
 //! One camera's seam from picture to picture: acquired, tracked, lost.
 
+mod followed;
 mod gate;
 mod places;
 mod running;
@@ -35,8 +36,12 @@ const VOTES: u32 = 3;
 /// How an observer judges.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObserverConfig {
-    /// How far the seam may lie from where it was in the last picture \[mm\].
+    /// How far a new seam may lie from where it was in the last picture, and a followed one from where it has to be, at
+    /// most \[mm\].
     pub gate_mm: f64,
+    /// How far something else has to be seen in place of the followed seam before it is believed to be the seam \[mm of
+    /// travel\]: as far as the camera looks ahead of the spot. To wait so long costs nothing: the spot is not yet past what was believed.
+    pub jump_mm: f64,
     /// Pictures without an accepted seam after which it is lost.
     pub hold_frames: u32,
     /// Pictures of which the mean point and roll are means; at least 4 count.
@@ -50,6 +55,7 @@ impl Default for ObserverConfig {
     fn default() -> Self {
         Self {
             gate_mm: 0.1,
+            jump_mm: 10.0,
             hold_frames: 20,
             mean_frames: FEWEST_PLACES,
             corner_offset_mm: None,
@@ -97,6 +103,10 @@ impl Observer {
     /// An observer of a joint; the walls of a corner are those of the programmed pose.
     pub fn new(detector: Detector, config: ObserverConfig, joint: Joint) -> Self {
         let frames = config.mean_frames.max(FEWEST_PLACES);
+        let optics = detector.optics();
+        let [rows, columns] = [optics.rows, optics.columns].map(|count| count as f64 / 2.0);
+        let pixel = optics.object_pixel_mm();
+        let view_mm = [columns * pixel, rows * pixel * optics.tilt_rad.sin()];
         Self {
             detector,
             config,
@@ -104,7 +114,7 @@ impl Observer {
             state: State::Acquiring,
             form: None,
             track: None,
-            gate: Gate::new(config.gate_mm),
+            gate: Gate::new(config.gate_mm, config.jump_mm, view_mm),
             missed: 0,
             focus: 0.0,
             place: Moved::default(),
@@ -134,6 +144,7 @@ impl Observer {
     /// Forgets where the seam was, and acquires it again.
     pub fn forget(&mut self) {
         self.lose(State::Acquiring);
+        self.gate.forget();
     }
 
     /// Measures a picture; the camera has moved since the last one.
@@ -146,25 +157,22 @@ impl Observer {
         };
         let report = self.detector.measure(image, &prior)?;
         self.vote(report.status);
+        let measured = report.measured.map(|measured| self.as_gap(&measured));
+        let verdict = self.gate.judge(&report, measured.as_ref(), &self.place);
         let (mut seam, mut doubt, mut relocked) = (None, None, false);
-        match report.seam().map(|measured| self.as_gap(measured)) {
-            None => {
-                self.gate.see_nothing();
+        match (verdict, measured) {
+            (Verdict::Accept { new, jumped }, Some(measured)) => {
+                relocked = jumped;
+                if new {
+                    self.restart();
+                }
+                seam = Some(self.accept(&measured));
+            }
+            (Verdict::Doubt(why), _) => {
+                doubt = Some(why);
                 self.miss();
             }
-            Some(measured) => match self.gate.judge(&measured, self.state) {
-                Verdict::Doubt(why) => {
-                    doubt = Some(why);
-                    self.miss();
-                }
-                Verdict::Accept { jumped } => {
-                    relocked = jumped && self.state == State::Tracking;
-                    if jumped {
-                        self.restart();
-                    }
-                    seam = Some(self.accept(&measured));
-                }
-            },
+            _ => self.miss(),
         }
         Ok(Observation {
             report,
@@ -181,11 +189,21 @@ impl Observer {
         self.place.travel_mm += moved.travel_mm;
         self.place.lateral_mm += moved.lateral_mm;
         self.place.height_mm += moved.height_mm;
-        if let Some(track) = &mut self.track {
-            track.lateral_mm -= moved.lateral_mm;
-            track.height_mm -= moved.height_mm;
-        }
-        self.gate.follow(&moved);
+        let expected = self.gate.expected_mm(&self.place);
+        let of_gap = self.form == Some(Form::Gap);
+        self.track = self.track.zip(expected).map(|(track, expected)| {
+            // Of a corner where it was seen last is the better guess: its heights scatter more than they turn.
+            let last = [
+                track.lateral_mm - moved.lateral_mm,
+                track.height_mm - moved.height_mm,
+            ];
+            let [lateral_mm, height_mm] = if of_gap { expected } else { last };
+            Track {
+                lateral_mm,
+                height_mm,
+                ..track
+            }
+        });
     }
 
     /// What the next picture may show: both forms only if their places can be compared.
@@ -270,6 +288,7 @@ impl Observer {
         self.missed += 1;
         if self.state == State::Tracking && self.missed > self.config.hold_frames {
             self.lose(State::Lost);
+            self.gate.lose();
         } else if self.missed as usize >= self.places.room() {
             self.restart();
         }
@@ -281,7 +300,6 @@ impl Observer {
         self.form = None;
         self.track = None;
         self.missed = 0;
-        self.gate.forget();
         self.restart();
     }
 

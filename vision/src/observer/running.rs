@@ -4,8 +4,6 @@
 #[derive(Clone, Debug)]
 pub(super) struct Running {
     values: Vec<f64>,
-    /// Room to sort them.
-    sorted: Vec<f64>,
     room: usize,
     /// Place of the next value.
     next: usize,
@@ -16,7 +14,6 @@ impl Running {
     pub fn new(room: usize) -> Self {
         Self {
             values: Vec::with_capacity(room),
-            sorted: Vec::with_capacity(room),
             room,
             next: 0,
         }
@@ -53,14 +50,6 @@ impl Running {
         (self.len() >= fewest.max(1)).then(|| self.values.iter().sum::<f64>() / self.len() as f64)
     }
 
-    /// Median, if there are any.
-    pub fn median(&mut self) -> Option<f64> {
-        self.sorted.clear();
-        self.sorted.extend(&self.values);
-        let middle = self.sorted.len() / 2;
-        (!self.sorted.is_empty()).then(|| *self.sorted.select_nth_unstable_by(middle, f64::total_cmp).1)
-    }
-
     /// Slope of `values` over `places`, two figures of the same pictures, if there are at least `fewest` and the
     /// places spread.
     pub fn slope(values: &Self, places: &Self, fewest: usize) -> Option<f64> {
@@ -81,11 +70,9 @@ mod tests {
     #[test]
     fn the_oldest_value_makes_room() {
         let mut running = Running::new(3);
-        assert_eq!(running.median(), None);
         for value in [9.0, 1.0, 2.0, 6.0] {
             running.push(value);
         }
-        assert_eq!(running.median(), Some(2.0));
         assert_eq!(running.mean(3), Some(3.0));
         assert_eq!(running.mean(4), None);
     }

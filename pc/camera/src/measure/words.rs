@@ -110,6 +110,8 @@ pub fn doubt(doubt: Doubt) -> &'static str {
     match doubt {
         Doubt::New => "not accepted yet: three pictures in a row have to agree",
         Doubt::Position => "not accepted: its position differs from that of the seam before",
+        Doubt::Height => "not accepted: its height differs from that of the seam before",
+        Doubt::Interrupted => "not accepted: the seam was not there, or doubtful, in the pictures before",
         Doubt::Width => "not accepted: its width differs from that of the seam before",
     }
 }

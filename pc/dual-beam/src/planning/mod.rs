@@ -1,8 +1,10 @@
 //! Plans a weld of both feet of a rib with the rigid dual-beam head (mathematics 0.5, 0.6).
 //!
 //! Seam 1 is divided until its chords are fine enough; at each point the head is located on both seams; the
-//! path begins and ends with a straight run along the end tangents, with the attitude of the end.
+//! path begins and ends with a straight run along the end tangents, with the attitude of the end. Where it was taught what a seam
+//! begins or ends with, its beam goes on and off there.
 
+mod ends;
 mod program;
 #[cfg(test)]
 mod tests;
@@ -11,10 +13,12 @@ use crate::SeamPoint;
 use crate::beams::slide_extension;
 use crate::cut::SmoothSeam;
 use crate::locate::{LocateError, Location, SeamPlace, locate, locate_symmetric};
+use crate::taught::{Marked, TaughtSeams};
 use cam::curve::Curve;
 use cam::path::CAPACITY;
 use config::machine::{MachineFile, TrackingUnit};
 use curves::SplineError;
+use ends::Places;
 use nalgebra::Vector3;
 use shared::config::HeadConfig;
 use shared::geometry::{Pose, PoseError, angle};
@@ -76,8 +80,10 @@ pub struct DualBeamPlan {
     pub points: Vec<PlannedPoint>,
     /// Index of the point where tracking goes on.
     pub tracking: usize,
-    /// Index of the points where the seam begins and ends.
+    /// Index of the points where the seam begins and ends: where the first beam goes on and the last one off.
     pub seam: (usize, usize),
+    /// Index of the points where each beam goes on and off: the same unless it is taught where each seam begins and ends.
+    pub beams: [(usize, usize); 2],
     /// Largest distance of the two beam axes \[mm\].
     pub max_gap: f64,
     /// Largest |speed on seam 2 / speed on seam 1 − 1|.
@@ -206,6 +212,26 @@ pub fn plan_dual_beam(
     machine: &MachineFile,
     options: &PlanOptions,
 ) -> Result<DualBeamPlan, PlanError> {
+    plan(main, other, Marked::default(), machine, options)
+}
+
+/// Plans the weld of taught seams. Where one was seen to begin or to end, its beam goes on or off there, and tracking goes on once
+/// the cameras have seen what begins.
+pub fn plan_taught(
+    seams: &TaughtSeams,
+    machine: &MachineFile,
+    options: &PlanOptions,
+) -> Result<DualBeamPlan, PlanError> {
+    plan(&seams.main, &seams.other, seams.marked, machine, options)
+}
+
+fn plan(
+    main: &[SeamPoint],
+    other: &[Vector3<f64>],
+    marked: Marked,
+    machine: &MachineFile,
+    options: &PlanOptions,
+) -> Result<DualBeamPlan, PlanError> {
     let options_above_zero = [
         ("the speed", options.speed_m_min),
         ("the power of beam 1", options.power_w[0]),
@@ -229,15 +255,12 @@ pub fn plan_dual_beam(
     let mut max_gap: f64 = 0.0;
     let mut sigma: Option<(f64, f64)> = None;
     let mut max_speed_difference: f64 = 0.0;
-    for s in divide(&first)? {
-        let (place, at) = locate_at(
-            &first,
-            &second,
-            s,
-            head,
-            options.paper,
-            sigma.map(|(_, sigma2)| sigma2),
-        )?;
+    let locate = |s: f64, sigma: Option<f64>| locate_at(&first, &second, s, head, options.paper, sigma);
+    let sigma_at = |s: f64| Ok::<f64, PlanError>(locate(s, None)?.1.sigma2);
+    let own = Places::of(marked, [first.end(), second.length()], sigma_at)?;
+    let places = own.within(divide(&first)?);
+    for &s in &places {
+        let (place, at) = locate(s, sigma.map(|(_, sigma2)| sigma2))?;
         max_gap = max_gap.max(at.gap);
         let speed_ratio = sigma.map_or(1.0, |(s_prev, sigma_prev)| {
             (at.sigma2 - sigma_prev).abs() / (s - s_prev)
@@ -267,21 +290,41 @@ pub fn plan_dual_beam(
     let end = weld[weld.len() - 1];
     let in_steps = steps(run_in);
     let out_steps = steps(run_out);
-    let mut points: Vec<PlannedPoint> = (0..in_steps)
-        .map(|i| moved(&start, -run_in * (in_steps - i) as f64 / in_steps as f64))
+    let mut line: Vec<(f64, PlannedPoint)> = (0..in_steps)
+        .map(|i| -run_in * (in_steps - i) as f64 / in_steps as f64)
+        .map(|s| (s, moved(&start, s)))
         .collect();
-    let seam = (points.len(), points.len() + weld.len() - 1);
-    points.extend(weld);
-    points.extend((1..=out_steps).map(|i| moved(&end, run_out * i as f64 / out_steps as f64)));
+    line.extend(places.into_iter().zip(weld));
+    let after = (1..=out_steps).map(|i| run_out * i as f64 / out_steps as f64);
+    line.extend(after.map(|s| (first.end() + s, moved(&end, s))));
 
     // The map of the seam begins where the camera saw it first.
     let tracking = &unit.board.tracking;
     let seen = head.camera_lead_mm + tracking.window_mm;
     let step = run_in / in_steps as f64;
+    let tracks = match own.first_seen(head.camera_lead_mm, sight(unit)) {
+        Some(tracks) => tracks,
+        None => step * (seen / step).ceil() - run_in,
+    };
+    own.insert(&mut line, tracks, |s| {
+        if s < 0.0 {
+            moved(&start, s)
+        } else {
+            moved(&end, s - first.end())
+        }
+    });
+    let index = |at: f64| {
+        let far = |k: &usize| (line[*k].0 - at).abs();
+        let nearest = (0..line.len()).min_by(|a, b| far(a).total_cmp(&far(b)));
+        nearest.unwrap_or_default()
+    };
+    let beams = own.beams.map(|[on, off]| (index(on), index(off)));
+    let seam = (beams[0].0.min(beams[1].0), beams[0].1.max(beams[1].1));
     let mut plan = DualBeamPlan {
-        points,
-        tracking: ((seen / step).ceil() as usize).min(seam.0),
+        tracking: index(tracks).min(seam.0),
         seam,
+        beams,
+        points: line.into_iter().map(|(_, point)| point).collect(),
         max_gap,
         max_speed_difference,
         program: String::new(),
@@ -371,16 +414,21 @@ fn divide(curve: &Curve<6>) -> Result<Vec<f64>, PlanError> {
 fn run_lengths(machine: &MachineFile, unit: &TrackingUnit) -> (f64, f64) {
     let speed_up = machine.planning.speed_up_length(RUN_SPEED);
     let tracking = &unit.board.tracking;
-    let frame = f64::from(tracking.frame_period_ms) / 1000.0;
     let reach = unit
         .board
         .slides
         .iter()
         .map(|slide| (slide.travel_max_mm - slide.travel_min_mm) / 2.0 / slide.max_velocity_mm_s)
         .fold(0.0, f64::max);
-    let wait = unit.cameras.processing_ms / 1000.0 + FRAMES * frame + reach + SETTLE;
+    let wait = sight(unit) / RUN_SPEED + reach + SETTLE;
     let lock = tracking.window_mm + tracking.hold_mm + RUN_SPEED * wait;
     ((speed_up + lock).max(SHORTEST_RUN), speed_up.max(SHORTEST_RUN))
+}
+
+/// What a camera passes from the seam's first picture until it is known where the seam is \[mm\].
+fn sight(unit: &TrackingUnit) -> f64 {
+    let frame = f64::from(unit.board.tracking.frame_period_ms) / 1000.0;
+    RUN_SPEED * (unit.cameras.processing_ms / 1000.0 + FRAMES * frame)
 }
 
 fn steps(length: f64) -> usize {

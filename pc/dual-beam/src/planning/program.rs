@@ -39,8 +39,11 @@ impl DualBeamPlan {
             }
             if left == self.seam.0 {
                 nc.comment("seam");
-                nc.block("M62 P0");
-                nc.block("M62 P1");
+            }
+            for (beam, (on, _)) in self.beams.iter().enumerate() {
+                if left == *on {
+                    nc.block(&format!("M62 P{beam}"));
+                }
             }
             let wanted = options.power_w[1] * power_factor(point.speed_ratio);
             let on_seam = (self.seam.0..self.seam.1).contains(&left);
@@ -50,8 +53,11 @@ impl DualBeamPlan {
             }
             if left == self.seam.1 {
                 nc.comment("run-out");
-                nc.block("M63 P0");
-                nc.block("M63 P1");
+            }
+            for (beam, (_, off)) in self.beams.iter().enumerate() {
+                if left == *off {
+                    nc.block(&format!("M63 P{beam}"));
+                }
             }
             // The slides stay on the seam until the beams are surely off.
             if left == self.seam.1 + 1 {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::OtherSeam;
+use crate::taught::Deviations;
 use crate::{read_main_curve, read_other_curve};
 use cam::path::Planner;
 use nc::{Options, interpret};
@@ -218,4 +219,83 @@ fn on_the_pass_of_the_measuring_heads_the_cameras_are_on_both_seams_and_the_beam
         }
     }
     assert!(worst < 0.01, "a camera is {worst} mm off its seam");
+}
+
+/// Of taught seams that begin and end at plates, each beam is on from the first to the last point of its own seam, wherever the other one is.
+#[test]
+fn beams_go_on_and_off_where_their_taught_seams_begin_and_end() {
+    let machine = machine();
+    let along = |y: f64, [from, to]: [f64; 2]| -> Vec<Vector3<f64>> {
+        let point = |i: i32| Vector3::new(900.0 + from + (to - from) * f64::from(i) / 12.0, y, 100.0);
+        (0..=12).map(point).collect()
+    };
+    let lead = machine.tracking.as_ref().unwrap().board.head.camera_lead_mm;
+    for (second, marked) in [
+        ([0.6, 119.2], [true; 4]),
+        ([-0.7, 120.9], [true; 4]),
+        ([0.6, 120.9], [false, true, true, false]),
+        ([0.004, 119.2], [false, false, false, true]),
+        ([0.6, 119.2], [false; 4]),
+    ] {
+        let first = along(898.0, [0.0, 120.0]);
+        let normal = Vector3::z();
+        let seams = TaughtSeams {
+            main: first
+                .into_iter()
+                .map(|position| SeamPoint { position, normal })
+                .collect(),
+            other: along(902.0, second),
+            fit: [Deviations {
+                largest_mm: 0.0,
+                line: 0,
+                rms_mm: 0.0,
+            }; 2],
+            marked: Marked {
+                begins: [marked[0], marked[1]],
+                ends: [marked[2], marked[3]],
+            },
+        };
+        let plan = plan_taught(&seams, &machine, &options()).unwrap();
+        let x = |index: usize| plan.points[index].pose.position.x - 900.0;
+        let own = |is_marked: bool, place: f64, other: f64| if is_marked { place } else { other };
+        let wanted = [
+            [0.0, 120.0],
+            [own(marked[1], second[0], 0.0), own(marked[3], second[1], 120.0)],
+        ];
+        for (beam, [on, off]) in wanted.into_iter().enumerate() {
+            let (begin, end) = plan.beams[beam];
+            assert!(
+                (x(begin) - on).abs() < 0.011,
+                "{marked:?} {second:?}: {}",
+                x(begin)
+            );
+            assert!((x(end) - off).abs() < 0.011, "{marked:?} {second:?}: {}", x(end));
+        }
+        let (begin, end) = plan.seam;
+        assert!(x(begin) == x(plan.beams[0].0).min(x(plan.beams[1].0)));
+        assert!(x(end) == x(plan.beams[0].1).max(x(plan.beams[1].1)));
+        // The outputs are switched in this order, where the program is there.
+        let words: Vec<&str> = plan.program.lines().filter(|line| line.contains("M6")).collect();
+        let count = |word: &str| words.iter().filter(|line| line.contains(word)).count();
+        for word in ["M62 P0", "M62 P1", "M63 P0", "M63 P1", "M62 P2", "M63 P2"] {
+            assert_eq!(count(word), 1, "{word}: {words:?}");
+        }
+        // Nothing is to be tracked before the cameras have seen what begins.
+        let tracks = x(plan.tracking);
+        if marked[0] || marked[1] {
+            let begins = own(marked[1], second[0], 0.0).max(own(marked[0], 0.0, f64::MIN));
+            assert!((tracks - (begins - lead + 4.5)).abs() < 0.011, "{tracks}");
+        } else {
+            assert!(tracks < -lead, "{tracks}");
+        }
+        // What the file says is what the machine does.
+        let program = interpret(&plan.program, Options::default()).unwrap();
+        let from = machine.planning.park_axes();
+        let paths = Planner::build(&machine)
+            .unwrap()
+            .program(&program, &from, None)
+            .unwrap();
+        let weld = paths.iter().find_map(|path| path.weld()).unwrap();
+        assert!((weld.1 - weld.0 - (x(end) - x(begin))).abs() < 0.001, "{weld:?}");
+    }
 }

@@ -5,6 +5,7 @@
 //! camera and computer would take, and is then waited for: meanwhile the time of simulated boards stands still, and
 //! emulated boards wait for the PC. Pictures of real cameras are answered when they come, and never waited for.
 
+mod ends;
 mod worker;
 
 pub use worker::{MeasuredStrobe, WorkerError};
@@ -32,6 +33,8 @@ const GIVE_UP_US: u64 = 200_000;
 const PATIENCE: Duration = Duration::from_secs(60);
 /// A camera that went further between two pictures has another place before it \[mm\].
 const FURTHEST_MM: f64 = 5.0;
+/// Share of what the tracker believes of places ahead of a camera that is used.
+const REACH: f64 = 0.9;
 /// What the walls of a corner are off their nominal slopes, standard deviation.
 const WALL_SIGMA: f64 = 0.01;
 
@@ -54,6 +57,8 @@ pub struct Images {
     /// Of the last capture.
     last: Option<(Pose, Capture)>,
     given_up: u32,
+    /// Whether it is asked where the seams end.
+    ends: bool,
     /// Time goes on while pictures are waited for.
     in_real_time: bool,
 }
@@ -105,6 +110,7 @@ impl Images {
         heads: Heads,
     ) -> Result<Self, ImagesError> {
         let cameras = &unit.cameras;
+        let reach_mm = REACH * unit.board.tracking.gate_mm.min(unit.board.head.camera_lead_mm);
         let mut begin = |side: usize| -> Result<Side, WorkerError> {
             let calibration = of.calibrations[side];
             let camera = source.open(side)?;
@@ -115,6 +121,7 @@ impl Images {
             let (optics, noise) = (calibration.optics, calibration.photon_transfer);
             let detector = Detector::new(optics, noise, calibration.profile)?;
             let config = ObserverConfig {
+                jump_mm: heads.camera_lead(),
                 corner_offset_mm: calibration.corner_offset_mm,
                 ..ObserverConfig::default()
             };
@@ -126,7 +133,13 @@ impl Images {
                 }),
             };
             Ok(Side {
-                worker: Worker::start(side, camera, Observer::new(detector, config, joint), calibration),
+                worker: Worker::start(
+                    side,
+                    camera,
+                    Observer::new(detector, config, joint),
+                    calibration,
+                    reach_mm,
+                ),
                 waiting: VecDeque::new(),
                 figures: CameraFigures::default(),
                 held: None,
@@ -141,6 +154,7 @@ impl Images {
             source,
             last: None,
             given_up: 0,
+            ends: false,
             in_real_time: false,
         })
     }
@@ -228,9 +242,14 @@ impl SeamCameras for Images {
                 capture: capture.number,
                 time_us: strobe_us,
                 moved,
+                ends: self.ends,
             });
         }
         self.last = pose.map(|pose| (pose, capture));
+    }
+
+    fn look_for_ends(&mut self, wanted: bool) {
+        self.ends = wanted;
     }
 
     fn next_due_us(&self) -> Option<u64> {

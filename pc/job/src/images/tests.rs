@@ -88,7 +88,7 @@ fn seen(camera: Box<dyn Camera>, unit: &TrackingUnit, tell: impl Fn(u32)) -> Vec
     let (optics, noise) = (calibration.optics, calibration.photon_transfer);
     let detector = Detector::new(optics, noise, calibration.profile).unwrap();
     let observer = Observer::new(detector, ObserverConfig::default(), Joint::Gap);
-    let worker = Worker::start(0, camera, observer, calibration);
+    let worker = Worker::start(0, camera, observer, calibration, 0.9);
     let strobe = |capture: u32| {
         let way = Moved {
             travel_mm: 0.4,
@@ -98,6 +98,7 @@ fn seen(camera: Box<dyn Camera>, unit: &TrackingUnit, tell: impl Fn(u32)) -> Vec
             capture,
             time_us: 5_000 * u64::from(capture),
             moved: Some(way),
+            ends: false,
         });
         tell(capture);
         worker.wait(PATIENCE).unwrap()

@@ -1,6 +1,7 @@
 //! The thread that turns the pictures of one camera into measurements.
 
-use crate::joint::SeenSeam;
+use super::ends::SeamEnds;
+use crate::joint::{SeenEnd, SeenSeam};
 use camera::{Arrival, Camera, CameraError, Picture};
 use config::calibration::Calibration;
 use host_link::boards::Waker;
@@ -15,9 +16,6 @@ use vision::{DetectorError, ImageError, Moved, Observation, Observer, State};
 
 /// How long a camera is waited for before new captures are looked for.
 const PATIENCE: Duration = Duration::from_millis(2);
-/// A picture that shows the seam so much higher or lower than the mean of the latest is beyond a jump \[mm\]: its own
-/// height scatters by 0.011 mm rms at the shipped pixel.
-const HEIGHT_JUMP_MM: f64 = 0.06;
 
 /// A strobe of the camera.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +25,8 @@ pub(super) struct Strobe {
     pub time_us: u64,
     /// How far the camera moved since the strobe before; `None` if what was seen before tells nothing any more.
     pub moved: Option<Moved>,
+    /// Whether it is asked where the seam ends in its picture.
+    pub ends: bool,
 }
 
 /// The result of one strobe.
@@ -77,7 +77,13 @@ pub(super) struct Worker {
 
 impl Worker {
     /// Starts the thread.
-    pub fn start(side: usize, camera: Box<dyn Camera>, observer: Observer, calibration: Calibration) -> Self {
+    pub fn start(
+        side: usize,
+        camera: Box<dyn Camera>,
+        observer: Observer,
+        calibration: Calibration,
+        reach_mm: f64,
+    ) -> Self {
         let (strobes, told) = channel();
         let (answer, answers) = channel();
         let outlet = Arc::<OnceLock<Outlet>>::default();
@@ -91,6 +97,7 @@ impl Worker {
             moved: Some(Moved::default()),
             picture: Picture::default(),
             settled: false,
+            ends: SeamEnds::new(reach_mm),
         };
         let thread = std::thread::spawn(move || {
             // The end of the session is no error.
@@ -162,6 +169,7 @@ struct Work {
     picture: Picture,
     /// Means have been told since the seam was found.
     settled: bool,
+    ends: SeamEnds,
 }
 
 impl Work {
@@ -197,7 +205,7 @@ impl Work {
                 self.note(strobe.moved);
                 let arrived = strobe.capture == capture && arrival == Arrival::Picture;
                 let seen = if arrived {
-                    self.look(at)?
+                    self.look(at, strobe.ends)?
                 } else {
                     MeasuredStrobe {
                         capture: strobe.capture,
@@ -271,29 +279,38 @@ impl Work {
         };
     }
 
-    /// Measures the picture that arrived at `arrived`.
-    fn look(&mut self, arrived: Instant) -> Result<MeasuredStrobe, WorkerError> {
+    /// Measures the picture that arrived at `arrived`, and looks for ends of the seam in it if they are asked for.
+    fn look(&mut self, arrived: Instant, ends: bool) -> Result<MeasuredStrobe, WorkerError> {
         let moved = self.moved.replace(Moved::default());
         if moved.is_none() {
             self.observer.forget();
+            self.ends.forget();
         }
-        let observation = self
-            .observer
-            .observe(&self.picture.image()?, moved.unwrap_or_default())?;
+        let moved = moved.unwrap_or_default();
+        let observation = self.observer.observe(&self.picture.image()?, moved)?;
+        let seen_ends = if ends {
+            self.ends.look(self.observer.detector(), &observation, &moved)
+        } else {
+            self.ends.forget();
+            [None; 2]
+        };
         self.settled &= observation.state == State::Tracking;
         let to_side = |(lateral, travel, height)| self.calibration.side_measurement(lateral, travel, height);
         let both = observation.seam.zip(observation.report.measured);
         let seen = both.map(|(seam, measured)| SeenSeam {
             seam,
             here: to_side((seam.lateral_mm, seam.travel_mm, measured.height_mm)),
+            ends: seen_ends.map(|end| {
+                let end = end?;
+                Some(SeenEnd {
+                    kind: end.kind,
+                    here: to_side((end.lateral_mm, end.travel_mm, end.height_mm)),
+                })
+            }),
         });
         let place = observation
             .seam
             .and_then(|seam| match (seam.mean, observation.report.measured) {
-                // A mean over a jump is the height of neither side of it.
-                (Some(mean), Some(seen)) if (mean.height_mm - seen.height_mm).abs() > HEIGHT_JUMP_MM => {
-                    Some((seam.lateral_mm, seam.travel_mm, seen.height_mm))
-                }
                 (Some(mean), _) => {
                     self.settled = true;
                     Some((mean.lateral_mm, mean.travel_mm, mean.height_mm))
@@ -308,7 +325,10 @@ impl Work {
             capture: self.picture.capture,
             observation: Some(observation),
             seen,
-            measurement: place.map(to_side),
+            measurement: self
+                .ends
+                .told(place, observation.seam.is_some(), &moved)
+                .map(to_side),
             arrived,
         })
     }

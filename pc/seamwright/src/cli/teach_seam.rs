@@ -13,12 +13,12 @@ use dual_beam::DualBeamPlan;
 use job::{Job, JobError, Names, SeamLesson, TaughtSeam, Work};
 use nc::{Options, Program, interpret};
 use parts::{PartFile, TSeam};
-use shared::io::SLIDES;
+use shared::io::{SIDES, SLIDES};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex};
-use teach::seam::{Cameras, Drawing, Ended, Head, MachinePose, SeamFile};
+use teach::seam::{Cameras, Drawing, Ended, Head, MachinePose, SeamEnd, SeamFile};
 use world::Deviation;
 use world::Surroundings;
 
@@ -241,6 +241,12 @@ fn output_of(told: Option<&Path>, part: &PartFile, seam: &TSeam) -> anyhow::Resu
 /// Tells how a lesson ended.
 fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
     outln!("{}: {} points", output.display(), taught.points);
+    if let Some((ends, after)) = taught.begins {
+        outln!(
+            "  the seam begins {after:.2} mm after its drawing does: {}",
+            ends_of(&ends, "begins").unwrap_or_default()
+        );
+    }
     match taught.ended {
         Ended::Drawn => outln!("  the seam is taught as far as it is drawn"),
         Ended::Operator => outln!("  ended by the operator; the same command continues after the last point"),
@@ -248,8 +254,15 @@ fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
             s_mm,
             missing_mm,
             seen,
-        } => match missing_mm {
-            Some(missing) if missing > ENDS_EARLY => {
+            ends,
+        } => match (ends_of(&ends, "ends"), missing_mm) {
+            (Some(how), Some(missing)) => {
+                outln!(
+                    "  the seam ends {s_mm:.2} mm from its beginning, {missing:.2} mm before its drawing does: {how}"
+                );
+            }
+            (Some(how), None) => outln!("  the seam ends {s_mm:.2} mm from its beginning: {how}"),
+            (None, Some(missing)) if missing > ENDS_EARLY => {
                 let side = match seen {
                     [true, false] => "on side 2 only",
                     [false, true] => "on side 1 only",
@@ -265,4 +278,40 @@ fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
         },
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// What is seen to begin or end the seam of each side; none if nothing is.
+fn ends_of(ends: &[Option<SeamEnd>; SIDES], verb: &str) -> Option<String> {
+    let said = |end: SeamEnd, sides: &str| match end {
+        SeamEnd::Plate => format!("a plate {verb} there on {sides}"),
+        SeamEnd::Tack => format!("the gap is closed there on {sides}, as by a tack"),
+    };
+    match *ends {
+        [None, None] => None,
+        [Some(first), Some(second)] if first == second => Some(said(first, "both sides")),
+        [Some(first), Some(second)] => Some(format!("{}, {}", said(first, "side 1"), said(second, "side 2"))),
+        [Some(end), None] => Some(said(end, "side 1")),
+        [None, Some(end)] => Some(said(end, "side 2")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_ends_each_side_is_said() {
+        let (plate, tack) = (Some(SeamEnd::Plate), Some(SeamEnd::Tack));
+        for (ends, said) in [
+            ([plate, plate], "a plate ends there on both sides"),
+            (
+                [plate, tack],
+                "a plate ends there on side 1, the gap is closed there on side 2, as by a tack",
+            ),
+            ([None, tack], "the gap is closed there on side 2, as by a tack"),
+        ] {
+            assert_eq!(ends_of(&ends, "ends").as_deref(), Some(said));
+        }
+        assert_eq!(ends_of(&[None; SIDES], "ends"), None);
+    }
 }

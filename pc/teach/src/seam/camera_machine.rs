@@ -1,6 +1,6 @@
 //! The interface to a machine with two cameras, for teaching.
 
-use super::{MachinePose, SeamPoint};
+use super::{MachinePose, SeamEnd, SeamPoint};
 use shared::geometry::Pose;
 use shared::io::{SIDES, SLIDES};
 use std::error::Error as StdError;
@@ -22,6 +22,19 @@ pub struct SeamSighting {
     pub scatter_mm: f64,
     /// Pictures that saw it.
     pub pictures: usize,
+    /// Where it ends in the picture, behind that place and ahead of it.
+    pub ends: [Option<EndSighting>; 2],
+}
+
+/// The end of a seam, seen in the picture of another place of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EndSighting {
+    /// What it ends with.
+    pub end: SeamEnd,
+    /// Beyond the plane of the lead, along T \[mm\].
+    pub along_mm: f64,
+    /// Beside the centre of the camera, along U and V of its head \[mm\].
+    pub offset_mm: [f64; 2],
 }
 
 /// What there is to see where the machine stands.

@@ -1,7 +1,7 @@
 //! From what the cameras see to places in the world, and to the pose of the machine that has both seams in
 //! the middle of their bands.
 
-use super::{MeasuredSeam, SeamSighting, View};
+use super::{EndSighting, MeasuredSeam, SeamSighting, View};
 use nalgebra::Vector3;
 use shared::geometry::{Pose, angle, rotate};
 use shared::io::{SIDES, SLIDES};
@@ -44,7 +44,15 @@ impl Cameras {
             quality: seen.quality,
             scatter_mm: seen.scatter_mm,
             pictures: seen.pictures,
+            end: None,
         }
+    }
+
+    /// Where a seam ends that a camera sees, in the world.
+    pub fn end(&self, view: &View, side: usize, seen: &EndSighting) -> Vector3<f64> {
+        let spot = self.heads.spot(&view.pose, side);
+        let [u, v] = [0, 1].map(|i| view.slides_mm[2 * side + i] + seen.offset_mm[i]);
+        spot.point(self.heads.camera_lead() + seen.along_mm, u, v)
     }
 
     /// Normal of the skin: that of the plate, or what the camera of `side` sees its slope to be.

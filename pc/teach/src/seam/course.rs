@@ -13,6 +13,15 @@ const GROWTH: f64 = 2.0;
 /// The first step is so many of the smallest.
 const FIRST: f64 = 2.0;
 
+/// What a seam begins or ends with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SeamEnd {
+    /// A plate begins or ends there.
+    Plate,
+    /// Something closes the gap there, such as a tack.
+    Tack,
+}
+
 /// A seam on one side of the rib, at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredSeam {
@@ -28,6 +37,8 @@ pub struct MeasuredSeam {
     pub scatter_mm: f64,
     /// Pictures that saw it.
     pub pictures: usize,
+    /// What the seam begins or ends with there; `None` where it goes on, or is not known to end.
+    pub end: Option<SeamEnd>,
 }
 
 /// Both seams at one point.

@@ -1,7 +1,7 @@
 //! The file of taught seams (CSV), complete after every point.
 
-use super::{MeasuredSeam, SeamPoint};
-use config::table::{self, Row, TableError};
+use super::{MeasuredSeam, SeamEnd, SeamPoint};
+use config::table::{self, TableError};
 use nalgebra::Vector3;
 use nc::text::decimal;
 use std::fs::{File, OpenOptions};
@@ -9,7 +9,7 @@ use std::io::{Error as IoError, Write};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-const COLUMNS: [&str; 13] = [
+const NUMBERS: [&str; 13] = [
     "point",
     "side",
     "s_mm",
@@ -24,6 +24,19 @@ const COLUMNS: [&str; 13] = [
     "scatter_mm",
     "pictures",
 ];
+/// What the seam begins or ends with at a point: one of [`ENDS`]. Files that were taught without it have only the numbers.
+const END: &str = "end";
+/// Nothing, and the ends that there are.
+const ENDS: [(&str, Option<SeamEnd>); 3] = [
+    ("-", None),
+    ("plate", Some(SeamEnd::Plate)),
+    ("tack", Some(SeamEnd::Tack)),
+];
+
+/// Names of all columns.
+fn columns() -> Vec<&'static str> {
+    NUMBERS.into_iter().chain([END]).collect()
+}
 
 /// Whose points these are.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,11 +54,12 @@ impl Head {
              # machine: {}\n\
              # part: {}\n\
              # A row a point and side: place and normal of the skin in the frame of the work, width of the gap (0: not\n\
-             # measured), quality 0 to 1, standard deviation from picture to picture; s_mm: chords of side 1.\n\
+             # measured), quality 0 to 1, standard deviation from picture to picture; s_mm: chords of side 1; end: plate or tack with which the\n\
+             # seam begins or ends at that point.\n\
              {}\n",
             self.machine,
             self.part,
-            COLUMNS.join(",")
+            columns().join(",")
         )
     }
 
@@ -152,11 +166,17 @@ impl SeamFile {
                 .into_iter()
                 .map(|(_, point)| point)
                 .collect();
+            if !has_ends(&complete) && !points.is_empty() {
+                // What follows has the column.
+                replace(path, &(head.text() + &rows_of(&points))).map_err(written)?;
+            } else if !has_ends(&complete) {
+                replace(path, &head.text()).map_err(written)?;
+            }
             if cut {
                 notes.push(format!(
                     "the last point in {name} was not complete: it is taught again"
                 ));
-                replace(path, &complete).map_err(written)?;
+                replace(path, &(head.text() + &rows_of(&points))).map_err(written)?;
             }
         } else {
             replace(path, &head.text()).map_err(written)?;
@@ -187,9 +207,7 @@ impl SeamFile {
 
     /// Takes the last point out of the file again; `points` are those that stay.
     pub fn keep(&mut self, points: &[SeamPoint], head: &Head) -> Result<(), SeamFileError> {
-        let numbered = points.iter().enumerate();
-        let text: String = numbered.map(|(index, point)| rows(index + 1, point)).collect();
-        let kept = replace(&self.path, &(head.text() + &text))
+        let kept = replace(&self.path, &(head.text() + &rows_of(points)))
             .and_then(|()| OpenOptions::new().append(true).open(&self.path));
         self.file = kept.map_err(|source| SeamFileError::Write {
             path: self.path.display().to_string(),
@@ -235,6 +253,29 @@ fn complete(text: &str) -> (String, bool) {
     (whole[..last].to_owned(), true)
 }
 
+/// Whether a file has the column of the ends.
+fn has_ends(text: &str) -> bool {
+    header(text).is_some_and(|header| header.split(',').count() > NUMBERS.len())
+}
+
+/// The names of the columns of a file.
+fn header(text: &str) -> Option<&str> {
+    text.lines().find(|line| !line.starts_with('#'))
+}
+
+/// How an end is written.
+fn name_of(end: Option<SeamEnd>) -> &'static str {
+    let [(nothing, _), named @ ..] = ENDS;
+    let name = named.into_iter().find(|(_, kind)| *kind == end);
+    name.map_or(nothing, |(name, _)| name)
+}
+
+/// The rows of all points.
+fn rows_of(points: &[SeamPoint]) -> String {
+    let numbered = points.iter().enumerate();
+    numbered.map(|(index, point)| rows(index + 1, point)).collect()
+}
+
 /// The two rows of a point.
 fn rows(number: usize, point: &SeamPoint) -> String {
     let row = |(index, foot): (usize, &MeasuredSeam)| {
@@ -250,6 +291,7 @@ fn rows(number: usize, point: &SeamPoint) -> String {
             decimal(foot.quality, 3),
             decimal(foot.scatter_mm, 4),
             foot.pictures.to_string(),
+            name_of(foot.end).to_owned(),
         ];
         let cells: Vec<String> = head.into_iter().chain(place).chain(normal).chain(rest).collect();
         cells.join(",") + "\n"
@@ -264,7 +306,17 @@ pub fn read_seam_points(path: &Path) -> Result<Vec<(usize, SeamPoint)>, TableErr
 
 /// Understands the `text` of such a file; `path` is used in messages only.
 pub fn parse_seam_points(path: &str, text: &str) -> Result<Vec<(usize, SeamPoint)>, TableError> {
-    let rows = table::parse(path, text, COLUMNS)?;
+    let all = columns();
+    let names =
+        if has_ends(text) || header(text).is_none_or(|header| header.split(',').count() < NUMBERS.len()) {
+            &all[..]
+        } else {
+            &NUMBERS[..]
+        };
+    let rows: Vec<Row> = table::cells(path, text, names)?
+        .into_iter()
+        .map(|(line, cells)| Row::of(path, line, &cells))
+        .collect::<Result<_, _>>()?;
     let wrong = |line, reason| TableError::Row {
         path: path.to_owned(),
         line,
@@ -302,10 +354,45 @@ pub fn parse_seam_points(path: &str, text: &str) -> Result<Vec<(usize, SeamPoint
         }
         points.push((first.line, point));
     }
+    let inner = points.get(1..points.len().saturating_sub(1)).unwrap_or_default();
+    let has_end = |(_, point): &&(usize, SeamPoint)| point.feet.iter().any(|foot| foot.end.is_some());
+    if let Some((line, _)) = inner.iter().find(has_end) {
+        return Err(wrong(
+            *line,
+            "only the first and the last point are where a seam begins or ends: end is - between them",
+        ));
+    }
     Ok(points)
 }
 
-fn read_foot(row: &Row<13>) -> Result<MeasuredSeam, &'static str> {
+/// A row and its line in the file.
+struct Row {
+    line: usize,
+    values: [f64; NUMBERS.len()],
+    end: Option<SeamEnd>,
+}
+
+impl Row {
+    fn of(path: &str, line: usize, cells: &[&str]) -> Result<Self, TableError> {
+        let values = table::numbers(path, line, NUMBERS, cells)?;
+        let end = match cells.get(NUMBERS.len()) {
+            None => None,
+            Some(text) => {
+                let known = ENDS.into_iter().find(|(name, _)| name == text);
+                known
+                    .ok_or(TableError::Row {
+                        path: path.to_owned(),
+                        line,
+                        reason: "end is plate, tack, or - where the seam goes on",
+                    })?
+                    .1
+            }
+        };
+        Ok(Self { line, values, end })
+    }
+}
+
+fn read_foot(row: &Row) -> Result<MeasuredSeam, &'static str> {
     let [
         _,
         _,
@@ -341,6 +428,7 @@ fn read_foot(row: &Row<13>) -> Result<MeasuredSeam, &'static str> {
         quality,
         scatter_mm,
         pictures: pictures as usize,
+        end: row.end,
     })
 }
 
@@ -363,6 +451,7 @@ mod tests {
             quality: 0.9,
             scatter_mm: 0.004,
             pictures: 8,
+            end: None,
         }
     }
 
@@ -415,6 +504,30 @@ mod tests {
     }
 
     #[test]
+    fn ends_come_back_and_a_file_without_them_is_read_and_gone_on_with() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("taught.csv");
+        let mut all = points(4);
+        let text = head().text() + &rows_of(&all[..3]);
+        let before = text.replace(",end\n", "\n").replace(",8,-\n", ",8\n");
+        std::fs::write(&path, before).unwrap();
+        let read = |path: &Path| -> Vec<SeamPoint> {
+            let points = read_seam_points(path).unwrap();
+            points.into_iter().map(|(_, point)| point).collect()
+        };
+        assert_eq!(read(&path), all[..3]);
+        all[3].feet[0].end = Some(SeamEnd::Plate);
+        all[3].feet[1].end = Some(SeamEnd::Tack);
+        teach(&path, &all[3..]);
+        assert_eq!(read(&path), all);
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(
+            text.contains(",8,plate\n4,2,") && text.ends_with(",8,tack\n"),
+            "{text}"
+        );
+    }
+
+    #[test]
     fn a_file_of_another_part_is_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("taught.csv");
@@ -449,28 +562,38 @@ mod tests {
         let text = |rows: &str| format!("{}{rows}", head().text());
         let message = |rows: &str| parse_seam_points("t.csv", &text(rows)).unwrap_err().to_string();
         let row = |point: u32, side: u32, s: f64, x: f64| {
-            format!("{point},{side},{s},{x},0,0,0,0,1,0.05,0.9,0.001,8\n")
+            format!("{point},{side},{s},{x},0,0,0,0,1,0.05,0.9,0.001,8,-\n")
+        };
+        let ends = |point: u32| {
+            let s = 5.0 * f64::from(point - 1);
+            (row(point, 1, s, s) + &row(point, 2, s, s)).replace(",8,-", ",8,tack")
         };
         let first = row(1, 1, 0.0, 0.0) + &row(1, 2, 0.0, 0.0);
         for (rows, line, reason) in [
             (
                 row(1, 2, 0.0, 0.0) + &row(1, 1, 0.0, 0.0),
-                8,
+                9,
                 "then one of side 2",
             ),
             (
                 first.clone() + &row(2, 1, 0.0, 5.0) + &row(2, 2, 0.0, 5.0),
-                9,
+                10,
                 "must increase",
             ),
             (
                 first.clone() + &row(2, 1, 5.0, 5.0) + &row(2, 2, 5.0, 0.0),
-                10,
+                11,
                 "equals the one before",
             ),
-            (first.clone() + &row(2, 1, 5.0, 5.0), 9, "side 2 is missing"),
-            (first.replace(",0,0,1,", ",0,0,0,"), 7, "normal has no length"),
-            (first.replace("0.9", "1.9"), 7, "quality"),
+            (first.clone() + &row(2, 1, 5.0, 5.0), 10, "side 2 is missing"),
+            (first.replace(",0,0,1,", ",0,0,0,"), 8, "normal has no length"),
+            (first.replace("0.9", "1.9"), 8, "quality"),
+            (first.replace(",8,-", ",8,hole"), 8, "end is plate, tack, or -"),
+            (
+                ends(1) + &ends(2) + &ends(3),
+                10,
+                "only the first and the last point",
+            ),
         ] {
             let message = message(&rows);
             assert!(

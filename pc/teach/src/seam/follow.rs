@@ -1,8 +1,10 @@
 //! Following a seam: centre, record the point, step along the tangent, to the end of the seam.
 
 use super::course::Course;
+use super::ends::SeenEnd;
 use super::{
-    CameraMachine, Cameras, Drawing, MachinePose, MeasuredSeam, NotFound, SeamPoint, SeamTeaching, View,
+    CameraMachine, Cameras, Drawing, MachinePose, MeasuredSeam, NotFound, SeamEnd, SeamPoint, SeamTeaching,
+    View,
 };
 use config::RangeError;
 use shared::geometry::Pose;
@@ -32,6 +34,8 @@ pub enum Ended {
         missing_mm: Option<f64>,
         /// Which side is seen further on, if one is.
         seen: [bool; SIDES],
+        /// What is seen to end each of them there; the last point is that end then.
+        ends: [Option<SeamEnd>; SIDES],
     },
     /// The operator said so.
     Operator,
@@ -55,6 +59,8 @@ pub(super) struct Centred {
     pub machine_pose: MachinePose,
     /// What it saw there.
     pub feet: [MeasuredSeam; SIDES],
+    /// Where each of them ends in the pictures, behind that place and ahead of it.
+    pub ends: [[Option<SeenEnd>; 2]; SIDES],
 }
 
 /// What both cameras measure at one pose of the machine.
@@ -64,6 +70,8 @@ pub(super) struct SeamView {
     pub machine_pose: MachinePose,
     /// What it sees there.
     pub feet: [Option<MeasuredSeam>; SIDES],
+    /// Where each seam ends in the pictures, behind that place and ahead of it.
+    pub ends: [[Option<SeenEnd>; 2]; SIDES],
 }
 
 impl SeamView {
@@ -75,6 +83,7 @@ impl SeamView {
         Some(Centred {
             machine_pose: self.machine_pose,
             feet: [first, second],
+            ends: self.ends,
         })
     }
 }
@@ -102,7 +111,7 @@ fn last_step(points: &[SeamPoint]) -> Option<f64> {
 pub struct Follower<'a> {
     pub(super) cameras: &'a Cameras,
     pub(super) config: &'a SeamTeaching,
-    drawing: Option<Drawing>,
+    pub(super) drawing: Option<Drawing>,
 }
 
 impl<'a> Follower<'a> {
@@ -131,11 +140,14 @@ impl<'a> Follower<'a> {
         let mut points = points.to_vec();
         let start = self.start(start, &points);
         rig.approach(&start)?;
-        let mut here = self.find(rig, &start)?;
-        if points.is_empty() {
-            here = self.begin_as_drawn(rig, here)?;
-            take(rig, &mut points, &here)?;
-        }
+        let mut here = if points.is_empty() {
+            let here = self.find_ahead(rig, &start)?;
+            let begin = self.begin(rig, here)?;
+            take(rig, &mut points, &begin)?;
+            begin
+        } else {
+            self.find(rig, &start)?
+        };
         let mut before = last_step(&points);
         loop {
             if rig.enough() {
@@ -149,10 +161,15 @@ impl<'a> Follower<'a> {
             here = match self.advance(rig, &here.machine_pose, &points, before, missing_mm)? {
                 Ok(next) => next,
                 Err(seen) => {
+                    let last = self.last(rig, here, &points)?;
+                    if let Some(last) = &last {
+                        take(rig, &mut points, last)?;
+                    }
                     return Ok(Ended::SeamEnds {
-                        s_mm: at,
-                        missing_mm,
+                        s_mm: points.last().map_or(at, |last| last.s_mm),
+                        missing_mm: self.missing(&points),
                         seen,
+                        ends: last.map_or([None; SIDES], |last| last.feet.map(|foot| foot.end)),
                     });
                 }
             };
@@ -209,6 +226,7 @@ impl<'a> Follower<'a> {
             let sight = SeamView {
                 machine_pose,
                 feet: self.feet(&view),
+                ends: self.ends(&view),
             };
             let Some(Centred { feet, .. }) = sight.both() else {
                 return Ok(before.unwrap_or(sight));
@@ -226,33 +244,9 @@ impl<'a> Follower<'a> {
         let nothing = SeamView {
             machine_pose,
             feet: [None; SIDES],
+            ends: [[None; 2]; SIDES],
         };
         Ok(before.unwrap_or(nothing))
-    }
-
-    /// Goes along the seam to where the drawing begins, if that is near.
-    fn begin_as_drawn<R: CameraMachine>(
-        &self,
-        rig: &mut R,
-        here: Centred,
-    ) -> Result<Centred, SeamTeachError<R::Error>> {
-        let Some(Drawing {
-            begin: (at, along), ..
-        }) = self.drawing
-        else {
-            return Ok(here);
-        };
-        let machine_pose = here.machine_pose;
-        let tangent = machine_pose.pose.tangent;
-        let [first, second] = [0, 1].map(|side| self.cameras.looks_at(&machine_pose, side));
-        let away = (at - (first + second) / 2.0).dot(&along) / tangent.dot(&along);
-        if away.abs() < SAME_PLACE || away.abs() > self.config.search_mm {
-            return Ok(here);
-        }
-        let mut there = machine_pose;
-        there.pose.position += tangent * away;
-        rig.go(&there)?;
-        self.find(rig, &there)
     }
 
     /// Length that the drawing has after the last of the `points` \[mm\].

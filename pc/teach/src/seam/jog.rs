@@ -241,6 +241,7 @@ impl Follower<'_> {
                 let here = Centred {
                     machine_pose: *machine_pose,
                     feet: [first, second],
+                    ends: self.ends(&view),
                 };
                 let middle = (first.position + second.position) / 2.0;
                 let behind = |last: &SeamPoint| (middle - last.middle()).dot(&view.pose.tangent) < SAME_PLACE;

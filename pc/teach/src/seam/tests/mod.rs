@@ -1,6 +1,7 @@
 //! Teaching on seams of known shape, by a machine that stands exactly where it should and cameras with a view, noise
 //! and lost pictures.
 
+mod ends;
 mod jog;
 
 use super::course::Local;
@@ -39,7 +40,13 @@ struct World {
     beside: [f64; 2],
     /// No seam on this side.
     missing: Option<usize>,
-    end: f64,
+    /// Where it begins and ends on each side, what with, and whether that is seen.
+    begin: [f64; 2],
+    end: [f64; 2],
+    kinds: [SeamEnd; 2],
+    shows_ends: bool,
+    /// What is seen to end moves with the camera.
+    wanders: bool,
     cameras: Cameras,
     machine_pose: Option<MachinePose>,
     noise: SplitMix64,
@@ -75,7 +82,11 @@ impl World {
             shape,
             beside: [0.0; 2],
             missing: None,
-            end: 1e9,
+            begin: [-1e9; 2],
+            end: [1e9; 2],
+            kinds: [SeamEnd::Plate; 2],
+            shows_ends: false,
+            wanders: false,
             cameras: cameras(),
             machine_pose: None,
             noise: SplitMix64::new(3),
@@ -96,6 +107,23 @@ impl World {
         let left = Vector3::z().cross(&along).normalize();
         let beside = 2.0 + self.beside[side];
         at + left * if side == 0 { -beside } else { beside }
+    }
+
+    /// Where the seam of `side` ends in the picture of its place `s`.
+    fn ends(&mut self, machine_pose: &MachinePose, side: usize, s: f64) -> [Option<EndSighting>; 2] {
+        let spot = self.cameras.heads.spot(&machine_pose.pose, side);
+        let lead = self.cameras.heads.camera_lead();
+        let [u0, v0] = [0, 1].map(|i| machine_pose.slides_mm[2 * side + i]);
+        [self.begin[side], self.end[side]].map(|at| {
+            let seen = self.shows_ends && (0.05..1.0).contains(&(at - s).abs());
+            let at = if self.wanders { s + 0.6 } else { at };
+            let (along, u, v) = spot.coordinates(&self.foot(side, at));
+            seen.then(|| EndSighting {
+                end: self.kinds[side],
+                along_mm: along - lead + self.sigma * self.noise.gauss()[0],
+                offset_mm: [u - u0, v - v0],
+            })
+        })
     }
 
     /// What camera `side` sees with the machine in `machine_pose`.
@@ -119,15 +147,18 @@ impl World {
         let away = spot.u * offset[0] + spot.v * offset[1];
         let across = away.dot(&axis.cross(&machine_pose.pose.tangent));
         let inside = across.abs() < VIEW[0] && away.dot(&axis).abs() < VIEW[1];
-        (inside && self.missing != Some(side) && s <= self.end).then_some(SeamSighting {
-            along_mm: 0.0,
-            offset_mm,
-            roll: Some(roll),
-            width_mm: Some(0.05),
-            quality: 0.9,
-            scatter_mm: self.sigma,
-            pictures: 8,
-        })
+        (inside && self.missing != Some(side) && (self.begin[side]..=self.end[side]).contains(&s)).then_some(
+            SeamSighting {
+                along_mm: 0.0,
+                offset_mm,
+                roll: Some(roll),
+                width_mm: Some(0.05),
+                quality: 0.9,
+                scatter_mm: self.sigma,
+                pictures: 8,
+                ends: self.ends(machine_pose, side, s),
+            },
+        )
     }
 }
 
@@ -402,11 +433,12 @@ fn the_machine_takes_what_slides_cannot() {
 #[test]
 fn the_end_of_the_seam_is_found_and_what_is_missing_is_told() {
     let mut world = World::new(straight, SIGMA);
-    world.end = 130.0;
+    world.end = [130.0; 2];
     let Ended::SeamEnds {
         s_mm,
         missing_mm: Some(missing),
         seen: [false, false],
+        ends: [None, None],
     } = teach(&mut world, &start(straight, [0.0; 3]), &[])
     else {
         panic!("the seam ends before the drawing")
@@ -418,7 +450,7 @@ fn the_end_of_the_seam_is_found_and_what_is_missing_is_told() {
 #[test]
 fn without_a_drawing_the_seam_is_followed_to_its_end() {
     let mut world = World::new(straight_then_bent, SIGMA);
-    world.end = 220.0;
+    world.end = [220.0; 2];
     let (cameras, config) = (cameras(), SeamTeaching::default());
     let follower = Follower::build(&cameras, &config, None).unwrap();
     let ended = follower
