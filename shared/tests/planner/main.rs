@@ -4,6 +4,7 @@
 mod bench;
 mod contour;
 mod fixed;
+mod hands;
 mod judge;
 mod late;
 mod program;
