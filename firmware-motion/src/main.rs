@@ -4,6 +4,7 @@
 //! |---|---|---|---|
 //! | `servo_tick` | 4 kHz | 4 | [`tasks::servo`]: gratings → PID → drives, trips, beams |
 //! | `path_tick` | 1 kHz | 3 | [`tasks::path`]: pose along the path → kinematics → references |
+//! | `planning` | after path ticks on a path | 2 | [`tasks::planning`]: a turn of planning ahead |
 //! | `network` | frames, and every ms | 1 | [`tasks::network`]: requests, path states, telemetry |
 //! | `idle` | else | 0 | waits |
 //!
@@ -33,7 +34,7 @@ fn main() {}
 #[rtic::app(device = crate::board::device, peripherals = false)]
 mod app {
     use crate::board::{self, Tick, Watchdog, motion::Axes};
-    use crate::tasks::{self, Controller, Network, PathTask, Published, Servo};
+    use crate::tasks::{self, Controller, Network, PathTask, PlanningTask, Published, Servo};
     use heapless::spsc::Queue;
 
     #[shared]
@@ -42,6 +43,8 @@ mod app {
         servo: Servo,
         /// State machine, path, homing; a request locks it for one step.
         controller: &'static mut Controller,
+        /// What path ticks and turns of planning take.
+        times: tasks::Times,
     }
 
     #[local]
@@ -51,11 +54,13 @@ mod app {
         watchdog: Watchdog,
         path_tick: Tick,
         path: PathTask,
+        planning: &'static mut PlanningTask,
         network: Network,
     }
 
     #[init(local = [
         controller: Controller = Controller::new(),
+        planning_task: PlanningTask = PlanningTask::new(),
         storage: link::Storage<'static> = link::Storage::new(),
         queue: Queue<Published, 16> = Queue::new(),
     ])]
@@ -73,6 +78,7 @@ mod app {
         let shared = Shared {
             servo: Servo::new(),
             controller,
+            times: tasks::Times::new(),
         };
         let local = Local {
             axes: board.axes,
@@ -80,6 +86,7 @@ mod app {
             watchdog: board.watchdog,
             path_tick: board.path_tick,
             path: PathTask::new(outbox),
+            planning: cx.local.planning_task,
             network,
         };
         (shared, local)
@@ -93,15 +100,33 @@ mod app {
             .lock(|servo| tasks::servo::tick(servo, cx.local.axes, cx.local.watchdog, elapsed));
     }
 
-    #[task(binds = PATH_TICK, priority = 3, shared = [servo, controller], local = [path_tick, path])]
+    #[task(binds = PATH_TICK, priority = 3, shared = [servo, controller, times], local = [path_tick, path])]
     fn path_tick(mut cx: path_tick::Context) {
         let elapsed = cx.local.path_tick.acknowledge();
         let began_us = cx.local.path_tick.began_us();
-        let path = cx.local.path;
-        if !path.tick(&mut cx.shared.servo, &mut cx.shared.controller, began_us, elapsed) {
+        let told = cx.local.path.tick(
+            &mut cx.shared.servo,
+            &mut cx.shared.controller,
+            &mut cx.shared.times,
+            began_us,
+            elapsed,
+        );
+        if !told.published {
             defmt::warn!("the network task does not keep up: a path state was dropped");
         }
+        if told.plans {
+            rtic::pend(board::device::Interrupt::SOFT_0);
+        }
         rtic::pend(board::device::Interrupt::ETHERNET);
+    }
+
+    #[task(binds = SOFT_0, priority = 2, shared = [servo, controller, times], local = [planning])]
+    fn planning(mut cx: planning::Context) {
+        cx.local.planning.turn(
+            &mut cx.shared.servo,
+            &mut cx.shared.controller,
+            &mut cx.shared.times,
+        );
     }
 
     #[task(binds = ETHERNET, priority = 1, shared = [servo, controller], local = [network])]

@@ -22,9 +22,18 @@ impl ExecutionTime {
 
     /// The task ran from cycle `begin` to `end`.
     pub fn add(&mut self, begin: u32, end: u32) {
-        let took = end.wrapping_sub(begin);
+        self.add_net(end.wrapping_sub(begin));
+    }
+
+    /// The task ran for so many cycles, without what interrupted it.
+    pub fn add_net(&mut self, took: u32) {
         self.total = self.total.wrapping_add(took);
         self.longest = self.longest.max(took);
+    }
+
+    /// Cycles of the task since another began.
+    pub fn since(&self, span: Span) -> u32 {
+        self.total.wrapping_sub(span.total)
     }
 
     /// Cycles of the longest run since this was asked last.
@@ -42,8 +51,7 @@ impl ExecutionTime {
 
     /// Cycles of that other task alone, which ends at cycle `now`, less than a wrap after it began.
     pub fn without(&self, span: Span, now: u32) -> u32 {
-        now.wrapping_sub(span.begin)
-            .wrapping_sub(self.total.wrapping_sub(span.total))
+        now.wrapping_sub(span.begin).wrapping_sub(self.since(span))
     }
 }
 

@@ -25,9 +25,9 @@ fn budget(firmware: Firmware, board: Board) -> Budget {
         // Most of the motion board's RAM is the planner: its elements, and the nodes at which it plans the speed.
         // Their initial values are in flash, too. The NUCLEO has 320 kB, and the stack elsewhere.
         (Firmware::Motion, Board::Mps2An500 | Board::NucleoH723zg) => Budget {
-            flash: [200, 600],
-            ram: [100, 300],
-            controller: [150, 240],
+            flash: [200, 640],
+            ram: [100, 325],
+            controller: [100, 240],
         },
         (Firmware::Tracker, Board::Mps2An500 | Board::NucleoH723zg) => Budget {
             flash: [120, 300],

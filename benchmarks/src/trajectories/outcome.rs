@@ -59,8 +59,13 @@ pub fn of_file(
         moves: moves.len(),
         elements: elements.len(),
         pushed: samples.iter().map(|sample| sample.pushed).collect(),
-        evenness: evenness(&moves, &elements, samples),
+        evenness: if moves.is_empty() {
+            None
+        } else {
+            evenness(&moves, &elements, samples)
+        },
         figures: match &run {
+            Ok(_) if moves.is_empty() => Err("it has no moves".to_owned()),
             Ok(samples) => Ok(Figures::of(&moves, &start, samples)),
             Err(stuck) => Err(stuck.to_string()),
         },
@@ -78,5 +83,38 @@ impl Outcome {
         let line = text.lines().find_map(|line| line.strip_prefix(WORD));
         let line = line.with_context(|| format!("the run did not come to its end; it printed:\n{text}"))?;
         Ok(serde_json::from_str(line)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
+
+    struct Calls;
+
+    impl Meter for Calls {
+        fn count(&mut self, call: &mut dyn FnMut()) -> u32 {
+            call();
+            0
+        }
+    }
+
+    #[test]
+    fn a_program_without_moves_is_told() {
+        let config = KinematicsConfig::DualBeamGantry(DualBeamConfig {
+            o1_mm: [0.0; 3],
+            o2_mm: [0.0; 3],
+            o3_mm: [0.0, 0.0, -100.0],
+        });
+        let kinematics = config.build(&[AxisLimits::NOT_FITTED; AXES]).expect("a machine");
+        let file = std::env::temp_dir().join(format!("seamwright-empty-{}.seg", std::process::id()));
+        fs::write(&file, "").expect("a file");
+        let outcome = of_file(&file, None, &kinematics, &mut Calls);
+        fs::remove_file(&file).expect("the file");
+        assert_eq!(
+            outcome.expect("an outcome").figures,
+            Err("it has no moves".into())
+        );
     }
 }

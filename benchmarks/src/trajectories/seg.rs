@@ -151,9 +151,12 @@ impl AxesPosition {
     }
 }
 
+/// Feeds above this \[mm/s\] mean "as fast as it can", and are no element's.
+const FASTEST: f64 = 1e6;
+
 fn checked(feed: f64) -> Result<f64, Why> {
     if feed > 0.0 {
-        Ok(feed)
+        Ok(feed.min(FASTEST))
     } else {
         Err(Why::Feed(feed))
     }

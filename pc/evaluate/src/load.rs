@@ -11,10 +11,14 @@ use std::fmt;
 pub struct Load {
     /// Cycles of the processor in a microsecond; on an emulated board instructions.
     pub cycles_per_us: u16,
-    /// Of the path ticks: a share of planning, interpolation, kinematics.
+    /// Of the path ticks: interpolation, kinematics, filter.
     pub path_tick: ExecutionTimes,
     /// Of the longest servo tick in each ms, on an emulated board with its share of the simulated machine.
     pub servo_tick: ExecutionTimes,
+    /// Of the turns of planning, one after each path tick.
+    pub planning: ExecutionTimes,
+    /// Turns that had not ended at the next path tick: their plans came later, which costs time only.
+    pub planning_missed: u32,
 }
 
 /// Execution times of one kind of tick, without what interrupted it \[cycles\].
@@ -36,6 +40,9 @@ pub(super) struct Loads {
     cycles_per_us: Option<u16>,
     path_ticks: BTreeMap<u32, u64>,
     servo_ticks: BTreeMap<u32, u64>,
+    turns: BTreeMap<u32, u64>,
+    /// Turns missed, at the first and the last tick.
+    missed: Option<[u32; 2]>,
 }
 
 impl Loads {
@@ -43,6 +50,8 @@ impl Loads {
         self.cycles_per_us.get_or_insert(told.cycles_per_us);
         *self.path_ticks.entry(told.path_tick).or_default() += 1;
         *self.servo_ticks.entry(told.servo_tick).or_default() += 1;
+        *self.turns.entry(told.planning).or_default() += 1;
+        self.missed.get_or_insert([told.planning_missed; 2])[1] = told.planning_missed;
     }
 
     /// `None` if no tick told its load.
@@ -56,6 +65,8 @@ impl Loads {
             cycles_per_us,
             path_tick: times(PATH_PERIOD_S, &self.path_ticks),
             servo_tick: times(SERVO_PERIOD_S, &self.servo_ticks),
+            planning: times(PATH_PERIOD_S, &self.turns),
+            planning_missed: self.missed.map_or(0, |[first, last]| last.wrapping_sub(first)),
         })
     }
 }
@@ -111,6 +122,8 @@ mod tests {
             cycles_per_us: 125,
             path_tick: 10 * (1001 - n),
             servo_tick: 5000,
+            planning: 20_000,
+            planning_missed: 7 + n / 500,
         });
         let mut loads = Loads::default();
         assert_eq!(loads.all(), None);
@@ -124,6 +137,8 @@ mod tests {
         };
         assert_eq!(load.path_tick, expected);
         assert_eq!((load.servo_tick.worst, load.servo_tick.period), (5000, 31_250));
+        assert_eq!((load.planning.worst, load.planning.period), (20_000, 125_000));
+        assert_eq!(load.planning_missed, 2);
         let words = " 10000 cycles at worst (8.0 % of 125000), 9900 in 99 %, 5005 mean";
         assert_eq!(load.path_tick.to_string(), words);
     }

@@ -203,6 +203,10 @@ fn boards_served(f: &mut Formatter, r: &Report) -> Result {
     if let Some(load) = &r.load {
         writeln!(f, "  load of the motion board     path tick  {}", load.path_tick)?;
         writeln!(f, "                               servo tick {}", load.servo_tick)?;
+        writeln!(f, "                               planning   {}", load.planning)?;
+        if load.planning_missed > 0 {
+            writeln!(f, "  planning too late{:15}", load.planning_missed)?;
+        }
     }
     if let Some(seam) = &r.seam {
         writeln!(

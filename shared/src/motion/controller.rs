@@ -20,10 +20,11 @@ use super::superimposed::Superimposed;
 use crate::control::UNATTENDED_S;
 use crate::io::{AXES, MOTORS, SIDES};
 use crate::kinematics::AXIS_UNIT;
+use crate::kinematics::Kinematics;
 use crate::protocol::{Datagram, MotionSample, PathState};
 use crate::state::{Event, Fault, State};
 use crate::ticks::PATH_PERIOD_S;
-use crate::trajectory::{BoardPlanner, SpeedState};
+use crate::trajectory::{BoardPlanning, BoardPlayer, SpeedState};
 use loaded::LoadedPath;
 
 /// Lost path ticks that are made up for at once; more are too late anyway.
@@ -76,7 +77,7 @@ pub struct MotionController {
     released: bool,
     homing: Option<Homing>,
     homed: bool,
-    planner: BoardPlanner,
+    player: BoardPlayer,
     path: LoadedPath,
     /// The pose beside it.
     superimposed: Superimposed,
@@ -133,7 +134,7 @@ impl MotionController {
             released: false,
             homing: None,
             homed: false,
-            planner: BoardPlanner::new(),
+            player: BoardPlayer::new(),
             path: LoadedPath::NONE,
             superimposed: Superimposed::NONE,
             factor: 1.0,
@@ -173,6 +174,33 @@ impl MotionController {
     /// State of the board.
     pub fn state(&self) -> State {
         self.state
+    }
+
+    /// The half of the planner that path ticks play from.
+    pub fn player(&mut self) -> &mut BoardPlayer {
+        &mut self.player
+    }
+
+    /// Kinematics of the machine, if there are parameters.
+    pub fn kinematics(&self) -> Option<&Kinematics> {
+        self.machine.as_ref().map(|machine| &machine.kinematics)
+    }
+
+    /// A turn of planning is due after every path tick on a path.
+    pub fn plans(&self) -> bool {
+        self.state.on_path()
+    }
+
+    /// How often a turn of planning had not ended at the next path tick.
+    pub fn missed_turns(&self) -> u32 {
+        self.player.missed()
+    }
+
+    /// The turn of `planning` after a path tick, if it is due, where both run in step.
+    pub fn plan(&mut self, planning: &mut BoardPlanning) {
+        if let (Some(machine), true) = (&self.machine, self.plans()) {
+            planning.turn(&mut self.player, &machine.kinematics);
+        }
     }
 
     /// One path tick.

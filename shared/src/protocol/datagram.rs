@@ -186,10 +186,14 @@ pub struct MotionSample {
 pub struct BoardLoad {
     /// Cycles in a microsecond.
     pub cycles_per_us: u16,
-    /// Of the path tick before this one: planning, interpolation, kinematics.
+    /// Of the path tick before this one: interpolation, kinematics, filter.
     pub path_tick: u32,
     /// Of the longest servo tick since the last sample.
     pub servo_tick: u32,
+    /// Of the longest turn of planning that ended since then.
+    pub planning: u32,
+    /// Turns of planning that had not ended at the next path tick, since the board was switched on.
+    pub planning_missed: u32,
 }
 
 /// A few control ticks of the tracker board.

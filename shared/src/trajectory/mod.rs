@@ -14,7 +14,9 @@ mod speed;
 pub use curve::{ArcLengthCurve, CurveNumbers, NoCurve, PARAMETER_COEFFICIENTS};
 pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
 pub use path::{Knot, Path, PathError, PathPoint, PathSpace};
-pub use planner::{LONGEST_PATH, Output, PlanLimits, Planner, PushError, Way};
+pub use planner::{
+    LONGEST_PATH, Output, PlanLimits, Planner, Planning, Player, PlayerAccess, PushError, Way,
+};
 pub use reference::{ReferenceError, Unreachable, at_unit_speed, axes_at};
 pub use rest_to_rest::RestToRest;
 pub use speed::{SpeedLimits, SpeedState};
@@ -26,5 +28,9 @@ pub const CHANNELS: usize = 11;
 pub const ELEMENTS: usize = 128;
 /// Places of the path at which it plans the speed.
 pub const NODES: usize = 256;
-/// The planner of the motion board.
+/// The planner of the motion board, in step.
 pub type BoardPlanner = Planner<ELEMENTS, NODES>;
+/// The half of it that its path tick has.
+pub type BoardPlayer = Player<ELEMENTS, NODES>;
+/// The other half, a task of its own.
+pub type BoardPlanning = Planning<NODES>;

@@ -11,7 +11,7 @@ use shared::protocol::{
 };
 use shared::state::{Fault, State};
 use shared::ticks::{SERVO_PERIOD_S, SERVO_TICKS_PER_PATH_TICK};
-use shared::trajectory::PathSpace;
+use shared::trajectory::{BoardPlanning, PathSpace};
 
 /// Counts in one mm or degree.
 pub const SCALE: f64 = 10_000.0;
@@ -123,6 +123,7 @@ fn counts(position: f64) -> i64 {
 pub struct Bench {
     pub servo: ServoLoops,
     pub controller: Box<MotionController>,
+    planning: Box<BoardPlanning>,
     /// Where the motors stand, from where they were switched on (mm or degrees).
     pub position: [f64; MOTORS],
     /// Where their marks are.
@@ -148,6 +149,7 @@ impl Bench {
         Self {
             servo: ServoLoops::default(),
             controller: Box::new(MotionController::new()),
+            planning: Box::new(BoardPlanning::new()),
             position: [0.0; MOTORS],
             marks: [Some(-2.0); MOTORS],
             slipped: [0; MOTORS],
@@ -220,6 +222,7 @@ impl Bench {
             self.servo.configure(setup);
         }
         self.servo.give(&output.order);
+        self.controller.plan(&mut self.planning);
         self.samples.push(output.sample);
         self.path_state = Some(output.path_state);
     }

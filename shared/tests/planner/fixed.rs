@@ -167,7 +167,7 @@ fn wave() -> Vec<Element> {
 fn elements_that_come_one_by_one_take_as_long_as_all_at_once() {
     let [one, all] = [1, usize::MAX].map(|credits| {
         let machine = machine();
-        let samples = run_with(&machine, &wave(), &vec![], credits).expect("a run to the end");
+        let samples = run_with(&machine, &wave(), &vec![], credits, &[]).expect("a run to the end");
         moving(&samples)
     });
     assert!(

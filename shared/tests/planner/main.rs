@@ -4,7 +4,9 @@
 mod bench;
 mod contour;
 mod fixed;
+mod hands;
 mod judge;
+mod late;
 mod program;
 mod random;
 mod regressions;

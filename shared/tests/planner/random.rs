@@ -4,9 +4,9 @@
 //! The same few cases in every run; where `PROPTEST_CASES` is set, so many others.
 
 use super::bench::{self, Bench, Frame};
-use super::judge::judge;
+use super::judge::{Verdict, judge};
 use super::program::{Kind, Move, elements};
-use super::run::{Act, Acts, run};
+use super::run::{Act, Acts, Stuck, run};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use shared::trajectory::{Tolerance, Way};
@@ -108,7 +108,7 @@ pub fn frame() -> impl Strategy<Value = Frame> {
 }
 
 /// Programs of up to ten moves, of the sizes and feeds of a workshop.
-fn moves() -> impl Strategy<Value = Vec<Move>> {
+pub fn moves() -> impl Strategy<Value = Vec<Move>> {
     let mix = Mix {
         size: -1.0..1.5,
         feed: 0.0..3.0,
@@ -128,21 +128,27 @@ fn wild_moves() -> impl Strategy<Value = Vec<Move>> {
     prop::collection::vec(any_move(&mix), 0..10)
 }
 
-/// Whether a program of `moves` runs to its end without a fault.
-pub fn check(bench: &Bench, moves: &[Move], acts: &Acts) -> Result<(), TestCaseError> {
+/// Runs a program of `moves` to its end, and judges it.
+pub fn verdict(bench: &Bench, moves: &[Move], acts: &Acts) -> Result<Verdict, Stuck> {
     let tolerance = Tolerance {
         position: bench.limits.tolerance,
         attitude: 1e-3,
     };
     let elements = elements(bench, moves, tolerance);
-    let samples = run(bench, &elements, acts).map_err(|stuck| TestCaseError::fail(stuck.to_string()))?;
-    let faults = judge(bench, &elements, tolerance, &samples).faults();
+    let samples = run(bench, &elements, acts)?;
+    Ok(judge(bench, &elements, tolerance, &samples))
+}
+
+/// Whether a program of `moves` runs to its end without a fault.
+pub fn check(bench: &Bench, moves: &[Move], acts: &Acts) -> Result<(), TestCaseError> {
+    let verdict = verdict(bench, moves, acts).map_err(|stuck| TestCaseError::fail(stuck.to_string()))?;
+    let faults = verdict.faults();
     prop_assert!(faults.is_empty(), "{}", faults.join("; "));
     Ok(())
 }
 
 /// So many cases, always the same, unless the environment says otherwise.
-fn cases(cases: u32) -> ProptestConfig {
+pub fn cases(cases: u32) -> ProptestConfig {
     let config = ProptestConfig::default();
     match std::env::var_os("PROPTEST_CASES") {
         Some(_) => config,

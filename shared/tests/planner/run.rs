@@ -1,7 +1,8 @@
 //! Running programs, with hands on the controls.
 
 use super::bench::Bench;
-use shared::trajectory::{BoardPlanner, Element, Output, PushError, Unreachable, Way};
+use super::late::Halves;
+use shared::trajectory::{Element, Output, PushError, Unreachable, Way};
 use thiserror::Error;
 
 /// What an operator does at the controls, or a disturbance of the link.
@@ -53,18 +54,19 @@ const CREDITS: usize = 8;
 /// Runs `elements` from rest at home to their end. All that is done is undone after the last of `acts`: then the
 /// machine continues to the end as programmed.
 pub fn run(bench: &Bench, elements: &[Element], acts: &Acts) -> Result<Vec<Sample>, Stuck> {
-    run_with(bench, elements, acts, CREDITS)
+    run_with(bench, elements, acts, CREDITS, &[])
 }
 
-/// The same with so many elements a tick at most.
+/// The same with so many elements a tick at most, and with turns of planning that end `late`: see [`Halves`].
 pub fn run_with(
     bench: &Bench,
     elements: &[Element],
     acts: &Acts,
     credits: usize,
+    late: &[u32],
 ) -> Result<Vec<Sample>, Stuck> {
-    let mut planner = Box::new(BoardPlanner::new());
-    planner.start(&bench.limits, bench.space, 0.0, &bench.home);
+    let mut halves = Halves::new(&bench.kinematics, late);
+    halves.player.start(&bench.limits, bench.space, 0.0, &bench.home);
     let length: f64 = elements.iter().map(|element| element.length).sum();
     let mut coming = elements.iter();
     let mut acts = acts.iter().copied();
@@ -72,7 +74,7 @@ pub fn run_with(
     let (mut wait, mut starve) = (0, 0);
     let (mut way, mut factor) = (Way::Forward, 1.0);
     let mut samples: Vec<Sample> = Vec::new();
-    let (mut last, mut stands) = (0, 0);
+    let (mut last, mut stands, mut undone) = (0, 0, false);
     while samples.len() < last + patience(bench, elements) {
         let mut touched = false;
         while let Some((_, act)) = next.filter(|(pause, _)| *pause == wait) {
@@ -86,36 +88,44 @@ pub fn run_with(
         match next {
             Some(_) => (wait, last) = (wait + 1, samples.len()),
             // A while after the last of them.
-            None if samples.len() == last + AFTER => (way, factor, touched) = (Way::Forward, 1.0, true),
+            None if !undone && samples.len() >= last + AFTER => {
+                (way, factor, touched, undone) = (Way::Forward, 1.0, true, true);
+            }
             None => {}
         }
-        planner.go(way);
-        planner.set_override(factor);
+        let player = &mut halves.player;
+        player.go(way);
+        player.set_override(factor);
         if starve > 0 {
             starve -= 1;
         } else {
-            for element in coming.by_ref().take(credits.min(planner.room())) {
-                let result = planner.push(element.clone());
+            for element in coming.by_ref().take(credits.min(player.room())) {
+                let result = player.push(element.clone());
                 result.map_err(|error| Stuck::Push(samples.len(), error))?;
                 touched = true;
             }
         }
-        let output = planner.tick(&bench.kinematics);
-        let output = output.map_err(|error| Stuck::Tick(samples.len(), error))?;
-        let (ticks, s) = (samples.len(), output.along.s);
-        let free = next.is_none() && way == Way::Forward && factor > 0.0 && starve == 0;
-        let moves = samples.last().is_none_or(|before| before.output.along.s != s);
-        stands = if moves || !free { 0 } else { stands + 1 };
-        samples.push(Sample {
-            output,
-            factor,
-            way,
-            touched,
-        });
-        let at_rest = output.at_rest;
-        if free && coming.len() == 0 && at_rest && (s - length).abs() <= 1e-9 * length.max(1.0) {
-            return Ok(samples);
+        for output in halves.tick() {
+            let output = output.map_err(|error| Stuck::Tick(samples.len(), error))?;
+            let s = output.along.s;
+            let free = next.is_none() && way == Way::Forward && factor > 0.0 && starve == 0;
+            let moves = samples.last().is_none_or(|before| before.output.along.s != s);
+            stands = if moves || !free { 0 } else { stands + 1 };
+            samples.push(Sample {
+                output,
+                factor,
+                way,
+                touched,
+            });
+            let there = (s - length).abs() <= 1e-9 * length.max(1.0);
+            if free && coming.len() == 0 && output.at_rest && there {
+                return Ok(samples);
+            }
         }
+        let Some(Sample { output, .. }) = samples.last() else {
+            continue;
+        };
+        let (ticks, s, at_rest) = (samples.len(), output.along.s, output.at_rest);
         if stands > STANDSTILL {
             return Err(Stuck::Stands {
                 ticks,

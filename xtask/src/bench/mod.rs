@@ -4,6 +4,7 @@ mod board;
 mod bounded;
 mod callgrind;
 mod docs;
+mod hands;
 mod markdown;
 mod planner;
 mod report;
@@ -53,6 +54,16 @@ pub enum Benchmark {
         #[arg(long)]
         record: bool,
     },
+    /// Run random programs with hands at the controls (holds, overrides, ways back) through the planner; fails if one of them
+    /// breaks a limit, leaves the path, or obeys a hold or a lower override too late
+    Hands {
+        /// How many; a thousand take some seconds
+        #[arg(long, value_name = "N", default_value_t = 10_000)]
+        programs: u64,
+        /// Seed of the first; the others follow
+        #[arg(long, value_name = "N", default_value_t = 0)]
+        seed: u64,
+    },
     /// Run every program (.seg) of a folder through the trajectory planner; fails if a limit is not kept
     Trajectories {
         /// Folder of the programs, and of baseline.csv with what another planner took, if there is one
@@ -83,7 +94,7 @@ impl Benchmark {
             | Self::Trajectories {
                 instructions: true, ..
             } => &[Tool::Valgrind],
-            Self::Trajectories { .. } => &[],
+            Self::Hands { .. } | Self::Trajectories { .. } => &[],
         }
     }
 
@@ -92,6 +103,7 @@ impl Benchmark {
         match self {
             Self::Kinematics { record } => kinematics(record),
             Self::Planner { record } => planner::run(record),
+            Self::Hands { programs, seed } => hands::run(programs, seed),
             Self::Vision { frames, record } => vision::run(frames, record),
             Self::Trajectories {
                 programs,

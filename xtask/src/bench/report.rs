@@ -15,10 +15,11 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether every program came to its end within all limits.
+    /// Whether every program came to its end within all limits, and none is slow beside the baseline.
     pub fn kept(&self) -> bool {
         self.rows.iter().all(|row| {
             row.is_even()
+                && !row.is_slow()
                 && row
                     .figures()
                     .is_some_and(|figures| LIMITS.iter().all(|limit| limit.is_kept(figures)))
@@ -68,6 +69,13 @@ impl Report {
                 .filter(|row| row.is_slow())
                 .map(|row| row.program.clone()),
         ));
+        if self.rows.iter().any(|row| row.baseline.is_some()) {
+            let alone = self.rows.iter().filter(|row| row.baseline.is_none());
+            lines.push(listed(
+                "without a row of the baseline",
+                alone.map(|row| row.program.clone()),
+            ));
+        }
         lines
     }
 
@@ -236,6 +244,7 @@ mod tests {
         let slow = "slower than 1.05 × a trapezoid that took 0.5 s and kept its limits: 1: late";
         let late = row("late", 1.06, 1.0);
         assert!(report(vec![late.clone()]).text().contains(slow));
+        assert!(!report(vec![late.clone()]).kept());
         for change in [
             |base: &mut Baseline| base.trapezoid_acceleration = 2021.0,
             |base: &mut Baseline| base.trapezoid_contour = 50.1,
@@ -243,8 +252,23 @@ mod tests {
         ] {
             let mut late = late.clone();
             change(late.baseline.as_mut().expect("one"));
-            assert!(!report(vec![late]).text().contains(slow));
+            let report = report(vec![late]);
+            assert!(!report.text().contains(slow) && report.kept());
         }
+    }
+
+    #[test]
+    fn what_the_baseline_does_not_have_is_named() {
+        let mut alone = row("alone", 1.0, 1.0);
+        alone.baseline = None;
+        let named = "without a row of the baseline: 1: alone";
+        assert!(
+            report(vec![row("both", 1.0, 1.0), alone.clone()])
+                .text()
+                .contains(named)
+        );
+        // Without a baseline there is nothing to miss.
+        assert!(!report(vec![alone]).text().contains("without a row"));
     }
 
     #[test]

@@ -5,6 +5,7 @@ use shared::io::{ESTOP_CHANNELS, MotionCommand, MotionFeedback};
 use shared::motion::{MotionController, PathTickInput, ServoLoops};
 use shared::protocol::{Batch, Datagram, MotionSample, MotionTelemetry, PathState, Request, Response};
 use shared::ticks::SERVO_TICKS_PER_PATH_TICK;
+use shared::trajectory::BoardPlanning;
 
 #[derive(Clone)]
 pub struct MotionBoard {
@@ -12,6 +13,7 @@ pub struct MotionBoard {
     pub command: MotionCommand,
     servo: ServoLoops,
     pub controller: Box<MotionController>,
+    planning: Box<BoardPlanning>,
     ticks: u32,
     batch: Batch<MotionSample>,
     telemetry: Option<MotionTelemetry>,
@@ -30,6 +32,7 @@ impl MotionBoard {
             command: MotionCommand::SAFE,
             servo: ServoLoops::default(),
             controller: Box::new(MotionController::new()),
+            planning: Box::new(BoardPlanning::new()),
             ticks: 0,
             batch: Batch::default(),
             telemetry: None,
@@ -64,6 +67,7 @@ impl MotionBoard {
             self.servo.configure(setup);
         }
         self.servo.give(&output.order);
+        self.controller.plan(&mut self.planning);
         self.published = Some((output.path_state, output.sample));
         let full = self.batch.push(output.sample);
         self.telemetry = full.map(|samples| MotionTelemetry { samples });

@@ -25,7 +25,7 @@ impl MotionController {
     /// What there is room for now.
     pub(super) fn room(&self) -> Room {
         Room {
-            elements: self.planner.room() as u16,
+            elements: self.player.room() as u16,
             events: (EVENTS - self.path.events.len()) as u16,
         }
     }
@@ -51,9 +51,9 @@ impl MotionController {
         if !sound {
             return Err(Refusal::BadLimits);
         }
-        self.planner
+        self.player
             .start(&machine.plan_limits(limits), space, start_s, &self.axes);
-        self.planner.set_override(self.factor);
+        self.player.set_override(self.factor);
         self.path = LoadedPath {
             id,
             space,
@@ -85,10 +85,10 @@ impl MotionController {
             }
             self.check_start(&element)?;
             let (length, feed) = (element.length, element.feed);
-            self.planner.push(element)?;
+            self.player.push(element)?;
             if let (true, Some(machine)) = (feed > self.path.limits.velocity, &self.machine) {
                 self.path.limits.velocity = feed;
-                self.planner.keep(way_back(&self.path.limits, &machine.beams));
+                self.player.keep(way_back(&self.path.limits, &machine.beams));
             }
             self.path.elements += 1;
             self.path.end_s += length;

@@ -24,14 +24,14 @@ impl MotionController {
     /// Moves the references on along the path.
     pub(super) fn travel(&mut self) {
         let Some(machine) = &self.machine else { return };
-        let mut output = match self.planner.tick(&machine.kinematics) {
+        let mut output = match self.player.tick(&machine.kinematics) {
             Ok(output) => output,
             // The machine stands before a place that was looked at ahead; only one that shows between two such
             // places is met in motion.
             Err(place) => {
                 let [_, after, last] = self.along;
                 let stands = SpeedState::at_rest(last.s);
-                if self.planner.rested() && self.along != [stands; PUBLISHED as usize + 1] {
+                if self.player.rested() && self.along != [stands; PUBLISHED as usize + 1] {
                     // What is published has yet to come to rest there too.
                     self.along = [after, last, stands];
                     self.reference = MotorReference::at_rest(self.reference.position);
@@ -116,7 +116,7 @@ impl MotionController {
 
     fn go(&mut self, way: Way) {
         self.path.resting = 0;
-        self.planner.go(way);
+        self.player.go(way);
     }
 
     /// The machine stands, and what was published has caught up with it.

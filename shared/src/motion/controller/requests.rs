@@ -134,7 +134,7 @@ impl MotionController {
             return Err(Refusal::BadOverride);
         }
         self.factor = if factor < LEAST_OVERRIDE { 0.0 } else { factor };
-        self.planner.set_override(self.factor);
+        self.player.set_override(self.factor);
         Ok(())
     }
 

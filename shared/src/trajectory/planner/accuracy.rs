@@ -2,8 +2,8 @@
 
 use super::limits::{ACCURACY_ROW, Bounds};
 use super::node::{greater, lesser};
-use super::sample::{Ground, Sample};
-use super::track::Piece;
+use super::sample::Sample;
+use super::track::{Piece, Track};
 use crate::trajectory::{Join, Tolerance};
 use core::f64::consts::SQRT_2;
 
@@ -14,14 +14,14 @@ const UNSEEN: f64 = 0.75;
 /// Junctions on each side whose corners are looked at.
 const NEAR: u32 = 2;
 
-impl<const E: usize> Ground<'_, E> {
+impl<const E: usize> Track<E> {
     /// A mean over T is off by T²/24 of the acceleration across the path: limits the speed on curves, and the
     /// acceleration along the path next to corners. `serial` is the element there, and `attitude` how much the
     /// attitude bends.
-    pub fn keep_accurate(&self, sample: &mut Sample, attitude: f64, serial: u32) {
+    pub fn keep_accurate(&self, sample: &mut Sample, attitude: f64, serial: u32, bounds: &Bounds) {
         let mut corners = 0.0;
         for serial in serial.saturating_sub(NEAR - 1)..serial + NEAR + 1 {
-            if let Some(piece) = self.track.get(serial)
+            if let Some(piece) = self.get(serial)
                 && libm::fabs(sample.s - piece.start) < piece.corner.strained
             {
                 corners += piece.corner.strain;
@@ -30,19 +30,19 @@ impl<const E: usize> Ground<'_, E> {
         sample.first[ACCURACY_ROW] = (corners / HALF) as f32;
         sample.limit = f64::INFINITY;
         if sample.bend > 0.0 || attitude > 0.0 {
-            let tolerance = self.tolerance(serial);
+            let tolerance = self.tolerance(serial, bounds);
             let share = if corners > 0.0 { HALF } else { 1.0 };
             let used = greater(sample.bend / tolerance.position, attitude / tolerance.attitude);
-            sample.limit = share / (used * self.bounds.off);
+            sample.limit = share / (used * bounds.off);
         }
     }
 
     /// Tolerance of an element; one that ends in a stop has that of the one before it.
-    fn tolerance(&self, serial: u32) -> Tolerance {
-        let join = |serial: u32| self.track.get(serial).map(|piece| piece.element.join);
+    fn tolerance(&self, serial: u32, bounds: &Bounds) -> Tolerance {
+        let join = |serial: u32| self.get(serial).map(|piece| piece.element.join);
         match (join(serial), serial.checked_sub(1).and_then(join)) {
             (Some(Join::Blend(tolerance)), _) | (_, Some(Join::Blend(tolerance))) => tolerance,
-            _ => self.bounds.tolerance,
+            _ => bounds.tolerance,
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Where limits change along the path.
 
 use super::channels::{SAME, SMOOTH};
+use super::limits::Bounds;
 use super::node::{greater, lesser};
-use super::sample::Ground;
-use super::track::Piece;
+use super::track::{Piece, Track};
 use crate::trajectory::SHAPED;
 use nalgebra::Vector3;
 
@@ -49,20 +49,20 @@ pub(super) struct Search {
     next: Break,
 }
 
-impl<const E: usize> Ground<'_, E> {
+impl<const E: usize> Track<E> {
     /// Begins to look for the next change of limits from `s` on in a `direction`; `hint` is the serial of the element
     /// there.
-    pub fn search(&self, s: f64, direction: f64, hint: u32) -> Search {
+    pub fn search_breaks(&self, s: f64, direction: f64, hint: u32) -> Search {
         let forward = direction > 0.0;
-        let end = self.end(direction);
-        let stop = !forward || (self.track.closed() && end >= self.track.end_s() - SAME);
+        let end = self.end_in(direction);
+        let stop = !forward || (self.closed() && end >= self.end_s() - SAME);
         Search {
             s,
             forward,
             hint,
             seen: 0,
             way: 0.0,
-            door: DirectionRange::open(self.track.along(hint, s)),
+            door: DirectionRange::open(self.along(hint, s)),
             next: Break {
                 way: direction * (end - s),
                 real: stop,
@@ -79,7 +79,7 @@ impl<const E: usize> Ground<'_, E> {
     ///
     /// Junctions, corners and whole elements are passed over where the path is straight but for what nothing feels;
     /// so is the end of a corner inside which the search begins: intervals are halved until they follow it.
-    pub fn look(&self, search: &mut Search) -> Option<Break> {
+    pub fn look(&self, search: &mut Search, bounds: &Bounds) -> Option<Break> {
         let (s, hint, k) = (search.s, search.hint, search.seen);
         let next = &mut search.next;
         if k == MOST_LOOKS {
@@ -90,22 +90,18 @@ impl<const E: usize> Ground<'_, E> {
         }
         search.seen += 1;
         let beyond = if search.forward {
-            self.track.get(hint + k)
+            self.get(hint + k)
         } else {
-            hint.checked_sub(k).and_then(|serial| self.track.get(serial))
+            hint.checked_sub(k).and_then(|serial| self.get(serial))
         };
         let Some(element) = beyond else {
             return Some(*next);
         };
         let (length, feed) = (element.element.length, element.element.feed);
         let (way, corner, far) = if search.forward {
-            (
-                element.start - s,
-                Some(element),
-                self.track.junction(hint + k + 1),
-            )
+            (element.start - s, Some(element), self.junction(hint + k + 1))
         } else {
-            let corner = self.track.get(hint + 1 - k);
+            let corner = self.get(hint + 1 - k);
             (s - element.start - length, corner, element.place)
         };
         let seen = way + length;
@@ -113,7 +109,7 @@ impl<const E: usize> Ground<'_, E> {
         let alike = feed == next.feed || k == 0 || seen <= SHORT * slower;
         search.way = seen;
         let smooth = corner.is_none_or(|piece| !piece.stop && piece.corner.others <= SMOOTH);
-        let near = self.bounds.unfelt_way;
+        let near = bounds.unfelt_way;
         let on =
             alike && smooth && element.bend * length <= 8.0 * near && search.door.passes(seen, far, near);
         if let Some(piece) = corner {
@@ -130,7 +126,7 @@ impl<const E: usize> Ground<'_, E> {
                     return Some(*next);
                 }
                 if !on {
-                    return Some(self.at(piece, way, piece.stop && side == 0.0, *next));
+                    return Some(change(piece, way, piece.stop && side == 0.0, *next, bounds));
                 }
                 next.merged = true;
             }
@@ -142,31 +138,40 @@ impl<const E: usize> Ground<'_, E> {
         None
     }
 
-    /// The change of limits at the corner where `piece` begins; `end` is the one where all ends.
-    fn at(&self, piece: &Piece, way: f64, stop: bool, end: Break) -> Break {
-        let corner = &piece.corner;
-        let stop = stop || (end.stop && way >= end.way - SAME);
-        // ṡ² at which the acceleration is all used.
-        let passing = |acceleration: f64, jump: f64| match corner.half * jump > 0.0 {
-            true => 2.0 * acceleration * corner.half / jump,
-            false => f64::INFINITY,
-        };
-        let x = lesser(
-            passing(self.bounds.corner, corner.turn),
-            passing(self.bounds.spin, corner.others),
-        );
-        Break {
-            way,
-            real: true,
-            stop,
-            end: false,
-            speed: if stop {
-                0.0
-            } else {
-                lesser(libm::sqrt(x), piece.element.feed)
-            },
-            ..end
+    /// Path length where what is settled ends.
+    pub fn end_in(&self, direction: f64) -> f64 {
+        if direction > 0.0 {
+            self.settled_s()
+        } else {
+            self.kept_s()
         }
+    }
+}
+
+/// The change of limits at the corner where `piece` begins; `end` is the one where all ends.
+fn change(piece: &Piece, way: f64, stop: bool, end: Break, bounds: &Bounds) -> Break {
+    let corner = &piece.corner;
+    let stop = stop || (end.stop && way >= end.way - SAME);
+    // ṡ² at which the acceleration is all used.
+    let passing = |acceleration: f64, jump: f64| match corner.half * jump > 0.0 {
+        true => 2.0 * acceleration * corner.half / jump,
+        false => f64::INFINITY,
+    };
+    let x = lesser(
+        passing(bounds.corner, corner.turn),
+        passing(bounds.spin, corner.others),
+    );
+    Break {
+        way,
+        real: true,
+        stop,
+        end: false,
+        speed: if stop {
+            0.0
+        } else {
+            lesser(libm::sqrt(x), piece.element.feed)
+        },
+        ..end
     }
 }
 

@@ -4,6 +4,7 @@ use super::breaks::{Break, MOST_LOOKS, Search};
 use super::channels::SAME;
 use super::limits::{Bounds, ROWS};
 use super::node::{Lanes, Node, Nodes, Side, greater, highest, least, lesser, most};
+use super::player::PlayerAccess;
 use super::sample::{Ground, Sample};
 use crate::io::AXES;
 use crate::trajectory::{PathSpace, Unreachable};
@@ -132,22 +133,29 @@ impl Grid {
     ///
     /// Where the next change of limits is, what the path asks for after one, and an interval that is too long, are
     /// steps of their own.
-    pub fn extend<const E: usize, const N: usize>(
+    pub fn extend<P: PlayerAccess<E, N>, const E: usize, const N: usize>(
         &mut self,
-        ground: &Ground<E>,
+        ground: &mut Ground<P, E, N>,
         nodes: &mut Nodes<N>,
         in_force: u32,
     ) -> Result<u32, Unreachable> {
         let (direction, bounds) = (self.direction, ground.bounds);
-        let settled = direction * (ground.end(direction) - self.s);
-        if nodes.room() == 0 || settled <= SAME {
+        if nodes.room() == 0 {
             return Ok(0);
         }
-        let was = self.hint;
-        let Some(piece) = ground.track.find(self.s + direction * SAME, &mut self.hint) else {
+        let (was, beyond) = (self.hint, self.s + direction * SAME);
+        let (end, piece) = ground.player.with(|player| {
+            let end = player.track.end_in(direction);
+            let piece = player.track.find(beyond, &mut self.hint);
+            (
+                end,
+                piece.map(|piece| (piece.element.feed, piece.bend, piece.straight)),
+            )
+        });
+        let settled = direction * (end - self.s);
+        let (Some((feed, bend, is_line)), true) = (piece, settled > SAME) else {
             return Ok(0);
         };
-        let feed = piece.element.feed;
         let mut work = 0;
         // More may be settled than when the end was looked for.
         if self.next.is_none_or(|next| next.end && next.way < settled - SAME) {
@@ -176,7 +184,7 @@ impl Grid {
         });
         // Nothing changes along a line of axes between two changes of limits.
         let straight = from.is_straight(bounds);
-        let known = straight && !next.merged && piece.bend == 0.0 && ground.space == PathSpace::Axes;
+        let known = straight && !next.merged && bend == 0.0 && ground.space == PathSpace::Axes;
         let inside = delta * (1.0 - INSET);
         let sampled = to.is_some();
         let mut hint = self.hint;
@@ -189,7 +197,7 @@ impl Grid {
             None => self.sample(ground, inside, &mut hint)?,
         };
         let work = passed(was, hint) + EXTEND + if known { 0 } else { sampling(ground.space) };
-        let straight = straight && piece.straight && to.is_straight(bounds);
+        let straight = straight && is_line && to.is_straight(bounds);
         let mut halved = None;
         let mid = if straight {
             to
@@ -262,11 +270,21 @@ impl Grid {
     }
 
     /// Looks on for the next change of limits; says at how many junctions.
-    fn look<const E: usize>(&mut self, ground: &Ground<E>) -> u32 {
+    fn look<P: PlayerAccess<E, N>, const E: usize, const N: usize>(
+        &mut self,
+        ground: &mut Ground<P, E, N>,
+    ) -> u32 {
         let begun = self.search.take();
-        let mut search = begun.unwrap_or_else(|| ground.search(self.s, self.direction, self.hint));
+        let (s, direction, hint, bounds) = (self.s, self.direction, self.hint, ground.bounds);
+        let mut search = begun.unwrap_or_else(|| {
+            ground
+                .player
+                .with(|player| player.track.search_breaks(s, direction, hint))
+        });
         for looks in 1..=LOOKS {
-            self.next = ground.look(&mut search);
+            self.next = ground
+                .player
+                .with(|player| player.track.look(&mut search, bounds));
             if self.next.is_some() {
                 return looks;
             }
@@ -277,9 +295,9 @@ impl Grid {
 
     /// What the path asks for after a `way` from the newest node, and the axes there; `hint` is left at the serial of
     /// the element there.
-    fn sample<const E: usize>(
+    fn sample<P: PlayerAccess<E, N>, const E: usize, const N: usize>(
         &self,
-        ground: &Ground<E>,
+        ground: &mut Ground<P, E, N>,
         way: f64,
         hint: &mut u32,
     ) -> Result<(Sample, [f64; AXES]), Unreachable> {

@@ -7,7 +7,7 @@
 
 use super::limits::Bounds;
 use super::node::{Lanes, Nodes, REST, pause};
-use super::player::Player;
+use super::plan::Place;
 use super::split::split;
 use crate::ticks::PATH_PERIOD_S;
 
@@ -73,8 +73,8 @@ pub(super) enum Phase {
     Forward(u32),
     /// The making smaller of boxes, by itself, has come to this node.
     Repair(u32),
-    /// The plan is whole and good.
-    Take,
+    /// The plan is whole and good, and waits to be taken.
+    Whole,
 }
 
 /// What a plan is for.
@@ -134,6 +134,8 @@ pub(super) struct Horizon {
     pub(super) scaled: bool,
     /// The plan in force is one to stop.
     stopping: bool,
+    /// The last split put nodes in after this one, whose serial was so before it.
+    pub(super) moved_to: u32,
     /// Feed override of the plan in force.
     factor: f64,
     /// Work on the plan being made, and what plans have taken for each node, in the mean.
@@ -183,6 +185,7 @@ impl Horizon {
         scaled: false,
         reach_changed: false,
         stopping: false,
+        moved_to: 0,
         factor: 1.0,
         spent: 0,
         work_of_node: WORK_OF_NODE,
@@ -212,6 +215,22 @@ impl Horizon {
         self.in_force
     }
 
+    /// A plan is being made.
+    pub fn plans(&self) -> bool {
+        !matches!(self.phase, Phase::Waiting | Phase::Whole)
+    }
+
+    /// A plan is whole, and not taken yet.
+    pub fn is_whole(&self) -> bool {
+        self.phase == Phase::Whole
+    }
+
+    /// The plan in force rests at node `last`, which need not be where it was told to.
+    pub fn come_to(&mut self, last: u32) {
+        self.stopping &= self.in_force == last;
+        self.in_force = last;
+    }
+
     /// A plan being made is of no use when the machine is to be slower than that; one for a lower override is finished,
     /// else an override that keeps falling would never be obeyed.
     pub fn obey(&mut self, wanted: PlanRequest) {
@@ -239,13 +258,17 @@ impl Horizon {
     pub fn begin<const N: usize>(
         &mut self,
         nodes: &mut Nodes<N>,
-        player: &mut Player,
+        player: &mut Place,
         rested: bool,
         wanted: PlanRequest,
         bounds: &Bounds,
     ) -> bool {
         // On the way to node `next`, reached in `left`.
-        let left = player.left(nodes, self.in_force);
+        let left = if player.node < self.in_force {
+            nodes.at(player.node).lasts - player.time
+        } else {
+            0.0
+        };
         let mut next = (player.node + 1).min(self.in_force);
         let goes_on = self.goes_on(&wanted);
         if wanted.factor != self.wanted.factor {
@@ -294,8 +317,9 @@ impl Horizon {
         let tight = TIGHT * time_of(work) + 2.0 * PATH_PERIOD_S;
         let lead = until.clamp(tight, libm::fmax(tight, MARGIN * time_of(work)));
         if !goes_on {
-            let more = split(nodes, [next, self.in_force], left, lead, bounds);
+            let (interval, more) = split(nodes, [next, self.in_force], left, lead, bounds);
             player.node -= more;
+            self.moved_to = interval;
             (next, slowing) = (next - more, slowing - more);
             if last <= next {
                 return false;
@@ -421,7 +445,7 @@ impl Horizon {
     /// Goes on with the plan being made for as long as there is `most` work; says how much it was.
     pub fn run<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds, most: u32) -> u32 {
         self.work = 0;
-        while !self.waiting() && self.work + self.step_work() <= most {
+        while self.plans() && self.work + self.step_work() <= most {
             self.visit(nodes, bounds);
         }
         self.spent += self.work;
@@ -431,29 +455,32 @@ impl Horizon {
     /// Most work that the next step may be.
     fn step_work(&self) -> u32 {
         match self.phase {
-            Phase::Take => self.taking(),
             Phase::Forward(_) | Phase::Repair(_) => FORWARD_STEP,
             Phase::Back(_) => BACK_STEP,
             Phase::Brake(_) => BRAKE_STEP,
             Phase::Settle(_) => SETTLE_STEP,
-            Phase::Waiting | Phase::Ready(_) => SHORT_STEP,
+            Phase::Waiting | Phase::Whole | Phase::Ready(_) => SHORT_STEP,
         }
     }
 
-    /// Work of taking the plan over.
-    fn taking(&self) -> u32 {
-        (self.last - self.lowest) / TAKEN_FOR_ONE + 1
+    /// ṡ² and the time to the next of node `i`, in the plan that is whole.
+    pub fn whole<const N: usize>(&self, nodes: &Nodes<N>, i: u32, bounds: &Bounds) -> (f64, f64) {
+        let node = nodes.at(i);
+        let x = if i > self.lowest { node.trial } else { node.x };
+        if i < self.lowest || i >= self.last {
+            return (x, node.lasts);
+        }
+        let next = nodes.at(i + 1);
+        (x, next.time - pause(next, bounds) - node.time)
     }
 
-    pub(super) fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
-        for i in self.lowest..self.last {
-            let next = nodes.at_mut(i + 1);
-            next.x = next.trial;
-            let end = next.time - pause(next, bounds);
+    /// The plan that is whole was taken.
+    pub fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+        for i in self.lowest..=self.last {
+            let (x, lasts) = self.whole(nodes, i, bounds);
             let node = nodes.at_mut(i);
-            node.lasts = end - node.time;
+            (node.x, node.lasts) = (x, lasts);
         }
-        self.work += self.taking();
         if !self.wanted.stop {
             let more = f64::from(self.spent) / f64::from(self.last - self.start) - self.work_of_node;
             self.work_of_node += if more > 0.0 { RISE } else { FALL } * more;

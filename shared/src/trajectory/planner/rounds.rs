@@ -24,8 +24,7 @@ impl Horizon {
     /// One visit of one node, or a step from one pass to the next.
     pub(super) fn visit<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
         match self.phase {
-            Phase::Waiting => {}
-            Phase::Take => self.take(nodes, bounds),
+            Phase::Waiting | Phase::Whole => {}
             Phase::Brake(i) => self.brake(nodes, i, bounds),
             Phase::Settle(i) => self.shape(nodes, i, bounds),
             Phase::Ready(i) => self.ready(nodes, i, bounds),
@@ -35,7 +34,7 @@ impl Horizon {
             }
             Phase::Back(i) => {
                 if self.round > 0 && !self.braking && self.is_good() {
-                    self.phase = Phase::Take;
+                    self.phase = Phase::Whole;
                 } else if is_too_fast(nodes, i) {
                     self.too_fast(nodes);
                 } else if self.round == ROUNDS {
@@ -57,7 +56,7 @@ impl Horizon {
             }
             Phase::Repair(i) => {
                 if self.is_good() {
-                    self.phase = Phase::Take;
+                    self.phase = Phase::Whole;
                 } else if self.scaled || self.round == ROUNDS {
                     self.last_resort(nodes, bounds);
                 } else {

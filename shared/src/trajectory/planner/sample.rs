@@ -3,7 +3,7 @@
 use super::channels::{POSE_CHANNELS, attitude_norm, position_norm};
 use super::limits::{Bounds, PATH_ROW, ROWS};
 use super::node::{Lanes, highest};
-use super::track::Track;
+use super::player::PlayerAccess;
 use crate::io::AXES;
 use crate::kinematics::Kinematics;
 use crate::trajectory::reference::at_unit_speed;
@@ -14,8 +14,8 @@ use core::array::from_fn;
 const NO_BEND: f32 = 1e-6;
 
 /// What the grid is made of.
-pub(super) struct Ground<'a, const E: usize> {
-    pub track: &'a Track<E>,
+pub(super) struct Ground<'a, P: PlayerAccess<E, N>, const E: usize, const N: usize> {
+    pub player: &'a mut P,
     pub space: PathSpace,
     pub kinematics: &'a Kinematics,
     pub bounds: &'a Bounds,
@@ -37,11 +37,11 @@ pub(super) struct Sample {
     pub bend: f64,
 }
 
-impl<const E: usize> Ground<'_, E> {
+impl<P: PlayerAccess<E, N>, const E: usize, const N: usize> Ground<'_, P, E, N> {
     /// What the path asks for at `s`, where nodes lead in a `direction`, and the axes there, nearest to `near`.
     /// The element is looked for from `hint`, which is left there.
     pub fn sample(
-        &self,
+        &mut self,
         s: f64,
         direction: f64,
         hint: &mut u32,
@@ -53,52 +53,50 @@ impl<const E: usize> Ground<'_, E> {
         }
     }
 
-    /// The same by the first `N` channels.
-    fn sample_of<const N: usize>(
-        &self,
+    /// The same by the first `C` channels.
+    fn sample_of<const C: usize>(
+        &mut self,
         s: f64,
         direction: f64,
         hint: &mut u32,
         near: &[f64; AXES],
     ) -> Result<(Sample, [f64; AXES]), Unreachable> {
+        let bounds = self.bounds;
+        let seen = self.player.with(|player| {
+            let track = &player.track;
+            let piece = track.find(s, hint)?;
+            let (feed, line) = (piece.element.feed, piece.element.line);
+            let point = track.at::<C>(s, hint)?;
+            let mut sample = Sample {
+                s,
+                first: [0.0; ROWS],
+                second: [0.0; ROWS],
+                feed: feed * feed,
+                limit: f64::INFINITY,
+                bend: position_norm(&point.second),
+            };
+            track.keep_accurate(&mut sample, attitude_norm(&point.second), *hint, bounds);
+            Some((sample, point, line))
+        });
         let nowhere = |line| move |source| Unreachable { line, s, source };
-        let empty = ReferenceError::EmptyPath;
-        let piece = self.track.find(s, hint).ok_or(empty).map_err(nowhere(0))?;
-        let (feed, line) = (piece.element.feed, piece.element.line);
-        let point = self.track.at::<N>(s, hint).ok_or(empty).map_err(nowhere(line))?;
+        let (mut sample, point, line) = seen.ok_or(ReferenceError::EmptyPath).map_err(nowhere(0))?;
         let axes = at_unit_speed(self.kinematics, &point, self.space, near).map_err(nowhere(line))?;
-        let mut sample = Sample {
-            s,
-            first: [0.0; ROWS],
-            second: [0.0; ROWS],
-            feed: feed * feed,
-            limit: f64::INFINITY,
-            bend: position_norm(&point.second),
-        };
         sample.first[PATH_ROW] = 1.0;
         for axis in 0..AXES {
             sample.first[PATH_ROW + 1 + axis] = (direction * axes.velocity[axis]) as f32;
             sample.second[PATH_ROW + 1 + axis] = axes.acceleration[axis] as f32;
         }
-        self.keep_accurate(&mut sample, attitude_norm(&point.second), *hint);
         Ok((sample, axes.position))
     }
 
     /// The same at `s`, not far from the place of `from`, where only corners make a difference; `serial` is the element
     /// there.
-    pub fn farther(&self, from: &Sample, s: f64, serial: u32) -> Sample {
+    pub fn farther(&mut self, from: &Sample, s: f64, serial: u32) -> Sample {
         let mut sample = Sample { s, ..*from };
-        self.keep_accurate(&mut sample, 0.0, serial);
+        let bounds = self.bounds;
+        self.player
+            .with(|player| player.track.keep_accurate(&mut sample, 0.0, serial, bounds));
         sample
-    }
-
-    /// Path length where what is settled ends.
-    pub fn end(&self, direction: f64) -> f64 {
-        if direction > 0.0 {
-            self.track.settled_s()
-        } else {
-            self.track.kept_s()
-        }
     }
 }
 

@@ -21,36 +21,36 @@ const SLIVER: f64 = 1e-3;
 
 /// Splits the interval in which the plan in force is `lead` \[s\] from now, if it lasts long: there, and at some
 /// places beyond, where the machine can slow down. The player is on the way to node `player`, reached in `left` \[s\]
-/// from now; the plan ends at node `last`. Says how many nodes there are more: so much less are the serials of all
-/// nodes up to the start of that interval, and those beyond are as they were.
+/// from now; the plan ends at node `last`. Says at which node that interval began, and how many nodes there are more:
+/// so much less are the serials of all nodes up to that one, and those beyond are as they were.
 pub(super) fn split<const N: usize>(
     nodes: &mut Nodes<N>,
     [player, last]: [u32; 2],
     left: f64,
     lead: f64,
     bounds: &Bounds,
-) -> u32 {
+) -> (u32, u32) {
     let (mut end, mut time) = (player, left);
     while end < last && time < lead {
         time += nodes.at(end).lasts;
         end += 1;
     }
+    let interval = end.saturating_sub(1);
     if end == nodes.first || time < lead + libm::fmax(lead, LATE) {
-        return 0;
+        return (interval, 0);
     }
-    let interval = end - 1;
     let after = lead + SPARE * PATH_PERIOD_S - (time - nodes.at(interval).lasts);
     let (places, count) = places(nodes.at(interval), nodes.at(end), after, bounds);
     let oldest = nodes.before(player - 1, nodes.first, KEPT * bounds.filter);
     if interval - oldest > MOST_MOVED {
-        return 0;
+        return (interval, 0);
     }
     if nodes.room() < count {
         nodes.first = oldest;
     }
     let count = count.min(nodes.room()).min(nodes.first as usize);
     insert(nodes, interval, &places[..count], bounds);
-    count as u32
+    (interval, count as u32)
 }
 
 /// Where an interval is split, as distances from its start, and how many of them there are: the first is `after`
@@ -164,7 +164,7 @@ fn side(whole: &Node, at: f64, delta: f64, [a, x]: [f64; 2], bounds: &Bounds) ->
 
 #[cfg(test)]
 mod tests {
-    use super::super::player::Player;
+    use super::super::plan::{Knot, Place, Plan};
     use super::*;
     use proptest::prelude::*;
 
@@ -203,6 +203,17 @@ mod tests {
         nodes
     }
 
+    /// The plan in force, from node `from` on.
+    fn plan(nodes: &Nodes<16>, from: u32) -> Plan<16> {
+        let mut plan = Plan::NONE;
+        plan.last = nodes.end - 1;
+        for serial in from..nodes.end {
+            let node = nodes.at(serial);
+            plan.set(serial, Knot::of(node, (node.x, node.lasts)));
+        }
+        plan
+    }
+
     proptest! {
         /// The same places at the same times, and the plan in force is inside the limits of every part.
         #[test]
@@ -211,13 +222,14 @@ mod tests {
             rates in prop::array::uniform2([0.5..2.0f32, -0.3..0.3f32]),
         ) {
             let mut after = nodes(x, rates);
-            let mut player = Player::at(after.first + 2);
+            let mut player = Place::at(after.first + 2);
             let before = after.clone();
             let mut was = player;
             let last = after.end - 1;
-            let left = player.left(&after, last);
-            let more = split(&mut after, [last, last], left, lead, &Bounds::NONE);
+            let left = after.at(player.node).lasts;
+            let (interval, more) = split(&mut after, [last, last], left, lead, &Bounds::NONE);
             prop_assert!(more > 0);
+            prop_assert_eq!(interval, player.node);
             player.node -= more;
             prop_assert_eq!(after.end, before.end);
             let mut time = 0.0;
@@ -233,10 +245,11 @@ mod tests {
             }
             prop_assert!((time - left).abs() < 1e-12);
             prop_assert!(after.at(player.node).lasts >= lead);
+            let [before, after] = [plan(&before, was.node), plan(&after, player.node)];
             for _ in 0..(1000.0 * left) as u32 {
-                was.step(&before, last, 0);
-                player.step(&after, last, 0);
-                let (old, new) = (was.state(&before, last), player.state(&after, last));
+                was.step(&before, 0);
+                player.step(&after, 0);
+                let (old, new) = (was.state(&before), player.state(&after));
                 prop_assert!((old.s - new.s).abs() < 1e-12 && (old.v - new.v).abs() < 1e-12, "{old:?} {new:?}");
                 prop_assert!((old.a - new.a).abs() < 1e-9);
             }

@@ -1,6 +1,7 @@
 //! Short programs, run to their end and judged by the positions that come out.
 
 extern crate std;
+use super::limits::Bounds;
 use super::*;
 use crate::geometry::{Arc, Line, Turn};
 use crate::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};

@@ -1,0 +1,85 @@
+//! Many random programs with hands at the controls, on every machine: so many that they are a command of their own
+//! (`cargo xtask bench hands`). The same programs as in [`random`](super::random), but for their seeds; all that fails is
+//! told, not only the first.
+
+use super::bench::{self, Bench};
+use super::random::{any_acts, frame, moves, verdict};
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{RngSeed, TestRunner};
+use std::fmt::Debug;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Environment: how many programs, and the seed of the first.
+const PROGRAMS: &str = "HANDS_PROGRAMS";
+const SEED: &str = "HANDS_SEED";
+
+fn number(name: &str, otherwise: u64) -> u64 {
+    std::env::var(name).map_or(otherwise, |text| text.parse().expect(name))
+}
+
+fn value<S: Strategy>(strategy: &S, runner: &mut TestRunner) -> S::Value
+where
+    S::Value: Debug,
+{
+    strategy.new_tree(runner).expect("nothing is filtered").current()
+}
+
+/// The program of a `seed`, with hands at the controls: how long its slowest hold took, as a share of what it may, or what
+/// is wrong with how it runs.
+fn one(seed: u64) -> Result<f64, String> {
+    let mut runner = TestRunner::new(ProptestConfig {
+        rng_seed: RngSeed::Fixed(seed),
+        ..ProptestConfig::default()
+    });
+    let bench: Bench = match seed % 6 {
+        0 => bench::dual_beam(),
+        1 => bench::pipe_welder(),
+        2 => bench::ac_head(),
+        3 => bench::wire_arc(),
+        4 => bench::stir_gantry(),
+        _ => bench::axes(&value(&frame(), &mut runner)),
+    };
+    let (moves, acts) = (value(&moves(), &mut runner), value(&any_acts(), &mut runner));
+    let result = catch_unwind(AssertUnwindSafe(|| verdict(&bench, &moves, &acts)));
+    let wrong = match result {
+        Ok(Ok(verdict)) if verdict.faults().is_empty() => return Ok(verdict.hold.value),
+        Ok(Ok(verdict)) => verdict.faults().join("; "),
+        Ok(Err(stuck)) => stuck.to_string(),
+        Err(_) => "it panics".to_owned(),
+    };
+    Err(format!("seed {seed}: {wrong}"))
+}
+
+#[test]
+#[ignore = "as many programs as HANDS_PROGRAMS says, 1000 otherwise, from seed HANDS_SEED on: minutes"]
+fn many() {
+    let (programs, first) = (number(PROGRAMS, 1000), number(SEED, 0));
+    let next = AtomicU64::new(first);
+    let holds = Mutex::new(Vec::new());
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                loop {
+                    let seed = next.fetch_add(1, Ordering::Relaxed);
+                    if seed >= first + programs {
+                        break;
+                    }
+                    match one(seed) {
+                        Ok(hold) => holds.lock().expect("no panic").push(hold),
+                        Err(wrong) => println!("{wrong}"),
+                    }
+                }
+            });
+        }
+    });
+    let holds = holds.into_inner().expect("no panic");
+    let failed = programs - holds.len() as u64;
+    let held: Vec<f64> = holds.into_iter().filter(|hold| *hold > 0.0).collect();
+    let mean = held.iter().sum::<f64>() / held.len().max(1) as f64;
+    println!("{failed} of {programs} programs failed; a hold took {mean:.4} of the time it may, in the mean");
+    assert_eq!(failed, 0);
+}
