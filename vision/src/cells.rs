@@ -22,9 +22,6 @@ const FILTERED: f64 = 0.75;
 /// Half the way over which the fall of the light is taken \[mm\].
 const LIGHT_MM: f32 = 0.0276;
 
-/// Brightness over the mean of its column below which a cell shows no plate: it ends before, or something dark lies on it.
-const DARK: f32 = 0.25;
-
 /// Energies of one level, column after column.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
@@ -53,8 +50,6 @@ pub(crate) struct Cells {
     levels: Vec<u32>,
     /// A row after the (1, 2, 1) filter.
     smooth: Vec<i16>,
-    /// Mean level of each cell.
-    light: Vec<f32>,
     /// Sum of the levels of the usable cells in a column, and their number.
     columns_light: Vec<[f32; 2]>,
 }
@@ -81,7 +76,6 @@ impl Cells {
             squares: vec![0; layer.columns],
             levels: vec![0; layer.columns],
             smooth: vec![0; layer.columns],
-            light: vec![0.0; columns * stride],
             columns_light: vec![[0.0; 2]; columns],
         }
     }
@@ -116,7 +110,6 @@ impl Cells {
                 let level = levels.iter().sum::<u32>() as f32 * per_level;
                 let square = squares.iter().sum::<u32>() as f32 * per_square;
                 let place = column * self.stride + cell_row;
-                self.light[place] = level;
                 if level > self.usable[0] && level < self.usable[1] {
                     let one = 1.0 / (level * level);
                     let variance = self.pixel_noise.variance(level);
@@ -130,22 +123,7 @@ impl Cells {
                 }
             }
         }
-        self.leave_out_dark();
         self.allow_for_light();
-    }
-
-    /// Takes the say from cells that are dark beside others of their column.
-    fn leave_out_dark(&mut self) {
-        for (column, [sum, count]) in self.columns_light.iter().enumerate() {
-            let least = DARK * sum / count.max(1.0);
-            let cells = column * self.stride..column * self.stride + self.rows;
-            let noise = &mut self.noise[cells.clone()];
-            for (noise, light) in noise.iter_mut().zip(&self.light[cells]) {
-                if *light < least {
-                    *noise = SILENT;
-                }
-            }
-        }
     }
 
     /// Adds to the noise what light that changes across the picture makes of a surface without texture: near the root of

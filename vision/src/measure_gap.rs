@@ -263,7 +263,8 @@ impl Detector {
         }
     }
 
-    /// Brightness of the darker plate over that of the brighter one, and how unevenly dark the gap is.
+    /// Brightness of the darker plate over that of the brighter one, how unevenly dark the gap is, and what its ledges may move
+    /// the middle by \[mm\].
     fn both_sides(&mut self, best: &Candidate, step_mm: f64) -> [f64; 3] {
         let g = self.layer().pitch_mm;
         let lights = self.strip.lights(best.edges, SPOILT_MM / g, PLATE_MM / g);
@@ -334,6 +335,13 @@ impl Detector {
         let from_border =
             (middle - edges.width / 2.0).min(layer.columns as f64 - 1.0 - middle - edges.width / 2.0);
         let half_view_mm = layer.rows as f64 * g / 2.0;
+        let even = ramp(both[1], UNEVEN[0], UNEVEN[1]);
+        // What no ledge explains is blur: the band is not where the gap is sharp.
+        let interior = if both[2] > 0.0 {
+            even.max(ramp(both[2], UNSURE_MM[0], UNSURE_MM[1]))
+        } else {
+            even
+        };
         let others = [
             (Criterion::Depth, ramp(best.depth, DEPTH[0], DEPTH[1])),
             (Criterion::Emptiness, best.interior.emptiness(best.expected)),
@@ -346,10 +354,7 @@ impl Detector {
             (Criterion::Height, ramp(measured.sigma.height_mm, 0.028, 0.010)),
             (Criterion::Width, ramp(edges.width * g, 0.006, 0.012)),
             (Criterion::Sides, ramp(both[0], DIM[0], DIM[1])),
-            (
-                Criterion::Interior,
-                ramp(both[1], UNEVEN[0], UNEVEN[1]).max(ramp(both[2], UNSURE_MM[0], UNSURE_MM[1])),
-            ),
+            (Criterion::Interior, interior),
             (Criterion::Border, ramp(from_border * g, 0.010, 0.030)),
             (
                 Criterion::Band,

@@ -133,33 +133,6 @@ fn ends_near_the_band_are_seen_where_they_are() {
     assert!(p95 < 2.2, "{p95}");
 }
 
-/// 0.1 to 0.2 mm from the band, where the blurred end of the plates is in the rows the height is measured by: what is seen where
-/// there is no plate must not be taken for a plate out of focus.
-#[test]
-fn heights_hold_beside_the_end_of_the_plates() {
-    for magnification in [2.0, 4.0] {
-        let optics = camera(magnification);
-        let mut detector = detector(optics);
-        let mut renderer = TruthRenderer::new(optics, NOISE, 1).unwrap();
-        let (mut pictures, mut worst) = (0, 0.0_f64);
-        for seed in 700..724 {
-            let mut scene = random_joint(&[Effect::Plain], &optics, NOISE, seed);
-            let mut random = SplitMix64::new(seed);
-            let way = random.between(0.1, 0.2) * if random.chance(0.5) { 1.0 } else { -1.0 };
-            let at = end(&mut scene, Ended::BothPlates, way, &mut random);
-            let pixels = renderer.render(&scene, seed);
-            if let Some((travel, _)) = seen(&mut detector, &pixels) {
-                pictures += 1;
-                worst = worst.max((travel - (at - way)).abs());
-            }
-        }
-        assert!(
-            pictures >= 12 && worst < 0.025,
-            "{magnification}×: {worst} of {pictures}"
-        );
-    }
-}
-
 /// Anywhere in the picture of the shipped lens, but for 0.35 mm at its border, by the renderer of simulated cameras.
 #[test]
 fn plates_that_end_anywhere_in_the_picture_are_seen() {

@@ -26,6 +26,9 @@ const SHARP_PIXELS: f64 = 0.6;
 /// Plate whose brightness an edge should rise to: from an edge so far \[mm\].
 const PLATE_MM: [f64; 2] = [0.04, 0.10];
 
+/// Narrowest ledge inside a gap: what is narrower may be blur \[mm\].
+const LEDGE_MM: f64 = 0.006;
+
 /// Columns of the narrowest gap.
 const NARROWEST: f64 = 2.0;
 
@@ -179,7 +182,8 @@ pub(crate) fn ledges(strip: &Strip, gap: &Candidate, blur_mm: f64, least: f64, p
     let level = between([bottom, 1.0], least as f32);
     [0, 1].map(|side| {
         let begins = crossing(quiet, from, side, level).unwrap_or(gap.edges[side]);
-        ((gap.edges[side] - begins).abs() * pitch_mm - INSIDE_MM - blur_mm).max(0.0)
+        let width = (gap.edges[side] - begins).abs() * pitch_mm - INSIDE_MM - blur_mm;
+        if width < LEDGE_MM { 0.0 } else { width }
     })
 }
 
