@@ -78,6 +78,16 @@ const ROLLED_MM: f64 = 0.0015;
 /// Iterations: on half resolution, on both, with the gap left out.
 const ITERATIONS: [usize; 3] = [6, 3, 8];
 
+/// What the two sides of a gap look like.
+struct Sides {
+    /// Brightness of the darker plate over that of the brighter one.
+    ratio: f64,
+    /// How unevenly dark the gap is.
+    uneven: f64,
+    /// What ledges in the gap may move the middle by \[mm\]; 0 without any.
+    unsure_mm: f64,
+}
+
 impl Detector {
     /// Measures a gap in a plate.
     pub(crate) fn measure_gap(&mut self, prior: &Prior) -> Report {
@@ -121,8 +131,8 @@ impl Detector {
         }
         match seam {
             Some((edges, best, second)) => {
-                let both = self.both_sides(&best, at[2]);
-                self.seam(&at, &fitness, line, &edges, &best, second, both)
+                let sides = self.both_sides(&best, at[2]);
+                self.seam(&at, &fitness, line, &edges, &best, second, sides)
             }
             None => Report {
                 status: Status::NoSeam,
@@ -263,9 +273,8 @@ impl Detector {
         }
     }
 
-    /// Brightness of the darker plate over that of the brighter one, how unevenly dark the gap is, and what its ledges may move
-    /// the middle by \[mm\].
-    fn both_sides(&mut self, best: &Candidate, step_mm: f64) -> [f64; 3] {
+    /// The sides of a gap, whose plates are a step apart.
+    fn both_sides(&mut self, best: &Candidate, step_mm: f64) -> Sides {
         let g = self.layer().pitch_mm;
         let lights = self.strip.lights(best.edges, SPOILT_MM / g, PLATE_MM / g);
         let ratio = match lights {
@@ -276,7 +285,11 @@ impl Detector {
         let blur = self.optics.aperture * step_mm.abs() / 2.0 / self.optics.tilt_rad.cos();
         let uneven = unevenness(&self.strip.quiet, best, blur, g).unwrap_or(0.0);
         let ledges = ledges(&self.strip, best, blur, UNEVEN[1], g);
-        [ratio, uneven, ledges[0].hypot(ledges[1]) / 12f64.sqrt()]
+        Sides {
+            ratio,
+            uneven,
+            unsure_mm: ledges[0].hypot(ledges[1]) / 12f64.sqrt(),
+        }
     }
 
     /// Band and gap.
@@ -288,7 +301,7 @@ impl Detector {
         edges: &Edges,
         best: &Candidate,
         second: Option<Candidate>,
-        both: [f64; 3],
+        sides: Sides,
     ) -> Report {
         let layer = self.layer();
         let g = layer.pitch_mm;
@@ -315,7 +328,7 @@ impl Detector {
         let edge = edges.residual * g / (edges.readings as f64).sqrt();
         measured.sigma = Sigma {
             lateral_mm: (ROUGH * edge.hypot(FLOOR_MM))
-                .hypot((SOFT * left.hypot(right) / 2.0).max(both[2]))
+                .hypot((SOFT * left.hypot(right) / 2.0).max(sides.unsure_mm))
                 .hypot(ROLLED_MM),
             height_mm: (HONEST * variance.max(0.0).sqrt()).hypot(HEIGHT_MM),
             width_mm: (ROUGH * (2.0 * edge).hypot(4.0 * FLOOR_MM))
@@ -335,10 +348,10 @@ impl Detector {
         let from_border =
             (middle - edges.width / 2.0).min(layer.columns as f64 - 1.0 - middle - edges.width / 2.0);
         let half_view_mm = layer.rows as f64 * g / 2.0;
-        let even = ramp(both[1], UNEVEN[0], UNEVEN[1]);
+        let even = ramp(sides.uneven, UNEVEN[0], UNEVEN[1]);
         // What no ledge explains is blur: the band is not where the gap is sharp.
-        let interior = if both[2] > 0.0 {
-            even.max(ramp(both[2], UNSURE_MM[0], UNSURE_MM[1]))
+        let interior = if sides.unsure_mm > 0.0 {
+            even.max(ramp(sides.unsure_mm, UNSURE_MM[0], UNSURE_MM[1]))
         } else {
             even
         };
@@ -353,7 +366,7 @@ impl Detector {
             (Criterion::Continuity, ramp(best.continuity, 0.45, 0.75)),
             (Criterion::Height, ramp(measured.sigma.height_mm, 0.028, 0.010)),
             (Criterion::Width, ramp(edges.width * g, 0.006, 0.012)),
-            (Criterion::Sides, ramp(both[0], DIM[0], DIM[1])),
+            (Criterion::Sides, ramp(sides.ratio, DIM[0], DIM[1])),
             (Criterion::Interior, interior),
             (Criterion::Border, ramp(from_border * g, 0.010, 0.030)),
             (

@@ -63,3 +63,19 @@ fn the_border_of_spatter_is_not_taken_for_an_edge() {
     let wrong = wrong.count();
     assert!(wrong <= 2, "{wrong} of 80");
 }
+
+/// Of 40 gaps each with chamfers on both sides or a burr 36 are measured, their middle within 0.02 mm.
+#[test]
+fn chamfers_and_burrs_do_not_hide_the_gap() {
+    for effect in [Effect::Chamfers, Effect::Burr] {
+        let mut accepted = 0;
+        for (scene, seen) in measured(joints(effect, 40)) {
+            let truth = scene.truth(&OPTICS).expect("a truth");
+            let Some(seen) = seen else { continue };
+            accepted += 1;
+            let off = seen.lateral_mm - truth.centre_mm;
+            assert!(off.abs() < 0.02, "{effect:?}: {off}");
+        }
+        assert!(accepted >= 36, "{effect:?}: {accepted} of 40");
+    }
+}
