@@ -1,101 +1,145 @@
-//! Braking, or how slow the machine can be: the speeds that a plan to stop, or one for a lower override, is not below.
+//! Braking: the speeds of a plan to stop, or of one for a lower override, until they have come down.
 //!
-//! First forward in time, from the commit to rest: at every node the lowest acceleration that the boxes and
-//! the past allow. Where all speeds have come down to the programmed ones, the plan settles; from there back
-//! in time, so that the acceleration is let go in time too. If that does not lead back to the speed at the
-//! commit, it settles later.
+//! Forward in time from the commit, at every node the lowest acceleration that the boxes and the past allow. At the end of
+//! that the acceleration has to go: where the limit of jerk does not allow this at once, it is let go from an earlier
+//! node on, the last from which it is in time.
 
-use super::horizon::{Horizon, LEAST_WINDOW, Phase};
-use super::jerk_limit::LOOK;
+use super::horizon::{Horizon, LEAST_WINDOW, Phase, VISIT};
 use super::limits::{Bounds, PATH_ROW, ROWS};
 use super::node::{Lanes, Node, Nodes, least, most, pause};
-use super::rounds::{ITERATION, OPEN, REACH};
-use super::scan::{lowest, reach};
+use super::scan::lowest;
+use super::split::part;
 
-/// Work of a step forward, and of one back beside the search for a reach; nodes looked at for a unit of it.
-const BRAKE: u32 = 5;
-const LET_GO: u32 = 5;
-const LOOKED_AT_FOR_ONE: u32 = 16;
-/// Share of ṡ² at the commit that may be too much,
-const SPARE: f64 = 0.02;
-/// share of what is too much that is taken away, and the most of ṡ² at the last interval.
-const TRIMMED: f64 = 0.9;
-const MOST_TRIMMED: f64 = 0.75;
 /// Share of ṡ² that rounding leaves.
 const ROUNDED: f64 = 1e-5;
+/// Share of the most that an acceleration may change at once with which the machine comes to rest. The rest is for rates
+/// that change on the way.
+const LAST: f32 = 0.95;
+/// Shares of that: less if it can only be let go late.
+const GENTLER: [f32; 4] = [1.0, 0.5, 0.25, 0.125];
+/// Share of an interval, or of ṡ² at its start, that is left over where it might as well have ended: a rest is not put so near
+/// to a node.
+const SLIVER: f64 = 1e-3;
+
+/// An interval that was cut where the machine comes to rest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    /// The node where it begins.
+    node: u32,
+    /// That and the next, as they were.
+    were: [Node; 2],
+}
 
 impl Horizon {
     /// The lowest speed at the node after `i`, until that is rest.
     pub(super) fn brake<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
         if i == self.commit {
+            self.mend(nodes);
             (self.away, self.settled) = (self.history, self.commit);
         }
         let node = nodes.at(i);
-        let ends = i == self.in_force() || i > self.commit && node.limit <= 0.0;
         if node.brake > node.cap_of_feed() {
             self.settled = i + 1;
         }
-        if node.brake > 0.0 && !ends {
+        if node.brake > 0.0 {
             self.slow_down(nodes, i, bounds);
             self.phase = Phase::Brake(i + 1);
-        } else if node.brake > 0.0 {
-            // The plan in force is not faster than it has to be.
-            self.give_up();
-        } else {
-            for later in self.settled..=self.in_force() {
-                let node = nodes.at_mut(later);
-                node.brake = 0.0;
-                if later >= i {
-                    node.floor = f32::NEG_INFINITY;
-                }
-            }
-            if !self.wanted.stop {
-                // Nodes far beyond would only take time now; they are planned when it is obeyed.
-                let near = i.max(self.settled) + LEAST_WINDOW;
-                if near < self.last && nodes.at(near - 1).limit > 0.0 {
-                    self.last = near;
-                }
-            }
-            self.trim = None;
-            self.settle(nodes, self.settled);
+            return;
         }
+        self.braked = i;
+        if self.settled > self.commit {
+            self.phase = Phase::Release(self.late(nodes, bounds));
+        } else {
+            self.end_brake(nodes, bounds);
+        }
+    }
+
+    /// The last node from which the acceleration can be let go in time, if the rates of the rows do not change on the way.
+    fn late<const N: usize>(&mut self, nodes: &Nodes<N>, bounds: &Bounds) -> u32 {
+        let mut from = self.settled - 1;
+        while from > self.commit {
+            self.work += 1;
+            let node = nodes.at(from);
+            let change = f64::from(most_change(node, bounds));
+            let a = f64::from(node.sides[0].allowed[PATH_ROW]);
+            let goal = if self.wanted.stop { 0.0 } else { node.cap_of_feed() };
+            // From there on with a jerk of `change` in the filter's length, down to `change`.
+            let way_down = 0.5 * (a * a / change - change) * bounds.filter;
+            if libm::sqrt(node.brake) >= libm::sqrt(goal) + way_down {
+                break;
+            }
+            from -= 1;
+        }
+        from
+    }
+
+    /// Tries to let go of the acceleration from node `from` on, or else earlier.
+    pub(super) fn release<const N: usize>(&mut self, nodes: &mut Nodes<N>, from: u32, bounds: &Bounds) {
+        // Where even the commit is late, the rest has to come later.
+        let gentle = if from > self.commit {
+            &GENTLER[..1]
+        } else {
+            &GENTLER
+        };
+        if gentle
+            .iter()
+            .any(|share| self.release_from(nodes, from, share * LAST, bounds))
+        {
+            self.end_brake(nodes, bounds);
+        } else if from > self.commit {
+            self.phase = Phase::Release(from - 1);
+        } else {
+            self.give_up(nodes);
+        }
+    }
+
+    /// Begins the round of passes that looks whether what was found is good.
+    fn end_brake<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+        if self.wanted.stop {
+            self.last = self.settled;
+            self.next_round(nodes, bounds);
+            return;
+        }
+        let beyond = self.settled + 1;
+        for later in beyond..=self.braked.max(beyond).min(self.in_force()) {
+            nodes.at_mut(later).brake = 0.0;
+        }
+        // Nodes far beyond would only take time now; they are planned when it is obeyed.
+        let near = self.braked.max(self.settled) + LEAST_WINDOW;
+        if near < self.last && nodes.at(near - 1).limit > 0.0 {
+            self.last = near;
+        }
+        nodes.at_mut(self.last).reach = 0.0;
+        self.phase = Phase::Back(self.last);
     }
 
     /// One step of it.
     fn slow_down<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
-        self.work += BRAKE;
+        self.work += VISIT;
         self.open(nodes, i, bounds);
-        nodes.at_mut(i).floor = f32::NEG_INFINITY;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let x = node.brake;
-        let per_length = 2.0 * node.delta;
         let boxes = lowest(node, x);
         let end = |a: f32| {
-            let end = x + per_length * f64::from(a);
-            if end > ROUNDED * x { end } else { 0.0 }
+            let end = x + 2.0 * node.delta * f64::from(a);
+            if end > ROUNDED * x {
+                libm::fmin(end, next.x)
+            } else {
+                0.0
+            }
         };
-        let speed = libm::sqrt(x);
-        let passes = |end: f64| node.time + per_length / (speed + libm::sqrt(end));
         let from = node.time - bounds.filter;
-        let to = libm::fmin(passes(end(boxes)) - bounds.filter, node.time);
+        let to = libm::fmin(passes(node, end(boxes)) - bounds.filter, node.time);
         while self.away < i && nodes.at(self.away + 1).time <= from {
             self.away += 1;
         }
         let was = self.along_path(nodes, [self.away, i], [from, to], bounds);
         // The plan in force has kept to what the past demands.
-        let in_force = ((next.x - node.x) / per_length) as f32;
+        let in_force = ((next.x - node.x) / (2.0 * node.delta)) as f32;
         let floor = least(demanded(node, &was, bounds), most(in_force, 0.0));
-        let a = most(boxes, floor);
-        let (brake, time) = (end(a), passes(end(a)) + pause(next, bounds));
-        let next = nodes.at_mut(i + 1);
-        (next.brake, next.time) = (brake, time);
-        let node = nodes.at_mut(i);
-        if floor > boxes {
-            node.floor = floor;
-        }
-        for side in &mut node.sides {
-            side.allowed = side.accelerations(a, x as f32);
-        }
+        let x = end(most(boxes, floor));
+        nodes.at_mut(i).floor = floor;
+        go_to(nodes, i, x, bounds);
     }
 
     /// Opens the boxes of node `i`, once: they were made for continuing.
@@ -104,118 +148,108 @@ impl Horizon {
             return;
         }
         self.opened = i + 1;
-        self.work += OPEN;
+        self.work += 1;
         for side in &mut nodes.at_mut(i).sides {
             side.open(bounds);
         }
     }
 
-    /// Begins to let go of the acceleration before node `settled`.
-    fn settle<const N: usize>(&mut self, nodes: &mut Nodes<N>, settled: u32) {
-        self.settled = settled;
-        if self.wanted.stop {
-            self.last = settled;
-        }
-        let node = nodes.at_mut(settled);
-        if settled > self.commit {
-            (node.brake, node.time) = (node.cap_of_feed(), 0.0);
-        }
-        self.away = settled;
-        self.phase = Phase::Settle(settled);
-    }
-
-    /// The highest speed at the node before `i` from which the machine settles in time.
-    pub(super) fn shape<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
-        if i > self.commit {
-            self.let_go(nodes, i - 1, bounds);
-            self.phase = Phase::Settle(i - 1);
-            return;
-        }
-        let (node, settled) = (nodes.at(i), self.settled);
-        let lacks = node.x - node.brake;
-        if settled > i && lacks > ROUNDED * node.x {
-            if self.trim.is_some_and(|trim| trim > 0.0) {
-                self.trim = Some(0.0);
-                self.settle(nodes, settled);
-            } else {
-                self.trim = None;
-                self.settle_later(nodes, lacks, bounds);
+    /// Lets go of the acceleration from node `from` on, down to a `share` of what may change to none at once. Says whether
+    /// the speed has come down with no more than may change so, for as long as the output filter remembers.
+    fn release_from<const N: usize>(
+        &mut self,
+        nodes: &mut Nodes<N>,
+        from: u32,
+        share: f32,
+        bounds: &Bounds,
+    ) -> bool {
+        let mut away = from;
+        for i in from..self.in_force() {
+            self.work += VISIT / 2;
+            self.open(nodes, i, bounds);
+            let (node, next) = (nodes.at(i), nodes.at(i + 1));
+            let (x, change) = (node.brake, most_change(node, bounds));
+            let since = node.time - bounds.filter;
+            while away > self.history && nodes.at(away).time > since {
+                away -= 1;
             }
-            return;
+            let until = since + passes(node, x) - node.time;
+            let highest = self.strongest(nodes, [away, i], until) + change;
+            let floor = if i < self.braked {
+                node.floor
+            } else {
+                f32::NEG_INFINITY
+            };
+            let a = most(most(least(highest, -share * change), floor), lowest(node, x));
+            let goal = if self.wanted.stop { 0.0 } else { next.cap_of_feed() };
+            let end = libm::fmin(x + 2.0 * node.delta * f64::from(a), next.x);
+            if end > goal + SLIVER * x {
+                go_to(nodes, i, end, bounds);
+                continue;
+            }
+            let end_x = libm::fmin(goal, next.x);
+            if self.wanted.stop && end < 0.0 {
+                self.cut(nodes, i, x / f64::from(-2.0 * a), bounds);
+            }
+            go_to(nodes, i, end_x, bounds);
+            let arrived = nodes.at(i + 1).time - pause(nodes.at(i + 1), bounds);
+            while away < i && nodes.at(away + 1).time <= arrived - bounds.filter {
+                away += 1;
+            }
+            if -self.strongest(nodes, [away, i + 1], arrived) <= change {
+                self.settled = i + 1;
+                return true;
+            }
+            self.mend(nodes);
+            return false;
         }
-        if settled > i + 1 && self.trim.is_none() && -lacks > SPARE * node.x {
-            // What is too much is best taken from the last interval.
-            let falls = nodes.at(settled - 1).brake - nodes.at(settled).brake;
-            self.trim = Some(libm::fmin(-TRIMMED * lacks, MOST_TRIMMED * falls));
-            self.settle(nodes, settled);
-            return;
-        }
-        nodes.at_mut(i).brake = nodes.at(i).x;
-        nodes.at_mut(self.last).reach = 0.0;
-        self.phase = Phase::Back(self.last);
+        false
     }
 
-    fn settle_later<const N: usize>(&mut self, nodes: &mut Nodes<N>, lacks: f64, bounds: &Bounds) {
-        let mut steepest = 0.0;
-        for i in self.commit..self.settled {
-            steepest = most(steepest, -nodes.at(i).sides[0].allowed[PATH_ROW]);
+    /// The strongest slowing down of braking in the intervals from the first node to the second that begin no later than
+    /// a time; none is 0.
+    fn strongest<const N: usize>(&mut self, nodes: &Nodes<N>, [first, beyond]: [u32; 2], until: f64) -> f32 {
+        self.work += beyond - first;
+        (first..beyond)
+            .map(|i| nodes.at(i))
+            .take_while(|node| node.time <= until)
+            .fold(0.0, |strongest, node| {
+                least(strongest, node.sides[0].allowed[PATH_ROW])
+            })
+    }
+
+    /// Cuts the interval of node `i`, so that the next one is `way` from it.
+    fn cut<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, way: f64, bounds: &Bounds) {
+        let (whole, end) = (*nodes.at(i), *nodes.at(i + 1));
+        if way >= (1.0 - SLIVER) * whole.delta {
+            return;
         }
-        self.work += (self.settled - self.commit) / LOOKED_AT_FOR_ONE;
-        let mut way = 0.5 * lacks / f64::from(steepest);
-        let mut settled = self.settled;
-        let end = if self.wanted.stop {
-            self.in_force()
-        } else {
-            self.last - 1
-        };
-        while way > 0.0 && settled < end && nodes.at(settled).limit > 0.0 {
-            self.open(nodes, settled, bounds);
-            way -= nodes.at(settled).delta;
-            settled += 1;
-        }
-        if settled == self.settled {
-            self.give_up();
-        } else {
-            self.settle(nodes, settled);
+        self.cut = Some(Cut {
+            node: i,
+            were: [whole, end],
+        });
+        *nodes.at_mut(i) = part(&whole, &end, [0.0, way], bounds);
+        nodes.at_mut(i).sides[0] = whole.sides[0];
+        *nodes.at_mut(i + 1) = part(&whole, &end, [way, whole.delta], bounds);
+    }
+
+    /// Makes an interval whole again that was cut.
+    pub(super) fn mend<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
+        if let Some(cut) = self.cut.take() {
+            let [mut whole, end] = cut.were;
+            whole.sides[0] = nodes.at(cut.node).sides[0];
+            *nodes.at_mut(cut.node) = whole;
+            *nodes.at_mut(cut.node + 1) = end;
         }
     }
 
-    /// One step of it.
-    fn let_go<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
-        let (node, next) = (nodes.at(i), nodes.at(i + 1));
-        let speed = libm::sqrt(next.brake);
-        let length = 2.0 * node.delta;
-        let first = i == self.commit;
-        let most_x = if first { 1.5 * node.x } else { node.x };
-        let (mut x, iterations) = reach(node, next.brake, most_x, node.floor);
-        self.work += LET_GO + REACH + iterations * ITERATION;
-        let lasts = length / (speed + libm::sqrt(x));
-        let from = libm::fmax(next.time - lasts + bounds.filter, next.time);
-        let to = next.time + bounds.filter;
-        while self.away > i + 1 && nodes.at(self.away).time > from {
-            self.away -= 1;
-        }
-        let will = self.along_path(nodes, [self.away, self.settled], [from, to], bounds);
-        let floor = most(node.floor, least(demanded(node, &will, bounds), 0.0));
-        if ((next.brake - x) / length) < f64::from(floor) {
-            let iterations;
-            (x, iterations) = reach(node, next.brake, most_x, floor);
-            self.work += REACH + iterations * ITERATION;
-        }
-        if i + 1 == self.settled {
-            x -= self.trim.unwrap_or(0.0);
-        }
-        let time = next.time - length / (speed + libm::sqrt(x));
-        let a = ((next.brake - x) / length) as f32;
-        let node = nodes.at_mut(i);
-        node.brake = x;
-        if !first {
-            // Else it is that of the past.
-            node.time = time;
-        }
-        for side in &mut node.sides {
-            side.allowed = side.accelerations(a, x as f32);
-        }
+    /// The plan with a cut interval was taken: the node where it ended comes after the new one. Says how much work that
+    /// was.
+    pub(super) fn keep_cut<const N: usize>(&mut self, nodes: &mut Nodes<N>) -> u32 {
+        self.cut.take().map_or(0, |cut| {
+            nodes.insert(cut.node + 2, cut.were[1]);
+            nodes.end - cut.node
+        })
     }
 
     /// Lowest and highest accelerations of the rows by that along the path, in the intervals from the first node to
@@ -239,7 +273,7 @@ impl Horizon {
         }
         let mut i = first;
         while i < beyond && nodes.at(i).time <= to {
-            self.work += LOOK;
+            self.work += 1;
             for side in &nodes.at(i).sides {
                 include(&side.alpha, side.allowed[PATH_ROW]);
             }
@@ -267,4 +301,35 @@ fn demanded(node: &Node, other: &[Lanes; 2], bounds: &Bounds) -> f32 {
         }
     }
     least(a, other[1][PATH_ROW])
+}
+
+/// By how much a may change at once in the interval of `node`.
+fn most_change(node: &Node, bounds: &Bounds) -> f32 {
+    let mut change = f32::INFINITY;
+    for side in &node.sides {
+        for row in 0..ROWS {
+            change = least(change, bounds.acceleration_change[row] / side.alpha[row].abs());
+        }
+    }
+    change
+}
+
+/// When the interval of `node` ends, if it begins with the speed of braking, and ends with ṡ² = `x`.
+fn passes(node: &Node, x: f64) -> f64 {
+    node.time + 2.0 * node.delta / (libm::sqrt(node.brake) + libm::sqrt(x))
+}
+
+/// Braking goes from node `i` to ṡ² = `x` at the next one.
+fn go_to<const N: usize>(nodes: &mut Nodes<N>, i: u32, x: f64, bounds: &Bounds) {
+    let node = nodes.at(i);
+    let a = ((x - node.brake) / (2.0 * node.delta)) as f32;
+    let (from, time) = (
+        node.brake as f32,
+        passes(node, x) + pause(nodes.at(i + 1), bounds),
+    );
+    for side in &mut nodes.at_mut(i).sides {
+        side.allowed = side.accelerations(a, from);
+    }
+    let next = nodes.at_mut(i + 1);
+    (next.brake, next.time) = (x, time);
 }

@@ -1,7 +1,8 @@
 //! Where nodes stand: dense where limits change, far apart where they do not.
 
-use super::breaks::{Break, MOST_LOOKS, Search};
+use super::breaks::{Break, Search};
 use super::channels::SAME;
+use super::horizon::VISIT;
 use super::limits::{Bounds, ROWS};
 use super::node::{Lanes, Node, Nodes, Side, greater, highest, least, lesser, most};
 use super::player::PlayerAccess;
@@ -31,13 +32,6 @@ const STRAIGHT: f32 = 0.06;
 const INSET: f64 = 1e-4;
 /// Most times that an interval is halved to follow the limits.
 const HALVINGS: u32 = 6;
-/// Work to try an interval, for a sample, and for a junction looked at, in hundreds of instructions of a PC.
-const EXTEND: u32 = 12;
-const SAMPLE: u32 = 7;
-const SAMPLE_OF_TOOL: u32 = 20;
-const LOOK: u32 = 2;
-/// Elements passed over for one more.
-const PASSED_FOR_ONE: u32 = 2;
 /// Junctions looked at in one go.
 const LOOKS: u32 = 6;
 
@@ -140,10 +134,10 @@ impl Grid {
         in_force: u32,
     ) -> Result<u32, Unreachable> {
         let (direction, bounds) = (self.direction, ground.bounds);
-        if nodes.room() == 0 {
+        if nodes.is_full() {
             return Ok(0);
         }
-        let (was, beyond) = (self.hint, self.s + direction * SAME);
+        let beyond = self.s + direction * SAME;
         let (end, piece) = ground.player.with(|player| {
             let end = player.track.end_in(direction);
             let piece = player.track.find(beyond, &mut self.hint);
@@ -159,7 +153,8 @@ impl Grid {
         let mut work = 0;
         // More may be settled than when the end was looked for.
         if self.next.is_none_or(|next| next.end && next.way < settled - SAME) {
-            work = passed(was, self.hint) + LOOK * self.look(ground);
+            self.look(ground);
+            work = 2 * VISIT;
         }
         let Some(next) = self.next else {
             return Ok(work);
@@ -196,7 +191,7 @@ impl Grid {
             }
             None => self.sample(ground, inside, &mut hint)?,
         };
-        let work = passed(was, hint) + EXTEND + if known { 0 } else { sampling(ground.space) };
+        let work = 2 * VISIT + if known { 0 } else { sampling(ground.space) };
         let straight = straight && is_line && to.is_straight(bounds);
         let mut halved = None;
         let mid = if straight {
@@ -269,11 +264,8 @@ impl Grid {
         Ok(work)
     }
 
-    /// Looks on for the next change of limits; says at how many junctions.
-    fn look<P: PlayerAccess<E, N>, const E: usize, const N: usize>(
-        &mut self,
-        ground: &mut Ground<P, E, N>,
-    ) -> u32 {
+    /// Looks on for the next change of limits.
+    fn look<P: PlayerAccess<E, N>, const E: usize, const N: usize>(&mut self, ground: &mut Ground<P, E, N>) {
         let begun = self.search.take();
         let (s, direction, hint, bounds) = (self.s, self.direction, self.hint, ground.bounds);
         let mut search = begun.unwrap_or_else(|| {
@@ -281,16 +273,15 @@ impl Grid {
                 .player
                 .with(|player| player.track.search_breaks(s, direction, hint))
         });
-        for looks in 1..=LOOKS {
+        for _ in 0..LOOKS {
             self.next = ground
                 .player
                 .with(|player| player.track.look(&mut search, bounds));
             if self.next.is_some() {
-                return looks;
+                return;
             }
         }
         self.search = Some(search);
-        LOOKS
     }
 
     /// What the path asks for after a `way` from the newest node, and the axes there; `hint` is left at the serial of
@@ -306,20 +297,11 @@ impl Grid {
     }
 }
 
-/// Most work of one step.
-pub(super) fn most_work(space: PathSpace) -> u32 {
-    EXTEND.max(LOOKS * LOOK) + sampling(space) + MOST_LOOKS / PASSED_FOR_ONE
-}
-
-/// Work of passing over elements.
-fn passed(from: u32, to: u32) -> u32 {
-    from.abs_diff(to) / PASSED_FOR_ONE
-}
-
+/// Work of a sample: through the kinematics as much as five visits to nodes.
 fn sampling(space: PathSpace) -> u32 {
     match space {
-        PathSpace::Axes => SAMPLE,
-        PathSpace::Tool => SAMPLE_OF_TOOL,
+        PathSpace::Axes => VISIT,
+        PathSpace::Tool => 5 * VISIT,
     }
 }
 

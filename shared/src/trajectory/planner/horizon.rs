@@ -5,14 +5,18 @@
 //! difference of the accelerations at t and one filter length before, divided by that length; where that is too
 //! much, the boxes are made smaller, and the passes repeated.
 
+use super::braking::Cut;
 use super::limits::Bounds;
 use super::node::{Lanes, Nodes, REST, pause};
 use super::plan::Place;
 use super::split::split;
 use crate::ticks::PATH_PERIOD_S;
 
-/// Work of planning in one tick, in hundreds of instructions of a PC.
-pub(super) const WORK: u32 = 95;
+/// Work of planning in one turn. Work is counted in looks at an interval, that is at its rows at both ends; the last step
+/// of a turn may go beyond it. Twice as much is more than a board has time for; half as much slows dense programs down.
+pub(super) const WORK: u32 = 190;
+/// Work of a visit to a node, beside the intervals that it looks at.
+pub(super) const VISIT: u32 = 6;
 /// Rounds in which boxes may also grow.
 const RELAXED: u32 = 2;
 /// Most nodes that a plan goes beyond the one in force, and the fewest if it has them.
@@ -44,18 +48,6 @@ const FALL: f64 = 0.125;
 /// Largest factor of the time that a plan is given.
 const MOST_PATIENCE: u32 = 8;
 
-/// Most work of a step of the pass forward or of a repair, of the pass back, and of the two that look for how slow the
-/// machine can be, but for rare ones; that of all others.
-const FORWARD_STEP: u32 = 11;
-const BACK_STEP: u32 = 27;
-const BRAKE_STEP: u32 = 12;
-const SETTLE_STEP: u32 = 26;
-const SHORT_STEP: u32 = 3;
-/// Work of a node of the plan in force that stays as it is.
-const READY: u32 = 2;
-/// Nodes taken over for a unit of work.
-pub(super) const TAKEN_FOR_ONE: u32 = 6;
-
 /// What the planner does next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Phase {
@@ -65,8 +57,8 @@ pub(super) enum Phase {
     Ready(u32),
     /// The search for the lowest speeds that are possible has come to this node.
     Brake(u32),
-    /// What shapes the end of the slowing has come to this node.
-    Settle(u32),
+    /// It is tried to let go of the acceleration from this node on.
+    Release(u32),
     /// The pass back has come to this node.
     Back(u32),
     /// The pass forward has come to this node.
@@ -124,8 +116,10 @@ pub(super) struct Horizon {
     pub(super) settled: u32,
     /// First node whose boxes are still those of the plan in force.
     pub(super) opened: u32,
-    /// How much ṡ² is lower before it than it could be, if that was looked for.
-    pub(super) trim: Option<f64>,
+    /// Where the search for the lowest speeds has come to rest.
+    pub(super) braked: u32,
+    /// The interval at whose end the machine comes to rest, if it was cut for that.
+    pub(super) cut: Option<Cut>,
     /// Speeds have to come down below those of the plan in force.
     pub(super) braking: bool,
     /// The reach of the node looked at last is not as in the round before.
@@ -180,7 +174,8 @@ impl Horizon {
         },
         settled: 0,
         opened: 0,
-        trim: None,
+        braked: 0,
+        cut: None,
         braking: false,
         scaled: false,
         reach_changed: false,
@@ -233,10 +228,11 @@ impl Horizon {
 
     /// A plan being made is of no use when the machine is to be slower than that; one for a lower override is finished,
     /// else an override that keeps falling would never be obeyed.
-    pub fn obey(&mut self, wanted: PlanRequest) {
+    pub fn obey<const N: usize>(&mut self, nodes: &mut Nodes<N>, wanted: PlanRequest) {
         let faster = self.wanted.factor >= self.factor || wanted.stop;
         if wanted.factor < self.wanted.factor && faster {
             self.phase = Phase::Waiting;
+            self.mend(nodes);
         }
     }
 
@@ -250,7 +246,8 @@ impl Horizon {
         self.early > 0
     }
 
-    fn goes_on(&self, wanted: &PlanRequest) -> bool {
+    /// The plan in force is for what is wanted.
+    pub fn goes_on(&self, wanted: &PlanRequest) -> bool {
         !wanted.stop && wanted.factor == self.factor
     }
 
@@ -309,9 +306,11 @@ impl Horizon {
             // Where the machine creeps there is time for any number.
             last = ends(last.min(self.in_force.saturating_add(LEAST_WINDOW.max(beyond))));
         }
+        // A lower override reaches some way beyond where it is obeyed.
+        let most = if slower { 2 * LEAST_WINDOW } else { u32::MAX };
         let work = match wanted.stop {
             true => f64::from(self.patience) * WORK_OF_STOP,
-            false => f64::from(last - slowing) * work_of_node,
+            false => f64::from((last - slowing).min(most)) * work_of_node,
         };
         // It should be ready before the slowing begins.
         let tight = TIGHT * time_of(work) + 2.0 * PATH_PERIOD_S;
@@ -326,7 +325,7 @@ impl Horizon {
             }
         }
         let earliest = nodes.before(slowing, next, SLACK * bounds.filter);
-        let commit = self.commit(nodes, next, left, lead, earliest);
+        let commit = self.commit(nodes, next, left, lead, earliest, wanted.stop);
         if wanted.stop && nodes.at(commit).x <= 0.0 {
             // The machine comes to rest there anyway; now it stays.
             (self.in_force, self.stopping) = (commit, true);
@@ -371,6 +370,7 @@ impl Horizon {
         left: f64,
         lead: f64,
         earliest: u32,
+        stop: bool,
     ) -> u32 {
         let after = |lead: f64, earliest: u32| {
             let (mut commit, mut time) = (player, left);
@@ -381,11 +381,16 @@ impl Horizon {
             (commit, time)
         };
         let (commit, time) = after(lead, earliest);
-        if commit == self.in_force && time < lead {
-            // Little is left: there must be time to continue without a stop.
-            return after(0.6 * time, player).0;
+        if commit < self.in_force || stop {
+            return commit;
         }
-        commit
+        // Little is left: there must be time to continue without a stop.
+        let sooner = after(0.6 * time, player).0;
+        let before = player.max(self.in_force - 1);
+        match sooner > before && time - nodes.at(before).lasts >= 0.6 * lead {
+            true => before,
+            false => sooner,
+        }
     }
 
     /// Times and accelerations up to the start are as they are.
@@ -394,7 +399,7 @@ impl Horizon {
             self.restart(nodes);
             return;
         }
-        self.work += READY;
+        self.work += 1;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let (x, end) = (node.x, next.x);
         let time = node.time + node.lasts + pause(next, bounds);
@@ -428,14 +433,15 @@ impl Horizon {
     }
 
     /// Gives up the plan being made if the player has come to where it begins.
-    pub fn watch(&mut self, player: u32) {
+    pub fn watch<const N: usize>(&mut self, nodes: &mut Nodes<N>, player: u32) {
         let stands = player == self.commit && player == self.in_force;
         if self.phase != Phase::Waiting && player >= self.commit && !stands {
-            self.give_up();
+            self.give_up(nodes);
         }
     }
 
-    pub(super) fn give_up(&mut self) {
+    pub(super) fn give_up<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
+        self.mend(nodes);
         self.given_up += 1;
         self.relaxed = 0;
         self.patience = (2 * self.patience).min(MOST_PATIENCE);
@@ -445,22 +451,11 @@ impl Horizon {
     /// Goes on with the plan being made for as long as there is `most` work; says how much it was.
     pub fn run<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds, most: u32) -> u32 {
         self.work = 0;
-        while self.plans() && self.work + self.step_work() <= most {
+        while self.plans() && self.work < most {
             self.visit(nodes, bounds);
         }
         self.spent += self.work;
         self.work
-    }
-
-    /// Most work that the next step may be.
-    fn step_work(&self) -> u32 {
-        match self.phase {
-            Phase::Forward(_) | Phase::Repair(_) => FORWARD_STEP,
-            Phase::Back(_) => BACK_STEP,
-            Phase::Brake(_) => BRAKE_STEP,
-            Phase::Settle(_) => SETTLE_STEP,
-            Phase::Waiting | Phase::Whole | Phase::Ready(_) => SHORT_STEP,
-        }
     }
 
     /// ṡ² and the time to the next of node `i`, in the plan that is whole.
@@ -474,8 +469,8 @@ impl Horizon {
         (x, next.time - pause(next, bounds) - node.time)
     }
 
-    /// The plan that is whole was taken.
-    pub fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+    /// The plan that is whole was taken; says how much work that was.
+    pub fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) -> u32 {
         for i in self.lowest..=self.last {
             let (x, lasts) = self.whole(nodes, i, bounds);
             let node = nodes.at_mut(i);
@@ -485,6 +480,7 @@ impl Horizon {
             let more = f64::from(self.spent) / f64::from(self.last - self.start) - self.work_of_node;
             self.work_of_node += if more > 0.0 { RISE } else { FALL } * more;
         }
+        let work = self.keep_cut(nodes);
         self.in_force = self.last;
         self.taken += 1;
         self.relaxed = RELAXED;
@@ -492,6 +488,7 @@ impl Horizon {
         self.stopping = self.wanted.stop;
         self.factor = self.wanted.factor;
         self.phase = Phase::Waiting;
+        work
     }
 }
 

@@ -1,27 +1,23 @@
 //! The limit of jerk: how far the acceleration of a row may differ from itself one filter length away, and boxes made to
 //! fit.
 
-use super::horizon::Horizon;
+use super::horizon::{Horizon, VISIT};
 use super::limits::{Bounds, ROWS};
 use super::node::{Lanes, Nodes, REST, least, most, pause};
 use super::scan::advance;
 
-/// Work of a step of the pass forward, of a repair, of another box in it, and of each interval one filter length away
-/// that they look at.
-const FORWARD: u32 = 7;
-const REPAIR: u32 = 6;
-const RESIZE: u32 = 3;
-pub(super) const LOOK: u32 = 1;
 /// Least ṡ² at the end of an interval, as a share of that at its start and of what is possible.
 const CREEP: f64 = 1e-3;
 
 impl Horizon {
     /// Speed, time and accelerations of the interval of node `i`, and what its past allows them to be.
     pub(super) fn forward<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
-        self.work += FORWARD;
+        self.work += VISIT;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let x = if self.scaled {
             next.trial
+        } else if self.braking && i < self.settled {
+            next.brake
         } else {
             // Boxes may ask for all but a rest where there is none: it would not end.
             let x = advance(node, node.trial, next.reach);
@@ -49,18 +45,27 @@ impl Horizon {
         }
         self.shift = leaves - after.time;
         (after.trial, after.speed, after.time) = (x, speed, leaves);
+        let rests = i + 1 == self.last || leaves > time;
         for (side, wanted) in nodes.at_mut(i).sides.iter_mut().zip(wanted) {
             side.allowed = self.clamp(&wanted, &was, bounds);
             if let Some(alone) = &alone {
                 side.allowed = self.clamp(&side.allowed, alone, bounds);
             }
         }
+        if rests {
+            let mut first = self.away;
+            while first < i && nodes.at(first + 1).time <= time - bounds.filter {
+                first += 1;
+            }
+            let was = self.room(nodes, [first, i + 1], [time - bounds.filter, time], bounds);
+            self.clamp(&REST, &was, bounds);
+        }
     }
 
     /// What the future allows the accelerations of node `i` to be; changes its boxes by that and its past, and
     /// says whether it did.
     pub(super) fn repair<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) -> bool {
-        self.work += REPAIR;
+        self.work += VISIT;
         let (node, next) = (nodes.at(i), nodes.at(i + 1));
         let end = next.time - pause(next, bounds);
         let a = ((next.trial - node.trial) / (2.0 * node.delta)) as f32;
@@ -84,7 +89,6 @@ impl Horizon {
                 place.shrink(&is, &by_past, &by_future, bounds),
             ] {
                 changed |= resized;
-                self.work += u32::from(resized) * RESIZE;
             }
         }
         changed
@@ -149,7 +153,7 @@ impl Horizon {
             include(&REST);
         }
         while i < beyond {
-            self.work += LOOK;
+            self.work += 1;
             let (node, next) = (nodes.at(i), nodes.at(i + 1));
             let end = next.time - pause(next, bounds);
             if node.time <= to && end >= from {

@@ -34,6 +34,17 @@ impl PlanLimits {
             tolerance,
         }
     }
+
+    /// Length of the output filter \[s\].
+    pub fn filter_s(&self) -> f64 {
+        Bounds::build(self).filter
+    }
+
+    /// By how much the output filter is off for each unit of acceleration across the path, as a share of what it may be,
+    /// times the tolerance of the path there \[s²\].
+    pub fn filter_off(&self) -> f64 {
+        Bounds::build(self).off
+    }
 }
 
 /// Most ticks that the output filter averages over.

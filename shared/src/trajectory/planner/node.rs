@@ -301,6 +301,11 @@ impl<const N: usize> Nodes<N> {
         N - (self.end - self.first) as usize
     }
 
+    /// No node can be appended: the last place is for where a hold comes to rest.
+    pub fn is_full(&self) -> bool {
+        self.room() <= 1
+    }
+
     /// Forgets all after node `serial`.
     pub fn cut(&mut self, serial: u32) {
         self.end = serial + 1;
@@ -308,6 +313,18 @@ impl<const N: usize> Nodes<N> {
 
     pub fn push(&mut self, node: Node) {
         self.ring[self.end as usize % N] = node;
+        self.end += 1;
+    }
+
+    /// Puts a node at `serial`; those from there on get the next serials.
+    pub fn insert(&mut self, serial: u32, node: Node) {
+        if self.room() == 0 {
+            self.first += 1;
+        }
+        for later in (serial..self.end).rev() {
+            *self.at_mut(later + 1) = *self.at(later);
+        }
+        *self.at_mut(serial) = node;
         self.end += 1;
     }
 

@@ -162,6 +162,11 @@ impl Place {
         }
     }
 
+    /// The plan leads back along the path from there.
+    pub fn leads_back<const N: usize>(&self, plan: &Plan<N>) -> bool {
+        self.node < plan.last && plan.at(self.node).direction < 0
+    }
+
     /// Where the plan is there, and its speed.
     pub fn state<const N: usize>(&self, plan: &Plan<N>) -> SpeedState {
         let from = plan.at(self.node);

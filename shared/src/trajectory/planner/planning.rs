@@ -5,8 +5,8 @@
 //! before the next tick, whatever they were interrupted by.
 
 use super::Way;
-use super::grid::{Grid, most_work};
-use super::horizon::{Horizon, PlanRequest, WINDOW, WORK};
+use super::grid::Grid;
+use super::horizon::{Horizon, PlanRequest, VISIT, WINDOW, WORK};
 use super::limits::Bounds;
 use super::node::Nodes;
 use super::plan::{Knot, Place, Plan};
@@ -16,11 +16,8 @@ use crate::io::AXES;
 use crate::kinematics::Kinematics;
 use crate::trajectory::{PathSpace, Unreachable};
 
-/// Work to shape a corner, and to begin a plan.
-const CORNER: u32 = 5;
-const BEGIN: u32 = 40;
-/// Work to split an interval for it.
-const SPLIT: u32 = 45;
+/// Work to begin a plan, and as much again to split an interval for it.
+const BEGIN: u32 = 6 * VISIT;
 
 /// The end of the planner that looks ahead.
 #[derive(Clone, Debug)]
@@ -77,8 +74,8 @@ impl<const NODES: usize> Planning<NODES> {
         player: &mut impl PlayerAccess<ELEMENTS, NODES>,
         kinematics: &Kinematics,
     ) {
-        self.follow(player);
-        let idle = self.plan(player, kinematics);
+        let taken = self.follow(player);
+        let idle = self.plan(player, kinematics, WORK.saturating_sub(taken));
         let last = self.horizon.in_force();
         let news = News {
             wish: self.progress.wish,
@@ -90,8 +87,8 @@ impl<const NODES: usize> Planning<NODES> {
         player.with(|player| player.tell(self.progress.path, news));
     }
 
-    /// Learns where the player is, and what became of the plan that was offered to it.
-    fn follow<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) {
+    /// Learns where the player is, and what became of the plan that was offered to it; says how much work that was.
+    fn follow<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) -> u32 {
         let before = core::mem::replace(&mut self.progress, player.with(|player| player.progress()));
         let now = &self.progress;
         if now.path != before.path {
@@ -99,33 +96,41 @@ impl<const NODES: usize> Planning<NODES> {
             (self.offered, self.laid, self.blocked) = (None, false, None);
             self.grid.start(now.s, &now.axes, &mut self.nodes);
             self.horizon = Horizon::at(self.nodes.first);
-            return;
+            return 0;
         }
         let on = now.place.node == before.place.node && !now.stands;
         self.laid &= on && now.elements == before.elements;
-        match self.offered.take() {
+        let work = match self.offered.take() {
             Some(Offer::New) if now.taken == self.offers => self.horizon.take(&mut self.nodes, &self.bounds),
-            Some(Offer::Changed) => self.horizon.come_to(now.last),
-            Some(Offer::New) | None => {}
-        }
-        self.horizon.watch(now.place.node);
+            Some(Offer::Changed) => {
+                self.horizon.come_to(now.last);
+                0
+            }
+            Some(Offer::New) | None => 0,
+        };
+        self.horizon.watch(&mut self.nodes, now.place.node);
+        work
     }
 
-    /// A share of the work; says whether nothing is left to do.
+    /// As much `work`; says whether nothing is left to do.
     fn plan<const ELEMENTS: usize>(
         &mut self,
         player: &mut impl PlayerAccess<ELEMENTS, NODES>,
         kinematics: &Kinematics,
+        mut work: u32,
     ) -> bool {
-        let mut work = WORK;
-        self.horizon.obey(self.wanted());
+        let wanted = self.wanted();
+        self.horizon.obey(&mut self.nodes, wanted);
         // Not only when no more nodes can be had.
-        if self.horizon.waiting() && self.nodes.end > self.horizon.in_force() + WINDOW {
+        // A hold or another override may split the plan in force, which is the work of a turn.
+        let urgent = !self.horizon.goes_on(&wanted);
+        let many = self.nodes.end > self.horizon.in_force() + WINDOW;
+        if self.horizon.waiting() && (many || urgent && self.offered.is_none()) {
             work = work.saturating_sub(self.begin(player));
         }
         loop {
             if self.horizon.is_whole() && self.offered.is_none() {
-                self.offer(player);
+                work = work.saturating_sub(self.offer(player));
             }
             let cost = if self.horizon.plans() {
                 let done = self.horizon.run(&mut self.nodes, &self.bounds, work);
@@ -133,22 +138,21 @@ impl<const NODES: usize> Planning<NODES> {
                     return false;
                 }
                 done
-            } else if work >= CORNER && !self.laid && self.decide(player) {
-                CORNER
-            } else if work < most_work(self.progress.space) {
+            } else if !self.laid && self.decide(player) {
+                VISIT
+            } else if let extended @ 1.. = self.extend(player, kinematics) {
+                extended
+            } else if self.offered.is_some() || urgent && work < WORK {
                 return false;
+            } else if let begun @ 1.. = self.begin(player) {
+                begun
             } else {
-                if let extended @ 1.. = self.extend(player, kinematics) {
-                    extended
-                } else if work < BEGIN || self.offered.is_some() {
-                    return false;
-                } else if let begun @ 1.. = self.begin(player) {
-                    begun
-                } else {
-                    return self.offered.is_none();
-                }
+                return true;
             };
             work = work.saturating_sub(cost);
+            if work == 0 {
+                return false;
+            }
         }
     }
 
@@ -259,7 +263,7 @@ impl<const NODES: usize> Planning<NODES> {
             self.change(player, last, more);
         }
         match (begun, more > 0) {
-            (_, true) => BEGIN + SPLIT,
+            (_, true) => 2 * BEGIN + last - self.progress.place.node,
             (true, false) => BEGIN,
             (false, false) => 0,
         }
@@ -284,8 +288,8 @@ impl<const NODES: usize> Planning<NODES> {
         });
     }
 
-    /// Offers the plan that is whole.
-    fn offer<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) {
+    /// Offers the plan that is whole; says how much work it was.
+    fn offer<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) -> u32 {
         let last = self.horizon.last;
         for i in self.progress.place.node..=last {
             let planned = self.horizon.whole(&self.nodes, i, &self.bounds);
@@ -296,6 +300,7 @@ impl<const NODES: usize> Planning<NODES> {
         self.hand_over(player, Offer::New, |plan| {
             (plan.last, plan.rest, plan.commit, plan.moved) = (last, None, commit, [0; 2]);
         });
+        last - self.progress.place.node
     }
 
     /// Offers the plan of which the nodes are there, completed by `complete`.
@@ -318,7 +323,7 @@ impl<const NODES: usize> Planning<NODES> {
         // In one go for many of them.
         let player = self.progress.place.node;
         let behind = player - self.nodes.first;
-        if self.nodes.room() > 0 || behind as usize <= NODES / 4 {
+        if !self.nodes.is_full() || behind as usize <= NODES / 4 {
             return;
         }
         // The limit of jerk needs all that the output filter remembers, and more; at rest it remembers nothing.

@@ -315,8 +315,9 @@ impl<const ELEMENTS: usize, const NODES: usize> Player<ELEMENTS, NODES> {
 
     /// Lets go of elements that lie behind.
     fn release(&mut self) {
-        if self.wish.way != Way::Forward {
-            // All that is passed on the way to a stop may have to be gone back over.
+        if self.wish.way != Way::Forward || self.place.leads_back(&self.plans[self.active]) {
+            // All that is passed on the way to a stop may have to be gone back over; and where it leads back, on the way
+            // to the stop before it leads forward again.
             return;
         }
         // What lies further behind than this cannot be gone back to.

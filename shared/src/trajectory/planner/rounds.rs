@@ -1,7 +1,7 @@
 //! Rounds of passes over the nodes of a plan being made. Only where boxes have changed, or what is one filter length
 //! away from that, is looked at again.
 
-use super::horizon::{Horizon, Phase, TAKEN_FOR_ONE};
+use super::horizon::{Horizon, Phase, VISIT};
 use super::limits::Bounds;
 use super::node::{Nodes, REST, most};
 use super::scan::reach;
@@ -10,15 +10,8 @@ use super::scan::reach;
 const ROUNDS: u32 = 12;
 /// A plan is good if no change of acceleration is above its limit by more than this share.
 const GOOD: f32 = 0.025;
-/// Work of a step of the pass back.
-const BACK: u32 = 1;
-/// Work of the search for a reach, and of each of its iterations.
-pub(super) const REACH: u32 = 5;
-pub(super) const ITERATION: u32 = 3;
-/// Work of opening the boxes of a node.
-pub(super) const OPEN: u32 = 2;
-/// Nodes whose times are shifted for a unit of work.
-const SHIFTED_FOR_ONE: u32 = 16;
+/// After the last round, so much will do: with what is kept in reserve the limit of jerk holds still.
+const FAIR: f32 = 0.045;
 
 impl Horizon {
     /// One visit of one node, or a step from one pass to the next.
@@ -26,7 +19,7 @@ impl Horizon {
         match self.phase {
             Phase::Waiting | Phase::Whole => {}
             Phase::Brake(i) => self.brake(nodes, i, bounds),
-            Phase::Settle(i) => self.shape(nodes, i, bounds),
+            Phase::Release(i) => self.release(nodes, i, bounds),
             Phase::Ready(i) => self.ready(nodes, i, bounds),
             Phase::Back(i) if self.goes_back(nodes, i, bounds) => {
                 self.back(nodes, i - 1, bounds);
@@ -35,14 +28,10 @@ impl Horizon {
             Phase::Back(i) => {
                 if self.round > 0 && !self.braking && self.is_good() {
                     self.phase = Phase::Whole;
-                } else if is_too_fast(nodes, i) {
-                    self.too_fast(nodes);
-                } else if self.round == ROUNDS {
-                    self.last_resort(nodes, bounds);
+                } else if is_too_fast(nodes, i) || self.braking && comes_too_fast(nodes, self.settled) {
+                    self.begin_cold(nodes);
                 } else {
-                    self.round += 1;
-                    self.excess = REST;
-                    self.begin_forward(nodes, bounds);
+                    self.next_round(nodes, bounds);
                 }
             }
             Phase::Forward(i) if self.goes_forward(nodes, i, bounds) => {
@@ -67,11 +56,21 @@ impl Horizon {
         }
     }
 
+    pub(super) fn next_round<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+        if self.round == ROUNDS {
+            self.last_resort(nodes, bounds);
+        } else {
+            self.round += 1;
+            self.excess = REST;
+            self.begin_forward(nodes, bounds);
+        }
+    }
+
     /// The rounds have not led to a good plan. One from rest may be slower as a whole: accelerations go with x, and
     /// so do their changes of acceleration. Otherwise the plan in force continues, to rest.
     fn last_resort<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
         if nodes.at(self.commit).x > 0.0 {
-            self.give_up();
+            self.give_up(nodes);
             return;
         }
         let excess = self.excess.into_iter().fold(0.0, most);
@@ -81,7 +80,6 @@ impl Horizon {
         }
         self.scaled = true;
         self.excess = REST;
-        self.work += (self.last - self.commit) / TAKEN_FOR_ONE;
         self.from = self.commit;
         self.begin_forward(nodes, bounds);
     }
@@ -106,7 +104,11 @@ impl Horizon {
 
     /// One step of the pass back: boxes and reach of node `i`.
     fn back<const N: usize>(&mut self, nodes: &mut Nodes<N>, i: u32, bounds: &Bounds) {
-        self.work += BACK;
+        self.work += 1;
+        if self.braking && i < self.settled {
+            nodes.at_mut(i).reach = nodes.at(i).brake;
+            return;
+        }
         self.renew(nodes, i, bounds);
         let first = self.round == 0 || self.braking;
         let repaired = !first && self.repair(nodes, i, bounds);
@@ -116,15 +118,10 @@ impl Horizon {
         }
         // Most nodes stay as they were in the round before.
         if repaired || self.reach_changed || first {
-            let next = nodes.at(i + 1);
-            let (next, follows) = (next.reach, next.reach >= next.brake);
+            let next = nodes.at(i + 1).reach;
             let node = nodes.at_mut(i);
-            let (mut x, iterations) = reach(node, next, node.cap(), node.floor);
-            if self.braking && follows && i < self.settled {
-                // From there it can settle, but for rounding.
-                x = libm::fmax(x, libm::fmin(node.brake, node.cap()));
-            }
-            self.work += REACH + iterations * ITERATION;
+            let (x, iterations) = reach(node, next, node.cap());
+            self.work += (1 + iterations) * VISIT / 2;
             self.reach_changed = x != node.reach;
             node.reach = x;
         }
@@ -167,7 +164,6 @@ impl Horizon {
         for later in i + 1..=self.last {
             nodes.at_mut(later).time += self.shift;
         }
-        self.work += (self.last - i) / SHIFTED_FOR_ONE;
         self.reach_changed = false;
         if self.braking || self.scaled {
             self.away = i - 1;
@@ -185,13 +181,15 @@ impl Horizon {
 
     /// No change of acceleration is too large.
     fn is_good(&self) -> bool {
-        self.excess.iter().all(|excess| *excess <= GOOD)
+        let most = if self.round == ROUNDS { FAIR } else { GOOD };
+        self.excess.iter().all(|excess| *excess <= most)
     }
 
-    /// The speed at the commit is given, and the boxes do not allow it: with full boxes it is possible.
-    fn too_fast<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
+    /// Boxes of an earlier plan may be what keeps this one from being good, or from the speed at the commit, which is given:
+    /// with full boxes that is possible.
+    fn begin_cold<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
         if !self.warm {
-            self.give_up();
+            self.give_up(nodes);
             return;
         }
         self.warm = false;
@@ -204,11 +202,17 @@ impl Horizon {
         if self.warm || self.round > 0 {
             return;
         }
-        self.work += OPEN;
+        self.work += 1;
         for side in &mut nodes.at_mut(i).sides {
             side.open(bounds);
         }
     }
+}
+
+/// Braking comes to node `i` faster than the machine could stop from there.
+fn comes_too_fast<const N: usize>(nodes: &Nodes<N>, i: u32) -> bool {
+    let node = nodes.at(i);
+    node.reach < node.brake * (1.0 - 1e-6)
 }
 
 /// The plan passes node `i` faster than it could stop from there.

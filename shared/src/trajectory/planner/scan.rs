@@ -12,7 +12,6 @@ const ITERATIONS: u32 = 12;
 struct Lines<'a> {
     sides: &'a [Side; 2],
     next: f32,
-    floor: f32,
     per_length: f32,
 }
 
@@ -21,7 +20,6 @@ impl<'a> Lines<'a> {
         Self {
             sides: &node.sides,
             next: next as f32,
-            floor: f32::NEG_INFINITY,
             per_length: (0.5 / node.delta) as f32,
         }
     }
@@ -41,6 +39,11 @@ impl<'a> Lines<'a> {
 
     /// Lowest a at `x`.
     fn lowest(&self, x: f32) -> f32 {
+        most(self.lowest_of_rows(x), -x * self.per_length)
+    }
+
+    /// The same, though it would lead to rest inside the interval.
+    fn lowest_of_rows(&self, x: f32) -> f32 {
         let [start, end] = self.sides;
         let mut lanes = [0.0; ROWS];
         for row in 0..ROWS {
@@ -49,9 +52,7 @@ impl<'a> Lines<'a> {
                 end.low[row] - end.slope[row] * x,
             );
         }
-        lanes
-            .into_iter()
-            .fold(most(-x * self.per_length, self.floor), most)
+        lanes.into_iter().fold(f32::NEG_INFINITY, most)
     }
 
     /// The line of the highest a that is `a` at `x`, as (value at 0, slope): that of a row, or else of the next speed.
@@ -62,9 +63,6 @@ impl<'a> Lines<'a> {
 
     /// The same of the lowest a: that of a row, or else of rest.
     fn lower(&self, x: f32, a: f32) -> (f32, f32) {
-        if a == self.floor {
-            return (a, 0.0);
-        }
         self.through(|side| &side.low, x, a)
             .unwrap_or((0.0, self.per_length))
     }
@@ -83,12 +81,9 @@ impl<'a> Lines<'a> {
 }
 
 /// The highest x at the start of the interval of `node` from which some a keeps every limit and arrives at no more
-/// than `next`, with x at most `cap` and a at least `floor`; and how many iterations that took.
-pub(super) fn reach(node: &Node, next: f64, cap: f64, floor: f32) -> (f64, u32) {
-    let lines = Lines {
-        floor,
-        ..Lines::new(node, next)
-    };
+/// than `next`, with x at most `cap`; and how many iterations that took.
+pub(super) fn reach(node: &Node, next: f64, cap: f64) -> (f64, u32) {
+    let lines = Lines::new(node, next);
     let mut x = cap as f32;
     if x > lines.next {
         // Mostly the limit of braking at `next` is that at the reach too, and this crossing is what is searched.
@@ -126,9 +121,10 @@ pub(super) fn advance(node: &Node, x: f64, next: f64) -> f64 {
     libm::fmax(libm::fmin(end, next), 0.0)
 }
 
-/// The lowest a at the start of the interval of `node` that its boxes allow at `x`.
+/// The lowest a at the start of the interval of `node` that its boxes allow at `x`, though it would lead to rest inside
+/// the interval.
 pub(super) fn lowest(node: &Node, x: f64) -> f32 {
-    Lines::new(node, f64::INFINITY).lowest(x as f32)
+    Lines::new(node, f64::INFINITY).lowest_of_rows(x as f32)
 }
 
 #[cfg(test)]
@@ -182,7 +178,7 @@ mod tests {
             cap in 0.1..10.0f64, next in 0.0..5.0f64,
         ) {
             let node = node(rows, cap);
-            let (x, _) = reach(&node, next, cap, f32::NEG_INFINITY);
+            let (x, _) = reach(&node, next, cap);
             prop_assert!((0.0..=cap * (1.0 + 1e-6)).contains(&x));
             prop_assert!(possible(&node, x * 0.999, next, 0.02), "{x} is not possible");
             if x < cap * 0.99 {

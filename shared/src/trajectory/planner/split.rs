@@ -97,42 +97,47 @@ fn insert<const N: usize>(nodes: &mut Nodes<N>, interval: u32, places: &[f64], b
         *nodes.at_mut(serial - count) = *nodes.at(serial);
     }
     nodes.first -= count;
-    let a = (end.x - whole.x) / (2.0 * whole.delta);
     let (mut serial, mut from, mut gone) = (interval - count, 0.0, 0.0);
     for to in places.iter().copied().chain([whole.delta]) {
-        let x = whole.x + 2.0 * a * from;
-        let (v, v_to) = (
-            libm::sqrt(x),
-            libm::sqrt(libm::fmax(x + 2.0 * a * (to - from), 0.0)),
-        );
-        let lasts = if to < whole.delta {
-            2.0 * (to - from) / (v + v_to)
-        } else {
-            whole.lasts - gone
-        };
-        let part = Node {
-            delta: to - from,
-            lasts,
-            sides: [
-                side(&whole, from, 0.0, [a, x], bounds),
-                side(&whole, to, to - from, [a, x], bounds),
-            ],
-            ..whole
-        };
-        *nodes.at_mut(serial) = if from > 0.0 {
-            Node {
-                s: whole.s + whole.direction * from,
-                // Both ends keep the limits of the interval too.
-                feed: libm::fmax(whole.feed, end.feed),
-                limit: libm::fmax(whole.limit, end.limit),
-                factor: end.factor,
-                x,
-                ..part
-            }
-        } else {
-            part
-        };
-        (serial, from, gone) = (serial + 1, to, gone + lasts);
+        let mut node = part(&whole, &end, [from, to], bounds);
+        if to >= whole.delta {
+            node.lasts = whole.lasts - gone;
+        }
+        gone += node.lasts;
+        *nodes.at_mut(serial) = node;
+        (serial, from) = (serial + 1, to);
+    }
+}
+
+/// The part of the interval of node `whole`, which ends at node `end`, between two distances from its start; the plan in
+/// force is as before.
+pub(super) fn part(whole: &Node, end: &Node, [from, to]: [f64; 2], bounds: &Bounds) -> Node {
+    let a = (end.x - whole.x) / (2.0 * whole.delta);
+    let x = whole.x + 2.0 * a * from;
+    let (v, v_to) = (
+        libm::sqrt(x),
+        libm::sqrt(libm::fmax(x + 2.0 * a * (to - from), 0.0)),
+    );
+    let part = Node {
+        delta: to - from,
+        lasts: 2.0 * (to - from) / (v + v_to),
+        sides: [
+            side(whole, from, 0.0, [a, x], bounds),
+            side(whole, to, to - from, [a, x], bounds),
+        ],
+        ..*whole
+    };
+    if from <= 0.0 {
+        return part;
+    }
+    Node {
+        s: whole.s + whole.direction * from,
+        // Both ends keep the limits of the interval too.
+        feed: libm::fmax(whole.feed, end.feed),
+        limit: libm::fmax(whole.limit, end.limit),
+        factor: end.factor,
+        x,
+        ..part
     }
 }
 
