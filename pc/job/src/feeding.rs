@@ -42,10 +42,15 @@ pub(super) struct EndedBlock {
 }
 
 impl<'a> Feeding<'a> {
-    /// What the board is given of `path`.
-    pub fn new(path: &'a PlannedPath) -> Self {
+    /// What the board is given of `path`; every block as it is written if the machine may rest after each.
+    pub fn new(path: &'a PlannedPath, single_block: bool) -> Self {
+        let legs = if single_block {
+            path.given_blocks()
+        } else {
+            path.given_legs()
+        };
         Self {
-            legs: path.given_legs().peekable(),
+            legs: legs.peekable(),
             batch: Vec::new(),
             events: VecDeque::new(),
             end_s: path.start_s,

@@ -382,7 +382,7 @@ fn load<'a>(session: &mut Session, path: &'a PlannedPath, id: u32) -> Result<Fee
         limits: path.path_limits(),
     };
     session.command(Role::Motion, &begin)?;
-    let mut feeding = Feeding::new(path);
+    let mut feeding = Feeding::new(path, session.control.single_block());
     feeding.go_on(session)?;
     Ok(feeding)
 }

@@ -29,7 +29,7 @@ pub mod text;
 pub use error::{NcError, Problem, SourcePosition};
 pub use interpreter::Options;
 pub use program::{
-    ArcForm, ArcWay, ControlPoint, FeedRate, Motion, Move, NurbsWay, PathControl, Plane, Program,
+    ArcForm, ArcWay, Blend, ControlPoint, FeedRate, Motion, Move, NurbsWay, PathControl, Plane, Program,
     ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,
 };
 pub use reading::{KEPT, RemainingBlocks, interpret, interpret_file};

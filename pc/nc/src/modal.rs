@@ -4,7 +4,7 @@ use super::claims::Claims;
 use super::codes::Code;
 use super::error::{NcError, Problem, SourcePosition};
 use super::parser::Block;
-use super::program::{FeedRate, PathControl, Plane};
+use super::program::{Blend, FeedRate, PathControl, Plane};
 
 /// How F is meant.
 #[derive(Clone, Copy, PartialEq)]
@@ -36,7 +36,7 @@ impl Default for Modal {
             closed: false,
             tip: false,
             plane: Plane::default(),
-            control: PathControl::Blend(None),
+            control: PathControl::Blend(Blend::default()),
             feed_mode: FeedMode::PerMinute,
             feed: None,
         }
@@ -137,14 +137,19 @@ impl Modal {
     }
 }
 
-/// G64 with its P. Q would leave points out, which is never done.
+/// G64 with its P and Q.
 fn blend(claims: &Claims) -> Result<PathControl, NcError> {
     let [p, q] = ["P", "Q"].map(|word| claims.word(Code::Continuous, word));
     if let Some(p) = p.filter(|p| p.value <= 0.0) {
         return Err(p.value_error("the tolerance must be above 0 mm; for none write G61"));
     }
-    if let Some(q) = q.filter(|q| q.value != 0.0) {
-        return Err(q.value_error("points of a program are never left out; write Q0, or no Q"));
+    if let Some(q) = q.filter(|q| q.value < 0.0) {
+        return Err(q.value_error(
+            "short lines cannot be smoothed by less than 0 mm; write Q0 to leave them as they are",
+        ));
     }
-    Ok(PathControl::Blend(p.map(|p| p.value)))
+    Ok(PathControl::Blend(Blend {
+        tolerance: p.map(|p| p.value),
+        smoothing: q.map(|q| q.value),
+    }))
 }

@@ -86,8 +86,18 @@ pub enum PathControl {
     ExactPath,
     /// G61.1: exactly, and with a stop at the end of the block.
     ExactStop,
-    /// G64: at the best speed, and not further off than this \[mm\] if P says so.
-    Blend(Option<f64>),
+    /// G64: at the best speed.
+    Blend(Blend),
+}
+
+/// What G64 says \[mm\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Blend {
+    /// P: not further off than this.
+    pub tolerance: Option<f64>,
+    /// Q: runs of short lines are smoothed so far off them at most, and not at all if it is 0; as far as the tolerance
+    /// allows where it is not said.
+    pub smoothing: Option<f64>,
 }
 
 /// The way to a target.

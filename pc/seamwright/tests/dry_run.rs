@@ -92,6 +92,55 @@ fn check_tells_the_same_time() {
     assert_eq!(number(&checked, "total"), number(&ran, "the job"));
 }
 
+/// A feed is the most: check and dry run say where it cannot be kept. Beside a part file it must be kept with a beam on.
+#[test]
+fn where_a_feed_cannot_be_kept_is_told_and_refused_where_a_part_asks_for_it() {
+    let text = "G43.4\nG64 P0.05\nG0 X600 Y400 Z100 A0 C0\nM67 E0 Q500\nF12000\nM62 P0\nG1 X700\nG3 X710 Y410 J10\nM63 P0\nG1 Y500\nG1 X600\nM2\n";
+    let program = scratch("fast.ngc");
+    std::fs::write(&program, text).expect("a program");
+    let path = program.to_str().expect("text");
+    let machine = "machines/ac-head.toml";
+    let ran = dry_run(&program, machine, &[]);
+    assert_eq!(ran.status.code(), Some(0));
+    let mut check = Command::new(env!("CARGO_BIN_EXE_seamwright"));
+    check.args(["check", path, "--machine"]).arg(shipped(machine));
+    let checked = check.output().expect("seamwright runs");
+    for output in [ran, checked] {
+        let said = String::from_utf8(output.stdout).expect("text");
+        let parts = [
+            "line 8, column 4: the feed of 12000 mm/min is too high, the acceleration of ",
+            "the machine slows down where it must",
+            "slows down in lines 7–",
+            "from 12.0 m/min to ",
+            "(line 8), by the jerk of Y",
+            ", by the corner of 90.0°",
+        ];
+        assert_says(&said, &parts);
+    }
+    let part = scratch("fast.toml");
+    std::fs::copy(shipped("programs/panel.toml"), &part).expect("a part file");
+    let said = refusal(&program, machine, &[], 1);
+    let refused = [
+        "fast.ngc",
+        "line 8, column 4",
+        "12000 mm/min is too high",
+        "must be constant with the beam on",
+    ];
+    assert_says(&said, &refused);
+    let again = String::from_utf8(check.output().expect("seamwright runs").stderr).expect("text");
+    assert_eq!(said, again);
+    let welded = Command::new(env!("CARGO_BIN_EXE_seamwright"))
+        .args(["weld", path, "--boards", "simulated", "--report"])
+        .arg(scratch("fast"))
+        .arg("--machine")
+        .arg(shipped(machine))
+        .args(["--from-line", "10"])
+        .output();
+    let welded = String::from_utf8(welded.expect("seamwright runs").stderr).expect("text");
+    assert_says(&welded, &refused[1..]);
+    std::fs::remove_file(&part).expect("the part file");
+}
+
 #[test]
 fn a_missing_file_is_named() {
     let none = scratch("none.ngc");

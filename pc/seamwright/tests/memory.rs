@@ -61,6 +61,15 @@ fn run(count: u32) -> (u64, u64) {
     }
     let summary = paths[2].blocks.as_ref().expect("followed exactly").summary();
     assert_eq!(summary.elements, elements);
+    // What the board is given is as long, has the same events, and is held for some hundred blocks at a time.
+    let (mut length, mut given) = (0.0, 0);
+    for leg in paths[2].given_legs() {
+        let leg = leg.expect("as it was");
+        length += leg.element.length;
+        given += leg.events.len() as u64;
+    }
+    assert_eq!(given, events);
+    assert!((length - summary.length_mm).abs() < 1e-6);
     (elements, events)
 }
 

@@ -2,7 +2,7 @@
 
 use super::differences::Rates;
 use super::trace::Trace;
-use super::{PATH, ROWS};
+use super::{PATH, ROWS, Slowed};
 use nc::Motion;
 use serde::Serialize;
 use shared::io::AXES;
@@ -238,6 +238,8 @@ pub struct DryRun {
     pub longest_stop: Option<Stop>,
     /// What came nearest to its limit.
     pub highest: Highest,
+    /// Where the feed is not kept on the way.
+    pub slowed: Slowed,
     /// Which axes the machine has.
     pub fitted: [bool; AXES],
     /// Limits of the axes: speed, acceleration and jerk, in mm or degrees; 0 for those that the machine does not

@@ -4,10 +4,12 @@
 //! elements as the board is, in batches and no more than it has room for, and its outputs are looked at as any
 //! outputs would be: by differences of positions a millisecond apart.
 
+mod around;
 mod differences;
 mod error;
 mod figures;
 mod run;
+mod slowed;
 mod stream;
 mod table;
 #[cfg(test)]
@@ -16,6 +18,7 @@ mod trace;
 
 pub use error::DryRunError;
 pub use figures::{DryRun, Highest, PathFigures, Peak, Peaks, QUANTITIES, Ruled, Stop};
+pub use slowed::{Slowed, SlowedDown};
 pub use table::{row_name, unit};
 pub use trace::{Bin, Envelope, Trace};
 

@@ -1,17 +1,19 @@
 //! Paths one after the other through the planner, a millisecond at a time.
 
+use super::around::{Around, HeldTo};
 use super::differences::{Differences, Rates};
 use super::figures::{Rulers, row_unit};
+use super::slowed::{Tick, Watch};
 use super::stream::{ARRIVED, Stream, dwell_ticks, ticks_between};
-use super::{DryRun, DryRunError, Highest, PATH, PathFigures, ROWS, Stop, Trace};
+use super::{DryRun, DryRunError, Highest, PATH, PathFigures, ROWS, Slowed, Stop, Trace};
 use crate::path::PlannedPath;
 use config::machine::MachineFile;
+use nc::Motion;
 use shared::io::AXES;
 use shared::kinematics::{AXIS_UNIT, AxisLimits};
 use shared::motion::Machine;
 use shared::ticks::PATH_PERIOD_S;
-use shared::trajectory::{BoardPlanner, Element, Output};
-use std::collections::VecDeque;
+use shared::trajectory::{BoardPlanner, Output};
 
 /// A planner that goes nowhere for so many ticks never will.
 const PATIENCE: u32 = 60_000;
@@ -82,6 +84,7 @@ impl Runner {
                 length_mm: 0.0,
                 longest_stop: None,
                 highest: Highest::default(),
+                slowed: Slowed::default(),
                 fitted,
                 axis_limits: std::array::from_fn(for_people),
                 paths: Vec::new(),
@@ -103,24 +106,42 @@ impl Runner {
         self.planner.start(&limits, path.space, path.start_s, &self.axes);
         self.planner.set_override(self.factor);
         let mut stream = Stream::new(path);
-        let mut feeds = Feeds {
-            end_s: path.start_s,
-            ..Feeds::default()
-        };
-        let requests = stream.begin(&mut self.planner, |element| feeds.add(element))?;
+        let mut around = Around::from(path.start_s);
+        let requests = stream.begin(&mut self.planner, |element| around.add(element))?;
         self.wait(match self.result.paths.last() {
             Some(_) => ticks_between(path, requests, self.tracker),
             None => dwell_ticks(path),
         });
         let start = self.ticks;
         let mut extremes = PathExtremes::default();
+        let mut watch = (path.motion == Motion::Feed).then(Watch::default);
+        let filter = (limits.filter_s(), limits.filter_off());
         self.differences.count_from(PATH, path.start_s);
         let (mut arrived, mut idle, mut last_s) = (0, 0, path.start_s);
         while arrived < ARRIVED {
             let output = self.planner.tick(&self.board.kinematics)?;
-            let feed = feeds.at(output.along.s) * self.factor;
-            self.tick(&output, [feed, acceleration, jerk], &mut extremes);
-            stream.tick(&mut self.planner, |element| feeds.add(element))?;
+            let feed = around.feed_at(output.along.s) * self.factor;
+            let v = self.tick(&output, [feed, acceleration, jerk], &mut extremes);
+            if let Some(watch) = &mut watch {
+                let tick = Tick {
+                    s: output.along.s,
+                    v,
+                    feed,
+                    line: output.line,
+                };
+                let held = HeldTo {
+                    space: path.space,
+                    kinematics: &self.board.kinematics,
+                    axes: &self.axis_limits,
+                    filter,
+                    near: &self.axes,
+                };
+                let why = |low: &Tick| around.limit(low.s, low.v, &held);
+                let number = self.result.paths.len() + 1;
+                let rests = v.abs() <= REST && around.is_stop(tick.s);
+                watch.tick(number, &tick, rests, &mut self.result.slowed, why);
+            }
+            stream.tick(&mut self.planner, |element| around.add(element))?;
             arrived = if output.at_rest { arrived + 1 } else { 0 };
             idle = if output.along.s > last_s { 0 } else { idle + 1 };
             last_s = output.along.s;
@@ -149,11 +170,11 @@ impl Runner {
         Ok(())
     }
 
-    /// One tick of a path, whose speed, acceleration and jerk may be `path`.
-    fn tick(&mut self, output: &Output, path: Rates, extremes: &mut PathExtremes) {
+    /// One tick of a path, whose speed, acceleration and jerk may be `path`; the speed along it \[mm/s\].
+    fn tick(&mut self, output: &Output, path: Rates, extremes: &mut PathExtremes) -> f64 {
         self.axes = output.axes.position;
         let rates = self.differences.push(&positions(output.along.s, &self.axes));
-        let limits = std::array::from_fn(|row| match row {
+        let limits: [Rates; ROWS] = std::array::from_fn(|row| match row {
             PATH => path,
             axis => {
                 let limits = &self.axis_limits[axis - 1];
@@ -171,6 +192,7 @@ impl Runner {
             self.resting += 1;
         }
         self.record(&rates, path);
+        rates[PATH][0]
     }
 
     /// Stands for so many ticks.
@@ -223,27 +245,4 @@ fn positions(s: f64, axes: &[f64; AXES]) -> [f64; ROWS] {
         PATH => s,
         axis => axes[axis - 1],
     })
-}
-
-/// Feeds of the elements that the planner holds.
-#[derive(Default)]
-struct Feeds {
-    /// Where each ends \[mm\], and its feed.
-    ends: VecDeque<(f64, f64)>,
-    end_s: f64,
-}
-
-impl Feeds {
-    fn add(&mut self, element: &Element) {
-        self.end_s += element.length;
-        self.ends.push_back((self.end_s, element.feed));
-    }
-
-    /// Feed at `s`, which never decreases.
-    fn at(&mut self, s: f64) -> f64 {
-        while self.ends.len() > 1 && self.ends[0].0 <= s {
-            self.ends.pop_front();
-        }
-        self.ends.front().map_or(0.0, |(_, feed)| *feed)
-    }
 }

@@ -1,7 +1,7 @@
 //! The prediction as text.
 
 use super::figures::name;
-use super::{DryRun, PATH, PathFigures, Peak, QUANTITIES, ROWS};
+use super::{DryRun, PATH, PathFigures, Peak, QUANTITIES, ROWS, Slowed};
 use nc::Motion;
 use shared::io::AXIS_NAMES;
 use shared::units::MM_S_PER_M_MIN;
@@ -61,6 +61,7 @@ impl Display for DryRun {
             f,
             "  (% of the limit at most; by differences of the positions each millisecond)"
         )?;
+        write!(f, "{}", self.slowed)?;
         for (row, quantity, peak) in self.highest.above() {
             writeln!(
                 f,
@@ -90,6 +91,42 @@ impl Display for DryRun {
             "  the job         {:.2} s, from the end of homing to the park position",
             self.duration_s
         )
+    }
+}
+
+impl Display for Slowed {
+    /// A line a place.
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        for place in &self.slowest {
+            let lines = match place.lines {
+                (first, last) if first == last => format!("line {first}"),
+                (first, last) => format!("lines {first}–{last}"),
+            };
+            let speed = |mm_s: f64| value(PATH, 0, mm_s);
+            write!(
+                f,
+                "  slows down in {lines}, {:.2}–{:.2} mm of path {}: from {} to {} at {:.2} mm",
+                place.from_mm,
+                place.to_mm,
+                place.path,
+                speed(place.feed_mm_s),
+                speed(place.lowest_mm_s),
+                place.lowest_at_mm
+            )?;
+            if place.lines.0 != place.lines.1 {
+                write!(f, " (line {})", place.line)?;
+            }
+            writeln!(f, ", by the {}", place.limit)?;
+        }
+        let more = self.count - self.slowest.len() as u64;
+        if more > 0 {
+            writeln!(
+                f,
+                "  slows down in {more} more places, but less there; on {:.1} mm in all",
+                self.length_mm
+            )?;
+        }
+        Ok(())
     }
 }
 

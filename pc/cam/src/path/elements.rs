@@ -1,6 +1,7 @@
 //! A planned path as elements, as they are sent to the motion board.
 
-use super::blocks::Leg;
+use super::blocks::{Blocks, Leg};
+use super::smooth_legs::SmoothLegs;
 use super::{PathError, PlannedPath};
 use shared::protocol::{PathEvent, PathLimits};
 use shared::trajectory::{CHANNELS, Cubic, Element, Join, Knot, SHAPED, Shape, Tolerance};
@@ -15,7 +16,7 @@ pub const TOLERANCE: Tolerance = Tolerance {
 /// in which the axes of the shipped machines come to their acceleration.
 const FILTER: f64 = 1e-4;
 /// A step of the speed this near to a knot is at it \[mm\].
-const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 
 impl PlannedPath {
     /// All of the path as elements with their events, in order. The last element comes to rest.
@@ -61,39 +62,59 @@ impl PlannedPath {
         })
     }
 
-    /// What the motion board is given of it: from where the machine begins.
+    /// What the motion board is given of it: from where the machine begins, runs of short lines smoothed where the program
+    /// allows it.
     ///
     /// # Errors
     /// As of [`Self::legs`].
     pub fn given_legs(&self) -> Box<dyn Iterator<Item = Result<Leg, PathError>> + '_> {
-        if self.start_s <= 0.0 {
-            return self.legs();
+        match &self.blocks {
+            Some(blocks) => {
+                let legs = self.beyond_start(blocks.smoothable());
+                Box::new(SmoothLegs::new(legs, self.start_s, self.limits.acceleration))
+            }
+            None => self.given_blocks(),
         }
+    }
+
+    /// The same with every block as it is written: for single block.
+    ///
+    /// # Errors
+    /// As of [`Self::legs`].
+    pub fn given_blocks(&self) -> Box<dyn Iterator<Item = Result<Leg, PathError>> + '_> {
+        let legs = self.legs().map(|leg| Ok((leg?, 0.0)));
+        Box::new(self.beyond_start(legs).map(|leg| leg.map(|(leg, _)| leg)))
+    }
+
+    /// The `legs` from where the machine begins.
+    fn beyond_start(
+        &self,
+        legs: impl Iterator<Item = Result<(Leg, f64), PathError>>,
+    ) -> impl Iterator<Item = Result<(Leg, f64), PathError>> {
         let mut s = 0.0;
-        let given = self.legs().skip_while(move |leg| {
+        let given = legs.skip_while(move |leg| {
             let before = s < self.start_s - SAME;
-            s += leg.as_ref().map_or(0.0, |leg| leg.element.length);
+            s += leg.as_ref().map_or(0.0, |(leg, _)| leg.element.length);
             before && leg.is_ok()
         });
-        Box::new(given.enumerate().map(|(index, leg)| {
-            let mut leg = leg?;
-            if index == 0 {
+        given.enumerate().map(|(index, leg)| {
+            let (mut leg, smoothing) = leg?;
+            if index == 0 && self.start_s > 0.0 {
                 // What was where a line begins is no sooner than the machine is there.
                 let here = leg.events.iter().map(|event| event.action);
                 let actions = self.start_actions.iter().copied().chain(here);
                 let s_mm = self.start_s;
                 leg.events = actions.map(|action| PathEvent { s_mm, action }).collect();
             }
-            Ok(leg)
-        }))
+            Ok((leg, smoothing))
+        })
     }
 
     /// Limits along the path, as the motion board takes them.
     pub fn path_limits(&self) -> PathLimits {
-        let closest = self
-            .blocks
-            .as_ref()
-            .and_then(|blocks| blocks.summary().tolerance_mm);
+        // Curves are slowed down until they are within their tolerance: a filter that is made for another takes longer.
+        let own = |blocks: &Blocks| blocks.summary().tolerance_mm.unwrap_or(TOLERANCE.position);
+        let closest = self.blocks.as_ref().map(own);
         PathLimits {
             acceleration_mm_s2: self.limits.acceleration,
             jerk_mm_s3: self.limits.jerk,

@@ -1,6 +1,6 @@
 //! Why a program path cannot be run on this machine.
 
-use super::{CAPACITY, MAX_EVENTS};
+use super::{CAPACITY, FeedTooHigh, MAX_EVENTS};
 use crate::attitude::AttitudeError;
 use config::table::FARTHEST_MM;
 use curves::SplineError;
@@ -174,22 +174,12 @@ pub enum PathError {
         /// mm or °.
         unit: &'static str,
     },
-    /// An axis cannot follow that fast.
-    #[error(
-        "{place}: the feed of {feed:.0} mm/min is too high, the {quantity} of {axis} allows {largest:.0} mm/min"
-    )]
-    Feed {
-        /// Where in the program.
-        place: SourcePosition,
-        /// Wanted \[mm/min\].
-        feed: f64,
-        /// Possible \[mm/min\].
-        largest: f64,
-        /// Axis or V slide.
-        axis: &'static str,
-        /// Speed or acceleration.
-        quantity: &'static str,
-    },
+    /// A V slide cannot follow that fast, and the planner of the motion board does not slow down for slides.
+    #[error("{0}; lower F to that, for the machine does not slow down for a slide")]
+    Slide(FeedTooHigh),
+    /// The speed must be constant, and an axis does not allow it.
+    #[error("{0}; lower F to that, for the speed must be constant with the beam on")]
+    NotConstant(FeedTooHigh),
     /// M3, M4, M5 or S on a machine without a spindle.
     #[error(
         "{place}: {code} needs a spindle, and {machine} has none: switch its beams with M62 P, M63 P and M67 E Q"

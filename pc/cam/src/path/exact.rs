@@ -148,8 +148,13 @@ impl Planner {
             return join;
         }
         let longest = before.length.min(after.length) / 2.0;
+        let rates = self.drive_rates(&a, tip).zip(self.drive_rates(&b, tip));
+        let speed = rates
+            .iter()
+            .flat_map(|(a, b)| [a, b])
+            .fold(speed, |speed, rates| self.at_most(rates, speed));
         join.half = LEAST_TICKS / 2.0 * PATH_PERIOD_S * speed;
-        let change = self.change_of_rates(&a, &b, tip);
+        let change = rates.map(|(from, to)| std::array::from_fn(|i: usize| (to[i] - from[i]).abs()));
         join.half = join.half.max(self.change_length(&change, speed)).min(longest);
         if let Some(change) = change {
             // A quarter of it at the join; a little more, as rates are not quite the same all along.
@@ -159,11 +164,28 @@ impl Planner {
         join
     }
 
-    /// By how much the derivatives of all drives over s change between two blocks, where the tip is `tip`. What the
-    /// machine cannot do there is found when the whole path is followed.
-    fn change_of_rates(&self, before: &Jet, after: &Jet, tip: &Tip) -> Option<[f64; DRIVES]> {
-        let rates = self.drive_rates(before, tip).zip(self.drive_rates(after, tip));
-        rates.map(|(from, to)| std::array::from_fn(|i| (to[i] - from[i]).abs()))
+    /// `speed` \[mm/s\], or what the axes come to with these derivatives over s, if that is less.
+    fn at_most(&self, rates: &[f64; DRIVES], speed: f64) -> f64 {
+        let axes = self.drives.iter().zip(rates).take(AXES);
+        axes.map(|(limits, rate)| limits.velocity / rate.abs())
+            .fold(speed, f64::min)
+    }
+
+    /// `speed` \[mm/s\], or the highest that the axes come to on `block`, which leads to `tip`, if that is less. The
+    /// planner of the motion board looks as densely as the feed is high.
+    pub(super) fn reached_on(&self, block: &Block, tip: &Tip, speed: f64) -> f64 {
+        // What the slowest linear axis comes to is not looked at closer.
+        let linear = self.drives.iter().zip(self.fitted).take(ROTARY.start);
+        let fitted = linear.filter(|(_, fitted)| *fitted);
+        let slowest = fitted
+            .map(|(limits, _)| limits.velocity)
+            .fold(f64::INFINITY, f64::min);
+        if speed <= slowest {
+            return speed;
+        }
+        let rates = [0.0, 0.5, 1.0].map(|part| self.drive_rates(&block.jet(self, part * block.length), tip));
+        let reached = rates.iter().flatten().map(|rates| self.at_most(rates, speed));
+        speed.min(reached.fold(slowest, f64::max))
     }
 
     /// Half the length that such a change takes at `speed` \[mm/s\], with the share of acceleration for it.
@@ -174,7 +196,7 @@ impl Planner {
         needed.fold(0.0, f64::max)
     }
 
-    /// Derivatives of all drives over s.
+    /// Derivatives of all drives over s. What the machine cannot do there is found when the whole path is followed.
     fn drive_rates(&self, jet: &Jet, tip: &Tip) -> Option<[f64; DRIVES]> {
         let point = PathPoint {
             value: jet.value,

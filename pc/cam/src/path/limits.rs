@@ -2,7 +2,7 @@
 
 use super::shape::Shape;
 use super::targets::ROTARY;
-use super::{Bound, PathError, PlannedPath, Planner};
+use super::{Bound, FeedTooHigh, PathError, PlannedPath, Planner, TooFast};
 use config::machine::MachineFile;
 use config::table::FARTHEST_MM;
 use nc::SourcePosition;
@@ -22,7 +22,7 @@ const CHECK_COUNT: usize = 200;
 const JUMP: f64 = 1.0;
 /// What is no more than this outside the travel of an axis \[mm or °\], or faster than it allows, is rounding.
 const BEYOND: f64 = 1e-6;
-const TOO_FAST: f64 = 1.0 + 1e-9;
+pub(super) const TOO_FAST: f64 = 1.0 + 1e-9;
 /// Fastest rapid \[mm/s\], for moves that need next to no motion.
 const FASTEST: f64 = 1000.0;
 /// Part of an axis' acceleration that a curved path, or a change at a join, may spend on that.
@@ -193,53 +193,66 @@ impl Planner {
         }
     }
 
-    /// Tells `worst` how much faster than each drive allows `speed` \[mm/s\] is, as a part.
-    pub(super) fn see_feed(&self, demand: &Demand, speed: f64, place: SourcePosition, worst: &mut Worst) {
+    /// Tells `too_fast` where `speed` \[mm/s\] is more than a drive allows, with a beam `on` or without.
+    pub(super) fn see_feed(
+        &self,
+        demand: &Demand,
+        speed: f64,
+        place: SourcePosition,
+        on: bool,
+        too_fast: &mut TooFast,
+    ) {
         for i in 0..DRIVES {
             for (largest, quantity) in self.allowed(demand, i) {
-                if speed / largest > TOO_FAST {
-                    worst.see(speed / largest, || PathError::Feed {
-                        place,
-                        feed: speed * 60.0,
-                        largest: largest * 60.0,
-                        axis: DRIVE_NAMES[i],
-                        quantity,
-                    });
+                if speed / largest <= TOO_FAST {
+                    continue;
+                }
+                let found = FeedTooHigh {
+                    place,
+                    feed: speed * 60.0,
+                    largest: largest * 60.0,
+                    axis: DRIVE_NAMES[i],
+                    quantity,
+                };
+                if i < AXES {
+                    too_fast.see_axis(found, on);
+                } else {
+                    too_fast.see_slide(&found);
                 }
             }
         }
     }
 
-    /// The programmed speeds on the way to each target, if every drive can follow: |q′|·F ≤ q̇max and
-    /// |q″|·F² + |q′|·a ≤ q̈max (mathematics 0.3). Given is the first one.
+    /// The highest speed along the path at which no axis is faster there than it can be \[mm/s\].
+    pub(super) fn fastest(&self, demand: &Demand) -> f64 {
+        let axes = self.drives.iter().zip(demand.first).take(AXES);
+        axes.map(|(limits, first)| limits.velocity / first.abs())
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Speed, acceleration and jerk along a path with these `speeds` on the way to each target, of which the first one is
+    /// given: |q′|·F ≤ q̇max and |q″|·F² + |q′|·a ≤ q̈max (mathematics 0.3), F being less where an axis does not allow it.
     ///
     /// The acceleration a along the path is that of the machine file, less where it would take more than half of
     /// what a drive has; so is the jerk, where it would take more than all.
-    pub(super) fn feed_limits(
-        &self,
-        demands: &[Demand],
-        shape: &Shape,
-        speeds: &[f64],
-    ) -> Result<SpeedLimits, PathError> {
+    pub(super) fn feed_limits(&self, demands: &[Demand], shape: &Shape, speeds: &[f64]) -> SpeedLimits {
         let mut acceleration = self.planning.path_acceleration_mm_s2;
         let mut jerk = self.planning.path_jerk_mm_s3;
-        let mut worst = Worst::default();
         for demand in demands {
-            let target = shape.target(demand.s);
-            let speed = speeds[target];
-            self.see_feed(demand, speed, shape.targets[target].place, &mut worst);
+            let allowed = (0..DRIVES).flat_map(|i| self.allowed(demand, i));
+            let programmed = speeds[shape.target(demand.s)];
+            let speed = allowed.fold(programmed, |speed, (largest, _)| speed.min(largest));
             for (i, limits) in self.drives.iter().enumerate() {
                 let (first, second) = (demand.first[i].abs(), demand.second[i].abs());
                 acceleration = acceleration.min((limits.acceleration - second * speed * speed) / first);
                 jerk = jerk.min(limits.jerk / first);
             }
         }
-        worst.found()?;
-        Ok(SpeedLimits {
+        SpeedLimits {
             velocity: speeds[0],
             acceleration,
             jerk,
-        })
+        }
     }
 
     /// Largest speeds along the path that drive `i` allows at a place of a feed, by its speed and by its

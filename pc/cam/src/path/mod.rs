@@ -14,9 +14,11 @@ mod pieces;
 mod planned;
 mod programmed;
 mod shape;
+mod smooth_legs;
 mod targets;
 #[cfg(test)]
 mod tests;
+mod too_fast;
 
 pub use blocks::{Blocks, Course, Leg, Summary};
 pub use elements::TOLERANCE;
@@ -25,6 +27,7 @@ pub use from_line::FromLineError;
 pub use planned::{Bound, PlannedPath, SpeedStep, Speeds};
 pub use programmed::Programmed;
 pub use targets::Tip;
+pub use too_fast::{FeedTooHigh, TooFast, check_constant_speed};
 
 use config::machine::{MachineFile, PlanningConfig};
 use limits::{DRIVES, DriveLimits};

@@ -112,6 +112,11 @@ impl Switched {
         }
     }
 
+    /// Whether a beam is on, or a spindle.
+    pub(super) fn works(&self) -> bool {
+        self.gates.contains(&true)
+    }
+
     /// Takes up all of `events`.
     pub(super) fn take_up(&mut self, events: &[PathEvent]) {
         for event in events {

@@ -8,10 +8,11 @@ use super::limits::{Demand, axes_at};
 use super::outputs::{Switched, Switching, on_the_way};
 use super::shape::{Goal, Shape, channels};
 use super::targets::{ROTARY, RestState};
-use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip};
-use nc::{Motion, PathControl, ProgramPath, SourcePosition, Target, Way};
+use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip, TooFast};
+use nc::{Blend, Motion, PathControl, ProgramPath, SourcePosition, Target, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
+use shared::protocol::PathEvent;
 use shared::trajectory::PathSpace;
 use std::sync::Arc;
 
@@ -131,7 +132,9 @@ impl Planner {
     /// board holds knots, and no corner.
     fn is_smooth(&self, path: &ProgramPath, from: &RestState) -> Result<bool, PathError> {
         let targets = &path.targets;
-        let asked = |target: &Target| target.way == Way::Line && target.control == PathControl::Blend(None);
+        let asked = |target: &Target| {
+            target.way == Way::Line && target.control == PathControl::Blend(Blend::default())
+        };
         if path.rest.is_some() || targets.len() < 2 || targets.len() >= CAPACITY || !targets.iter().all(asked)
         {
             return Ok(false);
@@ -240,31 +243,66 @@ impl Planner {
         } else {
             stand.switched
         };
-        (planned.events, planned.steps) =
-            on_the_way(&on, events, first, &shape.starts(), &piece.speeds, place)?;
         let demands = self.demands(&planned, shape, &stand.axes)?;
-        let mut reached = self.reached(&demands, shape, &tips[first..first + shape.targets.len()])?;
+        let speeds = match motion {
+            Motion::Rapid | Motion::Stand => piece.speeds.clone(),
+            Motion::Feed => self.reached(&demands, &piece.speeds),
+        };
+        (planned.events, planned.steps) = on_the_way(&on, events, first, &shape.starts(), &speeds, place)?;
+        let mut stands = self.stands(&demands, shape, &tips[first..first + shape.targets.len()])?;
         self.check_travel(&demands, shape)?;
         planned.limits = match motion {
             Motion::Rapid | Motion::Stand => self.rapid_limits(&demands),
-            Motion::Feed => self.feed_limits(&demands, shape, &piece.speeds)?,
+            Motion::Feed => self.feed_limits(&demands, shape, &speeds),
         };
+        if motion == Motion::Feed {
+            planned.too_fast = self.too_fast(&demands, shape, &piece.speeds, &planned.events)?;
+        }
         planned.bound = match motion {
             Motion::Rapid | Motion::Stand => None,
             Motion::Feed => self.bound(&demands),
         };
-        reached.switched = stand.switched;
-        reached.switched.take_up(&planned.events);
+        stands.switched = stand.switched;
+        stands.switched.take_up(&planned.events);
         if rapid {
-            reached.switched.rapid();
+            stands.switched.rapid();
         }
-        *stand = reached;
+        *stand = stands;
         Ok(planned)
+    }
+
+    /// `speeds`, but none that the axes come to nowhere on the path \[mm/s\].
+    fn reached(&self, demands: &[Demand], speeds: &[f64]) -> Vec<f64> {
+        let fastest = demands.iter().map(|demand| self.fastest(demand));
+        let fastest = fastest.fold(0.0, f64::max);
+        speeds.iter().map(|speed| speed.min(fastest)).collect()
+    }
+
+    /// Where the axes do not allow the programmed `speeds`, `events` switching beams on the way.
+    fn too_fast(
+        &self,
+        demands: &[Demand],
+        shape: &Shape,
+        speeds: &[f64],
+        events: &[PathEvent],
+    ) -> Result<TooFast, PathError> {
+        let mut too_fast = TooFast::default();
+        let mut switched = Switched::default();
+        let mut events = events.iter().peekable();
+        for demand in demands {
+            while let Some(event) = events.next_if(|event| event.s_mm <= demand.s) {
+                switched.switch(&event.action);
+            }
+            let target = shape.target(demand.s);
+            let (speed, place) = (speeds[target], shape.targets[target].place);
+            self.see_feed(demand, speed, place, switched.works(), &mut too_fast);
+        }
+        too_fast.found()
     }
 
     /// Where the machine stands at the end. At every target the rotary axes must stand as it says, not a turn away;
     /// where its pose leaves an axis free, that stands as it was.
-    fn reached(&self, demands: &[Demand], shape: &Shape, tips: &[Tip]) -> Result<RestState, PathError> {
+    fn stands(&self, demands: &[Demand], shape: &Shape, tips: &[Tip]) -> Result<RestState, PathError> {
         let mut stand = RestState {
             tip: Tip::default(),
             axes: [0.0; AXES],
@@ -317,7 +355,7 @@ impl Planner {
 fn blend_tolerance(targets: &[Target]) -> Option<f64> {
     let tolerances = targets.iter().filter_map(|target| match target.control {
         PathControl::ExactPath => Some(0.0),
-        PathControl::Blend(tolerance) => tolerance,
+        PathControl::Blend(blend) => blend.tolerance,
         PathControl::ExactStop => None,
     });
     tolerances.min_by(f64::total_cmp)

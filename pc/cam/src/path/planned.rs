@@ -2,7 +2,7 @@
 
 use super::blocks::{Blocks, Course, Leg};
 use super::shape::Shape;
-use super::{CAPACITY, PathError};
+use super::{CAPACITY, PathError, TooFast};
 use nc::Motion;
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{Knot, Path, PathSpace, SpeedLimits};
@@ -34,6 +34,8 @@ pub struct PlannedPath {
     pub limits: SpeedLimits,
     /// What would not let it be faster, of a feed path.
     pub bound: Option<Bound>,
+    /// Where the feed is more than the axes allow.
+    pub too_fast: TooFast,
     /// Largest | |dP/ds| − 1 | of a feed path: how exact its speed is.
     pub speed_error: f64,
     /// Path length at which the machine begins \[mm\]: 0, unless the program is started at a line in the middle.
@@ -123,6 +125,7 @@ impl PlannedPath {
                 jerk: f64::INFINITY,
             },
             bound: None,
+            too_fast: TooFast::default(),
             speed_error: shape.speed_error,
             start_s: 0.0,
             start_actions: Vec::new(),

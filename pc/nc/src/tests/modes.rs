@@ -17,16 +17,18 @@ fn controls(body: &str) -> Vec<PathControl> {
 
 #[test]
 fn blocks_know_how_closely_they_are_followed() {
-    let body = "F600\nG1 X10\nG61\nX20\nG61.1\nX30\nG64 P0.05\nX40\nG64 Q0\nX50\nM2";
+    let body = "F600\nG1 X10\nG61\nX20\nG61.1\nX30\nG64 P0.05\nX40\nG64 Q0\nX50\nG64 P0.1 Q0.02\nX60\nM2";
+    let blend = |tolerance, smoothing| PathControl::Blend(Blend { tolerance, smoothing });
     let expected = [
-        PathControl::Blend(None),
+        blend(None, None),
         PathControl::ExactPath,
         PathControl::ExactStop,
-        PathControl::Blend(Some(0.05)),
-        PathControl::Blend(None),
+        blend(Some(0.05), None),
+        blend(None, Some(0.0)),
+        blend(Some(0.1), Some(0.02)),
     ];
     assert_eq!(controls(body), expected);
-    for (body, value) in [("G64 P0\nM2", 0.0), ("G64 P0.1 Q0.02\nM2", 0.02)] {
+    for (body, value) in [("G64 P0\nM2", 0.0), ("G64 P0.1 Q-0.02\nM2", -0.02)] {
         let (problem, line) = problem(body);
         assert!(
             matches!(problem, Problem::Value { value: seen, .. } if seen == value && line == 1),

@@ -1,6 +1,6 @@
 //! `seamwright check`: can this machine run this program?
 
-use super::read_program;
+use super::{plan_program, read_program, slower};
 use crate::console::{out, outln};
 use anyhow::{Context, bail};
 use cam::dry_run;
@@ -39,10 +39,7 @@ impl Check {
         let program = read_program(&self.program, self.block_delete)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
         let from = machine.homed_axes();
-        let speed = self.speed.map(|m_min| m_min * shared::units::MM_S_PER_M_MIN);
-        let paths = planner
-            .program(&program, &from, speed)
-            .with_context(|| format!("program {name}"))?;
+        let paths = plan_program(&self.program, &program, &planner, &from, self.speed)?;
         let seam = self.seam.as_deref().map(Deviation::read).transpose()?;
         match check_seam(&paths, &machine, seam.as_ref()) {
             // Without a seam, what can be said without one is said.
@@ -51,6 +48,8 @@ impl Check {
         }
         let ran = dry_run::run(&machine, &planner, &paths, 1.0).with_context(|| format!("program {name}"))?;
         print(&paths, &ran);
+        slower(&paths).for_each(|found| outln!("  {found}"));
+        out!("{}", ran.slowed);
         print_weakened(&machine);
         let found = not_followed(&paths, &machine, seam.as_ref())?;
         if !found.is_empty() {

@@ -1,6 +1,6 @@
 //! `seamwright dry-run`: duration of a program, and its demands on the machine.
 
-use super::{OUTSIDE, read_program};
+use super::{OUTSIDE, plan_program, read_program, slower};
 use crate::console::{out, outln};
 use anyhow::Context;
 use cam::dry_run;
@@ -54,11 +54,9 @@ impl DryRun {
         let name = self.program.display();
         let program = read_program(&self.program, self.block_delete)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
-        let speed = self.speed.map(|m_min| m_min * shared::units::MM_S_PER_M_MIN);
         let from = machine.homed_axes();
-        let mut paths = planner
-            .program(&program, &from, speed)
-            .with_context(|| format!("program {name}"))?;
+        let mut paths = plan_program(&self.program, &program, &planner, &from, self.speed)?;
+        let slower: Vec<String> = slower(&paths).collect();
         if let Some(line) = self.from_line {
             let started = planner.from_line(&program, paths, line, &from);
             paths = started.with_context(|| format!("program {name}"))?;
@@ -76,6 +74,7 @@ impl DryRun {
         }
         outln!("{title}");
         out!("{ran}");
+        slower.iter().for_each(|found| outln!("  {found}"));
         if let Some(directory) = &self.report {
             outln!("  report in {}", directory.display());
         }

@@ -12,8 +12,11 @@ mod teach_seam;
 mod weld;
 
 use anyhow::{Context, bail};
+use cam::path::{PlannedPath, Planner, check_constant_speed};
 use clap::{Parser, Subcommand};
 use nc::{Options, Program, interpret_file};
+use parts::PartFile;
+use shared::io::AXES;
 use std::fs::File;
 use std::path::Path;
 use std::process::ExitCode;
@@ -65,6 +68,29 @@ fn read_program(path: &Path, block_delete: bool) -> anyhow::Result<Program> {
     }
     let file = File::open(path).with_context(|| format!("cannot read program {name}"))?;
     interpret_file(file, Options { block_delete }).with_context(|| format!("program {name}"))
+}
+
+/// The paths of a program by `planner`, from where the axes stand at `from` (mm, degrees). The part file beside it, if there is
+/// one, asks for a constant speed with a beam on, as in a weld.
+fn plan_program(
+    file: &Path,
+    program: &Program,
+    planner: &Planner,
+    from: &[f64; AXES],
+    speed_m_min: Option<f64>,
+) -> anyhow::Result<Vec<PlannedPath>> {
+    let judged = PartFile::of_program(file)?.is_some();
+    let speed = speed_m_min.map(|m_min| m_min * shared::units::MM_S_PER_M_MIN);
+    let of_program = || format!("program {}", file.display());
+    let paths = planner.program(program, from, speed).with_context(of_program)?;
+    check_constant_speed(&paths, judged).with_context(of_program)?;
+    Ok(paths)
+}
+
+/// What a person should know of feeds that are more than the machine can do, a sentence a path.
+fn slower(paths: &[PlannedPath]) -> impl Iterator<Item = String> {
+    let found = paths.iter().filter_map(|path| path.too_fast.anywhere.as_ref());
+    found.map(|found| format!("{found}: the machine slows down where it must"))
 }
 
 /// The error and its causes in one line; a cause that its effect has already quoted is not said again.

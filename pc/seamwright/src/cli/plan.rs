@@ -2,7 +2,7 @@
 
 use crate::console::outln;
 use anyhow::Context;
-use cam::path::{PlannedPath, Planner};
+use cam::path::{PlannedPath, Planner, check_constant_speed};
 use clap::Args;
 use config::machine::MachineFile;
 use nc::{Options, interpret};
@@ -102,9 +102,11 @@ fn title(output: &Path) -> String {
 fn checked(program: &str, planner: &Planner, machine: &MachineFile) -> anyhow::Result<Vec<PlannedPath>> {
     let program = interpret(program, Options::default()).context("the planned program")?;
     let from = machine.planning.park_axes();
-    planner
+    let paths = planner
         .program(&program, &from, None)
-        .context("the planned program")
+        .context("the planned program")?;
+    check_constant_speed(&paths, true).context("the planned program")?;
+    Ok(paths)
 }
 
 fn write(output: &Path, program: &str) -> anyhow::Result<()> {

@@ -2,11 +2,11 @@
 
 use super::boards::{BoardChoice, exit_code};
 use super::cameras::CameraArgs;
-use super::{OUTSIDE, read_program, sentence};
+use super::{OUTSIDE, read_program, sentence, slower};
 use crate::console::{errln, out, outln};
 use crate::terminal::Operator;
 use anyhow::{Context, Error, bail};
-use cam::path::Planner;
+use cam::path::{Planner, check_constant_speed};
 use clap::Args;
 use config::machine::MachineFile;
 use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
@@ -96,6 +96,7 @@ impl Weld {
         let machine = MachineFile::read(&self.machine)?;
         self.boards.check(&machine)?;
         let (task, mut part) = self.task(&machine)?;
+        let judged = part.is_some();
         if self.from_line.is_some() {
             if matches!(task, Task::Panel) {
                 bail!("--from-line needs a program, and a panel is taught before there is one");
@@ -143,7 +144,7 @@ impl Weld {
                 boards: self.boards.name(),
             },
         };
-        self.check(&job, seam.as_deref())?;
+        self.check(&job, judged, seam.as_deref())?;
         report::prepare(&self.report)?;
         let keepers = self.cameras.keep(&cameras)?;
         let operator = Operator::SaysWords {
@@ -229,8 +230,9 @@ impl Weld {
     }
 
     /// Whether the machine can run the program and the slides reach the seam, from the park position. The boards
-    /// are asked to move only if so.
-    fn check(&self, job: &Job, seam: Option<&Deviation>) -> anyhow::Result<()> {
+    /// are asked to move only if so. The speed must be constant with a beam on if a part is `judged` by it, also where a job
+    /// that is started at a line is not.
+    fn check(&self, job: &Job, judged: bool, seam: Option<&Deviation>) -> anyhow::Result<()> {
         let planner = Planner::build(job.machine)
             .with_context(|| format!("machine file {}", self.machine.display()))?;
         let program = match (job.work, job.part) {
@@ -265,7 +267,9 @@ impl Weld {
             }
             _ => format!("program {}", job.names.program),
         };
-        let paths = planned.context(owner)?;
+        let paths = planned.with_context(|| owner.clone())?;
+        check_constant_speed(&paths, judged).context(owner)?;
+        slower(&paths).for_each(|found| errln!("seamwright: warning: {found}"));
         if self.seam_of.is_none() && self.cameras.pictures() {
             for found in not_followed(&paths, job.machine, seam)? {
                 errln!("seamwright: warning: {found}");

@@ -3,7 +3,7 @@
 use super::{axes_at, machine, motion_sample, tracker_sample};
 use crate::TrueSeams;
 use crate::seams::tests::{bent_path, heads, wavy_seam};
-use cam::path::PlannedPath;
+use cam::path::{PlannedPath, TooFast};
 use evaluate::{Evaluation, Followed, RecordedRun, RunSample, RunSamples, WorkTick, evaluate};
 use host_link::record::{MachinePosition, Record, Recorded};
 use nc::Motion;
@@ -113,6 +113,7 @@ fn planned() -> PlannedPath {
             jerk: 10_000.0,
         },
         bound: None,
+        too_fast: TooFast::default(),
         speed_error: 0.0,
         start_s: 0.0,
         start_actions: Vec::new(),

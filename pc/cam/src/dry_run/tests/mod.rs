@@ -1,3 +1,5 @@
+mod slowed;
+
 use super::*;
 use nc::{Motion, Options, interpret};
 use std::path::Path;

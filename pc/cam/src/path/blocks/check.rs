@@ -4,7 +4,7 @@ use super::walk::Step;
 use crate::path::limits::{CHECK_STEP, Demand, Worst, check_continuous};
 use crate::path::shape::Goal;
 use crate::path::targets::RestState;
-use crate::path::{Bound, MAX_EVENTS, PathError, Planner, Speeds};
+use crate::path::{Bound, MAX_EVENTS, PathError, Planner, Speeds, TooFast};
 use shared::protocol::PathAction;
 use shared::trajectory::{Element, Join, PathSpace};
 
@@ -39,7 +39,7 @@ pub(super) struct Check<'a> {
     stand: RestState,
     before: Option<Demand>,
     travel: Worst,
-    feed: Worst,
+    too_fast: TooFast,
     bound: Option<Bound>,
     summary: Summary,
 }
@@ -52,7 +52,7 @@ impl<'a> Check<'a> {
             stand: *stand,
             before: None,
             travel: Worst::default(),
-            feed: Worst::default(),
+            too_fast: TooFast::default(),
             bound: None,
             summary: Summary::default(),
         }
@@ -92,7 +92,8 @@ impl<'a> Check<'a> {
                 check_continuous(before, &demand, place)?;
             }
             planner.see_travel(&demand, place, &mut self.travel);
-            planner.see_feed(&demand, step.speed, place, &mut self.feed);
+            let on = self.stand.switched.works();
+            planner.see_feed(&demand, step.programmed, place, on, &mut self.too_fast);
             let bound = [self.bound, planner.bound_at(&demand)].into_iter().flatten();
             self.bound = bound.min_by(|a, b| a.largest_mm_s.total_cmp(&b.largest_mm_s));
             self.stand.axes = axes;
@@ -135,10 +136,13 @@ impl<'a> Check<'a> {
         summary.stops += u64::from(step.join == Join::Stop);
     }
 
-    /// The sum of it, and the drive that allows the least speed; the machine then stands at the end.
-    pub(super) fn finish(self, stand: &mut RestState) -> Result<(Summary, Option<Bound>), PathError> {
+    /// The sum of it, the drive that allows the least speed, and where the feed is too high; the machine then stands at
+    /// the end.
+    pub(super) fn finish(
+        self,
+        stand: &mut RestState,
+    ) -> Result<(Summary, Option<Bound>, TooFast), PathError> {
         self.travel.found()?;
-        self.feed.found()?;
         let mut summary = self.summary;
         // The last one is the end.
         summary.stops = summary.stops.saturating_sub(1);
@@ -146,6 +150,6 @@ impl<'a> Check<'a> {
             *end = end.min(summary.length_mm);
         }
         *stand = self.stand;
-        Ok((summary, self.bound))
+        Ok((summary, self.bound, self.too_fast.found()?))
     }
 }

@@ -70,7 +70,7 @@ impl Planner {
             check.step(&step?)?;
         }
         let from = *stand;
-        let (summary, bound) = check.finish(stand)?;
+        let (summary, bound, too_fast) = check.finish(stand)?;
         Ok(PlannedPath {
             motion: Motion::Feed,
             space: PathSpace::Tool,
@@ -86,6 +86,7 @@ impl Planner {
                 jerk: self.planning.path_jerk_mm_s3,
             },
             bound,
+            too_fast,
             speed_error: 0.0,
             start_s: 0.0,
             start_actions: Vec::new(),
@@ -106,11 +107,16 @@ impl Blocks {
         &self.summary
     }
 
-    /// The path as the motion board is given it.
+    /// The path as it is programmed.
     ///
     /// # Errors
     /// What the check would have found: the program is not the one that was checked.
     pub fn legs(&self) -> impl Iterator<Item = Result<Leg, PathError>> + use<> {
+        self.smoothable().map(|leg| leg.map(|(leg, _)| leg))
+    }
+
+    /// The same, each leg with how far off it short lines may be smoothed at most \[mm\].
+    pub(super) fn smoothable(&self) -> impl Iterator<Item = Result<(Leg, f64), PathError>> + use<> {
         let walk = Walk::new(self.planner.clone(), (self.moves)(), &self.from, self.feeds);
         Legs {
             planner: self.planner.clone(),
@@ -125,7 +131,7 @@ impl Blocks {
 struct Legs {
     planner: Arc<Planner>,
     walk: Walk,
-    waiting: VecDeque<Leg>,
+    waiting: VecDeque<(Leg, f64)>,
     /// Where the next leg begins \[mm\].
     s: f64,
     ended: bool,
@@ -142,18 +148,18 @@ impl Legs {
             Ok(elements) => elements,
             Err(error) => return Some(Err(error)),
         };
-        let mut events = step.events(self.s);
+        let (mut events, smoothing) = (step.events(self.s), step.smoothing());
         for element in elements {
             self.s += element.length;
             let events = std::mem::take(&mut events);
-            self.waiting.push_back(Leg { events, element });
+            self.waiting.push_back((Leg { events, element }, smoothing));
         }
         Some(Ok(()))
     }
 }
 
 impl Iterator for Legs {
-    type Item = Result<Leg, PathError>;
+    type Item = Result<(Leg, f64), PathError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         while self.waiting.is_empty() && !self.ended {

@@ -6,7 +6,7 @@ use crate::path::exact::{Join as Turning, MAX_TURN};
 use crate::path::feeds::Feeds;
 use crate::path::targets::RestState;
 use crate::path::{PathError, Planner, TOLERANCE, Tip};
-use nc::{Move, PathControl};
+use nc::{Blend, Move, PathControl};
 use shared::geometry::angle;
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{Element, Join, Tolerance};
@@ -18,6 +18,8 @@ pub(super) struct Step {
     /// Where it leads.
     pub(super) tip: Tip,
     /// Programmed \[mm/s\].
+    pub(super) programmed: f64,
+    /// The same, or what the axes come to on the block, if that is less \[mm/s\].
     pub(super) speed: f64,
     /// What is switched where it begins.
     pub(super) actions: Vec<PathAction>,
@@ -34,6 +36,14 @@ impl Step {
     /// The elements of the block, in order.
     pub(super) fn elements(&self, planner: &Planner) -> Result<Vec<Element>, PathError> {
         self.block.elements(planner, self.speed, self.join, &self.turns)
+    }
+
+    /// How far off it short lines may be smoothed at most \[mm\].
+    pub(super) fn smoothing(&self) -> f64 {
+        match self.control {
+            PathControl::Blend(blend) => blend.smoothing.unwrap_or(f64::INFINITY),
+            PathControl::ExactPath | PathControl::ExactStop => 0.0,
+        }
     }
 
     /// By how much the rotary axes are off at its end, as their rates change there \[rad\].
@@ -56,7 +66,7 @@ impl Step {
         let turn = angle(&direction, &next.block.direction(0.0));
         let position = match (self.control, next.control) {
             (PathControl::ExactStop, _) => return,
-            (PathControl::Blend(p), PathControl::Blend(q)) => blend(p).min(blend(q)),
+            (PathControl::Blend(p), PathControl::Blend(q)) => tolerance(p).min(tolerance(q)),
             _ if turn <= MAX_TURN => TOLERANCE.position,
             _ => {
                 self.corner = Some(turn);
@@ -79,8 +89,8 @@ impl Step {
 }
 
 /// The tolerance of G64, with or without a P \[mm\].
-fn blend(p: Option<f64>) -> f64 {
-    p.unwrap_or(TOLERANCE.position)
+fn tolerance(blend: Blend) -> f64 {
+    blend.tolerance.unwrap_or(TOLERANCE.position)
 }
 
 /// The blocks of a path, one ahead.
@@ -113,7 +123,8 @@ impl Walk {
         let planner = &self.planner;
         let tip = planner.next_tip(&target, &self.tip, self.placed)?;
         let block = Block::build(planner, nc::Motion::Feed, &self.tip, &tip, &target)?;
-        let speed = self.feeds.next(&target, block.length)?;
+        let programmed = self.feeds.next(&target, block.length)?;
+        let speed = planner.reached_on(&block, &tip, programmed);
         let mut actions = std::mem::take(&mut self.on);
         for event in &events {
             actions.push(planner.action(event)?);
@@ -122,6 +133,7 @@ impl Walk {
         Ok(Step {
             block,
             tip,
+            programmed,
             speed,
             actions,
             control: target.control,

@@ -213,7 +213,7 @@ fn fast_joins_stay_within_the_axes() {
             assert!(acceleration <= 1.001, "axis {axis}: {acceleration} at {s}");
         }
     }
-    // Without room for that change it is an error, not a jump.
-    let error = plan("F6000\nG1 X1100\nG3 X1110 Y1010 J10 C90\nG1 Y1500").unwrap_err();
-    assert!(matches!(error, PathError::Feed { axis: "C", .. }), "{error}");
+    // Without room for that change the machine has to slow down.
+    let found = too_fast(plan("F6000\nG1 X1100\nG3 X1110 Y1010 J10 C90\nG1 Y1500"));
+    assert_eq!(found.axis, "C", "{found}");
 }

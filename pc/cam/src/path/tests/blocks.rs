@@ -223,10 +223,14 @@ fn what_the_axes_cannot_do_is_told_with_the_line_of_its_block() {
         error.starts_with("line 9, column 1: axis Y would have to go to -5"),
         "{error}"
     );
-    let error = message("G1 X610\nF7000 X700\nF300 X800");
+    let found = too_fast(plan_on(
+        "stir-gantry",
+        &format!("{STIR}G61\nG1 X610\nF7000 X700\nF300 X800\nM2"),
+    ));
+    let found = found.to_string();
     assert!(
-        error.starts_with("line 7, column 7: the feed of 7000 mm/min is too high"),
-        "{error}"
+        found.starts_with("line 7, column 7: the feed of 7000 mm/min is too high"),
+        "{found}"
     );
     let error = message("G1 X610\nX650 C190");
     assert!(
