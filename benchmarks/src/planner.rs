@@ -1,6 +1,8 @@
 //! The planner of the motion board, call by call, on programs that are made here: so on the PC and on the board.
 
 mod programs;
+#[cfg(test)]
+mod tests;
 
 use crate::Failure;
 use crate::machine::machines;

@@ -2,6 +2,7 @@
 
 use super::markdown;
 use super::row::{Calls, HEAD, LIMITS, Row, mean};
+use super::trajectories::BASELINE;
 use benchmarks::trajectories::baseline::Baseline;
 
 /// Columns without those of instructions.
@@ -12,6 +13,8 @@ pub struct Report {
     pub rows: Vec<Row>,
     /// Whether ticks were counted.
     pub instructions: bool,
+    /// Whether there is a baseline.
+    pub compared: bool,
 }
 
 impl Report {
@@ -69,13 +72,15 @@ impl Report {
                 .filter(|row| row.is_slow())
                 .map(|row| row.program.clone()),
         ));
-        if self.rows.iter().any(|row| row.baseline.is_some()) {
-            let alone = self.rows.iter().filter(|row| row.baseline.is_none());
-            lines.push(listed(
+        let alone = self.rows.iter().filter(|row| row.baseline.is_none());
+        lines.push(if self.compared {
+            listed(
                 "without a row of the baseline",
                 alone.map(|row| row.program.clone()),
-            ));
-        }
+            )
+        } else {
+            format!("no {BASELINE} beside the programs: none is compared")
+        });
         lines
     }
 
@@ -181,6 +186,7 @@ mod tests {
         Report {
             rows,
             instructions: false,
+            compared: true,
         }
     }
 
@@ -224,16 +230,19 @@ mod tests {
         curve.outcome.evenness = Some(Evenness {
             interpolator: 4e-7,
             output: 3e-4,
+            tip: 9e-4,
             outputs: 70,
         });
         let even = report(vec![curve.clone()]);
         assert!(even.kept());
         assert!(even.text().contains(
-            "- bow: speed along the curve even to 4.0e-7 before the output filter, 3.0e-4 behind it in the 70 ticks"
+            "- bow: speed along the curve even to 4.0e-7 before the output filter, 3.0e-4 behind it in the 70 ticks \
+             at full feed; speed of the true tip there to 9.0e-4"
         ));
         curve.outcome.evenness = Some(Evenness {
             interpolator: 1.1e-6,
             output: 0.0,
+            tip: 0.0,
             outputs: 0,
         });
         assert!(!report(vec![curve]).kept());
@@ -267,8 +276,13 @@ mod tests {
                 .text()
                 .contains(named)
         );
-        // Without a baseline there is nothing to miss.
-        assert!(!report(vec![alone]).text().contains("without a row"));
+        // Also if it has none of the programs.
+        assert!(report(vec![alone.clone()]).text().contains(named));
+        let mut report = report(vec![alone]);
+        report.compared = false;
+        let text = report.text();
+        assert!(text.ends_with("- no baseline.csv beside the programs: none is compared\n"));
+        assert!(!text.contains("without a row"));
     }
 
     #[test]
@@ -281,6 +295,7 @@ mod tests {
         let text = Report {
             rows: vec![counted],
             instructions: true,
+            compared: true,
         }
         .text();
         assert!(text.contains("|       500 |   900 |"), "{text}");

@@ -129,8 +129,8 @@ impl Row {
         );
         if even.outputs > 0 {
             line += &format!(
-                ", {:.1e} behind it in the {} ticks at full feed",
-                even.output, even.outputs
+                ", {:.1e} behind it in the {} ticks at full feed; speed of the true tip there to {:.1e}",
+                even.output, even.outputs, even.tip
             );
         }
         Some(line)

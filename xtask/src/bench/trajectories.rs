@@ -18,7 +18,7 @@ const CURVE: &str = "json";
 /// ... which are programs at each of these feeds \[mm/s\].
 const FEEDS: [&str; 3] = ["50", "100", "200"];
 /// File of the baseline, in the folder of the programs.
-const BASELINE: &str = "baseline.csv";
+pub const BASELINE: &str = "baseline.csv";
 /// To the benchmark program: run a program.
 const TRAJECTORY: &str = "trajectory";
 /// A program takes seconds.
@@ -36,13 +36,17 @@ pub fn run(programs: &Path, instructions: bool, record: bool) -> Result<ExitCode
         let (outcome, calls) = one(&benchmark, &file, feed, &folder, instructions)
             .with_context(|| file.display().to_string())?;
         rows.push(Row {
-            baseline: baselines.get(&name).copied(),
+            baseline: baselines.as_ref().and_then(|rows| rows.get(&name)).copied(),
             program: name,
             outcome,
             calls,
         });
     }
-    let report = Report { rows, instructions };
+    let report = Report {
+        rows,
+        instructions,
+        compared: baselines.is_some(),
+    };
     publish(TRAJECTORIES, &report.text(), record)?;
     Ok(if report.kept() {
         ExitCode::SUCCESS
@@ -101,14 +105,15 @@ fn all(folder: &Path) -> Result<Vec<Program>> {
     Ok(programs)
 }
 
-fn baselines(folder: &Path) -> Result<BTreeMap<String, baseline::Baseline>> {
+/// The rows of the folder's baseline, if it has one.
+fn baselines(folder: &Path) -> Result<Option<BTreeMap<String, baseline::Baseline>>> {
     let file = folder.join(BASELINE);
     if !file.exists() {
-        return Ok(BTreeMap::new());
+        return Ok(None);
     }
     let cannot = || format!("cannot read {}", file.display());
     let text = fs::read_to_string(&file).with_context(cannot)?;
-    baseline::read(&text).with_context(cannot)
+    baseline::read(&text).with_context(cannot).map(Some)
 }
 
 /// Runs one program, and counts its ticks if asked to.
