@@ -82,7 +82,7 @@ impl Pair {
 /// Most that a path tick may take: interpolation, kinematics and filter \[instructions\].
 const PATH_TICK: u32 = 12_000;
 /// The same of a turn of planning.
-const PLANNING: u32 = 30_000;
+const PLANNING: u32 = 60_000;
 
 /// Checks that the motion board served every tick in time: what it did in the worst millisecond leaves a quarter of it, no
 /// path tick and no turn of planning took more than it may, and none was late.
