@@ -273,10 +273,13 @@ impl Node {
     }
 }
 
-/// The last `N` nodes, by serial number; `N` is a power of two.
+/// The last `N` nodes, by serial number; `N` is a power of two. A node that gets another serial stays where it is stored:
+/// there are hundreds of bytes in it.
 #[derive(Clone, Debug)]
 pub(super) struct Nodes<const N: usize> {
-    ring: [Node; N],
+    stored: [Node; N],
+    /// Where the node of a serial is stored, by the serial modulo `N`: a permutation.
+    places: [u16; N],
     /// Serial of the oldest kept.
     pub first: u32,
     /// Serial after the newest.
@@ -285,8 +288,15 @@ pub(super) struct Nodes<const N: usize> {
 
 impl<const N: usize> Nodes<N> {
     pub const fn new() -> Self {
+        let mut places = [0; N];
+        let mut i = 0;
+        while i < N {
+            places[i] = i as u16;
+            i += 1;
+        }
         Self {
-            ring: [Node::ZERO; N],
+            stored: [Node::ZERO; N],
+            places,
             first: 0,
             end: 0,
         }
@@ -312,7 +322,7 @@ impl<const N: usize> Nodes<N> {
     }
 
     pub fn push(&mut self, node: Node) {
-        self.ring[self.end as usize % N] = node;
+        *self.at_mut(self.end) = node;
         self.end += 1;
     }
 
@@ -321,11 +331,29 @@ impl<const N: usize> Nodes<N> {
         if self.room() == 0 {
             self.first += 1;
         }
+        let free = self.place(self.end);
         for later in (serial..self.end).rev() {
-            *self.at_mut(later + 1) = *self.at(later);
+            self.places[(later + 1) as usize % N] = self.places[later as usize % N];
         }
+        self.places[serial as usize % N] = free as u16;
         *self.at_mut(serial) = node;
         self.end += 1;
+    }
+
+    /// Puts a node after `serial`; those up to there get the serials before, and the new one gets `serial`.
+    pub fn insert_after(&mut self, serial: u32, node: Node) {
+        self.first -= 1;
+        let free = self.place(self.first);
+        for earlier in self.first..serial {
+            self.places[earlier as usize % N] = self.places[(earlier + 1) as usize % N];
+        }
+        self.places[serial as usize % N] = free as u16;
+        *self.at_mut(serial) = node;
+    }
+
+    /// Where a node is stored.
+    fn place(&self, serial: u32) -> usize {
+        usize::from(self.places[serial as usize % N]) % N
     }
 
     /// Appends a place; of the interval after it, nothing is known.
@@ -352,11 +380,11 @@ impl<const N: usize> Nodes<N> {
     }
 
     pub fn at(&self, serial: u32) -> &Node {
-        &self.ring[serial as usize % N]
+        &self.stored[self.place(serial)]
     }
 
     pub fn at_mut(&mut self, serial: u32) -> &mut Node {
-        &mut self.ring[serial as usize % N]
+        &mut self.stored[self.place(serial)]
     }
 }
 

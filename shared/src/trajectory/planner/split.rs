@@ -12,10 +12,8 @@ const SPARE: f64 = 2.0;
 /// Nodes for the way in which the machine can stop, and that way is this many times the shortest.
 const STEPS: usize = 6;
 const LONGER: f64 = 1.3;
-/// What lies behind is kept for so many lengths of the output filter, and no longer an interval than so many nodes
-/// after that is split: elsewhere they are close together anyway.
+/// What lies behind is kept for so many lengths of the output filter.
 const KEPT: f64 = 2.0;
-const MOST_MOVED: u32 = 48;
 /// No part is shorter than this share of the interval.
 const SLIVER: f64 = 1e-3;
 
@@ -42,9 +40,6 @@ pub(super) fn split<const N: usize>(
     let after = lead + SPARE * PATH_PERIOD_S - (time - nodes.at(interval).lasts);
     let (places, count) = places(nodes.at(interval), nodes.at(end), after, bounds);
     let oldest = nodes.before(player - 1, nodes.first, KEPT * bounds.filter);
-    if interval - oldest > MOST_MOVED {
-        return (interval, 0);
-    }
     if nodes.room() < count {
         nodes.first = oldest;
     }
@@ -91,22 +86,15 @@ fn places(node: &Node, next: &Node, after: f64, bounds: &Bounds) -> ([f64; STEPS
 /// Puts nodes into the interval that begins at node `interval`, at these distances from there; the plan in force is
 /// as before. The nodes up to there move down by as many serials: they are fewer than those ahead.
 fn insert<const N: usize>(nodes: &mut Nodes<N>, interval: u32, places: &[f64], bounds: &Bounds) {
-    let count = places.len() as u32;
     let (whole, end) = (*nodes.at(interval), *nodes.at(interval + 1));
-    for serial in nodes.first..=interval {
-        *nodes.at_mut(serial - count) = *nodes.at(serial);
+    let (mut from, mut left) = (0.0, whole.lasts);
+    for to in places {
+        let before = part(&whole, &end, [from, *to], bounds);
+        (from, left) = (*to, left - before.lasts);
+        *nodes.at_mut(interval) = before;
+        nodes.insert_after(interval, part(&whole, &end, [from, whole.delta], bounds));
     }
-    nodes.first -= count;
-    let (mut serial, mut from, mut gone) = (interval - count, 0.0, 0.0);
-    for to in places.iter().copied().chain([whole.delta]) {
-        let mut node = part(&whole, &end, [from, to], bounds);
-        if to >= whole.delta {
-            node.lasts = whole.lasts - gone;
-        }
-        gone += node.lasts;
-        *nodes.at_mut(serial) = node;
-        (serial, from) = (serial + 1, to);
-    }
+    nodes.at_mut(interval).lasts = left;
 }
 
 /// The part of the interval of node `whole`, which ends at node `end`, between two distances from its start; the plan in
