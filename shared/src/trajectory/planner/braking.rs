@@ -243,13 +243,11 @@ impl Horizon {
         }
     }
 
-    /// The plan with a cut interval was taken: the node where it ended comes after the new one. Says how much work that
-    /// was.
-    pub(super) fn keep_cut<const N: usize>(&mut self, nodes: &mut Nodes<N>) -> u32 {
-        self.cut.take().map_or(0, |cut| {
+    /// The plan with a cut interval was taken: the node where it ended comes after the new one.
+    pub(super) fn keep_cut<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
+        if let Some(cut) = self.cut.take() {
             nodes.insert(cut.node + 2, cut.were[1]);
-            nodes.end - cut.node
-        })
+        }
     }
 
     /// Lowest and highest accelerations of the rows by that along the path, in the intervals from the first node to

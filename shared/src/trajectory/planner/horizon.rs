@@ -469,8 +469,8 @@ impl Horizon {
         (x, next.time - pause(next, bounds) - node.time)
     }
 
-    /// The plan that is whole was taken; says how much work that was.
-    pub fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) -> u32 {
+    /// The plan that is whole was taken.
+    pub fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
         for i in self.lowest..=self.last {
             let (x, lasts) = self.whole(nodes, i, bounds);
             let node = nodes.at_mut(i);
@@ -480,7 +480,7 @@ impl Horizon {
             let more = f64::from(self.spent) / f64::from(self.last - self.start) - self.work_of_node;
             self.work_of_node += if more > 0.0 { RISE } else { FALL } * more;
         }
-        let work = self.keep_cut(nodes);
+        self.keep_cut(nodes);
         self.in_force = self.last;
         self.taken += 1;
         self.relaxed = RELAXED;
@@ -488,7 +488,6 @@ impl Horizon {
         self.stopping = self.wanted.stop;
         self.factor = self.wanted.factor;
         self.phase = Phase::Waiting;
-        work
     }
 }
 

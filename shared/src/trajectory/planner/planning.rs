@@ -74,8 +74,8 @@ impl<const NODES: usize> Planning<NODES> {
         player: &mut impl PlayerAccess<ELEMENTS, NODES>,
         kinematics: &Kinematics,
     ) {
-        let taken = self.follow(player);
-        let idle = self.plan(player, kinematics, WORK.saturating_sub(taken));
+        self.follow(player);
+        let idle = self.plan(player, kinematics);
         let last = self.horizon.in_force();
         let news = News {
             wish: self.progress.wish,
@@ -87,8 +87,8 @@ impl<const NODES: usize> Planning<NODES> {
         player.with(|player| player.tell(self.progress.path, news));
     }
 
-    /// Learns where the player is, and what became of the plan that was offered to it; says how much work that was.
-    fn follow<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) -> u32 {
+    /// Learns where the player is, and what became of the plan that was offered to it.
+    fn follow<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) {
         let before = core::mem::replace(&mut self.progress, player.with(|player| player.progress()));
         let now = &self.progress;
         if now.path != before.path {
@@ -96,29 +96,25 @@ impl<const NODES: usize> Planning<NODES> {
             (self.offered, self.laid, self.blocked) = (None, false, None);
             self.grid.start(now.s, &now.axes, &mut self.nodes);
             self.horizon = Horizon::at(self.nodes.first);
-            return 0;
+            return;
         }
         let on = now.place.node == before.place.node && !now.stands;
         self.laid &= on && now.elements == before.elements;
-        let work = match self.offered.take() {
+        match self.offered.take() {
             Some(Offer::New) if now.taken == self.offers => self.horizon.take(&mut self.nodes, &self.bounds),
-            Some(Offer::Changed) => {
-                self.horizon.come_to(now.last);
-                0
-            }
-            Some(Offer::New) | None => 0,
-        };
+            Some(Offer::Changed) => self.horizon.come_to(now.last),
+            Some(Offer::New) | None => {}
+        }
         self.horizon.watch(&mut self.nodes, now.place.node);
-        work
     }
 
-    /// As much `work`; says whether nothing is left to do.
+    /// A turn's work; says whether nothing is left to do.
     fn plan<const ELEMENTS: usize>(
         &mut self,
         player: &mut impl PlayerAccess<ELEMENTS, NODES>,
         kinematics: &Kinematics,
-        mut work: u32,
     ) -> bool {
+        let mut work = WORK;
         let wanted = self.wanted();
         self.horizon.obey(&mut self.nodes, wanted);
         // Not only when no more nodes can be had.
