@@ -1,12 +1,13 @@
 //! When a board may run on.
 //!
 //! Each board has come to a point of one common time, its own time plus a constant. It waits until the wall
-//! clock has come there, until its peer is at most [`LEAD_NS`] behind, and until a program on the PC that
-//! takes part is at most [`PC_LEAD_NS`] behind: a PC whose processor is busy elsewhere is not what is to be
-//! tried here. Who comes late by more than [`LATE_NS`] moves the common epoch, for both: the delay of one is
+//! clock has come there, until its peer is at most [`LEAD_NS`] behind, until a program on the PC that
+//! takes part is at most [`PC_LEAD_NS`] behind, and until frames that wait for it have been received: a PC whose
+//! processor is busy elsewhere is not what is to be tried here. Who comes late by more than [`LATE_NS`] moves the common epoch, for both: the delay of one is
 //! a delay of the pair, and neither races to catch up. A peer without a sign of life for [`PATIENCE_NS`]
 //! (stopped, ended) is not waited for; when it comes back it joins where the other is by then.
 
+use crate::network::Network;
 use crate::shared::Shared;
 
 /// Board time between two looks at the clock \[ns\].
@@ -23,12 +24,13 @@ const LATE_NS: i64 = 250_000;
 const REJOIN_NS: i64 = 10_000_000;
 /// Wall time after which a silent peer is not waited for \[ns\].
 const PATIENCE_NS: i64 = 1_000_000_000;
-/// Longest sleep between two looks at the peer \[ns\].
+/// Longest sleep between two looks at what is waited for \[ns\].
 const STEP_NS: i64 = 50_000;
 
 /// A board's place in common time.
 pub struct Clock {
     shared: Shared,
+    network: Network,
     /// Wall time per board time.
     stretch: f64,
     /// Common time minus the board's own \[ns\]; known from its first wait on.
@@ -37,9 +39,10 @@ pub struct Clock {
 
 impl Clock {
     /// `rate` is board time per wall time.
-    pub fn start(shared: Shared, rate: f64) -> Self {
+    pub fn start(shared: Shared, network: Network, rate: f64) -> Self {
         Self {
             shared,
+            network,
             stretch: 1.0 / rate,
             offset: None,
         }
@@ -70,7 +73,8 @@ impl Clock {
             let due = self.shared.epoch(now) + since_epoch;
             let behind = |other: Option<i64>, lead| other.is_some_and(|other| reached - other > lead);
             let ahead = behind(self.shared.peer(now, PATIENCE_NS), LEAD_NS)
-                || behind(self.shared.pc(now, PATIENCE_NS), PC_LEAD_NS);
+                || behind(self.shared.pc(now, PATIENCE_NS), PC_LEAD_NS)
+                || self.network.is_behind(now);
             if now < due {
                 sleep(due - now);
             } else if ahead {

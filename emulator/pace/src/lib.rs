@@ -9,5 +9,6 @@
 //! and `slot=0|1`, which tie two boards together through a shared file of 4096 zero bytes.
 
 mod clock;
+mod network;
 mod plugin;
 mod shared;

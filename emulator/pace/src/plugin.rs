@@ -1,6 +1,7 @@
 //! What QEMU calls, and what it is asked to call (plugin interface, version 1).
 
 use crate::clock::{Clock, QUANTUM_NS};
+use crate::network::Network;
 use crate::shared::Shared;
 use libc::{c_char, c_int, c_uint, c_void};
 use std::cell::UnsafeCell;
@@ -111,7 +112,7 @@ impl Arguments {
         Ok(Pace {
             shift,
             next: 0,
-            clock: Clock::start(shared, self.rate.unwrap_or(1.0)),
+            clock: Clock::start(shared, Network::of_main_thread(), self.rate.unwrap_or(1.0)),
         })
     }
 }

@@ -3,7 +3,7 @@
 //! blamed is who it was.
 
 use crate::pair::{Pair, assert_served, status};
-use crate::process::Process;
+use crate::process::{Process, wait_until};
 use emulator::{BoardAction, BoardTime, Session};
 use host_link::boards::Boards;
 use nix::sys::signal::Signal;
@@ -146,13 +146,30 @@ fn a_motion_board_that_freezes_is_reset_or_dies_is_blamed_and_the_slides_stop() 
     }
 }
 
+/// A connection that says nothing keeps its place for so long, by the time of the boards.
+const LEASE: Duration = Duration::from_secs(5);
+/// Longer than a machine takes to miss its PC and to stop, by the time of the boards.
+const STOPPED: Duration = Duration::from_secs(2);
+
+/// From the beginning of the path to well inside the weld, by the time of the boards.
+const BEAMS_ON: Duration = Duration::from_secs(2);
+
+/// Waits until the boards have gone on for so long by their own time, which goes slower than the wall's on a busy computer.
+#[track_caller]
+fn let_pass(pair: &Pair, time: Duration) {
+    let boards = BoardTime::of(&pair.boards.session().pace).expect("boards that run");
+    let now = || boards.now().expect("boards that run");
+    let begin = now();
+    wait_until("the boards", || now() - begin >= time);
+}
+
 /// A program that welds, paused when its beams have been on for a while.
 fn paused(pair: &Pair) -> Process {
     let mut command = pair.seamwright(None);
     command.args(["--speed", "9"]);
     let mut seamwright = Process::start(command);
     seamwright.wait_for("welding");
-    thread::sleep(Duration::from_secs(2));
+    let_pass(pair, BEAMS_ON);
     seamwright.signal(Signal::SIGSTOP);
     seamwright
 }
@@ -176,7 +193,7 @@ fn assert_blames_itself(seamwright: Process, pair: &Pair) {
 fn a_pc_that_is_paused_stops_the_machine_and_blames_itself() {
     let pair = Pair::boot("pc-paused");
     let seamwright = paused(&pair);
-    thread::sleep(Duration::from_secs(3));
+    let_pass(&pair, STOPPED);
     assert_blames_itself(seamwright, &pair);
     let (motion, _) = status(&mut pair.connect());
     assert_eq!(motion.state, State::Fault, "{:?}", motion.fault);
@@ -186,8 +203,7 @@ fn a_pc_that_is_paused_stops_the_machine_and_blames_itself() {
 fn a_pc_that_is_started_anew_takes_the_place_of_one_that_is_silent() {
     let mut pair = Pair::boot("pc-anew");
     let silent = paused(&pair);
-    // It keeps its place for 5 s, and emulated boards wait for a silent PC for a second before.
-    thread::sleep(Duration::from_secs(4));
+    let_pass(&pair, LEASE + Duration::from_millis(100));
     let mut anew = Process::start(pair.seamwright(None));
     anew.wait_for("searching reference marks");
     assert_blames_itself(silent, &pair);
