@@ -1,6 +1,6 @@
 //! What a dry run says of a job beside the run itself.
 
-use crate::{NoOperator, TappedBoards};
+use crate::{NoOperator, RecordedBoards, TappedBoards};
 use cam::dry_run;
 use cam::dry_run::DryRun;
 use cam::path::Planner;
@@ -16,13 +16,18 @@ const JOB: f64 = 0.005;
 /// ... and that of its motion, without what lies between the paths.
 const MOTION: f64 = 0.001;
 
-/// Does a job. If it is one of a program and nothing ends it early, it takes as long as a dry run says.
+/// Does a job. If nothing ends it early, references are those of a dry run that gets the elements at the same ticks, to the
+/// bit; if it is one of a program, it takes as long as a dry run says.
 ///
 /// # Panics
 /// Where it does not.
 pub fn run(boards: &mut dyn Boards, job: &Job) -> Ended {
     let mut seen = OnPaths::default();
-    let ended = run_heard(boards, job, |_, sample| seen.on_sample(sample));
+    let mut recorded = RecordedBoards::new(boards);
+    let ended = run_heard(&mut recorded, job, |_, sample| seen.on_sample(sample));
+    let (same, touched) = recorded.paths();
+    println!("{same} paths with the references of a dry run, {touched} with a hand in them");
+    assert!(ended.error.is_some() || same > 0);
     if let (Work::Program(program), None) = (&job.work, &ended.error) {
         seen.assert_predicted(&dry_run(job, program));
     }

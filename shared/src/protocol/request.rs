@@ -6,7 +6,7 @@ use crate::geometry::PoseOffset;
 use crate::io::{AXES, MOTORS, SLIDE_NAMES, SLIDES};
 use crate::parameter::ParameterError;
 use crate::state::{Fault, State, TrackerFault, TrackerState};
-use crate::trajectory::{Knot, PathError, PathSpace, PushError};
+use crate::trajectory::{Knot, PathError, PathSpace, Played, PushError};
 use heapless::{String, Vec};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -148,6 +148,8 @@ pub struct Room {
     pub elements: u16,
     /// Events.
     pub events: u16,
+    /// Path ticks on this path so far: what the request brought is known to the planner from the next one on.
+    pub tick: u32,
 }
 
 /// Limits along a path, beside those of the axes.
@@ -429,6 +431,8 @@ pub struct MotionStatus {
     pub line: u32,
     /// Elements of it taken so far.
     pub elements: u32,
+    /// What was put out along it so far, before the pose is moved beside it.
+    pub played: Played,
     /// Room for more of it.
     pub room: Room,
     /// Part of the programmed speed that is asked for.

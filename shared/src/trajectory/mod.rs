@@ -15,7 +15,7 @@ pub use curve::{ArcLengthCurve, CurveNumbers, NoCurve, PARAMETER_COEFFICIENTS};
 pub use element::{Cubic, Element, Join, SHAPED, Shape, Tolerance};
 pub use path::{Knot, Path, PathError, PathPoint, PathSpace};
 pub use planner::{
-    LONGEST_PATH, Output, PlanLimits, Planner, Planning, Player, PlayerAccess, PushError, Way,
+    LONGEST_PATH, Output, PlanLimits, Planner, Planning, Played, Player, PlayerAccess, PushError, Way,
 };
 pub use reference::{ReferenceError, Unreachable, at_unit_speed, axes_at};
 pub use rest_to_rest::RestToRest;

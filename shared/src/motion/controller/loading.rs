@@ -27,6 +27,7 @@ impl MotionController {
         Room {
             elements: self.player.room() as u16,
             events: (EVENTS - self.path.events.len()) as u16,
+            tick: self.player.played().ticks,
         }
     }
 

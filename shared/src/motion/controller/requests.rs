@@ -218,6 +218,7 @@ impl MotionController {
             s_mm: self.along[0].s,
             line: self.path.line,
             elements: self.path.elements,
+            played: self.player.played(),
             room: self.room(),
             speed_override: self.factor,
             superimposed: self.superimposed.now(),

@@ -17,6 +17,7 @@ mod limits;
 mod node;
 mod plan;
 mod planning;
+mod played;
 mod player;
 mod room;
 mod rounding;
@@ -30,6 +31,7 @@ mod track;
 
 pub use limits::PlanLimits;
 pub use planning::Planning;
+pub use played::Played;
 pub use player::{Player, PlayerAccess};
 pub use track::{LONGEST as LONGEST_PATH, PushError};
 
@@ -117,6 +119,11 @@ impl<const ELEMENTS: usize, const NODES: usize> Planner<ELEMENTS, NODES> {
     /// See [`Player::planned`].
     pub fn planned(&self) -> SpeedState {
         self.player.planned()
+    }
+
+    /// See [`Player::played`].
+    pub fn played(&self) -> Played {
+        self.player.played()
     }
 
     /// See [`Player::rested`].

@@ -7,6 +7,7 @@ use super::channels::POSE_CHANNELS;
 use super::filter::Filter;
 use super::limits::{Bounds, PlanLimits};
 use super::plan::{Place, Plan};
+use super::played::Played;
 use super::track::{self, PushError, Track};
 use super::{Output, Way};
 use crate::io::AXES;
@@ -51,6 +52,7 @@ pub struct Player<const ELEMENTS: usize, const NODES: usize> {
     turn: bool,
     /// Turns that had not ended at the next tick.
     missed: u32,
+    played: Played,
 }
 
 /// How planning reaches the player, which path ticks use too: on a board behind a lock, each time for no longer than it
@@ -155,6 +157,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Player<ELEMENTS, NODES> {
             news: News::NONE,
             turn: false,
             missed: 0,
+            played: Played::from([0.0; AXES]),
         }
     }
 
@@ -177,6 +180,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Player<ELEMENTS, NODES> {
         self.filter.settle(self.bounds.filter_ticks, &rest, &self.planned);
         self.resting = self.bounds.filter_ticks as u32;
         (self.news, self.turn) = (News::NONE, false);
+        self.played = Played::from(*axes);
     }
 
     /// How many elements there is room for now.
@@ -211,6 +215,11 @@ impl<const ELEMENTS: usize, const NODES: usize> Player<ELEMENTS, NODES> {
     /// Where the path is before the output filter.
     pub fn planned(&self) -> SpeedState {
         self.planned
+    }
+
+    /// What was put out since [`Self::start`].
+    pub fn played(&self) -> Played {
+        self.played
     }
 
     /// The output has come to rest.
@@ -258,8 +267,10 @@ impl<const ELEMENTS: usize, const NODES: usize> Player<ELEMENTS, NODES> {
         self.filter.push(&axes, &self.planned);
         let along = self.filter.along();
         let piece = self.track.find(along.s, &mut self.output_hint);
+        let axes = self.filter.axes();
+        self.played.add(&axes.position);
         Ok(Output {
-            axes: self.filter.axes(),
+            axes,
             along,
             line: piece.map_or(0, |piece| piece.element.line),
             feed: piece.map_or(0.0, |piece| piece.element.feed),
