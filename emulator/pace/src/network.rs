@@ -77,7 +77,8 @@ fn read<'a>(file: &File, buffer: &'a mut [u8]) -> io::Result<&'a str> {
 
 /// Whether a thread runs or waits to be run, by its `stat`: `number (name) state …`, where the name may hold anything.
 fn is_ready(stat: &str) -> bool {
-    stat.rsplit_once(") ").is_some_and(|(_, state)| state.starts_with('R'))
+    stat.rsplit_once(") ")
+        .is_some_and(|(_, state)| state.starts_with('R'))
 }
 
 /// How often a thread has given up its processor by itself, by its `status`.

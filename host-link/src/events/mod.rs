@@ -26,7 +26,7 @@ pub enum Event {
     /// The state of the boards, some times a second.
     Status {
         /// The motion board.
-        motion: MotionStatus,
+        motion: Box<MotionStatus>,
         /// The tracker board, where the machine has one; its latest answer.
         tracker: Option<TrackerStatus>,
     },

@@ -195,7 +195,7 @@ impl<'a> Session<'a> {
 
     fn publish_status(&self) {
         self.control.publish(Event::Status {
-            motion: self.motion.clone(),
+            motion: Box::new(self.motion.clone()),
             tracker: self.tracking.as_ref().map(|tracking| tracking.status.clone()),
         });
     }

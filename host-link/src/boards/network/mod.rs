@@ -111,7 +111,7 @@ pub struct NetworkBoards {
 /// What the readers pass on.
 enum Incoming {
     Datagram(Role, io::Result<Box<Datagram>>),
-    Answer(Role, Answer),
+    Answer(Role, Box<Answer>),
     /// Something else is to be looked at.
     Wake,
 }
@@ -242,7 +242,7 @@ impl NetworkBoards {
             Some(Incoming::Answer(role, answer)) => {
                 // The session ends with its boards, so that there is a stream for each that sent something.
                 if let Ok(stream) = self.stream(role) {
-                    stream.deliver(answer);
+                    stream.deliver(*answer);
                 }
             }
             Some(Incoming::Wake) | None => {}

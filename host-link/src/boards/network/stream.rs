@@ -258,7 +258,7 @@ pub(super) fn read_answers(role: Role, mut frames: Frames, sender: &SyncSender<I
         };
         let ended = !matches!(answer, Ok(Ok(_)));
         // Answers are few, and wait for room.
-        if sender.send(Incoming::Answer(role, answer)).is_err() || ended {
+        if sender.send(Incoming::Answer(role, Box::new(answer))).is_err() || ended {
             return;
         }
     }
