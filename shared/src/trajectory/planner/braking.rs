@@ -38,7 +38,7 @@ impl Horizon {
             (self.away, self.settled) = (self.history, self.commit);
         }
         let node = nodes.at(i);
-        if node.brake > node.cap_of_feed() {
+        if node.brake > self.goal(node) {
             self.settled = i + 1;
         }
         if node.brake > 0.0 {
@@ -54,6 +54,11 @@ impl Horizon {
         }
     }
 
+    /// ṡ² at `node` down to which braking goes.
+    fn goal(&self, node: &Node) -> f64 {
+        if self.wanted.stop { 0.0 } else { node.cap_of_feed() }
+    }
+
     /// The last node from which the acceleration can be let go in time, if the rates of the rows do not change on the way.
     fn late<const N: usize>(&mut self, nodes: &Nodes<N>, bounds: &Bounds) -> u32 {
         let mut from = self.settled - 1;
@@ -62,7 +67,7 @@ impl Horizon {
             let node = nodes.at(from);
             let change = f64::from(most_change(node, bounds));
             let a = f64::from(node.sides[0].allowed[PATH_ROW]);
-            let goal = if self.wanted.stop { 0.0 } else { node.cap_of_feed() };
+            let goal = self.goal(node);
             // From there on with a jerk of `change` in the filter's length, down to `change`.
             let way_down = 0.5 * (a * a / change - change) * bounds.filter;
             if libm::sqrt(node.brake) >= libm::sqrt(goal) + way_down {
@@ -105,7 +110,7 @@ impl Horizon {
             nodes.at_mut(later).brake = 0.0;
         }
         // Nodes far beyond would only take time now; they are planned when it is obeyed.
-        let near = self.braked.max(self.settled) + LEAST_WINDOW;
+        let near = self.braked.max(self.settled) + LEAST_WINDOW / self.patience;
         if near < self.last && nodes.at(near - 1).limit > 0.0 {
             self.last = near;
         }
@@ -173,6 +178,9 @@ impl Horizon {
             while away > self.history && nodes.at(away).time > since {
                 away -= 1;
             }
+            while away < i && nodes.at(away + 1).time <= since {
+                away += 1;
+            }
             let until = since + passes(node, x) - node.time;
             let highest = self.strongest(nodes, [away, i], until) + change;
             let floor = if i < self.braked {
@@ -181,13 +189,14 @@ impl Horizon {
                 f32::NEG_INFINITY
             };
             let a = most(most(least(highest, -share * change), floor), lowest(node, x));
-            let goal = if self.wanted.stop { 0.0 } else { next.cap_of_feed() };
+            let goal = self.goal(next);
             let end = libm::fmin(x + 2.0 * node.delta * f64::from(a), next.x);
             if end > goal + SLIVER * x {
                 go_to(nodes, i, end, bounds);
                 continue;
             }
-            let end_x = libm::fmin(goal, next.x);
+            // Where it may be faster than it is, it need not be at once.
+            let end_x = libm::fmin(libm::fmin(goal, next.x), libm::fmax(end, x));
             if self.wanted.stop && end < 0.0 {
                 self.cut(nodes, i, x / f64::from(-2.0 * a), bounds);
             }

@@ -12,6 +12,7 @@ use super::node::Nodes;
 use super::plan::{Knot, Place, Plan};
 use super::player::{News, PlayerAccess, Progress};
 use super::sample::Ground;
+use super::split::PutIn;
 use crate::io::AXES;
 use crate::kinematics::Kinematics;
 use crate::trajectory::{PathSpace, Unreachable};
@@ -256,7 +257,7 @@ impl<const NODES: usize> Planning<NODES> {
         );
         let more = node - self.progress.place.node;
         if more > 0 || self.horizon.in_force() < last {
-            self.change(player, last, more);
+            self.change(player, last);
         }
         match (begun, more > 0) {
             (_, true) => 2 * BEGIN + last - self.progress.place.node,
@@ -265,22 +266,17 @@ impl<const NODES: usize> Planning<NODES> {
         }
     }
 
-    /// Offers the plan in force again, which has `more` nodes now, and may rest before its `last`.
-    fn change<const ELEMENTS: usize>(
-        &mut self,
-        player: &mut impl PlayerAccess<ELEMENTS, NODES>,
-        last: u32,
-        more: u32,
-    ) {
+    /// Offers the plan in force again, which may have more nodes now, or rest before its `last`.
+    fn change<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>, last: u32) {
         let rest = Some(self.horizon.in_force()).filter(|rest| *rest < last);
         for i in self.progress.place.node..=last {
             let node = self.nodes.at(i);
             let knot = Knot::of(node, (node.x, node.lasts));
             player.with(|player| player.next_plan().set(i, knot));
         }
-        let moved = [self.horizon.moved_to, more];
+        let put_in = self.horizon.put_in;
         self.hand_over(player, Offer::Changed, |plan| {
-            (plan.last, plan.rest, plan.commit, plan.moved) = (last, rest, None, moved);
+            (plan.last, plan.rest, plan.commit, plan.put_in) = (last, rest, None, put_in);
         });
     }
 
@@ -294,7 +290,8 @@ impl<const NODES: usize> Planning<NODES> {
         }
         let commit = Some(self.horizon.commit);
         self.hand_over(player, Offer::New, |plan| {
-            (plan.last, plan.rest, plan.commit, plan.moved) = (last, None, commit, [0; 2]);
+            (plan.last, plan.rest, plan.commit) = (last, None, commit);
+            plan.put_in = PutIn::default();
         });
         last - self.progress.place.node
     }
