@@ -8,18 +8,13 @@ use super::horizon::{Horizon, LEAST_WINDOW, Phase, VISIT};
 use super::limits::{Bounds, PATH_ROW, ROWS};
 use super::node::{Lanes, Node, Nodes, least, most, pause};
 use super::scan::lowest;
-use super::split::part;
+use super::split::{SLIVER, part};
 
 /// Share of ṡ² that rounding leaves.
 const ROUNDED: f64 = 1e-5;
 /// Share of the most that an acceleration may change at once with which the machine comes to rest. The rest is for rates
 /// that change on the way.
 const LAST: f32 = 0.95;
-/// Shares of that: less if it can only be let go late.
-const GENTLER: [f32; 4] = [1.0, 0.5, 0.25, 0.125];
-/// Share of an interval, or of ṡ² at its start, that is left over where it might as well have ended: a rest is not put so near
-/// to a node.
-const SLIVER: f64 = 1e-3;
 
 /// An interval that was cut where the machine comes to rest.
 #[derive(Clone, Copy, Debug)]
@@ -80,16 +75,7 @@ impl Horizon {
 
     /// Tries to let go of the acceleration from node `from` on, or else earlier.
     pub(super) fn release<const N: usize>(&mut self, nodes: &mut Nodes<N>, from: u32, bounds: &Bounds) {
-        // Where even the commit is late, the rest has to come later.
-        let gentle = if from > self.commit {
-            &GENTLER[..1]
-        } else {
-            &GENTLER
-        };
-        if gentle
-            .iter()
-            .any(|share| self.release_from(nodes, from, share * LAST, bounds))
-        {
+        if self.release_from(nodes, from, bounds) {
             self.end_brake(nodes, bounds);
         } else if from > self.commit {
             self.phase = Phase::Release(from - 1);
@@ -159,15 +145,9 @@ impl Horizon {
         }
     }
 
-    /// Lets go of the acceleration from node `from` on, down to a `share` of what may change to none at once. Says whether
+    /// Lets go of the acceleration from node `from` on, down to what may change to none at once. Says whether
     /// the speed has come down with no more than may change so, for as long as the output filter remembers.
-    fn release_from<const N: usize>(
-        &mut self,
-        nodes: &mut Nodes<N>,
-        from: u32,
-        share: f32,
-        bounds: &Bounds,
-    ) -> bool {
+    fn release_from<const N: usize>(&mut self, nodes: &mut Nodes<N>, from: u32, bounds: &Bounds) -> bool {
         let mut away = from;
         for i in from..self.in_force() {
             self.work += VISIT / 2;
@@ -188,7 +168,7 @@ impl Horizon {
             } else {
                 f32::NEG_INFINITY
             };
-            let a = most(most(least(highest, -share * change), floor), lowest(node, x));
+            let a = most(most(least(highest, -LAST * change), floor), lowest(node, x));
             let goal = self.goal(next);
             let end = libm::fmin(x + 2.0 * node.delta * f64::from(a), next.x);
             if end > goal + SLIVER * x {

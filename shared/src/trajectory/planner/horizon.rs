@@ -25,15 +25,9 @@ pub(super) const LEAST_WINDOW: u32 = 32;
 /// Time before the slowing at the end of the plan in force that may be planned again, in lengths of the
 /// output filter,
 const SLACK: f64 = 14.0;
-/// and that is, from the first round on.
-const NEAR: f64 = 2.0;
-/// Time from which on the acceleration matters, in the same.
-const REMEMBERED: f64 = 1.5;
 /// A plan is not begun earlier than this many times the time it needs,
 const EARLY: f64 = 3.0;
-/// and whether it is time is looked at after a quarter of what is left, but after so many ticks
-/// at the latest;
-const MOST_EARLY: f64 = 100.0;
+/// and whether it is time is looked at after a quarter of what is left;
 /// it has to be ready in this many times that,
 const MARGIN: f64 = 1.7;
 /// and at least in this many.
@@ -290,7 +284,7 @@ impl Horizon {
             let needed = time_of(f64::from(last - slowing) * work_of_node);
             let early = until - EARLY * needed;
             if last < self.in_force + WINDOW && early > 0.0 {
-                self.early = libm::fmin(0.25 * early / PATH_PERIOD_S, MOST_EARLY) as u32;
+                self.early = (0.25 * early / PATH_PERIOD_S) as u32;
                 return false;
             }
             let affordable = (until / (MARGIN * time_of(work_of_node))) as u32;
@@ -335,9 +329,9 @@ impl Horizon {
         if commit == last || rest && !rested {
             return false;
         }
-        let remembered = if rest { 0.0 } else { REMEMBERED * bounds.filter };
+        let remembered = if rest { 0.0 } else { bounds.remembered };
         self.history = nodes.before(commit, nodes.first, remembered);
-        self.start = nodes.before(slowing.max(commit), commit, NEAR * bounds.filter);
+        self.start = nodes.before(slowing.max(commit), commit, bounds.remembered);
         // What kept the plans before it from being good may lie beyond a shorter one.
         let nearer = nodes.rest(last.min(commit + LEAST_WINDOW.max((last - commit) / share)));
         let last = match (wanted.stop, goes_on || slower || nearer <= commit) {

@@ -323,7 +323,7 @@ impl<const NODES: usize> Planning<NODES> {
         let mut time = if self.progress.rested { f64::INFINITY } else { 0.0 };
         let mut oldest = player;
         while oldest > self.nodes.first
-            && (time < 2.0 * self.bounds.filter || oldest + NODES as u32 / 8 > player)
+            && (time < self.bounds.remembered || oldest + NODES as u32 / 8 > player)
         {
             oldest -= 1;
             time += self.nodes.at(oldest).lasts;

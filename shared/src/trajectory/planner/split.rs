@@ -12,10 +12,8 @@ const SPARE: f64 = 2.0;
 /// Nodes for the way in which the machine can stop, and that way is this many times the shortest.
 pub(super) const STEPS: usize = 12;
 const LONGER: f64 = 1.3;
-/// What lies behind is kept for so many lengths of the output filter.
-const KEPT: f64 = 2.0;
 /// No part is shorter than this share of the interval.
-const SLIVER: f64 = 1e-3;
+pub(super) const SLIVER: f64 = 1e-3;
 
 /// Where nodes were put in: the old serials of the nodes at the start of those intervals, and 0 for none.
 pub(super) type PutIn = [u32; STEPS + 1];
@@ -72,7 +70,7 @@ pub(super) fn split<const N: usize>(
             (interval, at) = (interval + 1, 0.0);
         }
     }
-    let oldest = nodes.before(player - 1, nodes.first, KEPT * bounds.filter);
+    let oldest = nodes.before(player - 1, nodes.first, bounds.remembered);
     if nodes.room() < places.count {
         nodes.first = oldest;
     }
