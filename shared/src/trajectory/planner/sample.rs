@@ -67,13 +67,11 @@ impl<P: PlayerAccess<E, N>, const E: usize, const N: usize> Ground<'_, P, E, N> 
             let piece = track.find(s, hint)?;
             let (feed, line) = (piece.element.feed, piece.element.line);
             let point = track.at::<C>(s, hint)?;
-            // Rounded corners of curves may go farther than the programmed path.
-            let rate = libm::fmax(position_norm(&point.first), 1.0);
             let mut sample = Sample {
                 s,
                 first: [0.0; ROWS],
                 second: [0.0; ROWS],
-                feed: feed * feed / (rate * rate),
+                feed: feed * feed,
                 limit: f64::INFINITY,
                 bend: position_norm(&point.second),
             };
