@@ -144,7 +144,7 @@ fn insert<const N: usize>(nodes: &mut Nodes<N>, interval: u32, at: f64, bounds: 
 /// force is as before.
 pub(super) fn part(whole: &Node, end: &Node, [from, to]: [f64; 2], bounds: &Bounds) -> Node {
     let a = (end.x - whole.x) / (2.0 * whole.delta);
-    let x = whole.x + 2.0 * a * from;
+    let x = libm::fmax(whole.x + 2.0 * a * from, 0.0);
     let (v, v_to) = (
         libm::sqrt(x),
         libm::sqrt(libm::fmax(x + 2.0 * a * (to - from), 0.0)),
