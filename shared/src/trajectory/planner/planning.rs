@@ -17,7 +17,7 @@ use crate::io::AXES;
 use crate::kinematics::Kinematics;
 use crate::trajectory::{PathSpace, Unreachable};
 
-/// Work to begin a plan, and as much again to split an interval for it.
+/// Work to begin a plan, and as much again to split intervals for it; every node put in is two visits more.
 const BEGIN: u32 = 6 * VISIT;
 
 /// The end of the planner that looks ahead.
@@ -260,7 +260,7 @@ impl<const NODES: usize> Planning<NODES> {
             self.change(player, last);
         }
         match (begun, more > 0) {
-            (_, true) => 2 * BEGIN + last - self.progress.place.node,
+            (_, true) => 2 * BEGIN + 2 * VISIT * more + last - self.progress.place.node,
             (true, false) => BEGIN,
             (false, false) => 0,
         }
