@@ -54,9 +54,9 @@ const BEGINS: f64 = 900.0;
 const PAUSES: [u64; 5] = [2, 40, 300, 1000, 3000];
 /// Once the operator has nothing more on their mind they let the machine continue, so often \[ms\].
 const GOES_ON: u32 = 400;
-/// Where a hold or its end are known: gates have a tick of their own at either end, and twice this is passed below the least
-/// speed of a beam where a short block ends at rest and the next begins.
-const EDGE: f64 = 0.05;
+/// Where a hold or its end are known: gates have a tick of their own at either end, and the least speed of a beam is
+/// reached in less than 0.04 mm.
+const EDGE: f64 = 0.04;
 const TICK_S: f64 = 1e-3;
 /// A gate goes off so many ticks after the hold was asked for.
 const TOLD: f64 = 3.0;

@@ -1,7 +1,6 @@
 //! A plan as it is played, and the place on it.
 
 use super::node::Node;
-use super::split::{PutIn, STEPS, moved};
 use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::SpeedState;
 
@@ -50,8 +49,8 @@ pub(super) struct Plan<const N: usize> {
     pub rest: Option<u32>,
     /// First node whose speed is another than in the plan before, if there is one.
     pub commit: Option<u32>,
-    /// Where nodes were put in that the plan before had not.
-    pub put_in: PutIn,
+    /// Serials of nodes up to the first of these are lower by the second than in the plan before.
+    pub moved: [u32; 2],
 }
 
 impl<const N: usize> Plan<N> {
@@ -67,7 +66,7 @@ impl<const N: usize> Plan<N> {
         last: 0,
         rest: None,
         commit: None,
-        put_in: [0; STEPS + 1],
+        moved: [0; 2],
     };
 
     /// Becomes one that rests at node `serial`.
@@ -83,8 +82,7 @@ impl<const N: usize> Plan<N> {
                 stop: true,
             },
         );
-        (self.last, self.rest, self.commit) = (serial, None, None);
-        self.put_in = PutIn::default();
+        (self.last, self.rest, self.commit, self.moved) = (serial, None, None, [0; 2]);
     }
 
     pub fn set(&mut self, serial: u32, knot: Knot) {
@@ -97,7 +95,12 @@ impl<const N: usize> Plan<N> {
 
     /// Whether it can continue a plan that has come to `place`, which `ends` there; that becomes the place on this one.
     pub fn fits(&mut self, place: &mut Place, ends: bool) -> bool {
-        let node = moved(place.node, &self.put_in);
+        let [moved, by] = self.moved;
+        let node = if place.node <= moved {
+            place.node - by
+        } else {
+            place.node
+        };
         if let Some(commit) = self.commit
             && node >= commit
             && !(ends && node == commit)

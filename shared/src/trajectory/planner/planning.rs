@@ -12,12 +12,11 @@ use super::node::Nodes;
 use super::plan::{Knot, Place, Plan};
 use super::player::{News, PlayerAccess, Progress};
 use super::sample::Ground;
-use super::split::PutIn;
 use crate::io::AXES;
 use crate::kinematics::Kinematics;
 use crate::trajectory::{PathSpace, Unreachable};
 
-/// Work to begin a plan, and as much again to split intervals for it; every node put in is two visits more.
+/// Work to begin a plan, and as much again to split an interval for it.
 const BEGIN: u32 = 6 * VISIT;
 
 /// The end of the planner that looks ahead.
@@ -257,26 +256,31 @@ impl<const NODES: usize> Planning<NODES> {
         );
         let more = node - self.progress.place.node;
         if more > 0 || self.horizon.in_force() < last {
-            self.change(player, last);
+            self.change(player, last, more);
         }
         match (begun, more > 0) {
-            (_, true) => 2 * BEGIN + 2 * VISIT * more + last - self.progress.place.node,
+            (_, true) => 2 * BEGIN + last - self.progress.place.node,
             (true, false) => BEGIN,
             (false, false) => 0,
         }
     }
 
-    /// Offers the plan in force again, which may have more nodes now, or rest before its `last`.
-    fn change<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>, last: u32) {
+    /// Offers the plan in force again, which has `more` nodes now, and may rest before its `last`.
+    fn change<const ELEMENTS: usize>(
+        &mut self,
+        player: &mut impl PlayerAccess<ELEMENTS, NODES>,
+        last: u32,
+        more: u32,
+    ) {
         let rest = Some(self.horizon.in_force()).filter(|rest| *rest < last);
         for i in self.progress.place.node..=last {
             let node = self.nodes.at(i);
             let knot = Knot::of(node, (node.x, node.lasts));
             player.with(|player| player.next_plan().set(i, knot));
         }
-        let put_in = self.horizon.put_in;
+        let moved = [self.horizon.moved_to, more];
         self.hand_over(player, Offer::Changed, |plan| {
-            (plan.last, plan.rest, plan.commit, plan.put_in) = (last, rest, None, put_in);
+            (plan.last, plan.rest, plan.commit, plan.moved) = (last, rest, None, moved);
         });
     }
 
@@ -290,8 +294,7 @@ impl<const NODES: usize> Planning<NODES> {
         }
         let commit = Some(self.horizon.commit);
         self.hand_over(player, Offer::New, |plan| {
-            (plan.last, plan.rest, plan.commit) = (last, None, commit);
-            plan.put_in = PutIn::default();
+            (plan.last, plan.rest, plan.commit, plan.moved) = (last, None, commit, [0; 2]);
         });
         last - self.progress.place.node
     }
@@ -323,7 +326,7 @@ impl<const NODES: usize> Planning<NODES> {
         let mut time = if self.progress.rested { f64::INFINITY } else { 0.0 };
         let mut oldest = player;
         while oldest > self.nodes.first
-            && (time < self.bounds.remembered || oldest + NODES as u32 / 8 > player)
+            && (time < 2.0 * self.bounds.filter || oldest + NODES as u32 / 8 > player)
         {
             oldest -= 1;
             time += self.nodes.at(oldest).lasts;
