@@ -12,7 +12,9 @@ mod words;
 
 pub use hold::assert_held_weld_goes_on;
 pub use operator::{NoOperator, Operator, Sleeper, TappedBoards, run};
-pub use pictures::{assert_stops_in_the_dark, weld_before_a_sleeper, weld_disturbed, weld_through_pictures};
+pub use pictures::{
+    assert_stops_in_the_dark, weld_before_a_sleeper, weld_disturbed, weld_disturbed_by, weld_through_pictures,
+};
 pub use references::RecordedBoards;
 pub use words::{OperatedWeld, WeldOutcome, meddled};
 

@@ -1,6 +1,6 @@
 //! Seams at the edges of what the shipped machine follows by pictures, and beyond them.
 
-use crate::pictures::through_pictures;
+use crate::pictures::{SEED, through_pictures};
 use crate::{NoOperator, SeamShape, run, seam};
 use config::machine::JointForm;
 use host_link::boards::Boards;
@@ -95,6 +95,7 @@ pub fn weld_by_pictures(boards: &mut dyn Boards, shape: SeamShape, speed_m_per_m
         SceneFile::default(),
         seam(shape),
         speed_m_per_min,
+        SEED,
         weld,
     )
 }

@@ -11,6 +11,8 @@ const APART_MM: f64 = 0.25;
 
 /// Widths of which the usual one is the median.
 const WIDTHS: usize = 31;
+/// Of these the median is right if two are wrong; and it lies so little behind that a gap may widen or narrow meanwhile.
+const LATEST_WIDTHS: usize = 5;
 
 /// What a seam does, standard deviations: off its course \[mm\]; what it turns by, of which a kink of 2.4 % is two; what it runs by where its
 /// course is not known; a share of its width.
@@ -126,10 +128,18 @@ impl Followed {
 
     /// The usual width of its gap; none of a corner \[mm\].
     pub fn width_mm(&self) -> Option<f64> {
-        let mut sorted = self.recent;
-        let sorted = &mut sorted[..self.widths.min(WIDTHS)];
-        let middle = sorted.len() / 2;
-        (!sorted.is_empty()).then(|| *sorted.select_nth_unstable_by(middle, f64::total_cmp).1)
+        self.median_width(WIDTHS)
+    }
+
+    /// Median of the latest widths of its gap, `most` at most; none of a corner \[mm\].
+    fn median_width(&self, most: usize) -> Option<f64> {
+        let mut latest = [0.0; WIDTHS];
+        let count = self.widths.min(most);
+        let latest = &mut latest[..count];
+        for (back, width) in latest.iter_mut().enumerate() {
+            *width = self.recent[(self.widths - 1 - back) % WIDTHS];
+        }
+        (count > 0).then(|| *latest.select_nth_unstable_by(count / 2, f64::total_cmp).1)
     }
 
     /// Lateral position and height that it has to have at a place of the travel \[mm\].
@@ -160,7 +170,8 @@ impl Followed {
         }
     }
 
-    /// How far its width is from the usual one, or from the last where the gap widens or narrows, whichever is nearer.
+    /// How far its width is from the usual one, or where the gap widens or narrows from the last or the usual one of the
+    /// latest, if the last was wrong: whichever is nearest.
     fn width_off(&self, seen: &Sighting, sigma_mm: f64) -> f64 {
         let Some(usual) = self.width_mm().filter(|_| seen.form == Form::Gap) else {
             return 0.0;
@@ -169,8 +180,8 @@ impl Followed {
             let variance = sigma_mm.powi(2) + (WIDTH_SHARE * width).powi(2);
             (seen.width_mm - width).powi(2) / variance
         };
-        let last = self.recent[(self.widths - 1) % WIDTHS];
-        from(usual).min(from(last))
+        let late = [1, LATEST_WIDTHS].map(|most| self.median_width(most).map_or(f64::INFINITY, from));
+        from(usual).min(late[0]).min(late[1])
     }
 
     /// A figure on the line through the latest sightings, each of which has at least this standard deviation.

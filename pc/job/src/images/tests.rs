@@ -3,7 +3,8 @@
 use super::*;
 use camera::{Arrival, Camera, CameraError, Folder, Picture, PictureQueue, PictureWriter};
 use config::machine::MachineFile;
-use world::{FieldOfView, RenderedWorld, SceneFile, View, ViewForm};
+use std::sync::mpsc::Sender;
+use world::{FieldOfView, RenderedCamera, RenderedWorld, SceneFile, View, ViewForm};
 
 /// Cameras that see nothing.
 struct Blind;
@@ -106,36 +107,59 @@ fn seen(camera: Box<dyn Camera>, unit: &TrackingUnit, tell: impl Fn(u32)) -> Vec
     (0..60).map(strobe).collect()
 }
 
-#[test]
-fn what_was_kept_is_measured_again_to_the_same_figures() {
+/// What the camera sees at one of these strobes, of work that is so much too high \[mm\].
+fn view(capture: u32, height_mm: f64) -> FieldOfView {
+    let along_mm = 0.4 * f64::from(capture);
+    FieldOfView::Seam(View {
+        along_mm,
+        lateral_mm: 0.1 * (0.3 * along_mm).sin(),
+        height_mm,
+        form: ViewForm::Plate {
+            pitch: 0.0,
+            roll: 0.01,
+            yaw_rad: 0.0,
+        },
+    })
+}
+
+/// The tracking unit of the shipped machine, and the rendered camera of its side 1.
+fn rendered(scene: &SceneFile) -> (TrackingUnit, RenderedCamera, Sender<FieldOfView>) {
     let text = include_str!("../../../../machines/dual-beam-gantry.toml");
     let unit = MachineFile::parse("m.toml", text).unwrap().tracking.unwrap();
     let heads = unit.board.head.build().unwrap();
-    let scene = SceneFile {
+    let (camera, tell) = RenderedWorld::new(scene, &unit.cameras, &heads, 1).camera(0);
+    (unit, camera, tell)
+}
+
+/// The map of the tracker reaches only some pictures ahead of the spot.
+#[test]
+fn after_a_while_without_the_seam_its_place_is_told_from_the_first_picture_on() {
+    let (unit, camera, tell) = rendered(&SceneFile::default());
+    let unseen = 30..36;
+    let all = seen(Box::new(camera), &unit, |capture| {
+        let height_mm = if unseen.contains(&capture) { 5.0 } else { 0.05 };
+        tell.send(view(capture, height_mm)).unwrap();
+    });
+    for strobe in &all[3..] {
+        let should = !unseen.contains(&strobe.capture);
+        assert_eq!(strobe.seen.is_some(), should, "{strobe:?}");
+        assert_eq!(strobe.measurement.is_some(), should, "{strobe:?}");
+    }
+}
+
+#[test]
+fn what_was_kept_is_measured_again_to_the_same_figures() {
+    let (unit, camera, tell) = rendered(&SceneFile {
         lost_share: 0.1,
         ..SceneFile::default()
-    };
-    let (camera, tell) = RenderedWorld::new(&scene, &unit.cameras, &heads, 1).camera(0);
+    });
     let folder = std::env::temp_dir().join(format!("seamwright-kept-{}", std::process::id()));
     let queue = PictureQueue::default();
     let writer = PictureWriter::start(&folder, queue.clone()).unwrap();
     let first = seen(
         Box::new(RecordingCamera::new(Box::new(camera), queue)),
         &unit,
-        |capture| {
-            let along_mm = 0.4 * f64::from(capture);
-            let view = View {
-                along_mm,
-                lateral_mm: 0.1 * (0.3 * along_mm).sin(),
-                height_mm: 0.05,
-                form: ViewForm::Plate {
-                    pitch: 0.0,
-                    roll: 0.01,
-                    yaw_rad: 0.0,
-                },
-            };
-            tell.send(FieldOfView::Seam(view)).unwrap();
-        },
+        |capture| tell.send(view(capture, 0.05)).unwrap(),
     );
     let kept = writer.end();
     assert!(kept.error.is_none() && kept.dropped == 0, "{kept:?}");

@@ -12,7 +12,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel}
 use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-use vision::{DetectorError, ImageError, Moved, Observation, Observer, State};
+use vision::{DetectorError, ImageError, Moved, Observation, Observer};
 
 /// How long a camera is waited for before new captures are looked for.
 const PATIENCE: Duration = Duration::from_millis(2);
@@ -96,7 +96,6 @@ impl Worker {
             waiting: VecDeque::new(),
             moved: Some(Moved::default()),
             picture: Picture::default(),
-            settled: false,
             ends: SeamEnds::new(reach_mm),
         };
         let thread = std::thread::spawn(move || {
@@ -167,8 +166,6 @@ struct Work {
     /// Since the last picture that arrived.
     moved: Option<Moved>,
     picture: Picture,
-    /// Means have been told since the seam was found.
-    settled: bool,
     ends: SeamEnds,
 }
 
@@ -294,7 +291,6 @@ impl Work {
             self.ends.forget();
             [None; 2]
         };
-        self.settled &= observation.state == State::Tracking;
         let to_side = |(lateral, travel, height)| self.calibration.side_measurement(lateral, travel, height);
         let both = observation.seam.zip(observation.report.measured);
         let seen = both.map(|(seam, measured)| SeenSeam {
@@ -308,19 +304,12 @@ impl Work {
                 })
             }),
         });
-        let place = observation
-            .seam
-            .and_then(|seam| match (seam.mean, observation.report.measured) {
-                (Some(mean), _) => {
-                    self.settled = true;
-                    Some((mean.lateral_mm, mean.travel_mm, mean.height_mm))
-                }
-                // Who looks for the seam has to know where it is at once, a little less exactly.
-                (None, Some(seen)) if !self.settled => {
-                    Some((seam.lateral_mm, seam.travel_mm, seen.height_mm))
-                }
-                (None, _) => None,
-            });
+        // Before there is a mean its own place, a little less exactly: who has not seen the seam for a while has to know where it
+        // is at once.
+        let place = both.map(|(seam, measured)| match seam.mean {
+            Some(mean) => (mean.lateral_mm, mean.travel_mm, mean.height_mm),
+            None => (seam.lateral_mm, seam.travel_mm, measured.height_mm),
+        });
         Ok(MeasuredStrobe {
             capture: self.picture.capture,
             observation: Some(observation),

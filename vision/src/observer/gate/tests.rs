@@ -131,6 +131,16 @@ fn a_bend_and_a_taper_are_followed() {
 }
 
 #[test]
+fn a_width_that_was_wrong_once_does_not_shut_a_gap_that_widens_out() {
+    let mut bench = Bench::following();
+    for picture in 1..40 {
+        let wrong = if picture == 30 { -0.035 } else { 0.0 };
+        let width_mm = 0.1 + 0.005 * f64::from(picture) + wrong;
+        assert!(bench.sees(gap(0.0, width_mm)), "{picture}");
+    }
+}
+
+#[test]
 fn the_seam_from_before_a_shadow_is_believed_again_after_three_pictures() {
     let mut bench = Bench::following();
     let shadowed = gap(0.02, 0.16);
