@@ -3,7 +3,7 @@
 use super::bench::Bench;
 use nalgebra::Vector3;
 use shared::io::AXES;
-use shared::trajectory::{Element, PathSpace, Tolerance};
+use shared::trajectory::{CHANNELS, Element, PathSpace, Tolerance};
 
 /// A program, by path length.
 pub struct Contour<'a> {
@@ -61,6 +61,29 @@ impl<'a> Contour<'a> {
         let range = self.index(from - 1e-9)..=self.index(to + 1e-9);
         let feeds = self.elements[range].iter().map(|element| element.feed);
         feeds.fold(0.0, f64::max)
+    }
+
+    /// Highest acceleration along the path with which the corners of the elements between two path lengths stay inside the
+    /// tolerance: a mean over T is off by T²/24 of half the jump of the direction times that acceleration.
+    pub fn accurate_acceleration(&self, from: f64, to: f64) -> f64 {
+        if self.elements.is_empty() {
+            return f64::INFINITY;
+        }
+        let [first, last] = [self.index(from.min(to)), self.index(from.max(to))];
+        let corners = first.max(1)..=(last + 1).min(self.elements.len() - 1);
+        let strain = |i: usize| {
+            let [before, after] = [&self.elements[i - 1], &self.elements[i]];
+            let [before, after] = [before.at(before.length).first, after.at(0.0).first];
+            let jump = |channels: std::ops::Range<usize>| {
+                channels
+                    .map(|k| (after[k] - before[k]).powi(2))
+                    .sum::<f64>()
+                    .sqrt()
+            };
+            (jump(0..3) / self.tolerance.position).max(jump(3..CHANNELS) / self.tolerance.attitude)
+        };
+        let most = corners.map(strain).fold(0.0, f64::max);
+        2.0 / (most * self.bench.limits.filter_off())
     }
 
     /// How far `axes` are from the path at `s`.

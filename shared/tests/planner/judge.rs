@@ -149,6 +149,8 @@ fn limits(verdict: &mut Verdict, bench: &Bench, samples: &[Sample]) {
         bench.limits.path_acceleration,
         bench.limits.path_jerk,
     ];
+    let linear = most[..3].iter().map(|limits| limits[1]).fold(0.0, f64::max);
+    let along = most[AXES][1].min(2.0 * linear);
     for tick in 0..samples.len() + 3 {
         let rows = [0, 1, 2, 3].map(|back| row(bench, samples, tick as isize - back));
         let given = |tick: usize, i: usize| match samples.get(tick) {
@@ -165,13 +167,17 @@ fn limits(verdict: &mut Verdict, bench: &Bench, samples: &[Sample]) {
             verdict.acceleration.see(a.abs() / most[i][1], NAMES[i], tick);
             verdict.jerk.see(j.abs() / most[i][2], NAMES[i], tick);
             if tick > 0 && most[i][2].is_finite() {
-                // Of a mean over a tick and the mean of its ends: so far off where the jerk is limited.
+                // Of a mean over a tick and the mean of its ends: so far off where the acceleration is limited, as it is
+                // before the output filter.
                 let [now, before] = [given(tick, i), given(tick - 1, i)];
                 let off = (v - 0.5 * (now[0] + before[0])).abs();
-                let may = most[i][2] * TICK * TICK + 1e-6;
+                let acceleration = if i == AXES { along } else { most[i][1] };
+                let may = 0.25 * acceleration * TICK + 1e-6;
                 verdict.consistent.see(off / may, NAMES[i], tick);
                 let off = ((now[0] - before[0]) / TICK - 0.5 * (now[1] + before[1])).abs();
-                let may = 4.0 * most[i][2] * TICK + 1e-3;
+                // A jump of the acceleration between two ticks counts for as much as it has of the mean; of many the signs differ.
+                let jumps = acceleration / (bench.limits.filter_s() / TICK).sqrt();
+                let may = jumps.max(4.0 * most[i][2] * TICK) + 1e-3;
                 verdict.consistent.see(off / may, NAMES[i], tick);
             }
         }
@@ -185,21 +191,27 @@ const UNNOTICED: f64 = 0.1;
 /// Ticks in which a lower override is obeyed at the latest, and a hold, but for the slowing down itself.
 const LATENCY: usize = 400;
 
-/// Ticks that the machine may take to slow down to rest from how it moves at `sample`.
-fn slowing(bench: &Bench, sample: &Sample) -> usize {
-    let velocities = sample.output.axes.velocity.iter().zip(&bench.limits.acceleration);
+/// Ticks that the machine may take to slow down to rest from how it moves at a `tick`: with the acceleration of each axis,
+/// of the path, and with what leaves the corners on its way inside the tolerance.
+fn slowing(bench: &Bench, contour: &Contour, samples: &[Sample], tick: usize) -> usize {
+    let now = &samples[tick].output;
+    let velocities = now.axes.velocity.iter().zip(&bench.limits.acceleration);
     let slow = velocities.map(|(v, a)| v.abs() / a).fold(0.0, f64::max);
-    let along = sample.output.along.v.abs() / bench.limits.path_acceleration;
-    LATENCY + (4.0 * slow.max(along) / TICK) as usize
+    let along = now.along.v.abs() / bench.limits.path_acceleration;
+    let may = |slow: f64| LATENCY + (4.0 * slow / TICK) as usize;
+    let soon = tick + may(slow.max(along));
+    let then = &samples[soon.min(samples.len() - 1)].output;
+    let accurate = contour.accurate_acceleration(now.along.s, then.along.s);
+    may(slow.max(along).max(now.along.v.abs() / accurate))
 }
 
 /// What is wished, and for a while after each change what was wished before, whichever is more.
-fn obeyed(bench: &Bench, samples: &[Sample], wish: impl Fn(&Sample) -> f64) -> Vec<f64> {
+fn obeyed(bench: &Bench, contour: &Contour, samples: &[Sample], wish: impl Fn(&Sample) -> f64) -> Vec<f64> {
     let mut all: Vec<f64> = samples.iter().map(&wish).collect();
     for tick in 1..samples.len() {
         if wish(&samples[tick]) < wish(&samples[tick - 1]) {
             let before = all[tick - 1];
-            let end = samples.len().min(tick + slowing(bench, &samples[tick]));
+            let end = samples.len().min(tick + slowing(bench, contour, samples, tick));
             for later in &mut all[tick..end] {
                 *later = later.max(before);
             }
@@ -209,7 +221,7 @@ fn obeyed(bench: &Bench, samples: &[Sample], wish: impl Fn(&Sample) -> f64) -> V
 }
 
 fn path(verdict: &mut Verdict, bench: &Bench, contour: &Contour, samples: &[Sample]) {
-    let factors = obeyed(bench, samples, |sample| sample.factor);
+    let factors = obeyed(bench, contour, samples, |sample| sample.factor);
     let mut before = bench.tip(&bench.home);
     for (tick, sample) in samples.iter().enumerate() {
         let axes = &sample.output.axes.position;
@@ -228,7 +240,9 @@ fn path(verdict: &mut Verdict, bench: &Bench, contour: &Contour, samples: &[Samp
 }
 
 fn conduct(verdict: &mut Verdict, bench: &Bench, contour: &Contour, samples: &[Sample]) {
-    let backwards = obeyed(bench, samples, |sample| f64::from(sample.way == Way::Back));
+    let backwards = obeyed(bench, contour, samples, |sample| {
+        f64::from(sample.way == Way::Back)
+    });
     let mut holding = 0;
     for tick in 1..samples.len() {
         let [before, now] = [&samples[tick - 1], &samples[tick]];
@@ -244,7 +258,7 @@ fn conduct(verdict: &mut Verdict, bench: &Bench, contour: &Contour, samples: &[S
         let stop = now.way == Way::Hold || now.factor == 0.0;
         holding = if stop { holding + 1 } else { 0 };
         if holding > 0 && !now.output.at_rest {
-            let may = slowing(bench, &samples[tick + 1 - holding]);
+            let may = slowing(bench, contour, samples, tick + 1 - holding);
             verdict.hold.see(holding as f64 / may as f64, "hold", tick);
         }
     }

@@ -8,18 +8,13 @@ use super::horizon::{Horizon, LEAST_WINDOW, Phase, VISIT};
 use super::limits::{Bounds, PATH_ROW, ROWS};
 use super::node::{Lanes, Node, Nodes, least, most, pause};
 use super::scan::lowest;
-use super::split::part;
+use super::split::{SLIVER, part};
 
 /// Share of ṡ² that rounding leaves.
 const ROUNDED: f64 = 1e-5;
 /// Share of the most that an acceleration may change at once with which the machine comes to rest. The rest is for rates
 /// that change on the way.
 const LAST: f32 = 0.95;
-/// Shares of that: less if it can only be let go late.
-const GENTLER: [f32; 4] = [1.0, 0.5, 0.25, 0.125];
-/// Share of an interval, or of ṡ² at its start, that is left over where it might as well have ended: a rest is not put so near
-/// to a node.
-const SLIVER: f64 = 1e-3;
 
 /// An interval that was cut where the machine comes to rest.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +33,7 @@ impl Horizon {
             (self.away, self.settled) = (self.history, self.commit);
         }
         let node = nodes.at(i);
-        if node.brake > node.cap_of_feed() {
+        if node.brake > self.goal(node) {
             self.settled = i + 1;
         }
         if node.brake > 0.0 {
@@ -54,6 +49,11 @@ impl Horizon {
         }
     }
 
+    /// ṡ² at `node` down to which braking goes.
+    fn goal(&self, node: &Node) -> f64 {
+        if self.wanted.stop { 0.0 } else { node.cap_of_feed() }
+    }
+
     /// The last node from which the acceleration can be let go in time, if the rates of the rows do not change on the way.
     fn late<const N: usize>(&mut self, nodes: &Nodes<N>, bounds: &Bounds) -> u32 {
         let mut from = self.settled - 1;
@@ -62,7 +62,7 @@ impl Horizon {
             let node = nodes.at(from);
             let change = f64::from(most_change(node, bounds));
             let a = f64::from(node.sides[0].allowed[PATH_ROW]);
-            let goal = if self.wanted.stop { 0.0 } else { node.cap_of_feed() };
+            let goal = self.goal(node);
             // From there on with a jerk of `change` in the filter's length, down to `change`.
             let way_down = 0.5 * (a * a / change - change) * bounds.filter;
             if libm::sqrt(node.brake) >= libm::sqrt(goal) + way_down {
@@ -75,16 +75,7 @@ impl Horizon {
 
     /// Tries to let go of the acceleration from node `from` on, or else earlier.
     pub(super) fn release<const N: usize>(&mut self, nodes: &mut Nodes<N>, from: u32, bounds: &Bounds) {
-        // Where even the commit is late, the rest has to come later.
-        let gentle = if from > self.commit {
-            &GENTLER[..1]
-        } else {
-            &GENTLER
-        };
-        if gentle
-            .iter()
-            .any(|share| self.release_from(nodes, from, share * LAST, bounds))
-        {
+        if self.release_from(nodes, from, bounds) {
             self.end_brake(nodes, bounds);
         } else if from > self.commit {
             self.phase = Phase::Release(from - 1);
@@ -105,7 +96,7 @@ impl Horizon {
             nodes.at_mut(later).brake = 0.0;
         }
         // Nodes far beyond would only take time now; they are planned when it is obeyed.
-        let near = self.braked.max(self.settled) + LEAST_WINDOW;
+        let near = self.braked.max(self.settled) + LEAST_WINDOW / self.patience;
         if near < self.last && nodes.at(near - 1).limit > 0.0 {
             self.last = near;
         }
@@ -154,15 +145,9 @@ impl Horizon {
         }
     }
 
-    /// Lets go of the acceleration from node `from` on, down to a `share` of what may change to none at once. Says whether
+    /// Lets go of the acceleration from node `from` on, down to what may change to none at once. Says whether
     /// the speed has come down with no more than may change so, for as long as the output filter remembers.
-    fn release_from<const N: usize>(
-        &mut self,
-        nodes: &mut Nodes<N>,
-        from: u32,
-        share: f32,
-        bounds: &Bounds,
-    ) -> bool {
+    fn release_from<const N: usize>(&mut self, nodes: &mut Nodes<N>, from: u32, bounds: &Bounds) -> bool {
         let mut away = from;
         for i in from..self.in_force() {
             self.work += VISIT / 2;
@@ -173,6 +158,9 @@ impl Horizon {
             while away > self.history && nodes.at(away).time > since {
                 away -= 1;
             }
+            while away < i && nodes.at(away + 1).time <= since {
+                away += 1;
+            }
             let until = since + passes(node, x) - node.time;
             let highest = self.strongest(nodes, [away, i], until) + change;
             let floor = if i < self.braked {
@@ -180,14 +168,15 @@ impl Horizon {
             } else {
                 f32::NEG_INFINITY
             };
-            let a = most(most(least(highest, -share * change), floor), lowest(node, x));
-            let goal = if self.wanted.stop { 0.0 } else { next.cap_of_feed() };
+            let a = most(most(least(highest, -LAST * change), floor), lowest(node, x));
+            let goal = self.goal(next);
             let end = libm::fmin(x + 2.0 * node.delta * f64::from(a), next.x);
             if end > goal + SLIVER * x {
                 go_to(nodes, i, end, bounds);
                 continue;
             }
-            let end_x = libm::fmin(goal, next.x);
+            // Where it may be faster than it is, it need not be at once.
+            let end_x = libm::fmin(libm::fmin(goal, next.x), libm::fmax(end, x));
             if self.wanted.stop && end < 0.0 {
                 self.cut(nodes, i, x / f64::from(-2.0 * a), bounds);
             }

@@ -9,7 +9,7 @@ use super::braking::Cut;
 use super::limits::Bounds;
 use super::node::{Lanes, Nodes, REST, pause};
 use super::plan::Place;
-use super::split::split;
+use super::split::{PutIn, STEPS, moved, split};
 use crate::ticks::PATH_PERIOD_S;
 
 /// Work of planning in one turn. Work is counted in looks at an interval, that is at its rows at both ends; the last step
@@ -25,15 +25,9 @@ pub(super) const LEAST_WINDOW: u32 = 32;
 /// Time before the slowing at the end of the plan in force that may be planned again, in lengths of the
 /// output filter,
 const SLACK: f64 = 14.0;
-/// and that is, from the first round on.
-const NEAR: f64 = 2.0;
-/// Time from which on the acceleration matters, in the same.
-const REMEMBERED: f64 = 1.5;
 /// A plan is not begun earlier than this many times the time it needs,
 const EARLY: f64 = 3.0;
-/// and whether it is time is looked at after a quarter of what is left, but after so many ticks
-/// at the latest;
-const MOST_EARLY: f64 = 100.0;
+/// and whether it is time is looked at after a quarter of what is left;
 /// it has to be ready in this many times that,
 const MARGIN: f64 = 1.7;
 /// and at least in this many.
@@ -110,6 +104,8 @@ pub(super) struct Horizon {
     pub(super) relaxed: u32,
     /// The boxes are those of an earlier plan.
     pub(super) warm: bool,
+    /// A plan was dropped, perhaps in the middle of a pass: what was found of one node need not fit the next.
+    torn: bool,
     /// What the plan being made is for.
     pub(super) wanted: PlanRequest,
     /// First node at which all speeds are the wanted ones again.
@@ -128,8 +124,8 @@ pub(super) struct Horizon {
     pub(super) scaled: bool,
     /// The plan in force is one to stop.
     stopping: bool,
-    /// The last split put nodes in after this one, whose serial was so before it.
-    pub(super) moved_to: u32,
+    /// Where nodes were put in to begin the plan.
+    pub(super) put_in: PutIn,
     /// Feed override of the plan in force.
     factor: f64,
     /// Work on the plan being made, and what plans have taken for each node, in the mean.
@@ -138,7 +134,7 @@ pub(super) struct Horizon {
     /// Ticks until it is worth looking again whether a plan has to be begun.
     early: u32,
     /// Longer time for a plan after others were given up: a factor.
-    patience: u32,
+    pub(super) patience: u32,
     /// Largest change of acceleration above its limit, as a share.
     pub(super) excess: Lanes,
     /// Node before the time one filter length away.
@@ -168,6 +164,7 @@ impl Horizon {
         round: 0,
         relaxed: RELAXED,
         warm: false,
+        torn: false,
         wanted: PlanRequest {
             stop: false,
             factor: 1.0,
@@ -180,7 +177,7 @@ impl Horizon {
         scaled: false,
         reach_changed: false,
         stopping: false,
-        moved_to: 0,
+        put_in: [0; STEPS + 1],
         factor: 1.0,
         spent: 0,
         work_of_node: WORK_OF_NODE,
@@ -231,8 +228,7 @@ impl Horizon {
     pub fn obey<const N: usize>(&mut self, nodes: &mut Nodes<N>, wanted: PlanRequest) {
         let faster = self.wanted.factor >= self.factor || wanted.stop;
         if wanted.factor < self.wanted.factor && faster {
-            self.phase = Phase::Waiting;
-            self.mend(nodes);
+            self.drop_plan(nodes);
         }
     }
 
@@ -260,28 +256,18 @@ impl Horizon {
         wanted: PlanRequest,
         bounds: &Bounds,
     ) -> bool {
-        // On the way to node `next`, reached in `left`.
-        let left = if player.node < self.in_force {
-            nodes.at(player.node).lasts - player.time
-        } else {
-            0.0
-        };
-        let mut next = (player.node + 1).min(self.in_force);
+        self.put_in = PutIn::default();
+        let (mut next, mut left) = self.next(nodes, player);
         let goes_on = self.goes_on(&wanted);
         if wanted.factor != self.wanted.factor {
             self.patience = 1;
         }
         // A window that is long enough to stop in, and short enough to be planned before it is passed.
-        // A single interval between two places at rest would last for ever.
-        let ends = |last: u32| match last > nodes.first && nodes.at(last - 1).limit <= 0.0 {
-            true => last - 1,
-            false => last,
-        };
         // A lower override is a matter of the plan in force alone.
         let slower = !wanted.stop && wanted.factor < self.factor && player.node < self.in_force;
         let mut last = match slower {
             true => self.in_force,
-            false => ends((nodes.end - 1).min(self.in_force + WINDOW)),
+            false => nodes.rest((nodes.end - 1).min(self.in_force + WINDOW)),
         };
         let nothing = match wanted.stop {
             true => self.stopping,
@@ -298,28 +284,35 @@ impl Horizon {
             let needed = time_of(f64::from(last - slowing) * work_of_node);
             let early = until - EARLY * needed;
             if last < self.in_force + WINDOW && early > 0.0 {
-                self.early = libm::fmin(0.25 * early / PATH_PERIOD_S, MOST_EARLY) as u32;
+                self.early = (0.25 * early / PATH_PERIOD_S) as u32;
                 return false;
             }
             let affordable = (until / (MARGIN * time_of(work_of_node))) as u32;
             let beyond = affordable.saturating_sub(self.in_force - slowing);
             // Where the machine creeps there is time for any number.
-            last = ends(last.min(self.in_force.saturating_add(LEAST_WINDOW.max(beyond))));
+            last = nodes.rest(
+                last.min(
+                    self.in_force
+                        .saturating_add(LEAST_WINDOW.max(beyond) / self.patience),
+                ),
+            );
         }
         // A lower override reaches some way beyond where it is obeyed.
         let most = if slower { 2 * LEAST_WINDOW } else { u32::MAX };
+        let share = if goes_on { 1 } else { self.patience };
         let work = match wanted.stop {
             true => f64::from(self.patience) * WORK_OF_STOP,
-            false => f64::from((last - slowing).min(most)) * work_of_node,
+            false => f64::from((last - slowing).min(most) / share) * work_of_node,
         };
         // It should be ready before the slowing begins.
         let tight = TIGHT * time_of(work) + 2.0 * PATH_PERIOD_S;
         let lead = until.clamp(tight, libm::fmax(tight, MARGIN * time_of(work)));
         if !goes_on {
-            let (interval, more) = split(nodes, [next, self.in_force], left, lead, bounds);
-            player.node -= more;
-            self.moved_to = interval;
-            (next, slowing) = (next - more, slowing - more);
+            let slows = wanted.stop || wanted.factor < self.factor;
+            self.put_in = split(nodes, [next, self.in_force], left, lead, slows, bounds);
+            player.node = moved(player.node, &self.put_in);
+            (next, left) = self.next(nodes, player);
+            slowing = next;
             if last <= next {
                 return false;
             }
@@ -336,10 +329,17 @@ impl Horizon {
         if commit == last || rest && !rested {
             return false;
         }
-        let remembered = if rest { 0.0 } else { REMEMBERED * bounds.filter };
+        let remembered = if rest { 0.0 } else { bounds.remembered };
         self.history = nodes.before(commit, nodes.first, remembered);
-        self.start = nodes.before(slowing.max(commit), commit, NEAR * bounds.filter);
-        (self.commit, self.last) = (commit, if wanted.stop { commit + 1 } else { last });
+        self.start = nodes.before(slowing.max(commit), commit, bounds.remembered);
+        // What kept the plans before it from being good may lie beyond a shorter one.
+        let nearer = nodes.rest(last.min(commit + LEAST_WINDOW.max((last - commit) / share)));
+        let last = match (wanted.stop, goes_on || slower || nearer <= commit) {
+            (true, _) => commit + 1,
+            (false, true) => last,
+            (false, false) => nearer,
+        };
+        (self.commit, self.last) = (commit, last);
         (self.warm, self.excess, self.spent) = (true, REST, 0);
         for i in commit..=last {
             let node = nodes.at_mut(i);
@@ -350,6 +350,14 @@ impl Horizon {
         self.wanted = wanted;
         self.phase = Phase::Ready(self.history);
         true
+    }
+
+    /// The node to which the player is on the way, and the time \[s\] until it is there.
+    fn next<const N: usize>(&self, nodes: &Nodes<N>, player: &Place) -> (u32, f64) {
+        match player.node < self.in_force {
+            true => (player.node + 1, nodes.at(player.node).lasts - player.time),
+            false => (self.in_force, 0.0),
+        }
     }
 
     /// First node, from `player` on, from which the plan in force only slows down to its end.
@@ -417,7 +425,7 @@ impl Horizon {
         let node = nodes.at_mut(self.commit);
         node.brake = node.x;
         self.braking = self.wanted.stop || node.x > 0.0 && self.wanted.factor < self.factor;
-        if self.braking {
+        if self.braking || self.torn {
             self.start = self.commit;
         }
         (self.from, self.until, self.lowest) = (self.start, self.last, self.start);
@@ -441,10 +449,15 @@ impl Horizon {
     }
 
     pub(super) fn give_up<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
-        self.mend(nodes);
+        self.drop_plan(nodes);
         self.given_up += 1;
         self.relaxed = 0;
         self.patience = (2 * self.patience).min(MOST_PATIENCE);
+    }
+
+    fn drop_plan<const N: usize>(&mut self, nodes: &mut Nodes<N>) {
+        self.mend(nodes);
+        self.torn |= self.phase != Phase::Waiting;
         self.phase = Phase::Waiting;
     }
 
@@ -483,7 +496,7 @@ impl Horizon {
         self.keep_cut(nodes);
         self.in_force = self.last;
         self.taken += 1;
-        self.relaxed = RELAXED;
+        (self.relaxed, self.torn) = (RELAXED, false);
         self.patience = 1;
         self.stopping = self.wanted.stop;
         self.factor = self.wanted.factor;

@@ -61,6 +61,10 @@ const ACCELERATION_RESERVE: f64 = 0.99;
 /// The same of the jerks.
 const JERK_RESERVE: f64 = 0.985;
 
+/// Lengths of the output filter after which what was no longer matters: one for the filter, and one for where in their intervals
+/// accelerations change. With less the limit of jerk is passed where plans meet; more is only work.
+const REMEMBERED: f64 = 2.0;
+
 /// Share of a tick's change of acceleration that nothing feels.
 const UNFELT: f64 = 0.01;
 /// Tolerance of the attitude that goes with one of the position, where none is programmed \[rad/mm\].
@@ -100,6 +104,8 @@ pub(super) struct Bounds {
     pub filter_ticks: usize,
     /// The same \[s\].
     pub filter: f64,
+    /// Time after which what was no longer matters \[s\].
+    pub remembered: f64,
     /// By how much it is off for each unit of acceleration across the path, as a share of what it may be, times the
     /// tolerance.
     pub off: f64,
@@ -123,6 +129,7 @@ impl Bounds {
         },
         filter_ticks: 1,
         filter: PATH_PERIOD_S,
+        remembered: REMEMBERED * PATH_PERIOD_S,
         off: 0.0,
     };
 
@@ -157,6 +164,7 @@ impl Bounds {
             },
             filter_ticks: ticks as usize,
             filter,
+            remembered: REMEMBERED * filter,
             off: filter * filter / (24.0 * FILTER_SHARE),
             ..Self::NONE
         };

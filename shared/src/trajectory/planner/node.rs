@@ -1,6 +1,7 @@
 //! The places of the path at which speed is planned.
 
 use super::limits::{Bounds, ROWS};
+use super::split::STEPS;
 use crate::ticks::PATH_PERIOD_S;
 
 /// How much of a change of acceleration that is too large is taken away in one round, and given back of one that need not
@@ -12,6 +13,10 @@ const TIGHTEN_FROM: f32 = 0.01;
 const LOOSEN_FROM: f32 = 0.02;
 /// No box is made smaller than this share of the acceleration.
 const LEAST_BOX: f32 = 0.008;
+
+/// Places for nodes that are put in: where a long interval is split, and where a hold comes to rest. With fewer a hold may
+/// come late, more are missing in dense programs.
+const RESERVED: usize = STEPS + 2;
 
 /// Smallest rate of a row; keeps divisions by it finite.
 const LEAST_RATE: f32 = 1e-6;
@@ -311,9 +316,18 @@ impl<const N: usize> Nodes<N> {
         N - (self.end - self.first) as usize
     }
 
-    /// No node can be appended: the last place is for where a hold comes to rest.
+    /// No node can be appended.
     pub fn is_full(&self) -> bool {
-        self.room() <= 1
+        self.room() <= RESERVED
+    }
+
+    /// Where a plan rests that is to reach up to node `last`: a single interval between two places at rest would last for
+    /// ever.
+    pub fn rest(&self, last: u32) -> u32 {
+        match last > self.first && self.at(last - 1).limit <= 0.0 {
+            true => last - 1,
+            false => last,
+        }
     }
 
     /// Forgets all after node `serial`.

@@ -1,6 +1,7 @@
 //! A plan as it is played, and the place on it.
 
 use super::node::Node;
+use super::split::{PutIn, STEPS, moved};
 use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::SpeedState;
 
@@ -49,8 +50,8 @@ pub(super) struct Plan<const N: usize> {
     pub rest: Option<u32>,
     /// First node whose speed is another than in the plan before, if there is one.
     pub commit: Option<u32>,
-    /// Serials of nodes up to the first of these are lower by the second than in the plan before.
-    pub moved: [u32; 2],
+    /// Where nodes were put in that the plan before had not.
+    pub put_in: PutIn,
 }
 
 impl<const N: usize> Plan<N> {
@@ -66,7 +67,7 @@ impl<const N: usize> Plan<N> {
         last: 0,
         rest: None,
         commit: None,
-        moved: [0; 2],
+        put_in: [0; STEPS + 1],
     };
 
     /// Becomes one that rests at node `serial`.
@@ -82,7 +83,8 @@ impl<const N: usize> Plan<N> {
                 stop: true,
             },
         );
-        (self.last, self.rest, self.commit, self.moved) = (serial, None, None, [0; 2]);
+        (self.last, self.rest, self.commit) = (serial, None, None);
+        self.put_in = PutIn::default();
     }
 
     pub fn set(&mut self, serial: u32, knot: Knot) {
@@ -95,12 +97,7 @@ impl<const N: usize> Plan<N> {
 
     /// Whether it can continue a plan that has come to `place`, which `ends` there; that becomes the place on this one.
     pub fn fits(&mut self, place: &mut Place, ends: bool) -> bool {
-        let [moved, by] = self.moved;
-        let node = if place.node <= moved {
-            place.node - by
-        } else {
-            place.node
-        };
+        let node = moved(place.node, &self.put_in);
         if let Some(commit) = self.commit
             && node >= commit
             && !(ends && node == commit)

@@ -12,11 +12,12 @@ use super::node::Nodes;
 use super::plan::{Knot, Place, Plan};
 use super::player::{News, PlayerAccess, Progress};
 use super::sample::Ground;
+use super::split::PutIn;
 use crate::io::AXES;
 use crate::kinematics::Kinematics;
 use crate::trajectory::{PathSpace, Unreachable};
 
-/// Work to begin a plan, and as much again to split an interval for it.
+/// Work to begin a plan, and as much again to split intervals for it; every node put in is two visits more.
 const BEGIN: u32 = 6 * VISIT;
 
 /// The end of the planner that looks ahead.
@@ -118,8 +119,9 @@ impl<const NODES: usize> Planning<NODES> {
         let wanted = self.wanted();
         self.horizon.obey(&mut self.nodes, wanted);
         // Not only when no more nodes can be had.
-        // A hold or another override may split the plan in force, which is the work of a turn.
-        let urgent = !self.horizon.goes_on(&wanted);
+        // A hold or another override may split the plan in force, which is the work of a turn. From rest it is better to know
+        // more of the path first: a short plan ends before the next one is ready.
+        let urgent = !self.horizon.goes_on(&wanted) && !self.rests();
         let many = self.nodes.end > self.horizon.in_force() + WINDOW;
         if self.horizon.waiting() && (many || urgent && self.offered.is_none()) {
             work = work.saturating_sub(self.begin(player));
@@ -256,31 +258,26 @@ impl<const NODES: usize> Planning<NODES> {
         );
         let more = node - self.progress.place.node;
         if more > 0 || self.horizon.in_force() < last {
-            self.change(player, last, more);
+            self.change(player, last);
         }
         match (begun, more > 0) {
-            (_, true) => 2 * BEGIN + last - self.progress.place.node,
+            (_, true) => 2 * BEGIN + 2 * VISIT * more + last - self.progress.place.node,
             (true, false) => BEGIN,
             (false, false) => 0,
         }
     }
 
-    /// Offers the plan in force again, which has `more` nodes now, and may rest before its `last`.
-    fn change<const ELEMENTS: usize>(
-        &mut self,
-        player: &mut impl PlayerAccess<ELEMENTS, NODES>,
-        last: u32,
-        more: u32,
-    ) {
+    /// Offers the plan in force again, which may have more nodes now, or rest before its `last`.
+    fn change<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>, last: u32) {
         let rest = Some(self.horizon.in_force()).filter(|rest| *rest < last);
         for i in self.progress.place.node..=last {
             let node = self.nodes.at(i);
             let knot = Knot::of(node, (node.x, node.lasts));
             player.with(|player| player.next_plan().set(i, knot));
         }
-        let moved = [self.horizon.moved_to, more];
+        let put_in = self.horizon.put_in;
         self.hand_over(player, Offer::Changed, |plan| {
-            (plan.last, plan.rest, plan.commit, plan.moved) = (last, rest, None, moved);
+            (plan.last, plan.rest, plan.commit, plan.put_in) = (last, rest, None, put_in);
         });
     }
 
@@ -294,7 +291,8 @@ impl<const NODES: usize> Planning<NODES> {
         }
         let commit = Some(self.horizon.commit);
         self.hand_over(player, Offer::New, |plan| {
-            (plan.last, plan.rest, plan.commit, plan.moved) = (last, None, commit, [0; 2]);
+            (plan.last, plan.rest, plan.commit) = (last, None, commit);
+            plan.put_in = PutIn::default();
         });
         last - self.progress.place.node
     }
@@ -326,7 +324,7 @@ impl<const NODES: usize> Planning<NODES> {
         let mut time = if self.progress.rested { f64::INFINITY } else { 0.0 };
         let mut oldest = player;
         while oldest > self.nodes.first
-            && (time < 2.0 * self.bounds.filter || oldest + NODES as u32 / 8 > player)
+            && (time < self.bounds.remembered || oldest + NODES as u32 / 8 > player)
         {
             oldest -= 1;
             time += self.nodes.at(oldest).lasts;

@@ -10,98 +10,141 @@ const LATE: f64 = 0.05;
 /// Ticks after the time at which the plan has to be ready.
 const SPARE: f64 = 2.0;
 /// Nodes for the way in which the machine can stop, and that way is this many times the shortest.
-const STEPS: usize = 6;
+pub(super) const STEPS: usize = 12;
 const LONGER: f64 = 1.3;
-/// What lies behind is kept for so many lengths of the output filter.
-const KEPT: f64 = 2.0;
 /// No part is shorter than this share of the interval.
-const SLIVER: f64 = 1e-3;
+pub(super) const SLIVER: f64 = 1e-3;
 
-/// Splits the interval in which the plan in force is `lead` \[s\] from now, if it lasts long: there, and at some
-/// places beyond, where the machine can slow down. The player is on the way to node `player`, reached in `left` \[s\]
-/// from now; the plan ends at node `last`. Says at which node that interval began, and how many nodes there are more:
-/// so much less are the serials of all nodes up to that one, and those beyond are as they were.
+/// Where nodes were put in: the old serials of the nodes at the start of those intervals, and 0 for none.
+pub(super) type PutIn = [u32; STEPS + 1];
+
+/// The serial of a node after others were put in: all up to a new one move down, those beyond are as they were.
+pub(super) fn moved(serial: u32, put_in: &PutIn) -> u32 {
+    serial - put_in.iter().filter(|interval| **interval >= serial).count() as u32
+}
+
+/// Puts nodes into long intervals of the plan in force, which stays as it is: one where that is `lead` \[s\] from now, if
+/// the next would be late; and where that node is needed, or the machine `slows` down, others on the way to a stop from there. The
+/// player is on the way to node `player`, reached in `left` \[s\] from now; the plan ends at node `last`.
 pub(super) fn split<const N: usize>(
     nodes: &mut Nodes<N>,
     [player, last]: [u32; 2],
     left: f64,
     lead: f64,
+    slows: bool,
     bounds: &Bounds,
-) -> (u32, u32) {
+) -> PutIn {
     let (mut end, mut time) = (player, left);
     while end < last && time < lead {
         time += nodes.at(end).lasts;
         end += 1;
     }
-    let interval = end.saturating_sub(1);
-    if end == nodes.first || time < lead + libm::fmax(lead, LATE) {
-        return (interval, 0);
+    let late = end > nodes.first && time >= lead + libm::fmax(lead, LATE);
+    if !late && (!slows || end >= last) {
+        return PutIn::default();
     }
-    let after = lead + SPARE * PATH_PERIOD_S - (time - nodes.at(interval).lasts);
-    let (places, count) = places(nodes.at(interval), nodes.at(end), after, bounds);
-    let oldest = nodes.before(player - 1, nodes.first, KEPT * bounds.filter);
-    if nodes.room() < count {
+    let mut places = Places::default();
+    let mut at = 0.0;
+    let mut interval = if late { end - 1 } else { end };
+    let (node, next) = (nodes.at(interval), nodes.at(interval + 1));
+    let a = (next.x - node.x) / (2.0 * node.delta);
+    if late {
+        let after = lead + SPARE * PATH_PERIOD_S - (time - node.lasts);
+        let way = after * (libm::sqrt(node.x) + 0.5 * a * after);
+        at = libm::fmax(way, SLIVER * node.delta);
+        if at > (1.0 - SLIVER) * node.delta {
+            return PutIn::default();
+        }
+        places.push(interval, at);
+    }
+    let way = LONGER * stopping(node, libm::fmax(node.x + 2.0 * a * at, 0.0), a, bounds);
+    let mut gone = 0.0;
+    while interval < last && gone < way && !places.full() {
+        let delta = nodes.at(interval).delta;
+        let step = libm::fmax(way / STEPS as f64, SLIVER * delta);
+        if delta - at > 1.5 * step {
+            (at, gone) = (at + step, gone + step);
+            places.push(interval, at);
+        } else {
+            gone += delta - at;
+            (interval, at) = (interval + 1, 0.0);
+        }
+    }
+    let oldest = nodes.before(player - 1, nodes.first, bounds.remembered);
+    if nodes.room() < places.count {
         nodes.first = oldest;
     }
-    let count = count.min(nodes.room()).min(nodes.first as usize);
-    insert(nodes, interval, &places[..count], bounds);
-    (interval, count as u32)
+    let count = places.count.min(nodes.room()).min(nodes.first as usize);
+    let mut put_in = PutIn::default();
+    for (already, k) in (0..count).rev().enumerate() {
+        put_in[k] = places.intervals[k];
+        insert(nodes, put_in[k] - already as u32, places.ats[k], bounds);
+    }
+    put_in
 }
 
-/// Where an interval is split, as distances from its start, and how many of them there are: the first is `after`
-/// \[s\], the others are on the way on which the machine can come to rest from there.
-fn places(node: &Node, next: &Node, after: f64, bounds: &Bounds) -> ([f64; STEPS + 1], usize) {
-    let (v, a) = (libm::sqrt(node.x), (next.x - node.x) / (2.0 * node.delta));
-    let mut places = [0.0; STEPS + 1];
-    places[0] = after * (v + 0.5 * a * after);
-    let sliver = SLIVER * node.delta;
-    if !(places[0] > sliver && places[0] < node.delta - sliver) {
-        return (places, 0);
+/// Where nodes are to be put in.
+#[derive(Default)]
+struct Places {
+    intervals: PutIn,
+    /// Distances from the starts of the intervals \[mm\].
+    ats: [f64; STEPS + 1],
+    count: usize,
+}
+
+impl Places {
+    fn full(&self) -> bool {
+        self.count == self.ats.len()
     }
+
+    fn push(&mut self, interval: u32, at: f64) {
+        (self.intervals[self.count], self.ats[self.count]) = (interval, at);
+        self.count += 1;
+    }
+}
+
+/// The shortest way to rest from ṡ² = `x` and the acceleration `a` in the interval of `node`, about \[mm\].
+fn stopping(node: &Node, x: f64, a: f64, bounds: &Bounds) -> f64 {
     // What the rows allow along the path, and how long it takes to get there.
-    let (mut most_a, mut most_change) = (f32::INFINITY, f32::INFINITY);
+    let (mut most_a, mut change) = (f32::INFINITY, f32::INFINITY);
     for side in &node.sides {
         for row in 0..ROWS {
             let per_alpha = 1.0 / side.alpha[row].abs();
             most_a = most_a.min(bounds.acceleration[row] * per_alpha);
-            most_change = most_change.min(bounds.acceleration_change[row] * per_alpha);
+            change = change.min(bounds.acceleration_change[row] * per_alpha);
         }
     }
-    let most_a = f64::from(most_a);
-    let ramp = bounds.filter * libm::fmax(1.0, most_a / f64::from(most_change));
-    let v = v + a * after + 0.5 * libm::fmax(a, 0.0) * ramp;
-    let step = LONGER * (v * v / (2.0 * most_a) + v * ramp) / STEPS as f64;
-    let mut count = 1;
-    while count < places.len() {
-        let place = places[count - 1] + step;
-        if place > node.delta - libm::fmax(0.5 * step, sliver) {
-            break;
-        }
-        places[count] = place;
-        count += 1;
-    }
-    (places, count)
+    let (most_a, jerk, v) = (
+        f64::from(most_a),
+        f64::from(change) / bounds.filter,
+        libm::sqrt(x),
+    );
+    // A slow machine is at rest before it slows down with all it has.
+    let ramp = libm::fmax(bounds.filter, libm::fmin(most_a / jerk, libm::sqrt(v / jerk)));
+    let v = v + 0.5 * libm::fmax(a, 0.0) * ramp;
+    v * v / (2.0 * most_a) + v * ramp
 }
 
-/// Puts nodes into the interval that begins at node `interval`, at these distances from there; the plan in force is
-/// as before. The nodes up to there move down by as many serials: they are fewer than those ahead.
-fn insert<const N: usize>(nodes: &mut Nodes<N>, interval: u32, places: &[f64], bounds: &Bounds) {
+/// Puts a node into an interval, `at` a distance from its start; the plan in force is as before.
+fn insert<const N: usize>(nodes: &mut Nodes<N>, interval: u32, at: f64, bounds: &Bounds) {
     let (whole, end) = (*nodes.at(interval), *nodes.at(interval + 1));
-    let (mut from, mut left) = (0.0, whole.lasts);
-    for to in places {
-        let before = part(&whole, &end, [from, *to], bounds);
-        (from, left) = (*to, left - before.lasts);
-        *nodes.at_mut(interval) = before;
-        nodes.insert_after(interval, part(&whole, &end, [from, whole.delta], bounds));
-    }
-    nodes.at_mut(interval).lasts = left;
+    let before = part(&whole, &end, [0.0, at], bounds);
+    let after = part(&whole, &end, [at, whole.delta], bounds);
+    *nodes.at_mut(interval) = before;
+    nodes.insert_after(
+        interval,
+        Node {
+            lasts: whole.lasts - before.lasts,
+            ..after
+        },
+    );
 }
 
 /// The part of the interval of node `whole`, which ends at node `end`, between two distances from its start; the plan in
 /// force is as before.
 pub(super) fn part(whole: &Node, end: &Node, [from, to]: [f64; 2], bounds: &Bounds) -> Node {
     let a = (end.x - whole.x) / (2.0 * whole.delta);
-    let x = whole.x + 2.0 * a * from;
+    let x = libm::fmax(whole.x + 2.0 * a * from, 0.0);
     let (v, v_to) = (
         libm::sqrt(x),
         libm::sqrt(libm::fmax(x + 2.0 * a * (to - from), 0.0)),
@@ -220,10 +263,10 @@ mod tests {
             let mut was = player;
             let last = after.end - 1;
             let left = after.at(player.node).lasts;
-            let (interval, more) = split(&mut after, [last, last], left, lead, &Bounds::NONE);
-            prop_assert!(more > 0);
-            prop_assert_eq!(interval, player.node);
-            player.node -= more;
+            let put_in = split(&mut after, [last, last], left, lead, true, &Bounds::NONE);
+            prop_assert_eq!(put_in[0], player.node);
+            player.node = moved(player.node, &put_in);
+            prop_assert!(player.node < was.node);
             prop_assert_eq!(after.end, before.end);
             let mut time = 0.0;
             for serial in player.node..last {
@@ -253,7 +296,7 @@ mod tests {
         fn the_rates_go_on_over_a_split(rates in prop::array::uniform2([0.5..2.0f32, -0.3..0.3f32])) {
             let mut after = nodes([0.04, 0.04], rates);
             let interval = after.end - 2;
-            insert(&mut after, interval, &[0.25], &Bounds::NONE);
+            insert(&mut after, interval, 0.25, &Bounds::NONE);
             let node = after.at(interval);
             let at = |k: usize| rates[0][k] + 0.25 * (rates[1][k] - rates[0][k]);
             prop_assert!((node.sides[0].alpha[0] - at(0)).abs() < 1e-5);
