@@ -54,9 +54,9 @@ const BEGINS: f64 = 900.0;
 const PAUSES: [u64; 5] = [2, 40, 300, 1000, 3000];
 /// Once the operator has nothing more on their mind they let the machine continue, so often \[ms\].
 const GOES_ON: u32 = 400;
-/// Where a hold or its end are known: gates have a tick of their own at either end, and the least speed of a beam is
-/// reached in less than 0.04 mm.
-const EDGE: f64 = 0.04;
+/// Where a hold or its end are known: gates have a tick of their own at either end, and the least speed of a beam, at most
+/// 5 mm/s, is reached with a jerk of 10,000 mm/s³ in v/3·√(2v/j) \[mm\].
+const EDGE: f64 = 0.0527;
 const TICK_S: f64 = 1e-3;
 /// A gate goes off so many ticks after the hold was asked for.
 const TOLD: f64 = 3.0;
