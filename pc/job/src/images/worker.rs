@@ -38,7 +38,7 @@ pub struct MeasuredStrobe {
     pub observation: Option<Observation>,
     /// The seam, if it is believed, and where this picture shows it.
     pub seen: Option<SeenSeam>,
-    /// What the tracker is told: the mean of the latest pictures, or the first pictures of a seam just found.
+    /// What the tracker is told: the mean of the latest pictures, or each of the first of a seam that is found, or found again.
     pub measurement: Option<SideMeasurement>,
     /// When its picture had arrived here, or was known to be lost.
     pub arrived: Instant,
