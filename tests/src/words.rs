@@ -54,9 +54,6 @@ const BEGINS: f64 = 900.0;
 const PAUSES: [u64; 5] = [2, 40, 300, 1000, 3000];
 /// Once the operator has nothing more on their mind they let the machine continue, so often \[ms\].
 const GOES_ON: u32 = 400;
-/// Where a hold or its end are known: gates have a tick of their own at either end, and the least speed of a beam, at most
-/// 5 mm/s, is reached with a jerk of 10,000 mm/s³ in v/3·√(2v/j) \[mm\].
-const EDGE: f64 = 0.0527;
 const TICK_S: f64 = 1e-3;
 /// A gate goes off so many ticks after the hold was asked for.
 const TOLD: f64 = 3.0;
@@ -92,6 +89,9 @@ pub struct OperatedWeld {
     feed_mm_s: f64,
     samples: Vec<MotionSample>,
     overlap_mm: f64,
+    /// How far the machine goes until it is as fast as its beams ask for, or from there to rest: v/3·√(2v/j) with the jerk of its
+    /// paths. So near to where a hold, or its end, is known gates open and close; and they have a tick of their own at either end.
+    edge_mm: f64,
 }
 
 /// How a weld ended.
@@ -251,6 +251,14 @@ pub fn meddled(seed: u64) -> OperatedWeld {
     let ended = ended.unwrap_or_else(|error| panic!("{error}"));
     let overlap = machine.motion.beams.iter().flatten().map(|beam| beam.overlap_mm);
     let overlap_mm = overlap.fold(0.0, f64::max);
+    let least = machine
+        .motion
+        .beams
+        .iter()
+        .flatten()
+        .map(|beam| beam.min_speed_mm_s);
+    let least = least.fold(0.0, f64::max);
+    let edge_mm = least / 3.0 * (2.0 * least / machine.planning.path_jerk_mm_s3).sqrt();
     let mut hand = hand.borrow_mut();
     OperatedWeld {
         said: std::mem::take(&mut hand.said),
@@ -260,6 +268,7 @@ pub fn meddled(seed: u64) -> OperatedWeld {
         feed_mm_s,
         samples: std::mem::take(&mut hand.samples),
         overlap_mm,
+        edge_mm,
     }
 }
 
@@ -349,7 +358,7 @@ impl OperatedWeld {
 
     /// What is not covered of a stretch.
     fn gaps(&self, side: usize, from: f64, to: f64) -> Vec<(f64, f64)> {
-        let edge = 2.0 * (self.tick_mm() + EDGE);
+        let edge = 2.0 * (self.tick_mm() + self.edge_mm);
         let mut open: Vec<(f64, f64)> = self.open(side).collect();
         open.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut here = from;
@@ -384,7 +393,7 @@ impl OperatedWeld {
             }
             let programmed: f64 = stretches().map(|(_, from, to)| to - from).sum();
             // Every opening but the first of a stretch may be one after a hold.
-            let most = programmed + opened * (self.overlap_mm + edge + 2.0 * EDGE);
+            let most = programmed + opened * (self.overlap_mm + edge + 2.0 * self.edge_mm);
             if total > most {
                 return Err(format!("beam {} on for {total} mm, not {most} mm", side + 1));
             }

@@ -173,15 +173,20 @@ impl Followed {
     /// How far its width is from the usual one, or where the gap widens or narrows from the last or the usual one of the
     /// latest, if the last was wrong: whichever is nearest.
     fn width_off(&self, seen: &Sighting, sigma_mm: f64) -> f64 {
-        let Some(usual) = self.width_mm().filter(|_| seen.form == Form::Gap) else {
+        if seen.form != Form::Gap {
             return 0.0;
-        };
+        }
         let from = |width: f64| {
             let variance = sigma_mm.powi(2) + (WIDTH_SHARE * width).powi(2);
             (seen.width_mm - width).powi(2) / variance
         };
-        let late = [1, LATEST_WIDTHS].map(|most| self.median_width(most).map_or(f64::INFINITY, from));
-        from(usual).min(late[0]).min(late[1])
+        let known = [WIDTHS, LATEST_WIDTHS, 1].map(|most| self.median_width(most));
+        known
+            .into_iter()
+            .flatten()
+            .map(from)
+            .reduce(f64::min)
+            .unwrap_or_default()
     }
 
     /// A figure on the line through the latest sightings, each of which has at least this standard deviation.
