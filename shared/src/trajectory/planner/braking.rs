@@ -95,11 +95,12 @@ impl Horizon {
         for later in beyond..=self.braked.max(beyond).min(self.in_force()) {
             nodes.at_mut(later).brake = 0.0;
         }
-        // Nodes far beyond would only take time now; they are planned when it is obeyed.
+        // Nodes far beyond would only take time now; they are planned when it is obeyed. In a later round that may be farther.
         let near = self.braked.max(self.settled) + LEAST_WINDOW / self.patience;
-        if near < self.last && nodes.at(near - 1).limit > 0.0 {
-            self.last = near;
-        }
+        self.last = match near < self.in_force() && nodes.at(near - 1).limit > 0.0 {
+            true => near,
+            false => self.in_force(),
+        };
         nodes.at_mut(self.last).reach = 0.0;
         self.phase = Phase::Back(self.last);
     }

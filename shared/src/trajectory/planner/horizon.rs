@@ -484,6 +484,10 @@ impl Horizon {
 
     /// The plan that is whole was taken.
     pub fn take<const N: usize>(&mut self, nodes: &mut Nodes<N>, bounds: &Bounds) {
+        debug_assert!(
+            self.whole(nodes, self.last, bounds).0 <= 0.0,
+            "a plan ends at rest"
+        );
         for i in self.lowest..=self.last {
             let (x, lasts) = self.whole(nodes, i, bounds);
             let node = nodes.at_mut(i);
