@@ -4,7 +4,8 @@ use anyhow::{Context, Result};
 use benchmarks::MACHINES_FILE;
 use benchmarks::machine::machines;
 use benchmarks::meter::{Meter, measured};
-use benchmarks::trajectories::of_file;
+use benchmarks::trajectories::{curves, of_file};
+use shared::kinematics::Kinematics;
 use shared::trajectory::BoardPlanner;
 use std::path::Path;
 use std::time::Instant;
@@ -62,15 +63,25 @@ pub fn run() -> Result<()> {
     let file = MACHINES_FILE.to_str()?;
     let file = std::fs::read(file)
         .with_context(|| format!("cannot read {file}, which `cargo xtask bench` writes"))?;
-    if name == "trajectory" {
-        let program = arguments.next().context("which program? give its file")?;
-        // Axes are programmed: any machine will do.
+    // Axes are programmed: any machine will do.
+    let any_machine = || -> Result<Kinematics> {
         let machine = machines(&file).next().context("no machine in the file")??;
-        let (kinematics, _) = machine.build()?;
-        let feed = arguments.next().map(|feed| feed.parse()).transpose()?;
-        let outcome = of_file(Path::new(&program), feed, &kinematics, &mut Outside)?;
-        println!("{}", outcome.line()?);
-        return Ok(());
+        Ok(machine.build()?.0)
+    };
+    match name.as_str() {
+        "trajectory" => {
+            let program = arguments.next().context("which program? give its file")?;
+            let feed = arguments.next().map(|feed| feed.parse()).transpose()?;
+            let outcome = of_file(Path::new(&program), feed, &any_machine()?, &mut Outside)?;
+            println!("{}", outcome.line()?);
+            return Ok(());
+        }
+        "curves" => {
+            let random = arguments.next().context("how many random ones?")?.parse()?;
+            let seed = arguments.next().context("from which seed on?")?.parse()?;
+            return curves::print(random, seed, &any_machine()?, &mut Outside);
+        }
+        _ => {}
     }
     let mut text = String::new();
     let mut planner = Box::new(BoardPlanner::new());

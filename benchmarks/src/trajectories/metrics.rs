@@ -2,7 +2,7 @@
 
 use super::TICK;
 use super::contour::{Contour, cut_off};
-use super::limits::{self, is_linear};
+use super::limits::{Limits, is_linear};
 use super::run::Sample;
 use super::way::Move;
 use nalgebra::Vector3;
@@ -40,8 +40,8 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// Of a run of `moves` that began with the axes at `start`.
-    pub fn of(moves: &[Move], start: &[f64; AXES], samples: &[Sample]) -> Self {
+    /// Of a run of `moves` inside `limits`, that began with the axes at `start`.
+    pub fn of(moves: &[Move], start: &[f64; AXES], samples: &[Sample], limits: &Limits) -> Self {
         let positions: Vec<_> = std::iter::once(*start)
             .chain(samples.iter().map(|sample| sample.axes))
             .collect();
@@ -56,9 +56,9 @@ impl Figures {
         };
         Self {
             time: time(&positions),
-            acceleration: peak(&positions, 2),
-            jerk: peak(&positions, 3),
-            path_jerk: differences(&s, 3) / limits::PATH_JERK,
+            acceleration: peak(&positions, 2, limits),
+            jerk: peak(&positions, 3, limits),
+            path_jerk: differences(&s, 3) / limits.path_jerk(),
             feed: feed(moves, &points, &s),
             contour: (0..points.len()).map(error).fold(0.0, f64::max),
             cut_off: cut_off(moves, &points, &s),
@@ -86,15 +86,15 @@ fn time(positions: &[[f64; AXES]]) -> f64 {
 }
 
 /// Largest derivative of `order` of any axis, over its limit.
-fn peak(positions: &[[f64; AXES]], order: usize) -> f64 {
+fn peak(positions: &[[f64; AXES]], order: usize, limits: &Limits) -> f64 {
     let ratio = |axis: usize| {
         let values: Vec<f64> = positions.iter().map(|p| p[axis]).collect();
-        let limit = if order == 2 {
-            limits::acceleration
-        } else {
-            limits::jerk
+        let linear = is_linear(axis);
+        let limit = match order {
+            2 => limits.acceleration(linear),
+            _ => limits.jerk(linear),
         };
-        differences(&values, order) / limit(is_linear(axis))
+        differences(&values, order) / limit
     };
     (0..AXES).map(ratio).fold(0.0, f64::max)
 }
@@ -145,6 +145,7 @@ fn end(moves: &[Move], positions: &[[f64; AXES]]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::limits::QUICK;
     use super::super::seg;
     use super::*;
     use std::f64::consts::TAU;
@@ -172,7 +173,7 @@ mod tests {
             let s = 100.0 * smooth(t);
             ([0.0, 0.6 * s, 0.8 * s, 0.0, 0.0, 0.0], s)
         });
-        let figures = Figures::of(&moves, &[0.0; AXES], &samples);
+        let figures = Figures::of(&moves, &[0.0; AXES], &samples, &QUICK);
         // Peaks of the polynomial over its time: 7.5132 and 52.5 (in the middle).
         close(figures.acceleration, 80.0 * 7.5132 / 2000.0, 1e-4);
         close(figures.jerk, 80.0 * 52.5 / 200_000.0, 1e-5);
@@ -213,7 +214,7 @@ mod tests {
             speed * speed / radius,
             0.01,
         );
-        let figures = Figures::of(&moves, &samples[0].axes, &samples);
+        let figures = Figures::of(&moves, &samples[0].axes, &samples, &QUICK);
         close(figures.contour, 0.03, 1e-9);
         close(figures.feed, 1.0, 1e-5);
         // It starts at full speed: Y changes by that within a tick.
@@ -229,13 +230,17 @@ mod tests {
             s,
             pushed: 0,
         });
-        let figures = Figures::of(&moves, &[0.0; AXES], &samples);
+        let figures = Figures::of(&moves, &[0.0; AXES], &samples, &QUICK);
         close(figures.back, 0.1, 1e-12);
         close(figures.end, 0.01, 1e-12);
         // Rest before and after does not count.
         let resting = [&[samples[0]; 7], &samples[..], &[samples[3]; 5]].concat();
         for samples in [&samples[..], &resting] {
-            close(Figures::of(&moves, &[0.0; AXES], samples).time, 3.0 * TICK, 1e-12);
+            close(
+                Figures::of(&moves, &[0.0; AXES], samples, &QUICK).time,
+                3.0 * TICK,
+                1e-12,
+            );
         }
     }
 }

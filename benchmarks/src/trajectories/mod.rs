@@ -5,6 +5,7 @@
 
 pub mod baseline;
 mod contour;
+pub mod curves;
 pub mod elements;
 pub mod evenness;
 pub mod free_form;

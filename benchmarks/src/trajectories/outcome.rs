@@ -2,7 +2,7 @@
 
 use super::elements::elements;
 use super::evenness::{Evenness, evenness};
-use super::limits::{self, plan_limits};
+use super::limits::QUICK;
 use super::metrics::Figures;
 use super::run::run;
 use super::way::Move;
@@ -54,7 +54,7 @@ pub fn of_file(
     // As programs with G64 P are, before they go to the board.
     let elements = smooth(
         elements.into_iter().map(|element| (element, f64::INFINITY)),
-        limits::acceleration(true),
+        QUICK.acceleration(true),
     );
     // Segments begin at the origin, a curve where it does.
     let mut start = [0.0; AXES];
@@ -62,7 +62,7 @@ pub fn of_file(
         start[..3].copy_from_slice(first.way.start().as_slice());
     }
     meter.count(&mut || ());
-    let run = run(&elements, &start, &plan_limits(), kinematics, meter);
+    let run = run(&elements, &start, &QUICK.plan_limits(), kinematics, meter);
     let samples = run.as_deref().unwrap_or_default();
     Ok(Outcome {
         moves: moves.len(),
@@ -70,7 +70,7 @@ pub fn of_file(
         pushed: samples.iter().map(|sample| sample.pushed).collect(),
         evenness: evenness(&moves, &elements, samples),
         figures: match &run {
-            Ok(samples) => Ok(Figures::of(&moves, &start, samples)),
+            Ok(samples) => Ok(Figures::of(&moves, &start, samples, &QUICK)),
             Err(stuck) => Err(stuck.to_string()),
         },
     })

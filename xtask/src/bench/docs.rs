@@ -23,7 +23,7 @@ fn replaced(text: &str, name: &str, table: &str) -> Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::{KINEMATICS, PLANNER, TRAJECTORIES, VISION, VISION_COST};
+    use crate::bench::{CURVES, KINEMATICS, PLANNER, TRAJECTORIES, VISION, VISION_COST};
     use crate::cargo::root;
 
     #[test]
@@ -37,7 +37,7 @@ mod tests {
     #[test]
     fn every_benchmark_has_its_place() {
         let text = fs::read_to_string(root().join("docs/benchmarks.md")).expect("shipped");
-        for benchmark in [KINEMATICS, PLANNER, TRAJECTORIES, VISION, VISION_COST] {
+        for benchmark in [CURVES, KINEMATICS, PLANNER, TRAJECTORIES, VISION, VISION_COST] {
             assert!(replaced(&text, benchmark, "").is_ok(), "{benchmark}");
         }
     }

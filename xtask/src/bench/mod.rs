@@ -3,6 +3,7 @@
 mod board;
 mod bounded;
 mod callgrind;
+mod curves;
 mod docs;
 mod hands;
 mod markdown;
@@ -64,6 +65,19 @@ pub enum Benchmark {
         #[arg(long, value_name = "N", default_value_t = 0)]
         seed: u64,
     },
+    /// Run curves in short lines at feeds below and above what they can be gone along with, on a machine that comes to its
+    /// acceleration in 50 ms, beside the best constant speed; fails if a limit is not kept
+    Curves {
+        /// Random curves after those of each kind; one takes half a second
+        #[arg(long, value_name = "N", default_value_t = 0)]
+        random: u64,
+        /// Seed of the first of them; the others follow
+        #[arg(long, value_name = "N", default_value_t = 0)]
+        seed: u64,
+        /// Put the table into docs/benchmarks.md too
+        #[arg(long)]
+        record: bool,
+    },
     /// Run every program (.seg) of a folder through the trajectory planner; fails if a limit is not kept
     Trajectories {
         /// Folder of the programs, and of baseline.csv with what another planner took, if there is one
@@ -82,6 +96,7 @@ pub enum Benchmark {
 const KINEMATICS: &str = "kinematics";
 const PLANNER: &str = "planner";
 const TRAJECTORIES: &str = "trajectories";
+const CURVES: &str = "curves";
 const VISION: &str = "vision";
 const VISION_COST: &str = "vision cost";
 
@@ -94,7 +109,7 @@ impl Benchmark {
             | Self::Trajectories {
                 instructions: true, ..
             } => &[Tool::Valgrind],
-            Self::Hands { .. } | Self::Trajectories { .. } => &[],
+            Self::Curves { .. } | Self::Hands { .. } | Self::Trajectories { .. } => &[],
         }
     }
 
@@ -103,6 +118,7 @@ impl Benchmark {
         match self {
             Self::Kinematics { record } => kinematics(record),
             Self::Planner { record } => planner::run(record),
+            Self::Curves { random, seed, record } => curves::run(random, seed, record),
             Self::Hands { programs, seed } => hands::run(programs, seed),
             Self::Vision { frames, record } => vision::run(frames, record),
             Self::Trajectories {
