@@ -16,6 +16,8 @@ mod outcome;
 pub mod run;
 pub mod seg;
 mod spiral;
+#[cfg(test)]
+mod testing;
 pub mod way;
 
 pub use contour::{Contour, Nearest, cut_off};

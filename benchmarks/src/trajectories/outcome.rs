@@ -114,30 +114,15 @@ impl Outcome {
 
 #[cfg(test)]
 mod tests {
+    use super::super::testing::{Calls, any_machine};
     use super::*;
-    use shared::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
-
-    struct Calls;
-
-    impl Meter for Calls {
-        fn count(&mut self, call: &mut dyn FnMut()) -> u32 {
-            call();
-            0
-        }
-    }
 
     /// What becomes of `text` as a program; a free-form curve with a `feed`.
     fn why_not(text: &str, feed: Option<f64>) -> String {
-        let config = KinematicsConfig::DualBeamGantry(DualBeamConfig {
-            o1_mm: [0.0; 3],
-            o2_mm: [0.0; 3],
-            o3_mm: [0.0, 0.0, -100.0],
-        });
-        let kinematics = config.build(&[AxisLimits::NOT_FITTED; AXES]).expect("a machine");
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("program");
         fs::write(&file, text).expect("a file");
-        let outcome = of_file(&file, feed, &kinematics, &mut Calls).expect("an outcome");
+        let outcome = of_file(&file, feed, &any_machine(), &mut Calls).expect("an outcome");
         outcome.figures.expect_err("nothing to run")
     }
 

@@ -94,29 +94,14 @@ fn figures(curve: &Curve, feed: f64, kinematics: &Kinematics, meter: &mut impl M
 
 #[cfg(test)]
 mod tests {
+    use super::super::testing::{Calls, any_machine};
     use super::*;
-    use shared::kinematics::{AxisLimits, DualBeamConfig, KinematicsConfig};
-
-    struct Calls;
-
-    impl Meter for Calls {
-        fn count(&mut self, call: &mut dyn FnMut()) -> u32 {
-            call();
-            0
-        }
-    }
 
     /// Boxes that became ever smaller once made machines creep there, for up to four times as long.
     #[test]
     fn a_feed_that_a_curve_cannot_take_does_not_make_the_machine_creep() {
-        let config = KinematicsConfig::DualBeamGantry(DualBeamConfig {
-            o1_mm: [0.0; 3],
-            o2_mm: [0.0; 3],
-            o3_mm: [0.0, 0.0, -100.0],
-        });
-        let kinematics = config.build(&[AxisLimits::NOT_FITTED; AXES]).expect("a machine");
         for curve in Curve::all(4, 50).into_iter().skip(8) {
-            let feeds = Feeds::of(&curve, &kinematics, &mut Calls);
+            let feeds = Feeds::of(&curve, &any_machine(), &mut Calls);
             for share in feeds.shares() {
                 assert!(share.is_some_and(|share| share < 1.5), "{feeds:?}");
             }

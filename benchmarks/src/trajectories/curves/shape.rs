@@ -40,7 +40,7 @@ pub struct Curve {
 }
 
 impl Shape {
-    /// Where the formula is at `u` \[mm\].
+    /// Where the formula is at its parameter `u`: X of waves \[mm\], an angle \[rad\] of the others.
     fn at(&self, u: f64) -> [f64; 2] {
         match self {
             Self::Waves(waves) => {
