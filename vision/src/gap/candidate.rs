@@ -103,7 +103,7 @@ impl Candidates {
         });
         let likeness = |run: &Candidate| {
             // What is seen to be empty is not passed over for what is merely dark.
-            let emptier = gap.interior.texture.is_none() && run.interior.is_emptier_than(&gap.interior);
+            let emptier = !gap.interior.is_seen() && run.interior.is_emptier_than(&gap.interior);
             if emptier {
                 run.score.max(gap.score)
             } else {

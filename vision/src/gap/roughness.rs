@@ -5,48 +5,36 @@ use super::median;
 use super::strip::{GROUPS, Strip};
 use std::ops::Range;
 
-/// Share of the groups, those in which a run is widest, that are looked at inside it.
-const WIDEST: f64 = 0.5;
-
 /// Most lines that are looked at; of more, evenly spread ones.
-const LINES: usize = 128;
+const LINES: usize = 64;
 
-/// Relative standard error of a variance that is the median of those of n lines, of m values each: this over √(n·m).
-const ERROR: f32 = 1.8;
+/// How far apart along a line the brightness is compared \[mm along the rows\]: an exposure smears by up to that.
+const LAG_MM: f64 = 0.02;
 
-/// Variance of the lower half of normal numbers, over theirs.
-const HALF: f32 = 0.39;
+/// Share of the squared differences that counts, the least ones: a rough edge reaches into the others. Their mean in normal
+/// numbers over the variance, and the relative standard error that n of them have, over 1/√n.
+const KEPT: f64 = 0.75;
+const KEPT_MEAN: f32 = 0.3684;
+const ERROR: f32 = 2.15;
 
-/// A line along the seam: its columns in some groups of the strip.
+/// What the noise may differ by, over it, where it is about as large as the steps of the camera.
+const WHOLE_STEPS: f32 = 0.3;
+
+/// A line along the seam: from its column in the band to its column in each group of the strip.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Course {
-    /// From the column of the line to its column in a group.
-    shifts: [isize; GROUPS],
-    /// The groups.
-    groups: [usize; GROUPS],
-    count: usize,
-    /// Whether only the darker half of its values counts.
-    darker: bool,
-}
+pub(super) struct Course([isize; GROUPS]);
 
 impl Course {
-    /// Straight through all groups, with the strip's slant.
+    /// Straight, with the strip's slant.
     pub fn straight(strip: &Strip) -> Self {
-        Self {
-            shifts: std::array::from_fn(|group| shift(strip, group).round() as isize),
-            groups: std::array::from_fn(|group| group),
-            count: strip.groups,
-            darker: false,
-        }
+        Self(std::array::from_fn(|group| shift(strip, group).round() as isize))
     }
 
-    /// Between the edges of a run, in the groups in which it is widest; and how wide it is in the narrowest of them
-    /// \[columns\]. Light that spreads from rough edges into the run is the same along such a line.
-    pub fn between_edges(strip: &Strip, run: &Candidate) -> (Self, f64) {
+    /// Between the edges of a run: light that spreads from rough edges into the run is the same along such a line.
+    pub fn between_edges(strip: &Strip, run: &Candidate) -> Self {
         let reach = run.width().ceil() as usize + 2;
         let columns = strip.values.len();
         let mut course = Self::straight(strip);
-        let mut widths = [0.0; GROUPS];
         for group in 0..strip.groups {
             let shift = shift(strip, group);
             let core = (run.middle() + shift).round().clamp(0.0, columns as f64 - 1.0) as usize;
@@ -54,66 +42,18 @@ impl Course {
             let [left, right] = [0, 1].map(|side| {
                 rise(value, columns, core, side, run.levels[side], reach).unwrap_or(run.edges[side] + shift)
             });
-            widths[group] = right - left;
-            course.shifts[group] = ((left + right) / 2.0 - run.middle()).round() as isize;
+            course.0[group] = ((left + right) / 2.0 - run.middle()).round() as isize;
         }
-        let groups = &mut course.groups[..strip.groups];
-        groups.sort_unstable_by(|a, b| widths[*b].total_cmp(&widths[*a]));
-        course.count =
-            ((WIDEST * strip.groups as f64).ceil() as usize).clamp(4.min(strip.groups), strip.groups);
-        let narrowest = widths[course.groups[course.count - 1]];
-        (course, narrowest)
+        course
     }
 
-    /// In all groups, but only the darker half of its values.
-    pub fn darker(self, strip: &Strip) -> Self {
-        Self {
-            count: strip.groups,
-            darker: true,
-            ..self
-        }
-    }
-
-    /// The same groups, straight with the strip's slant.
-    pub fn straightened(&self, strip: &Strip) -> Self {
-        Self {
-            shifts: Self::straight(strip).shifts,
-            ..*self
-        }
-    }
-
-    /// Mean of a line's values and their variance about a straight rise: light changes across the picture.
-    fn scatter(&self, values: &mut [f32]) -> (f32, f32) {
-        if self.darker {
-            values.sort_unstable_by(f32::total_cmp);
-            let half = &values[..values.len().div_ceil(2)];
-            let count = half.len() as f32;
-            let mean = half.iter().sum::<f32>() / count;
-            let squares = half.iter().map(|value| (value - mean).powi(2)).sum::<f32>();
-            return (mean, squares / (count - 1.0));
-        }
-        let count = values.len() as f32;
-        let mean = values.iter().sum::<f32>() / count;
-        let place = self.groups[..self.count].iter().sum::<usize>() as f32 / count;
-        let (mut squares, mut rise, mut spread) = (0.0, 0.0, 0.0);
-        for (value, group) in values.iter().zip(&self.groups) {
-            let (off, along) = (value - mean, *group as f32 - place);
-            squares += off * off;
-            rise += off * along;
-            spread += along * along;
-        }
-        (mean, (squares - rise * rise / spread).max(0.0) / (count - 2.0))
-    }
-
-    /// Brightness of the line at a column in each of its groups.
+    /// Brightness of the line at a column in each group.
     fn values(&self, strip: &Strip, column: usize) -> [f32; GROUPS] {
         let last = strip.values.len() as isize - 1;
-        let mut values = [0.0; GROUPS];
-        for (value, group) in values.iter_mut().zip(&self.groups[..self.count]) {
-            let from = (column as isize + self.shifts[*group]).clamp(0, last);
-            *value = strip.values[from as usize][*group];
-        }
-        values
+        std::array::from_fn(|group| {
+            let from = (column as isize + self.0[group]).clamp(0, last);
+            strip.values[from as usize][group]
+        })
     }
 }
 
@@ -138,44 +78,73 @@ pub(super) struct Roughness {
 impl Roughness {
     /// Of the lines at these columns; across them by differences over `across` columns. None if they are not in the picture.
     pub fn of(strip: &Strip, columns: Range<usize>, course: &Course, across: Option<usize>) -> Option<Self> {
-        let (mut along, mut beside) = ([0.0; LINES], [0.0; LINES]);
-        let (mut brightness, mut noise, mut lines) = (0.0, 0.0, 0);
-        let values = course.count as f32;
+        let groups = strip.groups;
+        let lag = strip.groups_of(LAG_MM).clamp(1, groups - 1);
+        let (mut along, mut beside) = (Differences::new(), Differences::new());
+        let (mut brightness, mut noise, mut lines) = (0.0, 0.0, 0.0);
         let every = columns.len().div_ceil(LINES).max(1);
         for column in columns.step_by(every).filter(|column| strip.seen[*column]) {
-            let mut own = course.values(strip, column);
-            let own = &mut own[..course.count];
-            let (mean, variance) = course.scatter(own);
-            along[lines] = variance;
+            let own = course.values(strip, column);
+            let own = &own[..groups];
+            for (before, after) in own.iter().zip(&own[lag..]) {
+                along.add((after - before) / 2_f32.sqrt());
+            }
             if let Some(reach) = across {
                 let [left, right] = [column.saturating_sub(reach), column + reach]
                     .map(|column| course.values(strip, column.min(strip.values.len() - 1)));
-                let bends = own.iter().zip(left).zip(right);
-                beside[lines] = bends
-                    .map(|((own, left), right)| (left - 2.0 * own + right).powi(2))
-                    .sum::<f32>()
-                    / (6.0 * values);
+                for ((own, left), right) in own.iter().zip(left).zip(right) {
+                    beside.add((left - 2.0 * own + right) / 6_f32.sqrt());
+                }
             }
+            let mean = own.iter().sum::<f32>() / groups as f32;
             brightness += mean;
-            noise += strip.noise(column, mean) * if course.darker { HALF } else { 1.0 };
-            lines += 1;
+            noise += strip.noise(column, mean);
+            lines += 1.0;
         }
-        let along = median(&mut along[..lines])?;
-        let beside = median(&mut beside[..lines])?;
-        let sides = if across.is_some() { 2.0 } else { 1.0 };
-        let count = lines as f32;
-        let noise = sides * noise / count;
+        let variance = along.variance()? + beside.variance().unwrap_or(0.0);
+        let noise = if across.is_some() { 2.0 } else { 1.0 } * noise / lines;
         Some(Self {
-            brightness: brightness / count,
-            variance: along + beside,
+            brightness: brightness / lines,
+            variance,
             noise,
-            error: ERROR * noise / (count * sides * values).sqrt(),
+            error: noise * (ERROR / ((along.count + beside.count) as f32).sqrt()).hypot(WHOLE_STEPS),
         })
     }
 
     /// Variance that noise does not make.
     pub fn excess(&self) -> f32 {
         (self.variance - self.noise - self.error).max(0.0)
+    }
+}
+
+/// Differences of brightness, each with the variance of one value.
+struct Differences {
+    list: [f32; LINES * GROUPS],
+    count: usize,
+}
+
+impl Differences {
+    fn new() -> Self {
+        Self {
+            list: [0.0; LINES * GROUPS],
+            count: 0,
+        }
+    }
+
+    fn add(&mut self, difference: f32) {
+        self.list[self.count] = difference;
+        self.count += 1;
+    }
+
+    /// Variance about their median, from the least ones: light changes across the picture.
+    fn variance(&mut self) -> Option<f32> {
+        let list = &mut self.list[..self.count];
+        let middle = median(list)?;
+        list.iter_mut()
+            .for_each(|value| *value = (*value - middle).powi(2));
+        let kept = ((KEPT * self.count as f64).round() as usize).clamp(1, self.count);
+        list.select_nth_unstable_by(kept - 1, f32::total_cmp);
+        Some(list[..kept].iter().sum::<f32>() / kept as f32 / KEPT_MEAN)
     }
 }
 

@@ -35,6 +35,8 @@ pub(crate) struct Strip {
     pub groups: usize,
     /// Rows of a group.
     rows: usize,
+    /// Pixel \[mm\].
+    pitch_mm: f64,
     /// What the camera was calibrated to.
     calibrated: LayerNoise,
     /// Variance of a pixel in each column by what differs from row to row: noise, as texture is coarser than fine pixels.
@@ -89,6 +91,7 @@ impl Strip {
         Self {
             groups: groups.clamp(3, GROUPS),
             rows,
+            pitch_mm: layer.pitch_mm,
             calibrated,
             noise: vec![0.0; columns],
             values: vec![[0.0; GROUPS]; columns],
@@ -105,6 +108,11 @@ impl Strip {
     /// Rows from the band to the middle of a group.
     pub fn offset(&self, group: usize) -> f64 {
         (group as f64 - (self.groups as f64 - 1.0) / 2.0) * self.rows as f64
+    }
+
+    /// Groups in a length along the rows.
+    pub fn groups_of(&self, length_mm: f64) -> usize {
+        (length_mm / (self.rows as f64 * self.pitch_mm)).round() as usize
     }
 
     /// Brightness of the plate to the left of a column and to the right, before it is divided by the light: that which most
