@@ -7,7 +7,7 @@ use super::effects::{Options, compared, effects_of, renderer, shown};
 use super::figures::{micrometres, quantile};
 use super::seeds::of_seeds;
 use anyhow::Result;
-use vision::render::{Effect, EffectRun, SplitMix64};
+use vision::render::{Effect, EffectRun, Shown, SplitMix64};
 use vision::{Detector, Image, Joint, Observer, ObserverConfig, Optics, Profile};
 
 /// Pictures of a sequence, and those that have the effects.
@@ -34,10 +34,26 @@ struct Taken {
     /// Pictures with a seam before and after the effects, and those of them that were believed; the same with effects.
     plain: [usize; 2],
     affected: [usize; 2],
-    /// Most pictures in a row that were believed and wrong, or without a seam.
-    wrong_in_a_row: usize,
+    /// Pictures that were believed and wrong, or had no joint in sight.
+    wrong: InARow,
+    /// Pictures that were believed at the joint where it is closed, so that there is nothing to be seen of it.
+    closed: InARow,
     /// Pictures after the effects until the first that is believed.
     found_after: usize,
+}
+
+/// How often something happened in a row: now, and at most.
+#[derive(Clone, Copy, Default)]
+struct InARow {
+    now: usize,
+    most: usize,
+}
+
+impl InARow {
+    fn count(&mut self, happens: bool) {
+        self.now = if happens { self.now + 1 } else { 0 };
+        self.most = self.most.max(self.now);
+    }
 }
 
 /// Renders and observes sequences, and prints a table.
@@ -87,10 +103,11 @@ pub fn run(options: &Options) -> Result<()> {
                     heights: Vec::new(),
                     plain: [0; 2],
                     affected: [0; 2],
-                    wrong_in_a_row: 0,
+                    wrong: InARow::default(),
+                    closed: InARow::default(),
                     found_after: PICTURES - LASTING.end,
                 };
-                let (mut wrong_in_a_row, mut found) = (0, false);
+                let mut found = false;
                 let pictures = EffectRun::new(effects, LASTING, &optics, NOISE, *seed);
                 for (k, (mut scene, moved)) in pictures.take(PICTURES).enumerate() {
                     (scene.texture, scene.right_texture) = (textures[0], Some(textures[1]));
@@ -100,10 +117,13 @@ pub fn run(options: &Options) -> Result<()> {
                     let believed = seen.seam.and(seen.report.measured.as_ref());
                     let there = shown(&scene, &optics);
                     let errors = believed.and_then(|seen| compared(&scene, &optics, seen));
-                    let is_wrong = |errors: &[f64; 5]| errors[0].abs() > WRONG_MM || there == Some(false);
-                    let wrong = errors.is_some_and(|(errors, _)| is_wrong(&errors));
-                    wrong_in_a_row = if wrong { wrong_in_a_row + 1 } else { 0 };
-                    taken.wrong_in_a_row = taken.wrong_in_a_row.max(wrong_in_a_row);
+                    let truth = scene.truth(&optics).map(|truth| truth.shown);
+                    let is_closed = there == Some(false) && truth == Some(Shown::NoGap);
+                    let is_off = |(errors, _): ([f64; 5], _)| errors[0].abs() > WRONG_MM;
+                    let wrong =
+                        errors.is_some_and(|errors| is_off(errors) || (there == Some(false) && !is_closed));
+                    taken.wrong.count(wrong);
+                    taken.closed.count(is_closed && believed.is_some() && !wrong);
                     taken.centres.extend(errors.map(|(errors, _)| errors[0]));
                     taken.heights.extend(errors.map(|(errors, _)| errors[1]));
                     if there == Some(true) {
@@ -130,22 +150,19 @@ pub fn run(options: &Options) -> Result<()> {
         LASTING.len()
     );
     println!(
-        "| effect | sequences | believed before and after % | with effects % | centre 99 % | worst | height 99 % | worst | wrong twice running | most running | found again after 95 % | at most |"
+        "| effect | sequences | believed before and after % | with effects % | centre 99 % | worst | height 99 % | worst | wrong twice running | most running | found again after 95 % | at most | closed and believed twice running |"
     );
-    println!("|---{}|", "|--:".repeat(11));
+    println!("|---{}|", "|--:".repeat(12));
     for (k, (name, _)) in groups.iter().enumerate() {
         let group: Vec<&Taken> = taken.iter().filter(|taken| taken.group == k).collect();
         println!("{}", line(name, &group));
     }
     println!("{}\n", line("all", &taken.iter().collect::<Vec<_>>()));
-    for taken in taken.iter().filter(|taken| taken.wrong_in_a_row > 1) {
+    for taken in taken.iter().filter(|taken| taken.wrong.most > 1) {
         let Taken {
-            seed,
-            effects,
-            wrong_in_a_row,
-            ..
+            seed, effects, wrong, ..
         } = taken;
-        println!("wrong: {effects:?}, seed {seed}: {wrong_in_a_row} pictures running");
+        println!("wrong: {effects:?}, seed {seed}: {} pictures running", wrong.most);
     }
     for taken in taken.iter().filter(|taken| taken.found_after > SOON) {
         let Taken {
@@ -167,7 +184,14 @@ fn line(name: &str, group: &[&Taken]) -> String {
         format!("{:.1}", 100.0 * sum(1) / sum(0))
     };
     let found: Vec<f64> = group.iter().map(|taken| taken.found_after as f64).collect();
-    let most = group.iter().map(|taken| taken.wrong_in_a_row).max().unwrap_or(0);
+    let most = group.iter().map(|taken| taken.wrong.most).max().unwrap_or(0);
+    let twice = |of: fn(&Taken) -> InARow| {
+        group
+            .iter()
+            .filter(|taken| of(taken).most > 1)
+            .count()
+            .to_string()
+    };
     let cells = [
         name.to_owned(),
         group.len().to_string(),
@@ -177,14 +201,11 @@ fn line(name: &str, group: &[&Taken]) -> String {
         micrometres(quantile(&centres, 1.0)),
         micrometres(quantile(&heights, 0.99)),
         micrometres(quantile(&heights, 1.0)),
-        group
-            .iter()
-            .filter(|taken| taken.wrong_in_a_row > 1)
-            .count()
-            .to_string(),
+        twice(|taken| taken.wrong),
         most.to_string(),
         format!("{:.0}", quantile(&found, 0.95)),
         format!("{:.0}", quantile(&found, 1.0)),
+        twice(|taken| taken.closed),
     ];
     format!("| {} |", cells.join(" | "))
 }
