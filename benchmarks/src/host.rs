@@ -58,6 +58,10 @@ pub fn run() -> Result<()> {
             let options = benchmarks::vision::effects::Options::parse(arguments)?;
             return benchmarks::vision::effect_runs::run(&options);
         }
+        "vision-photographs" => {
+            let options = benchmarks::vision::photographs::Options::parse(arguments)?;
+            return benchmarks::vision::photographs::run(&options);
+        }
         _ => {}
     }
     let file = MACHINES_FILE.to_str()?;

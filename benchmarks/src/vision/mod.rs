@@ -8,6 +8,7 @@ pub mod effects;
 mod figures;
 mod groups;
 mod limits;
+pub mod photographs;
 mod seeds;
 
 use vision::{Optics, PhotonTransfer};
