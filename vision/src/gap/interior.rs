@@ -59,7 +59,7 @@ const BLACKEST: [f64; 2] = [0.055, 0.052];
 
 /// Brightness over the plate at which a run whose texture noise would hide is taken for a surface, and is not; and one that is
 /// too narrow to show any, as light of its edges fills it.
-const BLACK: [f64; 2] = [0.12, 0.10];
+const BLACK: [f64; 2] = [0.16, 0.12];
 const NARROW_BLACK: [f64; 2] = [0.20, 0.16];
 
 /// The same of one where a gap is expected.
