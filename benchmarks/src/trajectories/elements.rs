@@ -71,7 +71,7 @@ fn shapes(way: &Way, length: f64) -> Result<Vec<(Shape, f64)>, NoElements> {
     Ok(match way {
         Way::Stand(point) => vec![(Shape::Point((*point).into()), length)],
         Way::Line(line) => vec![(Shape::Line(*line), length)],
-        Way::Spiral(spiral) if spiral.widening().abs() <= Arc::RADIUS_TOLERANCE => {
+        Way::Spiral(spiral) if spiral.widening().abs() <= Arc::radius_tolerance(0.0) => {
             let arc = arc(spiral)?;
             vec![(Shape::Arc(arc), arc.length())]
         }
@@ -86,8 +86,8 @@ fn shapes(way: &Way, length: f64) -> Result<Vec<(Shape, f64)>, NoElements> {
 fn arc(spiral: &Spiral) -> Result<Arc, ArcError> {
     let [from, to] = spiral.domain().map(|angle| spiral.point(angle));
     let (centre, axis) = (spiral.centre(), spiral.axis());
-    let arc = Arc::about_centre(from, to, centre, axis, Turn::CounterClockwise)?;
-    Ok(arc.with_turns(((spiral.sweep() - arc.sweep()) / TAU).round() as u32))
+    let turns = (spiral.sweep() / TAU - 1e-9) as u32;
+    Arc::with_turns(from, to, centre, axis, Turn::CounterClockwise, turns)
 }
 
 /// Hermite spans: geometry knows no arc that widens.

@@ -4,7 +4,6 @@ use crate::geometry::{Arc, Line, Turn};
 use crate::trajectory::{
     ArcLengthCurve, CHANNELS, Cubic, CurveNumbers, Element, Join, SHAPED, Shape, Tolerance,
 };
-use core::f64::consts::TAU;
 use nalgebra::Vector3;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -12,8 +11,6 @@ use thiserror::Error;
 
 /// Lengths of an element and of its shape may differ by this much \[mm\], or by this part.
 const SAME_LENGTH: f64 = 1e-9;
-/// A turn that is short of a full one by this much is a full one \[rad\].
-const SAME_TURN: f64 = 1e-6;
 
 /// A piece of path between two junctions: an [`Element`] in plain numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
@@ -122,8 +119,8 @@ impl PathElement {
                 turns,
             } => {
                 let [start, end, centre, axis] = [start, end, centre, axis].map(|v| Vector3::from(*v));
-                let arc = Arc::about_centre(start, end, centre, axis, Turn::CounterClockwise);
-                let arc = arc.map_err(|_| bad)?.with_turns(*turns);
+                let arc = Arc::with_turns(start, end, centre, axis, Turn::CounterClockwise, *turns);
+                let arc = arc.map_err(|_| bad)?;
                 (Shape::Arc(arc), arc.length())
             }
             PathShape::Curve(numbers) => {
@@ -158,7 +155,7 @@ impl From<&Element> for PathElement {
                 end: arc.end().into(),
                 centre: arc.centre().into(),
                 axis: arc.axis().into(),
-                turns: libm::fmax(libm::ceil((arc.sweep() - SAME_TURN) / TAU) - 1.0, 0.0) as u32,
+                turns: arc.more_turns(),
             },
             Shape::Span(cubics) => PathShape::Span(cubics.map(PathChannel::from)),
             Shape::Curve(curve) => PathShape::Curve(CurveNumbers::from(curve)),
@@ -248,9 +245,9 @@ mod tests {
     fn elements() -> Vec<Element> {
         let v = Vector3::new;
         let line = Line::new(v(1.0, 2.0, 3.0), v(4.0, -5.0, 6.5)).unwrap();
-        let arc = |end, turn| {
-            let arc = Arc::about_centre(v(10.0, 0.0, 1.0), end, v(0.0, 0.0, 0.0), v(0.1, 0.0, 1.0), turn);
-            arc.unwrap()
+        let arc = |end, turn, more| {
+            let (start, centre, axis) = (v(10.0, 0.0, 1.0), v(0.0, 0.0, 0.0), v(0.1, 0.0, 1.0));
+            Arc::with_turns(start, end, centre, axis, turn, more).unwrap()
         };
         let axis = v(0.1, 0.0, 1.0).normalize();
         let full = v(10.0, 0.0, 1.0) + axis * 2.0;
@@ -266,8 +263,11 @@ mod tests {
             element(Shape::Span(cubics), 5.0),
             element(Shape::Curve(curve), curve.length()),
         ];
-        let (once, often) = (arc(full, Turn::CounterClockwise), arc(full, Turn::Clockwise));
-        for arc in [once, often.with_turns(3)] {
+        let (once, often) = (
+            arc(full, Turn::CounterClockwise, 0),
+            arc(full, Turn::Clockwise, 3),
+        );
+        for arc in [once, often] {
             elements.push(element(Shape::Arc(arc), arc.length()));
         }
         elements.last_mut().unwrap().join = Join::Stop;

@@ -115,9 +115,9 @@ impl Maker<'_> {
                 let radius = size / sweep.max(1.0);
                 let centre = start + across * radius;
                 let end = centre + rotate(&side, sweep, &(start - centre)) + side * (rise * size);
-                let arc = Arc::about_centre(start, end, centre, side, Turn::CounterClockwise);
+                let turns = (sweep / TAU - 1e-9) as u32;
+                let arc = Arc::with_turns(start, end, centre, side, Turn::CounterClockwise, turns);
                 if let Ok(arc) = arc {
-                    let arc = arc.with_turns((sweep / TAU - 1e-9) as u32);
                     self.shapes(&[(Shape::Arc(self.placed(arc)), arc.length())], turned);
                 }
             }
@@ -195,9 +195,9 @@ impl Maker<'_> {
     fn placed(&self, arc: Arc) -> Arc {
         let [start, end, centre] =
             [arc.start(), arc.end(), arc.centre()].map(|point| self.bench_point(&point));
-        let placed = Arc::about_centre(start, end, centre, arc.axis(), Turn::CounterClockwise);
-        let placed = placed.expect("it was an arc before it was moved");
-        placed.with_turns(((arc.sweep() - placed.sweep()) / TAU).round() as u32)
+        let (axis, turns) = (arc.axis(), arc.more_turns());
+        let placed = Arc::with_turns(start, end, centre, axis, Turn::CounterClockwise, turns);
+        placed.expect("it was an arc before it was moved")
     }
 
     fn line_to(&mut self, end: Vector3<f64>, attitude: Vector3<f64>) {

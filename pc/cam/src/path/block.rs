@@ -19,7 +19,8 @@ const NURBS_ERROR: f64 = 1e-4;
 /// Step of differences \[rad\].
 const DIFFERENCE: f64 = 1e-3;
 
-/// Path length of a move that turns or stretches without moving the tip \[mm per degree or mm\].
+/// Path length of a move that turns or stretches without moving the tip \[mm per degree or mm\]. So F of a feed that
+/// only turns is in degrees a minute.
 const LENGTH_PER_TURN: f64 = 1.0;
 /// Half a turn \[deg\].
 const HALF_TURN: f64 = 180.0;
@@ -32,6 +33,8 @@ pub(super) struct Block {
     attitude: Attitude,
     extension: [[f64; SIDES]; 2],
     pub(super) length: f64,
+    /// A feed in which the tip stands: it only turns, or does nothing at all. Its length is not that of a way.
+    pub(super) stands: bool,
     /// Sum of the rates at which rotary axes turn \[rad/mm\].
     pub(super) turning: f64,
     pub(super) place: SourcePosition,
@@ -60,8 +63,7 @@ pub(super) struct Jet {
 impl Planner {
     /// Whether the rotary axes turn evenly in a straight block, instead of the tool about one axis.
     fn turns_evenly(&self, from: &Tip, to: &Tip) -> bool {
-        let turn = |i: usize| (to.angles_deg[i] - from.angles_deg[i]).abs();
-        (0..3).all(|i| turn(i) <= HALF_TURN) && self.tangent_is_free(from)
+        turns(from, to).iter().all(|turn| turn.abs() <= HALF_TURN) && self.tangent_is_free(from)
     }
 
     /// Whether the machine takes another T for the same tool, as one does whose tool is a body of revolution.
@@ -80,13 +82,38 @@ impl Planner {
 
 /// What the rotary axes turn together from one tip to the other \[rad\].
 fn axes_turn(from: &Tip, to: &Tip) -> f64 {
-    let turn = |i: usize| (to.angles_deg[i] - from.angles_deg[i]).abs();
-    (0..3).map(turn).sum::<f64>().to_radians()
+    turns(from, to).map(f64::abs).iter().sum::<f64>().to_radians()
+}
+
+/// What the rotary axes turn from one tip to the other, as the length of a straight line \[deg\].
+fn turned(from: &Tip, to: &Tip) -> f64 {
+    Vector3::from(turns(from, to)).norm()
+}
+
+fn turns(from: &Tip, to: &Tip) -> [f64; 3] {
+    std::array::from_fn(|i| to.angles_deg[i] - from.angles_deg[i])
+}
+
+/// The most that a slide stretches from one tip to the other \[mm\].
+fn stretched(from: &Tip, to: &Tip) -> f64 {
+    let stretch = |k: usize| (to.extension_mm[k] - from.extension_mm[k]).abs();
+    (0..SIDES).map(stretch).fold(0.0, f64::max)
+}
+
+/// Whether from one tip to the other nothing moves as far as the shortest path.
+pub(super) fn moves_nothing(from: &Tip, to: &Tip) -> bool {
+    let way = Vector3::from(to.position_mm) - Vector3::from(from.position_mm);
+    let lengths = [
+        way.norm(),
+        LENGTH_PER_TURN * turned(from, to),
+        stretched(from, to),
+    ];
+    lengths.iter().all(|length| *length < SHORTEST)
 }
 
 impl Block {
     /// The motion of `target` between two tips. A rapid that turns or stretches more than it moves the tip takes its
-    /// length from that.
+    /// length from that, and a feed that does not move the tip from what its rotary axes turn.
     pub(super) fn build(
         planner: &Planner,
         motion: Motion,
@@ -115,10 +142,16 @@ impl Block {
             let length = travel;
             return Err(PathError::TooFar { place, length });
         }
-        if motion == Motion::Feed && travel < SHORTEST {
+        let stands = motion == Motion::Feed && travel < SHORTEST;
+        let turned = LENGTH_PER_TURN * turned(from, to);
+        if stands && turned < SHORTEST && stretched(from, to) >= SHORTEST {
             return Err(PathError::NoTravel { place });
         }
-        let straight = matches!(way, BlockWay::Straight(..));
+        let way = match stands {
+            true => BlockWay::Straight(start.position, end.position),
+            false => way,
+        };
+        let straight = matches!(way, BlockWay::Straight(..)) && !stands;
         let (attitude, turn) = if !straight || planner.turns_evenly(from, to) {
             (
                 Attitude::Axes(from.angles_deg, to.angles_deg),
@@ -130,12 +163,11 @@ impl Block {
             let turn = angle(&start.tangent, &end.tangent) + angle(&start.normal, &end.normal);
             (Attitude::Geodesic(start, end), turn)
         };
-        let stretch = |k: usize| (to.extension_mm[k] - from.extension_mm[k]).abs();
         let length = match motion {
+            Motion::Feed if stands => turned.max(SHORTEST),
             Motion::Feed => travel,
-            Motion::Rapid | Motion::Stand => (0..SIDES)
-                .map(stretch)
-                .fold(travel, f64::max)
+            Motion::Rapid | Motion::Stand => stretched(from, to)
+                .max(travel)
                 .max(LENGTH_PER_TURN * turn.to_degrees())
                 .max(SHORTEST),
         };
@@ -144,6 +176,7 @@ impl Block {
             attitude,
             extension: [from.extension_mm, to.extension_mm],
             length,
+            stands,
             turning: turn / length,
             place,
         })
@@ -166,9 +199,14 @@ impl Block {
         }
     }
 
-    /// Direction of travel.
+    /// Direction of travel: of the tip, or of the rotary axes where that stands.
     pub(super) fn direction(&self, u: f64) -> Vector3<f64> {
-        self.position(u).first
+        match &self.attitude {
+            Attitude::Axes(from, to) if self.stands => {
+                (Vector3::from(*to) - Vector3::from(*from)) / self.length
+            }
+            Attitude::Axes(..) | Attitude::Geodesic(..) => self.position(u).first,
+        }
     }
 
     /// Pose and extensions as channels, a length `u` from the start.
@@ -197,7 +235,7 @@ impl Block {
             let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|k| self.channels(planner, u + k * h));
             slope = std::array::from_fn(|i| (a[i] - d[i] + 8.0 * (c[i] - b[i])) / (12.0 * h));
         }
-        slope[..3].copy_from_slice(self.direction(u).as_slice());
+        slope[..3].copy_from_slice(self.position(u).first.as_slice());
         for k in 0..SIDES {
             slope[CHANNELS - SIDES + k] = (self.extension[1][k] - self.extension[0][k]) / self.length;
         }

@@ -6,7 +6,7 @@ use config::table::FARTHEST_MM;
 use curves::SplineError;
 use curves::nurbs::NurbsError;
 use nc::{NcError, SourcePosition};
-use shared::geometry::{ArcError, PoseError};
+use shared::geometry::{Arc, ArcError, PoseError};
 use shared::io::AXIS_NAMES;
 use shared::kinematics::KinematicsError;
 use thiserror::Error;
@@ -144,15 +144,20 @@ pub enum PathError {
     },
     /// R that does not reach.
     #[error(
-        "{place}: the ends of the arc are {distance:.4} mm apart, so R must be at least half of that, not {radius}"
+        "{place}: half the distance of the arc's ends is {half:.4} mm, and R is less than that by {:.4} mm; {limit:.4} mm is \
+         allowed here ({}); correct R or the end",
+        half - radius,
+        Arc::RADIUS_LIMITS
     )]
     SmallRadius {
         /// Where in the program.
         place: SourcePosition,
-        /// R \[mm\].
+        /// R, however long the arc \[mm\].
         radius: f64,
-        /// Distance of the ends in the plane of the arc \[mm\].
-        distance: f64,
+        /// Half the distance of the ends in the plane of the arc \[mm\].
+        half: f64,
+        /// By how much R may be less \[mm\].
+        limit: f64,
     },
     /// An axis would leave its travel.
     #[error(
@@ -250,8 +255,10 @@ pub enum PathError {
         /// Where its path begins.
         place: SourcePosition,
     },
-    /// G1 without travel of the tip.
-    #[error("{place}: G1 must move the tip; turn axes alone with G0")]
+    /// A feed of a V slide alone.
+    #[error(
+        "{place}: nothing but a V slide moves, for which there is no feed; move it with G0, or together with the tip"
+    )]
     NoTravel {
         /// Where in the program.
         place: SourcePosition,

@@ -37,6 +37,8 @@ pub(super) struct Piece {
     pub(super) speeds: Vec<f64>,
     /// Change of direction where it begins, if that is why it does \[rad\].
     pub(super) corner: Option<f64>,
+    /// The tip stands.
+    pub(super) stands: bool,
 }
 
 /// Where slopes change from one block to the next, over `half` on both sides.
@@ -79,14 +81,19 @@ impl Planner {
         let mut pieces = Vec::new();
         let mut first = 0;
         for end in 1..=blocks.len() {
-            if end < blocks.len() && corners[end - 1] <= MAX_TURN {
+            let goes_on = |end: usize| !blocks[end - 1].stands && !blocks[end].stands;
+            if end < blocks.len() && corners[end - 1] <= MAX_TURN && goes_on(end) {
                 continue;
             }
             pieces.push(Piece {
                 shape: self.curve(&blocks[first..end], &tips[first..end], &speeds[first..end]),
                 speeds: speeds[first..end].to_vec(),
                 first,
-                corner: first.checked_sub(1).map(|before| corners[before]),
+                stands: blocks[first].stands,
+                corner: first
+                    .checked_sub(1)
+                    .filter(|_| goes_on(first))
+                    .map(|before| corners[before]),
             });
             first = end;
         }
@@ -125,7 +132,9 @@ impl Planner {
                 });
             }
         }
-        let speed_error = knots.iter().map(|knot| (norm(&knot.slope) - 1.0).abs());
+        let moves = blocks.iter().all(|block| !block.stands);
+        let speed_error = knots.iter().filter(|_| moves);
+        let speed_error = speed_error.map(|knot| (norm(&knot.slope) - 1.0).abs());
         Shape {
             speed_error: speed_error.fold(0.0, f64::max),
             knots,

@@ -193,11 +193,12 @@ impl Planner {
         }
     }
 
-    /// Tells `too_fast` where `speed` \[mm/s\] is more than a drive allows, with a beam `on` or without.
+    /// Tells `too_fast` where a speed \[mm/s\], a sixtieth of F in its unit, is more than a drive allows, with a beam `on`
+    /// or without.
     pub(super) fn see_feed(
         &self,
         demand: &Demand,
-        speed: f64,
+        (speed, unit): (f64, &'static str),
         place: SourcePosition,
         on: bool,
         too_fast: &mut TooFast,
@@ -211,6 +212,7 @@ impl Planner {
                     place,
                     feed: speed * 60.0,
                     largest: largest * 60.0,
+                    unit,
                     axis: DRIVE_NAMES[i],
                     quantity,
                 };

@@ -14,6 +14,7 @@ mod pieces;
 mod planned;
 mod programmed;
 mod shape;
+mod short_blocks;
 mod smooth_legs;
 mod targets;
 #[cfg(test)]

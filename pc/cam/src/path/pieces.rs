@@ -8,6 +8,7 @@ use super::limits::{Demand, axes_at};
 use super::outputs::{Switched, Switching, on_the_way};
 use super::shape::{Goal, Shape, channels};
 use super::targets::{ROTARY, RestState};
+use super::too_fast::unit;
 use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip, TooFast};
 use nc::{Blend, Motion, PathControl, ProgramPath, SourcePosition, Target, Way};
 use shared::io::{AXES, SIDES};
@@ -30,10 +31,10 @@ impl Planner {
         stand: &mut RestState,
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
-        let whole;
-        let path = if self.tracks && path.rest.is_some() {
-            whole = path.whole()?;
-            &whole
+        let joined;
+        let path = if path.motion == Motion::Feed && (self.tracks || path.rest.is_none()) {
+            joined = self.without_short_blocks(path.whole()?, stand)?;
+            &joined
         } else {
             path
         };
@@ -142,7 +143,7 @@ impl Planner {
         let tips = self.tips(path, from)?;
         match self.smooth(&from.tip, &tips, targets) {
             Ok(_) => Ok(true),
-            Err(PathError::Corner { .. }) => Ok(false),
+            Err(PathError::Corner { .. } | PathError::NoTravel { .. }) => Ok(false),
             Err(error) => Err(error),
         }
     }
@@ -190,7 +191,7 @@ impl Planner {
         }
         let shape = match (self.smooth(from, tips, targets), tolerance) {
             (Ok((_, off)), Some(tolerance)) if off > tolerance => None,
-            (Err(PathError::Corner { .. }), Some(_)) => None,
+            (Err(PathError::Corner { .. }), Some(_)) | (Err(PathError::NoTravel { .. }), _) => None,
             (smooth, _) => Some(smooth?.0),
         };
         let Some(shape) = shape else {
@@ -212,6 +213,7 @@ impl Planner {
             first: 0,
             speeds,
             corner: None,
+            stands: false,
         }])
     }
 
@@ -256,11 +258,11 @@ impl Planner {
             Motion::Feed => self.feed_limits(&demands, shape, &speeds),
         };
         if motion == Motion::Feed {
-            planned.too_fast = self.too_fast(&demands, shape, &piece.speeds, &planned.events)?;
+            planned.too_fast = self.too_fast(&demands, piece, &planned.events)?;
         }
         planned.bound = match motion {
             Motion::Rapid | Motion::Stand => None,
-            Motion::Feed => self.bound(&demands),
+            Motion::Feed => self.bound(&demands).filter(|_| !piece.stands),
         };
         stands.switched = stand.switched;
         stands.switched.take_up(&planned.events);
@@ -278,14 +280,15 @@ impl Planner {
         speeds.iter().map(|speed| speed.min(fastest)).collect()
     }
 
-    /// Where the axes do not allow the programmed `speeds`, `events` switching beams on the way.
+    /// Where the axes do not allow the programmed speeds of `piece`, `events` switching beams on the way.
     fn too_fast(
         &self,
         demands: &[Demand],
-        shape: &Shape,
-        speeds: &[f64],
+        piece: &Piece,
         events: &[PathEvent],
     ) -> Result<TooFast, PathError> {
+        let shape = &piece.shape;
+        let unit = unit(piece.stands);
         let mut too_fast = TooFast::default();
         let mut switched = Switched::default();
         let mut events = events.iter().peekable();
@@ -294,8 +297,8 @@ impl Planner {
                 switched.switch(&event.action);
             }
             let target = shape.target(demand.s);
-            let (speed, place) = (speeds[target], shape.targets[target].place);
-            self.see_feed(demand, speed, place, switched.works(), &mut too_fast);
+            let (feed, place) = ((piece.speeds[target], unit), shape.targets[target].place);
+            self.see_feed(demand, feed, place, switched.works(), &mut too_fast);
         }
         too_fast.found()
     }

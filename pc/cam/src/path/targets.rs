@@ -130,9 +130,8 @@ pub(super) fn arc(from: &Tip, to: &Tip, way: &ArcWay, place: SourcePosition) -> 
         ArcForm::Centre(offset) => offset.into(),
         ArcForm::Radius(radius) => radius_to_centre(end - start, &axis, radius, way.turn, place)?,
     };
-    let arc = Arc::about_centre(start, end, start + to_centre, axis, way.turn)
-        .map_err(|source| PathError::Arc { place, source })?;
-    Ok(arc.with_turns(way.more_turns))
+    Arc::with_turns(start, end, start + to_centre, axis, way.turn, way.more_turns)
+        .map_err(|source| PathError::Arc { place, source })
 }
 
 /// From the start of an arc about `axis` to its centre: `chord` leads to its end.
@@ -149,11 +148,13 @@ fn radius_to_centre(
         return Err(PathError::CircleByRadius { place });
     }
     let half = distance / 2.0;
-    if radius.abs() < half - Arc::RADIUS_TOLERANCE {
+    let limit = Arc::radius_tolerance(half);
+    if radius.abs() < half - limit {
         return Err(PathError::SmallRadius {
             place,
-            radius,
-            distance,
+            radius: radius.abs(),
+            half,
+            limit,
         });
     }
     // A counter-clockwise arc of less than half a turn has its centre on the left.

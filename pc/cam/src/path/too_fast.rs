@@ -10,20 +10,27 @@ use thiserror::Error;
 /// A feed, and the place where a drive allows the smallest part of it.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
-    "{place}: the feed of {feed:.0} mm/min is too high, the {quantity} of {axis} allows {:.0} mm/min",
+    "{place}: the feed of {feed:.0} {unit} is too high, the {quantity} of {axis} allows {:.0} {unit}",
     (largest * TOO_FAST).floor()
 )]
 pub struct FeedTooHigh {
     /// Where in the program.
     pub place: SourcePosition,
-    /// Wanted \[mm/min\].
+    /// Wanted \[mm/min\], or °/min where the tip stands.
     pub feed: f64,
-    /// Possible \[mm/min\].
+    /// Possible.
     pub largest: f64,
+    /// Of both.
+    pub unit: &'static str,
     /// Axis or V slide.
     pub axis: &'static str,
     /// Speed or acceleration.
     pub quantity: &'static str,
+}
+
+/// Unit of F on a block in which the tip `stands`, or of any other.
+pub(super) fn unit(stands: bool) -> &'static str {
+    if stands { "°/min" } else { "mm/min" }
 }
 
 impl FeedTooHigh {

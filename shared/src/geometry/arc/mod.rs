@@ -4,20 +4,31 @@
 mod tests;
 
 use super::{Moving, pose::unit, rotate};
-use core::f64::consts::TAU;
+use core::f64::consts::{PI, TAU};
 use nalgebra::Vector3;
 use thiserror::Error;
 
 /// Ends nearer than this \[mm\] mean a full circle: no program is written finer.
 const SAME_POINT: f64 = 1e-6;
+/// A sweep that is beyond half a turn, or a full one, by less is not \[rad\]: whoever makes the arc again, of numbers
+/// that are rounded, makes the same one.
+const SAME_TURN: f64 = 1e-6;
+/// Radii at start and end may differ by this share of the larger one,
+const RADIUS_SHARE: f64 = 1e-3;
+/// and by this much in any case, which is above the rounding of programs with three decimals \[mm\],
+const LEAST_TOLERANCE: f64 = 0.005;
+/// but never by more than this \[mm\].
+const MOST_TOLERANCE: f64 = 0.5;
 
 /// Why there is no arc.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ArcError {
     /// Start and end are not equally far from the centre.
     #[error(
-        "radius mismatch: the start is {start} mm from the centre, the end {end} mm, and {limit} mm is \
-         allowed; correct the centre or the end"
+        "radius mismatch: the start is {start:.4} mm from the centre, the end {end:.4} mm, a difference of {:.4} mm; \
+         {limit:.4} mm is allowed here ({limits}); correct the centre or the end",
+        libm::fabs(start - end),
+        limits = Arc::RADIUS_LIMITS
     )]
     RadiusMismatch {
         /// Distance from start to centre \[mm\].
@@ -34,7 +45,7 @@ pub enum ArcError {
     #[error("zero axis: the plane of the arc is undefined")]
     ZeroAxis,
     /// A coordinate is infinite or not a number.
-    #[error("not finite: a coordinate of the arc is not a number")]
+    #[error("not finite: a coordinate of the arc is not a number, or too large for one")]
     NotFinite,
 }
 
@@ -59,28 +70,48 @@ pub struct Arc {
     arm: Vector3<f64>,
     radius: f64,
     sweep: f64,
-    /// Spread evenly over the sweep: the rise, and what the given end is off the circle.
+    /// Spread evenly over the sweep: the rise, and beyond half a turn what the given end is off the circle.
     drift: Vector3<f64>,
     length: f64,
 }
 
 impl Arc {
-    /// Largest difference of the radii at start and end \[mm\]: above the rounding of programs with three
-    /// decimals.
-    pub const RADIUS_TOLERANCE: f64 = 0.005;
+    /// By how much radii may differ, in words.
+    pub const RADIUS_LIMITS: &str =
+        "0.1 % of the radius, but 0.005 mm in any case and never more than 0.5 mm";
+
+    /// Largest difference of the radii at start and end of an arc, of which `radius` is the larger one \[mm\]: as
+    /// LinuxCNC takes them.
+    pub fn radius_tolerance(radius: f64) -> f64 {
+        libm::fmin(libm::fmax(RADIUS_SHARE * radius, LEAST_TOLERANCE), MOST_TOLERANCE)
+    }
 
     /// The arc from `start` to `end` about `centre`, as G2 and G3 give it: `axis` is the axis of the plane, of
     /// any length, and `turn` the sense about it. Ends at one place mean a full circle. The end may be higher
     /// along the axis than the start (helix); the height of `centre` does not matter.
     ///
-    /// The arc ends exactly at `end`: a difference of the radii up to [`Arc::RADIUS_TOLERANCE`] is spread
-    /// evenly along it.
+    /// The arc ends exactly at `end`. Where the radii differ, by [`Arc::radius_tolerance`] at most, up to half a turn goes
+    /// about the point nearest to `centre` that is as far from one end as from the other; more is a spiral about `centre`
+    /// (mathematics 4.2). Either is off the circle through the start by that difference at most.
     pub fn about_centre(
         start: Vector3<f64>,
         end: Vector3<f64>,
         centre: Vector3<f64>,
         axis: Vector3<f64>,
         turn: Turn,
+    ) -> Result<Self, ArcError> {
+        Self::with_turns(start, end, centre, axis, turn, 0)
+    }
+
+    /// The same with so many full turns `more`, as the P word of G2 and G3 asks for, and what it rises spread over all of
+    /// it. With any, radii that differ make a spiral.
+    pub fn with_turns(
+        start: Vector3<f64>,
+        end: Vector3<f64>,
+        centre: Vector3<f64>,
+        axis: Vector3<f64>,
+        turn: Turn,
+        more: u32,
     ) -> Result<Self, ArcError> {
         finite(&[start, end, centre, axis])?;
         let axis = unit(axis).ok_or(ArcError::ZeroAxis)?;
@@ -96,18 +127,31 @@ impl Arc {
         if radius <= SAME_POINT {
             return Err(ArcError::ZeroRadius);
         }
-        if libm::fabs(radius - end_radius) > Self::RADIUS_TOLERANCE {
+        let limit = Self::radius_tolerance(libm::fmax(radius, end_radius));
+        if libm::fabs(radius - end_radius) > limit {
             return Err(ArcError::RadiusMismatch {
                 start: radius,
                 end: end_radius,
-                limit: Self::RADIUS_TOLERANCE,
+                limit,
             });
         }
-        let sweep = if (end_arm - arm).norm() <= SAME_POINT {
-            TAU
+        let chord = end_arm - arm;
+        let closed = chord.norm() <= SAME_POINT;
+        let sweep = central_angle(&axis, &arm, &end_arm);
+        let (centre, arm, sweep) = if closed {
+            (centre, arm, TAU)
+        } else if more == 0 && sweep <= PI + SAME_TURN {
+            // The part of the way from the middle of the chord to the centre that is along the chord.
+            let shift = chord * (-0.5 * (arm + end_arm).dot(&chord) / chord.norm_squared());
+            let [arm, end_arm] = [arm + shift, end_arm + shift];
+            (centre - shift, arm, central_angle(&axis, &arm, &end_arm))
         } else {
-            central_angle(&axis, &arm, &end_arm)
+            (centre, arm, sweep)
         };
+        let radius = arm.norm();
+        let sweep = sweep + TAU * f64::from(more);
+        let length = libm::hypot(radius * sweep, rise);
+        finite(&[centre, arm, Vector3::repeat(length)])?;
         Ok(Self {
             centre,
             axis,
@@ -115,17 +159,8 @@ impl Arc {
             radius,
             sweep,
             drift: end - (centre + rotate(&axis, sweep, &arm)),
-            length: libm::hypot(radius * sweep, rise),
+            length,
         })
-    }
-
-    /// The same arc after so many full turns more, as the P word of G2 and G3 asks for: with the same ends, and
-    /// what it rises spread over all of it.
-    pub fn with_turns(mut self, more: u32) -> Self {
-        let rise = self.rise();
-        self.sweep += TAU * f64::from(more);
-        self.length = libm::hypot(self.radius * self.sweep, rise);
-        self
     }
 
     /// Centre \[mm\], in the plane of the start.
@@ -146,6 +181,11 @@ impl Arc {
     /// Central angle from start to end \[rad\], above 0 and up to 2π, but for [`Arc::with_turns`].
     pub fn sweep(&self) -> f64 {
         self.sweep
+    }
+
+    /// Full turns beyond the first time it comes to its end.
+    pub fn more_turns(&self) -> u32 {
+        libm::fmax(libm::ceil((self.sweep - SAME_TURN) / TAU) - 1.0, 0.0) as u32
     }
 
     /// Sweep \[rad\], positive if right-handed about `direction`, else negative (mathematics 4.2).

@@ -17,8 +17,9 @@ const SHORT: f64 = 0.0005;
 /// Where limits change next.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Break {
-    /// Way to there \[mm\].
-    pub way: f64,
+    /// Path length there \[mm\], to the bit: a way that is counted down would be off by more than [`SAME`] after
+    /// thousands of nodes, and the machine would have to stop twice there.
+    pub s: f64,
     /// Limits change there; else nothing changes so far.
     pub real: bool,
     /// The machine stops there.
@@ -37,34 +38,40 @@ pub(super) struct Break {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Search {
     s: f64,
-    forward: bool,
+    direction: f64,
     /// Serial of the element at `s`.
     hint: u32,
     /// Junctions looked at.
     seen: u32,
-    /// Way to the end of the elements seen \[mm\].
-    way: f64,
+    /// Path length where the elements seen end \[mm\].
+    seen_s: f64,
     door: DirectionRange,
     /// What is found if nothing comes before.
     next: Break,
+}
+
+impl Break {
+    /// Way to there from `s` on in a `direction` \[mm\].
+    pub fn way(&self, s: f64, direction: f64) -> f64 {
+        direction * (self.s - s)
+    }
 }
 
 impl<const E: usize> Track<E> {
     /// Begins to look for the next change of limits from `s` on in a `direction`; `hint` is the serial of the element
     /// there.
     pub fn search_breaks(&self, s: f64, direction: f64, hint: u32) -> Search {
-        let forward = direction > 0.0;
         let end = self.end_in(direction);
-        let stop = !forward || (self.closed() && end >= self.end_s() - SAME);
+        let stop = direction <= 0.0 || (self.closed() && end >= self.end_s() - SAME);
         Search {
             s,
-            forward,
+            direction,
             hint,
             seen: 0,
-            way: 0.0,
+            seen_s: s,
             door: DirectionRange::open(self.along(hint, s)),
             next: Break {
-                way: direction * (end - s),
+                s: end,
                 real: stop,
                 stop,
                 end: true,
@@ -80,16 +87,18 @@ impl<const E: usize> Track<E> {
     /// Junctions, corners and whole elements are passed over where the path is straight but for what nothing feels;
     /// so is the end of a corner inside which the search begins: intervals are halved until they follow it.
     pub fn look(&self, search: &mut Search, bounds: &Bounds) -> Option<Break> {
-        let (s, hint, k) = (search.s, search.hint, search.seen);
+        let (hint, k, direction) = (search.hint, search.seen, search.direction);
+        let way_to = |s: f64| direction * (s - search.s);
+        let forward = direction > 0.0;
         let next = &mut search.next;
         if k == MOST_LOOKS {
-            if search.way < next.way {
-                (next.way, next.real, next.stop, next.end) = (search.way, false, false, false);
+            if way_to(search.seen_s) < way_to(next.s) {
+                (next.s, next.real, next.stop, next.end) = (search.seen_s, false, false, false);
             }
             return Some(*next);
         }
         search.seen += 1;
-        let beyond = if search.forward {
+        let beyond = if forward {
             self.get(hint + k)
         } else {
             hint.checked_sub(k).and_then(|serial| self.get(serial))
@@ -98,16 +107,17 @@ impl<const E: usize> Track<E> {
             return Some(*next);
         };
         let (length, feed) = (element.element.length, element.element.feed);
-        let (way, corner, far) = if search.forward {
-            (element.start - s, Some(element), self.junction(hint + k + 1))
+        let (near_s, far_s, corner, far) = if forward {
+            let far = self.junction(hint + k + 1);
+            (element.start, element.end(), Some(element), far)
         } else {
             let corner = self.get(hint + 1 - k);
-            (s - element.start - length, corner, element.place)
+            (element.end(), element.start, corner, element.place)
         };
-        let seen = way + length;
+        let seen = way_to(far_s);
         let slower = lesser(feed, next.feed);
         let alike = feed == next.feed || k == 0 || seen <= SHORT * slower;
-        search.way = seen;
+        search.seen_s = far_s;
         let smooth = corner.is_none_or(|piece| !piece.stop && piece.corner.others <= SMOOTH);
         let near = bounds.unfelt_way;
         let on =
@@ -117,16 +127,19 @@ impl<const E: usize> Track<E> {
             // A rounded corner bends evenly; a sharp one needs a place to turn the acceleration.
             let even = piece.even && smooth && half > 0.0 && piece.corner.turn < SHARP;
             for side in [-half, 0.0, half] {
-                let way = way + side;
+                let at = near_s + direction * side;
+                let way = way_to(at);
                 // Where a corner ends with the next junction, that is the change.
                 if (side == 0.0 && even) || way <= SAME || (side > 0.0 && way >= seen - SAME) {
                     continue;
                 }
-                if way > next.way + SAME {
+                if way > way_to(next.s) + SAME {
                     return Some(*next);
                 }
                 if !on {
-                    return Some(change(piece, way, piece.stop && side == 0.0, *next, bounds));
+                    let ends = way >= way_to(next.s) - SAME;
+                    let stop = piece.stop && side == 0.0 || next.stop && ends;
+                    return Some(change(piece, at, stop, *next, bounds));
                 }
                 next.merged = true;
             }
@@ -148,10 +161,10 @@ impl<const E: usize> Track<E> {
     }
 }
 
-/// The change of limits at the corner where `piece` begins; `end` is the one where all ends.
-fn change(piece: &Piece, way: f64, stop: bool, end: Break, bounds: &Bounds) -> Break {
+/// The change of limits at `s` in the corner where `piece` begins, and whether it is a stop; `end` is the one where all
+/// ends.
+fn change(piece: &Piece, s: f64, stop: bool, end: Break, bounds: &Bounds) -> Break {
     let corner = &piece.corner;
-    let stop = stop || (end.stop && way >= end.way - SAME);
     // ṡ² at which the acceleration is all used.
     let passing = |acceleration: f64, jump: f64| match corner.half * jump > 0.0 {
         true => 2.0 * acceleration * corner.half / jump,
@@ -162,7 +175,7 @@ fn change(piece: &Piece, way: f64, stop: bool, end: Break, bounds: &Bounds) -> B
         passing(bounds.spin, corner.others),
     );
     Break {
-        way,
+        s,
         real: true,
         stop,
         end: false,

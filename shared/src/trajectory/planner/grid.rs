@@ -152,18 +152,22 @@ impl Grid {
         };
         let mut work = 0;
         // More may be settled than when the end was looked for.
-        if self.next.is_none_or(|next| next.end && next.way < settled - SAME) {
+        if self
+            .next
+            .is_none_or(|next| next.end && next.way(self.s, direction) < settled - SAME)
+        {
             self.look(ground);
             work = 2 * VISIT;
         }
         let Some(next) = self.next else {
             return Ok(work);
         };
-        if next.end && !next.real && next.way < MERGE * feed {
+        let way = next.way(self.s, direction);
+        if next.end && !next.real && way < MERGE * feed {
             return Ok(0);
         }
         let Some(from) = self.from else {
-            let inset = INSET * lesser(next.way, feed * CURVE_STEP);
+            let inset = INSET * lesser(way, feed * CURVE_STEP);
             self.from = Some(self.sample(ground, inset, &mut self.hint.clone())?.0);
             return Ok(work + sampling(ground.space));
         };
@@ -236,9 +240,11 @@ impl Grid {
             });
             return Ok(work);
         }
-        let at_break = next.way - delta < SAME;
-        let delta = if at_break { next.way } else { delta };
-        let end = self.s + direction * delta;
+        let at_break = way - delta < SAME;
+        let (delta, end) = match at_break {
+            true => (way, next.s),
+            false => (delta, self.s + direction * delta),
+        };
         let newest = nodes.end - 1;
         let node = nodes.at_mut(newest);
         node.feed = lesser(node.feed, feed_cap);
@@ -254,10 +260,7 @@ impl Grid {
             self.since_speed = next.speed;
         }
         self.from = (!at_break).then_some(to);
-        self.next = (next.real && !next.end && !at_break).then_some(Break {
-            way: next.way - delta,
-            ..next
-        });
+        self.next = (next.real && !next.end && !at_break).then_some(next);
         self.s = end;
         self.hint = hint;
         self.near = near;
@@ -307,7 +310,8 @@ fn sampling(space: PathSpace) -> u32 {
 
 /// Length of the next interval \[mm\], on the way to the next change of limits.
 fn step(next: &Break, grid: &Grid, rests: bool, from: &Sample, feed: f64, bounds: &Bounds) -> f64 {
-    let (way, gone) = (next.way, libm::fabs(grid.s - grid.since));
+    let way = next.way(grid.s, grid.direction);
+    let gone = libm::fabs(grid.s - grid.since);
     // From rest, the way of a part of the filter's length.
     let rate = highest(from_fn(|row| {
         from.first[row].abs() * bounds.per_acceleration[row]

@@ -174,6 +174,28 @@ fn a_circle_is_as_fast_as_the_acceleration_across_allows() {
     }
 }
 
+/// The rounding of thousands of nodes, every time to the same side, does not make a stop two places.
+#[test]
+fn the_machine_stops_once_where_a_path_of_thousands_of_nodes_stops() {
+    let (start, at) = (Vector3::zeros(), 2500.0);
+    for turn in [Turn::CounterClockwise, Turn::Clockwise] {
+        let arc = Arc::about_centre(start, start, Vector3::x() * 200.0, Vector3::z(), turn).unwrap();
+        let mut circle = element(Shape::Arc(arc), arc.length(), 50.0);
+        circle.join = Join::Stop;
+        let machine = any_machine();
+        let mut planner = Box::new(Planner::<64, 256>::new());
+        planner.start(&limits(), PathSpace::Axes, at, &[0.0; AXES]);
+        for circle in [circle.clone(), circle.clone()] {
+            planner.push(circle).unwrap();
+        }
+        let end = at + arc.length() + arc.length();
+        let ticks = (0..60_000).map(|_| planner.tick(&machine).unwrap());
+        let last = ticks.take_while(|output| output.along.s.is_finite() && !output.at_rest);
+        let last = last.last().unwrap();
+        assert!((last.along.s - end).abs() < 1e-6, "{last:?}");
+    }
+}
+
 #[test]
 fn a_hold_stops_on_the_path_and_back_leads_over_the_same_points() {
     let line = polyline(&[[0.0; 3], [60.0, 30.0, 0.0]], 100.0);

@@ -73,7 +73,7 @@ pub enum PushError {
 
 impl Piece {
     /// Path length where it ends \[mm\].
-    fn end(&self) -> f64 {
+    pub fn end(&self) -> f64 {
         self.start + self.element.length
     }
 }

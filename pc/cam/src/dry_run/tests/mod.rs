@@ -1,4 +1,6 @@
+mod arcs;
 mod slowed;
+mod standing;
 
 use super::*;
 use nc::{Motion, Options, interpret};

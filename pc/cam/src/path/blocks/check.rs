@@ -4,6 +4,7 @@ use super::walk::Step;
 use crate::path::limits::{CHECK_STEP, Demand, Worst, check_continuous};
 use crate::path::shape::Goal;
 use crate::path::targets::RestState;
+use crate::path::too_fast::unit;
 use crate::path::{Bound, MAX_EVENTS, PathError, Planner, Speeds, TooFast};
 use shared::protocol::PathAction;
 use shared::trajectory::{Element, Join, PathSpace};
@@ -93,8 +94,11 @@ impl<'a> Check<'a> {
             }
             planner.see_travel(&demand, place, &mut self.travel);
             let on = self.stand.switched.works();
-            planner.see_feed(&demand, step.programmed, place, on, &mut self.too_fast);
-            let bound = [self.bound, planner.bound_at(&demand)].into_iter().flatten();
+            let feed = (step.programmed, unit(step.block.stands));
+            planner.see_feed(&demand, feed, place, on, &mut self.too_fast);
+            // That is a speed of the tip.
+            let here = planner.bound_at(&demand).filter(|_| !step.block.stands);
+            let bound = [self.bound, here].into_iter().flatten();
             self.bound = bound.min_by(|a, b| a.largest_mm_s.total_cmp(&b.largest_mm_s));
             self.stand.axes = axes;
             self.before = Some(demand);

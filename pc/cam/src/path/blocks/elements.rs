@@ -80,6 +80,11 @@ impl Block {
     fn shapes(&self, from: f64, to: f64, shapes: &mut Vec<(Shape, f64)>) -> Result<(), PathError> {
         let place = self.place;
         match &self.way {
+            BlockWay::Straight(start, end) if self.stands => {
+                let at = |i: usize, u: f64| start[i] + (end[i] - start[i]) * (u / self.length);
+                let channel = |i: usize| Cubic::linear(at(i, from), at(i, to), to - from);
+                shapes.push((Shape::Span(std::array::from_fn(channel)), to - from));
+            }
             BlockWay::Straight(start, end) => {
                 let at = |u: f64| start * (1.0 - u / self.length) + end * (u / self.length);
                 let line = Line::new(at(from), at(to)).map_err(|_| PathError::NoTravel { place })?;
@@ -107,10 +112,10 @@ impl Block {
             return Ok(*whole);
         }
         let at = |u: f64| whole.at_angle(whole.sweep() * u / self.length);
+        let sweep = whole.sweep() * (to - from) / self.length;
+        let turns = libm::fmax(libm::ceil(sweep / TAU - SAME) - 1.0, 0.0) as u32;
         let (centre, axis) = (whole.centre(), whole.axis());
-        let part = Arc::about_centre(at(from), at(to), centre, axis, Turn::CounterClockwise)?;
-        let beyond = whole.sweep() * (to - from) / self.length - part.sweep();
-        Ok(part.with_turns((beyond / TAU).round() as u32))
+        Arc::with_turns(at(from), at(to), centre, axis, Turn::CounterClockwise, turns)
     }
 }
 

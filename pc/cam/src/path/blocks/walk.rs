@@ -4,6 +4,7 @@ use super::Moves;
 use crate::path::block::Block;
 use crate::path::exact::{Join as Turning, MAX_TURN};
 use crate::path::feeds::Feeds;
+use crate::path::short_blocks::ShortBlocks;
 use crate::path::targets::RestState;
 use crate::path::{PathError, Planner, TOLERANCE, Tip};
 use nc::{Blend, Move, PathControl};
@@ -64,6 +65,10 @@ impl Step {
     fn go_on_to(&mut self, next: &mut Step, planner: &Planner) {
         let direction = self.block.direction(self.block.length);
         let turn = angle(&direction, &next.block.direction(0.0));
+        // What the rotary axes do by themselves has no corner that could be rounded.
+        if self.block.stands != next.block.stands || self.block.stands && turn > MAX_TURN {
+            return;
+        }
         let position = match (self.control, next.control) {
             (PathControl::ExactStop, _) => return,
             (PathControl::Blend(p), PathControl::Blend(q)) => tolerance(p).min(tolerance(q)),
@@ -96,7 +101,7 @@ fn tolerance(blend: Blend) -> f64 {
 /// The blocks of a path, one ahead.
 pub(super) struct Walk {
     planner: Arc<Planner>,
-    moves: Moves,
+    moves: ShortBlocks<Moves>,
     feeds: Feeds,
     tip: Tip,
     placed: bool,
@@ -108,8 +113,8 @@ pub(super) struct Walk {
 impl Walk {
     pub(super) fn new(planner: Arc<Planner>, moves: Moves, from: &RestState, feeds: Feeds) -> Self {
         Self {
+            moves: ShortBlocks::new(planner.clone(), moves, from),
             planner,
-            moves,
             feeds,
             tip: from.tip,
             placed: from.placed,

@@ -107,18 +107,49 @@ fn arcs_that_do_not_exist_are_named() {
     let message = |body: &str| stir(body).unwrap_err().to_string();
     assert_eq!(
         message("G1 X610\nG3 X660 Y560 J50"),
-        "line 6, column 4: no arc here: radius mismatch: the start is 50 mm from the centre, the end 50.99019513592785 mm, \
-         and 0.005 mm is allowed; correct the centre or the end"
+        "line 6, column 4: no arc here: radius mismatch: the start is 50.0000 mm from the centre, the end 50.9902 mm, a \
+         difference of 0.9902 mm; 0.0510 mm is allowed here (0.1 % of the radius, but 0.005 mm in any case and never more \
+         than 0.5 mm); correct the centre or the end"
     );
     assert_eq!(
         message("G3 X700 R49"),
-        "line 5, column 4: the ends of the arc are 100.0000 mm apart, so R must be at least half of that, not 49"
+        "line 5, column 4: half the distance of the arc's ends is 50.0000 mm, and R is less than that by 1.0000 mm; \
+         0.0500 mm is allowed here (0.1 % of the radius, but 0.005 mm in any case and never more than 0.5 mm); correct R or \
+         the end"
     );
     assert_eq!(
         message("G3 R10"),
         "line 5, column 4: R does not define the centre of a full circle; use I J K"
     );
     assert!(message("G3 X650 I0 J0").contains("zero radius"));
+}
+
+/// With radii that differ, or an R that is too small, the path still ends where the block says, and elements that the
+/// board makes of numbers are the same.
+#[test]
+fn arcs_that_do_not_quite_fit_end_where_the_block_says() {
+    for (body, end, taken) in [
+        ("G3 X700.049 I50", [700.049, 500.0], true),
+        ("G3 X700.051 I50", [700.051, 500.0], false),
+        ("G3 X650 Y550.049 I50 C-90", [650.0, 550.049], true),
+        ("G2 X650 Y449.96 P2 I50 C90", [650.0, 449.96], true),
+        ("G3 X650 Y550.06 I50", [650.0, 550.06], false),
+        ("G3 X700 R49.951", [700.0, 500.0], true),
+        ("G3 X700 R-49.949", [700.0, 500.0], false),
+        ("G2 X600.004 Y500 I0.5", [600.004, 500.0], true),
+    ] {
+        let paths = stir(body);
+        assert_eq!(paths.is_ok(), taken, "{body}: {:?}", paths.err());
+        let Ok(paths) = paths else { continue };
+        let path = paths.last().unwrap();
+        let point = path.path().at(path.length_mm()).unwrap();
+        let off = (point.value[0] - end[0]).hypot(point.value[1] - end[1]);
+        assert!(off < 1e-9, "{body}: {off}");
+        for leg in path.legs().map(Result::unwrap) {
+            let sent = shared::protocol::PathElement::from(&leg.element);
+            assert!(sent.build().is_ok(), "{body}");
+        }
+    }
 }
 
 /// With G61 the path stops exactly at a corner and continues; what is switched is at its place.

@@ -7,6 +7,8 @@ mod feeds;
 mod machines;
 mod nurbs;
 mod outputs;
+mod rotary;
+mod short_blocks;
 mod smoothing;
 mod too_fast;
 
@@ -213,12 +215,6 @@ fn what_is_not_smooth_is_refused_with_its_line() {
     let error = plan("F600\nG1 X1010\nY1010").unwrap_err();
     assert!(
         matches!(error, PathError::Corner { place: SourcePosition { line: 5, .. }, degrees } if (degrees - 90.0).abs() < 1e-9)
-    );
-    assert_eq!(
-        plan("F600\nG1 A10").unwrap_err(),
-        PathError::NoTravel {
-            place: SourcePosition { line: 4, column: 4 }
-        }
     );
     assert!(plan("F600\nG61.1\nG1 X1010\nY1010").is_ok());
     let events = MAX_EVENTS + 1;
