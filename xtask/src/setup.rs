@@ -23,6 +23,8 @@ pub enum Tool {
     Aravis,
     /// What changes the code, to see whether a test notices.
     Mutants,
+    /// Another interpreter of NC programs, and the programs that come with it.
+    LinuxCnc,
 }
 
 /// Windows on the PC, as compilers call it.
@@ -30,7 +32,7 @@ pub const WINDOWS: &str = "x86_64-pc-windows-gnu";
 /// Version of cargo-mutants whose flags and files are known here.
 const MUTANTS: &str = "27.1.0";
 
-/// For everything but counting and changing the code.
+/// For everything but counting, changing the code and comparing interpreters.
 pub const ALL: [Tool; 5] = [
     Tool::ArmTarget,
     Tool::WindowsTarget,
@@ -70,6 +72,11 @@ pub fn run(wants: &[Tool]) -> Result<()> {
                 "install Aravis 0.8.25 or later by hand, with its tools",
             )?,
             Tool::Mutants => mutants()?,
+            Tool::LinuxCnc => debian(
+                &["linuxcnc-uspace"],
+                || Path::new("/usr/bin/rs274").exists() && runs("dpkg", &["-L", "linuxcnc-uspace"]),
+                "LinuxCNC 2.9 is in Debian 12 and later",
+            )?,
         }
     }
     Ok(())

@@ -7,6 +7,7 @@ mod curves;
 mod docs;
 mod hands;
 mod markdown;
+mod nc;
 mod planner;
 mod report;
 mod row;
@@ -78,6 +79,22 @@ pub enum Benchmark {
         #[arg(long)]
         record: bool,
     },
+    /// Read NC programs with our interpreter and with LinuxCNC's: which they accept, and whether they understand the same;
+    /// fails if a program that both accept differs
+    Nc {
+        /// Programs of this folder; else those that LinuxCNC installs
+        #[arg(long, value_name = "DIR")]
+        programs: Option<PathBuf>,
+        /// Random programs in their place; a hundred take a second
+        #[arg(long, value_name = "N", conflicts_with = "programs")]
+        random: Option<u64>,
+        /// Mutate them so many times, and read these with our interpreter only; fails if it panics or hangs
+        #[arg(long, value_name = "N", conflicts_with = "random")]
+        mutate: Option<u64>,
+        /// Seed of random and mutated programs
+        #[arg(long, value_name = "N", default_value_t = 0)]
+        seed: u64,
+    },
     /// Run every program (.seg) of a folder through the trajectory planner; fails if a limit is not kept
     Trajectories {
         /// Folder of the programs, and of baseline.csv with what another planner took, if there is one
@@ -109,6 +126,7 @@ impl Benchmark {
             | Self::Trajectories {
                 instructions: true, ..
             } => &[Tool::Valgrind],
+            Self::Nc { .. } => &[Tool::LinuxCnc],
             Self::Curves { .. } | Self::Hands { .. } | Self::Trajectories { .. } => &[],
         }
     }
@@ -120,6 +138,12 @@ impl Benchmark {
             Self::Planner { record } => planner::run(record),
             Self::Curves { random, seed, record } => curves::run(random, seed, record),
             Self::Hands { programs, seed } => hands::run(programs, seed),
+            Self::Nc {
+                programs,
+                random,
+                mutate,
+                seed,
+            } => nc::run(programs.as_deref(), random, mutate, seed),
             Self::Vision { frames, record } => vision::run(frames, record),
             Self::Trajectories {
                 programs,

@@ -1,0 +1,183 @@
+//! Our interpreter, and its programs as a list.
+
+use crate::arc::{self, Arc};
+use crate::list::{Item, Kind, List, Motion, Place, straight, turned, turns_only};
+use nc::{
+    ArcForm, ArcWay, FeedRate, Move, NcError, Options, Program, ProgramAction, ProgramEvent, Target, Way,
+};
+use serde::{Deserialize, Serialize};
+use shared::geometry::Turn;
+use shared::protocol::PathAction;
+use std::fs::File;
+use std::path::Path;
+use std::sync;
+
+/// Number by which a program switches tracking: M62 P2.
+const TRACKING: u32 = 2;
+
+/// What an interpreter says of a program.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Outcome {
+    Accepted(Vec<Item>),
+    Refused {
+        /// One sentence, without where it is.
+        problem: String,
+        /// Where; empty if it is not said.
+        place: String,
+    },
+}
+
+impl Outcome {
+    pub fn accepted(&self) -> bool {
+        matches!(self, Self::Accepted(_))
+    }
+}
+
+/// Reads a program. Subroutines in other files are looked for in its folder.
+pub fn read(file: &Path) -> Outcome {
+    let program = match File::open(file) {
+        Ok(program) => program,
+        Err(error) => {
+            return Outcome::Refused {
+                problem: format!("cannot be read: {error}"),
+                place: String::new(),
+            };
+        }
+    };
+    match nc::interpret_file(program, options(file)).and_then(flatten) {
+        Ok(items) => Outcome::Accepted(items),
+        Err(error) => Outcome::Refused {
+            problem: error.problem.to_string(),
+            place: error.place.to_string(),
+        },
+    }
+}
+
+/// As the peer has it: no block delete, M1 stops, tools without length.
+fn options(_file: &Path) -> Options {
+    Options::default()
+}
+
+/// What a program does, from X0 Y0 Z0 A0 B0 C0 on.
+fn flatten(program: Program) -> Result<Vec<Item>, NcError> {
+    let mut list = List::default();
+    for path in program.paths {
+        let path = sync::Arc::new(path);
+        list.dwell(path.dwell_before_s);
+        if path.targets.is_empty() {
+            path.events.iter().for_each(|event| happens(&mut list, event));
+        }
+        for next in path.moves() {
+            let Move { target, events } = next?;
+            events.iter().for_each(|event| happens(&mut list, event));
+            let motion = motion(&list.at().unwrap_or_default(), &target);
+            list.motion(motion);
+        }
+    }
+    Ok(list.end())
+}
+
+fn happens(list: &mut List, event: &ProgramEvent) {
+    let with_motion = matches!(event.code, "M62" | "M63" | "M67");
+    match event.action {
+        ProgramAction::Output(PathAction::Beam { side, on }) => {
+            let channel = side.into();
+            list.output(Item::Digital { channel, on }, with_motion);
+        }
+        ProgramAction::Output(PathAction::Tracking { on }) => {
+            let channel = TRACKING;
+            list.output(Item::Digital { channel, on }, with_motion);
+        }
+        ProgramAction::Output(PathAction::Power { side, watt }) => {
+            let (channel, value) = (side.into(), watt);
+            list.output(Item::Analog { channel, value }, with_motion);
+        }
+        ProgramAction::SpindleSpeed(speed) => list.spindle_speed(speed),
+        ProgramAction::SpindleOn(Turn::Clockwise) => list.spindle_turn(1),
+        ProgramAction::SpindleOn(Turn::CounterClockwise) => list.spindle_turn(-1),
+        ProgramAction::SpindleOff => list.spindle_turn(0),
+    }
+}
+
+fn motion(from: &Place, target: &Target) -> Motion {
+    let to: Place = std::array::from_fn(|axis| target.words.axes[axis].unwrap_or(from[axis]));
+    let (kind, length, middle) = match &target.way {
+        Way::Axes => (Kind::Rapid, Some(straight(from, &to)), None),
+        Way::Line if target.feed.is_none() => (Kind::Rapid, Some(straight(from, &to)), None),
+        Way::Line => (Kind::Line, Some(straight(from, &to)), None),
+        Way::Arc(way) => {
+            let (length, middle) = arc(way, xyz(from), xyz(&to));
+            (Kind::Arc, Some(length), Some(middle))
+        }
+        Way::Nurbs(_) => (Kind::Curve, None, None),
+    };
+    let feed = target.feed.and_then(|feed| match feed {
+        FeedRate::PerMinute(rate) => Some(rate),
+        FeedRate::InverseTime(rate) if turns_only(from, &to) && kind == Kind::Line => {
+            Some(rate * turned(from, &to))
+        }
+        FeedRate::InverseTime(rate) => length.map(|length| rate * length),
+    });
+    Motion {
+        kind,
+        to: Some(to),
+        length,
+        middle,
+        feed,
+        line: target.place.line,
+    }
+}
+
+fn arc(way: &ArcWay, from: [f64; 3], to: [f64; 3]) -> (f64, [f64; 3]) {
+    let (axis, turn) = (way.plane.axis(), way.turn);
+    let centre = match way.form {
+        ArcForm::Centre(offset) => std::array::from_fn(|axis| from[axis] + offset[axis]),
+        ArcForm::Radius(radius) => arc::centre(axis, turn, radius, from, to),
+    };
+    let arc = Arc {
+        axis,
+        centre,
+        turn,
+        more_turns: way.more_turns,
+    };
+    arc.measure(from, to)
+}
+
+fn xyz(place: &Place) -> [f64; 3] {
+    [place[0], place[1], place[2]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn items(text: &str) -> Vec<Item> {
+        let program = nc::interpret(text, Options::default()).expect("a program");
+        flatten(program).expect("a list")
+    }
+
+    #[test]
+    fn places_lengths_and_feeds_are_those_of_the_program() {
+        let items = items(
+            "G43.4 G0 X10 Y0 Z0 A0 B0 C0\nG3 X0 Y10 I-10 J0 F300\nG93 G1 Z3 X4 F2\nG4 P1.5\nM62 P1 G0 Z9\nM2\n",
+        );
+        let [
+            _,
+            Item::Motion(arc),
+            Item::Motion(line),
+            dwell,
+            output,
+            Item::Motion(_),
+        ] = &items[..]
+        else {
+            panic!("{items:?}");
+        };
+        assert_eq!((arc.kind, arc.feed), (Kind::Arc, Some(300.0)));
+        let quarter = 10.0 * std::f64::consts::FRAC_PI_2;
+        assert!(arc.length.is_some_and(|length| (length - quarter).abs() < 1e-12));
+        assert_eq!(line.to, Some([4.0, 10.0, 3.0, 0.0, 0.0, 0.0]));
+        assert_eq!((line.length, line.feed), (Some(5.0), Some(10.0)));
+        assert_eq!(*dwell, Item::Dwell(1.5));
+        assert_eq!(*output, Item::Digital { channel: 1, on: true });
+    }
+}
