@@ -21,6 +21,16 @@ pub struct Arc {
 impl Arc {
     /// Its length and the point halfway, from one place to another.
     pub fn measure(&self, from: [f64; 3], to: [f64; 3]) -> (f64, [f64; 3]) {
+        let (length, middle, _) = self.with_first_radius(from, to);
+        (length, middle)
+    }
+
+    /// Its length if the radius stayed that of its start.
+    pub fn length_by_first_radius(&self, from: [f64; 3], to: [f64; 3]) -> f64 {
+        self.with_first_radius(from, to).2
+    }
+
+    fn with_first_radius(&self, from: [f64; 3], to: [f64; 3]) -> (f64, [f64; 3], f64) {
         let (u, v, w) = ((self.axis + 1) % 3, (self.axis + 2) % 3, self.axis);
         let about = |place: [f64; 3]| [place[u] - self.centre[u], place[v] - self.centre[v]];
         let ([a, b], [c, d]) = (about(from), about(to));
@@ -41,7 +51,8 @@ impl Arc {
         middle[u] = self.centre[u] + radius * half.cos();
         middle[v] = self.centre[v] + radius * half.sin();
         middle[w] = (from[w] + to[w]) / 2.0;
-        ((radius * angle).hypot(to[w] - from[w]), middle)
+        let rise = to[w] - from[w];
+        ((radius * angle).hypot(rise), middle, (first * angle).hypot(rise))
     }
 }
 
@@ -49,7 +60,7 @@ impl Arc {
 pub fn centre(axis: usize, turn: Turn, radius: f64, from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let (du, dv) = (to[u] - from[u], to[v] - from[v]);
-    let chord = du.hypot(dv);
+    let chord = du.hypot(dv).max(f64::MIN_POSITIVE);
     let height = (radius * radius - chord * chord / 4.0).max(0.0).sqrt();
     // Of a short counterclockwise arc the centre is to the left of the chord.
     let left = (turn == Turn::CounterClockwise) == (radius > 0.0);

@@ -164,6 +164,8 @@ impl List {
         let next = [mist.unwrap_or(self.coolant[0]), flood.unwrap_or(self.coolant[1])];
         if next != self.coolant {
             let [mist, flood] = next;
+            // The peer switches one after the other.
+            self.items.pop_if(|last| matches!(last, Item::Coolant { .. }));
             self.items.push(Item::Coolant { mist, flood });
             self.coolant = next;
         }

@@ -3,7 +3,8 @@
 use crate::arc::{self, Arc};
 use crate::list::{Item, Kind, List, Motion, Place, straight, turned, turns_only};
 use nc::{
-    ArcForm, ArcWay, FeedRate, Move, NcError, Options, Program, ProgramAction, ProgramEvent, Target, Way,
+    ArcForm, ArcWay, FeedRate, Move, NcError, Options, Program, ProgramAction, ProgramEvent, Setup, Target,
+    TipAndAxes, Way,
 };
 use serde::{Deserialize, Serialize};
 use shared::geometry::Turn;
@@ -54,8 +55,31 @@ pub fn read(file: &Path) -> Outcome {
 }
 
 /// As the peer has it: no block delete, M1 stops, tools without length.
-fn options(_file: &Path) -> Options {
-    Options::default()
+fn options(file: &Path) -> Options {
+    let setup = Setup {
+        folders: file.parent().map(Path::to_owned).into_iter().collect(),
+        kinematics: Some(sync::Arc::new(Plain)),
+        ..Setup::default()
+    };
+    Options {
+        optional_stop: true,
+        setup: sync::Arc::new(setup),
+        ..Options::default()
+    }
+}
+
+/// The tip is where the axes are.
+#[derive(Debug)]
+struct Plain;
+
+impl TipAndAxes for Plain {
+    fn tip(&self, axes: &Place) -> Place {
+        *axes
+    }
+
+    fn axes(&self, tip: &Place) -> Option<Place> {
+        Some(*tip)
+    }
 }
 
 /// What a program does, from X0 Y0 Z0 A0 B0 C0 on.
@@ -96,17 +120,22 @@ fn happens(list: &mut List, event: &ProgramEvent) {
         ProgramAction::SpindleOn(Turn::Clockwise) => list.spindle_turn(1),
         ProgramAction::SpindleOn(Turn::CounterClockwise) => list.spindle_turn(-1),
         ProgramAction::SpindleOff => list.spindle_turn(0),
+        ProgramAction::Coolant { mist, flood } => list.coolant(mist, flood),
+        ProgramAction::ChangeTool(number) => list.tool(number),
+        ProgramAction::Pause => list.pause(),
     }
 }
 
 fn motion(from: &Place, target: &Target) -> Motion {
     let to: Place = std::array::from_fn(|axis| target.words.axes[axis].unwrap_or(from[axis]));
+    let mut of_time = None;
     let (kind, length, middle) = match &target.way {
         Way::Axes => (Kind::Rapid, Some(straight(from, &to)), None),
         Way::Line if target.feed.is_none() => (Kind::Rapid, Some(straight(from, &to)), None),
         Way::Line => (Kind::Line, Some(straight(from, &to)), None),
         Way::Arc(way) => {
-            let (length, middle) = arc(way, xyz(from), xyz(&to));
+            let (length, middle, of_its_radius) = arc(way, xyz(from), xyz(&to));
+            of_time = Some(of_its_radius);
             (Kind::Arc, Some(length), Some(middle))
         }
         Way::Nurbs(_) => (Kind::Curve, None, None),
@@ -116,7 +145,7 @@ fn motion(from: &Place, target: &Target) -> Motion {
         FeedRate::InverseTime(rate) if turns_only(from, &to) && kind == Kind::Line => {
             Some(rate * turned(from, &to))
         }
-        FeedRate::InverseTime(rate) => length.map(|length| rate * length),
+        FeedRate::InverseTime(rate) => of_time.or(length).map(|length| rate * length),
     });
     Motion {
         kind,
@@ -128,7 +157,9 @@ fn motion(from: &Place, target: &Target) -> Motion {
     }
 }
 
-fn arc(way: &ArcWay, from: [f64; 3], to: [f64; 3]) -> (f64, [f64; 3]) {
+/// Length of an arc, the place halfway, and the length with the radius at its start, by which the peer turns a time into a
+/// feed.
+fn arc(way: &ArcWay, from: [f64; 3], to: [f64; 3]) -> (f64, [f64; 3], f64) {
     let (axis, turn) = (way.plane.axis(), way.turn);
     let centre = match way.form {
         ArcForm::Centre(offset) => std::array::from_fn(|axis| from[axis] + offset[axis]),
@@ -140,7 +171,8 @@ fn arc(way: &ArcWay, from: [f64; 3], to: [f64; 3]) -> (f64, [f64; 3]) {
         turn,
         more_turns: way.more_turns,
     };
-    arc.measure(from, to)
+    let (length, middle) = arc.measure(from, to);
+    (length, middle, arc.length_by_first_radius(from, to))
 }
 
 fn xyz(place: &Place) -> [f64; 3] {

@@ -10,7 +10,7 @@ use std::process::Command;
 const PACKAGE: &str = "linuxcnc-uspace";
 const EXTENSIONS: [&str; 3] = ["ngc", "nc", "tap"];
 /// What only lathes have, and threads.
-const LATHE: [u32; 6] = [7, 8, 33, 76, 95, 96];
+const LATHE: [u32; 9] = [7, 8, 33, 70, 71, 72, 76, 95, 96];
 
 /// A program.
 #[derive(Clone, Debug)]

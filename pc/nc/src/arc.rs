@@ -11,7 +11,7 @@ const CENTRE_WORDS: [&str; 3] = ["I", "J", "K"];
 /// Most turns of one arc: a number beyond is a slip.
 const MOST_TURNS: f64 = 10_000.0;
 
-/// The way of the arc `mode`, whose words begin at `place`.
+/// The way of the arc `mode`, whose words begin at `place`, with its lengths as they are written.
 pub(super) fn way(
     claims: &Claims,
     mode: Code,

@@ -1,12 +1,11 @@
 //! Assigns words to codes: P, Q and others have a different meaning with each code.
 
+use super::block::{Block, Word};
 use super::codes::Code;
 use super::error::{NcError, Problem};
-use super::lexer::Word;
-use super::parser::Block;
 
 /// Words that belong to a code; all others stand for themselves.
-const SHARED: [&str; 8] = ["P", "Q", "L", "E", "I", "J", "K", "R"];
+const SHARED: [&str; 10] = ["P", "Q", "L", "E", "I", "J", "K", "R", "H", "D"];
 
 /// The words of a block with their codes.
 #[derive(Debug, Default)]
@@ -70,6 +69,9 @@ fn needs(code: Code) -> &'static [&'static str] {
     match code {
         Code::Dwell | Code::OutputOn | Code::OutputOff | Code::OutputOnNow | Code::OutputOffNow => &["P"],
         Code::Analog | Code::AnalogNow => &["E", "Q"],
+        Code::SetOffsets => &["L", "P"],
+        Code::Call => &["P"],
+        Code::SetTool => &["Q"],
         _ => &[],
     }
 }
@@ -82,6 +84,13 @@ fn may_have(code: Code) -> &'static [&'static str] {
         Code::KnotNurbs => &["P", "K", "R"],
         Code::Continuous => &["P", "Q"],
         Code::WaitForInput => &["P", "E", "L", "Q"],
+        Code::CubicSpline => &["I", "J", "P", "Q"],
+        Code::QuadraticSpline => &["I", "J"],
+        Code::SetOffsets => &["R"],
+        Code::Call => &["L"],
+        Code::ToolLength => &["H", "D"],
+        Code::TipOn => &["H"],
+        code if code.is_cycle() => &["R", "Q", "P", "L"],
         _ => &[],
     }
 }

@@ -2,36 +2,82 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 36] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 88] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
     ('G', 30, Code::ArcCounterClockwise, "G3", Group::Motion),
     ('G', 40, Code::Dwell, "G4", Group::NonModal),
+    ('G', 50, Code::CubicSpline, "G5", Group::Motion),
+    ('G', 51, Code::QuadraticSpline, "G5.1", Group::Motion),
     ('G', 52, Code::UniformNurbs, "G5.2", Group::Motion),
     ('G', 53, Code::UniformNurbsEnd, "G5.3", Group::Motion),
     ('G', 62, Code::KnotNurbs, "G6.2", Group::Motion),
     ('G', 63, Code::KnotNurbsEnd, "G6.3", Group::Motion),
+    ('G', 80, Code::Radii, "G8", Group::Lathe),
+    ('G', 100, Code::SetOffsets, "G10", Group::NonModal),
     ('G', 170, Code::PlaneXy, "G17", Group::Plane),
     ('G', 180, Code::PlaneZx, "G18", Group::Plane),
     ('G', 190, Code::PlaneYz, "G19", Group::Plane),
+    ('G', 200, Code::Inches, "G20", Group::Units),
     ('G', 210, Code::Millimetres, "G21", Group::Units),
+    ('G', 280, Code::Home, "G28", Group::NonModal),
+    ('G', 281, Code::SetHome, "G28.1", Group::NonModal),
+    ('G', 300, Code::SecondHome, "G30", Group::NonModal),
+    ('G', 301, Code::SetSecondHome, "G30.1", Group::NonModal),
     ('G', 400, Code::CompensationOff, "G40", Group::Compensation),
+    ('G', 430, Code::ToolLength, "G43", Group::ToolLength),
     ('G', 434, Code::TipOn, "G43.4", Group::ToolLength),
     ('G', 490, Code::TipOff, "G49", Group::ToolLength),
+    ('G', 520, Code::LocalOffset, "G52", Group::NonModal),
     ('G', 530, Code::MachineAxes, "G53", Group::NonModal),
-    ('G', 540, Code::WorldOffset, "G54", Group::Offset),
+    ('G', 540, Code::System(1), "G54", Group::Offset),
+    ('G', 550, Code::System(2), "G55", Group::Offset),
+    ('G', 560, Code::System(3), "G56", Group::Offset),
+    ('G', 570, Code::System(4), "G57", Group::Offset),
+    ('G', 580, Code::System(5), "G58", Group::Offset),
+    ('G', 590, Code::System(6), "G59", Group::Offset),
+    ('G', 591, Code::System(7), "G59.1", Group::Offset),
+    ('G', 592, Code::System(8), "G59.2", Group::Offset),
+    ('G', 593, Code::System(9), "G59.3", Group::Offset),
     ('G', 610, Code::ExactPath, "G61", Group::PathControl),
     ('G', 611, Code::ExactStop, "G61.1", Group::PathControl),
     ('G', 640, Code::Continuous, "G64", Group::PathControl),
+    ('G', 730, Code::ChipBreaking, "G73", Group::Motion),
+    ('G', 800, Code::CancelMotion, "G80", Group::Motion),
+    ('G', 810, Code::Drilling, "G81", Group::Motion),
+    ('G', 820, Code::DrillingWithDwell, "G82", Group::Motion),
+    ('G', 830, Code::PeckDrilling, "G83", Group::Motion),
+    ('G', 850, Code::Boring, "G85", Group::Motion),
+    ('G', 860, Code::BoringWithStop, "G86", Group::Motion),
+    ('G', 890, Code::BoringWithDwell, "G89", Group::Motion),
     ('G', 900, Code::Absolute, "G90", Group::Distance),
+    ('G', 901, Code::AbsoluteCentres, "G90.1", Group::CentreDistance),
+    ('G', 910, Code::Incremental, "G91", Group::Distance),
+    ('G', 911, Code::IncrementalCentres, "G91.1", Group::CentreDistance),
+    ('G', 920, Code::OffsetHere, "G92", Group::NonModal),
+    ('G', 921, Code::ForgetOffset, "G92.1", Group::NonModal),
+    ('G', 922, Code::SuspendOffset, "G92.2", Group::NonModal),
+    ('G', 923, Code::RestoreOffset, "G92.3", Group::NonModal),
     ('G', 930, Code::InverseTime, "G93", Group::FeedMode),
     ('G', 940, Code::PerMinute, "G94", Group::FeedMode),
+    ('G', 970, Code::SpindleSpeed, "G97", Group::SpindleMode),
+    ('G', 980, Code::ToInitialLevel, "G98", Group::ReturnLevel),
+    ('G', 990, Code::ToRetractLevel, "G99", Group::ReturnLevel),
+    ('M', 0, Code::Pause, "M0", Group::Stop),
+    ('M', 10, Code::OptionalPause, "M1", Group::Stop),
     ('M', 20, Code::End, "M2", Group::Stop),
     ('M', 30, Code::SpindleClockwise, "M3", Group::Spindle),
     ('M', 40, Code::SpindleCounterClockwise, "M4", Group::Spindle),
     ('M', 50, Code::SpindleOff, "M5", Group::Spindle),
+    ('M', 60, Code::ChangeTool, "M6", Group::Tool),
+    ('M', 70, Code::MistOn, "M7", Group::Coolant),
+    ('M', 80, Code::FloodOn, "M8", Group::Coolant),
+    ('M', 90, Code::CoolantOff, "M9", Group::Coolant),
     ('M', 300, Code::End, "M30", Group::Stop),
+    ('M', 480, Code::OverridesOn, "M48", Group::Overrides),
+    ('M', 600, Code::PalletPause, "M60", Group::Stop),
+    ('M', 610, Code::SetTool, "M61", Group::Tool),
     ('M', 620, Code::OutputOn, "M62", Group::Outputs),
     ('M', 630, Code::OutputOff, "M63", Group::Outputs),
     ('M', 640, Code::OutputOnNow, "M64", Group::Outputs),
@@ -39,7 +85,102 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 36] = [
     ('M', 660, Code::WaitForInput, "M66", Group::Outputs),
     ('M', 670, Code::Analog, "M67", Group::Outputs),
     ('M', 680, Code::AnalogNow, "M68", Group::Outputs),
+    ('M', 700, Code::SaveModes, "M70", Group::SavedModes),
+    ('M', 710, Code::ForgetModes, "M71", Group::SavedModes),
+    ('M', 720, Code::RestoreModes, "M72", Group::SavedModes),
+    ('M', 730, Code::SaveModesOfSubroutine, "M73", Group::SavedModes),
+    ('M', 980, Code::Call, "M98", Group::Call),
+    ('M', 990, Code::Return, "M99", Group::Call),
 ];
+
+/// Codes that other controllers have and this one refuses, in tenths, and why.
+const REFUSED: [(char, u32, &str); 33] = [
+    ('G', 70, LATHE),
+    ('G', 330, THREADING),
+    ('G', 331, THREADING),
+    ('G', 380, PROBING),
+    ('G', 382, PROBING),
+    ('G', 383, PROBING),
+    ('G', 384, PROBING),
+    ('G', 385, PROBING),
+    ('G', 410, COMPENSATION),
+    ('G', 411, COMPENSATION),
+    ('G', 420, COMPENSATION),
+    ('G', 421, COMPENSATION),
+    (
+        'G',
+        431,
+        "tool lengths come from the tool table: write G43 H and the number of the tool",
+    ),
+    (
+        'G',
+        432,
+        "the lengths of several tools are not added: write G43 H and the number of the tool",
+    ),
+    (
+        'G',
+        435,
+        "directions of the tool as vectors are not understood: write G43.4 and rotary axes",
+    ),
+    (
+        'G',
+        683,
+        "tilted work planes are not supported: rotate about Z with G10 L2 R",
+    ),
+    (
+        'G',
+        682,
+        "tilted work planes are not supported: rotate about Z with G10 L2 R",
+    ),
+    ('G', 700, LATHE),
+    ('G', 710, LATHE),
+    ('G', 720, LATHE),
+    ('G', 740, THREADING),
+    ('G', 760, THREADING),
+    ('G', 840, THREADING),
+    ('G', 870, "back boring is not supported: write its motions out"),
+    (
+        'G',
+        880,
+        "boring with a retract by hand is not supported: write G86",
+    ),
+    (
+        'G',
+        950,
+        "feed per revolution is not supported: write G94 and F in units per minute",
+    ),
+    (
+        'G',
+        960,
+        "constant surface speed is for lathes: write G97 and S in r/min",
+    ),
+    ('M', 190, "the spindle is not positioned by programs"),
+    ('M', 490, OVERRIDES),
+    ('M', 500, OVERRIDES),
+    ('M', 510, OVERRIDES),
+    ('M', 520, OVERRIDES),
+    ('M', 530, OVERRIDES),
+];
+
+const LATHE: &str = "lathe codes are not supported";
+const THREADING: &str =
+    "threading and tapping need a spindle that the axes follow, and this machine has none";
+const PROBING: &str =
+    "the boards have no probe input for programs: teach the part instead (seamwright teach)";
+const COMPENSATION: &str =
+    "cutter compensation is not supported: let the CAM system put out the path of the tool's centre";
+const OVERRIDES: &str = "programs do not lock the operator's feed override";
+
+/// Why the code `letter` with this number of tenths is refused, if it is known at all.
+pub(super) fn refused(letter: char, tenths: f64) -> Option<&'static str> {
+    let found = REFUSED
+        .iter()
+        .find(|(own, number, _)| *own == letter && (tenths - f64::from(*number)).abs() < NEAR)?;
+    Some(found.2)
+}
+
+/// Codes are this near to their tenths.
+pub(super) const NEAR: f64 = 1e-3;
 
 /// Meaning of a G or M code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +195,10 @@ pub enum Code {
     ArcCounterClockwise,
     /// G4.
     Dwell,
+    /// G5: a cubic spline in the plane.
+    CubicSpline,
+    /// G5.1: a quadratic spline in the plane.
+    QuadraticSpline,
     /// G5.2: opens a NURBS whose knots are even.
     UniformNurbs,
     /// G5.3: closes it.
@@ -62,36 +207,94 @@ pub enum Code {
     KnotNurbs,
     /// G6.3: closes it.
     KnotNurbsEnd,
+    /// G8: X is a radius, as it always is.
+    Radii,
+    /// G10.
+    SetOffsets,
     /// G17.
     PlaneXy,
     /// G18.
     PlaneZx,
     /// G19.
     PlaneYz,
+    /// G20.
+    Inches,
     /// G21.
     Millimetres,
+    /// G28.
+    Home,
+    /// G28.1.
+    SetHome,
+    /// G30.
+    SecondHome,
+    /// G30.1.
+    SetSecondHome,
     /// G40.
     CompensationOff,
+    /// G43.
+    ToolLength,
     /// G43.4.
     TipOn,
     /// G49.
     TipOff,
+    /// G52.
+    LocalOffset,
     /// G53.
     MachineAxes,
-    /// G54.
-    WorldOffset,
+    /// G54 to G59.3: the coordinate system of this number, from 1.
+    System(u8),
     /// G61.
     ExactPath,
     /// G61.1.
     ExactStop,
     /// G64.
     Continuous,
+    /// G73.
+    ChipBreaking,
+    /// G80.
+    CancelMotion,
+    /// G81.
+    Drilling,
+    /// G82.
+    DrillingWithDwell,
+    /// G83.
+    PeckDrilling,
+    /// G85.
+    Boring,
+    /// G86.
+    BoringWithStop,
+    /// G89.
+    BoringWithDwell,
     /// G90.
     Absolute,
+    /// G90.1.
+    AbsoluteCentres,
+    /// G91.
+    Incremental,
+    /// G91.1.
+    IncrementalCentres,
+    /// G92.
+    OffsetHere,
+    /// G92.1.
+    ForgetOffset,
+    /// G92.2.
+    SuspendOffset,
+    /// G92.3.
+    RestoreOffset,
     /// G93.
     InverseTime,
     /// G94.
     PerMinute,
+    /// G97.
+    SpindleSpeed,
+    /// G98.
+    ToInitialLevel,
+    /// G99.
+    ToRetractLevel,
+    /// M0.
+    Pause,
+    /// M1.
+    OptionalPause,
     /// M2, M30.
     End,
     /// M3.
@@ -100,6 +303,18 @@ pub enum Code {
     SpindleCounterClockwise,
     /// M5.
     SpindleOff,
+    /// M6.
+    ChangeTool,
+    /// M7.
+    MistOn,
+    /// M8.
+    FloodOn,
+    /// M9.
+    CoolantOff,
+    /// M48: overrides are on, as they always are.
+    OverridesOn,
+    /// M60.
+    PalletPause,
     /// M62.
     OutputOn,
     /// M63.
@@ -114,37 +329,69 @@ pub enum Code {
     Analog,
     /// M68.
     AnalogNow,
+    /// M61: the tool that is in the machine already.
+    SetTool,
+    /// M70.
+    SaveModes,
+    /// M71.
+    ForgetModes,
+    /// M72.
+    RestoreModes,
+    /// M73: like M70, and restored where the subroutine ends.
+    SaveModesOfSubroutine,
+    /// M98.
+    Call,
+    /// M99.
+    Return,
 }
 
 /// Modal groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
-    /// G0 G1 G2 G3 G5.2 G5.3 G6.2 G6.3.
+    /// G0 G1 G2 G3 G5 G5.1 G5.2 G5.3 G6.2 G6.3, canned cycles and G80.
     Motion,
-    /// G4 G53: they hold in their block only.
+    /// G4 G10 G28 G30 G52 G53 G92 and theirs: they hold in their block only.
     NonModal,
     /// G17 G18 G19.
     Plane,
-    /// G21.
+    /// G20 G21.
     Units,
     /// G40.
     Compensation,
-    /// G43.4 G49.
+    /// G43 G43.4 G49.
     ToolLength,
-    /// G54.
+    /// G54 to G59.3.
     Offset,
     /// G61 G61.1 G64.
     PathControl,
-    /// G90.
+    /// G90 G91.
     Distance,
+    /// G90.1 G91.1.
+    CentreDistance,
     /// G93 G94.
     FeedMode,
-    /// M2 M30.
+    /// G97.
+    SpindleMode,
+    /// G98 G99.
+    ReturnLevel,
+    /// G8.
+    Lathe,
+    /// M0 M1 M2 M30 M60.
     Stop,
     /// M3 M4 M5.
     Spindle,
+    /// M6 M61.
+    Tool,
+    /// M70 to M73.
+    SavedModes,
+    /// M7 M8 M9: M7 and M8 may stand together.
+    Coolant,
+    /// M48.
+    Overrides,
     /// M62 to M68.
     Outputs,
+    /// M98 M99.
+    Call,
 }
 
 impl Code {
@@ -152,5 +399,27 @@ impl Code {
     pub fn name(self) -> &'static str {
         let own = CODES.iter().find(|(_, _, code, ..)| *code == self);
         own.map_or("", |(_, _, _, name, _)| name)
+    }
+
+    /// G73 and G81 to G89.
+    pub fn is_cycle(self) -> bool {
+        matches!(
+            self,
+            Self::ChipBreaking
+                | Self::Drilling
+                | Self::DrillingWithDwell
+                | Self::PeckDrilling
+                | Self::Boring
+                | Self::BoringWithStop
+                | Self::BoringWithDwell
+        )
+    }
+
+    /// Codes that take the axis words of their block for themselves: no motion is made of them.
+    pub fn takes_axes(self) -> bool {
+        matches!(
+            self,
+            Self::SetOffsets | Self::Home | Self::SecondHome | Self::LocalOffset | Self::OffsetHere
+        )
     }
 }

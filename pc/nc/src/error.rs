@@ -49,23 +49,145 @@ pub enum Problem {
     /// A number without a letter.
     #[error("a number without a letter before it")]
     LooseNumber,
-    /// `#`, `[`: parameters and expressions.
-    #[error("parameters and expressions are not supported")]
-    Expression,
-    /// `O`: subroutines, loops and conditions.
-    #[error(
-        "O words (subroutines, loops, conditions) are not supported: write the blocks out, or let the CAM system do so"
-    )]
-    Subroutine,
+    /// `<` without `>`.
+    #[error("the name is not closed with >")]
+    OpenName,
+    /// A name is wanted.
+    #[error("a name in < > is missing")]
+    NoName,
+    /// A value is wanted.
+    #[error("a value is missing")]
+    NoValue,
+    /// Brackets inside brackets.
+    #[error("more than {deepest} expressions inside each other")]
+    TooDeep {
+        /// What is possible.
+        deepest: u32,
+    },
+    /// No number of a parameter.
+    #[error("#{0} is no parameter: their numbers are whole, from 0 to 5602")]
+    ParameterNumber(f64),
+    /// A name without a value.
+    #[error("{0} has no value here")]
+    Undefined(String),
+    /// The system sets it.
+    #[error("{0} cannot be set by a program")]
+    ReadOnly(String),
+    /// `[` without `]`.
+    #[error("the bracket is not closed")]
+    OpenBracket,
+    /// The line ends in an expression.
+    #[error("] is missing")]
+    NoBracket,
+    /// A function that there is not.
+    #[error("{0} is no function")]
+    UnknownFunction(String),
+    /// A function of a value that has none.
+    #[error("{name}[{value}] has no value: {reason}")]
+    Argument {
+        /// Function.
+        name: String,
+        /// Its argument.
+        value: f64,
+        /// What is possible.
+        reason: &'static str,
+    },
+    /// ATAN with one argument.
+    #[error("ATAN has two arguments: ATAN[y]/[x]")]
+    NoSlash,
+    /// No operator.
+    #[error("{0} is no operator")]
+    UnknownOperator(String),
+    /// A root of a negative number.
+    #[error("a negative number has no power that is not whole")]
+    Power,
+    /// x / 0.
+    #[error("division by 0")]
+    DivisionByZero,
+    /// Beyond all numbers.
+    #[error("the value is too large")]
+    NotFinite,
+    /// `#1` that is neither a value nor set.
+    #[error("{0} stands without a letter before it and without = behind it")]
+    LooseParameter(String),
+    /// A code that is not supported.
+    #[error("{letter}{number}: {why}")]
+    RefusedCode {
+        /// G or M.
+        letter: char,
+        /// Its number.
+        number: f64,
+        /// Why, and what to do.
+        why: &'static str,
+    },
+    /// U, V, W.
+    #[error("{0} is a parallel axis, which machines here do not have")]
+    NoParallelAxes(String),
+    /// An O word with something unknown behind it.
+    #[error("{0} is not understood after an O word")]
+    UnknownKeyword(String),
+    /// More in the line of an O word.
+    #[error("this does not belong to the O word")]
+    FlowRest,
+    /// A condition or count is missing.
+    #[error("{0} needs one value in brackets")]
+    FlowValue(&'static str),
+    /// The other end of a loop, condition or subroutine is not there.
+    #[error("o{label} {keyword} has no {wanted}")]
+    FlowEnd {
+        /// Its number or name.
+        label: String,
+        /// What is there.
+        keyword: &'static str,
+        /// What is missing.
+        wanted: &'static str,
+    },
+    /// A subroutine that is nowhere.
+    #[error("there is no subroutine {label}: neither in this program nor as {label}.ngc beside it")]
+    NoSubroutine {
+        /// Number or name.
+        label: String,
+    },
+    /// Subroutines that call each other without end.
+    #[error("more than {0} subroutines inside each other")]
+    CallDepth(usize),
+    /// A loop without an end.
+    #[error("more than {0} lines in loops and subroutines: the program does not seem to end")]
+    Endless(u64),
+    /// In a file with a subroutine.
+    #[error("in {file}: {problem}")]
+    InFile {
+        /// Name of the file.
+        file: String,
+        /// What is wrong there.
+        problem: Box<Problem>,
+    },
+    /// M99 in the main program.
+    #[error("M99 in the main program would repeat it for ever: write M2")]
+    EndlessProgram,
+    /// The position is needed where the program does not say it.
+    #[error("where the tip is here is not known: write a G0 with X Y Z and all rotary axes before")]
+    UnknownPosition,
+    /// An axis-code that takes the axis words, and a motion.
+    #[error("{0} takes the axis words of its block: write the motion in a block of its own")]
+    AxesTaken(&'static str),
+    /// An arc that is not in a plane of the machine.
+    #[error("arcs in G18 and G19 are not possible in a coordinate system that is rotated about Z")]
+    TiltedArc,
+    /// What is not possible in this mode.
+    #[error("{code}: {why}")]
+    Impossible {
+        /// The code.
+        code: &'static str,
+        /// Why, and what to do.
+        why: &'static str,
+    },
     /// A number that is out of all proportion.
     #[error("the number of {0} has more than nine digits before the point: correct it")]
     TooLarge(String),
     /// `/` not at the start of a line.
     #[error("block delete must be at the start of the line")]
     DeleteInside,
-    /// `%` with something else in its line, or at a wrong place.
-    #[error("% must be alone on its line, the first and the last of the program")]
-    Percent,
     /// N not at the start of a block, or not a whole number.
     #[error("a block number is a whole number at the start of the line")]
     BlockNumber,
@@ -128,9 +250,6 @@ pub enum Problem {
     /// Motion without tool centre point control.
     #[error("G43.4 must come before the first motion of the tip: X Y Z are its coordinates")]
     NotTip,
-    /// The first motion must be complete.
-    #[error("the first motion of the tip must be a G0 with X Y Z and all rotary axes of the machine")]
-    FirstMotion,
     /// G53 with a feed.
     #[error("G53 moves axes with G0 only: write G53 G0")]
     AxesNeedRapid,
@@ -225,15 +344,6 @@ pub enum Problem {
     /// A control point after a knot on its own.
     #[error("after a knot on its own no control point can follow")]
     PointAfterKnots,
-    /// Something after the end.
-    #[error("nothing may follow the end of the program")]
-    AfterEnd,
-    /// No M2 or M30.
-    #[error("the program has no end: M2 or M30 is missing")]
-    NoEnd,
-    /// Only commands that do not move.
-    #[error("the program does not move the machine")]
-    Empty,
 }
 
 impl Problem {

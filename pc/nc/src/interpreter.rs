@@ -1,73 +1,147 @@
-//! From blocks to paths: modal state, and what each motion means.
+//! From blocks to paths: what each block does, in the order of RS274/NGC.
 
-use super::arc;
+use super::block::{Block, CodeWord, Word};
 use super::claims::Claims;
 use super::codes::{Code, Group};
+use super::cycles::Sticky;
 use super::error::{NcError, Problem, SourcePosition};
-use super::lexer::Word;
 use super::modal::Modal;
 use super::nurbs::{OpenNurbs, Progress};
-use super::outputs::{Pending, Spindle, dwell, output};
-use super::parser::Block;
-use super::program::{AXIS_WORDS, EXTENSION_WORDS, FeedRate, Motion, Plane, ProgramPath, Target, Way, Words};
+use super::offsets::{Coordinates, Offsets};
+use super::outputs::{Pending, Spindle, coolant, dwell, output};
+use super::parameters::Parameters;
+use super::program::{Motion, Notice, Program, ProgramAction, ProgramPath, Way};
 use super::reading::RemainingBlocks;
-use shared::io::AXES;
+use super::saved_modes::Saved;
+use super::setup::Setup;
+use shared::io::{AXES, SIDES};
+use std::sync::Arc;
 
-/// Choices of the operator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Options {
-    /// Blocks that start with `/` are left out.
-    pub block_delete: bool,
-}
+/// Most notices of a program.
+const MOST_NOTICES: usize = 100;
 
-#[derive(Clone, Default)]
+/// The state of a program as far as it has been read.
+#[derive(Clone, Debug)]
 pub(super) struct Interpreter {
-    modal: Modal,
-    nurbs: Option<OpenNurbs>,
-    /// The tip was given a place.
-    placed: bool,
-    /// Values programmed last, as far as they still hold; V1 and V2 are 0 before.
-    known: Words,
-    spindle: Spindle,
-    pending: Vec<Pending>,
+    pub(super) setup: Arc<Setup>,
+    pub(super) optional_stop: bool,
+    pub(super) modal: Modal,
+    pub(super) offsets: Offsets,
+    pub(super) parameters: Parameters,
+    pub(super) nurbs: Option<OpenNurbs>,
+    /// Where the tip is (mm, degrees), as far as it is known or may be assumed.
+    pub(super) at: Coordinates,
+    /// Coordinates that the program has said.
+    pub(super) known: [bool; AXES],
+    /// Where the others are cannot be assumed any more.
+    pub(super) lost: bool,
+    /// The tip has moved.
+    pub(super) placed: bool,
+    pub(super) extension: [Option<f64>; SIDES],
+    pub(super) assumed: Option<SourcePosition>,
+    pub(super) homes: [Coordinates; 2],
+    /// P and Q of the last G5, from its end \[mm\].
+    pub(super) spline_end: Option<[f64; 2]>,
+    pub(super) sticky: Sticky,
+    pub(super) spindle: Spindle,
+    /// T, and the tool that M6 has put in.
+    pub(super) tools: [u32; 2],
+    pub(super) pending: Vec<Pending>,
     /// s, and where it was programmed.
     dwell: Option<(f64, SourcePosition)>,
-    paths: Vec<ProgramPath>,
+    pub(super) paths: Vec<ProgramPath>,
     /// The next motion that feeds continues along the last path.
-    open: bool,
+    pub(super) open: bool,
+    pub(super) saved: Vec<Saved>,
+    pub(super) notices: Vec<Notice>,
+    pub(super) branches: bool,
     pub(super) ended: bool,
+    /// Line that is read, for #<_line>.
+    pub(super) line: u32,
 }
 
 impl Interpreter {
-    /// Carries out a block in the order of RS274/NGC: modes and feed, outputs, spindle, dwell, motion, end.
+    pub(super) fn new(setup: &Arc<Setup>, optional_stop: bool) -> Self {
+        Self {
+            setup: setup.clone(),
+            optional_stop,
+            modal: Modal::new(setup),
+            offsets: Offsets::default(),
+            parameters: Parameters::default(),
+            nurbs: None,
+            at: setup.start,
+            known: [false; AXES],
+            lost: false,
+            placed: false,
+            extension: [None; SIDES],
+            assumed: None,
+            homes: setup.homes,
+            spline_end: None,
+            sticky: Sticky::default(),
+            spindle: Spindle::default(),
+            tools: [0; 2],
+            pending: Vec::new(),
+            dwell: None,
+            paths: Vec::new(),
+            open: false,
+            saved: Vec::new(),
+            notices: Vec::new(),
+            branches: false,
+            ended: false,
+            line: 0,
+        }
+    }
+
+    /// Carries out a block: parameters, modes and feed, outputs, tool, spindle, dwell, offsets, motion, stop.
     pub(super) fn block(&mut self, block: &Block) -> Result<(), NcError> {
+        for (parameter, value) in &block.settings {
+            let place = SourcePosition {
+                line: block.line,
+                column: 1,
+            };
+            self.set(parameter, *value).map_err(|problem| problem.at(place))?;
+        }
+        for (comment, place) in &block.comments {
+            self.remark(comment, *place);
+        }
+        if block.codes.is_empty() && block.words.is_empty() {
+            return Ok(());
+        }
         if let Some(open) = &mut self.nurbs {
             if let Progress::Complete(way, words) = open.block(block)? {
-                self.end_nurbs(Way::Nurbs(Box::new(way)), words);
+                self.end_nurbs(way, words)?;
             }
             return Ok(());
         }
+        let block = &*self.without_polar(block)?;
         let own_motion = block.code(Group::Motion).map(|code| code.code);
-        let modal = self.modal.motion.filter(|_| own_motion.is_none());
+        let takes = block.codes.iter().find(|code| code.code.takes_axes());
+        let modal = self
+            .modal
+            .motion
+            .filter(|_| own_motion.is_none() && takes.is_none());
         let claims = Claims::of(block, modal)?;
-        self.modal.block(block, &claims)?;
-        let dwell = dwell(block, &claims)?;
-        if let Some(pending) = output(block, &claims)? {
-            self.wait(pending);
+        if own_motion.is_some_and(|motion| Some(motion) != self.modal.motion) {
+            self.sticky.changed(own_motion);
         }
-        for pending in self.spindle.block(block)? {
-            self.wait(pending);
-        }
-        if let Some((time, place)) = dwell {
-            self.stand();
-            let before = self.dwell.map_or(0.0, |(time, _)| time);
-            self.dwell = Some((before + time, place));
-            self.open = false;
-        }
+        let setup = self.setup.clone();
+        self.modal.block(block, &claims, &setup)?;
+        self.save_modes(block)?;
+        self.switch(block, &claims)?;
+        self.tool_words(block, &claims)?;
         let feeds = match block.code(Group::NonModal) {
-            Some(code) if code.code == Code::MachineAxes => {
-                self.axes_motion(block, code.place)?;
-                false
+            Some(code) if code.code == Code::MachineAxes => self.axes_motion(block, code.place)?,
+            Some(code) if code.code != Code::Dwell => {
+                let motion = block
+                    .code(Group::Motion)
+                    .filter(|motion| motion.code != Code::CancelMotion);
+                if code.code.takes_axes()
+                    && let Some(motion) = motion
+                {
+                    return Err(Problem::AxesTaken(code.name).at(motion.place));
+                }
+                self.settings(block, &claims, *code)?;
+                !code.code.takes_axes() && self.tip_motion(block, &claims)?
             }
             _ => self.tip_motion(block, &claims)?,
         };
@@ -75,31 +149,133 @@ impl Interpreter {
             self.modal.check_no_feed(block)?;
         }
         if let Some(code) = block.code(Group::Stop) {
-            if let Some(stop) = self.spindle.end(code) {
-                self.wait(stop);
-            }
-            self.stand();
-            let waiting = self.pending.first().map(|pending| (pending.code, pending.place));
-            if let Some((code, place)) = waiting.or(self.dwell.map(|(_, place)| ("G4", place))) {
-                return Err(Problem::NoMotionAfter(code).at(place));
-            }
-            if let Some(open) = &self.nurbs {
-                return Err(open.left_open(code.place));
-            }
-            self.ended = true;
+            self.stop(*code)?;
         }
         Ok(())
     }
 
-    /// The paths, if the program that ends at `last` is whole.
-    pub(super) fn end(self, last: SourcePosition) -> Result<Vec<ProgramPath>, NcError> {
+    /// Outputs, spindle, coolant and dwell of a block.
+    fn switch(&mut self, block: &Block, claims: &Claims) -> Result<(), NcError> {
+        let dwell = dwell(block, claims)?;
+        if let Some(pending) = output(block, claims)? {
+            self.wait(pending);
+        }
+        if let Some(t) = block.word("T") {
+            self.tools[0] = tool_number(t)?;
+        }
+        if let Some(code) = block.code(Group::Tool).filter(|code| code.code == Code::SetTool) {
+            let missing = Problem::Missing {
+                code: "M61",
+                word: "Q",
+            };
+            let q = claims.word(code.code, "Q").ok_or(missing.at(code.place))?;
+            self.tools[1] = tool_number(q)?;
+        } else if let Some(code) = block.code(Group::Tool) {
+            // The spindle stops for it.
+            if let Some(stop) = self.spindle.stop(code.name, code.place) {
+                self.wait(stop);
+            }
+            self.tools[1] = self.tools[0];
+            self.wait(Pending {
+                action: ProgramAction::ChangeTool(self.tools[1]),
+                code: code.name,
+                place: code.place,
+                at_rest: true,
+            });
+        }
+        for pending in self.spindle.block(block)? {
+            self.wait(pending);
+        }
+        if let Some(pending) = coolant(block) {
+            self.wait(pending);
+        }
+        if let Some((time, place)) = dwell {
+            self.dwell(time, place);
+        }
+        Ok(())
+    }
+
+    /// The machine stands for a time \[s\].
+    pub(super) fn dwell(&mut self, time: f64, place: SourcePosition) {
+        self.stand();
+        let before = self.dwell.map_or(0.0, |(time, _)| time);
+        self.dwell = Some((before + time, place));
+        self.open = false;
+    }
+
+    /// M0, M1, M2, M30, M60.
+    fn stop(&mut self, code: CodeWord) -> Result<(), NcError> {
+        match code.code {
+            Code::End => self.finish(code.name, code.place),
+            Code::OptionalPause if !self.optional_stop => Ok(()),
+            _ => {
+                self.pause(code.name, code.place);
+                Ok(())
+            }
+        }
+    }
+
+    fn pause(&mut self, code: &'static str, place: SourcePosition) {
+        self.wait(Pending {
+            action: ProgramAction::Pause,
+            code,
+            place,
+            at_rest: true,
+        });
+    }
+
+    /// The program ends, by `code` or without one.
+    pub(super) fn finish(&mut self, code: &'static str, place: SourcePosition) -> Result<(), NcError> {
         if let Some(open) = &self.nurbs {
-            return Err(open.left_open(last));
+            return Err(open.left_open(place));
         }
-        if !self.ended {
-            return Err(Problem::NoEnd.at(last));
+        if let Some(stop) = self.spindle.stop(code, place) {
+            self.wait(stop);
         }
-        Ok(self.paths)
+        if let Some(opening) = self
+            .pending
+            .iter()
+            .find(|pending| pending.opens() && !pending.at_rest)
+        {
+            return Err(Problem::NoMotionAfter(opening.code).at(opening.place));
+        }
+        let last = std::mem::take(&mut self.pending);
+        if !last.is_empty() || self.dwell.is_some() {
+            self.standing(last);
+        }
+        self.ended = true;
+        Ok(())
+    }
+
+    /// The program that was read.
+    pub(super) fn end(self) -> Program {
+        Program {
+            paths: self.paths,
+            assumes: self.assumed.map(|place| (self.setup.start, place)),
+            branches: self.branches,
+            notices: self.notices,
+        }
+    }
+
+    /// Something that a person should know.
+    pub(super) fn notice(&mut self, text: String, place: SourcePosition) {
+        let notice = Notice { place, text };
+        if self.notices.len() < MOST_NOTICES && !self.notices.contains(&notice) {
+            self.notices.push(notice);
+        }
+    }
+
+    /// `(MSG,…)`, `(DEBUG,…)` and `(PRINT,…)`: parameters in the last two have their values.
+    fn remark(&mut self, comment: &str, place: SourcePosition) {
+        let Some((kind, text)) = comment.split_once(',') else {
+            return;
+        };
+        let text = match kind.trim().to_ascii_uppercase().as_str() {
+            "MSG" => text.trim().to_owned(),
+            "DEBUG" | "PRINT" => self.with_values(text.trim()),
+            _ => return,
+        };
+        self.notice(text, place);
     }
 
     /// Keeps no more than `count` blocks of the last path; what reads the others again is made of the state between
@@ -108,8 +284,9 @@ impl Interpreter {
         let Some(mut path) = self.paths.pop() else { return };
         if self.open && path.rest.is_none() && path.targets.len() >= count {
             let before = std::mem::take(&mut self.paths);
+            let notices = std::mem::take(&mut self.notices);
             let mut state = self.clone();
-            self.paths = before;
+            (self.paths, self.notices) = (before, notices);
             state.paths.push(path.without_blocks());
             path.rest = Some(rest(state));
         }
@@ -132,174 +309,53 @@ impl Interpreter {
     }
 
     /// Keeps an event for the next motion. What takes effect at rest ends the path.
-    fn wait(&mut self, pending: Pending) {
+    pub(super) fn wait(&mut self, pending: Pending) {
         self.open &= !pending.at_rest;
         self.pending.push(pending);
     }
 
-    /// What waits and needs no motion takes effect while the machine stands.
-    fn stand(&mut self) {
+    /// What waits and needs no motion takes effect while the machine stands, as does a dwell before the end.
+    pub(super) fn stand(&mut self) {
         let waiting = std::mem::take(&mut self.pending);
         let (now, later): (Vec<_>, Vec<_>) = waiting.into_iter().partition(|pending| pending.at_rest);
         self.pending = later;
         if !now.is_empty() {
-            self.paths.push(ProgramPath {
-                dwell_before_s: self.dwell.take().map_or(0.0, |(time, _)| time),
-                motion: Motion::Stand,
-                targets: Vec::new(),
-                events: now.into_iter().map(|pending| pending.event(0)).collect(),
-                rest: None,
-            });
-            self.open = false;
+            self.standing(now);
         }
     }
 
-    /// G53: the axes named go to their coordinates, in axis space.
-    fn axes_motion(&mut self, block: &Block, place: SourcePosition) -> Result<(), NcError> {
-        if self.modal.motion != Some(Code::Rapid) {
-            return Err(Problem::AxesNeedRapid.at(place));
-        }
-        if let Some(word) = EXTENSION_WORDS.iter().find_map(|w| block.word(w)) {
-            return Err(Problem::Orphan(word.label()).at(word.place));
-        }
-        let words = Words::of(block);
-        if words.axes.iter().all(Option::is_none) {
-            let (code, word) = ("G53", "an axis word");
-            return Err(Problem::Missing { code, word }.at(place));
-        }
-        if let Some(pending) = self.pending.iter().find(|pending| pending.opens()) {
-            return Err(Problem::OnInAxes(pending.code).at(pending.place));
-        }
-        // In axis space the boards switch nothing on.
-        self.stand();
-        self.rapid(Way::Axes, words, place);
-        // Where the tip is now, the program does not say.
-        self.known.axes = [None; AXES];
-        Ok(())
-    }
-
-    /// The motion of `block` in tip coordinates, if it has one; whether that feeds.
-    fn tip_motion(&mut self, block: &Block, claims: &Claims) -> Result<bool, NcError> {
-        let nurbs = block.code(Group::Motion).filter(|code| is_nurbs(code.code));
-        let is_motion = |word: &&Word| {
-            let address = word.address.as_str();
-            let own = |code: Code| claims.word(code, address).is_some();
-            AXIS_WORDS.contains(&address)
-                || EXTENSION_WORDS.contains(&address)
-                || self.modal.motion.is_some_and(own)
-        };
-        let first_word = block.words.iter().find(is_motion).map(|word| word.place);
-        let Some(place) = nurbs.map(|code| code.place).or(first_word) else {
-            return Ok(false);
-        };
-        let Some(mode) = self.modal.motion else {
-            return Err(Problem::NoMotion.at(place));
-        };
-        if !self.modal.tip {
-            return Err(Problem::NotTip.at(place));
-        }
-        let words = Words::of(block);
-        let rapid = mode == Code::Rapid;
-        let places = rapid && words.axes[..3].iter().all(Option::is_some);
-        if !(self.placed || places) {
-            return Err(Problem::FirstMotion.at(place));
-        }
-        self.modal.closed = false;
-        if rapid {
-            if self.learn(&words) {
-                self.placed = true;
-                self.rapid(Way::Line, words, place);
-            }
-            return Ok(false);
-        }
-        let feed = self.modal.feed_rate(block, mode, place)?;
-        if is_nurbs(mode) {
-            if mode == Code::UniformNurbs && self.modal.plane != Plane::Xy {
-                return Err(Problem::NurbsPlane.at(place));
-            }
-            self.nurbs = Some(OpenNurbs::begin(block, claims, mode, place, feed)?);
-            return Ok(true);
-        }
-        let way = match mode {
-            Code::Feed => Way::Line,
-            _ => Way::Arc(arc::way(claims, mode, self.modal.plane, place)?),
-        };
-        // An arc without a way is a full circle.
-        if self.learn(&words) || way != Way::Line {
-            self.feed_motion(way, words, feed, place);
-        }
-        Ok(true)
-    }
-
-    /// A complete NURBS. No motion continues after it.
-    fn end_nurbs(&mut self, way: Way, words: Words) {
-        let Some(open) = self.nurbs.take() else { return };
-        self.learn(&words);
-        self.feed_motion(way, words, open.feed, open.place);
-        self.modal.closed = self.modal.motion == Some(Code::KnotNurbs);
-        self.modal.motion = None;
-    }
-
-    fn rapid(&mut self, way: Way, words: Words, place: SourcePosition) {
-        let target = Target {
-            way,
-            words,
-            feed: None,
-            control: self.modal.control,
-            place,
-        };
-        self.start_path(Motion::Rapid, target);
+    /// A path without a motion.
+    fn standing(&mut self, events: Vec<Pending>) {
+        let dwell_before_s = self.dwell_before();
+        self.paths.push(ProgramPath {
+            dwell_before_s,
+            motion: Motion::Stand,
+            targets: Vec::new(),
+            events: events.into_iter().map(|pending| pending.event(0)).collect(),
+            rest: None,
+        });
         self.open = false;
     }
 
-    /// Goes on along an open path, or starts one.
-    fn feed_motion(&mut self, way: Way, words: Words, feed: FeedRate, place: SourcePosition) {
-        let target = Target {
-            way,
-            words,
-            feed: Some(feed),
-            control: self.modal.control,
-            place,
-        };
-        match self.paths.last_mut() {
-            Some(path) if self.open => {
-                let with_target = path.targets.len();
-                path.targets.push(target);
-                let waiting = self.pending.drain(..);
-                path.events
-                    .extend(waiting.map(|pending| pending.event(with_target)));
-            }
-            _ => self.start_path(Motion::Feed, target),
-        }
-        self.open = true;
+    /// The time to stand before the next path \[s\].
+    pub(super) fn dwell_before(&mut self) -> f64 {
+        self.dwell.take().map_or(0.0, |(time, _)| time)
     }
 
-    fn start_path(&mut self, motion: Motion, target: Target) {
-        self.paths.push(ProgramPath {
-            dwell_before_s: self.dwell.take().map_or(0.0, |(time, _)| time),
-            motion,
-            targets: vec![target],
-            events: self.pending.drain(..).map(|pending| pending.event(0)).collect(),
-            rest: None,
-        });
+    /// Whether the way of a motion with this code is a NURBS of several blocks.
+    pub(super) fn opens_nurbs(code: Code) -> bool {
+        matches!(code, Code::UniformNurbs | Code::KnotNurbs)
     }
 
-    /// Takes up what `words` say; whether that is anything new.
-    fn learn(&mut self, words: &Words) -> bool {
-        let known = &mut self.known;
-        let places = known.axes.iter_mut().chain(&mut known.extension);
-        let said = words.axes.iter().chain(&words.extension);
-        let mut new = false;
-        for (place, value) in places.zip(said) {
-            if value.is_some() && place != value {
-                *place = *value;
-                new = true;
-            }
-        }
-        new
+    /// Whether nothing is done on a way of this kind where it leads nowhere.
+    pub(super) fn needs_news(way: &Way) -> bool {
+        matches!(way, Way::Line)
     }
 }
 
-fn is_nurbs(code: Code) -> bool {
-    matches!(code, Code::UniformNurbs | Code::KnotNurbs)
+fn tool_number(word: &Word) -> Result<u32, NcError> {
+    if word.value < 0.0 || word.value.fract() != 0.0 || word.value > f64::from(u32::MAX) {
+        return Err(word.value_error("tools have whole numbers from 0"));
+    }
+    Ok(word.value as u32)
 }

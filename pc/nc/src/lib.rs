@@ -1,7 +1,7 @@
-//! NC programs: RS274/NGC text in the dialect known from LinuxCNC, in mm, degrees and mm/min.
+//! NC programs: RS274/NGC text in the dialect known from LinuxCNC.
 //!
 //! ```text
-//! text → lexer → words with their places → parser → blocks → interpreter → Program
+//! text → reading (lines, loops, subroutines) → block (words with their values) → interpreter → Program
 //! ```
 //!
 //! What is understood stands in `docs/nc.md`; all else is an error with its line and column, never skipped.
@@ -10,26 +10,37 @@
 //! is the matter of `cam::path`.
 
 mod arc;
+mod block;
 mod claims;
 mod codes;
+mod cycles;
 mod error;
+mod expression;
+mod flow;
 mod interpreter;
-mod lexer;
+mod lookup;
 mod modal;
+mod motion;
 mod nurbs;
+mod offsets;
 mod outputs;
-mod parser;
+mod parameters;
+mod polar;
 mod program;
 mod reading;
+mod saved_modes;
+mod scanner;
+mod settings;
+mod setup;
 mod source;
 #[cfg(test)]
 mod tests;
 pub mod text;
 
 pub use error::{NcError, Problem, SourcePosition};
-pub use interpreter::Options;
 pub use program::{
-    ArcForm, ArcWay, Blend, ControlPoint, FeedRate, Motion, Move, NurbsWay, PathControl, Plane, Program,
-    ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,
+    ArcForm, ArcWay, Blend, ControlPoint, FeedRate, Motion, Move, Notice, NurbsWay, PathControl, Plane,
+    Program, ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,
 };
 pub use reading::{KEPT, RemainingBlocks, interpret, interpret_file};
+pub use setup::{Options, Setup, TipAndAxes};

@@ -1,69 +1,112 @@
 //! Modal state: settings that hold until the program changes them.
 
+use super::block::Block;
 use super::claims::Claims;
 use super::codes::Code;
 use super::error::{NcError, Problem, SourcePosition};
-use super::parser::Block;
 use super::program::{Blend, FeedRate, PathControl, Plane};
+use super::setup::Setup;
+
+/// mm of an inch.
+const INCH: f64 = 25.4;
 
 /// How F is meant.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum FeedMode {
     PerMinute,
     InverseTime,
 }
 
+/// F of G94.
+#[derive(Clone, Copy, Debug)]
+struct Feed {
+    /// As it is written, in degrees a minute where only rotary axes turn.
+    written: f64,
+    mm_min: f64,
+}
+
 /// Modes of a program.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct Modal {
-    /// G0, G1, G2 or G3; none after a NURBS.
+    /// G0, G1, G2, G3, G5, G5.1 or a cycle; none after a NURBS and G80.
     pub(super) motion: Option<Code>,
     /// The last motion was a G6.2, which a G6.3 may close once more.
     pub(super) closed: bool,
-    /// G43.4.
+    /// X Y Z are the tip.
     pub(super) tip: bool,
     pub(super) plane: Plane,
     pub(super) control: PathControl,
+    /// G20.
+    pub(super) inches: bool,
+    /// G91.
+    pub(super) incremental: bool,
+    /// G90.1.
+    pub(super) absolute_centres: bool,
+    /// G99.
+    pub(super) to_retract_level: bool,
     feed_mode: FeedMode,
-    /// G94 \[mm/min\].
-    feed: Option<f64>,
+    feed: Option<Feed>,
 }
 
-impl Default for Modal {
-    fn default() -> Self {
+impl Modal {
+    pub(super) fn new(setup: &Setup) -> Self {
         Self {
             motion: None,
             closed: false,
-            tip: false,
-            plane: Plane::default(),
-            control: PathControl::Blend(Blend::default()),
+            tip: setup.tip_control,
+            plane: setup.plane,
+            control: setup.control,
+            inches: setup.inches,
+            incremental: false,
+            absolute_centres: false,
+            to_retract_level: true,
             feed_mode: FeedMode::PerMinute,
             feed: None,
         }
     }
-}
 
-impl Modal {
-    /// Takes up the modal codes of `block`, and F.
-    pub(super) fn block(&mut self, block: &Block, claims: &Claims) -> Result<(), NcError> {
+    /// mm of a unit of length.
+    pub(super) fn unit(&self) -> f64 {
+        if self.inches { INCH } else { 1.0 }
+    }
+
+    /// Takes up F and the modal codes of `block`, in the order of RS274/NGC: F is in the units from before the block.
+    pub(super) fn block(&mut self, block: &Block, claims: &Claims, setup: &Setup) -> Result<(), NcError> {
+        for code in &block.codes {
+            match code.code {
+                Code::InverseTime => self.set_feed_mode(FeedMode::InverseTime),
+                Code::PerMinute => self.set_feed_mode(FeedMode::PerMinute),
+                _ => {}
+            }
+        }
+        if let Some(f) = block.word("F") {
+            if f.value < 0.0 || (f.value == 0.0 && self.feed_mode == FeedMode::InverseTime) {
+                return Err(f.value_error("the feed must be above 0"));
+            }
+            if self.feed_mode == FeedMode::PerMinute {
+                let (written, mm_min) = (f.value, f.value * self.unit());
+                self.feed = (written > 0.0).then_some(Feed { written, mm_min });
+            }
+        }
         for code in &block.codes {
             match code.code {
                 Code::TipOn => self.tip = true,
-                Code::TipOff => self.tip = false,
+                Code::TipOff => self.tip = setup.tip_control,
                 Code::PlaneXy => self.plane = Plane::Xy,
                 Code::PlaneZx => self.plane = Plane::Zx,
                 Code::PlaneYz => self.plane = Plane::Yz,
+                Code::Inches => self.inches = true,
+                Code::Millimetres => self.inches = false,
+                Code::Absolute => self.incremental = false,
+                Code::Incremental => self.incremental = true,
+                Code::AbsoluteCentres => self.absolute_centres = true,
+                Code::IncrementalCentres => self.absolute_centres = false,
+                Code::ToInitialLevel => self.to_retract_level = false,
+                Code::ToRetractLevel => self.to_retract_level = true,
                 Code::ExactPath => self.control = PathControl::ExactPath,
                 Code::ExactStop => self.control = PathControl::ExactStop,
-                Code::Continuous => self.control = blend(claims)?,
-                Code::InverseTime => self.set_feed_mode(FeedMode::InverseTime),
-                Code::PerMinute => self.set_feed_mode(FeedMode::PerMinute),
-                Code::Rapid
-                | Code::Feed
-                | Code::ArcClockwise
-                | Code::ArcCounterClockwise
-                | Code::UniformNurbs
-                | Code::KnotNurbs => self.motion = Some(code.code),
+                Code::Continuous => self.control = self.blend(claims)?,
+                Code::CancelMotion => self.motion = None,
                 Code::UniformNurbsEnd | Code::KnotNurbsEnd => {
                     // All of a G6.2 may have been said before its G6.3.
                     if !(std::mem::take(&mut self.closed) && code.code == Code::KnotNurbsEnd) {
@@ -71,30 +114,9 @@ impl Modal {
                     }
                     self.motion = None;
                 }
-                // These have their own places.
-                Code::OutputOn
-                | Code::OutputOff
-                | Code::OutputOnNow
-                | Code::OutputOffNow
-                | Code::WaitForInput
-                | Code::Analog
-                | Code::AnalogNow
-                | Code::SpindleClockwise
-                | Code::SpindleCounterClockwise
-                | Code::SpindleOff
-                | Code::Dwell
-                | Code::MachineAxes
-                | Code::End => {}
-                // These confirm the only state there is.
-                Code::Millimetres | Code::CompensationOff | Code::WorldOffset | Code::Absolute => {}
-            }
-        }
-        if let Some(f) = block.word("F") {
-            if f.value <= 0.0 {
-                return Err(f.value_error("the feed must be above 0"));
-            }
-            if self.feed_mode == FeedMode::PerMinute {
-                self.feed = Some(f.value);
+                motion if is_motion(motion) => self.motion = Some(motion),
+                // The others have their own places, or confirm the only state there is.
+                _ => {}
             }
         }
         Ok(())
@@ -108,17 +130,22 @@ impl Modal {
         }
     }
 
-    /// F for a motion of `mode` in `block`, which begins at `place`.
+    /// F for a motion of `mode` in `block`, which begins at `place` and turns rotary axes alone or moves the tip.
     pub(super) fn feed_rate(
         &self,
         block: &Block,
         mode: Code,
         place: SourcePosition,
+        turns_only: bool,
     ) -> Result<FeedRate, NcError> {
         match self.feed_mode {
             FeedMode::PerMinute => {
                 let feed = self.feed.ok_or(Problem::NoFeed(mode.name()).at(place))?;
-                Ok(FeedRate::PerMinute(feed))
+                Ok(FeedRate::PerMinute(if turns_only {
+                    feed.written
+                } else {
+                    feed.mm_min
+                }))
             }
             FeedMode::InverseTime => {
                 let f = block.word("F");
@@ -135,21 +162,46 @@ impl Modal {
             _ => Ok(()),
         }
     }
+
+    /// Whether every block has a feed of its own.
+    pub(super) fn inverse_time(&self) -> bool {
+        self.feed_mode == FeedMode::InverseTime
+    }
+
+    /// F as it is written, 0 before.
+    pub(super) fn written_feed(&self) -> f64 {
+        self.feed.map_or(0.0, |feed| feed.written)
+    }
+
+    /// G64 with its P and Q.
+    fn blend(&self, claims: &Claims) -> Result<PathControl, NcError> {
+        let [p, q] = ["P", "Q"].map(|word| claims.word(Code::Continuous, word));
+        if let Some(p) = p.filter(|p| p.value < 0.0) {
+            return Err(p.value_error("the tolerance must not be negative; for none write G61"));
+        }
+        if let Some(q) = q.filter(|q| q.value < 0.0) {
+            return Err(q.value_error(
+                "short lines cannot be smoothed by less than 0 mm; write Q0 to leave them as they are",
+            ));
+        }
+        Ok(PathControl::Blend(Blend {
+            // P0 is no tolerance at all: best speed.
+            tolerance: p.map(|p| p.value * self.unit()).filter(|p| *p > 0.0),
+            smoothing: q.map(|q| q.value * self.unit()),
+        }))
+    }
 }
 
-/// G64 with its P and Q.
-fn blend(claims: &Claims) -> Result<PathControl, NcError> {
-    let [p, q] = ["P", "Q"].map(|word| claims.word(Code::Continuous, word));
-    if let Some(p) = p.filter(|p| p.value <= 0.0) {
-        return Err(p.value_error("the tolerance must be above 0 mm; for none write G61"));
-    }
-    if let Some(q) = q.filter(|q| q.value < 0.0) {
-        return Err(q.value_error(
-            "short lines cannot be smoothed by less than 0 mm; write Q0 to leave them as they are",
-        ));
-    }
-    Ok(PathControl::Blend(Blend {
-        tolerance: p.map(|p| p.value),
-        smoothing: q.map(|q| q.value),
-    }))
+fn is_motion(code: Code) -> bool {
+    matches!(
+        code,
+        Code::Rapid
+            | Code::Feed
+            | Code::ArcClockwise
+            | Code::ArcCounterClockwise
+            | Code::CubicSpline
+            | Code::QuadraticSpline
+            | Code::UniformNurbs
+            | Code::KnotNurbs
+    ) || code.is_cycle()
 }

@@ -4,11 +4,10 @@
 //! from other controllers: X Y Z, weights R, order P, and a knot K in every block; as many blocks as the order
 //! have nothing but a knot, and the last of them ends the curve.
 
+use super::block::{Block, Word};
 use super::claims::Claims;
 use super::codes::{Code, Group};
 use super::error::{NcError, Problem, SourcePosition};
-use super::lexer::Word;
-use super::parser::Block;
 use super::program::{ControlPoint, FeedRate, NurbsWay, Words};
 use shared::geometry::nurbs::MAX_DEGREE;
 
@@ -18,7 +17,7 @@ const UNIFORM_ORDER: usize = 3;
 const KNOT_ORDER: usize = 4;
 
 /// A curve that is not complete yet.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct OpenNurbs {
     /// G5.2 or G6.2.
     code: Code,

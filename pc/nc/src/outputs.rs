@@ -1,19 +1,18 @@
 //! Outputs of a program: M62 to M65, M67 and M68 by the number of the output, M3, M4, M5 and S by what it is.
 
+use super::block::{Block, Word};
 use super::claims::Claims;
 use super::codes::{Code, Group};
 use super::error::{NcError, Problem, SourcePosition};
-use super::lexer::Word;
-use super::parser::{Block, CodeWord};
 use super::program::{ProgramAction, ProgramEvent};
 use shared::geometry::Turn;
 use shared::protocol::PathAction;
 
 /// Longest dwell \[s\]: a day. A larger number is one of milliseconds, or a slip.
-const LONGEST_DWELL_S: f64 = 86_400.0;
+pub(super) const LONGEST_DWELL_S: f64 = 86_400.0;
 
 /// An event that waits for its motion.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Pending {
     pub(super) action: ProgramAction,
     pub(super) code: &'static str,
@@ -43,11 +42,11 @@ impl Pending {
 }
 
 /// The spindle as far as the program has come.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Spindle {
     /// S \[r/min\].
     speed: Option<f64>,
-    on: bool,
+    turns: Option<Turn>,
 }
 
 impl Spindle {
@@ -71,7 +70,7 @@ impl Spindle {
         }
         match (block.code(Group::Spindle), s) {
             (Some(code), _) if code.code == Code::SpindleOff => {
-                self.on = false;
+                self.turns = None;
                 add(ProgramAction::SpindleOff, code.name, code.place);
             }
             (Some(code), _) => {
@@ -84,25 +83,55 @@ impl Spindle {
                     Code::SpindleCounterClockwise => Turn::CounterClockwise,
                     _ => Turn::Clockwise,
                 };
-                self.on = true;
+                self.turns = Some(turn);
                 add(ProgramAction::SpindleSpeed(speed), code.name, code.place);
                 add(ProgramAction::SpindleOn(turn), code.name, code.place);
             }
-            (None, Some(s)) if self.on => add(ProgramAction::SpindleSpeed(s.value), "S", s.place),
+            (None, Some(s)) if self.turns.is_some() => {
+                add(ProgramAction::SpindleSpeed(s.value), "S", s.place)
+            }
             (None, _) => {}
         }
         Ok(events)
     }
 
-    /// What the end of the program asks for: the spindle stops.
-    pub(super) fn end(&mut self, code: &CodeWord) -> Option<Pending> {
-        std::mem::take(&mut self.on).then_some(Pending {
+    /// It stops, if it turns, as `code` asks for.
+    pub(super) fn stop(&mut self, code: &'static str, place: SourcePosition) -> Option<Pending> {
+        self.turns.take().map(|_| Pending {
             action: ProgramAction::SpindleOff,
-            code: code.name,
-            place: code.place,
+            code,
+            place,
             at_rest: true,
         })
     }
+
+    /// Which way it turns.
+    pub(super) fn turns(&self) -> Option<Turn> {
+        self.turns
+    }
+
+    /// S \[r/min\], 0 if it was not said.
+    pub(super) fn speed(&self) -> f64 {
+        self.speed.unwrap_or(0.0)
+    }
+}
+
+/// What M7, M8 or M9 of a block ask for.
+pub(super) fn coolant(block: &Block) -> Option<Pending> {
+    let code = block.code(Group::Coolant)?;
+    let on = |own: Code| match code.code {
+        Code::CoolantOff => Some(false),
+        _ => block.has(own).then_some(true),
+    };
+    Some(Pending {
+        action: ProgramAction::Coolant {
+            mist: on(Code::MistOn),
+            flood: on(Code::FloodOn),
+        },
+        code: code.name,
+        place: code.place,
+        at_rest: true,
+    })
 }
 
 /// The output that `block` switches.

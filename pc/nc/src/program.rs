@@ -1,7 +1,7 @@
 //! A program after reading: motions from rest to rest, with the values of their words.
 
+use super::block::Block;
 use super::error::SourcePosition;
-use super::parser::Block;
 use super::reading::RemainingBlocks;
 use shared::geometry::Turn;
 use shared::io::{AXES, SIDES};
@@ -17,6 +17,21 @@ pub(crate) const EXTENSION_WORDS: [&str; SIDES] = ["V1", "V2"];
 pub struct Program {
     /// Paths in their order; the first one leads from wherever the machine stands.
     pub paths: Vec<ProgramPath>,
+    /// Where the tip is when the program begins, if it relies on that (mm, degrees), and where it first does.
+    pub assumes: Option<([f64; AXES], SourcePosition)>,
+    /// Loops, conditions or subroutines: lines are not run in their order.
+    pub branches: bool,
+    /// What a person should know of how it was read, and what it says itself (MSG, DEBUG, PRINT).
+    pub notices: Vec<Notice>,
+}
+
+/// A sentence about a program, or of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Notice {
+    /// Where.
+    pub place: SourcePosition,
+    /// What.
+    pub text: String,
 }
 
 /// One path, which starts where the last one ended.
@@ -98,6 +113,12 @@ pub struct Blend {
     /// Q: runs of short lines are smoothed so far off them at most, and not at all if it is 0; as far as the tolerance
     /// allows where it is not said.
     pub smoothing: Option<f64>,
+}
+
+impl Default for PathControl {
+    fn default() -> Self {
+        Self::Blend(Blend::default())
+    }
 }
 
 /// The way to a target.
@@ -190,7 +211,7 @@ pub struct Words {
 }
 
 impl Words {
-    /// What `block` says of where to.
+    /// What `block` says of where to, with its numbers as they are written.
     pub(crate) fn of(block: &Block) -> Self {
         let value = |name: &str| block.word(name).map(|word| word.value);
         Self {
@@ -224,4 +245,15 @@ pub enum ProgramAction {
     SpindleOn(Turn),
     /// M5: it stops.
     SpindleOff,
+    /// M7, M8, M9: mist and flood; none stays as it is.
+    Coolant {
+        /// M7.
+        mist: Option<bool>,
+        /// M8.
+        flood: Option<bool>,
+    },
+    /// M6: the tool of this number is put in.
+    ChangeTool(u32),
+    /// M0, M1, M60: the machine waits for the operator.
+    Pause,
 }

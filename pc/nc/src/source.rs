@@ -3,12 +3,16 @@
 use std::fs::File;
 use std::hash::{DefaultHasher, Hasher};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
+use std::string::FromUtf8Error;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Bytes of a file that are compared at once.
 pub(super) const CHUNK: usize = 1 << 16;
 /// Bytes of the largest file that is kept in memory, where nothing changes it.
 const KEPT: u64 = 1 << 20;
+
+/// Some editors begin a file with it.
+const BYTE_ORDER_MARK: &str = "\u{feff}";
 
 /// The text of a program.
 #[derive(Clone, Debug)]
@@ -44,7 +48,11 @@ impl Source {
                 Box::new(BufReader::with_capacity(CHUNK, ReadAt { file, at }))
             }
         };
-        Lines { text, offset }
+        Lines {
+            text,
+            offset,
+            line_start: offset,
+        }
     }
 }
 
@@ -53,16 +61,20 @@ pub(super) struct Lines {
     text: Box<dyn BufRead + Send>,
     /// Bytes before the next line.
     pub(super) offset: u64,
+    /// Bytes before the line that was read last.
+    pub(super) line_start: u64,
 }
 
 impl Lines {
-    /// The next line without its end; nothing after the last one.
+    /// The next line without its end; nothing after the last one. What is not UTF-8 is Latin-1. A byte order mark is left
+    /// out.
     pub(super) fn next(&mut self) -> io::Result<Option<String>> {
         let mut line = Vec::new();
         let count = self.text.read_until(b'\n', &mut line)?;
         if count == 0 {
             return Ok(None);
         }
+        self.line_start = self.offset;
         self.offset += count as u64;
         if line.ends_with(b"\n") {
             line.pop();
@@ -70,8 +82,12 @@ impl Lines {
                 line.pop();
             }
         }
-        let not_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text");
-        String::from_utf8(line).map(Some).map_err(not_text)
+        if self.line_start == 0 && line.starts_with(BYTE_ORDER_MARK.as_bytes()) {
+            line.drain(..BYTE_ORDER_MARK.len());
+        }
+        let text = String::from_utf8(line);
+        let latin_1 = |other: FromUtf8Error| other.into_bytes().into_iter().map(char::from).collect();
+        Ok(Some(text.unwrap_or_else(latin_1)))
     }
 }
 

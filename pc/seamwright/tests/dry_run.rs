@@ -165,8 +165,6 @@ fn overrides_and_speeds_that_lead_nowhere_are_refused() {
 
 #[test]
 fn a_program_of_another_machine_is_refused_with_its_line() {
-    let said = refusal(&shipped(PROGRAM), "machines/dual-beam-gantry.toml", &[], 1);
-    assert_says(&said, &["stir-contour.ngc", "line "]);
     let said = refusal(&shipped("programs/saddle-320-80.ngc"), MACHINE, &[], 1);
     assert_says(&said, &["saddle-320-80.ngc", "line "]);
 }

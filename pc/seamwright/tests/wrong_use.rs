@@ -365,8 +365,8 @@ fn a_program_outside_travel_is_named_by_axis_and_amount() {
 fn what_a_program_cannot_mean_is_named_by_its_line() {
     let line = format!("line {}", line_of(PROGRAM, "N100"));
     for (name, to, what) in [
-        ("word.ngc", "N100 D3 M62", "D"),
-        ("code.ngc", "N100 G5.1 M62", "G5.1"),
+        ("word.ngc", "N100 ORIMKS M62", "ORIMKS"),
+        ("code.ngc", "N100 G5.5 M62", "G5.5"),
     ] {
         let program = changed(name, PROGRAM, "N100 M62", to);
         let said = Attempt {
@@ -407,7 +407,7 @@ fn words_that_the_machine_or_the_curve_cannot_have_are_named_by_line_and_column(
             "     G18 G2 X5 J2",
             ["J is not in the plane of G18", "I and K"],
         ),
-        ("tolerance.ngc", "     G64 P0 Q0", ["P0 is not possible", "G61"]),
+        ("tolerance.ngc", "     G64 P-1 Q0", ["P-1 is not possible", "G61"]),
     ] {
         let said = said(name, block);
         assert_says(&said, &parts);
@@ -615,7 +615,7 @@ fn a_part_file_is_no_program_and_plan_is_named() {
 }
 
 #[test]
-fn subroutines_are_refused_by_their_name() {
+fn subroutines_that_are_nowhere_are_named() {
     let program = written("subroutine.ngc", "G43.4\no100 call\nM2\n");
     let machine = shipped("machines/wire-arc.toml");
     let [program, machine] = [&program, &machine].map(|path| path.to_str().expect("text"));
@@ -623,7 +623,7 @@ fn subroutines_are_refused_by_their_name() {
     assert_eq!(code, Some(1), "{said}");
     assert_says(
         &said,
-        &["line 2, column 1: O words (subroutines, loops, conditions) are not supported"],
+        &["line 2, column 1: there is no subroutine 100: neither in this program nor as 100.ngc"],
     );
 }
 

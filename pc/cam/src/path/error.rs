@@ -40,15 +40,44 @@ pub enum PathError {
         /// What it has.
         fitted: String,
     },
-    /// The first motion of the tip leaves something open.
+    /// The program was read for another start.
     #[error(
-        "{place}: the first motion of the tip must give the positions of all axes of {machine}: {missing} missing"
+        "{place}: the program goes on from where the tip is when it begins, and was read for another place"
     )]
-    Incomplete {
+    OtherStart {
+        /// Where it first does.
+        place: SourcePosition,
+    },
+    /// Nothing that moves.
+    #[error("the program does not move the machine")]
+    Empty,
+    /// M0 and its like.
+    #[error("{place}: {code} waits for the operator, which programs here cannot: make two programs of it")]
+    Pause {
         /// Where in the program.
         place: SourcePosition,
-        /// Words that it needs.
-        missing: String,
+        /// M0, M1 or M60.
+        code: &'static str,
+    },
+    /// M6 for another tool than the first.
+    #[error("{place}: tool {second} after tool {first}: tools are not changed in a program, make two of it")]
+    SecondTool {
+        /// Where in the program.
+        place: SourcePosition,
+        /// The tool that it begins with.
+        first: u32,
+        /// The next one.
+        second: u32,
+    },
+    /// M3, M4, M5 or S on a machine without a spindle.
+    #[error(
+        "{place}: {code} needs a spindle, and {machine} has none: switch its beams with M62 P, M63 P and M67 E Q"
+    )]
+    NoSpindle {
+        /// Where in the program.
+        place: SourcePosition,
+        /// The code.
+        code: &'static str,
         /// The machine.
         machine: String,
     },
@@ -185,18 +214,6 @@ pub enum PathError {
     /// The speed must be constant, and an axis does not allow it.
     #[error("{0}; lower F to that, for the speed must be constant with the beam on")]
     NotConstant(FeedTooHigh),
-    /// M3, M4, M5 or S on a machine without a spindle.
-    #[error(
-        "{place}: {code} needs a spindle, and {machine} has none: switch its beams with M62 P, M63 P and M67 E Q"
-    )]
-    NoSpindle {
-        /// Where in the program.
-        place: SourcePosition,
-        /// The code.
-        code: &'static str,
-        /// The machine.
-        machine: String,
-    },
     /// M4: spindles only have one sense.
     #[error("{place}: the spindle of {machine} turns clockwise only: write M3")]
     SpindleSense {

@@ -26,6 +26,9 @@ pub enum FromLineError {
         /// The last one with a motion.
         last: u32,
     },
+    /// Lines are not run one after the other.
+    #[error("a program with loops, conditions or subroutines is started at its beginning only")]
+    Branches,
     /// A curve takes several lines.
     #[error(
         "line {line} is in the middle of the NURBS of line {begins}: start there, or after its G5.3 or last point"
@@ -293,6 +296,9 @@ fn tracking_at(path: &PlannedPath, s: f64) -> Option<bool> {
 
 /// A line in the middle of a NURBS is not a block of its own.
 fn check_whole(program: &Program, line: u32) -> Result<(), FromLineError> {
+    if program.branches {
+        return Err(FromLineError::Branches);
+    }
     for path in &program.paths {
         for next in Arc::new(path.clone()).moves() {
             let target = next.map_err(PathError::from)?.target;

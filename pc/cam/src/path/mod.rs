@@ -12,6 +12,7 @@ mod nurbs;
 mod outputs;
 mod pieces;
 mod planned;
+mod program_setup;
 mod programmed;
 mod shape;
 mod short_blocks;
@@ -132,9 +133,9 @@ impl Planner {
                 ..self.tip(from)
             },
             axes: inner(from),
-            placed: false,
             switched: Switched::default(),
         };
+        self.check_begin(program, &stand.tip)?;
         let mut planned = Vec::new();
         for path in &program.paths {
             planned.extend(self.path(path, &mut stand, speed_mm_s)?);

@@ -17,20 +17,25 @@ impl Planner {
     /// `events` as the motion board knows them. Beams, spindle and tracking must be there, and give only so much.
     pub(super) fn switchings(&self, events: &[ProgramEvent]) -> Result<Vec<Switching>, PathError> {
         let switching = |event: &ProgramEvent| {
-            Ok(Switching {
-                with_target: event.with_target,
-                action: self.action(event)?,
-            })
+            let action = self.action(event).transpose()?;
+            let with_target = event.with_target;
+            Some(action.map(|action| Switching { with_target, action }))
         };
-        events.iter().map(switching).collect()
+        events.iter().filter_map(switching).collect()
     }
 
-    pub(super) fn action(&self, event: &ProgramEvent) -> Result<PathAction, PathError> {
+    /// What an event switches; of coolant and tools [`Planner::notices`] tells.
+    pub(super) fn action(&self, event: &ProgramEvent) -> Result<Option<PathAction>, PathError> {
         let place = event.place;
-        match event.action {
+        let action = match event.action {
+            ProgramAction::Pause => {
+                let code = event.code;
+                return Err(PathError::Pause { place, code });
+            }
+            ProgramAction::Coolant { .. } | ProgramAction::ChangeTool(_) => return Ok(None),
             ProgramAction::Output(action) => {
                 self.check_output(&action, place)?;
-                Ok(action)
+                action
             }
             ProgramAction::SpindleSpeed(rpm) => {
                 let side = self.spindle(event)?;
@@ -38,22 +43,23 @@ impl Planner {
                 if rpm > largest {
                     return Err(PathError::SpindleSpeed { place, rpm, largest });
                 }
-                Ok(PathAction::Power { side, watt: rpm })
+                PathAction::Power { side, watt: rpm }
             }
             ProgramAction::SpindleOn(Turn::Clockwise) => {
                 let side = self.spindle(event)?;
-                Ok(PathAction::Beam { side, on: true })
+                PathAction::Beam { side, on: true }
             }
             ProgramAction::SpindleOn(Turn::CounterClockwise) => {
                 self.spindle(event)?;
                 let machine = self.name.clone();
-                Err(PathError::SpindleSense { place, machine })
+                return Err(PathError::SpindleSense { place, machine });
             }
             ProgramAction::SpindleOff => {
                 let side = self.spindle(event)?;
-                Ok(PathAction::Beam { side, on: false })
+                PathAction::Beam { side, on: false }
             }
-        }
+        };
+        Ok(Some(action))
     }
 
     /// The beam that is the spindle: the one that stays on at rest.

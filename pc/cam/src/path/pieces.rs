@@ -309,7 +309,6 @@ impl Planner {
         let mut stand = RestState {
             tip: Tip::default(),
             axes: [0.0; AXES],
-            placed: true,
             switched: Switched::default(),
         };
         for (tip, goal) in tips.iter().zip(&shape.targets) {

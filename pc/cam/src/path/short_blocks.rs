@@ -18,8 +18,6 @@ pub(super) struct ShortBlocks<M> {
     moves: M,
     /// Where the move in hand ends.
     tip: Tip,
-    /// The program has said where all of the tip is.
-    placed: bool,
     /// The last one that is not short.
     in_hand: Option<Move>,
     /// Short ones after it, as one, and where they lead.
@@ -35,7 +33,6 @@ impl<M: Iterator<Item = Result<Move, PathError>>> ShortBlocks<M> {
             planner,
             moves,
             tip: from.tip,
-            placed: from.placed,
             in_hand: None,
             short: None,
             ready: VecDeque::new(),
@@ -45,8 +42,7 @@ impl<M: Iterator<Item = Result<Move, PathError>>> ShortBlocks<M> {
 
     fn take(&mut self, mut next: Move) -> Result<(), PathError> {
         let before = self.short.as_ref().map_or(&self.tip, |(_, tip)| tip);
-        let tip = self.planner.next_tip(&next.target, before, self.placed)?;
-        self.placed = true;
+        let tip = self.planner.next_tip(&next.target, before)?;
         let straight = next.target.way == Way::Line;
         if let Some((short, _)) = self.short.take_if(|(_, at)| straight || *at == self.tip) {
             next.target.words = both(&short.target.words, &next.target.words);

@@ -34,8 +34,6 @@ pub(super) struct RestState {
     pub(super) tip: Tip,
     /// mm, rad.
     pub(super) axes: [f64; AXES],
-    /// The program has said where all of the tip is.
-    pub(super) placed: bool,
     /// What is switched on.
     pub(super) switched: Switched,
 }
@@ -44,22 +42,17 @@ impl Planner {
     /// The tips that `path` leads to, one after the other.
     pub(super) fn tips(&self, path: &ProgramPath, from: &RestState) -> Result<Vec<Tip>, PathError> {
         let mut tip = from.tip;
-        let mut placed = from.placed;
         let mut tips = Vec::with_capacity(path.targets.len());
         for target in &path.targets {
-            tip = self.next_tip(target, &tip, placed)?;
-            placed = true;
+            tip = self.next_tip(target, &tip)?;
             tips.push(tip);
         }
         Ok(tips)
     }
 
-    /// The tip that `target` leads to from another one; the program has said where all of that one is, or it is not yet `placed`.
-    pub(super) fn next_tip(&self, target: &Target, from: &Tip, placed: bool) -> Result<Tip, PathError> {
+    /// The tip that `target` leads to from another one.
+    pub(super) fn next_tip(&self, target: &Target, from: &Tip) -> Result<Tip, PathError> {
         self.check_fitted(target)?;
-        if !placed {
-            self.check_complete(target)?;
-        }
         let mut tip = *from;
         let words = &target.words;
         for i in 0..3 {
@@ -97,20 +90,6 @@ impl Planner {
             }),
             None => Ok(()),
         }
-    }
-
-    /// The first motion must have words for all axes of the machine.
-    fn check_complete(&self, target: &Target) -> Result<(), PathError> {
-        let missing = ROTARY.filter(|&i| self.fitted[i] && target.words.axes[i].is_none());
-        let missing: Vec<_> = missing.map(|i| AXIS_NAMES[i]).collect();
-        if missing.is_empty() {
-            return Ok(());
-        }
-        Err(PathError::Incomplete {
-            place: target.place,
-            missing: missing.join(" "),
-            machine: self.name.clone(),
-        })
     }
 
     fn fitted_words(&self) -> String {

@@ -28,7 +28,8 @@ fn blocks_know_how_closely_they_are_followed() {
         blend(Some(0.1), Some(0.02)),
     ];
     assert_eq!(controls(body), expected);
-    for (body, value) in [("G64 P0\nM2", 0.0), ("G64 P0.1 Q-0.02\nM2", -0.02)] {
+    assert_eq!(controls("F600\nG64 P0\nG1 X10\nM2"), [blend(None, None)]);
+    for (body, value) in [("G64 P-1\nM2", -1.0), ("G64 P0.1 Q-0.02\nM2", -0.02)] {
         let (problem, line) = problem(body);
         assert!(
             matches!(problem, Problem::Value { value: seen, .. } if seen == value && line == 1),

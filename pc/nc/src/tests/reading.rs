@@ -61,13 +61,16 @@ fn all(program: &Program) -> Vec<(Motion, f64, Vec<Move>)> {
 #[test]
 fn what_is_not_kept_is_read_again_as_it_was() {
     for block_delete in [false, true] {
-        let options = Options { block_delete };
+        let options = Options {
+            block_delete,
+            ..Options::default()
+        };
         let source = Source::Text(long().as_bytes().into());
-        let whole = read(&source, options, usize::MAX).unwrap();
+        let whole = read(&source, options.clone(), usize::MAX).unwrap();
         let wanted = all(&whole);
         assert!(wanted.iter().any(|(_, _, moves)| moves.len() > 50));
         for kept in [1, 2, 3, 5, 6, 7, 20, 53, 54, 55, 56, 57] {
-            let program = read(&source, options, kept).unwrap();
+            let program = read(&source, options.clone(), kept).unwrap();
             // One more where the block that makes the path too long ends it.
             assert!(program.paths.iter().all(|path| path.targets.len() <= kept + 1));
             assert_eq!(all(&program), wanted, "{kept} kept");
@@ -111,13 +114,11 @@ fn a_file_is_read_as_a_text() {
 }
 
 #[test]
-fn what_is_no_text_is_told_with_its_line() {
-    let source = Source::Text(b"G21\n\xff\n".as_slice().into());
-    let error = read(&source, Options::default(), 10).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "line 2, column 1: cannot be read: it is not UTF-8 text"
-    );
+fn what_is_not_utf_8_is_latin_1_and_a_byte_order_mark_is_nothing() {
+    let read = |text: &[u8]| read(&Source::Text(text.into()), Options::default(), 10);
+    assert!(read(b"\xef\xbb\xbf(Stra\xdfe)\nG0 X5 (\xb0)\nM2\n").is_ok());
+    let error = read(b"G21\n\xdf\n").unwrap_err();
+    assert_eq!(error.to_string(), "line 2, column 1: 'ß' is not understood here");
 }
 
 #[test]

@@ -36,7 +36,7 @@ impl Check {
     pub fn run(self) -> anyhow::Result<()> {
         let machine = MachineFile::read(&self.machine)?;
         let name = self.program.display();
-        let program = read_program(&self.program, self.block_delete)?;
+        let program = read_program(&self.program, &machine, self.block_delete)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
         let from = machine.homed_axes();
         let paths = plan_program(&self.program, &program, &planner, &from, self.speed)?;

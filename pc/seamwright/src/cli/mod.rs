@@ -11,15 +11,18 @@ mod teach;
 mod teach_seam;
 mod weld;
 
+use crate::console::errln;
 use anyhow::{Context, bail};
 use cam::path::{PlannedPath, Planner, check_constant_speed};
 use clap::{Parser, Subcommand};
-use nc::{Options, Program, interpret_file};
+use config::machine::MachineFile;
+use nc::{Options, Program, Setup, interpret_file};
 use parts::PartFile;
 use shared::io::AXES;
 use std::fs::File;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Plans, checks and welds with a seam-following machine.
 #[derive(Debug, Parser)]
@@ -58,8 +61,9 @@ impl Cli {
 /// Exit code of what is outside its limits.
 const OUTSIDE: u8 = 3;
 
-/// Reads the NC program in a file.
-fn read_program(path: &Path, block_delete: bool) -> anyhow::Result<Program> {
+/// Reads the NC program in a file for a machine that stands at its reference marks, and says what a person should know of
+/// how it is understood. Subroutines in files of their own stand beside it.
+fn read_program(path: &Path, machine: &MachineFile, block_delete: bool) -> anyhow::Result<Program> {
     let name = path.display();
     if path.extension().is_some_and(|extension| extension == "toml") {
         bail!(
@@ -67,7 +71,24 @@ fn read_program(path: &Path, block_delete: bool) -> anyhow::Result<Program> {
         );
     }
     let file = File::open(path).with_context(|| format!("cannot read program {name}"))?;
-    interpret_file(file, Options { block_delete }).with_context(|| format!("program {name}"))
+    let planner = Planner::build(machine).with_context(|| format!("machine {}", machine.name))?;
+    let setup = Setup {
+        folders: path.parent().map(Path::to_owned).into_iter().collect(),
+        ..planner.setup(&machine.homed_axes())
+    };
+    let options = Options {
+        block_delete,
+        setup: Arc::new(setup),
+        ..Options::default()
+    };
+    let program = interpret_file(file, options).with_context(|| format!("program {name}"))?;
+    for notice in &program.notices {
+        errln!("program {name}: {}: {}", notice.place, notice.text);
+    }
+    for notice in planner.notices(&program) {
+        errln!("program {name}: {notice}");
+    }
+    Ok(program)
 }
 
 /// The paths of a program by `planner`, from where the axes stand at `from` (mm, degrees). The part file beside it, if there is

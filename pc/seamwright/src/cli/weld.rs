@@ -111,7 +111,7 @@ impl Weld {
             .transpose()?
             .map(Arc::new);
         let drawing = match &self.seam_of {
-            Some(file) => Some(read_program(file, self.block_delete)?),
+            Some(file) => Some(read_program(file, &machine, self.block_delete)?),
             None => None,
         };
         let cameras = self.cameras.choose(&machine, &self.machine, &self.boards)?;
@@ -191,7 +191,7 @@ impl Weld {
     fn task(&self, machine: &MachineFile) -> anyhow::Result<(Task, Option<PartFile>)> {
         let told = self.part.as_deref().map(PartFile::read).transpose()?;
         let program = |file: PathBuf| -> anyhow::Result<Task> {
-            let program = read_program(&file, self.block_delete)?;
+            let program = read_program(&file, machine, self.block_delete)?;
             Ok(Task::Program(file, program))
         };
         if self.job.extension().is_none_or(|extension| extension != "toml") {

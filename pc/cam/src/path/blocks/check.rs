@@ -76,7 +76,6 @@ impl<'a> Check<'a> {
             ..Goal::exact(self.summary.length_mm, step.block.place)
         };
         self.stand.tip = self.planner.settled(&step.tip, &self.stand.axes, &goal)?;
-        self.stand.placed = true;
         Ok(())
     }
 

@@ -104,7 +104,6 @@ pub(super) struct Walk {
     moves: ShortBlocks<Moves>,
     feeds: Feeds,
     tip: Tip,
-    placed: bool,
     /// What is on from before.
     on: Vec<PathAction>,
     ahead: Option<Step>,
@@ -117,7 +116,6 @@ impl Walk {
             planner,
             feeds,
             tip: from.tip,
-            placed: from.placed,
             on: from.switched.actions(),
             ahead: None,
         }
@@ -126,15 +124,15 @@ impl Walk {
     fn step(&mut self, from: Move) -> Result<Step, PathError> {
         let Move { target, events } = from;
         let planner = &self.planner;
-        let tip = planner.next_tip(&target, &self.tip, self.placed)?;
+        let tip = planner.next_tip(&target, &self.tip)?;
         let block = Block::build(planner, nc::Motion::Feed, &self.tip, &tip, &target)?;
         let programmed = self.feeds.next(&target, block.length)?;
         let speed = planner.reached_on(&block, &tip, programmed);
         let mut actions = std::mem::take(&mut self.on);
         for event in &events {
-            actions.push(planner.action(event)?);
+            actions.extend(planner.action(event)?);
         }
-        (self.tip, self.placed) = (tip, true);
+        self.tip = tip;
         Ok(Step {
             block,
             tip,

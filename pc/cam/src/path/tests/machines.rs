@@ -38,16 +38,52 @@ fn words_of_axes_that_a_machine_does_not_have_are_refused() {
 }
 
 #[test]
-fn the_first_motion_says_how_all_rotary_axes_stand() {
-    let error = plan_on("pipe-welder", "G43.4\nG0 X100 Y0 Z240 B0\nM2").unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "line 2, column 4: the first motion of the tip must give the positions of all axes of pipe-welder: C missing"
-    );
-    let error = plan_on("wire-arc", "G53 G0 B0\nG43.4\nG0 X0 Y0 Z150\nM2").unwrap_err();
+fn what_a_first_motion_does_not_say_stays_as_the_machine_stands() {
+    let park = planner_of("ac-head").planning.park_axes();
+    let whole = format!("G0 X500 Y500 Z100 A{} C{}\nM2", park[3], park[5]);
+    let [said, not_said] = [&whole, "G0 X500 Y500 Z100\nM2"].map(|text| plan_on("ac-head", text).unwrap());
+    assert_axes(end("ac-head", &not_said), end("ac-head", &said));
+    let error = plan_on("ac-head", "G21\nM5\nM2").unwrap_err();
+    assert_eq!(error.to_string(), "the program does not move the machine");
+    let error = plan_on("ac-head", "T1 M6\nG0 X500\nT2 M6\nM2").unwrap_err();
     assert!(
-        matches!(error, PathError::Incomplete { place: SourcePosition { line: 3, .. }, missing, .. } if missing == "A B C")
+        matches!(
+            error,
+            PathError::SecondTool {
+                first: 1,
+                second: 2,
+                ..
+            }
+        ),
+        "{error}"
     );
+    let error = plan_on("ac-head", "G0 X500\nM0\nG0 X600\nM2").unwrap_err();
+    assert!(matches!(error, PathError::Pause { code: "M0", .. }), "{error}");
+}
+
+#[test]
+fn steps_go_on_from_where_the_machine_stands_if_the_program_was_read_for_it() {
+    let planner = planner_of("ac-head");
+    let park = planner.planning.park_axes();
+    let text = "G91\nG0 X10 Z-5\nG90 G53 G0 A20\nG91 G0 Y5\nG28\nM2";
+    let read = |setup: nc::Setup| {
+        let options = nc::Options {
+            setup: std::sync::Arc::new(setup),
+            ..nc::Options::default()
+        };
+        nc::interpret(text, options).unwrap()
+    };
+    let other = nc::Setup {
+        start: [1.0; AXES],
+        ..planner.setup(&park)
+    };
+    let error = planner.program(&read(other), &park, None).unwrap_err();
+    assert!(
+        matches!(error, PathError::OtherStart { place } if place.line == 2),
+        "{error}"
+    );
+    let paths = planner.program(&read(planner.setup(&park)), &park, None).unwrap();
+    assert_axes(end("ac-head", &paths), park);
 }
 
 #[test]

@@ -97,7 +97,7 @@ fn machines_say_what_their_spindle_does_not_do() {
         "line 5, column 1: 3001 r/min is more than the maximum of the spindle, 3000 r/min"
     );
     for machine in ["dual-beam-gantry", "pipe-welder", "ac-head", "wire-arc"] {
-        let error = plan_on(machine, "S500\nM3\nM2").unwrap_err().to_string();
+        let error = plan_on(machine, "S500\nM3\nG0 X600\nM2").unwrap_err().to_string();
         assert_eq!(
             error,
             format!(
@@ -106,6 +106,16 @@ fn machines_say_what_their_spindle_does_not_do() {
             )
         );
     }
+}
+
+#[test]
+fn coolant_is_passed_over_and_told_once() {
+    let text = "M8\nG0 X600\nM9\nM2";
+    let paths = plan_on("ac-head", text).unwrap();
+    assert!(paths.iter().all(|path| path.events.is_empty()));
+    let program = interpret(text, Options::default()).unwrap();
+    let notice = "line 1, column 1: coolant switches nothing: ac-head has none";
+    assert_eq!(planner_of("ac-head").notices(&program), [notice]);
 }
 
 /// They end the path, and what was on before is on again after it.

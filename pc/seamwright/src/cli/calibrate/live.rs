@@ -80,7 +80,7 @@ impl Live {
                 machine_file.display()
             );
         }
-        let program = read_program(&self.at, false)?;
+        let program = read_program(&self.at, &machine, false)?;
         let seam = match (&self.seam, &source) {
             (Some(file), _) => Some(Deviation::read(file)?),
             (None, PictureChoice::Rendered(_)) => Some(Deviation::parse("coupon", COUPON)?),

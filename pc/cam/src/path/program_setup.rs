@@ -1,0 +1,97 @@
+//! What programs for a machine begin with, and what is checked of a whole program before it is planned.
+
+use super::targets::Tip;
+use super::{PathError, Planner, inner};
+use nc::{Program, ProgramAction, Setup, TipAndAxes};
+use shared::geometry::Pose;
+use shared::io::AXES;
+use shared::kinematics::{AXIS_UNIT, Kinematics};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// A program may be read for a start this far off (mm, degrees).
+const SAME_START: f64 = 1e-6;
+
+impl Planner {
+    /// What a program for this machine begins with, when the axes stand at `from` (mm, degrees). G28 and G30 lead to
+    /// the park position.
+    pub fn setup(&self, from: &[f64; AXES]) -> Setup {
+        let kinematics = OfMachine(self.kinematics.clone());
+        let park = self.planning.park_axes();
+        Setup {
+            start: kinematics.tip(from),
+            fitted: self.fitted,
+            homes: [park, park],
+            kinematics: Some(Arc::new(kinematics)),
+            ..Setup::default()
+        }
+    }
+
+    /// What of `program` this machine passes over, and what it takes for granted, a sentence each.
+    pub fn notices(&self, program: &Program) -> Vec<String> {
+        let events = program.paths.iter().flat_map(|path| &path.events);
+        let mut told = BTreeSet::new();
+        let mut notices = Vec::new();
+        for event in events {
+            let text = match event.action {
+                ProgramAction::ChangeTool(number) => format!("tool {number} must be in the machine"),
+                ProgramAction::Coolant { .. } => format!("coolant switches nothing: {} has none", self.name),
+                _ => continue,
+            };
+            if told.insert(text.clone()) {
+                notices.push(format!("{}: {text}", event.place));
+            }
+        }
+        notices
+    }
+
+    /// Whether `program` may begin with the tip at `tip`, moves anything, and needs one tool only.
+    pub(super) fn check_begin(&self, program: &Program, tip: &Tip) -> Result<(), PathError> {
+        if program.paths.iter().all(|path| path.targets.is_empty()) {
+            return Err(PathError::Empty);
+        }
+        if let Some((start, place)) = program.assumes {
+            let here = tip.position_mm.into_iter().chain(tip.angles_deg);
+            if here
+                .zip(start)
+                .any(|(here, start)| (here - start).abs() > SAME_START)
+            {
+                return Err(PathError::OtherStart { place });
+            }
+        }
+        let mut first = None;
+        for event in program.paths.iter().flat_map(|path| &path.events) {
+            let ProgramAction::ChangeTool(second) = event.action else {
+                continue;
+            };
+            let first = *first.get_or_insert(second);
+            if first != second {
+                let place = event.place;
+                return Err(PathError::SecondTool { place, first, second });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Kinematics of a machine, in mm and degrees.
+#[derive(Debug)]
+struct OfMachine(Kinematics);
+
+impl TipAndAxes for OfMachine {
+    fn tip(&self, axes: &[f64; AXES]) -> [f64; AXES] {
+        let [x, y, z]: [f64; 3] = self.0.forward(&inner(axes)).position.into();
+        [x, y, z, axes[3], axes[4], axes[5]]
+    }
+
+    fn axes(&self, tip: &[f64; AXES]) -> Option<[f64; AXES]> {
+        let [_, _, _, a, b, c] = inner(tip);
+        let near = [0.0, 0.0, 0.0, a, b, c];
+        let pose = Pose {
+            position: [tip[0], tip[1], tip[2]].into(),
+            ..self.0.forward(&near)
+        };
+        let axes = self.0.inverse(&pose, &near).ok()?;
+        Some(std::array::from_fn(|axis| axes[axis] / AXIS_UNIT[axis]))
+    }
+}

@@ -1,0 +1,326 @@
+//! From a line of text to a block: codes by modal group, words by their letter, parameters that it sets.
+
+use super::codes::{CODES, Code, Group, NEAR, refused};
+use super::error::{NcError, Problem, SourcePosition};
+use super::expression;
+use super::flow::{self, OWord};
+use super::parameters::{Lookup, Parameter};
+use super::scanner::Scanner;
+
+/// A word with its value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Word {
+    /// Letter, or a name such as `V1` of `V1=2`; upper case.
+    pub address: String,
+    /// Its value.
+    pub value: f64,
+    /// A name, written with `=`.
+    pub named: bool,
+    /// Where it starts.
+    pub place: SourcePosition,
+}
+
+impl Word {
+    /// As it is written, without its value: `X`, `V1=`.
+    pub fn label(&self) -> String {
+        let sign = if self.named { "=" } else { "" };
+        format!("{}{sign}", self.address)
+    }
+
+    /// Its value, if that is one of 0 … `count` − 1.
+    pub fn number_below(&self, count: u8) -> Option<u8> {
+        (0..count).find(|n| f64::from(*n) == self.value)
+    }
+
+    /// What is wrong with its value.
+    pub fn value_error(&self, reason: &'static str) -> NcError {
+        Problem::Value {
+            word: self.label(),
+            value: self.value,
+            reason,
+        }
+        .at(self.place)
+    }
+}
+
+/// A code in a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CodeWord {
+    /// What it means.
+    pub code: Code,
+    /// As people write it.
+    pub name: &'static str,
+    /// Where.
+    pub place: SourcePosition,
+    group: Group,
+}
+
+/// One line of a program that is to be carried out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Block {
+    /// Line of the file.
+    pub line: u32,
+    /// G and M codes, at most one of each modal group, but M7 and M8.
+    pub codes: Vec<CodeWord>,
+    /// All other words, each at most once, without N.
+    pub words: Vec<Word>,
+    /// Polar steps that X and Y were made of: \[mm\] and \[deg\].
+    pub polar_step: Option<[f64; 2]>,
+    /// Parameters that get a value when all of the block has been read.
+    pub settings: Vec<(Parameter, f64)>,
+    /// Comments, in their order.
+    pub comments: Vec<(String, SourcePosition)>,
+}
+
+impl Block {
+    /// The code of `group` in this block.
+    pub fn code(&self, group: Group) -> Option<&CodeWord> {
+        self.codes.iter().find(|c| c.group == group)
+    }
+
+    /// Whether `code` is in this block.
+    pub fn has(&self, code: Code) -> bool {
+        self.codes.iter().any(|c| c.code == code)
+    }
+
+    /// The word with this letter or name.
+    pub fn word(&self, address: &str) -> Option<&Word> {
+        self.words.iter().find(|w| w.address == address)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.codes.is_empty() && self.words.is_empty() && self.settings.is_empty() && self.comments.is_empty()
+    }
+}
+
+/// What a line of text is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Parsed {
+    /// Nothing but blanks, or deleted.
+    Blank,
+    /// Starts with `%`.
+    Percent,
+    /// `O…`.
+    Flow(OWord),
+    /// Something to carry out.
+    Block(Block),
+}
+
+/// Letters and names that are words of the dialect, besides G, M and N.
+const WORDS: [&str; 21] = [
+    "X", "Y", "Z", "A", "B", "C", "I", "J", "K", "R", "F", "P", "L", "E", "Q", "S", "T", "H", "D", "@", "^",
+];
+/// The same, written with `=`.
+const NAMED_WORDS: [&str; 2] = ["V1", "V2"];
+/// Words of other controllers without a number, and the code that they are here; none: what they ask for is always so.
+const KEYWORDS: [(&str, Option<Code>); 11] = [
+    ("TRAORI", Some(Code::TipOn)),
+    ("TRAFOOF", Some(Code::TipOff)),
+    ("COMPCAD", None),
+    ("COMPCURV", None),
+    ("COMPON", None),
+    ("COMPOF", None),
+    ("ORIWKS", None),
+    ("FFWON", None),
+    ("FFWOF", None),
+    ("SOFT", None),
+    ("BRISK", None),
+];
+
+/// Reads line number `line`, in which `lookup` knows the values of parameters. Blocks that begin with `/` are left out with
+/// `block_delete`.
+pub(super) fn parse(
+    text: &str,
+    line: u32,
+    block_delete: bool,
+    lookup: &mut dyn Lookup,
+) -> Result<Parsed, NcError> {
+    let mut scanner = Scanner::new(text, line);
+    scanner.skip_blanks();
+    match scanner.peek() {
+        None => return Ok(Parsed::Blank),
+        Some('%') => return Ok(Parsed::Percent),
+        Some('/') if block_delete => return Ok(Parsed::Blank),
+        Some('/') => scanner.step(),
+        Some(_) => {}
+    }
+    if let Some(word) = flow::o_word(&mut scanner, lookup, true)? {
+        return Ok(Parsed::Flow(word));
+    }
+    let mut block = Block {
+        line,
+        ..Block::default()
+    };
+    let mut first = true;
+    loop {
+        scanner.skip_blanks();
+        let place = scanner.place();
+        let Some(c) = scanner.peek() else { break };
+        match c {
+            ';' => break,
+            '(' => {
+                let comment = scanner.comment()?;
+                block.comments.push((comment, place));
+                continue;
+            }
+            '/' => return Err(Problem::DeleteInside.at(place)),
+            '#' => {
+                scanner.step();
+                setting(&mut scanner, &mut block, lookup)?;
+            }
+            '0'..='9' | '.' | '+' | '-' | '[' => return Err(Problem::LooseNumber.at(place)),
+            '@' | '^' => {
+                let word = word(&mut scanner, lookup)?;
+                take(&mut block, word, false)?;
+            }
+            c if c.is_ascii_alphabetic() => {
+                if !keyword(&mut scanner, &mut block)? {
+                    let word = word(&mut scanner, lookup)?;
+                    take(&mut block, word, first)?;
+                }
+            }
+            c => return Err(Problem::Character(c).at(place)),
+        }
+        first = false;
+    }
+    // A block number alone does nothing.
+    Ok(if block.is_empty() {
+        Parsed::Blank
+    } else {
+        Parsed::Block(block)
+    })
+}
+
+/// `#… = …`, behind the `#`.
+fn setting(scanner: &mut Scanner, block: &mut Block, lookup: &mut dyn Lookup) -> Result<(), NcError> {
+    let place = scanner.place();
+    let parameter = expression::parameter(scanner, lookup)?;
+    scanner.skip_blanks();
+    if scanner.peek() != Some('=') {
+        return Err(Problem::LooseParameter(parameter.to_string()).at(place));
+    }
+    scanner.step();
+    scanner.skip_blanks();
+    let place = scanner.place();
+    let value = expression::value(scanner, lookup)?.ok_or(Problem::NoValue.at(place))?;
+    block.settings.push((parameter, value));
+    Ok(())
+}
+
+/// A word without a number, if one stands at the scanner.
+fn keyword(scanner: &mut Scanner, block: &mut Block) -> Result<bool, NcError> {
+    let (place, start) = (scanner.place(), scanner.mark());
+    let letters = scanner.letters();
+    let Some((_, code)) = KEYWORDS.iter().find(|(name, _)| *name == letters) else {
+        scanner.go_back(start);
+        return Ok(false);
+    };
+    if let Some(code) = code {
+        let known = CODES.iter().find(|(_, _, own, ..)| own == code);
+        if let Some(&(_, _, code, name, group)) = known {
+            add(
+                block,
+                CodeWord {
+                    code,
+                    name,
+                    place,
+                    group,
+                },
+            )?;
+        }
+    }
+    Ok(true)
+}
+
+/// A letter or name with its number.
+fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError> {
+    let (place, start) = (scanner.place(), scanner.mark());
+    let letters = scanner.letters();
+    scanner.go_back(start);
+    let (address, named) = match scanner.address() {
+        Some(name) => (name, true),
+        None => {
+            let letter = scanner.peek().unwrap_or(' ').to_ascii_uppercase();
+            scanner.step();
+            (letter.to_string(), false)
+        }
+    };
+    // A letter may be written with a sign, too: X=1.
+    let named = named && address.len() > 1;
+    let sign = if named { "=" } else { "" };
+    let label = format!("{address}{sign}");
+    let of_word = |error: NcError| match error.problem {
+        Problem::TooLarge(_) => Problem::TooLarge(address.clone()).at(place),
+        _ => error,
+    };
+    match expression::value(scanner, lookup).map_err(of_word)? {
+        Some(value) => Ok(Word {
+            address,
+            value,
+            named,
+            place,
+        }),
+        None if letters.len() > 1 && !named => Err(Problem::UnknownWord(letters).at(place)),
+        None => Err(Problem::NoNumber(label).at(place)),
+    }
+}
+
+/// Puts a word where it belongs in its block; it may be the `first`.
+fn take(block: &mut Block, word: Word, first: bool) -> Result<(), NcError> {
+    match (word.address.as_str(), word.named) {
+        ("N", false) => {
+            if !first || word.value < 0.0 {
+                return Err(Problem::BlockNumber.at(word.place));
+            }
+            Ok(())
+        }
+        ("G" | "M", false) => add(block, code(&word)?),
+        ("U" | "V" | "W", false) => Err(Problem::NoParallelAxes(word.address).at(word.place)),
+        (address, named) => {
+            let known: &[&str] = if named { &NAMED_WORDS } else { &WORDS };
+            if !known.contains(&address) {
+                return Err(Problem::UnknownWord(word.label()).at(word.place));
+            }
+            if block.word(address).is_some() {
+                return Err(Problem::Twice(word.label()).at(word.place));
+            }
+            block.words.push(word);
+            Ok(())
+        }
+    }
+}
+
+fn add(block: &mut Block, code: CodeWord) -> Result<(), NcError> {
+    let both = code.group == Group::Coolant && code.code != Code::CoolantOff;
+    if let Some(other) = block.code(code.group)
+        && !(both && other.code != Code::CoolantOff && other.code != code.code)
+    {
+        let (first, second) = (other.name, code.name);
+        return Err(Problem::ModalGroup { first, second }.at(code.place));
+    }
+    block.codes.push(code);
+    Ok(())
+}
+
+fn code(word: &Word) -> Result<CodeWord, NcError> {
+    let tenths = word.value * 10.0;
+    let letter = if word.address == "G" { 'G' } else { 'M' };
+    let found = CODES
+        .iter()
+        .find(|(own, number, ..)| *own == letter && (tenths - f64::from(*number)).abs() < NEAR);
+    if let Some(&(_, _, code, name, group)) = found {
+        let place = word.place;
+        return Ok(CodeWord {
+            code,
+            name,
+            place,
+            group,
+        });
+    }
+    let number = word.value;
+    let problem = match refused(letter, tenths) {
+        Some(why) => Problem::RefusedCode { letter, number, why },
+        None => Problem::UnknownCode { letter, number },
+    };
+    Err(problem.at(word.place))
+}

@@ -1,0 +1,292 @@
+//! Canned cycles G73 and G81 to G89, as LinuxCNC has them: rapids over a place, feeds into it and back.
+//!
+//! Levels are coordinates along the axis of the plane. A cycle that begins below its retract level goes up there first.
+//! After it the tip is at the retract level (G99), or where it was before the first of a run of cycles, if that is
+//! higher (G98).
+
+use super::block::Block;
+use super::claims::Claims;
+use super::codes::Code;
+use super::error::{NcError, Problem, SourcePosition};
+use super::interpreter::Interpreter;
+use super::offsets::Coordinates;
+use super::outputs::Pending;
+use super::program::{AXIS_WORDS, FeedRate, PathControl, ProgramAction, Way};
+use shared::io::AXES;
+
+/// How far above the last depth a rapid back into the hole ends, and how far up G73 goes \[mm\].
+const PECK_CLEARANCE: f64 = 0.254;
+/// Most holes of one block, and most pecks of one hole.
+const MOST: f64 = 10_000.0;
+/// Codes of spindle events in cycles.
+const SPINDLE: &str = "the spindle in a canned cycle";
+
+/// Words of a cycle, which hold for the next block with the same one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Sticky {
+    code: Option<Code>,
+    /// R and the word of the plane's axis, as coordinates or steps \[mm\].
+    levels: [Option<f64>; 2],
+    /// Q \[mm\].
+    peck: Option<f64>,
+    /// P \[s\].
+    dwell: Option<f64>,
+    /// Level before the first of a run of cycles, in the frame of the tip \[mm\].
+    initial: Option<f64>,
+}
+
+impl Sticky {
+    /// After another motion code: nothing holds but, between cycles, the initial level.
+    pub(super) fn changed(&mut self, code: Option<Code>) {
+        let initial = self.initial.filter(|_| code.is_some_and(Code::is_cycle));
+        *self = Self {
+            initial,
+            ..Self::default()
+        };
+    }
+}
+
+/// One cycle, over a place.
+#[derive(Clone, Copy)]
+struct Cycle {
+    code: Code,
+    axis: usize,
+    retract: f64,
+    bottom: f64,
+    clear: f64,
+    peck: f64,
+    dwell: f64,
+    feed: FeedRate,
+    place: SourcePosition,
+}
+
+impl Interpreter {
+    /// The cycle `mode` over every place that `block` says; it feeds.
+    pub(super) fn canned_cycle(
+        &mut self,
+        block: &Block,
+        claims: &Claims,
+        mode: Code,
+        place: SourcePosition,
+    ) -> Result<bool, NcError> {
+        let axis = self.modal.plane.axis();
+        if let Some(word) = AXIS_WORDS[3..].iter().find_map(|name| block.word(name)) {
+            return Err(Problem::Orphan(word.label()).at(word.place));
+        }
+        if self.modal.inverse_time() {
+            let (code, why) = (mode.name(), "a canned cycle has no time: write G94");
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
+        if self.offsets.turned() && axis != 2 {
+            return Err(Problem::TiltedArc.at(place));
+        }
+        let feed = self.modal.feed_rate(block, mode, place, false)?;
+        self.keep_words(block, claims, mode, axis)?;
+        let missing = |word| {
+            Problem::Missing {
+                code: mode.name(),
+                word,
+            }
+            .at(place)
+        };
+        let retract = self.sticky.levels[0].ok_or_else(|| missing("R"))?;
+        let bottom = self.sticky.levels[1].ok_or_else(|| missing(AXIS_WORDS[axis]))?;
+        let peck = self.sticky.peck;
+        let peck = match mode {
+            Code::PeckDrilling | Code::ChipBreaking => peck.ok_or_else(|| missing("Q"))?,
+            _ => 0.0,
+        };
+        let dwell = match mode {
+            Code::DrillingWithDwell | Code::BoringWithDwell | Code::BoringWithStop => {
+                self.sticky.dwell.ok_or_else(|| missing("P"))?
+            }
+            _ => 0.0,
+        };
+        let now = self.programmed(&[0, 1, 2], place)?;
+        let (mut over, step) = self.first_place(block, axis, &now);
+        let initial = self.initial_level(axis);
+        let (retract, bottom) = match self.modal.incremental {
+            true => (retract + initial, retract + initial + bottom),
+            false => (retract, bottom),
+        };
+        if retract < bottom {
+            let (code, why) = (mode.name(), "R is below the bottom of the hole");
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
+        let repeats = match claims.word(mode, "L") {
+            Some(l) if l.value.fract() == 0.0 && (1.0..=MOST).contains(&l.value) => l.value as u32,
+            Some(l) => return Err(l.value_error("a cycle is repeated 1 to 10000 times")),
+            None => 1,
+        };
+        let cycle = Cycle {
+            code: mode,
+            axis,
+            retract,
+            bottom,
+            clear: if self.modal.to_retract_level {
+                retract
+            } else {
+                initial.max(retract)
+            },
+            peck,
+            dwell,
+            feed,
+            place,
+        };
+        let control = std::mem::replace(&mut self.modal.control, PathControl::ExactPath);
+        let mut level = now[axis];
+        if level < retract {
+            self.cycle_rapid(&cycle, None, retract)?;
+            level = retract;
+        }
+        for _ in 0..repeats {
+            match block.polar_step {
+                Some([distance, angle]) => {
+                    let to = over[0].hypot(over[1]) + distance;
+                    let (sin, cos) = (over[1].atan2(over[0]) + angle.to_radians()).sin_cos();
+                    (over[0], over[1]) = (to * cos, to * sin);
+                }
+                None => (0..3).filter(|i| *i != axis).for_each(|i| over[i] += step[i]),
+            }
+            self.cycle_rapid(&cycle, Some(&over), level)?;
+            self.cycle_rapid(&cycle, None, retract)?;
+            self.hole(&cycle)?;
+            level = cycle.clear;
+        }
+        self.modal.control = control;
+        self.spline_end = None;
+        Ok(true)
+    }
+
+    /// Takes up R, Q, P and the level of the bottom.
+    fn keep_words(&mut self, block: &Block, claims: &Claims, mode: Code, axis: usize) -> Result<(), NcError> {
+        if self.sticky.code != Some(mode) {
+            self.sticky.changed(Some(mode));
+            self.sticky.code = Some(mode);
+        }
+        let unit = self.modal.unit();
+        let length = |word: &super::block::Word| word.value * unit;
+        let levels = [claims.word(mode, "R"), block.word(AXIS_WORDS[axis])];
+        for (kept, word) in self.sticky.levels.iter_mut().zip(levels) {
+            *kept = word.map(length).or(*kept);
+        }
+        if let Some(q) = claims.word(mode, "Q") {
+            if q.value <= 0.0 {
+                return Err(q.value_error("the depth of a peck must be above 0"));
+            }
+            self.sticky.peck = Some(length(q));
+        }
+        if let Some(p) = claims.word(mode, "P") {
+            if !(0.0..=super::outputs::LONGEST_DWELL_S).contains(&p.value) {
+                return Err(p.value_error("the time must be from 0 to 86400 s (a day)"));
+            }
+            self.sticky.dwell = Some(p.value);
+        }
+        Ok(())
+    }
+
+    /// The place before the first step, and the step from hole to hole; without G91 that is none.
+    fn first_place(&self, block: &Block, axis: usize, now: &Coordinates) -> (Coordinates, Coordinates) {
+        let (mut over, mut step) = (*now, [0.0; AXES]);
+        for i in (0..3).filter(|i| *i != axis) {
+            let Some(word) = block.word(AXIS_WORDS[i]) else {
+                continue;
+            };
+            let value = word.value * self.modal.unit();
+            if self.modal.incremental {
+                step[i] = value;
+            } else {
+                over[i] = value;
+            }
+        }
+        (over, step)
+    }
+
+    /// Level before this run of cycles, in coordinates of the program.
+    fn initial_level(&mut self, axis: usize) -> f64 {
+        let level = *self.sticky.initial.get_or_insert(self.at[axis]);
+        let mut tip = self.at;
+        tip[axis] = level;
+        self.offsets.to_programmed(&tip)[axis]
+    }
+
+    fn hole(&mut self, cycle: &Cycle) -> Result<(), NcError> {
+        let Cycle {
+            retract,
+            bottom,
+            clear,
+            peck,
+            dwell,
+            place,
+            ..
+        } = *cycle;
+        if peck > 0.0 {
+            if (retract - bottom) / peck > MOST {
+                let (code, why) = (cycle.code.name(), "Q is too small for the depth of the hole");
+                return Err(Problem::Impossible { code, why }.at(place));
+            }
+            let mut depth = retract - peck;
+            while depth > bottom {
+                self.cycle_feed(cycle, depth)?;
+                if cycle.code == Code::PeckDrilling {
+                    self.cycle_rapid(cycle, None, retract)?;
+                }
+                self.cycle_rapid(cycle, None, depth + PECK_CLEARANCE)?;
+                depth -= peck;
+            }
+        }
+        self.cycle_feed(cycle, bottom)?;
+        if dwell > 0.0 {
+            self.dwell(dwell, place);
+        }
+        match cycle.code {
+            Code::BoringWithDwell => self.cycle_feed(cycle, clear),
+            Code::Boring => {
+                self.cycle_feed(cycle, retract)?;
+                self.cycle_rapid(cycle, None, clear)
+            }
+            Code::BoringWithStop => {
+                let turn = self.spindle.turns();
+                let Some(turn) = turn else {
+                    let (code, why) = (cycle.code.name(), "the spindle does not turn: write M3 before");
+                    return Err(Problem::Impossible { code, why }.at(place));
+                };
+                let event = |action| Pending {
+                    action,
+                    code: SPINDLE,
+                    place,
+                    at_rest: true,
+                };
+                self.wait(event(ProgramAction::SpindleOff));
+                self.cycle_rapid(cycle, None, clear)?;
+                self.wait(event(ProgramAction::SpindleOn(turn)));
+                Ok(())
+            }
+            _ => self.cycle_rapid(cycle, None, clear),
+        }
+    }
+
+    /// A rapid to a level, over a place or where the tip is.
+    fn cycle_rapid(&mut self, cycle: &Cycle, over: Option<&Coordinates>, level: f64) -> Result<(), NcError> {
+        let mut said = [None; AXES];
+        if let Some(over) = over {
+            (0..3).for_each(|i| said[i] = Some(over[i]));
+        }
+        said[cycle.axis] = Some(level);
+        let words = self.tip_words(said, cycle.place)?;
+        if self.learn(&words) {
+            self.rapid(Way::Line, words, cycle.place);
+        }
+        Ok(())
+    }
+
+    fn cycle_feed(&mut self, cycle: &Cycle, level: f64) -> Result<(), NcError> {
+        let mut said = [None; AXES];
+        said[cycle.axis] = Some(level);
+        let words = self.tip_words(said, cycle.place)?;
+        if self.learn(&words) {
+            self.feed_motion(Way::Line, words, cycle.feed, cycle.place);
+        }
+        Ok(())
+    }
+}

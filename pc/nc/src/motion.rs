@@ -1,0 +1,455 @@
+//! Motions: from the words of a block to where the tip or the axes go.
+
+use super::arc;
+use super::block::Block;
+use super::claims::Claims;
+use super::codes::Code;
+use super::error::{NcError, Problem, SourcePosition};
+use super::interpreter::Interpreter;
+use super::nurbs::OpenNurbs;
+use super::offsets::Coordinates;
+use super::program::{
+    AXIS_WORDS, ArcForm, ArcWay, ControlPoint, EXTENSION_WORDS, FeedRate, Motion, NurbsWay, Plane,
+    ProgramPath, Target, Way, Words,
+};
+use shared::io::AXES;
+
+impl Interpreter {
+    /// The position in the frame of the tip; the start of the program may be assumed.
+    ///
+    /// # Errors
+    /// It is not known.
+    pub(super) fn position(&mut self, axes: &[usize], place: SourcePosition) -> Result<Coordinates, NcError> {
+        if axes.iter().any(|axis| !self.known[*axis]) {
+            if self.lost {
+                return Err(Problem::UnknownPosition.at(place));
+            }
+            self.assumed.get_or_insert(place);
+        }
+        Ok(self.at)
+    }
+
+    /// The position in coordinates of the program (mm, degrees).
+    pub(super) fn programmed(
+        &mut self,
+        axes: &[usize],
+        place: SourcePosition,
+    ) -> Result<Coordinates, NcError> {
+        let at = match axes {
+            [0 | 1] if self.offsets.turned() => self.position(&[0, 1], place)?,
+            _ => self.position(axes, place)?,
+        };
+        Ok(self.offsets.to_programmed(&at))
+    }
+
+    /// Coordinates of the program that axis words say, in mm and degrees; with G91 from where the tip is.
+    pub(super) fn said(&mut self, block: &Block) -> Result<[Option<f64>; AXES], NcError> {
+        let mut said = [None; AXES];
+        for (axis, name) in AXIS_WORDS.iter().enumerate() {
+            let Some(word) = block.word(name) else { continue };
+            let value = word.value * if axis < 3 { self.modal.unit() } else { 1.0 };
+            let from = match self.modal.incremental {
+                true => self.programmed(&[axis], word.place)?[axis],
+                false => 0.0,
+            };
+            said[axis] = Some(from + value);
+        }
+        Ok(said)
+    }
+
+    /// Words of the tip for coordinates of the program.
+    pub(super) fn tip_words(
+        &mut self,
+        mut said: [Option<f64>; AXES],
+        place: SourcePosition,
+    ) -> Result<Words, NcError> {
+        if self.offsets.turned() && (said[0].is_some() != said[1].is_some()) {
+            let now = self.programmed(&[0, 1], place)?;
+            for axis in 0..2 {
+                said[axis] = said[axis].or(Some(now[axis]));
+            }
+        }
+        let tip = self.offsets.to_tip(&said.map(|value| value.unwrap_or(0.0)));
+        Ok(Words {
+            axes: std::array::from_fn(|axis| said[axis].map(|_| tip[axis])),
+            ..Words::default()
+        })
+    }
+
+    /// G53: the axes named go to their coordinates, with G0 in axis space, with G1 so that the tip goes straight; whether
+    /// that feeds.
+    pub(super) fn axes_motion(&mut self, block: &Block, place: SourcePosition) -> Result<bool, NcError> {
+        let kinematics = self.setup.kinematics.clone();
+        let feeds = match (self.modal.motion, &kinematics) {
+            (Some(Code::Rapid), _) => false,
+            (Some(Code::Feed), Some(_)) => true,
+            _ => return Err(Problem::AxesNeedRapid.at(place)),
+        };
+        if self.modal.incremental {
+            let (code, why) = ("G53", "coordinates of axes are absolute: write G90");
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
+        if let Some(word) = EXTENSION_WORDS.iter().find_map(|w| block.word(w)) {
+            return Err(Problem::Orphan(word.label()).at(word.place));
+        }
+        let mut axes = Words::of(block).axes;
+        let unit = self.modal.unit();
+        axes[..3].iter_mut().flatten().for_each(|value| *value *= unit);
+        if axes.iter().all(Option::is_none) {
+            let (code, word) = ("G53", "an axis word");
+            return Err(Problem::Missing { code, word }.at(place));
+        }
+        match kinematics.filter(|_| feeds) {
+            None => self.go_in_axes(axes, place).map(|()| false),
+            Some(kinematics) => {
+                let at = self.position(&[0, 1, 2, 3, 4, 5], place)?;
+                let mut all = kinematics.axes(&at).ok_or(Problem::UnknownPosition.at(place))?;
+                for (own, said) in all.iter_mut().zip(axes) {
+                    *own = said.unwrap_or(*own);
+                }
+                let tip = kinematics.tip(&all);
+                let fitted = self.setup.fitted;
+                let words = Words {
+                    axes: std::array::from_fn(|axis| (axis < 3 || fitted[axis]).then_some(tip[axis])),
+                    ..Words::default()
+                };
+                let turns_only = (0..3).all(|axis| !self.moves(&words, axis));
+                let feed = self.modal.feed_rate(block, Code::Feed, place, turns_only)?;
+                if self.learn(&words) {
+                    self.feed_motion(Way::Line, words, feed, place);
+                }
+                self.spline_end = None;
+                Ok(true)
+            }
+        }
+    }
+
+    /// The axes named go to these positions (mm, degrees), in axis space.
+    pub(super) fn go_in_axes(
+        &mut self,
+        axes: [Option<f64>; AXES],
+        place: SourcePosition,
+    ) -> Result<(), NcError> {
+        if let Some(pending) = self.pending.iter().find(|pending| pending.opens()) {
+            return Err(Problem::OnInAxes(pending.code).at(pending.place));
+        }
+        // In axis space the boards switch nothing on.
+        self.stand();
+        let words = Words {
+            axes,
+            ..Words::default()
+        };
+        self.rapid(Way::Axes, words, place);
+        // Where the tip is now, the program does not say; kinematics may know.
+        let kinematics = self.setup.kinematics.clone();
+        let after = kinematics.and_then(|kinematics| {
+            let mut all = kinematics.axes(&self.at)?;
+            for (own, said) in all.iter_mut().zip(axes) {
+                *own = said.unwrap_or(*own);
+            }
+            Some((kinematics.tip(&all), axes.iter().all(Option::is_some)))
+        });
+        match after {
+            Some((tip, all_said)) if !self.lost || all_said => {
+                let known = all_said || self.known.iter().all(|known| *known);
+                (self.at, self.known) = (tip, [known; AXES]);
+                self.lost &= !all_said;
+            }
+            _ => {
+                self.known = [false; AXES];
+                self.lost = true;
+            }
+        }
+        self.spline_end = None;
+        Ok(())
+    }
+
+    /// The motion of `block` in tip coordinates, if it has one; whether that feeds.
+    pub(super) fn tip_motion(&mut self, block: &Block, claims: &Claims) -> Result<bool, NcError> {
+        let own = block
+            .codes
+            .iter()
+            .find(|code| Self::opens_nurbs(code.code) || is_curve(code.code));
+        let is_motion = |word: &&super::block::Word| {
+            let address = word.address.as_str();
+            let own = |code: Code| claims.word(code, address).is_some();
+            AXIS_WORDS.contains(&address)
+                || EXTENSION_WORDS.contains(&address)
+                || self.modal.motion.is_some_and(own)
+        };
+        let first_word = block.words.iter().find(is_motion).map(|word| word.place);
+        let Some(place) = own.map(|code| code.place).or(first_word) else {
+            return Ok(false);
+        };
+        let Some(mode) = self.modal.motion else {
+            return Err(Problem::NoMotion.at(place));
+        };
+        if !self.modal.tip {
+            return Err(Problem::NotTip.at(place));
+        }
+        self.modal.closed = false;
+        if mode.is_cycle() {
+            return self.canned_cycle(block, claims, mode, place);
+        }
+        let mut said = self.said(block)?;
+        self.fill_in_rotary(&mut said);
+        let mut words = self.tip_words(said, place)?;
+        let unit = self.modal.unit();
+        words.extension = Words::of(block)
+            .extension
+            .map(|word| word.map(|value| value * unit));
+        if mode == Code::Rapid {
+            if self.learn(&words) {
+                self.rapid(Way::Line, words, place);
+            }
+            self.spline_end = None;
+            return Ok(false);
+        }
+        let turns_only = mode == Code::Feed && (0..3).all(|axis| !self.moves(&words, axis));
+        let feed = self.modal.feed_rate(block, mode, place, turns_only)?;
+        if Self::opens_nurbs(mode) {
+            self.open_nurbs(block, claims, mode, place, feed)?;
+            return Ok(true);
+        }
+        let way = match mode {
+            Code::Feed => Way::Line,
+            Code::CubicSpline | Code::QuadraticSpline => self.spline(block, claims, mode, place, &said)?,
+            _ => Way::Arc(self.arc(claims, mode, place)?),
+        };
+        if mode != Code::CubicSpline {
+            self.spline_end = None;
+        }
+        // An arc without a way is a full circle.
+        if self.learn(&words) || !Self::needs_news(&way) {
+            self.feed_motion(way, words, feed, place);
+        }
+        Ok(true)
+    }
+
+    /// Rotary axes of the first motion that it does not say.
+    fn fill_in_rotary(&mut self, said: &mut [Option<f64>; AXES]) {
+        if self.placed {
+            return;
+        }
+        let default = self.setup.rotary;
+        for axis in 0..3 {
+            if !self.known[3 + axis] && self.setup.fitted[3 + axis] {
+                said[3 + axis] = said[3 + axis].or(default[axis]);
+            }
+        }
+    }
+
+    /// The arc of G2 or G3.
+    fn arc(&mut self, claims: &Claims, mode: Code, place: SourcePosition) -> Result<ArcWay, NcError> {
+        let plane = self.modal.plane;
+        let mut way = arc::way(claims, mode, plane, place)?;
+        let unit = self.modal.unit();
+        if self.offsets.turned() && plane != Plane::Xy {
+            return Err(Problem::TiltedArc.at(place));
+        }
+        way.form = match way.form {
+            ArcForm::Radius(radius) => ArcForm::Radius(radius * unit),
+            ArcForm::Centre(offset) => {
+                let mut offset = offset.map(|value| value * unit);
+                if self.modal.absolute_centres {
+                    let in_plane: Vec<usize> = (0..3).filter(|axis| *axis != plane.axis()).collect();
+                    let now = self.programmed(&in_plane, place)?;
+                    in_plane.iter().for_each(|axis| offset[*axis] -= now[*axis]);
+                }
+                [offset[0], offset[1]] = self.offsets.direction([offset[0], offset[1]]);
+                ArcForm::Centre(offset)
+            }
+        };
+        Ok(way)
+    }
+
+    /// G5 and G5.1: one Bézier curve in the plane X Y, to the coordinates `said`.
+    fn spline(
+        &mut self,
+        block: &Block,
+        claims: &Claims,
+        mode: Code,
+        place: SourcePosition,
+        said: &[Option<f64>; AXES],
+    ) -> Result<Way, NcError> {
+        let code = mode.name();
+        let impossible = |why| Err(Problem::Impossible { code, why }.at(place));
+        if self.modal.plane != Plane::Xy {
+            return impossible("it lies in the XY plane: select it with G17");
+        }
+        if let Some(word) = ["Z", "A", "B", "C"].iter().find_map(|name| block.word(name)) {
+            return Err(Problem::Orphan(word.label()).at(word.place));
+        }
+        let unit = self.modal.unit();
+        let pair = |names: [&str; 2]| {
+            let words = names.map(|name| claims.word(mode, name));
+            let any = words.iter().any(Option::is_some);
+            any.then(|| words.map(|word| word.map_or(0.0, |word| word.value * unit)))
+        };
+        let now = self.programmed(&[0, 1], place)?;
+        let start = [now[0], now[1]];
+        let end = [said[0].unwrap_or(now[0]), said[1].unwrap_or(now[1])];
+        let first = pair(["I", "J"]);
+        let plus = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+        let inner = if mode == Code::QuadraticSpline {
+            let Some(first) = first else {
+                return impossible("I and J lead from the start to the control point");
+            };
+            vec![plus(start, first)]
+        } else {
+            let Some(last) = pair(["P", "Q"]) else {
+                return impossible("P and Q lead from the end to the second control point");
+            };
+            let smooth = self.spline_end.map(|[p, q]| [-p, -q]);
+            let Some(first) = first.or(smooth) else {
+                return impossible(
+                    "I and J lead from the start to the first control point; only after another G5 it goes on by itself",
+                );
+            };
+            self.spline_end = Some(last);
+            vec![plus(start, first), plus(end, last)]
+        };
+        let order = inner.len() + 2;
+        let mut points = vec![ControlPoint {
+            position: [None; 3],
+            weight: 1.0,
+            place,
+        }];
+        for [x, y] in inner.into_iter().chain([end]) {
+            let tip = self.offsets.to_tip(&[x, y, 0.0, 0.0, 0.0, 0.0]);
+            points.push(ControlPoint {
+                position: [Some(tip[0]), Some(tip[1]), None],
+                weight: 1.0,
+                place,
+            });
+        }
+        let knots = [0.0, 1.0].iter().flat_map(|knot| vec![*knot; order]).collect();
+        Ok(Way::Nurbs(Box::new(NurbsWay { order, points, knots })))
+    }
+
+    fn open_nurbs(
+        &mut self,
+        block: &Block,
+        claims: &Claims,
+        mode: Code,
+        place: SourcePosition,
+        feed: FeedRate,
+    ) -> Result<(), NcError> {
+        if mode == Code::UniformNurbs && self.modal.plane != Plane::Xy {
+            return Err(Problem::NurbsPlane.at(place));
+        }
+        if self.modal.incremental {
+            let (code, why) = (mode.name(), "control points are absolute: write G90");
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
+        self.nurbs = Some(OpenNurbs::begin(block, claims, mode, place, feed)?);
+        Ok(())
+    }
+
+    /// A complete NURBS, with coordinates as they are written. No motion continues after it.
+    pub(super) fn end_nurbs(&mut self, mut way: NurbsWay, mut words: Words) -> Result<(), NcError> {
+        let Some(open) = self.nurbs.take() else {
+            return Ok(());
+        };
+        let unit = self.modal.unit();
+        let mut last = [None; 3];
+        for point in &mut way.points {
+            let mut said = [None; AXES];
+            for axis in 0..3 {
+                said[axis] = point.position[axis].map(|value| value * unit);
+            }
+            // What was said of X or Y before holds on, where both are needed.
+            if self.offsets.turned() && said[0].is_some() != said[1].is_some() {
+                for axis in 0..2 {
+                    said[axis] = said[axis].or(last[axis]);
+                }
+            }
+            for axis in 0..3 {
+                last[axis] = said[axis].or(last[axis]);
+            }
+            let tip = self.tip_words(said, point.place)?;
+            point.position = [tip.axes[0], tip.axes[1], tip.axes[2]];
+        }
+        words.axes[..3].copy_from_slice(&last);
+        words.axes = self.tip_words(words.axes, open.place)?.axes;
+        words.extension = words.extension.map(|word| word.map(|value| value * unit));
+        self.learn(&words);
+        self.feed_motion(Way::Nurbs(Box::new(way)), words, open.feed, open.place);
+        self.modal.closed = self.modal.motion == Some(Code::KnotNurbs);
+        self.modal.motion = None;
+        Ok(())
+    }
+
+    pub(super) fn rapid(&mut self, way: Way, words: Words, place: SourcePosition) {
+        let target = Target {
+            way,
+            words,
+            feed: None,
+            control: self.modal.control,
+            place,
+        };
+        self.start_path(Motion::Rapid, target);
+        self.open = false;
+    }
+
+    /// Goes on along an open path, or starts one.
+    pub(super) fn feed_motion(&mut self, way: Way, words: Words, feed: FeedRate, place: SourcePosition) {
+        let target = Target {
+            way,
+            words,
+            feed: Some(feed),
+            control: self.modal.control,
+            place,
+        };
+        match self.paths.last_mut() {
+            Some(path) if self.open => {
+                let with_target = path.targets.len();
+                path.targets.push(target);
+                let waiting = self.pending.drain(..);
+                path.events
+                    .extend(waiting.map(|pending| pending.event(with_target)));
+            }
+            _ => self.start_path(Motion::Feed, target),
+        }
+        self.open = true;
+    }
+
+    fn start_path(&mut self, motion: Motion, target: Target) {
+        let dwell_before_s = self.dwell_before();
+        self.paths.push(ProgramPath {
+            dwell_before_s,
+            motion,
+            targets: vec![target],
+            events: self.pending.drain(..).map(|pending| pending.event(0)).collect(),
+            rest: None,
+        });
+    }
+
+    /// Whether `words` lead an axis elsewhere.
+    fn moves(&self, words: &Words, axis: usize) -> bool {
+        words.axes[axis].is_some_and(|value| !self.known[axis] || value != self.at[axis])
+    }
+
+    /// Takes up what `words` say; whether that is anything new.
+    pub(super) fn learn(&mut self, words: &Words) -> bool {
+        let mut new = false;
+        for axis in 0..AXES {
+            if let Some(value) = words.axes[axis] {
+                new |= self.moves(words, axis);
+                (self.at[axis], self.known[axis]) = (value, true);
+            }
+        }
+        for (own, said) in self.extension.iter_mut().zip(words.extension) {
+            if said.is_some() && *own != said {
+                *own = said;
+                new = true;
+            }
+        }
+        self.placed |= new;
+        new
+    }
+}
+
+fn is_curve(code: Code) -> bool {
+    matches!(code, Code::CubicSpline | Code::QuadraticSpline)
+}

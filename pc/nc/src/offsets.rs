@@ -1,0 +1,109 @@
+//! From coordinates of the program to the tip: coordinate systems, G52 and G92 (RS274/NGC as LinuxCNC has it).
+//!
+//! tip = offset of the system + rotation about Z · (programmed + local offset); rotary axes have offsets alone.
+
+use shared::io::AXES;
+
+/// Coordinate systems, G54 to G59.3.
+pub(super) const SYSTEMS: usize = 9;
+
+/// X Y Z \[mm\], A B C \[deg\].
+pub(super) type Coordinates = [f64; AXES];
+
+/// One coordinate system.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct System {
+    pub(super) offset: Coordinates,
+    /// About Z, counter-clockwise \[deg\].
+    pub(super) rotation: f64,
+}
+
+/// All offsets.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Offsets {
+    pub(super) systems: [System; SYSTEMS],
+    /// Index of the one that holds.
+    pub(super) active: usize,
+    /// G52 and G92, as they are kept.
+    pub(super) local: Coordinates,
+    /// Whether that holds.
+    pub(super) local_on: bool,
+}
+
+impl Offsets {
+    pub(super) fn system(&self) -> &System {
+        &self.systems[self.active]
+    }
+
+    /// G52 or G92 as it holds now.
+    pub(super) fn local_now(&self) -> Coordinates {
+        if self.local_on { self.local } else { [0.0; AXES] }
+    }
+
+    /// Whether X and Y of the program are not along those of the tip.
+    pub(super) fn turned(&self) -> bool {
+        self.system().rotation != 0.0
+    }
+
+    /// A direction in the plane X Y, turned with the system.
+    pub(super) fn direction(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        turn([x, y], self.system().rotation)
+    }
+
+    pub(super) fn to_tip(&self, programmed: &Coordinates) -> Coordinates {
+        let local = self.local_now();
+        let mut tip: Coordinates = std::array::from_fn(|i| programmed[i] + local[i]);
+        [tip[0], tip[1]] = self.direction([tip[0], tip[1]]);
+        std::array::from_fn(|i| tip[i] + self.system().offset[i])
+    }
+
+    pub(super) fn to_programmed(&self, tip: &Coordinates) -> Coordinates {
+        let local = self.local_now();
+        let from_system = self.in_system(tip);
+        std::array::from_fn(|i| from_system[i] - local[i])
+    }
+
+    /// Coordinates in the system, without the local offset.
+    pub(super) fn in_system(&self, tip: &Coordinates) -> Coordinates {
+        let mut own: Coordinates = std::array::from_fn(|i| tip[i] - self.system().offset[i]);
+        [own[0], own[1]] = turn([own[0], own[1]], -self.system().rotation);
+        own
+    }
+}
+
+fn turn([x, y]: [f64; 2], degrees: f64) -> [f64; 2] {
+    if degrees == 0.0 {
+        return [x, y];
+    }
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    [x * cos - y * sin, x * sin + y * cos]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_back_is_that_of_the_way_there() {
+        let mut offsets = Offsets::default();
+        offsets.systems[2] = System {
+            offset: [100.0, -20.0, 3.0, 10.0, 0.0, -90.0],
+            rotation: 30.0,
+        };
+        offsets.active = 2;
+        (offsets.local, offsets.local_on) = ([1.0, 2.0, 3.0, 4.0, 5.0, 6.0], true);
+        let tip = offsets.to_tip(&[10.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let (sin, cos) = 30f64.to_radians().sin_cos();
+        let expected = [
+            100.0 + 11.0 * cos - 2.0 * sin,
+            -20.0 + 11.0 * sin + 2.0 * cos,
+            6.0,
+        ];
+        for i in 0..3 {
+            assert!((tip[i] - expected[i]).abs() < 1e-12, "{tip:?}");
+        }
+        assert_eq!(tip[3..], [14.0, 5.0, -84.0]);
+        let back = offsets.to_programmed(&tip);
+        assert!((back[0] - 10.0).abs() < 1e-12 && back[1..].iter().all(|x| x.abs() < 1e-12));
+    }
+}

@@ -1,0 +1,153 @@
+//! The characters of one line, with their places.
+
+use super::error::{NcError, Problem, SourcePosition};
+use std::borrow::Cow;
+
+/// Largest number of a program: nine digits before the point. Of more, too few are left behind it.
+const LARGEST: f64 = 999_999_999.999_999_9;
+
+/// Reads a line from its start.
+#[derive(Clone, Debug)]
+pub(super) struct Scanner<'t> {
+    text: Cow<'t, str>,
+    /// Bytes that are read.
+    next: usize,
+    line: u32,
+}
+
+impl<'t> Scanner<'t> {
+    /// Line number `line`.
+    pub(super) fn new(text: &'t str, line: u32) -> Self {
+        Self {
+            text: text.into(),
+            next: 0,
+            line,
+        }
+    }
+
+    /// The next character.
+    pub(super) fn peek(&self) -> Option<char> {
+        self.text[self.next..].chars().next()
+    }
+
+    /// Goes over it.
+    pub(super) fn step(&mut self) {
+        self.next += self.peek().map_or(0, char::len_utf8);
+    }
+
+    /// Where it stands.
+    pub(super) fn place(&self) -> SourcePosition {
+        SourcePosition {
+            line: self.line,
+            column: self.text[..self.next].chars().count() as u32 + 1,
+        }
+    }
+
+    /// To come back to.
+    pub(super) fn mark(&self) -> usize {
+        self.next
+    }
+
+    /// To where [`Self::mark`] was asked.
+    pub(super) fn go_back(&mut self, mark: usize) {
+        self.next = mark;
+    }
+
+    pub(super) fn skip_blanks(&mut self) {
+        self.take(char::is_whitespace);
+    }
+
+    /// Letters, in upper case; blanks do not part them from brackets behind.
+    pub(super) fn letters(&mut self) -> String {
+        self.take(|c| c.is_ascii_alphabetic()).to_ascii_uppercase()
+    }
+
+    /// Characters as long as they are `wanted`.
+    pub(super) fn take(&mut self, wanted: impl Fn(char) -> bool) -> &str {
+        let rest = &self.text[self.next..];
+        let length = rest.find(|c| !wanted(c)).unwrap_or(rest.len());
+        let start = self.next;
+        self.next += length;
+        &self.text[start..self.next]
+    }
+
+    /// `(…)`, with the scanner at the bracket: what stands inside.
+    pub(super) fn comment(&mut self) -> Result<String, NcError> {
+        let start = self.place();
+        self.step();
+        let rest = &self.text[self.next..];
+        let Some(length) = rest.find(')') else {
+            return Err(Problem::OpenComment.at(start));
+        };
+        let inside = rest[..length].to_owned();
+        if let Some(nested) = inside.find('(') {
+            self.next += nested;
+            return Err(Problem::NestedComment.at(self.place()));
+        }
+        self.next += length + 1;
+        Ok(inside)
+    }
+
+    /// `<name>`, in lower case and without blanks.
+    pub(super) fn name(&mut self) -> Result<String, NcError> {
+        let place = self.place();
+        self.step();
+        let rest = &self.text[self.next..];
+        let length = rest.find('>').ok_or(Problem::OpenName.at(place))?;
+        let name: String = rest[..length].chars().filter(|c| !c.is_whitespace()).collect();
+        if name.is_empty() {
+            return Err(Problem::NoName.at(place));
+        }
+        self.next += length + 1;
+        Ok(name.to_lowercase())
+    }
+
+    /// `NAME=`, where a name is letters and digits; nothing is consumed if there is none.
+    pub(super) fn address(&mut self) -> Option<String> {
+        let start = self.next;
+        let letters = self.take(|c| c.is_ascii_alphabetic()).to_ascii_uppercase();
+        let name = letters + self.take(|c| c.is_ascii_digit());
+        self.skip_blanks();
+        if self.peek() == Some('=') {
+            self.step();
+            return Some(name);
+        }
+        self.next = start;
+        None
+    }
+
+    /// Sign, digits, point, digits; at least one digit, with blanks in between. Nothing is consumed if there is none.
+    pub(super) fn number(&mut self) -> Result<Option<f64>, NcError> {
+        let place = self.place();
+        let rest = &self.text.as_bytes()[self.next..];
+        let mut digits = 0;
+        let mut point = false;
+        let mut length = 0;
+        for (index, byte) in rest.iter().enumerate() {
+            match byte {
+                b'+' | b'-' if index == 0 => {}
+                b'0'..=b'9' => digits += 1,
+                b'.' if !point => point = true,
+                b' ' | b'\t' => continue,
+                _ => break,
+            }
+            length = index + 1;
+        }
+        if digits == 0 {
+            return Ok(None);
+        }
+        let text = &self.text[self.next..self.next + length];
+        let value: f64 = match text.parse() {
+            Ok(value) => value,
+            Err(_) => {
+                let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+                text.parse().unwrap_or(f64::INFINITY)
+            }
+        };
+        self.next += length;
+        if value.abs() > LARGEST {
+            return Err(Problem::TooLarge("this value".to_owned()).at(place));
+        }
+        Ok(Some(value))
+    }
+}

@@ -1,0 +1,69 @@
+//! What a program begins with: choices of the operator, and what the machine brings along.
+
+use super::program::{PathControl, Plane};
+use shared::io::AXES;
+use std::fmt::Debug;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Choices of the operator, and the machine's.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Blocks that start with `/` are left out.
+    pub block_delete: bool,
+    /// M1 stops the machine.
+    pub optional_stop: bool,
+    /// What the machine brings along.
+    pub setup: Arc<Setup>,
+}
+
+/// Modes that hold at the start, and what of the machine a program can ask for.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// Where the tip is when the program begins: X Y Z \[mm\], A B C \[deg\]. A program that relies on it says so
+    /// ([`crate::Program::assumes`]).
+    pub start: [f64; AXES],
+    /// X Y Z are the tip from the start, without a G43.4.
+    pub tip_control: bool,
+    /// Lengths are inches until G21.
+    pub inches: bool,
+    /// Plane of arcs.
+    pub plane: Plane,
+    /// How closely the way is followed.
+    pub control: PathControl,
+    /// A B C of the first motion of the tip, where it does not say them \[deg\]; they stay as they are otherwise.
+    pub rotary: [Option<f64>; 3],
+    /// Axes that the machine has: those that G28 and G30 move.
+    pub fitted: [bool; AXES],
+    /// Axes at G28 and G30 (mm, degrees).
+    pub homes: [[f64; AXES]; 2],
+    /// Where subroutines in files of their own are.
+    pub folders: Vec<PathBuf>,
+    /// From axes to the tip; without it a program has to say where the tip is after motions of axes.
+    pub kinematics: Option<Arc<dyn TipAndAxes>>,
+}
+
+impl Default for Setup {
+    fn default() -> Self {
+        Self {
+            start: [0.0; AXES],
+            tip_control: true,
+            inches: false,
+            plane: Plane::default(),
+            control: PathControl::default(),
+            rotary: [None; 3],
+            fitted: [true; AXES],
+            homes: [[0.0; AXES]; 2],
+            folders: Vec::new(),
+            kinematics: None,
+        }
+    }
+}
+
+/// Kinematics of a machine as programs see them: X Y Z \[mm\] of tip or axes, A B C \[deg\] as the axes stand.
+pub trait TipAndAxes: Debug + Send + Sync {
+    /// The tip of axes.
+    fn tip(&self, axes: &[f64; AXES]) -> [f64; AXES];
+    /// The axes of a tip, if the machine can go there.
+    fn axes(&self, tip: &[f64; AXES]) -> Option<[f64; AXES]>;
+}

@@ -1,0 +1,121 @@
+//! Canned cycles, motion by motion.
+
+use super::*;
+
+/// Rapid or feed, and X and Z where they are said.
+fn motions(body: &str) -> Vec<(bool, Option<f64>, Option<f64>)> {
+    let program = run(body).unwrap();
+    let targets = program.paths[2..].iter().flat_map(|path| &path.targets);
+    targets
+        .map(|target| (target.feed.is_some(), target.words.axes[0], target.words.axes[2]))
+        .collect()
+}
+
+fn down(z: f64) -> (bool, Option<f64>, Option<f64>) {
+    (true, None, Some(z))
+}
+
+fn up(z: f64) -> (bool, Option<f64>, Option<f64>) {
+    (false, None, Some(z))
+}
+
+fn over(x: f64, z: f64) -> (bool, Option<f64>, Option<f64>) {
+    (false, Some(x), Some(z))
+}
+
+#[test]
+fn holes_are_drilled_one_after_the_other_from_the_level_before() {
+    let expected = [up(10.0), over(5.0, 10.0), up(2.0), down(-3.0), up(10.0)];
+    assert_eq!(motions("F100\nG0 Z10\nG98 G81 X5 Z-3 R2\nM2"), expected);
+    let expected = [
+        up(10.0),
+        over(5.0, 10.0),
+        up(2.0),
+        down(-3.0),
+        up(2.0),
+        over(6.0, 2.0),
+        down(-3.0),
+        up(2.0),
+    ];
+    assert_eq!(motions("F100\nG0 Z10\nG99 G81 X5 Z-3 R2\nX6\nM2"), expected);
+    // From below, first up; G91 steps from hole to hole.
+    let expected = [
+        up(2.0),
+        over(4.0, 2.0),
+        down(-1.0),
+        up(2.0),
+        over(8.0, 2.0),
+        down(-1.0),
+        up(2.0),
+    ];
+    assert_eq!(motions("F100\nG91 G81 X4 R2 Z-3 L2\nM2"), expected);
+}
+
+#[test]
+fn pecks_go_down_by_q() {
+    let expected = [
+        over(1.0, 0.0),
+        down(-2.0),
+        up(0.0),
+        up(-1.746),
+        down(-3.0),
+        up(0.0),
+    ];
+    assert_eq!(motions("F100\nG83 X1 R0 Z-3 Q2\nM2"), expected);
+    let expected = [over(1.0, 0.0), down(-2.0), up(-1.746), down(-3.0), up(0.0)];
+    assert_eq!(motions("F100\nG73 X1 R0 Z-3 Q2\nM2"), expected);
+    let problem = |body: &str| super::problem(body).0;
+    assert!(matches!(
+        problem("F100\nG83 X1 R0 Z-3\nM2"),
+        Problem::Missing {
+            code: "G83",
+            word: "Q"
+        }
+    ));
+    assert!(matches!(
+        problem("F100\nG83 X1 R0 Z-3 Q1e\nM2"),
+        Problem::NoNumber(_)
+    ));
+    assert!(matches!(
+        problem("F100\nG83 X1 R0 Z-3 Q.00001\nM2"),
+        Problem::Impossible { .. }
+    ));
+    assert!(matches!(
+        problem("F100\nG81 X1 R-4 Z-3\nM2"),
+        Problem::Impossible { .. }
+    ));
+    assert!(matches!(
+        problem("F100\nG81 X1 Z-3\nM2"),
+        Problem::Missing {
+            code: "G81",
+            word: "R"
+        }
+    ));
+}
+
+#[test]
+fn boring_feeds_back_or_stops_the_spindle() {
+    assert_eq!(
+        motions("F100\nG85 X1 R0 Z-3\nG80\nM2"),
+        [over(1.0, 0.0), down(-3.0), down(0.0)]
+    );
+    let program = run("F100 S500 M3\nG86 X1 R0 Z-3 P1\nG0 Z5\nM2").unwrap();
+    let events: Vec<_> = program
+        .paths
+        .iter()
+        .flat_map(|path| &path.events)
+        .map(|event| event.action)
+        .collect();
+    let expected = [
+        ProgramAction::SpindleSpeed(500.0),
+        ProgramAction::SpindleOn(Turn::Clockwise),
+        ProgramAction::SpindleOff,
+        ProgramAction::SpindleOn(Turn::Clockwise),
+        ProgramAction::SpindleOff,
+    ];
+    assert_eq!(events, expected);
+    assert!(matches!(
+        problem("F100\nG84 X1 R0 Z-3\nM2").0,
+        Problem::RefusedCode { .. }
+    ));
+}
