@@ -106,6 +106,8 @@ pub enum Parsed {
     Block(Block),
 }
 
+/// Most bytes of a line: more is no program.
+const LONGEST_LINE: usize = 10_000;
 /// Letters and names that are words of the dialect, besides G, M and N.
 const WORDS: [&str; 21] = [
     "X", "Y", "Z", "A", "B", "C", "I", "J", "K", "R", "F", "P", "L", "E", "Q", "S", "T", "H", "D", "@", "^",
@@ -136,6 +138,9 @@ pub(super) fn parse(
     lookup: &mut dyn Lookup,
 ) -> Result<Parsed, NcError> {
     let mut scanner = Scanner::new(text, line);
+    if text.len() > LONGEST_LINE {
+        return Err(Problem::LongLine(LONGEST_LINE).at(scanner.place()));
+    }
     scanner.skip_blanks();
     match scanner.peek() {
         None => return Ok(Parsed::Blank),

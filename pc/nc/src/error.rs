@@ -34,6 +34,9 @@ pub enum Problem {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(String),
+    /// No line of a program.
+    #[error("the line has more than {0} bytes: this is no NC program, or its ends of lines are missing")]
+    LongLine(usize),
     /// No character of the dialect.
     #[error("'{0}' is not understood here")]
     Character(char),

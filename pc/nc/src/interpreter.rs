@@ -10,7 +10,7 @@ use super::nurbs::{OpenNurbs, Progress};
 use super::offsets::{Coordinates, Offsets};
 use super::outputs::{Pending, Spindle, coolant, dwell, output};
 use super::parameters::Parameters;
-use super::program::{Motion, Notice, Program, ProgramAction, ProgramPath, Way};
+use super::program::{Motion, Notice, Program, ProgramAction, ProgramPath};
 use super::reading::RemainingBlocks;
 use super::saved_modes::Saved;
 use super::setup::Setup;
@@ -128,7 +128,7 @@ impl Interpreter {
         self.modal.block(block, &claims, &setup)?;
         self.save_modes(block)?;
         self.switch(block, &claims)?;
-        self.tool_words(block, &claims)?;
+        self.system_and_tool(block, &claims)?;
         let feeds = match block.code(Group::NonModal) {
             Some(code) if code.code == Code::MachineAxes => self.axes_motion(block, code.place)?,
             Some(code) if code.code != Code::Dwell => {
@@ -340,16 +340,6 @@ impl Interpreter {
     /// The time to stand before the next path \[s\].
     pub(super) fn dwell_before(&mut self) -> f64 {
         self.dwell.take().map_or(0.0, |(time, _)| time)
-    }
-
-    /// Whether the way of a motion with this code is a NURBS of several blocks.
-    pub(super) fn opens_nurbs(code: Code) -> bool {
-        matches!(code, Code::UniformNurbs | Code::KnotNurbs)
-    }
-
-    /// Whether nothing is done on a way of this kind where it leads nowhere.
-    pub(super) fn needs_news(way: &Way) -> bool {
-        matches!(way, Way::Line)
     }
 }
 

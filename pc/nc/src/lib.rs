@@ -1,7 +1,7 @@
 //! NC programs: RS274/NGC text in the dialect known from LinuxCNC.
 //!
 //! ```text
-//! text → reading (lines, loops, subroutines) → block (words with their values) → interpreter → Program
+//! text → reader (lines, loops, subroutines) → block (words with their values) → interpreter → Program
 //! ```
 //!
 //! What is understood stands in `docs/nc.md`; all else is an error with its line and column, never skipped.
@@ -27,6 +27,7 @@ mod outputs;
 mod parameters;
 mod polar;
 mod program;
+mod reader;
 mod reading;
 mod saved_modes;
 mod scanner;

@@ -169,7 +169,7 @@ impl Interpreter {
         let own = block
             .codes
             .iter()
-            .find(|code| Self::opens_nurbs(code.code) || is_curve(code.code));
+            .find(|code| opens_nurbs(code.code) || is_curve(code.code));
         let is_motion = |word: &&super::block::Word| {
             let address = word.address.as_str();
             let own = |code: Code| claims.word(code, address).is_some();
@@ -207,7 +207,7 @@ impl Interpreter {
         }
         let turns_only = mode == Code::Feed && (0..3).all(|axis| !self.moves(&words, axis));
         let feed = self.modal.feed_rate(block, mode, place, turns_only)?;
-        if Self::opens_nurbs(mode) {
+        if opens_nurbs(mode) {
             self.open_nurbs(block, claims, mode, place, feed)?;
             return Ok(true);
         }
@@ -220,7 +220,7 @@ impl Interpreter {
             self.spline_end = None;
         }
         // An arc without a way is a full circle.
-        if self.learn(&words) || !Self::needs_news(&way) {
+        if self.learn(&words) || way != Way::Line {
             self.feed_motion(way, words, feed, place);
         }
         Ok(true)
@@ -452,4 +452,9 @@ impl Interpreter {
 
 fn is_curve(code: Code) -> bool {
     matches!(code, Code::CubicSpline | Code::QuadraticSpline)
+}
+
+/// Whether a motion with this code is a NURBS of several blocks.
+fn opens_nurbs(code: Code) -> bool {
+    matches!(code, Code::UniformNurbs | Code::KnotNurbs)
 }

@@ -11,7 +11,7 @@ use shared::io::AXES;
 
 impl Interpreter {
     /// Coordinate system and tool length.
-    pub(super) fn tool_words(&mut self, block: &Block, claims: &Claims) -> Result<(), NcError> {
+    pub(super) fn system_and_tool(&mut self, block: &Block, claims: &Claims) -> Result<(), NcError> {
         if let Some(code) = block.code(Group::Offset)
             && let Code::System(number) = code.code
         {

@@ -132,6 +132,7 @@ fn expressions_are_those_of_linuxcnc() {
     ));
     let deep = format!("G0 X{}1\nM2", "[".repeat(5000));
     assert!(matches!(problem(&deep), (Problem::TooDeep { .. }, 1)));
+    assert_eq!(problem(&"()".repeat(500_000)), (Problem::LongLine(10_000), 1));
 }
 
 #[test]
