@@ -146,7 +146,6 @@ impl Interpreter {
                 None => 800.0,
             }),
             "_task" => Some(0.0),
-            "_vmajor" => None,
             _ => None,
         }
     }

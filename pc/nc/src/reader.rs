@@ -232,21 +232,11 @@ impl Reader {
                 Open::Repeat(..) => ("repeat", "endrepeat"),
             };
             let label = open.label().to_owned();
-            return Err(Problem::FlowEnd {
-                label,
-                keyword,
-                wanted,
-            }
-            .at(here));
+            return Err(no_end(label, keyword, wanted, here));
         }
         if self.position.levels.len() > 1 {
             let (label, keyword, wanted) = (String::new(), "sub", "endsub, return or M99");
-            return Err(Problem::FlowEnd {
-                label,
-                keyword,
-                wanted,
-            }
-            .at(here));
+            return Err(no_end(label, keyword, wanted, here));
         }
         if self.position.seen {
             let text = "the program ends without M2 or M30: it is taken to end here".to_owned();
@@ -391,12 +381,7 @@ impl Reader {
             .rposition(|open| open.loops() && open.label() == word.label);
         let Some(index) = found else {
             let (label, wanted) = (word.label.clone(), "loop around it");
-            return Err(Problem::FlowEnd {
-                label,
-                keyword,
-                wanted,
-            }
-            .at(word.place));
+            return Err(no_end(label, keyword, wanted, word.place));
         };
         open.truncate(index + 1);
         Ok(())
@@ -414,12 +399,7 @@ impl Reader {
         let own = open.filter(|open| fits(open) && open.label() == word.label);
         own.ok_or_else(|| {
             let label = word.label.clone();
-            Problem::FlowEnd {
-                label,
-                keyword,
-                wanted,
-            }
-            .at(word.place)
+            no_end(label, keyword, wanted, word.place)
         })
     }
 
@@ -458,12 +438,7 @@ impl Reader {
             }
         }
         let label = word.label.clone();
-        Err(Problem::FlowEnd {
-            label,
-            keyword,
-            wanted,
-        }
-        .at(word.place))
+        Err(no_end(label, keyword, wanted, word.place))
     }
 
     /// M98 and M99.
@@ -530,12 +505,7 @@ impl Reader {
         if self.position.levels.len() == 1 {
             let label = word.label.clone();
             let (keyword, wanted) = ("return or endsub", "call that led here");
-            return Err(Problem::FlowEnd {
-                label,
-                keyword,
-                wanted,
-            }
-            .at(word.place));
+            return Err(no_end(label, keyword, wanted, word.place));
         }
         self.pop()?;
         self.interpreter.set_result(value);
@@ -606,6 +576,16 @@ impl Reader {
         let label = label.to_owned();
         Err(Problem::NoSubroutine { label }.at(place))
     }
+}
+
+/// The other end of a loop, condition or subroutine is missing.
+fn no_end(label: String, keyword: &'static str, wanted: &'static str, place: SourcePosition) -> NcError {
+    Problem::FlowEnd {
+        label,
+        keyword,
+        wanted,
+    }
+    .at(place)
 }
 
 /// The O word of a line, without its values. Of a line that is not understood nothing.
