@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// Deepest nesting of subroutines.
 const DEEPEST: usize = 32;
-/// Most lines that a program runs with loops and subroutines.
+/// Most lines that are read of a program with loops and subroutines, with those that are passed over.
 const MOST_LINES: u64 = 1_000_000;
 
 /// A loop or condition that is open.
@@ -85,7 +85,7 @@ pub(super) struct Position {
     seen: bool,
     /// Lines that were run.
     pub(super) executed: u64,
-    /// Of these, in programs with loops or subroutines.
+    /// Lines that were read since the first loop or subroutine.
     repeated: u64,
 }
 
@@ -163,6 +163,10 @@ impl Reader {
         match read {
             Ok(Some(text)) => {
                 self.interpreter.line = line;
+                self.position.repeated += u64::from(self.interpreter.branches);
+                if self.position.repeated > MOST_LINES {
+                    return Err(Problem::Endless(MOST_LINES).at(SourcePosition { line, column: 1 }));
+                }
                 Ok(Some(text))
             }
             Ok(None) => {
@@ -196,12 +200,6 @@ impl Reader {
         };
         let here = self.position.here();
         self.position.executed += 1;
-        if self.interpreter.branches {
-            self.position.repeated += 1;
-            if self.position.repeated > MOST_LINES {
-                return Err(Problem::Endless(MOST_LINES).at(here));
-            }
-        }
         let parsed = parse(&text, here.line, self.options.block_delete, &mut self.interpreter)?;
         let seen = self.position.seen;
         self.position.seen |= parsed != Parsed::Blank;

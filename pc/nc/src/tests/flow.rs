@@ -70,6 +70,10 @@ fn subroutines_may_be_in_files_of_their_own() {
 
 #[test]
 fn what_does_not_end_is_told() {
+    // Lines that are passed over count, too.
+    let passed = "G1 X1\n".repeat(3000);
+    let passed = format!("o1 while [1]\no2 if [0]\n{passed}o2 endif\no1 endwhile\nM2");
+    assert!(matches!(problem(&passed).0, Problem::Endless(_)));
     assert!(matches!(
         problem("o1 while [1]\n#1=1\no1 endwhile\nM2").0,
         Problem::Endless(_)
