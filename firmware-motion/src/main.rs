@@ -2,6 +2,7 @@
 //!
 //! | task | runs at | priority | body |
 //! |---|---|---|---|
+//! | `switch` | between two servo ticks | 5 | [`tasks::servo`]: lines that the path switches then |
 //! | `servo_tick` | 4 kHz | 4 | [`tasks::servo`]: gratings → PID → drives, trips, beams |
 //! | `path_tick` | 1 kHz | 3 | [`tasks::path`]: pose along the path → kinematics → references |
 //! | `planning` | after path ticks on a path | 2 | [`tasks::planning`]: a turn of planning ahead |
@@ -33,7 +34,10 @@ fn main() {}
 #[allow(unsafe_code)]
 #[rtic::app(device = crate::board::device, peripherals = false)]
 mod app {
-    use crate::board::{self, Tick, Watchdog, motion::Axes};
+    use crate::board::{
+        self, Tick, Watchdog,
+        motion::{Axes, ProcessLines},
+    };
     use crate::tasks::{self, Controller, Network, PathTask, PlanningTask, Published, Servo};
     use heapless::spsc::Queue;
 
@@ -41,6 +45,8 @@ mod app {
     struct Shared {
         /// Servo loops, and who is alive; the servo tick has the last word.
         servo: Servo,
+        /// Gates and digital outputs.
+        lines: ProcessLines,
         /// State machine, path, homing; a request locks it for one step.
         controller: &'static mut Controller,
         /// What path ticks and turns of planning take.
@@ -77,6 +83,7 @@ mod app {
         controller.set_permit_us(board::PERMIT_US);
         let shared = Shared {
             servo: Servo::new(),
+            lines: board.lines,
             controller,
             times: tasks::Times::new(),
         };
@@ -92,12 +99,20 @@ mod app {
         (shared, local)
     }
 
-    #[task(binds = SERVO_TICK, priority = 4, shared = [servo], local = [axes, watchdog, servo_tick])]
-    fn servo_tick(mut cx: servo_tick::Context) {
+    #[task(binds = SysTick, priority = 5, shared = [lines])]
+    fn switch(mut cx: switch::Context) {
+        cx.shared.lines.lock(ProcessLines::switch);
+    }
+
+    #[task(binds = SERVO_TICK, priority = 4, shared = [servo, lines], local = [axes, watchdog, servo_tick])]
+    fn servo_tick(cx: servo_tick::Context) {
         let elapsed = cx.local.servo_tick.acknowledge();
-        cx.shared
-            .servo
-            .lock(|servo| tasks::servo::tick(servo, cx.local.axes, cx.local.watchdog, elapsed));
+        let began_us = cx.local.servo_tick.began_us();
+        let (mut servo, mut lines) = (cx.shared.servo, cx.shared.lines);
+        let local = cx.local;
+        servo.lock(|servo| {
+            tasks::servo::tick(servo, local.axes, &mut lines, local.watchdog, (began_us, elapsed));
+        });
     }
 
     #[task(binds = PATH_TICK, priority = 3, shared = [servo, controller, times], local = [path_tick, path])]

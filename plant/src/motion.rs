@@ -2,10 +2,15 @@
 
 use crate::machines::MACHINES;
 use crate::motor::{Motors, RunningMotor};
-use shared::io::{Command, DacCode, Feedback, MOTORS, MotionCommand, MotionFeedback, SIDES};
+use shared::io::{
+    Bits, Command, DacCode, Feedback, MOTORS, MotionCommand, MotionFeedback, PROCESS_INPUTS, SIDES,
+};
 
 /// The machine where none is named.
 pub const DEFAULT_MACHINE: &str = MACHINES[0].0;
+
+/// All inputs of the process on.
+const ANSWERS: Bits = Bits((1 << PROCESS_INPUTS) - 1);
 
 /// Drives, gratings and beams behind a motion board. A motor that the machine does not have counts nothing,
 /// closes no switch and stays at 0.
@@ -59,8 +64,13 @@ impl MotionPlant {
             dac,
             beam_gate,
             beam_power,
+            ..
         } = command;
-        let mut feedback = Feedback::default();
+        // The process answers whatever it is asked.
+        let mut feedback = Feedback {
+            process: ANSWERS,
+            ..Feedback::NONE
+        };
         for side in 0..SIDES {
             let told = if beam_gate[side] {
                 beam_power[side]
@@ -125,7 +135,8 @@ mod tests {
         let feedback = run(&mut plant, &ignored, 400);
         let dark = MotionFeedback {
             beam_power: [Some(DacCode::ZERO); SIDES],
-            ..MotionFeedback::default()
+            process: ANSWERS,
+            ..MotionFeedback::NONE
         };
         assert_eq!(feedback, dark);
         assert_eq!(plant.truth(), before);

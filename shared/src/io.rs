@@ -4,6 +4,7 @@
 //! A board crate turns these into registers; the emulated board turns them into a step of its plant. The
 //! control laws know nothing else of the machine.
 
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 /// Servo drives of the motion board, in this order everywhere: X1, X2, Y, Z, A, B, C.
@@ -16,6 +17,16 @@ pub const SLIDES: usize = 4;
 pub const ESTOP_CHANNELS: usize = 2;
 /// Sides of the seam, each with a beam, a camera and a pair of slides.
 pub const SIDES: usize = 2;
+/// Digital outputs of the motion board for the process: gas, wire feed, whatever the machine file names.
+pub const OUTPUTS: usize = 8;
+/// Analog outputs of the motion board for the process.
+pub const ANALOG_OUTPUTS: usize = 2;
+/// Inputs of the motion board by which the process answers: arc on, gas flows, wire moves, cooling runs.
+pub const PROCESS_INPUTS: usize = 4;
+/// Levels that are set on the path: the powers of the beams, then the analog outputs.
+pub const LEVELS: usize = SIDES + ANALOG_OUTPUTS;
+/// Lines that are switched on the path: the gates of the beams, then the digital outputs.
+pub const LINES: usize = SIDES + OUTPUTS;
 
 /// Names of the motors, in the order of [`MOTORS`].
 pub const MOTOR_NAMES: [&str; MOTORS] = ["X1", "X2", "Y", "Z", "A", "B", "C"];
@@ -75,6 +86,151 @@ impl Bits {
     }
 }
 
+/// Gates of the beams and digital outputs, one bit a line: bit 0 and 1 are the gates, the outputs follow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Lines(pub u16);
+
+impl Lines {
+    /// Everything off.
+    pub const NONE: Self = Self(0);
+    /// The gates of the beams.
+    pub const GATES: Self = Self((1 << SIDES) - 1);
+
+    /// The gates of the beams, nothing else.
+    pub fn of_gates(gates: [bool; SIDES]) -> Self {
+        let mut lines = Self::NONE;
+        for (line, on) in gates.into_iter().enumerate() {
+            lines.set(line, on);
+        }
+        lines
+    }
+
+    /// Whether line `index` is on.
+    pub fn get(self, index: usize) -> bool {
+        self.0 & (1 << index) != 0
+    }
+
+    /// Switches line `index`.
+    pub fn set(&mut self, index: usize, on: bool) {
+        if on {
+            self.0 |= 1 << index;
+        } else {
+            self.0 &= !(1 << index);
+        }
+    }
+
+    /// The gates.
+    pub fn gates(self) -> [bool; SIDES] {
+        core::array::from_fn(|side| self.get(side))
+    }
+
+    /// The digital outputs.
+    pub fn outputs(self) -> Bits {
+        Bits((self.0 >> SIDES) as u8)
+    }
+
+    /// The lines that are on both here and in `mask`.
+    #[must_use]
+    pub fn only(self, mask: Self) -> Self {
+        Self(self.0 & mask.0)
+    }
+}
+
+/// Most instants of a tick at which lines are switched; what comes after joins the last.
+pub const CHANGES: usize = 4;
+
+/// Lines that change within a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineChange {
+    /// After the tick began \[µs\].
+    pub after_us: u16,
+    /// All lines from then on.
+    pub lines: Lines,
+}
+
+/// What the lines do within a tick, in order of time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineChanges([Option<LineChange>; CHANGES]);
+
+impl LineChanges {
+    /// Nothing.
+    pub const NONE: Self = Self([None; CHANGES]);
+
+    /// Adds an instant, not before the last one.
+    pub fn push(&mut self, change: LineChange) {
+        let free = self.0.iter_mut().find(|place| place.is_none());
+        match free {
+            Some(place) => *place = Some(change),
+            None => {
+                self.0[CHANGES - 1] = Some(LineChange {
+                    lines: change.lines,
+                    ..self.0[CHANGES - 1].unwrap_or(change)
+                })
+            }
+        }
+    }
+
+    /// The instants, in order.
+    pub fn iter(&self) -> impl Iterator<Item = LineChange> + '_ {
+        self.0.iter().flatten().copied()
+    }
+}
+
+/// A line that was switched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Switched {
+    /// Its number: 0 and 1 are the gates, the digital outputs follow.
+    pub line: u8,
+    /// On or off.
+    pub on: bool,
+    /// When, after the period of the tick began \[µs\].
+    pub at_us: u16,
+}
+
+/// The first lines that were switched within a tick.
+pub type SwitchedLines = [Option<Switched>; CHANGES];
+
+/// Lines as a board holds them, with a note of what was switched and when.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HeldLines {
+    now: Lines,
+    noted: SwitchedLines,
+}
+
+impl HeldLines {
+    /// Everything off.
+    pub const NONE: Self = Self {
+        now: Lines::NONE,
+        noted: [None; CHANGES],
+    };
+
+    /// From `at_us` after the tick began the lines are `lines`.
+    pub fn set(&mut self, lines: Lines, at_us: u16) {
+        let changed = Lines(self.now.0 ^ lines.0);
+        self.now = lines;
+        for line in (0..LINES).filter(|line| changed.get(*line)) {
+            let switched = Switched {
+                line: line as u8,
+                on: lines.get(line),
+                at_us,
+            };
+            if let Some(place) = self.noted.iter_mut().find(|place| place.is_none()) {
+                *place = Some(switched);
+            }
+        }
+    }
+
+    /// The lines now.
+    pub fn now(&self) -> Lines {
+        self.now
+    }
+
+    /// What was switched since the last call.
+    pub fn take(&mut self) -> SwitchedLines {
+        core::mem::take(&mut self.noted)
+    }
+}
+
 /// Inputs of `N` drives, latched together at one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feedback<const N: usize> {
@@ -95,20 +251,31 @@ pub struct Feedback<const N: usize> {
     /// Power that the source of each side gives, in the scale of [`Command::beam_power`]; `None` where it is not measured
     /// (motion board).
     pub beam_power: [Option<DacCode>; SIDES],
+    /// Inputs of the process that are on, bit 0 the first (motion board).
+    pub process: Bits,
+    /// Lines that were switched in the period that ends with this tick (motion board).
+    pub switched: SwitchedLines,
+}
+
+impl<const N: usize> Feedback<N> {
+    /// Nothing moves, nothing is pressed.
+    pub const NONE: Self = Self {
+        counts: [0; N],
+        mark: [None; N],
+        limit_plus: Bits::NONE,
+        limit_minus: Bits::NONE,
+        drive_fault: Bits::NONE,
+        estop: [false; ESTOP_CHANNELS],
+        laser_fault: [false; SIDES],
+        beam_power: [None; SIDES],
+        process: Bits::NONE,
+        switched: [None; CHANGES],
+    };
 }
 
 impl<const N: usize> Default for Feedback<N> {
     fn default() -> Self {
-        Self {
-            counts: [0; N],
-            mark: [None; N],
-            limit_plus: Bits::NONE,
-            limit_minus: Bits::NONE,
-            drive_fault: Bits::NONE,
-            estop: [false; ESTOP_CHANNELS],
-            laser_fault: [false; SIDES],
-            beam_power: [None; SIDES],
-        }
+        Self::NONE
     }
 }
 
@@ -123,6 +290,12 @@ pub struct Command<const N: usize> {
     pub beam_gate: [bool; SIDES],
     /// Beam power, per side (motion board); only 0…32767.
     pub beam_power: [DacCode; SIDES],
+    /// Digital outputs that are on, bit 0 the first (motion board).
+    pub outputs: Bits,
+    /// Analog outputs (motion board).
+    pub analog: [DacCode; ANALOG_OUTPUTS],
+    /// How gates and digital outputs change before the next tick (motion board).
+    pub changes: LineChanges,
 }
 
 impl<const N: usize> Command<N> {
@@ -132,7 +305,21 @@ impl<const N: usize> Command<N> {
         dac: [DacCode::ZERO; N],
         beam_gate: [false; SIDES],
         beam_power: [DacCode::ZERO; SIDES],
+        outputs: Bits::NONE,
+        analog: [DacCode::ZERO; ANALOG_OUTPUTS],
+        changes: LineChanges::NONE,
     };
+
+    /// Gates and digital outputs at the tick.
+    pub fn lines(&self) -> Lines {
+        Lines(Lines::of_gates(self.beam_gate).0 | u16::from(self.outputs.0) << SIDES)
+    }
+
+    /// Sets gates and digital outputs.
+    pub fn set_lines(&mut self, lines: Lines) {
+        self.beam_gate = lines.gates();
+        self.outputs = lines.outputs();
+    }
 }
 
 /// Inputs of the motion board at a servo tick.
@@ -154,5 +341,35 @@ mod tests {
         assert_eq!(DacCode::from_ratio(-500.0, 100.0), DacCode(-32767));
         assert_eq!(DacCode::from_ratio(1.0, -100.0), DacCode(-328));
         assert_eq!(DacCode::from_ratio(f64::NAN, 100.0), DacCode::ZERO);
+    }
+
+    #[test]
+    fn more_instants_than_there_are_places_join_the_last_one() {
+        let mut changes = LineChanges::NONE;
+        for k in 0..6 {
+            changes.push(LineChange {
+                after_us: 10 * k,
+                lines: Lines(k),
+            });
+        }
+        let last = changes.iter().last().unwrap();
+        assert_eq!(
+            (changes.iter().count(), last.after_us, last.lines),
+            (4, 30, Lines(5))
+        );
+    }
+
+    #[test]
+    fn what_is_switched_is_noted_once_with_its_time() {
+        let mut lines = HeldLines::NONE;
+        lines.set(Lines(0b101), 7);
+        lines.set(Lines(0b101), 20);
+        lines.set(Lines(0b100), 31);
+        let note = |line, on, at_us| Some(Switched { line, on, at_us });
+        assert_eq!(
+            lines.take(),
+            [note(0, true, 7), note(2, true, 7), note(0, false, 31), None]
+        );
+        assert_eq!((lines.take(), lines.now()), ([None; CHANGES], Lines(0b100)));
     }
 }

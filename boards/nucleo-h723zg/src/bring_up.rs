@@ -3,13 +3,14 @@
 use crate::ethernet::Parts;
 use crate::spi::Bus;
 use crate::{Watchdog, clocks, handlers, outputs, supply, timebase};
+use cortex_m::peripheral::SYST;
 use defmt_rtt as _;
 use embassy_stm32::{peripherals, rcc};
 
-/// Starts watchdog, clocks, time and the bus of the converters, and clocks the tick timers. All outputs are off
+/// Starts watchdog, clocks, time and the bus of the converters, and clocks the tick timers; the core's own timer is free. All outputs are off
 /// since reset; the network, which may take half a second, is left to be started when nothing else is.
-pub(crate) fn start(mut core: cortex_m::Peripherals) -> (Watchdog, Bus, Parts) {
-    outputs::kill();
+pub(crate) fn start(mut core: cortex_m::Peripherals) -> (Watchdog, Bus, Parts, SYST) {
+    outputs::switch_off();
     board_faults::guard_stack(&mut core);
     // Should anything below hang, the board restarts.
     let watchdog = Watchdog::start();
@@ -34,5 +35,5 @@ pub(crate) fn start(mut core: cortex_m::Peripherals) -> (Watchdog, Bus, Parts) {
         tx_enable: p.PG11,
         tx0: p.PG13,
     };
-    (watchdog, bus, parts)
+    (watchdog, bus, parts, core.SYST)
 }

@@ -31,6 +31,11 @@ impl Snapshot {
         Self(core::array::from_fn(|port| gpio::port(port as u8).idr().read().0))
     }
 
+    /// Which of the lines at `pins` are high.
+    pub(crate) fn high<const N: usize>(&self, pins: &[Pin; N]) -> Bits {
+        Bits(!self.all_open(pins).0 & ((1 << N) - 1))
+    }
+
     /// Whether the loop at `pin` is open.
     pub(crate) fn open(&self, pin: Pin) -> bool {
         self.0[usize::from(pin.port)] & 1 << pin.number == 0

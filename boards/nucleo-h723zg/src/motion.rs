@@ -1,12 +1,14 @@
 //! What a motion board has: seven drives with gratings, two beams, two ticks, a network, a watchdog.
 
+use crate::clocks::CORE_MHZ;
 use crate::encoders::{self, Encoder};
 use crate::inputs::{self, Snapshot};
-use crate::outputs::{Outputs, output};
-use crate::pins::{BEAM_GATES, LASERS_READY, MOTION, mask};
-use crate::{Network, Tick, Watchdog, bring_up};
+use crate::outputs::{Outputs, output, switch_line};
+use crate::pins::{BEAM_GATES, LASERS_READY, MOTION, PROCESS_INPUTS, PROCESS_OUTPUTS, mask};
+use crate::{Network, Tick, Watchdog, bring_up, gpio, timebase};
+use board_switching::{Switching, SysTick};
 use embassy_stm32::pac;
-use shared::io::{Bits, MOTORS, MotionCommand, MotionFeedback, SIDES};
+use shared::io::{Bits, HeldLines, LEVELS, Lines, MOTORS, MotionCommand, MotionFeedback, SIDES};
 
 /// IPv4 address of the board.
 pub const ADDRESS: [u8; 4] = [192, 168, 71, 11];
@@ -23,7 +25,7 @@ const PATH_PERIOD_US: u32 = 1000;
 /// Servo ticks from one reading back of a converter's output to the next: a millisecond.
 const READ_BACK_EVERY: u32 = PATH_PERIOD_US / SERVO_PERIOD_US;
 
-/// Converters: seven velocities on the first two, beam powers on the third.
+/// Converters: seven velocities on the first two, beam powers and analog outputs on the third.
 const CHIPS: usize = 3;
 /// First output of the third converter.
 const FIRST_POWER: usize = 8;
@@ -38,8 +40,10 @@ pub struct Board {
     pub servo_tick: Tick,
     /// Path tick, 1 kHz, in phase with every fourth servo tick.
     pub path_tick: Tick,
-    /// Drives, gratings and beams.
+    /// Drives, gratings and levels.
     pub axes: Axes,
+    /// Gates of the beams and digital outputs.
+    pub lines: ProcessLines,
     /// Ethernet port.
     pub network: Network,
     /// Watchdog.
@@ -48,13 +52,24 @@ pub struct Board {
 
 /// Sets the board up, outputs off. Both timers run when it returns.
 pub fn init(core: cortex_m::Peripherals) -> Board {
-    let (watchdog, bus, parts) = bring_up::start(core);
+    let (watchdog, bus, parts, timer) = bring_up::start(core);
     inputs::start(&MOTION, &LASERS_READY);
+    for pin in PROCESS_INPUTS {
+        gpio::input(pin);
+    }
+    for pin in PROCESS_OUTPUTS {
+        gpio::Output::new(pin, false);
+    }
     let [gate_1, gate_2] = BEAM_GATES;
     let [x1, x2, y, z, a, b, c] = MOTION.enable;
     let axes = Axes {
         outputs: Outputs::start(bus, &[x1, x2, y, z, a, b, c, gate_1, gate_2], READ_BACK_EVERY),
         encoders: core::array::from_fn(|motor| Encoder::start(&MOTION.encoders[motor])),
+    };
+    let lines = ProcessLines {
+        switching: Switching::new(SysTick::new(timer, CORE_MHZ)),
+        held: HeldLines::NONE,
+        began_us: 0,
     };
     let network = Network::start(parts);
     let [servo_tick, path_tick] = Tick::start([(pac::TIM6, SERVO_PERIOD_US), (pac::TIM7, PATH_PERIOD_US)]);
@@ -62,6 +77,7 @@ pub fn init(core: cortex_m::Peripherals) -> Board {
         servo_tick,
         path_tick,
         axes,
+        lines,
         network,
         watchdog,
     }
@@ -81,6 +97,7 @@ impl Axes {
         let inputs = Snapshot::take();
         inputs.fill(&MOTION, &mut feedback);
         feedback.laser_fault = LASERS_READY.map(|pin| inputs.open(pin));
+        feedback.process = inputs.high(&PROCESS_INPUTS);
         if self.outputs.failed() {
             feedback.drive_fault = Bits(ALL_DRIVES);
         }
@@ -95,12 +112,15 @@ impl Axes {
                 on |= mask(&[*gate]);
             }
         }
-        let mut codes = [(output(0), 0); MOTORS + SIDES];
+        let mut codes = [(output(0), 0); MOTORS + LEVELS];
         for (motor, code) in command.dac.iter().enumerate() {
             codes[motor] = (output(motor), code.0);
         }
         for (side, power) in command.beam_power.iter().enumerate() {
             codes[MOTORS + side] = (output(FIRST_POWER + side), power.0.max(0));
+        }
+        for (index, level) in command.analog.iter().enumerate() {
+            codes[MOTORS + SIDES + index] = (output(FIRST_POWER + SIDES + index), level.0.max(0));
         }
         self.outputs.apply(ENABLES | mask(&BEAM_GATES), on, &codes);
     }
@@ -108,5 +128,51 @@ impl Axes {
     /// True positions: a real machine does not know them.
     pub fn truth(&self) -> Option<[f64; MOTORS]> {
         None
+    }
+}
+
+/// Gates and digital outputs, which are switched at ticks and between them.
+pub struct ProcessLines {
+    switching: Switching<SysTick>,
+    held: HeldLines,
+    /// When the period of the last servo tick began.
+    began_us: u64,
+}
+
+impl ProcessLines {
+    /// Tells `feedback` what was switched in the period that has just ended.
+    pub fn read(&mut self, feedback: &mut MotionFeedback) {
+        feedback.switched = self.held.take();
+    }
+
+    /// Sets the lines at a servo tick whose period began at `began_us`, after [`Axes::write`], and switches them as
+    /// `command` says until the next one.
+    pub fn write(&mut self, command: &MotionCommand, began_us: u64) {
+        self.began_us = began_us;
+        let since_us = self.since_us();
+        self.set(command.lines(), since_us);
+        if let Some(lines) = self.switching.arm(&command.changes, since_us) {
+            self.set(lines, since_us);
+        }
+    }
+
+    /// The interrupt between two ticks.
+    pub fn switch(&mut self) {
+        let since_us = self.since_us();
+        if let Some(lines) = self.switching.due(since_us) {
+            self.set(lines, since_us);
+        }
+    }
+
+    fn set(&mut self, lines: Lines, since_us: u16) {
+        let pins = BEAM_GATES.iter().chain(&PROCESS_OUTPUTS).enumerate();
+        for (line, pin) in pins {
+            switch_line(*pin, lines.get(line));
+        }
+        self.held.set(lines, since_us);
+    }
+
+    fn since_us(&self) -> u16 {
+        u16::try_from(timebase::now_us() - self.began_us).unwrap_or(u16::MAX)
     }
 }

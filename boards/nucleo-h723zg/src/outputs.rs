@@ -2,20 +2,47 @@
 
 use crate::clocks::Wait;
 use crate::gpio::{self, Output as Line};
-use crate::pins::{DAC_CLEAR, DAC_LOAD, DAC_SYNC, HEARTBEAT, OUTPUT_MASK, OUTPUT_PORT, Pin, mask};
+use crate::pins::{
+    DAC_CLEAR, DAC_LOAD, DAC_SYNC, HEARTBEAT, OUTPUT_MASK, OUTPUT_PORT, PROCESS_OUTPUTS, Pin, mask,
+};
 use crate::spi::Bus;
 use ad5764r::{Bank, Channel, Output, ReadBack};
+use core::sync::atomic::{AtomicBool, Ordering};
 use defmt::Display2Format;
 use embassy_stm32::pac::gpio::regs::Bsrr;
 
-/// Enables, gates, triggers and heartbeat low with one store, then all converters to 0 V.
+/// Set for good once everything was switched off.
+static DEAD: AtomicBool = AtomicBool::new(false);
+
+/// Everything off for good.
 pub(crate) fn kill() {
+    DEAD.store(true, Ordering::Relaxed);
+    switch_off();
+}
+
+/// Enables, gates, triggers and heartbeat low with one store, then all converters to 0 V and the outputs of the process off.
+pub(crate) fn switch_off() {
     gpio::port(OUTPUT_PORT)
         .bsrr()
         .write_value(Bsrr(u32::from(OUTPUT_MASK) << 16));
     gpio::port(DAC_CLEAR.port)
         .bsrr()
         .write_value(Bsrr(1 << (DAC_CLEAR.number + 16)));
+    for pin in PROCESS_OUTPUTS {
+        store(pin, false);
+    }
+}
+
+/// Sets one line.
+fn store(pin: Pin, on: bool) {
+    let bit = 1 << pin.number;
+    let store = if on { bit } else { bit << 16 };
+    gpio::port(pin.port).bsrr().write_value(Bsrr(store));
+}
+
+/// Switches one line between two ticks, as long as the converters are sound.
+pub(crate) fn switch_line(pin: Pin, on: bool) {
+    store(pin, on && !DEAD.load(Ordering::Relaxed));
 }
 
 /// Output `index` of a row of chips with four channels each.

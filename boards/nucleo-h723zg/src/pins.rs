@@ -138,6 +138,10 @@ pub const BEAM_GATES: [Pin; 2] = pins(["PF10", "PF14"]);
 pub const PERMITS: [Pin; 2] = pins(["PF10", "PF14"]);
 /// Laser sources ready, motion board: high; low is a fault or a broken wire.
 pub const LASERS_READY: [Pin; 2] = pins(["PA4", "PB12"]);
+/// Digital outputs of the process, motion board, high is on. Not on [`OUTPUT_PORT`], which is full.
+pub const PROCESS_OUTPUTS: [Pin; 8] = pins(["PE0", "PE10", "PE12", "PE14", "PE15", "PG10", "PG12", "PG14"]);
+/// Inputs by which the process answers, motion board: high is on.
+pub const PROCESS_INPUTS: [Pin; 4] = pins(["PB8", "PB9", "PB10", "PB11"]);
 /// Camera triggers of the tracker board, rising edge exposes. On [`OUTPUT_PORT`].
 pub const CAMERA_TRIGGERS: [Pin; 2] = pins(["PF7", "PF8"]);
 /// Alternates at every tick that set its outputs, both boards: feeds the charge pump that lets enables and

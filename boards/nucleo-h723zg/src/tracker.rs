@@ -42,7 +42,7 @@ pub struct Board {
 
 /// Sets the board up, outputs off. The timer runs when it returns.
 pub fn init(core: cortex_m::Peripherals) -> Board {
-    let (watchdog, bus, parts) = bring_up::start(core);
+    let (watchdog, bus, parts, _) = bring_up::start(core);
     inputs::start(&TRACKER, &[]);
     let [camera_1, camera_2] = CAMERA_TRIGGERS;
     let [u1, v1, u2, v2] = TRACKER.enable;

@@ -46,7 +46,12 @@ fn boards() -> [Vec<(String, Pin)>; 2] {
         used(
             &MOTION,
             3,
-            &[("gate", &BEAM_GATES), ("laser ready", &LASERS_READY)],
+            &[
+                ("gate", &BEAM_GATES),
+                ("laser ready", &LASERS_READY),
+                ("output", &PROCESS_OUTPUTS),
+                ("input", &PROCESS_INPUTS),
+            ],
         ),
         used(
             &TRACKER,

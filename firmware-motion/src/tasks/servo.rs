@@ -1,7 +1,11 @@
 //! The servo tick: read the gratings, run the loops, write the drives; feed the watchdog if all others live.
 
 use super::ALIVE_SUPERVISION;
-use crate::board::{self, Watchdog, motion::Axes};
+use crate::board::{
+    self, Watchdog,
+    motion::{Axes, ProcessLines},
+};
+use rtic::Mutex;
 use shared::alive_supervision::AliveSupervision;
 use shared::execution_time::ExecutionTime;
 use shared::motion::ServoLoops;
@@ -27,13 +31,21 @@ impl Servo {
     }
 }
 
-/// One servo tick.
-pub fn tick(servo: &mut Servo, axes: &mut Axes, watchdog: &mut Watchdog, elapsed: u32) {
+/// One servo tick, whose period began at `began_us`, `elapsed` after the last.
+pub fn tick(
+    servo: &mut Servo,
+    axes: &mut Axes,
+    lines: &mut impl Mutex<T = ProcessLines>,
+    watchdog: &mut Watchdog,
+    (began_us, elapsed): (u64, u32),
+) {
     let begin = board::cycles();
-    let feedback = axes.read();
+    let mut feedback = axes.read();
+    lines.lock(|lines| lines.read(&mut feedback));
     let truth = axes.truth();
     let command = servo.loops.tick(&feedback, truth, elapsed);
     axes.write(&command);
+    lines.lock(|lines| lines.write(&command, began_us));
     if servo.alive.tick() {
         watchdog.feed();
     }

@@ -6,5 +6,7 @@
 mod motion;
 mod tracker;
 
-pub use motion::{BeamConfig, MotionConfig, ReadbackConfig};
+pub use motion::{
+    AnalogConfig, BeamConfig, MotionConfig, OutputConfig, ProcessInputConfig, ProcessIo, ReadbackConfig,
+};
 pub use tracker::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};

@@ -3,7 +3,7 @@
 //! Rotary axes and motors take degrees wherever linear ones take mm; the built forms hold radians.
 
 use crate::control::{GantryConfig, MotorConfig};
-use crate::io::{AXES, MOTORS, SIDES};
+use crate::io::{ANALOG_OUTPUTS, AXES, MOTORS, OUTPUTS, PROCESS_INPUTS, SIDES};
 use crate::kinematics::{AxisConfig, AxisLimits, Kinematics, KinematicsConfig};
 use crate::parameter::ParameterError;
 use postcard_schema::Schema;
@@ -22,6 +22,8 @@ pub struct MotionConfig {
     pub gantry: Option<GantryConfig>,
     /// Beam 1 and 2, or whatever else the process switches: an arc, a spindle.
     pub beams: [Option<BeamConfig>; SIDES],
+    /// What the board switches, sets and looks at for the process besides.
+    pub process: ProcessIo,
     /// A running path, or homing, stops when nothing was received from the PC for this long \[ms\].
     pub link_timeout_ms: u32,
 }
@@ -61,6 +63,42 @@ pub struct ReadbackConfig {
     pub tolerance: f64,
     /// For how long \[ms\]: longer than the source takes to follow its command, and the measurement that.
     pub time_ms: u32,
+}
+
+/// Outputs and inputs of the process; none of what the machine does not have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, Schema)]
+pub struct ProcessIo {
+    /// Digital outputs.
+    pub outputs: [Option<OutputConfig>; OUTPUTS],
+    /// Analog outputs.
+    pub analog: [Option<AnalogConfig>; ANALOG_OUTPUTS],
+    /// Inputs by which the process answers.
+    pub inputs: [Option<ProcessInputConfig>; PROCESS_INPUTS],
+}
+
+/// A digital output of the process.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, Schema)]
+pub struct OutputConfig {
+    /// It is on only while this beam is open, 0 or 1: wire that would run on without its arc.
+    pub follows_beam: Option<u8>,
+}
+
+/// An analog output of the process.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct AnalogConfig {
+    /// Value at +10 V, in whatever unit programs use.
+    pub value_at_10v: f64,
+    /// It is 0 V but while this beam is open, 0 or 1.
+    pub follows_beam: Option<u8>,
+}
+
+/// An input by which the process answers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct ProcessInputConfig {
+    /// The line that it answers: 0 and 1 are the gates of the beams, the digital outputs follow.
+    pub answers: u8,
+    /// The machine stops where the input is off for longer than this while the line is on \[ms\].
+    pub within_ms: u32,
 }
 
 impl BeamConfig {

@@ -1,10 +1,13 @@
-//! Gates and powers of the beams, and the tracking flag, over the path.
+//! Gates and powers of the beams, outputs of the process and the tracking flag, over the path.
 
-use super::segment::BeamOutput;
-use crate::config::BeamConfig;
-use crate::io::{DacCode, SIDES};
+use super::levels::Level;
+use super::outputs::{OutputLimits, Outputs, beam_owner};
+use super::segment::ProcessOutput;
+use crate::config::{BeamConfig, ProcessIo};
+use crate::io::{LineChange, LineChanges, Lines, SIDES};
 use crate::parameter::{ParameterError, not_negative, positive};
-use crate::protocol::{PathAction, PathEvent};
+use crate::protocol::{Channel, PathAction, PathEvent};
+use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::SpeedState;
 use heapless::Deque;
 
@@ -25,30 +28,23 @@ pub type EventQueue = Deque<PathEvent, EVENTS>;
 pub struct BeamLimits {
     /// None where the machine has no such beam.
     beams: [Option<Limits>; SIDES],
+    outputs: OutputLimits,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Limits {
-    power_at_10v_w: f64,
     min_speed_mm_s: f64,
     overlap_mm: f64,
     stays_on_at_rest: bool,
 }
 
 impl BeamLimits {
-    /// Checks the parameters of the beams that the machine has.
-    pub fn build(configs: &[Option<BeamConfig>; SIDES]) -> Result<Self, ParameterError> {
-        let mut beams = [None; SIDES];
-        for (side, (config, owner)) in configs.iter().zip(["beam 1", "beam 2"]).enumerate() {
-            let Some(config) = config else { continue };
-            beams[side] = Some(Limits {
-                power_at_10v_w: positive(owner, "power_at_10v_w", config.power_at_10v_w)?,
-                min_speed_mm_s: not_negative(owner, "min_speed_mm_s", config.min_speed_mm_s)?,
-                overlap_mm: not_negative(owner, "overlap_mm", config.overlap_mm)?,
-                stays_on_at_rest: config.stays_on_at_rest,
-            });
-        }
-        Ok(Self { beams })
+    /// Checks the parameters of the beams and outputs that the machine has.
+    pub fn build(beams: &[Option<BeamConfig>; SIDES], process: &ProcessIo) -> Result<Self, ParameterError> {
+        Ok(Self {
+            beams: build_beams(beams)?,
+            outputs: OutputLimits::build(beams, process)?,
+        })
     }
 
     /// Whether the machine has the beam of `side`.
@@ -56,10 +52,9 @@ impl BeamLimits {
         self.beams.get(usize::from(side)).is_some_and(Option::is_some)
     }
 
-    /// Power of the beam of `side` at +10 V \[W\], if the machine has it.
-    pub fn most_power_w(&self, side: u8) -> Option<f64> {
-        let beam = self.beams.get(usize::from(side))?.as_ref()?;
-        Some(beam.power_at_10v_w)
+    /// Of the outputs of the process, and of the powers.
+    pub fn outputs(&self) -> &OutputLimits {
+        &self.outputs
     }
 
     /// How far the beam of `side` goes over again after a hold \[mm\]; `None` if it stays on in a hold.
@@ -88,6 +83,21 @@ impl BeamLimits {
     }
 }
 
+fn build_beams(configs: &[Option<BeamConfig>; SIDES]) -> Result<[Option<Limits>; SIDES], ParameterError> {
+    let mut beams = [None; SIDES];
+    for (side, config) in configs.iter().enumerate() {
+        let Some(config) = config else { continue };
+        let owner = beam_owner(side);
+        positive(owner, "power_at_10v_w", config.power_at_10v_w)?;
+        beams[side] = Some(Limits {
+            min_speed_mm_s: not_negative(owner, "min_speed_mm_s", config.min_speed_mm_s)?,
+            overlap_mm: not_negative(owner, "overlap_mm", config.overlap_mm)?,
+            stays_on_at_rest: config.stays_on_at_rest,
+        });
+    }
+    Ok(beams)
+}
+
 /// What the machine is doing, as far as it matters to the beams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
@@ -108,7 +118,10 @@ pub struct Beams {
     open: [Option<SpeedState>; SIDES],
     /// The override has made the machine slower than it may be with the beam on, or may still do so for so many ticks.
     held_back: [u16; SIDES],
-    power_w: [f64; SIDES],
+    /// For how many ticks each may stay on below its least speed, and has.
+    at_rest: [u32; SIDES],
+    rested: [u32; SIDES],
+    outputs: Outputs,
     tracking: bool,
 }
 
@@ -118,18 +131,34 @@ impl Beams {
         on: [None; SIDES],
         open: [None; SIDES],
         held_back: [0; SIDES],
-        power_w: [0.0; SIDES],
+        at_rest: [0; SIDES],
+        rested: [0; SIDES],
+        outputs: Outputs::NONE,
         tracking: false,
     };
 
-    /// For a new path: everything off but what stays on between two paths.
+    /// For a new path: everything off but what stays on between two paths, and the outputs of the process.
     pub fn restart(&mut self, limits: &BeamLimits) {
         let before = *self;
         *self = Self::NONE;
-        for side in (0..SIDES).filter(|side| limits.stays_on(*side)) {
-            self.on[side] = before.on[side];
-            self.power_w[side] = before.power_w[side];
+        self.outputs = before.outputs;
+        for side in 0..SIDES {
+            if limits.stays_on(side) {
+                self.on[side] = before.on[side];
+            } else {
+                *self.outputs.level(Channel::Power(side as u8)) = Level::ZERO;
+            }
         }
+    }
+
+    /// The path ends at `s_mm`: levels stay as they are there.
+    pub fn settle(&mut self, s_mm: f64) {
+        self.outputs.settle(s_mm);
+    }
+
+    /// Nobody is there to switch the outputs of the process any more.
+    pub fn outputs_off(&mut self) {
+        self.outputs = Outputs::NONE;
     }
 
     /// Whether anything is on that stays on at rest.
@@ -140,16 +169,38 @@ impl Beams {
     /// Takes every event at or before path position `s_mm` from `events`.
     pub fn pass(&mut self, events: &mut EventQueue, s_mm: f64) {
         while let Some(event) = events.front().filter(|event| event.s_mm <= s_mm) {
+            let s_mm = event.s_mm;
             match event.action {
                 PathAction::Beam { side, on: true } => {
-                    self.on[usize::from(side)].get_or_insert(event.s_mm);
+                    self.on[usize::from(side)].get_or_insert(s_mm);
+                    self.rested[usize::from(side)] = 0;
                 }
                 PathAction::Beam { side, on: false } => {
                     self.on[usize::from(side)] = None;
                     self.open[usize::from(side)] = None;
                 }
-                PathAction::Power { side, watt } => self.power_w[usize::from(side)] = watt,
+                PathAction::Power { side, watt } => {
+                    self.outputs.level(Channel::Power(side)).lead(s_mm, watt, 0.0);
+                }
                 PathAction::Tracking { on } => self.tracking = on,
+                PathAction::Output { output, on } => self.outputs.switch(output, on),
+                PathAction::Level {
+                    channel,
+                    value,
+                    over_mm,
+                } => {
+                    self.outputs.level(channel).lead(s_mm, value, over_mm);
+                }
+                PathAction::BySpeed {
+                    channel,
+                    full_mm_s,
+                    least,
+                } => {
+                    self.outputs.level(channel).by_speed(full_mm_s, least);
+                }
+                PathAction::AtRest { side, ms } => {
+                    self.at_rest[usize::from(side)] = (f64::from(ms) / (PATH_PERIOD_S * 1e3)) as u32;
+                }
             }
             events.pop_front();
         }
@@ -206,36 +257,99 @@ impl Beams {
         self.tracking
     }
 
-    /// What goes to the beams: a gate is open only where the path asks for it, the source is sound, and either
-    /// a path runs not slower than the beam's least speed, or the beam is one that stays on. `closed` are kept off
-    /// besides.
+    /// What goes to beams and outputs in the millisecond from `now` on, at whose end the path is at `then_s`: a gate is open
+    /// only where the path asks for it, the source is sound, and either a path runs not slower than the beam's least
+    /// speed, or the beam is one that stays on. `closed` are kept off besides. Of `events` those are switched that
+    /// the path comes to meanwhile.
     pub fn output(
         &self,
         limits: &BeamLimits,
         activity: Activity,
-        speed_mm_s: f64,
+        now: &SpeedState,
         closed: [bool; SIDES],
-    ) -> BeamOutput {
-        let mut output = BeamOutput::OFF;
-        for (side, beam) in limits.beams.iter().enumerate() {
-            let Some(beam) = beam else { continue };
+        (events, then_s): (&EventQueue, f64),
+    ) -> ProcessOutput {
+        if activity == Activity::Off {
+            return ProcessOutput::OFF;
+        }
+        let may = core::array::from_fn(|side| {
             let allowed = match activity {
-                Activity::Running => limits.fast_enough(side, speed_mm_s),
-                Activity::Waiting => beam.stays_on_at_rest,
+                Activity::Running => limits.fast_enough(side, now.v) || self.may_rest(side),
+                Activity::Waiting => limits.stays_on(side),
                 Activity::Off => false,
             };
-            output.gate[side] = allowed && self.on[side].is_some() && !closed[side];
-            if output.gate[side] {
-                output.power[side] = DacCode::from_ratio(self.power_w[side].max(0.0), beam.power_at_10v_w);
+            allowed && limits.beams[side].is_some() && !closed[side]
+        });
+        let lines = self.lines(limits, may);
+        let changes = match activity {
+            Activity::Running => self.changes(limits, events, [now.s, then_s], may),
+            Activity::Waiting | Activity::Off => LineChanges::NONE,
+        };
+        let mut output = ProcessOutput {
+            lines,
+            changes,
+            ..ProcessOutput::OFF
+        };
+        output.levels = self.outputs.codes(&limits.outputs, now, output.gates());
+        output
+    }
+
+    fn may_rest(&self, side: usize) -> bool {
+        self.rested[side] < self.at_rest[side]
+    }
+
+    /// The lines, where the beams of `may` may be on.
+    fn lines(&self, limits: &BeamLimits, may: [bool; SIDES]) -> Lines {
+        let gates = core::array::from_fn(|side| may[side] && self.on[side].is_some());
+        self.outputs.lines(&limits.outputs, gates)
+    }
+
+    /// How the lines change within the millisecond in which the path goes from one s to the other.
+    fn changes(
+        &self,
+        limits: &BeamLimits,
+        events: &EventQueue,
+        [from, to]: [f64; 2],
+        may: [bool; SIDES],
+    ) -> LineChanges {
+        let mut changes = LineChanges::NONE;
+        let mut ahead = *self;
+        for event in events.iter().take_while(|event| event.s_mm < to) {
+            match event.action {
+                PathAction::Beam { side, on } => {
+                    ahead.on[usize::from(side)] = on.then_some(event.s_mm);
+                }
+                PathAction::Output { output, on } => ahead.outputs.switch(output, on),
+                _ => continue,
+            }
+            let part = (event.s_mm - from) / (to - from);
+            let change = LineChange {
+                after_us: libm::round(part.clamp(0.0, 1.0) * PATH_PERIOD_S * 1e6) as u16,
+                lines: ahead.lines(limits, may),
+            };
+            changes.push(change);
+        }
+        changes
+    }
+
+    /// Counts a tick of the beams that are on below their least speed.
+    pub fn rest(&mut self, limits: &BeamLimits, gates: [bool; SIDES], speed_mm_s: f64) {
+        for side in 0..SIDES {
+            if limits.fast_enough(side, speed_mm_s) {
+                self.rested[side] = 0;
+            } else if gates[side] {
+                self.rested[side] = self.rested[side].saturating_add(1);
             }
         }
-        output
     }
 }
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
+    use crate::io::DacCode;
+    use std::vec::Vec;
 
     fn limits() -> BeamLimits {
         let beam = BeamConfig {
@@ -245,7 +359,7 @@ mod tests {
             stays_on_at_rest: false,
             readback: None,
         };
-        BeamLimits::build(&[Some(beam.clone()), Some(beam)]).unwrap()
+        BeamLimits::build(&[Some(beam.clone()), Some(beam)], &ProcessIo::default()).unwrap()
     }
 
     fn queue(events: &[PathEvent]) -> EventQueue {
@@ -276,6 +390,19 @@ mod tests {
         },
     ];
 
+    /// What goes out at a place and a speed, the path not going on.
+    fn output(beams: &Beams, activity: Activity, v: f64, closed: [bool; SIDES]) -> ProcessOutput {
+        let now = SpeedState {
+            v,
+            ..SpeedState::at_rest(0.0)
+        };
+        beams.output(&limits(), activity, &now, closed, (&EventQueue::new(), 0.0))
+    }
+
+    fn gates(beams: &Beams, activity: Activity, v: f64, closed: [bool; SIDES]) -> [bool; SIDES] {
+        output(beams, activity, v, closed).lines.gates()
+    }
+
     #[test]
     fn gate_opens_at_its_event_and_closes_at_its_event() {
         let (mut beams, mut events) = (Beams::NONE, queue(&PASSED));
@@ -287,29 +414,78 @@ mod tests {
             (20.0, false),
         ] {
             beams.pass(&mut events, s);
-            let output = beams.output(&limits(), Activity::Running, 80.0, [false; 2]);
-            assert_eq!(output.gate, [open, false], "at {s}");
-            assert_eq!(output.power[0], if open { DacCode(16384) } else { DacCode::ZERO });
+            let output = output(&beams, Activity::Running, 80.0, [false; 2]);
+            assert_eq!(output.lines.gates(), [open, false], "at {s}");
+            assert_eq!(
+                output.levels[0],
+                if open { DacCode(16384) } else { DacCode::ZERO }
+            );
         }
         assert!(beams.tracking() && events.is_empty());
+    }
+
+    #[test]
+    fn within_a_millisecond_lines_change_when_the_path_is_there() {
+        let (beams, events) = (Beams::NONE, queue(&PASSED));
+        let now = SpeedState {
+            v: 80.0,
+            ..SpeedState::at_rest(9.96)
+        };
+        let output = |then| beams.output(&limits(), Activity::Running, &now, [false; 2], (&events, then));
+        let instants: Vec<(u16, Lines)> = output(10.04)
+            .changes
+            .iter()
+            .map(|change| (change.after_us, change.lines))
+            .collect();
+        assert_eq!(instants, [(500, Lines(1))]);
+        assert_eq!(output(10.0).changes, LineChanges::NONE);
+        assert_eq!(
+            output(10.04).levels[0],
+            DacCode::ZERO,
+            "its power is set by an event before it"
+        );
+        // Not where a beam may not be on.
+        let closed = beams.output(&limits(), Activity::Running, &now, [true; 2], (&events, 10.04));
+        assert_eq!(closed.gates(), [false; 2]);
+    }
+
+    #[test]
+    fn a_beam_that_may_rest_is_on_below_its_least_speed_for_so_long() {
+        let mut beams = Beams::NONE;
+        let rest = PathEvent {
+            s_mm: 0.0,
+            action: PathAction::AtRest { side: 0, ms: 3 },
+        };
+        beams.pass(&mut queue(&[rest, PASSED[1]]), 15.0);
+        let mut open = || {
+            let gates = gates(&beams, Activity::Running, 0.0, [false; 2]);
+            beams.rest(&limits(), gates, 0.0);
+            gates[0]
+        };
+        assert_eq!(
+            [open(), open(), open(), open(), open()],
+            [true, true, true, false, false]
+        );
+        beams.rest(&limits(), [true, false], 80.0);
+        assert!(
+            gates(&beams, Activity::Running, 0.0, [false; 2])[0],
+            "it was fast enough meanwhile"
+        );
+        assert!(
+            !gates(&beams, Activity::Waiting, 0.0, [false; 2])[0],
+            "not in a hold"
+        );
     }
 
     #[test]
     fn gate_stays_closed_when_slow_unarmed_or_faulty() {
         let mut beams = Beams::NONE;
         beams.pass(&mut queue(&PASSED), 15.0);
-        assert!(!beams.output(&limits(), Activity::Running, 4.9, [false; 2]).gate[0]);
-        assert!(!beams.output(&limits(), Activity::Waiting, 80.0, [false; 2]).gate[0]);
-        assert!(
-            !beams
-                .output(&limits(), Activity::Running, 80.0, [true, false])
-                .gate[0]
-        );
-        assert!(
-            beams
-                .output(&limits(), Activity::Running, 5.0, [false, true])
-                .gate[0]
-        );
+        let open = |activity, v, closed| gates(&beams, activity, v, closed)[0];
+        assert!(!open(Activity::Running, 4.9, [false; 2]));
+        assert!(!open(Activity::Waiting, 80.0, [false; 2]));
+        assert!(!open(Activity::Running, 80.0, [true, false]));
+        assert!(open(Activity::Running, 5.0, [false, true]));
     }
 
     #[test]
@@ -321,7 +497,7 @@ mod tests {
             stays_on_at_rest: true,
             readback: None,
         };
-        let limits = BeamLimits::build(&[Some(spindle), None]).unwrap();
+        let limits = BeamLimits::build(&[Some(spindle), None], &ProcessIo::default()).unwrap();
         let mut beams = Beams::NONE;
         let on = PathEvent {
             s_mm: 0.0,
@@ -330,7 +506,11 @@ mod tests {
         beams.pass(&mut queue(&[on]), 0.0);
         assert!(beams.stay_on(&limits));
         beams.restart(&limits);
-        let gate = |activity| beams.output(&limits, activity, 0.0, [false; 2]).gate;
+        let rest = SpeedState::at_rest(0.0);
+        let gate = |activity| {
+            let output = beams.output(&limits, activity, &rest, [false; 2], (&EventQueue::new(), 0.0));
+            output.lines.gates()
+        };
         assert_eq!(gate(Activity::Waiting), [true, false]);
         assert_eq!(gate(Activity::Running), [true, false]);
         assert_eq!(gate(Activity::Off), [false, false]);
@@ -350,7 +530,7 @@ mod tests {
             ..good.clone()
         };
         assert_eq!(
-            BeamLimits::build(&[Some(good), Some(bad)]),
+            BeamLimits::build(&[Some(good), Some(bad)], &ProcessIo::default()),
             Err(ParameterError::new("beam 2", "power_at_10v_w", 0.0))
         );
     }

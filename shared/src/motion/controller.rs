@@ -14,11 +14,12 @@ use super::beams::Beams;
 use super::homing::{Homing, HomingStep};
 use super::machine::Machine;
 use super::permit::{BeamLease, Permits};
+use super::process_inputs::Missing;
 use super::segment::{MotorReference, Segment};
 use super::servo::{ServoOrder, ServoReport, ServoSetup};
 use super::superimposed::Superimposed;
 use crate::control::UNATTENDED_S;
-use crate::io::{AXES, MOTORS, SIDES};
+use crate::io::{AXES, MOTORS, PROCESS_INPUTS, SIDES};
 use crate::kinematics::AXIS_UNIT;
 use crate::kinematics::Kinematics;
 use crate::protocol::{Datagram, MotionSample, PathState};
@@ -108,6 +109,8 @@ pub struct MotionController {
     tick_us: u64,
     servo_ticks: (u32, u32, u32),
     vibration: [Vibration; MOTORS],
+    /// Answers of the process that are missing.
+    missing: Missing,
 }
 
 impl Default for MotionController {
@@ -155,6 +158,7 @@ impl MotionController {
             tick_us: 0,
             servo_ticks: (0, 0, 0),
             vibration: [Vibration::NONE; MOTORS],
+            missing: [0; PROCESS_INPUTS],
         }
     }
 
@@ -234,12 +238,12 @@ impl MotionController {
         }
         let on_path = self.state.on_path();
         let unsound = report.laser_fault.map(|fault| fault || self.power_wrong);
-        let mut beams = self.beam_output(unsound);
-        if let Some(fault) = self.not_permitted(&beams, report) {
+        let mut process = self.process_output(unsound);
+        if let Some(fault) = self.not_permitted(process.gates(), report) {
             self.stop_for(fault);
-            beams = self.beam_output(unsound);
+            process = self.process_output(unsound);
         }
-        self.gates = beams.gate;
+        self.gates = process.gates();
         let lease = self.beam_lease(input.now_us);
         if !self.state.drives_on() {
             from = self.reference;
@@ -257,7 +261,7 @@ impl MotionController {
             coupled: self.homed && self.enabled && self.homing.is_none(),
             homing: self.homing.is_some(),
             tick: self.tick as u32,
-            segment: Segment::between(&from, &self.reference, beams),
+            segment: Segment::between(&from, &self.reference, process),
             lease,
             offset: step.offset,
         };
@@ -274,7 +278,7 @@ impl MotionController {
                 pose: self.measured_pose(),
                 // On a path that is given up the seam is not tracked any more.
                 tracking: on_path && self.state != State::Stopping && self.beams.tracking(),
-                beams: report.gate,
+                beams: report.lines.gates(),
                 superimposed_rate: self.superimposed.rate(),
             },
             sample: MotionSample {
@@ -284,7 +288,10 @@ impl MotionController {
                 path_id: if on_path { self.path.id } else { 0 },
                 s_mm: now.s,
                 speed_mm_s: now.v,
-                beams: report.gate,
+                beams: report.lines.gates(),
+                outputs: report.lines.outputs().0,
+                levels: report.levels.map(|code| code.ratio() as f32),
+                switched: report.switched,
                 axes: self.measured,
                 truth: report.truth,
                 following_error: report.peak_error.map(|error| error as f32),
@@ -313,6 +320,7 @@ impl MotionController {
         } else if self.state == State::Homing || self.machine.as_ref().is_some_and(on_at_rest) {
             self.trip(Fault::SessionEnded);
         }
+        self.beams.outputs_off();
     }
 
     /// Counts the tick; returns its time. Ticks are hardware periods, so their times are exact multiples.
@@ -353,6 +361,7 @@ impl MotionController {
             self.distrust(Fault::EmergencyStopChannels { closed });
         }
         self.watch_power(input.report.power_fault);
+        self.watch_answers(&input.report);
         if let (State::Stopping, true) = (self.state, self.tick > self.stop_by.0) {
             self.trip(Fault::StopTooLong {
                 limit_ms: self.stop_by.1,
@@ -395,6 +404,19 @@ impl MotionController {
                 self.stop_for(fault);
             }
             Some(fault) if self.state != State::Fault => self.trip(fault),
+            _ => {}
+        }
+    }
+
+    /// The process does not answer: the machine stops.
+    fn watch_answers(&mut self, report: &ServoReport) {
+        let Some(machine) = &self.machine else { return };
+        let fault = machine
+            .inputs
+            .tick(&mut self.missing, report.lines, report.process);
+        match fault {
+            Some(fault) if self.state.on_path() => self.stop_for(fault),
+            Some(fault) if self.state.drives_on() => self.trip(fault),
             _ => {}
         }
     }

@@ -2,6 +2,7 @@
 
 use super::beams::BeamLimits;
 use super::homing::HomingPlan;
+use super::process_inputs::ProcessInputs;
 use super::sensible;
 use super::servo::ServoSetup;
 use super::superimposed::Superimposed;
@@ -32,6 +33,8 @@ pub struct Machine {
     pub homing: HomingPlan,
     /// Limits of the beams.
     pub beams: BeamLimits,
+    /// Inputs by which the process answers.
+    pub inputs: ProcessInputs,
     /// The PC may be silent for so long while a path runs \[µs\].
     pub link_timeout_us: u64,
     limits: [AxisLimits; AXES],
@@ -46,10 +49,12 @@ impl Machine {
         check_fitted(config)?;
         let limits = AxisLimits::build_all(&config.axes)?;
         let gantry = build_gantry(config)?;
+        let beams = BeamLimits::build(&config.beams, &config.process)?;
         let machine = Self {
+            inputs: ProcessInputs::build(config, beams.outputs())?,
             kinematics: config.kinematics.build(&limits)?,
             homing: HomingPlan::build(config)?,
-            beams: BeamLimits::build(&config.beams)?,
+            beams,
             link_timeout_us: u64::from(config.link_timeout_ms) * 1000,
             overrun: limits.map(|axis| OVERRUN * full_stop(&axis)),
             limits,

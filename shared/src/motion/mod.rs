@@ -7,9 +7,12 @@
 mod beams;
 mod controller;
 mod homing;
+mod levels;
 mod machine;
+mod outputs;
 mod overlap;
 mod permit;
+mod process_inputs;
 mod readback;
 mod segment;
 mod sensible;

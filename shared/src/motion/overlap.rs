@@ -122,7 +122,7 @@ impl Wait {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::BeamConfig;
+    use crate::config::{BeamConfig, ProcessIo};
 
     /// The planner keeps so much of the path that was gone, that the longest run-up after a hold is in it, and hardly more.
     #[test]
@@ -139,7 +139,7 @@ mod tests {
             stays_on_at_rest: false,
             readback: None,
         };
-        let beams = BeamLimits::build(&[Some(beam), None]).unwrap();
+        let beams = BeamLimits::build(&[Some(beam), None], &ProcessIo::default()).unwrap();
         let off = SpeedState {
             s: 200.0,
             v: 150.0,

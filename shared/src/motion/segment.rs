@@ -1,6 +1,6 @@
 //! References of one millisecond, from the path tick to the servo ticks.
 
-use crate::io::{DacCode, MOTORS, SIDES};
+use crate::io::{DacCode, LEVELS, LineChange, LineChanges, Lines, MOTORS, SIDES};
 use crate::ticks::{PATH_PERIOD_S, SERVO_TICKS_PER_PATH_TICK};
 
 /// Position, velocity and acceleration reference of every motor at one instant (mm or rad).
@@ -31,21 +31,65 @@ impl MotorReference {
     }
 }
 
-/// Gates and powers of the beams during one millisecond.
+/// What goes to beams and process during one millisecond.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BeamOutput {
-    /// Gate open.
-    pub gate: [bool; SIDES],
-    /// Power.
-    pub power: [DacCode; SIDES],
+pub struct ProcessOutput {
+    /// Gates and digital outputs when it begins.
+    pub lines: Lines,
+    /// How they change in it.
+    pub changes: LineChanges,
+    /// Powers of the beams while their gates are open, then the analog outputs.
+    pub levels: [DacCode; LEVELS],
 }
 
-impl BeamOutput {
-    /// Gates closed, no power.
+impl ProcessOutput {
+    /// Everything off.
     pub const OFF: Self = Self {
-        gate: [false; SIDES],
-        power: [DacCode::ZERO; SIDES],
+        lines: Lines::NONE,
+        changes: LineChanges::NONE,
+        levels: [DacCode::ZERO; LEVELS],
     };
+
+    /// Gates that are open at any time in it.
+    pub fn gates(&self) -> [bool; SIDES] {
+        let lines = self.changes.iter().map(|change| change.lines.0);
+        Lines(lines.fold(self.lines.0, |all, lines| all | lines)).gates()
+    }
+
+    /// The same, but that the lines of `shut` are off throughout.
+    #[must_use]
+    pub fn without(&self, shut: Lines) -> Self {
+        let rest = Lines(!shut.0);
+        let mut changes = LineChanges::NONE;
+        for change in self.changes.iter() {
+            changes.push(LineChange {
+                lines: change.lines.only(rest),
+                ..change
+            });
+        }
+        Self {
+            lines: self.lines.only(rest),
+            changes,
+            levels: self.levels,
+        }
+    }
+
+    /// The part of it from `from_us` on that is `long_us` long: lines at its beginning, and changes from there on.
+    pub fn part(&self, from_us: u16, long_us: u16) -> (Lines, LineChanges) {
+        let mut lines = self.lines;
+        let mut changes = LineChanges::NONE;
+        for change in self.changes.iter() {
+            if change.after_us <= from_us {
+                lines = change.lines;
+            } else if change.after_us < from_us + long_us {
+                changes.push(LineChange {
+                    after_us: change.after_us - from_us,
+                    lines: change.lines,
+                });
+            }
+        }
+        (lines, changes)
+    }
 }
 
 /// One motor's reference over one millisecond: the polynomial of fifth degree that meets position, velocity
@@ -88,20 +132,20 @@ impl Quintic {
     }
 }
 
-/// References and beams of one millisecond.
+/// References of one millisecond, and what goes to the process in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Segment {
     motors: [Quintic; MOTORS],
     /// Beams during the whole millisecond.
-    pub beams: BeamOutput,
+    pub process: ProcessOutput,
 }
 
 impl Segment {
     /// From one reference to the next.
-    pub fn between(from: &MotorReference, to: &MotorReference, beams: BeamOutput) -> Self {
+    pub fn between(from: &MotorReference, to: &MotorReference, process: ProcessOutput) -> Self {
         let triple = |r: &MotorReference, m: usize| (r.position[m], r.velocity[m], r.acceleration[m]);
         let motors = core::array::from_fn(|m| Quintic::between(triple(from, m), triple(to, m)));
-        Self { motors, beams }
+        Self { motors, process }
     }
 
     /// (position, velocity, acceleration) of `motor` at servo tick `phase` of the millisecond.
@@ -109,7 +153,7 @@ impl Segment {
         self.motors[motor].at(f64::from(phase) / f64::from(SERVO_TICKS_PER_PATH_TICK))
     }
 
-    /// The millisecond after this one at the speed it ends with, beams off: what a servo does that got no
+    /// The millisecond after this one at the speed it ends with, beams and outputs off: what a servo does that got no
     /// references in time.
     pub fn continued(&self) -> Self {
         let mut from = MotorReference::ZERO;
@@ -121,7 +165,7 @@ impl Segment {
             from.velocity[motor] = velocity;
             to.velocity[motor] = velocity;
         }
-        Self::between(&from, &to, BeamOutput::OFF)
+        Self::between(&from, &to, ProcessOutput::OFF)
     }
 
     /// Moves the position of `motor` by `distance`, when its reference has just been found.
@@ -145,7 +189,7 @@ mod tests {
     #[test]
     fn a_segment_meets_both_ends_to_the_second_derivative() {
         let (from, to) = (reference(1.0, 150.0, -2000.0), reference(1.149, 148.5, 1000.0));
-        let segment = Segment::between(&from, &to, BeamOutput::OFF);
+        let segment = Segment::between(&from, &to, ProcessOutput::OFF);
         for (phase, end) in [(0, from), (SERVO_TICKS_PER_PATH_TICK, to)] {
             let (p, v, a) = segment.at(3, phase);
             assert!((p - end.position[3]).abs() < 1e-12);
@@ -157,7 +201,7 @@ mod tests {
     #[test]
     fn constant_acceleration_is_reproduced_between_the_ends() {
         let at = |t: f64| reference(5.0 + 100.0 * t + 1000.0 * t * t, 100.0 + 2000.0 * t, 2000.0);
-        let segment = Segment::between(&at(0.0), &at(0.001), BeamOutput::OFF);
+        let segment = Segment::between(&at(0.0), &at(0.001), ProcessOutput::OFF);
         let (p, v, a) = segment.at(0, 1);
         let middle = at(0.000_25);
         assert!((p - middle.position[0]).abs() < 1e-12);
@@ -170,7 +214,7 @@ mod tests {
         let mut segment = Segment::between(
             &reference(1.0, 2.0, 3.0),
             &reference(1.002, 2.0, 3.0),
-            BeamOutput::OFF,
+            ProcessOutput::OFF,
         );
         let before = segment.at(2, 1);
         segment.shift(2, 10.0);

@@ -8,7 +8,10 @@ use crate::control::{
     EmergencyStop, EncoderCheck, FollowingTrip, Gantry, GantryState, MotorConfig, MovementCheck,
     MovementState, Pid, PidState, Setpoint,
 };
-use crate::io::{Bits, DacCode, MOTOR_NAMES, MOTORS, MotionCommand, MotionFeedback, SIDES};
+use crate::io::{
+    Bits, DacCode, LEVELS, Lines, MOTOR_NAMES, MOTORS, MotionCommand, MotionFeedback, SIDES, Switched,
+    SwitchedLines,
+};
 use crate::kinematics::AXIS_UNIT;
 use crate::parameter::{ParameterError, check};
 use crate::state::Fault;
@@ -175,8 +178,14 @@ pub struct ServoReport {
     pub power_measured: [bool; SIDES],
     /// First beam whose power was wrong since the last report.
     pub power_fault: Option<Fault>,
-    /// Gates that are open.
-    pub gate: [bool; SIDES],
+    /// Gates and digital outputs that are on.
+    pub lines: Lines,
+    /// What was switched in the last millisecond, from its beginning on.
+    pub switched: SwitchedLines,
+    /// Powers and analog outputs.
+    pub levels: [DacCode; LEVELS],
+    /// Inputs of the process that are on.
+    pub process: Bits,
     /// Gates that were shut since the last report because their lease had run out.
     pub lapsed: [bool; SIDES],
     /// The emergency stop now.
@@ -265,7 +274,9 @@ impl ServoLoops {
         } else {
             MotionCommand::SAFE
         };
-        self.report.gate = command.beam_gate;
+        self.report.lines = command.lines();
+        self.report.levels[..SIDES].copy_from_slice(&command.beam_power);
+        self.report.levels[SIDES..].copy_from_slice(&command.analog);
         for (side, state) in self.readbacks.iter_mut().enumerate() {
             state.command(command.beam_gate[side], command.beam_power[side]);
         }
@@ -276,6 +287,7 @@ impl ServoLoops {
     pub fn take_report(&mut self) -> ServoReport {
         let report = self.report;
         self.report.mark = [None; MOTORS];
+        self.report.switched = SwitchedLines::default();
         self.report.laser_fault = [false; SIDES];
         self.report.lapsed = [false; SIDES];
         self.report.power_fault = None;
@@ -346,10 +358,22 @@ impl ServoLoops {
         for (seen, fault) in self.report.laser_fault.iter_mut().zip(feedback.laser_fault) {
             *seen |= fault;
         }
+        self.report.process = feedback.process;
+        self.note_switched(feedback.switched);
         self.report.limit_plus = feedback.limit_plus;
         self.report.limit_minus = feedback.limit_minus;
         for (seen, mark) in self.report.mark.iter_mut().zip(feedback.mark) {
             *seen = mark.or(*seen);
+        }
+    }
+
+    /// Lines that were switched in the period that has just ended.
+    fn note_switched(&mut self, switched: SwitchedLines) {
+        let phase = self.report.ticks.wrapping_sub(1) % SERVO_TICKS_PER_PATH_TICK;
+        let free = self.report.switched.iter_mut().filter(|place| place.is_none());
+        for (place, switched) in free.zip(switched.into_iter().flatten()) {
+            let at_us = switched.at_us + (phase * SERVO_US) as u16;
+            *place = Some(Switched { at_us, ..switched });
         }
     }
 
@@ -480,17 +504,27 @@ impl ServoLoops {
             motor.moves(index, &mut self.movements[index], self.last_counts, output[index])?;
             command.dac[index] = DacCode::from_ratio(output[index], motor.velocity_at_10v);
         }
-        let beams = &mut self.current.beams;
+        let mut shut = Lines::NONE;
+        let gates = self.current.process.gates();
         for side in 0..SIDES {
             // Once shut it stays shut for the millisecond: the path tick then knows of the fault.
-            report.lapsed[side] |= beams.gate[side] && self.lease.0[side] == 0;
-            beams.gate[side] &=
-                !report.laser_fault[side] && !report.lapsed[side] && report.power_fault.is_none();
-            if beams.gate[side] {
-                command.beam_gate[side] = true;
-                command.beam_power[side] = beams.power[side];
+            report.lapsed[side] |= gates[side] && self.lease.0[side] == 0;
+            let unsound = report.laser_fault[side] || report.lapsed[side] || report.power_fault.is_some();
+            shut.set(side, unsound);
+        }
+        if gates.iter().zip(shut.gates()).any(|(open, shut)| *open && shut) {
+            self.current.process = self.current.process.without(shut);
+        }
+        let process = &self.current.process;
+        let (lines, changes) = process.part((phase * SERVO_US) as u16, SERVO_US as u16);
+        command.changes = changes;
+        command.set_lines(lines);
+        for side in 0..SIDES {
+            if lines.get(side) || changes.iter().any(|change| change.lines.get(side)) {
+                command.beam_power[side] = process.levels[side];
             }
         }
+        command.analog.copy_from_slice(&process.levels[SIDES..]);
         Ok(command)
     }
 

@@ -1,6 +1,6 @@
 //! Cyclic data: small, self-contained, the newest wins.
 
-use crate::io::{AXES, MOTORS, SIDES, SLIDES};
+use crate::io::{AXES, LEVELS, MOTORS, SIDES, SLIDES, SwitchedLines};
 use crate::state::{State, TrackerFault, TrackerState};
 use heapless::Vec;
 use postcard_schema::Schema;
@@ -168,6 +168,12 @@ pub struct MotionSample {
     pub speed_mm_s: f64,
     /// Gates that are open.
     pub beams: [bool; SIDES],
+    /// Digital outputs that are on, bit 0 the first.
+    pub outputs: u8,
+    /// What is commanded at the tick, as parts of full scale: power of the beams that are open, analog outputs.
+    pub levels: [f32; LEVELS],
+    /// Lines that were switched in the millisecond before the tick, by the board's clock after that began.
+    pub switched: SwitchedLines,
     /// Measured axis positions at the tick (mm, rad).
     pub axes: [f64; AXES],
     /// Motor positions as only a simulated machine can know (mm, rad).

@@ -16,8 +16,8 @@ pub use datagram::{
 };
 pub use element::{BadElement, PathChannel, PathElement, PathJoin, PathShape};
 pub use request::{
-    Identity, LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, MotionStatus, PathAction, PathEvent, PathLimits,
-    Refusal, Request, Response, Role, Room, TrackerStatus,
+    Channel, Identity, LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, MotionStatus, PathAction, PathEvent,
+    PathLimits, Refusal, Request, Response, Role, Room, TrackerStatus,
 };
 
 /// TCP port of the requests, on both boards.

@@ -3,7 +3,7 @@
 use super::element::{BadElement, PathElement};
 use crate::config::{MotionConfig, TrackerConfig};
 use crate::geometry::PoseOffset;
-use crate::io::{AXES, MOTORS, SLIDE_NAMES, SLIDES};
+use crate::io::{AXES, MOTORS, SIDES, SLIDE_NAMES, SLIDES};
 use crate::parameter::ParameterError;
 use crate::state::{Fault, State, TrackerFault, TrackerState};
 use crate::trajectory::{Knot, PathError, PathSpace, Played, PushError};
@@ -408,6 +408,57 @@ pub enum PathAction {
         /// Follow.
         on: bool,
     },
+    /// Switch a digital output of the process.
+    Output {
+        /// 0 to 7.
+        output: u8,
+        /// On.
+        on: bool,
+    },
+    /// Lead a level from what it is to another value.
+    Level {
+        /// Which.
+        channel: Channel,
+        /// Value at the end, in the unit of the machine file.
+        value: f64,
+        /// Evenly over so much of the path \[mm\]; at once if it is 0.
+        over_mm: f64,
+    },
+    /// A level in proportion to the path speed: it is `value` at `full_mm_s` and above.
+    BySpeed {
+        /// Which.
+        channel: Channel,
+        /// Path speed at which it is full \[mm/s\]; 0 lets it no longer depend on the speed.
+        full_mm_s: f64,
+        /// Part of the value that it keeps at the least, 0 to 1.
+        least: f64,
+    },
+    /// A beam may stay on while the machine goes slower than the least speed of the beam.
+    AtRest {
+        /// 0 or 1.
+        side: u8,
+        /// For so long at the most, from when it was fast enough last or went on \[ms\]; 0 takes it back.
+        ms: u32,
+    },
+}
+
+/// An analog output of the process.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Channel {
+    /// Power of a beam \[W\], 0 or 1.
+    Power(u8),
+    /// Analog output, 0 or 1.
+    Analog(u8),
+}
+
+impl Channel {
+    /// Its place among all: the powers, then the analog outputs.
+    pub fn index(self) -> usize {
+        match self {
+            Self::Power(side) => usize::from(side),
+            Self::Analog(output) => SIDES + usize::from(output),
+        }
+    }
 }
 
 /// State of the motion board.

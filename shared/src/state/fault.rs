@@ -4,7 +4,8 @@ use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::io::{AXIS_NAMES, MOTOR_NAMES};
+use crate::io::{AXIS_NAMES, MOTOR_NAMES, SIDES};
+use core::fmt::{self, Display, Formatter};
 
 /// A reason to stop; the first one since the last reset is kept. Small and `Copy`; reads as a sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema, Error)]
@@ -170,6 +171,19 @@ pub enum Fault {
         /// What was missing.
         why: NoPermit,
     },
+    /// An input of the process was off while the line that it answers was on.
+    #[error(
+        "input {} did not come within {within_ms} ms while {} was on, and the machine stopped: look at what it reports, and its cable",
+        input + 1, LineName(*line)
+    )]
+    NoAnswer {
+        /// Index of the input.
+        input: u8,
+        /// The line.
+        line: u8,
+        /// How long it may be missing.
+        within_ms: u32,
+    },
     /// A control law got a value that is not a number.
     #[error("a control law got a value that is not a number; check the machine parameters")]
     NotANumber,
@@ -202,6 +216,18 @@ pub enum Fault {
         /// Where it is (mm or degrees).
         position: f32,
     },
+}
+
+/// A line as messages call it.
+struct LineName(u8);
+
+impl Display for LineName {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match usize::from(self.0) {
+            beam @ ..SIDES => write!(f, "beam {}", beam + 1),
+            line => write!(f, "output {}", line + 1 - SIDES),
+        }
+    }
 }
 
 /// Why a beam may not burn where the path tracks.

@@ -23,7 +23,7 @@ use super::seam::Seam;
 use super::search::SeamSearch;
 use super::supervision::SlideWatch;
 use crate::control::{EmergencyStop, SearchInput, SearchProgress, SearchState, UNATTENDED_S};
-use crate::io::{Bits, Command, DacCode, ESTOP_CHANNELS, SIDES, SLIDES, SlideCommand, SlideFeedback};
+use crate::io::{Command, DacCode, SIDES, SLIDES, SlideCommand, SlideFeedback};
 use crate::protocol::{BeamPermit, Capture, Datagram, PathState, Permit, TrackerSample};
 use crate::state::{TrackerFault, TrackerState};
 use crate::trajectory::Path;
@@ -156,16 +156,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             on_path: false,
             slides: [SLIDE; SLIDES],
             searches: Vec::new(),
-            feedback: SlideFeedback {
-                counts: [0; SLIDES],
-                mark: [None; SLIDES],
-                limit_plus: Bits::NONE,
-                limit_minus: Bits::NONE,
-                drive_fault: Bits::NONE,
-                estop: [false; ESTOP_CHANNELS],
-                laser_fault: [false; SIDES],
-                beam_power: [None; SIDES],
-            },
+            feedback: SlideFeedback::NONE,
             estop: EmergencyStop::new(),
             ticks: 0,
             lost: 0,

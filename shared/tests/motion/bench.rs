@@ -1,6 +1,6 @@
 //! Servo loops and controller in lockstep with drives that follow their command at once.
 
-use shared::config::{BeamConfig, MotionConfig};
+use shared::config::{BeamConfig, MotionConfig, ProcessIo};
 use shared::control::{GantryConfig, HomeConfig, MotorConfig};
 use shared::io::{MOTORS, MotionCommand, MotionFeedback};
 use shared::kinematics::{AXIS_UNIT, AxisConfig, DualBeamConfig, KinematicsConfig};
@@ -112,6 +112,7 @@ pub fn config() -> MotionConfig {
             y2_mm: 3250.0,
         }),
         beams: [Some(beam.clone()), Some(beam)],
+        process: ProcessIo::default(),
         link_timeout_ms: 500,
     }
 }

@@ -181,7 +181,9 @@ impl Judge {
             if power < 0 {
                 return Err(format!("beam {side} has a power of {power}"));
             }
-            if !outputs.motion.beam_gate[side] {
+            let opens = |lines: shared::io::Lines| lines.get(side);
+            let opened = outputs.motion.changes.iter().any(|change| opens(change.lines));
+            if !outputs.motion.beam_gate[side] && !opened {
                 continue;
             }
             let beam = self.in_force().find_map(|config| config.beams[side].as_ref());

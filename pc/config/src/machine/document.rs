@@ -1,11 +1,13 @@
 //! The machine file as it is written.
 
+use super::process_io;
 use super::{ByAxis, CameraConfig, MachineFile, Mistake, PlanningConfig, ProcessConfig, TrackingUnit};
 use crate::probe::ProbeUnit;
 use serde::Deserialize;
 use shared::config::{BeamConfig, HeadConfig, MotionConfig, SlideConfig, TrackerConfig, TrackingConfig};
 use shared::control::{GantryConfig, MotorConfig};
 use shared::kinematics::{AxisConfig, KinematicsConfig};
+use std::collections::BTreeMap;
 
 /// The file as it is written.
 #[derive(Deserialize)]
@@ -18,6 +20,12 @@ pub struct Document {
     motors: Motors,
     gantry: Option<GantryConfig>,
     beams: Sides<BeamConfig>,
+    #[serde(default)]
+    outputs: BTreeMap<String, process_io::Output>,
+    #[serde(default)]
+    analog_outputs: BTreeMap<String, process_io::Analog>,
+    #[serde(default)]
+    inputs: BTreeMap<String, process_io::Input>,
     head: Option<HeadConfig>,
     slides: Option<Slides>,
     tracking: Option<TrackingConfig>,
@@ -64,6 +72,13 @@ impl TryFrom<Document> for MachineFile {
 
     fn try_from(d: Document) -> Result<Self, Mistake> {
         let m = d.motors;
+        let beams = [d.beams.first, d.beams.second];
+        let tables = process_io::Tables {
+            outputs: d.outputs,
+            analog: d.analog_outputs,
+            inputs: d.inputs,
+        };
+        let (process, outputs) = tables.build(&beams)?;
         Ok(Self {
             name: d.name,
             motion: MotionConfig {
@@ -71,10 +86,12 @@ impl TryFrom<Document> for MachineFile {
                 axes: d.axes.into_array(),
                 motors: [m.X1, m.X2, m.Y, m.Z, m.A, m.B, m.C],
                 gantry: d.gantry,
-                beams: [d.beams.first, d.beams.second],
+                beams,
+                process,
                 link_timeout_ms: d.link_timeout_ms,
             },
             tracking: tracking_unit(d.head, d.slides, d.tracking, d.cameras)?,
+            outputs,
             process: d.process,
             probe: d.probe,
             planning: d.planning,

@@ -57,6 +57,36 @@ pub enum Mistake {
         /// Which, and what it has to be.
         reason: vision::OpticsError,
     },
+    /// An output or input has a number that the board does not have, or that another one has.
+    #[error("{key}.number is {number}, {}", if *taken { "which another one has".to_owned() } else { format!("but must be from 1 to {most}") })]
+    OutputNumber {
+        /// Dotted name of the table.
+        key: String,
+        /// The number.
+        number: u8,
+        /// Another one has it.
+        taken: bool,
+        /// How many there are.
+        most: usize,
+    },
+    /// An output or input hangs on a beam that the machine does not have.
+    #[error("{key} names beam {beam}, but there is no [beams.{beam}]")]
+    NoSuchBeam {
+        /// Dotted name of the table.
+        key: String,
+        /// The number of the beam.
+        beam: u8,
+    },
+    /// An input answers nothing that there is.
+    #[error(
+        "{key}.answers is \"{answers}\": it must be \"beam 1\", \"beam 2\" or the name of one of [outputs]"
+    )]
+    AnswersNothing {
+        /// Dotted name of the table.
+        key: String,
+        /// What it is said to answer.
+        answers: String,
+    },
     /// Some of the tables of a tracker, but not all.
     #[error(
         "[{table}] is missing; a machine that follows a seam needs [head], [slides], [tracking] and [cameras]"

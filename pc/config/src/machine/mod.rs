@@ -4,10 +4,12 @@ mod cameras;
 mod check;
 mod document;
 mod error;
+mod process_io;
 mod weak_protection;
 
 pub use cameras::{CameraConfig, JointForm};
 pub use error::{MachineError, Mistake};
+pub use process_io::OutputNames;
 pub use weak_protection::WeakProtection;
 
 use crate::probe::ProbeUnit;
@@ -31,6 +33,8 @@ pub struct MachineFile {
     pub motion: MotionConfig,
     /// What follows the seam, if the machine has that.
     pub tracking: Option<TrackingUnit>,
+    /// Names of its process outputs.
+    pub outputs: OutputNames,
     /// What the process asks for, if that is known.
     pub process: Option<ProcessConfig>,
     /// The probe that measures surfaces, if the machine has one.

@@ -361,3 +361,70 @@ fn a_figure_of_a_camera_that_makes_no_sense_is_named() {
         assert!(error.contains(says), "{error}");
     }
 }
+
+/// The shipped machine with tables of outputs before `[head]`.
+fn with_outputs(tables: &str) -> String {
+    SHIPPED.replace("[head]", &format!("{tables}\n[head]"))
+}
+
+#[test]
+fn outputs_and_inputs_are_read_by_name_and_put_where_their_numbers_say() {
+    let tables = "[outputs.gas]\nnumber = 3\n[outputs.wire]\nnumber = 1\nfollows_beam = 2\n\
+                  [analog_outputs.wire_feed]\nnumber = 2\nvalue_at_10v = 15.0\nfollows_beam = 2\n\
+                  [inputs.flow]\nnumber = 1\nanswers = \"gas\"\nwithin_ms = 300\n\
+                  [inputs.arc]\nnumber = 4\nanswers = \"beam 2\"\nwithin_ms = 200";
+    let machine = MachineFile::parse("m.toml", &with_outputs(tables)).unwrap();
+    let io = &machine.motion.process;
+    assert_eq!(io.outputs[2].unwrap().follows_beam, None);
+    assert_eq!(io.outputs[0].unwrap().follows_beam, Some(1));
+    assert_eq!(io.outputs.iter().flatten().count(), 2);
+    let analog = io.analog[1].unwrap();
+    assert_eq!((analog.value_at_10v, analog.follows_beam), (15.0, Some(1)));
+    let answers = [0, 3].map(|i| io.inputs[i].map(|input| (input.answers, input.within_ms)));
+    assert_eq!(answers, [Some((4, 300)), Some((1, 200))]);
+    assert_eq!(
+        (
+            machine.outputs.outputs["gas"],
+            machine.outputs.analog["wire_feed"]
+        ),
+        (2, 1)
+    );
+}
+
+#[test]
+fn outputs_that_cannot_be_are_named_with_what_there_is() {
+    let gas = "[outputs.gas]\nnumber = 1\n";
+    for (tables, told) in [
+        (
+            "[outputs.gas]\nnumber = 9",
+            "outputs.gas.number is 9, but must be from 1 to 8",
+        ),
+        (
+            "[outputs.gas]\nnumber = 0",
+            "outputs.gas.number is 0, but must be from 1 to 8",
+        ),
+        (
+            "[analog_outputs.f]\nnumber = 3\nvalue_at_10v = 1.0",
+            "analog_outputs.f.number is 3, but must be from 1 to 2",
+        ),
+        (
+            &*format!("{gas}[outputs.wire]\nnumber = 1"),
+            "outputs.wire.number is 1, which another one has",
+        ),
+        (
+            "[outputs.gas]\nnumber = 1\nfollows_beam = 3",
+            "outputs.gas names beam 3, but there is no [beams.3]",
+        ),
+        (
+            "[inputs.flow]\nnumber = 1\nanswers = \"gas\"\nwithin_ms = 5",
+            "inputs.flow.answers is \"gas\": it must be \"beam 1\", \"beam 2\" or the name of one of [outputs]",
+        ),
+        (
+            "[analog_outputs.f]\nnumber = 1\nvalue_at_10v = 0.0",
+            "value_at_10v of analog output 1 is 0, but must be above 0",
+        ),
+    ] {
+        let error = error_of(&with_outputs(tables));
+        assert_eq!(error, format!("machine file m.toml: {told}"));
+    }
+}

@@ -1,7 +1,7 @@
 //! The motion board with its machine.
 
 use plant::MotionPlant;
-use shared::io::{ESTOP_CHANNELS, MotionCommand, MotionFeedback};
+use shared::io::{ESTOP_CHANNELS, HeldLines, MotionCommand, MotionFeedback};
 use shared::motion::{MotionController, PathTickInput, ServoLoops};
 use shared::protocol::{Batch, Datagram, MotionSample, MotionTelemetry, PathState, Request, Response};
 use shared::ticks::SERVO_TICKS_PER_PATH_TICK;
@@ -11,6 +11,8 @@ use shared::trajectory::BoardPlanning;
 pub struct MotionBoard {
     pub plant: MotionPlant,
     pub command: MotionCommand,
+    /// Gates and digital outputs, switched without delay.
+    lines: HeldLines,
     servo: ServoLoops,
     pub controller: Box<MotionController>,
     planning: Box<BoardPlanning>,
@@ -30,6 +32,7 @@ impl MotionBoard {
         Self {
             plant,
             command: MotionCommand::SAFE,
+            lines: HeldLines::NONE,
             servo: ServoLoops::default(),
             controller: Box::new(MotionController::new()),
             planning: Box::new(BoardPlanning::new()),
@@ -46,11 +49,16 @@ impl MotionBoard {
     pub fn tick(&mut self, now_us: u64) -> Option<PathState> {
         let mut feedback = self.plant.advance(&self.command);
         feedback.estop = self.estop;
+        feedback.switched = self.lines.take();
         if let Some(change) = self.changed_inputs {
             change(&mut feedback);
         }
         let truth = Some(self.plant.truth());
         self.command = self.servo.tick(&feedback, truth, 1);
+        self.lines.set(self.command.lines(), 0);
+        for change in self.command.changes.iter() {
+            self.lines.set(change.lines, change.after_us);
+        }
         self.ticks += 1;
         self.ticks
             .is_multiple_of(SERVO_TICKS_PER_PATH_TICK)

@@ -6,7 +6,7 @@ use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::beams::EVENTS;
 use crate::motion::overlap::way_back;
-use crate::protocol::{PathAction, PathElement, PathEvent, PathLimits, Refusal, Room};
+use crate::protocol::{Channel, PathAction, PathElement, PathEvent, PathLimits, Refusal, Room};
 use crate::state::State;
 use crate::trajectory::{Element, Join, LONGEST_PATH, PathSpace, SpeedLimits, axes_at};
 use core::ops::RangeInclusive;
@@ -18,6 +18,8 @@ const ACCELERATION: RangeInclusive<f64> = 1.0..=1e7;
 const JERK: RangeInclusive<f64> = 1.0..=4e10;
 /// Tolerances \[mm\]: less than a grating resolves, and more than a machine is long, is a mistake.
 const TOLERANCE: RangeInclusive<f64> = 1e-6..=1e4;
+/// A beam stays on below its least speed for so long at most \[ms\]: craters are filled within some seconds.
+const LONGEST_REST_MS: u32 = 60_000;
 /// A path begins where the axes stand, to this much (mm or rad).
 const START_TOLERANCE: f64 = 2e-6;
 
@@ -159,12 +161,31 @@ impl MotionController {
         let Some(machine) = &self.machine else {
             return false;
         };
-        let most = |side| machine.beams.most_power_w(side);
+        let outputs = machine.beams.outputs();
+        let within = |channel, value: f64| {
+            let most = outputs.most(channel);
+            most.is_some_and(|most| (0.0..=most).contains(&value))
+        };
         let in_tool_space = self.path.space == PathSpace::Tool;
         let sound = match event.action {
             PathAction::Beam { side, on } => machine.beams.has(side) && (in_tool_space || !on),
-            PathAction::Power { side, watt } => most(side).is_some_and(|most| (0.0..=most).contains(&watt)),
+            PathAction::Power { side, watt } => within(Channel::Power(side), watt),
             PathAction::Tracking { on } => in_tool_space || !on,
+            PathAction::Output { output, .. } => outputs.has(output),
+            PathAction::Level {
+                channel,
+                value,
+                over_mm,
+            } => within(channel, value) && (0.0..=LONGEST_PATH).contains(&over_mm),
+            PathAction::BySpeed {
+                channel,
+                full_mm_s,
+                least,
+            } => {
+                let sound = full_mm_s.is_finite() && full_mm_s >= 0.0 && (0.0..=1.0).contains(&least);
+                sound && outputs.most(channel).is_some()
+            }
+            PathAction::AtRest { side, ms } => machine.beams.has(side) && ms <= LONGEST_REST_MS,
         };
         sound && event.s_mm.is_finite()
     }

@@ -3,12 +3,12 @@
 use super::MotionController;
 use super::loaded::Resume;
 use crate::geometry::PoseOffset;
-use crate::io::SIDES;
+use crate::io::{Lines, SIDES};
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::beams::{Activity, Beams};
 use crate::motion::overlap::Overlap;
 use crate::motion::permit::BeamLease;
-use crate::motion::segment::{BeamOutput, MotorReference};
+use crate::motion::segment::{MotorReference, ProcessOutput};
 use crate::motion::servo::ServoReport;
 use crate::motion::superimposed::Superimposed;
 use crate::state::{Event, Fault, NoPermit, State};
@@ -126,6 +126,7 @@ impl MotionController {
                 // To the last digit, which the mean over the last ticks does not give.
                 self.stand_at(self.path.end_s);
                 self.beams.pass(&mut self.path.events, self.path.end_s + AT_END);
+                self.beams.settle(self.path.end_s);
                 self.path.forget();
                 self.state = self.state.after(Event::PathEnd).unwrap_or(self.state);
             }
@@ -215,14 +216,14 @@ impl MotionController {
         }
     }
 
-    /// Why one of the gates that `beams` opens, or that were open, must be shut; a beam needs no permit where the
+    /// Why one of the `gates` that are to be open in the next millisecond must be shut; a beam needs no permit where the
     /// path does not track.
-    pub(super) fn not_permitted(&self, beams: &BeamOutput, report: &ServoReport) -> Option<Fault> {
+    pub(super) fn not_permitted(&self, gates: [bool; SIDES], report: &ServoReport) -> Option<Fault> {
         if self.state != State::Running || !self.beams.tracking() {
             return None;
         }
         let s_mm = self.along[1].s as f32;
-        (0..SIDES).filter(|side| beams.gate[*side]).find_map(|side| {
+        (0..SIDES).filter(|side| gates[*side]).find_map(|side| {
             let is_on = self.gates[side];
             let lease = self.permits.lease(self.path.id, side, is_on, self.tick_us);
             let lapsed = report.lapsed[side].then_some(NoPermit::Silent);
@@ -253,12 +254,12 @@ impl MotionController {
         }))
     }
 
-    /// Beams of the millisecond from k + 1; events count where the path position is then.
-    pub(super) fn beam_output(&mut self, laser_fault: [bool; SIDES]) -> BeamOutput {
-        let then = self.along[1];
+    /// Beams and outputs of the millisecond from k + 1; events count where the path position is then.
+    pub(super) fn process_output(&mut self, laser_fault: [bool; SIDES]) -> ProcessOutput {
+        let [_, then, after] = self.along;
         let activity = self.activity();
         let Some(machine) = &self.machine else {
-            return BeamOutput::OFF;
+            return ProcessOutput::OFF;
         };
         let limits = &machine.beams;
         let mut closed = laser_fault;
@@ -279,12 +280,15 @@ impl MotionController {
             let speeds = [asked, self.path.feed];
             held_back = self.beams.held_back(limits, &then, speeds, before);
         }
-        let output = self.beams.output(limits, activity, then.v, closed);
-        self.beams.note(output.gate, &then);
+        let coming = (&self.path.events, after.s);
+        let output = self.beams.output(limits, activity, &then, closed, coming);
+        let gates = output.lines.gates();
+        self.beams.note(gates, &then);
+        self.beams.rest(limits, gates, then.v);
         if held_back {
             self.slow_down();
             self.state = self.state.after(Event::Hold).unwrap_or(self.state);
-            return BeamOutput::OFF;
+            return output.without(Lines::GATES);
         }
         output
     }
