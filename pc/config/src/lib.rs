@@ -7,5 +7,6 @@ pub mod probe;
 mod range;
 pub mod table;
 pub mod toml_file;
+pub mod weld_data;
 
 pub use range::{RangeError, in_range};

@@ -68,6 +68,8 @@ pub struct Block {
     pub polar_step: Option<[f64; 2]>,
     /// Parameters that get a value when all of the block has been read.
     pub settings: Vec<(Parameter, f64)>,
+    /// WELDON with the name of its data, or WELDOFF without.
+    pub weld: Option<(Option<String>, SourcePosition)>,
     /// Comments, in their order.
     pub comments: Vec<(String, SourcePosition)>,
 }
@@ -89,7 +91,8 @@ impl Block {
     }
 
     fn is_empty(&self) -> bool {
-        self.codes.is_empty() && self.words.is_empty() && self.settings.is_empty() && self.comments.is_empty()
+        let words = self.codes.is_empty() && self.words.is_empty() && self.weld.is_none();
+        words && self.settings.is_empty() && self.comments.is_empty()
     }
 }
 
@@ -216,6 +219,17 @@ fn setting(scanner: &mut Scanner, block: &mut Block, lookup: &mut dyn Lookup) ->
 fn keyword(scanner: &mut Scanner, block: &mut Block) -> Result<bool, NcError> {
     let (place, start) = (scanner.place(), scanner.mark());
     let letters = scanner.letters();
+    if let "WELDON" | "WELDOFF" = letters.as_str() {
+        if block.weld.is_some() {
+            return Err(Problem::Twice(letters).at(place));
+        }
+        let name = match letters.as_str() {
+            "WELDON" => Some(weld_name(scanner, place)?),
+            _ => None,
+        };
+        block.weld = Some((name, place));
+        return Ok(true);
+    }
     let Some((_, code)) = KEYWORDS.iter().find(|(name, _)| *name == letters) else {
         scanner.go_back(start);
         return Ok(false);
@@ -235,6 +249,21 @@ fn keyword(scanner: &mut Scanner, block: &mut Block) -> Result<bool, NcError> {
         }
     }
     Ok(true)
+}
+
+/// `=name` behind WELDON.
+fn weld_name(scanner: &mut Scanner, place: SourcePosition) -> Result<String, NcError> {
+    scanner.skip_blanks();
+    let sign = scanner.peek() == Some('=');
+    if sign {
+        scanner.step();
+        scanner.skip_blanks();
+    }
+    let name = scanner.take(|c| c.is_alphanumeric() || c == '_' || c == '-');
+    if !sign || name.is_empty() {
+        return Err(Problem::NoWeldName.at(place));
+    }
+    Ok(name.to_owned())
 }
 
 /// A letter or name with its number.

@@ -129,6 +129,9 @@ pub enum Problem {
     /// An O word with something unknown behind it.
     #[error("{0} is not understood after an O word")]
     UnknownKeyword(String),
+    /// WELDON without a name.
+    #[error("WELDON needs the name of a set of the weld data: WELDON=root")]
+    NoWeldName,
     /// More in the line of an O word.
     #[error("this does not belong to the O word")]
     FlowRest,

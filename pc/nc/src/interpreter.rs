@@ -53,6 +53,8 @@ pub(super) struct Interpreter {
     /// The next motion that feeds continues along the last path.
     pub(super) open: bool,
     pub(super) saved: Vec<Saved>,
+    /// Weld data that was called so far, by name.
+    welds: Vec<String>,
     pub(super) notices: Vec<Notice>,
     pub(super) branches: bool,
     pub(super) ended: bool,
@@ -85,6 +87,7 @@ impl Interpreter {
             paths: Vec::new(),
             open: false,
             saved: Vec::new(),
+            welds: Vec::new(),
             notices: Vec::new(),
             branches: false,
             ended: false,
@@ -104,7 +107,7 @@ impl Interpreter {
         for (comment, place) in &block.comments {
             self.remark(comment, *place);
         }
-        if block.codes.is_empty() && block.words.is_empty() {
+        if block.codes.is_empty() && block.words.is_empty() && block.weld.is_none() {
             return Ok(());
         }
         if let Some(open) = &mut self.nurbs {
@@ -160,6 +163,9 @@ impl Interpreter {
         if let Some(pending) = output(block, claims)? {
             self.wait(pending);
         }
+        if let Some((name, place)) = &block.weld {
+            self.weld(name.as_deref(), *place);
+        }
         if let Some(t) = block.word("T") {
             self.tools[0] = tool_number(t)?;
         }
@@ -193,6 +199,28 @@ impl Interpreter {
             self.dwell(time, place);
         }
         Ok(())
+    }
+
+    /// WELDON with a name, WELDOFF without: both at rest.
+    fn weld(&mut self, name: Option<&str>, place: SourcePosition) {
+        let (action, code) = match name {
+            Some(name) => {
+                let known = self.welds.iter().position(|known| known == name);
+                let index = known.unwrap_or(self.welds.len());
+                if known.is_none() {
+                    self.welds.push(name.to_owned());
+                }
+                (ProgramAction::WeldOn(index), "WELDON")
+            }
+            None => (ProgramAction::WeldOff, "WELDOFF"),
+        };
+        self.wait(Pending {
+            action,
+            code,
+            place,
+            at_rest: true,
+        });
+        self.stand();
     }
 
     /// The machine stands for a time \[s\].
@@ -253,6 +281,7 @@ impl Interpreter {
             paths: self.paths,
             assumes: self.assumed.map(|place| (self.setup.start, place)),
             branches: self.branches,
+            welds: self.welds,
             notices: self.notices,
         }
     }

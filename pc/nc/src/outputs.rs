@@ -6,8 +6,12 @@ use super::codes::{Code, Group};
 use super::error::{NcError, Problem, SourcePosition};
 use super::program::{ProgramAction, ProgramEvent};
 use shared::geometry::Turn;
-use shared::protocol::PathAction;
+use shared::io::{LEVELS, OUTPUTS, SIDES};
+use shared::protocol::{Channel, PathAction};
 
+/// P of seam tracking, and of the first digital output.
+const TRACKING: u8 = 2;
+const FIRST_OUTPUT: u8 = 3;
 /// Longest dwell \[s\]: a day. A larger number is one of milliseconds, or a slip.
 pub(super) const LONGEST_DWELL_S: f64 = 86_400.0;
 
@@ -26,6 +30,7 @@ impl Pending {
     pub(super) fn event(self, with_target: usize) -> ProgramEvent {
         ProgramEvent {
             with_target,
+            after_mm: 0.0,
             action: self.action,
             code: self.code,
             place: self.place,
@@ -150,22 +155,37 @@ pub(super) fn output(block: &Block, claims: &Claims) -> Result<Option<Pending>, 
         Code::WaitForInput => return Err(Problem::NoInputs.at(code.place)),
         Code::Analog | Code::AnalogNow => {
             let (e, q) = (need("E")?, need("Q")?);
-            let Some(side) = e.number_below(2) else {
-                return Err(e.value_error("E0 and E1 are the powers of beam 1 and 2"));
-            };
             if q.value < 0.0 {
-                return Err(q.value_error("the power must be 0 W or more"));
+                return Err(q.value_error("the value must be 0 or more"));
             }
-            PathAction::Power { side, watt: q.value }
+            match e.number_below(LEVELS as u8) {
+                Some(side) if usize::from(side) < SIDES => PathAction::Power { side, watt: q.value },
+                Some(level) => PathAction::Level {
+                    channel: Channel::Analog(level - SIDES as u8),
+                    value: q.value,
+                    over_mm: 0.0,
+                },
+                None => {
+                    return Err(e.value_error(
+                        "E0 and E1 are the powers of beam 1 and 2, E2 and E3 analog outputs 1 and 2",
+                    ));
+                }
+            }
         }
         _ => {
             let p = need("P")?;
             let on = matches!(code.code, Code::OutputOn | Code::OutputOnNow);
-            match p.number_below(3) {
-                Some(2) => PathAction::Tracking { on },
-                Some(side) => PathAction::Beam { side, on },
+            match p.number_below(FIRST_OUTPUT + OUTPUTS as u8) {
+                Some(TRACKING) => PathAction::Tracking { on },
+                Some(side) if side < TRACKING => PathAction::Beam { side, on },
+                Some(output) => PathAction::Output {
+                    output: output - FIRST_OUTPUT,
+                    on,
+                },
                 None => {
-                    return Err(p.value_error("P0 and P1 are the beam gates 1 and 2, P2 is tracking"));
+                    return Err(p.value_error(
+                        "P0 and P1 are the beam gates 1 and 2, P2 is tracking, P3 to P10 are outputs 1 to 8",
+                    ));
                 }
             }
         }

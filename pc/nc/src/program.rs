@@ -21,6 +21,8 @@ pub struct Program {
     pub assumes: Option<([f64; AXES], SourcePosition)>,
     /// Loops, conditions or subroutines: lines are not run in their order.
     pub branches: bool,
+    /// Names of the weld data that it calls, by the numbers of [`ProgramAction::WeldOn`].
+    pub welds: Vec<String>,
     /// What a person should know of how it was read, and what it says itself (MSG, DEBUG, PRINT).
     pub notices: Vec<Notice>,
 }
@@ -132,6 +134,8 @@ pub enum Way {
     Nurbs(Box<NurbsWay>),
     /// G53 G0: of the axes, straight in axis space.
     Axes,
+    /// The tip stands for so long, as part of the path \[s\]: a beam may burn meanwhile. No program says it; weld data does.
+    Wait(f64),
 }
 
 /// What makes an arc of its two ends.
@@ -226,6 +230,8 @@ impl Words {
 pub struct ProgramEvent {
     /// Index of the target whose motion it starts with; 0 in a stand.
     pub with_target: usize,
+    /// So far behind the start of that motion \[mm\]; 0 of what a program says itself.
+    pub after_mm: f64,
     /// What happens.
     pub action: ProgramAction,
     /// The code that asks for it.
@@ -254,6 +260,10 @@ pub enum ProgramAction {
     },
     /// M6: the tool of this number is put in.
     ChangeTool(u32),
+    /// WELDON: a weld begins, with the data of this number in [`Program::welds`].
+    WeldOn(usize),
+    /// WELDOFF: it ends.
+    WeldOff,
     /// M0, M1, M60: the machine waits for the operator.
     Pause,
 }

@@ -133,7 +133,7 @@ impl Block {
                 let length = curve.length();
                 (BlockWay::Free(curve), length)
             }
-            Way::Line | Way::Axes => {
+            Way::Line | Way::Axes | Way::Wait(_) => {
                 let (p, q) = (start.position, end.position);
                 (BlockWay::Straight(p, q), (q - p).norm())
             }
@@ -164,7 +164,10 @@ impl Block {
             (Attitude::Geodesic(start, end), turn)
         };
         let length = match motion {
-            Motion::Feed if stands => turned.max(SHORTEST),
+            Motion::Feed if stands => match target.way {
+                Way::Wait(time_s) => planner.wait_length(time_s),
+                _ => turned.max(SHORTEST),
+            },
             Motion::Feed => travel,
             Motion::Rapid | Motion::Stand => stretched(from, to)
                 .max(travel)

@@ -179,7 +179,7 @@ impl Planner {
                             tracking_since.get_or_insert(element.line);
                         }
                         PathAction::Tracking { on: false } => tracking_since = None,
-                        PathAction::Beam { .. } | PathAction::Power { .. } => {}
+                        _ => {}
                     }
                 }
                 axes = self.followed(path.space, &element, &axes)?;
@@ -202,7 +202,7 @@ impl Planner {
                 spindle.on = on;
             }
             PathAction::Power { side, watt } if Some(side) == self.spindle => spindle.rpm = Some(watt),
-            PathAction::Beam { .. } | PathAction::Power { .. } | PathAction::Tracking { .. } => {}
+            _ => {}
         }
     }
 
@@ -289,7 +289,7 @@ fn tracking_at(path: &PlannedPath, s: f64) -> Option<bool> {
     let here = path.events.iter().filter(|event| (event.s_mm - s).abs() <= SAME);
     let mut tracking = here.filter_map(|event| match event.action {
         PathAction::Tracking { on } => Some(on),
-        PathAction::Beam { .. } | PathAction::Power { .. } => None,
+        _ => None,
     });
     tracking.next_back()
 }

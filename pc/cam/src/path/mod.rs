@@ -21,6 +21,7 @@ mod targets;
 #[cfg(test)]
 mod tests;
 mod too_fast;
+mod weld;
 
 pub use blocks::{Blocks, Course, Leg, Summary};
 pub use elements::TOLERANCE;
@@ -31,14 +32,17 @@ pub use programmed::Programmed;
 pub use targets::Tip;
 pub use too_fast::{FeedTooHigh, TooFast, check_constant_speed};
 
-use config::machine::{MachineFile, PlanningConfig};
+use config::machine::{MachineFile, OutputNames, PlanningConfig};
+use config::weld_data::WeldData;
 use limits::{DRIVES, DriveLimits};
 use nc::{Program, SourcePosition};
 use outputs::Switched;
+use shared::config::ProcessIo;
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, Kinematics};
 use shared::parameter::ParameterError;
+use std::sync::Arc;
 use targets::RestState;
 
 /// Most knots of one path: what the boards hold.
@@ -59,6 +63,11 @@ pub struct Planner {
     drives: [DriveLimits; DRIVES],
     /// Of each beam that the machine has \[W\].
     largest_power: [Option<f64>; SIDES],
+    /// Outputs of the process.
+    io: ProcessIo,
+    output_names: OutputNames,
+    /// What welds are made with.
+    welding: Arc<WeldData>,
     /// The beam that is a spindle.
     spindle: Option<u8>,
     /// The machine has slides that follow the seam.
@@ -80,6 +89,9 @@ impl Planner {
                 stays_on.then_some(side)
             }),
             largest_power: beams.map(|beam| beam.map(|beam| beam.power_at_10v_w)),
+            io: machine.motion.process,
+            output_names: machine.outputs.clone(),
+            welding: Arc::new(machine.welding.clone()),
             tracks: machine.tracking.is_some(),
             planning: machine.planning.clone(),
         })
@@ -137,9 +149,13 @@ impl Planner {
         };
         self.check_begin(program, &stand.tip)?;
         let mut planned = Vec::new();
+        let mut called = None;
         for path in &program.paths {
-            planned.extend(self.path(path, &mut stand, speed_mm_s)?);
+            for path in self.welded(program, path, &mut called, &stand)? {
+                planned.extend(self.path(&path, &mut stand, speed_mm_s)?);
+            }
         }
+        self.check_welded(program, called)?;
         Ok(planned)
     }
 

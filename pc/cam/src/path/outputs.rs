@@ -3,13 +3,15 @@
 use super::{MAX_EVENTS, PathError, Planner, SpeedStep};
 use nc::{ProgramAction, ProgramEvent, SourcePosition};
 use shared::geometry::Turn;
-use shared::io::SIDES;
-use shared::protocol::{PathAction, PathEvent};
+use shared::io::{LEVELS, OUTPUTS, SIDES};
+use shared::protocol::{Channel, PathAction, PathEvent};
 
 /// A switching at the start of the motion to a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Switching {
     pub(super) with_target: usize,
+    /// So far behind \[mm\].
+    pub(super) after_mm: f64,
     pub(super) action: PathAction,
 }
 
@@ -18,8 +20,11 @@ impl Planner {
     pub(super) fn switchings(&self, events: &[ProgramEvent]) -> Result<Vec<Switching>, PathError> {
         let switching = |event: &ProgramEvent| {
             let action = self.action(event).transpose()?;
-            let with_target = event.with_target;
-            Some(action.map(|action| Switching { with_target, action }))
+            Some(action.map(|action| Switching {
+                with_target: event.with_target,
+                after_mm: event.after_mm,
+                action,
+            }))
         };
         events.iter().filter_map(switching).collect()
     }
@@ -33,6 +38,8 @@ impl Planner {
                 return Err(PathError::Pause { place, code });
             }
             ProgramAction::Coolant { .. } | ProgramAction::ChangeTool(_) => return Ok(None),
+            // Weld data has taken its place.
+            ProgramAction::WeldOn(_) | ProgramAction::WeldOff => return Ok(None),
             ProgramAction::Output(action) => {
                 self.check_output(&action, place)?;
                 action
@@ -71,50 +78,104 @@ impl Planner {
         })
     }
 
-    fn check_output(&self, action: &PathAction, place: SourcePosition) -> Result<(), PathError> {
+    pub(super) fn check_output(&self, action: &PathAction, place: SourcePosition) -> Result<(), PathError> {
         let missing = |output: String| PathError::NoOutput {
             place,
             output,
             machine: self.name.clone(),
         };
-        let power = |side: u8| {
-            let power = self.largest_power[usize::from(side)];
-            power.ok_or_else(|| missing(format!("beam {}", side + 1)))
-        };
         match *action {
-            PathAction::Beam { side, .. } => power(side).map(|_| ()),
-            PathAction::Power { side, watt } => {
-                let largest = power(side)?;
-                if watt > largest {
-                    return Err(PathError::Power {
-                        place,
-                        side,
-                        watt,
-                        largest,
-                    });
-                }
-                Ok(())
+            PathAction::Beam { side, .. } | PathAction::AtRest { side, .. } => {
+                self.most(Channel::Power(side), place).map(|_| ())
+            }
+            PathAction::Power { side, watt } => self.check_level(Channel::Power(side), watt, place),
+            PathAction::Level { channel, value, .. } => self.check_level(channel, value, place),
+            PathAction::BySpeed { channel, .. } => self.most(channel, place).map(|_| ()),
+            PathAction::Output { output, .. } => {
+                let has = self
+                    .io
+                    .outputs
+                    .get(usize::from(output))
+                    .is_some_and(Option::is_some);
+                has.then_some(())
+                    .ok_or_else(|| missing(format!("output {}", output + 1)))
             }
             PathAction::Tracking { .. } if !self.tracks => Err(missing("seam tracking".to_owned())),
             PathAction::Tracking { .. } => Ok(()),
         }
     }
+
+    /// The highest value of a level.
+    fn most(&self, channel: Channel, place: SourcePosition) -> Result<f64, PathError> {
+        let (most, output) = match channel {
+            Channel::Power(side) => {
+                let power = self.largest_power.get(usize::from(side)).copied();
+                (power.flatten(), format!("beam {}", side + 1))
+            }
+            Channel::Analog(output) => {
+                let analog = self.io.analog.get(usize::from(output)).copied().flatten();
+                (
+                    analog.map(|analog| analog.value_at_10v),
+                    format!("analog output {}", output + 1),
+                )
+            }
+        };
+        most.ok_or_else(|| PathError::NoOutput {
+            place,
+            output,
+            machine: self.name.clone(),
+        })
+    }
+
+    fn check_level(&self, channel: Channel, value: f64, place: SourcePosition) -> Result<(), PathError> {
+        let largest = self.most(channel, place)?;
+        match channel {
+            _ if value <= largest => Ok(()),
+            Channel::Power(side) => Err(PathError::Power {
+                place,
+                side,
+                watt: value,
+                largest,
+            }),
+            Channel::Analog(output) => Err(PathError::Level {
+                place,
+                output,
+                value,
+                largest,
+            }),
+        }
+    }
 }
 
-/// What the program has switched on so far. The boards begin every path with everything off, but for a spindle.
+/// What the program has switched on so far. The boards begin every path with everything off, but for a spindle and the outputs
+/// of the process; these are said again too, for a start in the middle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Switched {
-    powers: [Option<f64>; SIDES],
+    levels: [Option<f64>; LEVELS],
+    /// Speed at which each level is full, and the least part.
+    by_speed: [Option<(f64, f64)>; LEVELS],
+    rest_ms: [Option<u32>; SIDES],
     gates: [bool; SIDES],
+    outputs: [Option<bool>; OUTPUTS],
     tracks: bool,
 }
 
 impl Switched {
     pub(super) fn switch(&mut self, action: &PathAction) {
         match *action {
-            PathAction::Power { side, watt } => self.powers[usize::from(side)] = Some(watt),
+            PathAction::Power { side, watt } => self.levels[usize::from(side)] = Some(watt),
             PathAction::Beam { side, on } => self.gates[usize::from(side)] = on,
             PathAction::Tracking { on } => self.tracks = on,
+            PathAction::Output { output, on } => self.outputs[usize::from(output)] = Some(on),
+            PathAction::Level { channel, value, .. } => self.levels[channel.index()] = Some(value),
+            PathAction::BySpeed {
+                channel,
+                full_mm_s,
+                least,
+            } => {
+                self.by_speed[channel.index()] = Some((full_mm_s, least));
+            }
+            PathAction::AtRest { side, ms } => self.rest_ms[usize::from(side)] = Some(ms),
         }
     }
 
@@ -139,14 +200,42 @@ impl Switched {
     /// What brings a path there that begins with everything off.
     pub(super) fn actions(&self) -> Vec<PathAction> {
         let mut actions = Vec::new();
-        for (side, (power, gate)) in (0..).zip(self.powers.into_iter().zip(self.gates)) {
-            actions.extend(power.map(|watt| PathAction::Power { side, watt }));
+        for (channel, level) in CHANNELS.into_iter().zip(self.levels) {
+            actions.extend(level.map(|value| match channel {
+                Channel::Power(side) => PathAction::Power { side, watt: value },
+                Channel::Analog(_) => PathAction::Level {
+                    channel,
+                    value,
+                    over_mm: 0.0,
+                },
+            }));
+        }
+        for (channel, by_speed) in CHANNELS.into_iter().zip(self.by_speed) {
+            actions.extend(by_speed.map(|(full_mm_s, least)| PathAction::BySpeed {
+                channel,
+                full_mm_s,
+                least,
+            }));
+        }
+        for (output, on) in (0..).zip(self.outputs) {
+            actions.extend(on.map(|on| PathAction::Output { output, on }));
+        }
+        for (side, (rest, gate)) in (0..).zip(self.rest_ms.into_iter().zip(self.gates)) {
+            actions.extend(rest.map(|ms| PathAction::AtRest { side, ms }));
             actions.extend(gate.then_some(PathAction::Beam { side, on: true }));
         }
         actions.extend(self.tracks.then_some(PathAction::Tracking { on: true }));
         actions
     }
 }
+
+/// All levels, in the order of their places.
+const CHANNELS: [Channel; LEVELS] = [
+    Channel::Power(0),
+    Channel::Power(1),
+    Channel::Analog(0),
+    Channel::Analog(1),
+];
 
 /// What happens on the part of a path that begins with target `first`, whose motions start at `starts` \[mm\] and go
 /// at `speeds` \[mm/s\]: what is on already, then `events`; and where the speed changes.
@@ -163,7 +252,7 @@ pub(super) fn on_the_way(
     for event in events {
         let index = event.with_target.checked_sub(first);
         found.extend(index.and_then(|i| starts.get(i)).map(|s_mm| PathEvent {
-            s_mm: *s_mm,
+            s_mm: *s_mm + event.after_mm,
             action: event.action,
         }));
     }

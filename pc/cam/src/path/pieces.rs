@@ -131,7 +131,7 @@ impl Planner {
 
     /// Whether a path is one smooth curve through its points: straight blocks with G64 alone, no more of them than a
     /// board holds knots, and no corner.
-    fn is_smooth(&self, path: &ProgramPath, from: &RestState) -> Result<bool, PathError> {
+    pub(super) fn is_smooth(&self, path: &ProgramPath, from: &RestState) -> Result<bool, PathError> {
         let targets = &path.targets;
         let asked = |target: &Target| {
             target.way == Way::Line && target.control == PathControl::Blend(Blend::default())

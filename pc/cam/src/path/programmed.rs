@@ -54,7 +54,7 @@ impl Programmed {
                 }
             }
             PathAction::Tracking { on } => self.tracked |= on,
-            PathAction::Power { .. } => {}
+            _ => {}
         }
     }
 

@@ -3,6 +3,7 @@
 use super::process_io;
 use super::{ByAxis, CameraConfig, MachineFile, Mistake, PlanningConfig, ProcessConfig, TrackingUnit};
 use crate::probe::ProbeUnit;
+use crate::weld_data::WeldData;
 use serde::Deserialize;
 use shared::config::{BeamConfig, HeadConfig, MotionConfig, SlideConfig, TrackerConfig, TrackingConfig};
 use shared::control::{GantryConfig, MotorConfig};
@@ -92,6 +93,7 @@ impl TryFrom<Document> for MachineFile {
             },
             tracking: tracking_unit(d.head, d.slides, d.tracking, d.cameras)?,
             outputs,
+            welding: WeldData::default(),
             process: d.process,
             probe: d.probe,
             planning: d.planning,

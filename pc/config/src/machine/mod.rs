@@ -14,6 +14,7 @@ pub use weak_protection::WeakProtection;
 
 use crate::probe::ProbeUnit;
 use crate::toml_file;
+use crate::weld_data::WeldData;
 use document::Document;
 use serde::Deserialize;
 use shared::config::{MotionConfig, TrackerConfig};
@@ -35,6 +36,8 @@ pub struct MachineFile {
     pub tracking: Option<TrackingUnit>,
     /// Names of its process outputs.
     pub outputs: OutputNames,
+    /// What welds are made with, from a file of its own that belongs to a program; no sets until it was read.
+    pub welding: WeldData,
     /// What the process asks for, if that is known.
     pub process: Option<ProcessConfig>,
     /// The probe that measures surfaces, if the machine has one.

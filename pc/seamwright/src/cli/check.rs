@@ -1,6 +1,6 @@
 //! `seamwright check`: can this machine run this program?
 
-use super::{plan_program, read_program, slower};
+use super::{machine_for, plan_program, read_program, slower};
 use crate::console::{out, outln};
 use anyhow::{Context, bail};
 use cam::dry_run;
@@ -26,6 +26,9 @@ pub struct Check {
     /// Feed that replaces the programmed one [m/min]
     #[arg(long, value_name = "M_PER_MIN")]
     speed: Option<f64>,
+    /// Weld data that the program calls with WELDON [default: welddata.toml beside the program]
+    #[arg(long, value_name = "FILE")]
+    weld_data: Option<PathBuf>,
     /// Leave out blocks that start with /
     #[arg(long)]
     block_delete: bool,
@@ -34,7 +37,7 @@ pub struct Check {
 impl Check {
     /// Prints every path with its length and time.
     pub fn run(self) -> anyhow::Result<()> {
-        let machine = MachineFile::read(&self.machine)?;
+        let machine = machine_for(&self.machine, &self.program, self.weld_data.as_deref())?;
         let name = self.program.display();
         let program = read_program(&self.program, &machine, self.block_delete)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;

@@ -1,12 +1,11 @@
 //! `seamwright dry-run`: duration of a program, and its demands on the machine.
 
-use super::{OUTSIDE, plan_program, read_program, slower};
+use super::{OUTSIDE, machine_for, plan_program, read_program, slower};
 use crate::console::{out, outln};
 use anyhow::Context;
 use cam::dry_run;
 use cam::path::Planner;
 use clap::Args;
-use config::machine::MachineFile;
 use report::write_dry_run;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -31,6 +30,9 @@ pub struct DryRun {
     /// Where dry-run.json and the plots go [default: none are written]
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
+    /// Weld data that the program calls with WELDON [default: welddata.toml beside the program]
+    #[arg(long, value_name = "FILE")]
+    weld_data: Option<PathBuf>,
     /// Leave out blocks that start with /
     #[arg(long)]
     block_delete: bool,
@@ -50,7 +52,7 @@ fn feed_override(text: &str) -> Result<f64, &'static str> {
 impl DryRun {
     /// Prints the figures, and writes the report.
     pub fn run(self) -> anyhow::Result<ExitCode> {
-        let machine = MachineFile::read(&self.machine)?;
+        let machine = machine_for(&self.machine, &self.program, self.weld_data.as_deref())?;
         let name = self.program.display();
         let program = read_program(&self.program, &machine, self.block_delete)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;

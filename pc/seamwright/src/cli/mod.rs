@@ -16,6 +16,7 @@ use anyhow::{Context, bail};
 use cam::path::{PlannedPath, Planner, check_constant_speed};
 use clap::{Parser, Subcommand};
 use config::machine::MachineFile;
+use config::weld_data::WeldData;
 use nc::{Options, Program, Setup, interpret_file};
 use parts::PartFile;
 use shared::io::AXES;
@@ -89,6 +90,16 @@ fn read_program(path: &Path, machine: &MachineFile, block_delete: bool) -> anyho
         errln!("program {name}: {notice}");
     }
     Ok(program)
+}
+
+/// The machine in `file`, with the weld data beside `program`, or in `weld_data` if it is said.
+fn machine_for(file: &Path, program: &Path, weld_data: Option<&Path>) -> anyhow::Result<MachineFile> {
+    let mut machine = MachineFile::read(file)?;
+    machine.welding = match weld_data {
+        Some(weld_data) => WeldData::read(weld_data)?,
+        None => WeldData::beside(program)?,
+    };
+    Ok(machine)
 }
 
 /// The paths of a program by `planner`, from where the axes stand at `from` (mm, degrees). The part file beside it, if there is

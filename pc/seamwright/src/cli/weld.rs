@@ -2,7 +2,7 @@
 
 use super::boards::{BoardChoice, exit_code};
 use super::cameras::CameraArgs;
-use super::{OUTSIDE, read_program, sentence, slower};
+use super::{OUTSIDE, machine_for, read_program, sentence, slower};
 use crate::console::{errln, out, outln};
 use crate::terminal::Operator;
 use anyhow::{Context, Error, bail};
@@ -62,6 +62,9 @@ pub struct Weld {
     /// Start of the noise of simulated cameras and probes
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Weld data that the program calls with WELDON [default: welddata.toml beside the program]
+    #[arg(long, value_name = "FILE")]
+    weld_data: Option<PathBuf>,
     /// Leave out blocks that start with /
     #[arg(long)]
     block_delete: bool,
@@ -93,7 +96,7 @@ impl Weld {
     /// Checks everything that can be checked without boards, then runs the job; prints the table and writes the
     /// report even if the job ended early.
     pub fn run(self) -> anyhow::Result<ExitCode> {
-        let machine = MachineFile::read(&self.machine)?;
+        let machine = machine_for(&self.machine, &self.job, self.weld_data.as_deref())?;
         self.boards.check(&machine)?;
         let (task, mut part) = self.task(&machine)?;
         let judged = part.is_some();

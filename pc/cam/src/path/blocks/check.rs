@@ -117,10 +117,10 @@ impl<'a> Check<'a> {
         summary.lines.1 = line;
         summary.blocks += 1;
         summary.elements += elements.len() as u64;
-        for action in &step.actions {
+        for (after_mm, action) in &step.actions {
             self.stand.switched.switch(action);
             if let PathAction::Beam { on, .. } = action {
-                let (s, before) = (summary.length_mm, summary.weld_mm);
+                let (s, before) = (summary.length_mm + after_mm, summary.weld_mm);
                 summary.weld_mm = match (on, before) {
                     (true, None) => Some((s, f64::INFINITY)),
                     (false, Some((start, _))) => Some((start, s)),

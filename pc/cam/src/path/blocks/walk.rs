@@ -6,8 +6,9 @@ use crate::path::exact::{Join as Turning, MAX_TURN};
 use crate::path::feeds::Feeds;
 use crate::path::short_blocks::ShortBlocks;
 use crate::path::targets::RestState;
+use crate::path::weld::WAIT_MM_S;
 use crate::path::{PathError, Planner, TOLERANCE, Tip};
-use nc::{Blend, Move, PathControl};
+use nc::{Blend, Move, PathControl, Way};
 use shared::geometry::angle;
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{Element, Join, Tolerance};
@@ -22,8 +23,8 @@ pub(super) struct Step {
     pub(super) programmed: f64,
     /// The same, or what the axes come to on the block, if that is less \[mm/s\].
     pub(super) speed: f64,
-    /// What is switched where it begins.
-    pub(super) actions: Vec<PathAction>,
+    /// What is switched from where it begins on: so far behind \[mm\].
+    pub(super) actions: Vec<(f64, PathAction)>,
     control: PathControl,
     /// How it joins the next one.
     pub(super) join: Join,
@@ -54,8 +55,8 @@ impl Step {
 
     /// What is switched where it begins, at `s` \[mm\].
     pub(super) fn events(&self, s: f64) -> Vec<PathEvent> {
-        let event = |action: &PathAction| PathEvent {
-            s_mm: s,
+        let event = |(after_mm, action): &(f64, PathAction)| PathEvent {
+            s_mm: s + after_mm,
             action: *action,
         };
         self.actions.iter().map(event).collect()
@@ -126,11 +127,18 @@ impl Walk {
         let planner = &self.planner;
         let tip = planner.next_tip(&target, &self.tip)?;
         let block = Block::build(planner, nc::Motion::Feed, &self.tip, &tip, &target)?;
-        let programmed = self.feeds.next(&target, block.length)?;
+        let programmed = match target.way {
+            Way::Wait(_) => WAIT_MM_S,
+            _ => self.feeds.next(&target, block.length)?,
+        };
         let speed = planner.reached_on(&block, &tip, programmed);
-        let mut actions = std::mem::take(&mut self.on);
+        let on = std::mem::take(&mut self.on)
+            .into_iter()
+            .map(|action| (0.0, action));
+        let mut actions: Vec<(f64, PathAction)> = on.collect();
         for event in &events {
-            actions.extend(planner.action(event)?);
+            let action = planner.action(event)?;
+            actions.extend(action.map(|action| (event.after_mm, action)));
         }
         self.tip = tip;
         Ok(Step {

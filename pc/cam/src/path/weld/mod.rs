@@ -1,0 +1,501 @@
+//! Welds of a program, made with weld data: what the sets say becomes motions and outputs of the program.
+//!
+//! A weld goes from WELDON to WELDOFF, from rest to rest. Before it are paths without motion that switch what flows, in it
+//! the times at rest of ignition and crater fill, and between them the seam: as it is programmed, or as NURBS where the
+//! tip is beside it.
+
+mod seam;
+#[cfg(test)]
+mod tests;
+mod weave;
+mod woven;
+
+use super::targets::RestState;
+use super::{PathError, Planner};
+use config::weld_data::{AtRest, WeldSet};
+use nc::{
+    FeedRate, Motion, PathControl, Program, ProgramAction, ProgramEvent, ProgramPath, SourcePosition, Target,
+    Way, Words,
+};
+use seam::Seam;
+use shared::protocol::{Channel, PathAction};
+use weave::Stretch;
+use woven::Aside;
+
+/// A second at rest within a path counts as so many millimetres of it: the speed of [`Way::Wait`] \[mm/s\].
+pub(super) const WAIT_MM_S: f64 = 1.0;
+/// What a board takes from rest to rest besides the motion \[s\]: planning from rest, and its output filter.
+const REST_SLACK_S: f64 = 0.2;
+
+/// The weld that a program has called.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Called {
+    /// Its number in [`Program::welds`].
+    index: usize,
+    place: SourcePosition,
+    /// Its seam was gone.
+    done: bool,
+}
+
+impl Planner {
+    /// What the machine does for `path` of `program`, from where it stands, `called` being the weld that is on: itself, or
+    /// what the weld data makes of it.
+    pub(super) fn welded(
+        &self,
+        program: &Program,
+        path: &ProgramPath,
+        called: &mut Option<Called>,
+        stand: &RestState,
+    ) -> Result<Vec<ProgramPath>, PathError> {
+        let events = &path.events;
+        let words = events
+            .iter()
+            .find(|event| matches!(event.action, ProgramAction::WeldOn(_) | ProgramAction::WeldOff));
+        match (words, called.as_mut()) {
+            (None, None) => Ok(vec![path.clone()]),
+            (Some(word), _) => {
+                self.call(program, word, called)?;
+                // The path stands, and may switch more.
+                let mut path = path.clone();
+                path.events.retain(|event| event != word);
+                Ok(vec![path])
+            }
+            (None, Some(weld)) => {
+                let name = &program.welds[weld.index];
+                let welds = path.motion == Motion::Feed && path.dwell_before_s == 0.0;
+                if weld.done || !welds {
+                    return Err(PathError::WeldOn {
+                        place: place(path).unwrap_or(weld.place),
+                        name: name.clone(),
+                        on: weld.place,
+                    });
+                }
+                weld.done = true;
+                self.weld(name, &self.welding.sets[name], path, weld.place, stand)
+            }
+        }
+    }
+
+    /// The program ends.
+    pub(super) fn check_welded(&self, program: &Program, called: Option<Called>) -> Result<(), PathError> {
+        called.map_or(Ok(()), |weld| {
+            Err(PathError::WeldOpen {
+                place: weld.place,
+                name: program.welds[weld.index].clone(),
+            })
+        })
+    }
+
+    /// WELDON, WELDOFF.
+    fn call(
+        &self,
+        program: &Program,
+        word: &ProgramEvent,
+        called: &mut Option<Called>,
+    ) -> Result<(), PathError> {
+        let place = word.place;
+        match (word.action, called.take()) {
+            (ProgramAction::WeldOn(index), None) => {
+                let name = &program.welds[index];
+                if !self.welding.sets.contains_key(name) {
+                    let known: Vec<&str> = self.welding.sets.keys().map(String::as_str).collect();
+                    return Err(PathError::NoWeldSet {
+                        place,
+                        name: name.clone(),
+                        known: known.join(", "),
+                        file: self.welding.path.clone(),
+                    });
+                }
+                *called = Some(Called {
+                    index,
+                    place,
+                    done: false,
+                });
+                Ok(())
+            }
+            (ProgramAction::WeldOn(_), Some(weld)) => Err(PathError::WeldOn {
+                place,
+                name: program.welds[weld.index].clone(),
+                on: weld.place,
+            }),
+            (_, Some(weld)) if weld.done => Ok(()),
+            (_, Some(weld)) => Err(PathError::WeldEmpty {
+                place,
+                name: program.welds[weld.index].clone(),
+            }),
+            (_, None) => Err(PathError::WeldNotOn { place }),
+        }
+    }
+
+    /// The paths of a weld with `set` along the seam of `path`.
+    fn weld(
+        &self,
+        name: &str,
+        set: &WeldSet,
+        path: &ProgramPath,
+        on: SourcePosition,
+        stand: &RestState,
+    ) -> Result<Vec<ProgramPath>, PathError> {
+        let path = self.without_short_blocks(path.whole()?, stand)?;
+        let speed = speed(&path)?;
+        let smooth = self.is_smooth(&path, stand)?;
+        let seam = Seam::of(self, &path, stand, smooth)?;
+        let length = seam.length();
+        let phases = Phases::of(self, name, set, length, on)?;
+        let beside = set.weave.is_some() || set.offset_mm != [0.0; 2];
+        let rests = set.ignition.is_some() || set.crater_fill.is_some();
+        let aside = Aside {
+            seam: &seam,
+            offset: set.offset_mm,
+        };
+        if self.tracks && (beside || rests) {
+            return Err(PathError::WeldTracked {
+                place: on,
+                name: name.to_owned(),
+            });
+        }
+        let first = &path.targets[0];
+        let mut paths = vec![standing(phases.before.clone(), 0.0, on)];
+        let mut axes = stand.axes;
+        if set.offset_mm != [0.0; 2] {
+            let target = aside.transfer(0.0, set.offset_mm, speed, &mut axes, &self.fitted, first)?;
+            paths.push(feeding(vec![target], Vec::new(), 0.0));
+        }
+        let (mut targets, mut events) = if beside || rests && smooth {
+            self.beside(&aside, set, name, &phases, speed, &mut axes, &path)?
+        } else {
+            let place = |event: &(f64, PathAction)| {
+                let target = seam.target(event.0);
+                output(target, event.0 - seam.start(target), event.1, on)
+            };
+            (path.targets.clone(), phases.on_seam.iter().map(place).collect())
+        };
+        if let Some(ignition) = set.ignition {
+            targets.insert(0, wait(ignition, first));
+            events.iter_mut().for_each(|event| event.with_target += 1);
+            let burns = phases.ignition.iter().map(|action| output(0, 0.0, *action, on));
+            events.splice(0..0, burns);
+        }
+        if let Some(crater) = set.crater_fill {
+            let burns = phases
+                .crater
+                .iter()
+                .map(|action| output(targets.len(), 0.0, *action, on));
+            events.extend(burns);
+            targets.push(wait(crater, first));
+        }
+        paths.push(feeding(targets, events, set.pre_flow_s));
+        paths.push(standing(phases.after.clone(), 0.0, on));
+        paths.push(standing(phases.end.clone(), set.post_flow_s, on));
+        if set.offset_mm != [0.0; 2] {
+            let last = &path.targets[path.targets.len() - 1];
+            let target = aside.transfer(length, [0.0; 2], speed, &mut axes, &self.fitted, last)?;
+            paths.push(feeding(vec![target], Vec::new(), 0.0));
+        }
+        paths.retain(|path| path.motion != Motion::Stand || !path.events.is_empty());
+        Ok(paths)
+    }
+
+    /// Motions beside the seam, with what happens on the way.
+    #[expect(clippy::too_many_arguments, reason = "all of one weld")]
+    fn beside(
+        &self,
+        aside: &Aside,
+        set: &WeldSet,
+        name: &str,
+        phases: &Phases,
+        speed: f64,
+        axes: &mut [f64; shared::io::AXES],
+        path: &ProgramPath,
+    ) -> Result<(Vec<Target>, Vec<ProgramEvent>), PathError> {
+        let seam = aside.seam;
+        if let Some((target, turn)) = seam.corner() {
+            return Err(PathError::WeldCorner {
+                place: path.targets[target + 1].place,
+                name: name.to_owned(),
+                degrees: turn.to_degrees(),
+            });
+        }
+        if let Some(place) = seam.stands() {
+            return Err(PathError::WeldStands {
+                place,
+                name: name.to_owned(),
+            });
+        }
+        let on = path.targets[0].place;
+        let stretches = match &set.weave {
+            Some(weave) => {
+                weave::stretches(weave, seam.length(), speed).ok_or_else(|| PathError::WeldShort {
+                    place: on,
+                    name: name.to_owned(),
+                    length: seam.length(),
+                    half: speed / weave.frequency_hz / 2.0,
+                })?
+            }
+            None => {
+                let starts = (0..seam.ends.len()).map(|target| seam.start(target));
+                starts
+                    .zip(&seam.ends)
+                    .map(|(from, to)| Stretch::along(from, *to))
+                    .collect()
+            }
+        };
+        let (mut targets, mut starts) = (Vec::new(), Vec::new());
+        for stretch in &stretches {
+            starts.push(stretch.seam[0]);
+            let like = &path.targets[seam.target(stretch.seam[0])];
+            targets.push(aside.target(stretch, speed, axes, &self.fitted, like)?);
+        }
+        let length = |stretch: &Stretch| aside.length(stretch, stretch.seam[1]);
+        let lengths: Vec<f64> = stretches.iter().map(length).collect();
+        let place = |s: f64| {
+            let index = starts.partition_point(|start| *start <= s).max(1) - 1;
+            (index, aside.length(&stretches[index], s))
+        };
+        let on_way = |(index, after): (usize, f64)| lengths[..index].iter().sum::<f64>() + after;
+        let events = phases.on_seam.iter().map(|(s, action)| {
+            let (index, after_mm) = place(*s);
+            let action = match *action {
+                PathAction::Level {
+                    channel,
+                    value,
+                    over_mm,
+                } => PathAction::Level {
+                    channel,
+                    value,
+                    over_mm: on_way(place(s + over_mm)) - on_way(place(*s)),
+                },
+                other => other,
+            };
+            output(index, after_mm, action, on)
+        });
+        let events = events.collect();
+        Ok((targets, events))
+    }
+
+    /// Path length of a time at rest within a path \[mm\]: from rest to rest it takes that time.
+    pub(super) fn wait_length(&self, time_s: f64) -> f64 {
+        let rise_s = 2.0 * self.planning.speed_up_length(WAIT_MM_S) / WAIT_MM_S;
+        WAIT_MM_S * (time_s - rise_s).max(rise_s)
+    }
+}
+
+/// What a set switches, and where.
+struct Phases {
+    /// Before the beam, at rest.
+    before: Vec<PathAction>,
+    /// Where the ignition begins.
+    ignition: Vec<PathAction>,
+    /// On the seam, in order of its places \[mm\].
+    on_seam: Vec<(f64, PathAction)>,
+    /// Where the crater fill begins.
+    crater: Vec<PathAction>,
+    /// Beam off, at rest.
+    after: Vec<PathAction>,
+    /// After the post-flow.
+    end: Vec<PathAction>,
+}
+
+impl Phases {
+    fn of(
+        planner: &Planner,
+        name: &str,
+        set: &WeldSet,
+        length: f64,
+        place: SourcePosition,
+    ) -> Result<Self, PathError> {
+        let power = Channel::Power(set.side());
+        let side = set.side();
+        let level = |channel, value, over_mm| PathAction::Level {
+            channel,
+            value,
+            over_mm,
+        };
+        let gate = |on| PathAction::Beam { side, on };
+        let unknown = |output: &String| PathError::NoOutput {
+            place,
+            output: format!("{output} ({name} of the weld data)"),
+            machine: planner.name.clone(),
+        };
+        let output = |wanted: &String| {
+            let number = planner.output_names.outputs.get(wanted).copied();
+            number.ok_or_else(|| unknown(wanted))
+        };
+        let outputs = set.outputs.iter().map(output).collect::<Result<Vec<u8>, _>>()?;
+        let levels = |levels: &std::collections::BTreeMap<String, f64>, over_mm: f64| {
+            let level = |(wanted, value): (&String, &f64)| {
+                let number = planner.output_names.analog.get(wanted).copied();
+                let number = number.ok_or_else(|| unknown(wanted))?;
+                Ok(level(Channel::Analog(number), *value, over_mm))
+            };
+            levels.iter().map(level).collect::<Result<Vec<_>, PathError>>()
+        };
+        let fed = levels(&set.levels, 0.0)?;
+        let begin = || fed.iter().copied();
+        let rest_s = [set.ignition, set.crater_fill].into_iter().flatten();
+        let rest_s = rest_s.map(|rest| rest.time_s).fold(0.0, f64::max);
+        let rest = (rest_s > 0.0).then(|| PathAction::AtRest {
+            side,
+            ms: ((rest_s + REST_SLACK_S) * 1e3).ceil() as u32,
+        });
+        let mut ignition = Vec::new();
+        let mut on_seam: Vec<(f64, PathAction)> = Vec::new();
+        let up = set.ramp_up;
+        if let Some(AtRest { power: first, .. }) = set.ignition {
+            ignition.extend(rest);
+            ignition.push(level(power, first, 0.0));
+            ignition.extend(begin());
+            ignition.push(gate(true));
+        } else {
+            let first = up.map_or(set.power, |ramp| ramp.power);
+            let burns = rest.into_iter().chain([level(power, first, 0.0)]).chain(begin());
+            on_seam.extend(burns.chain([gate(true)]).map(|action| (0.0, action)));
+        }
+        on_seam.extend(set.by_speed.map(|by_speed| {
+            let (full_mm_s, least) = (by_speed.full_mm_s, by_speed.least);
+            let action = PathAction::BySpeed {
+                channel: power,
+                full_mm_s,
+                least,
+            };
+            (0.0, action)
+        }));
+        on_seam.push((0.0, level(power, set.power, up.map_or(0.0, |ramp| ramp.over_mm))));
+        let behind = |key: &'static str, s: f64| match s <= length {
+            true => Ok(()),
+            false => Err(PathError::WeldBehind {
+                place,
+                name: name.to_owned(),
+                key,
+                s,
+                length,
+            }),
+        };
+        let mut now = vec![(0.0, set.power)];
+        for change in &set.changes {
+            behind("changes", change.at_mm + change.over_mm)?;
+            if let Some(value) = change.power {
+                now.push((change.at_mm, value));
+                on_seam.push((change.at_mm, level(power, value, change.over_mm)));
+            }
+            let levels = levels(&change.levels, change.over_mm)?;
+            on_seam.extend(levels.into_iter().map(|action| (change.at_mm, action)));
+        }
+        for tack in &set.tacks {
+            behind("tacks", tack.to_mm)?;
+            let before = now.iter().rev().find(|(s, _)| *s <= tack.to_mm);
+            let after = before.map_or(set.power, |(_, power)| *power);
+            let [over, back] = match tack.power {
+                Some(value) => [level(power, value, 0.0), level(power, after, 0.0)],
+                None => [gate(false), gate(true)],
+            };
+            on_seam.extend([(tack.from_mm, over), (tack.to_mm, back)]);
+        }
+        if let Some(down) = set.ramp_down {
+            let ramps = up.map_or(0.0, |ramp| ramp.over_mm) + down.over_mm;
+            behind("ramp_up and ramp_down", ramps)?;
+            on_seam.push((length - down.over_mm, level(power, down.power, down.over_mm)));
+        }
+        on_seam.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let steady = PathAction::BySpeed {
+            channel: power,
+            full_mm_s: 0.0,
+            least: 0.0,
+        };
+        let steady = set.by_speed.map(|_| steady);
+        let crater = set.crater_fill.map(|crater| level(power, crater.power, 0.0));
+        let off = set.levels.iter().map(|(name, _)| (name.clone(), 0.0)).collect();
+        let mut after = vec![gate(false), level(power, 0.0, 0.0)];
+        after.extend(rest.map(|_| PathAction::AtRest { side, ms: 0 }));
+        after.extend(steady);
+        after.extend(levels(&off, 0.0)?);
+        let switch = |on: bool| {
+            outputs
+                .iter()
+                .map(move |output| PathAction::Output { output: *output, on })
+        };
+        let phases = Self {
+            before: switch(true).collect(),
+            ignition,
+            on_seam,
+            crater: steady.into_iter().chain(crater).collect(),
+            after,
+            end: switch(false).collect(),
+        };
+        let seam = phases.on_seam.iter().map(|(_, action)| action);
+        let all = phases
+            .before
+            .iter()
+            .chain(&phases.ignition)
+            .chain(seam)
+            .chain(&phases.crater);
+        all.chain(&phases.after)
+            .try_for_each(|action| planner.check_output(action, place))?;
+        Ok(phases)
+    }
+}
+
+/// The one speed of a seam \[mm/s\].
+fn speed(path: &ProgramPath) -> Result<f64, PathError> {
+    let mut speed = None;
+    for target in &path.targets {
+        let place = target.place;
+        match (target.feed, speed) {
+            (Some(FeedRate::PerMinute(feed)), None) => speed = Some(feed),
+            (Some(FeedRate::PerMinute(feed)), Some(before)) if feed == before => {}
+            (Some(FeedRate::PerMinute(_)), _) => return Err(PathError::WeldFeeds { place }),
+            _ => return Err(PathError::WeldInverseTime { place }),
+        }
+    }
+    Ok(speed.unwrap_or_default() / 60.0)
+}
+
+fn place(path: &ProgramPath) -> Option<SourcePosition> {
+    let target = path.targets.first().map(|target| target.place);
+    target.or(path.events.first().map(|event| event.place))
+}
+
+fn output(with_target: usize, after_mm: f64, action: PathAction, place: SourcePosition) -> ProgramEvent {
+    ProgramEvent {
+        with_target,
+        after_mm,
+        action: ProgramAction::Output(action),
+        code: "WELDON",
+        place,
+    }
+}
+
+/// The machine stands and switches `actions`.
+fn standing(actions: Vec<PathAction>, dwell_before_s: f64, place: SourcePosition) -> ProgramPath {
+    ProgramPath {
+        dwell_before_s,
+        motion: Motion::Stand,
+        targets: Vec::new(),
+        events: actions
+            .into_iter()
+            .map(|action| output(0, 0.0, action, place))
+            .collect(),
+        rest: None,
+    }
+}
+
+fn feeding(targets: Vec<Target>, events: Vec<ProgramEvent>, dwell_before_s: f64) -> ProgramPath {
+    ProgramPath {
+        dwell_before_s,
+        motion: Motion::Feed,
+        targets,
+        events,
+        rest: None,
+    }
+}
+
+/// A time at rest on the path.
+fn wait(rest: AtRest, like: &Target) -> Target {
+    Target {
+        way: Way::Wait(rest.time_s),
+        words: Words::default(),
+        feed: like.feed,
+        control: PathControl::ExactStop,
+        place: like.place,
+    }
+}
