@@ -7,6 +7,7 @@ mod nearest;
 mod peak;
 mod samples;
 mod speeds;
+mod switching;
 mod tick;
 mod welded;
 
@@ -15,6 +16,7 @@ pub use joint::{
 };
 pub use load::{ExecutionTimes, Load};
 pub use samples::{RecordedRun, RunSample, RunSamples};
+pub use switching::Switching;
 pub use tick::WorkTick;
 pub use welded::{SpeedShares, Welded};
 
@@ -31,6 +33,7 @@ use shared::protocol::MotionSample;
 use shared::ticks::PATH_PERIOD_S;
 use speeds::TrueSpeeds;
 use std::collections::BTreeMap;
+use switching::Switchings;
 use tick::{work_tick, working};
 
 /// Figures of a job.
@@ -62,6 +65,8 @@ pub struct Evaluation {
     pub motion_s: f64,
     /// The joint along both seams, as the cameras saw it; nothing without pictures.
     pub joint: JointCourse,
+    /// How exactly gates and outputs were switched; `None` if nothing was in motion.
+    pub switching: Option<Switching>,
     /// What the ticks on the paths took, if the board has a processor of its own.
     pub load: Option<Load>,
 }
@@ -101,10 +106,12 @@ pub fn evaluate(
     let mut contour = Peak::default();
     let (mut speeds, mut loads) = (TrueSpeeds::default(), Loads::default());
     let mut slides = record.slides();
+    let mut switchings = Switchings::new(paths);
     let mut welded_to: Option<MotionSample> = None;
     let mut before: Option<MotionSample> = None;
     for sample in on_paths(record) {
         sample.load.iter().for_each(|load| loads.add(load));
+        switchings.add(&sample);
         for (max, seen) in result.max_following_error.iter_mut().zip(sample.following_error) {
             *max = max.max(f64::from(seen));
         }
@@ -143,6 +150,7 @@ pub fn evaluate(
     result.rms_deviation_mm = deviation.map(|peak| peak.rms());
     result.max_contour_error_mm = contour.max();
     result.load = loads.all();
+    result.switching = switchings.all();
     result
 }
 

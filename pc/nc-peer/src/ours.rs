@@ -123,6 +123,8 @@ fn happens(list: &mut List, event: &ProgramEvent) {
         ProgramAction::Coolant { mist, flood } => list.coolant(mist, flood),
         ProgramAction::ChangeTool(number) => list.tool(number),
         ProgramAction::Pause => list.pause(),
+        // The peer has neither.
+        ProgramAction::Output(_) | ProgramAction::WeldOn(_) | ProgramAction::WeldOff => {}
     }
 }
 
@@ -130,6 +132,7 @@ fn motion(from: &Place, target: &Target) -> Motion {
     let to: Place = std::array::from_fn(|axis| target.words.axes[axis].unwrap_or(from[axis]));
     let mut of_time = None;
     let (kind, length, middle) = match &target.way {
+        Way::Wait(_) => (Kind::Line, Some(0.0), None),
         Way::Axes => (Kind::Rapid, Some(straight(from, &to)), None),
         Way::Line if target.feed.is_none() => (Kind::Rapid, Some(straight(from, &to)), None),
         Way::Line => (Kind::Line, Some(straight(from, &to)), None),

@@ -140,6 +140,7 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
             unknown: evaluation.unknown_ticks,
         },
         lost_ticks: run.lost_ticks,
+        switching: evaluation.switching,
         load: evaluation.load,
         telemetry_gaps: ByBoard {
             motion: motion_gaps,

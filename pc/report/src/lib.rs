@@ -14,7 +14,7 @@ pub use ended::{Ended, ended};
 pub use log::{LOG, LogColumns, LogWriter};
 
 use crate::unwelded::Unwelded;
-use evaluate::{JOINT_QUANTITIES, JointFigures, Load, SpeedShares};
+use evaluate::{JOINT_QUANTITIES, JointFigures, Load, SpeedShares, Switching};
 use job::{ByBoard, CameraFigures, DelayFigures, Recentred};
 use parts::Figure;
 use serde::{Serialize, Serializer};
@@ -59,6 +59,9 @@ pub struct Report {
     pub weld_ticks: WeldTicks,
     /// Control ticks that a board could not serve in time, during the job.
     pub lost_ticks: ByBoard,
+    /// How exactly gates and outputs were switched in motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub switching: Option<Switching>,
     /// CPU load of the motion board; a simulated one has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load: Option<Load>,

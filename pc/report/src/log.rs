@@ -3,7 +3,7 @@
 //! While the job runs a [`LogWriter`] writes what the motion board tells, so that it is there whatever becomes of this
 //! program. Once the job is evaluated the log is written anew, with what is only known then: places, feeds and true values.
 
-use config::machine::MachineFile;
+use config::machine::{MachineFile, OutputNames};
 use evaluate::WorkTick;
 use host_link::events::{Event, Subscription};
 use shared::io::{AXES, AXIS_NAMES, MOTOR_NAMES, MOTORS, SLIDE_NAMES};
@@ -26,6 +26,8 @@ pub struct LogColumns {
     axes: [bool; AXES],
     motors: [bool; MOTORS],
     slides: bool,
+    /// Outputs of the process.
+    outputs: bool,
 }
 
 impl LogColumns {
@@ -35,6 +37,7 @@ impl LogColumns {
             axes: machine.motion.kinematics.fitted(),
             motors: machine.motion.motors.each_ref().map(Option::is_some),
             slides: machine.tracking.is_some(),
+            outputs: machine.outputs != OutputNames::default(),
         }
     }
 
@@ -46,8 +49,11 @@ impl LogColumns {
     fn heading(&self, out: &mut impl Write) -> io::Result<()> {
         write!(
             out,
-            "tick,time_s,path,s_mm,along_mm,speed_m_per_min,feed_m_per_min,true_speed_m_per_min,beam_1,beam_2"
+            "tick,time_s,path,s_mm,along_mm,speed_m_per_min,feed_m_per_min,true_speed_m_per_min,beam_1,beam_2,power_1,power_2"
         )?;
+        if self.outputs {
+            write!(out, ",outputs,analog_1,analog_2")?;
+        }
         for name in self.slide_names() {
             write!(out, ",deviation_{name}_mm")?;
         }
@@ -87,7 +93,11 @@ impl LogColumns {
         write!(out, ",")?;
         value(out, work.and_then(|work| work.true_speed_mm_s).map(m_min), 6)?;
         let [beam_1, beam_2] = sample.beams.map(u8::from);
-        write!(out, ",{beam_1},{beam_2}")?;
+        let [power_1, power_2, analog_1, analog_2] = sample.levels;
+        write!(out, ",{beam_1},{beam_2},{power_1:.4},{power_2:.4}")?;
+        if self.outputs {
+            write!(out, ",{},{analog_1:.4},{analog_2:.4}", sample.outputs)?;
+        }
         for slide in self.slide_names().enumerate().map(|(slide, _)| slide) {
             write!(out, ",")?;
             value(out, work.and_then(|work| work.deviation_mm[slide]), 7)?;
@@ -223,6 +233,7 @@ pub(crate) mod tests {
         axes: [true; AXES],
         motors: [true; MOTORS],
         slides: true,
+        outputs: true,
     };
 
     pub(crate) fn tick(tick: u32) -> WorkTick {
@@ -251,8 +262,8 @@ pub(crate) mod tests {
             s_mm: 0.1 * f64::from(tick),
             speed_mm_s: 5.0 * MM_S_PER_M_MIN,
             beams: [true, false],
-            outputs: 0,
-            levels: [0.0; 4],
+            outputs: 5,
+            levels: [0.25, 0.0, 0.5, 0.0],
             switched: [None; 4],
             axes: [10.0, 20.0, 30.0, 0.0, 0.0, std::f64::consts::PI],
             truth: None,
@@ -281,6 +292,10 @@ pub(crate) mod tests {
         assert_eq!(value(2, "speed_m_per_min"), "5.000000");
         assert_eq!(value(2, "true_speed_m_per_min"), "4.900000");
         assert_eq!((value(2, "beam_1"), value(2, "beam_2")), ("1", "0"));
+        assert_eq!(
+            (value(2, "power_1"), value(2, "outputs"), value(2, "analog_1")),
+            ("0.2500", "5", "0.5000")
+        );
         assert_eq!(value(2, "deviation_v1_mm"), "-0.0030000");
         assert_eq!((value(2, "deviation_u2_mm"), value(2, "slide_u1_mm")), ("", ""));
         assert_eq!(value(2, "following_error_C_deg"), "0.1145916");
@@ -307,13 +322,14 @@ pub(crate) mod tests {
     #[test]
     fn there_are_no_columns_of_what_the_machine_does_not_have() {
         let mut columns = ALL;
-        columns.slides = false;
+        (columns.slides, columns.outputs) = (false, false);
         (columns.axes[4], columns.motors[5]) = (false, false);
         columns.motors[1] = false;
         let text = text(&columns);
         let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
         assert_eq!(lines[0].len(), lines[1].len());
         let has = |part: &str| lines[0].iter().any(|name| name.contains(part));
+        assert!(!has("outputs") && !has("analog"));
         assert!(!has("slide") && !has("deviation") && !has("X2") && !has("B_deg"));
         assert!(has("contour_error_mm") && has("following_error_X1_mm") && has("A_deg"));
     }

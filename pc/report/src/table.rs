@@ -200,6 +200,22 @@ fn boards_served(f: &mut Formatter, r: &Report) -> Result {
     if r.dropped_datagrams > 0 {
         writeln!(f, "  {:<25}{:8}", "datagrams dropped here", r.dropped_datagrams)?;
     }
+    if let Some(switching) = &r.switching {
+        let evaluate::Switching {
+            places,
+            worst_us,
+            elsewhere,
+        } = switching;
+        write!(
+            f,
+            "  {:<25}{places:8} places, at most {worst_us:.0} µs off",
+            "switched"
+        )?;
+        match elsewhere {
+            0 => writeln!(f)?,
+            more => writeln!(f, "; beams {more} times elsewhere (too slow, or after a hold)")?,
+        }
+    }
     if let Some(load) = &r.load {
         writeln!(f, "  load of the motion board     path tick  {}", load.path_tick)?;
         writeln!(f, "                               servo tick {}", load.servo_tick)?;

@@ -38,6 +38,11 @@ pub(crate) fn report() -> Report {
             unknown: 0,
         },
         lost_ticks: NONE,
+        switching: Some(Switching {
+            places: 2,
+            worst_us: 31.4,
+            elsewhere: 1,
+        }),
         load: None,
         telemetry_gaps: NONE,
         dropped_datagrams: 0,
