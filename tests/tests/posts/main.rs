@@ -1,5 +1,5 @@
-//! The post-processor of FreeCAD, run on stored jobs: our reader must find in the programs what the jobs ask for, and
-//! the shipped machines must take them.
+//! The post-processor of FreeCAD, run on stored jobs, and the example of the minimal post: our reader must find in
+//! the programs what the jobs ask for, and the shipped machines must take them.
 
 mod compare;
 mod expected;
@@ -128,6 +128,20 @@ fn shipped_machines_take_the_programs() {
     for (name, machine) in JOBS {
         assert_planned(name, machine, &StoredJob::shipped(name).program());
     }
+}
+
+#[test]
+fn the_ac_head_takes_the_example_of_the_minimal_post_and_burns_in_its_feeds_only() {
+    let readme = std::fs::read_to_string(shipped("posts/README.md")).expect("posts/README.md");
+    let example = readme.split("```").nth(1).expect("a block of code");
+    let steps: Vec<_> = found::lines(example)
+        .into_iter()
+        .flat_map(|line| line.steps)
+        .collect();
+    let burning: Vec<bool> = steps.iter().map(|step| step.tool.is_some()).collect();
+    let feeds: Vec<bool> = steps.iter().map(|step| step.feed.is_some()).collect();
+    assert!(burning.contains(&true) && burning == feeds, "{steps:?}");
+    assert_planned("posts/README.md", "ac-head", example);
 }
 
 /// Checks that a machine, after its search of the reference marks, can run a program.
