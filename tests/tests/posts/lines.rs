@@ -3,7 +3,7 @@
 use crate::stored::{python_is_there, run_objects};
 
 /// Arguments, commands, and lines between the first and the last of the program.
-const CASES: [(&str, &str, &[&str]); 10] = [
+const CASES: [(&str, &str, &[&str]); 11] = [
     // No minus before zero; a feed alone holds for what follows; commands without words do nothing.
     (
         "--precision=3",
@@ -33,6 +33,18 @@ const CASES: [(&str, &str, &[&str]); 10] = [
         &[
             "G0 X1.0000 Y0.0000",
             "G2 X-1.0000 Y0.0000 I-1.0000 J0.0000 F60.000",
+        ],
+    ),
+    // After a cycle Z is not known, as it is not the bottom of the hole.
+    (
+        "",
+        r#"["G81", {"X": 1.0, "Y": 1.0, "Z": -1.0, "R": 3.0, "F": 1.0}], ["G18", {}],
+           ["G2", {"X": 1.00001, "Z": -1.0, "I": 1.0, "K": 0.0}]"#,
+        &[
+            "G81 X1.0000 Y1.0000 Z-1.0000 R3.0000 F60.000",
+            "G80",
+            "G18",
+            "G2 X1.0000 Z-1.0000 I1.0000 K0.0000",
         ],
     ),
     // A run of cycles ends before what follows, and says all of its words.
@@ -76,15 +88,16 @@ const CASES: [(&str, &str, &[&str]); 10] = [
             "M65 P0",
         ],
     ),
-    // After M5 it goes off with the next feed, or at rest before a dwell.
+    // After M5 it goes off with the next feed, or at rest before a dwell. A dwell alone leaves it as it is.
     (
         "--beam",
-        r#"["M3", {"S": 90.0}], ["G1", {"X": 1.0, "F": 1.0}], ["M5", {}], ["G4", {"P": 1.0}], ["M3", {"S": 90.0}],
+        r#"["M3", {"S": 90.0}], ["G1", {"X": 1.0, "F": 1.0}], ["G4", {"P": 2.0}], ["M5", {}], ["G4", {"P": 1.0}], ["M3", {"S": 90.0}],
            ["G1", {"X": 2.0}], ["M5", {}], ["G1", {"X": 3.0}]"#,
         &[
             "M67 E0 Q90.0",
             "M62 P0",
             "G1 X1.0000 F60.000",
+            "G4 P2.0000",
             "M65 P0",
             "G4 P1.0000",
             "M62 P0",

@@ -16,10 +16,11 @@ use stored::{StoredJob, python_is_there};
 use system_tests::shipped;
 
 /// Stored jobs, and the machine for each.
-const JOBS: [(&str, &str); 5] = [
+const JOBS: [(&str, &str); 6] = [
     ("contour", "stir-gantry"),
     ("pocket", "stir-gantry"),
     ("drilling", "stir-gantry"),
+    ("plate", "stir-gantry"),
     ("five-axis", "ac-head"),
     ("beam", "ac-head"),
 ];
