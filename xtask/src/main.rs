@@ -36,7 +36,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install what is missing: the Arm and Windows targets of Rust, QEMU, Aravis
+    /// Install what is missing: the Arm and Windows targets of Rust, QEMU, Aravis, Python
     Setup,
     /// Weld on two emulated boards: set up, build, boot, and run `seamwright weld` with the flags given
     #[command(disable_help_flag = true)]

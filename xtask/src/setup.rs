@@ -21,6 +21,8 @@ pub enum Tool {
     Valgrind,
     /// The library of GigE Vision cameras, and its simulated camera.
     Aravis,
+    /// What runs the post-processor of FreeCAD.
+    Python,
     /// What changes the code, to see whether a test notices.
     Mutants,
     /// Another interpreter of NC programs, and the programs that come with it.
@@ -33,12 +35,13 @@ pub const WINDOWS: &str = "x86_64-pc-windows-gnu";
 const MUTANTS: &str = "27.1.0";
 
 /// For everything but counting, changing the code and comparing interpreters.
-pub const ALL: [Tool; 5] = [
+pub const ALL: [Tool; 6] = [
     Tool::ArmTarget,
     Tool::WindowsTarget,
     Tool::Components,
     Tool::Qemu,
     Tool::Aravis,
+    Tool::Python,
 ];
 /// For emulated boards.
 pub const EMULATION: [Tool; 2] = [Tool::ArmTarget, Tool::Qemu];
@@ -70,6 +73,11 @@ pub fn run(wants: &[Tool]) -> Result<()> {
                         && runs("arv-fake-gv-camera-0.8", &["--help"])
                 },
                 "install Aravis 0.8.25 or later by hand, with its tools",
+            )?,
+            Tool::Python => debian(
+                &["python3"],
+                || runs("python3", &["--version"]),
+                "install Python 3.8 or later by hand",
             )?,
             Tool::Mutants => mutants()?,
             Tool::LinuxCnc => debian(
