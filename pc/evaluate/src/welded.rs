@@ -59,6 +59,10 @@ impl SpeedShares {
             }
             if let (true, Some(speed)) = (counts && tick.feed_mm_s > 0.0, tick.true_speed_mm_s) {
                 let (slow, fast) = programmed.feeds_around(tick.s_mm, transition(&paths[&path_id], &tick));
+                if slow <= 0.0 {
+                    // From rest, or to it.
+                    continue;
+                }
                 let (low, high) = (100.0 * speed / slow, 100.0 * speed / fast);
                 let shares = shares.get_or_insert(Self {
                     lowest_percent: low,

@@ -200,14 +200,16 @@ impl PlannedPath {
         if let Some(blocks) = &self.blocks {
             return blocks.summary().weld_mm;
         }
-        let places = |wanted: bool| {
-            self.events
-                .iter()
-                .filter(move |event| matches!(event.action, PathAction::Beam { on, .. } if on == wanted))
-                .map(|event| event.s_mm)
+        let switchings = self.events.iter().filter_map(|event| match event.action {
+            PathAction::Beam { on, .. } => Some((event.s_mm, on)),
+            _ => None,
+        });
+        let (start, _) = switchings.clone().find(|(_, on)| *on)?;
+        let end = match switchings.last() {
+            Some((end, false)) => end,
+            _ => self.length_mm(),
         };
-        let start = places(true).next()?;
-        Some((start, places(false).next_back().unwrap_or(self.length_mm())))
+        Some((start, end))
     }
 
     /// Where it is, by its length.

@@ -3,6 +3,7 @@
 use super::PlannedPath;
 use shared::io::SIDES;
 use shared::protocol::PathAction;
+use shared::trajectory::Shape;
 
 /// Feeds, beams and tracking of a path, from where the machine begins on it. It grows with what changes, not with the
 /// length of the program.
@@ -12,7 +13,7 @@ pub struct Programmed {
     pub beams: [Vec<(f64, f64)>; SIDES],
     /// Whether the seam is followed anywhere.
     pub tracked: bool,
-    /// From a path length on \[mm\], this feed \[mm/s\]; in order.
+    /// From a path length on \[mm\], this feed \[mm/s\], 0 where the tip stands; in order.
     feeds: Vec<(f64, f64)>,
 }
 
@@ -27,7 +28,12 @@ impl PlannedPath {
             for event in &leg.events {
                 programmed.take(event.s_mm, event.action, &mut since);
             }
-            programmed.go_on_at(end_s, leg.element.feed);
+            // Where the tip stands, the feed is none of it.
+            let feed = match leg.element.shape {
+                Shape::Point(_) => 0.0,
+                _ => leg.element.feed,
+            };
+            programmed.go_on_at(end_s, feed);
             end_s += leg.element.length;
         }
         for (stretches, since) in programmed.beams.iter_mut().zip(since) {

@@ -111,9 +111,14 @@ impl<'a> Check<'a> {
         let (line, speed) = (step.block.place.line, step.speed);
         if summary.blocks == 0 {
             summary.lines.0 = line;
-            summary.speeds = Speeds::of(speed);
         }
-        summary.speeds.change_to(speed);
+        // A time at rest has no speed of the tip.
+        if !step.waits {
+            if summary.speeds == Speeds::default() {
+                summary.speeds = Speeds::of(speed);
+            }
+            summary.speeds.change_to(speed);
+        }
         summary.lines.1 = line;
         summary.blocks += 1;
         summary.elements += elements.len() as u64;
@@ -123,6 +128,7 @@ impl<'a> Check<'a> {
                 let (s, before) = (summary.length_mm + after_mm, summary.weld_mm);
                 summary.weld_mm = match (on, before) {
                     (true, None) => Some((s, f64::INFINITY)),
+                    (true, Some((start, _))) => Some((start, f64::INFINITY)),
                     (false, Some((start, _))) => Some((start, s)),
                     _ => before,
                 };

@@ -19,6 +19,8 @@ pub(super) struct Step {
     pub(super) block: Block,
     /// Where it leads.
     pub(super) tip: Tip,
+    /// A time at rest.
+    pub(super) waits: bool,
     /// Programmed \[mm/s\].
     pub(super) programmed: f64,
     /// The same, or what the axes come to on the block, if that is less \[mm/s\].
@@ -127,9 +129,10 @@ impl Walk {
         let planner = &self.planner;
         let tip = planner.next_tip(&target, &self.tip)?;
         let block = Block::build(planner, nc::Motion::Feed, &self.tip, &tip, &target)?;
-        let programmed = match target.way {
-            Way::Wait(_) => WAIT_MM_S,
-            _ => self.feeds.next(&target, block.length)?,
+        let waits = matches!(target.way, Way::Wait(_));
+        let programmed = match waits {
+            true => WAIT_MM_S,
+            false => self.feeds.next(&target, block.length)?,
         };
         let speed = planner.reached_on(&block, &tip, programmed);
         let on = std::mem::take(&mut self.on)
@@ -144,6 +147,7 @@ impl Walk {
         Ok(Step {
             block,
             tip,
+            waits,
             programmed,
             speed,
             actions,

@@ -58,7 +58,8 @@ impl Planner {
                 // The path stands, and may switch more.
                 let mut path = path.clone();
                 path.events.retain(|event| event != word);
-                Ok(vec![path])
+                let nothing = path.events.is_empty() && path.dwell_before_s == 0.0;
+                Ok(if nothing { Vec::new() } else { vec![path] })
             }
             (None, Some(weld)) => {
                 let name = &program.welds[weld.index];
