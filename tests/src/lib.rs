@@ -8,6 +8,7 @@ mod pictures;
 mod prediction;
 pub mod range;
 mod references;
+pub mod weld_data;
 mod words;
 
 pub use hold::assert_held_weld_goes_on;

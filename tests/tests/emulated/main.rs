@@ -5,4 +5,5 @@ mod outside;
 mod pair;
 mod process;
 mod trouble;
+mod weld_data;
 mod welds;

@@ -165,7 +165,7 @@ impl Block {
         };
         let length = match motion {
             Motion::Feed if stands => match target.way {
-                Way::Wait(time_s) => planner.wait_length(time_s),
+                Way::Wait(time_s) => planner.path_length_at_rest(time_s),
                 _ => turned.max(SHORTEST),
             },
             Motion::Feed => travel,

@@ -156,12 +156,13 @@ impl Planner {
             });
         }
         let first = &path.targets[0];
-        let mut paths = vec![standing(phases.before.clone(), 0.0, on)];
+        let mut paths = Vec::new();
         let mut axes = stand.axes;
         if set.offset_mm != [0.0; 2] {
             let target = aside.transfer(0.0, set.offset_mm, speed, &mut axes, &self.fitted, first)?;
             paths.push(feeding(vec![target], Vec::new(), 0.0));
         }
+        paths.push(standing(phases.before.clone(), 0.0, on));
         let (mut targets, mut events) = if beside || rests && smooth {
             self.beside(&aside, set, name, &phases, speed, &mut axes, &path)?
         } else {
@@ -275,7 +276,7 @@ impl Planner {
     }
 
     /// Path length of a time at rest within a path \[mm\]: from rest to rest it takes that time.
-    pub(super) fn wait_length(&self, time_s: f64) -> f64 {
+    pub fn path_length_at_rest(&self, time_s: f64) -> f64 {
         let rise_s = 2.0 * self.planning.speed_up_length(WAIT_MM_S) / WAIT_MM_S;
         WAIT_MM_S * (time_s - rise_s).max(rise_s)
     }

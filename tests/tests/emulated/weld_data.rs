@@ -1,0 +1,27 @@
+//! Welds with weld data: subroutine and work offset, ramps, crater fill, tacks, weave, two passes.
+
+use crate::pair::{Pair, assert_served};
+use system_tests::weld_data::{
+    WeldDataRun, assert_butt_joint, assert_switched, assert_two_pass_saddle, two_pass_saddle,
+};
+
+#[test]
+fn welds_are_made_as_their_sets_say_and_switched_within_a_tenth_of_a_millisecond() {
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let mut pair = Pair::boot_as("weld-data-joint", "wire-arc");
+            let run = WeldDataRun::butt_joint(&mut pair.connect_motion());
+            assert_butt_joint(&run);
+            assert_switched(&run, 2);
+            assert_served(&run.ended.report);
+            pair.assert_off();
+        });
+        scope.spawn(|| {
+            let mut pair = Pair::boot_as("weld-data-saddle", "pipe-welder");
+            let run = two_pass_saddle(&mut pair.connect_motion());
+            assert_two_pass_saddle(&run);
+            assert_served(&run.ended.report);
+            pair.assert_off();
+        });
+    });
+}
