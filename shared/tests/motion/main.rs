@@ -7,6 +7,7 @@ mod homing;
 mod numbers;
 mod parameters;
 mod permits;
+mod process;
 mod readback;
 mod steps;
 mod stops;

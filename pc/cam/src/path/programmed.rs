@@ -28,7 +28,7 @@ impl PlannedPath {
             for event in &leg.events {
                 programmed.take(event.s_mm, event.action, &mut since);
             }
-            // Where the tip stands, the feed is none of it.
+            // Where nothing moves, the feed is none of the tip.
             let feed = match leg.element.shape {
                 Shape::Point(_) => 0.0,
                 _ => leg.element.feed,

@@ -350,8 +350,10 @@ impl Phases {
             ignition.push(gate(true));
         } else {
             let first = up.map_or(set.power, |ramp| ramp.power);
-            let burns = rest.into_iter().chain([level(power, first, 0.0)]).chain(begin());
+            let burns = [level(power, first, 0.0)].into_iter().chain(begin());
             on_seam.extend(burns.chain([gate(true)]).map(|action| (0.0, action)));
+            // Only at the end: the beam goes on when it is fast enough.
+            on_seam.extend(rest.map(|rest| (length / 2.0, rest)));
         }
         on_seam.extend(set.by_speed.map(|by_speed| {
             let (full_mm_s, least) = (by_speed.full_mm_s, by_speed.least);
