@@ -31,7 +31,7 @@ pub use programmed::Programmed;
 pub use targets::Tip;
 pub use too_fast::{FeedTooHigh, TooFast, check_constant_speed};
 
-use config::machine::{MachineFile, PlanningConfig};
+use config::machine::{MachineFile, PlanningConfig, ProgramConfig};
 use limits::{DRIVES, DriveLimits};
 use nc::{Program, SourcePosition};
 use outputs::Switched;
@@ -64,6 +64,7 @@ pub struct Planner {
     /// The machine has slides that follow the seam.
     tracks: bool,
     planning: PlanningConfig,
+    program: ProgramConfig,
 }
 
 impl Planner {
@@ -82,6 +83,7 @@ impl Planner {
             largest_power: beams.map(|beam| beam.map(|beam| beam.power_at_10v_w)),
             tracks: machine.tracking.is_some(),
             planning: machine.planning.clone(),
+            program: machine.program,
         })
     }
 

@@ -2,7 +2,8 @@
 
 use super::targets::Tip;
 use super::{PathError, Planner, inner};
-use nc::{Program, ProgramAction, Setup, TipAndAxes};
+use config::machine::{ArcPlane, LengthUnit, PathMode};
+use nc::{Blend, PathControl, Plane, Program, ProgramAction, Setup, TipAndAxes};
 use shared::geometry::Pose;
 use shared::io::AXES;
 use shared::kinematics::{AXIS_UNIT, Kinematics};
@@ -13,13 +14,30 @@ use std::sync::Arc;
 const SAME_START: f64 = 1e-6;
 
 impl Planner {
-    /// What a program for this machine begins with, when the axes stand at `from` (mm, degrees). G28 and G30 lead to
-    /// the park position.
+    /// What a program for this machine begins with, when the axes stand at `from` (mm, degrees): the modes of the machine
+    /// file's `[program]`. G28 and G30 lead to the park position.
     pub fn setup(&self, from: &[f64; AXES]) -> Setup {
         let kinematics = OfMachine(self.kinematics.clone());
         let park = self.planning.park_axes();
+        let program = &self.program;
         Setup {
             start: kinematics.tip(from),
+            tip_control: program.tip_control,
+            inches: program.units == LengthUnit::Inch,
+            plane: match program.plane {
+                ArcPlane::G17 => Plane::Xy,
+                ArcPlane::G18 => Plane::Zx,
+                ArcPlane::G19 => Plane::Yz,
+            },
+            control: match program.path_mode {
+                PathMode::G61 => PathControl::ExactPath,
+                PathMode::G61_1 => PathControl::ExactStop,
+                PathMode::G64 => PathControl::Blend(Blend {
+                    tolerance: program.tolerance_mm,
+                    smoothing: None,
+                }),
+            },
+            rotary: program.rotary_deg.into_array(),
             fitted: self.fitted,
             homes: [park, park],
             kinematics: Some(Arc::new(kinematics)),

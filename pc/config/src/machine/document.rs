@@ -1,6 +1,8 @@
 //! The machine file as it is written.
 
-use super::{ByAxis, CameraConfig, MachineFile, Mistake, PlanningConfig, ProcessConfig, TrackingUnit};
+use super::{
+    ByAxis, CameraConfig, MachineFile, Mistake, PlanningConfig, ProcessConfig, ProgramConfig, TrackingUnit,
+};
 use crate::probe::ProbeUnit;
 use serde::Deserialize;
 use shared::config::{BeamConfig, HeadConfig, MotionConfig, SlideConfig, TrackerConfig, TrackingConfig};
@@ -25,6 +27,8 @@ pub struct Document {
     cameras: Option<CameraConfig>,
     process: Option<ProcessConfig>,
     probe: Option<ProbeUnit>,
+    #[serde(default)]
+    program: ProgramConfig,
 }
 
 #[derive(Deserialize)]
@@ -78,6 +82,7 @@ impl TryFrom<Document> for MachineFile {
             process: d.process,
             probe: d.probe,
             planning: d.planning,
+            program: d.program,
         })
     }
 }

@@ -4,10 +4,12 @@ mod cameras;
 mod check;
 mod document;
 mod error;
+mod program;
 mod weak_protection;
 
 pub use cameras::{CameraConfig, JointForm};
 pub use error::{MachineError, Mistake};
+pub use program::{ArcPlane, LengthUnit, PathMode, ProgramConfig, Rotary};
 pub use weak_protection::WeakProtection;
 
 use crate::probe::ProbeUnit;
@@ -37,6 +39,8 @@ pub struct MachineFile {
     pub probe: Option<ProbeUnit>,
     /// What only the PC needs for planning.
     pub planning: PlanningConfig,
+    /// What NC programs begin with.
+    pub program: ProgramConfig,
 }
 
 /// The tracker board, its slides and cameras.
@@ -136,8 +140,9 @@ impl MachineFile {
     /// Understands `text`; `path` is used in messages only.
     pub fn parse(path: &str, text: &str) -> Result<Self, MachineError> {
         let document: Document = toml_file::parse(WHAT, path, text)?;
-        let mistake = |mistake| MachineError::Mistake {
+        let mistake = |mistake: Mistake| MachineError::Mistake {
             path: path.to_owned(),
+            line: toml_file::line_of(text, &mistake.key()),
             mistake,
         };
         let machine: Self = document.try_into().map_err(mistake)?;

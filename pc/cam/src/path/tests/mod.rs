@@ -7,6 +7,7 @@ mod feeds;
 mod machines;
 mod nurbs;
 mod outputs;
+mod program_setup;
 mod rotary;
 mod short_blocks;
 mod smoothing;
