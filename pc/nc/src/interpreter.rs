@@ -337,7 +337,12 @@ impl Interpreter {
         self.open = false;
     }
 
-    /// The time to stand before the next path \[s\].
+    /// The time to stand before what follows \[s\].
+    pub(super) fn dwell_s(&self) -> f64 {
+        self.dwell.map_or(0.0, |(time, _)| time)
+    }
+
+    /// Takes the time to stand before the next path \[s\].
     pub(super) fn dwell_before(&mut self) -> f64 {
         self.dwell.take().map_or(0.0, |(time, _)| time)
     }

@@ -15,6 +15,7 @@ mod claims;
 mod codes;
 mod cycles;
 mod error;
+mod explain;
 mod expression;
 mod flow;
 mod interpreter;
@@ -39,6 +40,7 @@ mod tests;
 pub mod text;
 
 pub use error::{NcError, Problem, SourcePosition};
+pub use explain::{Told, explain_file};
 pub use program::{
     ArcForm, ArcWay, Blend, ControlPoint, FeedRate, Motion, Move, Notice, NurbsWay, PathControl, Plane,
     Program, ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,

@@ -8,7 +8,7 @@ use super::program::{Blend, FeedRate, PathControl, Plane};
 use super::setup::Setup;
 
 /// mm of an inch.
-const INCH: f64 = 25.4;
+pub(super) const INCH: f64 = 25.4;
 
 /// How F is meant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,6 +166,11 @@ impl Modal {
     /// Whether every block has a feed of its own.
     pub(super) fn inverse_time(&self) -> bool {
         self.feed_mode == FeedMode::InverseTime
+    }
+
+    /// F of G94 \[mm/min\].
+    pub(super) fn mm_min(&self) -> Option<f64> {
+        self.feed.map(|feed| feed.mm_min)
     }
 
     /// F as it is written, 0 before.

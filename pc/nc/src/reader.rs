@@ -5,6 +5,7 @@ use super::codes::{Code, Group};
 use super::error::{NcError, Problem, SourcePosition};
 use super::flow::{self, Keyword, OWord};
 use super::interpreter::Interpreter;
+use super::parameters::Parameter;
 use super::program::Program;
 use super::scanner::Scanner;
 use super::setup::Options;
@@ -95,6 +96,27 @@ impl Position {
         let line = self.levels.last().map_or(0, |level| level.line);
         SourcePosition { line, column: 1 }
     }
+
+    /// How many subroutines run.
+    pub(super) fn depth(&self) -> usize {
+        self.levels.len() - 1
+    }
+
+    /// Name of the file of the innermost one, if it has one of its own.
+    pub(super) fn file(&self) -> Option<&str> {
+        self.levels.last()?.file.as_deref()
+    }
+}
+
+/// The line that was carried out last.
+pub(super) struct Ran {
+    pub(super) text: String,
+    /// Parameters that it set.
+    pub(super) settings: Vec<(Parameter, f64)>,
+    /// It has nothing but blanks and comments.
+    pub(super) blank: bool,
+    /// It is an O word.
+    pub(super) flow: bool,
 }
 
 /// A program on its way through the interpreter.
@@ -104,6 +126,7 @@ pub(super) struct Reader {
     lines: Lines,
     options: Options,
     pub(super) interpreter: Interpreter,
+    ran: Option<Ran>,
 }
 
 impl Reader {
@@ -135,6 +158,7 @@ impl Reader {
             position,
             options,
             interpreter,
+            ran: None,
         };
         reader.reopen();
         reader
@@ -179,8 +203,9 @@ impl Reader {
 
     /// Carries out the next line; whether there was one.
     pub(super) fn block(&mut self) -> Result<bool, NcError> {
-        let file = |reader: &Self| reader.position.levels.last().and_then(|level| level.file.clone());
+        let file = |reader: &Self| reader.position.file().map(str::to_owned);
         let before = file(self);
+        self.ran = None;
         self.line_of_level().map_err(|error| match file(self).or(before) {
             Some(file) if !matches!(error.problem, Problem::InFile { .. }) => {
                 let problem = Box::new(error.problem);
@@ -203,6 +228,12 @@ impl Reader {
         let parsed = parse(&text, here.line, self.options.block_delete, &mut self.interpreter)?;
         let seen = self.position.seen;
         self.position.seen |= parsed != Parsed::Blank;
+        let mut ran = Ran {
+            text,
+            settings: Vec::new(),
+            blank: parsed == Parsed::Blank || parsed == Parsed::Percent,
+            flow: matches!(parsed, Parsed::Flow(_)),
+        };
         match parsed {
             Parsed::Blank => {}
             Parsed::Percent if seen && self.position.levels.len() == 1 => {
@@ -214,9 +245,17 @@ impl Reader {
             Parsed::Block(block) => {
                 self.interpreter.block(&block)?;
                 self.call_of(&block)?;
+                ran.blank = block.codes.is_empty() && block.words.is_empty();
+                ran.settings = block.settings;
             }
         }
+        self.ran = Some(ran);
         Ok(!self.interpreter.ended)
+    }
+
+    /// The line that was carried out last, if there was one.
+    pub(super) fn take_ran(&mut self) -> Option<Ran> {
+        self.ran.take()
     }
 
     /// The text of the main program ends without an M2, which is told; that of a subroutine must not.

@@ -2,6 +2,7 @@
 
 mod coordinates;
 mod cycles;
+mod explain;
 mod flow;
 mod modes;
 mod nurbs;
