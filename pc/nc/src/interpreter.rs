@@ -120,12 +120,17 @@ impl Interpreter {
             .modal
             .motion
             .filter(|_| own_motion.is_none() && takes.is_none());
-        let claims = Claims::of(block, modal)?;
+        let vectors = match block.code(Group::ToolLength) {
+            Some(code) => code.code == Code::TipByVectors,
+            None => self.modal.vectors,
+        };
+        let claims = Claims::of(block, modal, vectors)?;
         if own_motion.is_some_and(|motion| Some(motion) != self.modal.motion) {
             self.sticky.changed(own_motion);
         }
         let setup = self.setup.clone();
         self.modal.block(block, &claims, &setup)?;
+        self.hints(block);
         self.save_modes(block)?;
         self.switch(block, &claims)?;
         self.system_and_tool(block, &claims)?;

@@ -20,6 +20,7 @@ mod smooth_legs;
 mod targets;
 #[cfg(test)]
 mod tests;
+mod tip_of_machine;
 mod too_fast;
 
 pub use blocks::{Blocks, Course, Leg, Summary};

@@ -50,6 +50,15 @@ fn modal(before: &Before, after: &Interpreter, moves: bool) -> Vec<String> {
         "not understood before G43.4"
     };
     change(old.tip != new.tip, format!("X Y Z are {tip}"));
+    let letters = if new.vectors {
+        "the direction of the tool (G43.5)"
+    } else {
+        "not understood"
+    };
+    change(
+        old.vectors != new.vectors,
+        format!("I J K of straight motions are {letters}"),
+    );
     change(
         old.plane != new.plane,
         format!("arcs go about {}", plane(new.plane)),

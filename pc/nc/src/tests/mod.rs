@@ -2,6 +2,7 @@
 
 mod coordinates;
 mod cycles;
+mod direction;
 mod explain;
 mod flow;
 mod modes;

@@ -3,6 +3,7 @@
 mod arcs;
 mod blocks;
 mod control;
+mod directions;
 mod feeds;
 mod machines;
 mod nurbs;
