@@ -37,6 +37,7 @@ mod scanner;
 mod settings;
 mod setup;
 mod source;
+mod subroutines;
 #[cfg(test)]
 mod tests;
 pub mod text;

@@ -10,8 +10,8 @@ use super::program::Program;
 use super::scanner::Scanner;
 use super::setup::Options;
 use super::source::{Lines, Source};
+use super::subroutines::{self, Found, head};
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::sync::Arc;
 
 /// Deepest nesting of subroutines.
@@ -60,20 +60,13 @@ struct Level {
 
 #[derive(Clone)]
 struct Call {
+    /// Number or name of the subroutine.
+    label: String,
     /// It has parameters of its own, as those of O words have.
     own_parameters: bool,
     /// Where it begins, and how many times more it is to run (M98 L).
     begins: (u64, u32),
     again: u32,
-}
-
-/// Where a subroutine begins.
-#[derive(Clone)]
-struct Found {
-    source: Source,
-    offset: u64,
-    line: u32,
-    file: Option<String>,
 }
 
 /// How far a program has been run.
@@ -528,6 +521,7 @@ impl Reader {
             open: Vec::new(),
             file: found.file,
             call: Some(Call {
+                label: label.to_owned(),
                 own_parameters: arguments.is_some(),
                 begins: (found.offset, found.line),
                 again: times - 1,
@@ -539,10 +533,14 @@ impl Reader {
 
     /// A subroutine ends by its O word.
     fn leave(&mut self, value: Option<f64>, word: &OWord) -> Result<(), NcError> {
-        if self.position.levels.len() == 1 {
-            let label = word.label.clone();
+        let label = word.label.clone();
+        let Some(call) = &self.level().call else {
             let (keyword, wanted) = ("return or endsub", "call that led here");
             return Err(no_end(label, keyword, wanted, word.place));
+        };
+        if call.label != label {
+            let (open, line) = (call.label.clone(), call.begins.1);
+            return Err(Problem::OtherSubroutine { label, open, line }.at(word.place));
         }
         self.pop()?;
         self.interpreter.set_result(value);
@@ -585,7 +583,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Where a subroutine begins: in the text that runs, in the main program, or in a file of its name.
+    /// Where a subroutine begins; the innermost text is searched first.
     fn find(&mut self, label: &str, place: SourcePosition) -> Result<Found, NcError> {
         if let Some(found) = self.position.found.get(label) {
             return Ok(found.clone());
@@ -595,23 +593,10 @@ impl Reader {
             .map(|level| (level.source.clone(), level.file.clone()))
             .collect();
         texts.dedup_by(|a, b| a.1 == b.1);
-        for folder in &self.options.setup.folders {
-            let path = folder.join(format!("{label}.ngc"));
-            if let Ok(file) = File::open(&path) {
-                let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-                let unreadable = |error: std::io::Error| Problem::Unreadable(error.to_string()).at(place);
-                texts.push((Source::of(file).map_err(unreadable)?, name));
-                break;
-            }
-        }
-        for (source, file) in texts {
-            if let Some(found) = begins(&source, label, file, &mut self.interpreter) {
-                self.position.found.insert(label.to_owned(), found.clone());
-                return Ok(found);
-            }
-        }
-        let label = label.to_owned();
-        Err(Problem::NoSubroutine { label }.at(place))
+        let folders = &self.options.setup.folders;
+        let found = subroutines::find(label, texts, folders, &mut self.interpreter, place)?;
+        self.position.found.insert(label.to_owned(), found.clone());
+        Ok(found)
     }
 }
 
@@ -623,45 +608,4 @@ fn no_end(label: String, keyword: &'static str, wanted: &'static str, place: Sou
         wanted,
     }
     .at(place)
-}
-
-/// The O word of a line, without its values. Of a line that is not understood nothing.
-fn head(text: &str, line: u32, interpreter: &mut Interpreter) -> Option<OWord> {
-    let start = text.trim_start();
-    let first = start.chars().next()?;
-    if !matches!(first, 'O' | 'o' | 'N' | 'n' | '/') {
-        return None;
-    }
-    let mut scanner = Scanner::new(text, line);
-    scanner.skip_blanks();
-    if first == '/' {
-        scanner.step();
-    }
-    flow::o_word(&mut scanner, interpreter, false).ok().flatten()
-}
-
-/// Where `source` has the subroutine `label`.
-fn begins(
-    source: &Source,
-    label: &str,
-    file: Option<String>,
-    interpreter: &mut Interpreter,
-) -> Option<Found> {
-    let mut lines = source.lines(0);
-    let mut line = 0;
-    while let Ok(Some(text)) = lines.next() {
-        line += 1;
-        let Some(word) = head(&text, line, interpreter) else {
-            continue;
-        };
-        if word.label == label && matches!(word.keyword, Keyword::Sub | Keyword::Number) {
-            return Some(Found {
-                source: source.clone(),
-                offset: lines.offset,
-                line,
-                file,
-            });
-        }
-    }
-    None
 }
