@@ -100,8 +100,13 @@ impl Block {
         self.words.iter().find(|w| w.address == address)
     }
 
+    /// Whether it has comments and nothing else.
+    pub fn is_comment(&self) -> bool {
+        self.codes.is_empty() && self.words.is_empty() && self.settings.is_empty()
+    }
+
     fn is_empty(&self) -> bool {
-        self.codes.is_empty() && self.words.is_empty() && self.settings.is_empty() && self.comments.is_empty()
+        self.is_comment() && self.comments.is_empty()
     }
 }
 

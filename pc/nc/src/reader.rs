@@ -106,10 +106,32 @@ pub(super) struct Ran {
     pub(super) text: String,
     /// Parameters that it set.
     pub(super) settings: Vec<(Parameter, f64)>,
-    /// It has nothing but blanks and comments.
-    pub(super) blank: bool,
-    /// It is an O word.
-    pub(super) flow: bool,
+    pub(super) kind: Kind,
+}
+
+/// What a line is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Nothing but blanks, comments or a tape mark.
+    Blank,
+    /// Left out by block delete.
+    Deleted,
+    /// An O word.
+    Flow,
+    /// All else.
+    Block,
+}
+
+impl Kind {
+    fn of(parsed: &Parsed, text: &str) -> Self {
+        match (parsed, text.trim_start().chars().next()) {
+            (Parsed::Blank, None | Some(';')) | (Parsed::Percent, _) => Self::Blank,
+            (Parsed::Blank, Some('/')) => Self::Deleted,
+            (Parsed::Block(block), _) if block.is_comment() => Self::Blank,
+            (Parsed::Flow(_), _) => Self::Flow,
+            _ => Self::Block,
+        }
+    }
 }
 
 /// A program on its way through the interpreter.
@@ -222,10 +244,9 @@ impl Reader {
         let seen = self.position.seen;
         self.position.seen |= parsed != Parsed::Blank;
         let mut ran = Ran {
+            kind: Kind::of(&parsed, &text),
             text,
             settings: Vec::new(),
-            blank: parsed == Parsed::Blank || parsed == Parsed::Percent,
-            flow: matches!(parsed, Parsed::Flow(_)),
         };
         match parsed {
             Parsed::Blank => {}
@@ -238,7 +259,6 @@ impl Reader {
             Parsed::Block(block) => {
                 self.interpreter.block(&block)?;
                 self.call_of(&block)?;
-                ran.blank = block.codes.is_empty() && block.words.is_empty();
                 ran.settings = block.settings;
             }
         }

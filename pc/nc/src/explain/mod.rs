@@ -12,7 +12,7 @@ mod words;
 
 use super::error::{NcError, Problem, SourcePosition};
 use super::program::Program;
-use super::reader::{Ran, Reader};
+use super::reader::{Kind, Ran, Reader};
 use super::reading::{KEPT, keep};
 use super::setup::Options;
 use super::source::Source;
@@ -86,13 +86,11 @@ fn told(before: &Before, reader: &Reader, ran: Ran) -> Option<Told> {
     );
     facts.extend(goes_on(before, reader));
     if facts.is_empty() {
-        if ran.blank {
-            return None;
-        }
-        let nothing = if ran.flow {
-            "goes on with the next line"
-        } else {
-            "changes nothing"
+        let nothing = match ran.kind {
+            Kind::Blank => return None,
+            Kind::Deleted => "left out: block delete",
+            Kind::Flow => "goes on with the next line",
+            Kind::Block => "changes nothing",
         };
         facts.push(nothing.to_owned());
     }

@@ -6,19 +6,20 @@ use super::*;
 
 /// Every block of `text` and what it does, as `check --explain` lays it out.
 fn told(text: &str) -> String {
+    told_with(Options::default(), text)
+}
+
+fn told_with(options: Options, text: &str) -> String {
     let mut told = String::new();
-    let read = explain(
-        &Source::Text(text.as_bytes().into()),
-        Options::default(),
-        |block| {
-            let inside = "  ".repeat(block.depth);
-            told += &format!("{inside}{}: {}\n", block.line, block.text);
-            for fact in block.facts {
-                told += &format!("{inside}   {fact}\n");
-            }
-        },
-    );
-    assert_eq!(read.unwrap(), interpret(text, Options::default()).unwrap());
+    let source = Source::Text(text.as_bytes().into());
+    let read = explain(&source, options.clone(), |block| {
+        let inside = "  ".repeat(block.depth);
+        told += &format!("{inside}{}: {}\n", block.line, block.text);
+        for fact in block.facts {
+            told += &format!("{inside}   {fact}\n");
+        }
+    });
+    assert_eq!(read.unwrap(), interpret(text, options).unwrap());
     told
 }
 
@@ -172,4 +173,23 @@ fn what_comes_before_an_error_is_told() {
     let error = explain(&source, Options::default(), |block| lines.push(block.line)).unwrap_err();
     assert_eq!(lines, [1, 2]);
     assert_eq!(error.place.line, 3);
+}
+
+#[test]
+fn lines_that_do_nothing_are_told_and_comments_are_not() {
+    let options = Options {
+        block_delete: true,
+        ..Options::default()
+    };
+    let text = "%\n\n(a comment)\n; another\nN5 SOFT COMPCAD\n  /G0 X1\nO7\nM2";
+    let wanted = "5: N5 SOFT COMPCAD
+   changes nothing
+6: /G0 X1
+   left out: block delete
+7: O7
+   goes on with the next line
+8: M2
+   the program ends
+";
+    assert_eq!(told_with(options, text), wanted);
 }
