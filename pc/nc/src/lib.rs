@@ -11,6 +11,7 @@
 
 mod arc;
 mod block;
+mod branches;
 mod claims;
 mod codes;
 mod cycles;
