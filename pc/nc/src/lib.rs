@@ -44,7 +44,7 @@ mod tests;
 pub mod text;
 
 pub use error::{NcError, Problem, SourcePosition};
-pub use explain::{Told, explain_file};
+pub use explain::{Told, explain, explain_file};
 pub use program::{
     ArcForm, ArcWay, Blend, ControlPoint, FeedRate, Motion, Move, Notice, NurbsWay, PathControl, Plane,
     Program, ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,

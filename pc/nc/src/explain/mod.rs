@@ -35,23 +35,27 @@ pub struct Told {
     pub facts: Vec<String>,
 }
 
-/// Reads a program as [`crate::interpret_file`] does, and hands each of its blocks to `tell`, in the order of execution: those
+/// Reads a program as [`crate::interpret`] does, and hands each of its blocks to `tell`, in the order of execution: those
 /// of subroutines and loops as often as they are run. Lines that are blank or nothing but a comment are left out, but for
 /// messages.
+///
+/// # Errors
+/// As of [`crate::interpret`]; what comes before has been told.
+pub fn explain(text: &str, options: Options, tell: impl FnMut(Told)) -> Result<Program, NcError> {
+    read(&Source::Text(text.as_bytes().into()), options, tell)
+}
+
+/// The same for a file, which is read as [`crate::interpret_file`] does.
 ///
 /// # Errors
 /// As of [`crate::interpret_file`]; what comes before has been told.
 pub fn explain_file(file: File, options: Options, tell: impl FnMut(Told)) -> Result<Program, NcError> {
     let first = SourcePosition { line: 1, column: 1 };
     let source = Source::of(file).map_err(|error| Problem::Unreadable(error.to_string()).at(first))?;
-    explain(&source, options, tell)
+    read(&source, options, tell)
 }
 
-pub(super) fn explain(
-    source: &Source,
-    options: Options,
-    mut tell: impl FnMut(Told),
-) -> Result<Program, NcError> {
+fn read(source: &Source, options: Options, mut tell: impl FnMut(Told)) -> Result<Program, NcError> {
     let mut reader = Reader::new(source, options.clone());
     loop {
         let before = Before::of(&reader);

@@ -1,7 +1,5 @@
 //! How blocks are told, in the order of execution.
 
-use super::super::explain::explain;
-use super::super::source::Source;
 use super::*;
 
 /// Every block of `text` and what it does, as `check --explain` lays it out.
@@ -11,8 +9,7 @@ fn told(text: &str) -> String {
 
 fn told_with(options: Options, text: &str) -> String {
     let mut told = String::new();
-    let source = Source::Text(text.as_bytes().into());
-    let read = explain(&source, options.clone(), |block| {
+    let read = explain(text, options.clone(), |block| {
         let inside = "  ".repeat(block.depth);
         told += &format!("{inside}{}: {}\n", block.line, block.text);
         for fact in block.facts {
@@ -169,8 +166,7 @@ fn a_cycle_is_told_with_the_motions_that_it_makes_and_a_nurbs_where_it_ends() {
 fn what_comes_before_an_error_is_told() {
     let mut lines = Vec::new();
     let text = "G0 X0\nG1 X1 F100\nG1 X2 Q7\nG1 X3";
-    let source = Source::Text(text.as_bytes().into());
-    let error = explain(&source, Options::default(), |block| lines.push(block.line)).unwrap_err();
+    let error = explain(text, Options::default(), |block| lines.push(block.line)).unwrap_err();
     assert_eq!(lines, [1, 2]);
     assert_eq!(error.place.line, 3);
 }
