@@ -3,6 +3,7 @@
 use serde::de::DeserializeOwned;
 use std::path::Path;
 use thiserror::Error;
+use toml::de::{DeTable, DeValue};
 
 /// Why a TOML file cannot be used. Reads as one sentence.
 #[derive(Debug, Error)]
@@ -53,8 +54,60 @@ pub fn parse<T: DeserializeOwned>(what: &'static str, path: &str, text: &str) ->
         TomlError::Content {
             what,
             path: path.to_owned(),
-            line: 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count(),
-            message: error.message().replace('\n', ", "),
+            line: line_at(text, start),
+            message: match key_at(text, start) {
+                Some(key) => format!("{key}: {}", one_line(error.message())),
+                None => one_line(error.message()),
+            },
         }
     })
+}
+
+/// The line of `text` with the key of this dotted name, or with the innermost table around it that is there; the first
+/// line is 1. What follows a blank is no part of the name.
+pub fn line_of(text: &str, key: &str) -> usize {
+    let mut line = 1;
+    let Ok(document) = DeTable::parse(text) else {
+        return line;
+    };
+    let mut table = Some(document.get_ref());
+    for part in key.split_whitespace().next().unwrap_or_default().split('.') {
+        let Some((name, value)) = table.and_then(|table| table.get_key_value(part)) else {
+            break;
+        };
+        line = line_at(text, name.span().start);
+        table = match value.get_ref() {
+            DeValue::Table(inner) => Some(inner),
+            _ => None,
+        };
+    }
+    line
+}
+
+/// Dotted name of the key whose value, no table, is at the byte number `start`.
+fn key_at(text: &str, start: usize) -> Option<String> {
+    fn inside(table: &DeTable, start: usize) -> Option<String> {
+        table.iter().find_map(|(name, value)| {
+            let name = name.get_ref();
+            let inner = match value.get_ref() {
+                DeValue::Table(inner) => inside(inner, start),
+                DeValue::Array(values) if values.iter().any(|value| value.get_ref().is_table()) => {
+                    let tables = values.iter().filter_map(|value| value.get_ref().as_table());
+                    tables.into_iter().find_map(|table| inside(table, start))
+                }
+                _ => return value.span().contains(&start).then(|| name.to_string()),
+            };
+            inner.map(|key| format!("{name}.{key}"))
+        })
+    }
+    inside(DeTable::parse(text).ok()?.get_ref(), start)
+}
+
+fn one_line(text: &str) -> String {
+    text.replace('\n', ", ")
+}
+
+/// The line of the byte number `start`.
+fn line_at(text: &str, start: usize) -> usize {
+    1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count()
 }

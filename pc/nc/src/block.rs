@@ -55,6 +55,18 @@ pub struct CodeWord {
     group: Group,
 }
 
+impl CodeWord {
+    fn hint(name: &'static str, place: SourcePosition) -> Self {
+        let (code, group) = (Code::Hint, Group::Hint);
+        Self {
+            code,
+            name,
+            place,
+            group,
+        }
+    }
+}
+
 /// One line of a program that is to be carried out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Block {
@@ -90,9 +102,14 @@ impl Block {
         self.words.iter().find(|w| w.address == address)
     }
 
-    fn is_empty(&self) -> bool {
+    /// Whether it has comments and nothing else.
+    pub fn is_comment(&self) -> bool {
         let words = self.codes.is_empty() && self.words.is_empty() && self.weld.is_none();
-        words && self.settings.is_empty() && self.comments.is_empty()
+        words && self.settings.is_empty()
+    }
+
+    fn is_empty(&self) -> bool {
+        self.is_comment() && self.comments.is_empty()
     }
 }
 
@@ -116,9 +133,9 @@ const WORDS: [&str; 21] = [
     "X", "Y", "Z", "A", "B", "C", "I", "J", "K", "R", "F", "P", "L", "E", "Q", "S", "T", "H", "D", "@", "^",
 ];
 /// The same, written with `=`.
-const NAMED_WORDS: [&str; 2] = ["V1", "V2"];
+const NAMED_WORDS: [&str; 5] = ["V1", "V2", "A3", "B3", "C3"];
 /// Words of other controllers without a number, and the code that they are here; none: what they ask for is always so.
-const KEYWORDS: [(&str, Option<Code>); 11] = [
+const KEYWORDS: [(&str, Option<Code>); 12] = [
     ("TRAORI", Some(Code::TipOn)),
     ("TRAFOOF", Some(Code::TipOff)),
     ("COMPCAD", None),
@@ -126,6 +143,7 @@ const KEYWORDS: [(&str, Option<Code>); 11] = [
     ("COMPON", None),
     ("COMPOF", None),
     ("ORIWKS", None),
+    ("ORIAXES", Some(Code::Hint)),
     ("FFWON", None),
     ("FFWOF", None),
     ("SOFT", None),
@@ -191,12 +209,29 @@ pub(super) fn parse(
         }
         first = false;
     }
+    high_speed(&mut block)?;
     // A block number alone does nothing.
     Ok(if block.is_empty() {
         Parsed::Blank
     } else {
         Parsed::Block(block)
     })
+}
+
+/// G5.1 with Q and nothing else is no curve but what other controllers call high-speed machining.
+fn high_speed(block: &mut Block) -> Result<(), NcError> {
+    let ([code], [q]) = (&mut block.codes[..], &block.words[..]) else {
+        return Ok(());
+    };
+    if code.code != Code::QuadraticSpline || q.address != "Q" {
+        return Ok(());
+    }
+    if q.number_below(2).is_none() {
+        return Err(q.value_error("Q1 begins high-speed machining, Q0 ends it"));
+    }
+    *code = CodeWord::hint("G5.1 Q", code.place);
+    block.words.clear();
+    Ok(())
 }
 
 /// `#… = …`, behind the `#`.
@@ -230,11 +265,13 @@ fn keyword(scanner: &mut Scanner, block: &mut Block) -> Result<bool, NcError> {
         block.weld = Some((name, place));
         return Ok(true);
     }
-    let Some((_, code)) = KEYWORDS.iter().find(|(name, _)| *name == letters) else {
+    let Some((name, code)) = KEYWORDS.iter().find(|(name, _)| *name == letters) else {
         scanner.go_back(start);
         return Ok(false);
     };
-    if let Some(code) = code {
+    if *code == Some(Code::Hint) {
+        add(block, CodeWord::hint(name, place))?;
+    } else if let Some(code) = code {
         let known = CODES.iter().find(|(_, _, own, ..)| own == code);
         if let Some(&(_, _, code, name, group)) = known {
             add(
@@ -283,6 +320,13 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
     let named = named && address.len() > 1;
     let sign = if named { "=" } else { "" };
     let label = format!("{address}{sign}");
+    if named
+        && address
+            .strip_prefix('R')
+            .is_some_and(|number| number.parse::<u32>().is_ok())
+    {
+        return Err(Problem::OtherParameter(address).at(place));
+    }
     let of_word = |error: NcError| match error.problem {
         Problem::TooLarge(_) => Problem::TooLarge(address.clone()).at(place),
         _ => error,

@@ -7,14 +7,17 @@ use super::error::{NcError, Problem};
 /// Words that belong to a code; all others stand for themselves.
 const SHARED: [&str; 10] = ["P", "Q", "L", "E", "I", "J", "K", "R", "H", "D"];
 
+/// The direction of the tool in straight motions after G43.5.
+pub(super) const VECTOR_LETTERS: [&str; 3] = ["I", "J", "K"];
+
 /// The words of a block with their codes.
 #[derive(Debug, Default)]
 pub(super) struct Claims<'b>(Vec<(&'b Word, Code)>);
 
 impl<'b> Claims<'b> {
     /// Finds for every word of `block` the code that it belongs to; `modal` is the motion that continues in a
-    /// block without a code of its own.
-    pub(super) fn of(block: &'b Block, modal: Option<Code>) -> Result<Self, NcError> {
+    /// block without a code of its own. With `vectors` I J K of a straight motion are the direction of the tool.
+    pub(super) fn of(block: &'b Block, modal: Option<Code>, vectors: bool) -> Result<Self, NcError> {
         let own = block.codes.iter().map(|code| code.code);
         let codes: Vec<Code> = own.chain(modal).collect();
         let mut claims = Self::default();
@@ -32,7 +35,8 @@ impl<'b> Claims<'b> {
             let owner = match takes(needs).next() {
                 Some(code) => code,
                 None => {
-                    let mut may = takes(may_have);
+                    let words = if vectors { with_vectors } else { may_have };
+                    let mut may = takes(words);
                     let first = may
                         .next()
                         .ok_or_else(|| Problem::Orphan(word.label()).at(word.place))?;
@@ -76,6 +80,14 @@ fn needs(code: Code) -> &'static [&'static str] {
     }
 }
 
+/// The same as [`may_have`], where directions of the tool are vectors.
+fn with_vectors(code: Code) -> &'static [&'static str] {
+    match code {
+        Code::Rapid | Code::Feed => &VECTOR_LETTERS,
+        _ => may_have(code),
+    }
+}
+
 /// Words that a code may have besides.
 fn may_have(code: Code) -> &'static [&'static str] {
     match code {
@@ -89,7 +101,7 @@ fn may_have(code: Code) -> &'static [&'static str] {
         Code::SetOffsets => &["R"],
         Code::Call => &["L"],
         Code::ToolLength => &["H", "D"],
-        Code::TipOn => &["H"],
+        Code::TipOn | Code::TipByVectors => &["H"],
         code if code.is_cycle() => &["R", "Q", "P", "L"],
         _ => &[],
     }

@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 88] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 90] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -28,6 +28,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 88] = [
     ('G', 400, Code::CompensationOff, "G40", Group::Compensation),
     ('G', 430, Code::ToolLength, "G43", Group::ToolLength),
     ('G', 434, Code::TipOn, "G43.4", Group::ToolLength),
+    ('G', 435, Code::TipByVectors, "G43.5", Group::ToolLength),
     ('G', 490, Code::TipOff, "G49", Group::ToolLength),
     ('G', 520, Code::LocalOffset, "G52", Group::NonModal),
     ('G', 530, Code::MachineAxes, "G53", Group::NonModal),
@@ -43,6 +44,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 88] = [
     ('G', 610, Code::ExactPath, "G61", Group::PathControl),
     ('G', 611, Code::ExactStop, "G61.1", Group::PathControl),
     ('G', 640, Code::Continuous, "G64", Group::PathControl),
+    ('G', 6420, Code::WithinTolerance, "G642", Group::PathControl),
     ('G', 730, Code::ChipBreaking, "G73", Group::Motion),
     ('G', 800, Code::CancelMotion, "G80", Group::Motion),
     ('G', 810, Code::Drilling, "G81", Group::Motion),
@@ -94,7 +96,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 88] = [
 ];
 
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 33] = [
+const REFUSED: [(char, u32, &str); 32] = [
     ('G', 70, LATHE),
     ('G', 330, THREADING),
     ('G', 331, THREADING),
@@ -116,11 +118,6 @@ const REFUSED: [(char, u32, &str); 33] = [
         'G',
         432,
         "the lengths of several tools are not added: write G43 H and the number of the tool",
-    ),
-    (
-        'G',
-        435,
-        "directions of the tool as vectors are not understood: write G43.4 and rotary axes",
     ),
     (
         'G',
@@ -235,6 +232,8 @@ pub enum Code {
     ToolLength,
     /// G43.4.
     TipOn,
+    /// G43.5: the same, and I J K of straight motions are the direction of the tool.
+    TipByVectors,
     /// G49.
     TipOff,
     /// G52.
@@ -249,6 +248,10 @@ pub enum Code {
     ExactStop,
     /// G64.
     Continuous,
+    /// G642: G64 with the default tolerance.
+    WithinTolerance,
+    /// A code of another controller that changes nothing here, which is told.
+    Hint,
     /// G73.
     ChipBreaking,
     /// G80.
@@ -358,11 +361,11 @@ pub enum Group {
     Units,
     /// G40.
     Compensation,
-    /// G43 G43.4 G49.
+    /// G43 G43.4 G43.5 G49.
     ToolLength,
     /// G54 to G59.3.
     Offset,
-    /// G61 G61.1 G64.
+    /// G61 G61.1 G64 G642.
     PathControl,
     /// G90 G91.
     Distance,
@@ -392,6 +395,8 @@ pub enum Group {
     Outputs,
     /// M98 M99.
     Call,
+    /// ORIAXES, and G5.1 with Q alone.
+    Hint,
 }
 
 impl Code {

@@ -148,6 +148,16 @@ pub enum Problem {
         /// What is missing.
         wanted: &'static str,
     },
+    /// A subroutine that is left by the name of another one.
+    #[error("o{label} cannot end the subroutine o{open} that begins in line {line}: write o{open}")]
+    OtherSubroutine {
+        /// Number or name that is there.
+        label: String,
+        /// That of the subroutine which runs.
+        open: String,
+        /// Where that begins.
+        line: u32,
+    },
     /// A subroutine that is nowhere.
     #[error("there is no subroutine {label}: neither in this program nor as {label}.ngc beside it")]
     NoSubroutine {
@@ -200,6 +210,24 @@ pub enum Problem {
     /// A word of another dialect.
     #[error("{0} is not understood")]
     UnknownWord(String),
+    /// R1= and others.
+    #[error(
+        "{0}= sets a parameter of another controller: write # in place of R, and expressions in brackets"
+    )]
+    OtherParameter(String),
+    /// A direction of the tool of length 0.
+    #[error(
+        "the direction of the tool is zero: it leads from the tip to the machine, with at least one component"
+    )]
+    NoDirection,
+    /// A direction of the tool that the machine does not realise.
+    #[error("the tool cannot point along X{} Y{} Z{}: {why}", direction[0], direction[1], direction[2])]
+    Unreachable {
+        /// Unit vector in the frame of the work, rounded.
+        direction: [f64; 3],
+        /// What is in the way, and what to do.
+        why: String,
+    },
     /// A G or M code of another dialect.
     #[error("{letter}{number} is not understood")]
     UnknownCode {

@@ -54,7 +54,7 @@ pub(super) struct Interpreter {
     pub(super) open: bool,
     pub(super) saved: Vec<Saved>,
     /// Weld data that was called so far, by name.
-    welds: Vec<String>,
+    pub(super) welds: Vec<String>,
     pub(super) notices: Vec<Notice>,
     pub(super) branches: bool,
     pub(super) ended: bool,
@@ -123,12 +123,17 @@ impl Interpreter {
             .modal
             .motion
             .filter(|_| own_motion.is_none() && takes.is_none());
-        let claims = Claims::of(block, modal)?;
+        let vectors = match block.code(Group::ToolLength) {
+            Some(code) => code.code == Code::TipByVectors,
+            None => self.modal.vectors,
+        };
+        let claims = Claims::of(block, modal, vectors)?;
         if own_motion.is_some_and(|motion| Some(motion) != self.modal.motion) {
             self.sticky.changed(own_motion);
         }
         let setup = self.setup.clone();
         self.modal.block(block, &claims, &setup)?;
+        self.hints(block);
         self.save_modes(block)?;
         self.switch(block, &claims)?;
         self.system_and_tool(block, &claims)?;
@@ -366,7 +371,12 @@ impl Interpreter {
         self.open = false;
     }
 
-    /// The time to stand before the next path \[s\].
+    /// The time to stand before what follows \[s\].
+    pub(super) fn dwell_s(&self) -> f64 {
+        self.dwell.map_or(0.0, |(time, _)| time)
+    }
+
+    /// Takes the time to stand before the next path \[s\].
     pub(super) fn dwell_before(&mut self) -> f64 {
         self.dwell.take().map_or(0.0, |(time, _)| time)
     }

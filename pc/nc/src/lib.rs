@@ -11,12 +11,16 @@
 
 mod arc;
 mod block;
+mod branches;
 mod claims;
 mod codes;
 mod cycles;
+mod direction;
 mod error;
+mod explain;
 mod expression;
 mod flow;
+mod hints;
 mod interpreter;
 mod lookup;
 mod modal;
@@ -34,11 +38,13 @@ mod scanner;
 mod settings;
 mod setup;
 mod source;
+mod subroutines;
 #[cfg(test)]
 mod tests;
 pub mod text;
 
 pub use error::{NcError, Problem, SourcePosition};
+pub use explain::{Told, explain, explain_file};
 pub use program::{
     ArcForm, ArcWay, Blend, ControlPoint, FeedRate, Motion, Move, Notice, NurbsWay, PathControl, Plane,
     Program, ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,

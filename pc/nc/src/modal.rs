@@ -8,7 +8,7 @@ use super::program::{Blend, FeedRate, PathControl, Plane};
 use super::setup::Setup;
 
 /// mm of an inch.
-const INCH: f64 = 25.4;
+pub(super) const INCH: f64 = 25.4;
 
 /// How F is meant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +34,8 @@ pub(super) struct Modal {
     pub(super) closed: bool,
     /// X Y Z are the tip.
     pub(super) tip: bool,
+    /// G43.5: I J K of straight motions are the direction of the tool.
+    pub(super) vectors: bool,
     pub(super) plane: Plane,
     pub(super) control: PathControl,
     /// G20.
@@ -54,6 +56,7 @@ impl Modal {
             motion: None,
             closed: false,
             tip: setup.tip_control,
+            vectors: false,
             plane: setup.plane,
             control: setup.control,
             inches: setup.inches,
@@ -90,8 +93,9 @@ impl Modal {
         }
         for code in &block.codes {
             match code.code {
-                Code::TipOn => self.tip = true,
-                Code::TipOff => self.tip = setup.tip_control,
+                Code::TipOn => (self.tip, self.vectors) = (true, false),
+                Code::TipByVectors => (self.tip, self.vectors) = (true, true),
+                Code::TipOff => (self.tip, self.vectors) = (setup.tip_control, false),
                 Code::PlaneXy => self.plane = Plane::Xy,
                 Code::PlaneZx => self.plane = Plane::Zx,
                 Code::PlaneYz => self.plane = Plane::Yz,
@@ -106,6 +110,7 @@ impl Modal {
                 Code::ExactPath => self.control = PathControl::ExactPath,
                 Code::ExactStop => self.control = PathControl::ExactStop,
                 Code::Continuous => self.control = self.blend(claims)?,
+                Code::WithinTolerance => self.control = within_tolerance(setup),
                 Code::CancelMotion => self.motion = None,
                 Code::UniformNurbsEnd | Code::KnotNurbsEnd => {
                     // All of a G6.2 may have been said before its G6.3.
@@ -168,6 +173,11 @@ impl Modal {
         self.feed_mode == FeedMode::InverseTime
     }
 
+    /// F of G94 \[mm/min\].
+    pub(super) fn mm_min(&self) -> Option<f64> {
+        self.feed.map(|feed| feed.mm_min)
+    }
+
     /// F as it is written, 0 before.
     pub(super) fn written_feed(&self) -> f64 {
         self.feed.map_or(0.0, |feed| feed.written)
@@ -190,6 +200,18 @@ impl Modal {
             smoothing: q.map(|q| q.value * self.unit()),
         }))
     }
+}
+
+/// G642: within the tolerance that programs begin with, or the one of a G64 without P.
+fn within_tolerance(setup: &Setup) -> PathControl {
+    let tolerance = match setup.control {
+        PathControl::Blend(blend) => blend.tolerance,
+        _ => None,
+    };
+    PathControl::Blend(Blend {
+        tolerance: tolerance.or(Some(Blend::DEFAULT_TOLERANCE_MM)),
+        smoothing: None,
+    })
 }
 
 fn is_motion(code: Code) -> bool {

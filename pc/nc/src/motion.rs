@@ -4,6 +4,7 @@ use super::arc;
 use super::block::Block;
 use super::claims::Claims;
 use super::codes::Code;
+use super::direction::DIRECTION_WORDS;
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
 use super::nurbs::OpenNurbs;
@@ -89,7 +90,8 @@ impl Interpreter {
             let (code, why) = ("G53", "coordinates of axes are absolute: write G90");
             return Err(Problem::Impossible { code, why }.at(place));
         }
-        if let Some(word) = EXTENSION_WORDS.iter().find_map(|w| block.word(w)) {
+        let others = EXTENSION_WORDS.iter().chain(&DIRECTION_WORDS);
+        if let Some(word) = others.into_iter().find_map(|w| block.word(w)) {
             return Err(Problem::Orphan(word.label()).at(word.place));
         }
         let mut axes = Words::of(block).axes;
@@ -175,6 +177,7 @@ impl Interpreter {
             let own = |code: Code| claims.word(code, address).is_some();
             AXIS_WORDS.contains(&address)
                 || EXTENSION_WORDS.contains(&address)
+                || DIRECTION_WORDS.contains(&address)
                 || self.modal.motion.is_some_and(own)
         };
         let first_word = block.words.iter().find(is_motion).map(|word| word.place);
@@ -188,12 +191,16 @@ impl Interpreter {
             return Err(Problem::NotTip.at(place));
         }
         self.modal.closed = false;
+        let direction = self.direction(block, claims, mode)?;
         if mode.is_cycle() {
             return self.canned_cycle(block, claims, mode, place);
         }
         let mut said = self.said(block)?;
         self.fill_in_rotary(&mut said);
         let mut words = self.tip_words(said, place)?;
+        if let Some((direction, place)) = direction {
+            self.point(&mut words, direction, place)?;
+        }
         let unit = self.modal.unit();
         words.extension = Words::of(block)
             .extension

@@ -117,6 +117,11 @@ pub struct Blend {
     pub smoothing: Option<f64>,
 }
 
+impl Blend {
+    /// How far off the tip may be where no P says it \[mm\].
+    pub const DEFAULT_TOLERANCE_MM: f64 = 0.05;
+}
+
 impl Default for PathControl {
     fn default() -> Self {
         Self::Blend(Blend::default())

@@ -1,16 +1,17 @@
 //! Lines of a program one after the other: loops, conditions and subroutines decide which is the next.
 
 use super::block::{Block, Parsed, Word, parse};
+use super::branches::Open;
 use super::codes::{Code, Group};
 use super::error::{NcError, Problem, SourcePosition};
-use super::flow::{self, Keyword, OWord};
+use super::flow::OWord;
 use super::interpreter::Interpreter;
+use super::parameters::Parameter;
 use super::program::Program;
-use super::scanner::Scanner;
 use super::setup::Options;
 use super::source::{Lines, Source};
+use super::subroutines::{self, Found};
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::sync::Arc;
 
 /// Deepest nesting of subroutines.
@@ -18,39 +19,14 @@ const DEEPEST: usize = 32;
 /// Most lines that are read of a program with loops and subroutines, with those that are passed over.
 const MOST_LINES: u64 = 1_000_000;
 
-/// A loop or condition that is open.
-#[derive(Clone, Debug)]
-enum Open {
-    /// A part of it runs.
-    If(String),
-    /// Where its `while` stands: bytes and lines before.
-    While(String, u64, u32),
-    /// Where what follows `do` begins.
-    Do(String, u64, u32),
-    /// The same of `repeat`, and how many times more.
-    Repeat(String, u64, u32, u64),
-}
-
-impl Open {
-    fn label(&self) -> &str {
-        match self {
-            Self::If(label) | Self::While(label, ..) | Self::Do(label, ..) | Self::Repeat(label, ..) => label,
-        }
-    }
-
-    fn loops(&self) -> bool {
-        !matches!(self, Self::If(_))
-    }
-}
-
 /// The main program, or a subroutine that runs.
 #[derive(Clone)]
-struct Level {
+pub(super) struct Level {
     source: Source,
     /// Bytes and lines before the next one.
-    offset: u64,
-    line: u32,
-    open: Vec<Open>,
+    pub(super) offset: u64,
+    pub(super) line: u32,
+    pub(super) open: Vec<Open>,
     /// Name of the file, if that is not the program's.
     file: Option<String>,
     /// How it was called; the main program was not.
@@ -59,20 +35,13 @@ struct Level {
 
 #[derive(Clone)]
 struct Call {
+    /// Number or name of the subroutine.
+    label: String,
     /// It has parameters of its own, as those of O words have.
     own_parameters: bool,
     /// Where it begins, and how many times more it is to run (M98 L).
     begins: (u64, u32),
     again: u32,
-}
-
-/// Where a subroutine begins.
-#[derive(Clone)]
-struct Found {
-    source: Source,
-    offset: u64,
-    line: u32,
-    file: Option<String>,
 }
 
 /// How far a program has been run.
@@ -95,6 +64,49 @@ impl Position {
         let line = self.levels.last().map_or(0, |level| level.line);
         SourcePosition { line, column: 1 }
     }
+
+    /// How many subroutines run.
+    pub(super) fn depth(&self) -> usize {
+        self.levels.len() - 1
+    }
+
+    /// Name of the file of the innermost one, if it has one of its own.
+    pub(super) fn file(&self) -> Option<&str> {
+        self.levels.last()?.file.as_deref()
+    }
+}
+
+/// The line that was carried out last.
+pub(super) struct Ran {
+    pub(super) text: String,
+    /// Parameters that it set.
+    pub(super) settings: Vec<(Parameter, f64)>,
+    pub(super) kind: Kind,
+}
+
+/// What a line is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Nothing but blanks, comments or a tape mark.
+    Blank,
+    /// Left out by block delete.
+    Deleted,
+    /// An O word.
+    Flow,
+    /// All else.
+    Block,
+}
+
+impl Kind {
+    fn of(parsed: &Parsed, text: &str) -> Self {
+        match (parsed, text.trim_start().chars().next()) {
+            (Parsed::Blank, None | Some(';')) | (Parsed::Percent, _) => Self::Blank,
+            (Parsed::Blank, Some('/')) => Self::Deleted,
+            (Parsed::Block(block), _) if block.is_comment() => Self::Blank,
+            (Parsed::Flow(_), _) => Self::Flow,
+            _ => Self::Block,
+        }
+    }
 }
 
 /// A program on its way through the interpreter.
@@ -104,6 +116,7 @@ pub(super) struct Reader {
     lines: Lines,
     options: Options,
     pub(super) interpreter: Interpreter,
+    ran: Option<Ran>,
 }
 
 impl Reader {
@@ -135,6 +148,7 @@ impl Reader {
             position,
             options,
             interpreter,
+            ran: None,
         };
         reader.reopen();
         reader
@@ -147,13 +161,13 @@ impl Reader {
         }
     }
 
-    fn level(&mut self) -> &mut Level {
+    pub(super) fn level(&mut self) -> &mut Level {
         // The main program is never left.
         self.position.levels.last_mut().expect("the main program")
     }
 
     /// The next line of this level.
-    fn next_line(&mut self) -> Result<Option<String>, NcError> {
+    pub(super) fn next_line(&mut self) -> Result<Option<String>, NcError> {
         let read = self.lines.next();
         let offset = self.lines.offset;
         let level = self.level();
@@ -179,8 +193,9 @@ impl Reader {
 
     /// Carries out the next line; whether there was one.
     pub(super) fn block(&mut self) -> Result<bool, NcError> {
-        let file = |reader: &Self| reader.position.levels.last().and_then(|level| level.file.clone());
+        let file = |reader: &Self| reader.position.file().map(str::to_owned);
         let before = file(self);
+        self.ran = None;
         self.line_of_level().map_err(|error| match file(self).or(before) {
             Some(file) if !matches!(error.problem, Problem::InFile { .. }) => {
                 let problem = Box::new(error.problem);
@@ -203,6 +218,11 @@ impl Reader {
         let parsed = parse(&text, here.line, self.options.block_delete, &mut self.interpreter)?;
         let seen = self.position.seen;
         self.position.seen |= parsed != Parsed::Blank;
+        let mut ran = Ran {
+            kind: Kind::of(&parsed, &text),
+            text,
+            settings: Vec::new(),
+        };
         match parsed {
             Parsed::Blank => {}
             Parsed::Percent if seen && self.position.levels.len() == 1 => {
@@ -214,21 +234,23 @@ impl Reader {
             Parsed::Block(block) => {
                 self.interpreter.block(&block)?;
                 self.call_of(&block)?;
+                ran.settings = block.settings;
             }
         }
+        self.ran = Some(ran);
         Ok(!self.interpreter.ended)
+    }
+
+    /// The line that was carried out last, if there was one.
+    pub(super) fn take_ran(&mut self) -> Option<Ran> {
+        self.ran.take()
     }
 
     /// The text of the main program ends without an M2, which is told; that of a subroutine must not.
     fn end_of_text(&mut self) -> Result<(), NcError> {
         let here = self.position.here();
         if let Some(open) = self.level().open.last() {
-            let (keyword, wanted) = match open {
-                Open::If(_) => ("if", "endif"),
-                Open::While(..) => ("while", "endwhile"),
-                Open::Do(..) => ("do", "while"),
-                Open::Repeat(..) => ("repeat", "endrepeat"),
-            };
+            let (keyword, wanted) = open.ends();
             let label = open.label().to_owned();
             return Err(no_end(label, keyword, wanted, here));
         }
@@ -248,195 +270,16 @@ impl Reader {
         self.interpreter.end()
     }
 
-    /// Goes to `offset` of this level.
-    fn jump(&mut self, offset: u64, line: u32) {
-        let level = self.level();
-        (level.offset, level.line) = (offset, line);
-        self.reopen();
-    }
-
-    /// What an O word does.
-    fn flow(&mut self, word: &OWord) -> Result<(), NcError> {
-        if word.keyword != Keyword::Number {
-            self.interpreter.branches = true;
-        }
-        let label = word.label.clone();
-        let (offset, line) = (self.level().offset, self.level().line);
-        match word.keyword {
-            Keyword::Number => Ok(()),
-            Keyword::Sub => self
-                .skip_to(word, "sub", &[Keyword::EndSub], "endsub")
-                .map(|_| ()),
-            Keyword::Call => self.enter(&label, Some(&word.arguments), 1, word.place),
-            Keyword::Return | Keyword::EndSub => {
-                let value = word.arguments.first().copied();
-                self.leave(value, word)
-            }
-            Keyword::If => {
-                if self.condition(word, "if")? {
-                    self.level().open.push(Open::If(label));
-                    return Ok(());
-                }
-                loop {
-                    let wanted = [Keyword::ElseIf, Keyword::Else, Keyword::EndIf];
-                    let next = self.skip_to(word, "if", &wanted, "endif")?;
-                    match next.keyword {
-                        Keyword::ElseIf if !self.condition(&next, "elseif")? => {}
-                        Keyword::ElseIf | Keyword::Else => {
-                            self.level().open.push(Open::If(label));
-                            return Ok(());
-                        }
-                        _ => return Ok(()),
-                    }
-                }
-            }
-            Keyword::ElseIf | Keyword::Else => {
-                self.close(word, "else", "if", |open| matches!(open, Open::If(_)))?;
-                self.skip_to(word, "else", &[Keyword::EndIf], "endif").map(|_| ())
-            }
-            Keyword::EndIf => self
-                .close(word, "endif", "if", |open| matches!(open, Open::If(_)))
-                .map(|_| ()),
-            Keyword::While => {
-                let done = matches!(self.level().open.last(), Some(Open::Do(own, ..)) if *own == label);
-                let goes_on = self.condition(word, "while")?;
-                if done {
-                    if !goes_on {
-                        self.level().open.pop();
-                    } else if let Some(Open::Do(_, offset, line)) = self.level().open.last().cloned() {
-                        self.jump(offset, line);
-                    }
-                    return Ok(());
-                }
-                if goes_on {
-                    let start = self.start_of_line();
-                    self.level().open.push(Open::While(label, start, line - 1));
-                    return Ok(());
-                }
-                self.skip_to(word, "while", &[Keyword::EndWhile], "endwhile")
-                    .map(|_| ())
-            }
-            Keyword::EndWhile => {
-                let open = self.close(word, "endwhile", "while", |open| matches!(open, Open::While(..)))?;
-                if let Open::While(_, offset, line) = open {
-                    self.jump(offset, line);
-                }
-                Ok(())
-            }
-            Keyword::Do => {
-                self.level().open.push(Open::Do(label, offset, line));
-                Ok(())
-            }
-            Keyword::Repeat => {
-                let count = self.number(word, "repeat")?.round();
-                if count < 1.0 {
-                    let end = [Keyword::EndRepeat];
-                    return self.skip_to(word, "repeat", &end, "endrepeat").map(|_| ());
-                }
-                let more = count as u64 - 1;
-                self.level().open.push(Open::Repeat(label, offset, line, more));
-                Ok(())
-            }
-            Keyword::EndRepeat => {
-                let open = self.close(word, "endrepeat", "repeat", |open| {
-                    matches!(open, Open::Repeat(..))
-                })?;
-                if let Open::Repeat(label, offset, line, more) = open
-                    && more > 0
-                {
-                    self.level()
-                        .open
-                        .push(Open::Repeat(label, offset, line, more - 1));
-                    self.jump(offset, line);
-                }
-                Ok(())
-            }
-            Keyword::Break => {
-                self.leave_inner(word, "break")?;
-                self.level().open.pop();
-                let ends = [Keyword::EndWhile, Keyword::EndRepeat, Keyword::While];
-                self.skip_to(word, "break", &ends, "end of its loop").map(|_| ())
-            }
-            Keyword::Continue => {
-                self.leave_inner(word, "continue")?;
-                let ends = [Keyword::EndWhile, Keyword::EndRepeat, Keyword::While];
-                let end = self.skip_to(word, "continue", &ends, "end of its loop")?;
-                self.flow(&end)
-            }
-        }
-    }
-
     /// Bytes before the line that was read last.
-    fn start_of_line(&self) -> u64 {
+    pub(super) fn start_of_line(&self) -> u64 {
         self.lines.line_start
     }
 
-    /// Leaves what is open inside the loop that `word` names.
-    fn leave_inner(&mut self, word: &OWord, keyword: &'static str) -> Result<(), NcError> {
-        let open = &mut self.level().open;
-        let found = open
-            .iter()
-            .rposition(|open| open.loops() && open.label() == word.label);
-        let Some(index) = found else {
-            let (label, wanted) = (word.label.clone(), "loop around it");
-            return Err(no_end(label, keyword, wanted, word.place));
-        };
-        open.truncate(index + 1);
-        Ok(())
-    }
-
-    /// Takes the innermost open loop or condition, which must be `word`'s.
-    fn close(
-        &mut self,
-        word: &OWord,
-        keyword: &'static str,
-        wanted: &'static str,
-        fits: impl Fn(&Open) -> bool,
-    ) -> Result<Open, NcError> {
-        let open = self.level().open.pop();
-        let own = open.filter(|open| fits(open) && open.label() == word.label);
-        own.ok_or_else(|| {
-            let label = word.label.clone();
-            no_end(label, keyword, wanted, word.place)
-        })
-    }
-
-    fn number(&self, word: &OWord, keyword: &'static str) -> Result<f64, NcError> {
-        match word.arguments[..] {
-            [value] => Ok(value),
-            _ => Err(Problem::FlowValue(keyword).at(word.place)),
-        }
-    }
-
-    fn condition(&self, word: &OWord, keyword: &'static str) -> Result<bool, NcError> {
-        Ok(self.number(word, keyword)? != 0.0)
-    }
-
-    /// Goes over lines to one with the label of `word` and a keyword that is wanted, behind it.
-    fn skip_to(
-        &mut self,
-        word: &OWord,
-        keyword: &'static str,
-        ends: &[Keyword],
-        wanted: &'static str,
-    ) -> Result<OWord, NcError> {
-        while let Some(text) = self.next_line()? {
-            let line = self.position.here().line;
-            if let Some(found) = head(&text, line, &mut self.interpreter)
-                && found.label == word.label
-                && ends.contains(&found.keyword)
-            {
-                if !matches!(found.keyword, Keyword::ElseIf | Keyword::While) {
-                    return Ok(found);
-                }
-                // Now with its condition.
-                let mut scanner = Scanner::new(&text, line);
-                let whole = flow::o_word(&mut scanner, &mut self.interpreter, true)?;
-                return Ok(whole.unwrap_or(found));
-            }
-        }
-        let label = word.label.clone();
-        Err(no_end(label, keyword, wanted, word.place))
+    /// Goes to `offset` of this level.
+    pub(super) fn jump(&mut self, offset: u64, line: u32) {
+        let level = self.level();
+        (level.offset, level.line) = (offset, line);
+        self.reopen();
     }
 
     /// M98 and M99.
@@ -468,7 +311,7 @@ impl Reader {
     }
 
     /// A subroutine begins, with arguments if it has parameters of its own.
-    fn enter(
+    pub(super) fn enter(
         &mut self,
         label: &str,
         arguments: Option<&[f64]>,
@@ -489,6 +332,7 @@ impl Reader {
             open: Vec::new(),
             file: found.file,
             call: Some(Call {
+                label: label.to_owned(),
                 own_parameters: arguments.is_some(),
                 begins: (found.offset, found.line),
                 again: times - 1,
@@ -499,11 +343,15 @@ impl Reader {
     }
 
     /// A subroutine ends by its O word.
-    fn leave(&mut self, value: Option<f64>, word: &OWord) -> Result<(), NcError> {
-        if self.position.levels.len() == 1 {
-            let label = word.label.clone();
+    pub(super) fn leave(&mut self, value: Option<f64>, word: &OWord) -> Result<(), NcError> {
+        let label = word.label.clone();
+        let Some(call) = &self.level().call else {
             let (keyword, wanted) = ("return or endsub", "call that led here");
             return Err(no_end(label, keyword, wanted, word.place));
+        };
+        if call.label != label {
+            let (open, line) = (call.label.clone(), call.begins.1);
+            return Err(Problem::OtherSubroutine { label, open, line }.at(word.place));
         }
         self.pop()?;
         self.interpreter.set_result(value);
@@ -546,7 +394,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Where a subroutine begins: in the text that runs, in the main program, or in a file of its name.
+    /// Where a subroutine begins; the innermost text is searched first.
     fn find(&mut self, label: &str, place: SourcePosition) -> Result<Found, NcError> {
         if let Some(found) = self.position.found.get(label) {
             return Ok(found.clone());
@@ -556,73 +404,24 @@ impl Reader {
             .map(|level| (level.source.clone(), level.file.clone()))
             .collect();
         texts.dedup_by(|a, b| a.1 == b.1);
-        for folder in &self.options.setup.folders {
-            let path = folder.join(format!("{label}.ngc"));
-            if let Ok(file) = File::open(&path) {
-                let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-                let unreadable = |error: std::io::Error| Problem::Unreadable(error.to_string()).at(place);
-                texts.push((Source::of(file).map_err(unreadable)?, name));
-                break;
-            }
-        }
-        for (source, file) in texts {
-            if let Some(found) = begins(&source, label, file, &mut self.interpreter) {
-                self.position.found.insert(label.to_owned(), found.clone());
-                return Ok(found);
-            }
-        }
-        let label = label.to_owned();
-        Err(Problem::NoSubroutine { label }.at(place))
+        let folders = &self.options.setup.folders;
+        let found = subroutines::find(label, texts, folders, &mut self.interpreter, place)?;
+        self.position.found.insert(label.to_owned(), found.clone());
+        Ok(found)
     }
 }
 
 /// The other end of a loop, condition or subroutine is missing.
-fn no_end(label: String, keyword: &'static str, wanted: &'static str, place: SourcePosition) -> NcError {
+pub(super) fn no_end(
+    label: String,
+    keyword: &'static str,
+    wanted: &'static str,
+    place: SourcePosition,
+) -> NcError {
     Problem::FlowEnd {
         label,
         keyword,
         wanted,
     }
     .at(place)
-}
-
-/// The O word of a line, without its values. Of a line that is not understood nothing.
-fn head(text: &str, line: u32, interpreter: &mut Interpreter) -> Option<OWord> {
-    let start = text.trim_start();
-    let first = start.chars().next()?;
-    if !matches!(first, 'O' | 'o' | 'N' | 'n' | '/') {
-        return None;
-    }
-    let mut scanner = Scanner::new(text, line);
-    scanner.skip_blanks();
-    if first == '/' {
-        scanner.step();
-    }
-    flow::o_word(&mut scanner, interpreter, false).ok().flatten()
-}
-
-/// Where `source` has the subroutine `label`.
-fn begins(
-    source: &Source,
-    label: &str,
-    file: Option<String>,
-    interpreter: &mut Interpreter,
-) -> Option<Found> {
-    let mut lines = source.lines(0);
-    let mut line = 0;
-    while let Ok(Some(text)) = lines.next() {
-        line += 1;
-        let Some(word) = head(&text, line, interpreter) else {
-            continue;
-        };
-        if word.label == label && matches!(word.keyword, Keyword::Sub | Keyword::Number) {
-            return Some(Found {
-                source: source.clone(),
-                offset: lines.offset,
-                line,
-                file,
-            });
-        }
-    }
-    None
 }

@@ -41,15 +41,20 @@ pub fn interpret_file(file: File, options: Options) -> Result<Program, NcError> 
 pub(super) fn read(source: &Source, options: Options, kept: usize) -> Result<Program, NcError> {
     let mut reader = Reader::new(source, options.clone());
     while reader.block()? {
-        let position = &reader.position;
-        reader.interpreter.trim(kept, |state| RemainingBlocks {
-            kept,
-            options: options.clone(),
-            position: position.clone(),
-            state: Arc::new(state),
-        });
+        keep(&mut reader, &options, kept);
     }
     Ok(reader.end())
+}
+
+/// Keeps no more than `kept` blocks of the path that was read last.
+pub(super) fn keep(reader: &mut Reader, options: &Options, kept: usize) {
+    let position = &reader.position;
+    reader.interpreter.trim(kept, |state| RemainingBlocks {
+        kept,
+        options: options.clone(),
+        position: position.clone(),
+        state: Arc::new(state),
+    });
 }
 
 /// The blocks of a path that are not kept in memory: where they are in the source, and the state of the

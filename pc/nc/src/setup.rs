@@ -66,4 +66,12 @@ pub trait TipAndAxes: Debug + Send + Sync {
     fn tip(&self, axes: &[f64; AXES]) -> [f64; AXES];
     /// The axes of a tip, if the machine can go there.
     fn axes(&self, tip: &[f64; AXES]) -> Option<[f64; AXES]>;
+    /// A B C with which the tool at X Y Z of `tip` points along `direction`, a unit vector from the tip to the machine, those
+    /// nearest to A B C of `tip`. What the direction leaves free turns as little as it can.
+    ///
+    /// # Errors
+    /// Why the machine cannot point there, as part of a sentence.
+    fn pointing(&self, _tip: &[f64; AXES], _direction: [f64; 3]) -> Result<[f64; 3], String> {
+        Err("its attitude is always the same".to_owned())
+    }
 }

@@ -10,7 +10,7 @@ use nc::{Motion, Options, interpret};
 use parts::PartFile;
 use std::io::Cursor;
 use std::path::Path;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 use tempfile::{NamedTempFile, TempPath};
 use vision::{Detector, Image, Joint, Prior};
@@ -37,9 +37,14 @@ pub fn program(machine: &str, text: &str) -> anyhow::Result<()> {
 }
 
 fn dry_run_of(machine: &MachineFile, text: &str) -> anyhow::Result<()> {
-    let program = interpret(text, Options::default())?;
     let planner = Planner::build(machine)?;
-    let paths = planner.program(&program, &machine.homed_axes(), None)?;
+    let from = machine.homed_axes();
+    let options = Options {
+        setup: Arc::new(planner.setup(&from)),
+        ..Options::default()
+    };
+    let program = interpret(text, options)?;
+    let paths = planner.program(&program, &from, None)?;
     // A dry run takes as long as the program has milliseconds.
     let slowest_s: f64 = paths
         .iter()

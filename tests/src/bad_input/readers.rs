@@ -7,7 +7,7 @@ use config::calibration::Calibration;
 use config::machine::MachineFile;
 use config::table;
 use dual_beam::{parse_main_curve, parse_other_curve};
-use nc::{Options, interpret};
+use nc::{Options, explain};
 use parts::{PartFile, check_curve};
 use shared::protocol::framing::{decode_datagram, decode_message, message_length};
 use shared::protocol::{Request, Response};
@@ -73,7 +73,8 @@ impl Reader {
         // What a file that is no text says, the standard library does.
         let text = std::str::from_utf8(bytes).map_err(said)?;
         match self {
-            Self::Program(_) => interpret(text, Options::default()).map(drop).map_err(said),
+            // Reads it as `interpret` does, and tells what it read.
+            Self::Program(_) => explain(text, Options::default(), drop).map(drop).map_err(said),
             Self::Deviation => Deviation::parse("a.csv", text).map(drop).map_err(said),
             Self::MainCurve => parse_main_curve("a.csv", text).map(drop).map_err(said),
             Self::OtherCurve => parse_other_curve("a.csv", text).map(drop).map_err(said),

@@ -62,7 +62,7 @@ fn file(name: &str, reader: Reader) -> Sample {
 
 fn programs() -> Vec<Sample> {
     /// Every word of the dialect, one program a machine.
-    const SMALL: [(&str, &str); 6] = [
+    const SMALL: [(&str, &str); 7] = [
         (
             "dual-beam-gantry",
             "%\nN10 G21 G17 G90 G94 G40 G54 G64 P0.05\nG43.4\nG0 X900 Y900 Z250 A0 B0 C0 V1=0 V2=0\nG0 Z100\n\
@@ -92,6 +92,12 @@ fn programs() -> Vec<Sample> {
         (
             "ac-head",
             "G43.4\nG0 X900 Y700 Z300 A5 C0\nG64 P0.02\nF1000\nG1 X910 A6 C1\nG1 X920 A5.5\nG1 Z290\nM2\n",
+        ),
+        (
+            "ac-head",
+            "G5.1 Q1\nG43.5 H1 G642\nTRAORI ORIAXES\no100 sub\nG91 G1 Z-#1 F600\nG90\no100 endsub\n#2=[10/4]\nG10 L2 P2 X400 Y300 R30\n\
+             G55 G0 X100 Y50 Z300 A5 C0\no100 call [#2]\nG20 G0 X5 (MSG, inches)\nG21\n\
+             G81 X110 Y60 Z200 R250 F600\nG80\nG28\nM2\n",
         ),
     ];
     let mut samples = vec![

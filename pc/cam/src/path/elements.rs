@@ -3,12 +3,13 @@
 use super::blocks::{Blocks, Leg};
 use super::smooth_legs::SmoothLegs;
 use super::{PathError, PlannedPath};
+use nc::Blend;
 use shared::protocol::{PathEvent, PathLimits};
 use shared::trajectory::{CHANNELS, Cubic, Element, Join, Knot, SHAPED, Shape, Tolerance};
 
 /// What rounded corners, and the planner's output filter on curves, may take.
 pub const TOLERANCE: Tolerance = Tolerance {
-    position: 0.05,
+    position: Blend::DEFAULT_TOLERANCE_MM,
     attitude: 1e-4,
 };
 

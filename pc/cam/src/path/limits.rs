@@ -21,7 +21,7 @@ const CHECK_COUNT: usize = 200;
 /// What an axis may move more between two such places than its rates say \[mm or °\].
 const JUMP: f64 = 1.0;
 /// What is no more than this outside the travel of an axis \[mm or °\], or faster than it allows, is rounding.
-const BEYOND: f64 = 1e-6;
+pub(super) const BEYOND: f64 = 1e-6;
 pub(super) const TOO_FAST: f64 = 1.0 + 1e-9;
 /// Fastest rapid \[mm/s\], for moves that need next to no motion.
 const FASTEST: f64 = 1000.0;
@@ -61,6 +61,11 @@ impl DriveLimits {
             jerk: f64::INFINITY,
             unit: 1.0,
         }
+    }
+
+    /// Lowest and highest position \[mm or °\].
+    pub(super) fn travel(&self) -> [f64; 2] {
+        [self.min / self.unit, self.max / self.unit]
     }
 
     /// Those of all drives of `machine`; errors name the parameter.

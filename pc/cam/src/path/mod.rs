@@ -20,6 +20,7 @@ mod smooth_legs;
 mod targets;
 #[cfg(test)]
 mod tests;
+mod tip_of_machine;
 mod too_fast;
 mod weld;
 
@@ -32,7 +33,7 @@ pub use programmed::Programmed;
 pub use targets::Tip;
 pub use too_fast::{FeedTooHigh, TooFast, check_constant_speed};
 
-use config::machine::{MachineFile, OutputNames, PlanningConfig};
+use config::machine::{MachineFile, OutputNames, PlanningConfig, ProgramConfig};
 use config::weld_data::WeldData;
 use limits::{DRIVES, DriveLimits};
 use nc::{Program, SourcePosition};
@@ -73,6 +74,7 @@ pub struct Planner {
     /// The machine has slides that follow the seam.
     tracks: bool,
     planning: PlanningConfig,
+    program: ProgramConfig,
 }
 
 impl Planner {
@@ -94,6 +96,7 @@ impl Planner {
             welding: Arc::new(machine.welding.clone()),
             tracks: machine.tracking.is_some(),
             planning: machine.planning.clone(),
+            program: machine.program,
         })
     }
 

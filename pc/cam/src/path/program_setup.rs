@@ -1,11 +1,11 @@
 //! What programs for a machine begin with, and what is checked of a whole program before it is planned.
 
 use super::targets::Tip;
-use super::{PathError, Planner, inner};
-use nc::{Program, ProgramAction, Setup, TipAndAxes};
-use shared::geometry::Pose;
+use super::tip_of_machine::TipOfMachine;
+use super::{PathError, Planner};
+use config::machine::{ArcPlane, LengthUnit, PathMode};
+use nc::{Blend, PathControl, Plane, Program, ProgramAction, Setup, TipAndAxes};
 use shared::io::AXES;
-use shared::kinematics::{AXIS_UNIT, Kinematics};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -13,13 +13,30 @@ use std::sync::Arc;
 const SAME_START: f64 = 1e-6;
 
 impl Planner {
-    /// What a program for this machine begins with, when the axes stand at `from` (mm, degrees). G28 and G30 lead to
-    /// the park position.
+    /// What a program for this machine begins with, when the axes stand at `from` (mm, degrees): the modes of the machine
+    /// file's `[program]`. G28 and G30 lead to the park position.
     pub fn setup(&self, from: &[f64; AXES]) -> Setup {
-        let kinematics = OfMachine(self.kinematics.clone());
+        let kinematics = TipOfMachine::new(&self.kinematics, &self.drives);
         let park = self.planning.park_axes();
+        let program = &self.program;
         Setup {
             start: kinematics.tip(from),
+            tip_control: program.tip_control,
+            inches: program.units == LengthUnit::Inch,
+            plane: match program.plane {
+                ArcPlane::G17 => Plane::Xy,
+                ArcPlane::G18 => Plane::Zx,
+                ArcPlane::G19 => Plane::Yz,
+            },
+            control: match program.path_mode {
+                PathMode::G61 => PathControl::ExactPath,
+                PathMode::G61_1 => PathControl::ExactStop,
+                PathMode::G64 => PathControl::Blend(Blend {
+                    tolerance: program.tolerance_mm,
+                    smoothing: None,
+                }),
+            },
+            rotary: program.rotary_deg.into_array(),
             fitted: self.fitted,
             homes: [park, park],
             kinematics: Some(Arc::new(kinematics)),
@@ -71,27 +88,5 @@ impl Planner {
             }
         }
         Ok(())
-    }
-}
-
-/// Kinematics of a machine, in mm and degrees.
-#[derive(Debug)]
-struct OfMachine(Kinematics);
-
-impl TipAndAxes for OfMachine {
-    fn tip(&self, axes: &[f64; AXES]) -> [f64; AXES] {
-        let [x, y, z]: [f64; 3] = self.0.forward(&inner(axes)).position.into();
-        [x, y, z, axes[3], axes[4], axes[5]]
-    }
-
-    fn axes(&self, tip: &[f64; AXES]) -> Option<[f64; AXES]> {
-        let [_, _, _, a, b, c] = inner(tip);
-        let near = [0.0, 0.0, 0.0, a, b, c];
-        let pose = Pose {
-            position: [tip[0], tip[1], tip[2]].into(),
-            ..self.0.forward(&near)
-        };
-        let axes = self.0.inverse(&pose, &near).ok()?;
-        Some(std::array::from_fn(|axis| axes[axis] / AXIS_UNIT[axis]))
     }
 }

@@ -1,6 +1,6 @@
 //! Checks of a machine file that the boards cannot do: that it is complete, and what only the PC uses.
 
-use super::{CameraConfig, MachineFile, Mistake, PlanningConfig, TrackingUnit};
+use super::{CameraConfig, MachineFile, Mistake, PlanningConfig, TrackingUnit, program};
 use crate::{RangeError, in_range};
 use shared::io::{AXES, AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES, MOTORS, SIDES};
 use std::borrow::Cow;
@@ -13,6 +13,7 @@ pub fn machine(machine: &MachineFile) -> Result<(), Mistake> {
     axes(machine)?;
     planning(&machine.planning)?;
     park(machine)?;
+    program::check(machine)?;
     if let Some(unit) = &machine.tracking {
         cameras(&unit.cameras)?;
         view(unit)?;
@@ -45,7 +46,7 @@ fn axes(machine: &MachineFile) -> Result<(), Mistake> {
 }
 
 /// A key for every axis that the machine has, and for no other.
-fn same(machine: &MachineFile, key: &str, told: bool, fitted: bool) -> Result<(), Mistake> {
+pub(super) fn same(machine: &MachineFile, key: &str, told: bool, fitted: bool) -> Result<(), Mistake> {
     let key = key.to_owned();
     let machine = machine.motion.kinematics.name();
     match (told, fitted) {

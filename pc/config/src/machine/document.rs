@@ -1,7 +1,9 @@
 //! The machine file as it is written.
 
 use super::process_io;
-use super::{ByAxis, CameraConfig, MachineFile, Mistake, PlanningConfig, ProcessConfig, TrackingUnit};
+use super::{
+    ByAxis, CameraConfig, MachineFile, Mistake, PlanningConfig, ProcessConfig, ProgramConfig, TrackingUnit,
+};
 use crate::probe::ProbeUnit;
 use crate::weld_data::WeldData;
 use serde::Deserialize;
@@ -34,6 +36,8 @@ pub struct Document {
     cameras: Option<CameraConfig>,
     process: Option<ProcessConfig>,
     probe: Option<ProbeUnit>,
+    #[serde(default)]
+    program: ProgramConfig,
 }
 
 #[derive(Deserialize)]
@@ -97,6 +101,7 @@ impl TryFrom<Document> for MachineFile {
             process: d.process,
             probe: d.probe,
             planning: d.planning,
+            program: d.program,
         })
     }
 }

@@ -20,10 +20,12 @@ pub enum MachineError {
         parameter: ParameterError,
     },
     /// Something else makes no sense.
-    #[error("machine file {path}: {mistake}")]
+    #[error("machine file {path}, line {line}: {mistake}")]
     Mistake {
         /// The file.
         path: String,
+        /// Where its key is, or of one that is missing the table around it; first line is 1.
+        line: usize,
         /// What it is.
         mistake: Mistake,
     },
@@ -95,4 +97,19 @@ pub enum Mistake {
         /// The first that is missing.
         table: &'static str,
     },
+}
+
+impl Mistake {
+    /// Dotted name of the key that it is about.
+    pub(super) fn key(&self) -> String {
+        match self {
+            Self::Value(error) => error.key.to_string(),
+            Self::AxisMissing { key, .. } | Self::NoSuchAxis { key, .. } => key.clone(),
+            Self::OutputNumber { key, .. } => format!("{key}.number"),
+            Self::NoSuchBeam { key, .. } => key.clone(),
+            Self::AnswersNothing { key, .. } => format!("{key}.answers"),
+            Self::Optics { .. } => "cameras.optics".to_owned(),
+            Self::TrackerIncomplete { table } => (*table).to_owned(),
+        }
+    }
 }

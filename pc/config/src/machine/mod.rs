@@ -5,11 +5,13 @@ mod check;
 mod document;
 mod error;
 mod process_io;
+mod program;
 mod weak_protection;
 
 pub use cameras::{CameraConfig, JointForm};
 pub use error::{MachineError, Mistake};
 pub use process_io::OutputNames;
+pub use program::{ArcPlane, LengthUnit, PathMode, ProgramConfig, Rotary};
 pub use weak_protection::WeakProtection;
 
 use crate::probe::ProbeUnit;
@@ -44,6 +46,8 @@ pub struct MachineFile {
     pub probe: Option<ProbeUnit>,
     /// What only the PC needs for planning.
     pub planning: PlanningConfig,
+    /// What NC programs begin with.
+    pub program: ProgramConfig,
 }
 
 /// The tracker board, its slides and cameras.
@@ -143,8 +147,9 @@ impl MachineFile {
     /// Understands `text`; `path` is used in messages only.
     pub fn parse(path: &str, text: &str) -> Result<Self, MachineError> {
         let document: Document = toml_file::parse(WHAT, path, text)?;
-        let mistake = |mistake| MachineError::Mistake {
+        let mistake = |mistake: Mistake| MachineError::Mistake {
             path: path.to_owned(),
+            line: toml_file::line_of(text, &mistake.key()),
             mistake,
         };
         let machine: Self = document.try_into().map_err(mistake)?;

@@ -124,7 +124,7 @@ fn a_value_that_makes_no_sense_is_named() {
     let error = error_of(&SHIPPED.replace("rapid_fraction = 0.5", "rapid_fraction = 1.5"));
     assert_eq!(
         error,
-        "machine file m.toml: planning.rapid_fraction is 1.5, but must be above 0 and at most 1"
+        "machine file m.toml, line 299: planning.rapid_fraction is 1.5, but must be above 0 and at most 1"
     );
     let error = error_of(&SHIPPED.replace("gate_mm = 1.0", "gate_mm = -1.0"));
     assert_eq!(
@@ -222,27 +222,27 @@ fn axes_that_the_machine_has_not_are_named_and_so_are_those_that_are_missing() {
     let error = error_of(&pipe.replace("[axes.Z]", "[axes.Y]"));
     assert_eq!(
         error,
-        "machine file m.toml: axes.Y is given, but a pipe-welder has no such axis"
+        "machine file m.toml, line 28: axes.Y is given, but a pipe-welder has no such axis"
     );
     let error = error_of(&pipe.replace("[motors.B]", "[motors.A]"));
     assert_eq!(
         error,
-        "machine file m.toml: motors.A is given, but a pipe-welder has no such axis"
+        "machine file m.toml, line 86: motors.A is given, but a pipe-welder has no such axis"
     );
     let error = error_of(&pipe.replace(", B = 0.0, C = 0.0 }", ", B = 0.0 }"));
     assert_eq!(
         error,
-        "machine file m.toml: planning.park.C is missing; a pipe-welder has that axis"
+        "machine file m.toml, line 136: planning.park.C is missing; a pipe-welder has that axis"
     );
     let error = error_of(&pipe.replace("park_first = [\"X\"]", "park_first = [\"A\"]"));
     assert_eq!(
         error,
-        "machine file m.toml: planning.park_first A is given, but a pipe-welder has no such axis"
+        "machine file m.toml, line 135: planning.park_first A is given, but a pipe-welder has no such axis"
     );
     let error = error_of(&pipe.replace("park = { X = 190.0", "park = { X = 210.0"));
     assert_eq!(
         error,
-        "machine file m.toml: planning.park.X is 210, but must be within the travel"
+        "machine file m.toml, line 136: planning.park.X is 210, but must be within the travel"
     );
 }
 
@@ -260,7 +260,7 @@ fn a_process_window_is_open() {
     let error = error_of(&wire.replace("max_speed_mm_s = 16.0", "max_speed_mm_s = 4.0"));
     assert_eq!(
         error,
-        "machine file m.toml: process.max_speed_mm_s is 4, but must be above min_speed_mm_s"
+        "machine file m.toml, line 181: process.max_speed_mm_s is 4, but must be above min_speed_mm_s"
     );
 }
 
@@ -426,5 +426,93 @@ fn outputs_that_cannot_be_are_named_with_what_there_is() {
     ] {
         let error = error_of(&with_outputs(tables));
         assert_eq!(error, format!("machine file m.toml: {told}"));
+    }
+}
+
+/// The text of the shipped pipe welder with more at its end, and the number of the first line of that.
+fn pipe_with(more: &str) -> (String, usize) {
+    let pipe = include_str!("../../../../machines/pipe-welder.toml");
+    (format!("{pipe}\n{more}\n"), pipe.lines().count() + 2)
+}
+
+#[test]
+fn programs_begin_with_the_modes_that_the_file_says() {
+    let of = |more: &str| MachineFile::parse("m.toml", &pipe_with(more).0).unwrap().program;
+    assert_eq!(of(""), ProgramConfig::default());
+    assert_eq!(of("[program]\nplane = \"G18\"").plane, ArcPlane::G18);
+    let all = "[program]\nunits = \"inch\"\nplane = \"G19\"\ntip_control = false\npath_mode = \"G64\"\n\
+               tolerance_mm = 0.02\nrotary_deg = { B = 30.0 }";
+    let wanted = ProgramConfig {
+        units: LengthUnit::Inch,
+        plane: ArcPlane::G19,
+        tip_control: false,
+        path_mode: PathMode::G64,
+        tolerance_mm: Some(0.02),
+        rotary_deg: Rotary {
+            B: Some(30.0),
+            ..Rotary::default()
+        },
+    };
+    assert_eq!(of(all), wanted);
+    assert_eq!(of("[program]\npath_mode = \"G61.1\"").path_mode, PathMode::G61_1);
+}
+
+#[test]
+fn what_programs_cannot_begin_with_is_told_with_file_line_and_key() {
+    for (more, line, said) in [
+        (
+            "units = \"cm\"",
+            1,
+            "program.units: unknown variant `cm`, expected `mm` or `inch`",
+        ),
+        (
+            "plane = \"XY\"",
+            1,
+            "program.plane: unknown variant `XY`, expected one of `G17`, `G18`, `G19`",
+        ),
+        ("plain = \"G17\"", 1, "unknown field `plain`"),
+        (
+            "tip_control = 1",
+            1,
+            "program.tip_control: invalid type: integer `1`, expected a boolean",
+        ),
+        (
+            "path_mode = \"G64 P0.05\"",
+            1,
+            "program.path_mode: unknown variant `G64 P0.05`, expected one of `G61`, `G61.1`, `G64`",
+        ),
+        (
+            "tolerance_mm = 0",
+            1,
+            "program.tolerance_mm is 0, but must be above 0",
+        ),
+        (
+            "path_mode = \"G61\"\ntolerance_mm = 0.05",
+            2,
+            "program.tolerance_mm is 0.05, but must be left out: path_mode is not \"G64\"",
+        ),
+        (
+            "rotary_deg = { B = 0.0, A = 0.0 }",
+            1,
+            "program.rotary_deg.A is given, but a pipe-welder has no such axis",
+        ),
+        (
+            "[program.rotary_deg]\nB = 0.0\nC = 1000.0",
+            3,
+            "program.rotary_deg.C is 1000, but must be within the travel",
+        ),
+        (
+            "rotary_deg = { X = 0.0 }",
+            1,
+            "unknown field `X`, expected one of `A`, `B`, `C`",
+        ),
+    ] {
+        let (text, first) = pipe_with(&format!("[program]\n{more}"));
+        let error = error_of(&text);
+        let place = format!("machine file m.toml, line {}: ", first + line);
+        assert!(
+            error.starts_with(&place) && error.contains(said),
+            "{more}: {error}"
+        );
     }
 }

@@ -130,3 +130,25 @@ fn a_program_may_end_in_several_ways() {
         .collect();
     assert_eq!(texts, ["hello", "one: 3.000000, two: #<none>"]);
 }
+
+#[test]
+fn a_subroutine_ends_by_its_own_name_only() {
+    for end in ["endsub", "return [1]"] {
+        let body = format!("o1 call\nM2\no1 sub\nG0 X1\no2 {end}\no1 endsub\n");
+        let open = HEADER.lines().count() as u32 + 3;
+        let error = run(&body).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "line {}, column 1: o2 cannot end the subroutine o1 that begins in line {open}: write o1",
+                open + 2
+            )
+        );
+    }
+    // In a condition too, and of one that was called by its number.
+    assert_eq!(
+        xs("o1 call\nG0 X2\nM2\no1 sub\nG0 X1\no3 if [1]\no1 return\no3 endif\no1 endsub\n"),
+        [1.0, 2.0]
+    );
+    assert_eq!(xs("M98 P1\nG0 X2\nM2\no1 sub\nG0 X1\no1 endsub\n"), [1.0, 2.0]);
+}

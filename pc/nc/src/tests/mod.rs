@@ -2,6 +2,8 @@
 
 mod coordinates;
 mod cycles;
+mod direction;
+mod explain;
 mod flow;
 mod modes;
 mod nurbs;

@@ -1,6 +1,7 @@
 //! `seamwright check`: can this machine run this program?
 
-use super::{machine_for, plan_program, read_program, slower};
+use super::explain::{Explanation, Lines};
+use super::{machine_for, plan_program, read_program, read_program_by, slower};
 use crate::console::{out, outln};
 use anyhow::{Context, bail};
 use cam::dry_run;
@@ -8,7 +9,7 @@ use cam::dry_run::DryRun;
 use cam::path::{Blocks, PlannedPath, Planner};
 use clap::Args;
 use config::machine::MachineFile;
-use nc::Motion;
+use nc::{Motion, Program, explain_file};
 use std::path::PathBuf;
 use world::{Deviation, SeamError, check_seam, not_followed};
 
@@ -32,6 +33,9 @@ pub struct Check {
     /// Leave out blocks that start with /
     #[arg(long)]
     block_delete: bool,
+    /// First print what each block does, as it was understood, or only those of a line or of some lines (120, 100-140)
+    #[arg(long, value_name = "LINES", num_args = 0..=1, require_equals = true, default_missing_value = Lines::ALL)]
+    explain: Option<Lines>,
 }
 
 impl Check {
@@ -39,7 +43,7 @@ impl Check {
     pub fn run(self) -> anyhow::Result<()> {
         let machine = machine_for(&self.machine, &self.program, self.weld_data.as_deref())?;
         let name = self.program.display();
-        let program = read_program(&self.program, &machine, self.block_delete)?;
+        let program = self.read(&machine)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
         let from = machine.homed_axes();
         let paths = plan_program(&self.program, &program, &planner, &from, self.speed)?;
@@ -69,6 +73,21 @@ impl Check {
             );
         }
         Ok(())
+    }
+}
+
+impl Check {
+    /// The program, explained if that was asked for.
+    fn read(&self, machine: &MachineFile) -> anyhow::Result<Program> {
+        let Some(lines) = self.explain else {
+            return read_program(&self.program, machine, self.block_delete);
+        };
+        let mut explanation = Explanation::of(lines);
+        let read = read_program_by(&self.program, machine, self.block_delete, |file, options| {
+            explain_file(file, options, |told| explanation.tell(&told))
+        });
+        explanation.end();
+        read
     }
 }
 

@@ -5,6 +5,7 @@ mod calibrate;
 mod cameras;
 mod check;
 mod dry_run;
+mod explain;
 mod measure;
 mod plan;
 mod teach;
@@ -17,7 +18,7 @@ use cam::path::{PlannedPath, Planner, check_constant_speed};
 use clap::{Parser, Subcommand};
 use config::machine::MachineFile;
 use config::weld_data::WeldData;
-use nc::{Options, Program, Setup, interpret_file};
+use nc::{NcError, Options, Program, Setup, interpret_file};
 use parts::PartFile;
 use shared::io::AXES;
 use std::fs::File;
@@ -65,6 +66,16 @@ const OUTSIDE: u8 = 3;
 /// Reads the NC program in a file for a machine that stands at its reference marks, and says what a person should know of
 /// how it is understood. Subroutines in files of their own stand beside it.
 fn read_program(path: &Path, machine: &MachineFile, block_delete: bool) -> anyhow::Result<Program> {
+    read_program_by(path, machine, block_delete, interpret_file)
+}
+
+/// The same with `read`, which is [`interpret_file`] or does more on the way.
+fn read_program_by(
+    path: &Path,
+    machine: &MachineFile,
+    block_delete: bool,
+    read: impl FnOnce(File, Options) -> Result<Program, NcError>,
+) -> anyhow::Result<Program> {
     let name = path.display();
     if path.extension().is_some_and(|extension| extension == "toml") {
         bail!(
@@ -82,7 +93,7 @@ fn read_program(path: &Path, machine: &MachineFile, block_delete: bool) -> anyho
         setup: Arc::new(setup),
         ..Options::default()
     };
-    let program = interpret_file(file, options).with_context(|| format!("program {name}"))?;
+    let program = read(file, options).with_context(|| format!("program {name}"))?;
     for notice in &program.notices {
         errln!("program {name}: {}: {}", notice.place, notice.text);
     }

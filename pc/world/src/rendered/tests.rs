@@ -217,7 +217,7 @@ fn a_wrong_scene_is_told_by_key_value_and_what_it_may_be() {
         ),
         (
             "\ntexture = [\"ground\", \"wood\"]",
-            "line 2: unknown variant `wood`",
+            "line 2: texture: unknown variant `wood`",
         ),
         (
             "lost_share = 1.5",
@@ -243,7 +243,7 @@ fn a_wrong_scene_is_told_by_key_value_and_what_it_may_be() {
         ),
         (
             "[[plate]]\nside = 1\nplate = \"upper\"",
-            "line 3: unknown variant `upper`",
+            "line 3: plate.plate: unknown variant `upper`",
         ),
         (
             "[[plate]]\nside = 1\n[[plate]]\nside = 2\nchamfer_um = -5",

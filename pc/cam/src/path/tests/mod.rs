@@ -3,10 +3,12 @@
 mod arcs;
 mod blocks;
 mod control;
+mod directions;
 mod feeds;
 mod machines;
 mod nurbs;
 mod outputs;
+mod program_setup;
 mod rotary;
 mod short_blocks;
 mod smoothing;

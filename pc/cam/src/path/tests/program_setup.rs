@@ -1,0 +1,102 @@
+//! What a machine file lets programs begin with, as it comes out of their paths.
+
+use super::*;
+
+/// `text` on the A/C head with `more` at the end of its file, and where the axes stand at the end of every path (mm, degrees).
+fn ends(more: &str, text: &str) -> (Vec<PlannedPath>, Vec<[f64; AXES]>) {
+    let head = include_str!("../../../../../machines/ac-head.toml");
+    let machine = MachineFile::parse("m.toml", &format!("{head}\n{more}\n")).unwrap();
+    let planner = Planner::build(&machine).unwrap();
+    let park = planner.planning.park_axes();
+    let options = Options {
+        setup: std::sync::Arc::new(planner.setup(&park)),
+        ..Options::default()
+    };
+    let program = interpret(text, options).unwrap();
+    let paths = planner.program(&program, &park, None).unwrap();
+    let seen = followed("ac-head", &paths, 0.1);
+    let last = |index: usize| seen.iter().rfind(|(path, ..)| *path == index).unwrap().2;
+    let ends = (0..paths.len()).map(last).collect();
+    (paths, ends)
+}
+
+fn assert_near(seen: f64, wanted: f64) {
+    assert!((seen - wanted).abs() < 1e-6, "{seen} is not {wanted}");
+}
+
+#[test]
+fn a_program_begins_in_the_units_and_with_the_rotary_axes_of_the_machine_file() {
+    let text = "G0 X20 Y20 Z4\nG1 Y21 F10\nM2";
+    let more = "[program]\nunits = \"inch\"\nrotary_deg = { A = 20.0 }";
+    let (paths, axes) = ends(more, text);
+    assert_near(axes[0][0], 508.0);
+    assert_near(axes[1][1] - axes[0][1], 25.4);
+    assert_near(axes[1][3], 20.0);
+    assert_near(paths[1].length_mm(), 25.4);
+    assert_near(paths[1].speeds().fastest_mm_s, 254.0 / 60.0);
+    // What the program says goes before.
+    let (_, axes) = ends(more, "G21\nG0 X500 Y500 Z100 A10\nM2");
+    assert_near(axes[0][0], 500.0);
+    assert_near(axes[0][3], 10.0);
+    // Without the table it is all as it was.
+    let (_, axes) = ends("", "G0 X500 Y500 Z100\nM2");
+    assert_near(axes[0][0], 500.0);
+    assert_near(axes[0][3], 0.0);
+}
+
+#[test]
+fn arcs_begin_in_the_plane_of_the_machine_file() {
+    let text = "G0 X500 Y500 Z100\nG3 X540 I20 F1200\nM2";
+    let highest = |more: &str| {
+        let (paths, _) = ends(more, text);
+        let path = paths[1].path();
+        let middle = path.at(paths[1].length_mm() / 2.0).unwrap().pose().unwrap();
+        middle.position
+    };
+    let flat = highest("");
+    assert!((flat - Vector3::new(520.0, 480.0, 100.0)).norm() < 1e-3, "{flat}");
+    // Counter-clockwise seen from +Y, from Z to X.
+    let upright = highest("[program]\nplane = \"G18\"");
+    assert!(
+        (upright - Vector3::new(520.0, 500.0, 120.0)).norm() < 1e-3,
+        "{upright}"
+    );
+}
+
+#[test]
+fn corners_are_passed_as_the_machine_file_says() {
+    let text = "G0 X500 Y500 Z100 A0 C0\nG1 X520 F1200\nY520\nM2";
+    let passed = |more: &str| {
+        let (paths, _) = ends(more, text);
+        let summary = paths[1].blocks.as_ref().unwrap().summary();
+        (summary.stops, summary.corners, summary.tolerance_mm)
+    };
+    let wide = passed("[program]\npath_mode = \"G64\"\ntolerance_mm = 0.3");
+    assert_eq!((wide.0, wide.2), (0, Some(0.3)));
+    let stops = passed("[program]\npath_mode = \"G61\"");
+    assert_eq!((stops.0, stops.1), (1, 1));
+}
+
+#[test]
+fn the_tip_waits_for_tip_control_where_the_machine_file_says_so() {
+    let head = include_str!("../../../../../machines/ac-head.toml");
+    let machine = MachineFile::parse("m.toml", &format!("{head}\n[program]\ntip_control = false")).unwrap();
+    let planner = Planner::build(&machine).unwrap();
+    let read = |text: &str| {
+        let setup = std::sync::Arc::new(planner.setup(&planner.planning.park_axes()));
+        let options = Options {
+            setup,
+            ..Options::default()
+        };
+        interpret(text, options).map_err(|error| error.to_string())
+    };
+    let refused = read("G0 X500\nM2").unwrap_err();
+    assert!(
+        refused.starts_with("line 1, column 4: G43.4 must come before"),
+        "{refused}"
+    );
+    assert!(read("TRAORI\nG0 X500\nM2").is_ok());
+    // Its end is the mode of the file again.
+    let refused = read("TRAORI\nG0 X500\nTRAFOOF\nG0 X510\nM2").unwrap_err();
+    assert!(refused.starts_with("line 4"), "{refused}");
+}

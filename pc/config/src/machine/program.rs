@@ -1,0 +1,112 @@
+//! What NC programs for the machine begin with: modes that hold until a program says others.
+
+use super::check::same;
+use super::{MachineFile, Mistake};
+use crate::in_range;
+use serde::Deserialize;
+use shared::io::{AXES, AXIS_NAMES};
+
+/// `[program]`: each key has the default of RS274/NGC as `docs/nc.md` states it.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ProgramConfig {
+    /// Of lengths and feeds.
+    pub units: LengthUnit,
+    /// Of arcs.
+    pub plane: ArcPlane,
+    /// X Y Z are the tip without a G43.4 or TRAORI.
+    pub tip_control: bool,
+    /// How closely the way is followed.
+    pub path_mode: PathMode,
+    /// P of a G64 \[mm\]; none is the G64 alone.
+    pub tolerance_mm: Option<f64>,
+    /// A B C of the first motion of the tip, where it does not say them \[°\].
+    pub rotary_deg: Rotary,
+}
+
+impl Default for ProgramConfig {
+    fn default() -> Self {
+        Self {
+            units: LengthUnit::default(),
+            plane: ArcPlane::default(),
+            tip_control: true,
+            path_mode: PathMode::default(),
+            tolerance_mm: None,
+            rotary_deg: Rotary::default(),
+        }
+    }
+}
+
+/// Unit of lengths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LengthUnit {
+    /// As after G21.
+    #[default]
+    Mm,
+    /// As after G20.
+    Inch,
+}
+
+/// Plane of arcs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[expect(missing_docs, reason = "codes")]
+pub enum ArcPlane {
+    #[default]
+    G17,
+    G18,
+    G19,
+}
+
+/// How closely the programmed way is followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum PathMode {
+    /// Exact path.
+    G61,
+    /// Exact stop.
+    #[serde(rename = "G61.1")]
+    G61_1,
+    /// Best speed.
+    #[default]
+    G64,
+}
+
+/// A value for some of the rotary axes \[°\].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[expect(non_snake_case, reason = "the keys of the file are the names of the axes")]
+#[expect(missing_docs, reason = "letters")]
+pub struct Rotary {
+    pub A: Option<f64>,
+    pub B: Option<f64>,
+    pub C: Option<f64>,
+}
+
+impl Rotary {
+    /// A B C.
+    pub fn into_array(self) -> [Option<f64>; 3] {
+        [self.A, self.B, self.C]
+    }
+}
+
+/// A tolerance only of a G64, and only axes that the machine has, within their travel.
+pub(super) fn check(machine: &MachineFile) -> Result<(), Mistake> {
+    let program = &machine.program;
+    if let Some(tolerance) = program.tolerance_mm {
+        let key = "program.tolerance_mm";
+        let blends = program.path_mode == PathMode::G64;
+        in_range(key, tolerance, blends, "left out: path_mode is not \"G64\"")?;
+        in_range(key, tolerance, tolerance > 0.0, "above 0")?;
+    }
+    let fitted = machine.motion.kinematics.fitted();
+    for (axis, angle) in (AXES - 3..).zip(program.rotary_deg.into_array()) {
+        let Some(angle) = angle else { continue };
+        let key = format!("program.rotary_deg.{}", AXIS_NAMES[axis]);
+        same(machine, &key, true, fitted[axis])?;
+        if let Some(limits) = &machine.motion.axes[axis] {
+            let within = (limits.travel_min..=limits.travel_max).contains(&angle);
+            in_range(key, angle, within, "within the travel")?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,31 @@
+//! Codes of other controllers that are accepted and do little or nothing here, which is told once.
+
+use super::block::Block;
+use super::codes::{Code, Group};
+use super::error::SourcePosition;
+use super::interpreter::Interpreter;
+
+impl Interpreter {
+    /// What of `block` should be known to a person who expects what another controller does.
+    pub(super) fn hints(&mut self, block: &Block) {
+        if let Some(code) = block.code(Group::Hint) {
+            let why = match code.name {
+                "ORIAXES" => "between the ends of a block the tool turns as docs/nc.md says under Turns",
+                _ => "the speed is planned ahead as far as it is needed anyway",
+            };
+            self.tell_once(format!("{} changes nothing: {why}", code.name), code.place);
+        }
+        if let Some(code) = block.code(Group::PathControl)
+            && code.code == Code::WithinTolerance
+        {
+            let text = "G642 is taken as G64 with the default tolerance: tolerances of single axes are not known here";
+            self.tell_once(text.to_owned(), code.place);
+        }
+    }
+
+    fn tell_once(&mut self, text: String, place: SourcePosition) {
+        if self.notices.iter().all(|notice| notice.text != text) {
+            self.notice(text, place);
+        }
+    }
+}
