@@ -1,7 +1,7 @@
 //! Outputs and spindle: what waits for a motion, and what ends the path.
 
 use super::*;
-use shared::protocol::PathAction;
+use shared::protocol::{Channel, PathAction};
 
 /// Motion, targets and events of the paths after the header.
 type PathSummary = (Motion, usize, Vec<(usize, ProgramAction, &'static str)>);
@@ -120,4 +120,75 @@ fn inputs_are_refused_with_what_to_do_instead() {
         run("M66 P0 L3 Q5\nM2").unwrap_err().to_string(),
         "line 5, column 1: M66 waits for an input, and the boards have none for programs: wait with G4 P"
     );
+}
+
+fn read(text: &str) -> Program {
+    interpret(text, Options::default()).unwrap()
+}
+
+fn error_of(text: &str) -> String {
+    interpret(text, Options::default()).unwrap_err().to_string()
+}
+
+#[test]
+fn outputs_of_the_process_follow_beams_and_tracking_by_number() {
+    let program = read("G1 X1 F60\nM62 P3\nM67 E2 Q4.5\nX2\nM63 P10\nX3\nM2");
+    let actions: Vec<_> = program.paths[0].events.iter().map(|event| event.action).collect();
+    let output = |output, on| ProgramAction::Output(PathAction::Output { output, on });
+    let level = PathAction::Level {
+        channel: Channel::Analog(0),
+        value: 4.5,
+        over_mm: 0.0,
+    };
+    assert_eq!(
+        actions,
+        [output(0, true), ProgramAction::Output(level), output(7, false)]
+    );
+    for (text, told) in [
+        ("M62 P11\nG1 X1 F1", "P3 to P10 are outputs 1 to 8"),
+        ("M67 E4 Q1\nG1 X1 F1", "E2 and E3 analog outputs 1 and 2"),
+    ] {
+        let error = error_of(text);
+        assert!(error.contains(told), "{error}");
+    }
+}
+
+#[test]
+fn a_weld_is_called_by_its_name_and_both_its_ends_are_at_rest() {
+    let program = read(
+        "G1 X1 F60\nWELDON = root-1\nX2\nN7 weldoff\nX3\nWELDON=cap\nX4\nWELDOFF\nWELDON=root-1\nX5\nWELDOFF\nM2",
+    );
+    assert_eq!(program.welds, ["root-1", "cap"]);
+    let stands = program.paths.iter().filter(|path| path.motion == Motion::Stand);
+    let actions: Vec<_> = stands
+        .flat_map(|path| &path.events)
+        .map(|event| event.action)
+        .collect();
+    use ProgramAction::{WeldOff, WeldOn};
+    assert_eq!(
+        actions,
+        [WeldOn(0), WeldOff, WeldOn(1), WeldOff, WeldOn(0), WeldOff]
+    );
+    assert_eq!(
+        program
+            .paths
+            .iter()
+            .filter(|path| path.motion == Motion::Feed)
+            .count(),
+        5
+    );
+    for (text, told) in [
+        (
+            "WELDON X1",
+            "line 1, column 1: WELDON needs the name of a set of the weld data: WELDON=root",
+        ),
+        ("WELDON=", "line 1, column 1: WELDON needs the name"),
+        (
+            "WELDON=a WELDOFF",
+            "line 1, column 10: WELDOFF occurs twice in this block",
+        ),
+    ] {
+        let error = error_of(text);
+        assert!(error.starts_with(told), "{error}");
+    }
 }
