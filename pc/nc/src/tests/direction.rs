@@ -113,6 +113,7 @@ fn directions_that_are_none_are_refused() {
             );
         }
     }
+    assert!(wrong("G81 X1 Z-1 R1 V1=1").contains("V1= belongs to no code of this block"));
     assert!(wrong("G43.5\nG53 G0 X1 I1").contains("I belongs to no code of this block"));
     let error = interpret("G0 X1 A3=1\nM2", Options::default())
         .unwrap_err()
