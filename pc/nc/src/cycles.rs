@@ -11,7 +11,7 @@ use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
 use super::offsets::Coordinates;
 use super::outputs::Pending;
-use super::program::{AXIS_WORDS, FeedRate, PathControl, ProgramAction, Way};
+use super::program::{AXIS_WORDS, EXTENSION_WORDS, FeedRate, PathControl, ProgramAction, Way};
 use shared::io::AXES;
 
 /// How far above the last depth a rapid back into the hole ends, and how far up G73 goes \[mm\].
@@ -70,7 +70,8 @@ impl Interpreter {
         place: SourcePosition,
     ) -> Result<bool, NcError> {
         let axis = self.modal.plane.axis();
-        if let Some(word) = AXIS_WORDS[3..].iter().find_map(|name| block.word(name)) {
+        let mut others = AXIS_WORDS[3..].iter().chain(&EXTENSION_WORDS);
+        if let Some(word) = others.find_map(|name| block.word(name)) {
             return Err(Problem::Orphan(word.label()).at(word.place));
         }
         if self.modal.inverse_time() {

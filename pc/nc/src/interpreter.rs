@@ -4,13 +4,14 @@ use super::block::{Block, CodeWord, Word};
 use super::claims::Claims;
 use super::codes::{Code, Group};
 use super::cycles::Sticky;
+use super::direction::DIRECTION_WORDS;
 use super::error::{NcError, Problem, SourcePosition};
 use super::modal::Modal;
 use super::nurbs::{OpenNurbs, Progress};
 use super::offsets::{Coordinates, Offsets};
 use super::outputs::{Pending, Spindle, coolant, dwell, output};
 use super::parameters::Parameters;
-use super::program::{Motion, Notice, Program, ProgramAction, ProgramPath};
+use super::program::{EXTENSION_WORDS, Motion, Notice, Program, ProgramAction, ProgramPath};
 use super::reading::RemainingBlocks;
 use super::saved_modes::Saved;
 use super::setup::Setup;
@@ -127,6 +128,8 @@ impl Interpreter {
             Some(code) => code.code == Code::TipByVectors,
             None => self.modal.vectors,
         };
+        // With G53 the axes are named.
+        let vectors = vectors && !block.has(Code::MachineAxes);
         let claims = Claims::of(block, modal, vectors)?;
         if own_motion.is_some_and(|motion| Some(motion) != self.modal.motion) {
             self.sticky.changed(own_motion);
@@ -147,6 +150,9 @@ impl Interpreter {
                     && let Some(motion) = motion
                 {
                     return Err(Problem::AxesTaken(code.name).at(motion.place));
+                }
+                if code.code.takes_axes() {
+                    no_slides_or_direction(block)?;
                 }
                 self.settings(block, &claims, *code)?;
                 !code.code.takes_axes() && self.tip_motion(block, &claims)?
@@ -379,6 +385,15 @@ impl Interpreter {
     /// Takes the time to stand before the next path \[s\].
     pub(super) fn dwell_before(&mut self) -> f64 {
         self.dwell.take().map_or(0.0, |(time, _)| time)
+    }
+}
+
+/// Refuses V slides and the direction of the tool, where only axes are meant.
+pub(super) fn no_slides_or_direction(block: &Block) -> Result<(), NcError> {
+    let mut names = EXTENSION_WORDS.iter().chain(&DIRECTION_WORDS);
+    match names.find_map(|name| block.word(name)) {
+        Some(word) => Err(Problem::Orphan(word.label()).at(word.place)),
+        None => Ok(()),
     }
 }
 

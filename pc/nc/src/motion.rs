@@ -6,7 +6,7 @@ use super::claims::Claims;
 use super::codes::Code;
 use super::direction::DIRECTION_WORDS;
 use super::error::{NcError, Problem, SourcePosition};
-use super::interpreter::Interpreter;
+use super::interpreter::{Interpreter, no_slides_or_direction};
 use super::nurbs::OpenNurbs;
 use super::offsets::Coordinates;
 use super::program::{
@@ -90,10 +90,7 @@ impl Interpreter {
             let (code, why) = ("G53", "coordinates of axes are absolute: write G90");
             return Err(Problem::Impossible { code, why }.at(place));
         }
-        let others = EXTENSION_WORDS.iter().chain(&DIRECTION_WORDS);
-        if let Some(word) = others.into_iter().find_map(|w| block.word(w)) {
-            return Err(Problem::Orphan(word.label()).at(word.place));
-        }
+        no_slides_or_direction(block)?;
         let mut axes = Words::of(block).axes;
         let unit = self.modal.unit();
         axes[..3].iter_mut().flatten().for_each(|value| *value *= unit);

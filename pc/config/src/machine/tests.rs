@@ -15,6 +15,15 @@ fn error_of(text: &str) -> String {
     MachineFile::parse("m.toml", text).unwrap_err().to_string()
 }
 
+/// The file `text` is wrong in the line that begins with `start`, as `said`.
+fn assert_mistake(text: &str, start: &str, said: &str) {
+    let line = 1 + text.lines().position(|line| line.starts_with(start)).unwrap();
+    assert_eq!(
+        error_of(text),
+        format!("machine file m.toml, line {line}: {said}")
+    );
+}
+
 #[test]
 fn the_shipped_machine_has_the_published_travel_and_speeds() {
     let machine = MachineFile::parse("m.toml", SHIPPED).unwrap();
@@ -121,10 +130,10 @@ fn a_missing_key_is_named_with_the_line_of_its_table() {
 
 #[test]
 fn a_value_that_makes_no_sense_is_named() {
-    let error = error_of(&SHIPPED.replace("rapid_fraction = 0.5", "rapid_fraction = 1.5"));
-    assert_eq!(
-        error,
-        "machine file m.toml, line 299: planning.rapid_fraction is 1.5, but must be above 0 and at most 1"
+    assert_mistake(
+        &SHIPPED.replace("rapid_fraction = 0.5", "rapid_fraction = 1.5"),
+        "rapid_fraction",
+        "planning.rapid_fraction is 1.5, but must be above 0 and at most 1",
     );
     let error = error_of(&SHIPPED.replace("gate_mm = 1.0", "gate_mm = -1.0"));
     assert_eq!(
@@ -219,30 +228,30 @@ fn the_stir_gantry_has_the_published_travel() {
 #[test]
 fn axes_that_the_machine_has_not_are_named_and_so_are_those_that_are_missing() {
     let pipe = include_str!("../../../../machines/pipe-welder.toml");
-    let error = error_of(&pipe.replace("[axes.Z]", "[axes.Y]"));
-    assert_eq!(
-        error,
-        "machine file m.toml, line 28: axes.Y is given, but a pipe-welder has no such axis"
+    assert_mistake(
+        &pipe.replace("[axes.Z]", "[axes.Y]"),
+        "[axes.Y]",
+        "axes.Y is given, but a pipe-welder has no such axis",
     );
-    let error = error_of(&pipe.replace("[motors.B]", "[motors.A]"));
-    assert_eq!(
-        error,
-        "machine file m.toml, line 86: motors.A is given, but a pipe-welder has no such axis"
+    assert_mistake(
+        &pipe.replace("[motors.B]", "[motors.A]"),
+        "[motors.A]",
+        "motors.A is given, but a pipe-welder has no such axis",
     );
-    let error = error_of(&pipe.replace(", B = 0.0, C = 0.0 }", ", B = 0.0 }"));
-    assert_eq!(
-        error,
-        "machine file m.toml, line 136: planning.park.C is missing; a pipe-welder has that axis"
+    assert_mistake(
+        &pipe.replace(", B = 0.0, C = 0.0 }", ", B = 0.0 }"),
+        "park = ",
+        "planning.park.C is missing; a pipe-welder has that axis",
     );
-    let error = error_of(&pipe.replace("park_first = [\"X\"]", "park_first = [\"A\"]"));
-    assert_eq!(
-        error,
-        "machine file m.toml, line 135: planning.park_first A is given, but a pipe-welder has no such axis"
+    assert_mistake(
+        &pipe.replace("park_first = [\"X\"]", "park_first = [\"A\"]"),
+        "park_first",
+        "planning.park_first A is given, but a pipe-welder has no such axis",
     );
-    let error = error_of(&pipe.replace("park = { X = 190.0", "park = { X = 210.0"));
-    assert_eq!(
-        error,
-        "machine file m.toml, line 136: planning.park.X is 210, but must be within the travel"
+    assert_mistake(
+        &pipe.replace("park = { X = 190.0", "park = { X = 210.0"),
+        "park = ",
+        "planning.park.X is 210, but must be within the travel",
     );
 }
 
@@ -257,10 +266,10 @@ fn a_process_window_is_open() {
     let wire = include_str!("../../../../machines/wire-arc.toml");
     let process = shipped("wire-arc").process.unwrap();
     assert_eq!((process.min_speed_mm_s, process.max_speed_mm_s), (4.0, 16.0));
-    let error = error_of(&wire.replace("max_speed_mm_s = 16.0", "max_speed_mm_s = 4.0"));
-    assert_eq!(
-        error,
-        "machine file m.toml, line 181: process.max_speed_mm_s is 4, but must be above min_speed_mm_s"
+    assert_mistake(
+        &wire.replace("max_speed_mm_s = 16.0", "max_speed_mm_s = 4.0"),
+        "max_speed_mm_s",
+        "process.max_speed_mm_s is 4, but must be above min_speed_mm_s",
     );
 }
 

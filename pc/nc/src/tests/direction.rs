@@ -103,7 +103,18 @@ fn directions_that_are_none_are_refused() {
          its own"
     );
     assert!(wrong("G43.5\nG1 I1 A3=1").contains("it is said by I J K too: leave one out"));
-    assert!(wrong("G53 G0 A3=1").contains("A3= belongs to no code of this block"));
+    // Codes that take axes alone.
+    for code in ["G28", "G30 X1", "G92 X1", "G52 X1", "G10 L2 P1 X1", "G53 G0 X1"] {
+        for word in ["A3=", "V1="] {
+            let error = wrong(&format!("{code} {word}1"));
+            assert!(
+                error.ends_with(&format!("{word} belongs to no code of this block")),
+                "{code}: {error}"
+            );
+        }
+    }
+    assert!(wrong("G81 X1 Z-1 R1 V1=1").contains("V1= belongs to no code of this block"));
+    assert!(wrong("G43.5\nG53 G0 X1 I1").contains("I belongs to no code of this block"));
     let error = interpret("G0 X1 A3=1\nM2", Options::default())
         .unwrap_err()
         .to_string();
