@@ -29,6 +29,9 @@ pub enum FromLineError {
     /// Lines are not run one after the other.
     #[error("a program with loops, conditions or subroutines is started at its beginning only")]
     Branches,
+    /// What was switched before a line is more than a program says there.
+    #[error("a program that welds with weld data is started at its beginning only")]
+    Welds,
     /// A curve takes several lines.
     #[error(
         "line {line} is in the middle of the NURBS of line {begins}: start there, or after its G5.3 or last point"
@@ -298,6 +301,9 @@ fn tracking_at(path: &PlannedPath, s: f64) -> Option<bool> {
 fn check_whole(program: &Program, line: u32) -> Result<(), FromLineError> {
     if program.branches {
         return Err(FromLineError::Branches);
+    }
+    if !program.welds.is_empty() {
+        return Err(FromLineError::Welds);
     }
     for path in &program.paths {
         for next in Arc::new(path.clone()).moves() {

@@ -434,7 +434,10 @@ fn outputs_that_cannot_be_are_named_with_what_there_is() {
         ),
     ] {
         let error = error_of(&with_outputs(tables));
-        assert_eq!(error, format!("machine file m.toml: {told}"));
+        assert!(
+            error.starts_with("machine file m.toml") && error.ends_with(&format!(": {told}")),
+            "{error}"
+        );
     }
 }
 

@@ -74,8 +74,8 @@ fn what_cannot_be_done_is_named_with_its_line() {
     let (code, word) = ("M67", "Q");
     assert_eq!(problem("M67 E0\nM2"), (Problem::Missing { code, word }, 1));
     assert!(matches!(
-        problem("M62 P3\nM2"),
-        (Problem::Value { value: 3.0, .. }, 1)
+        problem("M62 P11\nM2"),
+        (Problem::Value { value: 11.0, .. }, 1)
     ));
     assert!(matches!(problem("F-5\nM2"), (Problem::Value { .. }, 1)));
     let bare = |text: &str| interpret(text, Options::default()).unwrap_err().problem;

@@ -383,3 +383,23 @@ fn what_cannot_be_welded_is_told_with_its_line() {
         assert!(error.starts_with(told), "{error}\n{told}");
     }
 }
+
+#[test]
+fn a_program_with_welds_is_started_at_its_beginning_only() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/wire-arc.toml");
+    let mut machine = MachineFile::read(file.as_ref()).unwrap();
+    machine.welding = WeldData::parse("w.toml", "[w]\npower = 1.0").unwrap();
+    let program = interpret(
+        &format!("{START}WELDON=w\nG1 X0\nWELDOFF\nM2"),
+        Options::default(),
+    )
+    .unwrap();
+    let planner = Planner::build(&machine).unwrap();
+    let from = machine.homed_axes();
+    let paths = planner.program(&program, &from, None).unwrap();
+    let error = planner.from_line(&program, paths, 6, &from).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "a program that welds with weld data is started at its beginning only"
+    );
+}
