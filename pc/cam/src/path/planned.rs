@@ -200,12 +200,12 @@ impl PlannedPath {
         if let Some(blocks) = &self.blocks {
             return blocks.summary().weld_mm;
         }
-        let switchings = self.events.iter().filter_map(|event| match event.action {
+        let mut switchings = self.events.iter().filter_map(|event| match event.action {
             PathAction::Beam { on, .. } => Some((event.s_mm, on)),
             _ => None,
         });
         let (start, _) = switchings.clone().find(|(_, on)| *on)?;
-        let end = match switchings.last() {
+        let end = match switchings.next_back() {
             Some((end, false)) => end,
             _ => self.length_mm(),
         };
