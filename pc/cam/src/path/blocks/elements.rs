@@ -80,8 +80,8 @@ impl Block {
     fn shapes(&self, from: f64, to: f64, shapes: &mut Vec<(Shape, f64)>) -> Result<(), PathError> {
         let place = self.place;
         match &self.way {
-            BlockWay::Straight(place, _) if self.stands && self.turning == 0.0 => {
-                shapes.push((Shape::Point((*place).into()), to - from));
+            BlockWay::Straight(start, end) if self.stands && start == end && self.turning == 0.0 => {
+                shapes.push((Shape::Point((*start).into()), to - from));
             }
             BlockWay::Straight(start, end) if self.stands => {
                 let at = |i: usize, u: f64| start[i] + (end[i] - start[i]) * (u / self.length);
