@@ -128,6 +128,8 @@ const KEYWORDS: [(&str, Option<Code>); 11] = [
     ("SOFT", None),
     ("BRISK", None),
 ];
+/// Letters of the shortest of them.
+const SHORTEST_KEYWORD: usize = 4;
 
 /// Reads line number `line`, in which `lookup` knows the values of parameters. Blocks that begin with `/` are left out with
 /// `block_delete`.
@@ -215,6 +217,11 @@ fn setting(scanner: &mut Scanner, block: &mut Block, lookup: &mut dyn Lookup) ->
 /// A word without a number, if one stands at the scanner.
 fn keyword(scanner: &mut Scanner, block: &mut Block) -> Result<bool, NcError> {
     let (place, start) = (scanner.place(), scanner.mark());
+    if scanner.skip_letters() < SHORTEST_KEYWORD {
+        scanner.go_back(start);
+        return Ok(false);
+    }
+    scanner.go_back(start);
     let letters = scanner.letters();
     let Some((_, code)) = KEYWORDS.iter().find(|(name, _)| *name == letters) else {
         scanner.go_back(start);
@@ -240,7 +247,7 @@ fn keyword(scanner: &mut Scanner, block: &mut Block) -> Result<bool, NcError> {
 /// A letter or name with its number.
 fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError> {
     let (place, start) = (scanner.place(), scanner.mark());
-    let letters = scanner.letters();
+    let letters = scanner.skip_letters();
     scanner.go_back(start);
     let (address, named) = match scanner.address() {
         Some(name) => (name, true),
@@ -252,8 +259,6 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
     };
     // A letter may be written with a sign, too: X=1.
     let named = named && address.len() > 1;
-    let sign = if named { "=" } else { "" };
-    let label = format!("{address}{sign}");
     let of_word = |error: NcError| match error.problem {
         Problem::TooLarge(_) => Problem::TooLarge(address.clone()).at(place),
         _ => error,
@@ -265,8 +270,14 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
             named,
             place,
         }),
-        None if letters.len() > 1 && !named => Err(Problem::UnknownWord(letters).at(place)),
-        None => Err(Problem::NoNumber(label).at(place)),
+        None if letters > 1 && !named => {
+            scanner.go_back(start);
+            Err(Problem::UnknownWord(scanner.letters()).at(place))
+        }
+        None => {
+            let sign = if named { "=" } else { "" };
+            Err(Problem::NoNumber(format!("{address}{sign}")).at(place))
+        }
     }
 }
 
