@@ -1,5 +1,6 @@
 //! From program paths to what the boards run: knots, events and limits, checked against the machine.
 
+mod ahead;
 mod block;
 mod blocks;
 mod elements;
@@ -22,6 +23,7 @@ mod targets;
 mod tests;
 mod too_fast;
 
+pub(crate) use blocks::part_of_arc;
 pub use blocks::{Blocks, Course, Leg, Summary};
 pub use elements::TOLERANCE;
 pub use error::PathError;
