@@ -149,6 +149,8 @@ const KEYWORDS: [(&str, Option<Code>); 12] = [
     ("SOFT", None),
     ("BRISK", None),
 ];
+/// Letters of the shortest of them.
+const SHORTEST_KEYWORD: usize = 4;
 
 /// Reads line number `line`, in which `lookup` knows the values of parameters. Blocks that begin with `/` are left out with
 /// `block_delete`.
@@ -253,6 +255,11 @@ fn setting(scanner: &mut Scanner, block: &mut Block, lookup: &mut dyn Lookup) ->
 /// A word without a number, if one stands at the scanner.
 fn keyword(scanner: &mut Scanner, block: &mut Block) -> Result<bool, NcError> {
     let (place, start) = (scanner.place(), scanner.mark());
+    if scanner.skip_letters() < SHORTEST_KEYWORD {
+        scanner.go_back(start);
+        return Ok(false);
+    }
+    scanner.go_back(start);
     let letters = scanner.letters();
     if let "WELDON" | "WELDOFF" = letters.as_str() {
         if block.weld.is_some() {
@@ -306,7 +313,7 @@ fn weld_name(scanner: &mut Scanner, place: SourcePosition) -> Result<String, NcE
 /// A letter or name with its number.
 fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError> {
     let (place, start) = (scanner.place(), scanner.mark());
-    let letters = scanner.letters();
+    let letters = scanner.skip_letters();
     scanner.go_back(start);
     let (address, named) = match scanner.address() {
         Some(name) => (name, true),
@@ -318,8 +325,6 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
     };
     // A letter may be written with a sign, too: X=1.
     let named = named && address.len() > 1;
-    let sign = if named { "=" } else { "" };
-    let label = format!("{address}{sign}");
     if named
         && address
             .strip_prefix('R')
@@ -338,8 +343,14 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
             named,
             place,
         }),
-        None if letters.len() > 1 && !named => Err(Problem::UnknownWord(letters).at(place)),
-        None => Err(Problem::NoNumber(label).at(place)),
+        None if letters > 1 && !named => {
+            scanner.go_back(start);
+            Err(Problem::UnknownWord(scanner.letters()).at(place))
+        }
+        None => {
+            let sign = if named { "=" } else { "" };
+            Err(Problem::NoNumber(format!("{address}{sign}")).at(place))
+        }
     }
 }
 

@@ -13,6 +13,8 @@ pub(super) struct Scanner<'t> {
     /// Bytes that are read.
     next: usize,
     line: u32,
+    /// A byte is a character.
+    ascii: bool,
 }
 
 impl<'t> Scanner<'t> {
@@ -22,12 +24,16 @@ impl<'t> Scanner<'t> {
             text: text.into(),
             next: 0,
             line,
+            ascii: text.is_ascii(),
         }
     }
 
     /// The next character.
     pub(super) fn peek(&self) -> Option<char> {
-        self.text[self.next..].chars().next()
+        match self.text.as_bytes().get(self.next) {
+            Some(byte) if byte.is_ascii() => Some(char::from(*byte)),
+            _ => self.text[self.next..].chars().next(),
+        }
     }
 
     /// Goes over it.
@@ -37,9 +43,13 @@ impl<'t> Scanner<'t> {
 
     /// Where it stands.
     pub(super) fn place(&self) -> SourcePosition {
+        let before = match self.ascii {
+            true => self.next,
+            false => self.text[..self.next].chars().count(),
+        };
         SourcePosition {
             line: self.line,
-            column: self.text[..self.next].chars().count() as u32 + 1,
+            column: before as u32 + 1,
         }
     }
 
@@ -54,7 +64,17 @@ impl<'t> Scanner<'t> {
     }
 
     pub(super) fn skip_blanks(&mut self) {
-        self.take(char::is_whitespace);
+        while self.peek().is_some_and(char::is_whitespace) {
+            self.step();
+        }
+    }
+
+    /// Goes over letters; how many.
+    pub(super) fn skip_letters(&mut self) -> usize {
+        let rest = self.text.as_bytes()[self.next..].iter();
+        let letters = rest.take_while(|byte| byte.is_ascii_alphabetic()).count();
+        self.next += letters;
+        letters
     }
 
     /// Letters, in upper case; blanks do not part them from brackets behind.
@@ -105,12 +125,15 @@ impl<'t> Scanner<'t> {
     /// `NAME=`, where a name is letters and digits; nothing is consumed if there is none.
     pub(super) fn address(&mut self) -> Option<String> {
         let start = self.next;
-        let letters = self.take(|c| c.is_ascii_alphabetic()).to_ascii_uppercase();
-        let name = letters + self.take(|c| c.is_ascii_digit());
+        self.skip_letters();
+        while self.peek().is_some_and(|c| c.is_ascii_digit()) {
+            self.step();
+        }
+        let end = self.next;
         self.skip_blanks();
         if self.peek() == Some('=') {
             self.step();
-            return Some(name);
+            return Some(self.text[start..end].to_ascii_uppercase());
         }
         self.next = start;
         None

@@ -3,6 +3,7 @@
 mod board;
 mod bounded;
 mod callgrind;
+mod check;
 mod curves;
 mod docs;
 mod hands;
@@ -95,6 +96,12 @@ pub enum Benchmark {
         #[arg(long, value_name = "N", default_value_t = 0)]
         seed: u64,
     },
+    /// Check a program of many short lines with `seamwright check`: time and memory
+    Check {
+        /// How many
+        #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+        lines: u64,
+    },
     /// Run every program (.seg) of a folder through the trajectory planner; fails if a limit is not kept
     Trajectories {
         /// Folder of the programs, and of baseline.csv with what another planner took, if there is one
@@ -127,7 +134,7 @@ impl Benchmark {
                 instructions: true, ..
             } => &[Tool::Valgrind],
             Self::Nc { .. } => &[Tool::LinuxCnc],
-            Self::Curves { .. } | Self::Hands { .. } | Self::Trajectories { .. } => &[],
+            Self::Check { .. } | Self::Curves { .. } | Self::Hands { .. } | Self::Trajectories { .. } => &[],
         }
     }
 
@@ -137,6 +144,7 @@ impl Benchmark {
             Self::Kinematics { record } => kinematics(record),
             Self::Planner { record } => planner::run(record),
             Self::Curves { random, seed, record } => curves::run(random, seed, record),
+            Self::Check { lines } => check::run(lines),
             Self::Hands { programs, seed } => hands::run(programs, seed),
             Self::Nc {
                 programs,

@@ -8,6 +8,7 @@ mod around;
 mod differences;
 mod error;
 mod figures;
+mod forecast;
 mod run;
 mod slowed;
 mod stream;
@@ -18,6 +19,7 @@ mod trace;
 
 pub use error::DryRunError;
 pub use figures::{DryRun, Highest, PathFigures, Peak, Peaks, QUANTITIES, Ruled, Stop};
+pub use forecast::{Forecast, forecast};
 pub use slowed::{Slowed, SlowedDown};
 pub use table::{row_name, unit};
 pub use trace::{Bin, Envelope, Trace};

@@ -16,9 +16,9 @@ use shared::ticks::PATH_PERIOD_S;
 use shared::trajectory::{BoardPlanner, Output};
 
 /// A planner that goes nowhere for so many ticks never will.
-const PATIENCE: u32 = 60_000;
+pub(super) const PATIENCE: u32 = 60_000;
 /// What moves less is at rest [units of people per second].
-const REST: f64 = 1e-6;
+pub(super) const REST: f64 = 1e-6;
 
 /// Extremes of speed, acceleration and jerk on one path.
 #[derive(Default)]
@@ -105,7 +105,7 @@ impl Runner {
         let limits = self.board.plan_limits(&path.path_limits());
         self.planner.start(&limits, path.space, path.start_s, &self.axes);
         self.planner.set_override(self.factor);
-        let mut stream = Stream::new(path);
+        let mut stream = Stream::new(path.given_legs());
         let mut around = Around::from(path.start_s);
         let requests = stream.begin(&mut self.planner, |element| around.add(element))?;
         self.wait(match self.result.paths.last() {

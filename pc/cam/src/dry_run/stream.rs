@@ -4,7 +4,6 @@ use super::DryRunError;
 use crate::path::{Leg, PathError, PlannedPath};
 use shared::protocol::{LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, TELEMETRY_BATCH};
 use shared::trajectory::{BoardPlanner, Element};
-use std::iter::Peekable;
 
 /// Ticks that a request and its answer take.
 const REQUEST: u32 = 1;
@@ -36,8 +35,8 @@ pub fn dwell_ticks(path: &PlannedPath) -> u64 {
 }
 
 /// A path on its way to the planner.
-pub struct Stream<'a> {
-    legs: Peekable<Box<dyn Iterator<Item = Result<Leg, PathError>> + 'a>>,
+pub struct Stream<I> {
+    legs: I,
     /// Elements that go next.
     batch: Vec<Element>,
     /// How many events on them have not gone yet.
@@ -46,14 +45,20 @@ pub struct Stream<'a> {
     wait: u32,
 }
 
-impl<'a> Stream<'a> {
-    pub fn new(path: &'a PlannedPath) -> Self {
+impl<I: Iterator<Item = Result<Leg, PathError>>> Stream<I> {
+    /// Of the legs that a path is given as.
+    pub fn new(legs: I) -> Self {
         Self {
-            legs: path.given_legs().peekable(),
+            legs,
             batch: Vec::new(),
             events: 0,
             wait: ASK,
         }
+    }
+
+    /// Those that have not gone yet.
+    pub fn legs(&self) -> &I {
+        &self.legs
     }
 
     /// Gives all that the planner has room for before the path begins; how many requests that and the beginning take.

@@ -1,5 +1,6 @@
 //! A planned path as elements, as they are sent to the motion board.
 
+use super::ahead::Ahead;
 use super::blocks::{Blocks, Leg};
 use super::smooth_legs::SmoothLegs;
 use super::{PathError, PlannedPath};
@@ -71,12 +72,25 @@ impl PlannedPath {
     /// As of [`Self::legs`].
     pub fn given_legs(&self) -> Box<dyn Iterator<Item = Result<Leg, PathError>> + '_> {
         match &self.blocks {
-            Some(blocks) => {
-                let legs = self.beyond_start(blocks.smoothable());
-                Box::new(SmoothLegs::new(legs, self.start_s, self.limits.acceleration))
-            }
+            Some(blocks) => Box::new(self.given_of(blocks)),
             None => self.given_blocks(),
         }
+    }
+
+    /// The same, of a long path some ahead on a thread of its own.
+    ///
+    /// # Errors
+    /// As of [`Self::legs`].
+    pub(crate) fn given_ahead(&self) -> Box<dyn Iterator<Item = Result<Leg, PathError>> + '_> {
+        match &self.blocks {
+            Some(blocks) => Box::new(Ahead::new(self.given_of(blocks))),
+            None => self.given_blocks(),
+        }
+    }
+
+    fn given_of(&self, blocks: &Blocks) -> impl Iterator<Item = Result<Leg, PathError>> + Send + use<> {
+        let legs = self.beyond_start(blocks.smoothable());
+        SmoothLegs::new(legs, self.start_s, self.limits.acceleration)
     }
 
     /// The same with every block as it is written: for single block.
@@ -89,23 +103,24 @@ impl PlannedPath {
     }
 
     /// The `legs` from where the machine begins.
-    fn beyond_start(
-        &self,
-        legs: impl Iterator<Item = Result<(Leg, f64), PathError>>,
-    ) -> impl Iterator<Item = Result<(Leg, f64), PathError>> {
+    fn beyond_start<I>(&self, legs: I) -> impl Iterator<Item = Result<(Leg, f64), PathError>> + use<I>
+    where
+        I: Iterator<Item = Result<(Leg, f64), PathError>>,
+    {
+        let (start_s, start_actions) = (self.start_s, self.start_actions.clone());
         let mut s = 0.0;
         let given = legs.skip_while(move |leg| {
-            let before = s < self.start_s - SAME;
+            let before = s < start_s - SAME;
             s += leg.as_ref().map_or(0.0, |(leg, _)| leg.element.length);
             before && leg.is_ok()
         });
-        given.enumerate().map(|(index, leg)| {
+        given.enumerate().map(move |(index, leg)| {
             let (mut leg, smoothing) = leg?;
-            if index == 0 && self.start_s > 0.0 {
+            if index == 0 && start_s > 0.0 {
                 // What was where a line begins is no sooner than the machine is there.
                 let here = leg.events.iter().map(|event| event.action);
-                let actions = self.start_actions.iter().copied().chain(here);
-                let s_mm = self.start_s;
+                let actions = start_actions.iter().copied().chain(here);
+                let s_mm = start_s;
                 leg.events = actions.map(|action| PathEvent { s_mm, action }).collect();
             }
             Ok((leg, smoothing))

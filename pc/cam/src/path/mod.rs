@@ -1,5 +1,6 @@
 //! From program paths to what the boards run: knots, events and limits, checked against the machine.
 
+mod ahead;
 mod block;
 mod blocks;
 mod elements;
@@ -24,6 +25,7 @@ mod tip_of_machine;
 mod too_fast;
 mod weld;
 
+pub(crate) use blocks::part_of_arc;
 pub use blocks::{Blocks, Course, Leg, Summary};
 pub use elements::TOLERANCE;
 pub use error::PathError;

@@ -5,7 +5,7 @@ use super::{machine_for, plan_program, read_program, read_program_by, slower};
 use crate::console::{out, outln};
 use anyhow::{Context, bail};
 use cam::dry_run;
-use cam::dry_run::DryRun;
+use cam::dry_run::Forecast;
 use cam::path::{Blocks, PlannedPath, Planner};
 use clap::Args;
 use config::machine::MachineFile;
@@ -53,7 +53,7 @@ impl Check {
             Ok(()) | Err(SeamError::NoSeam) => {}
             Err(error) => return Err(error).with_context(|| format!("program {name}")),
         }
-        let ran = dry_run::run(&machine, &planner, &paths, 1.0).with_context(|| format!("program {name}"))?;
+        let ran = dry_run::forecast(&machine, &planner, &paths).with_context(|| format!("program {name}"))?;
         print(&paths, &ran);
         slower(&paths).for_each(|found| outln!("  {found}"));
         out!("{}", ran.slowed);
@@ -98,9 +98,9 @@ fn print_weakened(machine: &MachineFile) {
     }
 }
 
-fn print(paths: &[PlannedPath], ran: &DryRun) {
+fn print(paths: &[PlannedPath], ran: &Forecast) {
     outln!(" path            length      time     speed  pieces");
-    for (index, (path, times)) in paths.iter().zip(&ran.paths).enumerate() {
+    for (index, (path, time_s)) in paths.iter().zip(&ran.paths_s).enumerate() {
         let kind = match path.motion {
             Motion::Rapid => "rapid",
             Motion::Feed => "feed",
@@ -112,7 +112,7 @@ fn print(paths: &[PlannedPath], ran: &DryRun) {
             "{:5} {kind:<6} {:9.1} mm {:7.2} s {:6.2} m/min {:7}",
             index + 1,
             path.length_mm(),
-            times.duration_s,
+            time_s,
             m_min(speeds.fastest_mm_s),
             path.pieces(),
         );

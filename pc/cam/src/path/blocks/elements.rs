@@ -94,7 +94,7 @@ impl Block {
                 shapes.push((Shape::Line(line), line.length()));
             }
             BlockWay::Round(whole) => {
-                let arc = self.part_of(whole, from, to);
+                let arc = part_of_arc(whole, from, to, self.length);
                 let arc = arc.map_err(|source| PathError::Arc { place, source })?;
                 shapes.push((Shape::Arc(arc), arc.length()));
             }
@@ -109,17 +109,18 @@ impl Block {
         }
         Ok(())
     }
+}
 
-    fn part_of(&self, whole: &Arc, from: f64, to: f64) -> Result<Arc, ArcError> {
-        if from <= 0.0 && to >= self.length {
-            return Ok(*whole);
-        }
-        let at = |u: f64| whole.at_angle(whole.sweep() * u / self.length);
-        let sweep = whole.sweep() * (to - from) / self.length;
-        let turns = libm::fmax(libm::ceil(sweep / TAU - SAME) - 1.0, 0.0) as u32;
-        let (centre, axis) = (whole.centre(), whole.axis());
-        Arc::with_turns(at(from), at(to), centre, axis, Turn::CounterClockwise, turns)
+/// An arc of this `length` from one place to another \[mm\].
+pub fn part_of_arc(whole: &Arc, from: f64, to: f64, length: f64) -> Result<Arc, ArcError> {
+    if from <= 0.0 && to >= length {
+        return Ok(*whole);
     }
+    let at = |u: f64| whole.at_angle(whole.sweep() * u / length);
+    let sweep = whole.sweep() * (to - from) / length;
+    let turns = libm::fmax(libm::ceil(sweep / TAU - SAME) - 1.0, 0.0) as u32;
+    let (centre, axis) = (whole.centre(), whole.axis());
+    Arc::with_turns(at(from), at(to), centre, axis, Turn::CounterClockwise, turns)
 }
 
 /// The channels after the tip's between two places `length` \[mm\] apart.

@@ -10,7 +10,9 @@ mod walk;
 
 pub use check::Summary;
 pub use course::Course;
+pub(crate) use elements::part_of_arc;
 
+use super::ahead::Ahead;
 use super::feeds::Feeds;
 use super::targets::RestState;
 use super::{PathError, PlannedPath, Planner};
@@ -66,7 +68,8 @@ impl Planner {
         let planner = Arc::new(self.clone());
         let feeds = Feeds::replaced_by(speed_mm_s);
         let mut check = Check::new(&planner, stand);
-        for step in Walk::new(planner.clone(), moves(), stand, feeds) {
+        let read = Box::new(Ahead::new(moves()));
+        for step in Walk::new(planner.clone(), read, stand, feeds) {
             check.step(&step?)?;
         }
         let from = *stand;
