@@ -35,6 +35,11 @@ pub(super) enum BeadError {
         z: f64,
     },
     #[error(
+        "layer {layer} is no smooth curve through {points} points: it needs 2 to 511 of them, and turns by at most 20° from \
+         one to the next; round its sharpest bend, or make two beads"
+    )]
+    NotSmooth { layer: usize, points: usize },
+    #[error(
         "{place}: a kink of {degrees:.1}° at parameter {u} near ({x:.3}, {y:.3}, {z:.3}) mm; a bead runs without a \
          stop, so round it with a radius, or make two beads"
     )]

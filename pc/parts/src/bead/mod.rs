@@ -221,7 +221,15 @@ impl Kind for Bead {
         let drafts = feed_paths(&planner, context, &draft)?;
         let mut plans = Vec::new();
         let mut deviation = 0.0_f64;
-        for ((pass, path), layer) in passes.iter_mut().zip(&drafts).zip(self.layers()) {
+        for (((pass, path), layer), number) in passes.iter_mut().zip(&drafts).zip(self.layers()).zip(1..) {
+            if path.knots.is_empty() {
+                let points = pass.stations.len();
+                return Err(BeadError::NotSmooth {
+                    layer: number,
+                    points,
+                }
+                .into());
+            }
             deviation = deviation.max(deviation_of(path, &route, &layer)?);
             let limits = speed::limits(path, context.machine, planner.kinematics(), window.high)?;
             let targets: Vec<f64> = path.knots[1..].iter().map(|knot| knot.s_mm).collect();
