@@ -156,8 +156,9 @@ impl Planner {
         let mut planned = Vec::new();
         let mut called = None;
         for path in &program.paths {
-            for path in self.welded(program, path, &mut called, &stand)? {
-                planned.extend(self.path(&path, &mut stand, speed_mm_s)?);
+            let made = self.welded(program, path, &mut called, (&stand, speed_mm_s))?;
+            for path in made.paths {
+                planned.extend(self.path(&path, &mut stand, made.speed_mm_s)?);
             }
         }
         self.check_welded(program, called)?;

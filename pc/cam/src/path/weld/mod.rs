@@ -36,29 +36,37 @@ pub(super) struct Called {
     done: bool,
 }
 
+/// What a path of the program becomes.
+pub(super) struct Made {
+    pub(super) paths: Vec<ProgramPath>,
+    /// The speed that replaces the programmed feeds of these paths \[mm/s\]; weld data has done that already.
+    pub(super) speed_mm_s: Option<f64>,
+}
+
 impl Planner {
     /// What the machine does for `path` of `program`, from where it stands, `called` being the weld that is on: itself, or
-    /// what the weld data makes of it.
+    /// what the weld data makes of it. `speed_mm_s` replaces the programmed feed.
     pub(super) fn welded(
         &self,
         program: &Program,
         path: &ProgramPath,
         called: &mut Option<Called>,
-        stand: &RestState,
-    ) -> Result<Vec<ProgramPath>, PathError> {
+        (stand, speed_mm_s): (&RestState, Option<f64>),
+    ) -> Result<Made, PathError> {
+        let itself = |paths| Made { paths, speed_mm_s };
         let events = &path.events;
         let words = events
             .iter()
             .find(|event| matches!(event.action, ProgramAction::WeldOn(_) | ProgramAction::WeldOff));
         match (words, called.as_mut()) {
-            (None, None) => Ok(vec![path.clone()]),
+            (None, None) => Ok(itself(vec![path.clone()])),
             (Some(word), _) => {
                 self.call(program, word, called)?;
                 // The path stands, and may switch more.
                 let mut path = path.clone();
                 path.events.retain(|event| event != word);
                 let nothing = path.events.is_empty() && path.dwell_before_s == 0.0;
-                Ok(if nothing { Vec::new() } else { vec![path] })
+                Ok(itself(if nothing { Vec::new() } else { vec![path] }))
             }
             (None, Some(weld)) => {
                 let name = &program.welds[weld.index];
@@ -71,7 +79,18 @@ impl Planner {
                     });
                 }
                 weld.done = true;
-                self.weld(name, &self.welding.sets[name], path, weld.place, stand)
+                let mut path = self.without_short_blocks(path.whole()?, stand)?;
+                let speed = speed(&path)?;
+                if let Some(speed) = speed_mm_s {
+                    let feed = Some(FeedRate::PerMinute(60.0 * speed));
+                    path.targets.iter_mut().for_each(|target| target.feed = feed);
+                }
+                let speed = speed_mm_s.unwrap_or(speed);
+                let paths = self.weld(name, &self.welding.sets[name], &path, (weld.place, speed), stand)?;
+                Ok(Made {
+                    paths,
+                    speed_mm_s: None,
+                })
             }
         }
     }
@@ -127,19 +146,17 @@ impl Planner {
         }
     }
 
-    /// The paths of a weld with `set` along the seam of `path`.
+    /// The paths of a weld with `set`, called at `on`, along the seam of `path`, which is gone at `speed` \[mm/s\].
     fn weld(
         &self,
         name: &str,
         set: &WeldSet,
         path: &ProgramPath,
-        on: SourcePosition,
+        (on, speed): (SourcePosition, f64),
         stand: &RestState,
     ) -> Result<Vec<ProgramPath>, PathError> {
-        let path = self.without_short_blocks(path.whole()?, stand)?;
-        let speed = speed(&path)?;
-        let smooth = self.is_smooth(&path, stand)?;
-        let seam = Seam::of(self, &path, stand, smooth)?;
+        let smooth = self.is_smooth(path, stand)?;
+        let seam = Seam::of(self, path, stand, smooth)?;
         let length = seam.length();
         let phases = Phases::of(self, name, set, length, on)?;
         let beside = set.weave.is_some() || set.offset_mm != [0.0; 2];
@@ -163,7 +180,7 @@ impl Planner {
         }
         paths.push(standing(phases.before.clone(), 0.0, on));
         let (mut targets, mut events) = if beside || rests && smooth {
-            self.beside(&aside, set, name, &phases, speed, &mut axes, &path)?
+            self.beside(&aside, set, name, &phases, speed, &mut axes, path)?
         } else {
             let place = |event: &(f64, PathAction)| {
                 let target = seam.target(event.0);

@@ -403,3 +403,23 @@ fn a_program_with_welds_is_started_at_its_beginning_only() {
         "a program that welds with weld data is started at its beginning only"
     );
 }
+
+#[test]
+fn another_speed_takes_the_place_of_the_feed_of_a_weld() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/wire-arc.toml");
+    let mut machine = MachineFile::read(file.as_ref()).unwrap();
+    machine.welding = WeldData::parse("w.toml", WEAVE).unwrap();
+    let program = format!("{START}WELDON=w\nG1 X0\nWELDOFF\nG1 X10\nM2");
+    let program = interpret(&program, Options::default()).unwrap();
+    let planner = Planner::build(&machine).unwrap();
+    let paths = planner
+        .program(&program, &machine.homed_axes(), Some(5.0))
+        .unwrap();
+    let tips = tips(weld(&paths));
+    let time: f64 = tips
+        .windows(2)
+        .map(|pair| (pair[1].0 - pair[0].0) / pair[0].2)
+        .sum();
+    assert!((time - 20.0).abs() < 1e-3, "{time} s for 100 mm at 5 mm/s");
+    assert_eq!(paths.last().unwrap().speeds().fastest_mm_s, 5.0);
+}
