@@ -177,7 +177,7 @@ impl LineChanges {
 }
 
 /// A line that was switched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Switched {
     /// Its number: 0 and 1 are the gates, the digital outputs follow.
     pub line: u8,
@@ -187,8 +187,37 @@ pub struct Switched {
     pub at_us: u16,
 }
 
-/// The first lines that were switched within a tick.
-pub type SwitchedLines = [Option<Switched>; CHANGES];
+/// The first lines that were switched within a tick. Empty it is all zero bits, so that a start state with it takes no flash.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct SwitchedLines {
+    count: u8,
+    lines: [Switched; CHANGES],
+}
+
+impl SwitchedLines {
+    /// None.
+    pub const NONE: Self = Self {
+        count: 0,
+        lines: [Switched {
+            line: 0,
+            on: false,
+            at_us: 0,
+        }; CHANGES],
+    };
+
+    /// Adds one, if there is room.
+    pub fn push(&mut self, switched: Switched) {
+        if let Some(place) = self.lines.get_mut(usize::from(self.count)) {
+            *place = switched;
+            self.count += 1;
+        }
+    }
+
+    /// In the order in which they were switched.
+    pub fn iter(&self) -> impl Iterator<Item = Switched> + '_ {
+        self.lines.iter().take(usize::from(self.count)).copied()
+    }
+}
 
 /// Lines as a board holds them, with a note of what was switched and when.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -201,7 +230,7 @@ impl HeldLines {
     /// Everything off.
     pub const NONE: Self = Self {
         now: Lines::NONE,
-        noted: [None; CHANGES],
+        noted: SwitchedLines::NONE,
     };
 
     /// From `at_us` after the tick began the lines are `lines`.
@@ -209,14 +238,11 @@ impl HeldLines {
         let changed = Lines(self.now.0 ^ lines.0);
         self.now = lines;
         for line in (0..LINES).filter(|line| changed.get(*line)) {
-            let switched = Switched {
+            self.noted.push(Switched {
                 line: line as u8,
                 on: lines.get(line),
                 at_us,
-            };
-            if let Some(place) = self.noted.iter_mut().find(|place| place.is_none()) {
-                *place = Some(switched);
-            }
+            });
         }
     }
 
@@ -269,7 +295,7 @@ impl<const N: usize> Feedback<N> {
         laser_fault: [false; SIDES],
         beam_power: [None; SIDES],
         process: Bits::NONE,
-        switched: [None; CHANGES],
+        switched: SwitchedLines::NONE,
     };
 }
 
@@ -365,11 +391,13 @@ mod tests {
         lines.set(Lines(0b101), 7);
         lines.set(Lines(0b101), 20);
         lines.set(Lines(0b100), 31);
-        let note = |line, on, at_us| Some(Switched { line, on, at_us });
-        assert_eq!(
-            lines.take(),
-            [note(0, true, 7), note(2, true, 7), note(0, false, 31), None]
+        let note = |line, on, at_us| Switched { line, on, at_us };
+        let noted = lines.take();
+        assert!(
+            noted
+                .iter()
+                .eq([note(0, true, 7), note(2, true, 7), note(0, false, 31)])
         );
-        assert_eq!((lines.take(), lines.now()), ([None; CHANGES], Lines(0b100)));
+        assert_eq!((lines.take(), lines.now()), (SwitchedLines::NONE, Lines(0b100)));
     }
 }

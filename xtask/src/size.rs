@@ -23,9 +23,9 @@ struct Budget {
 fn budget(firmware: Firmware, board: Board) -> Budget {
     match (firmware, board) {
         // Most of the motion board's RAM is the planner: its elements, and the nodes at which it plans the speed.
-        // Their initial values are in flash, too. The NUCLEO has 320 kB, and the stack elsewhere.
+        // Their initial values are in flash, too. The NUCLEO has 1 MB of flash and 320 kB of RAM, and the stack elsewhere.
         (Firmware::Motion, Board::Mps2An500 | Board::NucleoH723zg) => Budget {
-            flash: [200, 640],
+            flash: [200, 680],
             ram: [100, 325],
             controller: [100, 240],
         },

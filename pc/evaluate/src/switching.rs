@@ -55,7 +55,7 @@ impl<'p> Switchings<'p> {
             return;
         }
         let speed = (sample.s_mm - before.s_mm) / PATH_PERIOD_S;
-        for switched in sample.switched.iter().flatten() {
+        for switched in sample.switched.iter() {
             if speed < LEAST_SPEED_MM_S {
                 continue;
             }

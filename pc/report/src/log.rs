@@ -264,7 +264,7 @@ pub(crate) mod tests {
             beams: [true, false],
             outputs: 5,
             levels: [0.25, 0.0, 0.5, 0.0],
-            switched: [None; 4],
+            switched: shared::io::SwitchedLines::NONE,
             axes: [10.0, 20.0, 30.0, 0.0, 0.0, std::f64::consts::PI],
             truth: None,
             following_error: [0.001, 0.0, 0.0, 0.0, 0.0, 0.0, 0.002],

@@ -370,10 +370,9 @@ impl ServoLoops {
     /// Lines that were switched in the period that has just ended.
     fn note_switched(&mut self, switched: SwitchedLines) {
         let phase = self.report.ticks.wrapping_sub(1) % SERVO_TICKS_PER_PATH_TICK;
-        let free = self.report.switched.iter_mut().filter(|place| place.is_none());
-        for (place, switched) in free.zip(switched.into_iter().flatten()) {
+        for switched in switched.iter() {
             let at_us = switched.at_us + (phase * SERVO_US) as u16;
-            *place = Some(Switched { at_us, ..switched });
+            self.report.switched.push(Switched { at_us, ..switched });
         }
     }
 

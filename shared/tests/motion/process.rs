@@ -147,8 +147,12 @@ fn lines_are_switched_within_microseconds_of_their_places() {
             .changes
             .iter()
             .for_each(|change| lines.set(change.lines, change.after_us));
-        let switched = lines.take().into_iter().flatten();
-        seen.extend(switched.map(|one| (one.line, one.on, bench.now_us + u64::from(one.at_us))));
+        let switched = lines.take();
+        seen.extend(
+            switched
+                .iter()
+                .map(|one| (one.line, one.on, bench.now_us + u64::from(one.at_us))),
+        );
     }
     let samples = &bench.samples[begin..];
     let place = |time_us: u64| {

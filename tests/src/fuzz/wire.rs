@@ -319,7 +319,7 @@ mod tests {
             beams: [false; SIDES],
             outputs: 0,
             levels: [0.0; 4],
-            switched: [None; 4],
+            switched: shared::io::SwitchedLines::NONE,
             axes: [0.0; 6],
             truth: Some([0.0; MOTORS]),
             following_error: [0.0; MOTORS],

@@ -37,7 +37,7 @@ pub fn motion_sample(tick: u32) -> MotionSample {
         beams: [true; 2],
         outputs: 0,
         levels: [0.0; 4],
-        switched: [None; 4],
+        switched: shared::io::SwitchedLines::NONE,
         axes: [0.0; AXES],
         truth: Some([0.0; MOTORS]),
         following_error: [0.0; MOTORS],
