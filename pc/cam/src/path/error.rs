@@ -336,6 +336,20 @@ pub enum PathError {
         /// Half a period \[mm\].
         half: f64,
     },
+    /// Too fine a weave.
+    #[error(
+        "{place}: half a period of the weave of \"{name}\" would be {half:.4} mm at this feed, and must be {finest} mm at least: look at the feed and the frequency"
+    )]
+    WeldFine {
+        /// Where in the program.
+        place: SourcePosition,
+        /// The set.
+        name: String,
+        /// Half a period \[mm\].
+        half: f64,
+        /// The shortest \[mm\].
+        finest: f64,
+    },
     /// Something lies behind the end of the seam.
     #[error("{place}: {key} of \"{name}\" need {s:.1} mm, but the seam is {length:.1} mm long")]
     WeldBehind {

@@ -26,6 +26,9 @@ use woven::Aside;
 
 /// A second at rest within a path counts as so many millimetres of it: the speed of [`Way::Wait`] \[mm/s\].
 pub(super) const WAIT_MM_S: f64 = 1.0;
+/// Half a period of a weave is no shorter \[mm\]: finer than any bead, it is a slip of feed or frequency.
+const FINEST_MM: f64 = 0.1;
+
 /// The weld that a program has called.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Called {
@@ -243,11 +246,20 @@ impl Planner {
         let on = path.targets[0].place;
         let stretches = match &set.weave {
             Some(weave) => {
+                let half = speed / weave.frequency_hz / 2.0;
+                if half < FINEST_MM {
+                    return Err(PathError::WeldFine {
+                        place: on,
+                        name: name.to_owned(),
+                        half,
+                        finest: FINEST_MM,
+                    });
+                }
                 weave::stretches(weave, seam.length(), speed).ok_or_else(|| PathError::WeldShort {
                     place: on,
                     name: name.to_owned(),
                     length: seam.length(),
-                    half: speed / weave.frequency_hz / 2.0,
+                    half,
                 })?
             }
             None => {

@@ -355,6 +355,11 @@ fn what_cannot_be_welded_is_told_with_its_line() {
         ),
         (
             WEAVE,
+            "WELDON=w\nF1 G1 X0\nWELDOFF\nM2",
+            "line 6, column 7: half a period of the weave of \"w\" would be 0.0083 mm at this feed",
+        ),
+        (
+            WEAVE,
             "WELDON=w\nG1 X-50\nF600 X0\nWELDOFF\nM2",
             "line 7, column 6: a weld with weld data has one feed",
         ),
