@@ -62,6 +62,7 @@ impl Kind {
             Self::Toml => &[
                 Reader::Machine,
                 Reader::Part("dual-beam-gantry"),
+                Reader::WeldData,
                 Reader::Scene,
                 Reader::Calibration,
             ],

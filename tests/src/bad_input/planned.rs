@@ -6,6 +6,7 @@ use cam::path::Planner;
 use camera::{Arrival, Camera, Picture, parse_grey};
 use config::calibration::Calibration;
 use config::machine::MachineFile;
+use config::weld_data::WeldData;
 use nc::{Motion, Options, interpret};
 use parts::PartFile;
 use std::io::Cursor;
@@ -127,6 +128,17 @@ pub fn bead(text: &str) -> anyhow::Result<()> {
         file.display()
     );
     plan("wire-arc", Path::new("a.toml"), &part)
+}
+
+/// What the program beside the shipped data becomes with these.
+pub fn weld_data(text: &str) -> anyhow::Result<()> {
+    let machine = MachineFile {
+        welding: WeldData::parse("a.toml", text)?,
+        ..shipped_machine("wire-arc")
+    };
+    let program = interpret(&shipped_text("programs/butt-joint.ngc"), Options::default())?;
+    Planner::build(&machine)?.program(&program, &machine.homed_axes(), None)?;
+    Ok(())
 }
 
 /// The part that is quickly planned for the machine, and a short program on it.

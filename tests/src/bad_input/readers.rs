@@ -6,6 +6,7 @@ use camera::{Picture, parse_captures, parse_grey};
 use config::calibration::Calibration;
 use config::machine::MachineFile;
 use config::table;
+use config::weld_data::WeldData;
 use dual_beam::{parse_main_curve, parse_other_curve};
 use nc::{Options, explain};
 use parts::{PartFile, check_curve};
@@ -42,6 +43,8 @@ pub enum Reader {
     Machine,
     /// A part file.
     Part(&'static str),
+    /// Weld data.
+    WeldData,
     /// A scene file.
     Scene,
     /// A calibration file.
@@ -91,6 +94,7 @@ impl Reader {
                 .map_err(said),
             Self::Machine => MachineFile::parse("a.toml", text).map(drop).map_err(said),
             Self::Part(_) => PartFile::parse(Path::new("a.toml"), text).map(drop).map_err(said),
+            Self::WeldData => WeldData::parse("a.toml", text).map(drop).map_err(said),
             Self::Scene => SceneFile::parse("a.toml", text).map(drop).map_err(said),
             Self::Calibration => Calibration::parse("a.toml", text).map(drop).map_err(said),
             Self::Curve => check_curve("a.json", text).map_err(said),
@@ -114,6 +118,7 @@ impl Reader {
             Self::SaddlePoints => planned::saddle(&text()),
             Self::Machine => planned::machine(&text()),
             Self::Part(machine) => planned::part(machine, &text()),
+            Self::WeldData => planned::weld_data(&text()),
             Self::Scene => planned::scene(&text()),
             Self::Calibration => planned::calibration(&text()),
             Self::Curve => planned::bead(&text()),

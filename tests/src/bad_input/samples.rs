@@ -176,6 +176,7 @@ fn settings() -> Vec<Sample> {
         .into();
     samples.extend([
         sample("bead", nurbs, Reader::Part("wire-arc")),
+        file("programs/welddata.toml", Reader::WeldData),
         file("programs/t-seam-400-disturbed.toml", Reader::Scene),
         sample("calibration", calibration.to_toml(), Reader::Calibration),
     ]);
