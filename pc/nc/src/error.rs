@@ -148,16 +148,6 @@ pub enum Problem {
         /// What is missing.
         wanted: &'static str,
     },
-    /// A subroutine that is left by the name of another one.
-    #[error("o{label} cannot end the subroutine o{open} that begins in line {line}: write o{open}")]
-    OtherSubroutine {
-        /// Number or name that is there.
-        label: String,
-        /// That of the subroutine which runs.
-        open: String,
-        /// Where that begins.
-        line: u32,
-    },
     /// A subroutine that is nowhere.
     #[error("there is no subroutine {label}: neither in this program nor as {label}.ngc beside it")]
     NoSubroutine {

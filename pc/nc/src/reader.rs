@@ -350,8 +350,10 @@ impl Reader {
             return Err(no_end(label, keyword, wanted, word.place));
         };
         if call.label != label {
-            let (open, line) = (call.label.clone(), call.begins.1);
-            return Err(Problem::OtherSubroutine { label, open, line }.at(word.place));
+            // As LinuxCNC takes it; the name may be a slip.
+            let (open, line) = (&call.label, call.begins.1);
+            let text = format!("o{label} ends the subroutine o{open} that begins in line {line}");
+            self.interpreter.notice(text, word.place);
         }
         self.pop()?;
         self.interpreter.set_result(value);

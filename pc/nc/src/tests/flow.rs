@@ -132,18 +132,22 @@ fn a_program_may_end_in_several_ways() {
 }
 
 #[test]
-fn a_subroutine_ends_by_its_own_name_only() {
+fn where_another_name_ends_a_subroutine_that_is_told() {
     for end in ["endsub", "return [1]"] {
-        let body = format!("o1 call\nM2\no1 sub\nG0 X1\no2 {end}\no1 endsub\n");
-        let open = HEADER.lines().count() as u32 + 3;
-        let error = run(&body).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            format!(
-                "line {}, column 1: o2 cannot end the subroutine o1 that begins in line {open}: write o1",
-                open + 2
-            )
+        let body = format!("o1 call\nG0 X2\nM2\no1 sub\nG0 X1\no2 {end}\no1 endsub\n");
+        let open = HEADER.lines().count() as u32 + 4;
+        let program = run(&body).unwrap();
+        let told: Vec<String> = program
+            .notices
+            .iter()
+            .map(|n| format!("{}: {}", n.place, n.text))
+            .collect();
+        let wanted = format!(
+            "line {}, column 1: o2 ends the subroutine o1 that begins in line {open}",
+            open + 2
         );
+        assert_eq!(told, [wanted]);
+        assert_eq!(xs(&body), [1.0, 2.0]);
     }
     // In a condition too, and of one that was called by its number.
     assert_eq!(
