@@ -20,8 +20,8 @@ use std::time::Duration;
 const STATUS_PERIOD: Duration = Duration::from_millis(100);
 /// A motion board whose clock has stood still for so long is broken.
 const STANDSTILL: Duration = Duration::from_secs(10);
-/// An error of the boards is due to a stall of this program that ended no longer ago: their state is asked
-/// for at once after it, and comes in a few turns.
+/// An error of the boards is due to a stall of this program that ended no longer ago, and no longer than the stall was: their
+/// state is asked for at once after it, and comes behind what the boards sent meanwhile.
 const JUST_BEFORE: Duration = Duration::from_secs(1);
 /// Longest and shortest wait for a datagram.
 const LONGEST_WAIT: Duration = Duration::from_millis(10);
@@ -251,7 +251,7 @@ impl<'a> Session<'a> {
         );
         match self.boards.last_stall() {
             Some(Stall { ended, lasted })
-                if of_boards && lasted >= self.missed && self.boards.now() < ended + JUST_BEFORE =>
+                if of_boards && lasted >= self.missed && self.boards.now() < ended + JUST_BEFORE + lasted =>
             {
                 JobError::Absent {
                     seconds: lasted.as_secs_f64(),

@@ -6,7 +6,7 @@ use std::time::{Duration, SystemTime};
 /// Shorter stalls do not count.
 const SHORTEST: Duration = Duration::from_millis(100);
 
-/// A stall is remembered for so long.
+/// A stall is remembered for so long, and as long as it was.
 const RECENT: Duration = Duration::from_secs(1);
 
 /// Finds the times in which this program did not run: it was stopped, its computer slept, or had no processor
@@ -41,7 +41,7 @@ impl StallDetector {
         let lasted = (now - self.last).max(by_wall).saturating_sub(waited);
         (self.last, self.last_wall) = (now, wall);
         // What was missed shows a moment after a long one, and short ones in between do not matter.
-        let counts = |before: Stall| lasted >= before.lasted || now > before.ended + RECENT;
+        let counts = |before: Stall| lasted >= before.lasted || now > before.ended + RECENT + before.lasted;
         if lasted >= SHORTEST && self.last_stall.is_none_or(counts) {
             self.last_stall = Some(Stall { ended: now, lasted });
         }
@@ -82,8 +82,9 @@ mod tests {
         assert_eq!(check(7000, 7000, 800), stopped);
         // The wall's clock is set back: nothing new.
         assert_eq!(check(7010, 1000, 10), stopped);
-        assert_eq!(check(7270, 1260, 100), Some((ms(7270), ms(160))));
+        // A second and as long as it was after its end, a short one counts.
+        assert_eq!(check(10_300, 4290, 3130), Some((ms(10_300), ms(160))));
         // Asleep for an hour, in which the session's clock stood.
-        assert_eq!(check(7280, 3_601_270, 10), Some((ms(7280), ms(3_600_000))));
+        assert_eq!(check(10_310, 3_604_300, 10), Some((ms(10_310), ms(3_600_000))));
     }
 }
