@@ -15,8 +15,8 @@ use world::Surroundings;
 
 /// The shipped example: machine and program, with the weld data beside it.
 pub const BUTT_JOINT: (&str, &str) = ("wire-arc", "programs/butt-joint.ngc");
-/// Line of a program may be off by so much in time \[s\]: what starting from rest and coming to it takes, and the PC between
-/// two paths.
+/// Times at rest and of flow may be off by so much \[s\]: what starting from rest and coming to it takes, and what the PC takes
+/// between two paths.
 const REST_S: f64 = 0.12;
 const BETWEEN_PATHS_S: f64 = 0.5;
 /// Powers are told with the resolution of the converter; between two ticks a ramp goes on \[part of full\].

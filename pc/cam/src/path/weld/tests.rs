@@ -40,6 +40,20 @@ fn tips(path: &PlannedPath) -> Vec<(f64, Vector3<f64>, f64)> {
     tips
 }
 
+/// How long the tips take at their feeds \[s\].
+fn time_s(tips: &[(f64, Vector3<f64>, f64)]) -> f64 {
+    let times = tips.windows(2).map(|pair| (pair[1].0 - pair[0].0) / pair[0].2);
+    times.sum()
+}
+
+/// The least and the largest distance of a path from the Z axis \[mm\].
+fn radii(path: &PlannedPath) -> (f64, f64) {
+    let radii = tips(path).into_iter().map(|(_, tip, _)| tip.x.hypot(tip.y));
+    radii.fold((f64::MAX, 0.0_f64), |(least, most), r| {
+        (least.min(r), most.max(r))
+    })
+}
+
 /// The path on which the beam goes on.
 fn weld(paths: &[PlannedPath]) -> &PlannedPath {
     let opens = |path: &&PlannedPath| {
@@ -87,23 +101,14 @@ fn a_weave_swings_about_its_seam_and_goes_along_it_at_the_feed() {
         }
     }
     // Time at the feeds of its stretches, against 8 mm/s along the seam.
-    let time: f64 = tips
-        .windows(2)
-        .map(|pair| (pair[1].0 - pair[0].0) / pair[0].2)
-        .sum();
+    let time = time_s(&tips);
     assert!((time - 100.0 / 8.0).abs() < 1e-3, "{time}");
 }
 
 #[test]
 fn a_weave_follows_an_arc_and_a_smooth_curve_across_their_own_direction() {
     let paths = planned(WEAVE, "WELDON=w\nG3 X100 I100 J0\nWELDOFF\nM2").unwrap();
-    let radii: Vec<f64> = tips(weld(&paths))
-        .iter()
-        .map(|(_, tip, _)| tip.x.hypot(tip.y))
-        .collect();
-    let (least, most) = radii
-        .iter()
-        .fold((f64::MAX, 0.0_f64), |(a, b), r| (a.min(*r), b.max(*r)));
+    let (least, most) = radii(weld(&paths));
     assert!(
         (least - 98.0).abs() < 2e-3 && (most - 102.0).abs() < 2e-3,
         "{least} {most}"
@@ -116,13 +121,7 @@ fn a_weave_follows_an_arc_and_a_smooth_curve_across_their_own_direction() {
         })
         .collect();
     let paths = planned(WEAVE, &format!("WELDON=w\n{points}WELDOFF\nM2")).unwrap();
-    let radii: Vec<f64> = tips(weld(&paths))
-        .iter()
-        .map(|(_, tip, _)| tip.x.hypot(tip.y))
-        .collect();
-    let (least, most) = radii
-        .iter()
-        .fold((f64::MAX, 0.0_f64), |(a, b), r| (a.min(*r), b.max(*r)));
+    let (least, most) = radii(weld(&paths));
     assert!(
         (least - 98.0).abs() < 0.02 && (most - 102.0).abs() < 0.02,
         "{least} {most}"
@@ -421,10 +420,7 @@ fn another_speed_takes_the_place_of_the_feed_of_a_weld() {
         .program(&program, &machine.homed_axes(), Some(5.0))
         .unwrap();
     let tips = tips(weld(&paths));
-    let time: f64 = tips
-        .windows(2)
-        .map(|pair| (pair[1].0 - pair[0].0) / pair[0].2)
-        .sum();
+    let time = time_s(&tips);
     assert!((time - 20.0).abs() < 1e-3, "{time} s for 100 mm at 5 mm/s");
     assert_eq!(paths.last().unwrap().speeds().fastest_mm_s, 5.0);
 }
