@@ -300,6 +300,16 @@ pub enum PathError {
         /// The set.
         name: String,
     },
+    /// Friction stir with what is no spindle.
+    #[error("{place}: \"{name}\" has stir, but beam {beam} of the machine is no spindle (stays_on_at_rest)")]
+    WeldNoPin {
+        /// Where in the program.
+        place: SourcePosition,
+        /// The set.
+        name: String,
+        /// 1 or 2.
+        beam: u8,
+    },
     /// A weave or offset round a corner.
     #[error(
         "{place}: the seam has a corner of {degrees:.1}° here, where the weave or offset of \"{name}\" would jump: end the weld there, or round the corner"

@@ -1,7 +1,7 @@
 //! What a set of weld data switches, and where on its seam.
 
 use super::super::{PathError, Planner};
-use config::weld_data::{AtRest, WeldSet};
+use config::weld_data::WeldSet;
 use nc::SourcePosition;
 use shared::protocol::{Channel, PathAction};
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ const REST_SLACK_S: f64 = 0.2;
 pub(super) struct Phases {
     /// Before the beam, at rest.
     pub(super) before: Vec<PathAction>,
-    /// Where the ignition begins.
+    /// Where the ignition begins, or before a pin plunges.
     pub(super) ignition: Vec<PathAction>,
     /// On the seam, in order of its places \[mm\].
     pub(super) on_seam: Vec<(f64, PathAction)>,
@@ -71,7 +71,8 @@ impl Phases {
         let mut ignition = Vec::new();
         let mut on_seam: Vec<(f64, PathAction)> = Vec::new();
         let up = set.ramp_up;
-        if let Some(AtRest { power: first, .. }) = set.ignition {
+        let ignites = set.ignition.map(|ignition| ignition.power);
+        if let Some(first) = ignites.or(set.stir.map(|_| set.power)) {
             ignition.extend(rest);
             ignition.push(level(power, first, 0.0));
             ignition.extend(begin());

@@ -12,7 +12,7 @@ use shared::trajectory::{Path, PathSpace};
 
 /// A seam as it is programmed.
 pub(super) struct Seam<'p> {
-    planner: &'p Planner,
+    pub(super) planner: &'p Planner,
     way: SeamWay,
     /// Where the motion to each target ends \[mm\].
     pub(super) ends: Vec<f64>,

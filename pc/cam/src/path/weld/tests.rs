@@ -11,10 +11,14 @@ use shared::trajectory::CHANNELS;
 const START: &str = "G21 G90 G43.4\nG53 G0 X500 Y400 Z400 A0 B0 C0\nG0 X-100 Y0 Z50 A0 B0 C0\nF480\n";
 
 fn planned(data: &str, program: &str) -> Result<Vec<PlannedPath>, PathError> {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/wire-arc.toml");
+    planned_on("wire-arc", data, &format!("{START}{program}"))
+}
+
+fn planned_on(machine: &str, data: &str, program: &str) -> Result<Vec<PlannedPath>, PathError> {
+    let file = format!("{}/../../machines/{machine}.toml", env!("CARGO_MANIFEST_DIR"));
     let mut machine = MachineFile::read(file.as_ref()).unwrap();
     machine.welding = WeldData::parse("w.toml", data).unwrap();
-    let program = interpret(&format!("{START}{program}"), Options::default()).unwrap();
+    let program = interpret(program, Options::default()).unwrap();
     let planner = Planner::build(&machine).unwrap();
     planner.program(&program, &machine.homed_axes(), None)
 }
@@ -386,6 +390,60 @@ fn what_cannot_be_welded_is_told_with_its_line() {
         let error = error(data, program);
         assert!(error.starts_with(told), "{error}\n{told}");
     }
+}
+
+const STIR: &str = "[lap]\npower = 600.0\nlevels = {}\nstir = { clearance_mm = 2.0, depth_mm = 5.0, spin_up_s = 1.0, plunge_mm_s = 0.7, dwell_s = 2.5, retract_mm_s = 2.0 }\n";
+
+/// Plans on the shipped stirring gantry, whose pin stands 2 mm above the surface at Z60, tilted by 2.5 degrees.
+fn stirred(data: &str, program: &str) -> Result<Vec<PlannedPath>, PathError> {
+    let start = "G21 G90 G43.4\nG53 G0 Z200\nG53 G0 B-2.5 C0\nG0 X250 Y215 Z200 B-2.5 C0\nG0 Z62\nF60\n";
+    planned_on("stir-gantry", data, &format!("{start}{program}"))
+}
+
+#[test]
+fn a_pin_turns_plunges_dwells_travels_at_its_depth_and_comes_out() {
+    let program = "WELDON=lap\nG1 X260\nG3 X290 Y225 J50 C36.869898\nWELDOFF\nG0 Z200\nM2";
+    let paths = stirred(STIR, program).unwrap();
+    let turns = paths.iter().position(|path| {
+        let opens = |(_, action): &(f64, PathAction)| matches!(action, PathAction::Beam { on: true, .. });
+        events(path).iter().any(opens)
+    });
+    let [turning, plunge, seam, retraction, still] = &paths[turns.unwrap()..][..5] else {
+        panic!("{} paths", paths.len());
+    };
+    assert_eq!(turning.motion, Motion::Stand);
+    let switched: Vec<PathAction> = events(turning).into_iter().map(|(_, action)| action).collect();
+    let on = PathAction::Beam { side: 0, on: true };
+    assert_eq!(switched, [power(600.0, 0.0), on]);
+    assert_eq!((plunge.dwell_before_s, seam.dwell_before_s), (1.0, 2.5));
+    // 7 mm along the pin, at the speed of the set.
+    let (down, up) = (tips(plunge), tips(retraction));
+    let (above, below) = (down[0].1, down[down.len() - 1].1);
+    assert!((above - Vector3::new(250.0, 215.0, 62.0)).norm() < 1e-6);
+    let (sine, cosine) = 2.5_f64.to_radians().sin_cos();
+    let along_the_pin = (below - above) / 7.0;
+    assert!((along_the_pin.z + cosine).abs() < 1e-6 && (along_the_pin.x.abs() - sine).abs() < 1e-6);
+    assert_eq!((down[1].2, up[1].2), (0.7, 2.0));
+    assert!((up[up.len() - 1].1 - Vector3::new(290.0, 225.0, 62.0)).norm() < 1e-6);
+    let pins = tips(seam);
+    assert!((pins[0].1 - below).norm() < 1e-6 && (pins[pins.len() - 1].1 - up[0].1).norm() < 1e-6);
+    for (_, tip, feed) in &pins {
+        assert!((tip.z - (62.0 - 7.0 * cosine)).abs() < 1e-3 && (feed - 1.0).abs() < 2e-3);
+    }
+    let off = PathAction::Beam { side: 0, on: false };
+    assert!(events(still).contains(&(0.0, off)), "{:?}", events(still));
+    // Nothing switches the spindle on the way.
+    for path in [plunge, seam, retraction] {
+        assert!(!events(path).iter().any(|(_, action)| *action == off));
+    }
+}
+
+#[test]
+fn a_pin_needs_a_spindle() {
+    assert_eq!(
+        error(STIR, "WELDON=lap\nG1 X0\nWELDOFF\nM2"),
+        "line 5, column 1: \"lap\" has stir, but beam 1 of the machine is no spindle (stays_on_at_rest)"
+    );
 }
 
 #[test]

@@ -17,12 +17,12 @@ const STEP_MM: f64 = 1e-3;
 const LENGTH_PARTS: usize = 64;
 
 /// The way beside `seam`, offset by so much to the left and away from the work \[mm\].
-pub(super) struct Aside<'s, 'p> {
-    pub(super) seam: &'s Seam<'p>,
+pub(super) struct Aside<'p> {
+    pub(super) seam: Seam<'p>,
     pub(super) offset: [f64; 2],
 }
 
-impl Aside<'_, '_> {
+impl Aside<'_> {
     /// Where the tip is at `s` of the seam, `stretch` being gone over, and its derivative over s.
     fn at(&self, stretch: &Stretch, s: f64) -> [Vector3<f64>; 2] {
         let (from, to) = (
@@ -89,7 +89,6 @@ impl Aside<'_, '_> {
         stretch: &Stretch,
         speed: f64,
         axes: &mut [f64; AXES],
-        fitted: &[bool; AXES],
         like: &Target,
     ) -> Result<Target, PathError> {
         let place = like.place;
@@ -120,7 +119,7 @@ impl Aside<'_, '_> {
                 points: points.iter().map(control).collect(),
                 knots: knots.collect(),
             })),
-            words: words(&tip, fitted),
+            words: self.words(&tip),
             feed: Some(FeedRate::PerMinute(60.0 * speed * longer)),
             control: like.control,
             place,
@@ -134,7 +133,6 @@ impl Aside<'_, '_> {
         offset: [f64; 2],
         speed: f64,
         axes: &mut [f64; AXES],
-        fitted: &[bool; AXES],
         like: &Target,
     ) -> Result<Target, PathError> {
         let at = self.seam.at(s);
@@ -144,20 +142,20 @@ impl Aside<'_, '_> {
         let tip = tip.ok_or(PathError::WeldReach { place, s })?;
         Ok(Target {
             way: Way::Line,
-            words: words(&tip, fitted),
+            words: self.words(&tip),
             feed: Some(FeedRate::PerMinute(60.0 * speed)),
             control: PathControl::ExactStop,
             place,
         })
     }
-}
 
-/// The words that lead to `tip`.
-fn words(tip: &Tip, fitted: &[bool; AXES]) -> Words {
-    let mut words = Words::default();
-    for i in 0..3 {
-        words.axes[i] = Some(tip.position_mm[i]);
-        words.axes[3 + i] = fitted[3 + i].then_some(tip.angles_deg[i]);
+    /// The words that lead to `tip`.
+    fn words(&self, tip: &Tip) -> Words {
+        let mut words = Words::default();
+        for i in 0..3 {
+            words.axes[i] = Some(tip.position_mm[i]);
+            words.axes[3 + i] = self.seam.planner.fitted[3 + i].then_some(tip.angles_deg[i]);
+        }
+        words
     }
-    words
 }
