@@ -2,9 +2,9 @@
 
 use crate::registers::Block;
 use crate::{Network, Tick, Watchdog, logger, machine, time};
-use board_switching::{Switching, SysTick};
+use board_switching::{LinePort, SysTick};
 use plant::MotionPlant;
-use shared::io::{HeldLines, MOTORS, MotionCommand, MotionFeedback};
+use shared::io::{Lines, MOTORS, MotionCommand, MotionFeedback};
 
 /// IPv4 address of the board.
 pub const ADDRESS: [u8; 4] = [10, 0, 2, 15];
@@ -46,11 +46,7 @@ pub fn init(mut core: cortex_m::Peripherals) -> Board {
     let network = Network::start();
     let watchdog = Watchdog::new(&mut core.NVIC);
     let timer = SysTick::new(core.SYST, time::TICKS_PER_US as u32);
-    let lines = ProcessLines {
-        switching: Switching::new(timer),
-        held: HeldLines::NONE,
-        began_us: 0,
-    };
+    let lines = ProcessLines::new(timer, Pins);
     Board {
         servo_tick: Tick::start(Block::TIMER0, SERVO_PERIOD_US),
         path_tick: Tick::start(Block::TIMER1, PATH_PERIOD_US),
@@ -85,39 +81,15 @@ impl Axes {
 }
 
 /// Gates and digital outputs, which are switched at ticks and between them.
-pub struct ProcessLines {
-    switching: Switching<SysTick>,
-    held: HeldLines,
-    /// When the period of the last servo tick began.
-    began_us: u64,
-}
+pub type ProcessLines = board_switching::ProcessLines<SysTick, Pins>;
 
-impl ProcessLines {
-    /// Tells `feedback` what was switched in the period that has just ended.
-    pub fn read(&mut self, feedback: &mut MotionFeedback) {
-        feedback.switched = self.held.take();
+/// A simulated machine has no wires: it takes the lines of a tick with its command.
+pub struct Pins;
+
+impl LinePort for Pins {
+    fn now_us(&self) -> u64 {
+        time::now_us()
     }
 
-    /// Sets the lines at a servo tick whose period began at `began_us`, and switches them as `command` says until the next
-    /// one.
-    pub fn write(&mut self, command: &MotionCommand, began_us: u64) {
-        self.began_us = began_us;
-        let since_us = self.since_us();
-        self.held.set(command.lines(), since_us);
-        if let Some(lines) = self.switching.arm(&command.changes, since_us) {
-            self.held.set(lines, since_us);
-        }
-    }
-
-    /// The interrupt between two ticks.
-    pub fn switch(&mut self) {
-        let since_us = self.since_us();
-        if let Some(lines) = self.switching.due(since_us) {
-            self.held.set(lines, since_us);
-        }
-    }
-
-    fn since_us(&self) -> u16 {
-        u16::try_from(time::now_us() - self.began_us).unwrap_or(u16::MAX)
-    }
+    fn set(&mut self, _lines: Lines) {}
 }

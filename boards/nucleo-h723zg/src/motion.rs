@@ -6,9 +6,9 @@ use crate::inputs::{self, Snapshot};
 use crate::outputs::{Outputs, output, switch_line};
 use crate::pins::{BEAM_GATES, LASERS_READY, MOTION, PROCESS_INPUTS, PROCESS_OUTPUTS, mask};
 use crate::{Network, Tick, Watchdog, bring_up, gpio, timebase};
-use board_switching::{Switching, SysTick};
+use board_switching::{LinePort, SysTick};
 use embassy_stm32::pac;
-use shared::io::{Bits, HeldLines, LEVELS, Lines, MOTORS, MotionCommand, MotionFeedback, SIDES};
+use shared::io::{Bits, LEVELS, Lines, MOTORS, MotionCommand, MotionFeedback, SIDES};
 
 /// IPv4 address of the board.
 pub const ADDRESS: [u8; 4] = [192, 168, 71, 11];
@@ -66,11 +66,7 @@ pub fn init(core: cortex_m::Peripherals) -> Board {
         outputs: Outputs::start(bus, &[x1, x2, y, z, a, b, c, gate_1, gate_2], READ_BACK_EVERY),
         encoders: core::array::from_fn(|motor| Encoder::start(&MOTION.encoders[motor])),
     };
-    let lines = ProcessLines {
-        switching: Switching::new(SysTick::new(timer, CORE_MHZ)),
-        held: HeldLines::NONE,
-        began_us: 0,
-    };
+    let lines = ProcessLines::new(SysTick::new(timer, CORE_MHZ), Pins);
     let network = Network::start(parts);
     let [servo_tick, path_tick] = Tick::start([(pac::TIM6, SERVO_PERIOD_US), (pac::TIM7, PATH_PERIOD_US)]);
     Board {
@@ -132,47 +128,20 @@ impl Axes {
 }
 
 /// Gates and digital outputs, which are switched at ticks and between them.
-pub struct ProcessLines {
-    switching: Switching<SysTick>,
-    held: HeldLines,
-    /// When the period of the last servo tick began.
-    began_us: u64,
-}
+pub type ProcessLines = board_switching::ProcessLines<SysTick, Pins>;
 
-impl ProcessLines {
-    /// Tells `feedback` what was switched in the period that has just ended.
-    pub fn read(&mut self, feedback: &mut MotionFeedback) {
-        feedback.switched = self.held.take();
+/// The pins of gates and digital outputs.
+pub struct Pins;
+
+impl LinePort for Pins {
+    fn now_us(&self) -> u64 {
+        timebase::now_us()
     }
 
-    /// Sets the lines at a servo tick whose period began at `began_us`, after [`Axes::write`], and switches them as
-    /// `command` says until the next one.
-    pub fn write(&mut self, command: &MotionCommand, began_us: u64) {
-        self.began_us = began_us;
-        let since_us = self.since_us();
-        self.set(command.lines(), since_us);
-        if let Some(lines) = self.switching.arm(&command.changes, since_us) {
-            self.set(lines, since_us);
-        }
-    }
-
-    /// The interrupt between two ticks.
-    pub fn switch(&mut self) {
-        let since_us = self.since_us();
-        if let Some(lines) = self.switching.due(since_us) {
-            self.set(lines, since_us);
-        }
-    }
-
-    fn set(&mut self, lines: Lines, since_us: u16) {
+    fn set(&mut self, lines: Lines) {
         let pins = BEAM_GATES.iter().chain(&PROCESS_OUTPUTS).enumerate();
         for (line, pin) in pins {
             switch_line(*pin, lines.get(line));
         }
-        self.held.set(lines, since_us);
-    }
-
-    fn since_us(&self) -> u16 {
-        u16::try_from(timebase::now_us() - self.began_us).unwrap_or(u16::MAX)
     }
 }

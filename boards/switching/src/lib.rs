@@ -1,9 +1,11 @@
 //! Lines that are switched between two servo ticks, for both boards: the core's SysTick counts down to the next change.
 #![no_std]
 
+mod process_lines;
 #[cfg(target_os = "none")]
 mod systick;
 
+pub use process_lines::{LinePort, ProcessLines};
 #[cfg(target_os = "none")]
 pub use systick::SysTick;
 
