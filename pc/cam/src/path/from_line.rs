@@ -3,7 +3,7 @@
 use super::outputs::Switched;
 use super::shape::{Shape, channels};
 use super::{Leg, NOWHERE, PathError, PlannedPath, Planner, inner};
-use nc::{Motion, Program, Way};
+use nc::{Motion, Program, ProgramAction, Way};
 use shared::io::{AXES, SIDES};
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{CHANNELS, Element, PathSpace, ReferenceError, axes_at};
@@ -29,9 +29,16 @@ pub enum FromLineError {
     /// Lines are not run one after the other.
     #[error("a program with loops, conditions or subroutines is started at its beginning only")]
     Branches,
-    /// What was switched before a line is more than a program says there.
-    #[error("a program that welds with weld data is started at its beginning only")]
-    Welds,
+    /// A weld with weld data is welded as a whole.
+    #[error("line {line} is in the weld of line {begins}: start there, or behind line {ends}, where it ends")]
+    Welds {
+        /// The line.
+        line: u32,
+        /// That of its WELDON.
+        begins: u32,
+        /// That of its WELDOFF.
+        ends: u32,
+    },
     /// A curve takes several lines.
     #[error(
         "line {line} is in the middle of the NURBS of line {begins}: start there, or after its G5.3 or last point"
@@ -297,15 +304,27 @@ fn tracking_at(path: &PlannedPath, s: f64) -> Option<bool> {
     tracking.next_back()
 }
 
-/// A line in the middle of a NURBS is not a block of its own.
+/// A line in the middle of a NURBS, or of a weld, is not a block of its own.
 fn check_whole(program: &Program, line: u32) -> Result<(), FromLineError> {
     if program.branches {
         return Err(FromLineError::Branches);
     }
-    if !program.welds.is_empty() {
-        return Err(FromLineError::Welds);
-    }
+    let mut welding = None;
     for path in &program.paths {
+        for event in &path.events {
+            let here = event.place.line;
+            match event.action {
+                ProgramAction::WeldOn(_) => welding = Some(here),
+                ProgramAction::WeldOff => {
+                    let began = welding.take().filter(|begins| *begins < line && line <= here);
+                    if let Some(begins) = began {
+                        let ends = here;
+                        return Err(FromLineError::Welds { line, begins, ends });
+                    }
+                }
+                _ => {}
+            }
+        }
         for next in Arc::new(path.clone()).moves() {
             let target = next.map_err(PathError::from)?.target;
             let begins = target.place.line;

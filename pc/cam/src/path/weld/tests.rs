@@ -447,23 +447,45 @@ fn a_pin_needs_a_spindle() {
 }
 
 #[test]
-fn a_program_with_welds_is_started_at_its_beginning_only() {
+fn a_program_is_started_at_a_weld_and_not_in_it() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/wire-arc.toml");
     let mut machine = MachineFile::read(file.as_ref()).unwrap();
-    machine.welding = WeldData::parse("w.toml", "[w]\npower = 1.0").unwrap();
-    let program = interpret(
-        &format!("{START}WELDON=w\nG1 X0\nWELDOFF\nM2"),
-        Options::default(),
-    )
-    .unwrap();
+    machine.welding = WeldData::parse("w.toml", "[w]\npower = 1.0\noutputs = [\"gas\"]").unwrap();
+    // WELDON in lines 5 and 9.
+    let weld = |x: i32| format!("WELDON=w\nG1 X{x}\nWELDOFF\n");
+    let text = format!("{START}{}G0 Z80\n{}G0 Z90\nM2", weld(0), weld(50));
+    let program = interpret(&text, Options::default()).unwrap();
     let planner = Planner::build(&machine).unwrap();
     let from = machine.homed_axes();
-    let paths = planner.program(&program, &from, None).unwrap();
-    let error = planner.from_line(&program, paths, 6, &from).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "a program that welds with weld data is started at its beginning only"
+    let whole = planner.program(&program, &from, None).unwrap();
+    for line in [6, 7, 10, 11] {
+        let error = planner
+            .from_line(&program, whole.clone(), line, &from)
+            .unwrap_err();
+        let begins = if line < 8 { 5 } else { 9 };
+        let told = format!(
+            "line {line} is in the weld of line {begins}: start there, or behind line {}, where it ends",
+            begins + 2
+        );
+        assert_eq!(error.to_string(), told);
+    }
+    // From the second weld on: its gas, its beam and its way are those of the whole program.
+    let rest = planner.from_line(&program, whole.clone(), 9, &from).unwrap();
+    let ends = |paths: &[PlannedPath]| -> Vec<(Motion, f64, Vec<(f64, PathAction)>)> {
+        let end = |path: &PlannedPath| (path.motion, path.length_mm(), events(path));
+        paths[paths.len() - 5..].iter().map(end).collect()
+    };
+    assert_eq!(ends(&rest), ends(&whole));
+    let gas = PathAction::Output { output: 0, on: true };
+    assert!(
+        ends(&rest)
+            .iter()
+            .any(|(_, _, events)| events.contains(&(0.0, gas)))
     );
+    let beams = rest.iter().flat_map(events);
+    let on = beams.filter(|(_, action)| matches!(action, PathAction::Beam { on: true, .. }));
+    assert_eq!(on.count(), 1);
+    assert!(planner.from_line(&program, whole, 12, &from).is_ok());
 }
 
 #[test]
