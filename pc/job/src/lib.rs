@@ -8,6 +8,7 @@ mod feeding;
 mod following;
 mod images;
 mod joint;
+mod leading;
 mod operator;
 mod planned;
 mod recentring;
@@ -25,6 +26,7 @@ pub use cameras::{Answer, CameraFigures, Moment, PictureSource, SeamCameras};
 pub use delays::{DelayFigures, Delays};
 pub use images::{ImageCameras, Images, ImagesError, WorkerError};
 pub use joint::SeenSeam;
+pub use leading::LedLesson;
 pub use run_record::{ByBoard, Recentred, RunRecord, TrackingRecord};
 pub use seam_teaching::{SeamLesson, TaughtSeam};
 pub use surroundings::{Surroundings, SurroundingsError};
@@ -43,7 +45,7 @@ use parts::PartFile;
 use session::Session;
 use shared::io::SIDES;
 use shared::parameter::ParameterError;
-use shared::protocol::{LOAD_BATCH, Request, Role};
+use shared::protocol::{LOAD_BATCH, Refusal, Request, Role};
 use shared::state::{Fault, State, TrackerFault, TrackerState};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -93,6 +95,8 @@ pub enum Work<'a> {
     Pictures(&'a PictureRun<'a>),
     /// To teach both seams of a rib.
     TeachSeam(&'a SeamLesson),
+    /// To teach places of the tip, to which the operator leads it.
+    Lead(&'a LedLesson),
 }
 
 impl Job<'_> {
@@ -196,6 +200,9 @@ pub enum JobError {
     /// A path cannot be run.
     #[error(transparent)]
     Path(#[from] PathError),
+    /// A move that the operator asked for cannot be made; the machine has not moved.
+    #[error("the machine does not go there: {0}")]
+    Move(String),
     /// The program cannot be started at a line.
     #[error(transparent)]
     FromLine(#[from] FromLineError),
@@ -236,6 +243,15 @@ fn not_found(sides: &[bool; SIDES], s_mm: f64, [across, up]: &[f64; 2]) -> Strin
 }
 
 impl JobError {
+    /// A move that was asked for and refused: the machine has not moved, and can be asked for something else.
+    fn is_refused_move(&self) -> bool {
+        match self {
+            Self::Path(_) | Self::Teach(_) | Self::Move(_) => true,
+            Self::Link(LinkError::Refused { refusal, .. }) => matches!(refusal, Refusal::BeyondTravel { .. }),
+            _ => false,
+        }
+    }
+
     /// Why a job ended that ended with `self` first, and was brought to its end with `late`. The first error says why;
     /// an operator who ends a job is none, and has to know what went wrong then.
     fn then(self, late: Result<(), Self>) -> Self {
@@ -286,6 +302,7 @@ impl Weld {
             Work::Pictures(run) => self.taught.pictures = self.take_pictures(session, job, run)?,
             Work::Teach => drop(self.teach(session, job)?),
             Work::TeachSeam(lesson) => self.teach_seam(session, job, lesson)?,
+            Work::Lead(lesson) => self.lead(session, lesson)?,
             Work::TeachAndMake => {
                 let part = self.teach(session, job)?;
                 let program = self.plan_taught(job, &part)?;

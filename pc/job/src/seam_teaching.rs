@@ -4,12 +4,10 @@ use crate::session::Session;
 use crate::tracking::Watched;
 use crate::{Job, JobError, Weld};
 use config::machine::MachineFile;
-use host_link::boards::LinkError;
 use host_link::events::{Event, Phase, Question};
 use nc::text::{decimal, tip_words};
 use nc::{Options, interpret};
 use shared::io::{AXES, SIDES, SLIDES};
-use shared::protocol::Refusal;
 use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -292,13 +290,7 @@ impl CameraMachine for SeamArm<'_, '_, '_> {
 
 impl JogOperator for SeamArm<'_, '_, '_> {
     fn line(&mut self) -> Result<Option<String>, JobError> {
-        self.session.question(Question::Jog);
-        let mut said = None;
-        self.session.go_on_until(|session| {
-            said = session.control.answer();
-            Ok(said.is_some() || session.control.unattended())
-        })?;
-        Ok(said)
+        self.session.answer(Question::Jog)
     }
 
     fn say(&mut self, text: &str) {
@@ -317,12 +309,7 @@ impl JogOperator for SeamArm<'_, '_, '_> {
     }
 
     fn is_refusal(&self, error: &JobError) -> bool {
-        let beyond = |refusal: &Refusal| matches!(refusal, Refusal::BeyondTravel { .. });
-        match error {
-            JobError::Path(_) | JobError::Teach(_) => true,
-            JobError::Link(LinkError::Refused { refusal, .. }) => beyond(refusal),
-            _ => false,
-        }
+        error.is_refused_move()
     }
 }
 

@@ -243,6 +243,17 @@ impl<'a> Session<'a> {
         })
     }
 
+    /// Asks the operator, and waits for the answer; `None` when nobody answers any more.
+    pub fn answer(&mut self, question: Question) -> Result<Option<String>, JobError> {
+        self.question(question);
+        let mut said = None;
+        self.go_on_until(|session| {
+            said = session.control.answer();
+            Ok(said.is_some() || session.control.unattended())
+        })?;
+        Ok(said)
+    }
+
     /// An error of the boards, with the reason if this program was not there for them just before.
     fn explained(&self, error: JobError) -> JobError {
         let of_boards = matches!(

@@ -16,7 +16,7 @@ use shared::io::AXES;
 use shared::kinematics::Kinematics;
 use shared::protocol::{MotionSample, Role};
 use std::time::Duration;
-use teach::{Look, ProbeMachine, TaughtPoint, TeachError, Teacher};
+use teach::{Look, ProbeMachine, TaughtPoint, TeachError, Teacher, TipPoint};
 use thiserror::Error;
 
 /// A ranging probe in the place of the tool.
@@ -43,6 +43,8 @@ pub struct Taught {
     pub notes: Vec<String>,
     /// The seams of a rib.
     pub seam: Option<TaughtSeam>,
+    /// Places to which the tip was led.
+    pub led: Vec<TipPoint>,
 }
 
 /// Why nothing can be taught. Reads as one sentence.

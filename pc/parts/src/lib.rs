@@ -15,6 +15,7 @@ mod saddle;
 mod seam_limits;
 mod stir;
 mod t_seam;
+mod taught_seam;
 
 pub use bead::{Bead, check_curve, window};
 pub use curved_panel::CurvedPanel;
@@ -27,6 +28,7 @@ pub use saddle::{Saddle, SaddlePartError, TaughtError, pipes};
 pub use seam_limits::SeamLimits;
 pub use stir::Stir;
 pub use t_seam::TSeam;
+pub use taught_seam::TaughtSeam;
 
 use config::machine::MachineFile;
 use config::toml_file::{self, TomlError};
@@ -43,8 +45,8 @@ pub trait Kind {
     /// Judges a run of the planned program by where the tool truly was.
     fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement>;
 
-    /// Most that the speed may fall below the feed with a beam on.
-    fn speed_dip(&self) -> Percent;
+    /// Most that the speed may fall below the feed with a beam on; nothing where the feed need not be kept.
+    fn speed_dip(&self) -> Option<Percent>;
 }
 
 /// What planning and judging a part need besides the part file.
@@ -96,6 +98,8 @@ kinds! {
     "stir" Stir,
     /// A bead of deposited wire along a NURBS, for the wire-arc robot.
     "bead" Bead,
+    /// A seam through taught places, welded with weld data.
+    "seam" TaughtSeam,
 }
 
 /// What messages call the file.
@@ -139,6 +143,11 @@ impl PartFile {
         &self.part
     }
 
+    /// Whether the feed must be kept where a beam is on.
+    pub fn keeps_feed(&self) -> bool {
+        self.part.kind().speed_dip().is_some()
+    }
+
     /// The panel, if it has to be taught before it can be planned.
     pub fn untaught(&self) -> Option<&Panel> {
         match &self.part {
@@ -155,6 +164,14 @@ impl PartFile {
         match self.untaught() {
             Some(panel) => panel.check_before_teaching(&self.context(machine, "")),
             None => Ok(None),
+        }
+    }
+
+    /// The seam through taught places, if the part is one.
+    pub fn taught_seam(&self) -> Option<&TaughtSeam> {
+        match &self.part {
+            Part::TaughtSeam(seam) => Some(seam),
+            _ => None,
         }
     }
 
@@ -214,7 +231,8 @@ impl PartFile {
     pub fn judge(&self, run: &Run) -> anyhow::Result<Judgement> {
         let kind = self.part.kind();
         let mut judgement = kind.judge(&self.context(run.machine, ""), run)?;
-        judgement.figures.extend(run.speed_dip(kind.speed_dip()));
+        let dip = kind.speed_dip().and_then(|limit| run.speed_dip(limit));
+        judgement.figures.extend(dip);
         Ok(judgement)
     }
 

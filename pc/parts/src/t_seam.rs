@@ -138,8 +138,8 @@ impl Kind for TSeam {
         Ok(self.limits.judge(run))
     }
 
-    fn speed_dip(&self) -> Percent {
-        self.limits.speed_dip()
+    fn speed_dip(&self) -> Option<Percent> {
+        Some(self.limits.speed_dip())
     }
 }
 

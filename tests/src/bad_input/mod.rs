@@ -56,6 +56,7 @@ impl Kind {
                 Reader::TaughtSeam,
                 Reader::PanelPoints,
                 Reader::SaddlePoints,
+                Reader::Places,
                 Reader::Captures,
                 Reader::KnownPictures,
             ],

@@ -73,7 +73,10 @@ pub fn part(machine: &str, text: &str) -> anyhow::Result<()> {
 }
 
 fn plan(machine: &str, path: &Path, text: &str) -> anyhow::Result<()> {
-    let machine = shipped_machine(machine);
+    let machine = MachineFile {
+        welding: WeldData::read(&shipped("programs/welddata.toml"))?,
+        ..shipped_machine(machine)
+    };
     let plan = PartFile::parse(path, text)?.plan(&machine, "a")?;
     let program = interpret(&plan.program, Options::default())?;
     Planner::build(&machine)?.program(&program, &machine.planning.park_axes(), None)?;
@@ -118,6 +121,14 @@ pub fn saddle(text: &str) -> anyhow::Result<()> {
     let part = shipped_text("programs/saddle-taught.toml");
     let part = part.replace("\"saddle-taught.csv\"", &format!("'{}'", file.display()));
     plan("pipe-welder", Path::new("a.toml"), &part)
+}
+
+/// A seam through taught places.
+pub fn places(text: &str) -> anyhow::Result<()> {
+    let file = written(text)?;
+    let part = shipped_text("programs/lap-joint.toml");
+    let part = part.replace("\"lap-joint-taught.csv\"", &format!("'{}'", file.display()));
+    plan("wire-arc", Path::new("a.toml"), &part)
 }
 
 /// A bead along the curve.

@@ -14,8 +14,8 @@ use shared::protocol::framing::{decode_datagram, decode_message, message_length}
 use shared::protocol::{Request, Response};
 use std::io::Cursor;
 use std::path::Path;
-use teach::parse_points;
 use teach::seam::parse_seam_points;
+use teach::{parse_points, parse_tip_points};
 use world::{Deviation, SceneFile};
 
 /// What reads an input. Programs and parts are planned for the machine of this name.
@@ -35,6 +35,8 @@ pub enum Reader {
     PanelPoints,
     /// Taught points of a saddle.
     SaddlePoints,
+    /// Taught places of a seam.
+    Places,
     /// Pictures of a folder.
     Captures,
     /// Pictures to calibrate from.
@@ -86,6 +88,7 @@ impl Reader {
             Self::SaddlePoints => table::parse("a.csv", text, ["X_mm", "Z_mm", "B_deg", "C_deg"])
                 .map(drop)
                 .map_err(said),
+            Self::Places => parse_tip_points("a.csv", text).map(drop).map_err(said),
             Self::Captures => parse_captures("a.csv", Path::new(""), text)
                 .map(drop)
                 .map_err(said),
@@ -116,6 +119,7 @@ impl Reader {
             Self::TaughtSeam => planned::rib("taught", &text()),
             Self::PanelPoints => planned::panel(&text()),
             Self::SaddlePoints => planned::saddle(&text()),
+            Self::Places => planned::places(&text()),
             Self::Machine => planned::machine(&text()),
             Self::Part(machine) => planned::part(machine, &text()),
             Self::WeldData => planned::weld_data(&text()),

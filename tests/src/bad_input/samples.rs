@@ -141,6 +141,7 @@ fn tables() -> Vec<Sample> {
         sample("taught seam", seam, Reader::TaughtSeam),
         sample("taught panel", panel, Reader::PanelPoints),
         file("programs/saddle-taught.csv", Reader::SaddlePoints),
+        file("programs/lap-joint-taught.csv", Reader::Places),
         sample(
             "captures",
             "capture,time_us,file\n7,35000,a.png\n8,40000,b.png\n",
@@ -170,6 +171,7 @@ fn settings() -> Vec<Sample> {
         ("saddle-taught", "pipe-welder"),
         ("panel", "ac-head"),
         ("stir-contour", "stir-gantry"),
+        ("lap-joint", "wire-arc"),
     ];
     let mut samples: Vec<Sample> = parts
         .map(|(part, machine)| file(&format!("programs/{part}.toml"), Reader::Part(machine)))

@@ -4,6 +4,7 @@ mod bead;
 mod panel;
 mod saddle;
 mod stir;
+mod taught_seam;
 
 use config::machine::MachineFile;
 use host_link::events::{Event, Phase};

@@ -107,6 +107,11 @@ impl Planner {
         &self.kinematics
     }
 
+    /// The axes that the machine has.
+    pub fn fitted(&self) -> [bool; AXES] {
+        self.fitted
+    }
+
     /// Where the tip is when the axes stand at `axes` (mm, degrees); V slides at zero.
     pub fn tip(&self, axes: &[f64; AXES]) -> Tip {
         Tip {
@@ -169,15 +174,31 @@ impl Planner {
     /// go first, then all.
     pub fn park(&self, from: &[f64; AXES]) -> Result<Vec<PlannedPath>, PathError> {
         let park = self.planning.park_axes();
-        let mut first = *from;
+        self.axes_paths(&[*from, self.parked_first(from), park])
+    }
+
+    /// From the axes `from` to `to` (mm, degrees), in axis space: the axes that park first are at their park position
+    /// while the others move.
+    pub fn go_to(&self, from: &[f64; AXES], to: &[f64; AXES]) -> Result<Vec<PlannedPath>, PathError> {
+        self.axes_paths(&[*from, self.parked_first(from), self.parked_first(to), *to])
+    }
+
+    /// `axes` with those that park first at their park position (mm, degrees).
+    fn parked_first(&self, axes: &[f64; AXES]) -> [f64; AXES] {
+        let park = self.planning.park_axes();
+        let mut parked = *axes;
         for axis in &self.planning.park_first {
             let axis = *axis as usize;
-            first[axis] = park[axis];
+            parked[axis] = park[axis];
         }
-        [(from, &first), (&first, &park)]
-            .into_iter()
-            .filter(|(from, to)| from != to)
-            .map(|(from, to)| self.axes_path(&inner(from), &inner(to), &[0.0; SIDES], NOWHERE))
+        parked
+    }
+
+    /// From each of these places of the axes to the next (mm, degrees).
+    fn axes_paths(&self, places: &[[f64; AXES]]) -> Result<Vec<PlannedPath>, PathError> {
+        let moves = places.windows(2).filter(|pair| pair[0] != pair[1]);
+        moves
+            .map(|pair| self.axes_path(&inner(&pair[0]), &inner(&pair[1]), &[0.0; SIDES], NOWHERE))
             .collect()
     }
 }

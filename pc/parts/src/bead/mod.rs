@@ -256,8 +256,8 @@ impl Kind for Bead {
         judge::judge(&route, self.layers(), &window, &self.limits, run)
     }
 
-    fn speed_dip(&self) -> Percent {
-        self.limits.speed_dip_percent
+    fn speed_dip(&self) -> Option<Percent> {
+        Some(self.limits.speed_dip_percent)
     }
 }
 

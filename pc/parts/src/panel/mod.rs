@@ -230,7 +230,7 @@ impl Kind for Panel {
         Ok(self.figures(run, &self.points(context)?))
     }
 
-    fn speed_dip(&self) -> Percent {
-        self.limits.speed_dip_percent
+    fn speed_dip(&self) -> Option<Percent> {
+        Some(self.limits.speed_dip_percent)
     }
 }

@@ -212,7 +212,7 @@ impl Kind for Saddle {
         judge::judge(self, &seam, run)
     }
 
-    fn speed_dip(&self) -> Percent {
-        self.limits.speed_dip_percent
+    fn speed_dip(&self) -> Option<Percent> {
+        Some(self.limits.speed_dip_percent)
     }
 }

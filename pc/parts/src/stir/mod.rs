@@ -122,8 +122,8 @@ impl Kind for Stir {
         judge::judge(self, &job, run)
     }
 
-    fn speed_dip(&self) -> Percent {
-        self.limits.speed_dip_percent
+    fn speed_dip(&self) -> Option<Percent> {
+        Some(self.limits.speed_dip_percent)
     }
 }
 

@@ -9,6 +9,7 @@ mod explain;
 mod measure;
 mod plan;
 mod teach;
+mod teach_places;
 mod teach_seam;
 mod weld;
 
@@ -122,7 +123,8 @@ fn plan_program(
     from: &[f64; AXES],
     speed_m_min: Option<f64>,
 ) -> anyhow::Result<Vec<PlannedPath>> {
-    let judged = PartFile::of_program(file)?.is_some();
+    let part = PartFile::of_program(file)?;
+    let judged = part.is_some_and(|part| part.keeps_feed());
     let speed = speed_m_min.map(|m_min| m_min * shared::units::MM_S_PER_M_MIN);
     let of_program = || format!("program {}", file.display());
     let paths = planner.program(program, from, speed).with_context(of_program)?;

@@ -1,5 +1,6 @@
 //! `seamwright plan`: from parts to programs.
 
+use super::machine_for;
 use crate::console::outln;
 use anyhow::Context;
 use cam::path::{PlannedPath, Planner, check_constant_speed};
@@ -19,6 +20,7 @@ use std::path::{Path, PathBuf};
 ///   [panel]   points on a curved panel, as `seamwright teach` writes them, for the A/C head
 ///   [stir]    lines and arcs on a plate, for the friction-stir gantry
 ///   [bead]    a NURBS along which wire is deposited, for the wire-arc robot
+///   [seam]    places taught with the tip, and passes with weld data, for any machine
 ///
 /// To make a part of your own:
 ///
@@ -42,6 +44,9 @@ pub struct Plan {
     /// Plan from these taught seams (CSV), and not from the drawing
     #[arg(long, value_name = "FILE")]
     taught: Option<PathBuf>,
+    /// Weld data [default: welddata.toml beside the program]
+    #[arg(long, value_name = "FILE")]
+    weld_data: Option<PathBuf>,
     /// Program for the measuring heads to write as well: the cameras pass along both seams, beams off
     #[arg(long, value_name = "FILE")]
     measuring_head: Option<PathBuf>,
@@ -50,7 +55,7 @@ pub struct Plan {
 impl Plan {
     /// Plans, checks and writes the program.
     pub fn run(self) -> anyhow::Result<()> {
-        let machine = MachineFile::read(&self.machine)?;
+        let machine = machine_for(&self.machine, &self.output, self.weld_data.as_deref())?;
         let mut part = PartFile::read(&self.part)?;
         if let Some(taught) = &self.taught {
             part = part.with_taught_seams(taught)?;
@@ -62,11 +67,11 @@ impl Plan {
             let program = part
                 .plan_measuring(&machine, &title(output))
                 .with_context(of_part)?;
-            let paths = checked(&program, &planner, &machine)?;
+            let paths = checked(&program, &planner, &machine, true)?;
             anyhow::Ok((output, program, paths))
         });
         let measuring = measuring.transpose()?;
-        let paths = checked(&plan.program, &planner, &machine)?;
+        let paths = checked(&plan.program, &planner, &machine, part.keeps_feed())?;
         write(&self.output, &plan.program)?;
         outln!("{}:", self.output.display());
         for note in &plan.notes {
@@ -98,14 +103,19 @@ fn title(output: &Path) -> String {
     stem.to_string_lossy().into_owned()
 }
 
-/// What is written has been read and checked as the weld will.
-fn checked(program: &str, planner: &Planner, machine: &MachineFile) -> anyhow::Result<Vec<PlannedPath>> {
+/// What is written has been read and checked as the weld will; with a beam on it `keeps_feed`.
+fn checked(
+    program: &str,
+    planner: &Planner,
+    machine: &MachineFile,
+    keeps_feed: bool,
+) -> anyhow::Result<Vec<PlannedPath>> {
     let program = interpret(program, Options::default()).context("the planned program")?;
     let from = machine.planning.park_axes();
     let paths = planner
         .program(&program, &from, None)
         .context("the planned program")?;
-    check_constant_speed(&paths, true).context("the planned program")?;
+    check_constant_speed(&paths, keeps_feed).context("the planned program")?;
     Ok(paths)
 }
 

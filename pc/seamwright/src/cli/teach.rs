@@ -15,13 +15,17 @@ use std::process::ExitCode;
 use teach::write_points;
 use world::Surroundings;
 
-/// Teach a part: seams with the cameras, a panel with the ranging probe
+/// Teach a part: seams with the cameras, a panel with the ranging probe, places by leading the tip there
 ///
 /// Seams ([t-seam]): the machine homes, goes to where the seams are drawn to begin, searches them around
 /// there, brings both to the middle of the cameras' bands, and continues along their tangent from point to
 /// point, farther where they are straight. Every point is written at once: the same command continues after
 /// the last one. done and Enter ends. With --jog the operator drives; help lists the words. `seamwright plan
 /// PART --taught FILE` makes a program of it.
+///
+/// Seams through taught places ([seam]), on any machine: the machine homes, goes to --from if that is given, and the operator
+/// leads the tip by commands on standard input and takes places down; help lists the words. Every place is written at once, and the
+/// same command continues after the last one.
 ///
 /// Panels ([panel]): the machine homes, goes from guide point to guide point, measures rings of eight neighbours around
 /// each, turns the probe to the normal they show, and parks. With taught = "taught.csv" in its part file the panel can
@@ -57,6 +61,12 @@ impl Teach {
             return self
                 .seams
                 .teach(&self.boards, machine, &part, self.output.as_deref(), self.seed);
+        }
+        if part.taught_seam().is_some() {
+            let machine = (&machine, self.machine.as_path());
+            return self
+                .seams
+                .lead(&self.boards, machine, &part, self.output.as_deref());
         }
         self.seams.refuse()?;
         let output = self

@@ -12,7 +12,7 @@ use config::machine::MachineFile;
 use dual_beam::DualBeamPlan;
 use job::{Job, JobError, Names, SeamLesson, TaughtSeam, Work};
 use nc::{Options, Program, interpret};
-use parts::{PartFile, TSeam};
+use parts::PartFile;
 use shared::io::{SIDES, SLIDES};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -28,16 +28,16 @@ const ENDS_EARLY: f64 = 5.0;
 /// What only seams are taught with.
 #[derive(Debug, Args)]
 pub struct SeamArgs {
-    /// Seams: start position of the tip, one camera lead before the first point, in place of the beginning of
-    /// the drawing
+    /// Seams and places: where the tip goes first; for the cameras one camera lead before the first point, in place of the
+    /// beginning of the drawing
     #[arg(long, value_name = "X,Y,Z,A,B,C", allow_hyphen_values = true)]
-    from: Option<TipPose>,
+    pub(super) from: Option<TipPose>,
     /// Seams: the operator jogs the machine, by commands on standard input
     #[arg(long)]
     jog: bool,
-    /// Seams: start over; the points taught before are kept under another name
+    /// Seams and places: start over; the points taught before are kept under another name
     #[arg(long)]
-    restart: bool,
+    pub(super) restart: bool,
     /// Seams: how the real ones deviate from the drawing (CSV), for emulated and simulated boards
     #[arg(long, value_name = "DEVIATION")]
     seam: Option<PathBuf>,
@@ -50,7 +50,7 @@ pub struct SeamArgs {
 
 /// X Y Z \[mm\] A B C \[deg\] of the tip.
 #[derive(Clone, Copy, Debug)]
-struct TipPose([f64; 6]);
+pub(super) struct TipPose([f64; 6]);
 
 impl FromStr for TipPose {
     type Err = &'static str;
@@ -68,6 +68,17 @@ impl FromStr for TipPose {
     }
 }
 
+impl TipPose {
+    pub(super) fn tip(&self) -> Tip {
+        let Self([x, y, z, a, b, c]) = *self;
+        Tip {
+            position_mm: [x, y, z],
+            angles_deg: [a, b, c],
+            ..Tip::default()
+        }
+    }
+}
+
 /// What the part and its drawing say.
 struct Lesson {
     start: MachinePose,
@@ -80,15 +91,22 @@ struct Lesson {
 impl SeamArgs {
     /// Refuses what a panel is not taught with.
     pub fn refuse(&self) -> anyhow::Result<()> {
-        let told = [
-            (self.from.is_some(), "--from"),
-            (self.jog, "--jog"),
-            (self.restart, "--restart"),
-            (self.seam.is_some(), "--seam"),
-        ];
+        let told = [(self.from.is_some(), "--from"), (self.restart, "--restart")];
         let told = told.into_iter().find_map(|(told, name)| told.then_some(name));
-        match told.or(self.eyes.of_pictures()) {
-            Some(name) => bail!("{name} is for parts with seams ([t-seam]), and this part has none"),
+        match told {
+            Some(name) => bail!("{name} is for parts with seams ([t-seam], [seam]), and this part has none"),
+            None => self.refuse_cameras(),
+        }
+    }
+
+    /// Refuses what only the cameras need.
+    pub(super) fn refuse_cameras(&self) -> anyhow::Result<()> {
+        let seam = self.seam.is_some().then_some("--seam");
+        let jog = self.jog.then_some("--jog");
+        match seam.or(jog).or(self.eyes.of_pictures()) {
+            Some(name) => {
+                bail!("{name} is for parts with seams that cameras see ([t-seam]), and this part has none")
+            }
             None => Ok(()),
         }
     }
@@ -110,7 +128,7 @@ impl SeamArgs {
             .prepare(machine, part)
             .with_context(|| format!("part {}", name(part.path())))?;
         let deviation = self.seam.as_deref().map(Deviation::read).transpose()?;
-        let output = output_of(output, part, seam)?;
+        let output = output_of(output, part, seam.taught())?;
         let head = Head {
             machine: machine.name.clone(),
             part: part
@@ -209,17 +227,10 @@ impl SeamArgs {
     ) -> anyhow::Result<(MachinePose, Option<Drawing>)> {
         let drawing = drawn.map(DualBeamPlan::drawing);
         let start = match (self.from, drawn) {
-            (Some(TipPose([x, y, z, a, b, c])), _) => {
-                let tip = Tip {
-                    position_mm: [x, y, z],
-                    angles_deg: [a, b, c],
-                    ..Tip::default()
-                };
-                MachinePose {
-                    pose: Planner::build(machine)?.pose(&tip),
-                    slides_mm: [0.0; SLIDES],
-                }
-            }
+            (Some(from), _) => MachinePose {
+                pose: Planner::build(machine)?.pose(&from.tip()),
+                slides_mm: [0.0; SLIDES],
+            },
             (None, Some(plan)) => plan.stance_before(cameras.heads.camera_lead()),
             (None, None) => {
                 bail!("the part has no drawing, so the start is unknown: give it with --from")
@@ -230,8 +241,12 @@ impl SeamArgs {
 }
 
 /// Where the points are written: as given, or where the part file expects them.
-fn output_of(told: Option<&Path>, part: &PartFile, seam: &TSeam) -> anyhow::Result<PathBuf> {
-    match (told, seam.taught()) {
+pub(super) fn output_of(
+    told: Option<&Path>,
+    part: &PartFile,
+    taught: Option<&Path>,
+) -> anyhow::Result<PathBuf> {
+    match (told, taught) {
         (Some(told), _) => Ok(told.to_owned()),
         (None, Some(taught)) => Ok(part.path().parent().unwrap_or(Path::new("")).join(taught)),
         (None, None) => bail!("where should the points be written? give --output FILE"),

@@ -250,7 +250,7 @@ impl Weld {
             }
             (Work::Pictures(run), _) => run.program,
             (Work::Teach | Work::TeachAndMake, None) => return Err(NoTeaching::Part.into()),
-            (Work::TeachSeam(_), _) => return Ok(()),
+            (Work::TeachSeam(_) | Work::Lead(_), _) => return Ok(()),
         };
         let planned = job.plan(program, &planner, &job.machine.planning.park_axes());
         let around = match &planned {

@@ -219,7 +219,7 @@ impl SeamFile {
 }
 
 /// Puts `text` in the place of the file at `path`; whatever happens, one of both is there.
-fn replace(path: &Path, text: &str) -> Result<(), IoError> {
+pub(crate) fn replace(path: &Path, text: &str) -> Result<(), IoError> {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".new");
     let new = path.with_file_name(name);
@@ -230,7 +230,7 @@ fn replace(path: &Path, text: &str) -> Result<(), IoError> {
 }
 
 /// A name beside `path` that no file has: taught.1.csv, taught.2.csv…
-fn free_name(path: &Path) -> PathBuf {
+pub(crate) fn free_name(path: &Path) -> PathBuf {
     let extension = path
         .extension()
         .unwrap_or_default()

@@ -2,6 +2,7 @@
 
 use super::follow::{Centred, SAME_PLACE, take};
 use super::{CameraMachine, Ended, Follower, MachinePose, SeamPoint, SeamTeachError, View};
+use crate::spoken::Spoken;
 use nalgebra::Vector3;
 use shared::geometry::{Pose, rotate};
 use shared::io::SIDES;
@@ -19,10 +20,6 @@ take               takes this point down
 undo               takes the last point out again
 look               tells what the cameras see
 done               ends";
-
-/// Largest move and turn at once \[mm\], \[deg\].
-const FARTHEST: f64 = 100.0;
-const WIDEST: f64 = 15.0;
 
 /// An operator who teaches by hand.
 pub trait JogOperator: CameraMachine {
@@ -69,51 +66,33 @@ pub enum Jog {
 impl Jog {
     /// What `line` means; what is wrong with it otherwise.
     pub fn parse(line: &str) -> Result<Self, String> {
-        let mut words = line.split_whitespace();
-        let Some(word) = words.next() else {
+        let Some(spoken) = Spoken::of(line)? else {
             return Ok(Self::Look);
         };
-        let value = words.next();
-        if let Some(rest) = words.next() {
-            return Err(format!("{rest} is too much: type a command and one number"));
+        if let Some(axis) = spoken.place(&["x", "y", "z"]) {
+            return Ok(Self::Axis(axis, spoken.mm()?));
         }
-        let number = |most: f64, unit: &str| -> Result<f64, String> {
-            let text = value.ok_or_else(|| format!("{word} needs a number [{unit}]"))?;
-            let number: f64 = text.parse().map_err(|_| format!("{text} is not a number"))?;
-            if number.abs() <= most {
-                Ok(number)
-            } else {
-                Err(format!("{number} {unit} is more than {most} {unit} at once"))
-            }
-        };
-        let place = |names: &[&str]| names.iter().position(|name| *name == word);
-        if let Some(axis) = place(&["x", "y", "z"]) {
-            return Ok(Self::Axis(axis, number(FARTHEST, "mm")?));
+        if let Some(axis) = spoken.place(&["a", "b", "c"]) {
+            return Ok(Self::Turn(axis, spoken.deg()?.to_radians()));
         }
-        if let Some(axis) = place(&["a", "b", "c"]) {
-            return Ok(Self::Turn(axis, number(WIDEST, "deg")?.to_radians()));
+        if let Some(way) = spoken.place(&["across", "up", "along"]) {
+            return Ok(Self::Head(way, spoken.mm()?));
         }
-        if let Some(way) = place(&["across", "up", "along"]) {
-            return Ok(Self::Head(way, number(FARTHEST, "mm")?));
+        if let Some(slide) = spoken.place(&["u1", "v1", "u2", "v2"]) {
+            return Ok(Self::Slide(slide, spoken.mm()?));
         }
-        if let Some(slide) = place(&["u1", "v1", "u2", "v2"]) {
-            return Ok(Self::Slide(slide, number(FARTHEST, "mm")?));
-        }
-        if word == "step" {
-            let by = value.map(|_| number(FARTHEST, "mm")).transpose()?;
+        if spoken.word == "step" {
+            let by = spoken.value.map(|_| spoken.mm()).transpose()?;
             return Ok(Self::Step(by));
         }
-        if let Some(value) = value {
-            return Err(format!("{word} takes no number, not {value}"));
-        }
-        match word {
+        match spoken.alone()? {
             "centre" | "center" => Ok(Self::Centre),
             "search" => Ok(Self::Search),
             "take" => Ok(Self::Take),
             "undo" => Ok(Self::Undo),
             "look" => Ok(Self::Look),
             "done" => Ok(Self::Done),
-            _ => Err(format!("{word} is not a command here\n{JOG_WORDS}")),
+            word => Err(format!("{word} is not a command here\n{JOG_WORDS}")),
         }
     }
 

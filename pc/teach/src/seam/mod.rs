@@ -14,7 +14,7 @@ mod config;
 mod course;
 mod drawing;
 mod ends;
-mod file;
+pub(crate) mod file;
 mod follow;
 mod jog;
 mod not_found;
