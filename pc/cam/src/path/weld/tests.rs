@@ -482,9 +482,11 @@ fn a_program_is_started_at_a_weld_and_not_in_it() {
             .iter()
             .any(|(_, _, events)| events.contains(&(0.0, gas)))
     );
-    let beams = rest.iter().flat_map(events);
-    let on = beams.filter(|(_, action)| matches!(action, PathAction::Beam { on: true, .. }));
-    assert_eq!(on.count(), 1);
+    let burns = |path: &&PlannedPath| {
+        let on = |(_, action): &(f64, PathAction)| matches!(action, PathAction::Beam { on: true, .. });
+        path.motion == Motion::Feed && events(path).iter().any(on)
+    };
+    assert_eq!(rest.iter().filter(burns).count(), 1);
     assert!(planner.from_line(&program, whole, 12, &from).is_ok());
 }
 
