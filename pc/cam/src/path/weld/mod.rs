@@ -68,12 +68,14 @@ impl Planner {
                 // The path stands, and may switch more.
                 let mut path = path.clone();
                 path.events.retain(|event| event != word);
-                let nothing = path.events.is_empty() && path.dwell_before_s == 0.0;
+                let rests = path.dwell_before_s > 0.0 || !path.waits_before.is_empty();
+                let nothing = path.events.is_empty() && !rests;
                 Ok(itself(if nothing { Vec::new() } else { vec![path] }))
             }
             (None, Some(weld)) => {
                 let name = &program.welds[weld.index];
-                let welds = path.motion == Motion::Feed && path.dwell_before_s == 0.0;
+                let rests = path.dwell_before_s > 0.0 || !path.waits_before.is_empty();
+                let welds = path.motion == Motion::Feed && !rests;
                 if weld.done || !welds {
                     return Err(PathError::WeldOn {
                         place: place(path).unwrap_or(weld.place),
@@ -343,6 +345,7 @@ fn output(with_target: usize, after_mm: f64, action: PathAction, place: SourcePo
 /// The machine stands and switches `actions`.
 fn standing(actions: Vec<PathAction>, dwell_before_s: f64, place: SourcePosition) -> ProgramPath {
     ProgramPath {
+        waits_before: Vec::new(),
         dwell_before_s,
         motion: Motion::Stand,
         targets: Vec::new(),
@@ -356,6 +359,7 @@ fn standing(actions: Vec<PathAction>, dwell_before_s: f64, place: SourcePosition
 
 fn feeding(targets: Vec<Target>, events: Vec<ProgramEvent>, dwell_before_s: f64) -> ProgramPath {
     ProgramPath {
+        waits_before: Vec::new(),
         dwell_before_s,
         motion: Motion::Feed,
         targets,
