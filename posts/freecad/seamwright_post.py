@@ -33,7 +33,7 @@ WORDS = {
     "M5": "",
     "M6": "T",
 }
-ALONE = "G17 G18 G19 G21 G40 G80 G90 G94 G98 G99 M1 M7 M8 M9".split()
+ALONE = "G17 G18 G19 G21 G40 G80 G90 G94 G98 G99 M0 M1 M7 M8 M9".split()
 SYSTEMS = "G54 G55 G56 G57 G58 G59 G59.1 G59.2 G59.3".split()
 WORDS.update((name, "") for name in ALONE + SYSTEMS)
 
@@ -232,8 +232,6 @@ class Program:
 
     def check(self, name, parameters):
         """Whether command and words are known."""
-        if name == "M0":
-            raise PostError("programs do not wait for the operator; take the stop out, or split the job")
         if name == "M4":
             raise PostError("spindles turn one way; set the spindle direction of the tool controller to Forward")
         if name not in WORDS:
@@ -255,7 +253,7 @@ class Program:
         words = self.words(WORDS[name], parameters)
         if name == "G4" and not words:
             raise PostError("the dwell has no time: set it")
-        if name == "G4":
+        if name in ("G4", "M0", "M1"):
             self.close_gate()
         self.line(" ".join([name] + list(words.values())))
 

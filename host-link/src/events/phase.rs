@@ -23,6 +23,13 @@ pub enum Phase {
     MovingOn,
     /// At rest for a time that the program asks for.
     Dwelling,
+    /// At rest until an input of the process comes.
+    WaitingForInput {
+        /// Its number, from 1.
+        number: u8,
+        /// Line of the program.
+        line: u32,
+    },
     /// In single block: this line of the program.
     Line(u32),
     /// A point of a panel is taught.
@@ -62,6 +69,7 @@ impl fmt::Display for Phase {
             Self::Welding => f.write_str("welding"),
             Self::MovingOn => f.write_str("moving on"),
             Self::Dwelling => f.write_str("dwelling"),
+            Self::WaitingForInput { number, line } => write!(f, "waiting for input {number} (line {line})"),
             Self::Line(line) => write!(f, "line {line}"),
             Self::TeachingPoint { number, of } => write!(f, "teaching point {number} of {of}"),
             Self::TeachingSeam { number } => write!(f, "teaching point {number}"),
@@ -73,12 +81,30 @@ impl fmt::Display for Phase {
 }
 
 /// What the machine waits for until the operator answers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Question {
     /// May it continue, in single block? [`crate::Command::Resume`] says so.
     GoOn {
         /// With what.
         next: Next,
+    },
+    /// The program stops here (M0, M1, M60). [`crate::Command::Resume`] continues.
+    Stop {
+        /// The code.
+        code: &'static str,
+        /// Line of the program.
+        line: u32,
+        /// What the program says of it.
+        text: Option<String>,
+    },
+    /// The program goes on with another tool. [`crate::Command::Resume`] says that it is in.
+    Tool {
+        /// Its number; 0 is none.
+        tool: u32,
+        /// Line of the program.
+        line: u32,
+        /// What the program says of it.
+        text: Option<String>,
     },
     /// The motion board holds it, since the feed is too low for the beam: raise the override, then resume.
     FeedTooLow,

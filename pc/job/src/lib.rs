@@ -20,6 +20,7 @@ mod slides;
 mod surroundings;
 mod teaching;
 mod tracking;
+mod waits;
 
 pub use calibrating::{CameraPictures, PictureRun};
 pub use cameras::{Answer, CameraFigures, Moment, PictureSource, SeamCameras};
@@ -40,7 +41,7 @@ use host_link::Control;
 use host_link::boards::{Boards, LinkError};
 use host_link::events::{Event, Next, Phase};
 use host_link::spool::Spooling;
-use nc::Program;
+use nc::{InputEvent, Program, Wait};
 use parts::PartFile;
 use session::Session;
 use shared::io::SIDES;
@@ -52,6 +53,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use thiserror::Error;
 use tracking::Tracking;
+use waits::check_attended;
 
 /// Longest time for the search of all reference marks.
 const HOMING_LIMIT: Duration = Duration::from_secs(240);
@@ -156,6 +158,34 @@ pub enum JobError {
         "the machine waits for the operator, but there is no operator who could answer; run the job in a terminal, or without single block"
     )]
     NoOperator,
+    /// A stop of the program that nobody ends.
+    #[error(
+        "{code} in line {line} stops the program until the operator continues it, and there is no operator who could: run \
+         the job in a terminal"
+    )]
+    NobodyAtStop {
+        /// The code.
+        code: &'static str,
+        /// Line of the program.
+        line: u32,
+    },
+    /// An input that the program waits for did not come.
+    #[error(
+        "line {line}: M66 has waited for {within_s} s until input {number} ({name}) {event}, and it did not come; look at \
+         what switches it, or wait longer (Q)"
+    )]
+    NoInput {
+        /// What the machine file calls it.
+        name: String,
+        /// Its number, from 1.
+        number: u8,
+        /// What it had to do.
+        event: InputEvent,
+        /// How long it was waited for \[s\].
+        within_s: f64,
+        /// Line of the program.
+        line: u32,
+    },
     /// Something does not come to an end.
     #[error("{what} took longer than {seconds} s; look at the boards' logs")]
     TooLong {
@@ -320,8 +350,11 @@ impl Weld {
     fn program(&mut self, session: &mut Session, job: &Job, program: &Program) -> Result<(), JobError> {
         let mut elsewhere = Phase::Approaching;
         let planned = job.plan(program, &self.planner, &session.motion.reference)?;
+        check_attended(session, &planned)?;
         for (index, path) in planned.into_iter().enumerate() {
-            if index > 0 {
+            // A stop of the program is one of single block.
+            let stops = path.waits_before.iter().any(Wait::is_for_operator);
+            if index > 0 && !stops {
                 let next = match path.first_and_last_line().0 {
                     0 => Next::Approach,
                     line => Next::Line(line),
@@ -341,6 +374,7 @@ impl Weld {
 
     /// Loads and runs one path; the machine stands afterwards, on an error too.
     fn path(&mut self, session: &mut Session, path: PlannedPath, phase: Phase) -> Result<(), JobError> {
+        self.wait_before(session, &path)?;
         let id = self.paths.len() as u32 + 1;
         let feeding = load(session, &path, id)?;
         if let Some(tracking) = &mut session.tracking {

@@ -45,7 +45,8 @@ impl Session<'_> {
     /// The machine is at rest until the operator answers; a question that is open already is not asked again.
     pub fn question(&mut self, question: Question) {
         self.phase = None;
-        if self.question.replace(question) != Some(question) {
+        if self.question.as_ref() != Some(&question) {
+            self.question = Some(question.clone());
             self.control.publish(Event::Question(question));
         }
     }

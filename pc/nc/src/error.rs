@@ -305,9 +305,12 @@ pub enum Problem {
     /// G4, M62, M63 or M67 without a motion after it.
     #[error("{0} has no motion after it with which it could take effect")]
     NoMotionAfter(&'static str),
-    /// M66.
-    #[error("M66 waits for an input, and the boards have none for programs: wait with G4 P")]
-    NoInputs,
+    /// #5399 after an M66.
+    #[error(
+        "what the M66 before found (#5399) is not known when the program is read, which is before the machine moves: \
+         let M66 wait with L1 to L4, and the program goes on only if the input came"
+    )]
+    InputUnknown,
     /// G5.3 or G6.3 without a curve to close.
     #[error("{0} has no NURBS to close")]
     NothingToClose(&'static str),

@@ -49,7 +49,7 @@ fn unsigned(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Resul
             scanner.step();
             let parameter = parameter_at(scanner, lookup, depth + 1)?;
             let value = lookup.value(&parameter);
-            let value = value.ok_or_else(|| Problem::Undefined(parameter.to_string()).at(place))?;
+            let value = value.ok_or_else(|| parameter.no_value().at(place))?;
             Ok(Some(value))
         }
         Some(c) if c.is_ascii_alphabetic() => function(scanner, lookup, depth),

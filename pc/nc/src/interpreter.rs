@@ -15,6 +15,7 @@ use super::program::{EXTENSION_WORDS, Motion, Notice, Program, ProgramAction, Pr
 use super::reading::RemainingBlocks;
 use super::saved_modes::Saved;
 use super::setup::Setup;
+use super::waits::Wait;
 use shared::io::{AXES, SIDES};
 use std::sync::Arc;
 
@@ -47,7 +48,15 @@ pub(super) struct Interpreter {
     pub(super) spindle: Spindle,
     /// T, and the tool that M6 has put in.
     pub(super) tools: [u32; 2],
+    /// The tool that is known to be in the machine.
+    pub(super) tool_in: Option<u32>,
     pub(super) pending: Vec<Pending>,
+    /// Waits before the next path, and before its dwell.
+    pub(super) waits: Vec<Wait>,
+    /// The last comment or message since the last motion.
+    pub(super) said: Option<String>,
+    /// An M66 has set #5399.
+    pub(super) input_read: bool,
     /// s, and where it was programmed.
     dwell: Option<(f64, SourcePosition)>,
     pub(super) paths: Vec<ProgramPath>,
@@ -83,7 +92,11 @@ impl Interpreter {
             sticky: Sticky::default(),
             spindle: Spindle::default(),
             tools: [0; 2],
+            tool_in: None,
             pending: Vec::new(),
+            waits: Vec::new(),
+            said: None,
+            input_read: false,
             dwell: None,
             paths: Vec::new(),
             open: false,
@@ -171,6 +184,7 @@ impl Interpreter {
     /// Outputs, spindle, coolant and dwell of a block.
     fn switch(&mut self, block: &Block, claims: &Claims) -> Result<(), NcError> {
         let dwell = dwell(block, claims)?;
+        self.wait_for_input(block, claims)?;
         if let Some(pending) = output(block, claims)? {
             self.wait(pending);
         }
@@ -187,18 +201,9 @@ impl Interpreter {
             };
             let q = claims.word(code.code, "Q").ok_or(missing.at(code.place))?;
             self.tools[1] = tool_number(q)?;
+            self.tool_in = Some(self.tools[1]);
         } else if let Some(code) = block.code(Group::Tool) {
-            // The spindle stops for it.
-            if let Some(stop) = self.spindle.stop(code.name, code.place) {
-                self.wait(stop);
-            }
-            self.tools[1] = self.tools[0];
-            self.wait(Pending {
-                action: ProgramAction::ChangeTool(self.tools[1]),
-                code: code.name,
-                place: code.place,
-                at_rest: true,
-            });
+            self.change_tool(*code);
         }
         for pending in self.spindle.block(block)? {
             self.wait(pending);
@@ -246,21 +251,11 @@ impl Interpreter {
     fn stop(&mut self, code: CodeWord) -> Result<(), NcError> {
         match code.code {
             Code::End => self.finish(code.name, code.place),
-            Code::OptionalPause if !self.optional_stop => Ok(()),
             _ => {
-                self.pause(code.name, code.place);
+                self.pause(code);
                 Ok(())
             }
         }
-    }
-
-    fn pause(&mut self, code: &'static str, place: SourcePosition) {
-        self.wait(Pending {
-            action: ProgramAction::Pause,
-            code,
-            place,
-            at_rest: true,
-        });
     }
 
     /// The program ends, by `code` or without one.
@@ -279,7 +274,7 @@ impl Interpreter {
             return Err(Problem::NoMotionAfter(opening.code).at(opening.place));
         }
         let last = std::mem::take(&mut self.pending);
-        if !last.is_empty() || self.dwell.is_some() {
+        if !last.is_empty() || self.dwell.is_some() || !self.waits.is_empty() {
             self.standing(last);
         }
         self.ended = true;
@@ -307,15 +302,17 @@ impl Interpreter {
 
     /// `(MSG,…)`, `(DEBUG,…)` and `(PRINT,…)`: parameters in the last two have their values.
     fn remark(&mut self, comment: &str, place: SourcePosition) {
-        let Some((kind, text)) = comment.split_once(',') else {
-            return;
+        let (kind, text) = comment.split_once(',').unwrap_or_default();
+        let message = match kind.trim().to_ascii_uppercase().as_str() {
+            "MSG" => Some(text.trim().to_owned()),
+            "DEBUG" | "PRINT" => Some(self.with_values(text.trim())),
+            _ => None,
         };
-        let text = match kind.trim().to_ascii_uppercase().as_str() {
-            "MSG" => text.trim().to_owned(),
-            "DEBUG" | "PRINT" => self.with_values(text.trim()),
-            _ => return,
-        };
-        self.notice(text, place);
+        let said = message.clone().unwrap_or_else(|| comment.trim().to_owned());
+        self.said = Some(said).filter(|said| !said.is_empty());
+        if let Some(message) = message {
+            self.notice(message, place);
+        }
     }
 
     /// Keeps no more than `count` blocks of the last path; what reads the others again is made of the state between
@@ -365,9 +362,10 @@ impl Interpreter {
     }
 
     /// A path without a motion.
-    fn standing(&mut self, events: Vec<Pending>) {
+    pub(super) fn standing(&mut self, events: Vec<Pending>) {
         let dwell_before_s = self.dwell_before();
         self.paths.push(ProgramPath {
+            waits_before: std::mem::take(&mut self.waits),
             dwell_before_s,
             motion: Motion::Stand,
             targets: Vec::new(),

@@ -42,6 +42,7 @@ mod subroutines;
 #[cfg(test)]
 mod tests;
 pub mod text;
+mod waits;
 
 pub use error::{NcError, Problem, SourcePosition};
 pub use explain::{Told, explain, explain_file};
@@ -51,3 +52,4 @@ pub use program::{
 };
 pub use reading::{KEPT, RemainingBlocks, interpret, interpret_file};
 pub use setup::{Options, Setup, TipAndAxes};
+pub use waits::{InputEvent, Until, Wait};

@@ -5,7 +5,7 @@ use super::error::{Problem, SourcePosition};
 use super::expression;
 use super::interpreter::Interpreter;
 use super::offsets::SYSTEMS;
-use super::parameters::{Lookup, Parameter};
+use super::parameters::{INPUT, Lookup, Parameter};
 use super::scanner::Scanner;
 use shared::io::AXES;
 use std::ops::RangeInclusive;
@@ -76,6 +76,7 @@ impl Lookup for Interpreter {
         match parameter {
             Parameter::Numbered(number) => match place(*number) {
                 Some(place) => self.state(&place),
+                None if *number == INPUT && self.input_read => None,
                 None => self.parameters.get(parameter),
             },
             Parameter::Named(name) => match self.parameters.get(parameter) {

@@ -385,6 +385,7 @@ impl Interpreter {
     }
 
     pub(super) fn rapid(&mut self, way: Way, words: Words, place: SourcePosition) {
+        self.said = None;
         let target = Target {
             way,
             words,
@@ -398,6 +399,7 @@ impl Interpreter {
 
     /// Goes on along an open path, or starts one.
     pub(super) fn feed_motion(&mut self, way: Way, words: Words, feed: FeedRate, place: SourcePosition) {
+        self.said = None;
         let target = Target {
             way,
             words,
@@ -421,6 +423,7 @@ impl Interpreter {
     fn start_path(&mut self, motion: Motion, target: Target) {
         let dwell_before_s = self.dwell_before();
         self.paths.push(ProgramPath {
+            waits_before: std::mem::take(&mut self.waits),
             dwell_before_s,
             motion,
             targets: vec![target],

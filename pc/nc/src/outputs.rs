@@ -141,7 +141,8 @@ pub(super) fn coolant(block: &Block) -> Option<Pending> {
 
 /// The output that `block` switches.
 pub(super) fn output(block: &Block, claims: &Claims) -> Result<Option<Pending>, NcError> {
-    let Some(code) = block.code(Group::Outputs) else {
+    let found = block.code(Group::Outputs);
+    let Some(code) = found.filter(|code| code.code != Code::WaitForInput) else {
         return Ok(None);
     };
     let need = |word: &'static str| -> Result<&Word, NcError> {
@@ -152,7 +153,6 @@ pub(super) fn output(block: &Block, claims: &Claims) -> Result<Option<Pending>, 
         claims.word(code.code, word).ok_or(missing.at(code.place))
     };
     let action = match code.code {
-        Code::WaitForInput => return Err(Problem::NoInputs.at(code.place)),
         Code::Analog | Code::AnalogNow => {
             let (e, q) = (need("E")?, need("Q")?);
             if q.value < 0.0 {

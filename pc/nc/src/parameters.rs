@@ -1,5 +1,6 @@
 //! Parameters of programs: `#1`, `#<local>` and `#<_global>`.
 
+use super::error::Problem;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -7,6 +8,9 @@ use std::fmt;
 const LAST: f64 = 5602.0;
 /// Parameters of a subroutine itself, 1 to this one.
 const OWN: u32 = 30;
+
+/// What the last M66 found.
+pub(super) const INPUT: u32 = 5399;
 
 /// A parameter by number or by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,6 +27,14 @@ impl Parameter {
         let whole = number.round();
         let near = (number - whole).abs() < 1e-4 && (0.0..=LAST).contains(&whole);
         near.then_some(Self::Numbered(whole as u32))
+    }
+
+    /// Why it cannot be read.
+    pub(super) fn no_value(&self) -> Problem {
+        match self {
+            Self::Numbered(INPUT) => Problem::InputUnknown,
+            _ => Problem::Undefined(self.to_string()),
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::error::SourcePosition;
 use super::reading::RemainingBlocks;
+use super::waits::{Until, Wait};
 use shared::geometry::Turn;
 use shared::io::{AXES, SIDES};
 use shared::protocol::PathAction;
@@ -27,6 +28,23 @@ pub struct Program {
     pub notices: Vec<Notice>,
 }
 
+impl Program {
+    /// Its waits, in the order of the program.
+    pub fn waits(&self) -> impl Iterator<Item = &Wait> {
+        self.paths.iter().flat_map(|path| &path.waits_before)
+    }
+
+    /// The tool that must be in the machine where the program, which has changed it before, is started at `line`.
+    pub fn changed_tool_at(&self, line: u32) -> Option<u32> {
+        let before = self.waits().take_while(|wait| wait.place.line < line);
+        let tools = before.filter_map(|wait| match wait.until {
+            Until::ToolIn(tool) => Some(tool),
+            Until::Continued | Until::Input { .. } => None,
+        });
+        tools.last()
+    }
+}
+
 /// A sentence about a program, or of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
@@ -39,6 +57,8 @@ pub struct Notice {
 /// One path, which starts where the last one ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProgramPath {
+    /// The machine waits for these before it, one after the other; then it stands.
+    pub waits_before: Vec<Wait>,
     /// The machine stands for this long before it \[s\] (G4).
     pub dwell_before_s: f64,
     /// Rapid, feed or none.
@@ -263,12 +283,10 @@ pub enum ProgramAction {
         /// M8.
         flood: Option<bool>,
     },
-    /// M6: the tool of this number is put in.
+    /// M6: the tool of this number must be in the machine.
     ChangeTool(u32),
     /// WELDON: a weld begins, with the data of this number in [`Program::welds`].
     WeldOn(usize),
     /// WELDOFF: it ends.
     WeldOff,
-    /// M0, M1, M60: the machine waits for the operator.
-    Pause,
 }

@@ -126,6 +126,7 @@ impl ProgramPath {
     /// The same path without any of its blocks.
     pub(super) fn without_blocks(&self) -> Self {
         Self {
+            waits_before: Vec::new(),
             targets: Vec::new(),
             events: Vec::new(),
             rest: None,

@@ -263,6 +263,7 @@ pub(crate) mod tests {
             speed_mm_s: 5.0 * MM_S_PER_M_MIN,
             beams: [true, false],
             outputs: 5,
+            inputs: 0,
             levels: [0.25, 0.0, 0.5, 0.0],
             switched: shared::io::SwitchedLines::NONE,
             axes: [10.0, 20.0, 30.0, 0.0, 0.0, std::f64::consts::PI],

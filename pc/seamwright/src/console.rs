@@ -9,6 +9,9 @@ use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
+/// Most characters of a text of a program that are printed.
+const LONGEST_TEXT: usize = 200;
+
 /// The first error of standard output.
 static LOST: Mutex<Option<io::Error>> = Mutex::new(None);
 
@@ -42,6 +45,16 @@ pub fn exit(code: ExitCode) -> ExitCode {
         }
         None => code,
     }
+}
+
+/// Text of a program that does nothing to a terminal.
+pub fn shown(text: &str) -> String {
+    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    let mut shown: String = text.chars().take(LONGEST_TEXT).map(plain).collect();
+    if text.chars().nth(LONGEST_TEXT).is_some() {
+        shown.push('…');
+    }
+    shown
 }
 
 /// Remembers the first error that matters.
@@ -86,5 +99,12 @@ mod tests {
         keep(&lost, Err(ErrorKind::Other.into()));
         let first = lost.lock().unwrap().as_ref().map(io::Error::kind);
         assert_eq!(first, Some(ErrorKind::StorageFull));
+    }
+
+    #[test]
+    fn what_is_shown_of_a_line_is_short_and_without_control_characters() {
+        assert_eq!(shown("G1\tX1\u{1b}[2J"), "G1 X1 [2J");
+        let long = "X".repeat(LONGEST_TEXT + 1);
+        assert_eq!(shown(&long), format!("{}…", "X".repeat(LONGEST_TEXT)));
     }
 }

@@ -1,6 +1,6 @@
 //! The operator at a terminal: a bar on standard error, and lines on standard input.
 
-use crate::console::errln;
+use crate::console::{errln, shown};
 use host_link::events::{Event, Interest, Question, Subscription};
 use host_link::{Command, Remote};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -18,10 +18,12 @@ pub enum Operator {
     /// They look on.
     LooksOn,
     /// They say words, a line each, if standard input is a terminal. In single block the machine waits after every block, and
-    /// words are read wherever they come from.
+    /// a program may stop: words are read wherever they come from then.
     SaysWords {
-        /// Whether it is.
+        /// Whether it is single block.
         single_block: bool,
+        /// Whether the program stops.
+        stops: bool,
     },
     /// They lead a job by lines, if standard input is a terminal; `always` wherever they come from.
     LeadsByLines {
@@ -59,7 +61,7 @@ impl Terminal {
         let is_terminal = std::io::stdin().is_terminal();
         let remote = remote.clone();
         match operator {
-            Operator::SaysWords { single_block } if single_block || is_terminal => {
+            Operator::SaysWords { single_block, stops } if single_block || stops || is_terminal => {
                 // A state, which needs no room.
                 let _ = remote.send(Command::SingleBlock(single_block));
                 screen.print(KEYS);
@@ -68,7 +70,10 @@ impl Terminal {
             Operator::LeadsByLines { always } if always || is_terminal => {
                 std::thread::spawn(move || read_lines(&remote));
             }
-            Operator::LooksOn | Operator::SaysWords { .. } | Operator::LeadsByLines { .. } => {}
+            // Nobody is waited for.
+            Operator::LooksOn | Operator::SaysWords { .. } | Operator::LeadsByLines { .. } => {
+                let _ = remote.send(Command::Unattended);
+            }
         }
         terminal
     }
@@ -127,11 +132,28 @@ impl Screen {
 fn asked(question: &Question) -> String {
     match question {
         Question::GoOn { next } => format!("waiting before {next}: Enter continues"),
+        Question::Stop { code, line, text } => {
+            let text = said(text.as_deref());
+            format!("line {line}: stopped by {code}{text}: Enter continues, Ctrl-C ends the job")
+        }
+        Question::Tool { tool, line, text } => {
+            let what = match tool {
+                0 => "take the tool out".to_owned(),
+                tool => format!("put tool {tool} in"),
+            };
+            let text = said(text.as_deref());
+            format!("line {line}: {what}{text}, then press Enter; Ctrl-C ends the job")
+        }
         Question::FeedTooLow => {
             "held: the feed is too low for the beam; raise it, then press Enter".to_owned()
         }
         Question::Jog => "jog: type a command".to_owned(),
     }
+}
+
+/// What the program says of a stop.
+fn said(text: Option<&str>) -> String {
+    text.map_or_else(String::new, |text| format!(" (\"{}\")", shown(text)))
 }
 
 /// Reads words from standard input as they come. Ends with the program, or with the input.
@@ -194,6 +216,32 @@ fn style(template: &str) -> ProgressStyle {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_stop_says_where_it_is_and_what_to_do() {
+        let stop = Question::Stop {
+            code: "M0",
+            line: 12,
+            text: Some("turn it\u{1b}[2J".to_owned()),
+        };
+        assert_eq!(
+            asked(&stop),
+            "line 12: stopped by M0 (\"turn it [2J\"): Enter continues, Ctrl-C ends the job"
+        );
+        let tool = |tool| Question::Tool {
+            tool,
+            line: 3,
+            text: None,
+        };
+        assert_eq!(
+            asked(&tool(2)),
+            "line 3: put tool 2 in, then press Enter; Ctrl-C ends the job"
+        );
+        assert_eq!(
+            asked(&tool(0)),
+            "line 3: take the tool out, then press Enter; Ctrl-C ends the job"
+        );
+    }
 
     #[test]
     fn lines_are_orders_or_nothing() {

@@ -290,6 +290,7 @@ impl MotionController {
                 speed_mm_s: now.v,
                 beams: report.lines.gates(),
                 outputs: report.lines.outputs().0,
+                inputs: report.process.0,
                 levels: report.levels.map(|code| code.ratio() as f32),
                 switched: report.switched,
                 axes: self.measured,

@@ -170,6 +170,8 @@ pub struct MotionSample {
     pub beams: [bool; SIDES],
     /// Digital outputs that are on, bit 0 the first.
     pub outputs: u8,
+    /// Inputs of the process that are high, bit 0 the first.
+    pub inputs: u8,
     /// What is commanded at the tick, as parts of full scale: power of the beams that are open, analog outputs.
     pub levels: [f32; LEVELS],
     /// Lines that were switched in the millisecond before the tick, by the board's clock after that began.

@@ -318,6 +318,7 @@ mod tests {
             speed_mm_s: 0.0,
             beams: [false; SIDES],
             outputs: 0,
+            inputs: 0,
             levels: [0.0; 4],
             switched: shared::io::SwitchedLines::NONE,
             axes: [0.0; 6],

@@ -15,6 +15,7 @@ mod spooled;
 mod subscribers;
 mod taught_seam;
 mod verdict;
+mod waits;
 
 use cam::path::Planner;
 use config::machine::MachineFile;

@@ -106,6 +106,19 @@ const CASES: [(&str, &str, &[&str]); 11] = [
             "G1 X3.0000",
         ],
     ),
+    // And at rest before a stop.
+    (
+        "--beam",
+        r#"["M3", {"S": 90.0}], ["G1", {"X": 1.0, "F": 1.0}], ["M5", {}], ["M0", {}], ["G1", {"X": 3.0}]"#,
+        &[
+            "M67 E0 Q90.0",
+            "M62 P0",
+            "G1 X1.0000 F60.000",
+            "M65 P0",
+            "M0",
+            "G1 X3.0000",
+        ],
+    ),
     // A feed is along Z only where X is known.
     (
         "--beam --closed-plunge",

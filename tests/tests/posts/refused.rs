@@ -29,7 +29,6 @@ const REFUSED: [(&str, &str, &str); 17] = [
     (r#"["G1", {"X": NaN, "F": 1.0}]"#, "", "nan is not a number"),
     (r#"["G2", {"X": 1.0, "F": 1.0}]"#, "", "I and J are missing"),
     (r#"["M4", {"S": 100.0}]"#, "", "set the spindle direction"),
-    (r#"["M0", {}]"#, "", "programs do not wait for the operator"),
     (r#"["M3", {"S": 0.0}]"#, "--beam", "to the power in W"),
     (
         r#"["G81", {"X": 1.0, "Y": 1.0, "Z": -1.0, "R": 1.0, "F": 1.0}]"#,

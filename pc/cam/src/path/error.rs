@@ -51,24 +51,6 @@ pub enum PathError {
     /// Nothing that moves.
     #[error("the program does not move the machine")]
     Empty,
-    /// M0 and its like.
-    #[error("{place}: {code} waits for the operator, which programs here cannot: make two programs of it")]
-    Pause {
-        /// Where in the program.
-        place: SourcePosition,
-        /// M0, M1 or M60.
-        code: &'static str,
-    },
-    /// M6 for another tool than the first.
-    #[error("{place}: tool {second} after tool {first}: tools are not changed in a program, make two of it")]
-    SecondTool {
-        /// Where in the program.
-        place: SourcePosition,
-        /// The tool that it begins with.
-        first: u32,
-        /// The next one.
-        second: u32,
-    },
     /// M3, M4, M5 or S on a machine without a spindle.
     #[error(
         "{place}: {code} needs a spindle, and {machine} has none: switch its beams with M62 P, M63 P and M67 E Q"
@@ -81,7 +63,7 @@ pub enum PathError {
         /// The machine.
         machine: String,
     },
-    /// A beam that the machine does not have, or tracking.
+    /// A beam, output or input that the machine does not have, or tracking.
     #[error("{place}: {machine} has no {output}")]
     NoOutput {
         /// Where in the program.

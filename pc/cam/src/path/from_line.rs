@@ -127,6 +127,10 @@ impl Planner {
                 begins,
             });
         }
+        // What was waited for in the lines before is not waited for.
+        paths[place.path]
+            .waits_before
+            .retain(|wait| wait.place.line >= line);
         if place.path == 0 && place.s <= 0.0 {
             return Ok(paths);
         }

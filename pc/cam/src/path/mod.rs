@@ -23,6 +23,7 @@ mod targets;
 mod tests;
 mod tip_of_machine;
 mod too_fast;
+mod waits;
 mod weld;
 
 pub(crate) use blocks::part_of_arc;
@@ -35,7 +36,7 @@ pub use programmed::Programmed;
 pub use targets::Tip;
 pub use too_fast::{FeedTooHigh, TooFast, check_constant_speed};
 
-use config::machine::{MachineFile, OutputNames, PlanningConfig, ProgramConfig};
+use config::machine::{InputNames, MachineFile, OutputNames, PlanningConfig, ProgramConfig};
 use config::weld_data::WeldData;
 use limits::{DRIVES, DriveLimits};
 use nc::{Program, SourcePosition};
@@ -69,6 +70,7 @@ pub struct Planner {
     /// Outputs of the process.
     io: ProcessIo,
     output_names: OutputNames,
+    input_names: InputNames,
     /// What welds are made with.
     welding: Arc<WeldData>,
     /// The beam that is a spindle.
@@ -95,6 +97,7 @@ impl Planner {
             largest_power: beams.map(|beam| beam.map(|beam| beam.power_at_10v_w)),
             io: machine.motion.process,
             output_names: machine.outputs.clone(),
+            input_names: machine.inputs.clone(),
             welding: Arc::new(machine.welding.clone()),
             tracks: machine.tracking.is_some(),
             planning: machine.planning.clone(),

@@ -29,14 +29,10 @@ impl Planner {
         events.iter().filter_map(switching).collect()
     }
 
-    /// What an event switches; of coolant and tools [`Planner::notices`] tells.
+    /// What an event switches; of coolant and the first tool [`Planner::notices`] tells.
     pub(super) fn action(&self, event: &ProgramEvent) -> Result<Option<PathAction>, PathError> {
         let place = event.place;
         let action = match event.action {
-            ProgramAction::Pause => {
-                let code = event.code;
-                return Err(PathError::Pause { place, code });
-            }
             ProgramAction::Coolant { .. } | ProgramAction::ChangeTool(_) => return Ok(None),
             // Weld data has taken its place.
             ProgramAction::WeldOn(_) | ProgramAction::WeldOff => return Ok(None),

@@ -45,6 +45,8 @@ impl Planner {
             (_, Some(target)) => vec![self.axes_motion(target, &events, stand)?],
             _ => self.tip_motion(path, &events, stand, speed_mm_s)?,
         };
+        self.check_inputs(&path.waits_before)?;
+        planned[0].waits_before = path.waits_before.clone();
         planned[0].dwell_before_s = path.dwell_before_s;
         Ok(planned)
     }
@@ -72,7 +74,9 @@ impl Planner {
         events: &[Switching],
         stand: &mut RestState,
     ) -> Result<PlannedPath, PathError> {
-        let place = path.events.first().map_or(NOWHERE, |event| event.place);
+        let switched = path.events.first().map(|event| event.place);
+        let place = switched.or(path.waits_before.first().map(|wait| wait.place));
+        let place = place.unwrap_or(NOWHERE);
         // Not in axis space, where boards open no gates.
         let pose = self.kinematics.forward(&stand.axes);
         let shape = Shape::standing(channels(&pose, &stand.tip.extension_mm), place);

@@ -3,7 +3,7 @@
 use super::blocks::{Blocks, Course, Leg};
 use super::shape::Shape;
 use super::{CAPACITY, PathError, TooFast};
-use nc::Motion;
+use nc::{Motion, Wait};
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{Knot, Path, PathSpace, SpeedLimits};
 
@@ -14,6 +14,8 @@ pub struct PlannedPath {
     pub motion: Motion,
     /// What the knots are: the tool in the frame of the work, or the axes.
     pub space: PathSpace,
+    /// The machine waits for these before the path, one after the other; then it stands.
+    pub waits_before: Vec<Wait>,
     /// The machine stands for this long before the path begins \[s\] (G4).
     pub dwell_before_s: f64,
     /// The path begins at a corner of this much within a path of the program, which is too sharp to continue
@@ -109,6 +111,7 @@ impl PlannedPath {
         Self {
             motion,
             space,
+            waits_before: Vec::new(),
             dwell_before_s: 0.0,
             corner_deg: None,
             knots: shape.knots.clone(),
@@ -153,6 +156,7 @@ impl PlannedPath {
     pub(super) fn begin_at(&mut self, s: f64, actions: Vec<PathAction>) {
         (self.start_s, self.start_actions) = (s, actions);
         (self.dwell_before_s, self.corner_deg) = (0.0, None);
+        self.waits_before.clear();
     }
 
     /// The programmed speeds, or those that a rapid is planned with.

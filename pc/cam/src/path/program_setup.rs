@@ -48,10 +48,14 @@ impl Planner {
     pub fn notices(&self, program: &Program) -> Vec<String> {
         let events = program.paths.iter().flat_map(|path| &path.events);
         let mut told = BTreeSet::new();
+        let mut tool_told = false;
         let mut notices = Vec::new();
         for event in events {
             let text = match event.action {
-                ProgramAction::ChangeTool(number) => format!("tool {number} must be in the machine"),
+                // The next ones are the same, or the operator is asked for them.
+                ProgramAction::ChangeTool(number) if !std::mem::replace(&mut tool_told, true) => {
+                    format!("tool {number} must be in the machine")
+                }
                 ProgramAction::Coolant { .. } => format!("coolant switches nothing: {} has none", self.name),
                 _ => continue,
             };
@@ -62,7 +66,7 @@ impl Planner {
         notices
     }
 
-    /// Whether `program` may begin with the tip at `tip`, moves anything, and needs one tool only.
+    /// Whether `program` may begin with the tip at `tip`, and moves anything.
     pub(super) fn check_begin(&self, program: &Program, tip: &Tip) -> Result<(), PathError> {
         if program.paths.iter().all(|path| path.targets.is_empty()) {
             return Err(PathError::Empty);
@@ -74,17 +78,6 @@ impl Planner {
                 .any(|(here, start)| (here - start).abs() > SAME_START)
             {
                 return Err(PathError::OtherStart { place });
-            }
-        }
-        let mut first = None;
-        for event in program.paths.iter().flat_map(|path| &path.events) {
-            let ProgramAction::ChangeTool(second) = event.action else {
-                continue;
-            };
-            let first = *first.get_or_insert(second);
-            if first != second {
-                let place = event.place;
-                return Err(PathError::SecondTool { place, first, second });
             }
         }
         Ok(())

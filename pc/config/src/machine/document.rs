@@ -83,7 +83,7 @@ impl TryFrom<Document> for MachineFile {
             analog: d.analog_outputs,
             inputs: d.inputs,
         };
-        let (process, outputs) = tables.build(&beams)?;
+        let (process, outputs, inputs) = tables.build(&beams)?;
         Ok(Self {
             name: d.name,
             motion: MotionConfig {
@@ -97,6 +97,7 @@ impl TryFrom<Document> for MachineFile {
             },
             tracking: tracking_unit(d.head, d.slides, d.tracking, d.cameras)?,
             outputs,
+            inputs,
             welding: WeldData::default(),
             process: d.process,
             probe: d.probe,

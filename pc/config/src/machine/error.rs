@@ -79,6 +79,18 @@ pub enum Mistake {
         /// The number of the beam.
         beam: u8,
     },
+    /// An input has only one of the keys of an answer.
+    #[error(
+        "{key} has {given} without {missing}: an input that answers needs both, one that programs wait for neither"
+    )]
+    AnswerIncomplete {
+        /// Dotted name of the table.
+        key: String,
+        /// The key that is there.
+        given: &'static str,
+        /// The key that is not.
+        missing: &'static str,
+    },
     /// An input answers nothing that there is.
     #[error(
         "{key}.answers is \"{answers}\": it must be \"beam 1\", \"beam 2\" or the name of one of [outputs]"
@@ -106,7 +118,7 @@ impl Mistake {
             Self::Value(error) => error.key.to_string(),
             Self::AxisMissing { key, .. } | Self::NoSuchAxis { key, .. } => key.clone(),
             Self::OutputNumber { key, .. } => format!("{key}.number"),
-            Self::NoSuchBeam { key, .. } => key.clone(),
+            Self::NoSuchBeam { key, .. } | Self::AnswerIncomplete { key, .. } => key.clone(),
             Self::AnswersNothing { key, .. } => format!("{key}.answers"),
             Self::Optics { .. } => "cameras.optics".to_owned(),
             Self::TrackerIncomplete { table } => (*table).to_owned(),

@@ -10,7 +10,7 @@ mod weak_protection;
 
 pub use cameras::{CameraConfig, JointForm};
 pub use error::{MachineError, Mistake};
-pub use process_io::OutputNames;
+pub use process_io::{InputNames, OutputNames};
 pub use program::{ArcPlane, LengthUnit, PathMode, ProgramConfig, Rotary};
 pub use weak_protection::WeakProtection;
 
@@ -38,6 +38,8 @@ pub struct MachineFile {
     pub tracking: Option<TrackingUnit>,
     /// Names of its process outputs.
     pub outputs: OutputNames,
+    /// Names of its process inputs.
+    pub inputs: InputNames,
     /// What welds are made with, from a file of its own that belongs to a program; no sets until it was read.
     pub welding: WeldData,
     /// What the process asks for, if that is known.

@@ -3,7 +3,7 @@
 use super::Mistake;
 use serde::Deserialize;
 use shared::config::{AnalogConfig, BeamConfig, OutputConfig, ProcessInputConfig, ProcessIo};
-use shared::io::SIDES;
+use shared::io::{PROCESS_INPUTS, SIDES};
 use std::collections::BTreeMap;
 
 /// What the machine has of outputs, by name.
@@ -14,6 +14,9 @@ pub struct OutputNames {
     /// Analog outputs.
     pub analog: BTreeMap<String, u8>,
 }
+
+/// Inputs by name, and their numbers, from 0.
+pub type InputNames = BTreeMap<String, u8>;
 
 /// A digital output as it is written.
 #[derive(Deserialize)]
@@ -32,14 +35,14 @@ pub struct Analog {
     follows_beam: Option<u8>,
 }
 
-/// An input.
+/// An input. Only one that answers something stops the machine; programs may wait for any.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Input {
     number: u8,
     /// "beam 1", "beam 2" or the name of an output.
-    answers: String,
-    within_ms: u32,
+    answers: Option<String>,
+    within_ms: Option<u32>,
 }
 
 /// Tables `[outputs.NAME]`, `[analog_outputs.NAME]` and `[inputs.NAME]`.
@@ -51,7 +54,10 @@ pub struct Tables {
 
 impl Tables {
     /// What the board is told, and the names.
-    pub fn build(self, beams: &[Option<BeamConfig>; SIDES]) -> Result<(ProcessIo, OutputNames), Mistake> {
+    pub fn build(
+        self,
+        beams: &[Option<BeamConfig>; SIDES],
+    ) -> Result<(ProcessIo, OutputNames, InputNames), Mistake> {
         let mut io = ProcessIo::default();
         let mut names = OutputNames::default();
         for (name, output) in &self.outputs {
@@ -71,30 +77,47 @@ impl Tables {
             let number = place(&key, analog.number, &mut io.analog, config)?;
             names.analog.insert(name.clone(), number);
         }
+        let mut inputs = [None; PROCESS_INPUTS];
+        let mut input_names = InputNames::new();
         for (name, input) in &self.inputs {
             let key = format!("inputs.{name}");
-            let beam = input.answers.strip_prefix("beam ");
-            let line = match beam.and_then(|beam| beam.parse().ok()) {
-                Some(beam) => followed(&key, Some(beam), beams)?,
-                None => names
-                    .outputs
-                    .get(&input.answers)
-                    .map(|output| output + SIDES as u8),
-            };
-            let answers = line.ok_or_else(|| Mistake::AnswersNothing {
-                key: key.clone(),
-                answers: input.answers.clone(),
-            })?;
-            let within_ms = input.within_ms;
-            place(
-                &key,
-                input.number,
-                &mut io.inputs,
-                ProcessInputConfig { answers, within_ms },
-            )?;
+            let answer = answer(&key, input, &names, beams)?;
+            let number = place(&key, input.number, &mut inputs, answer)?;
+            input_names.insert(name.clone(), number);
         }
-        Ok((io, names))
+        io.inputs = inputs.map(Option::flatten);
+        Ok((io, names, input_names))
     }
+}
+
+/// What `input` answers, if anything.
+fn answer(
+    key: &str,
+    input: &Input,
+    names: &OutputNames,
+    beams: &[Option<BeamConfig>; SIDES],
+) -> Result<Option<ProcessInputConfig>, Mistake> {
+    let (answers, within_ms) = match (&input.answers, input.within_ms) {
+        (None, None) => return Ok(None),
+        (Some(answers), Some(within_ms)) => (answers, within_ms),
+        (answers, _) => {
+            return Err(Mistake::AnswerIncomplete {
+                key: key.to_owned(),
+                given: answers.as_ref().map_or("within_ms", |_| "answers"),
+                missing: answers.as_ref().map_or("answers", |_| "within_ms"),
+            });
+        }
+    };
+    let beam = answers.strip_prefix("beam ");
+    let line = match beam.and_then(|beam| beam.parse().ok()) {
+        Some(beam) => followed(key, Some(beam), beams)?,
+        None => names.outputs.get(answers).map(|output| output + SIDES as u8),
+    };
+    let answers = line.ok_or_else(|| Mistake::AnswersNothing {
+        key: key.to_owned(),
+        answers: answers.clone(),
+    })?;
+    Ok(Some(ProcessInputConfig { answers, within_ms }))
 }
 
 /// The beam of that number, from 0, which the machine must have.

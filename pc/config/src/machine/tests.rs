@@ -381,7 +381,7 @@ fn outputs_and_inputs_are_read_by_name_and_put_where_their_numbers_say() {
     let tables = "[outputs.gas]\nnumber = 3\n[outputs.wire]\nnumber = 1\nfollows_beam = 2\n\
                   [analog_outputs.wire_feed]\nnumber = 2\nvalue_at_10v = 15.0\nfollows_beam = 2\n\
                   [inputs.flow]\nnumber = 1\nanswers = \"gas\"\nwithin_ms = 300\n\
-                  [inputs.arc]\nnumber = 4\nanswers = \"beam 2\"\nwithin_ms = 200";
+                  [inputs.arc]\nnumber = 4\nanswers = \"beam 2\"\nwithin_ms = 200\n[inputs.clamp]\nnumber = 2";
     let machine = MachineFile::parse("m.toml", &with_outputs(tables)).unwrap();
     let io = &machine.motion.process;
     assert_eq!(io.outputs[2].unwrap().follows_beam, None);
@@ -391,6 +391,8 @@ fn outputs_and_inputs_are_read_by_name_and_put_where_their_numbers_say() {
     assert_eq!((analog.value_at_10v, analog.follows_beam), (15.0, Some(1)));
     let answers = [0, 3].map(|i| io.inputs[i].map(|input| (input.answers, input.within_ms)));
     assert_eq!(answers, [Some((4, 300)), Some((1, 200))]);
+    assert_eq!(io.inputs.iter().flatten().count(), 2);
+    assert_eq!((machine.inputs["arc"], machine.inputs["clamp"]), (3, 1));
     assert_eq!(
         (
             machine.outputs.outputs["gas"],
@@ -427,6 +429,14 @@ fn outputs_that_cannot_be_are_named_with_what_there_is() {
         (
             "[inputs.flow]\nnumber = 1\nanswers = \"gas\"\nwithin_ms = 5",
             "inputs.flow.answers is \"gas\": it must be \"beam 1\", \"beam 2\" or the name of one of [outputs]",
+        ),
+        (
+            "[inputs.a]\nnumber = 2\n[inputs.b]\nnumber = 2",
+            "inputs.b.number is 2, which another one has",
+        ),
+        (
+            "[inputs.clamp]\nnumber = 2\nwithin_ms = 5",
+            "inputs.clamp has within_ms without answers: an input that answers needs both, one that programs wait for neither",
         ),
         (
             "[analog_outputs.f]\nnumber = 1\nvalue_at_10v = 0.0",

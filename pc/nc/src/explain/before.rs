@@ -24,7 +24,8 @@ pub(super) struct Before {
     pub(super) known: [bool; AXES],
     pub(super) lost: bool,
     pub(super) in_nurbs: bool,
-    /// Events that wait for a motion, and a dwell \[s\].
+    /// Waits before what follows, events that wait for a motion, and a dwell \[s\].
+    pub(super) waits: usize,
     pub(super) pending: Vec<Pending>,
     pub(super) dwell_s: f64,
     /// How many of each there are; targets and events of the last path.
@@ -52,6 +53,7 @@ impl Before {
             known: state.known,
             lost: state.lost,
             in_nurbs: state.nurbs.is_some(),
+            waits: state.waits.len(),
             pending: state.pending.clone(),
             dwell_s: state.dwell_s(),
             paths: state.paths.len(),

@@ -1,6 +1,7 @@
 //! Outputs, spindle, coolant and tool in words.
 
 use crate::program::ProgramAction;
+use crate::waits::Wait;
 use shared::geometry::Turn;
 use shared::protocol::{Channel, PathAction};
 
@@ -47,6 +48,11 @@ pub(super) fn action(action: &ProgramAction, welds: &[String]) -> String {
             said.collect::<Vec<_>>().join(", ")
         }
         ProgramAction::ChangeTool(number) => format!("tool {number} must be in the machine"),
-        ProgramAction::Pause => "the machine waits for the operator".to_owned(),
     }
+}
+
+/// What the machine waits for.
+pub(super) fn wait(wait: &Wait) -> String {
+    let said = wait.text.as_ref().map(|text| format!(": \"{text}\""));
+    format!("waits at rest {}{}", wait.until, said.unwrap_or_default())
 }

@@ -8,6 +8,7 @@ use crate::interpreter::Interpreter;
 use crate::offsets::Coordinates;
 use crate::outputs::Pending;
 use crate::program::{ArcForm, ArcWay, FeedRate, Plane, ProgramEvent, ProgramPath, Target, Way};
+use crate::waits::Wait;
 use shared::geometry::Turn;
 use shared::io::{AXES, AXIS_NAMES};
 
@@ -35,6 +36,7 @@ pub(super) fn facts(before: &Before, after: &Interpreter) -> Vec<String> {
         block.facts.push(text.to_owned());
     }
     let mut stood = before.dwell_s;
+    let mut waited = before.waits;
     for (index, path) in after
         .paths
         .iter()
@@ -43,8 +45,9 @@ pub(super) fn facts(before: &Before, after: &Interpreter) -> Vec<String> {
     {
         let goes_on = index < before.paths;
         if !goes_on {
+            block.waits(&path.waits_before[waited..]);
             block.dwell(path.dwell_before_s - stood);
-            stood = 0.0;
+            (waited, stood) = (0, 0.0);
         }
         let (targets, events) = if goes_on {
             (before.targets, before.events)
@@ -58,6 +61,7 @@ pub(super) fn facts(before: &Before, after: &Interpreter) -> Vec<String> {
             .facts
             .push(format!("and {} motions more", block.motions - MOST_MOTIONS));
     }
+    block.waits(&after.waits[waited..]);
     block.pending();
     block.dwell(after.dwell_s() - stood);
     block.facts
@@ -86,6 +90,10 @@ struct Block<'a> {
 }
 
 impl Block<'_> {
+    fn waits(&mut self, waits: &[Wait]) {
+        self.facts.extend(waits.iter().map(events::wait));
+    }
+
     fn dwell(&mut self, seconds: f64) {
         if seconds > 0.0 {
             self.facts.push(format!("stands for {} s", figure(seconds)));

@@ -114,14 +114,6 @@ fn a_spindle_turns_at_s_and_stops_with_the_program() {
     assert_eq!(seen(body), expected);
 }
 
-#[test]
-fn inputs_are_refused_with_what_to_do_instead() {
-    assert_eq!(
-        run("M66 P0 L3 Q5\nM2").unwrap_err().to_string(),
-        "line 5, column 1: M66 waits for an input, and the boards have none for programs: wait with G4 P"
-    );
-}
-
 fn read(text: &str) -> Program {
     interpret(text, Options::default()).unwrap()
 }

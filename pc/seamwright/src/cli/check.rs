@@ -1,7 +1,7 @@
 //! `seamwright check`: can this machine run this program?
 
 use super::explain::{Explanation, Lines};
-use super::{machine_for, plan_program, read_program, read_program_by, slower};
+use super::{machine_for, plan_program, read_program, read_program_by, slower, waits};
 use crate::console::{out, outln};
 use anyhow::{Context, bail};
 use cam::dry_run;
@@ -9,7 +9,7 @@ use cam::dry_run::Forecast;
 use cam::path::{Blocks, PlannedPath, Planner};
 use clap::Args;
 use config::machine::MachineFile;
-use nc::{Motion, Program, explain_file};
+use nc::{Motion, Options, Program, explain_file};
 use std::path::PathBuf;
 use world::{Deviation, SeamError, check_seam, not_followed};
 
@@ -55,6 +55,9 @@ impl Check {
         }
         let ran = dry_run::forecast(&machine, &planner, &paths).with_context(|| format!("program {name}"))?;
         print(&paths, &ran);
+        if let Some(waits) = waits::told(&program) {
+            outln!("  {waits}: these times are in no duration");
+        }
         slower(&paths).for_each(|found| outln!("  {found}"));
         out!("{}", ran.slowed);
         print_weakened(&machine);
@@ -79,11 +82,15 @@ impl Check {
 impl Check {
     /// The program, explained if that was asked for.
     fn read(&self, machine: &MachineFile) -> anyhow::Result<Program> {
+        let options = Options {
+            block_delete: self.block_delete,
+            ..Options::default()
+        };
         let Some(lines) = self.explain else {
-            return read_program(&self.program, machine, self.block_delete);
+            return read_program(&self.program, machine, options);
         };
         let mut explanation = Explanation::of(lines);
-        let read = read_program_by(&self.program, machine, self.block_delete, |file, options| {
+        let read = read_program_by(&self.program, machine, options, |file, options| {
             explain_file(file, options, |told| explanation.tell(&told))
         });
         explanation.end();
@@ -148,6 +155,14 @@ fn print(paths: &[PlannedPath], ran: &Forecast) {
         }
         if let Some(corner) = path.corner_deg {
             outln!("      begins at a corner of {corner:.1}°, where the machine stops");
+        }
+        for wait in &path.waits_before {
+            outln!(
+                "      waits before it {} ({} in line {})",
+                wait.until,
+                wait.code,
+                wait.place.line
+            );
         }
         if path.dwell_before_s > 0.0 {
             outln!("      after {:.2} s at rest", path.dwell_before_s);

@@ -1,11 +1,12 @@
 //! `seamwright dry-run`: duration of a program, and its demands on the machine.
 
-use super::{OUTSIDE, machine_for, plan_program, read_program, slower};
+use super::{OUTSIDE, machine_for, plan_program, read_program, slower, waits};
 use crate::console::{out, outln};
 use anyhow::Context;
 use cam::dry_run;
 use cam::path::Planner;
 use clap::Args;
+use nc::Options;
 use report::write_dry_run;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -54,7 +55,11 @@ impl DryRun {
     pub fn run(self) -> anyhow::Result<ExitCode> {
         let machine = machine_for(&self.machine, &self.program, self.weld_data.as_deref())?;
         let name = self.program.display();
-        let program = read_program(&self.program, &machine, self.block_delete)?;
+        let options = Options {
+            block_delete: self.block_delete,
+            ..Options::default()
+        };
+        let program = read_program(&self.program, &machine, options)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
         let from = machine.homed_axes();
         let mut paths = plan_program(&self.program, &program, &planner, &from, self.speed)?;
@@ -76,6 +81,9 @@ impl DryRun {
         }
         outln!("{title}");
         out!("{ran}");
+        if let Some(waits) = waits::told(&program) {
+            outln!("  {waits}: these times are in no duration");
+        }
         slower.iter().for_each(|found| outln!("  {found}"));
         if let Some(directory) = &self.report {
             outln!("  report in {}", directory.display());

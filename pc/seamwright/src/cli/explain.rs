@@ -1,13 +1,11 @@
 //! `seamwright check --explain`: what each block of a program does.
 
-use crate::console::outln;
+use crate::console::{outln, shown};
 use nc::Told;
 use std::str::FromStr;
 
 /// Most blocks that are printed; the others are counted.
 const MOST_BLOCKS: usize = 1000;
-/// Most characters of a line that are printed.
-const LONGEST_TEXT: usize = 200;
 
 /// Lines of a program, the first and the last one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,16 +78,6 @@ impl Explanation {
     }
 }
 
-/// Text of a program that does nothing to a terminal.
-fn shown(text: &str) -> String {
-    let plain = |c: char| if c.is_control() { ' ' } else { c };
-    let mut shown: String = text.chars().take(LONGEST_TEXT).map(plain).collect();
-    if text.chars().nth(LONGEST_TEXT).is_some() {
-        shown.push('…');
-    }
-    shown
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -102,12 +90,5 @@ mod tests {
         for wrong in ["", "0", "140-100", "1-", "a", "-5"] {
             assert!(wrong.parse::<Lines>().is_err(), "{wrong}");
         }
-    }
-
-    #[test]
-    fn what_is_shown_of_a_line_is_short_and_without_control_characters() {
-        assert_eq!(shown("G1\tX1\u{1b}[2J"), "G1 X1 [2J");
-        let long = "X".repeat(LONGEST_TEXT + 1);
-        assert_eq!(shown(&long), format!("{}…", "X".repeat(LONGEST_TEXT)));
     }
 }

@@ -11,6 +11,7 @@ mod plan;
 mod teach;
 mod teach_places;
 mod teach_seam;
+mod waits;
 mod weld;
 
 use crate::console::errln;
@@ -64,17 +65,17 @@ impl Cli {
 /// Exit code of what is outside its limits.
 const OUTSIDE: u8 = 3;
 
-/// Reads the NC program in a file for a machine that stands at its reference marks, and says what a person should know of
-/// how it is understood. Subroutines in files of their own stand beside it.
-fn read_program(path: &Path, machine: &MachineFile, block_delete: bool) -> anyhow::Result<Program> {
-    read_program_by(path, machine, block_delete, interpret_file)
+/// Reads the NC program in a file for a machine that stands at its reference marks, by the operator's choices among `options`,
+/// and says what a person should know of how it is understood. Subroutines in files of their own stand beside it.
+fn read_program(path: &Path, machine: &MachineFile, options: Options) -> anyhow::Result<Program> {
+    read_program_by(path, machine, options, interpret_file)
 }
 
 /// The same with `read`, which is [`interpret_file`] or does more on the way.
 fn read_program_by(
     path: &Path,
     machine: &MachineFile,
-    block_delete: bool,
+    options: Options,
     read: impl FnOnce(File, Options) -> Result<Program, NcError>,
 ) -> anyhow::Result<Program> {
     let name = path.display();
@@ -90,9 +91,8 @@ fn read_program_by(
         ..planner.setup(&machine.homed_axes())
     };
     let options = Options {
-        block_delete,
         setup: Arc::new(setup),
-        ..Options::default()
+        ..options
     };
     let program = read(file, options).with_context(|| format!("program {name}"))?;
     for notice in &program.notices {

@@ -204,7 +204,7 @@ impl SeamArgs {
         let drawn = part.drawn(machine)?;
         let (start, drawing) = self.start(machine, drawn.as_ref(), &cameras)?;
         let program = match (&self.seam_of, drawn) {
-            (Some(file), _) => Some(read_program(file, machine, false)?),
+            (Some(file), _) => Some(read_program(file, machine, Options::default())?),
             (None, Some(plan)) => Some(interpret(&plan.program, Options::default())?),
             (None, None) if self.seam.is_some() => {
                 bail!("the part has no drawing that --seam could deviate from: name its program by --seam-of")

@@ -2,7 +2,7 @@
 
 use super::boards::{BoardChoice, exit_code};
 use super::cameras::CameraArgs;
-use super::{OUTSIDE, machine_for, read_program, sentence, slower};
+use super::{OUTSIDE, machine_for, read_program, sentence, slower, waits};
 use crate::console::{errln, out, outln};
 use crate::terminal::Operator;
 use anyhow::{Context, Error, bail};
@@ -12,7 +12,7 @@ use config::machine::MachineFile;
 use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
 use host_link::spool::Spooling;
 use job::{Job, JobError, Names, NoTeaching, Taught, Work, check_teaching};
-use nc::Program;
+use nc::{Options, Program, Wait};
 use parts::PartFile;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -68,6 +68,9 @@ pub struct Weld {
     /// Leave out blocks that start with /
     #[arg(long)]
     block_delete: bool,
+    /// Stop at M1 as at M0
+    #[arg(long)]
+    optional_stop: bool,
     /// Wait after every block of the program until the operator continues
     #[arg(long)]
     single_block: bool,
@@ -114,7 +117,7 @@ impl Weld {
             .transpose()?
             .map(Arc::new);
         let drawing = match &self.seam_of {
-            Some(file) => Some(read_program(file, &machine, self.block_delete)?),
+            Some(file) => Some(read_program(file, &machine, self.options())?),
             None => None,
         };
         let cameras = self.cameras.choose(&machine, &self.machine, &self.boards)?;
@@ -152,6 +155,7 @@ impl Weld {
         let keepers = self.cameras.keep(&cameras)?;
         let operator = Operator::SaysWords {
             single_block: self.single_block,
+            stops: matches!(&task, Task::Program(_, program) if program.waits().any(Wait::is_for_operator)),
         };
         let ended = match self.boards.run(&job, operator, Some(&self.report))? {
             Ok(ended) => ended,
@@ -190,11 +194,20 @@ impl Weld {
         exit_code(ended.error)
     }
 
+    /// The operator's choices.
+    fn options(&self) -> Options {
+        Options {
+            block_delete: self.block_delete,
+            optional_stop: self.optional_stop,
+            ..Options::default()
+        }
+    }
+
     /// What to do, and the part to judge it by.
     fn task(&self, machine: &MachineFile) -> anyhow::Result<(Task, Option<PartFile>)> {
         let told = self.part.as_deref().map(PartFile::read).transpose()?;
         let program = |file: PathBuf| -> anyhow::Result<Task> {
-            let program = read_program(&file, machine, self.block_delete)?;
+            let program = read_program(&file, machine, self.options())?;
             Ok(Task::Program(file, program))
         };
         if self.job.extension().is_none_or(|extension| extension != "toml") {
@@ -230,6 +243,18 @@ impl Weld {
             told_of(&file, &taught.notes);
         }
         Ok(())
+    }
+
+    /// What the operator has to be there for, and which tool has to be in the machine at a line in the middle.
+    fn tell_waits(&self, program: &Program) {
+        if let Some(waits) = waits::told(program) {
+            errln!("seamwright: the program {waits}");
+        }
+        if let Some(line) = self.from_line
+            && let Some(tool) = program.changed_tool_at(line)
+        {
+            errln!("seamwright: from line {line}: tool {tool} must be in the machine");
+        }
     }
 
     /// Whether the machine can run the program and the slides reach the seam, from the park position. The boards
@@ -273,6 +298,7 @@ impl Weld {
         let paths = planned.with_context(|| owner.clone())?;
         check_constant_speed(&paths, judged).context(owner)?;
         slower(&paths).for_each(|found| errln!("seamwright: warning: {found}"));
+        self.tell_waits(program);
         if self.seam_of.is_none() && self.cameras.pictures() {
             for found in not_followed(&paths, job.machine, seam)? {
                 errln!("seamwright: warning: {found}");

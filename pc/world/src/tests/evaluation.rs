@@ -98,6 +98,7 @@ fn planned() -> PlannedPath {
     PlannedPath {
         motion: Motion::Feed,
         space: PathSpace::Tool,
+        waits_before: Vec::new(),
         dwell_before_s: 0.0,
         corner_deg: None,
         knots: knots.collect(),

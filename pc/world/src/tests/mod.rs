@@ -36,6 +36,7 @@ pub fn motion_sample(tick: u32) -> MotionSample {
         speed_mm_s: 0.0,
         beams: [true; 2],
         outputs: 0,
+        inputs: 0,
         levels: [0.0; 4],
         switched: shared::io::SwitchedLines::NONE,
         axes: [0.0; AXES],

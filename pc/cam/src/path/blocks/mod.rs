@@ -77,6 +77,7 @@ impl Planner {
         Ok(PlannedPath {
             motion: Motion::Feed,
             space: PathSpace::Tool,
+            waits_before: Vec::new(),
             dwell_before_s: 0.0,
             corner_deg: None,
             knots: Vec::new(),

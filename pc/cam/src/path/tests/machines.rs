@@ -45,20 +45,6 @@ fn what_a_first_motion_does_not_say_stays_as_the_machine_stands() {
     assert_axes(end("ac-head", &not_said), end("ac-head", &said));
     let error = plan_on("ac-head", "G21\nM5\nM2").unwrap_err();
     assert_eq!(error.to_string(), "the program does not move the machine");
-    let error = plan_on("ac-head", "T1 M6\nG0 X500\nT2 M6\nM2").unwrap_err();
-    assert!(
-        matches!(
-            error,
-            PathError::SecondTool {
-                first: 1,
-                second: 2,
-                ..
-            }
-        ),
-        "{error}"
-    );
-    let error = plan_on("ac-head", "G0 X500\nM0\nG0 X600\nM2").unwrap_err();
-    assert!(matches!(error, PathError::Pause { code: "M0", .. }), "{error}");
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod rotary;
 mod short_blocks;
 mod smoothing;
 mod too_fast;
+mod waits;
 
 use super::*;
 use crate::attitude::interpolate;

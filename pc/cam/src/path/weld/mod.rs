@@ -59,12 +59,14 @@ impl Planner {
                 // The path stands, and may switch more.
                 let mut path = path.clone();
                 path.events.retain(|event| event != word);
-                let nothing = path.events.is_empty() && path.dwell_before_s == 0.0;
+                let rests = path.dwell_before_s > 0.0 || !path.waits_before.is_empty();
+                let nothing = path.events.is_empty() && !rests;
                 Ok(itself(if nothing { Vec::new() } else { vec![path] }))
             }
             (None, Some(weld)) => {
                 let name = &program.welds[weld.index];
-                let welds = path.motion == Motion::Feed && path.dwell_before_s == 0.0;
+                let rests = path.dwell_before_s > 0.0 || !path.waits_before.is_empty();
+                let welds = path.motion == Motion::Feed && !rests;
                 if weld.done || !welds {
                     return Err(PathError::WeldOn {
                         place: place(path).unwrap_or(weld.place),

@@ -249,6 +249,7 @@ fn output(with_target: usize, after_mm: f64, action: PathAction, place: SourcePo
 /// The machine stands and switches `actions`.
 fn standing(actions: &[PathAction], dwell_before_s: f64, place: SourcePosition) -> ProgramPath {
     ProgramPath {
+        waits_before: Vec::new(),
         dwell_before_s,
         motion: Motion::Stand,
         targets: Vec::new(),
@@ -262,6 +263,7 @@ fn standing(actions: &[PathAction], dwell_before_s: f64, place: SourcePosition) 
 
 fn feeding(targets: Vec<Target>, events: Vec<ProgramEvent>, dwell_before_s: f64) -> ProgramPath {
     ProgramPath {
+        waits_before: Vec::new(),
         dwell_before_s,
         motion: Motion::Feed,
         targets,

@@ -2,7 +2,7 @@
 
 use super::super::boards::{BoardChoice, exit_code};
 use super::super::cameras::source;
-use super::super::read_program;
+use super::super::{read_program, waits};
 use super::{Camera, Meets};
 use crate::terminal::Operator;
 use anyhow::{Context, bail};
@@ -12,6 +12,7 @@ use camera::calibrate::procedure::CalibrationResult;
 use clap::Args;
 use config::machine::{JointForm, MachineFile};
 use job::{ImageCameras, Job, Names, PictureRun, Work};
+use nc::Options;
 use shared::io::SIDES;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -80,7 +81,13 @@ impl Live {
                 machine_file.display()
             );
         }
-        let program = read_program(&self.at, &machine, false)?;
+        let program = read_program(&self.at, &machine, Options::default())?;
+        if let Some(waits) = waits::told(&program) {
+            bail!(
+                "program {} {waits}, which a calibration does not: leave that out",
+                self.at.display()
+            );
+        }
         let seam = match (&self.seam, &source) {
             (Some(file), _) => Some(Deviation::read(file)?),
             (None, PictureChoice::Rendered(_)) => Some(Deviation::parse("coupon", COUPON)?),
