@@ -26,7 +26,7 @@ impl Open {
         }
     }
 
-    fn loops(&self) -> bool {
+    pub(super) fn loops(&self) -> bool {
         !matches!(self, Self::If(_))
     }
 

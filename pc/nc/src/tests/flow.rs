@@ -69,6 +69,17 @@ fn subroutines_may_be_in_files_of_their_own() {
 }
 
 #[test]
+fn a_long_program_may_have_calls_loops_and_conditions() {
+    let straight = "N1\n".repeat(1_000_001);
+    let flow = "o1 sub\nG0 X1\no1 endsub\no1 call\no2 repeat [2]\no2 endrepeat\no3 if [1]\n";
+    let program = run(&format!("{flow}{straight}o3 endif\nG0 X2\nM2")).unwrap();
+    assert_eq!(program.paths.len(), 4);
+    // In a subroutine the same lines are too many.
+    let called = format!("o1 sub\n{straight}o1 endsub\no1 call\nM2");
+    assert!(matches!(problem(&called).0, Problem::Endless(_)));
+}
+
+#[test]
 fn what_does_not_end_is_told() {
     // Lines that are passed over count, too.
     let passed = "G1 X1\n".repeat(3000);
