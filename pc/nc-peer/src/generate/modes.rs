@@ -55,11 +55,13 @@ pub fn tool(writer: &mut Writer) {
     match writer.random.below(8) {
         0..=3 => {
             writer.block(&format!("T{number} M6"));
+            after_change(writer);
             writer.block(&format!("G43 H{number}"));
         }
         4 => {
             writer.block(&format!("T{number}"));
             writer.block("M6");
+            after_change(writer);
         }
         5 => {
             let length = writer.length(20.0).abs();
@@ -75,6 +77,13 @@ pub fn tool(writer: &mut Writer) {
     if writer.random.percent(50) {
         writer.block("G49");
     }
+}
+
+/// X and Y after a change of tools: the peer asks its machine where it is then, and that of the program alone has left
+/// rotations of coordinate systems out.
+fn after_change(writer: &mut Writer) {
+    let [x, y] = [writer.length(50.0), writer.length(50.0)];
+    writer.block(&format!("G0 X{x:.4} Y{y:.4}"));
 }
 
 /// M62 to M68, spindle, coolant, dwell, pause.
