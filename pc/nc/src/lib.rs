@@ -37,6 +37,7 @@ mod saved_modes;
 mod scanner;
 mod settings;
 mod setup;
+mod siemens;
 mod source;
 mod subroutines;
 #[cfg(test)]

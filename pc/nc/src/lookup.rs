@@ -82,6 +82,7 @@ impl Lookup for Interpreter {
                 None if name.starts_with('_') => self.system(name),
                 value => value,
             },
+            Parameter::Siemens(_) => self.parameters.get(parameter),
         }
     }
 }

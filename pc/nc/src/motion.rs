@@ -49,7 +49,7 @@ impl Interpreter {
         for (axis, name) in AXIS_WORDS.iter().enumerate() {
             let Some(word) = block.word(name) else { continue };
             let value = word.value * if axis < 3 { self.modal.unit() } else { 1.0 };
-            let from = match self.modal.incremental {
+            let from = match word.step.unwrap_or(self.modal.incremental) {
                 true => self.programmed(&[axis], word.place)?[axis],
                 false => 0.0,
             };

@@ -148,6 +148,11 @@ impl Interpreter {
     /// G28 and G30: by way of the place that axis words say, if there are any, to the home of these axes or of all.
     fn home(&mut self, block: &Block, index: usize, place: SourcePosition) -> Result<(), NcError> {
         let said = self.said(block)?;
+        if self.offsets.turned() && said[0].is_some() != said[1].is_some() {
+            let code = if index == 0 { "G28" } else { "G30" };
+            let why = "X or Y alone in a rotated coordinate system is read differently by controllers: write both, or end the rotation with G10 L2 P0 R0";
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
         if said.iter().any(Option::is_some) {
             if !self.modal.tip {
                 return Err(Problem::NotTip.at(place));

@@ -9,6 +9,7 @@ mod modes;
 mod nurbs;
 mod outputs;
 mod reading;
+mod siemens;
 
 use super::reading::interpret;
 use super::*;
