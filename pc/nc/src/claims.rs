@@ -117,7 +117,7 @@ fn may_have(code: Code) -> &'static [&'static str] {
         Code::QuadraticSpline => &["I", "J"],
         Code::SetOffsets => &["R"],
         Code::Call => &["L"],
-        Code::ToolLength => &["H", "D"],
+        Code::ToolLength | Code::MoreLength => &["H", "D"],
         Code::TipOn | Code::TipByVectors => &["H"],
         code if code.is_cycle() => &["R", "Q", "P", "L"],
         _ => &[],

@@ -78,6 +78,11 @@ pub enum Problem {
         "{0} is set in this block: controllers differ in whether it exists here, so ask in the block before"
     )]
     ExistsHere(String),
+    /// A tool that is not in the table.
+    #[error(
+        "there is no tool {0}: give it a table [tools.{0}] in the machine file, or its length with G10 L1 P{0} Z"
+    )]
+    NoTool(u32),
     /// The system sets it.
     #[error("{0} cannot be set by a program")]
     ReadOnly(String),

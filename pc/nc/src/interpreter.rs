@@ -1,6 +1,6 @@
 //! From blocks to paths: what each block does, in the order of RS274/NGC.
 
-use super::block::{Block, CodeWord, Word};
+use super::block::{Block, CodeWord};
 use super::claims::Claims;
 use super::codes::{Code, Group};
 use super::cycles::Sticky;
@@ -15,6 +15,7 @@ use super::program::{EXTENSION_WORDS, Motion, Notice, Program, ProgramAction, Pr
 use super::reading::RemainingBlocks;
 use super::saved_modes::Saved;
 use super::setup::Setup;
+use super::tool_length::{Tools, tool};
 use shared::io::{AXES, SIDES};
 use std::sync::Arc;
 
@@ -46,7 +47,8 @@ pub(super) struct Interpreter {
     pub(super) sticky: Sticky,
     pub(super) spindle: Spindle,
     /// T, and the tool that M6 has put in.
-    pub(super) tools: [u32; 2],
+    pub(super) tool_numbers: [u32; 2],
+    pub(super) tools: Tools,
     pub(super) pending: Vec<Pending>,
     /// s, and where it was programmed.
     dwell: Option<(f64, SourcePosition)>,
@@ -82,7 +84,8 @@ impl Interpreter {
             spline_end: None,
             sticky: Sticky::default(),
             spindle: Spindle::default(),
-            tools: [0; 2],
+            tool_numbers: [0; 2],
+            tools: Tools::new(&setup.tools),
             pending: Vec::new(),
             dwell: None,
             paths: Vec::new(),
@@ -146,23 +149,21 @@ impl Interpreter {
         self.save_modes(block)?;
         self.switch(block, &claims)?;
         self.system_and_tool(block, &claims)?;
+        if let (Some(code), Some(motion)) = (takes, block.code(Group::Motion))
+            && motion.code != Code::CancelMotion
+        {
+            return Err(Problem::AxesTaken(code.name).at(motion.place));
+        }
         let feeds = match block.code(Group::NonModal) {
             Some(code) if code.code == Code::MachineAxes => self.axes_motion(block, code.place)?,
             Some(code) if code.code != Code::Dwell => {
-                let motion = block
-                    .code(Group::Motion)
-                    .filter(|motion| motion.code != Code::CancelMotion);
-                if code.code.takes_axes()
-                    && let Some(motion) = motion
-                {
-                    return Err(Problem::AxesTaken(code.name).at(motion.place));
-                }
                 if code.code.takes_axes() {
                     no_slides_or_direction(block)?;
                 }
                 self.settings(block, &claims, *code)?;
                 !code.code.takes_axes() && self.tip_motion(block, &claims)?
             }
+            _ if takes.is_some() => false,
             _ => self.tip_motion(block, &claims)?,
         };
         if !feeds {
@@ -184,7 +185,7 @@ impl Interpreter {
             self.weld(name.as_deref(), *place);
         }
         if let Some(t) = block.word("T") {
-            self.tools[0] = tool_number(t)?;
+            self.tool_numbers[0] = tool(t)?;
         }
         if let Some(code) = block.code(Group::Tool).filter(|code| code.code == Code::SetTool) {
             let missing = Problem::Missing {
@@ -192,15 +193,15 @@ impl Interpreter {
                 word: "Q",
             };
             let q = claims.word(code.code, "Q").ok_or(missing.at(code.place))?;
-            self.tools[1] = tool_number(q)?;
+            self.tool_numbers[1] = tool(q)?;
         } else if let Some(code) = block.code(Group::Tool) {
             // The spindle stops for it.
             if let Some(stop) = self.spindle.stop(code.name, code.place) {
                 self.wait(stop);
             }
-            self.tools[1] = self.tools[0];
+            self.tool_numbers[1] = self.tool_numbers[0];
             self.wait(Pending {
-                action: ProgramAction::ChangeTool(self.tools[1]),
+                action: ProgramAction::ChangeTool(self.tool_numbers[1]),
                 code: code.name,
                 place: code.place,
                 at_rest: true,
@@ -409,11 +410,4 @@ pub(super) fn no_slides_or_direction(block: &Block) -> Result<(), NcError> {
         Some(word) => Err(Problem::Orphan(word.label()).at(word.place)),
         None => Ok(()),
     }
-}
-
-fn tool_number(word: &Word) -> Result<u32, NcError> {
-    if word.value < 0.0 || word.value.fract() != 0.0 || word.value > f64::from(u32::MAX) {
-        return Err(word.value_error("tools have whole numbers from 0"));
-    }
-    Ok(word.value as u32)
 }

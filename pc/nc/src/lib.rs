@@ -43,6 +43,7 @@ mod subroutines;
 #[cfg(test)]
 mod tests;
 pub mod text;
+mod tool_length;
 
 pub use error::{NcError, Problem, SourcePosition};
 pub use explain::{Told, explain, explain_file};

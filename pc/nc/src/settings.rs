@@ -21,19 +21,7 @@ impl Interpreter {
         let Some(code) = block.code(Group::ToolLength) else {
             return Ok(());
         };
-        if let Some(h) = claims.word(code.code, "H") {
-            if h.value < 0.0 || h.value.fract() != 0.0 {
-                return Err(h.value_error("tools have whole numbers from 0"));
-            }
-            if h.value > 0.0 {
-                let text = format!(
-                    "H{} changes nothing: the tip is that of the tool in the machine file",
-                    h.value
-                );
-                self.notice(text, h.place);
-            }
-        }
-        Ok(())
+        self.tool_length(block, claims, *code)
     }
 
     /// The codes that hold in their block only, but G4 and G53.
@@ -85,7 +73,7 @@ impl Interpreter {
         AXIS_WORDS.iter().enumerate().filter_map(value).collect()
     }
 
-    /// G10 L2 and L20.
+    /// G10.
     fn set_offsets(&mut self, block: &Block, claims: &Claims, place: SourcePosition) -> Result<(), NcError> {
         let code = Code::SetOffsets;
         let need = |word: &'static str| {
@@ -96,9 +84,10 @@ impl Interpreter {
         let here = match l.value {
             2.0 => false,
             20.0 => true,
+            1.0 | 10.0 | 11.0 => return self.set_tool(block, claims, [l, p], place),
             _ => {
                 return Err(
-                    l.value_error("L2 and L20 set coordinate systems; tools are those of the machine file")
+                    l.value_error("L2 and L20 set coordinate systems, L1, L10 and L11 lengths of tools")
                 );
             }
         };
@@ -159,7 +148,7 @@ impl Interpreter {
             }
             let words = self.tip_words(said, place)?;
             if self.learn(&words) {
-                self.rapid(Way::Line, words, place);
+                self.rapid(Way::Line, words, place)?;
             }
         }
         let all = said.iter().all(Option::is_none);
@@ -179,7 +168,7 @@ impl Interpreter {
             .setup
             .kinematics
             .as_ref()
-            .and_then(|kinematics| kinematics.axes(&at));
+            .and_then(|kinematics| kinematics.axes(&self.tip_of_machine(&at)));
         axes.ok_or(Problem::UnknownPosition.at(place))
     }
 }

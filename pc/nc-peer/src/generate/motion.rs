@@ -152,10 +152,6 @@ pub fn of_the_axes(writer: &mut Writer) {
     let length = writer.length(50.0);
     let letter = *writer.random.of(&XYZ);
     let word = format!("{letter}{}", writer.value(length));
-    // Under the length of a tool the axes are not where its tip is, which lists do not tell apart.
-    if writer.random.percent(80) {
-        writer.block("G49");
-    }
     match writer.random.below(5) {
         0 if letter == 'Z' => writer.block(&format!("G28 Z{length:.3}")),
         0 => {

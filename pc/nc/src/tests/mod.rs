@@ -10,6 +10,7 @@ mod nurbs;
 mod outputs;
 mod reading;
 mod siemens;
+mod tool_length;
 
 use super::reading::interpret;
 use super::*;
