@@ -10,19 +10,23 @@ use super::scanner::Scanner;
 
 /// What of Siemens stands at the scanner, if that is no word.
 pub(super) fn read(scanner: &mut Scanner, block: &mut Block, lookup: &mut InBlock) -> Result<bool, NcError> {
-    if block.is_blank() && label(scanner) {
-        return Ok(true);
+    if scanner.at_siemens_parameter() {
+        return setting(scanner, lookup);
     }
-    Ok(setting(scanner, lookup)? || message(scanner, block)?)
+    let start = scanner.mark();
+    let letters = scanner.skip_letters();
+    scanner.go_back(start);
+    // A word of RS274/NGC has one letter.
+    Ok(letters > 1 && ((block.is_blank() && label(scanner)) || message(scanner, block)?))
 }
 
 /// `NAME:` at the start of a block; there is nothing that jumps to it.
 fn label(scanner: &mut Scanner) -> bool {
     let start = scanner.mark();
-    let letters = scanner.skip_letters();
+    scanner.skip_letters();
     scanner.take(|c| c.is_ascii_alphanumeric() || c == '_');
     scanner.skip_blanks();
-    let is_label = letters > 1 && scanner.peek() == Some(':');
+    let is_label = scanner.peek() == Some(':');
     if is_label {
         scanner.step();
     } else {
@@ -33,10 +37,8 @@ fn label(scanner: &mut Scanner) -> bool {
 
 /// `R1=…`.
 fn setting(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<bool, NcError> {
-    let (place, start) = (scanner.place(), scanner.mark());
-    let at_parameter = scanner.at_siemens_parameter();
-    let Some(name) = scanner.address().filter(|_| at_parameter) else {
-        scanner.go_back(start);
+    let place = scanner.place();
+    let Some(name) = scanner.address() else {
         return Ok(false);
     };
     let digits = name[1..].to_owned();
