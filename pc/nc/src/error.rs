@@ -170,6 +170,9 @@ pub enum Problem {
     /// A loop without an end.
     #[error("more than {0} lines in loops and subroutines: the program does not seem to end")]
     Endless(u64),
+    /// A loop in which nothing changes.
+    #[error("the loop o{0} never ends: nothing is set in it that its conditions depend on")]
+    SameAgain(String),
     /// In a file with a subroutine.
     #[error("in {file}: {problem}")]
     InFile {

@@ -61,6 +61,8 @@ pub(super) struct Interpreter {
     pub(super) notices: Vec<Notice>,
     pub(super) branches: bool,
     pub(super) ended: bool,
+    /// How often a parameter that stands for the state was read.
+    pub(super) looks: u64,
     /// Line that is read, for #<_line>.
     pub(super) line: u32,
 }
@@ -95,6 +97,7 @@ impl Interpreter {
             notices: Vec::new(),
             branches: false,
             ended: false,
+            looks: 0,
             line: 0,
         }
     }

@@ -91,7 +91,13 @@ impl Lookup for Interpreter {
 }
 
 impl Interpreter {
+    /// What conditions may depend on has not changed, nor been looked at, as long as this stays as it is.
+    pub(super) fn conditions(&self) -> u64 {
+        self.parameters.changes + self.looks
+    }
+
     fn state(&mut self, place: &Place) -> Option<f64> {
+        self.looks += 1;
         Some(match *place {
             Place::Home(index, axis) => self.homes[index][axis],
             Place::LocalOn => f64::from(u8::from(self.offsets.local_on)),
@@ -114,6 +120,7 @@ impl Interpreter {
 
     /// Named parameters of the system.
     fn system(&mut self, name: &str) -> Option<f64> {
+        self.looks += 1;
         let truth = |holds: bool| Some(f64::from(u8::from(holds)));
         let axes = ["_x", "_y", "_z", "_a", "_b", "_c"];
         if let Some(axis) = axes.iter().position(|own| *own == name) {
@@ -161,6 +168,8 @@ impl Interpreter {
             self.parameters.set(parameter, value);
             return Ok(());
         };
+        // Some of these are counted once more below.
+        self.parameters.changes += 1;
         match place(*number) {
             Some(Place::Home(index, axis)) => self.homes[index][axis] = value,
             Some(Place::LocalOn) => self.offsets.local_on = value != 0.0,

@@ -105,6 +105,8 @@ pub(super) struct Parameters {
     numbered: BTreeMap<u32, f64>,
     global: BTreeMap<String, f64>,
     siemens: BTreeMap<u16, f64>,
+    /// How many values were set.
+    pub(super) changes: u64,
     /// The innermost subroutine last.
     levels: Vec<Level>,
 }
@@ -115,6 +117,7 @@ impl Default for Parameters {
             numbered: BTreeMap::new(),
             global: BTreeMap::new(),
             siemens: BTreeMap::new(),
+            changes: 0,
             levels: vec![Level::default()],
         }
     }
@@ -156,6 +159,7 @@ impl Parameters {
 
     /// Gives one a value.
     pub(super) fn set(&mut self, parameter: &Parameter, value: f64) {
+        self.changes += 1;
         let Some(level) = self.levels.last_mut() else {
             return;
         };

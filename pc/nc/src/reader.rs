@@ -116,6 +116,8 @@ pub(super) struct Reader {
     lines: Lines,
     options: Options,
     pub(super) interpreter: Interpreter,
+    /// What conditions could depend on before the line that is read.
+    pub(super) conditions_before: u64,
     ran: Option<Ran>,
 }
 
@@ -148,6 +150,7 @@ impl Reader {
             position,
             options,
             interpreter,
+            conditions_before: 0,
             ran: None,
         };
         reader.reopen();
@@ -217,6 +220,7 @@ impl Reader {
         };
         let here = self.position.here();
         self.position.executed += 1;
+        self.conditions_before = self.interpreter.conditions();
         let parsed = parse(&text, here.line, self.options.block_delete, &mut self.interpreter)?;
         let seen = self.position.seen;
         self.position.seen |= parsed != Parsed::Blank;
