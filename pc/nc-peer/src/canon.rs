@@ -45,7 +45,8 @@ struct Canon {
     feed_mm: f64,
     /// Axis that arcs go about.
     axis: usize,
-    /// Of the coordinate system, of G92 and of rotation about Z.
+    /// Of the tool, of the coordinate system, of G92 and of rotation about Z.
+    tool: Place,
     origin: Place,
     local: Place,
     rotation_deg: f64,
@@ -59,6 +60,7 @@ impl Default for Canon {
             feed: 0.0,
             feed_mm: 0.0,
             axis: 2,
+            tool: [0.0; 6],
             origin: [0.0; 6],
             local: [0.0; 6],
             rotation_deg: 0.0,
@@ -71,6 +73,7 @@ impl Canon {
         match name {
             "USE_LENGTH_UNITS" => self.unit = if words == ["CANON_UNITS_MM"] { 1.0 } else { INCH },
             "SET_G5X_OFFSET" => self.origin = self.place(words.get(1..).unwrap_or_default())?,
+            "USE_TOOL_LENGTH_OFFSET" => self.tool = self.place(words)?,
             "SET_G92_OFFSET" => self.local = self.place(words)?,
             "SET_XY_ROTATION" => self.rotation_deg = number(words, 0)?,
             "SELECT_PLANE" => {
@@ -205,15 +208,15 @@ impl Canon {
         Ok(place)
     }
 
-    /// A place of the program, in the work. The tool's length is not in it: X Y Z are its tip.
+    /// A place of the program, as that of a tool without length.
     fn to_work(&self, program: Place) -> Place {
         let shifted: Place = std::array::from_fn(|axis| program[axis] + self.local[axis]);
         let turned = turned(shifted, self.rotation_deg);
-        std::array::from_fn(|axis| turned[axis] + self.origin[axis])
+        std::array::from_fn(|axis| turned[axis] + self.origin[axis] + self.tool[axis])
     }
 
     fn to_program(&self, work: Place) -> Place {
-        let shifted: Place = std::array::from_fn(|axis| work[axis] - self.origin[axis]);
+        let shifted: Place = std::array::from_fn(|axis| work[axis] - self.origin[axis] - self.tool[axis]);
         let turned = turned(shifted, -self.rotation_deg);
         std::array::from_fn(|axis| turned[axis] - self.local[axis])
     }

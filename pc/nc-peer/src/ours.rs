@@ -2,6 +2,7 @@
 
 use crate::arc::{self, Arc};
 use crate::list::{Item, Kind, List, Motion, Place, straight, turned, turns_only};
+use crate::peer::TOOLS;
 use nc::{
     ArcForm, ArcWay, FeedRate, Move, NcError, Options, Program, ProgramAction, ProgramEvent, Setup, Target,
     TipAndAxes, Way,
@@ -58,6 +59,7 @@ pub fn read(file: &Path) -> Outcome {
 fn options(file: &Path) -> Options {
     let setup = Setup {
         folders: file.parent().map(Path::to_owned).into_iter().collect(),
+        tools: (1..=TOOLS).map(|number| (number, 0.0)).collect(),
         kinematics: Some(sync::Arc::new(Plain)),
         ..Setup::default()
     };

@@ -22,7 +22,7 @@ const PROGRAM: &str = "/usr/bin/rs274";
 /// What is printed, and what instead.
 const FORMATS: [&[u8; 4]; 2] = [b"%.4f", b"%.9f"];
 /// Tools are numbered up to here, without length and 1 mm thick.
-const TOOLS: u32 = 99;
+pub const TOOLS: u32 = 99;
 /// Longest time of a program.
 const LIMIT: Duration = Duration::from_secs(10);
 

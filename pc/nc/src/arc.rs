@@ -49,7 +49,11 @@ fn form(claims: &Claims, mode: Code, plane: Plane, place: SourcePosition) -> Res
         return Err(Problem::OffPlane { word, plane, words }.at(off.place));
     }
     let any = centre.iter().any(Option::is_some);
-    match (any, claims.word(mode, "R")) {
+    let [r, cr] = ["R", "CR"].map(|name| claims.word(mode, name));
+    if let (Some(_), Some(second)) = (r, cr) {
+        return Err(Problem::Twice(second.label()).at(second.place));
+    }
+    match (any, r.or(cr)) {
         (true, Some(r)) => Err(Problem::CentreAndRadius.at(r.place)),
         (true, None) => Ok(ArcForm::Centre(centre.map(|word| word.map_or(0.0, |w| w.value)))),
         (false, Some(r)) if r.value == 0.0 => Err(r.value_error("the radius must not be 0")),

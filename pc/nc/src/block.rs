@@ -4,8 +4,9 @@ use super::codes::{CODES, Code, Group, NEAR, refused};
 use super::error::{NcError, Problem, SourcePosition};
 use super::expression;
 use super::flow::{self, OWord};
-use super::parameters::{Lookup, Parameter};
+use super::parameters::{InBlock, Lookup, Parameter};
 use super::scanner::Scanner;
+use super::siemens;
 
 /// A word with its value.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Word {
     pub value: f64,
     /// A name, written with `=`.
     pub named: bool,
+    /// A step by IC( ), or a coordinate by AC( ), whatever G90 and G91 say.
+    pub step: Option<bool>,
     /// Where it starts.
     pub place: SourcePosition,
 }
@@ -104,8 +107,17 @@ impl Block {
 
     /// Whether it has comments and nothing else.
     pub fn is_comment(&self) -> bool {
-        let words = self.codes.is_empty() && self.words.is_empty() && self.weld.is_none();
-        words && self.settings.is_empty()
+        self.settings_alone() && self.settings.is_empty()
+    }
+
+    /// Whether nothing has been read of it.
+    pub fn is_blank(&self) -> bool {
+        self.is_empty()
+    }
+
+    /// Whether it sets parameters and does nothing else.
+    pub fn settings_alone(&self) -> bool {
+        self.codes.is_empty() && self.words.is_empty() && self.weld.is_none()
     }
 
     fn is_empty(&self) -> bool {
@@ -133,7 +145,7 @@ const WORDS: [&str; 21] = [
     "X", "Y", "Z", "A", "B", "C", "I", "J", "K", "R", "F", "P", "L", "E", "Q", "S", "T", "H", "D", "@", "^",
 ];
 /// The same, written with `=`.
-const NAMED_WORDS: [&str; 5] = ["V1", "V2", "A3", "B3", "C3"];
+const NAMED_WORDS: [&str; 6] = ["V1", "V2", "A3", "B3", "C3", "CR"];
 /// Words of other controllers without a number, and the code that they are here; none: what they ask for is always so.
 const KEYWORDS: [(&str, Option<Code>); 12] = [
     ("TRAORI", Some(Code::TipOn)),
@@ -179,6 +191,7 @@ pub(super) fn parse(
         line,
         ..Block::default()
     };
+    let lookup = &mut InBlock::new(lookup);
     let mut first = true;
     loop {
         scanner.skip_blanks();
@@ -194,7 +207,7 @@ pub(super) fn parse(
             '/' => return Err(Problem::DeleteInside.at(place)),
             '#' => {
                 scanner.step();
-                setting(&mut scanner, &mut block, lookup)?;
+                setting(&mut scanner, lookup)?;
             }
             '0'..='9' | '.' | '+' | '-' | '[' => return Err(Problem::LooseNumber.at(place)),
             '@' | '^' => {
@@ -202,7 +215,7 @@ pub(super) fn parse(
                 take(&mut block, word, false)?;
             }
             c if c.is_ascii_alphabetic() => {
-                if !keyword(&mut scanner, &mut block)? {
+                if !siemens::read(&mut scanner, &mut block, lookup)? && !keyword(&mut scanner, &mut block)? {
                     let word = word(&mut scanner, lookup)?;
                     take(&mut block, word, first)?;
                 }
@@ -211,7 +224,9 @@ pub(super) fn parse(
         }
         first = false;
     }
+    block.settings = std::mem::take(&mut lookup.settings);
     high_speed(&mut block)?;
+    siemens::check(&block, SourcePosition { line, column: 1 })?;
     // A block number alone does nothing.
     Ok(if block.is_empty() {
         Parsed::Blank
@@ -237,7 +252,7 @@ fn high_speed(block: &mut Block) -> Result<(), NcError> {
 }
 
 /// `#… = …`, behind the `#`.
-fn setting(scanner: &mut Scanner, block: &mut Block, lookup: &mut dyn Lookup) -> Result<(), NcError> {
+fn setting(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<(), NcError> {
     let place = scanner.place();
     let parameter = expression::parameter(scanner, lookup)?;
     scanner.skip_blanks();
@@ -247,8 +262,10 @@ fn setting(scanner: &mut Scanner, block: &mut Block, lookup: &mut dyn Lookup) ->
     scanner.step();
     scanner.skip_blanks();
     let place = scanner.place();
+    lookup.next = Some(parameter.clone());
     let value = expression::value(scanner, lookup)?.ok_or(Problem::NoValue.at(place))?;
-    block.settings.push((parameter, value));
+    lookup.next = None;
+    lookup.settings.push((parameter, value));
     Ok(())
 }
 
@@ -315,7 +332,7 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
     let (place, start) = (scanner.place(), scanner.mark());
     let letters = scanner.skip_letters();
     scanner.go_back(start);
-    let (address, named) = match scanner.address() {
+    let (address, sign) = match scanner.address() {
         Some(name) => (name, true),
         None => {
             let letter = scanner.peek().unwrap_or(' ').to_ascii_uppercase();
@@ -324,23 +341,23 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
         }
     };
     // A letter may be written with a sign, too: X=1.
-    let named = named && address.len() > 1;
-    if named
-        && address
-            .strip_prefix('R')
-            .is_some_and(|number| number.parse::<u32>().is_ok())
-    {
-        return Err(Problem::OtherParameter(address).at(place));
-    }
+    let named = sign && address.len() > 1;
     let of_word = |error: NcError| match error.problem {
         Problem::TooLarge(_) => Problem::TooLarge(address.clone()).at(place),
         _ => error,
     };
-    match expression::value(scanner, lookup).map_err(of_word)? {
+    let (value, step) = match sign {
+        true => siemens::value(scanner, lookup).map_err(of_word)?,
+        // X R1 is not X=R1, but a word without a number.
+        false if scanner.at_siemens_parameter() => (None, None),
+        false => (expression::value(scanner, lookup).map_err(of_word)?, None),
+    };
+    match value {
         Some(value) => Ok(Word {
             address,
             value,
             named,
+            step,
             place,
         }),
         None if letters > 1 && !named => {

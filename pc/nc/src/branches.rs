@@ -11,10 +11,10 @@ use super::subroutines::head;
 pub(super) enum Open {
     /// A part of it runs.
     If(String),
-    /// Where its `while` stands: bytes and lines before.
-    While(String, u64, u32),
-    /// Where what follows `do` begins.
-    Do(String, u64, u32),
+    /// Where its `while` stands: bytes and lines before. What conditions depended on there.
+    While(String, u64, u32, u64),
+    /// Where what follows `do` begins; the same.
+    Do(String, u64, u32, u64),
     /// The same of `repeat`, and how many times more.
     Repeat(String, u64, u32, u64),
 }
@@ -26,7 +26,7 @@ impl Open {
         }
     }
 
-    fn loops(&self) -> bool {
+    pub(super) fn loops(&self) -> bool {
         !matches!(self, Self::If(_))
     }
 
@@ -90,14 +90,19 @@ impl Reader {
                 if done {
                     if !goes_on {
                         self.level().open.pop();
-                    } else if let Some(Open::Do(_, offset, line)) = self.level().open.last().cloned() {
+                    } else if let Some(Open::Do(label, offset, line, conditions)) = self.level().open.pop() {
+                        self.check_ends(conditions, word)?;
+                        let conditions = self.interpreter.conditions();
+                        self.level().open.push(Open::Do(label, offset, line, conditions));
                         self.jump(offset, line);
                     }
                     return Ok(());
                 }
                 if goes_on {
-                    let start = self.start_of_line();
-                    self.level().open.push(Open::While(label, start, line - 1));
+                    let (start, conditions) = (self.start_of_line(), self.conditions_before);
+                    self.level()
+                        .open
+                        .push(Open::While(label, start, line - 1, conditions));
                     return Ok(());
                 }
                 self.skip_to(word, "while", &[Keyword::EndWhile], "endwhile")
@@ -105,13 +110,15 @@ impl Reader {
             }
             Keyword::EndWhile => {
                 let open = self.close(word, "endwhile", "while", |open| matches!(open, Open::While(..)))?;
-                if let Open::While(_, offset, line) = open {
+                if let Open::While(_, offset, line, conditions) = open {
+                    self.check_ends(conditions, word)?;
                     self.jump(offset, line);
                 }
                 Ok(())
             }
             Keyword::Do => {
-                self.level().open.push(Open::Do(label, offset, line));
+                let conditions = self.interpreter.conditions();
+                self.level().open.push(Open::Do(label, offset, line, conditions));
                 Ok(())
             }
             Keyword::Repeat => {
@@ -150,6 +157,15 @@ impl Reader {
                 let end = self.skip_to(word, "continue", &ends, "end of its loop")?;
                 self.flow(&end)
             }
+        }
+    }
+
+    /// Refuses a loop whose next pass goes the same way as the last one, and so without end: nothing was set in it, and it has
+    /// not looked at where the machine is.
+    fn check_ends(&self, before: u64, word: &OWord) -> Result<(), NcError> {
+        match self.interpreter.conditions() == before {
+            true => Err(Problem::SameAgain(word.label.clone()).at(word.place)),
+            false => Ok(()),
         }
     }
 

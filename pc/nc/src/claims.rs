@@ -2,10 +2,12 @@
 
 use super::block::{Block, Word};
 use super::codes::Code;
+use super::direction::DIRECTION_WORDS;
 use super::error::{NcError, Problem};
+use super::program::{AXIS_WORDS, EXTENSION_WORDS};
 
 /// Words that belong to a code; all others stand for themselves.
-const SHARED: [&str; 10] = ["P", "Q", "L", "E", "I", "J", "K", "R", "H", "D"];
+const SHARED: [&str; 11] = ["P", "Q", "L", "E", "I", "J", "K", "R", "H", "D", "CR"];
 
 /// The direction of the tool in straight motions after G43.5.
 pub(super) const VECTOR_LETTERS: [&str; 3] = ["I", "J", "K"];
@@ -19,6 +21,8 @@ impl<'b> Claims<'b> {
     /// block without a code of its own. With `vectors` I J K of a straight motion are the direction of the tool.
     pub(super) fn of(block: &'b Block, modal: Option<Code>, vectors: bool) -> Result<Self, NcError> {
         let own = block.codes.iter().map(|code| code.code);
+        // Without a word of its motion a block has none: G64 P0.1 after an arc.
+        let modal = modal.filter(|_| own.clone().next().is_none() || block.words.iter().any(of_motion));
         let codes: Vec<Code> = own.chain(modal).collect();
         let mut claims = Self::default();
         for word in block
@@ -68,6 +72,19 @@ impl<'b> Claims<'b> {
     }
 }
 
+/// Whether a word cannot belong to anything but a motion.
+fn of_motion(word: &Word) -> bool {
+    let address = word.address.as_str();
+    let words = [
+        &AXIS_WORDS[..],
+        &EXTENSION_WORDS,
+        &DIRECTION_WORDS,
+        &VECTOR_LETTERS,
+        &["R", "CR"],
+    ];
+    words.iter().any(|words| words.contains(&address))
+}
+
 /// Words without which a code means nothing.
 fn needs(code: Code) -> &'static [&'static str] {
     match code {
@@ -91,7 +108,7 @@ fn with_vectors(code: Code) -> &'static [&'static str] {
 /// Words that a code may have besides.
 fn may_have(code: Code) -> &'static [&'static str] {
     match code {
-        Code::ArcClockwise | Code::ArcCounterClockwise => &["I", "J", "K", "R", "P"],
+        Code::ArcClockwise | Code::ArcCounterClockwise => &["I", "J", "K", "R", "CR", "P"],
         Code::UniformNurbs => &["P", "L"],
         Code::KnotNurbs => &["P", "K", "R"],
         Code::Continuous => &["P", "Q"],
@@ -100,7 +117,7 @@ fn may_have(code: Code) -> &'static [&'static str] {
         Code::QuadraticSpline => &["I", "J"],
         Code::SetOffsets => &["R"],
         Code::Call => &["L"],
-        Code::ToolLength => &["H", "D"],
+        Code::ToolLength | Code::MoreLength => &["H", "D"],
         Code::TipOn | Code::TipByVectors => &["H"],
         code if code.is_cycle() => &["R", "Q", "P", "L"],
         _ => &[],

@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 90] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 92] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -27,6 +27,8 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 90] = [
     ('G', 301, Code::SetSecondHome, "G30.1", Group::NonModal),
     ('G', 400, Code::CompensationOff, "G40", Group::Compensation),
     ('G', 430, Code::ToolLength, "G43", Group::ToolLength),
+    ('G', 431, Code::OwnLength, "G43.1", Group::ToolLength),
+    ('G', 432, Code::MoreLength, "G43.2", Group::ToolLength),
     ('G', 434, Code::TipOn, "G43.4", Group::ToolLength),
     ('G', 435, Code::TipByVectors, "G43.5", Group::ToolLength),
     ('G', 490, Code::TipOff, "G49", Group::ToolLength),
@@ -96,7 +98,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 90] = [
 ];
 
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 32] = [
+const REFUSED: [(char, u32, &str); 30] = [
     ('G', 70, LATHE),
     ('G', 330, THREADING),
     ('G', 331, THREADING),
@@ -109,16 +111,6 @@ const REFUSED: [(char, u32, &str); 32] = [
     ('G', 411, COMPENSATION),
     ('G', 420, COMPENSATION),
     ('G', 421, COMPENSATION),
-    (
-        'G',
-        431,
-        "tool lengths come from the tool table: write G43 H and the number of the tool",
-    ),
-    (
-        'G',
-        432,
-        "the lengths of several tools are not added: write G43 H and the number of the tool",
-    ),
     (
         'G',
         683,
@@ -230,6 +222,10 @@ pub enum Code {
     CompensationOff,
     /// G43.
     ToolLength,
+    /// G43.1: a length that the block says.
+    OwnLength,
+    /// G43.2: the length of another tool besides.
+    MoreLength,
     /// G43.4.
     TipOn,
     /// G43.5: the same, and I J K of straight motions are the direction of the tool.
@@ -361,7 +357,7 @@ pub enum Group {
     Units,
     /// G40.
     Compensation,
-    /// G43 G43.4 G43.5 G49.
+    /// G43 G43.1 G43.2 G43.4 G43.5 G49.
     ToolLength,
     /// G54 to G59.3.
     Offset,
@@ -424,7 +420,12 @@ impl Code {
     pub fn takes_axes(self) -> bool {
         matches!(
             self,
-            Self::SetOffsets | Self::Home | Self::SecondHome | Self::LocalOffset | Self::OffsetHere
+            Self::SetOffsets
+                | Self::Home
+                | Self::SecondHome
+                | Self::LocalOffset
+                | Self::OffsetHere
+                | Self::OwnLength
         )
     }
 }

@@ -276,7 +276,7 @@ impl Interpreter {
         said[cycle.axis] = Some(level);
         let words = self.tip_words(said, cycle.place)?;
         if self.learn(&words) {
-            self.rapid(Way::Line, words, cycle.place);
+            self.rapid(Way::Line, words, cycle.place)?;
         }
         Ok(())
     }
@@ -286,7 +286,7 @@ impl Interpreter {
         said[cycle.axis] = Some(level);
         let words = self.tip_words(said, cycle.place)?;
         if self.learn(&words) {
-            self.feed_motion(Way::Line, words, cycle.feed, cycle.place);
+            self.feed_motion(Way::Line, words, cycle.feed, cycle.place)?;
         }
         Ok(())
     }

@@ -8,6 +8,7 @@ use super::claims::{Claims, VECTOR_LETTERS};
 use super::codes::Code;
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
+use super::offsets::Coordinates;
 use super::program::{AXIS_WORDS, Words};
 use shared::io::AXES;
 
@@ -68,11 +69,13 @@ impl Interpreter {
             .filter(|axis| words.axes[*axis].is_none() && (*axis < 3 || fitted[*axis]))
             .collect();
         let at = self.position(&open, place)?;
-        let end = std::array::from_fn(|axis| words.axes[axis].unwrap_or(at[axis]));
-        let angles = kinematics.pointing(&end, direction).map_err(|why| {
-            let direction = direction.map(|part| (part * SHOWN).round() / SHOWN);
-            Problem::Unreachable { direction, why }.at(place)
-        })?;
+        let end: Coordinates = std::array::from_fn(|axis| words.axes[axis].unwrap_or(at[axis]));
+        let angles = kinematics
+            .pointing(&self.retracted(&end, direction), direction)
+            .map_err(|why| {
+                let direction = direction.map(|part| (part * SHOWN).round() / SHOWN);
+                Problem::Unreachable { direction, why }.at(place)
+            })?;
         for (axis, angle) in (3..AXES).zip(angles).filter(|(axis, _)| fitted[*axis]) {
             words.axes[axis] = Some(angle);
         }

@@ -73,6 +73,16 @@ pub enum Problem {
     /// A name without a value.
     #[error("{0} has no value here")]
     Undefined(String),
+    /// EXISTS beside what it asks for.
+    #[error(
+        "{0} is set in this block: controllers differ in whether it exists here, so ask in the block before"
+    )]
+    ExistsHere(String),
+    /// A tool that is not in the table.
+    #[error(
+        "there is no tool {0}: give it a table [tools.{0}] in the machine file, or its length with G10 L1 P{0} Z"
+    )]
+    NoTool(u32),
     /// The system sets it.
     #[error("{0} cannot be set by a program")]
     ReadOnly(String),
@@ -160,6 +170,9 @@ pub enum Problem {
     /// A loop without an end.
     #[error("more than {0} lines in loops and subroutines: the program does not seem to end")]
     Endless(u64),
+    /// A loop in which nothing changes.
+    #[error("the loop o{0} never ends: nothing is set in it that its conditions depend on")]
+    SameAgain(String),
     /// In a file with a subroutine.
     #[error("in {file}: {problem}")]
     InFile {
@@ -200,11 +213,15 @@ pub enum Problem {
     /// A word of another dialect.
     #[error("{0} is not understood")]
     UnknownWord(String),
-    /// R1= and others.
-    #[error(
-        "{0}= sets a parameter of another controller: write # in place of R, and expressions in brackets"
-    )]
-    OtherParameter(String),
+    /// An R parameter that there is not.
+    #[error("R{0} is no parameter: they are R0 to R299")]
+    SiemensNumber(String),
+    /// R1= beside words.
+    #[error("R parameters are set in blocks of their own: write the words of this one in the next")]
+    SiemensAlone,
+    /// MSG without its text.
+    #[error("MSG has a text in quotes and brackets: MSG(\"text\")")]
+    NoMessage,
     /// A direction of the tool of length 0.
     #[error(
         "the direction of the tool is zero: it leads from the tip to the machine, with at least one component"

@@ -1,6 +1,6 @@
 //! Numbers of a line: literal, from parameters, or computed, as LinuxCNC does.
 
-use super::error::{NcError, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 use super::parameters::{Lookup, Parameter};
 use super::scanner::Scanner;
 
@@ -15,6 +15,20 @@ const EQUAL: f64 = 1e-5;
 /// What cannot be read or computed. Nothing but a letter, blank or other mark is `None`.
 pub(super) fn value(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Option<f64>, NcError> {
     real(scanner, lookup, 0)
+}
+
+/// The same behind `=`, where terms need no brackets: `R1*2+5`. With `]` or `)` as the `end` it is behind it.
+pub(super) fn terms(
+    scanner: &mut Scanner,
+    lookup: &mut dyn Lookup,
+    end: Option<char>,
+) -> Result<Option<f64>, NcError> {
+    scanner.skip_blanks();
+    let open = scanner.place();
+    match scanner.peek() {
+        None | Some(';') => Ok(None),
+        _ => chain(scanner, lookup, 0, (open, end)).map(Some),
+    }
 }
 
 /// `#` with its number or name; the scanner is behind the `#`.
@@ -52,9 +66,21 @@ fn unsigned(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Resul
             let value = value.ok_or_else(|| parameter.no_value().at(place))?;
             Ok(Some(value))
         }
+        Some('R' | 'r') if scanner.at_siemens_parameter() => siemens(scanner, lookup).map(Some),
         Some(c) if c.is_ascii_alphabetic() => function(scanner, lookup, depth),
         _ => Ok(None),
     }
+}
+
+/// The value of `R1`.
+fn siemens(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<f64, NcError> {
+    let place = scanner.place();
+    scanner.step();
+    let digits = scanner.take(|c| c.is_ascii_digit()).to_owned();
+    let parameter = Parameter::siemens(&digits).ok_or(Problem::SiemensNumber(digits).at(place))?;
+    lookup
+        .value(&parameter)
+        .ok_or(Problem::Undefined(parameter.to_string()).at(place))
 }
 
 fn parameter_at(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<Parameter, NcError> {
@@ -101,9 +127,18 @@ impl Operator {
         }
     }
 
-    /// The operator at the scanner.
-    fn read(scanner: &mut Scanner) -> Result<Self, NcError> {
+    /// The operator at the scanner; without an `end` anything but + - * / closes.
+    fn read(scanner: &mut Scanner, end: Option<char>) -> Result<Self, NcError> {
         scanner.skip_blanks();
+        match (end, scanner.peek()) {
+            (None, Some('+' | '-' | '*' | '/')) => {}
+            (None, _) => return Ok(Self::Close),
+            (Some(end), Some(c)) if c == end => {
+                scanner.step();
+                return Ok(Self::Close);
+            }
+            _ => {}
+        }
         let place = scanner.place();
         let unknown = |scanner: &Scanner| match scanner.peek() {
             Some(c) => Problem::UnknownOperator(c.to_string()).at(place),
@@ -113,7 +148,6 @@ impl Operator {
             Some('+') => Self::Plus,
             Some('-') => Self::Minus,
             Some('/') => Self::Over,
-            Some(']') => Self::Close,
             Some('*') => {
                 scanner.step();
                 if scanner.peek() != Some('*') {
@@ -171,13 +205,28 @@ impl Operator {
     }
 }
 
-/// `[…]`, with the scanner at the bracket. Operators of one strength go from left to right.
+/// `[…]`, with the scanner at the bracket.
 fn bracket(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<f64, NcError> {
     let open = scanner.place();
     scanner.step();
+    chain(scanner, lookup, depth, (open, Some(']')))
+}
+
+/// Values and operators from where they begin up to the `end`. Operators of one strength go from left to right.
+fn chain(
+    scanner: &mut Scanner,
+    lookup: &mut dyn Lookup,
+    depth: u32,
+    (open, end): (SourcePosition, Option<char>),
+) -> Result<f64, NcError> {
     let mut operand = |scanner: &mut Scanner| -> Result<f64, NcError> {
         scanner.skip_blanks();
         let place = scanner.place();
+        // Within [ ] it would be a comment.
+        if scanner.peek() == Some('(') && end != Some(']') && depth < DEEPEST {
+            scanner.step();
+            return chain(scanner, lookup, depth + 1, (place, Some(')')));
+        }
         real(scanner, lookup, depth + 1)?.ok_or(Problem::NoValue.at(place))
     };
     // Values and the operators behind them that wait for stronger ones.
@@ -185,11 +234,11 @@ fn bracket(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result
     loop {
         let mut value = operand(scanner)?;
         scanner.skip_blanks();
-        if scanner.peek().is_none() {
+        if scanner.peek().is_none() && end.is_some() {
             return Err(Problem::OpenBracket.at(open));
         }
         let place = scanner.place();
-        let operator = Operator::read(scanner)?;
+        let operator = Operator::read(scanner, end)?;
         while let Some((before, waits)) = waiting.pop() {
             if waits.strength() < operator.strength() {
                 waiting.push((before, waits));
@@ -274,6 +323,9 @@ fn exists(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<f64, NcError
     }
     scanner.step();
     let parameter = parameter(scanner, lookup)?;
+    if lookup.is_set_here(&parameter) {
+        return Err(Problem::ExistsHere(parameter.to_string()).at(open));
+    }
     scanner.skip_blanks();
     if scanner.peek() != Some(']') {
         return Err(Problem::OpenBracket.at(open));

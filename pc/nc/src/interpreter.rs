@@ -1,6 +1,6 @@
 //! From blocks to paths: what each block does, in the order of RS274/NGC.
 
-use super::block::{Block, CodeWord, Word};
+use super::block::{Block, CodeWord};
 use super::claims::Claims;
 use super::codes::{Code, Group};
 use super::cycles::Sticky;
@@ -15,6 +15,7 @@ use super::program::{EXTENSION_WORDS, Motion, Notice, Program, ProgramAction, Pr
 use super::reading::RemainingBlocks;
 use super::saved_modes::Saved;
 use super::setup::Setup;
+use super::tool_length::{Tools, tool};
 use super::waits::Wait;
 use shared::io::{AXES, SIDES};
 use std::sync::Arc;
@@ -47,9 +48,10 @@ pub(super) struct Interpreter {
     pub(super) sticky: Sticky,
     pub(super) spindle: Spindle,
     /// T, and the tool that M6 has put in.
-    pub(super) tools: [u32; 2],
+    pub(super) tool_numbers: [u32; 2],
     /// The tool that is known to be in the machine.
     pub(super) tool_in: Option<u32>,
+    pub(super) tools: Tools,
     pub(super) pending: Vec<Pending>,
     /// Waits before the next path, and before its dwell.
     pub(super) waits: Vec<Wait>,
@@ -68,6 +70,8 @@ pub(super) struct Interpreter {
     pub(super) notices: Vec<Notice>,
     pub(super) branches: bool,
     pub(super) ended: bool,
+    /// How often a parameter that stands for the state was read.
+    pub(super) looks: u64,
     /// Line that is read, for #<_line>.
     pub(super) line: u32,
 }
@@ -91,8 +95,9 @@ impl Interpreter {
             spline_end: None,
             sticky: Sticky::default(),
             spindle: Spindle::default(),
-            tools: [0; 2],
+            tool_numbers: [0; 2],
             tool_in: None,
+            tools: Tools::new(&setup.tools),
             pending: Vec::new(),
             waits: Vec::new(),
             said: None,
@@ -105,6 +110,7 @@ impl Interpreter {
             notices: Vec::new(),
             branches: false,
             ended: false,
+            looks: 0,
             line: 0,
         }
     }
@@ -143,6 +149,12 @@ impl Interpreter {
         };
         // With G53 the axes are named.
         let vectors = vectors && !block.has(Code::MachineAxes);
+        if let Some(word) = block.own_distance() {
+            let motion = own_motion.or(modal).filter(|code| takes_own_distances(*code));
+            if motion.is_none() || takes.is_some() || block.has(Code::MachineAxes) {
+                return Err(word.value_error("IC( ) and AC( ) are for G0, G1, G2 and G3"));
+            }
+        }
         let claims = Claims::of(block, modal, vectors)?;
         if own_motion.is_some_and(|motion| Some(motion) != self.modal.motion) {
             self.sticky.changed(own_motion);
@@ -153,23 +165,21 @@ impl Interpreter {
         self.save_modes(block)?;
         self.switch(block, &claims)?;
         self.system_and_tool(block, &claims)?;
+        if let (Some(code), Some(motion)) = (takes, block.code(Group::Motion))
+            && motion.code != Code::CancelMotion
+        {
+            return Err(Problem::AxesTaken(code.name).at(motion.place));
+        }
         let feeds = match block.code(Group::NonModal) {
             Some(code) if code.code == Code::MachineAxes => self.axes_motion(block, code.place)?,
             Some(code) if code.code != Code::Dwell => {
-                let motion = block
-                    .code(Group::Motion)
-                    .filter(|motion| motion.code != Code::CancelMotion);
-                if code.code.takes_axes()
-                    && let Some(motion) = motion
-                {
-                    return Err(Problem::AxesTaken(code.name).at(motion.place));
-                }
                 if code.code.takes_axes() {
                     no_slides_or_direction(block)?;
                 }
                 self.settings(block, &claims, *code)?;
                 !code.code.takes_axes() && self.tip_motion(block, &claims)?
             }
+            _ if takes.is_some() => false,
             _ => self.tip_motion(block, &claims)?,
         };
         if !feeds {
@@ -192,7 +202,7 @@ impl Interpreter {
             self.weld(name.as_deref(), *place);
         }
         if let Some(t) = block.word("T") {
-            self.tools[0] = tool_number(t)?;
+            self.tool_numbers[0] = tool(t)?;
         }
         if let Some(code) = block.code(Group::Tool).filter(|code| code.code == Code::SetTool) {
             let missing = Problem::Missing {
@@ -200,8 +210,8 @@ impl Interpreter {
                 word: "Q",
             };
             let q = claims.word(code.code, "Q").ok_or(missing.at(code.place))?;
-            self.tools[1] = tool_number(q)?;
-            self.tool_in = Some(self.tools[1]);
+            self.tool_numbers[1] = tool(q)?;
+            self.tool_in = Some(self.tool_numbers[1]);
         } else if let Some(code) = block.code(Group::Tool) {
             self.change_tool(*code);
         }
@@ -386,6 +396,14 @@ impl Interpreter {
     }
 }
 
+/// Whether axis words of a motion may be IC( ) and AC( ).
+fn takes_own_distances(code: Code) -> bool {
+    matches!(
+        code,
+        Code::Rapid | Code::Feed | Code::ArcClockwise | Code::ArcCounterClockwise
+    )
+}
+
 /// Refuses V slides and the direction of the tool, where only axes are meant.
 pub(super) fn no_slides_or_direction(block: &Block) -> Result<(), NcError> {
     let mut names = EXTENSION_WORDS.iter().chain(&DIRECTION_WORDS);
@@ -393,11 +411,4 @@ pub(super) fn no_slides_or_direction(block: &Block) -> Result<(), NcError> {
         Some(word) => Err(Problem::Orphan(word.label()).at(word.place)),
         None => Ok(()),
     }
-}
-
-fn tool_number(word: &Word) -> Result<u32, NcError> {
-    if word.value < 0.0 || word.value.fract() != 0.0 || word.value > f64::from(u32::MAX) {
-        return Err(word.value_error("tools have whole numbers from 0"));
-    }
-    Ok(word.value as u32)
 }

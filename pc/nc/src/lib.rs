@@ -37,11 +37,13 @@ mod saved_modes;
 mod scanner;
 mod settings;
 mod setup;
+mod siemens;
 mod source;
 mod subroutines;
 #[cfg(test)]
 mod tests;
 pub mod text;
+mod tool_length;
 mod waits;
 
 pub use error::{NcError, Problem, SourcePosition};

@@ -21,8 +21,9 @@ const SYSTEM: u32 = 5220;
 const FIRST_SYSTEM: u32 = 5221;
 const SYSTEM_STEP: u32 = 20;
 const ROTATION: u32 = 9;
-/// The tool in the machine, and X of where it is.
+/// The tool in the machine, its length in use, and X of where it is.
 const TOOL: u32 = 5400;
+const TOOL_LENGTH: u32 = 5403;
 const HERE: u32 = 5420;
 /// Parameters that programs cannot set.
 const READ_ONLY: RangeInclusive<u32> = 5400..=5428;
@@ -36,6 +37,7 @@ enum Place {
     Offset(usize, usize),
     Rotation(usize),
     Tool,
+    ToolLength,
     Here(usize),
 }
 
@@ -60,6 +62,7 @@ fn place(number: u32) -> Option<Place> {
         LOCAL_ON => return Some(Place::LocalOn),
         SYSTEM => return Some(Place::System),
         TOOL => return Some(Place::Tool),
+        TOOL_LENGTH => return Some(Place::ToolLength),
         _ => {}
     }
     let behind = number.checked_sub(FIRST_SYSTEM)?;
@@ -83,12 +86,19 @@ impl Lookup for Interpreter {
                 None if name.starts_with('_') => self.system(name),
                 value => value,
             },
+            Parameter::Siemens(_) => self.parameters.get(parameter),
         }
     }
 }
 
 impl Interpreter {
+    /// What conditions may depend on has not changed, nor been looked at, as long as this stays as it is.
+    pub(super) fn conditions(&self) -> u64 {
+        self.parameters.changes + self.looks
+    }
+
     fn state(&mut self, place: &Place) -> Option<f64> {
+        self.looks += 1;
         Some(match *place {
             Place::Home(index, axis) => self.homes[index][axis],
             Place::LocalOn => f64::from(u8::from(self.offsets.local_on)),
@@ -96,7 +106,8 @@ impl Interpreter {
             Place::System => self.offsets.active as f64 + 1.0,
             Place::Offset(system, axis) => self.offsets.systems[system].offset[axis],
             Place::Rotation(system) => self.offsets.systems[system].rotation,
-            Place::Tool => f64::from(self.tools[1]),
+            Place::Tool => f64::from(self.tool_numbers[1]),
+            Place::ToolLength => self.tools.length / self.modal.unit(),
             Place::Here(axis) => {
                 let place = SourcePosition {
                     line: self.line,
@@ -110,6 +121,7 @@ impl Interpreter {
 
     /// Named parameters of the system.
     fn system(&mut self, name: &str) -> Option<f64> {
+        self.looks += 1;
         let truth = |holds: bool| Some(f64::from(u8::from(holds)));
         let axes = ["_x", "_y", "_z", "_a", "_b", "_c"];
         if let Some(axis) = axes.iter().position(|own| *own == name) {
@@ -127,8 +139,8 @@ impl Interpreter {
             "_units_per_minute" => truth(!self.modal.inverse_time()),
             "_ijk_absolute_mode" => truth(self.modal.absolute_centres),
             "_spindle_on" => truth(self.spindle.turns().is_some()),
-            "_current_tool" => Some(f64::from(self.tools[1])),
-            "_selected_tool" => Some(f64::from(self.tools[0])),
+            "_current_tool" => Some(f64::from(self.tool_numbers[1])),
+            "_selected_tool" => Some(f64::from(self.tool_numbers[0])),
             "_coord_system" => {
                 let codes = [540.0, 550.0, 560.0, 570.0, 580.0, 590.0, 591.0, 592.0, 593.0];
                 codes.get(self.offsets.active).copied()
@@ -157,13 +169,15 @@ impl Interpreter {
             self.parameters.set(parameter, value);
             return Ok(());
         };
+        // Some of these are counted once more below.
+        self.parameters.changes += 1;
         match place(*number) {
             Some(Place::Home(index, axis)) => self.homes[index][axis] = value,
             Some(Place::LocalOn) => self.offsets.local_on = value != 0.0,
             Some(Place::Local(axis)) => self.offsets.local[axis] = value,
             Some(Place::Offset(system, axis)) => self.offsets.systems[system].offset[axis] = value,
             Some(Place::Rotation(system)) => self.offsets.systems[system].rotation = value,
-            Some(Place::System | Place::Tool | Place::Here(_)) => {
+            Some(Place::System | Place::Tool | Place::ToolLength | Place::Here(_)) => {
                 return Err(Problem::ReadOnly(parameter.to_string()));
             }
             None if READ_ONLY.contains(number) || *number == 0 => {

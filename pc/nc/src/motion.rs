@@ -49,7 +49,7 @@ impl Interpreter {
         for (axis, name) in AXIS_WORDS.iter().enumerate() {
             let Some(word) = block.word(name) else { continue };
             let value = word.value * if axis < 3 { self.modal.unit() } else { 1.0 };
-            let from = match self.modal.incremental {
+            let from = match word.step.unwrap_or(self.modal.incremental) {
                 true => self.programmed(&[axis], word.place)?[axis],
                 false => 0.0,
             };
@@ -102,11 +102,12 @@ impl Interpreter {
             None => self.go_in_axes(axes, place).map(|()| false),
             Some(kinematics) => {
                 let at = self.position(&[0, 1, 2, 3, 4, 5], place)?;
-                let mut all = kinematics.axes(&at).ok_or(Problem::UnknownPosition.at(place))?;
+                let tip = self.tip_of_machine(&at);
+                let mut all = kinematics.axes(&tip).ok_or(Problem::UnknownPosition.at(place))?;
                 for (own, said) in all.iter_mut().zip(axes) {
                     *own = said.unwrap_or(*own);
                 }
-                let tip = kinematics.tip(&all);
+                let tip = self.end_of_tool(&kinematics.tip(&all));
                 let fitted = self.setup.fitted;
                 let words = Words {
                     axes: std::array::from_fn(|axis| (axis < 3 || fitted[axis]).then_some(tip[axis])),
@@ -115,7 +116,7 @@ impl Interpreter {
                 let turns_only = (0..3).all(|axis| !self.moves(&words, axis));
                 let feed = self.modal.feed_rate(block, Code::Feed, place, turns_only)?;
                 if self.learn(&words) {
-                    self.feed_motion(Way::Line, words, feed, place);
+                    self.feed_motion(Way::Line, words, feed, place)?;
                 }
                 self.spline_end = None;
                 Ok(true)
@@ -138,15 +139,18 @@ impl Interpreter {
             axes,
             ..Words::default()
         };
-        self.rapid(Way::Axes, words, place);
+        self.rapid(Way::Axes, words, place)?;
         // Where the tip is now, the program does not say; kinematics may know.
         let kinematics = self.setup.kinematics.clone();
         let after = kinematics.and_then(|kinematics| {
-            let mut all = kinematics.axes(&self.at)?;
+            let mut all = kinematics.axes(&self.tip_of_machine(&self.at))?;
             for (own, said) in all.iter_mut().zip(axes) {
                 *own = said.unwrap_or(*own);
             }
-            Some((kinematics.tip(&all), axes.iter().all(Option::is_some)))
+            Some((
+                self.end_of_tool(&kinematics.tip(&all)),
+                axes.iter().all(Option::is_some),
+            ))
         });
         match after {
             Some((tip, all_said)) if !self.lost || all_said => {
@@ -204,7 +208,7 @@ impl Interpreter {
             .map(|word| word.map(|value| value * unit));
         if mode == Code::Rapid {
             if self.learn(&words) {
-                self.rapid(Way::Line, words, place);
+                self.rapid(Way::Line, words, place)?;
             }
             self.spline_end = None;
             return Ok(false);
@@ -225,7 +229,7 @@ impl Interpreter {
         }
         // An arc without a way is a full circle.
         if self.learn(&words) || way != Way::Line {
-            self.feed_motion(way, words, feed, place);
+            self.feed_motion(way, words, feed, place)?;
         }
         Ok(true)
     }
@@ -378,13 +382,21 @@ impl Interpreter {
         words.axes = self.tip_words(words.axes, open.place)?.axes;
         words.extension = words.extension.map(|word| word.map(|value| value * unit));
         self.learn(&words);
-        self.feed_motion(Way::Nurbs(Box::new(way)), words, open.feed, open.place);
+        self.feed_motion(Way::Nurbs(Box::new(way)), words, open.feed, open.place)?;
         self.modal.closed = self.modal.motion == Some(Code::KnotNurbs);
         self.modal.motion = None;
         Ok(())
     }
 
-    pub(super) fn rapid(&mut self, way: Way, words: Words, place: SourcePosition) {
+    pub(super) fn rapid(
+        &mut self,
+        mut way: Way,
+        mut words: Words,
+        place: SourcePosition,
+    ) -> Result<(), NcError> {
+        if way != Way::Axes {
+            self.retract(&mut way, &mut words, place, false)?;
+        }
         self.said = None;
         let target = Target {
             way,
@@ -395,10 +407,18 @@ impl Interpreter {
         };
         self.start_path(Motion::Rapid, target);
         self.open = false;
+        Ok(())
     }
 
     /// Goes on along an open path, or starts one.
-    pub(super) fn feed_motion(&mut self, way: Way, words: Words, feed: FeedRate, place: SourcePosition) {
+    pub(super) fn feed_motion(
+        &mut self,
+        mut way: Way,
+        mut words: Words,
+        feed: FeedRate,
+        place: SourcePosition,
+    ) -> Result<(), NcError> {
+        self.retract(&mut way, &mut words, place, true)?;
         self.said = None;
         let target = Target {
             way,
@@ -418,6 +438,7 @@ impl Interpreter {
             _ => self.start_path(Motion::Feed, target),
         }
         self.open = true;
+        Ok(())
     }
 
     fn start_path(&mut self, motion: Motion, target: Target) {

@@ -1,4 +1,4 @@
-//! Parameters of programs: `#1`, `#<local>` and `#<_global>`.
+//! Parameters of programs: `#1`, `#<local>` and `#<_global>`, and `R1` of Siemens controllers.
 
 use super::error::Problem;
 use std::collections::BTreeMap;
@@ -8,6 +8,8 @@ use std::fmt;
 const LAST: f64 = 5602.0;
 /// Parameters of a subroutine itself, 1 to this one.
 const OWN: u32 = 30;
+/// R parameters: R0 to the one before.
+const SIEMENS: u16 = 300;
 
 /// What the last M66 found.
 pub(super) const INPUT: u32 = 5399;
@@ -19,9 +21,17 @@ pub(super) enum Parameter {
     Numbered(u32),
     /// Lower case; global if it begins with `_`.
     Named(String),
+    /// R0 to R299: the same ones in all of a program.
+    Siemens(u16),
 }
 
 impl Parameter {
+    /// R with these digits.
+    pub(super) fn siemens(digits: &str) -> Option<Self> {
+        let number = digits.parse().ok().filter(|number| *number < SIEMENS);
+        number.map(Self::Siemens)
+    }
+
     /// That of a number, which may have been computed.
     pub(super) fn numbered(number: f64) -> Option<Self> {
         let whole = number.round();
@@ -43,6 +53,7 @@ impl fmt::Display for Parameter {
         match self {
             Self::Numbered(number) => write!(f, "#{number}"),
             Self::Named(name) => write!(f, "#<{name}>"),
+            Self::Siemens(number) => write!(f, "R{number}"),
         }
     }
 }
@@ -51,6 +62,46 @@ impl fmt::Display for Parameter {
 pub(super) trait Lookup {
     /// The value; none of a name that has not been set.
     fn value(&mut self, parameter: &Parameter) -> Option<f64>;
+
+    /// Whether the block that is read sets it.
+    fn is_set_here(&self, _parameter: &Parameter) -> bool {
+        false
+    }
+}
+
+/// What the words of a block see: the values from before it, but of R parameters those that it has set.
+pub(super) struct InBlock<'a> {
+    before: &'a mut dyn Lookup,
+    pub(super) settings: Vec<(Parameter, f64)>,
+    /// Whose value is read.
+    pub(super) next: Option<Parameter>,
+}
+
+impl<'a> InBlock<'a> {
+    pub(super) fn new(before: &'a mut dyn Lookup) -> Self {
+        Self {
+            before,
+            settings: Vec::new(),
+            next: None,
+        }
+    }
+}
+
+impl Lookup for InBlock<'_> {
+    fn value(&mut self, parameter: &Parameter) -> Option<f64> {
+        let set = self.settings.iter().rev().find(|(own, _)| own == parameter);
+        match (parameter, set) {
+            (Parameter::Siemens(_), Some((_, value))) => Some(*value),
+            _ => self.before.value(parameter),
+        }
+    }
+
+    fn is_set_here(&self, parameter: &Parameter) -> bool {
+        self.next
+            .iter()
+            .chain(self.settings.iter().map(|(own, _)| own))
+            .any(|own| own == parameter)
+    }
 }
 
 /// What one level of a program calls its own.
@@ -65,6 +116,9 @@ struct Level {
 pub(super) struct Parameters {
     numbered: BTreeMap<u32, f64>,
     global: BTreeMap<String, f64>,
+    siemens: BTreeMap<u16, f64>,
+    /// How many values were set.
+    pub(super) changes: u64,
     /// The innermost subroutine last.
     levels: Vec<Level>,
 }
@@ -74,6 +128,8 @@ impl Default for Parameters {
         Self {
             numbered: BTreeMap::new(),
             global: BTreeMap::new(),
+            siemens: BTreeMap::new(),
+            changes: 0,
             levels: vec![Level::default()],
         }
     }
@@ -109,11 +165,13 @@ impl Parameters {
             Parameter::Numbered(number) => Some(self.numbered.get(number).copied().unwrap_or(0.0)),
             Parameter::Named(name) if name.starts_with('_') => self.global.get(name).copied(),
             Parameter::Named(name) => level.named.get(name).copied(),
+            Parameter::Siemens(number) => Some(self.siemens.get(number).copied().unwrap_or(0.0)),
         }
     }
 
     /// Gives one a value.
     pub(super) fn set(&mut self, parameter: &Parameter, value: f64) {
+        self.changes += 1;
         let Some(level) = self.levels.last_mut() else {
             return;
         };
@@ -127,6 +185,9 @@ impl Parameters {
             }
             Parameter::Named(name) => {
                 level.named.insert(name.clone(), value);
+            }
+            Parameter::Siemens(number) => {
+                self.siemens.insert(*number, value);
             }
         }
     }

@@ -44,6 +44,7 @@ impl Interpreter {
                 address: name.to_owned(),
                 value: (to - from) / unit,
                 named: false,
+                step: None,
                 place,
             });
         }

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 /// Deepest nesting of subroutines.
 const DEEPEST: usize = 32;
-/// Most lines that are read of a program with loops and subroutines, with those that are passed over.
+/// Most lines that are read inside loops and subroutines, with those that are passed over.
 const MOST_LINES: u64 = 1_000_000;
 
 /// The main program, or a subroutine that runs.
@@ -54,7 +54,7 @@ pub(super) struct Position {
     seen: bool,
     /// Lines that were run.
     pub(super) executed: u64,
-    /// Lines that were read since the first loop or subroutine.
+    /// Lines that were read inside loops and subroutines.
     repeated: u64,
 }
 
@@ -116,6 +116,8 @@ pub(super) struct Reader {
     lines: Lines,
     options: Options,
     pub(super) interpreter: Interpreter,
+    /// What conditions could depend on before the line that is read.
+    pub(super) conditions_before: u64,
     ran: Option<Ran>,
 }
 
@@ -148,6 +150,7 @@ impl Reader {
             position,
             options,
             interpreter,
+            conditions_before: 0,
             ran: None,
         };
         reader.reopen();
@@ -170,14 +173,16 @@ impl Reader {
     pub(super) fn next_line(&mut self) -> Result<Option<String>, NcError> {
         let read = self.lines.next();
         let offset = self.lines.offset;
+        let called = self.position.depth() > 0;
         let level = self.level();
+        let may_repeat = called || level.open.iter().any(Open::loops);
         level.offset = offset;
         level.line += 1;
         let line = level.line;
         match read {
             Ok(Some(text)) => {
                 self.interpreter.line = line;
-                self.position.repeated += u64::from(self.interpreter.branches);
+                self.position.repeated += u64::from(may_repeat);
                 if self.position.repeated > MOST_LINES {
                     return Err(Problem::Endless(MOST_LINES).at(SourcePosition { line, column: 1 }));
                 }
@@ -215,6 +220,7 @@ impl Reader {
         };
         let here = self.position.here();
         self.position.executed += 1;
+        self.conditions_before = self.interpreter.conditions();
         let parsed = parse(&text, here.line, self.options.block_delete, &mut self.interpreter)?;
         let seen = self.position.seen;
         self.position.seen |= parsed != Parsed::Blank;

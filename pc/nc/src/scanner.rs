@@ -139,6 +139,13 @@ impl<'t> Scanner<'t> {
         None
     }
 
+    /// Whether R and digits stand here, perhaps behind signs.
+    pub(super) fn at_siemens_parameter(&self) -> bool {
+        let rest = self.text[self.next..].trim_start_matches(|c: char| c.is_whitespace() || "+-".contains(c));
+        let digits = rest.strip_prefix(['R', 'r']);
+        digits.is_some_and(|digits| digits.starts_with(|c: char| c.is_ascii_digit()))
+    }
+
     /// Sign, digits, point, digits; at least one digit, with blanks in between. Nothing is consumed if there is none.
     pub(super) fn number(&mut self) -> Result<Option<f64>, NcError> {
         let place = self.place();

@@ -21,19 +21,7 @@ impl Interpreter {
         let Some(code) = block.code(Group::ToolLength) else {
             return Ok(());
         };
-        if let Some(h) = claims.word(code.code, "H") {
-            if h.value < 0.0 || h.value.fract() != 0.0 {
-                return Err(h.value_error("tools have whole numbers from 0"));
-            }
-            if h.value > 0.0 {
-                let text = format!(
-                    "H{} changes nothing: the tip is that of the tool in the machine file",
-                    h.value
-                );
-                self.notice(text, h.place);
-            }
-        }
-        Ok(())
+        self.tool_length(block, claims, *code)
     }
 
     /// The codes that hold in their block only, but G4 and G53.
@@ -85,7 +73,7 @@ impl Interpreter {
         AXIS_WORDS.iter().enumerate().filter_map(value).collect()
     }
 
-    /// G10 L2 and L20.
+    /// G10.
     fn set_offsets(&mut self, block: &Block, claims: &Claims, place: SourcePosition) -> Result<(), NcError> {
         let code = Code::SetOffsets;
         let need = |word: &'static str| {
@@ -96,9 +84,10 @@ impl Interpreter {
         let here = match l.value {
             2.0 => false,
             20.0 => true,
+            1.0 | 10.0 | 11.0 => return self.set_tool(block, claims, [l, p], place),
             _ => {
                 return Err(
-                    l.value_error("L2 and L20 set coordinate systems; tools are those of the machine file")
+                    l.value_error("L2 and L20 set coordinate systems, L1, L10 and L11 lengths of tools")
                 );
             }
         };
@@ -148,13 +137,18 @@ impl Interpreter {
     /// G28 and G30: by way of the place that axis words say, if there are any, to the home of these axes or of all.
     fn home(&mut self, block: &Block, index: usize, place: SourcePosition) -> Result<(), NcError> {
         let said = self.said(block)?;
+        if self.offsets.turned() && said[0].is_some() != said[1].is_some() {
+            let code = if index == 0 { "G28" } else { "G30" };
+            let why = "X or Y alone in a rotated coordinate system is read differently by controllers: write both, or end the rotation with G10 L2 P0 R0";
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
         if said.iter().any(Option::is_some) {
             if !self.modal.tip {
                 return Err(Problem::NotTip.at(place));
             }
             let words = self.tip_words(said, place)?;
             if self.learn(&words) {
-                self.rapid(Way::Line, words, place);
+                self.rapid(Way::Line, words, place)?;
             }
         }
         let all = said.iter().all(Option::is_none);
@@ -174,7 +168,7 @@ impl Interpreter {
             .setup
             .kinematics
             .as_ref()
-            .and_then(|kinematics| kinematics.axes(&at));
+            .and_then(|kinematics| kinematics.axes(&self.tip_of_machine(&at)));
         axes.ok_or(Problem::UnknownPosition.at(place))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::program::{PathControl, Plane};
 use shared::io::AXES;
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -37,6 +38,8 @@ pub struct Setup {
     pub fitted: [bool; AXES],
     /// Axes at G28 and G30 (mm, degrees).
     pub homes: [[f64; AXES]; 2],
+    /// Lengths of tools by number, beyond the tip of the machine along its tool \[mm\]; without any, all end there.
+    pub tools: BTreeMap<u32, f64>,
     /// Where subroutines in files of their own are.
     pub folders: Vec<PathBuf>,
     /// From axes to the tip; without it a program has to say where the tip is after motions of axes.
@@ -54,6 +57,7 @@ impl Default for Setup {
             rotary: [None; 3],
             fitted: [true; AXES],
             homes: [[0.0; AXES]; 2],
+            tools: BTreeMap::new(),
             folders: Vec::new(),
             kinematics: None,
         }
@@ -66,6 +70,10 @@ pub trait TipAndAxes: Debug + Send + Sync {
     fn tip(&self, axes: &[f64; AXES]) -> [f64; AXES];
     /// The axes of a tip, if the machine can go there.
     fn axes(&self, tip: &[f64; AXES]) -> Option<[f64; AXES]>;
+    /// The direction of the tool at A B C, a unit vector from the tip to the machine.
+    fn direction(&self, _angles: [f64; 3]) -> [f64; 3] {
+        [0.0, 0.0, 1.0]
+    }
     /// A B C with which the tool at X Y Z of `tip` points along `direction`, a unit vector from the tip to the machine, those
     /// nearest to A B C of `tip`. What the direction leaves free turns as little as it can.
     ///

@@ -103,7 +103,7 @@ impl Interpreter {
         if let Some(stop) = self.spindle.stop(code.name, code.place) {
             self.wait(stop);
         }
-        let next = self.tools[0];
+        let next = self.tool_numbers[0];
         if self.tool_in.is_some_and(|tool| tool != next) {
             self.wait_at_rest(Until::ToolIn(next), code);
         } else {
@@ -114,7 +114,7 @@ impl Interpreter {
                 at_rest: true,
             });
         }
-        self.tools[1] = next;
+        self.tool_numbers[1] = next;
         self.tool_in = Some(next);
     }
 

@@ -46,6 +46,7 @@ use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, Kinematics};
 use shared::parameter::ParameterError;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use targets::RestState;
 
@@ -79,6 +80,8 @@ pub struct Planner {
     tracks: bool,
     planning: PlanningConfig,
     program: ProgramConfig,
+    /// Lengths by number \[mm\].
+    tools: BTreeMap<u32, f64>,
 }
 
 impl Planner {
@@ -102,6 +105,7 @@ impl Planner {
             tracks: machine.tracking.is_some(),
             planning: machine.planning.clone(),
             program: machine.program,
+            tools: machine.tools.clone(),
         })
     }
 

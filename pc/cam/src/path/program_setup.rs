@@ -39,6 +39,7 @@ impl Planner {
             rotary: program.rotary_deg.into_array(),
             fitted: self.fitted,
             homes: [park, park],
+            tools: self.tools.clone(),
             kinematics: Some(Arc::new(kinematics)),
             ..Setup::default()
         }

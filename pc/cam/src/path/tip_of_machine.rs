@@ -52,6 +52,11 @@ impl TipAndAxes for TipOfMachine {
         Some(std::array::from_fn(|axis| axes[axis] / AXIS_UNIT[axis]))
     }
 
+    fn direction(&self, [a, b, c]: [f64; 3]) -> [f64; 3] {
+        let axes = inner(&[0.0, 0.0, 0.0, a, b, c]);
+        self.kinematics.forward(&axes).normal.into()
+    }
+
     /// Where A, B and C are more than a direction needs, C stays: T of the tool at A0 B0 keeps its heading, and only leans.
     fn pointing(&self, tip: &[f64; AXES], direction: [f64; 3]) -> Result<[f64; 3], String> {
         let [_, _, _, a, b, c] = inner(tip);

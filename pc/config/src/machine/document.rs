@@ -1,6 +1,7 @@
 //! The machine file as it is written.
 
 use super::process_io;
+use super::tools::{self, ToolConfig};
 use super::{
     ByAxis, CameraConfig, MachineFile, Mistake, PlanningConfig, ProcessConfig, ProgramConfig, TrackingUnit,
 };
@@ -38,6 +39,8 @@ pub struct Document {
     probe: Option<ProbeUnit>,
     #[serde(default)]
     program: ProgramConfig,
+    #[serde(default)]
+    tools: BTreeMap<String, ToolConfig>,
 }
 
 #[derive(Deserialize)]
@@ -103,6 +106,7 @@ impl TryFrom<Document> for MachineFile {
             probe: d.probe,
             planning: d.planning,
             program: d.program,
+            tools: tools::lengths(d.tools)?,
         })
     }
 }

@@ -101,6 +101,12 @@ pub enum Mistake {
         /// What it is said to answer.
         answers: String,
     },
+    /// A tool without a number.
+    #[error("[{key}] is no tool: their numbers are whole, from 1, such as [tools.2]")]
+    ToolNumber {
+        /// Dotted name of the table.
+        key: String,
+    },
     /// Some of the tables of a tracker, but not all.
     #[error(
         "[{table}] is missing; a machine that follows a seam needs [head], [slides], [tracking] and [cameras]"
@@ -118,7 +124,9 @@ impl Mistake {
             Self::Value(error) => error.key.to_string(),
             Self::AxisMissing { key, .. } | Self::NoSuchAxis { key, .. } => key.clone(),
             Self::OutputNumber { key, .. } => format!("{key}.number"),
-            Self::NoSuchBeam { key, .. } | Self::AnswerIncomplete { key, .. } => key.clone(),
+            Self::NoSuchBeam { key, .. } | Self::AnswerIncomplete { key, .. } | Self::ToolNumber { key } => {
+                key.clone()
+            }
             Self::AnswersNothing { key, .. } => format!("{key}.answers"),
             Self::Optics { .. } => "cameras.optics".to_owned(),
             Self::TrackerIncomplete { table } => (*table).to_owned(),

@@ -6,6 +6,7 @@ mod document;
 mod error;
 mod process_io;
 mod program;
+mod tools;
 mod weak_protection;
 
 pub use cameras::{CameraConfig, JointForm};
@@ -22,6 +23,7 @@ use serde::Deserialize;
 use shared::config::{MotionConfig, TrackerConfig};
 use shared::io::{AXES, MOTOR_AXIS};
 use shared::motion::Machine;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// What messages call the file.
@@ -50,6 +52,8 @@ pub struct MachineFile {
     pub planning: PlanningConfig,
     /// What NC programs begin with.
     pub program: ProgramConfig,
+    /// Lengths of tools by number, beyond the tip of this machine along its tool \[mm\].
+    pub tools: BTreeMap<u32, f64>,
 }
 
 /// The tracker board, its slides and cameras.

@@ -538,3 +538,34 @@ fn what_programs_cannot_begin_with_is_told_with_file_line_and_key() {
         );
     }
 }
+
+#[test]
+fn tools_have_numbers_and_lengths() {
+    let of = |more: &str| MachineFile::parse("m.toml", &pipe_with(more).0).unwrap().tools;
+    assert!(of("").is_empty());
+    let tools = of("[tools.2]\nlength_mm = 12.5\n[tools.10]");
+    assert_eq!(tools.into_iter().collect::<Vec<_>>(), [(2, 12.5), (10, 0.0)]);
+    for (more, line, said) in [
+        (
+            "[tools.two]",
+            0,
+            "[tools.two] is no tool: their numbers are whole, from 1, such as [tools.2]",
+        ),
+        ("[tools.0]", 0, "[tools.0] is no tool"),
+        ("[tools.02]", 0, "[tools.02] is no tool"),
+        (
+            "[tools.2]\nlength_mm = 1e4",
+            1,
+            "tools.2.length_mm is 10000, but must be from -1000 to 1000",
+        ),
+        ("[tools.2]\nlength = 1", 1, "unknown field `length`"),
+    ] {
+        let (text, first) = pipe_with(more);
+        let error = error_of(&text);
+        let place = format!("machine file m.toml, line {}: ", first + line);
+        assert!(
+            error.starts_with(&place) && error.contains(said),
+            "{more}: {error}"
+        );
+    }
+}

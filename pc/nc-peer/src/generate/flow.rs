@@ -1,26 +1,37 @@
 //! Subroutines, loops and conditions.
 
 use super::expression::{condition, expression};
-use super::writer::Writer;
+use super::writer::{Loop, Writer};
 use super::{motion, piece};
 
 /// A loop, a condition or a call.
 pub fn flow(writer: &mut Writer, depth: usize) {
     match writer.random.below(7) {
         0 | 1 => branches(writer, depth),
-        2 | 3 => counted(writer, depth),
-        4 => {
-            let (label, times) = (writer.label(), writer.random.below(4));
-            writer.line(&format!("o{label} repeat [{times}]"));
-            body(writer, depth);
-            writer.line(&format!("o{label} endrepeat"));
-        }
+        2..=4 => repeated(writer, depth),
         5 if !writer.numbered.is_empty() => {
             let number = *writer.random.of(&writer.numbered);
             let times = writer.random.between(1, 3);
             writer.block(&format!("M98 P{number} L{times}"));
         }
         _ => call(writer),
+    }
+}
+
+/// A loop.
+fn repeated(writer: &mut Writer, depth: usize) {
+    let any = *writer
+        .random
+        .of(&[Loop::While, Loop::While, Loop::Do, Loop::Repeat]);
+    match writer.jumps_in.unwrap_or(any) {
+        Loop::While => counted(writer, depth, false),
+        Loop::Do => counted(writer, depth, true),
+        Loop::Repeat => {
+            let (label, times) = (writer.label(), writer.random.below(4));
+            writer.line(&format!("o{label} repeat [{times}]"));
+            body(writer, depth);
+            writer.line(&format!("o{label} endrepeat"));
+        }
     }
 }
 
@@ -102,10 +113,9 @@ fn branches(writer: &mut Writer, depth: usize) {
 }
 
 /// While or do, with a counter.
-fn counted(writer: &mut Writer, depth: usize) {
+fn counted(writer: &mut Writer, depth: usize, until: bool) {
     let (label, times) = (writer.label(), writer.random.between(1, 3));
     let counter = format!("#<counter{label}>");
-    let until = writer.random.percent(30);
     writer.line(&format!("{counter} = 0"));
     if until {
         writer.line(&format!("o{label} do"));
@@ -115,7 +125,7 @@ fn counted(writer: &mut Writer, depth: usize) {
     body(writer, depth);
     writer.block(&format!("G1 X[{counter}*5] Y{times}"));
     writer.line(&format!("{counter} = [{counter} + 1]"));
-    if writer.random.percent(20) {
+    if writer.jumps_in.is_some() && writer.random.percent(30) {
         let (inner, word) = (writer.label(), *writer.random.of(&["break", "continue"]));
         writer.line(&format!("o{inner} if [{counter} EQ 2]"));
         writer.line(&format!("o{label} {word}"));

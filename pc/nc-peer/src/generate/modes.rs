@@ -21,6 +21,9 @@ pub fn offset(writer: &mut Writer) {
             if writer.random.percent(60) {
                 writer.block(SYSTEMS[system - 1]);
             }
+            if !rotation.is_empty() {
+                say_place(writer);
+            }
         }
         3 => {
             let system = writer.random.between(0, 9);
@@ -37,7 +40,10 @@ pub fn offset(writer: &mut Writer) {
             let code = *writer.random.of(&["G92.1", "G92.2", "G92.3"]);
             writer.block(code);
         }
-        10 => writer.block("G10 L2 P0 R0"),
+        10 => {
+            writer.block("G10 L2 P0 R0");
+            say_place(writer);
+        }
         _ => writer.block("G54"),
     }
 }
@@ -55,11 +61,13 @@ pub fn tool(writer: &mut Writer) {
     match writer.random.below(8) {
         0..=3 => {
             writer.block(&format!("T{number} M6"));
+            say_place(writer);
             writer.block(&format!("G43 H{number}"));
         }
         4 => {
             writer.block(&format!("T{number}"));
             writer.block("M6");
+            say_place(writer);
         }
         5 => {
             let length = writer.length(20.0).abs();
@@ -67,14 +75,23 @@ pub fn tool(writer: &mut Writer) {
         }
         6 => {
             let length = writer.length(20.0).abs();
-            writer.block(&format!("G10 L1 P{number} Z{length:.4}"));
-            writer.block(&format!("G43 H{number}"));
+            let l = *writer.random.of(&[1, 1, 10, 11]);
+            writer.block(&format!("G10 L{l} P{number} Z{length:.4}"));
+            let code = *writer.random.of(&["G43", "G43", "G43.2"]);
+            writer.block(&format!("{code} H{number}"));
         }
         _ => writer.block("G49"),
     }
     if writer.random.percent(50) {
         writer.block("G49");
     }
+}
+
+/// X Y Z where the peer does not know where it is: after a change of tools it asks its machine, and that of the program
+/// alone has left rotations of coordinate systems out; where one is rotated anew, it leaves G52 and G92 as they were turned.
+fn say_place(writer: &mut Writer) {
+    let [x, y, z] = [writer.length(50.0), writer.length(50.0), writer.length(20.0)];
+    writer.block(&format!("G0 X{x:.4} Y{y:.4} Z{z:.4}"));
 }
 
 /// M62 to M68, spindle, coolant, dwell, pause.

@@ -5,6 +5,14 @@ use crate::random::Random;
 /// Axis words of the tip.
 pub const XYZ: [char; 3] = ['X', 'Y', 'Z'];
 
+/// Kinds of loops.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Loop {
+    While,
+    Do,
+    Repeat,
+}
+
 pub struct Writer {
     pub random: Random,
     pub lines: Vec<String>,
@@ -14,6 +22,9 @@ pub struct Writer {
     pub subroutines: Vec<(String, usize)>,
     /// Numbered ones, for M98.
     pub numbered: Vec<usize>,
+    /// The one kind of loop of a program with break and continue, none of a program without: the peer forgets to take
+    /// its note of a break or continue back where a loop of another kind ends, and ends or repeats a later loop wrongly.
+    pub jumps_in: Option<Loop>,
     label: usize,
     /// Number of the parameter that was set last.
     set: usize,
@@ -22,8 +33,10 @@ pub struct Writer {
 }
 
 impl Writer {
-    pub fn new(random: Random) -> Self {
+    pub fn new(mut random: Random) -> Self {
+        let jumps_in = *random.of(&[None, None, Some(Loop::While), Some(Loop::Do)]);
         Self {
+            jumps_in,
             random,
             lines: Vec::new(),
             parameters: Vec::new(),

@@ -17,6 +17,7 @@ pub(super) struct Before {
     pub(super) offsets: Offsets,
     pub(super) homes: [Coordinates; 2],
     pub(super) tools: [u32; 2],
+    pub(super) tool_length: f64,
     pub(super) spindle_speed: f64,
     pub(super) saved: usize,
     /// Where the tip is (mm, degrees), of which axes that is known, and whether no start can be assumed for the others.
@@ -46,7 +47,8 @@ impl Before {
             modal: state.modal.clone(),
             offsets: state.offsets.clone(),
             homes: state.homes,
-            tools: state.tools,
+            tools: state.tool_numbers,
+            tool_length: state.tools.length,
             spindle_speed: state.spindle.speed(),
             saved: state.saved.len(),
             at: state.at,

@@ -11,9 +11,16 @@ use crate::program::{Blend, PathControl, Plane};
 pub(super) fn changes(before: &Before, after: &Interpreter, moves: bool) -> Vec<String> {
     let mut changes = modal(before, after, moves);
     changes.extend(offsets(before, after));
-    let [tool, _] = after.tools;
+    let [tool, _] = after.tool_numbers;
     if tool != before.tools[0] {
         changes.push(format!("tool {tool} is selected for M6"));
+    }
+    let length = after.tools.length;
+    if length != before.tool_length {
+        changes.push(format!(
+            "the tip is {} mm beyond that of the machine file",
+            figure(length)
+        ));
     }
     let speed = after.spindle.speed();
     if speed != before.spindle_speed {

@@ -211,11 +211,13 @@ impl Block<'_> {
             (self.at, self.known, self.lost) = (self.after.at, self.after.known, self.after.lost);
             return;
         }
+        let mut tip = self.after.tip_of_machine(&self.at);
         for (axis, word) in target.words.axes.iter().enumerate() {
             if let Some(value) = word {
-                (self.at[axis], self.known[axis]) = (*value, true);
+                (tip[axis], self.known[axis]) = (*value, true);
             }
         }
+        self.at = self.after.end_of_tool(&tip);
     }
 
     /// Whether a straight block leaves X Y Z where they are.

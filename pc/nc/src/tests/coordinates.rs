@@ -91,6 +91,11 @@ fn parameters_get_their_values_after_the_block() {
         (Problem::Undefined("#<nothing>".into()), 1)
     );
     assert_eq!(problem("#5420=1\nM2"), (Problem::ReadOnly("#5420".into()), 1));
+    // Whether a name exists in the block that sets it is read in two ways.
+    for body in ["#<a>=[exists[#<a>]]", "#<a>=1 G0 X[exists[#<a>]]"] {
+        assert_eq!(problem(body), (Problem::ExistsHere("#<a>".into()), 1));
+    }
+    assert_eq!(ends("#<a>=1\n#<b>=2 G0 X[exists[#<a>]]\nM2"), [x(1.0)]);
 }
 
 #[test]
@@ -133,6 +138,19 @@ fn expressions_are_those_of_linuxcnc() {
     let deep = format!("G0 X{}1\nM2", "[".repeat(5000));
     assert!(matches!(problem(&deep), (Problem::TooDeep { .. }, 1)));
     assert_eq!(problem(&"()".repeat(500_000)), (Problem::LongLine(10_000), 1));
+}
+
+#[test]
+fn one_axis_of_a_rotated_system_is_not_sent_home_alone() {
+    let turn = "G10 L2 P1 R30\n";
+    for body in ["G28 X1", "G28 Y1 Z2", "G30 Y1"] {
+        let found = problem(&format!("{turn}{body}\nM2"));
+        assert!(matches!(found, (Problem::Impossible { .. }, 2)), "{found:?}");
+    }
+    for body in ["G28 X1 Y1", "G28 Z1", "G28"] {
+        assert!(run(&format!("{turn}{body}\nM2")).is_ok(), "{body}");
+    }
+    assert!(run("G28 X1\nM2").is_ok());
 }
 
 #[test]

@@ -69,11 +69,29 @@ fn subroutines_may_be_in_files_of_their_own() {
 }
 
 #[test]
+fn a_long_program_may_have_calls_loops_and_conditions() {
+    let straight = "N1\n".repeat(1_000_001);
+    let flow = "o1 sub\nG0 X1\no1 endsub\no1 call\no2 repeat [2]\no2 endrepeat\no3 if [1]\n";
+    let program = run(&format!("{flow}{straight}o3 endif\nG0 X2\nM2")).unwrap();
+    assert_eq!(program.paths.len(), 4);
+    // In a subroutine the same lines are too many.
+    let called = format!("o1 sub\n{straight}o1 endsub\no1 call\nM2");
+    assert!(matches!(problem(&called).0, Problem::Endless(_)));
+}
+
+#[test]
 fn what_does_not_end_is_told() {
     // Lines that are passed over count, too.
     let passed = "G1 X1\n".repeat(3000);
-    let passed = format!("o1 while [1]\no2 if [0]\n{passed}o2 endif\no1 endwhile\nM2");
+    let passed = format!("o1 while [1]\n#1=1\no2 if [0]\n{passed}o2 endif\no1 endwhile\nM2");
     assert!(matches!(problem(&passed).0, Problem::Endless(_)));
+    let same = |body: &str| matches!(problem(&format!("{body}\nM2")).0, Problem::SameAgain(_));
+    assert!(same("#1=1\no1 while [#1 LT 2]\nG0 X1\no1 endwhile"));
+    assert!(same("o1 do\no2 if [0]\no1 break\no2 endif\no1 while [1]"));
+    assert!(same("o1 while [1]\no1 continue\no1 endwhile"));
+    assert!(run("G91\no1 while [#5420 LT 3]\nG0 X1\no1 endwhile\nM2").is_ok());
+    assert!(run("G91\no1 do\nG0 X1\no1 while [#<_x> LT 3]\nM2").is_ok());
+    assert!(run("G91\no1 while [1]\nG0 X1\no2 if [#5420 GT 3]\no1 break\no2 endif\no1 endwhile\nM2").is_ok());
     assert!(matches!(
         problem("o1 while [1]\n#1=1\no1 endwhile\nM2").0,
         Problem::Endless(_)

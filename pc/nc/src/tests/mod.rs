@@ -9,6 +9,8 @@ mod modes;
 mod nurbs;
 mod outputs;
 mod reading;
+mod siemens;
+mod tool_length;
 mod waits;
 
 use super::reading::interpret;

@@ -125,5 +125,12 @@ fn a_word_belongs_to_the_code_that_needs_it() {
         problem("F600\nG64 G2 X10 I5 P2\nM2"),
         (Problem::Ambiguous { word, first, second }, 2)
     );
+    // An arc that holds on has no part in a block without a motion.
+    let program = run("F600\nG2 X10 I5\nG64 P2\nG1 X20\nM2").unwrap();
+    assert_eq!(program.paths[2].targets.len(), 2);
+    assert_eq!(
+        problem("F600\nG2 X10 I5\nG64 P2 X20 I5\nM2").0,
+        problem("F600\nG64 G2 X10 I5 P2\nM2").0
+    );
     assert_eq!(problem("F600\nG1 X10 L2\nM2"), (Problem::Orphan("L".into()), 2));
 }

@@ -100,3 +100,27 @@ fn the_tip_waits_for_tip_control_where_the_machine_file_says_so() {
     let refused = read("TRAORI\nG0 X500\nTRAFOOF\nG0 X510\nM2").unwrap_err();
     assert!(refused.starts_with("line 4"), "{refused}");
 }
+
+#[test]
+fn a_longer_tool_ends_where_the_program_says_however_the_head_leans() {
+    let more = "[tools.2]\nlength_mm = 12.5";
+    let text = "G53 G0 A30 C40\nG43 H2\nG0 X500 Y500 Z100\nG1 X520 Y510 Z105 F1200\nG2 X540 I10\nM2";
+    let (paths, axes) = ends(more, text);
+    let kinematics = planner_of("ac-head").kinematics().clone();
+    for (axes, wanted) in axes[1..]
+        .iter()
+        .zip([[500.0, 500.0, 100.0], [540.0, 510.0, 105.0]])
+    {
+        let pose = kinematics.forward(&inner(axes));
+        let end = pose.position - pose.normal * 12.5;
+        assert!((end - Vector3::from(wanted)).norm() < 1e-4, "{end}");
+        assert!(pose.normal.z < 0.9);
+    }
+    // A block of 22.9 mm and half a turn about 10 mm, as without a length.
+    let length = 525.0_f64.sqrt() + 10.0 * std::f64::consts::PI;
+    assert!(
+        (paths[2].length_mm() - length).abs() < 0.1,
+        "{}",
+        paths[2].length_mm()
+    );
+}

@@ -1,0 +1,122 @@
+//! What programs of Siemens controllers have besides: `R1=…`, `X=IC(…)`, `MSG("…")` and labels. None of it means anything
+//! in RS274/NGC.
+
+use super::block::{Block, Word};
+use super::error::{NcError, Problem, SourcePosition};
+use super::expression;
+use super::parameters::{InBlock, Lookup, Parameter};
+use super::program::AXIS_WORDS;
+use super::scanner::Scanner;
+
+/// What of Siemens stands at the scanner, if that is no word.
+pub(super) fn read(scanner: &mut Scanner, block: &mut Block, lookup: &mut InBlock) -> Result<bool, NcError> {
+    if scanner.at_siemens_parameter() {
+        return setting(scanner, lookup);
+    }
+    let start = scanner.mark();
+    let letters = scanner.skip_letters();
+    scanner.go_back(start);
+    // A word of RS274/NGC has one letter.
+    Ok(letters > 1 && ((block.is_blank() && label(scanner)) || message(scanner, block)?))
+}
+
+/// `NAME:` at the start of a block; there is nothing that jumps to it.
+fn label(scanner: &mut Scanner) -> bool {
+    let start = scanner.mark();
+    scanner.skip_letters();
+    scanner.take(|c| c.is_ascii_alphanumeric() || c == '_');
+    scanner.skip_blanks();
+    let is_label = scanner.peek() == Some(':');
+    if is_label {
+        scanner.step();
+    } else {
+        scanner.go_back(start);
+    }
+    is_label
+}
+
+/// `R1=…`.
+fn setting(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<bool, NcError> {
+    let place = scanner.place();
+    let Some(name) = scanner.address() else {
+        return Ok(false);
+    };
+    let digits = name[1..].to_owned();
+    let parameter = Parameter::siemens(&digits).ok_or(Problem::SiemensNumber(digits).at(place))?;
+    let value = expression::terms(scanner, lookup, None)?;
+    let value = value.ok_or(Problem::NoValue.at(scanner.place()))?;
+    lookup.settings.push((parameter, value));
+    Ok(true)
+}
+
+/// `MSG("…")`, as `(MSG,…)`; `MSG()` takes one away, which here nothing shows.
+fn message(scanner: &mut Scanner, block: &mut Block) -> Result<bool, NcError> {
+    let (place, start) = (scanner.place(), scanner.mark());
+    let is_message = scanner.letters() == "MSG";
+    scanner.skip_blanks();
+    if !is_message || scanner.peek() != Some('(') {
+        scanner.go_back(start);
+        return Ok(false);
+    }
+    scanner.step();
+    scanner.skip_blanks();
+    if scanner.peek() == Some('"') {
+        scanner.step();
+        let text = scanner.take(|c| c != '"').to_owned();
+        block.comments.push((format!("MSG,{text}"), place));
+        scanner.step();
+        scanner.skip_blanks();
+    }
+    if scanner.peek() != Some(')') {
+        return Err(Problem::NoMessage.at(place));
+    }
+    scanner.step();
+    Ok(true)
+}
+
+/// Behind `=`: the value, and whether `IC(…)` makes it a step, or `AC(…)` a coordinate.
+pub(super) fn value(
+    scanner: &mut Scanner,
+    lookup: &mut dyn Lookup,
+) -> Result<(Option<f64>, Option<bool>), NcError> {
+    scanner.skip_blanks();
+    let start = scanner.mark();
+    let step = match scanner.letters().as_str() {
+        "IC" => Some(true),
+        "AC" => Some(false),
+        _ => None,
+    };
+    if step.is_some() && scanner.peek() == Some('(') {
+        scanner.step();
+        let value = expression::terms(scanner, lookup, Some(')'))?;
+        return Ok((value, step));
+    }
+    scanner.go_back(start);
+    Ok((expression::terms(scanner, lookup, None)?, None))
+}
+
+/// Refuses what these words do not go together with.
+pub(super) fn check(block: &Block, place: SourcePosition) -> Result<(), NcError> {
+    let wrong = block
+        .words
+        .iter()
+        .find(|word| word.step.is_some() && !AXIS_WORDS.contains(&word.address.as_str()));
+    if let Some(word) = wrong {
+        return Err(word.value_error("IC( ) and AC( ) are for X Y Z A B C"));
+    }
+    let sets = block
+        .settings
+        .iter()
+        .any(|(parameter, _)| matches!(parameter, Parameter::Siemens(_)));
+    if sets && !block.settings_alone() {
+        return Err(Problem::SiemensAlone.at(place));
+    }
+    Ok(())
+}
+
+impl Block {
+    /// The first word whose IC( ) or AC( ) says how it is meant.
+    pub(super) fn own_distance(&self) -> Option<&Word> {
+        self.words.iter().find(|word| word.step.is_some())
+    }
+}
