@@ -3,7 +3,7 @@
 use crate::stored::{python_is_there, run_objects};
 
 /// Arguments, commands, and lines between the first and the last of the program.
-const CASES: [(&str, &str, &[&str]); 11] = [
+const CASES: [(&str, &str, &[&str]); 12] = [
     // No minus before zero; a feed alone holds for what follows; commands without words do nothing.
     (
         "--precision=3",

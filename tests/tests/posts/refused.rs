@@ -4,7 +4,7 @@ use crate::stored::{python_is_there, run_objects};
 use std::process::Output;
 
 /// Commands of an operation, arguments, and what the message says.
-const REFUSED: [(&str, &str, &str); 17] = [
+const REFUSED: [(&str, &str, &str); 16] = [
     (
         r#"["G38.2", {"Z": -5.0, "F": 1.0}]"#,
         "",
