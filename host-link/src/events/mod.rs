@@ -58,7 +58,7 @@ pub enum Event {
     },
     /// The machine stands until a command answers this.
     Question(Question),
-    /// What the operator should know: an answer in a lesson, or what an input is waited for with.
+    /// An answer to what the operator asked in a lesson.
     Message(String),
     /// The motion board has stopped the machine.
     MotionFault(Fault),

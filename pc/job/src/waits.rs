@@ -5,7 +5,7 @@ use crate::session::Session;
 use crate::{JobError, Weld};
 use cam::path::PlannedPath;
 use host_link::Command;
-use host_link::events::{Event, Phase, Question};
+use host_link::events::{Phase, Question};
 use nc::{InputEvent, Until, Wait};
 use shared::io::Bits;
 use shared::protocol::MotionSample;
@@ -77,9 +77,6 @@ impl Session<'_> {
         let line = wait.place.line;
         let number = input + 1;
         self.phase(Phase::WaitingForInput { number, line });
-        self.control.publish(Event::Message(format!(
-            "line {line}: waiting until input {number} ({name}) {event}, {within_s} s at most"
-        )));
         self.refresh()?;
         let mut watch = InputWatch::new(self.tick(), input, event);
         let mut left = Countdown::new(self.tick(), (within_s * 1e3).ceil() as u64);

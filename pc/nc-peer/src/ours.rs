@@ -5,7 +5,7 @@ use crate::list::{Item, Kind, List, Motion, Place, straight, turned, turns_only}
 use crate::peer::TOOLS;
 use nc::{
     ArcForm, ArcWay, FeedRate, Move, NcError, Options, Program, ProgramAction, ProgramEvent, Setup, Target,
-    TipAndAxes, Way,
+    TipAndAxes, Until, Way,
 };
 use serde::{Deserialize, Serialize};
 use shared::geometry::Turn;
@@ -89,6 +89,14 @@ fn flatten(program: Program) -> Result<Vec<Item>, NcError> {
     let mut list = List::default();
     for path in program.paths {
         let path = sync::Arc::new(path);
+        for wait in &path.waits_before {
+            match wait.until {
+                Until::Continued => list.pause(),
+                Until::ToolIn(number) => list.tool(number),
+                // The peer does not print what it waits for.
+                Until::Input { .. } => {}
+            }
+        }
         list.dwell(path.dwell_before_s);
         if path.targets.is_empty() {
             path.events.iter().for_each(|event| happens(&mut list, event));
@@ -124,7 +132,6 @@ fn happens(list: &mut List, event: &ProgramEvent) {
         ProgramAction::SpindleOff => list.spindle_turn(0),
         ProgramAction::Coolant { mist, flood } => list.coolant(mist, flood),
         ProgramAction::ChangeTool(number) => list.tool(number),
-        ProgramAction::Pause => list.pause(),
         // The peer has neither.
         ProgramAction::Output(_) | ProgramAction::WeldOn(_) | ProgramAction::WeldOff => {}
     }
@@ -191,6 +198,16 @@ mod tests {
     fn items(text: &str) -> Vec<Item> {
         let program = nc::interpret(text, Options::default()).expect("a program");
         flatten(program).expect("a list")
+    }
+
+    #[test]
+    fn stops_and_tools_are_in_their_order() {
+        let items = items("T1 M6\nG0 X1\nM0\nT2 M6\nM1\nM60\nM66 P0 L3 Q1\nG0 X2\nM2\n");
+        let [tool, Item::Motion(_), rest @ .., Item::Motion(_)] = &items[..] else {
+            panic!("{items:?}");
+        };
+        assert_eq!(*tool, Item::Tool(1));
+        assert_eq!(*rest, [Item::Pause, Item::Tool(2), Item::Pause]);
     }
 
     #[test]

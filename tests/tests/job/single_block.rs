@@ -206,3 +206,54 @@ fn words_hold_the_machine_lead_it_back_and_change_its_feed() {
     assert!((fastest(State::Running, 110.0, 1.0) - 41.7).abs() < 0.1);
     assert!(fastest(State::Holding, 60.0, -1.0) > 20.0);
 }
+
+/// Holds, goes back and is gone, after so many turns on the first path that feeds.
+struct Gone {
+    turns: u32,
+    leaves_at: u32,
+    feeds: bool,
+}
+
+impl Operator for Gone {
+    fn event(&mut self, event: &Event, remote: &Remote) {
+        match event {
+            Event::Question(_) if !self.feeds => remote.send(Command::Resume).unwrap(),
+            // Not on the way there.
+            Event::Progress { length_mm, .. } => self.feeds |= (length_mm - 40.0).abs() < 1e-6,
+            _ => {}
+        }
+    }
+
+    fn turn(&mut self, remote: &Remote) {
+        if self.turns == 0 {
+            remote.send(Command::SingleBlock(true)).unwrap();
+        }
+        self.turns += u32::from(self.feeds || self.turns == 0);
+        if self.turns == self.leaves_at {
+            for command in [Command::Hold, Command::Back, Command::Unattended] {
+                remote.send(command).unwrap();
+            }
+        }
+        assert!(self.turns < 100_000, "it waits for ever");
+    }
+}
+
+#[test]
+fn nobody_behind_a_way_back_ends_the_job_whenever_that_was() {
+    let machine = MachineFile::parse("m.toml", include_str!("../../../machines/wire-arc.toml")).unwrap();
+    let program = "G0 X450 Y0 Z5\nG1 X470 F1000\nX490\nM2";
+    for leaves_at in (2..700).step_by(23) {
+        let mut operator = Gone {
+            turns: 0,
+            leaves_at,
+            feeds: false,
+        };
+        let mut boards = SimulatedBoards::new("wire-arc").unwrap();
+        let ended = run_on(&mut boards, &machine, program, None, &mut operator).unwrap();
+        let error = ended.error;
+        assert!(
+            matches!(error, Some(JobError::NoOperator)),
+            "{leaves_at}: {error:?}"
+        );
+    }
+}

@@ -55,7 +55,7 @@ impl Check {
         }
         let ran = dry_run::forecast(&machine, &planner, &paths).with_context(|| format!("program {name}"))?;
         print(&paths, &ran);
-        if let Some(waits) = waits::told(&program) {
+        if let Some(waits) = waits::told(&program, 0) {
             outln!("  {waits}: these times are in no duration");
         }
         slower(&paths).for_each(|found| outln!("  {found}"));

@@ -81,7 +81,7 @@ impl DryRun {
         }
         outln!("{title}");
         out!("{ran}");
-        if let Some(waits) = waits::told(&program) {
+        if let Some(waits) = waits::told(&program, self.from_line.unwrap_or(0)) {
             outln!("  {waits}: these times are in no duration");
         }
         slower.iter().for_each(|found| outln!("  {found}"));

@@ -247,7 +247,7 @@ impl Weld {
 
     /// What the operator has to be there for, and which tool has to be in the machine at a line in the middle.
     fn tell_waits(&self, program: &Program) {
-        if let Some(waits) = waits::told(program) {
+        if let Some(waits) = waits::told(program, self.from_line.unwrap_or(0)) {
             errln!("seamwright: the program {waits}");
         }
         if let Some(line) = self.from_line

@@ -82,7 +82,7 @@ impl Live {
             );
         }
         let program = read_program(&self.at, &machine, Options::default())?;
-        if let Some(waits) = waits::told(&program) {
+        if let Some(waits) = waits::told(&program, 0) {
             bail!(
                 "program {} {waits}, which a calibration does not: leave that out",
                 self.at.display()
