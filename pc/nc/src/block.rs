@@ -110,17 +110,13 @@ impl Block {
         self.settings_alone() && self.settings.is_empty()
     }
 
-    /// Whether nothing has been read of it.
-    pub fn is_blank(&self) -> bool {
-        self.is_empty()
-    }
-
     /// Whether it sets parameters and does nothing else.
     pub fn settings_alone(&self) -> bool {
         self.codes.is_empty() && self.words.is_empty() && self.weld.is_none()
     }
 
-    fn is_empty(&self) -> bool {
+    /// Whether nothing stands in it.
+    pub fn is_empty(&self) -> bool {
         self.is_comment() && self.comments.is_empty()
     }
 }

@@ -21,7 +21,7 @@ const SYSTEM: u32 = 5220;
 const FIRST_SYSTEM: u32 = 5221;
 const SYSTEM_STEP: u32 = 20;
 const ROTATION: u32 = 9;
-/// The tool in the machine, its length in use, and X of where it is.
+/// The tool in the machine, its length in the table \[mm\], and X of where it is.
 const TOOL: u32 = 5400;
 const TOOL_LENGTH: u32 = 5403;
 const HERE: u32 = 5420;
@@ -107,7 +107,7 @@ impl Interpreter {
             Place::Offset(system, axis) => self.offsets.systems[system].offset[axis],
             Place::Rotation(system) => self.offsets.systems[system].rotation,
             Place::Tool => f64::from(self.tool_numbers[1]),
-            Place::ToolLength => self.tools.length / self.modal.unit(),
+            Place::ToolLength => self.tools.length_of(self.tool_numbers[1]),
             Place::Here(axis) => {
                 let place = SourcePosition {
                     line: self.line,

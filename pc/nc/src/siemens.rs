@@ -17,7 +17,7 @@ pub(super) fn read(scanner: &mut Scanner, block: &mut Block, lookup: &mut InBloc
     let letters = scanner.skip_letters();
     scanner.go_back(start);
     // A word of RS274/NGC has one letter.
-    Ok(letters > 1 && ((block.is_blank() && label(scanner)) || message(scanner, block)?))
+    Ok(letters > 1 && ((block.is_empty() && label(scanner)) || message(scanner, block)?))
 }
 
 /// `NAME:` at the start of a block; there is nothing that jumps to it.

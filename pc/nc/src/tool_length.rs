@@ -38,6 +38,11 @@ impl Tools {
             ..Self::default()
         }
     }
+
+    /// That of a tool, 0 if it is not in the table \[mm\].
+    pub(super) fn length_of(&self, number: u32) -> f64 {
+        self.table.get(&number).copied().unwrap_or(0.0)
+    }
 }
 
 impl Interpreter {
@@ -60,10 +65,7 @@ impl Interpreter {
             (Code::MoreLength, None) => return Err(missing(code.name, "H", place)),
             (Code::MoreLength, Some((number, place))) => self.tools.length + self.length_of(number, place)?,
             (_, Some((number, place))) => self.length_of(number, place)?,
-            (Code::ToolLength, None) => {
-                let number = self.tool_numbers[1];
-                self.tools.table.get(&number).copied().unwrap_or(0.0)
-            }
+            (Code::ToolLength, None) => self.tools.length_of(self.tool_numbers[1]),
             _ => return Ok(()),
         };
         self.use_length(length, place)
@@ -162,7 +164,7 @@ impl Interpreter {
     /// Where the tip of the machine file is, the end of the tool being at `at`.
     pub(super) fn tip_of_machine(&self, at: &Coordinates) -> Coordinates {
         let along = self.along(at);
-        self.moved(at, along, self.tools.length)
+        self.retracted(at, along)
     }
 
     /// Where the end of the tool is, the tip of the machine file being at `tip`.

@@ -93,7 +93,6 @@ fn operand(writer: &mut Writer, depth: usize) -> String {
         11 => format!("2 * 3 ** 2 / {}", writer.random.between(1, 9)),
         12 => format!("EXISTS[#<local{}>]", writer.random.between(40, 60)),
         13 => format!("-{}", expression(writer, 0)),
-        14 => "#5403".to_owned(),
         _ => writer.digits(number),
     }
 }

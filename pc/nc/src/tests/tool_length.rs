@@ -66,7 +66,10 @@ fn upright_a_length_is_a_shift_of_z_and_moves_nothing_by_itself() {
     assert_eq!(last("G43 H2\nG0 Z5\nG49\nZ6"), z(6.0));
     // A step, and a place that parameters say, are of the end of the tool.
     assert_eq!(last("G43 H2\nG91 G0 Z5"), z(5.0));
-    assert_eq!(last("G43 H2\nG0 Z[#5422+#5403]"), z(10.0));
+    assert_eq!(last("G43 H2\nG0 Z[#5422+15]"), z(15.0));
+    // The parameter is of the tool in the machine, whatever is in use, in mm as LinuxCNC has it in units of the machine.
+    assert_eq!(last("T3 M6\nG43 H2\nG20\nG0 Z[#5403]"), z(4.0 * 25.4 + 10.0));
+    assert_eq!(last("T3 M6\nG10 L1 P3 Z6\nG0 Z#5403"), z(6.0));
     // Machine coordinates are as ever.
     assert_eq!(last("G43 H2\nG53 G0 Z5"), z(5.0));
     assert_eq!(last("G43 H2\nG53 G0 Z5\nG91 G0 Z1"), z(6.0));
