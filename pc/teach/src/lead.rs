@@ -149,7 +149,7 @@ mod tests {
 
     /// A machine that goes anywhere up to X 50.
     struct Led {
-        lines: std::vec::IntoIter<&'static str>,
+        lines: std::slice::Iter<'static, &'static str>,
         tip: TipPoint,
         kept: Vec<TipPoint>,
         told: Vec<String>,
@@ -175,7 +175,7 @@ mod tests {
         }
 
         fn line(&mut self) -> Result<Option<String>, &'static str> {
-            Ok(self.lines.next().map(str::to_owned))
+            Ok(self.lines.next().map(|line| (*line).to_owned()))
         }
 
         fn say(&mut self, text: &str) {
@@ -194,12 +194,12 @@ mod tests {
 
     #[test]
     fn places_are_led_to_taken_and_taken_out_and_what_is_refused_does_not_end_it() {
-        let lines = [
+        const LINES: [&str; 14] = [
             "x 10", "up 5", "take", "take", "c -15", "x 60", "y 7 8", "jump", "take", "y 2", "take", "undo",
             "done", "take",
         ];
         let mut led = Led {
-            lines: lines.to_vec().into_iter(),
+            lines: LINES.iter(),
             tip: TipPoint {
                 position_mm: [0.0; 3],
                 angles_deg: [0.0; 3],
@@ -226,6 +226,6 @@ mod tests {
             (told("8 is too much"), told("jump is not a command here")),
             (1, 1)
         );
-        assert_eq!(led.lines.next(), Some("take"));
+        assert_eq!(led.lines.next(), Some(&"take"));
     }
 }
