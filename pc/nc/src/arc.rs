@@ -38,13 +38,15 @@ pub(super) fn way(
 }
 
 fn form(claims: &Claims, mode: Code, plane: Plane, place: SourcePosition) -> Result<ArcForm, NcError> {
-    let centre = CENTRE_WORDS.map(|name| claims.word(mode, name));
+    let mut centre = CENTRE_WORDS.map(|name| claims.word(mode, name));
     let (code, words) = match plane {
         Plane::Xy => ("G17", "I and J"),
         Plane::Zx => ("G18", "I and K"),
         Plane::Yz => ("G19", "J and K"),
     };
-    if let Some(off) = centre[plane.axis()] {
+    // Some CAM systems say all three.
+    let off = centre[plane.axis()].take().filter(|off| off.value != 0.0);
+    if let Some(off) = off {
         let (word, plane) = (off.label(), code);
         return Err(Problem::OffPlane { word, plane, words }.at(off.place));
     }

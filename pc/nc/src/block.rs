@@ -1,6 +1,6 @@
 //! From a line of text to a block: codes by modal group, words by their letter, parameters that it sets.
 
-use super::codes::{CODES, Code, Group, NEAR, refused};
+use super::codes::{CODES, Code, Group, LATHE, NEAR, refused};
 use super::error::{NcError, Problem, SourcePosition};
 use super::expression;
 use super::flow::{self, OWord};
@@ -143,7 +143,7 @@ const WORDS: [&str; 21] = [
 /// The same, written with `=`.
 const NAMED_WORDS: [&str; 6] = ["V1", "V2", "A3", "B3", "C3", "CR"];
 /// Words of other controllers without a number, and the code that they are here; none: what they ask for is always so.
-const KEYWORDS: [(&str, Option<Code>); 12] = [
+const KEYWORDS: [(&str, Option<Code>); 13] = [
     ("TRAORI", Some(Code::TipOn)),
     ("TRAFOOF", Some(Code::TipOff)),
     ("COMPCAD", None),
@@ -152,6 +152,7 @@ const KEYWORDS: [(&str, Option<Code>); 12] = [
     ("COMPOF", None),
     ("ORIWKS", None),
     ("ORIAXES", Some(Code::Hint)),
+    ("SUPA", Some(Code::MachineAxes)),
     ("FFWON", None),
     ("FFWOF", None),
     ("SOFT", None),
@@ -222,6 +223,7 @@ pub(super) fn parse(
     }
     block.settings = std::mem::take(&mut lookup.settings);
     high_speed(&mut block)?;
+    lathe_cycle(&block)?;
     siemens::check(&block, SourcePosition { line, column: 1 })?;
     // A block number alone does nothing.
     Ok(if block.is_empty() {
@@ -245,6 +247,22 @@ fn high_speed(block: &mut Block) -> Result<(), NcError> {
     *code = CodeWord::hint("G5.1 Q", code.place);
     block.words.clear();
     Ok(())
+}
+
+/// G70 and G71 are units but where they have words of a cycle.
+fn lathe_cycle(block: &Block) -> Result<(), NcError> {
+    let units = block
+        .code(Group::Units)
+        .filter(|code| matches!(code.name, "G70" | "G71"));
+    match units {
+        Some(code) if block.word("Q").is_some() || block.word("P").is_some() => Err(Problem::RefusedCode {
+            letter: 'G',
+            number: if code.name == "G70" { 70.0 } else { 71.0 },
+            why: LATHE,
+        }
+        .at(code.place)),
+        _ => Ok(()),
+    }
 }
 
 /// `#… = …`, behind the `#`.
@@ -342,7 +360,12 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
         Problem::TooLarge(_) => Problem::TooLarge(address.clone()).at(place),
         _ => error,
     };
+    let tool = match sign && address == "T" {
+        true => siemens::tool_name(scanner)?,
+        false => None,
+    };
     let (value, step) = match sign {
+        true if tool.is_some() => (tool, None),
         true => siemens::value(scanner, lookup).map_err(of_word)?,
         // X R1 is not X=R1, but a word without a number.
         false if scanner.at_siemens_parameter() => (None, None),

@@ -31,6 +31,10 @@ impl<'b> Claims<'b> {
             .filter(|w| SHARED.contains(&w.address.as_str()))
         {
             let address = word.address.as_str();
+            // The edge of a tool, on other controllers.
+            if address == "D" && is_edge(block, word) {
+                continue;
+            }
             let takes = |words: fn(Code) -> &'static [&'static str]| {
                 let code = codes.iter().copied();
                 code.filter(move |code| words(*code).contains(&address))
@@ -70,6 +74,13 @@ impl<'b> Claims<'b> {
             .find(|(word, owner)| *owner == code && word.address == address);
         found.map(|(word, _)| *word)
     }
+}
+
+/// Whether D is the edge of a tool: with the tool, with axes of the machine, or alone.
+fn is_edge(block: &Block, d: &Word) -> bool {
+    let with = block.word("T").is_some() || block.has(Code::ChangeTool) || block.has(Code::MachineAxes);
+    let alone = block.codes.is_empty() && block.words.len() == 1;
+    (with || alone) && d.number_below(10).is_some()
 }
 
 /// Whether a word cannot belong to anything but a motion.

@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 92] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 97] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -21,6 +21,8 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 92] = [
     ('G', 190, Code::PlaneYz, "G19", Group::Plane),
     ('G', 200, Code::Inches, "G20", Group::Units),
     ('G', 210, Code::Millimetres, "G21", Group::Units),
+    ('G', 220, Code::Hint, "G22", Group::Hint),
+    ('G', 230, Code::Hint, "G23", Group::Hint),
     ('G', 280, Code::Home, "G28", Group::NonModal),
     ('G', 281, Code::SetHome, "G28.1", Group::NonModal),
     ('G', 300, Code::SecondHome, "G30", Group::NonModal),
@@ -47,8 +49,10 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 92] = [
     ('G', 611, Code::ExactStop, "G61.1", Group::PathControl),
     ('G', 640, Code::Continuous, "G64", Group::PathControl),
     ('G', 6420, Code::WithinTolerance, "G642", Group::PathControl),
+    ('G', 700, Code::Inches, "G70", Group::Units),
+    ('G', 710, Code::Millimetres, "G71", Group::Units),
     ('G', 730, Code::ChipBreaking, "G73", Group::Motion),
-    ('G', 800, Code::CancelMotion, "G80", Group::Motion),
+    ('G', 800, Code::CancelMotion, "G80", Group::CycleEnd),
     ('G', 810, Code::Drilling, "G81", Group::Motion),
     ('G', 820, Code::DrillingWithDwell, "G82", Group::Motion),
     ('G', 830, Code::PeckDrilling, "G83", Group::Motion),
@@ -68,6 +72,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 92] = [
     ('G', 970, Code::SpindleSpeed, "G97", Group::SpindleMode),
     ('G', 980, Code::ToInitialLevel, "G98", Group::ReturnLevel),
     ('G', 990, Code::ToRetractLevel, "G99", Group::ReturnLevel),
+    ('G', 1530, Code::MachineAxes, "G153", Group::NonModal),
     ('M', 0, Code::Pause, "M0", Group::Stop),
     ('M', 10, Code::OptionalPause, "M1", Group::Stop),
     ('M', 20, Code::End, "M2", Group::Stop),
@@ -98,7 +103,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 92] = [
 ];
 
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 30] = [
+const REFUSED: [(char, u32, &str); 29] = [
     ('G', 70, LATHE),
     ('G', 330, THREADING),
     ('G', 331, THREADING),
@@ -121,8 +126,6 @@ const REFUSED: [(char, u32, &str); 30] = [
         682,
         "tilted work planes are not supported: rotate about Z with G10 L2 R",
     ),
-    ('G', 700, LATHE),
-    ('G', 710, LATHE),
     ('G', 720, LATHE),
     ('G', 740, THREADING),
     ('G', 760, THREADING),
@@ -143,6 +146,11 @@ const REFUSED: [(char, u32, &str); 30] = [
         960,
         "constant surface speed is for lathes: write G97 and S in r/min",
     ),
+    (
+        'G',
+        5000,
+        "coordinates without an offset are those of a system that has none: write G54, or G53 with the motion",
+    ),
     ('M', 190, "the spindle is not positioned by programs"),
     ('M', 490, OVERRIDES),
     ('M', 500, OVERRIDES),
@@ -151,7 +159,7 @@ const REFUSED: [(char, u32, &str); 30] = [
     ('M', 530, OVERRIDES),
 ];
 
-const LATHE: &str = "lathe codes are not supported";
+pub(super) const LATHE: &str = "lathe codes are not supported";
 const THREADING: &str =
     "threading and tapping need a spindle that the axes follow, and this machine has none";
 const PROBING: &str =
@@ -206,9 +214,9 @@ pub enum Code {
     PlaneZx,
     /// G19.
     PlaneYz,
-    /// G20.
+    /// G20, G70.
     Inches,
-    /// G21.
+    /// G21, G71.
     Millimetres,
     /// G28.
     Home,
@@ -234,7 +242,7 @@ pub enum Code {
     TipOff,
     /// G52.
     LocalOffset,
-    /// G53.
+    /// G53, G153, SUPA.
     MachineAxes,
     /// G54 to G59.3: the coordinate system of this number, from 1.
     System(u8),
@@ -347,13 +355,15 @@ pub enum Code {
 /// Modal groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
-    /// G0 G1 G2 G3 G5 G5.1 G5.2 G5.3 G6.2 G6.3, canned cycles and G80.
+    /// G0 G1 G2 G3 G5 G5.1 G5.2 G5.3 G6.2 G6.3 and canned cycles.
     Motion,
+    /// G80, which may stand beside a motion.
+    CycleEnd,
     /// G4 G10 G28 G30 G52 G53 G92 and theirs: they hold in their block only.
     NonModal,
     /// G17 G18 G19.
     Plane,
-    /// G20 G21.
+    /// G20 G21 G70 G71.
     Units,
     /// G40.
     Compensation,
@@ -391,7 +401,7 @@ pub enum Group {
     Outputs,
     /// M98 M99.
     Call,
-    /// ORIAXES, and G5.1 with Q alone.
+    /// ORIAXES, G22, G23, and G5.1 with Q alone.
     Hint,
 }
 

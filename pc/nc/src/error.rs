@@ -49,6 +49,9 @@ pub enum Problem {
     /// A letter without a number.
     #[error("{0} needs a number")]
     NoNumber(String),
+    /// A tool by another name than its number.
+    #[error("tools have numbers here: T=\"1\" or T1")]
+    ToolName,
     /// A number without a letter.
     #[error("a number without a letter before it")]
     LooseNumber,

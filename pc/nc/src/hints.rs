@@ -10,10 +10,28 @@ impl Interpreter {
     pub(super) fn hints(&mut self, block: &Block) {
         if let Some(code) = block.code(Group::Hint) {
             let why = match code.name {
+                "G22" | "G23" => "the travel of the axes is always checked",
                 "ORIAXES" => "between the ends of a block the tool turns as docs/nc.md says under Turns",
                 _ => "the speed is planned ahead as far as it is needed anyway",
             };
             self.tell_once(format!("{} changes nothing: {why}", code.name), code.place);
+        }
+        if let Some(code) = block.code(Group::Units)
+            && matches!(code.name, "G70" | "G71")
+        {
+            let (name, own) = (code.name, code.code.name());
+            self.tell_once(
+                format!("{name} is taken as {own}: lathe cycles are not known here"),
+                code.place,
+            );
+        }
+        if let Some(edge) = block
+            .word("D")
+            .filter(|_| block.code(Group::ToolLength).is_none())
+        {
+            let text =
+                "D changes nothing: a tool has one length, that of G43 H, and no radius is compensated";
+            self.tell_once(text.to_owned(), edge.place);
         }
         if let Some(code) = block.code(Group::PathControl)
             && code.code == Code::WithinTolerance

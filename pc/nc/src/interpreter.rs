@@ -138,11 +138,12 @@ impl Interpreter {
         }
         let block = &*self.without_polar(block)?;
         let own_motion = block.code(Group::Motion).map(|code| code.code);
+        let ends_cycle = block.has(Code::CancelMotion);
         let takes = block.codes.iter().find(|code| code.code.takes_axes());
         let modal = self
             .modal
             .motion
-            .filter(|_| own_motion.is_none() && takes.is_none());
+            .filter(|_| own_motion.is_none() && takes.is_none() && !ends_cycle);
         let vectors = match block.code(Group::ToolLength) {
             Some(code) => code.code == Code::TipByVectors,
             None => self.modal.vectors,
@@ -156,7 +157,7 @@ impl Interpreter {
             }
         }
         let claims = Claims::of(block, modal, vectors)?;
-        if own_motion.is_some_and(|motion| Some(motion) != self.modal.motion) {
+        if ends_cycle || own_motion.is_some_and(|motion| Some(motion) != self.modal.motion) {
             self.sticky.changed(own_motion);
         }
         let setup = self.setup.clone();
@@ -165,9 +166,7 @@ impl Interpreter {
         self.save_modes(block)?;
         self.switch(block, &claims)?;
         self.system_and_tool(block, &claims)?;
-        if let (Some(code), Some(motion)) = (takes, block.code(Group::Motion))
-            && motion.code != Code::CancelMotion
-        {
+        if let (Some(code), Some(motion)) = (takes, block.code(Group::Motion)) {
             return Err(Problem::AxesTaken(code.name).at(motion.place));
         }
         let feeds = match block.code(Group::NonModal) {

@@ -28,8 +28,10 @@ struct Feed {
 /// Modes of a program.
 #[derive(Clone, Debug)]
 pub(super) struct Modal {
-    /// G0, G1, G2, G3, G5, G5.1 or a cycle; none after a NURBS and G80.
+    /// G0, G1, G2, G3, G5, G5.1 or a cycle; none after a NURBS, and after G80 where no cycle was on.
     pub(super) motion: Option<Code>,
+    /// G0 or G1 before a cycle: G80 goes back to it.
+    before_cycle: Option<Code>,
     /// The last motion was a G6.2, which a G6.3 may close once more.
     pub(super) closed: bool,
     /// X Y Z are the tip.
@@ -54,6 +56,7 @@ impl Modal {
     pub(super) fn new(setup: &Setup) -> Self {
         Self {
             motion: None,
+            before_cycle: None,
             closed: false,
             tip: setup.tip_control,
             vectors: false,
@@ -79,6 +82,8 @@ impl Modal {
             match code.code {
                 Code::InverseTime => self.set_feed_mode(FeedMode::InverseTime),
                 Code::PerMinute => self.set_feed_mode(FeedMode::PerMinute),
+                // Before a motion of its block.
+                Code::CancelMotion => self.end_cycle(),
                 _ => {}
             }
         }
@@ -111,7 +116,6 @@ impl Modal {
                 Code::ExactStop => self.control = PathControl::ExactStop,
                 Code::Continuous => self.control = self.blend(claims)?,
                 Code::WithinTolerance => self.control = within_tolerance(setup),
-                Code::CancelMotion => self.motion = None,
                 Code::UniformNurbsEnd | Code::KnotNurbsEnd => {
                     // All of a G6.2 may have been said before its G6.3.
                     if !(std::mem::take(&mut self.closed) && code.code == Code::KnotNurbsEnd) {
@@ -119,12 +123,24 @@ impl Modal {
                     }
                     self.motion = None;
                 }
-                motion if is_motion(motion) => self.motion = Some(motion),
+                motion if is_motion(motion) => {
+                    if motion.is_cycle() && !self.motion.is_some_and(Code::is_cycle) {
+                        self.before_cycle = self.motion;
+                    }
+                    self.motion = Some(motion);
+                }
                 // The others have their own places, or confirm the only state there is.
                 _ => {}
             }
         }
         Ok(())
+    }
+
+    /// G80. Controllers whose cycles are in a group of their own go on as before the cycle.
+    fn end_cycle(&mut self) {
+        let straight = |code: &Code| matches!(code, Code::Rapid | Code::Feed);
+        let cycle = self.motion.filter(|code| code.is_cycle());
+        self.motion = cycle.and(self.before_cycle).filter(straight);
     }
 
     /// A feed of the other mode means nothing any more.

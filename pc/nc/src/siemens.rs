@@ -16,8 +16,25 @@ pub(super) fn read(scanner: &mut Scanner, block: &mut Block, lookup: &mut InBloc
     let start = scanner.mark();
     let letters = scanner.skip_letters();
     scanner.go_back(start);
-    // A word of RS274/NGC has one letter.
-    Ok(letters > 1 && ((block.is_empty() && label(scanner)) || message(scanner, block)?))
+    if letters < 2 {
+        // A word of RS274/NGC.
+        return Ok(false);
+    }
+    Ok((block.is_empty() && label(scanner)) || message(scanner, block)? || high_speed(scanner))
+}
+
+/// `CYCLE832(…)`, high-speed settings: the speed is planned ahead anyway, within the tolerance of G64.
+fn high_speed(scanner: &mut Scanner) -> bool {
+    let start = scanner.mark();
+    let is_cycle = scanner.letters() == "CYCLE" && scanner.take(|c| c.is_ascii_digit()) == "832";
+    scanner.skip_blanks();
+    if !is_cycle || scanner.peek() != Some('(') {
+        scanner.go_back(start);
+        return false;
+    }
+    scanner.take(|c| c != ')');
+    scanner.step();
+    true
 }
 
 /// `NAME:` at the start of a block; there is nothing that jumps to it.
@@ -93,6 +110,26 @@ pub(super) fn value(
     }
     scanner.go_back(start);
     Ok((expression::terms(scanner, lookup, None)?, None))
+}
+
+/// Behind `T=`: a number in quotation marks, as the name of a tool.
+pub(super) fn tool_name(scanner: &mut Scanner) -> Result<Option<f64>, NcError> {
+    let start = scanner.mark();
+    scanner.skip_blanks();
+    if scanner.peek() != Some('"') {
+        scanner.go_back(start);
+        return Ok(None);
+    }
+    let place = scanner.place();
+    scanner.step();
+    let number: Option<u32> = scanner.take(|c| c != '"').trim().parse().ok();
+    match number.filter(|_| scanner.peek().is_some()) {
+        Some(number) => {
+            scanner.step();
+            Ok(Some(f64::from(number)))
+        }
+        None => Err(Problem::ToolName.at(place)),
+    }
 }
 
 /// Refuses what these words do not go together with.

@@ -119,3 +119,28 @@ fn boring_feeds_back_or_stops_the_spindle() {
         Problem::RefusedCode { .. }
     ));
 }
+
+#[test]
+fn g80_goes_back_to_the_motion_before_the_cycle_and_may_stand_beside_another() {
+    // As the post-processors for Fanuc and Haas have it.
+    let drilled = [up(10.0), over(5.0, 10.0), up(2.0), down(-3.0), up(10.0)];
+    let back = motions("F100\nG0 Z10\nG98 G81 X5 Z-3 R2\nG80\nZ15\nM2");
+    assert_eq!(back[..5], drilled);
+    assert_eq!(back[5..], [up(15.0)]);
+    let fed = motions("F100\nG1 Z10\nG98 G81 X5 Z-3 R2\nG80\nZ15\nM2");
+    assert_eq!(fed[5..], [down(15.0)]);
+    // A line that many programs begin with, and one that leaves a cycle.
+    assert_eq!(motions("G0 G17 G40 G49 G80 G90\nZ5\nM2"), [up(5.0)]);
+    let left = motions("F100\nG0 Z10\nG98 G81 X5 Z-3 R2\nG1 G80 Z15\nM2");
+    assert_eq!(left[5..], [down(15.0)]);
+    assert_eq!(
+        motions("F100\nG0 Z10\nG98 G81 X5 Z-3 R2\nG80 Z15\nM2")[5..],
+        [up(15.0)]
+    );
+    // Without a cycle there is nothing to go back to.
+    let error = run("F100\nG1 Z10\nG80\nZ15\nM2").unwrap_err();
+    assert!(
+        error.to_string().contains("axis words without a motion"),
+        "{error}"
+    );
+}

@@ -140,7 +140,7 @@ fn a_cycle_is_told_with_the_motions_that_it_makes_and_a_nurbs_where_it_ends() {
    straight, rapid, to X10 Y0 Z2 mm, A0 B0 C0 deg in G54
    tip at X10 Y0 Z2 mm, A0 B0 C0 deg
 3: G80
-   motion: none until the next code
+   motion: G0
 4: G5.2 P1 L3
    motion: G5.2
    a NURBS begins: its points follow

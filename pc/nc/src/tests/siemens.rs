@@ -79,3 +79,31 @@ fn messages_are_told_and_labels_passed_over() {
     assert!(wrong("MSG(hello)").contains("MSG(\"text\")"));
     assert!(wrong("GOTOF START_1").contains("GOTOF is not understood"));
 }
+
+#[test]
+fn words_of_a_post_processor_for_siemens_are_understood() {
+    let program = run(
+        "G71 G90 G94\nSUPA G0 Z200 D0\nT=\"2\" D1\nM6\nCYCLE832(0.01,1,1)\nD1\nF100 G1 X1\nG153 G0 Z100\nM2",
+    )
+    .unwrap();
+    let told: Vec<&str> = program
+        .notices
+        .iter()
+        .map(|notice| notice.text.as_str())
+        .collect();
+    for (start, times) in [("G71 is taken as G21", 1), ("D changes nothing", 1)] {
+        assert_eq!(
+            told.iter().filter(|text| text.starts_with(start)).count(),
+            times,
+            "{told:?}"
+        );
+    }
+    let named = wrong("T=\"MILL 10\"");
+    assert!(
+        named.contains("tools have numbers here: T=\"1\" or T1"),
+        "{named}"
+    );
+    assert!(wrong("G71 Q1 X1").contains("lathe codes are not supported"));
+    assert!(wrong("F1 G1 X1 D1").contains("D"));
+    assert!(wrong("CYCLE800(1)").contains("CYCLE"));
+}
