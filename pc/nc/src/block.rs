@@ -143,7 +143,7 @@ const WORDS: [&str; 21] = [
 /// The same, written with `=`.
 const NAMED_WORDS: [&str; 6] = ["V1", "V2", "A3", "B3", "C3", "CR"];
 /// Words of other controllers without a number, and the code that they are here; none: what they ask for is always so.
-const KEYWORDS: [(&str, Option<Code>); 13] = [
+const KEYWORDS: [(&str, Option<Code>); 15] = [
     ("TRAORI", Some(Code::TipOn)),
     ("TRAFOOF", Some(Code::TipOff)),
     ("COMPCAD", None),
@@ -155,6 +155,8 @@ const KEYWORDS: [(&str, Option<Code>); 13] = [
     ("SUPA", Some(Code::MachineAxes)),
     ("FFWON", None),
     ("FFWOF", None),
+    ("FNORM", None),
+    ("CFTCP", None),
     ("SOFT", None),
     ("BRISK", None),
 ];
@@ -206,6 +208,7 @@ pub(super) fn parse(
                 scanner.step();
                 setting(&mut scanner, lookup)?;
             }
+            '_' => siemens::variable(&mut scanner, lookup)?,
             '0'..='9' | '.' | '+' | '-' | '[' => return Err(Problem::LooseNumber.at(place)),
             '@' | '^' => {
                 let word = word(&mut scanner, lookup)?;

@@ -1,7 +1,7 @@
 //! Assigns words to codes: P, Q and others have a different meaning with each code.
 
 use super::block::{Block, Word};
-use super::codes::Code;
+use super::codes::{Code, Group};
 use super::direction::DIRECTION_WORDS;
 use super::error::{NcError, Problem};
 use super::program::{AXIS_WORDS, EXTENSION_WORDS};
@@ -32,7 +32,7 @@ impl<'b> Claims<'b> {
         {
             let address = word.address.as_str();
             // The edge of a tool, on other controllers.
-            if address == "D" && is_edge(block, word) {
+            if address == "D" && word.number_below(10).is_some() && block.code(Group::ToolLength).is_none() {
                 continue;
             }
             let takes = |words: fn(Code) -> &'static [&'static str]| {
@@ -74,13 +74,6 @@ impl<'b> Claims<'b> {
             .find(|(word, owner)| *owner == code && word.address == address);
         found.map(|(word, _)| *word)
     }
-}
-
-/// Whether D is the edge of a tool: with the tool, with axes of the machine, or alone.
-fn is_edge(block: &Block, d: &Word) -> bool {
-    let with = block.word("T").is_some() || block.has(Code::ChangeTool) || block.has(Code::MachineAxes);
-    let alone = block.codes.is_empty() && block.words.len() == 1;
-    (with || alone) && d.number_below(10).is_some()
 }
 
 /// Whether a word cannot belong to anything but a motion.

@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 97] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 99] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -72,6 +72,8 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 97] = [
     ('G', 970, Code::SpindleSpeed, "G97", Group::SpindleMode),
     ('G', 980, Code::ToInitialLevel, "G98", Group::ReturnLevel),
     ('G', 990, Code::ToRetractLevel, "G99", Group::ReturnLevel),
+    ('G', 7000, Code::Inches, "G700", Group::Units),
+    ('G', 7100, Code::Millimetres, "G710", Group::Units),
     ('G', 1530, Code::MachineAxes, "G153", Group::NonModal),
     ('M', 0, Code::Pause, "M0", Group::Stop),
     ('M', 10, Code::OptionalPause, "M1", Group::Stop),
@@ -214,9 +216,9 @@ pub enum Code {
     PlaneZx,
     /// G19.
     PlaneYz,
-    /// G20, G70.
+    /// G20, G70, G700.
     Inches,
-    /// G21, G71.
+    /// G21, G71, G710.
     Millimetres,
     /// G28.
     Home,
@@ -363,7 +365,7 @@ pub enum Group {
     NonModal,
     /// G17 G18 G19.
     Plane,
-    /// G20 G21 G70 G71.
+    /// G20 G21 G70 G71 G700 G710.
     Units,
     /// G40.
     Compensation,

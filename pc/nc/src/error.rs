@@ -49,6 +49,11 @@ pub enum Problem {
     /// A letter without a number.
     #[error("{0} needs a number")]
     NoNumber(String),
+    /// DEF without what follows it.
+    #[error(
+        "variables are defined as DEF REAL _NAME, _OTHER=1, with INT and BOOL too; their names begin with _"
+    )]
+    NoDefinition,
     /// A tool by another name than its number.
     #[error("tools have numbers here: T=\"1\" or T1")]
     ToolName,

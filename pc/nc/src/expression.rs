@@ -66,10 +66,22 @@ fn unsigned(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Resul
             let value = value.ok_or_else(|| parameter.no_value().at(place))?;
             Ok(Some(value))
         }
+        Some('_') => {
+            let place = scanner.place();
+            let parameter = variable(scanner);
+            let value = lookup.value(&parameter);
+            value.ok_or_else(|| parameter.no_value().at(place)).map(Some)
+        }
         Some('R' | 'r') if scanner.at_siemens_parameter() => siemens(scanner, lookup).map(Some),
         Some(c) if c.is_ascii_alphabetic() => function(scanner, lookup, depth),
         _ => Ok(None),
     }
+}
+
+/// `_NAME`, a variable of Siemens: the global parameter of that name.
+pub(super) fn variable(scanner: &mut Scanner) -> Parameter {
+    let name = scanner.take(|c| c.is_ascii_alphanumeric() || c == '_');
+    Parameter::Named(name.to_ascii_lowercase())
 }
 
 /// The value of `R1`.

@@ -17,11 +17,11 @@ impl Interpreter {
             self.tell_once(format!("{} changes nothing: {why}", code.name), code.place);
         }
         if let Some(code) = block.code(Group::Units)
-            && matches!(code.name, "G70" | "G71")
+            && code.name.starts_with("G7")
         {
             let (name, own) = (code.name, code.code.name());
             self.tell_once(
-                format!("{name} is taken as {own}: lathe cycles are not known here"),
+                format!("{name} is taken as {own}: F is in the same units"),
                 code.place,
             );
         }

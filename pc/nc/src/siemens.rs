@@ -1,4 +1,4 @@
-//! What programs of Siemens controllers have besides: `R1=…`, `X=IC(…)`, `MSG("…")` and labels. None of it means anything
+//! What programs of Siemens controllers have besides: `R1=…`, `_NAME=…`, `X=IC(…)`, `MSG("…")` and labels. None of it means anything
 //! in RS274/NGC.
 
 use super::block::{Block, Word};
@@ -20,21 +20,77 @@ pub(super) fn read(scanner: &mut Scanner, block: &mut Block, lookup: &mut InBloc
         // A word of RS274/NGC.
         return Ok(false);
     }
-    Ok((block.is_empty() && label(scanner)) || message(scanner, block)? || high_speed(scanner))
+    let is_read = (block.is_empty() && label(scanner)) || message(scanner, block)? || no_cycle(scanner);
+    Ok(is_read || definition(scanner, lookup)?)
 }
 
-/// `CYCLE832(…)`, high-speed settings: the speed is planned ahead anyway, within the tolerance of G64.
-fn high_speed(scanner: &mut Scanner) -> bool {
-    let start = scanner.mark();
-    let is_cycle = scanner.letters() == "CYCLE" && scanner.take(|c| c.is_ascii_digit()) == "832";
+/// `_NAME=…`.
+pub(super) fn variable(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<(), NcError> {
+    let place = scanner.place();
+    let parameter = expression::variable(scanner);
     scanner.skip_blanks();
-    if !is_cycle || scanner.peek() != Some('(') {
-        scanner.go_back(start);
-        return false;
+    if scanner.peek() != Some('=') {
+        return Err(Problem::LooseParameter(parameter.to_string()).at(place));
     }
-    scanner.take(|c| c != ')');
     scanner.step();
-    true
+    let value = expression::terms(scanner, lookup, None)?;
+    let value = value.ok_or(Problem::NoValue.at(scanner.place()))?;
+    lookup.settings.push((parameter, value));
+    Ok(())
+}
+
+/// `DEF REAL _A, _B=1`: variables, 0 where nothing is said.
+fn definition(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<bool, NcError> {
+    let start = scanner.mark();
+    if scanner.letters() != "DEF" {
+        scanner.go_back(start);
+        return Ok(false);
+    }
+    scanner.skip_blanks();
+    let place = scanner.place();
+    if !["REAL", "INT", "BOOL"].contains(&scanner.letters().as_str()) {
+        return Err(Problem::NoDefinition.at(place));
+    }
+    loop {
+        scanner.skip_blanks();
+        let place = scanner.place();
+        if scanner.peek() != Some('_') {
+            return Err(Problem::NoDefinition.at(place));
+        }
+        let begin = scanner.mark();
+        let parameter = expression::variable(scanner);
+        scanner.skip_blanks();
+        if scanner.peek() == Some('=') {
+            scanner.go_back(begin);
+            variable(scanner, lookup)?;
+            scanner.skip_blanks();
+        } else {
+            lookup.settings.push((parameter, 0.0));
+        }
+        if scanner.peek() != Some(',') {
+            return Ok(true);
+        }
+        scanner.step();
+    }
+}
+
+/// `CYCLE832(…)`, high-speed settings: the speed is planned ahead anyway, within the tolerance of G64. `CYCLE800()` ends
+/// a tilted plane, and there is none.
+fn no_cycle(scanner: &mut Scanner) -> bool {
+    let start = scanner.mark();
+    let is_cycle = scanner.letters() == "CYCLE";
+    let number = scanner.take(|c| c.is_ascii_digit()).to_owned();
+    scanner.skip_blanks();
+    if is_cycle && scanner.peek() == Some('(') {
+        scanner.step();
+        let within = scanner.take(|c| c != ')').trim().len();
+        scanner.step();
+        if number == "832" || number == "800" && within == 0 {
+            return true;
+        }
+    }
+    scanner.go_back(start);
+    false
 }
 
 /// `NAME:` at the start of a block; there is nothing that jumps to it.

@@ -104,6 +104,20 @@ fn words_of_a_post_processor_for_siemens_are_understood() {
         "{named}"
     );
     assert!(wrong("G71 Q1 X1").contains("lathe codes are not supported"));
-    assert!(wrong("F1 G1 X1 D1").contains("D"));
+    assert!(wrong("F1 G1 X1 D12").contains("D"));
     assert!(wrong("CYCLE800(1)").contains("CYCLE"));
+    assert!(run("CYCLE800()\nG710 FNORM\nD1 G54 G0 X1\nM2").is_ok());
+}
+
+#[test]
+fn variables_that_begin_with_a_line_are_defined_set_and_read() {
+    let body = "DEF REAL _x_home, _y_home=3, _tolerance\n_X_HOME=2 _Y_HOME=_Y_HOME*2\nG0 X=_X_HOME\nX=_Y_HOME+1 Y=-_x_home\n\
+                X=_tolerance";
+    assert_eq!(xs(body), [2.0, 7.0, 0.0]);
+    assert!(wrong("G0 X=_NOWHERE").contains("_nowhere"));
+    assert!(wrong("DEF REAL HOME").contains("their names begin with _"));
+    assert!(wrong("DEF _HOME").contains("DEF REAL _NAME"));
+    assert!(wrong("_HOME").contains("_home"));
+    // As ever in RS274/NGC.
+    assert_eq!(xs("#<_home>=4\nG0 X=_HOME"), [4.0]);
 }
