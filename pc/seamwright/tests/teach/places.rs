@@ -1,40 +1,11 @@
 //! `seamwright teach` and `plan` for places of the tip, as a person uses them.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use super::{said, seamwright};
 
+const MACHINE: &str = "wire-arc";
 const PART: &str =
     "[seam]\ntaught = \"p.csv\"\napproach_mm = 30.0\npasses = [{ weld = \"root\", mm_min = 480.0 }]\n";
 const WELD_DATA: &str = "[root]\npower = 2000.0\noutputs = [\"gas\"]\n";
-
-fn shipped(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file)
-}
-
-fn seamwright(folder: &Path, words: &[&str], input: &str) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_seamwright"))
-        .current_dir(folder)
-        .args(words)
-        .arg("--machine")
-        .arg(shipped("machines/wire-arc.toml"))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("seamwright runs");
-    let mut stdin = child.stdin.take().unwrap();
-    // A refusal does not read it.
-    let _ = stdin.write_all(input.as_bytes());
-    drop(stdin);
-    child.wait_with_output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    let [out, error] =
-        [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
-    out + &error
-}
 
 #[test]
 fn places_are_taught_by_leading_the_tip_gone_on_with_and_planned() {
@@ -43,7 +14,7 @@ fn places_are_taught_by_leading_the_tip_gone_on_with_and_planned() {
     std::fs::write(folder.join("part.toml"), PART).unwrap();
     std::fs::write(folder.join("welddata.toml"), WELD_DATA).unwrap();
     let teach = ["teach", "part.toml", "--boards", "simulated"];
-    let untaught = seamwright(folder, &["plan", "part.toml", "-o", "part.ngc"], "");
+    let untaught = seamwright(MACHINE, folder, &["plan", "part.toml", "-o", "part.ngc"], "");
     assert!(
         said(&untaught).contains("p.csv is not there: seamwright teach writes it"),
         "{}",
@@ -52,6 +23,7 @@ fn places_are_taught_by_leading_the_tip_gone_on_with_and_planned() {
 
     let from = [&teach[..], &["--from=-60,-20,15,0,0,0"]].concat();
     let first = seamwright(
+        MACHINE,
         folder,
         &from,
         "z -5\ntake\ntake\nx 500\njump\ny 90\ny 90\ny 90\ny 90\ny 90\ny 90\n",
@@ -71,7 +43,7 @@ fn places_are_taught_by_leading_the_tip_gone_on_with_and_planned() {
 
     // From its marks again; the operator is asked for places behind the first one.
     let from = [&teach[..], &["--from=40,-20,10,0,0,0"]].concat();
-    let second = seamwright(folder, &from, "c 5\nup 2\ntake\nx 3\ntake\nundo\ndone\n");
+    let second = seamwright(MACHINE, folder, &from, "c 5\nup 2\ntake\nx 3\ntake\nundo\ndone\n");
     let told = said(&second);
     assert!(
         told.contains("p.csv: continues after place 1") && told.contains("p.csv: 2 places"),
@@ -87,9 +59,10 @@ fn places_are_taught_by_leading_the_tip_gone_on_with_and_planned() {
         ]
     );
 
-    let planned = seamwright(folder, &["plan", "part.toml", "-o", "part.ngc"], "");
+    let planned = seamwright(MACHINE, folder, &["plan", "part.toml", "-o", "part.ngc"], "");
     assert!(planned.status.success(), "{}", said(&planned));
     let welded = seamwright(
+        MACHINE,
         folder,
         &["weld", "part.ngc", "--boards", "simulated", "--report", "report"],
         "",
@@ -113,7 +86,7 @@ fn what_places_are_not_taught_with_is_refused() {
             "the machine does not go there: axis Z would have to go to",
         ),
     ] {
-        let refused = seamwright(folder.path(), &[&teach[..], &[word]].concat(), "");
+        let refused = seamwright(MACHINE, folder.path(), &[&teach[..], &[word]].concat(), "");
         assert!(
             !refused.status.success() && said(&refused).contains(told),
             "{}",

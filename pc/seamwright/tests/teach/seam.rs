@@ -1,36 +1,9 @@
 //! `seamwright teach` and `plan` for seams, as a person uses them: by files, and by words on standard input.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use super::{said, seamwright, shipped};
+use std::path::Path;
 
-fn shipped(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file)
-}
-
-fn host_link(folder: &Path, words: &[&str], input: &str) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_seamwright"))
-        .current_dir(folder)
-        .args(words)
-        .arg("--machine")
-        .arg(shipped("machines/dual-beam-gantry.toml"))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("seamwright runs");
-    let mut stdin = child.stdin.take().unwrap();
-    // A refusal does not read it.
-    let _ = stdin.write_all(input.as_bytes());
-    drop(stdin);
-    child.wait_with_output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    let [out, error] =
-        [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
-    out + &error
-}
+const MACHINE: &str = "dual-beam-gantry";
 
 /// A part of the shipped seams in `folder`.
 fn part(folder: &Path) {
@@ -65,7 +38,8 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
         "--camera",
         "geometric",
     ];
-    let first = host_link(
+    let first = seamwright(
+        MACHINE,
         folder,
         &teach,
         "x 300000\nx -0.5\ncentre\ntake\nstep 8\ncentre\ntake\nstep 5\ntake\nundo\ndone\n",
@@ -83,7 +57,8 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
         assert!(told.contains(words), "{words} is not in\n{told}");
     }
     // The input ends without `done`.
-    let second = host_link(
+    let second = seamwright(
+        MACHINE,
         folder,
         &teach,
         "step\ncentre\ntake\nstep\ntake\nstep 15\ncentre\ntake\n",
@@ -95,7 +70,8 @@ fn a_seam_is_taught_by_hand_from_a_pipe_gone_on_with_and_planned() {
         "{told}"
     );
 
-    let plan = host_link(
+    let plan = seamwright(
+        MACHINE,
         folder,
         &[
             "plan",
@@ -132,7 +108,7 @@ fn what_cannot_be_taught_is_refused_before_the_machine_moves() {
     std::fs::write(folder.join("other.csv"), "# machine: gantry\n# part: other\n").unwrap();
     let teach = |words: &[&str]| {
         let words = [&["teach", "--boards", "simulated"], words].concat();
-        let output = host_link(folder, &words, "");
+        let output = seamwright(MACHINE, folder, &words, "");
         assert!(!output.status.success());
         said(&output)
     };
