@@ -395,7 +395,7 @@ fn words_that_the_machine_or_the_curve_cannot_have_are_named_by_line_and_column(
         (
             "input.ngc",
             "     M66 P0 L3 Q5",
-            ["M66 waits for an input", "G4 P"],
+            ["dual-beam-gantry", "has no input 1"],
         ),
         (
             "both.ngc",

@@ -35,6 +35,7 @@ pub use planned::{Bound, PlannedPath, SpeedStep, Speeds};
 pub use programmed::Programmed;
 pub use targets::Tip;
 pub use too_fast::{FeedTooHigh, TooFast, check_constant_speed};
+pub use weld::WeldError;
 
 use config::machine::{InputNames, MachineFile, OutputNames, PlanningConfig, ProgramConfig};
 use config::weld_data::WeldData;

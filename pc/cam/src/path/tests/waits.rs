@@ -44,7 +44,7 @@ fn a_weld_of_weld_data_has_no_wait_inside() {
     planner.welding = Arc::new(WeldData::beside(std::path::Path::new(folder)).unwrap());
     let park = planner.planning.park_axes();
     let error = planner.program(&program, &park, None).unwrap_err();
-    assert!(matches!(error, PathError::WeldOn { .. }), "{error}");
+    assert!(matches!(error, PathError::Weld(WeldError::On { .. })), "{error}");
     // Before it there may be one.
     let text = "G0 X500 Y0\nM0\nWELDON=root\nG1 X580 F600\nWELDOFF\nM0\nM2";
     let program = interpret(text, Options::default()).unwrap();

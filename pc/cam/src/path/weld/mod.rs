@@ -4,20 +4,24 @@
 //! the times at rest of ignition and crater fill, and between them the seam: as it is programmed, or as NURBS where the
 //! tip is beside it. A pin turns before it plunges, and until it has come out.
 
+mod error;
 mod paths;
 mod phases;
+mod powers;
 mod seam;
 #[cfg(test)]
 mod tests;
 mod weave;
 mod woven;
 
+pub use error::WeldError;
+
 use super::targets::RestState;
 use super::{PathError, Planner};
 use nc::{FeedRate, Motion, Program, ProgramAction, ProgramEvent, ProgramPath, SourcePosition};
 use paths::Weld;
 
-/// A second at rest within a path counts as so many millimetres of it: the speed of [`Way::Wait`] \[mm/s\].
+/// A second at rest within a path counts as so many millimetres of it: the speed of [`nc::Way::Wait`] \[mm/s\].
 pub(super) const WAIT_MM_S: f64 = 1.0;
 
 /// The weld that a program has called.
@@ -68,11 +72,12 @@ impl Planner {
                 let rests = path.dwell_before_s > 0.0 || !path.waits_before.is_empty();
                 let welds = path.motion == Motion::Feed && !rests;
                 if weld.done || !welds {
-                    return Err(PathError::WeldOn {
+                    return Err(WeldError::On {
                         place: place(path).unwrap_or(weld.place),
                         name: name.clone(),
                         on: weld.place,
-                    });
+                    }
+                    .into());
                 }
                 weld.done = true;
                 let mut path = self.without_short_blocks(path.whole()?, stand)?;
@@ -93,9 +98,9 @@ impl Planner {
     }
 
     /// The program ends.
-    pub(super) fn check_welded(&self, program: &Program, called: Option<Called>) -> Result<(), PathError> {
+    pub(super) fn check_welded(&self, program: &Program, called: Option<Called>) -> Result<(), WeldError> {
         called.map_or(Ok(()), |weld| {
-            Err(PathError::WeldOpen {
+            Err(WeldError::Open {
                 place: weld.place,
                 name: program.welds[weld.index].clone(),
             })
@@ -108,14 +113,14 @@ impl Planner {
         program: &Program,
         word: &ProgramEvent,
         called: &mut Option<Called>,
-    ) -> Result<(), PathError> {
+    ) -> Result<(), WeldError> {
         let place = word.place;
         match (word.action, called.take()) {
             (ProgramAction::WeldOn(index), None) => {
                 let name = &program.welds[index];
                 if !self.welding.sets.contains_key(name) {
                     let known: Vec<&str> = self.welding.sets.keys().map(String::as_str).collect();
-                    return Err(PathError::NoWeldSet {
+                    return Err(WeldError::NoSet {
                         place,
                         name: name.clone(),
                         known: known.join(", "),
@@ -129,17 +134,17 @@ impl Planner {
                 });
                 Ok(())
             }
-            (ProgramAction::WeldOn(_), Some(weld)) => Err(PathError::WeldOn {
+            (ProgramAction::WeldOn(_), Some(weld)) => Err(WeldError::On {
                 place,
                 name: program.welds[weld.index].clone(),
                 on: weld.place,
             }),
             (_, Some(weld)) if weld.done => Ok(()),
-            (_, Some(weld)) => Err(PathError::WeldEmpty {
+            (_, Some(weld)) => Err(WeldError::Empty {
                 place,
                 name: program.welds[weld.index].clone(),
             }),
-            (_, None) => Err(PathError::WeldNotOn { place }),
+            (_, None) => Err(WeldError::NotOn { place }),
         }
     }
 
@@ -151,15 +156,15 @@ impl Planner {
 }
 
 /// The one speed of a seam \[mm/s\].
-fn speed(path: &ProgramPath) -> Result<f64, PathError> {
+fn speed(path: &ProgramPath) -> Result<f64, WeldError> {
     let mut speed = None;
     for target in &path.targets {
         let place = target.place;
         match (target.feed, speed) {
             (Some(FeedRate::PerMinute(feed)), None) => speed = Some(feed),
             (Some(FeedRate::PerMinute(feed)), Some(before)) if feed == before => {}
-            (Some(FeedRate::PerMinute(_)), _) => return Err(PathError::WeldFeeds { place }),
-            _ => return Err(PathError::WeldInverseTime { place }),
+            (Some(FeedRate::PerMinute(_)), _) => return Err(WeldError::Feeds { place }),
+            _ => return Err(WeldError::InverseTime { place }),
         }
     }
     Ok(speed.unwrap_or_default() / 60.0)

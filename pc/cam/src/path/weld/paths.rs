@@ -2,6 +2,7 @@
 
 use super::super::targets::RestState;
 use super::super::{PathError, Planner};
+use super::WeldError;
 use super::phases::Phases;
 use super::seam::Seam;
 use super::weave::{self, Stretch};
@@ -42,16 +43,17 @@ impl<'w, 'p> Weld<'w, 'p> {
     ) -> Result<Self, PathError> {
         let smooth = planner.is_smooth(path, stand)?;
         let seam = Seam::of(planner, path, stand, smooth)?;
-        let phases = Phases::of(planner, name, set, seam.length(), on)?;
+        let phases = Phases::of(planner, (name, set), seam.length(), on)?;
         let [left, away] = set.offset_mm;
         let down = set.stir.map_or(0.0, |stir| stir.clearance_mm + stir.depth_mm);
         let offset = [left, away - down];
         if set.stir.is_some() && planner.spindle != Some(set.side()) {
-            return Err(PathError::WeldNoPin {
+            return Err(WeldError::NoPin {
                 place: on,
                 name: name.to_owned(),
                 beam: set.beam,
-            });
+            }
+            .into());
         }
         let weld = Self {
             name,
@@ -65,7 +67,7 @@ impl<'w, 'p> Weld<'w, 'p> {
         };
         if planner.tracks && (weld.is_beside() || weld.rests()) {
             let name = name.to_owned();
-            return Err(PathError::WeldTracked { place: on, name });
+            return Err(WeldError::Tracked { place: on, name }.into());
         }
         Ok(weld)
     }
@@ -199,18 +201,18 @@ impl<'w, 'p> Weld<'w, 'p> {
     }
 
     /// The stretches of the way beside the seam: of the weave, or block by block.
-    fn stretches(&self) -> Result<Vec<Stretch>, PathError> {
+    fn stretches(&self) -> Result<Vec<Stretch>, WeldError> {
         let seam = &self.aside.seam;
         let name = || self.name.to_owned();
         if let Some((target, turn)) = seam.corner() {
-            return Err(PathError::WeldCorner {
+            return Err(WeldError::Corner {
                 place: self.path.targets[target + 1].place,
                 name: name(),
                 degrees: turn.to_degrees(),
             });
         }
         if let Some(place) = seam.stands() {
-            return Err(PathError::WeldStands { place, name: name() });
+            return Err(WeldError::Stands { place, name: name() });
         }
         let Some(weave) = &self.set.weave else {
             let starts = (0..seam.ends.len()).map(|target| seam.start(target));
@@ -220,14 +222,14 @@ impl<'w, 'p> Weld<'w, 'p> {
         let place = self.path.targets[0].place;
         let half = self.speed / weave.frequency_hz / 2.0;
         if half < FINEST_MM {
-            return Err(PathError::WeldFine {
+            return Err(WeldError::Fine {
                 place,
                 name: name(),
                 half,
                 finest: FINEST_MM,
             });
         }
-        weave::stretches(weave, seam.length(), self.speed).ok_or_else(|| PathError::WeldShort {
+        weave::stretches(weave, seam.length(), self.speed).ok_or_else(|| WeldError::Short {
             place,
             name: name(),
             length: seam.length(),

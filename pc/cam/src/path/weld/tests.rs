@@ -277,6 +277,29 @@ fn tacks_are_skipped_or_welded_with_another_power_and_changes_are_at_their_place
 }
 
 #[test]
+fn the_power_of_a_tack_holds_for_all_of_it_and_a_ramp_goes_on_behind_it() {
+    let data = "[w]\npower = 2000.0\n\
+                changes = [{ at_mm = 20.0, over_mm = 20.0, power = 4000.0 }, { at_mm = 62.0, power = 3000.0 }]\n\
+                tacks = [{ from_mm = 25.0, to_mm = 30.0, power = 1000.0 }, { from_mm = 60.0, to_mm = 65.0, power = 2500.0 }]\n";
+    let paths = planned(data, "WELDON=w\nG1 X0\nWELDOFF\nM2").unwrap();
+    let levels = events(weld(&paths))
+        .into_iter()
+        .filter_map(|(s, action)| match action {
+            PathAction::Level { value, over_mm, .. } if s > 0.0 => Some([s, value, over_mm]),
+            _ => None,
+        });
+    let wanted = [
+        [20.0, 4000.0, 20.0],
+        [25.0, 1000.0, 0.0],
+        [30.0, 3000.0, 0.0],
+        [30.0, 4000.0, 10.0],
+        [60.0, 2500.0, 0.0],
+        [65.0, 3000.0, 0.0],
+    ];
+    assert_eq!(levels.collect::<Vec<_>>(), wanted);
+}
+
+#[test]
 fn on_a_woven_seam_places_and_ramps_are_those_of_the_seam() {
     let data = format!(
         "{WEAVE}ramp_down = {{ power = 100.0, over_mm = 30.0 }}\ntacks = [{{ from_mm = 31.0, to_mm = 42.5 }}]\n"

@@ -1,5 +1,6 @@
 //! The way of the tip beside a seam: what it does aside, as NURBS of the program.
 
+use super::WeldError;
 use super::seam::Seam;
 use super::weave::Stretch;
 use crate::path::{PathError, Tip};
@@ -95,13 +96,10 @@ impl Aside<'_> {
         let points = self.cubics(stretch);
         let end = points[points.len() - 1];
         let at = self.seam.at(stretch.seam[1]);
-        let tip = self
-            .seam
-            .tip(&at, end, axes)
-            .ok_or_else(|| PathError::WeldReach {
-                place,
-                s: stretch.seam[1],
-            })?;
+        let tip = self.seam.tip(&at, end, axes).ok_or_else(|| WeldError::Reach {
+            place,
+            s: stretch.seam[1],
+        })?;
         let longer = self.length(stretch, stretch.seam[1]) / (stretch.seam[1] - stretch.seam[0]);
         let cubics = (points.len() - 1) / 3;
         let knots = (0..=cubics).flat_map(|i| {
@@ -139,7 +137,7 @@ impl Aside<'_> {
         let position = at.pose.position + at.left() * offset[0] + at.pose.normal * offset[1];
         let place = like.place;
         let tip = self.seam.tip(&at, position, axes);
-        let tip = tip.ok_or(PathError::WeldReach { place, s })?;
+        let tip = tip.ok_or(WeldError::Reach { place, s })?;
         Ok(Target {
             way: Way::Line,
             words: self.words(&tip),
