@@ -149,12 +149,13 @@ impl Interpreter {
                 let (code, why) = ("G10 L10 and L11", "the tool must be upright where it is measured");
                 return Err(Problem::Impossible { code, why }.at(place));
             }
-            let system = if l.value == 10.0 {
-                self.offsets.active
+            // L11 measures in the fixture, in which no local offset holds.
+            let systems = &self.offsets.systems;
+            let zero = if l.value == 10.0 {
+                systems[self.offsets.active].offset[Z] + self.offsets.local_now()[Z]
             } else {
-                FIXTURE
+                systems[FIXTURE].offset[Z]
             };
-            let zero = self.offsets.systems[system].offset[Z] + self.offsets.local_now()[Z];
             at[Z] + self.tools.length - zero - z
         };
         self.tools.table.insert(number, length);

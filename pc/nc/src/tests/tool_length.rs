@@ -126,6 +126,9 @@ fn the_table_is_of_the_machine_file_and_of_the_program() {
     );
     let measured = "G10 L2 P9 Z2\nG0 Z30\nG10 L11 P7 Z1\nG0 Z0\nG43 H7\nG59.3\nG0 Z1";
     assert_eq!(last(measured), z(30.0));
+    // A local offset does not count there.
+    let local = "G10 L2 P9 Z2\nG0 Z30\nG92 Z5\nG10 L11 P7 Z1\nG92.1\nG0 Z0\nG43 H7\nG59.3\nG0 Z1";
+    assert_eq!(last(local), z(30.0));
     assert!(wrong("G43 H9").contains("there is no tool 9: give it a table [tools.9]"));
     assert!(wrong("G10 L1 P2 X1 Z1").contains("a length along Z only"));
     assert!(wrong("G43.1 Y1").contains("a length along Z only"));
