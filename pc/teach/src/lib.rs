@@ -7,6 +7,7 @@
 //! [`TipPoint`]s.
 
 mod halving;
+mod kept;
 mod lead;
 mod points;
 mod ring;

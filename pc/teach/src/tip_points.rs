@@ -1,6 +1,6 @@
 //! The file of places to which the tip was led (CSV).
 
-use crate::seam::file::{free_name, replace};
+use crate::kept::{free_name, replace};
 use config::table::{self, TableError};
 use nc::text::decimal;
 use std::path::{Path, PathBuf};

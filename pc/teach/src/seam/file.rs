@@ -1,6 +1,7 @@
 //! The file of taught seams (CSV), complete after every point.
 
 use super::{MeasuredSeam, SeamEnd, SeamPoint};
+use crate::kept::{free_name, replace};
 use config::table::{self, TableError};
 use nalgebra::Vector3;
 use nc::text::decimal;
@@ -216,30 +217,6 @@ impl SeamFile {
         self.points = points.len();
         Ok(())
     }
-}
-
-/// Puts `text` in the place of the file at `path`; whatever happens, one of both is there.
-pub(crate) fn replace(path: &Path, text: &str) -> Result<(), IoError> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".new");
-    let new = path.with_file_name(name);
-    let mut file = File::create(&new)?;
-    file.write_all(text.as_bytes())?;
-    file.sync_data()?;
-    std::fs::rename(&new, path)
-}
-
-/// A name beside `path` that no file has: taught.1.csv, taught.2.csv…
-pub(crate) fn free_name(path: &Path) -> PathBuf {
-    let extension = path
-        .extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    (1..)
-        .map(|n: u32| path.with_extension(format!("{n}.{extension}")))
-        .find(|candidate| !candidate.exists())
-        .unwrap_or_else(|| path.with_extension("old"))
 }
 
 /// `text` without a last line that is cut and without half a point, and whether there was one.

@@ -14,7 +14,7 @@ mod config;
 mod course;
 mod drawing;
 mod ends;
-pub(crate) mod file;
+mod file;
 mod follow;
 mod jog;
 mod not_found;
