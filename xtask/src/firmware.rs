@@ -3,6 +3,8 @@
 use crate::cargo::{self, cargo, run_command, target_directory};
 use anyhow::{Context, Result};
 use clap::ValueEnum;
+use emulator::PROGRAM_VARIABLES;
+use std::env;
 use std::fmt;
 use std::fs;
 use std::path::PathBuf;
@@ -67,7 +69,7 @@ pub fn build<const N: usize>(firmwares: [Firmware; N], board: Board) -> Result<[
     for firmware in firmwares {
         command.args(["--package", firmware.package()]);
     }
-    if std::env::var_os("DEFMT_LOG").is_none() {
+    if env::var_os("DEFMT_LOG").is_none() {
         command.env("DEFMT_LOG", "info");
     }
     let what = format!(
@@ -97,8 +99,11 @@ pub fn build_pace() -> Result<PathBuf> {
     Ok(target_directory()?.join("release").join("libpace.so"))
 }
 
-/// Builds the PC's program; returns it.
+/// Builds the PC's program, unless a test names one that is built; returns it.
 pub fn build_seamwright() -> Result<PathBuf> {
+    if let Some(built) = env::var_os(PROGRAM_VARIABLES[0]) {
+        return Ok(built.into());
+    }
     eprintln!("building seamwright");
     cargo::run(&["build", "--quiet", "--package", "seamwright", "--release"])?;
     Ok(target_directory()?.join("release").join("seamwright"))

@@ -1,4 +1,5 @@
-//! Whole jobs on emulated boards. `cargo xtask test` builds what they need and runs them one after another.
+//! Whole jobs on emulated boards. `cargo xtask test` builds what they need and runs two at a time: a pair of boards keeps about
+//! one core busy, and waits where a core is short.
 
 mod machines;
 mod outside;
