@@ -4,7 +4,7 @@ use crate::hello;
 use crate::qemu::{Board, PROGRAM, Setup};
 use crate::qmp::BoardAction;
 use crate::session::{Endpoint, PathStatesTo, Session};
-use plant::{DEFAULT_MACHINE, MotionPlant};
+use plant_file::{DEFAULT_MACHINE, PlantChoice, PlantFileError};
 use shared::protocol::{Role, SCHEMA_HASH};
 use std::fs::{self, File, TryLockError};
 use std::net::{Ipv4Addr, TcpListener, UdpSocket};
@@ -18,6 +18,8 @@ use thiserror::Error;
 const HOST_SEEN_BY_BOARD: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 2);
 /// The page the two pace plugins share.
 const PEERS: &str = "peers";
+/// What is true of the machine, in postcard; the boards read it by this name.
+const PLANT: &str = "plant";
 const PEERS_LENGTH: u64 = 4096;
 /// Wall time for both boards to answer.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -38,6 +40,8 @@ pub struct Options {
     pub rate: f64,
     /// Name of the machine that the motion board is wired to, as kinematics are called in machine files.
     pub machine: String,
+    /// What is true of that machine.
+    pub plant: PlantChoice,
 }
 
 /// Environment variables that say what a test boots, in the order of [`Options`].
@@ -62,6 +66,7 @@ impl Options {
             log_directory,
             rate: 1.0,
             machine: DEFAULT_MACHINE.to_owned(),
+            plant: PlantChoice::Shipped,
         })
     }
 }
@@ -69,12 +74,9 @@ impl Options {
 /// Why the boards do not run.
 #[derive(Debug, Error)]
 pub enum BootError {
-    /// There is no plant of this name.
-    #[error("no emulated board can be wired to a machine called {name}; there are {}", MotionPlant::names().collect::<Vec<_>>().join(", "))]
-    UnknownMachine {
-        /// The name.
-        name: String,
-    },
+    /// There is no such plant.
+    #[error("the emulated boards cannot be wired to a machine: {0}")]
+    Plant(#[from] PlantFileError),
     /// A file to boot from is not there.
     #[error("{what} {} cannot be read ({source}); build it first", path.display())]
     Missing {
@@ -175,7 +177,7 @@ impl Drop for Page {
 impl Boards {
     /// Boots both boards and waits until both answer.
     pub fn boot(options: &Options) -> Result<Self, BootError> {
-        check_machine(&options.machine)?;
+        let plant = options.plant.of(&options.machine)?;
         find_program(PROGRAM, "qemu-system-arm")?;
         find_program("setpriv", "util-linux")?;
         let motion = existing("the motion firmware", &options.motion)?;
@@ -187,8 +189,9 @@ impl Boards {
         };
         fs::create_dir_all(&options.log_directory).map_err(setup)?;
         let directory = options.log_directory.canonicalize().map_err(setup)?;
-        let session = free_ports(directory.join(PEERS), &options.machine).map_err(setup)?;
+        let session = free_ports(directory.join(PEERS), options).map_err(setup)?;
         let page = shared_page(&directory)?;
+        fs::write(directory.join(PLANT), plant.encode()).map_err(setup)?;
 
         let start = |name, mac, slot, firmware, endpoint| {
             Board::start(&Setup {
@@ -200,7 +203,6 @@ impl Boards {
                 rate: options.rate,
                 directory: &directory,
                 peers: PEERS,
-                machine: &options.machine,
                 endpoint,
             })
             .map_err(setup)
@@ -291,16 +293,6 @@ impl Boards {
     }
 }
 
-/// Only names that the board knows, too, may reach it.
-fn check_machine(name: &str) -> Result<(), BootError> {
-    match MotionPlant::of(name) {
-        Some(_) => Ok(()),
-        None => Err(BootError::UnknownMachine {
-            name: name.to_owned(),
-        }),
-    }
-}
-
 /// An empty page for the two plugins.
 fn shared_page(directory: &Path) -> Result<Page, BootError> {
     let setup = |source| BootError::Setup {
@@ -352,7 +344,7 @@ fn existing(what: &'static str, path: &Path) -> Result<PathBuf, BootError> {
 }
 
 /// A session on four unused ports, found by taking all at once and giving them back.
-fn free_ports(pace: PathBuf, machine: &str) -> io::Result<Session> {
+fn free_ports(pace: PathBuf, options: &Options) -> io::Result<Session> {
     let host = Ipv4Addr::LOCALHOST;
     let tcp = [TcpListener::bind((host, 0))?, TcpListener::bind((host, 0))?];
     let udp = [UdpSocket::bind((host, 0))?, UdpSocket::bind((host, 0))?];
@@ -365,7 +357,8 @@ fn free_ports(pace: PathBuf, machine: &str) -> io::Result<Session> {
     };
     let (motion, tracker) = (endpoint(0)?, endpoint(1)?);
     Ok(Session {
-        machine: machine.to_owned(),
+        machine: options.machine.clone(),
+        plant: options.plant.to_string(),
         pace,
         motion,
         tracker,
@@ -399,12 +392,12 @@ mod tests {
 
     #[test]
     fn an_unknown_machine_is_named_with_those_there_are() {
-        let text = check_machine("lathe").expect_err("there is none").to_string();
+        let error = PlantChoice::Shipped.of("lathe").expect_err("there is none");
+        let text = BootError::from(error).to_string();
         assert!(
             text.contains("called lathe") && text.contains("dual-beam-gantry, "),
             "{text}"
         );
-        assert!(check_machine("pipe-welder").is_ok());
     }
 
     #[test]

@@ -42,8 +42,6 @@ pub struct Setup<'a> {
     /// Directory for logs and the page the plugins share, both by relative names.
     pub directory: &'a Path,
     pub peers: &'a str,
-    /// The machine that the board is wired to; one that it knows.
-    pub machine: &'a str,
     pub endpoint: Endpoint,
 }
 
@@ -75,8 +73,8 @@ impl Board {
             .args(["-serial", &format!("file:{}.defmt", setup.name)])
             .arg("-semihosting-config")
             .arg(format!(
-                "enable=on,target=native,arg={},arg=machine={}",
-                setup.name, setup.machine
+                "enable=on,target=native,arg={}",
+                setup.name
             ))
             .arg("-nic")
             .arg(format!(

@@ -45,6 +45,8 @@ impl Endpoint {
 pub struct Session {
     /// The machine that the motion board is wired to, as kinematics are called in machine files.
     pub machine: String,
+    /// What is true of that machine: as shipped, or as `--plant` says.
+    pub plant: String,
     /// The page by which boards and PC keep together, see [`crate::Pace`].
     pub pace: PathBuf,
     /// The motion board, as the PC reaches it.
@@ -115,7 +117,7 @@ mod tests {
 
     #[test]
     fn a_session_file_is_read_as_it_was_written() {
-        let text = "machine = \"pipe-welder\"\npace = \"/run/peers\"\n\n[motion]\nhost = \"127.0.0.1\"\ntcp = 4001\nudp = 4002\n\n\
+        let text = "machine = \"pipe-welder\"\nplant = \"as shipped\"\npace = \"/run/peers\"\n\n[motion]\nhost = \"127.0.0.1\"\ntcp = 4001\nudp = 4002\n\n\
                     [tracker]\nhost = \"127.0.0.1\"\ntcp = 4003\nudp = 4004\n\n\
                     [path_states_to]\nhost = \"10.0.2.2\"\nudp = 4004\n";
         let session: Session = toml::from_str(text).expect("is a session");

@@ -1,142 +1,251 @@
 //! Velocity-mode servo drive with the mechanics behind it (mathematics 0.11).
 
-/// One drive in its unit (mm or rad).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DriveConfig {
-    /// Bandwidth fv of the velocity loop \[Hz\].
-    pub bandwidth_hz: f64,
-    /// Largest acceleration amax \[1/s²\].
-    pub max_acceleration: f64,
-    /// Coulomb friction fc as the acceleration it takes \[1/s²\].
-    pub friction: f64,
-    /// Speed-proportional friction as the acceleration it takes for each unit of speed \[1/s\].
-    pub damping_per_s: f64,
-    /// Backlash bl between motor and load.
-    pub backlash: f64,
-    /// Deceleration of the brake that closes when the drive is disabled \[1/s²\].
-    pub brake: f64,
-}
+use crate::config::{DriveConfig, MODES, MechanicsConfig, ModeConfig, Wave};
+use crate::noise::Noise;
+use heapless::Vec;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Longest dead time in steps: 2 ms of 50 µs, and one.
+const LONGEST_FIFO: usize = 41;
+
+#[derive(Clone, Debug, PartialEq)]
 struct Coefficients {
     proportional: f64,
     integral_step: f64,
     max_acceleration: f64,
     friction: f64,
+    stiction: f64,
+    /// 1/vs² of the Stribeck curve; 0 without one.
+    stribeck: f64,
+    presliding: f64,
     damping: f64,
+    gravity: f64,
     half_backlash: f64,
     brake_step: f64,
     step: f64,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct State {
     integral: f64,
     velocity: f64,
     motor: f64,
     load: f64,
+    /// Deflection of the contact that friction bends.
+    bristle: f64,
+    modes: Vec<Mode, MODES>,
 }
 
-/// A drive, its motor and its load. A command takes effect `FIFO` steps after it was given.
+/// A resonance that swings.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drive<const FIFO: usize> {
+struct Mode {
+    config: ModeConfig,
+    stiffness: f64,
+    damping: f64,
+    deflection: f64,
+    velocity: f64,
+}
+
+/// A drive, its motor and its load (mm or rad). A command takes effect after the dead time, rounded to whole steps, and
+/// one step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
     coefficients: Coefficients,
-    delayed: [f64; FIFO],
+    gain: f64,
+    offset: f64,
+    noise: (f64, Noise),
+    cogging: Wave,
+    delayed: [f64; LONGEST_FIFO],
+    fifo: usize,
     oldest: usize,
     state: State,
 }
 
-impl<const FIFO: usize> Drive<FIFO> {
+impl Drive {
     /// A drive at rest at `position`, to be advanced in steps of `step_s` \[s\].
-    pub fn new(config: &DriveConfig, step_s: f64, position: f64) -> Self {
-        let omega = 2.0 * core::f64::consts::PI * config.bandwidth_hz;
+    pub fn new(
+        drive: &DriveConfig,
+        mechanics: &MechanicsConfig,
+        step_s: f64,
+        position: f64,
+        noise: Noise,
+    ) -> Self {
+        let omega = 2.0 * core::f64::consts::PI * drive.bandwidth_hz;
+        let dead_steps = (drive.dead_time_s / step_s + 0.5) as usize;
+        let speed = mechanics.stribeck_speed;
         Self {
             coefficients: Coefficients {
                 proportional: omega,
                 integral_step: omega * omega / 4.0 * step_s,
-                max_acceleration: config.max_acceleration,
-                friction: config.friction,
-                damping: config.damping_per_s,
-                half_backlash: config.backlash / 2.0,
-                brake_step: config.brake * step_s,
+                max_acceleration: drive.max_acceleration,
+                friction: mechanics.friction,
+                stiction: mechanics.stiction,
+                stribeck: if speed > 0.0 { 1.0 / (speed * speed) } else { 0.0 },
+                presliding: mechanics.presliding,
+                damping: mechanics.damping_per_s,
+                gravity: mechanics.gravity,
+                half_backlash: mechanics.backlash / 2.0,
+                brake_step: drive.brake * step_s,
                 step: step_s,
             },
-            delayed: [0.0; FIFO],
+            gain: 1.0 + drive.gain_error,
+            offset: drive.offset,
+            noise: (drive.noise, noise),
+            cogging: mechanics.cogging,
+            delayed: [0.0; LONGEST_FIFO],
+            fifo: (dead_steps + 1).min(LONGEST_FIFO),
             oldest: 0,
             state: State {
                 integral: 0.0,
                 velocity: 0.0,
                 motor: position,
                 load: position,
+                bristle: 0.0,
+                modes: mechanics.modes.iter().map(Mode::new).collect(),
             },
         }
     }
 
-    /// `steps` steps with the velocity `command` \[1/s\].
+    /// `steps` steps with the velocity `command` \[1/s\], in which noise and cogging stay as they are.
     pub fn run(&mut self, command: f64, steps: u32) {
-        let mut state = self.state;
+        let mut told = self.gain * command + self.offset;
+        if self.noise.0 > 0.0 {
+            told += self.noise.0 * self.noise.1.draw();
+        }
+        let pull = self.cogging.at(self.state.motor) - self.coefficients.gravity;
         for _ in 0..steps {
-            let delayed = core::mem::replace(&mut self.delayed[self.oldest], command);
-            self.oldest = if self.oldest + 1 < FIFO {
+            let delayed = core::mem::replace(&mut self.delayed[self.oldest], told);
+            self.oldest = if self.oldest + 1 < self.fifo {
                 self.oldest + 1
             } else {
                 0
             };
-            state.drive(&self.coefficients, delayed);
+            self.state.drive(&self.coefficients, delayed, pull);
         }
-        self.state = state;
     }
 
     /// `steps` steps with the drive disabled and the brake closed; commands on their way are lost.
     pub fn brake(&mut self, steps: u32) {
-        self.delayed = [0.0; FIFO];
+        self.delayed = [0.0; LONGEST_FIFO];
         self.state.integral = 0.0;
         for _ in 0..steps {
             self.state.brake(&self.coefficients);
         }
     }
 
-    /// Position of the load, which the grating reads.
-    pub fn position(&self) -> f64 {
-        self.state.load
+    /// Position that the grating reads.
+    pub fn at_grating(&self) -> f64 {
+        self.state.at(|mode| mode.grating)
+    }
+
+    /// Position of the load at the tool.
+    pub fn at_tool(&self) -> f64 {
+        self.state.at(|mode| mode.tool)
     }
 
     /// Velocity of the motor \[1/s\].
     pub fn velocity(&self) -> f64 {
-        self.state.velocity
+        self.state.motor_velocity()
     }
 }
 
 impl State {
-    fn drive(&mut self, by: &Coefficients, command: f64) {
-        let error = command - self.velocity;
+    fn drive(&mut self, by: &Coefficients, command: f64, pull: f64) {
+        let velocity = self.motor_velocity();
+        let error = command - velocity;
         self.integral = limit(self.integral + by.integral_step * error, by.max_acceleration);
         let acceleration = limit(by.proportional * error + self.integral, by.max_acceleration);
-        let force = acceleration - by.damping * self.velocity;
+        let force = acceleration - by.damping * velocity + pull;
+        let before = self.velocity;
+        if by.presliding > 0.0 {
+            self.velocity += (force - self.presliding_friction(by)) * by.step;
+        } else {
+            self.slide(by, force);
+        }
+        self.swing(by.step, (self.velocity - before) / by.step);
+        self.follow(by);
+    }
 
-        // Friction acts against the motion, at rest against the force. Where it is the larger of the two it
-        // stops the motion but never turns it round.
+    /// Friction acts against the motion, at rest against the force. Where it is the larger of the two it stops the motion but
+    /// never turns it round.
+    fn slide(&mut self, by: &Coefficients, force: f64) {
         let way = if self.velocity == 0.0 {
             force
         } else {
             self.velocity
         };
-        let friction = if way > 0.0 { by.friction } else { -by.friction };
+        let level = self.friction(by);
+        let friction = if way > 0.0 { level } else { -level };
         let velocity = self.velocity + (force - friction) * by.step;
-        let stopped = force.abs() <= by.friction && velocity * way <= 0.0;
+        let stopped = force.abs() <= level && velocity * way <= 0.0;
         self.velocity = if stopped { 0.0 } else { velocity };
-        self.follow(by);
+    }
+
+    /// Friction while it slides at the present speed: Coulomb's and what the Stribeck curve adds.
+    fn friction(&self, by: &Coefficients) -> f64 {
+        if by.stiction == 0.0 {
+            return by.friction;
+        }
+        by.friction + by.stiction / (1.0 + self.velocity * self.velocity * by.stribeck)
+    }
+
+    /// z′ = v − |v| z/z₀ with the level F(v) at z₀ = s F(v)/F꜀ for the presliding way s, by implicit steps, which are stable
+    /// however fast it slides; the friction is F꜀ z/s.
+    fn presliding_friction(&mut self, by: &Coefficients) -> f64 {
+        let longest = by.presliding * self.friction(by) / by.friction;
+        let way = self.velocity * by.step;
+        self.bristle = (self.bristle + way) / (1.0 + way.abs() / longest);
+        by.friction * self.bristle / by.presliding
     }
 
     fn brake(&mut self, by: &Coefficients) {
+        let before = self.velocity;
         self.velocity -= limit(self.velocity, by.brake_step);
+        self.swing(by.step, (self.velocity - before) / by.step);
         self.follow(by);
+    }
+
+    fn swing(&mut self, step: f64, acceleration: f64) {
+        for mode in &mut self.modes {
+            mode.swing(step, acceleration);
+        }
     }
 
     /// Moves the motor on; the load follows within the backlash.
     fn follow(&mut self, by: &Coefficients) {
         self.motor += self.velocity * by.step;
         self.load = self.motor - limit(self.motor - self.load, by.half_backlash);
+    }
+
+    fn motor_velocity(&self) -> f64 {
+        self.modes
+            .iter()
+            .fold(self.velocity, |sum, mode| sum + mode.config.motor * mode.velocity)
+    }
+
+    fn at(&self, gain: impl Fn(&ModeConfig) -> f64) -> f64 {
+        self.modes
+            .iter()
+            .fold(self.load, |sum, mode| sum + gain(&mode.config) * mode.deflection)
+    }
+}
+
+impl Mode {
+    fn new(config: &ModeConfig) -> Self {
+        let omega = 2.0 * core::f64::consts::PI * config.frequency_hz;
+        Self {
+            config: *config,
+            stiffness: omega * omega,
+            damping: 2.0 * config.damping * omega,
+            deflection: 0.0,
+            velocity: 0.0,
+        }
+    }
+
+    /// A semi-implicit step, stable up to ω·step = 2.
+    fn swing(&mut self, step: f64, acceleration: f64) {
+        let swings = acceleration - self.damping * self.velocity - self.stiffness * self.deflection;
+        self.velocity += swings * step;
+        self.deflection += self.velocity * step;
     }
 }
 
@@ -151,29 +260,58 @@ mod tests {
 
     const STEP: f64 = 50e-6;
     const IDEAL: DriveConfig = DriveConfig {
+        velocity_at_10v: 400.0,
         bandwidth_hz: 80.0,
+        dead_time_s: 0.0,
         max_acceleration: 4000.0,
+        brake: 4000.0,
+        gain_error: 0.0,
+        offset: 0.0,
+        noise: 0.0,
+    };
+    const SMOOTH: MechanicsConfig = MechanicsConfig {
         friction: 0.0,
         damping_per_s: 0.0,
         backlash: 0.0,
-        brake: 4000.0,
+        stiction: 0.0,
+        stribeck_speed: 0.0,
+        presliding: 0.0,
+        gravity: 0.0,
+        cogging: Wave {
+            amplitude: 0.0,
+            period: 0.0,
+        },
+        modes: Vec::new(),
     };
+
+    /// With a dead time of 0.25 ms.
+    fn delayed() -> Drive {
+        let slow = DriveConfig {
+            dead_time_s: 0.25e-3,
+            ..IDEAL
+        };
+        drive(&slow, &SMOOTH)
+    }
+
+    fn drive(drive: &DriveConfig, mechanics: &MechanicsConfig) -> Drive {
+        Drive::new(drive, mechanics, STEP, 0.0, Noise::new(1, 0))
+    }
 
     #[test]
     fn without_friction_the_step_response_is_that_of_a_pi_velocity_loop() {
         // v'' + ω v' + ω²/4 v = ω c' + ω²/4 c has the double pole −ω/2, hence
         // v = c (1 − (1 − ω t/2) e^{−ω t/2}) for a step c.
         let omega = 2.0 * core::f64::consts::PI * IDEAL.bandwidth_hz;
-        let mut drive = Drive::<1>::new(&IDEAL, STEP, 0.0);
-        drive.run(1.0, 1);
+        let mut axis = drive(&IDEAL, &SMOOTH);
+        axis.run(1.0, 1);
         for k in 1..400 {
-            drive.run(1.0, 1);
+            axis.run(1.0, 1);
             let half = omega * f64::from(k) * STEP / 2.0;
             let expected = 1.0 - (1.0 - half) * libm::exp(-half);
             assert!(
-                (drive.velocity() - expected).abs() < 0.02,
+                (axis.velocity() - expected).abs() < 0.02,
                 "step {k}: {} {expected}",
-                drive.velocity()
+                axis.velocity()
             );
         }
     }
@@ -181,13 +319,13 @@ mod tests {
     #[test]
     fn follows_a_sine_at_its_bandwidth_at_about_unity_and_a_fast_one_not() {
         let amplitude = |hz: f64| {
-            let mut drive = Drive::<1>::new(&IDEAL, STEP, 0.0);
+            let mut axis = drive(&IDEAL, &SMOOTH);
             let mut peak = 0.0_f64;
             for k in 0..20_000 {
                 let t = f64::from(k) * STEP;
-                drive.run(libm::sin(2.0 * core::f64::consts::PI * hz * t), 1);
+                axis.run(libm::sin(2.0 * core::f64::consts::PI * hz * t), 1);
                 if t > 0.5 {
-                    peak = peak.max(drive.velocity());
+                    peak = peak.max(axis.velocity());
                 }
             }
             peak
@@ -204,80 +342,246 @@ mod tests {
 
     #[test]
     fn a_command_acts_after_its_dead_time() {
-        let mut drive = Drive::<6>::new(&IDEAL, STEP, 0.0);
-        drive.run(100.0, 6);
-        assert_eq!(drive.velocity(), 0.0);
-        drive.run(100.0, 1);
-        assert!(drive.velocity() > 0.0);
+        let mut axis = delayed();
+        axis.run(100.0, 6);
+        assert_eq!(axis.velocity(), 0.0);
+        axis.run(100.0, 1);
+        assert!(axis.velocity() > 0.0);
     }
 
     #[test]
     fn acceleration_is_limited() {
-        let mut drive = Drive::<1>::new(&IDEAL, STEP, 0.0);
-        drive.run(400.0, 21);
-        assert!((drive.velocity() - 4000.0 * 20.0 * STEP).abs() < 1e-9);
+        let mut axis = drive(&IDEAL, &SMOOTH);
+        axis.run(400.0, 21);
+        assert!((axis.velocity() - 4000.0 * 20.0 * STEP).abs() < 1e-9);
     }
 
     #[test]
     fn friction_holds_the_motor_until_the_integral_overcomes_it() {
-        let sticky = DriveConfig {
+        let sticky = MechanicsConfig {
             friction: 150.0,
-            ..IDEAL
+            ..SMOOTH
         };
-        let mut drive = Drive::<1>::new(&sticky, STEP, 0.0);
+        let mut axis = drive(&IDEAL, &sticky);
         // ω·0.1 = 50 < 150: at rest at first, the integral of ω²/4·0.1 passes 100 after about 16 ms.
-        drive.run(0.1, 200);
-        assert_eq!(drive.position(), 0.0);
-        drive.run(0.1, 400);
-        assert!(drive.velocity() > 0.0);
+        axis.run(0.1, 200);
+        assert_eq!(axis.at_tool(), 0.0);
+        axis.run(0.1, 400);
+        assert!(axis.velocity() > 0.0);
     }
 
     #[test]
     fn friction_stops_the_motion_and_never_turns_it_round() {
         let weak = DriveConfig {
             bandwidth_hz: 1.0,
-            friction: 150.0,
             ..IDEAL
         };
-        let mut drive = Drive::<1>::new(&weak, STEP, 0.0);
-        drive.state.velocity = 10.0;
+        let rough = MechanicsConfig {
+            friction: 150.0,
+            ..SMOOTH
+        };
+        let mut axis = drive(&weak, &rough);
+        axis.state.velocity = 10.0;
         // At least friction alone decelerates: at rest within 10/150 s.
         for _ in 0..1334 {
-            drive.run(0.0, 1);
-            assert!(drive.velocity() >= 0.0);
+            axis.run(0.0, 1);
+            assert!(axis.velocity() >= 0.0);
         }
-        assert_eq!(drive.velocity(), 0.0);
-        let rest = drive.position();
-        drive.run(0.0, 1000);
-        assert_eq!(drive.position(), rest);
+        assert_eq!(axis.velocity(), 0.0);
+        let rest = axis.at_tool();
+        axis.run(0.0, 1000);
+        assert_eq!(axis.at_tool(), rest);
     }
 
     #[test]
     fn the_load_lags_the_motor_by_the_backlash_after_a_reversal() {
-        let loose = DriveConfig {
+        let loose = MechanicsConfig {
             backlash: 0.005,
-            ..IDEAL
+            ..SMOOTH
         };
-        let mut drive = Drive::<1>::new(&loose, STEP, 0.0);
-        drive.run(10.0, 4000);
-        assert!((drive.state.motor - drive.state.load - 0.0025).abs() < 1e-9);
-        let (motor, load) = (drive.state.motor, drive.state.load);
-        drive.run(-10.0, 4000);
-        assert!((drive.state.motor - drive.state.load + 0.0025).abs() < 1e-9);
-        assert!(((load - drive.state.load) - (motor - drive.state.motor) + 0.005).abs() < 1e-9);
+        let mut axis = drive(&IDEAL, &loose);
+        axis.run(10.0, 4000);
+        assert!((axis.state.motor - axis.state.load - 0.0025).abs() < 1e-9);
+        let (motor, load) = (axis.state.motor, axis.state.load);
+        axis.run(-10.0, 4000);
+        assert!((axis.state.motor - axis.state.load + 0.0025).abs() < 1e-9);
+        assert!(((load - axis.state.load) - (motor - axis.state.motor) + 0.005).abs() < 1e-9);
     }
 
     #[test]
     fn the_brake_stops_the_motor_and_drops_what_was_commanded() {
-        let mut drive = Drive::<6>::new(&IDEAL, STEP, 0.0);
-        drive.run(100.0, 4000);
-        let moving = drive.position();
-        drive.brake(600);
-        assert_eq!(drive.velocity(), 0.0);
+        let mut axis = delayed();
+        axis.run(100.0, 4000);
+        let moving = axis.at_tool();
+        axis.brake(600);
+        assert_eq!(axis.velocity(), 0.0);
         // v²/2a = 1.25 mm
-        assert!((drive.position() - moving - 1.25).abs() < 0.01);
-        let rest = drive.position();
-        drive.run(0.0, 1000);
-        assert_eq!(drive.position(), rest);
+        assert!((axis.at_tool() - moving - 1.25).abs() < 0.01);
+        let rest = axis.at_tool();
+        axis.run(0.0, 1000);
+        assert_eq!(axis.at_tool(), rest);
+    }
+
+    #[test]
+    fn gain_and_offset_are_those_of_the_drive() {
+        let wrong = DriveConfig {
+            gain_error: 0.02,
+            offset: -0.5,
+            ..IDEAL
+        };
+        let mut axis = drive(&wrong, &SMOOTH);
+        axis.run(100.0, 4000);
+        assert!((axis.velocity() - 101.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn noise_moves_the_motor_by_its_rms_at_most() {
+        let noisy = DriveConfig { noise: 0.2, ..IDEAL };
+        let mut axis = drive(&noisy, &SMOOTH);
+        let mut squares = 0.0;
+        for _ in 0..4000 {
+            axis.run(0.0, 5);
+            squares += axis.velocity() * axis.velocity();
+        }
+        let rms = libm::sqrt(squares / 4000.0);
+        assert!((0.02..0.2).contains(&rms), "{rms}");
+    }
+
+    #[test]
+    fn the_loop_carries_weight_and_cogging() {
+        let heavy = MechanicsConfig {
+            gravity: 500.0,
+            cogging: Wave {
+                amplitude: 50.0,
+                period: 20.0,
+            },
+            ..SMOOTH
+        };
+        let mut axis = drive(&IDEAL, &heavy);
+        // It sags first, and the integral brings the speed back to that commanded, but for the ripple.
+        axis.run(0.0, 100);
+        assert!(axis.velocity() < 0.0);
+        axis.run(0.0, 8000);
+        for _ in 0..2000 {
+            axis.run(10.0, 5);
+        }
+        let (mut lowest, mut highest) = (f64::MAX, f64::MIN);
+        for _ in 0..8000 {
+            axis.run(10.0, 5);
+            lowest = lowest.min(axis.velocity());
+            highest = highest.max(axis.velocity());
+        }
+        // |a/(s + ω + ω²/4s)| at 10/20 Hz: 50·3.14/(ω²/4) = 0.0025.
+        assert!(
+            (highest - 10.0025).abs() < 2e-4 && (lowest - 9.9975).abs() < 2e-4,
+            "{lowest} {highest}"
+        );
+    }
+
+    #[test]
+    fn presliding_friction_builds_up_over_its_way_and_ends_at_the_stribeck_curve() {
+        let bristly = MechanicsConfig {
+            friction: 150.0,
+            stiction: 60.0,
+            stribeck_speed: 1.0,
+            presliding: 0.005,
+            ..SMOOTH
+        };
+        let axis = drive(&IDEAL, &bristly);
+        for (speed, level) in [
+            (0.1, 150.0 + 60.0 / 1.01),
+            (1.0, 180.0),
+            (20.0, 150.0 + 60.0 / 401.0),
+        ] {
+            let (mut state, by) = (axis.state.clone(), axis.coefficients.clone());
+            state.velocity = speed;
+            let way = |steps: f64| steps * speed * STEP;
+            let mut friction = 0.0;
+            let mut steps = 0.0;
+            while way(steps) < 0.005 {
+                friction = state.presliding_friction(&by);
+                steps += 1.0;
+            }
+            let longest = 0.005 * level / 150.0;
+            let expected = level * (1.0 - libm::exp(-way(steps) / longest));
+            assert!(
+                (friction / expected - 1.0).abs() < 0.1,
+                "{speed}: {friction} {expected}"
+            );
+            for _ in 0..100_000 {
+                friction = state.presliding_friction(&by);
+            }
+            assert!((friction - level).abs() < 1e-6, "{speed}: {friction} {level}");
+            // After a reversal it passes through 0 and ends at the other sign.
+            state.velocity = -speed;
+            for _ in 0..100_000 {
+                friction = state.presliding_friction(&by);
+            }
+            assert!((friction + level).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_mode_rings_at_its_frequency_and_dies_by_its_damping() {
+        let ringing = MechanicsConfig {
+            modes: Vec::from_slice(&[ModeConfig {
+                frequency_hz: 40.0,
+                damping: 0.05,
+                motor: 0.0,
+                grating: 0.0,
+                tool: -1.0,
+            }])
+            .unwrap(),
+            ..SMOOTH
+        };
+        let mut axis = drive(&IDEAL, &ringing);
+        axis.run(0.0, 1);
+        axis.state.modes[0].deflection = 1.0;
+        // Free decay: e^{−ζωt} cos(ω√(1−ζ²) t).
+        let omega = 2.0 * core::f64::consts::PI * 40.0;
+        for k in 1..2000 {
+            axis.run(0.0, 1);
+            let t = f64::from(k) * STEP;
+            let swing = libm::cos(omega * libm::sqrt(1.0 - 0.0025) * t)
+                + 0.05 * libm::sin(omega * libm::sqrt(1.0 - 0.0025) * t);
+            let expected = libm::exp(-0.05 * omega * t) * swing;
+            assert!((axis.state.modes[0].deflection - expected).abs() < 0.01, "{k}");
+            assert_eq!(axis.at_tool(), -axis.state.modes[0].deflection);
+            assert_eq!(axis.at_grating(), 0.0);
+        }
+    }
+
+    #[test]
+    fn two_masses_are_one_rigid_body_and_a_mode() {
+        // The share μ of the load behind a spring, integrated on its own, against the modal form.
+        const SHARE: f64 = 0.3;
+        let config = ModeConfig {
+            frequency_hz: 80.0,
+            damping: 0.05,
+            motor: SHARE / (1.0 - SHARE),
+            grating: -1.0,
+            tool: -1.0,
+        };
+        let mut mode = Mode::new(&config);
+        let (mut rigid, mut rigid_velocity) = (0.0, 0.0);
+        let (mut motor, mut load, mut motor_velocity, mut load_velocity) = (0.0, 0.0, 0.0, 0.0);
+        let step = STEP / 100.0;
+        for k in 0..200_000 {
+            let t = f64::from(k) * step;
+            let force = 1000.0 * libm::sin(2.0 * core::f64::consts::PI * 60.0 * t);
+            mode.swing(step, force);
+            rigid_velocity += force * step;
+            rigid += rigid_velocity * step;
+            // ω² = k/(μ(1−μ)M): the spring's force over M is μ(1−μ)(ω² d + 2ζω d′).
+            let (stretch, rate) = (load - motor, load_velocity - motor_velocity);
+            let spring = SHARE * (1.0 - SHARE) * (mode.stiffness * stretch + mode.damping * rate);
+            motor_velocity += (force + spring) / (1.0 - SHARE) * step;
+            load_velocity -= spring / SHARE * step;
+            motor += motor_velocity * step;
+            load += load_velocity * step;
+            let scale = 1000.0 / mode.stiffness;
+            assert!((rigid + config.motor * mode.deflection - motor).abs() < 0.02 * scale);
+            assert!((rigid + config.tool * mode.deflection - load).abs() < 0.02 * scale);
+        }
     }
 }

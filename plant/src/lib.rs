@@ -4,17 +4,23 @@
 //! one, so that all of them see the same machine to the bit. Rules as in `shared`: values in, values out, no
 //! clock, no allocation, all mathematics through `libm`.
 //!
-//! Inside, lengths are mm and angles rad; the constants of the machine are written in mm and degrees.
+//! Inside, lengths are mm and angles rad; plant files are written in mm and degrees.
 #![no_std]
 
+mod config;
 mod drive;
 mod grating;
-mod machines;
 mod motion;
 mod motor;
+mod noise;
 mod slides;
 
-pub use drive::{Drive, DriveConfig};
-pub use grating::{Grating, GratingConfig, GratingFault, Reading};
-pub use motion::{DEFAULT_MACHINE, MotionPlant};
+pub use config::{
+    DriveConfig, GratingConfig, LONGEST, MODES, MechanicsConfig, ModeConfig, MotorConfig, PlantConfig,
+    SlideConfig, Wave,
+};
+pub use drive::Drive;
+pub use grating::{Grating, GratingFault, Reading};
+pub use motion::MotionPlant;
+pub use noise::Noise;
 pub use slides::{Slide, SlideFault, SlidePlant};

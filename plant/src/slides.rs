@@ -1,38 +1,30 @@
 //! The four slides of the tracker (mathematics 0.9).
 
-use crate::{Grating, GratingConfig, GratingFault};
-use shared::io::{Feedback, SLIDES, SlideCommand, SlideFeedback};
+use crate::config::{PlantConfig, SlideConfig};
+use crate::noise::Noise;
+use crate::{Grating, GratingFault};
+use shared::io::{Feedback, MOTORS, SLIDES, SlideCommand, SlideFeedback};
 
 /// Control tick \[s\].
 const TICK: f64 = 1e-3;
 /// Steps of the drive model in a control tick: h = 0.1 ms as in mathematics 0.9.
 const STEPS: usize = 10;
-/// Dead time of 2 ms in steps.
-const FIFO: usize = 20;
-/// Time constant of the velocity loop \[s\].
-const LAG: f64 = 8e-3;
-/// Time constant of the brake that closes when the drives are disabled \[s\].
-const BRAKE: f64 = 2e-3;
-/// Speed at +10 V \[mm/s\].
-const VELOCITY_AT_10V: f64 = 100.0;
-/// Slides at power-up \[mm\].
-const POWER_UP: [f64; SLIDES] = [1.3, -0.8, -1.1, 0.9];
+/// Longest dead time in steps: 4 ms.
+const LONGEST_FIFO: usize = 40;
 
-const ENCODER: GratingConfig = GratingConfig {
-    counts_per_unit: 2000.0,
-    mark: 0.0,
-    switch_minus: -13.0,
-    switch_plus: 13.0,
-};
-
-/// One slide: dead time, first-order velocity lag, encoder.
+/// One slide: dead time, first-order velocity lag, backlash.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slide {
+    velocity_at_10v: f64,
+    offset: f64,
     lag: f64,
     brake: f64,
-    delayed: [f64; FIFO],
+    half_backlash: f64,
+    delayed: [f64; LONGEST_FIFO],
+    fifo: usize,
     oldest: usize,
     velocity: f64,
+    motor: f64,
     position: f64,
     /// Speed of the drive regardless of commands \[mm/s\].
     runaway: Option<f64>,
@@ -48,40 +40,53 @@ pub enum SlideFault {
 }
 
 impl Slide {
-    /// A slide at rest at `position` \[mm\].
-    pub fn new(position: f64) -> Self {
+    /// A slide at rest where it was switched off.
+    pub fn new(config: &SlideConfig) -> Self {
         let step = TICK / STEPS as f64;
+        let dead_steps = (config.dead_time_s / step + 0.5) as usize;
         Self {
-            lag: 1.0 - libm::exp(-step / LAG),
-            brake: 1.0 - libm::exp(-step / BRAKE),
-            delayed: [0.0; FIFO],
+            velocity_at_10v: config.velocity_at_10v * (1.0 + config.gain_error),
+            offset: config.offset,
+            lag: 1.0 - libm::exp(-step / config.lag_s),
+            brake: 1.0 - libm::exp(-step / config.brake_s),
+            half_backlash: config.backlash / 2.0,
+            delayed: [0.0; LONGEST_FIFO],
+            fifo: dead_steps.clamp(1, LONGEST_FIFO),
             oldest: 0,
             velocity: 0.0,
-            position,
+            motor: config.power_up,
+            position: config.power_up,
             runaway: None,
         }
     }
 
-    /// One control tick of 1 ms with the velocity `command` \[mm/s\]; `None` is a disabled drive, whose brake
-    /// closes and which forgets the commands on their way.
-    pub fn advance(&mut self, command: Option<f64>) {
-        let command = command.map(|told| self.runaway.unwrap_or(told));
+    /// One control tick of 1 ms with `ratio` of 10 V; `None` is a disabled drive, whose brake closes and which forgets the
+    /// commands on their way.
+    pub fn advance(&mut self, ratio: Option<f64>) {
+        let command = ratio.map(|ratio| self.runaway.unwrap_or(ratio * self.velocity_at_10v + self.offset));
         let coefficient = match command {
             Some(_) => self.lag,
             None => {
-                self.delayed = [0.0; FIFO];
+                self.delayed = [0.0; LONGEST_FIFO];
                 self.brake
             }
         };
         for _ in 0..STEPS {
             let delayed = core::mem::replace(&mut self.delayed[self.oldest], command.unwrap_or(0.0));
             self.oldest += 1;
-            if self.oldest == FIFO {
+            if self.oldest == self.fifo {
                 self.oldest = 0;
             }
             self.velocity += (delayed - self.velocity) * coefficient;
-            self.position += self.velocity * (TICK / STEPS as f64);
+            self.motor += self.velocity * (TICK / STEPS as f64);
+            let behind = self.motor - self.position;
+            self.position = self.motor - behind.min(self.half_backlash).max(-self.half_backlash);
         }
+    }
+
+    /// Position of the motor, where the encoder is \[mm\].
+    pub fn motor(&self) -> f64 {
+        self.motor
     }
 
     /// True position \[mm\].
@@ -90,36 +95,46 @@ impl Slide {
     }
 }
 
-/// Slides and encoders behind a tracker board.
+/// Slides and encoders behind a tracker board. A slide that the machine does not have counts nothing and stays at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlidePlant {
-    slides: [Slide; SLIDES],
-    encoders: [Grating; SLIDES],
+    slides: [Option<(Slide, Grating)>; SLIDES],
 }
 
 impl SlidePlant {
-    /// The two slide pairs of the dual-beam gantry, standing where they were switched off.
-    pub fn dual_beam_tracker() -> Self {
+    /// The slides of `config`, standing where they were switched off.
+    pub fn new(config: &PlantConfig) -> Self {
+        let slide = |i: usize| {
+            let slide = config.slides[i].as_ref()?;
+            let noise = Noise::new(config.seed, (2 * MOTORS + i) as u32);
+            Some((
+                Slide::new(slide),
+                Grating::new(&slide.encoder, slide.power_up, noise),
+            ))
+        };
         Self {
-            slides: POWER_UP.map(Slide::new),
-            encoders: POWER_UP.map(|position| Grating::new(ENCODER, position)),
+            slides: core::array::from_fn(slide),
         }
     }
 
     /// Has a fault from now on.
     pub fn fail(&mut self, slide: usize, fault: SlideFault) {
+        let Some((slide, encoder)) = &mut self.slides[slide] else {
+            return;
+        };
         match fault {
-            SlideFault::Encoder(fault) => self.encoders[slide].fail(fault),
-            SlideFault::Runaway(velocity) => self.slides[slide].runaway = Some(velocity),
+            SlideFault::Encoder(fault) => encoder.fail(fault),
+            SlideFault::Runaway(velocity) => slide.runaway = Some(velocity),
         }
     }
 
     /// One control tick of 1 ms with `command`, and what the board reads at its end.
     pub fn advance(&mut self, command: &SlideCommand) -> SlideFeedback {
         let mut feedback = Feedback::default();
-        for (i, (slide, encoder)) in self.slides.iter_mut().zip(&mut self.encoders).enumerate() {
-            slide.advance(command.enable.then(|| command.dac[i].ratio() * VELOCITY_AT_10V));
-            let reading = encoder.read(slide.position());
+        for (i, slide) in self.slides.iter_mut().enumerate() {
+            let Some((slide, encoder)) = slide else { continue };
+            slide.advance(command.enable.then(|| command.dac[i].ratio()));
+            let reading = encoder.read(slide.motor());
             feedback.counts[i] = reading.counts;
             feedback.mark[i] = reading.mark;
             feedback.limit_minus.set(i, reading.limit_minus);
@@ -130,98 +145,6 @@ impl SlidePlant {
 
     /// True slide positions \[mm\], at the end of the last tick.
     pub fn truth(&self) -> [f64; SLIDES] {
-        core::array::from_fn(|i| self.slides[i].position())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use shared::io::DacCode;
-
-    fn command(mm_s: f64) -> SlideCommand {
-        SlideCommand {
-            enable: true,
-            dac: [DacCode::from_ratio(mm_s, VELOCITY_AT_10V); SLIDES],
-            ..SlideCommand::SAFE
-        }
-    }
-
-    #[test]
-    fn a_step_command_gives_dead_time_and_a_first_order_lag() {
-        let mut slide = Slide::new(0.0);
-        slide.advance(Some(10.0));
-        slide.advance(Some(10.0));
-        assert_eq!(slide.position(), 0.0);
-        for k in 1..60 {
-            slide.advance(Some(10.0));
-            let t = f64::from(k) * TICK;
-            let velocity = 10.0 * (1.0 - libm::exp(-t / 8e-3));
-            assert!(
-                (slide.velocity - velocity).abs() < 1e-9,
-                "{k} ms: {}",
-                slide.velocity
-            );
-            let position = 10.0 * (t - 8e-3 * (1.0 - libm::exp(-t / 8e-3)));
-            assert!(
-                (slide.position() - position).abs() < 1e-3,
-                "{k} ms: {}",
-                slide.position()
-            );
-        }
-    }
-
-    #[test]
-    fn encoders_agree_with_the_truth_within_a_count_and_find_their_marks() {
-        let mut plant = SlidePlant::dual_beam_tracker();
-        let mut marks = [[None; SLIDES]; 2];
-        for k in 0..900 {
-            let speed = if k < 300 { -10.0 } else { 10.0 };
-            let feedback = plant.advance(&command(speed));
-            for i in 0..SLIDES {
-                let moved = (plant.truth()[i] - POWER_UP[i]) * 2000.0;
-                assert!((feedback.counts[i] as f64 - moved).abs() <= 1.0 + 1e-9);
-                if let Some(mark) = feedback.mark[i] {
-                    marks[usize::from(speed > 0.0)][i] = Some(mark);
-                }
-            }
-        }
-        assert_eq!(marks[1], [Some(-2600), Some(1600), Some(2200), Some(-1800)]);
-        // Those that started above their mark passed it downwards as well, at the same count.
-        assert_eq!((marks[0][0], marks[0][3]), (marks[1][0], marks[1][3]));
-    }
-
-    #[test]
-    fn switches_close_outside_the_travel() {
-        let mut plant = SlidePlant::dual_beam_tracker();
-        let mut feedback = plant.advance(&command(100.0));
-        for _ in 0..200 {
-            feedback = plant.advance(&command(100.0));
-        }
-        assert_eq!((feedback.limit_minus.0, feedback.limit_plus.0), (0, 0b1111));
-        for _ in 0..400 {
-            feedback = plant.advance(&command(-100.0));
-        }
-        assert_eq!((feedback.limit_minus.0, feedback.limit_plus.0), (0b1111, 0));
-    }
-
-    #[test]
-    fn disabled_slides_stop_at_once_and_ignore_commands() {
-        let mut plant = SlidePlant::dual_beam_tracker();
-        for _ in 0..100 {
-            plant.advance(&command(50.0));
-        }
-        let moving = plant.truth();
-        let ignored = SlideCommand {
-            enable: false,
-            ..command(50.0)
-        };
-        for _ in 0..100 {
-            plant.advance(&ignored);
-        }
-        for (rest, moving) in plant.truth().iter().zip(moving) {
-            // v·τ = 0.1 mm
-            assert!((rest - moving).abs() < 0.11);
-        }
+        core::array::from_fn(|i| self.slides[i].as_ref().map_or(0.0, |(slide, _)| slide.position()))
     }
 }

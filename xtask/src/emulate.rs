@@ -5,6 +5,7 @@ use crate::firmware::{self, Board, Firmware};
 use crate::interrupt::Interrupts;
 use anyhow::{Result, bail};
 use emulator::{Boards, BootError, Options, SESSION_VARIABLE};
+use plant_file::PlantChoice;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::thread;
@@ -19,9 +20,9 @@ pub struct Running {
     pub session_file: PathBuf,
 }
 
-/// What the boards boot from, built. `log_directory` is where the logs go; `machine` is what the motion board is
-/// wired to.
-pub fn build(log_directory: PathBuf, rate: f64, machine: String) -> Result<Options> {
+/// What the boards boot from, built. `log_directory` is where the logs go; `machine` is what the boards are wired to,
+/// `plant` what is true of it.
+pub fn build(log_directory: PathBuf, rate: f64, machine: String, plant: PlantChoice) -> Result<Options> {
     let [motion, tracker] = firmware::build(Firmware::ALL, Board::Mps2An500)?;
     Ok(Options {
         motion,
@@ -30,13 +31,14 @@ pub fn build(log_directory: PathBuf, rate: f64, machine: String) -> Result<Optio
         log_directory,
         rate,
         machine,
+        plant,
     })
 }
 
 /// Builds and boots both boards. Each pair that runs at the same time has a folder of its own.
-pub fn boot(rate: f64, machine: String) -> Result<Running> {
+pub fn boot(rate: f64, machine: String, plant: PlantChoice) -> Result<Running> {
     let folder = target_directory()?.join("emulated");
-    let mut options = build(folder.clone(), rate, machine)?;
+    let mut options = build(folder.clone(), rate, machine, plant)?;
     for pair in 0..PAIRS {
         options.log_directory = folder.join(pair.to_string());
         match Boards::boot(&options) {
@@ -53,14 +55,14 @@ pub fn boot(rate: f64, machine: String) -> Result<Running> {
 }
 
 /// Boots both boards and keeps them until Ctrl-C, or until one ends.
-pub fn run(rate: f64, machine: String) -> Result<ExitCode> {
+pub fn run(rate: f64, machine: String, plant: PlantChoice) -> Result<ExitCode> {
     let Running {
         mut boards,
         session_file,
-    } = boot(rate, machine)?;
+    } = boot(rate, machine, plant)?;
     let interrupts = Interrupts::watch()?;
     let session = boards.session();
-    println!("machine:       {}", session.machine);
+    println!("machine:       {}, {}", session.machine, session.plant);
     println!(
         "motion board:  requests {}, datagrams {}",
         session.motion.requests(),

@@ -23,11 +23,10 @@ fn name_in(text: &str) -> Result<String> {
 mod tests {
     use super::*;
     use crate::cargo::root;
-    use plant::MotionPlant;
 
     #[test]
     fn shipped_machines_are_called_as_their_files() {
-        for name in MotionPlant::names() {
+        for name in plant_file::names() {
             let file = root().join("machines").join(name).with_extension("toml");
             assert_eq!(super::name(&file).expect("a shipped file"), name);
         }

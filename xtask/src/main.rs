@@ -17,7 +17,7 @@ mod test;
 mod weld;
 
 use clap::{Parser, Subcommand};
-use plant::DEFAULT_MACHINE;
+use plant_file::{DEFAULT_MACHINE, PlantChoice};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -50,6 +50,9 @@ enum Task {
         /// Machine file: the motion board is wired to its machine; the dual-beam gantry if none is given
         #[arg(long, value_name = "FILE")]
         machine: Option<PathBuf>,
+        /// What is true of that machine: a plant file, or draw:usual:SEED or draw:poor:SEED; as shipped if nothing is given
+        #[arg(long, value_name = "PLANT")]
+        plant: Option<PlantChoice>,
     },
     /// Format, lints and tests of the host, whole jobs on simulated boards among them; needs no Arm target and no QEMU
     Check,
@@ -87,10 +90,10 @@ fn main() -> ExitCode {
     let result = match task {
         Task::Setup => setup::run(&setup::ALL).map(|()| ExitCode::SUCCESS),
         Task::Weld { flags } => weld::run(&flags, rate, set_up),
-        Task::Emulate { machine } => set_up(&setup::EMULATION).and_then(|()| {
+        Task::Emulate { machine, plant } => set_up(&setup::EMULATION).and_then(|()| {
             let machine =
                 machine.map_or_else(|| Ok(DEFAULT_MACHINE.to_owned()), |file| machine::name(&file))?;
-            emulate::run(rate, machine)
+            emulate::run(rate, machine, plant.unwrap_or_default())
         }),
         Task::Check => set_up(&[setup::Tool::Components]).map(|()| test::check()),
         Task::Test => set_up(&setup::ALL).map(|()| test::run()),

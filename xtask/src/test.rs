@@ -14,7 +14,7 @@ use crate::size;
 use crate::tally::Tally;
 use anyhow::{Context, Result, bail};
 use emulator::{BOOT_VARIABLES, PROGRAM_VARIABLES};
-use plant::DEFAULT_MACHINE;
+use plant_file::{DEFAULT_MACHINE, PlantChoice};
 use std::env;
 use std::process::{Command, ExitCode};
 
@@ -93,7 +93,7 @@ fn clippy(selection: &[&str]) -> Result<()> {
 /// (docs/decisions/0005). seamwright is the one that the tests of the host have built.
 fn emulated_tests() -> Result<Command> {
     let logs = target_directory()?.join("emulated");
-    let boot = emulate::build(logs, 1.0, DEFAULT_MACHINE.to_owned())?;
+    let boot = emulate::build(logs, 1.0, DEFAULT_MACHINE.to_owned(), PlantChoice::Shipped)?;
     let test = ["test", "--workspace", "--no-fail-fast"];
     let mut command = cargo(&[&test[..], &EMULATED, &["--", "--test-threads=2"]].concat())?;
     command.envs(

@@ -7,11 +7,11 @@ use crate::firmware::build_seamwright;
 use crate::interrupt::Interrupts;
 use crate::machine;
 use crate::setup::{self, Tool};
-use anyhow::{Context, Result};
+use anyhow::{Context, Error, Result};
 use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE, SESSION_VARIABLE, bound_to_parent};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
-use plant::DEFAULT_MACHINE;
+use plant_file::{DEFAULT_MACHINE, PlantChoice};
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ExitCode, ExitStatus};
@@ -39,7 +39,7 @@ pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) 
     let seamwright = build_seamwright()?;
     let interrupts = Interrupts::watch()?;
     let mut running = match told.machine_name() {
-        Some(machine) if emulated => Some(emulate::boot(rate, machine)?),
+        Some(machine) if emulated => Some(emulate::boot(rate, machine, told.plant()?)?),
         _ => None,
     };
 
@@ -85,6 +85,7 @@ fn wait(child: &mut Child, interrupts: &Interrupts, mut running: Option<&mut Run
 #[derive(Debug, PartialEq, Eq)]
 struct BoardFlags {
     machine: Option<String>,
+    plant: Option<String>,
     boards: Option<String>,
     help: bool,
 }
@@ -102,6 +103,7 @@ impl BoardFlags {
         };
         Self {
             machine: value("--machine"),
+            plant: value("--plant"),
             boards: value("--boards"),
             help: flags.iter().any(|word| word == "-h" || word == "--help"),
         }
@@ -113,6 +115,16 @@ impl BoardFlags {
             None => Some(DEFAULT_MACHINE.to_owned()),
             Some(file) => machine::name(Path::new(file)).ok(),
         }
+    }
+
+    /// What is true of the machine.
+    fn plant(&self) -> Result<PlantChoice> {
+        self.plant
+            .as_deref()
+            .map_or(Ok(PlantChoice::Shipped), |plant| {
+                plant.parse().map_err(Error::msg)
+            })
+            .context("--plant")
     }
 
     /// Defaults of seamwright's command line: the machine, and job and seam of that machine.
@@ -144,7 +156,6 @@ fn shipped(file: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plant::MotionPlant;
 
     fn told(line: &str) -> BoardFlags {
         let flags: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
@@ -166,7 +177,7 @@ mod tests {
     #[test]
     fn every_machine_has_a_job_and_only_the_gantry_a_seam() {
         let names: Vec<&str> = JOBS.iter().map(|(name, _)| *name).collect();
-        assert_eq!(names, MotionPlant::names().collect::<Vec<_>>());
+        assert_eq!(names, plant_file::names().collect::<Vec<_>>());
         let pipe = root().join("machines/pipe-welder.toml");
         let defaults = told(&format!("--machine {}", pipe.display())).defaults();
         assert_eq!(defaults.len(), 2);

@@ -1,24 +1,16 @@
-//! The machine that the motion board is wired to. It is named on the command line of QEMU:
-//! `arg=machine=NAME`.
+//! The machine that the boards are wired to: the file `plant` in the folder that QEMU runs in, in postcard.
 
-use crate::semihosting::{self, COMMAND_LINE};
-use plant::MotionPlant;
+use crate::semihosting;
+use plant::{LONGEST, PlantConfig};
 
-/// Before the name of the machine.
-const KEY: &str = "machine=";
-
-/// The machine that was named, or [`plant::DEFAULT_MACHINE`] if none was. A name that no machine has ends the
-/// board: it must not run on another machine than its user means.
-pub fn wired() -> MotionPlant {
-    let mut buffer = [0; COMMAND_LINE];
-    let line = semihosting::command_line(&mut buffer).unwrap_or_default();
-    match line.split(' ').find_map(|word| word.strip_prefix(KEY)) {
-        None => MotionPlant::default(),
-        Some(name) => MotionPlant::of(name).unwrap_or_else(|| {
-            semihosting::say("this board has no plant for a machine called ");
-            semihosting::say(name);
-            semihosting::say("\n");
-            panic!("no plant for a machine called {name}")
-        }),
-    }
+/// The machine. A board without one, or with one that it does not understand, ends: it must not run on another machine than
+/// its user means.
+pub fn wired() -> PlantConfig {
+    let mut buffer = [0; LONGEST];
+    let config =
+        semihosting::read_file(c"plant", &mut buffer).and_then(|bytes| postcard::from_bytes(bytes).ok());
+    config.unwrap_or_else(|| {
+        semihosting::say("this board has no plant file, or one of another version\n");
+        panic!("no plant")
+    })
 }

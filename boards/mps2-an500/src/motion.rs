@@ -40,7 +40,7 @@ pub fn init(mut core: cortex_m::Peripherals) -> Board {
     time::start();
     logger::start();
     let axes = Axes {
-        plant: machine::wired(),
+        plant: MotionPlant::new(&machine::wired()),
         command: MotionCommand::SAFE,
     };
     let network = Network::start();

@@ -1,7 +1,7 @@
 //! What a tracker board has: four slides on a simulated machine, a tick, camera strobes, a network, a watchdog.
 
 use crate::registers::Block;
-use crate::{Network, Tick, Watchdog, logger, time};
+use crate::{Network, Tick, Watchdog, logger, machine, time};
 use plant::SlidePlant;
 use shared::io::{SLIDES, SlideCommand, SlideFeedback};
 
@@ -33,7 +33,7 @@ pub fn init(mut core: cortex_m::Peripherals) -> Board {
     time::start();
     logger::start();
     let slides = Slides {
-        plant: SlidePlant::dual_beam_tracker(),
+        plant: SlidePlant::new(&machine::wired()),
         command: SlideCommand::SAFE,
     };
     let network = Network::start();

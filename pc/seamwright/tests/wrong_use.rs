@@ -480,6 +480,7 @@ fn emulated_boards_of_another_machine_are_named_and_asked_for_nothing() {
     };
     let session = Session {
         machine: "pipe-welder".to_owned(),
+        plant: "as shipped".to_owned(),
         pace: scratch("no-pace"),
         motion: board,
         tracker: board,
@@ -516,6 +517,7 @@ fn a_board_of_another_version_is_refused_and_asked_for_nothing() {
     };
     let session = Session {
         machine: "dual-beam-gantry".to_owned(),
+        plant: "as shipped".to_owned(),
         pace: scratch("no-pace"),
         motion: board,
         tracker: board,

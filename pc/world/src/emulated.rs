@@ -14,12 +14,9 @@ pub enum BoardsError {
     /// They are there, and do not answer as they should.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// Simulated boards have no plant of that name.
-    #[error("there is no simulation of a machine called {machine}: it runs on real boards only")]
-    NoPlant {
-        /// Name of its kinematics.
-        machine: String,
-    },
+    /// There is no such plant.
+    #[error(transparent)]
+    Plant(#[from] plant_file::PlantFileError),
     /// The emulated boards run another machine.
     #[error(
         "the emulated boards are wired to a {wired}, but the machine file describes a {wanted}; boot others with `cargo xtask emulate --machine FILE`"
@@ -29,6 +26,16 @@ pub enum BoardsError {
         wired: String,
         /// The kinematics of the machine file.
         wanted: &'static str,
+    },
+    /// The emulated boards run another plant.
+    #[error(
+        "the emulated boards are wired to a machine {wired}, not to {wanted}; boot others with `cargo xtask weld --plant …` or `cargo xtask emulate --plant …`"
+    )]
+    WrongPlant {
+        /// What they run.
+        wired: String,
+        /// What was asked for.
+        wanted: String,
     },
     /// No emulated boards on this computer.
     #[error(

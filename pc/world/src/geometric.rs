@@ -1,9 +1,10 @@
 //! Cameras that measure by geometry: no images, but lead, delay and noise.
 
-use crate::{SharedSeams, TrueSeams};
+use crate::{SharedSeams, TrueSeams, mounted};
 use host_link::geometry::MachineGeometry;
 use host_link::record::MachinePosition;
 use job::{Answer, CameraFigures, ImagesError, Moment, SeamCameras};
+use plant_file::CameraMount;
 use shared::geometry::Pose;
 use shared::io::SIDES;
 use shared::protocol::{Capture, Measurement, SideMeasurement};
@@ -20,6 +21,7 @@ const GIVE_UP_US: u64 = 200_000;
 pub struct GeometricCameras {
     processing_us: u64,
     sigma_mm: f64,
+    mounts: [CameraMount; SIDES],
     noise: SplitMix64,
     seams: SharedSeams,
     waiting: VecDeque<Waiting>,
@@ -36,11 +38,19 @@ struct Waiting {
 }
 
 impl GeometricCameras {
-    /// Cameras that see `seams` and answer `processing_us` after the strobe, with a noise of standard deviation `sigma_mm`.
-    pub fn new(processing_us: u64, sigma_mm: f64, seed: u64, seams: SharedSeams) -> Self {
+    /// Cameras, mounted so, that see `seams` and answer `processing_us` after the strobe, with a noise of standard deviation
+    /// `sigma_mm`.
+    pub fn new(
+        processing_us: u64,
+        sigma_mm: f64,
+        mounts: [CameraMount; SIDES],
+        seed: u64,
+        seams: SharedSeams,
+    ) -> Self {
         Self {
             processing_us,
             sigma_mm,
+            mounts,
             noise: SplitMix64::new(seed),
             seams,
             waiting: VecDeque::new(),
@@ -72,7 +82,7 @@ impl SeamCameras for GeometricCameras {
             }
             match (at.position)(next.strobe_us) {
                 Some(position) => {
-                    let measurement = next.measure(at.machine, &position, &self.seams.get());
+                    let measurement = next.measure(at.machine, &position, &self.seams.get(), &self.mounts);
                     self.waiting.pop_front();
                     if measurement.sides != [None; SIDES] {
                         return Ok(Some(measurement.into()));
@@ -104,9 +114,10 @@ impl Waiting {
         machine: &MachineGeometry,
         position: &MachinePosition,
         seams: &TrueSeams,
+        mounts: &[CameraMount; SIDES],
     ) -> Measurement {
         let pose = machine.pose(position);
-        let slides = self.capture.truth_mm.unwrap_or(self.capture.slides_mm);
+        let slides = mounted(&self.capture, mounts);
         let heads = seams.heads();
         let side = |k: usize| {
             let (_, crossing) = seams.facing(k, &heads.spot(&pose, k), heads.camera_lead())?;
@@ -172,7 +183,7 @@ mod tests {
     /// Cameras before a wavy seam.
     fn cameras(processing_us: u64, sigma_mm: f64, seed: u64) -> GeometricCameras {
         let seams = SharedSeams::new(TrueSeams::of([wavy_seam()]));
-        GeometricCameras::new(processing_us, sigma_mm, seed, seams)
+        GeometricCameras::new(processing_us, sigma_mm, Default::default(), seed, seams)
     }
 
     #[test]

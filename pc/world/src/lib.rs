@@ -9,6 +9,7 @@ pub mod deviation;
 pub mod emulated;
 mod followed;
 mod geometric;
+mod mounts;
 mod probe;
 mod rendered;
 mod seams;
@@ -21,6 +22,7 @@ pub use deviation::{Deviation, SeamError, check_seam};
 pub use emulated::BoardsError;
 pub use followed::{NotFollowed, not_followed};
 pub use geometric::GeometricCameras;
+use mounts::mounted;
 pub use probe::SimulatedProbe;
 pub use rendered::{
     Dark, Direction, DirtSpot, FieldOfView, Grooves, JointStretch, Plate, Plates, RenderedCamera,

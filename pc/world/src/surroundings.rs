@@ -10,6 +10,8 @@ use evaluate::SeamTruth;
 use job::{ImageCameras, Images, ImagesError, RangingProbe, SeamCameras, SurroundingsError};
 use nc::Program;
 use parts::PartFile;
+use plant_file::CameraMount;
+use shared::io::SIDES;
 use shared::tracking::frames::Heads;
 use std::sync::{Arc, Mutex, PoisonError};
 use thiserror::Error;
@@ -28,6 +30,8 @@ pub struct Surroundings {
     pub cameras: CameraChoice,
     /// Start of all noise.
     pub seed: u64,
+    /// How simulated cameras are mounted.
+    pub mounts: [CameraMount; SIDES],
 }
 
 impl Default for Surroundings {
@@ -37,6 +41,7 @@ impl Default for Surroundings {
             drawing: None,
             cameras: CameraChoice::default(),
             seed: 1,
+            mounts: Default::default(),
         }
     }
 }
@@ -125,16 +130,17 @@ impl job::Surroundings for World {
     fn cameras(&self, unit: &TrackingUnit, heads: Heads) -> Result<Box<dyn SeamCameras>, ImagesError> {
         let seams = SharedSeams::new(TrueSeams::none(heads));
         *self.seams.lock().unwrap_or_else(PoisonError::into_inner) = Some(seams.clone());
-        let seed = self.settings.seed;
+        let Surroundings { seed, mounts, .. } = self.settings;
         Ok(match &self.settings.cameras {
             CameraChoice::Geometric => Box::new(GeometricCameras::new(
                 (unit.cameras.processing_ms * 1e3) as u64,
                 unit.cameras.noise_3sigma_mm / SIGMAS,
+                mounts,
                 seed,
                 seams,
             )),
             CameraChoice::Images(images, PictureChoice::Rendered(scene)) => {
-                let source = RenderedPictures::new(scene, &unit.cameras, &heads, seed, seams);
+                let source = RenderedPictures::new(scene, &unit.cameras, &heads, mounts, seed, seams);
                 Box::new(Images::begin(images, Box::new(source), unit, heads)?)
             }
             CameraChoice::Images(images, PictureChoice::Real(open)) => {

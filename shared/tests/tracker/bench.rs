@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 use plant::SlidePlant;
+use plant_file::{DEFAULT_MACHINE, PlantFile};
 use shared::config::{HeadConfig, SlideConfig, TrackerConfig, TrackingConfig};
 use shared::control::HomeConfig;
 use shared::geometry::Pose;
@@ -112,6 +113,13 @@ impl Shape {
     }
 }
 
+/// The slides of the dual-beam gantry as shipped.
+pub fn slides() -> SlidePlant {
+    PlantFile::shipped(DEFAULT_MACHINE)
+        .unwrap_or_else(|error| panic!("{error}"))
+        .slides()
+}
+
 /// Where the real seam is beside the planned one: (side, s) → (u, v) \[mm\].
 pub type SeamFn = fn(usize, f64) -> (f64, f64);
 
@@ -170,7 +178,7 @@ impl Bench {
         });
         Self {
             controller,
-            plant: SlidePlant::dual_beam_tracker(),
+            plant: slides(),
             change_inputs: |_| {},
             shape,
             seam,

@@ -192,7 +192,7 @@ fn after_a_trip_it_is_reset_and_homed_and_works() {
     let mut bench = welding();
     bench.plant.fail(0, SlideFault::Runaway(100.0));
     until_off(&mut bench, 400).expect("no trip");
-    bench.plant = plant::SlidePlant::dual_beam_tracker();
+    bench.plant = slides();
     (bench.tracking, bench.speed) = (false, 0.0);
     bench.run_ms(1);
     bench.accept(Request::Reset);

@@ -2,7 +2,7 @@
 
 use emulator::{INSTRUCTIONS_PER_US, Options, PROGRAM_VARIABLES, SESSION_VARIABLE, bound_to_parent};
 use host_link::boards::{Boards, NetworkBoards, Timeouts};
-use plant::DEFAULT_MACHINE;
+use plant_file::DEFAULT_MACHINE;
 use report::Report;
 use shared::protocol::{MotionStatus, Request, Response, Role, TrackerStatus};
 use shared::state::{State, TrackerState};

@@ -2,7 +2,8 @@
 
 use super::file::{Golden, near, number};
 use super::servo::pid;
-use plant::{Drive, DriveConfig};
+use heapless::Vec;
+use plant::{Drive, DriveConfig, MechanicsConfig, Noise, Wave};
 use serde_json::{Value, json};
 use shared::control::{PidState, Setpoint};
 
@@ -13,18 +14,30 @@ const DRIVE_ACCELERATION: f64 = 4000.0;
 /// Tangential acceleration of the reference \[mm/s²\].
 const START: f64 = 500.0;
 
-/// The drive of one axis, with the dead time of all cases: 0.25 ms / H + 1 steps.
-fn drive(par: &Value, position: f64) -> Drive<6> {
-    assert_eq!(number(par, "delay"), 0.25e-3);
-    let config = DriveConfig {
+/// The drive of one axis.
+fn drive(par: &Value, position: f64) -> Drive {
+    let drive = DriveConfig {
+        velocity_at_10v: 400.0,
         bandwidth_hz: number(par, "fv"),
+        dead_time_s: number(par, "delay"),
         max_acceleration: DRIVE_ACCELERATION,
+        brake: DRIVE_ACCELERATION,
+        gain_error: 0.0,
+        offset: 0.0,
+        noise: 0.0,
+    };
+    let mechanics = MechanicsConfig {
         friction: number(par, "fc"),
         damping_per_s: 1.0,
         backlash: number(par, "bl"),
-        brake: DRIVE_ACCELERATION,
+        stiction: 0.0,
+        stribeck_speed: 0.0,
+        presliding: 0.0,
+        gravity: 0.0,
+        cogging: Wave::default(),
+        modes: Vec::new(),
     };
-    Drive::new(&config, H, position)
+    Drive::new(&drive, &mechanics, H, position, Noise::new(1, 0))
 }
 
 /// Position, velocity and acceleration on the circle about the origin, from rest at (R, 0).
@@ -79,12 +92,12 @@ pub fn closed_loop_servo(golden: &Golden) {
             let t = k as f64 * period;
             let reference = circle(radius, speed, t);
             for ((axis, state), setpoint) in axes.iter_mut().zip(&mut states).zip(&reference) {
-                let read = (axis.position() / quantum + 0.5).floor() * quantum;
+                let read = (axis.at_tool() / quantum + 0.5).floor() * quantum;
                 let command = pid.step(state, setpoint, read, 0.0).expect("finite inputs");
                 axis.run(command, steps);
             }
             if t > ramp + 0.4 {
-                let [x, y] = [axes[0].position(), axes[1].position()];
+                let [x, y] = [axes[0].at_tool(), axes[1].at_tool()];
                 let contour = (x.hypot(y) - radius).abs();
                 let target = circle(radius, speed, t + period);
                 let follow = (x - target[0].position).hypot(y - target[1].position);

@@ -3,13 +3,16 @@
 use crate::console::errln;
 use crate::terminal::{Operator, Terminal};
 use anyhow::{Context, bail};
+use clap::Args;
 use config::machine::MachineFile;
 use emulator::{SESSION_VARIABLE, Session};
 use host_link::boards::{Boards, Endpoint, NetworkBoards, Timeouts};
 use host_link::events::Interest;
 use host_link::{Command, control};
 use job::{Job, JobError, run};
+use plant_file::{CameraMount, PlantChoice, PlantFileError};
 use report::{Ended, LogColumns, LogWriter, ended};
+use shared::io::SIDES;
 use std::path::Path;
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -30,6 +33,18 @@ const POLL: Duration = Duration::from_millis(20);
 const LOGGED: usize = 1 << 14;
 /// Largest number of wrong letters in a misspelt word.
 const NEAR: usize = 2;
+
+/// Which boards, and the machine that simulated and emulated ones are wired to.
+#[derive(Clone, Debug, Args)]
+pub struct BoardArgs {
+    /// emulated, simulated, or the addresses of real boards: MOTION,TRACKER, or MOTION without a tracker
+    #[arg(long = "boards", default_value = "emulated")]
+    pub choice: BoardChoice,
+    /// What is true of a simulated machine: a plant file, or draw:usual:SEED or draw:poor:SEED for one drawn at random
+    /// [default: as shipped, without errors]
+    #[arg(long)]
+    plant: Option<PlantChoice>,
+}
 
 /// Which boards.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,32 +91,21 @@ fn is_meant(text: &str) -> bool {
     ["emulated", "simulated"].into_iter().any(near)
 }
 
-impl BoardChoice {
-    /// What the report calls it.
-    pub fn name(&self) -> String {
-        match self {
-            Self::Emulated => "emulated".to_owned(),
-            Self::Simulated => "simulated".to_owned(),
-            Self::At {
-                motion,
-                tracker: None,
-            } => motion.clone(),
-            Self::At {
-                motion,
-                tracker: Some(tracker),
-            } => format!("{motion},{tracker}"),
-        }
-    }
-
+impl BoardArgs {
     /// Whether these are the boards that the machine needs.
     pub fn check(&self, machine: &MachineFile) -> anyhow::Result<()> {
-        match (self, &machine.tracking) {
-            (Self::At { tracker: None, .. }, Some(_)) => {
+        if let (BoardChoice::At { .. }, Some(plant)) = (&self.choice, &self.plant) {
+            bail!(
+                "--plant {plant} is for a simulated machine: real boards have their own; leave it out, or use --boards simulated"
+            )
+        }
+        match (&self.choice, &machine.tracking) {
+            (BoardChoice::At { tracker: None, .. }, Some(_)) => {
                 bail!(
                     "this machine has a tracker: give the addresses of both boards, --boards MOTION,TRACKER"
                 )
             }
-            (Self::At { tracker: Some(_), .. }, None) => {
+            (BoardChoice::At { tracker: Some(_), .. }, None) => {
                 bail!(
                     "this machine has no tracker: give the address of the motion board only, --boards MOTION"
                 )
@@ -123,10 +127,11 @@ impl BoardChoice {
         let stopped = remote.clone();
         // A stop needs no room.
         ctrlc::set_handler(move || _ = stopped.send(Command::Stop)).context("cannot watch for Ctrl-C")?;
-        let (choice, wanted) = (self.clone(), job.machine.motion.kinematics.name());
+        let (choice, wanted) = (self.choice.clone(), job.machine.motion.kinematics.name());
+        let plant = self.plant();
         let tracked = job.machine.tracking.is_some();
         let stop = remote.stop_flag();
-        let connect = move || choice.connect(wanted, tracked, stop);
+        let connect = move || choice.connect(wanted, &plant, tracked, stop);
         let Some(mut boards) = unless_interrupted(connect, &remote.stop_flag())? else {
             errln!("seamwright: stopped by the operator; nothing was sent to the boards");
             return Ok(Err(ExitCode::from(INTERRUPTED)));
@@ -156,18 +161,57 @@ impl BoardChoice {
         Ok(Ok(ended(job, record)))
     }
 
+    /// What the report calls them.
+    pub fn name(&self) -> String {
+        match &self.plant {
+            None => self.choice.name(),
+            Some(plant) => format!("{}, {plant}", self.choice.name()),
+        }
+    }
+
+    /// How the cameras of a simulated machine are mounted.
+    pub fn mounts(&self, machine: &MachineFile) -> Result<[CameraMount; SIDES], PlantFileError> {
+        match self.choice {
+            BoardChoice::At { .. } => Ok(Default::default()),
+            _ => Ok(self.plant().of(machine.motion.kinematics.name())?.cameras),
+        }
+    }
+
+    fn plant(&self) -> PlantChoice {
+        self.plant.clone().unwrap_or_default()
+    }
+}
+
+impl BoardChoice {
+    /// What the report calls it.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Emulated => "emulated".to_owned(),
+            Self::Simulated => "simulated".to_owned(),
+            Self::At {
+                motion,
+                tracker: None,
+            } => motion.clone(),
+            Self::At {
+                motion,
+                tracker: Some(tracker),
+            } => format!("{motion},{tracker}"),
+        }
+    }
+
     /// Connects; simulated boards become the machine whose kinematics are `wanted`, emulated ones must have been
-    /// booted as it. The tracker board is left alone unless the machine is `tracked`.
+    /// booted as it, and with the same `plant`. The tracker board is left alone unless the machine is `tracked`.
     /// `interrupted` stops the machine.
     fn connect(
         &self,
         wanted: &'static str,
+        plant: &PlantChoice,
         tracked: bool,
         interrupted: Arc<AtomicBool>,
     ) -> Result<Box<dyn Boards + Send>, BoardsError> {
         let patience = Timeouts::default();
         match self {
-            Self::Simulated => Ok(Box::new(SimulatedBoards::new(wanted)?)),
+            Self::Simulated => Ok(Box::new(SimulatedBoards::wired_to(&plant.of(wanted)?))),
             Self::At { motion, tracker } => {
                 let motion = Endpoint::board(motion);
                 let tracker = tracker.as_deref().map(Endpoint::board);
@@ -181,6 +225,12 @@ impl BoardChoice {
                 if session.machine != wanted {
                     let wired = session.machine;
                     return Err(BoardsError::WrongMachine { wired, wanted });
+                }
+                if session.plant != plant.to_string() {
+                    return Err(BoardsError::WrongPlant {
+                        wired: session.plant,
+                        wanted: plant.to_string(),
+                    });
                 }
                 let boards = emulated::connect(&session, tracked, patience)?;
                 Ok(Box::new(boards.stopped_by(interrupted)))

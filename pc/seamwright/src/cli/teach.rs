@@ -1,6 +1,6 @@
 //! `seamwright teach`: points and normals of a surface, by the machine's probe, or of seams, by its cameras.
 
-use super::boards::{BoardChoice, exit_code};
+use super::boards::{BoardArgs, exit_code};
 use super::teach_seam::SeamArgs;
 use crate::console::{errln, outln};
 use crate::terminal::Operator;
@@ -37,9 +37,8 @@ pub struct Teach {
     /// Machine file
     #[arg(long, env = MACHINE_VARIABLE, hide_env = true)]
     machine: PathBuf,
-    /// emulated, simulated, or for seams the addresses of real boards: MOTION,TRACKER; none has an input for a probe
-    #[arg(long, default_value = "emulated")]
-    boards: BoardChoice,
+    #[command(flatten)]
+    boards: BoardArgs,
     /// Where the points go (CSV), those up to a trouble too [default: where the part file expects taught seams]
     #[arg(short, long)]
     output: Option<PathBuf>,

@@ -1,6 +1,6 @@
 //! `seamwright teach` for places of the tip: an operator leads the machine there.
 
-use super::boards::{BoardChoice, exit_code};
+use super::boards::{BoardArgs, exit_code};
 use super::teach_seam::{SeamArgs, output_of};
 use crate::console::outln;
 use crate::terminal::Operator;
@@ -20,7 +20,7 @@ impl SeamArgs {
     /// Teaches the places of `part`.
     pub fn lead(
         &self,
-        boards: &BoardChoice,
+        boards: &BoardArgs,
         (machine, machine_path): (&MachineFile, &Path),
         part: &PartFile,
         output: Option<&Path>,

@@ -1,6 +1,6 @@
 //! `seamwright teach` for the seams of a rib: by the cameras.
 
-use super::boards::{BoardChoice, exit_code};
+use super::boards::{BoardArgs, exit_code};
 use super::cameras::CameraArgs;
 use super::read_program;
 use crate::console::outln;
@@ -114,7 +114,7 @@ impl SeamArgs {
     /// Teaches the seams of `part`.
     pub fn teach(
         &self,
-        boards: &BoardChoice,
+        boards: &BoardArgs,
         (machine, machine_path): (&MachineFile, &Path),
         part: &PartFile,
         output: Option<&Path>,
@@ -157,7 +157,7 @@ impl SeamArgs {
             head,
             by_jog: self.jog,
         };
-        let cameras = self.eyes.choose(machine, machine_path, boards)?;
+        let cameras = self.eyes.choose(machine, machine_path, &boards.choice)?;
         let keepers = self.eyes.keep(&cameras)?;
         let job = Job {
             machine,
@@ -170,6 +170,7 @@ impl SeamArgs {
                 drawing: prepared.drawn.map(Arc::new),
                 cameras,
                 seed,
+                mounts: boards.mounts(machine)?,
             }
             .into(),
             spooling: Default::default(),

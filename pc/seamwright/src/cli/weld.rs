@@ -1,6 +1,6 @@
 //! `seamwright weld`: the job.
 
-use super::boards::{BoardChoice, exit_code};
+use super::boards::{BoardArgs, exit_code};
 use super::cameras::CameraArgs;
 use super::{OUTSIDE, machine_for, read_program, sentence, slower, waits};
 use crate::console::{errln, out, outln};
@@ -51,9 +51,8 @@ pub struct Weld {
     /// Speed of the weld in place of the programmed feed [m/min]
     #[arg(long, value_name = "M_PER_MIN", value_parser = speed, allow_negative_numbers = true)]
     speed: Option<f64>,
-    /// emulated, simulated, or the addresses of real boards: MOTION,TRACKER, or MOTION without a tracker
-    #[arg(long, default_value = "emulated")]
-    boards: BoardChoice,
+    #[command(flatten)]
+    boards: BoardArgs,
     #[command(flatten)]
     cameras: CameraArgs,
     /// Where report.json, log.csv and the plots go, the program planned from a part, and taught points
@@ -120,7 +119,9 @@ impl Weld {
             Some(file) => Some(read_program(file, &machine, self.options())?),
             None => None,
         };
-        let cameras = self.cameras.choose(&machine, &self.machine, &self.boards)?;
+        let cameras = self
+            .cameras
+            .choose(&machine, &self.machine, &self.boards.choice)?;
         let name = |path: &Path| path.display().to_string();
         let job = Job {
             machine: &machine,
@@ -136,6 +137,7 @@ impl Weld {
                 drawing: drawing.map(Arc::new),
                 cameras: cameras.clone(),
                 seed: self.seed,
+                mounts: self.boards.mounts(&machine)?,
             }
             .into(),
             spooling: Spooling::in_folder(&self.report),

@@ -3,11 +3,13 @@
 use super::background::Background;
 use super::{FieldOfView, RenderedWorld, SceneFile, View};
 use crate::SharedSeams;
+use crate::mounted;
 use camera::{Camera, CameraError};
 use config::machine::CameraConfig;
 use host_link::geometry::MachineGeometry;
 use host_link::record::MachinePosition;
 use job::PictureSource;
+use plant_file::CameraMount;
 use shared::io::SIDES;
 use shared::protocol::Capture;
 use shared::tracking::frames::Heads;
@@ -17,23 +19,26 @@ use std::sync::mpsc::Sender;
 pub struct RenderedPictures {
     world: RenderedWorld,
     cameras: CameraConfig,
+    mounts: [CameraMount; SIDES],
     seams: SharedSeams,
     /// Senders of the field of view of each camera.
     tell: [Option<Sender<FieldOfView>>; SIDES],
 }
 
 impl RenderedPictures {
-    /// Pictures of `seams` that look as `scene` says. `seed` starts all noise.
+    /// Pictures of `seams` that look as `scene` says, of cameras mounted so. `seed` starts all noise.
     pub fn new(
         scene: &SceneFile,
         cameras: &CameraConfig,
         heads: &Heads,
+        mounts: [CameraMount; SIDES],
         seed: u64,
         seams: SharedSeams,
     ) -> Self {
         Self {
             world: RenderedWorld::new(scene, cameras, heads, seed),
             cameras: cameras.clone(),
+            mounts,
             seams,
             tell: [const { None }; SIDES],
         }
@@ -58,7 +63,7 @@ impl PictureSource for RenderedPictures {
     fn tell(&mut self, side: usize, capture: &Capture, at: Option<(&MachineGeometry, &MachinePosition)>) {
         let field_of_view = match at {
             Some((machine, position)) => {
-                let slides = capture.truth_mm.unwrap_or(capture.slides_mm);
+                let slides = mounted(capture, &self.mounts);
                 View::of(&self.cameras, machine, &self.seams.get(), position, &slides, side)
                     .map_or(FieldOfView::Nothing, FieldOfView::Seam)
             }

@@ -16,7 +16,7 @@ pub use outputs::Outputs;
 use crate::emulated::BoardsError;
 use host_link::boards::{Boards, LinkError};
 use motion::MotionBoard;
-use plant::MotionPlant;
+use plant_file::{DEFAULT_MACHINE, PlantChoice, PlantFile};
 use shared::io::ESTOP_CHANNELS;
 use shared::protocol::{ClockReply, ClockRequest, Datagram, Identity, Request, Response, Role};
 use std::cmp::Reverse;
@@ -97,30 +97,28 @@ pub struct SimulatedBoards {
 }
 
 impl Default for SimulatedBoards {
-    /// Wired to [`plant::DEFAULT_MACHINE`].
+    /// Wired to [`DEFAULT_MACHINE`] as shipped.
     fn default() -> Self {
-        Self::wired_to(MotionPlant::default())
+        Self::new(DEFAULT_MACHINE).expect("a shipped plant; a test reads them all")
     }
 }
 
 impl SimulatedBoards {
     /// Boards that have just been switched on, wired to a machine called as its kinematics are.
     pub fn new(machine: &str) -> Result<Self, BoardsError> {
-        let plant = MotionPlant::of(machine).ok_or_else(|| BoardsError::NoPlant {
-            machine: machine.to_owned(),
-        })?;
-        Ok(Self::wired_to(plant))
+        Ok(Self::wired_to(&PlantChoice::Shipped.of(machine)?))
     }
 
-    fn wired_to(plant: MotionPlant) -> Self {
+    /// Boards that have just been switched on, wired to this machine.
+    pub fn wired_to(plant: &PlantFile) -> Self {
         let identity = |role| Identity::new(role, env!("CARGO_PKG_VERSION"), "simulated", true);
         let mut boards = Self {
             now_us: 0,
             entered: 0,
             queue: BinaryHeap::new(),
             inbox: VecDeque::new(),
-            motion: MotionBoard::new(plant),
-            tracker: TrackerBoard::new(),
+            motion: MotionBoard::new(plant.motion()),
+            tracker: TrackerBoard::new(plant.slides()),
             identities: [identity(Role::Motion), identity(Role::Tracker)],
             cut_off: None,
         };

@@ -24,9 +24,9 @@ pub struct TrackerBoard {
 }
 
 impl TrackerBoard {
-    pub fn new() -> Self {
+    pub fn new(plant: SlidePlant) -> Self {
         Self {
-            plant: SlidePlant::dual_beam_tracker(),
+            plant,
             command: SlideCommand::SAFE,
             controller: Box::new(TrackerController::new()),
             batch: Batch::default(),

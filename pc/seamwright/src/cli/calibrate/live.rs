@@ -1,6 +1,6 @@
 //! `seamwright calibrate camera`: with the machine.
 
-use super::super::boards::{BoardChoice, exit_code};
+use super::super::boards::{BoardArgs, exit_code};
 use super::super::cameras::source;
 use super::super::{read_program, waits};
 use super::{Camera, Meets};
@@ -38,9 +38,8 @@ pub struct Live {
     /// Places along the seam; more of them even out its texture
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=9))]
     places: u32,
-    /// emulated, simulated, or the addresses of real boards: MOTION,TRACKER
-    #[arg(long, default_value = "emulated")]
-    boards: BoardChoice,
+    #[command(flatten)]
+    boards: BoardArgs,
     /// Deviation of the seams of a simulated world (CSV) [default: none, a straight coupon]
     #[arg(long, value_name = "FILE")]
     seam: Option<PathBuf>,
@@ -73,7 +72,7 @@ impl Live {
         let mut calibrations = cameras.calibrations(machine_file.parent().unwrap_or(Path::new("")))?;
         let side = usize::from(side) - 1;
         calibrations[side] = before;
-        let source = source(&self.boards, cameras, self.scene.as_deref())?;
+        let source = source(&self.boards.choice, cameras, self.scene.as_deref())?;
         if let (PictureChoice::Rendered(_), JointForm::Corner) = (&source, cameras.joint) {
             bail!(
                 "machine file {}: its simulated seams are closed corners, and a coupon is a gap; calibrate a machine with \
@@ -118,6 +117,7 @@ impl Live {
                 drawing: None,
                 cameras: CameraChoice::Images(Box::new(images), source),
                 seed: self.seed,
+                mounts: self.boards.mounts(&machine)?,
             }
             .into(),
             spooling: Default::default(),

@@ -2,7 +2,8 @@
 
 use crate::simulated::motion::MotionBoard;
 use config::machine::MachineFile;
-use plant::{DEFAULT_MACHINE, MotionPlant};
+use plant::MotionPlant;
+use plant_file::{DEFAULT_MACHINE, PlantFile};
 use shared::config::MotionConfig;
 use shared::protocol::{
     MotionSample, MotionStatus, PathAction, PathChannel, PathElement, PathEvent, PathJoin, PathLimits,
@@ -31,6 +32,13 @@ pub struct Bench {
     pub samples: Vec<MotionSample>,
 }
 
+/// The motors of a machine by its name.
+pub fn plant_of(machine: &str) -> MotionPlant {
+    PlantFile::shipped(machine)
+        .unwrap_or_else(|error| panic!("{error}"))
+        .motion()
+}
+
 impl Bench {
     pub fn configured() -> Self {
         Self::configured_as(DEFAULT_MACHINE)
@@ -38,9 +46,8 @@ impl Bench {
 
     /// Of a machine by its name.
     pub fn configured_as(machine: &str) -> Self {
-        let plant = MotionPlant::of(machine).expect("a plant of the machine");
         let mut bench = Self {
-            board: MotionBoard::new(plant),
+            board: MotionBoard::new(plant_of(machine)),
             now_us: 0,
             samples: Vec::new(),
         };

@@ -5,7 +5,8 @@ mod machines;
 mod readback;
 
 use super::*;
-use bench::{Bench, config};
+use bench::{Bench, config, plant_of};
+use plant_file::DEFAULT_MACHINE;
 use shared::protocol::Refusal;
 use shared::state::{Fault, State};
 
@@ -124,7 +125,7 @@ fn the_emergency_stop_switches_everything_off_in_one_tick() {
 #[test]
 fn what_makes_no_sense_is_refused_and_changes_nothing() {
     let mut bench = Bench {
-        board: MotionBoard::new(MotionPlant::default()),
+        board: MotionBoard::new(plant_of(DEFAULT_MACHINE)),
         now_us: 0,
         samples: Vec::new(),
     };

@@ -1,0 +1,186 @@
+//! Values that make no sense.
+
+use crate::PlantFile;
+use crate::read::Mistake;
+use plant::{DriveConfig, GratingConfig, MechanicsConfig, ModeConfig, SlideConfig, Wave};
+use shared::io::{MOTOR_NAMES, SLIDE_NAMES};
+
+/// Longest dead times of the models \[s\].
+const DRIVE_DEAD_TIME: f64 = 2e-3;
+const SLIDE_DEAD_TIME: f64 = 4e-3;
+/// Highest frequency of a resonance \[Hz\]: its model is stable up to 6.4 kHz, and right to 1 % of its frequency up to this.
+const HIGHEST_MODE: f64 = 1500.0;
+/// Bandwidths that the model of a drive resolves \[Hz\].
+const BANDWIDTH: [f64; 2] = [1.0, 1000.0];
+
+/// What a value must be.
+enum Must {
+    BeFinite,
+    BePositive,
+    NotBeNegative,
+    BeWithin(f64, f64),
+}
+
+impl Must {
+    fn fails(&self, value: f64) -> Option<String> {
+        let (good, what) = match self {
+            Self::BeFinite => (true, "must be a number".to_owned()),
+            Self::BePositive => (value > 0.0, "must be greater than 0".to_owned()),
+            Self::NotBeNegative => (value >= 0.0, "must not be negative".to_owned()),
+            Self::BeWithin(low, high) => (
+                (*low..=*high).contains(&value),
+                format!("must be from {low} to {high}"),
+            ),
+        };
+        (!good || !value.is_finite()).then(|| format!("= {value} {what}"))
+    }
+}
+
+use Must::{BeFinite, BePositive, BeWithin, NotBeNegative};
+
+/// Checks all values.
+pub fn plant(file: &PlantFile) -> Result<(), Mistake> {
+    for (name, motor) in MOTOR_NAMES.iter().zip(&file.plant.motors) {
+        let Some(motor) = motor else { continue };
+        let key = format!("motors.{name}");
+        all(&key, &[("power_up", motor.power_up, BeFinite)])?;
+        drive(&format!("{key}.drive"), &motor.drive)?;
+        mechanics(&format!("{key}.mechanics"), &motor.mechanics)?;
+        grating(&format!("{key}.grating"), &motor.grating)?;
+    }
+    for (name, config) in SLIDE_NAMES.iter().zip(&file.plant.slides) {
+        if let Some(config) = config {
+            slide(&format!("slides.{name}"), config)?;
+        }
+    }
+    for (number, mount) in file.cameras.iter().enumerate() {
+        let [u, v] = mount.beside_spot_mm;
+        let key = format!("cameras.{}", number + 1);
+        all(
+            &key,
+            &[("beside_spot_mm", u, BeFinite), ("beside_spot_mm", v, BeFinite)],
+        )?;
+    }
+    Ok(())
+}
+
+fn all(table: &str, values: &[(&str, f64, Must)]) -> Result<(), Mistake> {
+    for (name, value, must) in values {
+        if let Some(what) = must.fails(*value) {
+            return Err((format!("{table}.{name}"), what));
+        }
+    }
+    Ok(())
+}
+
+fn drive(key: &str, drive: &DriveConfig) -> Result<(), Mistake> {
+    let [lowest, highest] = BANDWIDTH;
+    all(
+        key,
+        &[
+            ("velocity_at_10v", drive.velocity_at_10v, BePositive),
+            ("bandwidth_hz", drive.bandwidth_hz, BeWithin(lowest, highest)),
+            ("dead_time_s", drive.dead_time_s, BeWithin(0.0, DRIVE_DEAD_TIME)),
+            ("max_acceleration", drive.max_acceleration, BePositive),
+            ("brake", drive.brake, BePositive),
+            ("gain_error", drive.gain_error, BeWithin(-0.5, 0.5)),
+            ("offset", drive.offset, BeFinite),
+            ("noise", drive.noise, NotBeNegative),
+        ],
+    )
+}
+
+fn mechanics(key: &str, mechanics: &MechanicsConfig) -> Result<(), Mistake> {
+    all(
+        key,
+        &[
+            ("friction", mechanics.friction, NotBeNegative),
+            ("damping_per_s", mechanics.damping_per_s, NotBeNegative),
+            ("backlash", mechanics.backlash, NotBeNegative),
+            ("stiction", mechanics.stiction, NotBeNegative),
+            ("stribeck_speed", mechanics.stribeck_speed, NotBeNegative),
+            ("presliding", mechanics.presliding, NotBeNegative),
+            ("gravity", mechanics.gravity, BeFinite),
+        ],
+    )?;
+    if mechanics.presliding > 0.0 && mechanics.friction == 0.0 {
+        return Err((format!("{key}.presliding"), "needs friction".to_owned()));
+    }
+    if mechanics.stiction > 0.0 && mechanics.stribeck_speed == 0.0 {
+        return Err((
+            format!("{key}.stiction"),
+            "needs a stribeck_speed, at which half of it is left".to_owned(),
+        ));
+    }
+    wave(&format!("{key}.cogging"), &mechanics.cogging)?;
+    for ModeConfig {
+        frequency_hz,
+        damping,
+        motor,
+        grating,
+        tool,
+    } in &mechanics.modes
+    {
+        all(
+            &format!("{key}.modes"),
+            &[
+                ("frequency_hz", *frequency_hz, BeWithin(0.1, HIGHEST_MODE)),
+                ("damping", *damping, BeWithin(0.0, 1.0)),
+                ("motor", *motor, BeFinite),
+                ("grating", *grating, BeFinite),
+                ("tool", *tool, BeFinite),
+            ],
+        )?;
+    }
+    Ok(())
+}
+
+fn wave(key: &str, wave: &Wave) -> Result<(), Mistake> {
+    all(
+        key,
+        &[
+            ("amplitude", wave.amplitude, BeFinite),
+            ("period", wave.period, NotBeNegative),
+        ],
+    )
+}
+
+fn grating(key: &str, grating: &GratingConfig) -> Result<(), Mistake> {
+    all(
+        key,
+        &[
+            ("counts_per_unit", grating.counts_per_unit, BePositive),
+            ("mark", grating.mark, BeFinite),
+            ("switch_minus", grating.switch_minus, BeFinite),
+            ("switch_plus", grating.switch_plus, BeFinite),
+            ("pitch_error", grating.pitch_error, BeWithin(-0.01, 0.01)),
+            ("noise", grating.noise, NotBeNegative),
+            ("mark_scatter", grating.mark_scatter, NotBeNegative),
+        ],
+    )?;
+    if grating.switch_minus >= grating.switch_plus {
+        return Err((
+            format!("{key}.switch_minus"),
+            "must be below switch_plus".to_owned(),
+        ));
+    }
+    wave(&format!("{key}.long_error"), &grating.long_error)?;
+    wave(&format!("{key}.subdivision"), &grating.subdivision)
+}
+
+fn slide(key: &str, slide: &SlideConfig) -> Result<(), Mistake> {
+    all(
+        key,
+        &[
+            ("power_up", slide.power_up, BeFinite),
+            ("velocity_at_10v", slide.velocity_at_10v, BePositive),
+            ("dead_time_s", slide.dead_time_s, BeWithin(0.0, SLIDE_DEAD_TIME)),
+            ("lag_s", slide.lag_s, BePositive),
+            ("brake_s", slide.brake_s, BePositive),
+            ("gain_error", slide.gain_error, BeWithin(-0.5, 0.5)),
+            ("offset", slide.offset, BeFinite),
+            ("backlash", slide.backlash, NotBeNegative),
+        ],
+    )?;
+    grating(&format!("{key}.encoder"), &slide.encoder)
+}

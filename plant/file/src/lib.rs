@@ -1,0 +1,122 @@
+//! Plant files: what is true of a simulated machine, as its machine file is what the controller believes.
+//!
+//! Each shipped machine has one, `machines/NAME.plant.toml`, which is part of the programs. Another one can be read, or
+//! drawn at random around the shipped one ([`Quality`]). Fields are those of [`plant::PlantConfig`], by the names of motors
+//! and slides, and of [`CameraMount`].
+
+mod check;
+mod draw;
+mod read;
+mod shipped;
+
+pub use draw::Quality;
+pub use read::PlantFileError;
+pub use shipped::{DEFAULT_MACHINE, names};
+
+use plant::{LONGEST, MotionPlant, PlantConfig, SlidePlant};
+use serde::Deserialize;
+use shared::io::SIDES;
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// What is true of a simulated machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlantFile {
+    /// What the boards are wired to.
+    pub plant: PlantConfig,
+    /// How the cameras are mounted.
+    pub cameras: [CameraMount; SIDES],
+}
+
+/// How a camera is mounted, against what the machine file says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraMount {
+    /// The camera is so far beside the place where it would be right above the spot's path, in U and V \[mm\]. What it sees
+    /// seems to be as far on the other side.
+    #[serde(default)]
+    pub beside_spot_mm: [f64; 2],
+}
+
+/// Which plant.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum PlantChoice {
+    /// The shipped one of the machine.
+    #[default]
+    Shipped,
+    /// Of a file.
+    File(PathBuf),
+    /// Drawn at random around the shipped one.
+    Drawn {
+        /// How good it is.
+        quality: Quality,
+        /// Which one.
+        seed: u32,
+    },
+}
+
+impl FromStr for PlantChoice {
+    type Err = String;
+
+    /// `draw:QUALITY:SEED`, or the name of a file.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let Some(drawn) = text.strip_prefix("draw:") else {
+            return Ok(Self::File(text.into()));
+        };
+        let (quality, seed) = drawn
+            .split_once(':')
+            .ok_or("say which one: draw:usual:SEED or draw:poor:SEED, with a whole number")?;
+        Ok(Self::Drawn {
+            quality: quality.parse()?,
+            seed: seed
+                .parse()
+                .map_err(|_| format!("{seed} is no seed: give a whole number from 0 to {}", u32::MAX))?,
+        })
+    }
+}
+
+impl fmt::Display for PlantChoice {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Shipped => f.write_str("as shipped"),
+            Self::File(path) => path.display().fmt(f),
+            Self::Drawn { quality, seed } => write!(f, "draw:{quality}:{seed}"),
+        }
+    }
+}
+
+impl PlantChoice {
+    /// The plant for the machine that is called so, as its kinematics are.
+    pub fn of(&self, machine: &str) -> Result<PlantFile, PlantFileError> {
+        match self {
+            Self::Shipped => PlantFile::shipped(machine),
+            Self::File(path) => PlantFile::read(path),
+            Self::Drawn { quality, seed } => Ok(draw::around(PlantFile::shipped(machine)?, *quality, *seed)),
+        }
+    }
+}
+
+impl PlantFile {
+    /// The motors.
+    pub fn motion(&self) -> MotionPlant {
+        MotionPlant::new(&self.plant)
+    }
+
+    /// The slides.
+    pub fn slides(&self) -> SlidePlant {
+        SlidePlant::new(&self.plant)
+    }
+
+    /// The plant as an emulated board reads it.
+    pub fn encode(&self) -> Vec<u8> {
+        let mut bytes = vec![0; LONGEST];
+        let used = postcard::to_slice(&self.plant, &mut bytes).map(|used| used.len());
+        // Numbers of bounded count; a test holds the largest against the room.
+        bytes.truncate(used.unwrap_or_default());
+        bytes
+    }
+}
+
+#[cfg(test)]
+mod tests;

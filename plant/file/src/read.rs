@@ -1,0 +1,119 @@
+//! Reading a plant file.
+
+use crate::{CameraMount, PlantFile, check};
+use config::toml_file::{self, TomlError};
+use plant::{MotorConfig, PlantConfig, SlideConfig};
+use serde::Deserialize;
+use shared::io::{MOTOR_NAMES, SLIDE_NAMES};
+use std::collections::BTreeMap;
+use std::path::Path;
+use thiserror::Error;
+
+const WHAT: &str = "plant file";
+
+/// Why there is no plant.
+#[derive(Debug, Error)]
+pub enum PlantFileError {
+    /// The file cannot be read, is not TOML, or has a wrong key.
+    #[error(transparent)]
+    Toml(#[from] TomlError),
+    /// A value makes no sense.
+    #[error("plant file {path}, line {line}: {key} {what}")]
+    Mistake {
+        /// The file.
+        path: String,
+        /// First line is 1.
+        line: usize,
+        /// Dotted name of the value.
+        key: String,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// No machine is called so.
+    #[error(
+        "there is no plant for a machine called {machine}; there are {known}. Give one with --plant FILE"
+    )]
+    Unknown {
+        /// The name.
+        machine: String,
+        /// The names there are.
+        known: String,
+    },
+}
+
+/// As it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    /// Start of all noise.
+    #[serde(default = "first")]
+    seed: u32,
+    motors: BTreeMap<String, MotorConfig>,
+    #[serde(default)]
+    slides: BTreeMap<String, SlideConfig>,
+    #[serde(default)]
+    cameras: BTreeMap<String, CameraMount>,
+}
+
+fn first() -> u32 {
+    1
+}
+
+/// Sides as files call them.
+const CAMERA_NAMES: [&str; 2] = ["1", "2"];
+
+impl PlantFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// Names file, line and value.
+    pub fn read(path: &Path) -> Result<Self, PlantFileError> {
+        Self::parse(&path.display().to_string(), &toml_file::text(WHAT, path)?)
+    }
+
+    /// Understands `text`; `path` is used in messages only.
+    ///
+    /// # Errors
+    /// As [`PlantFile::read`].
+    pub fn parse(path: &str, text: &str) -> Result<Self, PlantFileError> {
+        let document: Document = toml_file::parse(WHAT, path, text)?;
+        let mistake = |(key, what): (String, String)| PlantFileError::Mistake {
+            path: path.to_owned(),
+            line: toml_file::line_of(text, &key),
+            key,
+            what,
+        };
+        let motors = in_order("motors", document.motors, MOTOR_NAMES).map_err(mistake)?;
+        let slides = in_order("slides", document.slides, SLIDE_NAMES).map_err(mistake)?;
+        let cameras = in_order("cameras", document.cameras, CAMERA_NAMES).map_err(mistake)?;
+        let plant = PlantFile {
+            plant: PlantConfig {
+                motors,
+                slides,
+                seed: document.seed,
+            },
+            cameras: cameras.map(Option::unwrap_or_default),
+        };
+        check::plant(&plant).map_err(mistake)?;
+        Ok(plant)
+    }
+}
+
+/// Key and what is wrong with its value.
+pub(crate) type Mistake = (String, String);
+
+/// What is called by `names`, in their order.
+fn in_order<T, const N: usize>(
+    table: &str,
+    mut named: BTreeMap<String, T>,
+    names: [&str; N],
+) -> Result<[Option<T>; N], Mistake> {
+    let found = names.map(|name| named.remove(name));
+    match named.into_keys().next() {
+        Some(name) => Err((
+            format!("{table}.{name}"),
+            format!("is not known: there are {}", names.join(", ")),
+        )),
+        None => Ok(found),
+    }
+}

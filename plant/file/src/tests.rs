@@ -1,0 +1,148 @@
+//! Plant files: the shipped ones, drawn ones, and wrong ones.
+
+use super::*;
+use plant::LONGEST;
+use std::collections::BTreeSet;
+
+/// The shipped plant of the default machine with `by` in place of every `line`.
+fn with(line: &str, by: &str) -> Result<PlantFile, PlantFileError> {
+    let text = include_str!("../../../machines/dual-beam-gantry.plant.toml");
+    assert!(text.contains(line), "{line}");
+    PlantFile::parse("my.plant.toml", &text.replace(line, by))
+}
+
+#[test]
+fn every_plant_fits_an_emulated_board_and_is_read_as_it_was() {
+    for machine in names() {
+        for choice in ["draw:usual:7", "draw:poor:7"] {
+            let choice: PlantChoice = choice.parse().unwrap();
+            for file in [PlantFile::shipped(machine).unwrap(), choice.of(machine).unwrap()] {
+                let bytes = file.encode();
+                assert!(
+                    !bytes.is_empty() && bytes.len() < LONGEST,
+                    "{machine}: {}",
+                    bytes.len()
+                );
+                assert_eq!(postcard::from_bytes::<PlantConfig>(&bytes).unwrap(), file.plant);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_largest_plant_fits() {
+    let mut file = PlantFile::shipped(DEFAULT_MACHINE).unwrap();
+    for motor in file.plant.motors.iter_mut().flatten() {
+        let mode = plant::ModeConfig {
+            frequency_hz: 1.0,
+            damping: 1.0,
+            motor: 1.0,
+            grating: 1.0,
+            tool: 1.0,
+        };
+        while motor.mechanics.modes.push(mode).is_ok() {}
+    }
+    file.plant.seed = u32::MAX;
+    let length = file.encode().len();
+    assert!((1..LONGEST).contains(&length), "{length}");
+}
+
+#[test]
+fn a_seed_is_one_machine_and_every_drawn_machine_makes_sense() {
+    for machine in names() {
+        let mut seen = BTreeSet::new();
+        for quality in ["usual", "poor"] {
+            for seed in 0..200 {
+                let choice: PlantChoice = format!("draw:{quality}:{seed}").parse().unwrap();
+                let file = choice.of(machine).unwrap();
+                assert_eq!(file, choice.of(machine).unwrap());
+                check::plant(&file).unwrap_or_else(|(key, what)| panic!("{choice}: {key} {what}"));
+                assert!(seen.insert(file.encode()), "{choice} is drawn twice");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_can_be_left_out_is_without_error() {
+    let file = PlantFile::shipped(DEFAULT_MACHINE).unwrap();
+    let motor = file.plant.motors[0].as_ref().unwrap();
+    assert_eq!((motor.drive.gain_error, motor.drive.noise), (0.0, 0.0));
+    assert!(motor.mechanics.modes.is_empty());
+    assert_eq!(file.cameras, [CameraMount::default(); SIDES]);
+}
+
+#[test]
+fn mistakes_are_named_with_file_line_and_value() {
+    for (line, by, says) in [
+        (
+            "backlash = 0.005",
+            "backlash = -0.005",
+            "motors.X1.mechanics.backlash = -0.005 must not be negative",
+        ),
+        (
+            "bandwidth_hz = 80.0",
+            "bandwidth_hz = 0.0",
+            "motors.X1.drive.bandwidth_hz = 0 must be from 1 to 1000",
+        ),
+        (
+            "dead_time_s = 0.00025",
+            "dead_time_s = 0.25",
+            "must be from 0 to 0.002",
+        ),
+        ("friction = 150.0", "friction = nan", "friction = NaN"),
+        (
+            "friction = 150.0",
+            "friction = 150.0\nstiction = 20.0",
+            "needs a stribeck_speed",
+        ),
+        ("friction = 150.0", "frction = 150.0", "frction"),
+        (
+            "[motors.X1",
+            "[motors.X7",
+            "motors.X7 is not known: there are X1, X2, Y",
+        ),
+        (
+            "switch_minus = -5.0",
+            "switch_minus = 6000.0",
+            "must be below switch_plus",
+        ),
+        (
+            "[slides.U1]",
+            "[cameras.3]\n[slides.U1]",
+            "cameras.3 is not known: there are 1, 2",
+        ),
+    ] {
+        let error = with(line, by).expect_err(by).to_string();
+        assert!(
+            error.contains("my.plant.toml, line ") && error.contains(says),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn a_choice_is_a_file_or_a_draw() {
+    assert_eq!(
+        "my.plant.toml".parse(),
+        Ok(PlantChoice::File("my.plant.toml".into()))
+    );
+    let drawn: PlantChoice = "draw:poor:12".parse().unwrap();
+    assert_eq!(drawn.to_string(), "draw:poor:12");
+    for (wrong, says) in [
+        ("draw:usual", "draw:usual:SEED"),
+        ("draw:fine:1", "there are usual and poor"),
+        ("draw:usual:x", "whole number"),
+    ] {
+        let error = wrong.parse::<PlantChoice>().expect_err(wrong);
+        assert!(error.contains(says), "{error}");
+    }
+    let error = PlantChoice::Shipped
+        .of("lathe")
+        .expect_err("no such machine")
+        .to_string();
+    assert!(
+        error.contains("called lathe") && error.contains("dual-beam-gantry, "),
+        "{error}"
+    );
+}
