@@ -189,7 +189,7 @@ impl Boards {
         };
         fs::create_dir_all(&options.log_directory).map_err(setup)?;
         let directory = options.log_directory.canonicalize().map_err(setup)?;
-        let session = free_ports(directory.join(PEERS), options).map_err(setup)?;
+        let session = free_ports(directory.join(PEERS), &options.machine, &options.plant).map_err(setup)?;
         let page = shared_page(&directory)?;
         fs::write(directory.join(PLANT), plant.encode()).map_err(setup)?;
 
@@ -344,7 +344,7 @@ fn existing(what: &'static str, path: &Path) -> Result<PathBuf, BootError> {
 }
 
 /// A session on four unused ports, found by taking all at once and giving them back.
-fn free_ports(pace: PathBuf, options: &Options) -> io::Result<Session> {
+fn free_ports(pace: PathBuf, machine: &str, plant: &PlantChoice) -> io::Result<Session> {
     let host = Ipv4Addr::LOCALHOST;
     let tcp = [TcpListener::bind((host, 0))?, TcpListener::bind((host, 0))?];
     let udp = [UdpSocket::bind((host, 0))?, UdpSocket::bind((host, 0))?];
@@ -357,8 +357,8 @@ fn free_ports(pace: PathBuf, options: &Options) -> io::Result<Session> {
     };
     let (motion, tracker) = (endpoint(0)?, endpoint(1)?);
     Ok(Session {
-        machine: options.machine.clone(),
-        plant: options.plant.to_string(),
+        machine: machine.to_owned(),
+        plant: plant.to_string(),
         pace,
         motion,
         tracker,
@@ -413,7 +413,8 @@ mod tests {
 
     #[test]
     fn ports_differ_and_path_states_go_to_the_tracker() {
-        let session = free_ports(PathBuf::new(), DEFAULT_MACHINE).expect("the loopback has ports");
+        let session = free_ports(PathBuf::new(), DEFAULT_MACHINE, &PlantChoice::Shipped)
+            .expect("the loopback has ports");
         assert_ne!(session.motion.tcp, session.tracker.tcp);
         assert_ne!(session.motion.udp, session.tracker.udp);
         assert_eq!(session.path_states_to.udp, session.tracker.udp);

@@ -165,7 +165,7 @@ fn two_plants_with_the_same_commands_stay_equal_to_the_bit() {
 fn machines_are_called_as_their_kinematics() {
     let known: Vec<&str> = names().collect();
     for name in KinematicsConfig::NAMES {
-        assert!(known.contains(&name), "{name} has no plant");
+        assert!(known.contains(name), "{name} has no plant");
     }
 }
 

@@ -1,6 +1,6 @@
 //! Slides that do not follow their commands are switched off, and how far they go until then.
 
-use crate::bench::{Bench, Shape, config};
+use crate::bench::{Bench, Shape, config, slides};
 use plant::{GratingFault, SlideFault};
 use shared::io::{SLIDES, SlideCommand};
 use shared::parameter::ParameterError;
