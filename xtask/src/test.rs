@@ -104,10 +104,6 @@ fn emulated_tests() -> Result<Command> {
     cargo::run(&["build", "--quiet", "--workspace", "--bin", "seamwright"])?;
     let seamwright = target_directory()?.join("debug").join("seamwright");
     let xtask = env::current_exe().context("cannot find this program's own file")?;
-    command.envs(
-        PROGRAM_VARIABLES
-            .into_iter()
-            .zip([seamwright, xtask]),
-    );
+    command.envs(PROGRAM_VARIABLES.into_iter().zip([seamwright, xtask]));
     Ok(command)
 }
