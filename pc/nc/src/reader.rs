@@ -10,7 +10,8 @@ use super::parameters::Parameter;
 use super::program::Program;
 use super::setup::Options;
 use super::source::{Lines, Source};
-use super::subroutines::{self, Found};
+use super::siemens::jumps::{Jump, Place};
+use super::subroutines::{self, Found, Name};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -22,26 +23,78 @@ const MOST_LINES: u64 = 1_000_000;
 /// The main program, or a subroutine that runs.
 #[derive(Clone)]
 pub(super) struct Level {
-    source: Source,
+    pub(super) source: Source,
     /// Bytes and lines before the next one.
     pub(super) offset: u64,
     pub(super) line: u32,
     pub(super) open: Vec<Open>,
+    /// Up to this line lines may be run again by a jump.
+    pub(super) repeats_to: u32,
     /// Name of the file, if that is not the program's.
-    file: Option<String>,
+    pub(super) file: Option<String>,
     /// How it was called; the main program was not.
     call: Option<Call>,
 }
 
+impl Level {
+    /// Bytes and lines before it.
+    pub(super) fn begins(&self) -> (u64, u32) {
+        self.call.as_ref().map_or((0, 0), |call| call.begins)
+    }
+
+    /// The last line, if it ends before the text does.
+    pub(super) fn last_line(&self) -> u32 {
+        match self.called() {
+            Some(Called::Part { last }) => *last,
+            _ => u32::MAX,
+        }
+    }
+
+    /// The arguments of the call, for its PROC.
+    pub(super) fn take_arguments(&mut self) -> Vec<Option<f64>> {
+        match self.call.as_mut().map(|call| &mut call.by) {
+            Some(Called::Name { arguments, bound }) => {
+                *bound = true;
+                arguments.clone()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// By what it was called.
+    pub(super) fn called(&self) -> Option<&Called> {
+        self.call.as_ref().map(|call| &call.by)
+    }
+}
+
 #[derive(Clone)]
 struct Call {
-    /// Number or name of the subroutine.
-    label: String,
-    /// It has parameters of its own, as those of O words have.
-    own_parameters: bool,
+    by: Called,
     /// Where it begins, and how many times more it is to run (M98 L).
     begins: (u64, u32),
     again: u32,
+}
+
+/// By what a subroutine was called.
+#[derive(Clone)]
+pub(super) enum Called {
+    /// M98.
+    Number,
+    /// An O word with this number or name.
+    OWord(String),
+    /// Its name, in a Siemens program, with arguments that its PROC takes.
+    Name {
+        arguments: Vec<Option<f64>>,
+        bound: bool,
+    },
+    /// It is a part of the program around it, up to a line (REPEAT).
+    Part { last: u32 },
+}
+
+impl Called {
+    fn has_own_parameters(&self) -> bool {
+        matches!(self, Self::OWord(_) | Self::Name { .. })
+    }
 }
 
 /// How far a program has been run.
@@ -50,6 +103,8 @@ pub(super) struct Position {
     /// The innermost subroutine last; the main program is always there.
     levels: Vec<Level>,
     found: BTreeMap<String, Found>,
+    /// Where jumps lead, by file and line.
+    pub(super) jumps: BTreeMap<(Option<String>, u32, Jump), Option<Place>>,
     /// Anything but blank lines was seen.
     seen: bool,
     /// Lines that were run.
@@ -91,7 +146,7 @@ pub(super) enum Kind {
     Blank,
     /// Left out by block delete.
     Deleted,
-    /// An O word.
+    /// An O word, or a statement of Siemens.
     Flow,
     /// All else.
     Block,
@@ -103,7 +158,7 @@ impl Kind {
             (Parsed::Blank, None | Some(';')) | (Parsed::Percent, _) => Self::Blank,
             (Parsed::Blank, Some('/')) => Self::Deleted,
             (Parsed::Block(block), _) if block.is_comment() => Self::Blank,
-            (Parsed::Flow(_), _) => Self::Flow,
+            (Parsed::Flow(_) | Parsed::Statement(_), _) => Self::Flow,
             _ => Self::Block,
         }
     }
@@ -129,12 +184,14 @@ impl Reader {
             offset: 0,
             line: 0,
             open: Vec::new(),
+            repeats_to: 0,
             file: None,
             call: None,
         };
         let position = Position {
             levels: vec![main],
             found: BTreeMap::new(),
+            jumps: BTreeMap::new(),
             seen: false,
             executed: 0,
             repeated: 0,
@@ -171,11 +228,14 @@ impl Reader {
 
     /// The next line of this level.
     pub(super) fn next_line(&mut self) -> Result<Option<String>, NcError> {
+        let called = self.position.depth() > 0;
+        if called && self.level().line >= self.level().last_line() {
+            return Ok(None);
+        }
         let read = self.lines.next();
         let offset = self.lines.offset;
-        let called = self.position.depth() > 0;
         let level = self.level();
-        let may_repeat = called || level.open.iter().any(Open::loops);
+        let may_repeat = called || level.open.iter().any(Open::loops) || level.line < level.repeats_to;
         level.offset = offset;
         level.line += 1;
         let line = level.line;
@@ -215,8 +275,7 @@ impl Reader {
             return Ok(false);
         }
         let Some(text) = self.next_line()? else {
-            self.end_of_text()?;
-            return Ok(false);
+            return self.end_of_text();
         };
         let here = self.position.here();
         self.position.executed += 1;
@@ -235,9 +294,14 @@ impl Reader {
                 self.interpreter.finish("%", here)?;
                 return Ok(false);
             }
+            Parsed::Percent if self.is_named() => self.leave_again()?,
             Parsed::Percent => {}
             Parsed::Flow(word) => self.flow(&word)?,
-            Parsed::Block(block) => {
+            Parsed::Statement(statement) => self.statement(statement)?,
+            Parsed::Block(mut block) => {
+                if self.is_named() {
+                    block.end_as_subprogram();
+                }
                 self.interpreter.block(&block)?;
                 self.call_of(&block)?;
                 ran.settings = block.settings;
@@ -252,13 +316,16 @@ impl Reader {
         self.ran.take()
     }
 
-    /// The text of the main program ends without an M2, which is told; that of a subroutine must not.
-    fn end_of_text(&mut self) -> Result<(), NcError> {
+    /// The text of the main program ends without an M2, which is told; that of a subroutine must not, but in Siemens programs.
+    /// Whether the program goes on.
+    fn end_of_text(&mut self) -> Result<bool, NcError> {
         let here = self.position.here();
         if let Some(open) = self.level().open.last() {
-            let (keyword, wanted) = open.ends();
-            let label = open.label().to_owned();
-            return Err(no_end(label, keyword, wanted, here));
+            return Err(open.no_end(here));
+        }
+        if matches!(self.level().called(), Some(Called::Name { .. } | Called::Part { .. })) {
+            self.leave_again()?;
+            return Ok(true);
         }
         if self.position.levels.len() > 1 {
             let (label, keyword, wanted) = (String::new(), "sub", "endsub, return or M99");
@@ -268,7 +335,13 @@ impl Reader {
             let text = "the program ends without M2 or M30: it is taken to end here".to_owned();
             self.interpreter.notice(text, here);
         }
-        self.interpreter.finish("the end of the program", here)
+        self.interpreter.finish("the end of the program", here)?;
+        Ok(false)
+    }
+
+    /// Whether the innermost level is a subprogram of Siemens.
+    pub(super) fn is_named(&mut self) -> bool {
+        matches!(self.level().called(), Some(Called::Name { .. }))
     }
 
     /// The program that was read.
@@ -294,8 +367,10 @@ impl Reader {
             return Ok(());
         };
         self.interpreter.branches = true;
-        if code.code == Code::Return {
-            return self.leave_numbered(code.place);
+        match code.code {
+            Code::Return => return self.leave_numbered(code.place),
+            Code::SubprogramEnd => return self.end_subprogram(code.name, code.place),
+            _ => {}
         }
         let Some(p) = block.word("P") else {
             let (code_name, word) = ("M98", "P");
@@ -312,34 +387,43 @@ impl Reader {
         };
         match block.word("L").map(times).transpose()?.unwrap_or(1) {
             0 => Ok(()),
-            times => self.enter(&format!("{}", p.value.round()), None, times, code.place),
+            times => self.enter(&format!("{}", p.value.round()), Called::Number, times, code.place),
         }
     }
 
-    /// A subroutine begins, with arguments if it has parameters of its own.
+    /// A numbered subroutine or that of an O word begins.
     pub(super) fn enter(
         &mut self,
         label: &str,
-        arguments: Option<&[f64]>,
+        by: Called,
+        times: u32,
+        place: SourcePosition,
+    ) -> Result<(), NcError> {
+        let found = self.find(Name::OWord(label), place)?;
+        self.enter_level(found, by, times, place)
+    }
+
+    /// A subroutine begins where it was found, a number of times.
+    pub(super) fn enter_level(
+        &mut self,
+        found: Found,
+        by: Called,
         times: u32,
         place: SourcePosition,
     ) -> Result<(), NcError> {
         if self.position.levels.len() > DEEPEST {
             return Err(Problem::CallDepth(DEEPEST).at(place));
         }
-        let found = self.find(label, place)?;
-        if let Some(arguments) = arguments {
-            self.interpreter.parameters.enter(arguments);
-        }
+        self.interpreter.branches = true;
         self.position.levels.push(Level {
             source: found.source,
             offset: found.offset,
             line: found.line,
             open: Vec::new(),
+            repeats_to: 0,
             file: found.file,
             call: Some(Call {
-                label: label.to_owned(),
-                own_parameters: arguments.is_some(),
+                by,
                 begins: (found.offset, found.line),
                 again: times - 1,
             }),
@@ -351,13 +435,16 @@ impl Reader {
     /// A subroutine ends by its O word.
     pub(super) fn leave(&mut self, value: Option<f64>, word: &OWord) -> Result<(), NcError> {
         let label = word.label.clone();
-        let Some(call) = &self.level().call else {
+        let level = self.level();
+        let Some(called) = level.called() else {
             let (keyword, wanted) = ("return or endsub", "call that led here");
             return Err(no_end(label, keyword, wanted, word.place));
         };
-        if call.label != label {
+        if let Called::OWord(open) = called
+            && *open != label
+        {
             // As LinuxCNC takes it; the name may be a slip.
-            let (open, line) = (&call.label, call.begins.1);
+            let line = level.begins().1;
             let text = format!("o{label} ends the subroutine o{open} that begins in line {line}");
             self.interpreter.notice(text, word.place);
         }
@@ -371,22 +458,31 @@ impl Reader {
         if self.position.levels.len() == 1 {
             return Err(Problem::EndlessProgram.at(place));
         }
-        let again = self
-            .level()
-            .call
-            .as_mut()
-            .filter(|call| call.again > 0)
-            .map(|call| {
-                call.again -= 1;
-                call.begins
-            });
-        match again {
-            Some((offset, line)) => {
-                self.level().open.clear();
-                self.jump(offset, line);
-            }
-            None => self.pop()?,
+        self.leave_again()
+    }
+
+    /// A subroutine has come to its end: it begins again as often as it was called for.
+    pub(super) fn leave_again(&mut self) -> Result<(), NcError> {
+        let here = self.position.here();
+        let level = self.level();
+        if let Some(Called::Name { arguments, bound: false }) = level.called()
+            && !arguments.is_empty()
+        {
+            let (given, most) = (arguments.len(), 0);
+            return Err(Problem::Arguments { given, most }.at(here));
         }
+        let begins = level.begins();
+        let again = level.call.as_mut().filter(|call| call.again > 0);
+        let Some(call) = again else {
+            return self.pop();
+        };
+        call.again -= 1;
+        level.open.clear();
+        if self.is_named() {
+            self.interpreter.leave()?;
+            self.interpreter.parameters.enter(&[]);
+        }
+        self.jump(begins.0, begins.1);
         Ok(())
     }
 
@@ -394,7 +490,7 @@ impl Reader {
         let level = self.position.levels.pop();
         if level
             .and_then(|level| level.call)
-            .is_some_and(|call| call.own_parameters)
+            .is_some_and(|call| call.by.has_own_parameters())
         {
             self.interpreter.leave()?;
         }
@@ -403,8 +499,9 @@ impl Reader {
     }
 
     /// Where a subroutine begins; the innermost text is searched first.
-    fn find(&mut self, label: &str, place: SourcePosition) -> Result<Found, NcError> {
-        if let Some(found) = self.position.found.get(label) {
+    pub(super) fn find(&mut self, name: Name, place: SourcePosition) -> Result<Found, NcError> {
+        let key = name.key();
+        if let Some(found) = self.position.found.get(key) {
             return Ok(found.clone());
         }
         let own = self.position.levels.iter().rev();
@@ -413,8 +510,8 @@ impl Reader {
             .collect();
         texts.dedup_by(|a, b| a.1 == b.1);
         let folders = &self.options.setup.folders;
-        let found = subroutines::find(label, texts, folders, &mut self.interpreter, place)?;
-        self.position.found.insert(label.to_owned(), found.clone());
+        let found = subroutines::find(name, texts, folders, &mut self.interpreter, place)?;
+        self.position.found.insert(key.to_owned(), found.clone());
         Ok(found)
     }
 }
