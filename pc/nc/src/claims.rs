@@ -114,9 +114,7 @@ fn with_vectors(code: Code) -> &'static [&'static str] {
 /// Words that a code may have besides.
 fn may_have(code: Code) -> &'static [&'static str] {
     match code {
-        Code::ArcClockwise | Code::ArcCounterClockwise => {
-            &["I", "J", "K", "R", "CR", "P", "AR", "TURN"]
-        }
+        Code::ArcClockwise | Code::ArcCounterClockwise => &["I", "J", "K", "R", "CR", "P", "AR", "TURN"],
         Code::ArcThrough => &["I1", "J1", "K1"],
         Code::Turn | Code::MoreTurn => &["RPL"],
         Code::UniformNurbs => &["P", "L"],

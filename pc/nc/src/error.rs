@@ -234,7 +234,9 @@ pub enum Problem {
     #[error("this is a text, where a number is wanted")]
     TextValue,
     /// An operator of truths beside a comparison.
-    #[error("AND, OR, XOR and NOT bind before comparisons on these controllers: write brackets around each comparison")]
+    #[error(
+        "AND, OR, XOR and NOT bind before comparisons on these controllers: write brackets around each comparison"
+    )]
     ComparisonBrackets,
     /// MOD of a negative number.
     #[error("MOD of negative numbers is read differently by controllers: use positive ones")]
@@ -269,7 +271,9 @@ pub enum Problem {
     #[error("P{0} is not possible: a subprogram or part is run 0 to 9999 times")]
     Passes(f64),
     /// A subprogram that is nowhere.
-    #[error("{0} is not understood: there is no such word, and no subprogram {0}, neither in this program nor as {0}.SPF beside it")]
+    #[error(
+        "{0} is not understood: there is no such word, and no subprogram {0}, neither in this program nor as {0}.SPF beside it"
+    )]
     NoSubprogram(String),
     /// MCALL of something else than a drilling cycle.
     #[error("MCALL {0}: only CYCLE81, CYCLE82, CYCLE83, CYCLE85 and CYCLE89 are called after motions")]

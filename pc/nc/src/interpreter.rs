@@ -197,7 +197,13 @@ impl Interpreter {
         }
         if let Some(drilling) = self.modal_drilling.take() {
             if takes.is_none() && AXIS_WORDS.iter().any(|name| block.word(name).is_some()) {
-                self.drill(&drilling, SourcePosition { line: block.line, column: 1 })?;
+                self.drill(
+                    &drilling,
+                    SourcePosition {
+                        line: block.line,
+                        column: 1,
+                    },
+                )?;
             }
             self.modal_drilling = Some(drilling);
         }

@@ -128,7 +128,10 @@ mod tests {
         let there = |offsets: &Offsets| {
             let programmed = [7.0, -3.0, 2.0, 1.0, 0.0, 9.0];
             let back = offsets.to_programmed(&offsets.to_tip(&programmed));
-            assert!((0..6).all(|i| (back[i] - programmed[i]).abs() < 1e-12), "{back:?}");
+            assert!(
+                (0..6).all(|i| (back[i] - programmed[i]).abs() < 1e-12),
+                "{back:?}"
+            );
         };
         offsets.frame.shift(&[4.0, 3.0, 1.0, 0.0, 0.0, 0.0]);
         offsets.frame.rotation = 20.0;

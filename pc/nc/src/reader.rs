@@ -9,8 +9,8 @@ use super::interpreter::Interpreter;
 use super::parameters::Parameter;
 use super::program::Program;
 use super::setup::Options;
-use super::source::{Lines, Source};
 use super::siemens::jumps::{Jump, Place};
+use super::source::{Lines, Source};
 use super::subroutines::{self, Found, Name};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -323,7 +323,10 @@ impl Reader {
         if let Some(open) = self.level().open.last() {
             return Err(open.no_end(here));
         }
-        if matches!(self.level().called(), Some(Called::Name { .. } | Called::Part { .. })) {
+        if matches!(
+            self.level().called(),
+            Some(Called::Name { .. } | Called::Part { .. })
+        ) {
             self.leave_again()?;
             return Ok(true);
         }
@@ -465,7 +468,10 @@ impl Reader {
     pub(super) fn leave_again(&mut self) -> Result<(), NcError> {
         let here = self.position.here();
         let level = self.level();
-        if let Some(Called::Name { arguments, bound: false }) = level.called()
+        if let Some(Called::Name {
+            arguments,
+            bound: false,
+        }) = level.called()
             && !arguments.is_empty()
         {
             let (given, most) = (arguments.len(), 0);

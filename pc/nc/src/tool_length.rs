@@ -83,7 +83,9 @@ impl Interpreter {
         let number = FIRST_NAMED + index as u32;
         if known.is_none() {
             self.tool_names.push(name.to_owned());
-            let text = format!("tool {name} has the number {number} here: the machine file knows tools by their numbers");
+            let text = format!(
+                "tool {name} has the number {number} here: the machine file knows tools by their numbers"
+            );
             self.notice(text, place);
         }
         number

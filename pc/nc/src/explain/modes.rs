@@ -4,7 +4,7 @@ use super::before::Before;
 use super::words::{coordinates, figure};
 use crate::codes::Code;
 use crate::interpreter::Interpreter;
-use crate::offsets::{Coordinates, System};
+use crate::offsets::{Coordinates, NO_SYSTEM, System};
 use crate::program::{Blend, PathControl, Plane};
 
 /// What is not as it was before, a phrase each; without the mode of motion where the block `moves`.
@@ -143,6 +143,9 @@ fn offsets(before: &Before, after: &Interpreter) -> Vec<String> {
         let text = system(new.system(), after);
         changes.push(format!("coordinate system {}: {text}", system_name(new.active)));
     }
+    if old.frame != new.frame {
+        changes.push(format!("frame (TRANS, ROT): {}", system(&new.frame, after)));
+    }
     let local = new.local_now();
     if old.local_now() != local {
         changes.push(format!("local offset (G52, G92): {}", of_fitted(&local, after)));
@@ -160,7 +163,10 @@ fn system(system: &System, after: &Interpreter) -> String {
 
 /// G54 to G59.3 by its index.
 pub(super) fn system_name(index: usize) -> &'static str {
-    Code::System(index as u8 + 1).name()
+    match index {
+        NO_SYSTEM => Code::NoSystem.name(),
+        index => Code::System(index as u8 + 1).name(),
+    }
 }
 
 /// Coordinates of the axes that there are; X Y Z always are.

@@ -37,14 +37,21 @@ impl Interpreter {
         let centre = CENTRE_WORDS.iter().any(|name| claims.word(mode, name).is_some());
         let radius = ["R", "CR"].iter().any(|name| claims.word(mode, name).is_some());
         if radius || centre == has_end {
-            let (code, why) = ("AR=", "an arc with an opening angle has its end or its centre besides, and nothing else");
+            let (code, why) = (
+                "AR=",
+                "an arc with an opening angle has its end or its centre besides, and nothing else",
+            );
             return Err(Problem::Impossible { code, why }.at(place));
         }
         let half = (angle.value / 2.0).to_radians();
         if has_end {
             let way = [a, b].map(|axis| said[axis].unwrap_or(now[axis]) - now[axis]);
             let radius = way[0].hypot(way[1]) / (2.0 * half.sin());
-            return Ok(Some(ArcForm::Radius(if angle.value > 180.0 { -radius } else { radius })));
+            return Ok(Some(ArcForm::Radius(if angle.value > 180.0 {
+                -radius
+            } else {
+                radius
+            })));
         }
         let offset = [a, b].map(|axis| self.to_centre(claims.word(mode, CENTRE_WORDS[axis]), now[axis]));
         let sense = if mode == Code::ArcClockwise { -1.0 } else { 1.0 };
@@ -57,7 +64,9 @@ impl Interpreter {
     /// From the start, which is at `now`, to the centre along an axis \[mm\], of I J or K in the units of the program.
     pub(crate) fn to_centre(&self, word: Option<&Word>, now: f64) -> f64 {
         let value = word.map_or(0.0, |word| word.value) * self.modal.unit();
-        let step = word.and_then(|word| word.step).unwrap_or(!self.modal.absolute_centres);
+        let step = word
+            .and_then(|word| word.step)
+            .unwrap_or(!self.modal.absolute_centres);
         if step { value } else { value - now }
     }
 
@@ -106,7 +115,11 @@ impl Interpreter {
         [offset[0], offset[1]] = self.offsets.direction([offset[0], offset[1]]);
         Ok(ArcWay {
             plane,
-            turn: if cross > 0.0 { Turn::CounterClockwise } else { Turn::Clockwise },
+            turn: if cross > 0.0 {
+                Turn::CounterClockwise
+            } else {
+                Turn::Clockwise
+            },
             form: ArcForm::Centre(offset),
             more_turns: 0,
         })

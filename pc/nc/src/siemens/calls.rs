@@ -43,7 +43,7 @@ pub(super) fn by_name(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<
     scanner.skip_blanks();
     let arguments = match scanner.peek() {
         None | Some(';' | 'P' | 'p') => Vec::new(),
-        Some('(') => arguments(scanner, lookup)?.values,
+        Some('(') => arguments(scanner, lookup)?,
         _ => {
             scanner.go_back(start);
             return Ok(None);
@@ -53,7 +53,10 @@ pub(super) fn by_name(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<
 }
 
 /// `L123`, where nothing but P follows. Zeros before the number belong to the name.
-pub(super) fn by_number(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Option<Statement>, NcError> {
+pub(super) fn by_number(
+    scanner: &mut Scanner,
+    lookup: &mut dyn Lookup,
+) -> Result<Option<Statement>, NcError> {
     let (place, start) = (scanner.place(), scanner.mark());
     let name = scanner.identifier().to_owned();
     scanner.skip_blanks();
@@ -82,14 +85,8 @@ fn call(
     Ok(Statement { what, place })
 }
 
-/// Arguments in brackets.
-pub(super) struct Arguments {
-    pub(super) values: Vec<Option<f64>>,
-    pub(super) place: SourcePosition,
-}
-
 /// Values between brackets and commas, with the scanner at the bracket.
-pub(super) fn arguments(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Arguments, NcError> {
+pub(super) fn arguments(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Vec<Option<f64>>, NcError> {
     let place = scanner.place();
     scanner.step();
     let mut values = Vec::new();
@@ -108,7 +105,7 @@ pub(super) fn arguments(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Resul
             Some(',') => scanner.step(),
             Some(')') => {
                 scanner.step();
-                return Ok(Arguments { values, place });
+                return Ok(values);
             }
             _ => return Err(Problem::OpenBracket.at(place)),
         }
@@ -164,7 +161,9 @@ pub(crate) fn files(written: &str, upper: &str) -> Vec<String> {
     let lower = upper.to_ascii_lowercase();
     let names = [written, upper, &lower];
     let endings = ["SPF", "spf", "MPF", "mpf"];
-    let files = endings.iter().flat_map(|ending| names.map(|name| format!("{name}.{ending}")));
+    let files = endings
+        .iter()
+        .flat_map(|ending| names.map(|name| format!("{name}.{ending}")));
     files.collect()
 }
 
@@ -245,7 +244,11 @@ impl Reader {
     }
 
     /// RET and M17, and M2 and M30 of a subprogram; those of the main program end it.
-    pub(crate) fn end_subprogram(&mut self, code: &'static str, place: SourcePosition) -> Result<(), NcError> {
+    pub(crate) fn end_subprogram(
+        &mut self,
+        code: &'static str,
+        place: SourcePosition,
+    ) -> Result<(), NcError> {
         match self.level().called() {
             None => self.interpreter.finish(code, place),
             Some(Called::Name { .. } | Called::Number) => self.leave_again(),

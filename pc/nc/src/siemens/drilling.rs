@@ -79,7 +79,7 @@ pub(super) fn cycle(
     };
     scanner.skip_blanks();
     let given = match scanner.peek() {
-        Some('(') => arguments(scanner, lookup)?.values,
+        Some('(') => arguments(scanner, lookup)?,
         _ => Vec::new(),
     };
     Words { name, given, place }.drilling().map(Some)
@@ -110,11 +110,7 @@ impl Words {
         if bottom > reference || retract < reference + distance {
             return Err(self.wrong("the levels are not from top to bottom RTP, RFP + SDIS and DP"));
         }
-        let dwell = match self.name {
-            "CYCLE81" => 5,
-            "CYCLE83" => 15,
-            _ => 5,
-        };
+        let dwell = if self.name == "CYCLE83" { 15 } else { 5 };
         let mut drilling = Drilling {
             name: self.name,
             place: self.place,
@@ -129,7 +125,11 @@ impl Words {
         };
         let modes = match self.name {
             "CYCLE83" => {
-                drilling.pecks = Some(self.pecks(&mut drilling)?);
+                if drilling.dwell == 0.0 {
+                    // That of each peck.
+                    drilling.dwell = self.dwell(8)?;
+                }
+                drilling.pecks = Some(self.pecks(reference, bottom)?);
                 17
             }
             "CYCLE85" => {
@@ -155,7 +155,9 @@ impl Words {
             (Some(level), None) => Ok(level),
             (None | Some(0.0), Some(depth)) => Ok(reference - depth.abs()),
             (Some(level), Some(depth)) if (reference - depth.abs() - level).abs() < 1e-3 => Ok(level),
-            (Some(_), Some(_)) => Err(self.wrong("a coordinate and a depth say different things: leave one out")),
+            (Some(_), Some(_)) => {
+                Err(self.wrong("a coordinate and a depth say different things: leave one out"))
+            }
         }
     }
 
@@ -163,7 +165,9 @@ impl Words {
         let time = self.get(index);
         match (0.0..=LONGEST_DWELL_S).contains(&time) {
             true => Ok(time),
-            false => Err(self.wrong("a dwell is in seconds, 0 to 86400 (a day): revolutions are not counted")),
+            false => {
+                Err(self.wrong("a dwell is in seconds, 0 to 86400 (a day): revolutions are not counted"))
+            }
         }
     }
 
@@ -171,22 +175,20 @@ impl Words {
     fn check_modes(&self, first: usize) -> Result<(), NcError> {
         let other_plane = ![0.0, 1.0].contains(&self.get(first + 1));
         let modes = self.get(first + 2);
-        let revolutions = [10.0, 100.0].iter().any(|digit| (modes / digit).trunc() % 10.0 == 2.0);
+        let revolutions = [10.0, 100.0]
+            .iter()
+            .any(|digit| (modes / digit).trunc() % 10.0 == 2.0);
         if self.get(first) != 0.0 || other_plane || revolutions || self.given.len() > first + 3 {
-            return Err(self.wrong("what its last arguments (GMODE, DMODE, AMODE) say is not supported: leave them out"));
+            return Err(self.wrong(
+                "what its last arguments (GMODE, DMODE, AMODE) say is not supported: leave them out",
+            ));
         }
         Ok(())
     }
 
-    /// What a CYCLE83 has besides. A dwell of its own at the bottom is that of each peck if it is not said.
-    fn pecks(&self, drilling: &mut Drilling) -> Result<Pecks, NcError> {
-        let Drilling {
-            reference, bottom, ..
-        } = *drilling;
+    /// What a CYCLE83 has besides.
+    fn pecks(&self, reference: f64, bottom: f64) -> Result<Pecks, NcError> {
         let dwells = [self.dwell(8)?, self.dwell(9)?];
-        if drilling.dwell == 0.0 {
-            drilling.dwell = dwells[0];
-        }
         if ![0.0, 3.0].contains(&self.get(12)) {
             return Err(self.wrong("it drills along the axis of the plane: leave AXN out"));
         }

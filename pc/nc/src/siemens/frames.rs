@@ -11,7 +11,13 @@ use crate::program::{AXIS_WORDS, Plane};
 impl Interpreter {
     /// Carries out the frame word of `block`. TRANS and ROT replace all that was, ATRANS and AROT go on from it; without words TRANS
     /// and ROT end it.
-    pub(crate) fn frame(&mut self, block: &Block, claims: &Claims, code: Code, name: &'static str) -> Result<(), NcError> {
+    pub(crate) fn frame(
+        &mut self,
+        block: &Block,
+        claims: &Claims,
+        code: Code,
+        name: &'static str,
+    ) -> Result<(), NcError> {
         let Some(place) = block.code(Group::NonModal).map(|code| code.place) else {
             return Ok(());
         };
@@ -32,7 +38,10 @@ impl Interpreter {
                 return Err(impossible("RPL= turns about Z only: select the plane with G17"));
             }
             let aside = AXIS_WORDS.iter().filter(|axis| **axis != "Z");
-            if aside.filter_map(|axis| block.word(axis)).any(|word| word.value != 0.0) {
+            if aside
+                .filter_map(|axis| block.word(axis))
+                .any(|word| word.value != 0.0)
+            {
                 return Err(impossible("a tilted plane is not supported: rotate about Z"));
             }
             let about_z = block.word("Z");

@@ -252,7 +252,12 @@ impl Reader {
     }
 
     /// The target of the jump in line `here`, which is looked for once.
-    fn known_target(&mut self, jump: &Jump, here: u32, place: SourcePosition) -> Result<Option<Place>, NcError> {
+    fn known_target(
+        &mut self,
+        jump: &Jump,
+        here: u32,
+        place: SourcePosition,
+    ) -> Result<Option<Place>, NcError> {
         let key = (self.position.file().map(str::to_owned), here, jump.clone());
         if let Some(found) = self.position.jumps.get(&key) {
             return Ok(found.clone());
@@ -262,7 +267,12 @@ impl Reader {
         Ok(found)
     }
 
-    fn find_target(&mut self, jump: &Jump, here: u32, place: SourcePosition) -> Result<Option<Place>, NcError> {
+    fn find_target(
+        &mut self,
+        jump: &Jump,
+        here: u32,
+        place: SourcePosition,
+    ) -> Result<Option<Place>, NcError> {
         let mut before = None;
         let forward = !matches!(jump.direction, Direction::Backward);
         for_each_line(self, place, |found, text| {
@@ -361,7 +371,9 @@ fn for_each_line(
     let mut inside = Vec::new();
     let mut seen = false;
     while line < last {
-        let read = lines.next().map_err(|error| Problem::Unreadable(error.to_string()).at(place))?;
+        let read = lines
+            .next()
+            .map_err(|error| Problem::Unreadable(error.to_string()).at(place))?;
         let Some(text) = read else { break };
         if seen && calls::begins_program(&text) {
             break;

@@ -51,7 +51,9 @@ impl Interpreter {
             .is_some_and(|code| matches!(code, Code::ArcClockwise | Code::ArcCounterClockwise));
         let about_pole = arc && FORM_WORDS.iter().all(|name| block.word(name).is_none());
         let mut block = block.into_owned();
-        block.words.retain(|word| word.address != "AP" && word.address != "RP");
+        block
+            .words
+            .retain(|word| word.address != "AP" && word.address != "RP");
         let mut push = |address: &str, value: f64, step: bool| {
             block.words.push(Word {
                 address: address.to_owned(),
@@ -71,7 +73,12 @@ impl Interpreter {
     }
 
     /// G110, G111, G112: the pole by steps from where the tip is, as coordinates, by steps from the last pole.
-    pub(crate) fn set_pole(&mut self, block: &Block, code: Code, place: SourcePosition) -> Result<(), NcError> {
+    pub(crate) fn set_pole(
+        &mut self,
+        block: &Block,
+        code: Code,
+        place: SourcePosition,
+    ) -> Result<(), NcError> {
         for axis in 0..3 {
             let Some(word) = block.word(AXIS_WORDS[axis]) else {
                 continue;

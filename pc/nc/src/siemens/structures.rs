@@ -140,7 +140,12 @@ impl Reader {
     }
 
     /// Takes the innermost structure, which must be of the form that `keyword` ends.
-    fn close_structure(&mut self, form: &Form, keyword: &'static str, place: SourcePosition) -> Result<Structure, NcError> {
+    fn close_structure(
+        &mut self,
+        form: &Form,
+        keyword: &'static str,
+        place: SourcePosition,
+    ) -> Result<Structure, NcError> {
         let wanted = form.words().0;
         match self.level().open.pop() {
             Some(Open::Structure(own)) if own.form.words().0 == wanted => Ok(own),
@@ -159,7 +164,9 @@ impl Reader {
         if open.form != Form::While {
             // WHILE opens itself again.
             let conditions = now;
-            self.level().open.push(Open::Structure(Structure { conditions, ..open }));
+            self.level()
+                .open
+                .push(Open::Structure(Structure { conditions, ..open }));
         }
         self.jump(offset, line);
         Ok(())

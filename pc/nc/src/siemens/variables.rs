@@ -17,12 +17,16 @@ pub(crate) fn numbered(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result
     scanner.step();
     let digits = if scanner.peek() == Some('[') {
         scanner.step();
-        expression::closed(scanner, lookup, place, ']')?.round().to_string()
+        expression::closed(scanner, lookup, place, ']')?
+            .round()
+            .to_string()
     } else {
         scanner.take(|c| c.is_ascii_digit()).to_owned()
     };
     let parameter = Parameter::siemens(&digits);
-    parameter.ok_or(Problem::SiemensNumber(digits).at(place)).map(Some)
+    parameter
+        .ok_or(Problem::SiemensNumber(digits).at(place))
+        .map(Some)
 }
 
 /// Whether the program has defined a variable of this name, in upper case.
@@ -111,11 +115,7 @@ pub(super) fn definitions(
 }
 
 /// A value, or several in brackets for the elements of an array.
-fn first_values(
-    scanner: &mut Scanner,
-    lookup: &mut dyn Lookup,
-    values: &mut [f64],
-) -> Result<(), NcError> {
+fn first_values(scanner: &mut Scanner, lookup: &mut dyn Lookup, values: &mut [f64]) -> Result<(), NcError> {
     scanner.skip_blanks();
     let open = scanner.place();
     if values.len() == 1 || scanner.peek() != Some('(') {

@@ -45,7 +45,9 @@ pub(super) fn message(
         return Err(Problem::NoMessage.at(place));
     }
     scanner.step();
-    block.comments.extend(text.map(|text| (format!("MSG,{text}"), place)));
+    block
+        .comments
+        .extend(text.map(|text| (format!("MSG,{text}"), place)));
     Ok(true)
 }
 
