@@ -195,17 +195,11 @@ impl Interpreter {
         if !feeds {
             self.modal.check_no_feed(block)?;
         }
-        if let Some(drilling) = self.modal_drilling.take() {
-            if takes.is_none() && AXIS_WORDS.iter().any(|name| block.word(name).is_some()) {
-                self.drill(
-                    &drilling,
-                    SourcePosition {
-                        line: block.line,
-                        column: 1,
-                    },
-                )?;
-            }
-            self.modal_drilling = Some(drilling);
+        if let Some(drilling) = &self.modal_drilling
+            && takes.is_none()
+            && let Some(word) = AXIS_WORDS.iter().find_map(|name| block.word(name))
+        {
+            self.drill(&drilling.clone(), word.place)?;
         }
         if let Some(code) = block.code(Group::Stop) {
             self.stop(*code)?;

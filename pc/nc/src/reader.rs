@@ -9,6 +9,7 @@ use super::interpreter::Interpreter;
 use super::parameters::Parameter;
 use super::program::Program;
 use super::setup::Options;
+use super::siemens::calls;
 use super::siemens::jumps::{Jump, Place};
 use super::source::{Lines, Source};
 use super::subroutines::{self, Found, Name};
@@ -282,7 +283,8 @@ impl Reader {
         self.conditions_before = self.interpreter.conditions();
         let parsed = parse(&text, here.line, self.options.block_delete, &mut self.interpreter)?;
         let seen = self.position.seen;
-        self.position.seen |= parsed != Parsed::Blank;
+        // Some archives have a tape mark behind the header of the program.
+        self.position.seen |= parsed != Parsed::Blank && (seen || !calls::is_archive_header(&text));
         let mut ran = Ran {
             kind: Kind::of(&parsed, &text),
             text,

@@ -179,7 +179,12 @@ pub(crate) fn begins(text: &str, name: &str) -> Option<bool> {
 
 /// Whether another program begins at the line `text`.
 pub(super) fn begins_program(text: &str) -> bool {
-    archive_header(text).is_some() || proc_name(text).is_some()
+    is_archive_header(text) || proc_name(text).is_some()
+}
+
+/// Whether the line `text` is a header of an archive.
+pub(crate) fn is_archive_header(text: &str) -> bool {
+    archive_header(text).is_some()
 }
 
 /// `NAME_SPF` of `%_N_NAME_SPF`.

@@ -211,7 +211,6 @@ fn chain(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<f
 /// What is wrong where there is no value.
 fn no_value(scanner: &Scanner) -> Problem {
     match scanner.peek() {
-        Some('$') => Problem::SystemVariable,
         Some('"') => Problem::TextValue,
         _ => Problem::NoValue,
     }
@@ -244,7 +243,18 @@ fn operand(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result
             Ok(value.map(|value| if sign == '-' { -value } else { value }))
         }
         Some(c) if c.is_ascii_alphabetic() || c == '_' => named(scanner, lookup, depth),
+        Some('$') => constant(scanner),
         _ => rs274::value(scanner, lookup),
+    }
+}
+
+/// `$PI`; other variables of the controller are not known.
+fn constant(scanner: &mut Scanner) -> Result<Option<f64>, NcError> {
+    let place = scanner.place();
+    scanner.step();
+    match scanner.identifier().eq_ignore_ascii_case("PI") {
+        true => Ok(Some(std::f64::consts::PI)),
+        false => Err(Problem::SystemVariable.at(place)),
     }
 }
 

@@ -95,7 +95,7 @@ const TURNED: &str = "a tilted plane is not supported: rotate about Z with ROT";
 const LATHE: &str = "lathe codes are not supported";
 
 /// Words that are refused, and why.
-const REFUSED: [(&str, &str); 58] = [
+const REFUSED: [(&str, &str); 59] = [
     ("CHF", ROUNDING),
     ("CHR", ROUNDING),
     ("RND", ROUNDING),
@@ -156,6 +156,7 @@ const REFUSED: [(&str, &str); 58] = [
     ("DIAMON", LATHE),
     ("SPOS", SPINDLE),
     ("SPOSA", SPINDLE),
+    ("FGROUP", "F is the speed of the tip, as with FGROUP(X,Y,Z)"),
     ("CALL", FILES),
     ("EXTCALL", FILES),
     ("PCALL", FILES),
@@ -197,21 +198,34 @@ pub(crate) fn refused_word(word: &str) -> Option<Problem> {
     found.map(|(name, why)| Problem::Impossible { code: name, why })
 }
 
-/// Whether the cycle `name` changes nothing here; the scanner is behind it then. `CYCLE832(…)` is for high speed: it is planned ahead
-/// anyway, within the tolerance of G64. `CYCLE800()` ends a tilted plane, and there is none. `WORKPIECE(…)` and groups are for displays.
+/// Whether the cycle `name` changes nothing here; the scanner is behind it then.
 pub(super) fn cycle_without_effect(name: &str, scanner: &mut Scanner) -> bool {
     let start = scanner.mark();
     scanner.skip_blanks();
     if scanner.peek() == Some('(') {
         scanner.step();
-        let is_empty = scanner.take(|c| c != ')').trim().is_empty();
+        let within = scanner.take(|c| c != ')').to_owned();
         scanner.step();
-        match name {
-            "CYCLE832" | "WORKPIECE" | "GROUP_BEGIN" | "GROUP_END" => return true,
-            "CYCLE800" if is_empty => return true,
-            _ => {}
+        let nothing = match name {
+            // High speed is planned ahead anyway, within the tolerance of G64; the others are for displays.
+            "CYCLE832" | "WORKPIECE" | "GROUP_BEGIN" | "GROUP_END" => true,
+            "CYCLE800" => is_level(&within),
+            // F is that of the tip.
+            "FGROUP" => within.split(',').all(|axis| "XYZ".contains(axis.trim())),
+            _ => false,
+        };
+        if nothing {
+            return true;
         }
     }
     scanner.go_back(start);
     false
+}
+
+/// Whether CYCLE800 with these arguments ends a tilted plane, or has one that is neither tilted nor moved: of its arguments the first
+/// is a retraction, and those from the fifth to the thirteenth are shifts and angles.
+fn is_level(arguments: &str) -> bool {
+    let zero = |argument: &str| argument.is_empty() || argument.parse() == Ok(0.0);
+    let mut arguments = arguments.split(',').map(str::trim).enumerate();
+    arguments.all(|(index, argument)| !matches!(index, 0 | 4..=12) || zero(argument))
 }

@@ -69,11 +69,11 @@ pub(super) fn read(scanner: &mut Scanner, block: &mut Block, lookup: &mut InBloc
 
 /// `R1=…`, or `L123` as a call.
 fn single_letter(scanner: &mut Scanner, block: &Block, lookup: &mut InBlock) -> Result<Read, NcError> {
-    if matches!(scanner.peek(), Some('L' | 'l')) && block.is_empty() {
-        return Ok(calls::by_number(scanner, lookup)?.map_or(Read::Nothing, Read::Statement));
+    match scanner.peek() {
+        Some('R' | 'r') if variables::assignment(scanner, lookup)? => Ok(Read::Words),
+        Some('L' | 'l') if block.is_empty() => {
+            Ok(calls::by_number(scanner, lookup)?.map_or(Read::Nothing, Read::Statement))
+        }
+        _ => Ok(Read::Nothing),
     }
-    Ok(match variables::assignment(scanner, lookup)? {
-        true => Read::Words,
-        false => Read::Nothing,
-    })
 }

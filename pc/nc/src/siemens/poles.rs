@@ -15,10 +15,11 @@ const FORM_WORDS: [&str; 6] = ["I", "J", "K", "R", "CR", "AR"];
 impl Interpreter {
     /// The block with axis words in place of AP= and RP=. One that is not said stays as it is.
     pub(crate) fn without_pole<'b>(&mut self, block: Cow<'b, Block>) -> Result<Cow<'b, Block>, NcError> {
-        let [distance, angle] = ["RP", "AP"].map(|name| block.word(name));
-        let Some(place) = distance.or(angle).map(|word| word.place) else {
+        let is_polar = |word: &&Word| matches!(word.address.as_str(), "RP" | "AP");
+        let Some(place) = block.words.iter().find(is_polar).map(|word| word.place) else {
             return Ok(block);
         };
+        let [distance, angle] = ["RP", "AP"].map(|name| block.word(name));
         let axes = self.modal.plane.axes();
         if let Some(word) = axes.iter().find_map(|axis| block.word(AXIS_WORDS[*axis])) {
             let (first, second) = ("AP= or RP=", "axis words of the plane");

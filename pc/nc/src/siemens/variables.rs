@@ -63,7 +63,7 @@ pub(super) fn assignment(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<
     } else {
         let name = scanner.identifier().to_ascii_uppercase();
         scanner.go_back(start);
-        match name.starts_with('_') || is_defined(&name, lookup) {
+        match name.starts_with('_') || name.len() > 1 && is_defined(&name, lookup) {
             true => Some(named(scanner, lookup)?),
             false => None,
         }

@@ -108,3 +108,12 @@ fn what_is_no_call_is_told() {
         wrong("AGAIN: G0 X1\nREPEAT PART P1\nM30\nPART: RET\nENDLABEL:").contains("RET: it stands in a part")
     );
 }
+
+#[test]
+fn a_tape_mark_may_follow_the_header_of_an_archive() {
+    let text = "%_N_PART_MPF\n%\nG0 X1 Y0 Z0\nM30\n%\n";
+    let program = interpret(text, Options::default()).unwrap();
+    assert_eq!(program.paths.len(), 1);
+    let text = "%_N_PART_MPF\nG0 X1 Y0 Z0\n%\nwhat follows is not read";
+    assert_eq!(interpret(text, Options::default()).unwrap().paths.len(), 1);
+}

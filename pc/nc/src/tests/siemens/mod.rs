@@ -109,6 +109,7 @@ fn words_of_a_post_processor_for_siemens_are_understood() {
     assert!(wrong("G71 Q1 X1").contains("lathe codes are not supported"));
     assert!(wrong("F1 G1 X1 D12").contains("D"));
     assert!(wrong("CYCLE800(1)").contains("CYCLE"));
+    assert!(run("CYCLE800(0,\"TC1\",0,57,0,0,0,0,0.0,0,0,0,0,-1)\nFGROUP(X,Y,Z)\nG0 X1\nM2").is_ok());
     assert!(run("CYCLE800()\nG710 FNORM\nD1 G54 G0 X1\nM2").is_ok());
 }
 
@@ -148,6 +149,7 @@ fn expressions_are_those_of_siemens() {
     );
     // Comparisons bind least there, and not so in other languages.
     assert!(wrong("R1=R2==1 AND R3==2").contains("write brackets around each comparison"));
+    assert_eq!(xs("R1=2*$PI\nG0 X=R1")[0], std::f64::consts::TAU);
     assert!(wrong("R1=-3 MOD 2").contains("MOD of negative numbers"));
     assert!(wrong("R1=FOO(2)").contains("FOO is no function"));
 }
@@ -194,6 +196,7 @@ fn words_without_effect_are_passed_over_and_others_refused_with_a_reason() {
             "CYCLE800(1,\"\",0,57,0,0,0,30,0,0,0,0,0,1)",
             "a tilted plane is not supported",
         ),
+        ("FGROUP(X,Y,A)", "F is the speed of the tip"),
         ("MIRROR X0", "only TRANS, ATRANS, ROT and AROT"),
         ("G510", "coordinate systems are G54 to G57 and G505 to G509"),
         ("M2=3", "M2= is not understood"),
