@@ -2,7 +2,8 @@
 
 use super::error::{NcError, Problem, SourcePosition};
 use super::flow::{self, Keyword, OWord};
-use super::reader::{Called, Reader, no_end};
+use super::levels::Called;
+use super::reader::{Reader, no_end};
 use super::scanner::Scanner;
 use super::siemens::structures::Structure;
 use super::subroutines::head;

@@ -282,11 +282,11 @@ impl Interpreter {
     }
 
     fn cycle_feed(&mut self, cycle: &Cycle, level: f64) -> Result<(), NcError> {
-        self.to_level(cycle.axis, level, Some(cycle.feed), cycle.place)
+        self.go_to_level(cycle.axis, level, Some(cycle.feed), cycle.place)
     }
 
     /// Along an axis to a coordinate \[mm\], with a feed or without as a rapid.
-    pub(super) fn to_level(
+    pub(super) fn go_to_level(
         &mut self,
         axis: usize,
         level: f64,

@@ -15,7 +15,7 @@ const EQUAL: f64 = 1e-5;
 /// # Errors
 /// What cannot be read or computed. Nothing but a letter, blank or other mark is `None`.
 pub(super) fn value(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Option<f64>, NcError> {
-    real(scanner, lookup, 0)
+    value_at(scanner, lookup, 0)
 }
 
 /// `#` with its number or name; the scanner is behind the `#`.
@@ -23,7 +23,12 @@ pub(super) fn parameter(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Resul
     parameter_at(scanner, lookup, 0)
 }
 
-fn real(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<Option<f64>, NcError> {
+/// The same inside so many expressions.
+pub(super) fn value_at(
+    scanner: &mut Scanner,
+    lookup: &mut dyn Lookup,
+    depth: u32,
+) -> Result<Option<f64>, NcError> {
     scanner.skip_blanks();
     let place = scanner.place();
     if depth > DEEPEST {
@@ -38,7 +43,7 @@ fn real(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<Op
         return Ok(Some(number));
     }
     scanner.step();
-    Ok(real(scanner, lookup, depth + 1)?.map(|value| sign * value))
+    Ok(value_at(scanner, lookup, depth + 1)?.map(|value| sign * value))
 }
 
 fn unsigned(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<Option<f64>, NcError> {
@@ -53,9 +58,9 @@ fn unsigned(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Resul
             let value = value.ok_or_else(|| parameter.no_value().at(place))?;
             Ok(Some(value))
         }
-        Some('_') => variables::value(scanner, lookup, scanner.place()).map(Some),
+        Some('_') => variables::value(scanner, lookup, depth).map(Some),
         Some('R' | 'r') if scanner.at_siemens_parameter(false) => {
-            let parameter = variables::numbered(scanner, lookup)?;
+            let parameter = variables::numbered(scanner, lookup, depth)?;
             Ok(parameter.and_then(|parameter| lookup.value(&parameter)))
         }
         Some(c) if c.is_ascii_alphabetic() => function(scanner, lookup, depth),
@@ -69,7 +74,7 @@ fn parameter_at(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> R
     if scanner.peek() == Some('<') {
         return scanner.name().map(Parameter::Named);
     }
-    let number = real(scanner, lookup, depth + 1)?;
+    let number = value_at(scanner, lookup, depth + 1)?;
     let number = number.ok_or(Problem::NoNumber("#".to_owned()).at(place))?;
     Parameter::numbered(number).ok_or(Problem::ParameterNumber(number).at(place))
 }
@@ -186,7 +191,7 @@ fn bracket(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result
     loop {
         scanner.skip_blanks();
         let place = scanner.place();
-        let mut value = real(scanner, lookup, depth + 1)?.ok_or(Problem::NoValue.at(place))?;
+        let mut value = value_at(scanner, lookup, depth + 1)?.ok_or(Problem::NoValue.at(place))?;
         scanner.skip_blanks();
         if scanner.peek().is_none() {
             return Err(Problem::OpenBracket.at(open));

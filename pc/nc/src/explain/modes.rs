@@ -11,6 +11,11 @@ use crate::program::{Blend, PathControl, Plane};
 pub(super) fn changes(before: &Before, after: &Interpreter, moves: bool) -> Vec<String> {
     let mut changes = modal(before, after, moves);
     changes.extend(offsets(before, after));
+    match (before.drills, after.modal_drilling.is_some()) {
+        (false, true) => changes.push("drills a hole after every motion (MCALL)".to_owned()),
+        (true, false) => changes.push("drills no more holes after motions".to_owned()),
+        _ => {}
+    }
     let [tool, _] = after.tool_numbers;
     if tool != before.tools[0] {
         changes.push(format!("tool {tool} is selected for M6"));

@@ -1,15 +1,16 @@
 //! Subprograms of Siemens programs: `NAME`, `NAME(1, 2) P3`, `L123`, PROC, RET and M17.
 
 use super::expression;
-use super::jumps::count;
 use super::keywords;
+use super::repeats::count;
 use super::statement::{self, Statement, What};
 use super::variables;
 use crate::block::{Block, CodeWord};
 use crate::codes::{Code, Group};
 use crate::error::{NcError, Problem, SourcePosition};
+use crate::levels::Called;
 use crate::parameters::{Kind, Lookup, Variable};
-use crate::reader::{Called, Reader};
+use crate::reader::Reader;
 use crate::scanner::Scanner;
 use crate::subroutines::Name;
 

@@ -275,28 +275,28 @@ impl Interpreter {
         let above = (drilling.reference + drilling.distance) * unit;
         let (bottom, retract) = (drilling.bottom * unit, drilling.retract * unit);
         let control = std::mem::replace(&mut self.modal.control, PathControl::ExactPath);
-        self.to_level(axis, above, None, place)?;
+        self.go_to_level(axis, above, None, place)?;
         let rate = |mm_min: f64| Some(FeedRate::PerMinute(mm_min));
         if let Some(pecks) = &drilling.pecks {
             for (index, depth) in pecks.depths.iter().map(|depth| depth * unit).enumerate() {
                 let part = if index == 0 { pecks.first_feed } else { 1.0 };
-                self.to_level(axis, depth, rate(feed_in * part), place)?;
+                self.go_to_level(axis, depth, rate(feed_in * part), place)?;
                 self.stay(pecks.dwells[0], place);
                 if pecks.clears {
-                    self.to_level(axis, above, None, place)?;
+                    self.go_to_level(axis, above, None, place)?;
                     self.stay(pecks.dwells[1], place);
-                    self.to_level(axis, (depth + pecks.by * unit).min(above), None, place)?;
+                    self.go_to_level(axis, (depth + pecks.by * unit).min(above), None, place)?;
                 } else {
-                    self.to_level(axis, (depth + pecks.by * unit).min(above), rate(feed_in), place)?;
+                    self.go_to_level(axis, (depth + pecks.by * unit).min(above), rate(feed_in), place)?;
                 }
             }
         }
-        self.to_level(axis, bottom, rate(feed_in), place)?;
+        self.go_to_level(axis, bottom, rate(feed_in), place)?;
         self.stay(drilling.dwell, place);
         if drilling.feeds_out {
-            self.to_level(axis, above, rate(feed_out), place)?;
+            self.go_to_level(axis, above, rate(feed_out), place)?;
         }
-        self.to_level(axis, retract, None, place)?;
+        self.go_to_level(axis, retract, None, place)?;
         self.modal.control = control;
         self.spline_end = None;
         Ok(())

@@ -26,17 +26,8 @@ pub(crate) fn value(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<f6
     value.ok_or(Problem::NoValue.at(scanner.place()))
 }
 
-/// A value and the bracket behind it.
+/// A value and the bracket behind it, inside so many expressions.
 pub(super) fn closed(
-    scanner: &mut Scanner,
-    lookup: &mut dyn Lookup,
-    open: SourcePosition,
-    bracket: char,
-) -> Result<f64, NcError> {
-    closed_at(scanner, lookup, open, bracket, 0)
-}
-
-fn closed_at(
     scanner: &mut Scanner,
     lookup: &mut dyn Lookup,
     open: SourcePosition,
@@ -232,7 +223,7 @@ fn operand(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result
     match scanner.peek() {
         Some('(') => {
             scanner.step();
-            closed_at(scanner, lookup, place, ')', depth).map(Some)
+            closed(scanner, lookup, place, ')', depth).map(Some)
         }
         Some(sign @ ('+' | '-')) => {
             if let Some(number) = scanner.number()? {
@@ -244,7 +235,7 @@ fn operand(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result
         }
         Some(c) if c.is_ascii_alphabetic() || c == '_' => named(scanner, lookup, depth),
         Some('$') => constant(scanner),
-        _ => rs274::value(scanner, lookup),
+        _ => rs274::value_at(scanner, lookup, depth + 1),
     }
 }
 
@@ -261,7 +252,7 @@ fn constant(scanner: &mut Scanner) -> Result<Option<f64>, NcError> {
 /// A function, variable, constant, or NOT.
 fn named(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<Option<f64>, NcError> {
     let (place, start) = (scanner.place(), scanner.mark());
-    if let Some(parameter) = variables::numbered(scanner, lookup)? {
+    if let Some(parameter) = variables::numbered(scanner, lookup, depth)? {
         return Ok(lookup.value(&parameter));
     }
     let name = scanner.identifier().to_ascii_uppercase();
@@ -281,11 +272,9 @@ fn named(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<O
     }
     scanner.go_back(start);
     if name.starts_with('_') || name.len() > 1 && variables::is_defined(&name, lookup) {
-        let parameter = variables::named(scanner, lookup)?;
-        let value = lookup.value(&parameter);
-        return value.ok_or_else(|| parameter.no_value().at(place)).map(Some);
+        return variables::value(scanner, lookup, depth).map(Some);
     }
-    if let Some(value) = rs274::value(scanner, lookup)? {
+    if let Some(value) = rs274::value_at(scanner, lookup, depth + 1)? {
         return Ok(Some(value));
     }
     Err(Problem::Undefined(name).at(place))

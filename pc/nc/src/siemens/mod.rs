@@ -13,6 +13,7 @@ mod frames;
 pub(super) mod jumps;
 mod keywords;
 mod poles;
+mod repeats;
 mod statement;
 pub(super) mod structures;
 pub(super) mod variables;

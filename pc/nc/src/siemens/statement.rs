@@ -3,8 +3,9 @@
 use super::calls::{self, Call, Header};
 use super::drilling::{self, Drilling};
 use super::expression;
-use super::jumps::{self, Jump, Repeat};
+use super::jumps::{self, Jump};
 use super::keywords;
+use super::repeats::{self, Repeat};
 use super::variables;
 use crate::error::{NcError, Problem, SourcePosition};
 use crate::parameters::{InBlock, Parameter, Variable};
@@ -69,7 +70,7 @@ pub(super) fn read(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<Option
         "LOOP" => What::Loop,
         "ENDLOOP" => What::EndLoop,
         "REPEAT" | "REPEATB" => {
-            let repeat = jumps::repeat(scanner, lookup, name == "REPEATB")?;
+            let repeat = repeats::repeat(scanner, lookup, name == "REPEATB")?;
             repeat.map_or(What::RepeatUntil, What::Repeat)
         }
         "UNTIL" => What::Until(expression::value(scanner, lookup)? != 0.0),

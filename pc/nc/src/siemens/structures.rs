@@ -94,9 +94,8 @@ impl Reader {
         let itself = (self.start_of_line(), here.1 - 1);
         let before = self.conditions_before;
         match statement.what {
-            What::If(true) => self.open(Form::If, here, before),
-            What::If(false) => {
-                if self.skip(Form::If, place)? == Edge::Else {
+            What::If(holds) => {
+                if holds || self.skip(Form::If, place)? == Edge::Else {
                     self.open(Form::If, here, before);
                 }
             }

@@ -1,7 +1,7 @@
 //! Variables of Siemens programs: R parameters, and those that DEF gives a name and a type.
 
 use super::expression;
-use crate::error::{NcError, Problem, SourcePosition};
+use crate::error::{NcError, Problem};
 use crate::parameters::{InBlock, Kind, Lookup, Parameter, Variable};
 use crate::scanner::Scanner;
 
@@ -9,7 +9,11 @@ use crate::scanner::Scanner;
 const MOST_ELEMENTS: f64 = 10_000.0;
 
 /// `R1` or `R[…]`, if one stands at the scanner.
-pub(crate) fn numbered(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Option<Parameter>, NcError> {
+pub(crate) fn numbered(
+    scanner: &mut Scanner,
+    lookup: &mut dyn Lookup,
+    depth: u32,
+) -> Result<Option<Parameter>, NcError> {
     if !scanner.at_siemens_parameter(true) {
         return Ok(None);
     }
@@ -17,7 +21,7 @@ pub(crate) fn numbered(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result
     scanner.step();
     let digits = if scanner.peek() == Some('[') {
         scanner.step();
-        expression::closed(scanner, lookup, place, ']')?
+        expression::closed(scanner, lookup, place, ']', depth)?
             .round()
             .to_string()
     } else {
@@ -36,13 +40,17 @@ pub(super) fn is_defined(name: &str, lookup: &mut dyn Lookup) -> bool {
 }
 
 /// `NAME` or `NAME[…]`.
-pub(crate) fn named(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Parameter, NcError> {
+pub(crate) fn named(
+    scanner: &mut Scanner,
+    lookup: &mut dyn Lookup,
+    depth: u32,
+) -> Result<Parameter, NcError> {
     let name = scanner.identifier().to_ascii_uppercase();
     let mut index = 0;
     if scanner.peek() == Some('[') {
         let place = scanner.place();
         scanner.step();
-        let value = expression::closed(scanner, lookup, place, ']')?.round();
+        let value = expression::closed(scanner, lookup, place, ']', depth)?.round();
         if !(0.0..MOST_ELEMENTS).contains(&value) {
             return Err(Problem::ArrayIndex(value).at(place));
         }
@@ -59,12 +67,12 @@ pub(super) fn assignment(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<
         if !scanner.is_assignment() {
             return Ok(false);
         }
-        numbered(scanner, lookup)?
+        numbered(scanner, lookup, 0)?
     } else {
         let name = scanner.identifier().to_ascii_uppercase();
         scanner.go_back(start);
         match name.starts_with('_') || name.len() > 1 && is_defined(&name, lookup) {
-            true => Some(named(scanner, lookup)?),
+            true => Some(named(scanner, lookup, 0)?),
             false => None,
         }
     };
@@ -94,7 +102,7 @@ pub(super) fn definitions(
         let mut values = vec![0.0];
         if scanner.peek() == Some('[') {
             scanner.step();
-            let count = expression::closed(scanner, lookup, place, ']')?;
+            let count = expression::closed(scanner, lookup, place, ']', 0)?;
             if count.fract() != 0.0 || !(1.0..=MOST_ELEMENTS).contains(&count) {
                 return Err(Problem::ArrayIndex(count).at(place));
             }
@@ -164,12 +172,9 @@ pub(super) fn new_name(scanner: &mut Scanner) -> Result<String, NcError> {
 }
 
 /// The value of a variable that must have one.
-pub(crate) fn value(
-    scanner: &mut Scanner,
-    lookup: &mut dyn Lookup,
-    place: SourcePosition,
-) -> Result<f64, NcError> {
-    let parameter = named(scanner, lookup)?;
+pub(crate) fn value(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<f64, NcError> {
+    let place = scanner.place();
+    let parameter = named(scanner, lookup, depth)?;
     let value = lookup.value(&parameter);
     value.ok_or_else(|| parameter.no_value().at(place))
 }

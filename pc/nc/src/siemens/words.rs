@@ -93,7 +93,7 @@ pub(crate) fn value(
     };
     if step.is_some() && scanner.peek() == Some('(') {
         scanner.step();
-        let value = expression::closed(scanner, lookup, place, ')')?;
+        let value = expression::closed(scanner, lookup, place, ')', 0)?;
         return Ok((Some(value), step));
     }
     scanner.go_back(start);

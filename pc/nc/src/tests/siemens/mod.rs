@@ -5,6 +5,7 @@ mod drilling;
 mod flow;
 mod frames;
 mod geometry;
+mod programs;
 
 use super::*;
 
@@ -151,6 +152,14 @@ fn expressions_are_those_of_siemens() {
     assert!(wrong("R1=R2==1 AND R3==2").contains("write brackets around each comparison"));
     assert_eq!(xs("R1=2*$PI\nG0 X=R1")[0], std::f64::consts::TAU);
     assert!(wrong("R1=-3 MOD 2").contains("MOD of negative numbers"));
+    for nested in ["R[", "_A[[", "(", "-", "NOT ", "SIN(", "[", "R[_A["] {
+        let deep = format!("R1={}", nested.repeat(9_000 / nested.len()));
+        assert!(
+            wrong(&deep).contains("inside each other"),
+            "{nested}: {}",
+            wrong(&deep)
+        );
+    }
     assert!(wrong("R1=FOO(2)").contains("FOO is no function"));
 }
 
