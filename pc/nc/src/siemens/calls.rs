@@ -1,6 +1,7 @@
 //! Subprograms of Siemens programs: `NAME`, `NAME(1, 2) P3`, `L123`, PROC, RET and M17.
 
 use super::expression;
+use super::jumps::{for_each_line, says_something};
 use super::keywords;
 use super::repeats::count;
 use super::statement::{self, Statement, What};
@@ -235,6 +236,19 @@ impl Reader {
 
     /// PROC gives the parameters of the subprogram their values; without a call there are none.
     pub(super) fn bind(&mut self, header: Header, place: SourcePosition) -> Result<(), NcError> {
+        let mut first = true;
+        for_each_line(self, place, |found, text| {
+            let before = found.line + 1 < place.line;
+            first &= !(before && says_something(text));
+            !(before && first)
+        })?;
+        if !first {
+            let (code, why) = (
+                "PROC",
+                "another program begins here: end the one before with M30, M17 or RET",
+            );
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
         let arguments = self.level().take_arguments();
         if arguments.len() > header.parameters.len() {
             let (given, most) = (arguments.len(), header.parameters.len());

@@ -223,6 +223,11 @@ impl Reader {
     }
 }
 
+/// Whether a line is more than a comment or a header.
+pub(super) fn says_something(text: &str) -> bool {
+    !text.trim_start().is_empty() && !text.trim_start().starts_with([';', '%'])
+}
+
 /// Hands the lines of the innermost program to `takes`, with the structures around them, until that is enough.
 pub(super) fn for_each_line(
     reader: &mut Reader,
@@ -243,7 +248,7 @@ pub(super) fn for_each_line(
         if seen && calls::begins_program(&text) {
             break;
         }
-        seen |= !text.trim_start().is_empty() && !text.trim_start().starts_with([';', '%']);
+        seen |= says_something(&text);
         let edge = edge(&text);
         if edge == Some(Edge::Closes) {
             inside.pop();

@@ -94,11 +94,7 @@ impl Reader {
         let itself = (self.start_of_line(), here.1 - 1);
         let before = self.conditions_before;
         match statement.what {
-            What::If(holds) => {
-                if holds || self.skip(Form::If, place)? == Edge::Else {
-                    self.open(Form::If, here, before);
-                }
-            }
+            What::If(holds) => self.begin_if(holds, place)?,
             What::Else => {
                 self.close_structure(&Form::If, "ELSE", place)?;
                 // A second ELSE would be its next part.
@@ -124,6 +120,15 @@ impl Reader {
             What::Until(false) => self.again(Form::Repeat, "UNTIL", place)?,
             What::Until(true) => drop(self.close_structure(&Form::Repeat, "UNTIL", place)?),
             _ => {}
+        }
+        Ok(())
+    }
+
+    /// The part behind IF is run, or that behind its ELSE, if there is one.
+    fn begin_if(&mut self, holds: bool, place: SourcePosition) -> Result<(), NcError> {
+        if holds || self.skip(Form::If, place)? == Edge::Else {
+            // A condition is not gone back to.
+            self.open(Form::If, (0, 0), 0);
         }
         Ok(())
     }

@@ -102,6 +102,16 @@ fn subprograms_may_be_in_files_of_their_own() {
 fn what_is_no_call_is_told() {
     assert!(wrong("NOTHERE").contains("NOTHERE is not understood: there is no such word, and no subprogram"));
     assert!(wrong("SUB1\nM30\nPROC SUB1\nSUB1\nRET").contains("more than 32 subroutines inside each other"));
+    for body in [
+        "G0 X1\nPROC SUB1\nG0 X2",
+        "SUB1\nM30\nPROC SUB1\nG0 X1\nPROC SUB2\nG0 X2",
+    ] {
+        assert!(
+            wrong(body).contains("another program begins here"),
+            "{}",
+            wrong(body)
+        );
+    }
     assert!(wrong("SUB1(\"text\")").contains("this is a text"));
     assert!(wrong("CALL \"NAME\"").contains("CALL"));
     assert!(
