@@ -446,8 +446,15 @@ pub enum Group {
 impl Code {
     /// As people write it.
     pub fn name(self) -> &'static str {
-        let own = CODES.iter().find(|(_, _, code, ..)| *code == self);
-        own.map_or("", |(_, _, _, name, _)| name)
+        match self {
+            Self::ArcThrough => "CIP",
+            Self::Turn => "ROT",
+            Self::MoreTurn => "AROT",
+            code => {
+                let own = CODES.iter().find(|(_, _, own, ..)| *own == code);
+                own.map_or("", |(_, _, _, name, _)| name)
+            }
+        }
     }
 
     /// G73 and G81 to G89.

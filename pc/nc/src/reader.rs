@@ -9,7 +9,7 @@ use super::parameters::Parameter;
 use super::program::Program;
 use super::setup::Options;
 use super::siemens::calls;
-use super::siemens::jumps::{Jump, Place};
+use super::siemens::labels::Labels;
 use super::source::{Lines, Source};
 use super::subroutines::Found;
 use std::collections::BTreeMap;
@@ -24,8 +24,8 @@ pub(super) struct Position {
     /// The innermost subroutine last; the main program is always there.
     pub(super) levels: Vec<Level>,
     pub(super) found: BTreeMap<String, Found>,
-    /// Where jumps lead, by file and line.
-    pub(super) jumps: BTreeMap<(Option<String>, u32, Jump), Option<Place>>,
+    /// Labels of programs, by file, the lines before them and their last one.
+    pub(super) labels: BTreeMap<(Option<String>, u32, u32), Arc<Labels>>,
     /// Anything but blank lines was seen.
     seen: bool,
     /// Lines that were run.
@@ -112,7 +112,7 @@ impl Reader {
         let position = Position {
             levels: vec![main],
             found: BTreeMap::new(),
-            jumps: BTreeMap::new(),
+            labels: BTreeMap::new(),
             seen: false,
             executed: 0,
             repeated: 0,

@@ -1,8 +1,8 @@
 //! Subprograms of Siemens programs: `NAME`, `NAME(1, 2) P3`, `L123`, PROC, RET and M17.
 
 use super::expression;
-use super::jumps::{for_each_line, says_something};
 use super::keywords;
+use super::labels::{for_each_line, says_something};
 use super::repeats::count;
 use super::statement::{self, Statement, What};
 use super::variables;
@@ -237,7 +237,7 @@ impl Reader {
     /// PROC gives the parameters of the subprogram their values; without a call there are none.
     pub(super) fn bind(&mut self, header: Header, place: SourcePosition) -> Result<(), NcError> {
         let mut first = true;
-        for_each_line(self, place, |found, text| {
+        for_each_line(self.level(), place, |found, text| {
             let before = found.line + 1 < place.line;
             first &= !(before && says_something(text));
             !(before && first)

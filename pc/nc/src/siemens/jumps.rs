@@ -1,9 +1,7 @@
 //! GOTOF, GOTOB, GOTO, GOTOC, GOTOS and CASE.
 
-use super::calls;
 use super::expression;
-use super::structures::{Edge, edge};
-use super::words;
+use super::labels::{Place, Target};
 use crate::branches::Open;
 use crate::error::{NcError, Problem, SourcePosition};
 use crate::parameters::Lookup;
@@ -23,29 +21,11 @@ pub(crate) enum Direction {
     Start,
 }
 
-/// A label, or the number of a block.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Target {
-    Start,
-    Label(String),
-    Number(u32),
-}
-
 /// A jump.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Jump {
     direction: Direction,
     target: Target,
-}
-
-/// A line that a jump leads to.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Place {
-    /// Bytes and lines before it.
-    pub(super) offset: u64,
-    pub(super) line: u32,
-    /// Lines that open the structures around it.
-    inside: Vec<u32>,
 }
 
 /// What a word of a jump says.
@@ -114,17 +94,6 @@ pub(super) fn case(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Opt
     }
 }
 
-/// The block number and the label of a line.
-pub(super) fn names(text: &str) -> (Option<u32>, Option<String>) {
-    let mut scanner = Scanner::new(text, 0);
-    let number = scanner.skip_block_number();
-    scanner.skip_blanks();
-    let start = scanner.mark();
-    let name = scanner.identifier().to_ascii_uppercase();
-    scanner.go_back(start);
-    (number, words::label(&mut scanner).then_some(name))
-}
-
 impl Reader {
     /// The program goes on at the target of a jump.
     pub(super) fn jump_to(&mut self, jump: &Jump, place: SourcePosition) -> Result<(), NcError> {
@@ -135,7 +104,7 @@ impl Reader {
                 let inside = Vec::new();
                 Some(Place { offset, line, inside })
             }
-            _ => self.known_target(jump, here, place)?,
+            _ => self.find_target(jump, here, place)?,
         };
         let Some(found) = found else {
             return match jump.direction {
@@ -176,96 +145,23 @@ impl Reader {
         Ok(())
     }
 
-    /// The target of the jump in line `here`, which is looked for once.
-    fn known_target(
-        &mut self,
-        jump: &Jump,
-        here: u32,
-        place: SourcePosition,
-    ) -> Result<Option<Place>, NcError> {
-        let key = (self.position.file().map(str::to_owned), here, jump.clone());
-        if let Some(found) = self.position.jumps.get(&key) {
-            return Ok(found.clone());
-        }
-        let found = self.find_target(jump, here, place)?;
-        self.position.jumps.insert(key, found.clone());
-        Ok(found)
-    }
-
+    /// The target of the jump in line `here`.
     fn find_target(
         &mut self,
         jump: &Jump,
         here: u32,
         place: SourcePosition,
     ) -> Result<Option<Place>, NcError> {
-        let mut before = None;
-        let forward = !matches!(jump.direction, Direction::Backward);
-        for_each_line(self, place, |found, text| {
-            let (number, label) = names(text);
-            let fits = match &jump.target {
-                Target::Label(name) => label.as_ref() == Some(name),
-                Target::Number(own) => number == Some(*own),
-                Target::Start => false,
-            };
-            let behind = found.line >= here;
-            if behind && !forward {
-                return true;
-            }
-            if fits {
-                before = Some((behind, found.clone()));
-            }
-            fits && behind
-        })?;
-        Ok(before.and_then(|(behind, found)| match jump.direction {
-            Direction::Forward if !behind => None,
-            _ => Some(found),
-        }))
-    }
-}
-
-/// Whether a line is more than a comment or a header.
-pub(super) fn says_something(text: &str) -> bool {
-    !text.trim_start().is_empty() && !text.trim_start().starts_with([';', '%'])
-}
-
-/// Hands the lines of the innermost program to `takes`, with the structures around them, until that is enough.
-pub(super) fn for_each_line(
-    reader: &mut Reader,
-    place: SourcePosition,
-    mut takes: impl FnMut(&Place, &str) -> bool,
-) -> Result<(), NcError> {
-    let level = reader.level();
-    let (begin, mut line) = level.begins();
-    let last = level.last_line();
-    let mut lines = level.source.lines(begin);
-    let mut inside = Vec::new();
-    let mut seen = false;
-    while line < last {
-        let read = lines
-            .next()
-            .map_err(|error| Problem::Unreadable(error.to_string()).at(place))?;
-        let Some(text) = read else { break };
-        if seen && calls::begins_program(&text) {
-            break;
-        }
-        seen |= says_something(&text);
-        let edge = edge(&text);
-        if edge == Some(Edge::Closes) {
-            inside.pop();
-        }
-        let offset = lines.line_start;
-        let found = Place {
-            offset,
-            line,
-            inside: inside.clone(),
+        let labels = self.labels(place)?;
+        let places = labels.places(&jump.target);
+        let behind = places.partition_point(|found| found.line < here);
+        let forward = places.get(behind);
+        let backward = places[..behind].last();
+        let found = match jump.direction {
+            Direction::Forward => forward,
+            Direction::Backward => backward,
+            Direction::Either | Direction::OrOn | Direction::Start => forward.or(backward),
         };
-        if takes(&found, &text) {
-            break;
-        }
-        line += 1;
-        if edge == Some(Edge::Opens) {
-            inside.push(line);
-        }
+        Ok(found.cloned())
     }
-    Ok(())
 }

@@ -1,7 +1,7 @@
 //! REPEAT and REPEATB with labels: lines that are run again.
 
 use super::expression;
-use super::jumps::{Place, for_each_line, names};
+use super::labels::Target;
 use crate::error::{NcError, Problem, SourcePosition};
 use crate::levels::Called;
 use crate::parameters::{InBlock, Lookup};
@@ -86,38 +86,26 @@ pub(super) fn count(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Op
 impl Reader {
     /// REPEAT and REPEATB: the lines from a label on are run again.
     pub(super) fn repeat(&mut self, repeat: &Repeat, place: SourcePosition) -> Result<(), NcError> {
-        let mut part: Option<(Place, u32)> = None;
-        let mut closed = false;
-        for_each_line(self, place, |found, text| {
-            let label = names(text).1;
-            let is = |name: &str| label.as_deref() == Some(name);
-            let own = found.line + 1 == place.line;
-            match &mut part {
-                None if is(&repeat.from) => {
-                    // Up to the line itself, the one with the second label, or that of ENDLABEL.
-                    let last = found.line + 1;
-                    part = Some((found.clone(), last));
-                    closed = repeat.line_alone || repeat.to.as_ref() == Some(&repeat.from);
-                }
-                Some((_, last)) if !own => {
-                    *last = found.line + 1;
-                    closed = match &repeat.to {
-                        Some(name) => is(name),
-                        None => is("ENDLABEL"),
-                    };
-                }
-                Some(_) => closed = repeat.to.is_none(),
-                None => {}
-            }
-            closed
-        })?;
-        let Some((begin, last)) = part.filter(|_| closed) else {
-            let missing = match &repeat.to {
-                Some(to) => format!("{} or {to}", repeat.from),
-                None => repeat.from.clone(),
-            };
-            return Err(Problem::NoLabel(missing).at(place));
+        let labels = self.labels(place)?;
+        let missing = || {
+            let to = repeat.to.iter().map(|to| format!(" or {to}"));
+            Problem::NoLabel(format!("{}{}", repeat.from, to.collect::<String>())).at(place)
         };
+        let places = |name: &str| labels.places(&Target::Label(name.to_owned()));
+        let begin = places(&repeat.from).first().ok_or_else(missing)?;
+        // The first line with a label from where the part begins on.
+        let next = |name: &str| places(name).iter().find(|found| found.line >= begin.line);
+        // Up to the line of the second label, of ENDLABEL, or before this one.
+        let own = Some(place.line - 1).filter(|own| *own > begin.line);
+        let last = match &repeat.to {
+            _ if repeat.line_alone => Some(begin.line + 1),
+            Some(to) => next(to).map(|found| found.line + 1),
+            None => {
+                let end = next("ENDLABEL").map(|found| found.line + 1);
+                end.into_iter().chain(own).min()
+            }
+        };
+        let last = last.ok_or_else(missing)?;
         match repeat.times {
             0 => Ok(()),
             times => self.enter_part((begin.offset, begin.line), last, times, place),

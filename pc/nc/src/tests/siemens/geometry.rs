@@ -78,6 +78,7 @@ fn an_arc_may_lead_through_a_point() {
     );
     assert!(wrong("F9\nCIP X20 Y0 Z5 I1=10 J1=10").contains("this one does not"));
     assert!(wrong("F9\nCIP X20 Y0 I1=10").contains("on a straight line"));
+    assert!(wrong("CIP X20 Y0 I1=10 J1=10").contains("CIP needs a feed"));
     assert!(wrong("F9\nCIP X20 Y0").contains("I1= J1= K1="));
 }
 
