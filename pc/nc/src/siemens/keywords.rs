@@ -22,14 +22,13 @@ const CODES: [(&str, Code, Group); 9] = [
 ];
 
 /// Words without an effect here: what they ask for is always so, or what they change is not there.
-const WITHOUT_EFFECT: [&str; 48] = [
+const WITHOUT_EFFECT: [&str; 47] = [
     "COMPCAD",
     "COMPCURV",
     "COMPSURF",
     "COMPON",
     "COMPOF",
     "ORIWKS",
-    "ORIMKS",
     "ORIVECT",
     "ORIVIRT1",
     "ORIVIRT2",
