@@ -203,7 +203,7 @@ pub(super) fn parse(
                     continue;
                 }
                 match siemens::read(&mut scanner, &mut block, lookup)? {
-                    Read::Statement(statement) => return Ok(Parsed::Statement(statement)),
+                    Read::Statement(statement) => return Ok(Parsed::Statement(*statement)),
                     Read::Words => {}
                     Read::Nothing => match tool_name(&mut scanner)? {
                         Some(name) => block.tool_name = Some((name, place)),

@@ -35,8 +35,14 @@ pub(super) enum Read {
     Nothing,
     /// Something that is in the block now.
     Words,
-    /// A line of its own.
-    Statement(Statement),
+    /// A line of its own. In a box, as one is read for every word.
+    Statement(Box<Statement>),
+}
+
+impl Read {
+    fn statement(statement: Statement) -> Self {
+        Self::Statement(Box::new(statement))
+    }
 }
 
 /// What of Siemens stands at the scanner, if that is no word with a letter.
@@ -54,7 +60,7 @@ pub(super) fn read(scanner: &mut Scanner, block: &mut Block, lookup: &mut InBloc
             return Ok(Read::Words);
         }
         if let Some(statement) = statement::read(scanner, lookup)? {
-            return Ok(Read::Statement(statement));
+            return Ok(Read::statement(statement));
         }
     }
     if words::message(scanner, block, lookup)?
@@ -64,7 +70,7 @@ pub(super) fn read(scanner: &mut Scanner, block: &mut Block, lookup: &mut InBloc
         return Ok(Read::Words);
     }
     match first {
-        true => Ok(calls::by_name(scanner, lookup)?.map_or(Read::Nothing, Read::Statement)),
+        true => Ok(calls::by_name(scanner, lookup)?.map_or(Read::Nothing, Read::statement)),
         false => Ok(Read::Nothing),
     }
 }
@@ -74,7 +80,7 @@ fn single_letter(scanner: &mut Scanner, block: &Block, lookup: &mut InBlock) -> 
     match scanner.peek() {
         Some('R' | 'r') if variables::assignment(scanner, lookup)? => Ok(Read::Words),
         Some('L' | 'l') if block.is_empty() => {
-            Ok(calls::by_number(scanner, lookup)?.map_or(Read::Nothing, Read::Statement))
+            Ok(calls::by_number(scanner, lookup)?.map_or(Read::Nothing, Read::statement))
         }
         _ => Ok(Read::Nothing),
     }
