@@ -7,16 +7,17 @@ use super::program::{ArcForm, ArcWay, Plane};
 use shared::geometry::Turn;
 
 /// Words of the centre, X to Z.
-const CENTRE_WORDS: [&str; 3] = ["I", "J", "K"];
+pub(super) const CENTRE_WORDS: [&str; 3] = ["I", "J", "K"];
 /// Most turns of one arc: a number beyond is a slip.
 const MOST_TURNS: f64 = 10_000.0;
 
-/// The way of the arc `mode`, whose words begin at `place`, with its lengths as they are written.
+/// The way of the arc `mode`, whose words begin at `place`, with its lengths as they are written; its form may be known already.
 pub(super) fn way(
     claims: &Claims,
     mode: Code,
     plane: Plane,
     place: SourcePosition,
+    known: Option<ArcForm>,
 ) -> Result<ArcWay, NcError> {
     let turn = match mode {
         Code::ArcClockwise => Turn::Clockwise,
@@ -27,14 +28,28 @@ pub(super) fn way(
         Some(p) => {
             return Err(p.value_error("the turns of an arc are 1, 2, 3 and so on up to 10000"));
         }
-        None => 0,
+        None => more_turns(claims, mode)?,
     };
     Ok(ArcWay {
         plane,
         turn,
-        form: form(claims, mode, plane, place)?,
+        form: match known {
+            Some(form) => form,
+            None => form(claims, mode, plane, place)?,
+        },
         more_turns,
     })
+}
+
+/// TURN=, turns besides the arc.
+fn more_turns(claims: &Claims, mode: Code) -> Result<u32, NcError> {
+    match claims.word(mode, "TURN") {
+        None => Ok(0),
+        Some(turns) if turns.value.fract() == 0.0 && (0.0..MOST_TURNS).contains(&turns.value) => {
+            Ok(turns.value as u32)
+        }
+        Some(turns) => Err(turns.value_error("the turns besides an arc are 0, 1, 2 and so on up to 9999")),
+    }
 }
 
 fn form(claims: &Claims, mode: Code, plane: Plane, place: SourcePosition) -> Result<ArcForm, NcError> {

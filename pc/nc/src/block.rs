@@ -6,7 +6,7 @@ use super::expression;
 use super::flow::{self, OWord};
 use super::parameters::{InBlock, Lookup, Parameter};
 use super::scanner::Scanner;
-use super::siemens;
+use super::siemens::{self, Read, Statement};
 
 /// A word with its value.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,8 +59,7 @@ pub struct CodeWord {
 }
 
 impl CodeWord {
-    fn hint(name: &'static str, place: SourcePosition) -> Self {
-        let (code, group) = (Code::Hint, Group::Hint);
+    pub(super) fn new(name: &'static str, code: Code, group: Group, place: SourcePosition) -> Self {
         Self {
             code,
             name,
@@ -83,6 +82,8 @@ pub struct Block {
     pub polar_step: Option<[f64; 2]>,
     /// Parameters that get a value when all of the block has been read.
     pub settings: Vec<(Parameter, f64)>,
+    /// T with the name of a tool.
+    pub tool_name: Option<(String, SourcePosition)>,
     /// WELDON with the name of its data, or WELDOFF without.
     pub weld: Option<(Option<String>, SourcePosition)>,
     /// Comments, in their order.
@@ -112,7 +113,7 @@ impl Block {
 
     /// Whether it sets parameters and does nothing else.
     pub fn settings_alone(&self) -> bool {
-        self.codes.is_empty() && self.words.is_empty() && self.weld.is_none()
+        self.codes.is_empty() && self.words.is_empty() && self.weld.is_none() && self.tool_name.is_none()
     }
 
     /// Whether nothing stands in it.
@@ -130,6 +131,8 @@ pub enum Parsed {
     Percent,
     /// `O…`.
     Flow(OWord),
+    /// A line of a Siemens program that is no block.
+    Statement(Statement),
     /// Something to carry out.
     Block(Block),
 }
@@ -141,28 +144,9 @@ const WORDS: [&str; 21] = [
     "X", "Y", "Z", "A", "B", "C", "I", "J", "K", "R", "F", "P", "L", "E", "Q", "S", "T", "H", "D", "@", "^",
 ];
 /// The same, written with `=`.
-const NAMED_WORDS: [&str; 6] = ["V1", "V2", "A3", "B3", "C3", "CR"];
-/// Words of other controllers without a number, and the code that they are here; none: what they ask for is always so.
-const KEYWORDS: [(&str, Option<Code>); 15] = [
-    ("TRAORI", Some(Code::TipOn)),
-    ("TRAFOOF", Some(Code::TipOff)),
-    ("COMPCAD", None),
-    ("COMPCURV", None),
-    ("COMPON", None),
-    ("COMPOF", None),
-    ("ORIWKS", None),
-    ("ORIAXES", Some(Code::Hint)),
-    ("SUPA", Some(Code::MachineAxes)),
-    ("FFWON", None),
-    ("FFWOF", None),
-    ("FNORM", None),
-    ("CFTCP", None),
-    ("SOFT", None),
-    ("BRISK", None),
+const NAMED_WORDS: [&str; 15] = [
+    "V1", "V2", "A3", "B3", "C3", "CR", "AR", "TURN", "I1", "J1", "K1", "AP", "RP", "RPL", "CTOL",
 ];
-/// Letters of the shortest of them.
-const SHORTEST_KEYWORD: usize = 4;
-
 /// Reads line number `line`, in which `lookup` knows the values of parameters. Blocks that begin with `/` are left out with
 /// `block_delete`.
 pub(super) fn parse(
@@ -208,16 +192,26 @@ pub(super) fn parse(
                 scanner.step();
                 setting(&mut scanner, lookup)?;
             }
-            '_' => siemens::variable(&mut scanner, lookup)?,
             '0'..='9' | '.' | '+' | '-' | '[' => return Err(Problem::LooseNumber.at(place)),
             '@' | '^' => {
                 let word = word(&mut scanner, lookup)?;
                 take(&mut block, word, false)?;
             }
-            c if c.is_ascii_alphabetic() => {
-                if !siemens::read(&mut scanner, &mut block, lookup)? && !keyword(&mut scanner, &mut block)? {
-                    let word = word(&mut scanner, lookup)?;
-                    take(&mut block, word, first)?;
+            c if c.is_ascii_alphabetic() || c == '_' => {
+                if matches!(c, 'W' | 'w') && weld(&mut scanner, &mut block)? {
+                    first = false;
+                    continue;
+                }
+                match siemens::read(&mut scanner, &mut block, lookup)? {
+                    Read::Statement(statement) => return Ok(Parsed::Statement(*statement)),
+                    Read::Words => {}
+                    Read::Nothing => match tool_name(&mut scanner)? {
+                        Some(name) => block.tool_name = Some((name, place)),
+                        None => {
+                            let word = word(&mut scanner, lookup)?;
+                            take(&mut block, word, first)?;
+                        }
+                    },
                 }
             }
             c => return Err(Problem::Character(c).at(place)),
@@ -247,7 +241,7 @@ fn high_speed(block: &mut Block) -> Result<(), NcError> {
     if q.number_below(2).is_none() {
         return Err(q.value_error("Q1 begins high-speed machining, Q0 ends it"));
     }
-    *code = CodeWord::hint("G5.1 Q", code.place);
+    *code = CodeWord::new("G5.1 Q", Code::Hint, Group::Hint, code.place);
     block.words.clear();
     Ok(())
 }
@@ -286,47 +280,36 @@ fn setting(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<(), NcError> {
     Ok(())
 }
 
-/// A word without a number, if one stands at the scanner.
-fn keyword(scanner: &mut Scanner, block: &mut Block) -> Result<bool, NcError> {
+/// WELDON or WELDOFF, if one stands at the scanner.
+fn weld(scanner: &mut Scanner, block: &mut Block) -> Result<bool, NcError> {
     let (place, start) = (scanner.place(), scanner.mark());
-    if scanner.skip_letters() < SHORTEST_KEYWORD {
-        scanner.go_back(start);
-        return Ok(false);
+    let letters = scanner.letters();
+    let name = match letters.as_str() {
+        "WELDON" => Some(weld_name(scanner, place)?),
+        "WELDOFF" => None,
+        _ => {
+            scanner.go_back(start);
+            return Ok(false);
+        }
+    };
+    if block.weld.is_some() {
+        return Err(Problem::Twice(letters).at(place));
+    }
+    block.weld = Some((name, place));
+    Ok(true)
+}
+
+/// The name in `T="NAME"`, if that stands at the scanner.
+fn tool_name(scanner: &mut Scanner) -> Result<Option<String>, NcError> {
+    let start = scanner.mark();
+    if matches!(scanner.peek(), Some('T' | 't'))
+        && scanner.address().is_some_and(|address| address == "T")
+        && let Some(name) = siemens::tool_name(scanner)?
+    {
+        return Ok(Some(name));
     }
     scanner.go_back(start);
-    let letters = scanner.letters();
-    if let "WELDON" | "WELDOFF" = letters.as_str() {
-        if block.weld.is_some() {
-            return Err(Problem::Twice(letters).at(place));
-        }
-        let name = match letters.as_str() {
-            "WELDON" => Some(weld_name(scanner, place)?),
-            _ => None,
-        };
-        block.weld = Some((name, place));
-        return Ok(true);
-    }
-    let Some((name, code)) = KEYWORDS.iter().find(|(name, _)| *name == letters) else {
-        scanner.go_back(start);
-        return Ok(false);
-    };
-    if *code == Some(Code::Hint) {
-        add(block, CodeWord::hint(name, place))?;
-    } else if let Some(code) = code {
-        let known = CODES.iter().find(|(_, _, own, ..)| own == code);
-        if let Some(&(_, _, code, name, group)) = known {
-            add(
-                block,
-                CodeWord {
-                    code,
-                    name,
-                    place,
-                    group,
-                },
-            )?;
-        }
-    }
-    Ok(true)
+    Ok(None)
 }
 
 /// `=name` behind WELDON.
@@ -363,15 +346,10 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
         Problem::TooLarge(_) => Problem::TooLarge(address.clone()).at(place),
         _ => error,
     };
-    let tool = match sign && address == "T" {
-        true => siemens::tool_name(scanner)?,
-        false => None,
-    };
     let (value, step) = match sign {
-        true if tool.is_some() => (tool, None),
         true => siemens::value(scanner, lookup).map_err(of_word)?,
         // X R1 is not X=R1, but a word without a number.
-        false if scanner.at_siemens_parameter() => (None, None),
+        false if scanner.at_signed_parameter() => (None, None),
         false => (expression::value(scanner, lookup).map_err(of_word)?, None),
     };
     match value {
@@ -384,7 +362,7 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
         }),
         None if letters > 1 && !named => {
             scanner.go_back(start);
-            Err(Problem::UnknownWord(scanner.letters()).at(place))
+            Err(unknown(scanner.letters(), false).at(place))
         }
         None => {
             let sign = if named { "=" } else { "" };
@@ -394,7 +372,11 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
 }
 
 /// Puts a word where it belongs in its block; it may be the `first`.
-fn take(block: &mut Block, word: Word, first: bool) -> Result<(), NcError> {
+fn take(block: &mut Block, mut word: Word, first: bool) -> Result<(), NcError> {
+    if word.named && matches!(word.address.as_str(), "S1" | "M1") {
+        // Of the first spindle, which is the only one.
+        (word.address, word.named) = (word.address[..1].to_owned(), false);
+    }
     match (word.address.as_str(), word.named) {
         ("N", false) => {
             if !first || word.value < 0.0 {
@@ -402,12 +384,18 @@ fn take(block: &mut Block, word: Word, first: bool) -> Result<(), NcError> {
             }
             Ok(())
         }
-        ("G" | "M", false) => add(block, code(&word)?),
+        ("G" | "M", false) => match code(&word) {
+            Err(_) if siemens::is_without_effect(&word.address, word.value) => Ok(()),
+            code => block.add(code?),
+        },
         ("U" | "V" | "W", false) => Err(Problem::NoParallelAxes(word.address).at(word.place)),
         (address, named) => {
             let known: &[&str] = if named { &NAMED_WORDS } else { &WORDS };
             if !known.contains(&address) {
-                return Err(Problem::UnknownWord(word.label()).at(word.place));
+                return match named && siemens::is_without_effect(address, word.value) {
+                    true => Ok(()),
+                    false => Err(unknown(word.address, named).at(word.place)),
+                };
             }
             if block.word(address).is_some() {
                 return Err(Problem::Twice(word.label()).at(word.place));
@@ -418,16 +406,27 @@ fn take(block: &mut Block, word: Word, first: bool) -> Result<(), NcError> {
     }
 }
 
-fn add(block: &mut Block, code: CodeWord) -> Result<(), NcError> {
-    let both = code.group == Group::Coolant && code.code != Code::CoolantOff;
-    if let Some(other) = block.code(code.group)
-        && !(both && other.code != Code::CoolantOff && other.code != code.code)
-    {
-        let (first, second) = (other.name, code.name);
-        return Err(Problem::ModalGroup { first, second }.at(code.place));
+/// Why a word is not understood.
+fn unknown(mut word: String, named: bool) -> Problem {
+    siemens::refused_word(&word).unwrap_or_else(|| {
+        word.push_str(if named { "=" } else { "" });
+        Problem::UnknownWord(word)
+    })
+}
+
+impl Block {
+    /// Puts a code into it, which must not exclude another one.
+    pub(super) fn add(&mut self, code: CodeWord) -> Result<(), NcError> {
+        let both = code.group == Group::Coolant && code.code != Code::CoolantOff;
+        if let Some(other) = self.code(code.group)
+            && !(both && other.code != Code::CoolantOff && other.code != code.code)
+        {
+            let (first, second) = (other.name, code.name);
+            return Err(Problem::ModalGroup { first, second }.at(code.place));
+        }
+        self.codes.push(code);
+        Ok(())
     }
-    block.codes.push(code);
-    Ok(())
 }
 
 fn code(word: &Word) -> Result<CodeWord, NcError> {

@@ -1,9 +1,11 @@
 //! Loops and conditions: which line an O word makes the next one.
 
-use super::error::{NcError, Problem};
+use super::error::{NcError, Problem, SourcePosition};
 use super::flow::{self, Keyword, OWord};
+use super::levels::Called;
 use super::reader::{Reader, no_end};
 use super::scanner::Scanner;
+use super::siemens::structures::Structure;
 use super::subroutines::head;
 
 /// A loop or condition that is open.
@@ -17,27 +19,36 @@ pub(super) enum Open {
     Do(String, u64, u32, u64),
     /// The same of `repeat`, and how many times more.
     Repeat(String, u64, u32, u64),
+    /// Of a Siemens program.
+    Structure(Structure),
 }
 
 impl Open {
-    pub(super) fn label(&self) -> &str {
+    /// Number or name of its O words.
+    fn label(&self) -> &str {
         match self {
             Self::If(label) | Self::While(label, ..) | Self::Do(label, ..) | Self::Repeat(label, ..) => label,
+            Self::Structure(_) => "",
         }
     }
 
     pub(super) fn loops(&self) -> bool {
-        !matches!(self, Self::If(_))
+        match self {
+            Self::Structure(structure) => structure.loops(),
+            open => !matches!(open, Self::If(_)),
+        }
     }
 
-    /// What opens it, and what is missing where it does not end.
-    pub(super) fn ends(&self) -> (&'static str, &'static str) {
-        match self {
+    /// It does not end before `place`, where the text does.
+    pub(super) fn no_end(&self, place: SourcePosition) -> NcError {
+        let (keyword, wanted) = match self {
             Self::If(_) => ("if", "endif"),
             Self::While(..) => ("while", "endwhile"),
             Self::Do(..) => ("do", "while"),
             Self::Repeat(..) => ("repeat", "endrepeat"),
-        }
+            Self::Structure(structure) => return structure.no_end(place),
+        };
+        no_end(self.label().to_owned(), keyword, wanted, place)
     }
 }
 
@@ -54,7 +65,11 @@ impl Reader {
             Keyword::Sub => self
                 .skip_to(word, "sub", &[Keyword::EndSub], "endsub")
                 .map(|_| ()),
-            Keyword::Call => self.enter(&label, Some(&word.arguments), 1, word.place),
+            Keyword::Call => {
+                self.enter(&label, Called::OWord(label.clone()), 1, word.place)?;
+                self.interpreter.parameters.enter(&word.arguments);
+                Ok(())
+            }
             Keyword::Return | Keyword::EndSub => {
                 let value = word.arguments.first().copied();
                 self.leave(value, word)
@@ -164,7 +179,7 @@ impl Reader {
     /// not looked at where the machine is.
     fn check_ends(&self, before: u64, word: &OWord) -> Result<(), NcError> {
         match self.interpreter.conditions() == before {
-            true => Err(Problem::SameAgain(word.label.clone()).at(word.place)),
+            true => Err(Problem::SameAgain(format!("o{}", word.label)).at(word.place)),
             false => Ok(()),
         }
     }

@@ -7,7 +7,9 @@ use super::error::{NcError, Problem};
 use super::program::{AXIS_WORDS, EXTENSION_WORDS};
 
 /// Words that belong to a code; all others stand for themselves.
-const SHARED: [&str; 11] = ["P", "Q", "L", "E", "I", "J", "K", "R", "H", "D", "CR"];
+const SHARED: [&str; 17] = [
+    "P", "Q", "L", "E", "I", "J", "K", "R", "H", "D", "CR", "AR", "TURN", "I1", "J1", "K1", "RPL",
+];
 
 /// The direction of the tool in straight motions after G43.5.
 pub(super) const VECTOR_LETTERS: [&str; 3] = ["I", "J", "K"];
@@ -84,7 +86,7 @@ fn of_motion(word: &Word) -> bool {
         &EXTENSION_WORDS,
         &DIRECTION_WORDS,
         &VECTOR_LETTERS,
-        &["R", "CR"],
+        &["R", "CR", "AR"],
     ];
     words.iter().any(|words| words.contains(&address))
 }
@@ -112,7 +114,9 @@ fn with_vectors(code: Code) -> &'static [&'static str] {
 /// Words that a code may have besides.
 fn may_have(code: Code) -> &'static [&'static str] {
     match code {
-        Code::ArcClockwise | Code::ArcCounterClockwise => &["I", "J", "K", "R", "CR", "P"],
+        Code::ArcClockwise | Code::ArcCounterClockwise => &["I", "J", "K", "R", "CR", "P", "AR", "TURN"],
+        Code::ArcThrough => &["I1", "J1", "K1"],
+        Code::Turn | Code::MoreTurn => &["RPL"],
         Code::UniformNurbs => &["P", "L"],
         Code::KnotNurbs => &["P", "K", "R"],
         Code::Continuous => &["P", "Q"],

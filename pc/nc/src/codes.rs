@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 99] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 114] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -45,10 +45,15 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 99] = [
     ('G', 591, Code::System(7), "G59.1", Group::Offset),
     ('G', 592, Code::System(8), "G59.2", Group::Offset),
     ('G', 593, Code::System(9), "G59.3", Group::Offset),
+    ('G', 600, Code::ExactStop, "G60", Group::PathControl),
     ('G', 610, Code::ExactPath, "G61", Group::PathControl),
     ('G', 611, Code::ExactStop, "G61.1", Group::PathControl),
     ('G', 640, Code::Continuous, "G64", Group::PathControl),
+    ('G', 6410, Code::WithinTolerance, "G641", Group::PathControl),
     ('G', 6420, Code::WithinTolerance, "G642", Group::PathControl),
+    ('G', 6430, Code::WithinTolerance, "G643", Group::PathControl),
+    ('G', 6440, Code::WithinTolerance, "G644", Group::PathControl),
+    ('G', 6450, Code::WithinTolerance, "G645", Group::PathControl),
     ('G', 700, Code::Inches, "G70", Group::Units),
     ('G', 710, Code::Millimetres, "G71", Group::Units),
     ('G', 730, Code::ChipBreaking, "G73", Group::Motion),
@@ -74,7 +79,16 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 99] = [
     ('G', 990, Code::ToRetractLevel, "G99", Group::ReturnLevel),
     ('G', 7000, Code::Inches, "G700", Group::Units),
     ('G', 7100, Code::Millimetres, "G710", Group::Units),
+    ('G', 1100, Code::PoleFromTip, "G110", Group::NonModal),
+    ('G', 1110, Code::Pole, "G111", Group::NonModal),
+    ('G', 1120, Code::PoleFromPole, "G112", Group::NonModal),
     ('G', 1530, Code::MachineAxes, "G153", Group::NonModal),
+    ('G', 5000, Code::NoSystem, "G500", Group::Offset),
+    ('G', 5050, Code::System(5), "G505", Group::Offset),
+    ('G', 5060, Code::System(6), "G506", Group::Offset),
+    ('G', 5070, Code::System(7), "G507", Group::Offset),
+    ('G', 5080, Code::System(8), "G508", Group::Offset),
+    ('G', 5090, Code::System(9), "G509", Group::Offset),
     ('M', 0, Code::Pause, "M0", Group::Stop),
     ('M', 10, Code::OptionalPause, "M1", Group::Stop),
     ('M', 20, Code::End, "M2", Group::Stop),
@@ -85,6 +99,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 99] = [
     ('M', 70, Code::MistOn, "M7", Group::Coolant),
     ('M', 80, Code::FloodOn, "M8", Group::Coolant),
     ('M', 90, Code::CoolantOff, "M9", Group::Coolant),
+    ('M', 170, Code::SubprogramEnd, "M17", Group::Call),
     ('M', 300, Code::End, "M30", Group::Stop),
     ('M', 480, Code::OverridesOn, "M48", Group::Overrides),
     ('M', 600, Code::PalletPause, "M60", Group::Stop),
@@ -105,7 +120,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 99] = [
 ];
 
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 29] = [
+const REFUSED: [(char, u32, &str); 28] = [
     ('G', 70, LATHE),
     ('G', 330, THREADING),
     ('G', 331, THREADING),
@@ -148,11 +163,6 @@ const REFUSED: [(char, u32, &str); 29] = [
         960,
         "constant surface speed is for lathes: write G97 and S in r/min",
     ),
-    (
-        'G',
-        5000,
-        "coordinates without an offset are those of a system that has none: write G54, or G53 with the motion",
-    ),
     ('M', 190, "the spindle is not positioned by programs"),
     ('M', 490, OVERRIDES),
     ('M', 500, OVERRIDES),
@@ -170,8 +180,14 @@ const COMPENSATION: &str =
     "cutter compensation is not supported: let the CAM system put out the path of the tool's centre";
 const OVERRIDES: &str = "programs do not lock the operator's feed override";
 
+/// G501 to G599: coordinate systems of Siemens, of which there are fewer here.
+const FAR_SYSTEMS: std::ops::RangeInclusive<f64> = 5010.0..=5990.0;
+
 /// Why the code `letter` with this number of tenths is refused, if it is known at all.
 pub(super) fn refused(letter: char, tenths: f64) -> Option<&'static str> {
+    if letter == 'G' && FAR_SYSTEMS.contains(&tenths) {
+        return Some("coordinate systems are G54 to G57 and G505 to G509 here: G500 to G599 have no others");
+    }
     let found = REFUSED
         .iter()
         .find(|(own, number, _)| *own == letter && (tenths - f64::from(*number)).abs() < NEAR)?;
@@ -192,6 +208,8 @@ pub enum Code {
     ArcClockwise,
     /// G3.
     ArcCounterClockwise,
+    /// CIP: an arc through a point.
+    ArcThrough,
     /// G4.
     Dwell,
     /// G5: a cubic spline in the plane.
@@ -246,15 +264,31 @@ pub enum Code {
     LocalOffset,
     /// G53, G153, SUPA.
     MachineAxes,
-    /// G54 to G59.3: the coordinate system of this number, from 1.
+    /// TRANS.
+    Shift,
+    /// ATRANS.
+    MoreShift,
+    /// ROT.
+    Turn,
+    /// AROT.
+    MoreTurn,
+    /// G110.
+    PoleFromTip,
+    /// G111.
+    Pole,
+    /// G112.
+    PoleFromPole,
+    /// G500: no coordinate system holds.
+    NoSystem,
+    /// G54 to G59.3, G505 to G509: the coordinate system of this number, from 1.
     System(u8),
     /// G61.
     ExactPath,
-    /// G61.1.
+    /// G61.1, G60.
     ExactStop,
     /// G64.
     Continuous,
-    /// G642: G64 with the default tolerance.
+    /// G641 to G645: G64 with the default tolerance.
     WithinTolerance,
     /// A code of another controller that changes nothing here, which is told.
     Hint,
@@ -352,16 +386,18 @@ pub enum Code {
     Call,
     /// M99.
     Return,
+    /// M17: the end of a subprogram of Siemens.
+    SubprogramEnd,
 }
 
 /// Modal groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
-    /// G0 G1 G2 G3 G5 G5.1 G5.2 G5.3 G6.2 G6.3 and canned cycles.
+    /// G0 G1 G2 G3 G5 G5.1 G5.2 G5.3 G6.2 G6.3, CIP and canned cycles.
     Motion,
     /// G80, which may stand beside a motion.
     CycleEnd,
-    /// G4 G10 G28 G30 G52 G53 G92 and theirs: they hold in their block only.
+    /// G4 G10 G28 G30 G52 G53 G92, TRANS, ROT, G110 and theirs: they hold in their block only.
     NonModal,
     /// G17 G18 G19.
     Plane,
@@ -371,9 +407,9 @@ pub enum Group {
     Compensation,
     /// G43 G43.1 G43.2 G43.4 G43.5 G49.
     ToolLength,
-    /// G54 to G59.3.
+    /// G54 to G59.3, G500, G505 to G509.
     Offset,
-    /// G61 G61.1 G64 G642.
+    /// G60 G61 G61.1 G64 G641 to G645.
     PathControl,
     /// G90 G91.
     Distance,
@@ -401,7 +437,7 @@ pub enum Group {
     Overrides,
     /// M62 to M68.
     Outputs,
-    /// M98 M99.
+    /// M98 M99 M17.
     Call,
     /// ORIAXES, G22, G23, and G5.1 with Q alone.
     Hint,
@@ -410,8 +446,15 @@ pub enum Group {
 impl Code {
     /// As people write it.
     pub fn name(self) -> &'static str {
-        let own = CODES.iter().find(|(_, _, code, ..)| *code == self);
-        own.map_or("", |(_, _, _, name, _)| name)
+        match self {
+            Self::ArcThrough => "CIP",
+            Self::Turn => "ROT",
+            Self::MoreTurn => "AROT",
+            code => {
+                let own = CODES.iter().find(|(_, _, own, ..)| *own == code);
+                own.map_or("", |(_, _, _, name, _)| name)
+            }
+        }
     }
 
     /// G73 and G81 to G89.
@@ -438,6 +481,13 @@ impl Code {
                 | Self::LocalOffset
                 | Self::OffsetHere
                 | Self::OwnLength
+                | Self::Shift
+                | Self::MoreShift
+                | Self::Turn
+                | Self::MoreTurn
+                | Self::PoleFromTip
+                | Self::Pole
+                | Self::PoleFromPole
         )
     }
 }

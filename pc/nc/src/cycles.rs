@@ -282,12 +282,24 @@ impl Interpreter {
     }
 
     fn cycle_feed(&mut self, cycle: &Cycle, level: f64) -> Result<(), NcError> {
+        self.go_to_level(cycle.axis, level, Some(cycle.feed), cycle.place)
+    }
+
+    /// Along an axis to a coordinate \[mm\], with a feed or without as a rapid.
+    pub(super) fn go_to_level(
+        &mut self,
+        axis: usize,
+        level: f64,
+        feed: Option<FeedRate>,
+        place: SourcePosition,
+    ) -> Result<(), NcError> {
         let mut said = [None; AXES];
-        said[cycle.axis] = Some(level);
-        let words = self.tip_words(said, cycle.place)?;
-        if self.learn(&words) {
-            self.feed_motion(Way::Line, words, cycle.feed, cycle.place)?;
+        said[axis] = Some(level);
+        let words = self.tip_words(said, place)?;
+        match (self.learn(&words), feed) {
+            (true, Some(feed)) => self.feed_motion(Way::Line, words, feed, place),
+            (true, None) => self.rapid(Way::Line, words, place),
+            (false, _) => Ok(()),
         }
-        Ok(())
     }
 }

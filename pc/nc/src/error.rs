@@ -51,11 +51,11 @@ pub enum Problem {
     NoNumber(String),
     /// DEF without what follows it.
     #[error(
-        "variables are defined as DEF REAL _NAME, _OTHER=1, with INT and BOOL too; their names begin with _"
+        "variables are defined as DEF REAL NAME, OTHER=1, COUNTS[3], with INT and BOOL too; their names begin with two letters or _"
     )]
     NoDefinition,
-    /// A tool by another name than its number.
-    #[error("tools have numbers here: T=\"1\" or T1")]
+    /// T= without the name of a tool.
+    #[error("T=\"NAME\" needs the name of a tool between quotation marks")]
     ToolName,
     /// A number without a letter.
     #[error("a number without a letter before it")]
@@ -179,7 +179,7 @@ pub enum Problem {
     #[error("more than {0} lines in loops and subroutines: the program does not seem to end")]
     Endless(u64),
     /// A loop in which nothing changes.
-    #[error("the loop o{0} never ends: nothing is set in it that its conditions depend on")]
+    #[error("the loop {0} never ends: nothing is set in it that its conditions depend on")]
     SameAgain(String),
     /// In a file with a subroutine.
     #[error("in {file}: {problem}")]
@@ -227,6 +227,65 @@ pub enum Problem {
     /// R1= beside words.
     #[error("R parameters are set in blocks of their own: write the words of this one in the next")]
     SiemensAlone,
+    /// A value of the controller.
+    #[error("variables of the controller that begin with $ are not known here: write their value")]
+    SystemVariable,
+    /// A text where a number is wanted.
+    #[error("this is a text, where a number is wanted")]
+    TextValue,
+    /// An operator of truths beside a comparison.
+    #[error(
+        "AND, OR, XOR and NOT bind before comparisons on these controllers: write brackets around each comparison"
+    )]
+    ComparisonBrackets,
+    /// MOD of a negative number.
+    #[error("MOD of negative numbers is read differently by controllers: use positive ones")]
+    NegativeRemainder,
+    /// An index that no array has.
+    #[error("{0} is no index or size of an array: they are whole, from 0, and up to 10000")]
+    ArrayIndex(f64),
+    /// FOR without its counter.
+    #[error("FOR needs a variable with its first and its last value: FOR NAME=1 TO 5")]
+    NoCounter,
+    /// More in the line of a statement.
+    #[error("nothing else may stand in the line of this statement")]
+    StatementRest,
+    /// The other end of a structure of Siemens is not there.
+    #[error("{keyword} has no {wanted}")]
+    StructureEnd {
+        /// What is there.
+        keyword: &'static str,
+        /// What is missing.
+        wanted: &'static str,
+    },
+    /// A jump without a target.
+    #[error("a jump needs a label of two characters or more, or a block number: GOTOF NAME, GOTOB N100")]
+    NoTarget,
+    /// The target of a jump is not there.
+    #[error("{0} is not in this program, or not in the direction of the jump")]
+    NoLabel(String),
+    /// A jump into a structure.
+    #[error("a jump must not lead into a loop or condition, nor out of those of O words")]
+    JumpInside,
+    /// A count of passes.
+    #[error("P{0} is not possible: a subprogram or part is run 0 to 9999 times")]
+    Passes(f64),
+    /// A subprogram that is nowhere.
+    #[error(
+        "{0} is not understood: there is no such word, and no subprogram {0}, neither in this program nor as {0}.SPF beside it"
+    )]
+    NoSubprogram(String),
+    /// MCALL of something else than a drilling cycle.
+    #[error("MCALL {0}: only CYCLE81, CYCLE82, CYCLE83, CYCLE85 and CYCLE89 are called after motions")]
+    ModalCall(String),
+    /// More arguments than a subprogram has.
+    #[error("the subprogram takes {most} arguments by its PROC, and {given} are given")]
+    Arguments {
+        /// In the call.
+        given: usize,
+        /// By PROC.
+        most: usize,
+    },
     /// MSG without its text.
     #[error("MSG has a text in quotes and brackets: MSG(\"text\")")]
     NoMessage,

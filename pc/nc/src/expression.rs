@@ -1,8 +1,9 @@
 //! Numbers of a line: literal, from parameters, or computed, as LinuxCNC does.
 
-use super::error::{NcError, Problem, SourcePosition};
+use super::error::{NcError, Problem};
 use super::parameters::{Lookup, Parameter};
 use super::scanner::Scanner;
+use super::siemens::variables;
 
 /// Deepest nesting of brackets and minus signs.
 const DEEPEST: u32 = 64;
@@ -14,21 +15,7 @@ const EQUAL: f64 = 1e-5;
 /// # Errors
 /// What cannot be read or computed. Nothing but a letter, blank or other mark is `None`.
 pub(super) fn value(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Option<f64>, NcError> {
-    real(scanner, lookup, 0)
-}
-
-/// The same behind `=`, where terms need no brackets: `R1*2+5`. With `]` or `)` as the `end` it is behind it.
-pub(super) fn terms(
-    scanner: &mut Scanner,
-    lookup: &mut dyn Lookup,
-    end: Option<char>,
-) -> Result<Option<f64>, NcError> {
-    scanner.skip_blanks();
-    let open = scanner.place();
-    match scanner.peek() {
-        None | Some(';') => Ok(None),
-        _ => chain(scanner, lookup, 0, (open, end)).map(Some),
-    }
+    value_at(scanner, lookup, 0)
 }
 
 /// `#` with its number or name; the scanner is behind the `#`.
@@ -36,7 +23,12 @@ pub(super) fn parameter(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Resul
     parameter_at(scanner, lookup, 0)
 }
 
-fn real(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<Option<f64>, NcError> {
+/// The same inside so many expressions.
+pub(super) fn value_at(
+    scanner: &mut Scanner,
+    lookup: &mut dyn Lookup,
+    depth: u32,
+) -> Result<Option<f64>, NcError> {
     scanner.skip_blanks();
     let place = scanner.place();
     if depth > DEEPEST {
@@ -51,7 +43,7 @@ fn real(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<Op
         return Ok(Some(number));
     }
     scanner.step();
-    Ok(real(scanner, lookup, depth + 1)?.map(|value| sign * value))
+    Ok(value_at(scanner, lookup, depth + 1)?.map(|value| sign * value))
 }
 
 fn unsigned(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<Option<f64>, NcError> {
@@ -66,33 +58,14 @@ fn unsigned(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Resul
             let value = value.ok_or_else(|| parameter.no_value().at(place))?;
             Ok(Some(value))
         }
-        Some('_') => {
-            let place = scanner.place();
-            let parameter = variable(scanner);
-            let value = lookup.value(&parameter);
-            value.ok_or_else(|| parameter.no_value().at(place)).map(Some)
+        Some('_') => variables::value(scanner, lookup, depth).map(Some),
+        Some('R' | 'r') if scanner.at_siemens_parameter(false) => {
+            let parameter = variables::numbered(scanner, lookup, depth)?;
+            Ok(parameter.and_then(|parameter| lookup.value(&parameter)))
         }
-        Some('R' | 'r') if scanner.at_siemens_parameter() => siemens(scanner, lookup).map(Some),
         Some(c) if c.is_ascii_alphabetic() => function(scanner, lookup, depth),
         _ => Ok(None),
     }
-}
-
-/// `_NAME`, a variable of Siemens: the global parameter of that name.
-pub(super) fn variable(scanner: &mut Scanner) -> Parameter {
-    let name = scanner.take(|c| c.is_ascii_alphanumeric() || c == '_');
-    Parameter::Named(name.to_ascii_lowercase())
-}
-
-/// The value of `R1`.
-fn siemens(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<f64, NcError> {
-    let place = scanner.place();
-    scanner.step();
-    let digits = scanner.take(|c| c.is_ascii_digit()).to_owned();
-    let parameter = Parameter::siemens(&digits).ok_or(Problem::SiemensNumber(digits).at(place))?;
-    lookup
-        .value(&parameter)
-        .ok_or(Problem::Undefined(parameter.to_string()).at(place))
 }
 
 fn parameter_at(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<Parameter, NcError> {
@@ -101,7 +74,7 @@ fn parameter_at(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> R
     if scanner.peek() == Some('<') {
         return scanner.name().map(Parameter::Named);
     }
-    let number = real(scanner, lookup, depth + 1)?;
+    let number = value_at(scanner, lookup, depth + 1)?;
     let number = number.ok_or(Problem::NoNumber("#".to_owned()).at(place))?;
     Parameter::numbered(number).ok_or(Problem::ParameterNumber(number).at(place))
 }
@@ -139,18 +112,9 @@ impl Operator {
         }
     }
 
-    /// The operator at the scanner; without an `end` anything but + - * / closes.
-    fn read(scanner: &mut Scanner, end: Option<char>) -> Result<Self, NcError> {
+    /// The operator at the scanner.
+    fn read(scanner: &mut Scanner) -> Result<Self, NcError> {
         scanner.skip_blanks();
-        match (end, scanner.peek()) {
-            (None, Some('+' | '-' | '*' | '/')) => {}
-            (None, _) => return Ok(Self::Close),
-            (Some(end), Some(c)) if c == end => {
-                scanner.step();
-                return Ok(Self::Close);
-            }
-            _ => {}
-        }
         let place = scanner.place();
         let unknown = |scanner: &Scanner| match scanner.peek() {
             Some(c) => Problem::UnknownOperator(c.to_string()).at(place),
@@ -160,6 +124,7 @@ impl Operator {
             Some('+') => Self::Plus,
             Some('-') => Self::Minus,
             Some('/') => Self::Over,
+            Some(']') => Self::Close,
             Some('*') => {
                 scanner.step();
                 if scanner.peek() != Some('*') {
@@ -217,40 +182,22 @@ impl Operator {
     }
 }
 
-/// `[…]`, with the scanner at the bracket.
+/// `[…]`, with the scanner at the bracket. Operators of one strength go from left to right.
 fn bracket(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<f64, NcError> {
     let open = scanner.place();
     scanner.step();
-    chain(scanner, lookup, depth, (open, Some(']')))
-}
-
-/// Values and operators from where they begin up to the `end`. Operators of one strength go from left to right.
-fn chain(
-    scanner: &mut Scanner,
-    lookup: &mut dyn Lookup,
-    depth: u32,
-    (open, end): (SourcePosition, Option<char>),
-) -> Result<f64, NcError> {
-    let mut operand = |scanner: &mut Scanner| -> Result<f64, NcError> {
-        scanner.skip_blanks();
-        let place = scanner.place();
-        // Within [ ] it would be a comment.
-        if scanner.peek() == Some('(') && end != Some(']') && depth < DEEPEST {
-            scanner.step();
-            return chain(scanner, lookup, depth + 1, (place, Some(')')));
-        }
-        real(scanner, lookup, depth + 1)?.ok_or(Problem::NoValue.at(place))
-    };
     // Values and the operators behind them that wait for stronger ones.
     let mut waiting: Vec<(f64, Operator)> = Vec::new();
     loop {
-        let mut value = operand(scanner)?;
         scanner.skip_blanks();
-        if scanner.peek().is_none() && end.is_some() {
+        let place = scanner.place();
+        let mut value = value_at(scanner, lookup, depth + 1)?.ok_or(Problem::NoValue.at(place))?;
+        scanner.skip_blanks();
+        if scanner.peek().is_none() {
             return Err(Problem::OpenBracket.at(open));
         }
         let place = scanner.place();
-        let operator = Operator::read(scanner, end)?;
+        let operator = Operator::read(scanner)?;
         while let Some((before, waits)) = waiting.pop() {
             if waits.strength() < operator.strength() {
                 waiting.push((before, waits));
@@ -282,27 +229,9 @@ fn function(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Resul
         return exists(scanner, lookup).map(Some);
     }
     let x = bracket(scanner, lookup, depth + 1)?;
-    let wrong = |reason| {
-        let (name, value) = (name.clone(), x);
-        Err(Problem::Argument { name, value, reason }.at(place))
-    };
     let value = match name.as_str() {
-        "ABS" => x.abs(),
-        "ACOS" if x.abs() > 1.0 => return wrong("it must be from -1 to 1"),
-        "ACOS" => x.acos().to_degrees(),
-        "ASIN" if x.abs() > 1.0 => return wrong("it must be from -1 to 1"),
-        "ASIN" => x.asin().to_degrees(),
-        "COS" => x.to_radians().cos(),
-        "EXP" => x.exp(),
         "FIX" => x.floor(),
         "FUP" => x.ceil(),
-        "LN" if x <= 0.0 => return wrong("it must be above 0"),
-        "LN" => x.ln(),
-        "ROUND" => x.round(),
-        "SIN" => x.to_radians().sin(),
-        "SQRT" if x < 0.0 => return wrong("it must not be negative"),
-        "SQRT" => x.sqrt(),
-        "TAN" => x.to_radians().tan(),
         "ATAN" => {
             scanner.skip_blanks();
             if scanner.peek() != Some('/') {
@@ -316,13 +245,41 @@ fn function(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Resul
             let under = bracket(scanner, lookup, depth + 1)?;
             x.atan2(under).to_degrees()
         }
-        _ => return Err(Problem::UnknownFunction(name).at(place)),
+        _ => match function_of(&name, x) {
+            Some(value) => value.map_err(|problem| problem.at(place))?,
+            None => return Err(Problem::UnknownFunction(name).at(place)),
+        },
     };
     if value.is_finite() {
         Ok(Some(value))
     } else {
         Err(Problem::NotFinite.at(place))
     }
+}
+
+/// The value of a function of one argument, upper case; nothing if it is none.
+pub(super) fn function_of(name: &str, x: f64) -> Option<Result<f64, Problem>> {
+    let wrong = |reason| {
+        let (name, value) = (name.to_owned(), x);
+        Some(Err(Problem::Argument { name, value, reason }))
+    };
+    Some(Ok(match name {
+        "ABS" => x.abs(),
+        "ACOS" if x.abs() > 1.0 => return wrong("it must be from -1 to 1"),
+        "ACOS" => x.acos().to_degrees(),
+        "ASIN" if x.abs() > 1.0 => return wrong("it must be from -1 to 1"),
+        "ASIN" => x.asin().to_degrees(),
+        "COS" => x.to_radians().cos(),
+        "EXP" => x.exp(),
+        "LN" if x <= 0.0 => return wrong("it must be above 0"),
+        "LN" => x.ln(),
+        "ROUND" => x.round(),
+        "SIN" => x.to_radians().sin(),
+        "SQRT" if x < 0.0 => return wrong("it must not be negative"),
+        "SQRT" => x.sqrt(),
+        "TAN" => x.to_radians().tan(),
+        _ => return None,
+    }))
 }
 
 /// `EXISTS[#<name>]`: 1 if it has a value.

@@ -36,12 +36,15 @@ impl Interpreter {
         if let Some(code) = block.code(Group::PathControl)
             && code.code == Code::WithinTolerance
         {
-            let text = "G642 is taken as G64 with the default tolerance: tolerances of single axes are not known here";
-            self.tell_once(text.to_owned(), code.place);
+            let name = code.name;
+            let text = format!(
+                "{name} is taken as G64 with CTOL or the default tolerance: distances and tolerances of single axes are not known here"
+            );
+            self.tell_once(text, code.place);
         }
     }
 
-    fn tell_once(&mut self, text: String, place: SourcePosition) {
+    pub(super) fn tell_once(&mut self, text: String, place: SourcePosition) {
         if self.notices.iter().all(|notice| notice.text != text) {
             self.notice(text, place);
         }

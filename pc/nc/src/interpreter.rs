@@ -11,10 +11,11 @@ use super::nurbs::{OpenNurbs, Progress};
 use super::offsets::{Coordinates, Offsets};
 use super::outputs::{Pending, Spindle, coolant, dwell, output};
 use super::parameters::Parameters;
-use super::program::{EXTENSION_WORDS, Motion, Notice, Program, ProgramAction, ProgramPath};
+use super::program::{AXIS_WORDS, EXTENSION_WORDS, Motion, Notice, Program, ProgramAction, ProgramPath};
 use super::reading::RemainingBlocks;
 use super::saved_modes::Saved;
 use super::setup::Setup;
+use super::siemens::drilling::Drilling;
 use super::tool_length::{Tools, tool};
 use super::waits::Wait;
 use shared::io::{AXES, SIDES};
@@ -52,6 +53,12 @@ pub(super) struct Interpreter {
     /// The tool that is known to be in the machine.
     pub(super) tool_in: Option<u32>,
     pub(super) tools: Tools,
+    /// Tools that were called by name.
+    pub(super) tool_names: Vec<String>,
+    /// MCALL: a hole after every motion.
+    pub(super) modal_drilling: Option<Drilling>,
+    /// The pole of AP= and RP= in coordinates of the program \[mm\].
+    pub(super) pole: [f64; 3],
     pub(super) pending: Vec<Pending>,
     /// Waits before the next path, and before its dwell.
     pub(super) waits: Vec<Wait>,
@@ -98,6 +105,9 @@ impl Interpreter {
             tool_numbers: [0; 2],
             tool_in: None,
             tools: Tools::new(&setup.tools),
+            tool_names: Vec::new(),
+            modal_drilling: None,
+            pole: [0.0; 3],
             pending: Vec::new(),
             waits: Vec::new(),
             said: None,
@@ -127,7 +137,7 @@ impl Interpreter {
         for (comment, place) in &block.comments {
             self.remark(comment, *place);
         }
-        if block.codes.is_empty() && block.words.is_empty() && block.weld.is_none() {
+        if block.settings_alone() {
             return Ok(());
         }
         if let Some(open) = &mut self.nurbs {
@@ -136,7 +146,8 @@ impl Interpreter {
             }
             return Ok(());
         }
-        let block = &*self.without_polar(block)?;
+        let block = self.without_polar(block)?;
+        let block = &*self.without_pole(block)?;
         let own_motion = block.code(Group::Motion).map(|code| code.code);
         let ends_cycle = block.has(Code::CancelMotion);
         let takes = block.codes.iter().find(|code| code.code.takes_axes());
@@ -184,6 +195,12 @@ impl Interpreter {
         if !feeds {
             self.modal.check_no_feed(block)?;
         }
+        if let Some(drilling) = &self.modal_drilling
+            && takes.is_none()
+            && let Some(word) = AXIS_WORDS.iter().find_map(|name| block.word(name))
+        {
+            self.drill(&drilling.clone(), word.place)?;
+        }
         if let Some(code) = block.code(Group::Stop) {
             self.stop(*code)?;
         }
@@ -202,6 +219,9 @@ impl Interpreter {
         }
         if let Some(t) = block.word("T") {
             self.tool_numbers[0] = tool(t)?;
+        }
+        if let Some((name, place)) = &block.tool_name {
+            self.tool_numbers[0] = self.tool_of_name(name, *place);
         }
         if let Some(code) = block.code(Group::Tool).filter(|code| code.code == Code::SetTool) {
             let missing = Problem::Missing {
@@ -399,7 +419,7 @@ impl Interpreter {
 fn takes_own_distances(code: Code) -> bool {
     matches!(
         code,
-        Code::Rapid | Code::Feed | Code::ArcClockwise | Code::ArcCounterClockwise
+        Code::Rapid | Code::Feed | Code::ArcClockwise | Code::ArcCounterClockwise | Code::ArcThrough
     )
 }
 

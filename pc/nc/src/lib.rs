@@ -22,6 +22,7 @@ mod expression;
 mod flow;
 mod hints;
 mod interpreter;
+mod levels;
 mod lookup;
 mod modal;
 mod motion;

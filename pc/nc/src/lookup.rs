@@ -87,6 +87,10 @@ impl Lookup for Interpreter {
                 value => value,
             },
             Parameter::Siemens(_) => self.parameters.get(parameter),
+            Parameter::Variable { name, .. } => match self.parameters.get(parameter) {
+                None if name.starts_with('_') => self.system(&name.to_ascii_lowercase()),
+                value => value,
+            },
         }
     }
 }
@@ -166,8 +170,7 @@ impl Interpreter {
     /// Gives a parameter a value, by the program.
     pub(super) fn set(&mut self, parameter: &Parameter, value: f64) -> Result<(), Problem> {
         let Parameter::Numbered(number) = parameter else {
-            self.parameters.set(parameter, value);
-            return Ok(());
+            return self.parameters.set(parameter, value);
         };
         // Some of these are counted once more below.
         self.parameters.changes += 1;
@@ -183,17 +186,18 @@ impl Interpreter {
             None if READ_ONLY.contains(number) || *number == 0 => {
                 return Err(Problem::ReadOnly(parameter.to_string()));
             }
-            None => self.parameters.set(parameter, value),
+            None => self.parameters.set(parameter, value)?,
         }
         Ok(())
     }
 
     /// What a subroutine returned.
     pub(super) fn set_result(&mut self, value: Option<f64>) {
-        let named = |name: &str| Parameter::Named(name.to_owned());
-        self.parameters.set(&named("_value"), value.unwrap_or(0.0));
         let returned = f64::from(u8::from(value.is_some()));
-        self.parameters.set(&named("_value_returned"), returned);
+        for (name, value) in [("_value", value.unwrap_or(0.0)), ("_value_returned", returned)] {
+            // Named parameters take any value.
+            let _ = self.parameters.set(&Parameter::Named(name.to_owned()), value);
+        }
     }
 
     /// `text` with the values of its parameters; what is none stays as it is.

@@ -40,6 +40,8 @@ pub(super) struct Modal {
     pub(super) vectors: bool,
     pub(super) plane: Plane,
     pub(super) control: PathControl,
+    /// CTOL, the tolerance of G641 to G645 \[mm\].
+    contour_tolerance: Option<f64>,
     /// G20.
     pub(super) inches: bool,
     /// G91.
@@ -62,6 +64,7 @@ impl Modal {
             vectors: false,
             plane: setup.plane,
             control: setup.control,
+            contour_tolerance: None,
             inches: setup.inches,
             incremental: false,
             absolute_centres: false,
@@ -87,7 +90,8 @@ impl Modal {
                 _ => {}
             }
         }
-        if let Some(f) = block.word("F") {
+        let seconds = block.has(Code::Dwell) && claims.word(Code::Dwell, "P").is_none();
+        if let Some(f) = block.word("F").filter(|_| !seconds) {
             if f.value < 0.0 || (f.value == 0.0 && self.feed_mode == FeedMode::InverseTime) {
                 return Err(f.value_error("the feed must be above 0"));
             }
@@ -115,7 +119,7 @@ impl Modal {
                 Code::ExactPath => self.control = PathControl::ExactPath,
                 Code::ExactStop => self.control = PathControl::ExactStop,
                 Code::Continuous => self.control = self.blend(claims)?,
-                Code::WithinTolerance => self.control = within_tolerance(setup),
+                Code::WithinTolerance => self.control = self.within_tolerance(setup),
                 Code::UniformNurbsEnd | Code::KnotNurbsEnd => {
                     // All of a G6.2 may have been said before its G6.3.
                     if !(std::mem::take(&mut self.closed) && code.code == Code::KnotNurbsEnd) {
@@ -132,6 +136,9 @@ impl Modal {
                 // The others have their own places, or confirm the only state there is.
                 _ => {}
             }
+        }
+        if let Some(tolerance) = block.word("CTOL") {
+            self.set_contour_tolerance(tolerance.value, setup);
         }
         Ok(())
     }
@@ -199,6 +206,27 @@ impl Modal {
         self.feed.map_or(0.0, |feed| feed.written)
     }
 
+    /// CTOL=: the tolerance where the path control has one; what is not above 0 takes it away.
+    fn set_contour_tolerance(&mut self, tolerance: f64, setup: &Setup) {
+        self.contour_tolerance = (tolerance > 0.0).then_some(tolerance * self.unit());
+        if matches!(self.control, PathControl::Blend(_)) {
+            self.control = self.within_tolerance(setup);
+        }
+    }
+
+    /// G641 to G645: within CTOL, the tolerance that programs begin with, or the one of a G64 without P.
+    fn within_tolerance(&self, setup: &Setup) -> PathControl {
+        let tolerance = match setup.control {
+            PathControl::Blend(blend) => blend.tolerance,
+            _ => None,
+        };
+        let tolerance = self.contour_tolerance.or(tolerance);
+        PathControl::Blend(Blend {
+            tolerance: tolerance.or(Some(Blend::DEFAULT_TOLERANCE_MM)),
+            smoothing: None,
+        })
+    }
+
     /// G64 with its P and Q.
     fn blend(&self, claims: &Claims) -> Result<PathControl, NcError> {
         let [p, q] = ["P", "Q"].map(|word| claims.word(Code::Continuous, word));
@@ -218,18 +246,6 @@ impl Modal {
     }
 }
 
-/// G642: within the tolerance that programs begin with, or the one of a G64 without P.
-fn within_tolerance(setup: &Setup) -> PathControl {
-    let tolerance = match setup.control {
-        PathControl::Blend(blend) => blend.tolerance,
-        _ => None,
-    };
-    PathControl::Blend(Blend {
-        tolerance: tolerance.or(Some(Blend::DEFAULT_TOLERANCE_MM)),
-        smoothing: None,
-    })
-}
-
 fn is_motion(code: Code) -> bool {
     matches!(
         code,
@@ -237,6 +253,7 @@ fn is_motion(code: Code) -> bool {
             | Code::Feed
             | Code::ArcClockwise
             | Code::ArcCounterClockwise
+            | Code::ArcThrough
             | Code::CubicSpline
             | Code::QuadraticSpline
             | Code::UniformNurbs

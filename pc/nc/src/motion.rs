@@ -1,7 +1,7 @@
 //! Motions: from the words of a block to where the tip or the axes go.
 
 use super::arc;
-use super::block::Block;
+use super::block::{Block, Word};
 use super::claims::Claims;
 use super::codes::Code;
 use super::direction::DIRECTION_WORDS;
@@ -197,6 +197,7 @@ impl Interpreter {
             return self.canned_cycle(block, claims, mode, place);
         }
         let mut said = self.said(block)?;
+        let form = self.opening_angle(claims, mode, &mut said)?;
         self.fill_in_rotary(&mut said);
         let mut words = self.tip_words(said, place)?;
         if let Some((direction, place)) = direction {
@@ -222,7 +223,8 @@ impl Interpreter {
         let way = match mode {
             Code::Feed => Way::Line,
             Code::CubicSpline | Code::QuadraticSpline => self.spline(block, claims, mode, place, &said)?,
-            _ => Way::Arc(self.arc(claims, mode, place)?),
+            Code::ArcThrough => Way::Arc(self.arc_through(block, &said, place)?),
+            _ => Way::Arc(self.arc(claims, mode, place, form)?),
         };
         if mode != Code::CubicSpline {
             self.spline_end = None;
@@ -248,21 +250,33 @@ impl Interpreter {
     }
 
     /// The arc of G2 or G3.
-    fn arc(&mut self, claims: &Claims, mode: Code, place: SourcePosition) -> Result<ArcWay, NcError> {
+    fn arc(
+        &mut self,
+        claims: &Claims,
+        mode: Code,
+        place: SourcePosition,
+        known: Option<ArcForm>,
+    ) -> Result<ArcWay, NcError> {
         let plane = self.modal.plane;
-        let mut way = arc::way(claims, mode, plane, place)?;
-        let unit = self.modal.unit();
+        let mut way = arc::way(claims, mode, plane, place, known)?;
         if self.offsets.turned() && plane != Plane::Xy {
             return Err(Problem::TiltedArc.at(place));
         }
         way.form = match way.form {
-            ArcForm::Radius(radius) => ArcForm::Radius(radius * unit),
-            ArcForm::Centre(offset) => {
-                let mut offset = offset.map(|value| value * unit);
-                if self.modal.absolute_centres {
-                    let in_plane: Vec<usize> = (0..3).filter(|axis| *axis != plane.axis()).collect();
-                    let now = self.programmed(&in_plane, place)?;
-                    in_plane.iter().for_each(|axis| offset[*axis] -= now[*axis]);
+            // That of an opening angle is in mm.
+            ArcForm::Radius(radius) if known.is_none() => ArcForm::Radius(radius * self.modal.unit()),
+            ArcForm::Radius(radius) => ArcForm::Radius(radius),
+            ArcForm::Centre(_) => {
+                let words = arc::CENTRE_WORDS.map(|name| claims.word(mode, name));
+                let [a, b] = plane.axes();
+                let own = |word: Option<&Word>| word.is_some_and(|word| word.step == Some(false));
+                let now = match self.modal.absolute_centres || words.into_iter().any(own) {
+                    true => self.programmed(&[a.min(b), a.max(b)], place)?,
+                    false => Coordinates::default(),
+                };
+                let mut offset = [0.0; 3];
+                for axis in [a, b] {
+                    offset[axis] = self.to_centre(words[axis], now[axis]);
                 }
                 [offset[0], offset[1]] = self.offsets.direction([offset[0], offset[1]]);
                 ArcForm::Centre(offset)

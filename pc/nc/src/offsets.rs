@@ -1,11 +1,14 @@
 //! From coordinates of the program to the tip: coordinate systems, G52 and G92 (RS274/NGC as LinuxCNC has it).
 //!
-//! tip = offset of the system + rotation about Z · (programmed + local offset); rotary axes have offsets alone.
+//! tip = offset of the system + rotation about Z · (local offset + offset of the frame + its rotation · programmed); rotary axes
+//! have offsets alone. The frame is that of TRANS and ROT in Siemens programs.
 
 use shared::io::AXES;
 
 /// Coordinate systems, G54 to G59.3.
 pub(super) const SYSTEMS: usize = 9;
+/// Index of the one without an offset, G500, which nothing sets.
+pub(super) const NO_SYSTEM: usize = SYSTEMS;
 
 /// X Y Z \[mm\], A B C \[deg\].
 pub(super) type Coordinates = [f64; AXES];
@@ -18,16 +21,32 @@ pub(super) struct System {
     pub(super) rotation: f64,
 }
 
+impl System {
+    /// Goes on by an offset in its own coordinates.
+    pub(super) fn shift(&mut self, by: &Coordinates) {
+        let [x, y] = turn([by[0], by[1]], self.rotation);
+        self.offset[0] += x;
+        self.offset[1] += y;
+        (2..AXES).for_each(|axis| self.offset[axis] += by[axis]);
+    }
+
+    fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// All offsets.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Offsets {
-    pub(super) systems: [System; SYSTEMS],
+    pub(super) systems: [System; SYSTEMS + 1],
     /// Index of the one that holds.
     pub(super) active: usize,
     /// G52 and G92, as they are kept.
     pub(super) local: Coordinates,
     /// Whether that holds.
     pub(super) local_on: bool,
+    /// TRANS and ROT.
+    pub(super) frame: System,
 }
 
 impl Offsets {
@@ -42,25 +61,39 @@ impl Offsets {
 
     /// Whether X and Y of the program are not along those of the tip.
     pub(super) fn turned(&self) -> bool {
-        self.system().rotation != 0.0
+        self.rotation() != 0.0
+    }
+
+    /// Of programmed coordinates about Z \[deg\].
+    fn rotation(&self) -> f64 {
+        self.system().rotation + self.frame.rotation
+    }
+
+    /// Whether TRANS or ROT hold.
+    pub(super) fn has_frame(&self) -> bool {
+        !self.frame.is_none()
     }
 
     /// A direction in the plane X Y, turned with the system.
     pub(super) fn direction(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        turn([x, y], self.system().rotation)
+        turn([x, y], self.rotation())
     }
 
     pub(super) fn to_tip(&self, programmed: &Coordinates) -> Coordinates {
         let local = self.local_now();
-        let mut tip: Coordinates = std::array::from_fn(|i| programmed[i] + local[i]);
-        [tip[0], tip[1]] = self.direction([tip[0], tip[1]]);
+        let mut framed = self.frame;
+        framed.shift(programmed);
+        let mut tip: Coordinates = std::array::from_fn(|i| framed.offset[i] + local[i]);
+        [tip[0], tip[1]] = turn([tip[0], tip[1]], self.system().rotation);
         std::array::from_fn(|i| tip[i] + self.system().offset[i])
     }
 
     pub(super) fn to_programmed(&self, tip: &Coordinates) -> Coordinates {
         let local = self.local_now();
         let from_system = self.in_system(tip);
-        std::array::from_fn(|i| from_system[i] - local[i])
+        let mut own = std::array::from_fn(|i| from_system[i] - local[i] - self.frame.offset[i]);
+        [own[0], own[1]] = turn([own[0], own[1]], -self.frame.rotation);
+        own
     }
 
     /// Coordinates in the system, without the local offset.
@@ -92,6 +125,19 @@ mod tests {
         };
         offsets.active = 2;
         (offsets.local, offsets.local_on) = ([1.0, 2.0, 3.0, 4.0, 5.0, 6.0], true);
+        let there = |offsets: &Offsets| {
+            let programmed = [7.0, -3.0, 2.0, 1.0, 0.0, 9.0];
+            let back = offsets.to_programmed(&offsets.to_tip(&programmed));
+            assert!(
+                (0..6).all(|i| (back[i] - programmed[i]).abs() < 1e-12),
+                "{back:?}"
+            );
+        };
+        offsets.frame.shift(&[4.0, 3.0, 1.0, 0.0, 0.0, 0.0]);
+        offsets.frame.rotation = 20.0;
+        offsets.frame.shift(&[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        there(&offsets);
+        offsets.frame = System::default();
         let tip = offsets.to_tip(&[10.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let (sin, cos) = 30f64.to_radians().sin_cos();
         let expected = [

@@ -214,7 +214,9 @@ pub(super) fn dwell(block: &Block, claims: &Claims) -> Result<Option<(f64, Sourc
         code: code.name,
         word: "P",
     };
-    let p = claims.word(Code::Dwell, "P").ok_or(missing.at(code.place))?;
+    // Siemens has F for it.
+    let time = claims.word(Code::Dwell, "P").or(block.word("F"));
+    let p = time.ok_or(missing.at(code.place))?;
     if !(0.0..=LONGEST_DWELL_S).contains(&p.value) {
         return Err(p.value_error("the time must be from 0 to 86400 s (a day)"));
     }

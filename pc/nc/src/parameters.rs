@@ -23,6 +23,56 @@ pub(super) enum Parameter {
     Named(String),
     /// R0 to R299: the same ones in all of a program.
     Siemens(u16),
+    /// A variable of Siemens, upper case: of the program that defines it, else the global one of this name if it begins with `_`.
+    Variable {
+        /// Its name.
+        name: String,
+        /// Element of an array, from 0.
+        index: u32,
+    },
+}
+
+/// Type of a variable of Siemens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// REAL.
+    Real,
+    /// INT.
+    Whole,
+    /// BOOL.
+    Truth,
+}
+
+/// A variable of Siemens with its elements, of which an array has several.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Variable {
+    kind: Kind,
+    values: Vec<f64>,
+}
+
+impl Variable {
+    pub(super) fn new(kind: Kind, values: Vec<f64>) -> Self {
+        let mut variable = Self { kind, values };
+        for index in 0..variable.values.len() {
+            variable.set(index as u32, variable.values[index]);
+        }
+        variable
+    }
+
+    fn get(&self, index: u32) -> Option<f64> {
+        self.values.get(index as usize).copied()
+    }
+
+    /// Gives an element a value of its type; whether there is such an element.
+    fn set(&mut self, index: u32, value: f64) -> bool {
+        let of_kind = match self.kind {
+            Kind::Real => value,
+            Kind::Whole => value.round(),
+            Kind::Truth => f64::from(u8::from(value != 0.0)),
+        };
+        let element = self.values.get_mut(index as usize);
+        element.map(|element| *element = of_kind).is_some()
+    }
 }
 
 impl Parameter {
@@ -54,6 +104,8 @@ impl fmt::Display for Parameter {
             Self::Numbered(number) => write!(f, "#{number}"),
             Self::Named(name) => write!(f, "#<{name}>"),
             Self::Siemens(number) => write!(f, "R{number}"),
+            Self::Variable { name, index: 0 } => write!(f, "{name}"),
+            Self::Variable { name, index } => write!(f, "{name}[{index}]"),
         }
     }
 }
@@ -91,7 +143,7 @@ impl Lookup for InBlock<'_> {
     fn value(&mut self, parameter: &Parameter) -> Option<f64> {
         let set = self.settings.iter().rev().find(|(own, _)| own == parameter);
         match (parameter, set) {
-            (Parameter::Siemens(_), Some((_, value))) => Some(*value),
+            (Parameter::Siemens(_) | Parameter::Variable { .. }, Some((_, value))) => Some(*value),
             _ => self.before.value(parameter),
         }
     }
@@ -109,6 +161,7 @@ impl Lookup for InBlock<'_> {
 struct Level {
     own: [f64; OWN as usize],
     named: BTreeMap<String, f64>,
+    variables: BTreeMap<String, Variable>,
 }
 
 /// Values that programs set.
@@ -166,14 +219,26 @@ impl Parameters {
             Parameter::Named(name) if name.starts_with('_') => self.global.get(name).copied(),
             Parameter::Named(name) => level.named.get(name).copied(),
             Parameter::Siemens(number) => Some(self.siemens.get(number).copied().unwrap_or(0.0)),
+            Parameter::Variable { name, index } => match level.variables.get(name) {
+                Some(variable) => variable.get(*index),
+                None => self.get(&global(name)?),
+            },
+        }
+    }
+
+    /// Defines a variable in the innermost program.
+    pub(super) fn define(&mut self, name: String, variable: Variable) {
+        self.changes += 1;
+        if let Some(level) = self.levels.last_mut() {
+            level.variables.insert(name, variable);
         }
     }
 
     /// Gives one a value.
-    pub(super) fn set(&mut self, parameter: &Parameter, value: f64) {
+    pub(super) fn set(&mut self, parameter: &Parameter, value: f64) -> Result<(), Problem> {
         self.changes += 1;
         let Some(level) = self.levels.last_mut() else {
-            return;
+            return Ok(());
         };
         match parameter {
             Parameter::Numbered(number @ 1..=OWN) => level.own[*number as usize - 1] = value,
@@ -189,6 +254,24 @@ impl Parameters {
             Parameter::Siemens(number) => {
                 self.siemens.insert(*number, value);
             }
+            Parameter::Variable { name, index } => {
+                let is_set = match (level.variables.get_mut(name), global(name)) {
+                    (Some(variable), _) => variable.set(*index, value),
+                    (None, Some(global)) => return self.set(&global, value),
+                    (None, None) => false,
+                };
+                return match is_set {
+                    true => Ok(()),
+                    false => Err(Problem::Undefined(parameter.to_string())),
+                };
+            }
         }
+        Ok(())
     }
+}
+
+/// The global parameter that a variable is where it is not defined.
+fn global(name: &str) -> Option<Parameter> {
+    let global = Parameter::Named(name.to_ascii_lowercase());
+    name.starts_with('_').then_some(global)
 }

@@ -197,6 +197,15 @@ impl Plane {
             Self::Yz => 0,
         }
     }
+
+    /// Indices of its own axes; a positive turn leads from the first to the second.
+    pub(crate) fn axes(self) -> [usize; 2] {
+        match self {
+            Self::Xy => [0, 1],
+            Self::Zx => [2, 0],
+            Self::Yz => [1, 2],
+        }
+    }
 }
 
 /// Centre or radius of an arc.

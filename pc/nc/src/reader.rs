@@ -1,55 +1,31 @@
 //! Lines of a program one after the other: loops, conditions and subroutines decide which is the next.
 
-use super::block::{Block, Parsed, Word, parse};
+use super::block::{Parsed, parse};
 use super::branches::Open;
-use super::codes::{Code, Group};
 use super::error::{NcError, Problem, SourcePosition};
-use super::flow::OWord;
 use super::interpreter::Interpreter;
+use super::levels::{Called, Level};
 use super::parameters::Parameter;
 use super::program::Program;
 use super::setup::Options;
+use super::siemens::calls;
+use super::siemens::labels::Labels;
 use super::source::{Lines, Source};
-use super::subroutines::{self, Found};
+use super::subroutines::Found;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Deepest nesting of subroutines.
-const DEEPEST: usize = 32;
 /// Most lines that are read inside loops and subroutines, with those that are passed over.
 const MOST_LINES: u64 = 1_000_000;
-
-/// The main program, or a subroutine that runs.
-#[derive(Clone)]
-pub(super) struct Level {
-    source: Source,
-    /// Bytes and lines before the next one.
-    pub(super) offset: u64,
-    pub(super) line: u32,
-    pub(super) open: Vec<Open>,
-    /// Name of the file, if that is not the program's.
-    file: Option<String>,
-    /// How it was called; the main program was not.
-    call: Option<Call>,
-}
-
-#[derive(Clone)]
-struct Call {
-    /// Number or name of the subroutine.
-    label: String,
-    /// It has parameters of its own, as those of O words have.
-    own_parameters: bool,
-    /// Where it begins, and how many times more it is to run (M98 L).
-    begins: (u64, u32),
-    again: u32,
-}
 
 /// How far a program has been run.
 #[derive(Clone)]
 pub(super) struct Position {
     /// The innermost subroutine last; the main program is always there.
-    levels: Vec<Level>,
-    found: BTreeMap<String, Found>,
+    pub(super) levels: Vec<Level>,
+    pub(super) found: BTreeMap<String, Found>,
+    /// Labels of programs, by file, the lines before them and their last one.
+    pub(super) labels: BTreeMap<(Option<String>, u32, u32), Arc<Labels>>,
     /// Anything but blank lines was seen.
     seen: bool,
     /// Lines that were run.
@@ -91,7 +67,7 @@ pub(super) enum Kind {
     Blank,
     /// Left out by block delete.
     Deleted,
-    /// An O word.
+    /// An O word, or a statement of Siemens.
     Flow,
     /// All else.
     Block,
@@ -103,7 +79,7 @@ impl Kind {
             (Parsed::Blank, None | Some(';')) | (Parsed::Percent, _) => Self::Blank,
             (Parsed::Blank, Some('/')) => Self::Deleted,
             (Parsed::Block(block), _) if block.is_comment() => Self::Blank,
-            (Parsed::Flow(_), _) => Self::Flow,
+            (Parsed::Flow(_) | Parsed::Statement(_), _) => Self::Flow,
             _ => Self::Block,
         }
     }
@@ -114,7 +90,7 @@ pub(super) struct Reader {
     pub(super) position: Position,
     /// Of the innermost level.
     lines: Lines,
-    options: Options,
+    pub(super) options: Options,
     pub(super) interpreter: Interpreter,
     /// What conditions could depend on before the line that is read.
     pub(super) conditions_before: u64,
@@ -129,12 +105,14 @@ impl Reader {
             offset: 0,
             line: 0,
             open: Vec::new(),
+            repeats_to: 0,
             file: None,
             call: None,
         };
         let position = Position {
             levels: vec![main],
             found: BTreeMap::new(),
+            labels: BTreeMap::new(),
             seen: false,
             executed: 0,
             repeated: 0,
@@ -158,7 +136,7 @@ impl Reader {
     }
 
     /// Goes on reading where the innermost level is.
-    fn reopen(&mut self) {
+    pub(super) fn reopen(&mut self) {
         if let Some(level) = self.position.levels.last() {
             self.lines = level.source.lines(level.offset);
         }
@@ -171,11 +149,14 @@ impl Reader {
 
     /// The next line of this level.
     pub(super) fn next_line(&mut self) -> Result<Option<String>, NcError> {
+        let called = self.position.depth() > 0;
+        if called && self.level().line >= self.level().last_line() {
+            return Ok(None);
+        }
         let read = self.lines.next();
         let offset = self.lines.offset;
-        let called = self.position.depth() > 0;
         let level = self.level();
-        let may_repeat = called || level.open.iter().any(Open::loops);
+        let may_repeat = called || level.open.iter().any(Open::loops) || level.line < level.repeats_to;
         level.offset = offset;
         level.line += 1;
         let line = level.line;
@@ -215,15 +196,15 @@ impl Reader {
             return Ok(false);
         }
         let Some(text) = self.next_line()? else {
-            self.end_of_text()?;
-            return Ok(false);
+            return self.end_of_text();
         };
         let here = self.position.here();
         self.position.executed += 1;
         self.conditions_before = self.interpreter.conditions();
         let parsed = parse(&text, here.line, self.options.block_delete, &mut self.interpreter)?;
         let seen = self.position.seen;
-        self.position.seen |= parsed != Parsed::Blank;
+        // Some archives have a tape mark behind the header of the program.
+        self.position.seen |= parsed != Parsed::Blank && (seen || !calls::is_archive_header(&text));
         let mut ran = Ran {
             kind: Kind::of(&parsed, &text),
             text,
@@ -235,9 +216,14 @@ impl Reader {
                 self.interpreter.finish("%", here)?;
                 return Ok(false);
             }
+            Parsed::Percent if self.is_named() => self.leave_again()?,
             Parsed::Percent => {}
             Parsed::Flow(word) => self.flow(&word)?,
-            Parsed::Block(block) => {
+            Parsed::Statement(statement) => self.statement(statement)?,
+            Parsed::Block(mut block) => {
+                if self.is_named() {
+                    block.end_as_subprogram();
+                }
                 self.interpreter.block(&block)?;
                 self.call_of(&block)?;
                 ran.settings = block.settings;
@@ -252,13 +238,19 @@ impl Reader {
         self.ran.take()
     }
 
-    /// The text of the main program ends without an M2, which is told; that of a subroutine must not.
-    fn end_of_text(&mut self) -> Result<(), NcError> {
+    /// The text of the main program ends without an M2, which is told; that of a subroutine must not, but in Siemens programs.
+    /// Whether the program goes on.
+    fn end_of_text(&mut self) -> Result<bool, NcError> {
         let here = self.position.here();
         if let Some(open) = self.level().open.last() {
-            let (keyword, wanted) = open.ends();
-            let label = open.label().to_owned();
-            return Err(no_end(label, keyword, wanted, here));
+            return Err(open.no_end(here));
+        }
+        if matches!(
+            self.level().called(),
+            Some(Called::Name { .. } | Called::Part { .. })
+        ) {
+            self.leave_again()?;
+            return Ok(true);
         }
         if self.position.levels.len() > 1 {
             let (label, keyword, wanted) = (String::new(), "sub", "endsub, return or M99");
@@ -268,7 +260,8 @@ impl Reader {
             let text = "the program ends without M2 or M30: it is taken to end here".to_owned();
             self.interpreter.notice(text, here);
         }
-        self.interpreter.finish("the end of the program", here)
+        self.interpreter.finish("the end of the program", here)?;
+        Ok(false)
     }
 
     /// The program that was read.
@@ -286,136 +279,6 @@ impl Reader {
         let level = self.level();
         (level.offset, level.line) = (offset, line);
         self.reopen();
-    }
-
-    /// M98 and M99.
-    fn call_of(&mut self, block: &Block) -> Result<(), NcError> {
-        let Some(code) = block.code(Group::Call) else {
-            return Ok(());
-        };
-        self.interpreter.branches = true;
-        if code.code == Code::Return {
-            return self.leave_numbered(code.place);
-        }
-        let Some(p) = block.word("P") else {
-            let (code_name, word) = ("M98", "P");
-            return Err(Problem::Missing {
-                code: code_name,
-                word,
-            }
-            .at(code.place));
-        };
-        let times = |word: &Word| {
-            let whole = word.value.fract() == 0.0 && (0.0..=1e6).contains(&word.value);
-            let wrong = word.value_error("a subroutine is repeated 0 to 1000000 times");
-            whole.then_some(word.value as u32).ok_or(wrong)
-        };
-        match block.word("L").map(times).transpose()?.unwrap_or(1) {
-            0 => Ok(()),
-            times => self.enter(&format!("{}", p.value.round()), None, times, code.place),
-        }
-    }
-
-    /// A subroutine begins, with arguments if it has parameters of its own.
-    pub(super) fn enter(
-        &mut self,
-        label: &str,
-        arguments: Option<&[f64]>,
-        times: u32,
-        place: SourcePosition,
-    ) -> Result<(), NcError> {
-        if self.position.levels.len() > DEEPEST {
-            return Err(Problem::CallDepth(DEEPEST).at(place));
-        }
-        let found = self.find(label, place)?;
-        if let Some(arguments) = arguments {
-            self.interpreter.parameters.enter(arguments);
-        }
-        self.position.levels.push(Level {
-            source: found.source,
-            offset: found.offset,
-            line: found.line,
-            open: Vec::new(),
-            file: found.file,
-            call: Some(Call {
-                label: label.to_owned(),
-                own_parameters: arguments.is_some(),
-                begins: (found.offset, found.line),
-                again: times - 1,
-            }),
-        });
-        self.reopen();
-        Ok(())
-    }
-
-    /// A subroutine ends by its O word.
-    pub(super) fn leave(&mut self, value: Option<f64>, word: &OWord) -> Result<(), NcError> {
-        let label = word.label.clone();
-        let Some(call) = &self.level().call else {
-            let (keyword, wanted) = ("return or endsub", "call that led here");
-            return Err(no_end(label, keyword, wanted, word.place));
-        };
-        if call.label != label {
-            // As LinuxCNC takes it; the name may be a slip.
-            let (open, line) = (&call.label, call.begins.1);
-            let text = format!("o{label} ends the subroutine o{open} that begins in line {line}");
-            self.interpreter.notice(text, word.place);
-        }
-        self.pop()?;
-        self.interpreter.set_result(value);
-        Ok(())
-    }
-
-    /// A subroutine ends by M99, or begins again.
-    fn leave_numbered(&mut self, place: SourcePosition) -> Result<(), NcError> {
-        if self.position.levels.len() == 1 {
-            return Err(Problem::EndlessProgram.at(place));
-        }
-        let again = self
-            .level()
-            .call
-            .as_mut()
-            .filter(|call| call.again > 0)
-            .map(|call| {
-                call.again -= 1;
-                call.begins
-            });
-        match again {
-            Some((offset, line)) => {
-                self.level().open.clear();
-                self.jump(offset, line);
-            }
-            None => self.pop()?,
-        }
-        Ok(())
-    }
-
-    fn pop(&mut self) -> Result<(), NcError> {
-        let level = self.position.levels.pop();
-        if level
-            .and_then(|level| level.call)
-            .is_some_and(|call| call.own_parameters)
-        {
-            self.interpreter.leave()?;
-        }
-        self.reopen();
-        Ok(())
-    }
-
-    /// Where a subroutine begins; the innermost text is searched first.
-    fn find(&mut self, label: &str, place: SourcePosition) -> Result<Found, NcError> {
-        if let Some(found) = self.position.found.get(label) {
-            return Ok(found.clone());
-        }
-        let own = self.position.levels.iter().rev();
-        let mut texts: Vec<_> = own
-            .map(|level| (level.source.clone(), level.file.clone()))
-            .collect();
-        texts.dedup_by(|a, b| a.1 == b.1);
-        let folders = &self.options.setup.folders;
-        let found = subroutines::find(label, texts, folders, &mut self.interpreter, place)?;
-        self.position.found.insert(label.to_owned(), found.clone());
-        Ok(found)
     }
 }
 

@@ -139,11 +139,60 @@ impl<'t> Scanner<'t> {
         None
     }
 
-    /// Whether R and digits stand here, perhaps behind signs.
-    pub(super) fn at_siemens_parameter(&self) -> bool {
+    /// A name: letters, digits and `_`, none at all where no letter stands.
+    pub(super) fn identifier(&mut self) -> &str {
+        match self.peek() {
+            Some(c) if c.is_ascii_alphabetic() || c == '_' => {
+                self.take(|c| c.is_ascii_alphanumeric() || c == '_')
+            }
+            _ => "",
+        }
+    }
+
+    /// Goes over block delete and the number of a block, which it returns.
+    pub(super) fn skip_block_number(&mut self) -> Option<u32> {
+        self.skip_blanks();
+        if self.peek() == Some('/') {
+            self.step();
+            self.skip_blanks();
+        }
+        let start = self.next;
+        if !matches!(self.peek(), Some('N' | 'n')) {
+            return None;
+        }
+        self.step();
+        let number = self.take(|c| c.is_ascii_digit()).parse().ok();
+        if number.is_none() {
+            self.next = start;
+        }
+        self.skip_blanks();
+        number
+    }
+
+    /// Whether an R parameter stands here behind blanks and signs.
+    pub(super) fn at_signed_parameter(&self) -> bool {
         let rest = self.text[self.next..].trim_start_matches(|c: char| c.is_whitespace() || "+-".contains(c));
-        let digits = rest.strip_prefix(['R', 'r']);
-        digits.is_some_and(|digits| digits.starts_with(|c: char| c.is_ascii_digit()))
+        rest.starts_with(['R', 'r']) && rest[1..].starts_with(|c: char| c.is_ascii_digit())
+    }
+
+    /// Whether R and digits stand here, or with `bracket` R and `[`.
+    pub(super) fn at_siemens_parameter(&self, bracket: bool) -> bool {
+        match self.text.as_bytes()[self.next..] {
+            [b'R' | b'r', second, ..] => second.is_ascii_digit() || bracket && second == b'[',
+            _ => false,
+        }
+    }
+
+    /// Whether a name or number that stands here, with its index in brackets, has a single `=` behind it.
+    pub(super) fn is_assignment(&self) -> bool {
+        let rest = &self.text[self.next..];
+        let rest = rest.trim_start_matches(|c: char| c.is_ascii_alphanumeric() || c == '_');
+        let behind = match rest.strip_prefix('[') {
+            Some(index) => index.split_once(']').map_or("", |(_, behind)| behind),
+            None => rest,
+        };
+        let behind = behind.trim_start();
+        behind.starts_with('=') && !behind.starts_with("==")
     }
 
     /// Sign, digits, point, digits; at least one digit, with blanks in between. Nothing is consumed if there is none.

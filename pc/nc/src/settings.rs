@@ -5,7 +5,7 @@ use super::claims::Claims;
 use super::codes::{Code, Group};
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
-use super::offsets::{Coordinates, SYSTEMS};
+use super::offsets::{Coordinates, NO_SYSTEM, SYSTEMS};
 use super::program::{AXIS_WORDS, Way};
 use shared::io::AXES;
 
@@ -18,6 +18,10 @@ impl Interpreter {
             self.offsets.active = usize::from(number) - 1;
             self.spline_end = None;
         }
+        if block.has(Code::NoSystem) {
+            self.offsets.active = NO_SYSTEM;
+            self.spline_end = None;
+        }
         let Some(code) = block.code(Group::ToolLength) else {
             return Ok(());
         };
@@ -27,7 +31,16 @@ impl Interpreter {
     /// The codes that hold in their block only, but G4 and G53.
     pub(super) fn settings(&mut self, block: &Block, claims: &Claims, code: CodeWord) -> Result<(), NcError> {
         let place = code.place;
+        let other_offsets = matches!(code.code, Code::SetOffsets | Code::LocalOffset | Code::OffsetHere);
+        if other_offsets && self.offsets.has_frame() {
+            let (code, why) = (code.name, "TRANS or ROT hold: end them first by TRANS alone");
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
         match code.code {
+            Code::Shift | Code::MoreShift | Code::Turn | Code::MoreTurn => {
+                self.frame(block, claims, code.code, code.name)?;
+            }
+            Code::Pole | Code::PoleFromTip | Code::PoleFromPole => self.set_pole(block, code.code, place)?,
             Code::SetOffsets => self.set_offsets(block, claims, place)?,
             Code::Home => self.home(block, 0, place)?,
             Code::SecondHome => self.home(block, 1, place)?,
@@ -65,7 +78,7 @@ impl Interpreter {
     }
 
     /// Axis words in mm and degrees, as they are written.
-    fn axis_values(&self, block: &Block) -> Vec<(usize, f64)> {
+    pub(super) fn axis_values(&self, block: &Block) -> Vec<(usize, f64)> {
         let value = |(axis, name): (usize, &&str)| {
             let unit = if axis < 3 { self.modal.unit() } else { 1.0 };
             block.word(name).map(|word| (axis, word.value * unit))
@@ -92,6 +105,9 @@ impl Interpreter {
             }
         };
         let index = match p.number_below(SYSTEMS as u8 + 1) {
+            Some(0) if self.offsets.active == NO_SYSTEM => {
+                return Err(p.value_error("with G500 no coordinate system holds: write its number"));
+            }
             Some(0) => self.offsets.active,
             Some(number) => usize::from(number) - 1,
             None => {

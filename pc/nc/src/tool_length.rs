@@ -15,6 +15,8 @@ use std::collections::BTreeMap;
 
 /// Axis of lengths.
 const Z: usize = 2;
+/// Number of the first tool that is called by another name.
+const FIRST_NAMED: u32 = 1_000_001;
 /// Directions that differ by less are one.
 const SAME: f64 = 1e-9;
 /// Index of G59.3, in which L11 measures.
@@ -69,6 +71,30 @@ impl Interpreter {
             _ => return Ok(()),
         };
         self.use_length(length, place)
+    }
+
+    /// The number that stands for the tool `name`: itself if it is a number, else one of those that no table has.
+    pub(super) fn tool_of_name(&mut self, name: &str, place: SourcePosition) -> u32 {
+        if let Ok(number) = name.parse() {
+            return number;
+        }
+        let known = self.tool_names.iter().position(|known| known == name);
+        let index = known.unwrap_or(self.tool_names.len());
+        let number = FIRST_NAMED + index as u32;
+        if known.is_none() {
+            self.tool_names.push(name.to_owned());
+            let text = format!(
+                "tool {name} has the number {number} here: the machine file knows tools by their numbers"
+            );
+            self.notice(text, place);
+        }
+        number
+    }
+
+    /// The name that a tool was called by.
+    pub(super) fn name_of_tool(&self, number: u32) -> Option<&str> {
+        let index = number.checked_sub(FIRST_NAMED)?;
+        self.tool_names.get(index as usize).map(String::as_str)
     }
 
     /// The length of a tool of the table; without a table every tool ends at the tip of the machine file.

@@ -105,6 +105,9 @@ impl Interpreter {
         }
         let next = self.tool_numbers[0];
         if self.tool_in.is_some_and(|tool| tool != next) {
+            if let Some(name) = self.name_of_tool(next) {
+                self.said = Some(format!("tool {name}"));
+            }
             self.wait_at_rest(Until::ToolIn(next), code);
         } else {
             self.wait(Pending {

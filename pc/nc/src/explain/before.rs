@@ -20,6 +20,8 @@ pub(super) struct Before {
     pub(super) tool_length: f64,
     pub(super) spindle_speed: f64,
     pub(super) saved: usize,
+    /// A hole after every motion.
+    pub(super) drills: bool,
     /// Where the tip is (mm, degrees), of which axes that is known, and whether no start can be assumed for the others.
     pub(super) at: Coordinates,
     pub(super) known: [bool; AXES],
@@ -51,6 +53,7 @@ impl Before {
             tool_length: state.tools.length,
             spindle_speed: state.spindle.speed(),
             saved: state.saved.len(),
+            drills: state.modal_drilling.is_some(),
             at: state.at,
             known: state.known,
             lost: state.lost,

@@ -4,13 +4,18 @@ use super::before::Before;
 use super::words::{coordinates, figure};
 use crate::codes::Code;
 use crate::interpreter::Interpreter;
-use crate::offsets::{Coordinates, System};
+use crate::offsets::{Coordinates, NO_SYSTEM, System};
 use crate::program::{Blend, PathControl, Plane};
 
 /// What is not as it was before, a phrase each; without the mode of motion where the block `moves`.
 pub(super) fn changes(before: &Before, after: &Interpreter, moves: bool) -> Vec<String> {
     let mut changes = modal(before, after, moves);
     changes.extend(offsets(before, after));
+    match (before.drills, after.modal_drilling.is_some()) {
+        (false, true) => changes.push("drills a hole after every motion (MCALL)".to_owned()),
+        (true, false) => changes.push("drills no more holes after motions".to_owned()),
+        _ => {}
+    }
     let [tool, _] = after.tool_numbers;
     if tool != before.tools[0] {
         changes.push(format!("tool {tool} is selected for M6"));
@@ -143,6 +148,9 @@ fn offsets(before: &Before, after: &Interpreter) -> Vec<String> {
         let text = system(new.system(), after);
         changes.push(format!("coordinate system {}: {text}", system_name(new.active)));
     }
+    if old.frame != new.frame {
+        changes.push(format!("frame (TRANS, ROT): {}", system(&new.frame, after)));
+    }
     let local = new.local_now();
     if old.local_now() != local {
         changes.push(format!("local offset (G52, G92): {}", of_fitted(&local, after)));
@@ -160,7 +168,10 @@ fn system(system: &System, after: &Interpreter) -> String {
 
 /// G54 to G59.3 by its index.
 pub(super) fn system_name(index: usize) -> &'static str {
-    Code::System(index as u8 + 1).name()
+    match index {
+        NO_SYSTEM => Code::NoSystem.name(),
+        index => Code::System(index as u8 + 1).name(),
+    }
 }
 
 /// Coordinates of the axes that there are; X Y Z always are.

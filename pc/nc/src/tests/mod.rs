@@ -17,7 +17,7 @@ use super::reading::interpret;
 use super::*;
 use shared::geometry::Turn;
 
-const HEADER: &str = "G21 G17 G90 G94 G40 G54 G64\nG43.4\nG0 X0 Y0 Z50 A0 B0 C0\nG0 Z0\n";
+pub(crate) const HEADER: &str = "G21 G17 G90 G94 G40 G54 G64\nG43.4\nG0 X0 Y0 Z50 A0 B0 C0\nG0 Z0\n";
 
 fn run(body: &str) -> Result<Program, NcError> {
     interpret(&format!("{HEADER}{body}"), Options::default())

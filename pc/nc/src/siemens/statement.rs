@@ -1,0 +1,177 @@
+//! Statements of Siemens programs, each alone in its line behind a block number or a label.
+
+use super::calls::{self, Call, Header};
+use super::drilling::{self, Drilling};
+use super::expression;
+use super::jumps::{self, Jump};
+use super::keywords;
+use super::repeats::{self, Repeat};
+use super::variables;
+use crate::error::{NcError, Problem, SourcePosition};
+use crate::parameters::{InBlock, Parameter, Variable};
+use crate::reader::Reader;
+use crate::scanner::Scanner;
+
+/// A statement with its values, and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statement {
+    pub(crate) what: What,
+    pub(crate) place: SourcePosition,
+}
+
+/// What a statement says.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum What {
+    /// What changes nothing here, and a conditional jump whose condition does not hold.
+    Nothing,
+    /// DEF.
+    Define(Vec<(String, Variable)>),
+    /// IF, with its condition.
+    If(bool),
+    Else,
+    EndIf,
+    While(bool),
+    EndWhile,
+    /// FOR: the counter, its first and its last value.
+    For(Parameter, f64, f64),
+    EndFor,
+    Loop,
+    EndLoop,
+    RepeatUntil,
+    Until(bool),
+    /// GOTOF and its like, with or without IF.
+    Jump(Jump),
+    /// REPEAT with labels, and REPEATB.
+    Repeat(Repeat),
+    Call(Call),
+    /// PROC.
+    Header(Header),
+    /// RET.
+    Return,
+    /// CYCLE81 and its like, here.
+    Drill(Drilling),
+    /// MCALL: after every motion, or none any more.
+    DrillAfterMotions(Option<Drilling>),
+}
+
+/// The statement at the scanner, if there is one.
+pub(super) fn read(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<Option<Statement>, NcError> {
+    let (place, start) = (scanner.place(), scanner.mark());
+    let name = scanner.identifier().to_ascii_uppercase();
+    let what = match name.as_str() {
+        "DEF" => What::Define(variables::definitions(scanner, lookup)?),
+        "IF" => condition(scanner, lookup)?,
+        "ELSE" => What::Else,
+        "ENDIF" => What::EndIf,
+        "WHILE" => What::While(expression::value(scanner, lookup)? != 0.0),
+        "ENDWHILE" => What::EndWhile,
+        "FOR" => counter(scanner, lookup)?,
+        "ENDFOR" => What::EndFor,
+        "LOOP" => What::Loop,
+        "ENDLOOP" => What::EndLoop,
+        "REPEAT" | "REPEATB" => {
+            let repeat = repeats::repeat(scanner, lookup, name == "REPEATB")?;
+            repeat.map_or(What::RepeatUntil, What::Repeat)
+        }
+        "UNTIL" => What::Until(expression::value(scanner, lookup)? != 0.0),
+        "CASE" => jumps::case(scanner, lookup)?.map_or(What::Nothing, What::Jump),
+        "PROC" => What::Header(calls::header(scanner, lookup)?),
+        "RET" => What::Return,
+        "EXTERN" => {
+            scanner.take(|c| c != ';');
+            What::Nothing
+        }
+        "MCALL" => What::DrillAfterMotions(drilling::modal(scanner, lookup)?),
+        name => match jumps::direction(name) {
+            Some(direction) => What::Jump(jumps::target(scanner, direction)?),
+            None if keywords::cycle_without_effect(name, scanner) => What::Nothing,
+            None => match drilling::cycle(name, scanner, lookup, place)? {
+                Some(drilling) => What::Drill(drilling),
+                None => {
+                    scanner.go_back(start);
+                    return Ok(None);
+                }
+            },
+        },
+    };
+    end(scanner)?;
+    Ok(Some(Statement { what, place }))
+}
+
+/// Nothing but a comment may follow.
+pub(super) fn end(scanner: &mut Scanner) -> Result<(), NcError> {
+    scanner.skip_blanks();
+    match scanner.peek() {
+        None | Some(';') => Ok(()),
+        Some('(') => {
+            scanner.comment()?;
+            end(scanner)
+        }
+        Some(_) => Err(Problem::StatementRest.at(scanner.place())),
+    }
+}
+
+/// Behind IF: a condition alone, or with a jump.
+fn condition(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<What, NcError> {
+    let holds = expression::value(scanner, lookup)? != 0.0;
+    scanner.skip_blanks();
+    let name = scanner.identifier().to_ascii_uppercase();
+    match jumps::direction(&name) {
+        Some(direction) => {
+            let jump = jumps::target(scanner, direction)?;
+            Ok(if holds { What::Jump(jump) } else { What::Nothing })
+        }
+        None if name.is_empty() => Ok(What::If(holds)),
+        None => Err(Problem::StatementRest.at(scanner.place())),
+    }
+}
+
+/// Behind FOR: `NAME=1 TO 5`.
+fn counter(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<What, NcError> {
+    scanner.skip_blanks();
+    let place = scanner.place();
+    let wrong = || Problem::NoCounter.at(place);
+    let before = lookup.settings.len();
+    if !variables::assignment(scanner, lookup)? {
+        return Err(wrong());
+    }
+    scanner.skip_blanks();
+    if !scanner.identifier().eq_ignore_ascii_case("TO") {
+        return Err(wrong());
+    }
+    let last = expression::value(scanner, lookup)?;
+    let (counter, first) = lookup.settings.drain(before..).next().ok_or_else(wrong)?;
+    Ok(What::For(counter, first, last))
+}
+
+impl Reader {
+    /// What a statement does.
+    pub(crate) fn statement(&mut self, statement: Statement) -> Result<(), NcError> {
+        let place = statement.place;
+        let branches = !matches!(
+            statement.what,
+            What::Define(_) | What::Drill(_) | What::DrillAfterMotions(_)
+        );
+        self.interpreter.branches |= branches;
+        match statement.what {
+            What::Nothing => Ok(()),
+            What::Define(variables) => {
+                for (name, variable) in variables {
+                    self.interpreter.parameters.define(name, variable);
+                }
+                Ok(())
+            }
+            What::Jump(jump) => self.jump_to(&jump, place),
+            What::Repeat(repeat) => self.repeat(&repeat, place),
+            What::Call(call) => self.call_named(call, place),
+            What::Header(header) => self.bind(header, place),
+            What::Return => self.end_subprogram("RET", place),
+            What::Drill(drilling) => self.interpreter.drill(&drilling, place),
+            What::DrillAfterMotions(drilling) => {
+                self.interpreter.modal_drilling = drilling;
+                Ok(())
+            }
+            _ => self.structure(statement),
+        }
+    }
+}

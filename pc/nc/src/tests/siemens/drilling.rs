@@ -1,0 +1,89 @@
+//! Drilling cycles of Siemens programs.
+
+use super::wrong;
+use crate::tests::run;
+use crate::{Motion, Program};
+
+/// Z of each motion behind the first two, with the feed where it has one.
+fn zs(body: &str) -> Vec<(f64, Option<f64>)> {
+    let program: Program =
+        run(&format!("G0 Z20\nF100\n{body}\nM2")).unwrap_or_else(|error| panic!("{error}"));
+    let mut found = Vec::new();
+    for path in &program.paths[3..] {
+        for target in &path.targets {
+            let feed = target.feed.map(|feed| match feed {
+                crate::FeedRate::PerMinute(feed) => feed,
+                feed => panic!("{feed:?}"),
+            });
+            assert_eq!(feed.is_none(), path.motion == Motion::Rapid);
+            found.extend(target.words.axes[2].map(|z| (z, feed)));
+        }
+    }
+    found
+}
+
+#[test]
+fn a_hole_is_where_the_tip_is() {
+    let rapid = |z| (z, None);
+    let feed = |z| (z, Some(100.0));
+    assert_eq!(zs("CYCLE81(15,0,2,-10)"), [rapid(2.0), feed(-10.0), rapid(15.0)]);
+    assert_eq!(
+        zs("CYCLE82(15,1,2,,5,0.5)"),
+        [rapid(3.0), feed(-4.0), rapid(15.0)]
+    );
+    assert_eq!(
+        zs("CYCLE85(15,0,2,-10,,,60,200)"),
+        [rapid(2.0), (-10.0, Some(60.0)), (2.0, Some(200.0)), rapid(15.0)]
+    );
+    assert_eq!(
+        zs("CYCLE89(15,0,2,-10,,0)"),
+        [rapid(2.0), feed(-10.0), feed(2.0), rapid(15.0)]
+    );
+    // Chips are taken out: first 4 deep, then 3, then 2, and what is left in two.
+    let pecks = zs("CYCLE83(15,0,2,-12,,,4,1,0,0,0.5,1)");
+    let depths: Vec<f64> = pecks
+        .iter()
+        .filter(|(_, feed)| feed.is_some())
+        .map(|(z, _)| *z)
+        .collect();
+    assert_eq!(depths, [-4.0, -7.0, -9.0, -10.0, -11.0, -12.0]);
+    assert_eq!(pecks[1], (-4.0, Some(50.0)));
+    assert_eq!(pecks[2..5], [rapid(2.0), rapid(-3.4), feed(-7.0)]);
+    // Chips are broken.
+    assert_eq!(
+        zs("CYCLE83(15,0,2,-6,,-4)"),
+        [rapid(2.0), feed(-4.0), feed(-3.0), feed(-6.0), rapid(15.0)]
+    );
+}
+
+#[test]
+fn mcall_drills_after_every_motion_until_it_ends() {
+    let program =
+        run("F100\nG0 Z20\nMCALL CYCLE81(15,0,2,-10)\nX10 Y10\nX20\n(no motion)\nF50\nMCALL\nX30\nM2")
+            .unwrap();
+    let down = program.paths.iter().filter(|path| path.motion == Motion::Feed);
+    let down: Vec<_> = down.map(|path| path.targets[0].words.axes[2]).collect();
+    assert_eq!(down, [Some(-10.0), Some(-10.0)]);
+    let last = program.paths.last().unwrap();
+    assert_eq!(
+        (last.motion, last.targets[0].words.axes[0]),
+        (Motion::Rapid, Some(30.0))
+    );
+}
+
+#[test]
+fn cycles_that_would_mean_something_else_are_refused() {
+    for (body, text) in [
+        ("CYCLE81(15,0,2)", "DP or DPR"),
+        ("CYCLE81(15,0,2,5)", "from top to bottom"),
+        ("CYCLE81(1,0,2,-5)", "from top to bottom"),
+        ("CYCLE81(15,0,2,-5,9)", "different things"),
+        ("CYCLE82(15,0,2,-5,,-2)", "revolutions are not counted"),
+        ("CYCLE81(15,0,2,-5,,0,0,1,20)", "GMODE, DMODE, AMODE"),
+        ("CYCLE83(15,0,2,-50,,,20,-0.1)", "do not come to the bottom"),
+    ] {
+        let text_of = wrong(&format!("F9\n{body}"));
+        assert!(text_of.contains(text), "{body}: {text_of}");
+    }
+    assert!(wrong("CYCLE81(15,0,2,-5)").contains("CYCLE81 needs a feed"));
+}
