@@ -1,0 +1,2 @@
+//! chip
+pub mod map;
