@@ -20,9 +20,8 @@ const CPUID: u32 = 0x411f_c271;
 const DATA_CACHE: u32 = 0xf01f_e019;
 /// The same of the instruction cache of 32 KB, 2 ways.
 const INSTRUCTION_CACHE: u32 = 0xf03f_e009;
-/// Bits of the cache in the configuration and control register.
+/// Bit of the data cache in the configuration and control register.
 const DATA_CACHE_ON: u32 = 1 << 16;
-const INSTRUCTION_CACHE_ON: u32 = 1 << 17;
 
 /// Registers and state of the core beside those that instructions name.
 #[derive(Clone, Debug)]
