@@ -2,6 +2,7 @@
 
 use crate::armv7m::{self, LockUp};
 use crate::chip::memory::{self, Dma, Incoherent, Reach, junk};
+use crate::chip::ethernet::Ethernet;
 use crate::chip::shared::Shared;
 use crate::chip::{Chip, Tamper};
 use crate::cpu::{Cpu, Register, Stop, Unmapped, UnicornCpu};
@@ -83,6 +84,11 @@ impl Board {
     /// The chip.
     pub fn chip_mut(&mut self) -> &mut Chip {
         self.cpu.bus_mut()
+    }
+
+    /// The Ethernet controller.
+    pub fn ethernet_mut(&mut self) -> Option<&mut Ethernet> {
+        self.chip_mut().models.ethernet.as_deref_mut()
     }
 
     fn shared(&mut self) -> &mut Shared {

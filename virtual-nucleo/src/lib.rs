@@ -9,5 +9,8 @@ pub mod chip;
 pub mod cpu;
 pub mod finding;
 pub mod image;
+pub mod net;
 pub mod outside;
+pub mod pace;
+pub mod pair;
 pub mod time;

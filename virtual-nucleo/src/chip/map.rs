@@ -31,15 +31,19 @@ pub struct Entry {
     pub enable: Option<RccBit>,
     /// Bit that holds it in reset.
     pub reset: Option<RccBit>,
-    registers: HashMap<u32, Register>,
-    /// Bytes from its first register to the end of its last.
-    length: u32,
+    /// By words.
+    registers: Vec<Option<Register>>,
 }
 
 impl Entry {
+    /// Bytes from its first register to the end of its last.
+    fn length(&self) -> u32 {
+        4 * self.registers.len() as u32
+    }
+
     /// The register in the word at `offset`.
     pub fn register(&self, offset: u32) -> Option<&Register> {
-        self.registers.get(&(offset & !3))
+        self.registers.get(offset as usize / 4)?.as_ref()
     }
 }
 
@@ -77,7 +81,7 @@ impl Map {
     pub fn find(&self, address: u32) -> Option<usize> {
         let next = self.0.partition_point(|entry| entry.address <= address);
         let index = next.checked_sub(1)?;
-        (address - self.0[index].address < self.0[index].length).then_some(index)
+        (address - self.0[index].address < self.0[index].length()).then_some(index)
     }
 }
 
@@ -92,7 +96,7 @@ fn entry(peripheral: &Peripheral, bits: &HashMap<(&str, &str), RccBit>) -> Optio
     let mut registers = HashMap::new();
     let block = find_block(described.ir, described.block)?;
     collect(described.ir, block, 0, &mut registers);
-    let length = registers.keys().max()? + 4;
+    let last = registers.keys().max()? / 4;
     let bit = |register: &Option<PeripheralRccRegister>| {
         let register = register.as_ref()?;
         bits.get(&(register.register, register.field)).copied()
@@ -103,8 +107,7 @@ fn entry(peripheral: &Peripheral, bits: &HashMap<(&str, &str), RccBit>) -> Optio
         address: peripheral.address as u32,
         enable: rcc.and_then(|rcc| bit(&rcc.enable)),
         reset: rcc.and_then(|rcc| bit(&rcc.reset)),
-        registers,
-        length,
+        registers: (0..=last).map(|word| registers.remove(&(4 * word))).collect(),
     })
 }
 

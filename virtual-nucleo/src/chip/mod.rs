@@ -20,7 +20,7 @@ use crate::finding::Findings;
 use crate::image::Symbols;
 use crate::outside::Outside;
 use crate::time::{CoreClock, Time};
-use map::{Entry, Map};
+use map::Map;
 use memory::{D2, Domain2};
 use models::Models;
 use shared::{Reset, Shared};
@@ -40,8 +40,9 @@ const CORE: u32 = 0xe000_0000;
 /// Clocks of SRAM1 and SRAM2: AHB2ENR.
 const D2_CLOCKS: [(u32, u32); 2] = [(0xdc, 29), (0xdc, 30)];
 
-/// Changes what reaches a register: a fault of the firmware or of the board that a test plants.
-pub type Tamper = Box<dyn FnMut(&Entry, u32, u32) -> u32>;
+/// Changes what reaches a register: a fault of the firmware or of the board that a test plants. It gets the name of the
+/// peripheral, the offset of the register and the value. The core's own registers are those of `CORE`, by their addresses.
+pub type Tamper = Box<dyn FnMut(&str, u32, u32) -> u32>;
 
 /// The chip.
 pub struct Chip {
@@ -189,8 +190,9 @@ impl Chip {
         let Some(index) = self.answering(address, true) else { return };
         let entry = &self.map.entries()[index];
         let offset = (address - entry.address) & !3;
+        let name = entry.name;
         let value = match &mut self.tamper {
-            Some(tamper) => tamper(entry, offset, value),
+            Some(tamper) => tamper(name, offset, value),
             None => value,
         };
         if let Some(register) = entry.register(offset)
@@ -207,7 +209,9 @@ impl Chip {
             }
         }
         self.models.write(index, offset, value, size, &mut self.shared);
-        self.models.apply_resets(&self.map);
+        if name == "RCC" {
+            self.models.apply_resets(&self.map);
+        }
         self.look_ahead();
     }
 
@@ -298,7 +302,10 @@ impl Bus for Chip {
         }
         let cycles = self.shared.clock.cycles;
         let shared = &mut self.shared;
-        let mut value = value as u32;
+        let mut value = match &mut self.tamper {
+            Some(tamper) => tamper("CORE", address, value as u32),
+            None => value as u32,
+        };
         if size < 4 {
             // Priorities are the only registers of the core that may be written by bytes.
             let shift = 8 * (address & 3);

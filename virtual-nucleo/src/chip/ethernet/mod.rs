@@ -112,6 +112,19 @@ impl Ethernet {
         pin && shared.ethernet_interface == RMII && shared.ethernet_clocks && !self.phy.fault.no_clock
     }
 
+    /// A reset ends only with all clocks.
+    fn check_reset(&self, shared: &mut Shared) {
+        if shared.ethernet_interface != RMII {
+            shared.report("the Ethernet controller is reset before SYSCFG_PMCR selects RMII: the reset does not end");
+        }
+        if !shared.ethernet_clocks {
+            shared.report("the Ethernet controller is reset without all of its clocks ETHEN, ETHTXEN, ETHRXEN: the reset does not end");
+        }
+        if shared.pins.connected(&self.signals[0]).is_none() {
+            shared.report("the Ethernet controller is reset, but no pin is connected to ETH_REF_CLK: the reset does not end");
+        }
+    }
+
     fn manage(&mut self, shared: &mut Shared) {
         let command = self.word(MDIO_ADDRESS);
         if command & 1 == 0 {
@@ -173,6 +186,7 @@ impl Peripheral for Ethernet {
                 self.set(STATUS, left);
             }
             DMAMR if value & SOFTWARE_RESET != 0 => {
+                self.check_reset(shared);
                 self.reset_until = shared.now() + RESET_TAKES;
                 self.set(offset, value);
             }
