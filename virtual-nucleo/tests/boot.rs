@@ -45,7 +45,8 @@ fn it_boots_without_the_phy_and_with_a_silent_one() {
         let mut board = motion();
         let ethernet = board.ethernet_mut().expect("is there");
         (ethernet.phy.fault.no_clock, ethernet.phy.fault.silent) = (no_clock, silent);
-        board.run(Time::ms(600));
+        board.run(Time::ms(1500));
+        println!("no clock {no_clock}, silent {silent}: {:?}", board.first_wait);
         assert!(board.first_wait.is_some(), "no clock {no_clock}, silent {silent}");
         assert_eq!(board.resets, 0);
     }

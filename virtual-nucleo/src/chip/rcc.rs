@@ -199,13 +199,14 @@ impl Peripheral for Rcc {
         }
         shared.ethernet_clocks = self.word(AHB1ENR) & ETHERNET == ETHERNET;
         if (CFGR..=PLL3FRACR).contains(&offset) {
+            let before = shared.settings;
             let settings = &mut shared.settings;
             settings.cfgr = self.word(CFGR);
             settings.domains = [D1CFGR, D1CFGR + 4, D3CFGR].map(|offset| self.word(offset));
             settings.pll_source = self.word(PLLCKSELR);
             settings.pll_config = self.word(PLLCFGR);
             settings.pll1_dividers = self.word(PLL1DIVR);
-            shared.clocks_changed();
+            shared.clocks_changed(&before);
         }
     }
 }

@@ -75,9 +75,10 @@ impl Peripheral for Pwr {
                     shared.report("the voltage scaling is changed before PWR_CR3 has chosen the supply");
                 }
                 self.ready = shared.now() + SCALING_TAKES;
+                let before = shared.settings;
                 // RM0468, 6.8.6: 0b01 is VOS3, 0b10 VOS2, 0b11 VOS1, 0b00 VOS0.
                 shared.settings.scale = [0, 3, 2, 1][(value >> 14 & 3) as usize];
-                shared.clocks_changed();
+                shared.clocks_changed(&before);
             }
             _ => {}
         }
@@ -108,8 +109,9 @@ impl Peripheral for FlashInterface {
 
     fn write(&mut self, offset: u32, value: u32, _: u32, shared: &mut Shared) {
         if offset == ACR {
+            let before = shared.settings;
             shared.settings.flash_access = value;
-            shared.clocks_changed();
+            shared.clocks_changed(&before);
         } else {
             shared.report("programming the flash memory is not modelled");
         }

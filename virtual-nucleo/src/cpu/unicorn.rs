@@ -149,14 +149,19 @@ impl<B: Bus + 'static> Cpu for UnicornCpu<B> {
     }
 
     fn set(&mut self, register: Register, value: u32) {
-        let (number, value) = match register {
+        let number = match register {
             // Under this name the flags of the DSP instructions are written, too.
-            Register::Xpsr => (RegisterARM::XPSR_NZCVQG as i32, value),
-            Register::Pc => (RegisterARM::PC as i32, value | 1),
-            other => (number(other), value),
+            Register::Xpsr => RegisterARM::XPSR_NZCVQG as i32,
+            other => number(other),
         };
+        let value = if register == Register::Pc { value | 1 } else { value };
         // Fails only for a register that the core does not have.
         let _ = self.engine.reg_write(number, u64::from(value));
+        if register == Register::Xpsr {
+            // Only this makes Unicorn see that the core is in a handler now, or no longer: without it a return from an
+            // exception is taken for a jump.
+            let _ = self.engine.reg_write(RegisterARM::APSR_NZCV, u64::from(value));
+        }
     }
 
     fn get_double(&self, n: u8) -> u64 {
