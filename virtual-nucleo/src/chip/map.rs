@@ -49,12 +49,17 @@ impl Entry {
 
 /// All peripherals, by address.
 #[derive(Debug)]
-pub struct Map(Vec<Entry>);
+pub struct Map {
+    entries: Vec<Entry>,
+    /// By pages from [`FIRST`] on: the first peripheral that may lie there.
+    pages: Vec<u16>,
+}
 
 /// Peripherals lie from here on; what is below is memory.
 const FIRST: u64 = 0x4000_0000;
-/// And up to the core's own.
-const END: u64 = 0xe000_0000;
+/// And up to the memory interfaces.
+const END: u64 = 0x6000_0000;
+const PAGE: u64 = 0x400;
 
 impl Map {
     /// The map of the chip.
@@ -69,19 +74,29 @@ impl Map {
         entries.sort_by_key(|entry| entry.address);
         // The station management of the Ethernet controller is listed once more by itself.
         entries.dedup_by_key(|entry| entry.address);
-        Self(entries)
+        let last_before = |page: u64| {
+            let begin = FIRST + page * PAGE;
+            entries.partition_point(|entry| u64::from(entry.address) <= begin).saturating_sub(1)
+        };
+        Self {
+            pages: (0..(END - FIRST) / PAGE).map(|page| last_before(page) as u16).collect(),
+            entries,
+        }
     }
 
     /// All of them.
     pub fn entries(&self) -> &[Entry] {
-        &self.0
+        &self.entries
     }
 
     /// Which peripheral lies at `address`.
     pub fn find(&self, address: u32) -> Option<usize> {
-        let next = self.0.partition_point(|entry| entry.address <= address);
-        let index = next.checked_sub(1)?;
-        (address - self.0[index].address < self.0[index].length()).then_some(index)
+        let page = u64::from(address).checked_sub(FIRST)? / PAGE;
+        let first = usize::from(*self.pages.get(page as usize)?);
+        let lies_in = |entry: &Entry| address.wrapping_sub(entry.address) < entry.length();
+        let candidates = self.entries[first..].iter().take_while(|entry| entry.address <= address);
+        let offset = candidates.enumerate().filter(|(_, entry)| lies_in(entry)).map(|(offset, _)| offset).last()?;
+        Some(first + offset)
     }
 }
 

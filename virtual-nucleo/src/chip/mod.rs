@@ -78,6 +78,7 @@ impl Chip {
             pins: pins::Pins::default(),
             outside,
             reset: None,
+            polls_until: None,
         };
         let mut chip = Self {
             models: Models::new(&map, None),
@@ -134,10 +135,9 @@ impl Chip {
         self.look_ahead();
     }
 
-    /// Pends what asks for it, and looks when something is due next.
+    /// Looks when something is due next.
     fn look_ahead(&mut self) {
         let shared = &mut self.shared;
-        self.models.pend(shared);
         let next = self.models.due().min(self.end);
         self.deadline = match shared.reset {
             Some(_) => 0,
@@ -183,7 +183,12 @@ impl Chip {
     fn load(&mut self, address: u32) -> u32 {
         let Some(index) = self.answering(address, false) else { return 0 };
         let offset = address - self.map.entries()[index].address;
-        self.models.read(index, offset & !3, &mut self.shared)
+        let value = self.models.read(index, offset & !3, &mut self.shared);
+        if let Some(time) = self.shared.polls_until.take() {
+            let clock = &mut self.shared.clock;
+            clock.cycles = clock.cycles.max(clock.cycle_at(time).min(self.deadline));
+        }
+        value
     }
 
     fn store(&mut self, address: u32, size: u32, value: u32) {
@@ -212,6 +217,7 @@ impl Chip {
         if name == "RCC" {
             self.models.apply_resets(&self.map);
         }
+        self.models.look_at(index, &mut self.shared);
         self.look_ahead();
     }
 

@@ -22,6 +22,8 @@ pub struct Models {
     kinds: Vec<Kind>,
     /// Bit of the clock controller that holds each in reset.
     resets: Vec<Option<RccBit>>,
+    /// When each has to be looked at.
+    due: Vec<Time>,
 }
 
 enum Kind {
@@ -66,6 +68,7 @@ impl Models {
             ethernet: Some(Box::default()),
             kinds: map.entries().iter().map(|entry| kind(entry.name)).collect(),
             resets: map.entries().iter().map(|entry| entry.reset).collect(),
+            due: vec![Time::default(); map.entries().len()],
         }
     }
 
@@ -89,6 +92,7 @@ impl Models {
             if !held {
                 continue;
             }
+            self.due[index] = Time::default();
             match &mut self.kinds[index] {
                 Kind::Other(_) => self.kinds[index] = kind(entry.name),
                 Kind::Ethernet => {
@@ -136,31 +140,32 @@ impl Models {
         }
     }
 
-    fn all(&mut self) -> impl Iterator<Item = &mut dyn Peripheral> {
-        let others = self.kinds.iter_mut().filter_map(|kind| match kind {
-            Kind::Other(model) => Some(model.as_mut() as &mut dyn Peripheral),
-            _ => None,
-        });
-        let ethernet = self.ethernet.iter_mut().map(|ethernet| &mut **ethernet as &mut dyn Peripheral);
-        others.chain(ethernet)
+    /// Something was done to a peripheral: looks when it is due, and what it asks for.
+    pub fn look_at(&mut self, index: usize, shared: &mut Shared) {
+        let (mut due, mut asked) = (Time::NEVER, None);
+        if let Some(model) = self.model(index) {
+            (due, asked) = (model.due(), model.asks_for());
+        }
+        self.due[index] = due;
+        if let Some(number) = asked.filter(|number| !shared.system.nvic.is_active(*number)) {
+            shared.system.nvic.pend(number);
+        }
     }
 
     /// Brings all to the present.
     pub fn advance(&mut self, shared: &mut Shared) {
-        self.all().for_each(|model| model.advance(shared));
-    }
-
-    /// Pends the exceptions that are asked for.
-    pub fn pend(&mut self, shared: &mut Shared) {
-        for number in self.all().filter_map(|model| model.asks_for()) {
-            if !shared.system.nvic.is_active(number) {
-                shared.system.nvic.pend(number);
+        for index in 0..self.kinds.len() {
+            if self.due[index] <= shared.now()
+                && let Some(model) = self.model(index)
+            {
+                model.advance(shared);
             }
+            self.look_at(index, shared);
         }
     }
 
     /// When the first of them has to be looked at.
-    pub fn due(&mut self) -> Time {
-        self.all().map(|model| model.due()).min().unwrap_or(Time::NEVER)
+    pub fn due(&self) -> Time {
+        self.due.iter().copied().min().unwrap_or(Time::NEVER)
     }
 }

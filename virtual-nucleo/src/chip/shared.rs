@@ -41,6 +41,8 @@ pub struct Shared {
     pub outside: Outside,
     /// A reset is due.
     pub reset: Option<Reset>,
+    /// The core polls for something that will not come before: time may pass to there, or to the next event.
+    pub polls_until: Option<Time>,
 }
 
 impl Shared {

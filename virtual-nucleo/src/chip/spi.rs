@@ -26,6 +26,8 @@ const OVERRUN: u32 = 1 << 6;
 const TXC: u32 = 1 << 12;
 /// Bytes that SPI1 to SPI3 hold each way (RM0468, table 426).
 const FIFO: usize = 16;
+/// Readings of the status that take their time before they are skipped.
+const POLLS: u32 = 2;
 
 /// The controller.
 #[derive(Debug)]
@@ -39,6 +41,8 @@ pub struct Spi {
     /// When the last byte will be through.
     busy_until: Time,
     flags: u32,
+    /// Times that the status was read since a byte was sent or taken.
+    polls: u32,
     clock: Signal,
     output: Signal,
     input: Signal,
@@ -56,6 +60,7 @@ impl Spi {
             outgoing: VecDeque::new(),
             busy_until: Time::default(),
             flags: 0,
+            polls: 0,
             clock: Signal::of(name, "SCK"),
             output: Signal::of(name, "MOSI"),
             input: Signal::of(name, "MISO"),
@@ -108,6 +113,16 @@ impl Spi {
         self.incoming.push_back((self.busy_until, if receives { answer } else { u8::MAX }));
     }
 
+    /// The status, again and again: the turns of the loop are skipped to the next byte.
+    fn poll(&mut self, shared: &mut Shared) -> u32 {
+        let now = shared.now();
+        self.polls += 1;
+        if self.polls > POLLS {
+            shared.polls_until = self.incoming.front().map(|(at, _)| *at).filter(|at| *at > now);
+        }
+        self.status(now)
+    }
+
     fn status(&self, now: Time) -> u32 {
         let mut status = self.flags;
         if self.incoming.front().is_some_and(|(at, _)| *at <= now) {
@@ -126,10 +141,11 @@ impl Spi {
 impl Peripheral for Spi {
     fn read(&mut self, offset: u32, shared: &mut Shared) -> u32 {
         match offset {
-            SR => self.status(shared.now()),
+            SR => self.poll(shared),
             RXDR => match self.incoming.front() {
                 Some((at, byte)) if *at <= shared.now() => {
                     let byte = *byte;
+                    self.polls = 0;
                     self.incoming.pop_front();
                     u32::from(byte)
                 }
@@ -160,6 +176,7 @@ impl Peripheral for Spi {
                 shared.report(format!("{} is given a byte while it is off", self.name));
             }
             TXDR => {
+                self.polls = 0;
                 let bytes = value.to_le_bytes();
                 self.outgoing.extend(bytes.into_iter().take(size as usize));
                 self.send_waiting(shared);
