@@ -1,11 +1,11 @@
 //! A board: core, chip, memory, and the loop that runs them.
 
 use crate::armv7m::{self, LockUp};
-use crate::chip::memory::{self, Dma, Incoherent, Reach, junk};
 use crate::chip::ethernet::Ethernet;
+use crate::chip::memory::{self, Dma, Incoherent, Reach, junk};
 use crate::chip::shared::Shared;
 use crate::chip::{Chip, Tamper};
-use crate::cpu::{Cpu, Register, Stop, Unmapped, UnicornCpu};
+use crate::cpu::{Cpu, Register, Stop, UnicornCpu, Unmapped};
 use crate::finding::Finding;
 use crate::image::{FLASH, Image};
 use crate::outside::Outside;
@@ -45,15 +45,17 @@ pub struct Board {
 }
 
 impl Board {
-    /// A board with this image in its flash memory, wired to `outside`, at power-up.
-    pub fn new(image: Image, outside: Outside) -> Result<Self, BoardError> {
+    /// A board with this image in its flash memory, wired to `outside`, at power-up. No two chips have the same `serial`
+    /// number, of which the firmware makes the address of its Ethernet port.
+    pub fn new(image: Image, outside: Outside, serial: u8) -> Result<Self, BoardError> {
         let symbols = Rc::new(image.symbols);
         let chip = Chip::new(Rc::clone(&symbols), outside);
         let mut cpu = UnicornCpu::new(chip).map_err(|error| BoardError::Core(format!("{error:?}")))?;
         let mut system = vec![0xff; memory::SYSTEM.1];
-        // Twelve bytes of serial number: wafer and lot.
-        let serial = (memory::SERIAL - memory::SYSTEM.0) as usize;
-        system[serial..serial + 12].copy_from_slice(b"\x12\x00\x34\x00\x0bQ1234567"[..12].as_ref());
+        let place = (memory::SERIAL - memory::SYSTEM.0) as usize;
+        // Place on the wafer, number of the wafer, lot (RM0468, 69.1).
+        system[place..place + 12]
+            .copy_from_slice(&[0x12, 0, 0x34, 0, serial, b'Q', b'1', b'2', b'3', b'4', b'5', b'6']);
         let map = |cpu: &mut UnicornCpu<Chip>| {
             cpu.map(FLASH, &image.flash, false)?;
             cpu.map(memory::SYSTEM.0, &system, false)?;
@@ -148,12 +150,18 @@ impl Board {
             Stop::Supervisor => armv7m::fault(&mut self.cpu, stop),
             Stop::Refused { access, address } => {
                 let guarded = self.shared().system.mpu.refuses(address);
-                let why = if guarded { "memory protection refuses it" } else { "no memory answers there, or it is read-only" };
+                let why = if guarded {
+                    "memory protection refuses it"
+                } else {
+                    "no memory answers there, or it is read-only"
+                };
                 self.report(format!("{access:?} at {address:#010x}: {why}"));
                 armv7m::fault(&mut self.cpu, stop)
             }
             Stop::Undefined(number) => {
-                self.report(format!("an instruction that the core does not have, or not in this state ({number})"));
+                self.report(format!(
+                    "an instruction that the core does not have, or not in this state ({number})"
+                ));
                 armv7m::fault(&mut self.cpu, stop)
             }
         };
@@ -215,7 +223,10 @@ impl Board {
         use crate::chip::shared::Peripheral as _;
         let now = self.now();
         let models = &mut self.cpu.bus_mut().models;
-        let due = models.ethernet.as_ref().is_some_and(|ethernet| ethernet.due() <= now);
+        let due = models
+            .ethernet
+            .as_ref()
+            .is_some_and(|ethernet| ethernet.due() <= now);
         if !due {
             return;
         }
@@ -267,7 +278,9 @@ impl Dma for Master<'_> {
 fn reach(master: &mut Master, address: u32, length: usize, does: &str) -> Reach {
     let reach = memory::reach(address, length);
     match reach {
-        Reach::Nothing(what) => master.report(format!("the Ethernet controller {does} {address:#010x}: that is {what}")),
+        Reach::Nothing(what) => master.report(format!(
+            "the Ethernet controller {does} {address:#010x}: that is {what}"
+        )),
         Reach::Memory if master.cpu.bus().shared.system.data_cache() => {
             master.report(format!("the Ethernet controller {does} {address:#010x} while the data cache is on: this memory is modelled without it"));
         }

@@ -104,7 +104,10 @@ mod tests {
 
     #[test]
     fn a_place_is_named_by_the_function_it_lies_in() {
-        let symbols = Symbols::of([(0x200, 0x10, "main"), (0x100, 0x10, "_ZN4core3fmt5write17h0123456789abcdefE")]);
+        let symbols = Symbols::of([
+            (0x200, 0x10, "main"),
+            (0x100, 0x10, "_ZN4core3fmt5write17h0123456789abcdefE"),
+        ]);
         assert_eq!(symbols.name(0x100), "core::fmt::write");
         assert_eq!(symbols.name(0x204), "main+0x4");
         assert_eq!(symbols.name(0x210), "no function");

@@ -19,6 +19,9 @@ input ends or, with --ms, after that much time of the boards. It fails if anythi
     --folder   where session and pace are written; default: virtual-nucleo in the folder for temporary files
     --rate     the boards' time per wall time at most; default 1";
 
+/// Boot and negotiation of the link take 1.6 s, the boards' addresses one second each at most.
+const LINK_LIMIT: Time = Time::ms(5000);
+
 struct Options {
     images: [PathBuf; 2],
     machine: String,
@@ -75,14 +78,20 @@ fn run(options: &Options) -> Result<usize, PairError> {
         source,
     };
     std::fs::create_dir_all(&options.folder).map_err(|source| file(&options.folder, source))?;
+    if !pair.run_to_link(LINK_LIMIT) {
+        println!("a board is not on the net after {LINK_LIMIT}");
+    }
     let page = options.folder.join("pace");
     let mut pace = Pace::new(&page, options.rate)?;
     let session = options.folder.join("session.toml");
-    std::fs::write(&session, pair.session(&options.machine, &page)?).map_err(|source| file(&session, source))?;
+    std::fs::write(&session, pair.session(&options.machine, &page)?)
+        .map_err(|source| file(&session, source))?;
     println!("session: {}", session.display());
 
     let ended = input_ends(options.end == Time::NEVER);
-    pair.run_paced(&mut pace, |pair| pair.now() < options.end && !ended.load(Ordering::Relaxed))?;
+    pair.run_paced(&mut pace, |pair| {
+        pair.now() < options.end && !ended.load(Ordering::Relaxed)
+    })?;
 
     let mut count = 0;
     for (name, board) in NAMES.iter().zip(&pair.boards) {

@@ -38,16 +38,23 @@ pub struct Pace {
     page: File,
     /// Wall time per board time.
     stretch: f64,
-    /// Where the wall's clock counts from, and the boards' time 0 in it, which moves when they fall behind.
+    /// Where the wall's clock counts from, and where in it the boards' time is 0, which moves on when they fall behind.
     origin: Instant,
     epoch: Duration,
+    /// The boards' time at the first look.
+    begin: Option<Time>,
 }
 
 impl Pace {
     /// Makes the page at `path`; `rate` is the boards' time per wall time at most.
     pub fn new(path: &Path, rate: f64) -> Result<Self, PaceError> {
         let open = || {
-            let page = OpenOptions::new().read(true).write(true).create(true).truncate(true).open(path)?;
+            let page = OpenOptions::new()
+                .read(true)
+                .write(true)
+                .create(true)
+                .truncate(true)
+                .open(path)?;
             page.set_len(LENGTH)?;
             Ok(page)
         };
@@ -60,6 +67,7 @@ impl Pace {
             stretch: 1.0 / rate,
             origin: Instant::now(),
             epoch: Duration::ZERO,
+            begin: None,
         })
     }
 
@@ -72,7 +80,8 @@ impl Pace {
     }
 
     fn try_wait(&mut self, now: Time) -> io::Result<()> {
-        let since_epoch = Duration::from_secs_f64(now.seconds() * self.stretch);
+        let begin = *self.begin.get_or_insert(now);
+        let since_epoch = Duration::from_secs_f64((now - begin).seconds() * self.stretch);
         let late = self.origin.elapsed().saturating_sub(self.epoch + since_epoch);
         if late > LATE {
             self.epoch += late;
@@ -116,20 +125,31 @@ mod tests {
     fn boards_do_not_run_away_from_the_wall_or_from_the_pc() {
         let path = std::env::temp_dir().join(format!("virtual-nucleo-pace-{}", std::process::id()));
         let mut pace = Pace::new(&path, 1.0).expect("a temporary file");
+        pace.wait(Time::ms(5)).expect("the page");
         let begin = Instant::now();
-        pace.wait(Time::ms(20)).expect("the page");
+        pace.wait(Time::ms(25)).expect("the page");
         assert!(begin.elapsed() >= Duration::from_millis(19));
         let mut bytes = [0; 32];
         pace.page.read_exact_at(&mut bytes, BOARDS_AT).expect("the page");
-        assert_eq!(bytes[..8], 20_000_000_i64.to_ne_bytes());
+        assert_eq!(bytes[..8], 25_000_000_i64.to_ne_bytes());
         // A PC that has come to 1 ms only, and is alive.
         let seen = pace.origin.elapsed().as_nanos() as i64;
-        assert!(!pace.is_ahead_of_pc(20_000_000, seen).expect("the page"), "no PC takes part");
+        assert!(
+            !pace.is_ahead_of_pc(25_000_000, seen).expect("the page"),
+            "no PC takes part"
+        );
         for (number, at) in [(1_000_000_i64, PC_AT), (seen, PC_AT + 8)] {
-            pace.page.write_all_at(&number.to_ne_bytes(), at).expect("the page");
+            pace.page
+                .write_all_at(&number.to_ne_bytes(), at)
+                .expect("the page");
         }
-        assert!(pace.is_ahead_of_pc(20_000_000, seen).expect("the page"));
-        assert!(!pace.is_ahead_of_pc(20_000_000, seen + 2_000_000_000).expect("the page"), "it is silent");
+        assert!(pace.is_ahead_of_pc(25_000_000, seen).expect("the page"));
+        assert!(
+            !pace
+                .is_ahead_of_pc(25_000_000, seen + 2_000_000_000)
+                .expect("the page"),
+            "it is silent"
+        );
         std::fs::remove_file(path).expect("the file");
     }
 }

@@ -57,8 +57,8 @@ pub enum PairError {
     Pace(#[from] PaceError),
 }
 
-/// A board wired to this machine, with the image of a file.
-pub fn board(image: &Path, machine: Machine) -> Result<Board, PairError> {
+/// A board wired to this machine, with the image of a file and the chip's serial number.
+pub fn board(image: &Path, machine: Machine, serial: u8) -> Result<Board, PairError> {
     let file = fs::read(image).map_err(|source| PairError::File {
         path: image.to_owned(),
         source,
@@ -67,12 +67,14 @@ pub fn board(image: &Path, machine: Machine) -> Result<Board, PairError> {
         path: image.to_owned(),
         source,
     })?;
-    Ok(Board::new(image, Outside::new(machine))?)
+    Ok(Board::new(image, Outside::new(machine), serial)?)
 }
 
 /// The plant of this name behind a motion board.
 pub fn motion_machine(name: &str) -> Result<Machine, PairError> {
-    let plant = MotionPlant::of(name).ok_or_else(|| PairError::Machine { name: name.to_owned() })?;
+    let plant = MotionPlant::of(name).ok_or_else(|| PairError::Machine {
+        name: name.to_owned(),
+    })?;
     Ok(Machine::Motion(Box::new(plant)))
 }
 
@@ -92,7 +94,10 @@ pub struct Pair {
 impl Pair {
     /// Both boards at power-up.
     pub fn start(images: [&Path; 2], machine: &str) -> Result<Self, PairError> {
-        let boards = vec![board(images[0], motion_machine(machine)?)?, board(images[1], tracker_machine())?];
+        let boards = vec![
+            board(images[0], motion_machine(machine)?, 1)?,
+            board(images[1], tracker_machine(), 2)?,
+        ];
         Ok(Self {
             boards,
             gateway: Gateway::open(&ADDRESSES).map_err(PairError::Ports)?,
@@ -114,6 +119,17 @@ impl Pair {
         carry(&mut self.boards, &mut self.gateway, self.now);
     }
 
+    /// Runs both until they are on the net, as fast as this computer can; whether they are by `end`.
+    pub fn run_to_link(&mut self, end: Time) -> bool {
+        while !self.gateway.reaches_all() {
+            if self.now >= end {
+                return false;
+            }
+            self.run_slice();
+        }
+        true
+    }
+
     /// Runs both until `end` as fast as this computer can.
     pub fn run(&mut self, end: Time) {
         while self.now < end {
@@ -123,7 +139,11 @@ impl Pair {
 
     /// Runs both at `rate` of the wall's time at most, kept together with programs that take part, for as long as
     /// `goes_on`.
-    pub fn run_paced(&mut self, pace: &mut Pace, mut goes_on: impl FnMut(&Self) -> bool) -> Result<(), PairError> {
+    pub fn run_paced(
+        &mut self,
+        pace: &mut Pace,
+        mut goes_on: impl FnMut(&Self) -> bool,
+    ) -> Result<(), PairError> {
         while goes_on(self) {
             self.run_slice();
             pace.wait(self.now)?;
@@ -134,7 +154,11 @@ impl Pair {
     /// Ports of the loopback interface that lead to the boards: requests and datagrams of each.
     pub fn ports(&self) -> Result<[(u16, u16); 2], PairError> {
         let ports = self.gateway.ports().map_err(PairError::Ports)?;
-        let of = |index: usize| ports.get(index).map_or((0, 0), |port| (port.requests, port.datagrams));
+        let of = |index: usize| {
+            ports
+                .get(index)
+                .map_or((0, 0), |port| (port.requests, port.datagrams))
+        };
         Ok([of(0), of(1)])
     }
 
@@ -145,7 +169,10 @@ impl Pair {
             let host = Ipv4Addr::LOCALHOST;
             text += &format!("\n[{name}]\nhost = \"{host}\"\ntcp = {requests}\nudp = {datagrams}\n");
         }
-        text += &format!("\n[path_states_to]\nhost = \"{}\"\nudp = {DATAGRAM_PORT}\n", ADDRESSES[1]);
+        text += &format!(
+            "\n[path_states_to]\nhost = \"{}\"\nudp = {DATAGRAM_PORT}\n",
+            ADDRESSES[1]
+        );
         Ok(text)
     }
 }

@@ -32,7 +32,10 @@ impl Time {
     pub fn periods(periods: u64, hz: u64) -> Self {
         match hz {
             0 => Self::NEVER,
-            _ => Self(u64::try_from((u128::from(periods) * PS_PER_SECOND).div_ceil(u128::from(hz))).unwrap_or(u64::MAX)),
+            _ => Self(
+                u64::try_from((u128::from(periods) * PS_PER_SECOND).div_ceil(u128::from(hz)))
+                    .unwrap_or(u64::MAX),
+            ),
         }
     }
 
@@ -117,7 +120,9 @@ impl CoreClock {
             return u64::MAX;
         }
         let wait = u128::from((time - self.since.1).0) * u128::from(self.hz);
-        self.since.0.saturating_add(u64::try_from(wait.div_ceil(PS_PER_SECOND)).unwrap_or(u64::MAX))
+        self.since
+            .0
+            .saturating_add(u64::try_from(wait.div_ceil(PS_PER_SECOND)).unwrap_or(u64::MAX))
     }
 }
 

@@ -20,12 +20,20 @@ fn both_images_come_to_their_idle_loops_and_keep_their_ticks() {
         board.run(Time::ms(50));
         let (at, instructions) = board.first_wait.expect("it waits");
         let steps = board.chip().shared.outside.steps;
-        println!("{name}: first wait at {at} after {instructions} instructions, {steps} steps of the machine");
-        let found: Vec<_> = causes(&board).into_iter().filter(|cause| !KNOWN.contains(&cause.as_str())).collect();
+        println!(
+            "{name}: first wait at {at} after {instructions} instructions, {steps} steps of the machine"
+        );
+        let found: Vec<_> = causes(&board)
+            .into_iter()
+            .filter(|cause| !KNOWN.contains(&cause.as_str()))
+            .collect();
         assert_eq!(found, Vec::<String>::new(), "{name}");
         assert_eq!(board.resets, 0, "{name}");
         let ticks = (Time::ms(50) - at).seconds() * f64::from(hz);
-        assert!((steps as f64 - ticks).abs() <= 2.0, "{name}: {steps} steps, {ticks} ticks");
+        assert!(
+            (steps as f64 - ticks).abs() <= 2.0,
+            "{name}: {steps} steps, {ticks} ticks"
+        );
     }
 }
 
@@ -34,7 +42,11 @@ fn the_same_board_does_the_same_twice() {
     let run = || {
         let mut board = motion();
         board.run(Time::ms(30));
-        (board.chip().instructions, board.asleep, board.chip().shared.outside.frames())
+        (
+            board.chip().instructions,
+            board.asleep,
+            board.chip().shared.outside.frames(),
+        )
     };
     assert_eq!(run(), run());
 }

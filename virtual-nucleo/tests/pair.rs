@@ -20,7 +20,9 @@ fn ask(stream: &mut TcpStream, request: &Request) -> io::Result<Response> {
     stream.write_all(encode_message(request, &mut buffer).map_err(io::Error::other)?)?;
     let mut prefix = [0; 2];
     stream.read_exact(&mut prefix)?;
-    let body = buffer.get_mut(..usize::from(u16::from_le_bytes(prefix))).ok_or(io::ErrorKind::InvalidData)?;
+    let body = buffer
+        .get_mut(..usize::from(u16::from_le_bytes(prefix)))
+        .ok_or(io::ErrorKind::InvalidData)?;
     stream.read_exact(body)?;
     decode_message(body).map_err(io::Error::other)
 }
@@ -36,7 +38,12 @@ fn both_boards_say_who_they_are() {
             let answers = ports.map(|(requests, _)| {
                 let mut stream = TcpStream::connect((Ipv4Addr::LOCALHOST, requests))?;
                 stream.set_read_timeout(Some(Duration::from_secs(60)))?;
-                ask(&mut stream, &Request::Hello { schema_hash: SCHEMA_HASH })
+                ask(
+                    &mut stream,
+                    &Request::Hello {
+                        schema_hash: SCHEMA_HASH,
+                    },
+                )
             });
             over.store(true, Ordering::Relaxed);
             answers

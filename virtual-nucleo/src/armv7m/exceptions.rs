@@ -63,7 +63,13 @@ where
     let vectors = cpu.bus_mut().system().vectors;
     let vector = |cpu: &C, at| cpu.load_word(vectors + at).map_err(|Unmapped| LockUp);
     let (stack, start) = (vector(cpu, 0)?, vector(cpu, 4)?);
-    for register in [Register::Primask, Register::Basepri, Register::Faultmask, Register::Control, Register::Fpscr] {
+    for register in [
+        Register::Primask,
+        Register::Basepri,
+        Register::Faultmask,
+        Register::Control,
+        Register::Fpscr,
+    ] {
         cpu.set(register, 0);
     }
     cpu.set(Register::Xpsr, XPSR_THUMB);
@@ -199,10 +205,17 @@ where
     let Ok(handler) = cpu.load_word(vectors + 4 * u32::from(number)) else {
         let system = cpu.bus_mut().system();
         system.hard_fault_status |= HARD_VECTOR;
-        return if number == HARD_FAULT { Err(LockUp) } else { enter(cpu, HARD_FAULT) };
+        return if number == HARD_FAULT {
+            Err(LockUp)
+        } else {
+            enter(cpu, HARD_FAULT)
+        };
     };
     let control = cpu.get(Register::Control);
-    cpu.set(Register::Control, control & !(CONTROL_FLOATS | CONTROL_PROCESS_STACK));
+    cpu.set(
+        Register::Control,
+        control & !(CONTROL_FLOATS | CONTROL_PROCESS_STACK),
+    );
     cpu.set(Register::Xpsr, XPSR_THUMB | u32::from(number));
     cpu.set(Register::Pc, handler);
     cpu.bus_mut().system().nvic.activate(number);
@@ -226,7 +239,8 @@ fn push<C: Cpu>(cpu: &mut C, floats: bool) -> Result<(), u32> {
     }
     cpu.set(Register::Sp, frame);
     for (word, address) in words.iter().zip((frame..).step_by(4)) {
-        cpu.store(address, &word.to_le_bytes()).map_err(|Unmapped| address)?;
+        cpu.store(address, &word.to_le_bytes())
+            .map_err(|Unmapped| address)?;
     }
     Ok(())
 }
@@ -252,7 +266,10 @@ fn pop<C: Cpu>(cpu: &mut C, floats: bool) -> Result<(), u32> {
         cpu.set(Register::Fpscr, status);
     }
     let control = cpu.get(Register::Control) & !CONTROL_FLOATS;
-    cpu.set(Register::Control, control | if floats { CONTROL_FLOATS } else { 0 });
+    cpu.set(
+        Register::Control,
+        control | if floats { CONTROL_FLOATS } else { 0 },
+    );
     let length = if floats { FRAME_WITH_FLOATS } else { FRAME };
     let pad = if xpsr & XPSR_ALIGNED != 0 { 4 } else { 0 };
     cpu.set(Register::Sp, frame.wrapping_add(length + pad));

@@ -81,7 +81,8 @@ impl Nvic {
 
     /// The exception that is to be taken now.
     pub fn due(&self, masks: Masks) -> Option<u16> {
-        self.first.filter(|&number| self.group_priority(number) < self.execution_priority(masks))
+        self.first
+            .filter(|&number| self.group_priority(number) < self.execution_priority(masks))
     }
 
     /// Whether a fault of this number would be taken where execution stands.
@@ -170,7 +171,10 @@ impl Nvic {
     }
 
     fn of(&self, number: u16) -> Exception {
-        self.exceptions.get(usize::from(number)).copied().unwrap_or_default()
+        self.exceptions
+            .get(usize::from(number))
+            .copied()
+            .unwrap_or_default()
     }
 
     /// Numbers that the chip does not have are left alone, as their bits in the registers are.
@@ -262,12 +266,18 @@ mod tests {
         let basepri = |basepri| Masks { basepri, ..OPEN };
         assert_eq!(nvic.due(basepri(0x20)), None);
         assert_eq!(nvic.due(basepri(0x30)), Some(40));
-        let primask = Masks { primask: true, ..OPEN };
+        let primask = Masks {
+            primask: true,
+            ..OPEN
+        };
         assert_eq!(nvic.due(primask), None);
         let mut nvic = nvic;
         nvic.pend(HARD_FAULT);
         assert_eq!(nvic.due(primask), Some(HARD_FAULT));
-        let faultmask = Masks { faultmask: true, ..OPEN };
+        let faultmask = Masks {
+            faultmask: true,
+            ..OPEN
+        };
         assert_eq!(nvic.due(faultmask), None);
         nvic.pend(NMI);
         assert_eq!(nvic.due(faultmask), Some(NMI));

@@ -141,14 +141,22 @@ impl System {
             0xe000_ef34 => self.context_control,
             0xe000_ef38 => self.context_address,
             _ => {
-                findings.report(format!("the core has no register at {address:#010x}, which is read"));
+                findings.report(format!(
+                    "the core has no register at {address:#010x}, which is read"
+                ));
                 0
             }
         }
     }
 
     /// Writes a word at `address` at cycle `now`.
-    pub fn write(&mut self, address: u32, value: u32, now: u64, findings: &mut Findings) -> Option<ResetRequested> {
+    pub fn write(
+        &mut self,
+        address: u32,
+        value: u32,
+        now: u64,
+        findings: &mut Findings,
+    ) -> Option<ResetRequested> {
         match address {
             0xe000_1000 | 0xe000_1004 if self.trace_locked => {
                 findings.report("a register of the DWT is written while it is locked: the write is lost");
@@ -165,11 +173,17 @@ impl System {
             }
             0xe000_1fb0 => self.trace_locked = value != TRACE_UNLOCK,
             0xe000_e010..=0xe000_e01b => self.systick.write(address - 0xe000_e010, value, now),
-            0xe000_e100..=0xe000_e11f => self.each(address - 0xe000_e100, value, |nvic, n| nvic.enable(n, true)),
-            0xe000_e180..=0xe000_e19f => self.each(address - 0xe000_e180, value, |nvic, n| nvic.enable(n, false)),
+            0xe000_e100..=0xe000_e11f => {
+                self.each(address - 0xe000_e100, value, |nvic, n| nvic.enable(n, true))
+            }
+            0xe000_e180..=0xe000_e19f => {
+                self.each(address - 0xe000_e180, value, |nvic, n| nvic.enable(n, false))
+            }
             0xe000_e200..=0xe000_e21f => self.each(address - 0xe000_e200, value, Nvic::pend),
             0xe000_e280..=0xe000_e29f => self.each(address - 0xe000_e280, value, Nvic::unpend),
-            0xe000_e400..=0xe000_e4ff => self.set_priorities(address as u16 - 0xe400 + FIRST_INTERRUPT, value),
+            0xe000_e400..=0xe000_e4ff => {
+                self.set_priorities(address as u16 - 0xe400 + FIRST_INTERRUPT, value)
+            }
             0xe000_ed04 => self.pend_own(value),
             0xe000_ed08 => self.vectors = value & !0x7f,
             0xe000_ed0c if value >> 16 != RESET_KEY => {
@@ -199,7 +213,9 @@ impl System {
             0xe000_ef38 => self.context_address = value,
             // Maintenance of the instruction cache and of branch prediction: there is nothing to keep apart.
             0xe000_ef50 | 0xe000_ef58 | 0xe000_ef78 => {}
-            _ => findings.report(format!("the core has no register at {address:#010x} that can be written")),
+            _ => findings.report(format!(
+                "the core has no register at {address:#010x} that can be written"
+            )),
         }
         None
     }
@@ -223,15 +239,27 @@ impl System {
     }
 
     fn pend_own(&mut self, value: u32) {
-        for (bit, number, pend) in [(31, NMI, true), (28, PENDSV, true), (27, PENDSV, false), (26, SYSTICK, true), (25, SYSTICK, false)] {
+        for (bit, number, pend) in [
+            (31, NMI, true),
+            (28, PENDSV, true),
+            (27, PENDSV, false),
+            (26, SYSTICK, true),
+            (25, SYSTICK, false),
+        ] {
             if value & 1 << bit != 0 {
-                if pend { self.nvic.pend(number) } else { self.nvic.unpend(number) }
+                if pend {
+                    self.nvic.pend(number)
+                } else {
+                    self.nvic.unpend(number)
+                }
             }
         }
     }
 
     fn bits(&self, offset: u32, is: impl Fn(&Nvic, u16) -> bool) -> u32 {
-        (0..32).filter(|bit| is(&self.nvic, interrupt(offset, *bit))).fold(0, |word, bit| word | 1 << bit)
+        (0..32)
+            .filter(|bit| is(&self.nvic, interrupt(offset, *bit)))
+            .fold(0, |word, bit| word | 1 << bit)
     }
 
     fn each(&mut self, offset: u32, value: u32, change: impl Fn(&mut Nvic, u16)) {

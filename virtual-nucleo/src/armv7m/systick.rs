@@ -22,7 +22,11 @@ pub struct SysTick {
 
 impl SysTick {
     fn step(&self) -> u64 {
-        if self.control & CLKSOURCE != 0 { 1 } else { REFERENCE }
+        if self.control & CLKSOURCE != 0 {
+            1
+        } else {
+            REFERENCE
+        }
     }
 
     fn start(&mut self, now: u64) {
@@ -44,7 +48,11 @@ impl SysTick {
             Some(zero) => {
                 let left = zero.saturating_sub(now).div_ceil(self.step());
                 // Just reloaded: a full period is left, which is shown as zero for one count.
-                if left > u64::from(self.reload) && self.held == 0 { 0 } else { left as u32 & COUNTER }
+                if left > u64::from(self.reload) && self.held == 0 {
+                    0
+                } else {
+                    left as u32 & COUNTER
+                }
             }
         }
     }
@@ -52,7 +60,14 @@ impl SysTick {
     /// A register, by its offset from 0xe000e010.
     pub fn read(&mut self, offset: u32, now: u64) -> u32 {
         match offset {
-            0 => self.control | if std::mem::take(&mut self.flag) { COUNTFLAG } else { 0 },
+            0 => {
+                self.control
+                    | if std::mem::take(&mut self.flag) {
+                        COUNTFLAG
+                    } else {
+                        0
+                    }
+            }
             4 => self.reload,
             8 => self.count(now),
             // Calibration: no reference value is given.

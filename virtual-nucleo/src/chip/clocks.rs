@@ -120,9 +120,15 @@ impl Clocks {
         let mut violations = Vec::new();
         let highest = HIGHEST[scale];
         let apb = self.apb.into_iter().max().unwrap_or(0);
-        for (what, hz, most) in [("the core", self.core, highest[0]), ("AXI and AHB", self.bus, highest[1]), ("an APB", apb, highest[2])] {
+        for (what, hz, most) in [
+            ("the core", self.core, highest[0]),
+            ("AXI and AHB", self.bus, highest[1]),
+            ("an APB", apb, highest[2]),
+        ] {
             if hz > most {
-                violations.push(format!("{what} would run at {hz} Hz: at voltage scaling VOS{scale} {most} Hz are the most"));
+                violations.push(format!(
+                    "{what} would run at {hz} Hz: at voltage scaling VOS{scale} {most} Hz are the most"
+                ));
             }
         }
         let waits = FLASH_WAITS[scale].iter().position(|most| self.bus <= *most);
@@ -142,12 +148,16 @@ impl Clocks {
         let (least, most) = PLL_INPUT[(settings.pll_config >> 2 & 3) as usize];
         let hz = self.pll1_input;
         if !(least..=most).contains(&hz) {
-            violations.push(format!("PLL1 gets {hz} Hz: PLL1RGE is set for {least} to {most} Hz"));
+            violations.push(format!(
+                "PLL1 gets {hz} Hz: PLL1RGE is set for {least} to {most} Hz"
+            ));
         }
         let (least, most) = PLL_VCO[(settings.pll_config >> 1 & 1) as usize];
         let hz = self.pll1_vco;
         if !(least..=most).contains(&hz) {
-            violations.push(format!("the oscillator of PLL1 would run at {hz} Hz: PLL1VCOSEL is set for {least} to {most} Hz"));
+            violations.push(format!(
+                "the oscillator of PLL1 would run at {hz} Hz: PLL1VCOSEL is set for {least} to {most} Hz"
+            ));
         }
         violations
     }
@@ -194,7 +204,10 @@ mod tests {
     #[test]
     fn the_boards_setting_is_520_mhz_within_all_limits() {
         let clocks = Clocks::of(&BOARD);
-        assert_eq!((clocks.core, clocks.bus, clocks.apb[0]), (520_000_000, 260_000_000, 130_000_000));
+        assert_eq!(
+            (clocks.core, clocks.bus, clocks.apb[0]),
+            (520_000_000, 260_000_000, 130_000_000)
+        );
         assert_eq!((clocks.timers, clocks.pll1_q), ([260_000_000; 2], 57_777_777));
         assert_eq!(clocks.violations(&BOARD), Vec::<String>::new());
         assert_eq!(clocks.pll1_violations(&BOARD), Vec::<String>::new());
@@ -206,14 +219,20 @@ mod tests {
             let mut settings = BOARD;
             change(&mut settings);
             let clocks = Clocks::of(&settings);
-            [clocks.violations(&settings), clocks.pll1_violations(&settings)].concat().join("; ")
+            [clocks.violations(&settings), clocks.pll1_violations(&settings)]
+                .concat()
+                .join("; ")
         };
         for (text, change) in [
             ("VOS1 400000000 Hz", (|s| s.scale = 1) as fn(&mut Settings)),
             ("AXI and AHB would run at 520000000 Hz", |s| s.domains[0] &= !0xf),
-            ("2 wait states: at 260000000 Hz and VOS0 it needs 3", |s| s.flash_access = 2),
+            ("2 wait states: at 260000000 Hz and VOS0 it needs 3", |s| {
+                s.flash_access = 2
+            }),
             ("PLL1 gets 2000000 Hz: PLL1RGE", |s| s.pll_config |= 2 << 2),
-            ("the oscillator of PLL1 would run at 520000000 Hz", |s| s.pll_config |= 2),
+            ("the oscillator of PLL1 would run at 520000000 Hz", |s| {
+                s.pll_config |= 2
+            }),
             ("PLL1 gets 0 Hz", |s| s.pll_source &= 3),
         ] {
             let found = broken(change);

@@ -26,7 +26,11 @@ impl Peripheral for Exti {
 
     fn write(&mut self, offset: u32, value: u32, _: u32, _: &mut Shared) {
         if let Some(word) = self.0.get_mut(offset as usize / 4) {
-            *word = if PENDING.contains(&offset) { *word & !value } else { value };
+            *word = if PENDING.contains(&offset) {
+                *word & !value
+            } else {
+                value
+            };
         }
     }
 }

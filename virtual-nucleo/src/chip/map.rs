@@ -76,10 +76,14 @@ impl Map {
         entries.dedup_by_key(|entry| entry.address);
         let last_before = |page: u64| {
             let begin = FIRST + page * PAGE;
-            entries.partition_point(|entry| u64::from(entry.address) <= begin).saturating_sub(1)
+            entries
+                .partition_point(|entry| u64::from(entry.address) <= begin)
+                .saturating_sub(1)
         };
         Self {
-            pages: (0..(END - FIRST) / PAGE).map(|page| last_before(page) as u16).collect(),
+            pages: (0..(END - FIRST) / PAGE)
+                .map(|page| last_before(page) as u16)
+                .collect(),
             entries,
         }
     }
@@ -94,8 +98,14 @@ impl Map {
         let page = u64::from(address).checked_sub(FIRST)? / PAGE;
         let first = usize::from(*self.pages.get(page as usize)?);
         let lies_in = |entry: &Entry| address.wrapping_sub(entry.address) < entry.length();
-        let candidates = self.entries[first..].iter().take_while(|entry| entry.address <= address);
-        let offset = candidates.enumerate().filter(|(_, entry)| lies_in(entry)).map(|(offset, _)| offset).last()?;
+        let candidates = self.entries[first..]
+            .iter()
+            .take_while(|entry| entry.address <= address);
+        let offset = candidates
+            .enumerate()
+            .filter(|(_, entry)| lies_in(entry))
+            .map(|(offset, _)| offset)
+            .last()?;
         Some(first + offset)
     }
 }
@@ -129,12 +139,17 @@ fn entry(peripheral: &Peripheral, bits: &HashMap<(&str, &str), RccBit>) -> Optio
 /// Every field of the clock controller by the names of its register and its own.
 fn rcc_bits() -> HashMap<(&'static str, &'static str), RccBit> {
     let mut bits = HashMap::new();
-    let rcc = METADATA.peripherals.iter().find(|peripheral| peripheral.name == "RCC");
+    let rcc = METADATA
+        .peripherals
+        .iter()
+        .find(|peripheral| peripheral.name == "RCC");
     let Some(described) = rcc.and_then(|rcc| rcc.registers.as_ref()) else {
         return bits;
     };
     for item in described.ir.blocks.iter().flat_map(|block| block.items) {
-        let BlockItemInner::Register(register) = &item.inner else { continue };
+        let BlockItemInner::Register(register) = &item.inner else {
+            continue;
+        };
         for field in fields(described.ir, register.fieldset) {
             if let BitOffset::Regular(place) = &field.bit_offset {
                 let names = (upper(item.name), upper(field.name));
@@ -158,7 +173,12 @@ fn find_block(ir: &'static ir::IR, name: &str) -> Option<&'static ir::Block> {
     ir.blocks.iter().find(|block| same(block.name))
 }
 
-fn collect(ir: &'static ir::IR, block: &'static ir::Block, base: u32, registers: &mut HashMap<u32, Register>) {
+fn collect(
+    ir: &'static ir::IR,
+    block: &'static ir::Block,
+    base: u32,
+    registers: &mut HashMap<u32, Register>,
+) {
     if let Some(parent) = block.extends.and_then(|name| find_block(ir, name)) {
         collect(ir, parent, base, registers);
     }
@@ -191,7 +211,9 @@ fn describe(ir: &'static ir::IR, name: &'static str, register: &ir::Register, by
     let all = u32::MAX >> (32 - register.bit_size.clamp(1, 32));
     let bits = match register.fieldset {
         None => all,
-        Some(_) => fields(ir, register.fieldset).map(|field| mask(field)).fold(0, |all, field| all | field),
+        Some(_) => fields(ir, register.fieldset)
+            .map(|field| mask(field))
+            .fold(0, |all, field| all | field),
     };
     Register {
         name: upper(name),
@@ -235,14 +257,21 @@ fn offsets(array: Option<&Array>) -> Vec<u32> {
 
 /// The alternate function that connects `pin` to `signal` of a peripheral.
 pub fn alternate_function(peripheral: &str, signal: &str, pin: &str) -> Option<u8> {
-    let peripheral = METADATA.peripherals.iter().find(|other| other.name == peripheral)?;
-    let connection = |other: &&stm32_metapac::metadata::PeripheralPin| other.signal == signal && other.pin == pin;
+    let peripheral = METADATA
+        .peripherals
+        .iter()
+        .find(|other| other.name == peripheral)?;
+    let connection =
+        |other: &&stm32_metapac::metadata::PeripheralPin| other.signal == signal && other.pin == pin;
     peripheral.pins.iter().find(connection)?.af
 }
 
 /// Number of the exception of the interrupt called `name`.
 pub fn exception(name: &str) -> Option<u16> {
-    let interrupt = METADATA.interrupts.iter().find(|interrupt| interrupt.name == name)?;
+    let interrupt = METADATA
+        .interrupts
+        .iter()
+        .find(|interrupt| interrupt.name == name)?;
     Some(interrupt.number as u16 + crate::armv7m::FIRST_INTERRUPT)
 }
 
@@ -255,7 +284,9 @@ mod tests {
         let map = Map::new();
         let at = |address: u32| {
             let entry = &map.entries()[map.find(address).expect("a peripheral")];
-            let register = entry.register(address - entry.address).map(|register| register.name);
+            let register = entry
+                .register(address - entry.address)
+                .map(|register| register.name);
             (entry.name, register)
         };
         assert_eq!(at(0x5802_0400), ("GPIOB", Some("MODER")));
@@ -270,7 +301,12 @@ mod tests {
     #[test]
     fn clocks_and_resets_are_found_by_their_names() {
         let map = Map::new();
-        let entry = |name| map.entries().iter().find(|entry| entry.name == name).expect("is there");
+        let entry = |name| {
+            map.entries()
+                .iter()
+                .find(|entry| entry.name == name)
+                .expect("is there")
+        };
         assert_eq!(entry("TIM6").enable, Some((0xe8, 4)));
         assert_eq!(entry("TIM6").reset, Some((0x90, 4)));
         assert_eq!(entry("GPIOF").enable, Some((0xe0, 5)));
@@ -280,7 +316,11 @@ mod tests {
     #[test]
     fn bits_that_mean_nothing_are_known() {
         let map = Map::new();
-        let entry = map.entries().iter().find(|entry| entry.name == "TIM6").expect("is there");
+        let entry = map
+            .entries()
+            .iter()
+            .find(|entry| entry.name == "TIM6")
+            .expect("is there");
         // RM0468: CEN UDIS URS OPM, ARPE, UIFREMAP.
         assert_eq!(entry.register(0).map(|register| register.bits), Some(0x88f));
     }

@@ -54,7 +54,11 @@ pub fn reach(address: u32, length: usize) -> Reach {
     if let Some(offset) = lies_in(D2) {
         return Reach::Domain2(offset);
     }
-    if lies_in(AXI).or(lies_in(D3)).or(lies_in((FLASH, FLASH_LENGTH))).is_some() {
+    if lies_in(AXI)
+        .or(lies_in(D3))
+        .or(lies_in((FLASH, FLASH_LENGTH)))
+        .is_some()
+    {
         return Reach::Memory;
     }
     Reach::Nothing(match () {
@@ -94,7 +98,9 @@ impl Default for Domain2 {
 
 /// What memory may hold at power-up.
 pub fn junk(length: usize) -> Vec<u8> {
-    (0..length as u32).map(|index| (index.wrapping_mul(0x9e37_79b1) >> 24) as u8).collect()
+    (0..length as u32)
+        .map(|index| (index.wrapping_mul(0x9e37_79b1) >> 24) as u8)
+        .collect()
 }
 
 /// An access of a bus master met a line in the cache.
@@ -139,7 +145,11 @@ impl Domain2 {
     pub fn fetch(&self, offset: usize, to: &mut [u8]) -> Result<(), Incoherent> {
         to.copy_from_slice(&self.bytes[offset..offset + to.len()]);
         let dirty = |line: &usize| self.lines.get(line).is_some_and(|line| line.dirty);
-        if lines(offset, to.len()).any(|line| dirty(&line)) { Err(Incoherent) } else { Ok(()) }
+        if lines(offset, to.len()).any(|line| dirty(&line)) {
+            Err(Incoherent)
+        } else {
+            Ok(())
+        }
     }
 
     /// A bus master writes.
@@ -155,7 +165,9 @@ impl Domain2 {
     /// Writes the line of an address back, and drops it.
     pub fn maintain(&mut self, offset: usize, clean: bool, invalidate: bool) {
         let number = offset / LINE;
-        let Some(mut line) = self.lines.remove(&number) else { return };
+        let Some(mut line) = self.lines.remove(&number) else {
+            return;
+        };
         if clean && line.dirty {
             self.bytes[number * LINE..][..LINE].copy_from_slice(&line.bytes);
             line.dirty = false;

@@ -99,10 +99,16 @@ impl Chip {
         self.models.reset(&self.map, cause);
         self.shared.system = System::default();
         self.shared.pins = pins::Pins::default();
-        (self.shared.csi, self.shared.ethernet_clocks, self.shared.ethernet_interface) = (false, false, 0);
+        (
+            self.shared.csi,
+            self.shared.ethernet_clocks,
+            self.shared.ethernet_interface,
+        ) = (false, false, 0);
         for port in 0..pins::PORTS {
             let now = self.shared.now();
-            self.shared.outside.drive(port, 0, 0, now, &mut self.shared.findings);
+            self.shared
+                .outside
+                .drive(port, 0, 0, now, &mut self.shared.findings);
         }
         self.start();
     }
@@ -155,7 +161,8 @@ impl Chip {
     fn answering(&mut self, address: u32, write: bool) -> Option<usize> {
         let what = if write { "written" } else { "read" };
         let Some(index) = self.map.find(address) else {
-            self.shared.report(format!("{address:#010x} is {what}, where no peripheral is"));
+            self.shared
+                .report(format!("{address:#010x} is {what}, where no peripheral is"));
             return None;
         };
         let entry = &self.map.entries()[index];
@@ -164,16 +171,25 @@ impl Chip {
         let problem = match entry.register(address - entry.address) {
             _ if !clocked => Some(format!("{} is {what} while its clock is off", entry.name)),
             _ if in_reset => Some(format!("{} is {what} while it is held in reset", entry.name)),
-            None => Some(format!("{} has no register at {:#x}, which is {what}", entry.name, address - entry.address)),
-            Some(register) if write && !register.writable => Some(format!("{} of {} cannot be written", register.name, entry.name)),
-            Some(register) if !write && !register.readable => Some(format!("{} of {} cannot be read", register.name, entry.name)),
+            None => Some(format!(
+                "{} has no register at {:#x}, which is {what}",
+                entry.name,
+                address - entry.address
+            )),
+            Some(register) if write && !register.writable => {
+                Some(format!("{} of {} cannot be written", register.name, entry.name))
+            }
+            Some(register) if !write && !register.readable => {
+                Some(format!("{} of {} cannot be read", register.name, entry.name))
+            }
             Some(_) => None,
         };
         match problem {
             Some(problem) => self.shared.report(problem),
             None if !self.models.has(index) => {
                 let name = entry.name;
-                self.shared.report(format!("{name} is {what}, which is not modelled"));
+                self.shared
+                    .report(format!("{name} is {what}, which is not modelled"));
             }
             None => return Some(index),
         }
@@ -181,7 +197,9 @@ impl Chip {
     }
 
     fn load(&mut self, address: u32) -> u32 {
-        let Some(index) = self.answering(address, false) else { return 0 };
+        let Some(index) = self.answering(address, false) else {
+            return 0;
+        };
         let offset = address - self.map.entries()[index].address;
         let value = self.models.read(index, offset & !3, &mut self.shared);
         if let Some(time) = self.shared.polls_until.take() {
@@ -192,7 +210,9 @@ impl Chip {
     }
 
     fn store(&mut self, address: u32, size: u32, value: u32) {
-        let Some(index) = self.answering(address, true) else { return };
+        let Some(index) = self.answering(address, true) else {
+            return;
+        };
         let entry = &self.map.entries()[index];
         let offset = (address - entry.address) & !3;
         let name = entry.name;
@@ -206,10 +226,17 @@ impl Chip {
             && value & !register.bits != 0
         {
             // Bits that read as ones after a reset are to stay ones.
-            let kept = if register.readable { self.models.read(index, offset, &mut self.shared) } else { 0 };
+            let kept = if register.readable {
+                self.models.read(index, offset, &mut self.shared)
+            } else {
+                0
+            };
             let changed = (value ^ kept) & !register.bits;
             if changed != 0 {
-                let text = format!("reserved bits {changed:#010x} of {} of {} are changed", register.name, entry.name);
+                let text = format!(
+                    "reserved bits {changed:#010x} of {} of {} are changed",
+                    register.name, entry.name
+                );
                 self.shared.report(text);
             }
         }
@@ -242,7 +269,8 @@ impl Chip {
     fn check_domain2(&mut self, address: u32) {
         let half = ((address - D2.0) as usize / (D2.1 / 2)).min(1);
         if !self.models.rcc.is_set(D2_CLOCKS[half]) {
-            self.shared.report(format!("SRAM{} is accessed while its clock is off", half + 1));
+            self.shared
+                .report(format!("SRAM{} is accessed while its clock is off", half + 1));
         }
         self.shared.clock.cycles += D2_CYCLES;
     }
@@ -262,7 +290,11 @@ impl Bus for Chip {
         self.shared.findings.pc = pc;
         self.shared.clock.cycles += u64::from(instructions);
         self.instructions += u64::from(instructions);
-        if self.shared.system.nvic.first().is_some() { Step::Pending } else { Step::Run }
+        if self.shared.system.nvic.first().is_some() {
+            Step::Pending
+        } else {
+            Step::Run
+        }
     }
 
     fn preempts(&mut self, masks: Masks) -> bool {
@@ -273,7 +305,9 @@ impl Bus for Chip {
         if address < PERIPHERALS {
             self.check_domain2(address);
             let cached = self.shared.system.data_cache();
-            let (value, coherent) = self.domain2.load((address - D2.0) as usize, size as usize, cached);
+            let (value, coherent) = self
+                .domain2
+                .load((address - D2.0) as usize, size as usize, cached);
             if coherent.is_err() {
                 self.shared.report(format!(
                     "the data cache holds an old copy of {:#010x}, which the Ethernet controller has written since: it is to be invalidated",
@@ -285,7 +319,10 @@ impl Bus for Chip {
         self.shared.clock.cycles += LOAD_CYCLES;
         let cycles = self.shared.clock.cycles;
         let word = match address {
-            CORE.. => self.shared.system.read(address & !3, cycles, &mut self.shared.findings),
+            CORE.. => self
+                .shared
+                .system
+                .read(address & !3, cycles, &mut self.shared.findings),
             _ => self.load(address),
         };
         u64::from(word >> (8 * (address & 3)))
@@ -295,7 +332,8 @@ impl Bus for Chip {
         if address < PERIPHERALS {
             self.check_domain2(address);
             let cached = self.shared.system.data_cache();
-            self.domain2.store((address - D2.0) as usize, size as usize, value, cached);
+            self.domain2
+                .store((address - D2.0) as usize, size as usize, value, cached);
             return;
         }
         self.shared.clock.cycles += STORE_CYCLES;
@@ -316,9 +354,13 @@ impl Bus for Chip {
             // Priorities are the only registers of the core that may be written by bytes.
             let shift = 8 * (address & 3);
             let mask = (u32::MAX >> (32 - 8 * size)) << shift;
-            value = shared.system.read(address & !3, cycles, &mut shared.findings) & !mask | value << shift & mask;
+            value = shared.system.read(address & !3, cycles, &mut shared.findings) & !mask
+                | value << shift & mask;
         }
-        if let Some(ResetRequested) = shared.system.write(address & !3, value, cycles, &mut shared.findings) {
+        if let Some(ResetRequested) = shared
+            .system
+            .write(address & !3, value, cycles, &mut shared.findings)
+        {
             shared.reset = Some(Reset::Software);
         }
         self.look_ahead();

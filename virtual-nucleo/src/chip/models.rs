@@ -51,7 +51,12 @@ fn kind(name: &'static str) -> Kind {
         "IWDG1" => Box::new(Watchdog::default()),
         "SPI1" | "SPI2" | "SPI3" => Box::new(Spi::new(name)),
         _ => match (name.strip_prefix("GPIO"), name.strip_prefix("TIM")) {
-            (Some(letter), _) => return letter.bytes().next().map_or(Kind::None, |letter| Kind::Port(usize::from(letter - b'A'))),
+            (Some(letter), _) => {
+                return letter
+                    .bytes()
+                    .next()
+                    .map_or(Kind::None, |letter| Kind::Port(usize::from(letter - b'A')));
+            }
             (_, Some(_)) => Box::new(Timer::new(name)),
             _ => return Kind::None,
         },
@@ -114,7 +119,10 @@ impl Models {
         match &mut self.kinds[index] {
             Kind::Rcc => Some(&mut self.rcc),
             Kind::Pwr => Some(&mut self.pwr),
-            Kind::Ethernet => self.ethernet.as_mut().map(|ethernet| &mut **ethernet as &mut dyn Peripheral),
+            Kind::Ethernet => self
+                .ethernet
+                .as_mut()
+                .map(|ethernet| &mut **ethernet as &mut dyn Peripheral),
             Kind::Other(model) => Some(model.as_mut()),
             Kind::None | Kind::Port(_) | Kind::Debug => None,
         }
@@ -134,7 +142,14 @@ impl Models {
         if let Kind::Port(port) = self.kinds[index] {
             let now = shared.clock.now();
             shared.findings.now = now;
-            shared.pins.write(port, offset, value, now, &mut shared.outside, &mut shared.findings);
+            shared.pins.write(
+                port,
+                offset,
+                value,
+                now,
+                &mut shared.outside,
+                &mut shared.findings,
+            );
         } else if let Some(model) = self.model(index) {
             model.write(offset, value, size, shared);
         }

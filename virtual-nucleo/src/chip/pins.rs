@@ -99,7 +99,12 @@ impl Pins {
 
     /// Bits of a port's pins that drive their line, and the levels.
     pub fn driven(&self, port: usize) -> (u16, u16) {
-        let Port { mode, open_drain, output, .. } = self.0[port];
+        let Port {
+            mode,
+            open_drain,
+            output,
+            ..
+        } = self.0[port];
         let mut drives = 0_u16;
         for n in 0..16 {
             let pulls_up = open_drain & output & 1 << n != 0;
@@ -114,17 +119,18 @@ impl Pins {
         let Port { mode, pulls, .. } = self.0[port];
         let (drives, output) = self.driven(port);
         let (wired, levels) = outside.inputs(port);
-        (0..16).filter(|n| {
-            let bit = 1 << n;
-            let pulled_up = pulls >> (2 * n) & 3 == 1;
-            match mode >> (2 * n) & 3 {
-                3 => false,
-                _ if drives & bit != 0 => output & bit != 0,
-                _ if wired & bit != 0 => levels & bit != 0,
-                _ => pulled_up,
-            }
-        })
-        .fold(0, |word, n| word | 1 << n)
+        (0..16)
+            .filter(|n| {
+                let bit = 1 << n;
+                let pulled_up = pulls >> (2 * n) & 3 == 1;
+                match mode >> (2 * n) & 3 {
+                    3 => false,
+                    _ if drives & bit != 0 => output & bit != 0,
+                    _ if wired & bit != 0 => levels & bit != 0,
+                    _ => pulled_up,
+                }
+            })
+            .fold(0, |word, n| word | 1 << n)
     }
 
     /// Reads the register at `offset` of a port.
@@ -144,7 +150,15 @@ impl Pins {
     }
 
     /// Writes the register at `offset` of a port, and passes on what changes outside.
-    pub fn write(&mut self, port: usize, offset: u32, value: u32, now: Time, outside: &mut Outside, findings: &mut Findings) {
+    pub fn write(
+        &mut self,
+        port: usize,
+        offset: u32,
+        value: u32,
+        now: Time,
+        outside: &mut Outside,
+        findings: &mut Findings,
+    ) {
         let registers = &mut self.0[port];
         match offset {
             MODER => registers.mode = value,

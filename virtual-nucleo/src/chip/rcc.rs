@@ -98,7 +98,9 @@ impl Rcc {
 
     fn write_control(&mut self, value: u32, shared: &mut Shared) {
         let (now, before) = (shared.now(), self.control(shared.now()));
-        let system = SYSTEM.get((self.word(CFGR) & 7) as usize).map(|(ready, _)| *ready);
+        let system = SYSTEM
+            .get((self.word(CFGR) & 7) as usize)
+            .map(|(ready, _)| *ready);
         for (index, &(on, ready, name, takes)) in SWITCHES.iter().enumerate() {
             let (was, is) = (before & 1 << on != 0, value & 1 << on != 0);
             if is && !was {
@@ -123,7 +125,9 @@ impl Rcc {
             _ => (31, "no oscillator"),
         };
         if self.control(shared.now()) & 1 << source == 0 {
-            shared.report(format!("PLL1 is switched on with {name} as its source, which is not ready"));
+            shared.report(format!(
+                "PLL1 is switched on with {name} as its source, which is not ready"
+            ));
         }
         let clocks = super::clocks::Clocks::of(&shared.settings);
         for violation in clocks.pll1_violations(&shared.settings) {

@@ -77,7 +77,9 @@ impl Spi {
 
     fn send_waiting(&mut self, shared: &mut Shared) {
         while self.runs() {
-            let Some(byte) = self.outgoing.pop_front() else { return };
+            let Some(byte) = self.outgoing.pop_front() else {
+                return;
+            };
             self.send(byte, shared);
         }
     }
@@ -90,7 +92,10 @@ impl Spi {
         }
         for signal in [&self.clock, &self.output, &self.input] {
             if shared.pins.connected(signal).is_none() {
-                shared.findings.report(format!("{} sends, but no pin is connected to {}", self.name, signal.name));
+                shared.findings.report(format!(
+                    "{} sends, but no pin is connected to {}",
+                    self.name, signal.name
+                ));
             }
         }
         let begin = shared.now().max(self.busy_until);
@@ -101,7 +106,10 @@ impl Spi {
             second_edge: mode & 1 << 24 != 0,
         };
         let connected = |signal: &Signal| shared.pins.connected(signal).is_some();
-        let (sends, receives) = (connected(&self.clock) && connected(&self.output), connected(&self.input));
+        let (sends, receives) = (
+            connected(&self.clock) && connected(&self.output),
+            connected(&self.input),
+        );
         let mut answer = u8::MAX;
         if sends {
             answer = shared.outside.spi_byte(byte, clock, &mut shared.findings);
@@ -110,7 +118,8 @@ impl Spi {
             self.flags |= OVERRUN;
             return;
         }
-        self.incoming.push_back((self.busy_until, if receives { answer } else { u8::MAX }));
+        self.incoming
+            .push_back((self.busy_until, if receives { answer } else { u8::MAX }));
     }
 
     /// The status, again and again: the turns of the loop are skipped to the next byte.
@@ -159,7 +168,11 @@ impl Peripheral for Spi {
         match offset {
             CR1 => {
                 let was = self.word(CR1);
-                self.words[CR1 as usize / 4] = if value & ENABLED == 0 { value & !STARTED } else { value };
+                self.words[CR1 as usize / 4] = if value & ENABLED == 0 {
+                    value & !STARTED
+                } else {
+                    value
+                };
                 if was & ENABLED != 0 && value & ENABLED == 0 {
                     if self.busy_until > shared.now() {
                         shared.report(format!("{} is switched off while it sends", self.name));
@@ -170,7 +183,10 @@ impl Peripheral for Spi {
                 self.send_waiting(shared);
             }
             CFG1 | CFG2 if self.word(CR1) & ENABLED != 0 && self.word(offset) != value => {
-                shared.report(format!("the setting of {} is written while it is on: the write is lost", self.name));
+                shared.report(format!(
+                    "the setting of {} is written while it is on: the write is lost",
+                    self.name
+                ));
             }
             TXDR if self.word(CR1) & ENABLED == 0 => {
                 shared.report(format!("{} is given a byte while it is off", self.name));

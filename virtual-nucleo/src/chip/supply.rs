@@ -49,7 +49,11 @@ impl Pwr {
 impl Peripheral for Pwr {
     fn read(&mut self, offset: u32, shared: &mut Shared) -> u32 {
         let value = self.words.get(offset as usize / 4).copied().unwrap_or(0);
-        let ready = if self.chosen && self.ready <= shared.now() { READY } else { 0 };
+        let ready = if self.chosen && self.ready <= shared.now() {
+            READY
+        } else {
+            0
+        };
         match offset {
             CSR1 => self.words[D3CR as usize / 4] & 3 << 14 | ready,
             D3CR => value & !READY | ready,
@@ -61,13 +65,15 @@ impl Peripheral for Pwr {
         match offset {
             CR3 if !self.chosen => {
                 if value & SUPPLY != LDO {
-                    shared.report("PWR_CR3 does not choose the LDO alone, which is how the board is supplied");
+                    shared
+                        .report("PWR_CR3 does not choose the LDO alone, which is how the board is supplied");
                 }
                 self.chosen = true;
                 self.ready = shared.now() + SCALING_TAKES;
             }
             CR3 if value & SUPPLY != self.words[offset as usize / 4] & SUPPLY => {
-                shared.report("PWR_CR3 is written a second time: the supply can be chosen once after power-up");
+                shared
+                    .report("PWR_CR3 is written a second time: the supply can be chosen once after power-up");
                 return;
             }
             D3CR => {

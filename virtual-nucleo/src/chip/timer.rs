@@ -107,7 +107,10 @@ impl Timer {
     /// Clock of the counter \[Hz\], and its periods to an overflow.
     fn period(&self, shared: &Shared) -> Time {
         let hz = shared.clocks.timers[self.bus];
-        Time::periods((u64::from(self.word(ARR)) + 1) * (u64::from(self.prescaler) + 1), hz)
+        Time::periods(
+            (u64::from(self.word(ARR)) + 1) * (u64::from(self.prescaler) + 1),
+            hz,
+        )
     }
 
     fn count(&self, shared: &Shared) -> u32 {
@@ -118,7 +121,8 @@ impl Timer {
         if !self.runs() || self.mode() != 0 {
             return self.base;
         }
-        let steps = (shared.now() - self.since).count(shared.clocks.timers[self.bus]) / (u64::from(self.prescaler) + 1);
+        let steps = (shared.now() - self.since).count(shared.clocks.timers[self.bus])
+            / (u64::from(self.prescaler) + 1);
         let modulus = u64::from(self.word(ARR)) + 1;
         ((u64::from(self.base) + steps) % modulus) as u32
     }
@@ -131,7 +135,10 @@ impl Timer {
         }
         let period = self.period(shared);
         if period < SHORTEST && self.word(DIER) & UPDATE != 0 {
-            shared.report(format!("{} would interrupt every {period}: nothing else could run", self.name));
+            shared.report(format!(
+                "{} would interrupt every {period}: nothing else could run",
+                self.name
+            ));
             return;
         }
         let left = (u64::from(self.word(ARR)) + 1).saturating_sub(u64::from(self.base));
@@ -163,20 +170,30 @@ impl Timer {
         for (track, signal) in tracks.iter_mut().zip(&self.signals) {
             let pin = shared.pins.connected(signal);
             if pin.is_none() {
-                shared.findings.report(format!("{} counts an encoder, but no pin is connected to {}", self.name, signal.name));
+                shared.findings.report(format!(
+                    "{} counts an encoder, but no pin is connected to {}",
+                    self.name, signal.name
+                ));
             }
             *track = pin.and_then(|pin| shared.outside.track(pin));
         }
         for channel in [0, 1] {
             if self.word(CCMR1) >> (8 * channel) & 3 != 1 {
-                shared.report(format!("{} counts an encoder, but its channel {} is not an input from its own pin", self.name, channel + 1));
+                shared.report(format!(
+                    "{} counts an encoder, but its channel {} is not an input from its own pin",
+                    self.name,
+                    channel + 1
+                ));
             }
         }
         let (index, sign) = match tracks {
             [Some((index, Track::A)), Some((other, Track::B))] if index == other => (index, 1),
             [Some((index, Track::B)), Some((other, Track::A))] if index == other => (index, -1),
             _ => {
-                shared.report(format!("{} counts an encoder, but its channels 1 and 2 are not tracks A and B of one", self.name));
+                shared.report(format!(
+                    "{} counts an encoder, but its channels 1 and 2 are not tracks A and B of one",
+                    self.name
+                ));
                 return;
             }
         };
@@ -254,13 +271,22 @@ impl Peripheral for Timer {
                         shared.outside.tick_begins(shared.clock.now());
                     }
                     if !matches!(self.mode(), 0 | ENCODER) {
-                        shared.report(format!("the mode {} of {} is not modelled", self.mode(), self.name));
+                        shared.report(format!(
+                            "the mode {} of {} is not modelled",
+                            self.mode(),
+                            self.name
+                        ));
                     }
                 }
                 self.connect(shared);
             }
-            DIER if value & !UPDATE != 0 => shared.report(format!("interrupts of {} but its update are not modelled", self.name)),
-            ARR if value & !self.highest != 0 => shared.report(format!("ARR of {} is written with more than 16 bits", self.name)),
+            DIER if value & !UPDATE != 0 => shared.report(format!(
+                "interrupts of {} but its update are not modelled",
+                self.name
+            )),
+            ARR if value & !self.highest != 0 => {
+                shared.report(format!("ARR of {} is written with more than 16 bits", self.name))
+            }
             _ => {
                 if let Some(word) = self.words.get_mut(offset as usize / 4) {
                     *word = value;
@@ -287,6 +313,7 @@ impl Peripheral for Timer {
     }
 
     fn asks_for(&self) -> Option<u16> {
-        self.exception.filter(|_| self.word(SR) & self.word(DIER) & UPDATE != 0)
+        self.exception
+            .filter(|_| self.word(SR) & self.word(DIER) & UPDATE != 0)
     }
 }

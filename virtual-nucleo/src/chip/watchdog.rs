@@ -104,7 +104,9 @@ impl Peripheral for Watchdog {
     fn advance(&mut self, shared: &mut Shared) {
         if self.strikes <= shared.now() {
             let patience = self.patience();
-            shared.report(format!("the watchdog was not fed for {patience}: it resets the chip"));
+            shared.report(format!(
+                "the watchdog was not fed for {patience}: it resets the chip"
+            ));
             self.strikes = Time::NEVER;
             shared.reset = Some(Reset::Watchdog);
         }

@@ -154,7 +154,11 @@ impl<B: Bus + 'static> Cpu for UnicornCpu<B> {
             Register::Xpsr => RegisterARM::XPSR_NZCVQG as i32,
             other => number(other),
         };
-        let value = if register == Register::Pc { value | 1 } else { value };
+        let value = if register == Register::Pc {
+            value | 1
+        } else {
+            value
+        };
         // Fails only for a register that the core does not have.
         let _ = self.engine.reg_write(number, u64::from(value));
         if register == Register::Xpsr {
@@ -165,16 +169,24 @@ impl<B: Bus + 'static> Cpu for UnicornCpu<B> {
     }
 
     fn get_double(&self, n: u8) -> u64 {
-        self.engine.reg_read(RegisterARM::D0 as i32 + i32::from(n)).unwrap_or(0)
+        self.engine
+            .reg_read(RegisterARM::D0 as i32 + i32::from(n))
+            .unwrap_or(0)
     }
 
     fn set_double(&mut self, n: u8, value: u64) {
         // As in `set`.
-        let _ = self.engine.reg_write(RegisterARM::D0 as i32 + i32::from(n), value);
+        let _ = self
+            .engine
+            .reg_write(RegisterARM::D0 as i32 + i32::from(n), value);
     }
 
     fn map(&mut self, address: u32, contents: &[u8], writable: bool) -> Result<(), Unmapped> {
-        let protection = if writable { Prot::ALL } else { Prot::READ | Prot::EXEC };
+        let protection = if writable {
+            Prot::ALL
+        } else {
+            Prot::READ | Prot::EXEC
+        };
         let address = u64::from(address);
         self.engine
             .mem_map(address, contents.len() as u64, protection)
@@ -201,7 +213,9 @@ impl<B: Bus + 'static> Cpu for UnicornCpu<B> {
     }
 
     fn store(&mut self, address: u32, from: &[u8]) -> Result<(), Unmapped> {
-        self.engine.mem_write(u64::from(address), from).map_err(|_| Unmapped)
+        self.engine
+            .mem_write(u64::from(address), from)
+            .map_err(|_| Unmapped)
     }
 
     fn run(&mut self) -> Stop {

@@ -7,7 +7,10 @@ use crate::time::Time;
 use shared::protocol::{DATAGRAM_PORT, REQUEST_PORT};
 use smoltcp::iface::{Config, Interface, SocketSet};
 use smoltcp::time::Instant;
-use smoltcp::wire::{EthernetAddress, HardwareAddress, IpAddress, IpCidr, IpEndpoint, Ipv4Address};
+use smoltcp::wire::{
+    EthernetAddress, EthernetFrame, EthernetProtocol, HardwareAddress, IpAddress, IpCidr, IpEndpoint,
+};
+use smoltcp::wire::{IpProtocol, Ipv4Address, Ipv4Packet, UdpPacket};
 use std::io;
 use std::net::Ipv4Addr;
 
@@ -15,8 +18,9 @@ use std::net::Ipv4Addr;
 const PC: Ipv4Address = Ipv4Address::new(192, 168, 71, 1);
 const PREFIX: u8 = 24;
 const MAC: EthernetAddress = EthernetAddress([0x02, 0, 0, 0, 0, 1]);
-/// First port that the PC's ends get.
-const FIRST_PORT: u16 = 49_152;
+/// Ports that this end gets in the boards' net: below those that a computer gives to its programs, to which the boards
+/// send by themselves.
+const OWN_PORTS: std::ops::Range<u16> = 1024..32_768;
 
 /// Ports of the loopback interface that lead to a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,16 +52,28 @@ impl Gateway {
             let _ = addresses.push(IpCidr::new(IpAddress::Ipv4(PC), PREFIX));
         });
         let end = |address: &Ipv4Addr, port| IpEndpoint::new(IpAddress::Ipv4(*address), port);
-        let streams = boards.iter().map(|board| Streams::listen(end(board, REQUEST_PORT)));
-        let datagrams = boards.iter().map(|board| Datagrams::bind(end(board, DATAGRAM_PORT)));
+        let streams = boards
+            .iter()
+            .map(|board| Streams::listen(end(board, REQUEST_PORT)));
+        let (mut sockets, mut next_port) = (SocketSet::new(Vec::new()), OWN_PORTS.start);
+        let datagrams = boards
+            .iter()
+            .map(|board| Datagrams::bind(end(board, DATAGRAM_PORT), &mut sockets, &mut next_port));
         Ok(Self {
             queues,
             interface,
-            sockets: SocketSet::new(Vec::new()),
             streams: streams.collect::<io::Result<_>>()?,
             datagrams: datagrams.collect::<io::Result<_>>()?,
-            next_port: FIRST_PORT,
+            sockets,
+            next_port,
         })
+    }
+
+    /// Whether all boards are on the net and have told their Ethernet addresses.
+    pub fn reaches_all(&self) -> bool {
+        self.datagrams
+            .iter()
+            .all(|datagrams| datagrams.reached(&self.sockets))
     }
 
     /// Where the boards are reached, in the order in which they were given.
@@ -72,9 +88,12 @@ impl Gateway {
         .collect()
     }
 
-    /// Takes a frame from the switch.
-    pub(super) fn take(&mut self, frame: Vec<u8>) {
-        self.queues.incoming.push_back(frame);
+    /// Takes a frame of a board from the switch. What it sends to a program's own port goes there directly.
+    pub(super) fn take(&mut self, board: usize, frame: Vec<u8>) {
+        match (to_program(&frame), self.datagrams.get(board)) {
+            (Some((port, bytes)), Some(datagrams)) => datagrams.pass_to(port, bytes),
+            _ => self.queues.incoming.push_back(frame),
+        }
     }
 
     /// Passes on what has come on either side, and gives the frames that go to the switch.
@@ -88,9 +107,24 @@ impl Gateway {
             datagrams.relay(&mut self.sockets, &mut self.next_port);
         }
         self.interface.poll(instant, &mut self.queues, &mut self.sockets);
-        if self.next_port < FIRST_PORT {
-            self.next_port = FIRST_PORT;
+        if !OWN_PORTS.contains(&self.next_port) {
+            self.next_port = OWN_PORTS.start;
         }
         self.queues.outgoing.drain(..).collect()
     }
+}
+
+/// Port and contents of a datagram to the PC that is not for a port of this end.
+fn to_program(frame: &[u8]) -> Option<(u16, &[u8])> {
+    let frame = EthernetFrame::new_checked(frame).ok()?;
+    if frame.ethertype() != EthernetProtocol::Ipv4 {
+        return None;
+    }
+    let packet = Ipv4Packet::new_checked(frame.payload()).ok()?;
+    if packet.dst_addr() != PC || packet.next_header() != IpProtocol::Udp {
+        return None;
+    }
+    let datagram = UdpPacket::new_checked(packet.payload()).ok()?;
+    let port = datagram.dst_port();
+    (!OWN_PORTS.contains(&port)).then(|| (port, datagram.payload()))
 }

@@ -18,13 +18,16 @@ const BYTE: Time = Time::ns(80);
 /// later.
 pub fn carry(boards: &mut [Board], gateway: &mut Gateway, now: Time) {
     for from in 0..boards.len() {
-        let sent = boards[from].ethernet_mut().map(|port| std::mem::take(&mut port.sent)).unwrap_or_default();
+        let sent = boards[from]
+            .ethernet_mut()
+            .map(|port| std::mem::take(&mut port.sent))
+            .unwrap_or_default();
         for (at, frame) in sent {
             let arrives = at + Time(BYTE.0 * frame.len() as u64);
             for (_, board) in boards.iter_mut().enumerate().filter(|(to, _)| *to != from) {
                 deliver(board, arrives, frame.clone());
             }
-            gateway.take(frame);
+            gateway.take(from, frame);
         }
     }
     for frame in gateway.exchange(now) {

@@ -12,6 +12,8 @@ const STREAM_BYTES: usize = 16 << 10;
 const DATAGRAMS: usize = 64;
 const DATAGRAM_BYTES: usize = 64 << 10;
 const LONGEST_DATAGRAM: usize = 1472;
+/// Where a datagram goes that nobody is to take (RFC 863).
+const DISCARD_PORT: u16 = 9;
 /// Senders of datagrams that are remembered for answers.
 const SENDERS: usize = 64;
 
@@ -49,7 +51,12 @@ impl Streams {
     }
 
     /// Passes on what has come. A stream whose host or board fails is closed on both sides.
-    pub fn relay(&mut self, interface: &mut Interface, sockets: &mut SocketSet<'static>, next_port: &mut u16) {
+    pub fn relay(
+        &mut self,
+        interface: &mut Interface,
+        sockets: &mut SocketSet<'static>,
+        next_port: &mut u16,
+    ) {
         while let Ok((host, _)) = self.listener.accept() {
             if let Some(stream) = connect(host, self.board, interface, sockets, next_port) {
                 self.open.push(stream);
@@ -117,7 +124,9 @@ impl Stream {
             }
         }
         while socket.can_recv() && self.waiting.len() < STREAM_BYTES {
-            let came = socket.recv(|bytes| (bytes.len(), bytes.to_vec())).map_err(io::Error::other)?;
+            let came = socket
+                .recv(|bytes| (bytes.len(), bytes.to_vec()))
+                .map_err(io::Error::other)?;
             self.waiting.extend(came);
         }
         while !self.waiting.is_empty() {
@@ -139,19 +148,34 @@ impl Stream {
 pub struct Datagrams {
     host: UdpSocket,
     board: IpEndpoint,
+    /// Holds an empty datagram until the board has told its Ethernet address.
+    probe: SocketHandle,
     senders: Vec<(SocketAddr, SocketHandle)>,
 }
 
 impl Datagrams {
     /// Takes datagrams for `board` on an unused port.
-    pub fn bind(board: IpEndpoint) -> io::Result<Self> {
+    pub fn bind(
+        board: IpEndpoint,
+        sockets: &mut SocketSet<'static>,
+        next_port: &mut u16,
+    ) -> io::Result<Self> {
         let host = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
         host.set_nonblocking(true)?;
+        let mut socket = socket(next_port).map_err(io::Error::other)?;
+        let nobody = IpEndpoint::new(board.addr, DISCARD_PORT);
+        socket.send_slice(&[], nobody).map_err(io::Error::other)?;
         Ok(Self {
             host,
             board,
+            probe: sockets.add(socket),
             senders: Vec::new(),
         })
+    }
+
+    /// Whether the board has told its Ethernet address, so that nothing waits for that.
+    pub fn reached(&self, sockets: &SocketSet<'static>) -> bool {
+        sockets.get::<udp::Socket>(self.probe).send_queue() == 0
     }
 
     /// The port.
@@ -163,9 +187,13 @@ impl Datagrams {
     pub fn relay(&mut self, sockets: &mut SocketSet<'static>, next_port: &mut u16) {
         let mut buffer = [0; LONGEST_DATAGRAM];
         for _ in 0..DATAGRAMS {
-            let Ok((length, sender)) = self.host.recv_from(&mut buffer) else { break };
+            let Ok((length, sender)) = self.host.recv_from(&mut buffer) else {
+                break;
+            };
             if let Some(handle) = self.socket_of(sender, sockets, next_port) {
-                let _ = sockets.get_mut::<udp::Socket>(handle).send_slice(&buffer[..length], self.board);
+                let _ = sockets
+                    .get_mut::<udp::Socket>(handle)
+                    .send_slice(&buffer[..length], self.board);
             }
         }
         for (sender, handle) in &self.senders {
@@ -176,7 +204,17 @@ impl Datagrams {
         }
     }
 
-    fn socket_of(&mut self, sender: SocketAddr, sockets: &mut SocketSet<'static>, next_port: &mut u16) -> Option<SocketHandle> {
+    /// Passes a datagram of the board to a program's own port. It is lost if nothing listens there.
+    pub fn pass_to(&self, port: u16, bytes: &[u8]) {
+        let _ = self.host.send_to(bytes, (Ipv4Addr::LOCALHOST, port));
+    }
+
+    fn socket_of(
+        &mut self,
+        sender: SocketAddr,
+        sockets: &mut SocketSet<'static>,
+        next_port: &mut u16,
+    ) -> Option<SocketHandle> {
         if let Some((_, handle)) = self.senders.iter().find(|(known, _)| *known == sender) {
             return Some(*handle);
         }
@@ -184,12 +222,23 @@ impl Datagrams {
             let (_, oldest) = self.senders.remove(0);
             sockets.remove(oldest);
         }
-        let buffer = || udp::PacketBuffer::new(vec![udp::PacketMetadata::EMPTY; DATAGRAMS], vec![0; DATAGRAM_BYTES]);
-        let mut socket = udp::Socket::new(buffer(), buffer());
-        *next_port = next_port.wrapping_add(1);
-        socket.bind(*next_port).ok()?;
+        let socket = socket(next_port).ok()?;
         let handle = sockets.add(socket);
         self.senders.push((sender, handle));
         Some(handle)
     }
+}
+
+/// A socket on the next port.
+fn socket(next_port: &mut u16) -> Result<udp::Socket<'static>, udp::BindError> {
+    let buffer = || {
+        udp::PacketBuffer::new(
+            vec![udp::PacketMetadata::EMPTY; DATAGRAMS],
+            vec![0; DATAGRAM_BYTES],
+        )
+    };
+    let mut socket = udp::Socket::new(buffer(), buffer());
+    *next_port = next_port.wrapping_add(1);
+    socket.bind(*next_port)?;
+    Ok(socket)
 }

@@ -61,7 +61,10 @@ impl Ad5764r {
     pub fn byte(&mut self, byte: u8, clock: SpiClock, findings: &mut Findings) -> u8 {
         let number = self.number;
         if clock.hz > HIGHEST_HZ {
-            findings.report(format!("DAC {number} is clocked at {} Hz: it takes {HIGHEST_HZ} Hz", clock.hz));
+            findings.report(format!(
+                "DAC {number} is clocked at {} Hz: it takes {HIGHEST_HZ} Hz",
+                clock.hz
+            ));
         }
         let (mut taken, mut given) = (byte, (self.answer >> (16 - self.bits.min(16))) as u8);
         if clock.idles_high == clock.second_edge {
@@ -84,7 +87,10 @@ impl Ad5764r {
             return;
         }
         if self.bits != FRAME_BITS {
-            findings.report(format!("DAC {} gets a frame of {} bits instead of {FRAME_BITS}", self.number, self.bits));
+            findings.report(format!(
+                "DAC {} gets a frame of {} bits instead of {FRAME_BITS}",
+                self.number, self.bits
+            ));
             return;
         }
         self.frames += 1;
@@ -100,7 +106,10 @@ impl Ad5764r {
             (FUNCTION, LOAD, _) => self.outputs = self.inputs,
             // No operation.
             (FUNCTION, ..) => {}
-            _ => findings.report(format!("register {register}, {address} of DAC {} is not modelled", self.number)),
+            _ => findings.report(format!(
+                "register {register}, {address} of DAC {} is not modelled",
+                self.number
+            )),
         }
     }
 
@@ -138,7 +147,10 @@ mod tests {
 
     fn frame(converter: &mut Ad5764r, bytes: &[u8], clock: SpiClock, findings: &mut Findings) -> Vec<u8> {
         converter.select();
-        let answer = bytes.iter().map(|byte| converter.byte(*byte, clock, findings)).collect();
+        let answer = bytes
+            .iter()
+            .map(|byte| converter.byte(*byte, clock, findings))
+            .collect();
         converter.deselect(Time::us(1), findings);
         answer
     }
@@ -167,12 +179,19 @@ mod tests {
         let found = |act: fn(&mut Ad5764r, &mut Findings)| {
             let (mut converter, mut findings) = (Ad5764r::new(1), none());
             act(&mut converter, &mut findings);
-            findings.all().first().map(|finding| finding.cause.clone()).unwrap_or_default()
+            findings
+                .all()
+                .first()
+                .map(|finding| finding.cause.clone())
+                .unwrap_or_default()
         };
         let torn = found(|converter, findings| drop(frame(converter, &[1, 2], MODE_1, findings)));
         assert_eq!(torn, "DAC 2 gets a frame of 16 bits instead of 24");
         let mode = found(|converter, findings| {
-            let mode_0 = SpiClock { second_edge: false, ..MODE_1 };
+            let mode_0 = SpiClock {
+                second_edge: false,
+                ..MODE_1
+            };
             frame(converter, &[0x10, 0, 0], mode_0, findings);
         });
         assert!(mode.starts_with("DAC 2 gets SPI mode 0"), "{mode}");
@@ -182,7 +201,10 @@ mod tests {
         });
         assert_eq!(early, "LDAC of DAC 2 falls 1000 ns after SYNC: it needs 1700 ns");
         let fast = found(|converter, findings| {
-            let fast = SpiClock { hz: 57_000_000, ..MODE_1 };
+            let fast = SpiClock {
+                hz: 57_000_000,
+                ..MODE_1
+            };
             frame(converter, &[0x10, 0, 0], fast, findings);
         });
         assert!(fast.contains("clocked at 57000000 Hz"), "{fast}");

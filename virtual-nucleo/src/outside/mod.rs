@@ -85,7 +85,12 @@ impl Outside {
             outside.lines[usize::from(pin.port)] |= 1 << pin.number;
         }
         let wiring = outside.wiring.clone();
-        for pin in wiring.closed_loops.iter().chain(&wiring.high).chain(wiring.limits()) {
+        for pin in wiring
+            .closed_loops
+            .iter()
+            .chain(&wiring.high)
+            .chain(wiring.limits())
+        {
             outside.set_input(*pin, true);
         }
         outside
@@ -103,11 +108,15 @@ impl Outside {
 
     /// Which encoder's signal comes to a pin.
     pub fn track(&self, pin: Pin) -> Option<(usize, Track)> {
-        self.wiring.encoders.iter().enumerate().find_map(|(index, tracks)| {
-            let tracks = tracks.iter().zip([Track::A, Track::B, Track::Z]);
-            let (_, track) = tracks.into_iter().find(|(other, _)| **other == pin)?;
-            Some((index, track))
-        })
+        self.wiring
+            .encoders
+            .iter()
+            .enumerate()
+            .find_map(|(index, tracks)| {
+                let tracks = tracks.iter().zip([Track::A, Track::B, Track::Z]);
+                let (_, track) = tracks.into_iter().find(|(other, _)| **other == pin)?;
+                Some((index, track))
+            })
     }
 
     /// Lines of a port that are driven from outside, and their levels.
@@ -173,7 +182,12 @@ impl Outside {
         let lines = self.lines;
         let selected = |pin: &Pin| lines[usize::from(pin.port)] & 1 << pin.number == 0;
         let mut answer = u8::MAX;
-        for (converter, _) in self.converters.iter_mut().zip(SYNC).filter(|(_, sync)| selected(sync)) {
+        for (converter, _) in self
+            .converters
+            .iter_mut()
+            .zip(SYNC)
+            .filter(|(_, sync)| selected(sync))
+        {
             answer &= converter.byte(byte, clock, findings);
         }
         answer
@@ -196,10 +210,16 @@ impl Outside {
     }
 
     fn step(&mut self) {
-        let codes: Vec<i16> = self.converters.iter().flat_map(|converter| converter.outputs()).collect();
+        let codes: Vec<i16> = self
+            .converters
+            .iter()
+            .flat_map(|converter| converter.outputs())
+            .collect();
         let high = |pins: &[Pin]| -> Vec<bool> { pins.iter().map(|pin| self.line(*pin)).collect() };
         let (enables, gates) = (high(&self.wiring.enables), high(&self.wiring.gates));
-        let Some(seen) = self.machine.advance(&enables, &gates, &codes) else { return };
+        let Some(seen) = self.machine.advance(&enables, &gates, &codes) else {
+            return;
+        };
         for (encoder, (counts, mark)) in self.encoders.iter_mut().zip(seen.counts) {
             encoder.counts = counts;
             if let Some(mark) = mark {
@@ -208,7 +228,10 @@ impl Outside {
             }
         }
         let wiring = self.wiring.clone();
-        for (switches, pressed) in [(&wiring.limit_plus, seen.limit_plus), (&wiring.limit_minus, seen.limit_minus)] {
+        for (switches, pressed) in [
+            (&wiring.limit_plus, seen.limit_plus),
+            (&wiring.limit_minus, seen.limit_minus),
+        ] {
             for (index, pin) in switches.iter().enumerate() {
                 self.set_input(*pin, pressed & 1 << index == 0);
             }

@@ -60,7 +60,12 @@ impl Wiring {
                 gates: vec![pin('F', 10), pin('F', 14)],
                 limit_plus: row('G', 0..=6),
                 limit_minus: [row('D', 3..=7), row('G', 8..=9)].concat(),
-                closed_loops: [row('E', 2..=8), vec![pin('A', 4), pin('B', 12)], emergency_stop.to_vec()].concat(),
+                closed_loops: [
+                    row('E', 2..=8),
+                    vec![pin('A', 4), pin('B', 12)],
+                    emergency_stop.to_vec(),
+                ]
+                .concat(),
                 high: row('B', 8..=11),
                 converters: 3,
             },

@@ -82,11 +82,15 @@ pub fn board(main: Code, handlers: &[(u32, Code)]) -> Board {
         put(FLASH + 4 * number, &(at | 1).to_le_bytes());
         let bytes: Vec<u8> = code.0.iter().flat_map(|half| half.to_le_bytes()).collect();
         put(at, &bytes);
-        names.push((at, bytes.len() as u32, if number == 1 { "main" } else { "handler" }));
+        names.push((
+            at,
+            bytes.len() as u32,
+            if number == 1 { "main" } else { "handler" },
+        ));
         at += (bytes.len() as u32 + 0x10) & !0xf;
     }
     let symbols = Symbols::of(names);
-    Board::new(Image { flash, symbols }, Outside::nothing()).expect("a board")
+    Board::new(Image { flash, symbols }, Outside::nothing(), 1).expect("a board")
 }
 
 /// Word `index` of the results.
@@ -98,7 +102,11 @@ pub fn result(board: &Board, index: u32) -> u32 {
 
 /// Causes of all findings.
 pub fn causes(board: &Board) -> Vec<String> {
-    board.findings().into_iter().map(|finding| finding.cause).collect()
+    board
+        .findings()
+        .into_iter()
+        .map(|finding| finding.cause)
+        .collect()
 }
 
 /// Variable with the folder of the shipped images, `firmware-motion-nucleo-h723zg` and the tracker's.
@@ -106,16 +114,19 @@ pub const IMAGES: &str = "SEAMWRIGHT_NUCLEO_IMAGES";
 
 /// The shipped image of `motion` or `tracker`.
 pub fn shipped(name: &str) -> PathBuf {
-    let folder = env::var_os(IMAGES).unwrap_or_else(|| panic!("{IMAGES} is not set: the folder of the built NUCLEO images"));
+    let folder = env::var_os(IMAGES)
+        .unwrap_or_else(|| panic!("{IMAGES} is not set: the folder of the built NUCLEO images"));
     PathBuf::from(folder).join(format!("firmware-{name}-nucleo-h723zg"))
 }
 
 /// A motion board with the shipped image.
 pub fn motion() -> Board {
-    virtual_nucleo::pair::board(&shipped("motion"), Machine::Motion(Box::default())).expect("the image is built")
+    virtual_nucleo::pair::board(&shipped("motion"), Machine::Motion(Box::default()), 1)
+        .expect("the image is built")
 }
 
 /// A tracker board with the shipped image.
 pub fn tracker() -> Board {
-    virtual_nucleo::pair::board(&shipped("tracker"), virtual_nucleo::pair::tracker_machine()).expect("the image is built")
+    virtual_nucleo::pair::board(&shipped("tracker"), virtual_nucleo::pair::tracker_machine(), 2)
+        .expect("the image is built")
 }

@@ -1,6 +1,8 @@
 //! Descriptors and frames (RM0468, 63.10): what the controller reads and writes in memory by itself.
 
-use super::{ADDRESS_HIGH, ADDRESS_LOW, Ethernet, MACCR, MACPFR, NO_BUFFER, NORMAL, RECEIVED, RECEIVER, RX_CONTROL};
+use super::{
+    ADDRESS_HIGH, ADDRESS_LOW, Ethernet, MACCR, MACPFR, NO_BUFFER, NORMAL, RECEIVED, RECEIVER, RX_CONTROL,
+};
 use super::{RX_LENGTH, RX_LIST, SENT, STATUS, TRANSMITTER, TX_CONTROL, TX_LENGTH, TX_LIST};
 use crate::chip::memory::Dma;
 use crate::time::Time;
@@ -66,7 +68,9 @@ impl Ethernet {
             return false;
         }
         let descriptor = self.word(TX_LIST) + DESCRIPTOR * self.rings.sending;
-        let Some([buffer, _, length, control]) = read_descriptor(memory, descriptor) else { return false };
+        let Some([buffer, _, length, control]) = read_descriptor(memory, descriptor) else {
+            return false;
+        };
         if control & OWNED == 0 {
             return false;
         }
@@ -94,7 +98,11 @@ impl Ethernet {
             return false;
         }
         let on = self.word(MACCR) & RECEIVER != 0 && self.word(RX_CONTROL) & 1 != 0 && self.phy.link(now);
-        let wanted = on && self.arriving.front().is_some_and(|(_, frame)| self.is_for_this(frame));
+        let wanted = on
+            && self
+                .arriving
+                .front()
+                .is_some_and(|(_, frame)| self.is_for_this(frame));
         if !wanted {
             self.arriving.pop_front();
             return true;
@@ -110,10 +118,15 @@ impl Ethernet {
             self.raise(NO_BUFFER);
             return false;
         }
-        let Some((_, frame)) = self.arriving.pop_front() else { return false };
+        let Some((_, frame)) = self.arriving.pop_front() else {
+            return false;
+        };
         let room = (self.word(RX_CONTROL) >> 1 & 0x3fff) as usize;
         if control & BUFFER_GIVEN == 0 || frame.len() + CHECKSUM as usize > room {
-            memory.report(format!("a frame of {} bytes and its checksum does not fit into a buffer of {room}", frame.len()));
+            memory.report(format!(
+                "a frame of {} bytes and its checksum does not fit into a buffer of {room}",
+                frame.len()
+            ));
             return true;
         }
         if memory.write(buffer, &frame) {
@@ -142,7 +155,9 @@ impl Ethernet {
     }
 
     fn is_for_this(&self, frame: &[u8]) -> bool {
-        let Some(to) = frame.first_chunk::<6>() else { return false };
+        let Some(to) = frame.first_chunk::<6>() else {
+            return false;
+        };
         let low = self.word(ADDRESS_LOW).to_le_bytes();
         let high = self.word(ADDRESS_HIGH).to_le_bytes();
         let group = to[0] & 1 != 0;

@@ -115,7 +115,9 @@ impl Ethernet {
     /// A reset ends only with all clocks.
     fn check_reset(&self, shared: &mut Shared) {
         if shared.ethernet_interface != RMII {
-            shared.report("the Ethernet controller is reset before SYSCFG_PMCR selects RMII: the reset does not end");
+            shared.report(
+                "the Ethernet controller is reset before SYSCFG_PMCR selects RMII: the reset does not end",
+            );
         }
         if !shared.ethernet_clocks {
             shared.report("the Ethernet controller is reset without all of its clocks ETHEN, ETHTXEN, ETHRXEN: the reset does not end");
@@ -132,10 +134,15 @@ impl Ethernet {
         }
         for signal in &self.management {
             if shared.pins.connected(signal).is_none() {
-                shared.findings.report(format!("the PHY is managed, but no pin is connected to {}", signal.name));
+                shared.findings.report(format!(
+                    "the PHY is managed, but no pin is connected to {}",
+                    signal.name
+                ));
             }
         }
-        let divider = [42, 62, 16, 26, 102, 124].get((command >> 8 & 0xf) as usize).copied();
+        let divider = [42, 62, 16, 26, 102, 124]
+            .get((command >> 8 & 0xf) as usize)
+            .copied();
         let hz = divider.map_or(u64::MAX, |divider| shared.clocks.bus / divider);
         if hz > HIGHEST_MDC_HZ {
             shared.report(format!("MDC would be {hz} Hz: the PHY takes {HIGHEST_MDC_HZ} Hz"));
@@ -144,7 +151,9 @@ impl Ethernet {
         self.management_until = now + Time::periods(MANAGEMENT_BITS, hz);
         let (address, register) = (command >> 21 & 31, command >> 16 & 31);
         match command >> 2 & 3 {
-            1 => self.phy.write(address, register, self.word(MDIO_DATA) as u16, now),
+            1 => self
+                .phy
+                .write(address, register, self.word(MDIO_DATA) as u16, now),
             3 => {
                 let value = self.phy.read(address, register, now);
                 self.set(MDIO_DATA, u32::from(value));
@@ -156,11 +165,16 @@ impl Ethernet {
     fn check_start(&self, shared: &mut Shared) {
         for signal in &self.signals {
             if shared.pins.connected(signal).is_none() {
-                shared.findings.report(format!("the Ethernet controller is started, but no pin is connected to {}", signal.name));
+                shared.findings.report(format!(
+                    "the Ethernet controller is started, but no pin is connected to {}",
+                    signal.name
+                ));
             }
         }
         if self.word(MACCR) & (FULL_DUPLEX | FAST) != FULL_DUPLEX | FAST {
-            shared.report("the Ethernet controller is not set to 100 Mbit/s full duplex, which the PHY negotiates");
+            shared.report(
+                "the Ethernet controller is not set to 100 Mbit/s full duplex, which the PHY negotiates",
+            );
         }
     }
 }
@@ -169,7 +183,11 @@ impl Peripheral for Ethernet {
     fn read(&mut self, offset: u32, shared: &mut Shared) -> u32 {
         let value = self.word(offset);
         match offset {
-            DMAMR if value & SOFTWARE_RESET != 0 && self.is_clocked(shared) && self.reset_until <= shared.now() => {
+            DMAMR
+                if value & SOFTWARE_RESET != 0
+                    && self.is_clocked(shared)
+                    && self.reset_until <= shared.now() =>
+            {
                 self.reset();
                 0
             }
@@ -215,7 +233,11 @@ impl Peripheral for Ethernet {
     fn due(&self) -> Time {
         let first = self.arriving.front().filter(|_| !self.rings.starved);
         let arrives = first.map_or(Time::NEVER, |(at, _)| *at);
-        let wakes = if self.rings.look { Time::default() } else { Time::NEVER };
+        let wakes = if self.rings.look {
+            Time::default()
+        } else {
+            Time::NEVER
+        };
         arrives.min(self.rings.sent_at()).min(wakes)
     }
 
