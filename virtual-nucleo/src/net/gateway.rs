@@ -55,17 +55,17 @@ impl Gateway {
         let streams = boards
             .iter()
             .map(|board| Streams::listen(end(board, REQUEST_PORT)));
-        let (mut sockets, mut next_port) = (SocketSet::new(Vec::new()), OWN_PORTS.start);
+        let mut sockets = SocketSet::new(Vec::new());
         let datagrams = boards
             .iter()
-            .map(|board| Datagrams::bind(end(board, DATAGRAM_PORT), &mut sockets, &mut next_port));
+            .map(|board| Datagrams::bind(end(board, DATAGRAM_PORT), &mut sockets));
         Ok(Self {
             queues,
             interface,
             streams: streams.collect::<io::Result<_>>()?,
             datagrams: datagrams.collect::<io::Result<_>>()?,
             sockets,
-            next_port,
+            next_port: OWN_PORTS.start,
         })
     }
 
@@ -104,7 +104,7 @@ impl Gateway {
             streams.relay(&mut self.interface, &mut self.sockets, &mut self.next_port);
         }
         for datagrams in &mut self.datagrams {
-            datagrams.relay(&mut self.sockets, &mut self.next_port);
+            datagrams.relay(&mut self.sockets);
         }
         self.interface.poll(instant, &mut self.queues, &mut self.sockets);
         if !OWN_PORTS.contains(&self.next_port) {

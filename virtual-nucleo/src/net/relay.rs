@@ -155,14 +155,10 @@ pub struct Datagrams {
 
 impl Datagrams {
     /// Takes datagrams for `board` on an unused port.
-    pub fn bind(
-        board: IpEndpoint,
-        sockets: &mut SocketSet<'static>,
-        next_port: &mut u16,
-    ) -> io::Result<Self> {
+    pub fn bind(board: IpEndpoint, sockets: &mut SocketSet<'static>) -> io::Result<Self> {
         let host = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
         host.set_nonblocking(true)?;
-        let mut socket = socket(next_port).map_err(io::Error::other)?;
+        let mut socket = socket(DISCARD_PORT).map_err(io::Error::other)?;
         let nobody = IpEndpoint::new(board.addr, DISCARD_PORT);
         socket.send_slice(&[], nobody).map_err(io::Error::other)?;
         Ok(Self {
@@ -184,13 +180,13 @@ impl Datagrams {
     }
 
     /// Passes on what has come; what finds no room is lost, as datagrams are.
-    pub fn relay(&mut self, sockets: &mut SocketSet<'static>, next_port: &mut u16) {
+    pub fn relay(&mut self, sockets: &mut SocketSet<'static>) {
         let mut buffer = [0; LONGEST_DATAGRAM];
         for _ in 0..DATAGRAMS {
             let Ok((length, sender)) = self.host.recv_from(&mut buffer) else {
                 break;
             };
-            if let Some(handle) = self.socket_of(sender, sockets, next_port) {
+            if let Some(handle) = self.socket_of(sender, sockets) {
                 let _ = sockets
                     .get_mut::<udp::Socket>(handle)
                     .send_slice(&buffer[..length], self.board);
@@ -209,12 +205,7 @@ impl Datagrams {
         let _ = self.host.send_to(bytes, (Ipv4Addr::LOCALHOST, port));
     }
 
-    fn socket_of(
-        &mut self,
-        sender: SocketAddr,
-        sockets: &mut SocketSet<'static>,
-        next_port: &mut u16,
-    ) -> Option<SocketHandle> {
+    fn socket_of(&mut self, sender: SocketAddr, sockets: &mut SocketSet<'static>) -> Option<SocketHandle> {
         if let Some((_, handle)) = self.senders.iter().find(|(known, _)| *known == sender) {
             return Some(*handle);
         }
@@ -222,15 +213,16 @@ impl Datagrams {
             let (_, oldest) = self.senders.remove(0);
             sockets.remove(oldest);
         }
-        let socket = socket(next_port).ok()?;
+        // Boards know a program by its port.
+        let socket = socket(sender.port()).ok()?;
         let handle = sockets.add(socket);
         self.senders.push((sender, handle));
         Some(handle)
     }
 }
 
-/// A socket on the next port.
-fn socket(next_port: &mut u16) -> Result<udp::Socket<'static>, udp::BindError> {
+/// A socket on this port.
+fn socket(port: u16) -> Result<udp::Socket<'static>, udp::BindError> {
     let buffer = || {
         udp::PacketBuffer::new(
             vec![udp::PacketMetadata::EMPTY; DATAGRAMS],
@@ -238,7 +230,6 @@ fn socket(next_port: &mut u16) -> Result<udp::Socket<'static>, udp::BindError> {
         )
     };
     let mut socket = udp::Socket::new(buffer(), buffer());
-    *next_port = next_port.wrapping_add(1);
-    socket.bind(*next_port)?;
+    socket.bind(port)?;
     Ok(socket)
 }
