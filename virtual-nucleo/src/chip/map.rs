@@ -212,7 +212,7 @@ fn describe(ir: &'static ir::IR, name: &'static str, register: &ir::Register, by
     let bits = match register.fieldset {
         None => all,
         Some(_) => fields(ir, register.fieldset)
-            .map(|field| mask(field))
+            .map(mask)
             .fold(0, |all, field| all | field),
     };
     Register {

@@ -74,7 +74,7 @@ const LINE: usize = 32;
 struct Line {
     bytes: [u8; LINE],
     dirty: bool,
-    /// What memory held when the line was filled, or was written back to.
+    /// A bus master has written the memory behind it since it was filled.
     stale: bool,
 }
 

@@ -130,7 +130,7 @@ impl Ethernet {
             return true;
         }
         if memory.write(buffer, &frame) {
-            memory.write_word(descriptor + 12, WHOLE | frame.len() as u32 + CHECKSUM);
+            memory.write_word(descriptor + 12, WHOLE | (frame.len() as u32 + CHECKSUM));
             self.rings.receiving = next(self.rings.receiving, self.word(RX_LENGTH));
             self.raise(RECEIVED);
         }
