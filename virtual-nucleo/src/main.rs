@@ -1,0 +1,125 @@
+//! Runs both boards until its standard input ends, or for a given time.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use virtual_nucleo::pace::Pace;
+use virtual_nucleo::pair::{NAMES, Pair, PairError};
+use virtual_nucleo::time::Time;
+
+const USAGE: &str = "virtual-nucleo MOTION TRACKER [--machine NAME] [--folder FOLDER] [--rate R] [--ms TIME]
+
+Runs both firmware images on models of the NUCLEO-H723ZG, writes FOLDER/session.toml, and ends when its standard
+input ends or, with --ms, after that much time of the boards. It fails if anything was found.
+
+    --machine  what the motion board is wired to, by the name of its kinematics
+    --folder   where session and pace are written; default: virtual-nucleo in the folder for temporary files
+    --rate     the boards' time per wall time at most; default 1";
+
+/// Boot and negotiation of the link take 1.6 s, the boards' addresses one second each at most.
+const LINK_LIMIT: Time = Time::ms(5000);
+
+struct Options {
+    images: [PathBuf; 2],
+    machine: String,
+    folder: PathBuf,
+    rate: f64,
+    end: Time,
+}
+
+fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
+    let mut images = Vec::new();
+    let mut options = Options {
+        images: Default::default(),
+        machine: plant::DEFAULT_MACHINE.to_owned(),
+        folder: std::env::temp_dir().join("virtual-nucleo"),
+        rate: 1.0,
+        end: Time::NEVER,
+    };
+    let mut arguments = arguments;
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--machine" => options.machine = arguments.next()?,
+            "--folder" => options.folder = arguments.next()?.into(),
+            "--rate" => options.rate = arguments.next()?.parse().ok().filter(|rate| *rate > 0.0)?,
+            "--ms" => options.end = Time::ms(arguments.next()?.parse().ok()?),
+            image if !image.starts_with('-') => images.push(PathBuf::from(image)),
+            _ => return None,
+        }
+    }
+    options.images = images.try_into().ok()?;
+    Some(options)
+}
+
+fn main() -> ExitCode {
+    let Some(options) = options(std::env::args().skip(1)) else {
+        eprintln!("{USAGE}");
+        return ExitCode::from(2);
+    };
+    match run(&options) {
+        Ok(0) => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Runs the boards; how many findings there are.
+fn run(options: &Options) -> Result<usize, PairError> {
+    let [motion, tracker] = &options.images;
+    let mut pair = Pair::start([motion, tracker], &options.machine)?;
+    let file = |path: &Path, source| PairError::File {
+        path: path.to_owned(),
+        source,
+    };
+    std::fs::create_dir_all(&options.folder).map_err(|source| file(&options.folder, source))?;
+    if !pair.run_to_link(LINK_LIMIT) {
+        println!("a board is not on the net after {LINK_LIMIT}");
+    }
+    let page = options.folder.join("pace");
+    let mut pace = Pace::new(&page, options.rate)?;
+    let session = options.folder.join("session.toml");
+    std::fs::write(&session, pair.session(&options.machine, &page)?)
+        .map_err(|source| file(&session, source))?;
+    println!("session: {}", session.display());
+
+    let ended = input_ends(options.end == Time::NEVER);
+    pair.run_paced(&mut pace, |pair| {
+        pair.now() < options.end && !ended.load(Ordering::Relaxed)
+    })?;
+
+    let mut count = 0;
+    for (name, board) in NAMES.iter().zip(&pair.boards) {
+        println!(
+            "{name}: {}, {} instructions, waited {}, {} resets",
+            board.now(),
+            board.chip().instructions,
+            board.asleep,
+            board.resets
+        );
+        for finding in board.findings() {
+            println!("{name}: {finding}");
+            count += 1;
+        }
+    }
+    Ok(count)
+}
+
+/// Whether the standard input has ended, if that is `wanted`.
+fn input_ends(wanted: bool) -> Arc<AtomicBool> {
+    let ended = Arc::new(AtomicBool::new(false));
+    if wanted {
+        let ended = Arc::clone(&ended);
+        thread::spawn(move || {
+            let mut buffer = [0; 64];
+            while matches!(std::io::stdin().read(&mut buffer), Ok(1..)) {}
+            ended.store(true, Ordering::Relaxed);
+        });
+    }
+    ended
+}
