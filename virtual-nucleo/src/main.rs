@@ -1,5 +1,6 @@
 //! Runs both boards until its standard input ends, or for a given time.
 
+use plant_file::PlantChoice;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -10,12 +11,13 @@ use virtual_nucleo::pace::Pace;
 use virtual_nucleo::pair::{NAMES, Pair, PairError};
 use virtual_nucleo::time::Time;
 
-const USAGE: &str = "virtual-nucleo MOTION TRACKER [--machine NAME] [--folder FOLDER] [--rate R] [--ms TIME]
+const USAGE: &str = "virtual-nucleo MOTION TRACKER [--machine NAME] [--plant PLANT] [--folder FOLDER] [--rate R] [--ms TIME]
 
 Runs both firmware images on models of the NUCLEO-H723ZG, writes FOLDER/session.toml, and ends when its standard
 input ends or, with --ms, after that much time of the boards. It fails if anything was found.
 
     --machine  what the motion board is wired to, by the name of its kinematics
+    --plant    what is true of it: a plant file, draw:usual:SEED or draw:poor:SEED
     --folder   where session and pace are written; default: virtual-nucleo in the folder for temporary files
     --rate     the boards' time per wall time at most; default 1";
 
@@ -25,6 +27,7 @@ const LINK_LIMIT: Time = Time::ms(5000);
 struct Options {
     images: [PathBuf; 2],
     machine: String,
+    plant: PlantChoice,
     folder: PathBuf,
     rate: f64,
     end: Time,
@@ -34,7 +37,8 @@ fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
     let mut images = Vec::new();
     let mut options = Options {
         images: Default::default(),
-        machine: plant::DEFAULT_MACHINE.to_owned(),
+        machine: plant_file::DEFAULT_MACHINE.to_owned(),
+        plant: PlantChoice::Shipped,
         folder: std::env::temp_dir().join("virtual-nucleo"),
         rate: 1.0,
         end: Time::NEVER,
@@ -43,6 +47,7 @@ fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--machine" => options.machine = arguments.next()?,
+            "--plant" => options.plant = arguments.next()?.parse().ok()?,
             "--folder" => options.folder = arguments.next()?.into(),
             "--rate" => options.rate = arguments.next()?.parse().ok().filter(|rate| *rate > 0.0)?,
             "--ms" => options.end = Time::ms(arguments.next()?.parse().ok()?),
@@ -72,7 +77,7 @@ fn main() -> ExitCode {
 /// Runs the boards; how many findings there are.
 fn run(options: &Options) -> Result<usize, PairError> {
     let [motion, tracker] = &options.images;
-    let mut pair = Pair::start([motion, tracker], &options.machine)?;
+    let mut pair = Pair::start([motion, tracker], &options.machine, &options.plant)?;
     let file = |path: &Path, source| PairError::File {
         path: path.to_owned(),
         source,
@@ -84,7 +89,7 @@ fn run(options: &Options) -> Result<usize, PairError> {
     let page = options.folder.join("pace");
     let mut pace = Pace::new(&page, options.rate)?;
     let session = options.folder.join("session.toml");
-    std::fs::write(&session, pair.session(&options.machine, &page)?)
+    std::fs::write(&session, pair.session(&options.machine, &options.plant, &page)?)
         .map_err(|source| file(&session, source))?;
     println!("session: {}", session.display());
 

@@ -6,7 +6,7 @@ use crate::net::{Gateway, carry};
 use crate::outside::{Machine, Outside};
 use crate::pace::{Pace, PaceError};
 use crate::time::Time;
-use plant::{MotionPlant, SlidePlant};
+use plant_file::{PlantChoice, PlantFile, PlantFileError};
 use shared::protocol::DATAGRAM_PORT;
 use std::fs;
 use std::io;
@@ -43,12 +43,9 @@ pub enum PairError {
     /// A board cannot be made.
     #[error(transparent)]
     Board(#[from] BoardError),
-    /// There is no plant of this name.
-    #[error("no board can be wired to a machine called {name}; there are {}", MotionPlant::names().collect::<Vec<_>>().join(", "))]
-    Machine {
-        /// The name.
-        name: String,
-    },
+    /// There is no such plant.
+    #[error("the boards cannot be wired to a machine: {0}")]
+    Plant(#[from] PlantFileError),
     /// The loopback interface gives no ports.
     #[error("no ports of the loopback interface: {0}")]
     Ports(io::Error),
@@ -70,17 +67,14 @@ pub fn board(image: &Path, machine: Machine, serial: u8) -> Result<Board, PairEr
     Ok(Board::new(image, Outside::new(machine), serial)?)
 }
 
-/// The plant of this name behind a motion board.
-pub fn motion_machine(name: &str) -> Result<Machine, PairError> {
-    let plant = MotionPlant::of(name).ok_or_else(|| PairError::Machine {
-        name: name.to_owned(),
-    })?;
-    Ok(Machine::Motion(Box::new(plant)))
+/// The motors behind a motion board.
+pub fn motion_machine(plant: &PlantFile) -> Machine {
+    Machine::Motion(Box::new(plant.motion()))
 }
 
 /// The slides behind a tracker board.
-pub fn tracker_machine() -> Machine {
-    Machine::Tracker(Box::new(SlidePlant::dual_beam_tracker()))
+pub fn tracker_machine(plant: &PlantFile) -> Machine {
+    Machine::Tracker(Box::new(plant.slides()))
 }
 
 /// Both boards.
@@ -92,11 +86,12 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Both boards at power-up.
-    pub fn start(images: [&Path; 2], machine: &str) -> Result<Self, PairError> {
+    /// Both boards at power-up, wired to this machine.
+    pub fn start(images: [&Path; 2], machine: &str, plant: &PlantChoice) -> Result<Self, PairError> {
+        let plant = plant.of(machine)?;
         let boards = vec![
-            board(images[0], motion_machine(machine)?, 1)?,
-            board(images[1], tracker_machine(), 2)?,
+            board(images[0], motion_machine(&plant), 1)?,
+            board(images[1], tracker_machine(&plant), 2)?,
         ];
         Ok(Self {
             boards,
@@ -163,8 +158,9 @@ impl Pair {
     }
 
     /// The session file's contents, in the form of emulated boards. The motion board reaches the tracker board directly.
-    pub fn session(&self, machine: &str, pace: &Path) -> Result<String, PairError> {
-        let mut text = format!("machine = {machine:?}\npace = {:?}\n", pace.display().to_string());
+    pub fn session(&self, machine: &str, plant: &PlantChoice, pace: &Path) -> Result<String, PairError> {
+        let (plant, pace) = (plant.to_string(), pace.display().to_string());
+        let mut text = format!("machine = {machine:?}\nplant = {plant:?}\npace = {pace:?}\n");
         for (name, (requests, datagrams)) in NAMES.iter().zip(self.ports()?) {
             let host = Ipv4Addr::LOCALHOST;
             text += &format!("\n[{name}]\nhost = \"{host}\"\ntcp = {requests}\nudp = {datagrams}\n");

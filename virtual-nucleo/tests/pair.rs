@@ -3,6 +3,7 @@
 mod common;
 
 use common::shipped;
+use plant_file::PlantChoice;
 use shared::protocol::framing::{MAX_MESSAGE, decode_message, encode_message};
 use shared::protocol::{Request, Response, Role, SCHEMA_HASH};
 use std::io::{self, Read, Write};
@@ -30,7 +31,12 @@ fn ask(stream: &mut TcpStream, request: &Request) -> io::Result<Response> {
 #[test]
 fn both_boards_say_who_they_are() {
     let images = [shipped("motion"), shipped("tracker")];
-    let mut pair = Pair::start([&images[0], &images[1]], plant::DEFAULT_MACHINE).expect("both run");
+    let mut pair = Pair::start(
+        [&images[0], &images[1]],
+        plant_file::DEFAULT_MACHINE,
+        &PlantChoice::Shipped,
+    )
+    .expect("both run");
     let ports = pair.ports().expect("there are some");
     let over = AtomicBool::new(false);
     let answers = std::thread::scope(|scope| {

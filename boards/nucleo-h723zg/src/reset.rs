@@ -4,7 +4,7 @@
 //! from there, most of it for the Ethernet PHY.
 
 #[cfg(target_os = "none")]
-use crate::pins::{DAC_CLEAR, OUTPUT_MASK, OUTPUT_PORT, mask};
+use crate::pins::{DAC_CLEAR, OUTPUT_MASK, OUTPUT_PORT, PROCESS_OUTPUTS, mask};
 
 /// Register that clocks the ports, a bit for each.
 pub const PORT_CLOCKS: u32 = 0x5802_44e0;
@@ -37,6 +37,17 @@ pub const fn outputs(mask: u16) -> (u32, u32) {
 
 #[cfg(target_os = "none")]
 const OUTPUT_MODES: (u32, u32) = outputs(OUTPUT_MASK);
+/// Ports with outputs, a bit for each.
+#[cfg(target_os = "none")]
+const PORTS: u32 = {
+    let mut ports = 1 << OUTPUT_PORT | 1 << DAC_CLEAR.port;
+    let mut i = 0;
+    while i < PROCESS_OUTPUTS.len() {
+        ports |= 1 << PROCESS_OUTPUTS[i].port;
+        i += 1;
+    }
+    ports
+};
 #[cfg(target_os = "none")]
 const CLEAR_MODES: (u32, u32) = outputs(mask(&[DAC_CLEAR]));
 
@@ -47,7 +58,7 @@ const CLEAR_MODES: (u32, u32) = outputs(mask(&[DAC_CLEAR]));
 #[unsafe(no_mangle)]
 unsafe extern "C" fn __pre_init() {
     core::arch::naked_asm!(
-        // Clock both ports; reading back waits until they are.
+        // Clock the ports of all outputs, so that switching off works from here on; reading back waits until they are.
         "movw r0, #({clocks} & 0xffff)",
         "movt r0, #({clocks} >> 16)",
         "ldr r1, [r0]",
@@ -85,7 +96,7 @@ unsafe extern "C" fn __pre_init() {
         "str r1, [r0, #{mode}]",
         "bx lr",
         clocks = const PORT_CLOCKS,
-        ports = const 1 << OUTPUT_PORT | 1 << DAC_CLEAR.port,
+        ports = const PORTS,
         outputs = const port(OUTPUT_PORT),
         output_mask = const OUTPUT_MASK,
         output_clear = const OUTPUT_MODES.0,

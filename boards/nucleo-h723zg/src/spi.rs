@@ -11,6 +11,8 @@ use embassy_stm32::spi::{self, Spi, mode::Master};
 use embassy_stm32::time::Hertz;
 use embedded_hal::spi::{ErrorKind, ErrorType, SpiBus};
 
+/// Flags that IFCR clears: bits 3 to 11, EOTC to SUSPC (RM0468, SPI_IFCR).
+const FLAGS: u32 = 0xff8;
 /// Bytes that the controller may have left from a frame that was given up.
 const FIFO: u32 = 16;
 /// Cycles of the core that a byte takes on the wire.
@@ -46,7 +48,7 @@ impl Shifter for Bus {
     fn begin(&mut self) {
         // Switching the controller off ends what it was at.
         SPI3.cr1().modify(|w| w.set_spe(false));
-        SPI3.ifcr().write(|w| w.0 = u32::MAX);
+        SPI3.ifcr().write(|w| w.0 = FLAGS);
         SPI3.cr1().modify(|w| w.set_spe(true));
         for _ in 0..FIFO {
             if !SPI3.sr().read().rxp() {

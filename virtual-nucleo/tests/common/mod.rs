@@ -1,11 +1,13 @@
 //! Small programs for the core, put together by hand, and the shipped images.
 #![allow(dead_code, reason = "each test file uses a part")]
 
+use plant_file::{DEFAULT_MACHINE, PlantFile};
 use std::env;
 use std::path::PathBuf;
 use virtual_nucleo::board::Board;
 use virtual_nucleo::image::{FLASH, FLASH_LENGTH, Image, Symbols};
 use virtual_nucleo::outside::{Machine, Outside};
+use virtual_nucleo::pair::{board, motion_machine, tracker_machine};
 
 /// Where a program's stack begins.
 pub const STACK: u32 = 0x2002_0000;
@@ -119,14 +121,17 @@ pub fn shipped(name: &str) -> PathBuf {
     PathBuf::from(folder).join(format!("firmware-{name}-nucleo-h723zg"))
 }
 
+/// The dual-beam gantry.
+fn plant() -> PlantFile {
+    PlantFile::shipped(DEFAULT_MACHINE).expect("a shipped plant")
+}
+
 /// A motion board with the shipped image.
 pub fn motion() -> Board {
-    virtual_nucleo::pair::board(&shipped("motion"), Machine::Motion(Box::default()), 1)
-        .expect("the image is built")
+    board(&shipped("motion"), motion_machine(&plant()), 1).expect("the image is built")
 }
 
 /// A tracker board with the shipped image.
 pub fn tracker() -> Board {
-    virtual_nucleo::pair::board(&shipped("tracker"), virtual_nucleo::pair::tracker_machine(), 2)
-        .expect("the image is built")
+    board(&shipped("tracker"), tracker_machine(&plant()), 2).expect("the image is built")
 }
