@@ -5,6 +5,10 @@ mod common;
 use common::{causes, motion, tracker};
 use virtual_nucleo::time::Time;
 
+/// What embassy-stm32 0.6 does once where it sets up the bus of the converters, without harm: it clears its flags by writing ones to
+/// reserved bits, too.
+const KNOWN: &str = "reserved bits 0xfffff007 of IFCR of SPI3 are changed";
+
 #[test]
 fn both_images_come_to_their_idle_loops_and_keep_their_ticks() {
     for (name, mut board, hz) in [("motion", motion(), 4000), ("tracker", tracker(), 1000)] {
@@ -14,7 +18,7 @@ fn both_images_come_to_their_idle_loops_and_keep_their_ticks() {
         println!(
             "{name}: first wait at {at} after {instructions} instructions, {steps} steps of the machine"
         );
-        assert_eq!(causes(&board), Vec::<String>::new(), "{name}");
+        assert_eq!(causes(&board), [KNOWN], "{name}");
         assert_eq!(board.resets, 0, "{name}");
         let ticks = (Time::ms(50) - at).seconds() * f64::from(hz);
         assert!(

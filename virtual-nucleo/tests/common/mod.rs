@@ -6,8 +6,8 @@ use std::env;
 use std::path::PathBuf;
 use virtual_nucleo::board::Board;
 use virtual_nucleo::image::{FLASH, FLASH_LENGTH, Image, Symbols};
-use virtual_nucleo::outside::{Machine, Outside};
-use virtual_nucleo::pair::{board, motion_machine, tracker_machine};
+use virtual_nucleo::outside::Outside;
+use virtual_nucleo::pair::{self, motion_machine, tracker_machine};
 
 /// Where a program's stack begins.
 pub const STACK: u32 = 0x2002_0000;
@@ -128,10 +128,10 @@ fn plant() -> PlantFile {
 
 /// A motion board with the shipped image.
 pub fn motion() -> Board {
-    board(&shipped("motion"), motion_machine(&plant()), 1).expect("the image is built")
+    pair::board(&shipped("motion"), motion_machine(&plant()), 1).expect("the image is built")
 }
 
 /// A tracker board with the shipped image.
 pub fn tracker() -> Board {
-    board(&shipped("tracker"), tracker_machine(&plant()), 2).expect("the image is built")
+    pair::board(&shipped("tracker"), tracker_machine(&plant()), 2).expect("the image is built")
 }
