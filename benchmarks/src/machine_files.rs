@@ -27,7 +27,8 @@ pub fn pack(folder: &Path) -> Result<Vec<u8>> {
         .map(|entry| Ok(entry?.path()))
         .collect::<std::io::Result<Vec<PathBuf>>>()
         .with_context(cannot)?;
-    files.retain(|file| file.extension().is_some_and(|extension| extension == "toml"));
+    let name = |file: &PathBuf| file.to_string_lossy().into_owned();
+    files.retain(|file| name(file).ends_with(".toml") && !name(file).ends_with(".plant.toml"));
     files.sort();
     let mut packed = Vec::new();
     for file in files {

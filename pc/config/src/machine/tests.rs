@@ -156,11 +156,14 @@ fn every_machine_ships_with_a_file_called_as_it() {
         assert_eq!(machine.tracking.is_some(), *name == "dual-beam-gantry");
     }
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines");
-    assert_eq!(
-        std::fs::read_dir(folder).unwrap().count(),
-        KinematicsConfig::NAMES.len(),
-        "a file of a machine that there is not"
-    );
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let machine = name.trim_end_matches(".toml").trim_end_matches(".plant");
+        assert!(
+            KinematicsConfig::NAMES.contains(&machine),
+            "{name} is of a machine that there is not"
+        );
+    }
 }
 
 /// Where the published work of each machine is: the axes reach it, with room for the ways to and from it.
