@@ -2,7 +2,7 @@
 //! with care (`usual`) or without (`poor`). docs/plant.md has the table with its sources.
 
 use crate::PlantFile;
-use plant::{MODES, ModeConfig, MotorConfig, Noise, SlideConfig, Wave};
+use plant::{ModeConfig, MotorConfig, Noise, SlideConfig, Wave};
 use shared::io::{MOTOR_NAMES, MOTORS};
 use std::fmt;
 use std::str::FromStr;
@@ -123,10 +123,7 @@ impl Draw {
             grating: -self.between(0.3, 0.8),
             tool: -1.0,
         };
-        motor.mechanics.modes.clear();
-        // There is room for MODES of them.
-        const _: () = assert!(MODES > 0);
-        let _ = motor.mechanics.modes.push(mode);
+        motor.mechanics.modes = [mode].into_iter().collect();
 
         let grating = &mut motor.grating;
         if linear {
