@@ -24,6 +24,7 @@ unsafe extern "C" {
     );
     fn qemu_plugin_tb_n_insns(block: *const c_void) -> usize;
     fn qemu_plugin_tb_get_insn(block: *const c_void, index: usize) -> *mut c_void;
+    fn qemu_plugin_insn_data(instruction: *const c_void) -> *const c_void;
     fn qemu_plugin_register_vcpu_insn_exec_inline(
         instruction: *mut c_void,
         operation: c_int,
@@ -62,20 +63,44 @@ extern "C" fn executed(_: c_uint, _: *mut c_void) {
     }
 }
 
+/// Counts an instruction before it is executed: a block may be left at any that reaches memory, and its last one may lead
+/// away. Those before that cannot leave it are counted with it, which costs nothing for a run of them.
 extern "C" fn translated(_: u64, block: *mut c_void) {
     // SAFETY: `block` is valid during this call, the counter for ever.
     unsafe {
         qemu_plugin_register_vcpu_tb_exec_cb(block, executed, NO_REGISTERS, std::ptr::null_mut());
-        for index in 0..qemu_plugin_tb_n_insns(block) {
+        let length = qemu_plugin_tb_n_insns(block);
+        let mut uncounted = 0;
+        for index in 0..length {
             let instruction = qemu_plugin_tb_get_insn(block, index);
+            uncounted += 1;
+            if index + 1 < length && stays(first_half(instruction)) {
+                continue;
+            }
             qemu_plugin_register_vcpu_insn_exec_inline(
                 instruction,
                 INLINE_ADD_U64,
                 INSTRUCTIONS.0.get().cast(),
-                1,
+                uncounted,
             );
+            uncounted = 0;
         }
     }
+}
+
+/// The first half-word of an instruction, or its only one.
+///
+/// # Safety
+/// `instruction` is one of the block that is being translated.
+unsafe fn first_half(instruction: *const c_void) -> u16 {
+    // SAFETY: an instruction of Thumb has two bytes or four, lowest first.
+    u16::from_le(unsafe { qemu_plugin_insn_data(instruction).cast::<u16>().read_unaligned() })
+}
+
+/// Whether an instruction of Thumb that begins with this half-word goes on to the next one, whatever it finds: arithmetic
+/// of registers in 16 bits, and `nop` (Armv7-M Architecture Reference Manual, A5.2).
+const fn stays(half: u16) -> bool {
+    half < 0x4400 || half == 0xBF00
 }
 
 #[derive(Default)]
@@ -148,4 +173,40 @@ pub unsafe extern "C" fn qemu_plugin_install(
     // SAFETY: `id` is this plugin's.
     unsafe { qemu_plugin_register_vcpu_tb_trans_cb(id, translated) }
     0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::stays;
+
+    #[test]
+    fn what_may_leave_a_block_is_counted_by_itself() {
+        let [lsls_r1_r0_2, movs_r0_1, muls_r0_r1, nop] = [0x0081, 0x2001, 0x4348, 0xBF00];
+        for half in [lsls_r1_r0_2, movs_r0_1, muls_r0_r1, nop] {
+            assert!(stays(half), "{half:04x}");
+        }
+        let [add_pc, bx_lr, ldr_literal, ldr, push, bkpt, wfi, it, stm] = [
+            0x4487, 0x4770, 0x4801, 0x6808, 0xB510, 0xBE00, 0xBF30, 0xBF08, 0xC103,
+        ];
+        let [beq, svc, b, ldr_w, vadd, bl] = [0xD0FE, 0xDF00, 0xE7FE, 0xF8D0, 0xEE30, 0xF000];
+        for half in [
+            add_pc,
+            bx_lr,
+            ldr_literal,
+            ldr,
+            push,
+            bkpt,
+            wfi,
+            it,
+            stm,
+            beq,
+            svc,
+            b,
+            ldr_w,
+            vadd,
+            bl,
+        ] {
+            assert!(!stays(half), "{half:04x}");
+        }
+    }
 }
