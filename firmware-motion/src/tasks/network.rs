@@ -4,6 +4,7 @@ use super::{Controller, OutboxReader, Servo};
 use crate::board;
 use link::{Address, Counters, Link, Node, Partner, Source, Storage};
 use rtic::Mutex;
+use shared::motion::{ControllerAccess, answer};
 use shared::protocol::{
     Batch, Datagram, Identity, MotionSample, MotionTelemetry, PathState, Request, Response, Role,
 };
@@ -93,6 +94,12 @@ struct Proxy<'a, M, S> {
     tracker: Option<Partner>,
 }
 
+impl<M: Mutex<T = &'static mut Controller>, S> ControllerAccess for Proxy<'_, M, S> {
+    fn with<R>(&mut self, use_it: impl FnOnce(&mut Controller) -> R) -> R {
+        self.controller.lock(|controller| use_it(controller))
+    }
+}
+
 impl<M: Mutex<T = &'static mut Controller>, S: Mutex<T = Servo>> Node for Proxy<'_, M, S> {
     fn handle(&mut self, request: &Request, counters: &Counters) -> Response {
         if let Request::PathStatesTo {
@@ -110,8 +117,7 @@ impl<M: Mutex<T = &'static mut Controller>, S: Mutex<T = Servo>> Node for Proxy<
             });
             return Response::Done;
         }
-        self.controller
-            .lock(|controller| controller.handle(request, counters.unsent))
+        answer(self, request, counters.unsent)
     }
 
     /// Permits of the tracker; they take effect at the next servo tick.

@@ -27,6 +27,7 @@ use crate::state::{Event, Fault, State};
 use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{BoardPlanning, BoardPlayer, SpeedState};
 use loaded::LoadedPath;
+pub use requests::{ControllerAccess, answer};
 
 /// Lost path ticks that are made up for at once; more are too late anyway.
 const MAX_CATCH_UP: u32 = 4;

@@ -21,7 +21,7 @@ mod superimposed;
 mod vibration;
 
 pub use beams::EVENTS;
-pub use controller::{MotionController, PathTickInput, PathTickOutput};
+pub use controller::{ControllerAccess, MotionController, PathTickInput, PathTickOutput, answer};
 pub use machine::Machine;
 pub use permit::BeamLease;
 pub use readback::DARK;

@@ -1,8 +1,8 @@
 //! Elements and events that come while the path runs.
 
 use super::bench::{BLEND, Bench, load};
-use shared::motion::EVENTS;
-use shared::protocol::{PathAction, PathEvent, PathJoin, Refusal, Request};
+use shared::motion::{ControllerAccess, EVENTS, MotionController, answer};
+use shared::protocol::{LOAD_ELEMENTS, PathAction, PathEvent, PathJoin, Refusal, Request, Response};
 use shared::state::State;
 use shared::trajectory::{ELEMENTS, PathSpace};
 
@@ -124,4 +124,39 @@ fn more_than_there_is_room_for_is_refused_and_nothing_taken() {
     }
     let more = Request::LoadEvents([event(EVENTS as u32)].into_iter().collect());
     assert!(matches!(bench.refused(&more), Refusal::NoRoom { room } if room.events == 0));
+}
+
+/// A bench whose path ticks come wherever a request lets them.
+struct Interrupted<'a>(&'a mut Bench);
+
+impl ControllerAccess for Interrupted<'_> {
+    fn with<R>(&mut self, use_it: impl FnOnce(&mut MotionController) -> R) -> R {
+        self.0.run_ms(1);
+        use_it(&mut self.0.controller)
+    }
+}
+
+/// As much of the board's time as four elements take would keep a turn of planning from ending.
+#[test]
+fn a_path_tick_may_come_between_two_elements_of_a_request() {
+    let mut bench = Bench::homed();
+    bench.begin(PathSpace::Tool);
+    let first = bench.along_y(0.0, 20.0, 50.0, BLEND);
+    let more: heapless::Vec<_, LOAD_ELEMENTS> = [(20.0, BLEND), (30.0, BLEND), (40.0, PathJoin::Stop)]
+        .map(|(from, join)| bench.along_y(from, from + 10.0, 50.0, join))
+        .into_iter()
+        .collect();
+    bench.loaded(&load(first, false));
+    bench.run();
+    bench.run_ms(200);
+    let before = bench.samples.len();
+    let request = Request::LoadElements {
+        elements: more,
+        last: true,
+    };
+    let answered = answer(&mut Interrupted(&mut bench), &request, 0);
+    assert!(matches!(answered, Response::Room(_)), "{answered:?}");
+    assert!(bench.samples.len() > before + 3, "one before each element");
+    bench.until(State::Idle, 10_000);
+    assert_eq!((bench.status().s_mm, bench.fault()), (50.0, None));
 }

@@ -6,7 +6,7 @@ use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::beams::EVENTS;
 use crate::motion::overlap::way_back;
-use crate::protocol::{Channel, PathAction, PathElement, PathEvent, PathLimits, Refusal, Room};
+use crate::protocol::{Channel, PathAction, PathEvent, PathLimits, Refusal, Room};
 use crate::state::State;
 use crate::trajectory::{Element, Join, LONGEST_PATH, PathSpace, SpeedLimits, axes_at};
 use core::ops::RangeInclusive;
@@ -73,30 +73,32 @@ impl MotionController {
         Ok(())
     }
 
-    /// Takes elements; with `last` the path is complete.
-    pub(super) fn load_elements(&mut self, elements: &[PathElement], last: bool) -> Result<(), Refusal> {
+    /// Whether so many elements may come.
+    pub(super) fn may_load_elements(&self, count: usize) -> Result<(), Refusal> {
         self.may_load()?;
         let room = self.room();
-        if elements.len() > usize::from(room.elements) {
+        if count > usize::from(room.elements) {
             return Err(Refusal::NoRoom { room });
         }
-        for (i, element) in elements.iter().enumerate() {
-            let element = element.build()?;
-            let ends = last && i + 1 == elements.len();
-            if self.path.complete || (ends && element.join != Join::Stop) {
-                return Err(Refusal::NoEnd { line: element.line });
-            }
-            self.check_start(&element)?;
-            let (length, feed) = (element.length, element.feed);
-            self.player.push(element)?;
-            if let (true, Some(machine)) = (feed > self.path.limits.velocity, &self.machine) {
-                self.path.limits.velocity = feed;
-                self.player.keep(way_back(&self.path.limits, &machine.beams));
-            }
-            self.path.elements += 1;
-            self.path.end_s += length;
-            self.path.complete = ends;
+        Ok(())
+    }
+
+    /// Takes an element; with `last` the path is complete.
+    pub(super) fn load_element(&mut self, element: Element, last: bool) -> Result<(), Refusal> {
+        self.may_load()?;
+        if self.path.complete || (last && element.join != Join::Stop) {
+            return Err(Refusal::NoEnd { line: element.line });
         }
+        self.check_start(&element)?;
+        let (length, feed) = (element.length, element.feed);
+        self.player.push(element)?;
+        if let (true, Some(machine)) = (feed > self.path.limits.velocity, &self.machine) {
+            self.path.limits.velocity = feed;
+            self.player.keep(way_back(&self.path.limits, &machine.beams));
+        }
+        self.path.elements += 1;
+        self.path.end_s += length;
+        self.path.complete = last;
         Ok(())
     }
 

@@ -8,7 +8,7 @@ use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::homing::Homing;
 use crate::motion::machine::Machine;
-use crate::protocol::{MotionStatus, Refusal, Request, Response};
+use crate::protocol::{MotionStatus, PathElement, Refusal, Request, Response, Room};
 use crate::state::{Event, State};
 use crate::units::DEG_PER_RAD;
 
@@ -20,12 +20,62 @@ const MOST_ASIDE_RAD: f64 = 0.1;
 const MOST_OVERRIDE: f64 = 2.0;
 const LEAST_OVERRIDE: f64 = 0.01;
 
+/// How requests reach the controller, which path ticks use too: on a board behind a lock, each time for no longer than
+/// one element takes, or what is asked for at rest.
+pub trait ControllerAccess {
+    /// Calls `use_it` with the controller; no path tick comes meanwhile.
+    fn with<R>(&mut self, use_it: impl FnOnce(&mut MotionController) -> R) -> R;
+}
+
+/// In step with the ticks there is nobody else.
+impl ControllerAccess for MotionController {
+    fn with<R>(&mut self, use_it: impl FnOnce(&mut Self) -> R) -> R {
+        use_it(self)
+    }
+}
+
+/// One request of the PC; `unsent` datagrams could not be sent so far. The answer says what was done or why not; nothing
+/// changes on a refusal, but that the elements before one that is refused are kept.
+pub fn answer(controller: &mut impl ControllerAccess, request: &Request, unsent: u32) -> Response {
+    if let Request::LoadElements { elements, last } = request {
+        let loaded = load_elements(controller, elements, *last);
+        return loaded.map_or_else(Response::Refused, Response::Room);
+    }
+    controller.with(|controller| controller.obey(request, unsent))
+}
+
+/// Builds the elements where no path tick waits for it.
+fn load_elements(
+    controller: &mut impl ControllerAccess,
+    elements: &[PathElement],
+    last: bool,
+) -> Result<Room, Refusal> {
+    controller.with(|controller| {
+        controller.hear();
+        controller.may_load_elements(elements.len())
+    })?;
+    for (i, element) in elements.iter().enumerate() {
+        let element = element.build()?;
+        let ends = last && i + 1 == elements.len();
+        controller.with(|controller| controller.load_element(element, ends))?;
+    }
+    Ok(controller.with(|controller| controller.room()))
+}
+
 impl MotionController {
-    /// One request of the PC; `unsent` datagrams could not be sent so far. The answer says what was done or
-    /// why not; nothing changes on a refusal.
+    /// [`answer`], in step with the ticks.
     pub fn handle(&mut self, request: &Request, unsent: u32) -> Response {
+        answer(self, request, unsent)
+    }
+
+    /// The PC is there.
+    fn hear(&mut self) {
         self.heard = true;
         self.attended = true;
+    }
+
+    fn obey(&mut self, request: &Request, unsent: u32) -> Response {
+        self.hear();
         let done = match request {
             Request::Status => return Response::MotionStatus(self.status(unsent)),
             Request::ConfigureMotion(config) => self.configure(config),
@@ -38,10 +88,6 @@ impl MotionController {
                 start_s_mm,
                 limits,
             } => self.begin_path(*id, *space, *start_s_mm, limits),
-            Request::LoadElements { elements, last } => {
-                let loaded = self.load_elements(elements, *last);
-                return loaded.map_or_else(Response::Refused, |()| Response::Room(self.room()));
-            }
             Request::LoadEvents(events) => {
                 let loaded = self.load_events(events);
                 return loaded.map_or_else(Response::Refused, |()| Response::Room(self.room()));
