@@ -1,8 +1,8 @@
 //! A pair of boards, from boot to end.
 
 use crate::hello;
+use crate::monitor::BoardAction;
 use crate::qemu::{Board, PROGRAM, Setup};
-use crate::qmp::BoardAction;
 use crate::session::{Endpoint, PathStatesTo, Session};
 use plant_file::{DEFAULT_MACHINE, PlantChoice, PlantFileError};
 use shared::protocol::{Role, SCHEMA_HASH};

@@ -14,21 +14,21 @@ mod boot;
 #[cfg(target_os = "linux")]
 mod hello;
 #[cfg(target_os = "linux")]
+mod monitor;
+#[cfg(target_os = "linux")]
 mod pace;
 #[cfg(target_os = "linux")]
 mod qemu;
-#[cfg(target_os = "linux")]
-mod qmp;
 mod session;
 
 #[cfg(target_os = "linux")]
 pub use boot::{BOOT_VARIABLES, Boards, BootError, Options, PROGRAM_VARIABLES};
 #[cfg(target_os = "linux")]
+pub use monitor::BoardAction;
+#[cfg(target_os = "linux")]
 pub use pace::{BoardTime, Pace};
 #[cfg(target_os = "linux")]
 pub use qemu::{INSTRUCTIONS_PER_US, bound_to_parent};
-#[cfg(target_os = "linux")]
-pub use qmp::BoardAction;
 pub use session::{
     Endpoint, JOB_VARIABLE, MACHINE_VARIABLE, PathStatesTo, SEAM_VARIABLE, SESSION_VARIABLE, Session,
     SessionError,

@@ -1,6 +1,6 @@
 //! One board: a QEMU process.
 
-use crate::qmp::{self, ADAPTER, BoardAction};
+use crate::monitor::{self, ADAPTER, BoardAction};
 use crate::session::Endpoint;
 use shared::protocol::{DATAGRAM_PORT, REQUEST_PORT};
 use std::ffi::OsStr;
@@ -59,7 +59,7 @@ impl Board {
         let output = File::create(&console)?;
         let Endpoint { host, tcp, udp } = setup.endpoint;
         let child = bound_to_parent(PROGRAM)
-            .args(["-machine", "mps2-an500", "-display", "none", "-monitor", "none"])
+            .args(["-machine", "mps2-an500", "-display", "none"])
             .arg("-kernel")
             .arg(setup.firmware)
             .args(["-icount", &format!("shift={SHIFT},sleep=on,align=off"), "-plugin"])
@@ -82,7 +82,7 @@ impl Board {
                  hostfwd=udp:{host}:{udp}-{BOARD_ADDRESS}:{DATAGRAM_PORT}",
                 setup.mac
             ))
-            .args(["-qmp", &format!("unix:{}.qmp,server=on,wait=off", setup.name)])
+            .args(["-monitor", &format!("unix:{}.monitor,server=on,wait=off", setup.name)])
             .current_dir(setup.directory)
             .stdin(Stdio::null())
             .stdout(output.try_clone()?)
@@ -98,7 +98,7 @@ impl Board {
 
     /// Does something to the board from outside.
     pub fn act(&self, action: BoardAction) -> io::Result<()> {
-        qmp::act(&self.directory, &format!("{}.qmp", self.name), action)
+        monitor::act(&self.directory, &format!("{}.monitor", self.name), action)
     }
 
     /// Cuts its power for good.

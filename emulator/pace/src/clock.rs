@@ -71,19 +71,23 @@ impl Clock {
         }
         loop {
             let due = self.shared.epoch(now) + since_epoch;
-            let behind = |other: Option<i64>, lead| other.is_some_and(|other| reached - other > lead);
-            let ahead = behind(self.shared.peer(now, PATIENCE_NS), LEAD_NS)
-                || behind(self.shared.pc(now, PATIENCE_NS), PC_LEAD_NS)
-                || self.network.is_behind(now);
             if now < due {
                 sleep(due - now);
-            } else if ahead {
+            } else if self.is_ahead(reached, now) {
                 sleep(STEP_NS);
             } else {
                 return;
             }
             now = wall();
         }
+    }
+
+    /// Somebody, or what has arrived for the board, is further behind than a busy host explains.
+    fn is_ahead(&mut self, reached: i64, now: i64) -> bool {
+        let behind = |other: Option<i64>, lead| other.is_some_and(|other| reached - other > lead);
+        behind(self.shared.peer(now, PATIENCE_NS), LEAD_NS)
+            || behind(self.shared.pc(now, PATIENCE_NS), PC_LEAD_NS)
+            || self.network.is_behind(now)
     }
 
     /// The board starts: where its peer is, or where the wall clock is.
