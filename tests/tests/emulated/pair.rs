@@ -1,6 +1,8 @@
 //! A pair of emulated boards for one test.
 
-use emulator::{INSTRUCTIONS_PER_US, Options, PROGRAM_VARIABLES, SESSION_VARIABLE, bound_to_parent};
+use emulator::{
+    BoardAction, INSTRUCTIONS_PER_US, Options, PROGRAM_VARIABLES, SESSION_VARIABLE, bound_to_parent,
+};
 use host_link::boards::{Boards, NetworkBoards, Timeouts};
 use plant_file::DEFAULT_MACHINE;
 use report::Report;
@@ -42,7 +44,14 @@ impl Pair {
             .unwrap_or_else(|error| panic!("{error}"))
     }
 
-    /// A connection to the motion board only, as machines without a tracker have it.
+    /// A connection to a machine that has no tracker. The board that would be one is frozen: it would cost the host as
+    /// much as the other.
+    pub fn connect_without_tracker(&self) -> NetworkBoards {
+        self.act_on_tracker(BoardAction::Freeze);
+        self.connect_motion()
+    }
+
+    /// A connection to the motion board only.
     pub fn connect_motion(&self) -> NetworkBoards {
         emulated::connect(self.boards.session(), false, Timeouts::default())
             .unwrap_or_else(|error| panic!("{error}"))
@@ -71,11 +80,17 @@ impl Pair {
     /// Checks that both boards run, free of faults, with their drives off.
     #[track_caller]
     pub fn assert_off(&mut self) -> (MotionStatus, TrackerStatus) {
+        self.act_on_tracker(BoardAction::GoOn);
         self.boards.check().unwrap_or_else(|error| panic!("{error}"));
         let (motion, tracker) = status(&mut self.connect());
         assert_eq!((motion.state, motion.fault), (State::Off, None));
         assert_eq!((tracker.state, tracker.fault), (TrackerState::Off, None));
         (motion, tracker)
+    }
+
+    fn act_on_tracker(&self, action: BoardAction) {
+        let acted = self.boards.act(Role::Tracker, action);
+        acted.unwrap_or_else(|error| panic!("the tracker board: {error}"));
     }
 }
 
