@@ -144,9 +144,11 @@ const WORDS: [&str; 21] = [
     "X", "Y", "Z", "A", "B", "C", "I", "J", "K", "R", "F", "P", "L", "E", "Q", "S", "T", "H", "D", "@", "^",
 ];
 /// The same, written with `=`.
-const NAMED_WORDS: [&str; 15] = [
-    "V1", "V2", "A3", "B3", "C3", "CR", "AR", "TURN", "I1", "J1", "K1", "AP", "RP", "RPL", "CTOL",
+const NAMED_WORDS: [&str; 22] = [
+    "V1", "V2", "A3", "B3", "C3", "CR", "AR", "TURN", "I1", "J1", "K1", "AP", "RP", "RPL", "CTOL", "ANG",
+    "RND", "RNDM", "CHF", "CHR", "FRC", "FRCM",
 ];
+
 /// Reads line number `line`, in which `lookup` knows the values of parameters. Blocks that begin with `/` are left out with
 /// `block_delete`.
 pub(super) fn parse(

@@ -210,6 +210,8 @@ pub enum Code {
     ArcCounterClockwise,
     /// CIP: an arc through a point.
     ArcThrough,
+    /// CT: an arc in the direction of the motion before.
+    TangentArc,
     /// G4.
     Dwell,
     /// G5: a cubic spline in the plane.
@@ -448,6 +450,7 @@ impl Code {
     pub fn name(self) -> &'static str {
         match self {
             Self::ArcThrough => "CIP",
+            Self::TangentArc => "CT",
             Self::Turn => "ROT",
             Self::MoreTurn => "AROT",
             code => {

@@ -15,6 +15,7 @@ use super::program::{AXIS_WORDS, EXTENSION_WORDS, Motion, Notice, Program, Progr
 use super::reading::RemainingBlocks;
 use super::saved_modes::Saved;
 use super::setup::Setup;
+use super::siemens::corners::Corners;
 use super::siemens::drilling::Drilling;
 use super::tool_length::{Tools, tool};
 use super::waits::Wait;
@@ -59,6 +60,7 @@ pub(super) struct Interpreter {
     pub(super) modal_drilling: Option<Drilling>,
     /// The pole of AP= and RP= in coordinates of the program \[mm\].
     pub(super) pole: [f64; 3],
+    pub(super) corners: Corners,
     pub(super) pending: Vec<Pending>,
     /// Waits before the next path, and before its dwell.
     pub(super) waits: Vec<Wait>,
@@ -108,6 +110,7 @@ impl Interpreter {
             tool_names: Vec::new(),
             modal_drilling: None,
             pole: [0.0; 3],
+            corners: Corners::default(),
             pending: Vec::new(),
             waits: Vec::new(),
             said: None,
@@ -173,6 +176,7 @@ impl Interpreter {
         }
         let setup = self.setup.clone();
         self.modal.block(block, &claims, &setup)?;
+        self.modal_corner(block)?;
         self.hints(block);
         self.save_modes(block)?;
         self.switch(block, &claims)?;
@@ -344,24 +348,33 @@ impl Interpreter {
         }
     }
 
-    /// Keeps no more than `count` blocks of the last path; what reads the others again is made of the state between
-    /// them.
-    pub(super) fn trim(&mut self, count: usize, rest: impl FnOnce(Self) -> RemainingBlocks) {
-        let Some(mut path) = self.paths.pop() else { return };
-        if self.open && path.rest.is_none() && path.targets.len() >= count {
-            let before = std::mem::take(&mut self.paths);
-            let notices = std::mem::take(&mut self.notices);
-            let mut state = self.clone();
-            (self.paths, self.notices) = (before, notices);
-            state.paths.push(path.without_blocks());
-            path.rest = Some(rest(state));
+    /// Keeps no more blocks of the last path than those of the motion with which there are `count`; what reads the others again
+    /// is made of the state between them, and how many are kept.
+    pub(super) fn trim(&mut self, count: usize, rest: impl FnOnce(Self, usize) -> RemainingBlocks) {
+        let last = self.paths.last().filter(|path| self.open && path.rest.is_none());
+        if let Some(kept) = last.map(|path| path.targets.len()).filter(|kept| *kept >= count) {
+            let state = self.without_blocks();
+            if let Some(path) = self.paths.last_mut() {
+                path.rest = Some(rest(state, kept));
+            }
         }
-        if path.rest.is_some() {
+        if let Some(path) = self.paths.last_mut()
+            && let Some(count) = path.rest.as_ref().map(RemainingBlocks::kept)
+        {
             path.targets.truncate(count);
             let events = path.events.partition_point(|event| event.with_target < count);
             path.events.truncate(events);
         }
-        self.paths.push(path);
+    }
+
+    /// Its state with nothing but the last path, whose blocks are left out.
+    pub(super) fn without_blocks(&mut self) -> Self {
+        let paths = std::mem::take(&mut self.paths);
+        let notices = std::mem::take(&mut self.notices);
+        let mut state = self.clone();
+        state.paths.extend(paths.last().map(ProgramPath::without_blocks));
+        (self.paths, self.notices) = (paths, notices);
+        state
     }
 
     /// The blocks that came to the first path since the last time, and whether more may come.
@@ -419,7 +432,12 @@ impl Interpreter {
 fn takes_own_distances(code: Code) -> bool {
     matches!(
         code,
-        Code::Rapid | Code::Feed | Code::ArcClockwise | Code::ArcCounterClockwise | Code::ArcThrough
+        Code::Rapid
+            | Code::Feed
+            | Code::ArcClockwise
+            | Code::ArcCounterClockwise
+            | Code::ArcThrough
+            | Code::TangentArc
     )
 }
 

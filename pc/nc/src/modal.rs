@@ -254,6 +254,7 @@ fn is_motion(code: Code) -> bool {
             | Code::ArcClockwise
             | Code::ArcCounterClockwise
             | Code::ArcThrough
+            | Code::TangentArc
             | Code::CubicSpline
             | Code::QuadraticSpline
             | Code::UniformNurbs

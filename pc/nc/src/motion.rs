@@ -179,6 +179,7 @@ impl Interpreter {
             AXIS_WORDS.contains(&address)
                 || EXTENSION_WORDS.contains(&address)
                 || DIRECTION_WORDS.contains(&address)
+                || address == "ANG"
                 || self.modal.motion.is_some_and(own)
         };
         let first_word = block.words.iter().find(is_motion).map(|word| word.place);
@@ -198,6 +199,7 @@ impl Interpreter {
         }
         let mut said = self.said(block)?;
         let form = self.opening_angle(claims, mode, &mut said)?;
+        self.line_by_angle(block, &mut said)?;
         self.fill_in_rotary(&mut said);
         let mut words = self.tip_words(said, place)?;
         if let Some((direction, place)) = direction {
@@ -207,9 +209,11 @@ impl Interpreter {
         words.extension = Words::of(block)
             .extension
             .map(|word| word.map(|value| value * unit));
+        let from = self.known_place();
         if mode == Code::Rapid {
             if self.learn(&words) {
                 self.rapid(Way::Line, words, place)?;
+                self.has_come(from);
             }
             self.spline_end = None;
             return Ok(false);
@@ -224,6 +228,7 @@ impl Interpreter {
             Code::Feed => Way::Line,
             Code::CubicSpline | Code::QuadraticSpline => self.spline(block, claims, mode, place, &said)?,
             Code::ArcThrough => Way::Arc(self.arc_through(block, &said, place)?),
+            Code::TangentArc => self.tangent_arc(&words, from, place)?,
             _ => Way::Arc(self.arc(claims, mode, place, form)?),
         };
         if mode != Code::CubicSpline {
@@ -231,7 +236,7 @@ impl Interpreter {
         }
         // An arc without a way is a full circle.
         if self.learn(&words) || way != Way::Line {
-            self.feed_motion(way, words, feed, place)?;
+            self.feed_to_corner(block, (way, words), from, feed, place)?;
         }
         Ok(true)
     }
@@ -411,6 +416,7 @@ impl Interpreter {
         if way != Way::Axes {
             self.retract(&mut way, &mut words, place, false)?;
         }
+        self.corners.forget();
         self.said = None;
         let target = Target {
             way,
@@ -433,6 +439,7 @@ impl Interpreter {
         place: SourcePosition,
     ) -> Result<(), NcError> {
         self.retract(&mut way, &mut words, place, true)?;
+        self.corners.forget();
         self.said = None;
         let target = Target {
             way,

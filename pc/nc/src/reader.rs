@@ -224,6 +224,7 @@ impl Reader {
                 if self.is_named() {
                     block.end_as_subprogram();
                 }
+                self.look_behind_corner(&block);
                 self.interpreter.block(&block)?;
                 self.call_of(&block)?;
                 ran.settings = block.settings;

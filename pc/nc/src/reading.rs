@@ -49,7 +49,7 @@ pub(super) fn read(source: &Source, options: Options, kept: usize) -> Result<Pro
 /// Keeps no more than `kept` blocks of the path that was read last.
 pub(super) fn keep(reader: &mut Reader, options: &Options, kept: usize) {
     let position = &reader.position;
-    reader.interpreter.trim(kept, |state| RemainingBlocks {
+    reader.interpreter.trim(kept, |state, kept| RemainingBlocks {
         kept,
         options: options.clone(),
         position: position.clone(),
@@ -68,6 +68,13 @@ pub struct RemainingBlocks {
     position: Position,
     /// Its state there.
     state: Arc<Interpreter>,
+}
+
+impl RemainingBlocks {
+    /// How many blocks of the path come before these.
+    pub(super) fn kept(&self) -> usize {
+        self.kept
+    }
 }
 
 impl fmt::Debug for RemainingBlocks {

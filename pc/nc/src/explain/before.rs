@@ -54,7 +54,7 @@ impl Before {
             spindle_speed: state.spindle.speed(),
             saved: state.saved.len(),
             drills: state.modal_drilling.is_some(),
-            at: state.at,
+            at: state.place(),
             known: state.known,
             lost: state.lost,
             in_nurbs: state.nurbs.is_some(),

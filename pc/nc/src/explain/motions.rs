@@ -208,7 +208,7 @@ impl Block<'_> {
     fn follow(&mut self, target: &Target) {
         if target.way == Way::Axes || self.motions == self.last {
             // Only the last motion of a block is one of axes, after which the interpreter knows.
-            (self.at, self.known, self.lost) = (self.after.at, self.after.known, self.after.lost);
+            (self.at, self.known, self.lost) = (self.after.place(), self.after.known, self.after.lost);
             return;
         }
         let mut tip = self.after.tip_of_machine(&self.at);

@@ -9,12 +9,13 @@ use crate::scanner::Scanner;
 pub(crate) const POINT_WORDS: [&str; 3] = ["I1", "J1", "K1"];
 
 /// Words and the codes that they are here.
-const CODES: [(&str, Code, Group); 9] = [
+const CODES: [(&str, Code, Group); 10] = [
     ("TRAORI", Code::TipOn, Group::ToolLength),
     ("TRAFOOF", Code::TipOff, Group::ToolLength),
     ("ORIAXES", Code::Hint, Group::Hint),
     ("SUPA", Code::MachineAxes, Group::NonModal),
     ("CIP", Code::ArcThrough, Group::Motion),
+    ("CT", Code::TangentArc, Group::Motion),
     ("TRANS", Code::Shift, Group::NonModal),
     ("ATRANS", Code::MoreShift, Group::NonModal),
     ("ROT", Code::Turn, Group::NonModal),
@@ -80,8 +81,6 @@ const G_WITHOUT_EFFECT: [u32; 6] = [290, 450, 451, 601, 602, 603];
 /// The same of M: gears of the spindle.
 const M_WITHOUT_EFFECT: [u32; 6] = [40, 41, 42, 43, 44, 45];
 
-const ROUNDING: &str =
-    "corners are not rounded or chamfered by a word: write the lines and arcs out, or G64 P with a tolerance";
 const SPLINE: &str = "splines through points are not supported: write G1 with G64 P, G5 or G6.2";
 const CYCLE: &str = "this cycle is not supported: write its motions out, or let the CAM system do so";
 const TAPPING: &str = "threading and tapping need a spindle that the axes follow, and this machine has none";
@@ -94,20 +93,7 @@ const TURNED: &str = "a tilted plane is not supported: rotate about Z with ROT";
 const LATHE: &str = "lathe codes are not supported";
 
 /// Words that are refused, and why.
-const REFUSED: [(&str, &str); 59] = [
-    ("CHF", ROUNDING),
-    ("CHR", ROUNDING),
-    ("RND", ROUNDING),
-    ("RNDM", ROUNDING),
-    ("FRC", ROUNDING),
-    (
-        "ANG",
-        "an angle of a line is not supported: write both coordinates of its end",
-    ),
-    (
-        "CT",
-        "an arc by its tangent is not supported: write G2 or G3 with its centre or radius",
-    ),
+const REFUSED: [(&str, &str); 50] = [
     ("ASPLINE", SPLINE),
     ("CSPLINE", SPLINE),
     ("BSPLINE", SPLINE),
@@ -140,8 +126,6 @@ const REFUSED: [(&str, &str); 59] = [
     ("CYCLE801", CYCLE),
     ("CYCLE802", CYCLE),
     ("CYCLE899", CYCLE),
-    ("HOLES1", CYCLE),
-    ("HOLES2", CYCLE),
     ("POCKET1", CYCLE),
     ("POCKET2", CYCLE),
     ("POCKET3", CYCLE),

@@ -7,12 +7,15 @@
 
 mod arcs;
 pub(super) mod calls;
+pub(super) mod corners;
 pub(super) mod drilling;
 pub(super) mod expression;
 mod frames;
+mod holes;
 mod jumps;
 mod keywords;
 pub(super) mod labels;
+mod pieces;
 mod poles;
 mod repeats;
 mod statement;

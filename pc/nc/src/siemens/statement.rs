@@ -3,6 +3,7 @@
 use super::calls::{self, Call, Header};
 use super::drilling::{self, Drilling};
 use super::expression;
+use super::holes::{self, Holes};
 use super::jumps::{self, Jump};
 use super::keywords;
 use super::repeats::{self, Repeat};
@@ -52,6 +53,8 @@ pub(crate) enum What {
     Drill(Drilling),
     /// MCALL: after every motion, or none any more.
     DrillAfterMotions(Option<Drilling>),
+    /// HOLES1 and HOLES2.
+    DrillAll(Holes),
 }
 
 /// The statement at the scanner, if there is one.
@@ -85,8 +88,8 @@ pub(super) fn read(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<Option
         name => match jumps::direction(name) {
             Some(direction) => What::Jump(jumps::target(scanner, direction)?),
             None if keywords::cycle_without_effect(name, scanner) => What::Nothing,
-            None => match drilling::cycle(name, scanner, lookup, place)? {
-                Some(drilling) => What::Drill(drilling),
+            None => match cycle(name, scanner, lookup, place)? {
+                Some(cycle) => cycle,
                 None => {
                     scanner.go_back(start);
                     return Ok(None);
@@ -96,6 +99,19 @@ pub(super) fn read(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<Option
     };
     end(scanner)?;
     Ok(Some(Statement { what, place }))
+}
+
+/// The cycle or pattern of holes `name`, if it is one.
+fn cycle(
+    name: &str,
+    scanner: &mut Scanner,
+    lookup: &mut InBlock,
+    place: SourcePosition,
+) -> Result<Option<What>, NcError> {
+    if let Some(holes) = holes::pattern(name, scanner, lookup, place)? {
+        return Ok(Some(What::DrillAll(holes)));
+    }
+    Ok(drilling::cycle(name, scanner, lookup, place)?.map(What::Drill))
 }
 
 /// Nothing but a comment may follow.
@@ -150,7 +166,7 @@ impl Reader {
         let place = statement.place;
         let branches = !matches!(
             statement.what,
-            What::Define(_) | What::Drill(_) | What::DrillAfterMotions(_)
+            What::Define(_) | What::Drill(_) | What::DrillAfterMotions(_) | What::DrillAll(_)
         );
         self.interpreter.branches |= branches;
         match statement.what {
@@ -167,6 +183,7 @@ impl Reader {
             What::Header(header) => self.bind(header, place),
             What::Return => self.end_subprogram("RET", place),
             What::Drill(drilling) => self.interpreter.drill(&drilling, place),
+            What::DrillAll(holes) => self.interpreter.drill_all(&holes, place),
             What::DrillAfterMotions(drilling) => {
                 self.interpreter.modal_drilling = drilling;
                 Ok(())

@@ -1,6 +1,7 @@
 //! R parameters, IC( ), AC( ), CR=, MSG, tools by name, and words without effect.
 
 mod calls;
+mod corners;
 mod drilling;
 mod flow;
 mod frames;
@@ -198,9 +199,8 @@ fn words_without_effect_are_passed_over_and_others_refused_with_a_reason() {
     assert!(run(words).is_ok(), "{:?}", run(words));
     for (body, reason) in [
         ("SPOS=0", "the spindle is not positioned"),
-        ("F9\nG1 X5 RND=2", "corners are not rounded"),
         ("BSPLINE", "splines through points"),
-        ("HOLES2(0,0,20,0,60,6)", "this cycle is not supported"),
+        ("SLOT1(9,0,2,-5)", "this cycle is not supported"),
         (
             "CYCLE800(1,\"\",0,57,0,0,0,30,0,0,0,0,0,1)",
             "a tilted plane is not supported",
