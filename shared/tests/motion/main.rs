@@ -2,6 +2,7 @@
 
 mod bench;
 mod estop;
+mod excitation;
 mod filters;
 mod holds;
 mod homing;
