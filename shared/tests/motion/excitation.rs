@@ -99,7 +99,17 @@ fn what_is_captured_is_the_response_of_the_drive() {
             .collect();
         let seen: Vec<f64> = samples.iter().map(|s| f64::from(s.counts) / SCALE).collect();
         let error: Vec<f64> = samples.iter().map(|s| f64::from(s.error)).collect();
-        let (first, last) = Chirp::new(ASKED.from_hz, ASKED.to_hz).lines();
+        // Every sample by itself: the loop is P with 100/s, and the reference stands still, at a part of a count.
+        let chirp = Chirp::new(ASKED.from_hz, ASKED.to_hz);
+        for k in 0..CAPTURE_TICKS {
+            let shaken = amplitude * chirp.at(k as u32);
+            let (seen, step) = match excited {
+                Excited::Command => (told[k] - 100.0 * error[k], 2.0 * FULL_SPEED / 65535.0),
+                Excited::Reference => (error[k] + seen[k] - (error[0] + seen[0]), 1e-6),
+            };
+            assert!((seen - shaken).abs() < step, "{k}: {seen} {shaken}");
+        }
+        let (first, last) = chirp.lines();
         for line in (first + 3..last - 3).step_by(7) {
             // The drives of the bench integrate: y(k + 1) = y(k) + T·u(k), so y/u = T·e^{−jωT/2}/(2j·sin(ωT/2)).
             let angle = 2.0 * PI * f64::from(line) / CAPTURE_TICKS as f64;
