@@ -55,7 +55,7 @@ impl Motor {
         // At rest a motor has no following error for more than that.
         let rest = config.following_error_base * unit;
         Ok(Self {
-            movement: MovementCheck::new(full_scale * unit, rest),
+            movement: MovementCheck::new(full_scale * unit, rest).against_offset(full_scale * unit),
             pitch: unit / counts,
             velocity_at_10v: full_scale * unit,
             following: FollowingTrip::build(index as u8, owner, config, unit)?,
