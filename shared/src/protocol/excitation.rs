@@ -25,7 +25,7 @@ pub struct Excitation {
     pub to_hz: f64,
     /// Periods before the one that is captured, in which what was before dies away.
     pub settle_periods: u8,
-    /// It ends where the motor is further than this from where it stood (mm or °).
+    /// It ends where the motor is further than this from where it stood (mm or °), or than 32767 counts.
     pub max_travel: f64,
     /// It ends where the drive would be told more than this (mm/s or °/s).
     pub max_speed: f64,
@@ -81,7 +81,7 @@ pub struct CaptureSample {
     pub command: i16,
     /// Counts at this tick, from where the motor stood.
     pub counts: i32,
-    /// Following error at this tick (mm or rad), the excitation in it.
+    /// Following error at this tick (mm or rad), the excitation in it; in steps of 0.0001, up to 3.2767.
     pub error: f32,
 }
 

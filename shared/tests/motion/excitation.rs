@@ -104,8 +104,8 @@ fn what_is_captured_is_the_response_of_the_drive() {
         for k in 0..CAPTURE_TICKS {
             let shaken = amplitude * chirp.at(k as u32);
             let (seen, step) = match excited {
-                Excited::Command => (told[k] - 100.0 * error[k], 2.0 * FULL_SPEED / 65535.0),
-                Excited::Reference => (error[k] + seen[k] - (error[0] + seen[0]), 1e-6),
+                Excited::Command => (told[k] - 100.0 * error[k], 0.008 + 2.0 * FULL_SPEED / 65535.0),
+                Excited::Reference => (error[k] + seen[k] - (error[0] + seen[0]), 1.1e-4),
             };
             assert!((seen - shaken).abs() < step, "{k}: {seen} {shaken}");
         }

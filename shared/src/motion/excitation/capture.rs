@@ -4,6 +4,9 @@ use super::order::ExcitationOrder;
 use super::run::ExcitationReport;
 use crate::protocol::{CAPTURE_TICKS, CapturePart, CaptureSample, CaptureState, ExcitationEnd};
 
+/// Steps in which following errors are kept (mm or rad): 0.1 µm, up to 3.2767 mm; positions are kept to the count.
+const ERROR_STEP: f32 = 1e-4;
+
 /// The excitation that is ordered, and the samples of the last one.
 #[derive(Clone, Debug)]
 pub struct Capturing {
@@ -12,8 +15,8 @@ pub struct Capturing {
     state: CaptureState,
     taken: usize,
     commands: [i16; CAPTURE_TICKS],
-    counts: [i32; CAPTURE_TICKS],
-    errors: [f32; CAPTURE_TICKS],
+    counts: [i16; CAPTURE_TICKS],
+    errors: [i16; CAPTURE_TICKS],
 }
 
 impl Capturing {
@@ -25,7 +28,7 @@ impl Capturing {
         taken: 0,
         commands: [0; CAPTURE_TICKS],
         counts: [0; CAPTURE_TICKS],
-        errors: [0.0; CAPTURE_TICKS],
+        errors: [0; CAPTURE_TICKS],
     };
 
     /// What the servo ticks are to add.
@@ -78,8 +81,9 @@ impl Capturing {
         let at = self.taken;
         if at < CAPTURE_TICKS {
             self.commands[at] = sample.command;
-            self.counts[at] = sample.counts;
-            self.errors[at] = sample.error;
+            // An excitation ends before the motor is further away than that.
+            self.counts[at] = sample.counts.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
+            self.errors[at] = libm::roundf(sample.error / ERROR_STEP) as i16;
             self.taken += 1;
         }
     }
@@ -94,8 +98,8 @@ impl Capturing {
         for at in usize::from(from)..self.taken {
             let sample = CaptureSample {
                 command: self.commands[at],
-                counts: self.counts[at],
-                error: self.errors[at],
+                counts: self.counts[at].into(),
+                error: f32::from(self.errors[at]) * ERROR_STEP,
             };
             if part.samples.push(sample).is_err() {
                 break;

@@ -4,6 +4,8 @@ use super::order::ExcitationOrder;
 use crate::protocol::{CAPTURE_TICKS, CaptureSample, ExcitationEnd};
 use crate::ticks::SERVO_TICKS_PER_PATH_TICK;
 
+/// Counts from where the motor stood that a capture has room for.
+const MOST_COUNTS: u64 = i16::MAX as u64;
 /// Samples of one report: the path tick may be a millisecond late.
 const SAMPLES: usize = 2 * SERVO_TICKS_PER_PATH_TICK as usize;
 
@@ -101,8 +103,9 @@ impl Exciting {
         let Some(running) = &self.running else {
             return false;
         };
-        let way = libm::fabs((counts - running.start) as f64 * pitch);
-        let end = if way > running.order.max_travel {
+        let counts = counts - running.start;
+        let way = libm::fabs(counts as f64 * pitch);
+        let end = if way > running.order.max_travel || counts.unsigned_abs() > MOST_COUNTS {
             ExcitationEnd::Travel
         } else if libm::fabs(command) > running.order.max_speed {
             ExcitationEnd::Speed
