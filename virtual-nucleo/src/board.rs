@@ -8,7 +8,7 @@ use crate::chip::{Chip, Tamper};
 use crate::cpu::{Cpu, Register, Stop, UnicornCpu, Unmapped};
 use crate::finding::Finding;
 use crate::image::{FLASH, Image};
-use crate::outside::Outside;
+use crate::outside::{Outside, Role};
 use crate::time::Time;
 use std::rc::Rc;
 use thiserror::Error;
@@ -110,6 +110,19 @@ impl Board {
     /// From now on `tamper` gets what is written to each register, and gives what arrives there.
     pub fn tamper(&mut self, tamper: Tamper) {
         self.chip_mut().tamper(tamper);
+    }
+
+    /// From now on the chip's recorder notes every change of a pin.
+    pub fn record_pins(&mut self) {
+        let shared = self.shared();
+        shared.recorder.start(&shared.pins);
+    }
+
+    /// Whether all drives that the board is wired to are enabled.
+    pub fn drives_on(&self) -> bool {
+        let outside = &self.chip().shared.outside;
+        let mut enables = outside.outputs().iter().filter(|line| line.role == Role::Enable);
+        enables.all(|line| outside.line(line.pin))
     }
 
     /// Reads the core's memory.

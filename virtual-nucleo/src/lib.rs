@@ -13,4 +13,6 @@ pub mod net;
 pub mod outside;
 pub mod pace;
 pub mod pair;
+pub mod session;
 pub mod time;
+pub mod waveform;

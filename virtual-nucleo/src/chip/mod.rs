@@ -8,6 +8,7 @@ pub mod memory;
 pub mod models;
 pub mod pins;
 mod rcc;
+pub mod recorder;
 pub mod shared;
 mod spi;
 mod supply;
@@ -76,6 +77,7 @@ impl Chip {
             ethernet_interface: 0,
             ethernet_clocks: false,
             pins: pins::Pins::default(),
+            recorder: recorder::Recorder::default(),
             outside,
             reset: None,
             polls_until: None,
@@ -104,11 +106,10 @@ impl Chip {
             self.shared.ethernet_clocks,
             self.shared.ethernet_interface,
         ) = (false, false, 0);
+        let (now, shared) = (self.shared.now(), &mut self.shared);
+        shared.outside.chip_resets(now, &mut shared.findings);
         for port in 0..pins::PORTS {
-            let now = self.shared.now();
-            self.shared
-                .outside
-                .drive(port, 0, 0, now, &mut self.shared.findings);
+            shared.recorder.note(&shared.pins, port, now);
         }
         self.start();
     }

@@ -150,6 +150,7 @@ impl Models {
                 &mut shared.outside,
                 &mut shared.findings,
             );
+            shared.recorder.note(&shared.pins, port, now);
         } else if let Some(model) = self.model(index) {
             model.write(offset, value, size, shared);
         }

@@ -2,6 +2,7 @@
 
 use super::clocks::{Clocks, Settings};
 use super::pins::Pins;
+use super::recorder::Recorder;
 use crate::armv7m::System;
 use crate::finding::Findings;
 use crate::outside::Outside;
@@ -37,6 +38,8 @@ pub struct Shared {
     pub ethernet_clocks: bool,
     /// The pins.
     pub pins: Pins,
+    /// What leaves them.
+    pub recorder: Recorder,
     /// What the board is wired to.
     pub outside: Outside,
     /// A reset is due.
