@@ -7,7 +7,7 @@ use crate::chip::shared::Shared;
 use crate::chip::{Chip, Tamper};
 use crate::cpu::{Cpu, Register, Stop, UnicornCpu, Unmapped};
 use crate::finding::Finding;
-use crate::image::{FLASH, Image};
+use crate::image::{FLASH, FLASH_LENGTH, Image};
 use crate::outside::{Outside, Role};
 use crate::time::Time;
 use std::rc::Rc;
@@ -125,6 +125,24 @@ impl Board {
         enables.all(|line| outside.line(line.pin))
     }
 
+    /// Address of what the image calls by this name.
+    pub fn symbol(&self, name: &str) -> Option<u32> {
+        self.symbols.address(name)
+    }
+
+    /// The core, for faults that are injected.
+    pub(crate) fn core_mut(&mut self) -> &mut UnicornCpu<Chip> {
+        &mut self.cpu
+    }
+
+    /// Where these bytes lie as an instruction in the flash memory.
+    pub(crate) fn find_code(&self, code: [u8; 2]) -> Option<u32> {
+        let mut flash = vec![0; FLASH_LENGTH];
+        self.cpu.load(FLASH, &mut flash).ok()?;
+        let place = flash.chunks_exact(2).position(|half| half == code)?;
+        Some(FLASH + 2 * place as u32)
+    }
+
     /// Reads the core's memory.
     pub fn peek(&self, address: u32, to: &mut [u8]) -> Result<(), Unmapped> {
         self.cpu.load(address, to)
@@ -139,7 +157,7 @@ impl Board {
     pub fn run(&mut self, end: Time) {
         self.advance(end);
         while self.now() < end {
-            if self.locked_up {
+            if self.locked_up || self.chip().shared.stopped {
                 self.cpu.bus_mut().sleep();
             } else {
                 let stop = self.cpu.run();
@@ -221,7 +239,7 @@ impl Board {
         }
         let masks = self.cpu.masks();
         let due = self.shared().system.nvic.due(masks);
-        if let Some(number) = due.filter(|_| !self.locked_up) {
+        if let Some(number) = due.filter(|_| !self.locked_up && !self.chip().shared.stopped) {
             let floats = self.cpu.get(Register::Control) & 1 << 2 != 0;
             if floats && !self.shared().system.floating_point() {
                 self.report("floating-point instructions have run while the unit is off (CPACR): the chip would fault".to_owned());

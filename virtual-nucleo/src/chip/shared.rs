@@ -42,6 +42,12 @@ pub struct Shared {
     pub recorder: Recorder,
     /// What the board is wired to.
     pub outside: Outside,
+    /// Voltage of the supply [mV].
+    pub supply_mv: u32,
+    /// The 8 MHz of the ST-LINK have failed.
+    pub hse_failed: bool,
+    /// The core has lost its clock.
+    pub stopped: bool,
     /// A reset is due.
     pub reset: Option<Reset>,
     /// The core polls for something that will not come before: time may pass to there, or to the next event.

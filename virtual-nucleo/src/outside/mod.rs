@@ -173,6 +173,11 @@ impl Outside {
         self.converters.iter().map(Ad5764r::outputs).collect()
     }
 
+    /// Since when all converters give 0 V; `None` if one does not, or none has stepped since the last reset.
+    pub fn zero_since(&self) -> Option<Time> {
+        self.shown.zero
+    }
+
     /// How many complete frames the converters have taken.
     pub fn frames(&self) -> u64 {
         self.converters.iter().map(|converter| converter.frames).sum()

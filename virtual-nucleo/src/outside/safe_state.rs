@@ -20,6 +20,8 @@ pub(super) struct Shown {
     pub watchdog: bool,
     /// Last change of the heartbeat.
     beat: Option<Time>,
+    /// Since when all converters give 0 V.
+    pub zero: Option<Time>,
     /// Since when a converter gives a voltage while a drive is off.
     voltage: Option<Time>,
 }
@@ -59,6 +61,10 @@ impl Outside {
     /// The converters have stepped, or enables have changed: notes whether there is a voltage while a drive is off.
     pub(super) fn note_voltage(&mut self, now: Time) {
         let zero = self.converters.iter().all(|chip| chip.outputs() == [0; 4]);
+        match zero {
+            true => drop(self.shown.zero.get_or_insert(now)),
+            false => self.shown.zero = None,
+        }
         if zero || self.drives_on() {
             self.shown.voltage = None;
         } else {
