@@ -7,7 +7,7 @@ use crate::chip::shared::Shared;
 use crate::chip::{Chip, Tamper};
 use crate::cpu::{Cpu, Register, Stop, UnicornCpu, Unmapped};
 use crate::finding::Finding;
-use crate::image::{FLASH, FLASH_LENGTH, Image};
+use crate::image::{FLASH, Image};
 use crate::outside::{Outside, Role};
 use crate::time::Time;
 use std::rc::Rc;
@@ -133,14 +133,6 @@ impl Board {
     /// The core, for faults that are injected.
     pub(crate) fn core_mut(&mut self) -> &mut UnicornCpu<Chip> {
         &mut self.cpu
-    }
-
-    /// Where these bytes lie as an instruction in the flash memory.
-    pub(crate) fn find_code(&self, code: [u8; 2]) -> Option<u32> {
-        let mut flash = vec![0; FLASH_LENGTH];
-        self.cpu.load(FLASH, &mut flash).ok()?;
-        let place = flash.chunks_exact(2).position(|half| half == code)?;
-        Some(FLASH + 2 * place as u32)
     }
 
     /// Reads the core's memory.

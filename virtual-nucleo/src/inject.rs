@@ -2,8 +2,8 @@
 
 use crate::armv7m::HARD_FAULT;
 use crate::board::Board;
-use crate::cpu::{Cpu, Register};
-use crate::image::FLASH;
+use crate::cpu::{Cpu, Register, Unmapped};
+use crate::image::{FLASH, FLASH_LENGTH};
 use crate::time::Time;
 use thiserror::Error;
 
@@ -11,6 +11,8 @@ use thiserror::Error;
 const NOWHERE: u32 = 0x1000_0000;
 /// `b .`, as it lies in memory.
 const FOR_EVER: [u8; 2] = [0xfe, 0xe7];
+/// Where it is put: no image is so long.
+const LOOP: u32 = FLASH + FLASH_LENGTH as u32 - 32;
 /// Blocks of instructions from the entry of a task to where it is caught.
 const INTO_TASK: usize = 8;
 /// Time within which a task runs that comes by itself.
@@ -79,8 +81,10 @@ impl Board {
                 self.call(panic);
             }
             Fault::Hang => {
-                let place = self.find_code(FOR_EVER);
-                self.jump(place.ok_or(InjectError::NoSymbol("instruction b ."))?);
+                // The image has no such loop; it gets one behind its end.
+                let loops = self.core_mut().store(LOOP, &FOR_EVER);
+                loops.map_err(|Unmapped| InjectError::NoSymbol("end of the flash memory"))?;
+                self.jump(LOOP);
             }
         }
         Ok(())
