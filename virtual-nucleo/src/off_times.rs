@@ -16,8 +16,9 @@ use std::path::Path;
 use std::rc::Rc;
 use thiserror::Error;
 
-/// Longest that is waited for. The PC may be silent for 500 ms before a board stops by itself (the machine file).
-const LIMIT: Time = Time::ms(300);
+/// Longest that is waited for. A board whose PC is silent for 500 ms stops by itself (the machine file), so a longer time shows
+/// no more than that.
+const LIMIT: Time = Time::ms(600);
 /// Steps in which a board runs until its enables are off.
 const STEP: Time = Time::ms(1);
 /// Time from the enables to the cause.
