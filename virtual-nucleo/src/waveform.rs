@@ -5,6 +5,7 @@ use crate::chip::pins::Pin;
 use crate::chip::recorder::{Change, Level};
 use crate::time::Time;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -44,8 +45,8 @@ impl Waveform {
                     port: index / 16,
                     number: index % 16,
                 };
-                if !of_board.contains_key(&pin) {
-                    of_board.insert(pin, writer.add_wire(1, &pin.to_string())?);
+                if let Entry::Vacant(other) = of_board.entry(pin) {
+                    other.insert(writer.add_wire(1, &pin.to_string())?);
                 }
             }
             writer.upscope()?;

@@ -193,7 +193,8 @@ fn a_line_that_goes_high_too_early_is_named_with_what_is_missing() {
 
 #[test]
 fn an_enable_without_heartbeat_or_later_than_its_voltage_is_named() {
-    let mutations: [(&str, fn(u32) -> u32, &str); 2] = [
+    type Mutation = (&'static str, fn(u32) -> u32, &'static str);
+    let mutations: [Mutation; 2] = [
         (
             "no heartbeat",
             |v| v & !(1 << 15),

@@ -5,10 +5,10 @@ use super::shared::{Peripheral, Shared};
 
 const WORDS: usize = 0xd0 / 4;
 /// Triggers at rising and at falling edges, mask and pending register of lines 0 to 31.
-const RTSR1: usize = 0x00 / 4;
-const FTSR1: usize = 0x04 / 4;
-const CPUIMR1: usize = 0x80 / 4;
-const CPUPR1: usize = 0x88 / 4;
+const RTSR1: usize = 0x00;
+const FTSR1: usize = 0x04;
+const CPUIMR1: usize = 0x80;
+const CPUPR1: usize = 0x88;
 /// Line of the voltage detectors, PVD and AVD (RM0468, 20).
 pub const VOLTAGE_DETECTOR: u32 = 16;
 /// Pending registers: written ones clear.
@@ -45,7 +45,7 @@ impl Exti {
         }
         self.lines ^= bit;
         let edges = if high { RTSR1 } else { FTSR1 };
-        self.words[CPUPR1] |= self.words[edges] & bit;
+        self.words[CPUPR1 / 4] |= self.words[edges / 4] & bit;
     }
 }
 
@@ -65,7 +65,7 @@ impl Peripheral for Exti {
     }
 
     fn asks_for(&self) -> Option<u16> {
-        let pending = self.words[CPUPR1] & self.words[CPUIMR1];
+        let pending = self.words[CPUPR1 / 4] & self.words[CPUIMR1 / 4];
         self.voltage.filter(|_| pending & 1 << VOLTAGE_DETECTOR != 0)
     }
 }
