@@ -86,9 +86,10 @@ pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) 
     };
 
     let mut command = bound_to_parent(seamwright);
-    // To seamwright they are emulated boards: it finds both by a session file.
-    let flags = flags.iter().map(|flag| flag.replace(VIRTUAL, EMULATED));
-    command.arg("weld").args(flags).envs(told.defaults());
+    command
+        .arg("weld")
+        .args(for_seamwright(flags))
+        .envs(told.defaults());
     if let Some(running) = &running {
         command.env(SESSION_VARIABLE, running.session_file());
     }
@@ -102,6 +103,20 @@ pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) 
         .code()
         .and_then(|code| u8::try_from(code).ok())
         .map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+/// To seamwright boards on the model are emulated ones: it finds both by a session file.
+fn for_seamwright(flags: &[String]) -> Vec<String> {
+    let mut boards = false;
+    let told = flags.iter().map(|flag| {
+        let value = std::mem::replace(&mut boards, flag == "--boards");
+        match flag.as_str() {
+            VIRTUAL if value => EMULATED.to_owned(),
+            "--boards=virtual-nucleo" => format!("--boards={EMULATED}"),
+            _ => flag.clone(),
+        }
+    });
+    told.collect()
 }
 
 /// Waits for seamwright, and passes every request to end on to it: it stops the machine, this ends the boards.
@@ -227,6 +242,21 @@ mod tests {
         let defaults = told(&format!("--machine {}", pipe.display())).defaults();
         assert_eq!(defaults.len(), 2);
         assert!(defaults[1].1.ends_with("programs/saddle-320-80.ngc"));
+    }
+
+    #[test]
+    fn boards_on_the_model_are_emulated_ones_to_seamwright_and_nothing_else_changes() {
+        let line = |line: &str| -> Vec<String> { line.split_whitespace().map(str::to_owned).collect() };
+        for (told, given) in [
+            ("a.ngc --boards virtual-nucleo", "a.ngc --boards emulated"),
+            ("--boards=virtual-nucleo --speed 9", "--boards=emulated --speed 9"),
+            (
+                "--report virtual-nucleo --boards simulated",
+                "--report virtual-nucleo --boards simulated",
+            ),
+        ] {
+            assert_eq!(for_seamwright(&line(told)), line(given));
+        }
     }
 
     #[test]
