@@ -53,9 +53,12 @@ pub fn boot(rate: f64, machine: &str, plant: &PlantChoice) -> Result<Running> {
     eprintln!("building virtual-nucleo");
     run_command(command(&build)?, "building virtual-nucleo")?;
     let run = folder()?.join("boards").join(std::process::id().to_string());
-    let mut child = bound_to_parent(folder()?.join("release").join("virtual-nucleo"))
-        .args(images)
-        .args(["--machine", machine, "--plant", &plant.to_string()])
+    let mut program = bound_to_parent(folder()?.join("release").join("virtual-nucleo"));
+    program.args(images).args(["--machine", machine]);
+    if *plant != PlantChoice::Shipped {
+        program.args(["--plant", &plant.to_string()]);
+    }
+    let mut child = program
         .args(["--rate", &rate.to_string()])
         .arg("--folder")
         .arg(&run)
