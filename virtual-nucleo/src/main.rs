@@ -23,6 +23,10 @@ input ends or, with --ms, after that much time of the boards. It fails if anythi
     --rate     the boards' time per wall time at most; default 1
     --vcd      records what leaves every pin of both boards, from reset on: 0, 1, z floating, x a peripheral's";
 
+/// From the link to where a board takes a connection: in the first second it may not have found the PC's Ethernet address again, and it
+/// drops a connection that is not complete after 0.5 s (link/src/stack.rs).
+const SETTLES: Time = Time::ms(1500);
+
 struct Options {
     images: [PathBuf; 2],
     machine: String,
@@ -91,6 +95,8 @@ fn run(options: &Options) -> Result<usize, PairError> {
     if !pair.run_to_link(LINK_LIMIT) {
         println!("a board is not on the net after {LINK_LIMIT}");
     }
+    let settled = pair.now() + SETTLES;
+    pair.run(settled);
     let page = options.folder.join("pace");
     let mut pace = Pace::new(&page, options.rate)?;
     let session = options.folder.join("session.toml");
