@@ -32,7 +32,7 @@ const SEAM: &str = "programs/t-seam-400-deviation.csv";
 
 /// Boards that run beside seamwright.
 enum Running {
-    Emulated(emulate::Running),
+    Emulated(Box<emulate::Running>),
     Virtual(virtual_nucleo::Running),
 }
 
@@ -77,7 +77,10 @@ pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) 
     let seamwright = build_seamwright()?;
     let interrupts = Interrupts::watch()?;
     let mut running = match told.machine_name() {
-        Some(machine) if emulated => Some(Running::Emulated(emulate::boot(rate, machine, told.plant()?)?)),
+        Some(machine) if emulated => {
+            let running = emulate::boot(rate, machine, told.plant()?)?;
+            Some(Running::Emulated(Box::new(running)))
+        }
         Some(machine) if modelled => {
             let running = virtual_nucleo::boot(rate, &machine, &told.plant()?)?;
             Some(Running::Virtual(running))
