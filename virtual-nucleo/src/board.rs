@@ -8,7 +8,7 @@ use crate::chip::{Chip, Tamper};
 use crate::cpu::{Cpu, Register, Stop, UnicornCpu, Unmapped};
 use crate::finding::Finding;
 use crate::image::{FLASH, Image};
-use crate::outside::Outside;
+use crate::outside::{Outside, Role};
 use crate::time::Time;
 use std::rc::Rc;
 use thiserror::Error;
@@ -112,6 +112,29 @@ impl Board {
         self.chip_mut().tamper(tamper);
     }
 
+    /// From now on the chip's recorder notes every change of a pin.
+    pub fn record_pins(&mut self) {
+        let shared = self.shared();
+        shared.recorder.start(&shared.pins);
+    }
+
+    /// Whether all drives that the board is wired to are enabled.
+    pub fn drives_on(&self) -> bool {
+        let outside = &self.chip().shared.outside;
+        let mut enables = outside.outputs().iter().filter(|line| line.role == Role::Enable);
+        enables.all(|line| outside.line(line.pin))
+    }
+
+    /// Address of what the image calls by this name.
+    pub fn symbol(&self, name: &str) -> Option<u32> {
+        self.symbols.address(name)
+    }
+
+    /// The core, for faults that are injected.
+    pub(crate) fn core_mut(&mut self) -> &mut UnicornCpu<Chip> {
+        &mut self.cpu
+    }
+
     /// Reads the core's memory.
     pub fn peek(&self, address: u32, to: &mut [u8]) -> Result<(), Unmapped> {
         self.cpu.load(address, to)
@@ -126,7 +149,7 @@ impl Board {
     pub fn run(&mut self, end: Time) {
         self.advance(end);
         while self.now() < end {
-            if self.locked_up {
+            if self.locked_up || self.chip().shared.stopped {
                 self.cpu.bus_mut().sleep();
             } else {
                 let stop = self.cpu.run();
@@ -208,7 +231,7 @@ impl Board {
         }
         let masks = self.cpu.masks();
         let due = self.shared().system.nvic.due(masks);
-        if let Some(number) = due.filter(|_| !self.locked_up) {
+        if let Some(number) = due.filter(|_| !self.locked_up && !self.chip().shared.stopped) {
             let floats = self.cpu.get(Register::Control) & 1 << 2 != 0;
             if floats && !self.shared().system.floating_point() {
                 self.report("floating-point instructions have run while the unit is off (CPACR): the chip would fault".to_owned());

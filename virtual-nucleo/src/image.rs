@@ -1,8 +1,9 @@
 //! The flashed image: an ELF file.
 
 use object::elf::{FileHeader32, PT_LOAD};
-use object::read::elf::{ElfFile, ProgramHeader};
+use object::read::elf::{ElfFile, ElfSymbol32, ProgramHeader};
 use object::{Endianness, Object, ObjectSymbol, SymbolKind};
+use std::collections::BTreeMap;
 use thiserror::Error;
 
 /// Why an image cannot be used.
@@ -61,10 +62,14 @@ impl Image {
             place.ok_or(outside)?.copy_from_slice(data);
         }
         let functions = elf.symbols().filter(|symbol| symbol.kind() == SymbolKind::Text);
-        let symbols = Symbols::of(functions.map(|symbol| {
+        let mut symbols = Symbols::of(functions.map(|symbol| {
             let name = symbol.name().unwrap_or("?");
             (symbol.address() as u32 & !1, symbol.size() as u32, name)
         }));
+        let marks = elf.symbols().filter(|symbol| symbol.kind() != SymbolKind::Text);
+        let named =
+            |symbol: ElfSymbol32<'_, '_>| Some((symbol.name().ok()?.to_owned(), symbol.address() as u32));
+        symbols.addresses.extend(marks.filter_map(named));
         Ok(Self { flash, symbols })
     }
 }
@@ -72,6 +77,8 @@ impl Image {
 /// Names of functions by address.
 #[derive(Debug, Default)]
 pub struct Symbols {
+    /// Addresses of everything by its name in the source.
+    addresses: BTreeMap<String, u32>,
     /// First address, length and name, ordered.
     functions: Vec<(u32, u32, String)>,
 }
@@ -84,7 +91,16 @@ impl Symbols {
             .map(|(begin, length, name)| (begin, length, format!("{:#}", rustc_demangle::demangle(name))))
             .collect();
         functions.sort();
-        Self { functions }
+        let addresses = functions
+            .iter()
+            .map(|(begin, _, name)| (name.clone(), *begin))
+            .collect();
+        Self { addresses, functions }
+    }
+
+    /// Address of what has this name; of two with the same name, of one of them.
+    pub fn address(&self, name: &str) -> Option<u32> {
+        self.addresses.get(name).copied()
     }
 
     /// The function at `pc`, and how far in it that is.

@@ -9,9 +9,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use virtual_nucleo::pace::Pace;
 use virtual_nucleo::pair::{NAMES, Pair, PairError};
+use virtual_nucleo::session::LINK_LIMIT;
 use virtual_nucleo::time::Time;
 
-const USAGE: &str = "virtual-nucleo MOTION TRACKER [--machine NAME] [--plant PLANT] [--folder FOLDER] [--rate R] [--ms TIME]
+const USAGE: &str = "virtual-nucleo MOTION TRACKER [--machine NAME] [--plant PLANT] [--folder FOLDER] [--rate R] [--ms TIME] [--vcd FILE]
 
 Runs both firmware images on models of the NUCLEO-H723ZG, writes FOLDER/session.toml, and ends when its standard
 input ends or, with --ms, after that much time of the boards. It fails if anything was found.
@@ -19,10 +20,12 @@ input ends or, with --ms, after that much time of the boards. It fails if anythi
     --machine  what the motion board is wired to, by the name of its kinematics
     --plant    what is true of it: a plant file, draw:usual:SEED or draw:poor:SEED
     --folder   where session and pace are written; default: virtual-nucleo in the folder for temporary files
-    --rate     the boards' time per wall time at most; default 1";
+    --rate     the boards' time per wall time at most; default 1
+    --vcd      records what leaves every pin of both boards, from reset on: 0, 1, z floating, x a peripheral's";
 
-/// Boot and negotiation of the link take 1.6 s, the boards' addresses one second each at most.
-const LINK_LIMIT: Time = Time::ms(5000);
+/// From the link to where a board takes a connection: in the first second it may not have found the PC's Ethernet address again, and it
+/// drops a connection that is not complete after 0.5 s (link/src/stack.rs).
+const SETTLES: Time = Time::ms(1500);
 
 struct Options {
     images: [PathBuf; 2],
@@ -31,6 +34,7 @@ struct Options {
     folder: PathBuf,
     rate: f64,
     end: Time,
+    waveform: Option<PathBuf>,
 }
 
 fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
@@ -42,6 +46,7 @@ fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
         folder: std::env::temp_dir().join("virtual-nucleo"),
         rate: 1.0,
         end: Time::NEVER,
+        waveform: None,
     };
     let mut arguments = arguments;
     while let Some(argument) = arguments.next() {
@@ -51,6 +56,7 @@ fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
             "--folder" => options.folder = arguments.next()?.into(),
             "--rate" => options.rate = arguments.next()?.parse().ok().filter(|rate| *rate > 0.0)?,
             "--ms" => options.end = Time::ms(arguments.next()?.parse().ok()?),
+            "--vcd" => options.waveform = Some(arguments.next()?.into()),
             image if !image.starts_with('-') => images.push(PathBuf::from(image)),
             _ => return None,
         }
@@ -83,9 +89,14 @@ fn run(options: &Options) -> Result<usize, PairError> {
         source,
     };
     std::fs::create_dir_all(&options.folder).map_err(|source| file(&options.folder, source))?;
+    if let Some(waveform) = &options.waveform {
+        pair.record(waveform).map_err(|source| file(waveform, source))?;
+    }
     if !pair.run_to_link(LINK_LIMIT) {
         println!("a board is not on the net after {LINK_LIMIT}");
     }
+    let settled = pair.now() + SETTLES;
+    pair.run(settled);
     let page = options.folder.join("pace");
     let mut pace = Pace::new(&page, options.rate)?;
     let session = options.folder.join("session.toml");
@@ -98,6 +109,9 @@ fn run(options: &Options) -> Result<usize, PairError> {
         pair.now() < options.end && !ended.load(Ordering::Relaxed)
     })?;
 
+    if let Some(waveform) = &options.waveform {
+        pair.end_record().map_err(|source| file(waveform, source))?;
+    }
     let mut count = 0;
     for (name, board) in NAMES.iter().zip(&pair.boards) {
         println!(

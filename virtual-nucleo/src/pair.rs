@@ -6,6 +6,7 @@ use crate::net::{Gateway, carry};
 use crate::outside::{Machine, Outside};
 use crate::pace::{Pace, PaceError};
 use crate::time::Time;
+use crate::waveform::Waveform;
 use plant_file::{PlantChoice, PlantFile, PlantFileError};
 use shared::protocol::DATAGRAM_PORT;
 use std::fs;
@@ -83,6 +84,8 @@ pub struct Pair {
     pub boards: Vec<Board>,
     gateway: Gateway,
     now: Time,
+    /// Where the pins are recorded, and what became of that.
+    waveform: Option<io::Result<Waveform>>,
 }
 
 impl Pair {
@@ -97,6 +100,7 @@ impl Pair {
             boards,
             gateway: Gateway::open(&ADDRESSES).map_err(PairError::Ports)?,
             now: Time::default(),
+            waveform: None,
         })
     }
 
@@ -112,6 +116,25 @@ impl Pair {
             board.run(self.now);
         }
         carry(&mut self.boards, &mut self.gateway, self.now);
+        if let Some(Ok(waveform)) = &mut self.waveform
+            && let Err(error) = waveform.write(&mut self.boards, self.now)
+        {
+            self.waveform = Some(Err(error));
+        }
+    }
+
+    /// From now on the pins of both boards are recorded in a file (VCD).
+    pub fn record(&mut self, path: &Path) -> io::Result<()> {
+        self.waveform = Some(Ok(Waveform::create(path, &NAMES, &mut self.boards)?));
+        Ok(())
+    }
+
+    /// Ends the record.
+    pub fn end_record(&mut self) -> io::Result<()> {
+        match self.waveform.take() {
+            Some(waveform) => waveform?.close(&mut self.boards, self.now),
+            None => Ok(()),
+        }
     }
 
     /// Runs both until they are on the net, as fast as this computer can; whether they are by `end`.

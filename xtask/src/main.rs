@@ -14,6 +14,7 @@ mod setup;
 mod size;
 mod tally;
 mod test;
+mod virtual_nucleo;
 mod weld;
 
 use clap::{Parser, Subcommand};
@@ -38,7 +39,8 @@ struct Arguments {
 enum Task {
     /// Install what is missing: the Arm and Windows targets of Rust, QEMU, Aravis, Python
     Setup,
-    /// Weld on two emulated boards: set up, build, boot, and run `seamwright weld` with the flags given
+    /// Weld on two emulated boards, or with --boards virtual-nucleo on two models of the real one: set up, build, boot, and run
+    /// `seamwright weld` with the flags given
     #[command(disable_help_flag = true)]
     Weld {
         /// Flags of `seamwright weld`; the machine defaults to the dual-beam gantry, the job to that of the machine
@@ -57,7 +59,11 @@ enum Task {
     /// Format, lints and tests of the host, whole jobs on simulated boards among them; needs no Arm target and no QEMU
     Check,
     /// Check and test everything
-    Test,
+    Test {
+        /// Test the model of the real board instead, with both images freshly built
+        #[arg(long)]
+        boards: Option<test::OtherBoards>,
+    },
     /// Count instructions, on the PC by valgrind and on the emulated Cortex-M7; run programs through the planner
     #[command(subcommand)]
     Bench(bench::Benchmark),
@@ -96,7 +102,10 @@ fn main() -> ExitCode {
             emulate::run(rate, machine, plant.unwrap_or_default())
         }),
         Task::Check => set_up(&[setup::Tool::Components]).map(|()| test::check()),
-        Task::Test => set_up(&setup::ALL).map(|()| test::run()),
+        Task::Test { boards: None } => set_up(&setup::ALL).map(|()| test::run()),
+        Task::Test {
+            boards: Some(test::OtherBoards::VirtualNucleo),
+        } => set_up(&setup::VIRTUAL_TESTS).map(|()| test::virtual_nucleo()),
         Task::Bench(benchmark) => set_up(benchmark.wants()).and_then(|()| benchmark.run()),
         Task::Fuzz(arguments) => fuzz::run(&arguments),
         Task::Mutants(arguments) => set_up(&[setup::Tool::Mutants]).and_then(|()| mutants::run(&arguments)),

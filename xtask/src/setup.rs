@@ -3,6 +3,8 @@
 use crate::cargo::{root, run_command, target_directory};
 use crate::firmware::TARGET;
 use anyhow::{Context, Result, bail, ensure};
+use std::env;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -27,6 +29,8 @@ pub enum Tool {
     Mutants,
     /// Another interpreter of NC programs, and the programs that come with it.
     LinuxCnc,
+    /// What Unicorn, the core of the virtual NUCLEO, is built with.
+    UnicornBuild,
 }
 
 /// Windows on the PC, as compilers call it.
@@ -34,7 +38,7 @@ pub const WINDOWS: &str = "x86_64-pc-windows-gnu";
 /// Version of cargo-mutants whose flags and files are known here.
 const MUTANTS: &str = "27.1.0";
 
-/// For everything but counting, changing the code and comparing interpreters.
+/// For everything but counting, changing the code, comparing interpreters and virtual boards.
 pub const ALL: [Tool; 6] = [
     Tool::ArmTarget,
     Tool::WindowsTarget,
@@ -45,6 +49,10 @@ pub const ALL: [Tool; 6] = [
 ];
 /// For emulated boards.
 pub const EMULATION: [Tool; 2] = [Tool::ArmTarget, Tool::Qemu];
+/// For virtual boards.
+pub const VIRTUAL: [Tool; 2] = [Tool::ArmTarget, Tool::UnicornBuild];
+/// For the tests of the virtual board.
+pub const VIRTUAL_TESTS: [Tool; 3] = [Tool::ArmTarget, Tool::UnicornBuild, Tool::Components];
 /// For counting instructions.
 pub const COUNTING: [Tool; 3] = [Tool::ArmTarget, Tool::Qemu, Tool::Valgrind];
 
@@ -85,9 +93,25 @@ pub fn run(wants: &[Tool]) -> Result<()> {
                 || Path::new("/usr/bin/rs274").exists() && runs("dpkg", &["-L", "linuxcnc-uspace"]),
                 "LinuxCNC 2.9 is in Debian 12 and later",
             )?,
+            Tool::UnicornBuild => debian(
+                &["cmake", "g++", "libclang-dev"],
+                || runs("cmake", &["--version"]) && runs("c++", &["--version"]) && has_libclang(),
+                "install cmake, a C++ compiler and libclang by hand, and set LIBCLANG_PATH to the folder of libclang",
+            )?,
         }
     }
     Ok(())
+}
+
+/// Whether the generator of bindings finds libclang: where it is told, or where Debian puts it.
+fn has_libclang() -> bool {
+    let in_debian = || {
+        let versions = fs::read_dir("/usr/lib").into_iter().flatten().flatten();
+        versions
+            .filter(|entry| entry.file_name().to_string_lossy().starts_with("llvm-"))
+            .any(|entry| entry.path().join("lib/libclang.so").exists())
+    };
+    env::var_os("LIBCLANG_PATH").is_some() || in_debian()
 }
 
 fn rust_target(name: &str) -> Result<()> {

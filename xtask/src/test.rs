@@ -12,7 +12,9 @@ use crate::firmware::{Board, Firmware, TARGET};
 use crate::setup::WINDOWS;
 use crate::size;
 use crate::tally::Tally;
+use crate::virtual_nucleo;
 use anyhow::{Context, Result, bail};
+use clap::ValueEnum;
 use emulator::{BOOT_VARIABLES, PROGRAM_VARIABLES};
 use plant_file::{DEFAULT_MACHINE, PlantChoice};
 use std::env;
@@ -24,6 +26,28 @@ const EMULATED: [&str; 2] = ["--test", "emulated"];
 /// Feature of the PC that needs the library of real cameras; the tests take the simulated one that it comes with.
 const CAMERAS: [&str; 2] = ["--features", "seamwright/aravis"];
 const CAMERA_TESTS: [&str; 2] = ["--test", "aravis"];
+
+/// Boards with tests that are no part of the suite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum OtherBoards {
+    /// The model of the real one.
+    VirtualNucleo,
+}
+
+/// Checks the model of the real board and runs its tests, with the images as they are now.
+pub fn virtual_nucleo() -> ExitCode {
+    let mut tally = Tally::default();
+    tally.check("format of the virtual board", || {
+        cargo::run(&[&["fmt", "--check"], &virtual_nucleo::MANIFEST[..]].concat())
+    });
+    tally.check("lints of the virtual board", || {
+        let mut command = virtual_nucleo::command(&["clippy", "--quiet", "--release", "--all-targets"])?;
+        command.args(["--", "-D", "warnings"]);
+        cargo::run_command(command, "cargo clippy")
+    });
+    tally.test("tests of the virtual board", virtual_nucleo::tests);
+    tally.close()
+}
 
 /// Runs what needs cargo only: format, lints, tests of the host, with whole jobs on simulated boards.
 pub fn check() -> ExitCode {

@@ -1,12 +1,13 @@
-//! `seamwright weld` on two emulated boards. Options on the command line are checked by seamwright; this
+//! `seamwright weld` on two emulated boards, or on two models of the real one. Options on the command line are checked by seamwright; this
 //! adds only the missing ones.
 
 use crate::cargo::root;
-use crate::emulate::{self, Running};
+use crate::emulate;
 use crate::firmware::build_seamwright;
 use crate::interrupt::Interrupts;
 use crate::machine;
 use crate::setup::{self, Tool};
+use crate::virtual_nucleo;
 use anyhow::{Context, Error, Result};
 use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE, SESSION_VARIABLE, bound_to_parent};
 use nix::sys::signal::{Signal, kill};
@@ -29,34 +30,96 @@ const JOBS: [(&str, &str); 5] = [
 /// The real seams of the dual-beam gantry's job.
 const SEAM: &str = "programs/t-seam-400-deviation.csv";
 
+/// Boards that run beside seamwright.
+enum Running {
+    Emulated(Box<emulate::Running>),
+    Virtual(virtual_nucleo::Running),
+}
+
+impl Running {
+    fn session_file(&self) -> &Path {
+        match self {
+            Self::Emulated(running) => &running.session_file,
+            Self::Virtual(running) => &running.session_file,
+        }
+    }
+
+    fn check(&mut self) -> Result<()> {
+        match self {
+            Self::Emulated(running) => Ok(running.boards.check()?),
+            Self::Virtual(running) => running.check(),
+        }
+    }
+
+    fn end(self) -> Result<()> {
+        match self {
+            Self::Emulated(_) => Ok(()),
+            Self::Virtual(running) => running.end(),
+        }
+    }
+}
+
+/// Kinds of boards that are started here; others run already, or are seamwright's own.
+const EMULATED: &str = "emulated";
+const VIRTUAL: &str = "virtual-nucleo";
+
 /// Runs seamwright with `flags` and the defaults; gives back its exit code. `set_up` installs what is missing.
 pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) -> Result<ExitCode> {
     let told = BoardFlags::from(flags);
-    let emulated = !told.help && told.boards.as_deref().is_none_or(|boards| boards == "emulated");
+    let boards = told.boards.as_deref().unwrap_or(EMULATED);
+    let (emulated, modelled) = (boards == EMULATED && !told.help, boards == VIRTUAL && !told.help);
     if emulated {
         set_up(&setup::EMULATION)?;
+    }
+    if modelled {
+        set_up(&setup::VIRTUAL)?;
     }
     let seamwright = build_seamwright()?;
     let interrupts = Interrupts::watch()?;
     let mut running = match told.machine_name() {
-        Some(machine) if emulated => Some(emulate::boot(rate, machine, told.plant()?)?),
+        Some(machine) if emulated => {
+            let running = emulate::boot(rate, machine, told.plant()?)?;
+            Some(Running::Emulated(Box::new(running)))
+        }
+        Some(machine) if modelled => {
+            let running = virtual_nucleo::boot(rate, &machine, &told.plant()?)?;
+            Some(Running::Virtual(running))
+        }
         _ => None,
     };
 
     let mut command = bound_to_parent(seamwright);
-    command.arg("weld").args(flags).envs(told.defaults());
-    if let Some(Running { session_file, .. }) = &running {
-        command.env(SESSION_VARIABLE, session_file);
+    command
+        .arg("weld")
+        .args(for_seamwright(flags))
+        .envs(told.defaults());
+    if let Some(running) = &running {
+        command.env(SESSION_VARIABLE, running.session_file());
     }
     let mut child = command.spawn().context("cannot run seamwright")?;
     let status = wait(&mut child, &interrupts, running.as_mut())?;
-    if let Some(Running { boards, .. }) = &mut running {
-        boards.check()?;
+    if let Some(mut running) = running {
+        running.check()?;
+        running.end()?;
     }
     Ok(status
         .code()
         .and_then(|code| u8::try_from(code).ok())
         .map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+/// To seamwright boards on the model are emulated ones: it finds both by a session file.
+fn for_seamwright(flags: &[String]) -> Vec<String> {
+    let mut boards = false;
+    let told = flags.iter().map(|flag| {
+        let value = std::mem::replace(&mut boards, flag == "--boards");
+        match flag.as_str() {
+            VIRTUAL if value => EMULATED.to_owned(),
+            "--boards=virtual-nucleo" => format!("--boards={EMULATED}"),
+            _ => flag.clone(),
+        }
+    });
+    told.collect()
 }
 
 /// Waits for seamwright, and passes every request to end on to it: it stops the machine, this ends the boards.
@@ -72,7 +135,7 @@ fn wait(child: &mut Child, interrupts: &Interrupts, mut running: Option<&mut Run
             // An error means that it has just ended, which the next turn sees.
             let _ = kill(pid, Signal::SIGINT);
         }
-        if let Some(error) = running.as_mut().and_then(|running| running.boards.check().err()) {
+        if let Some(error) = running.as_mut().and_then(|running| running.check().err()) {
             // seamwright finds the connection lost and ends in its own way; the reason is known here only.
             eprintln!("error: {error}");
             running = None;
@@ -182,6 +245,21 @@ mod tests {
         let defaults = told(&format!("--machine {}", pipe.display())).defaults();
         assert_eq!(defaults.len(), 2);
         assert!(defaults[1].1.ends_with("programs/saddle-320-80.ngc"));
+    }
+
+    #[test]
+    fn boards_on_the_model_are_emulated_ones_to_seamwright_and_nothing_else_changes() {
+        let line = |line: &str| -> Vec<String> { line.split_whitespace().map(str::to_owned).collect() };
+        for (told, given) in [
+            ("a.ngc --boards virtual-nucleo", "a.ngc --boards emulated"),
+            ("--boards=virtual-nucleo --speed 9", "--boards=emulated --speed 9"),
+            (
+                "--report virtual-nucleo --boards simulated",
+                "--report virtual-nucleo --boards simulated",
+            ),
+        ] {
+            assert_eq!(for_seamwright(&line(told)), line(given));
+        }
     }
 
     #[test]

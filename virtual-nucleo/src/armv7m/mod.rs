@@ -8,5 +8,5 @@ mod system;
 mod systick;
 
 pub use exceptions::{HasSystem, LockUp, fault, leave, reset, take};
-pub use nvic::{FIRST_INTERRUPT, NMI, Nvic, SYSTICK};
+pub use nvic::{FIRST_INTERRUPT, HARD_FAULT, NMI, Nvic, SYSTICK};
 pub use system::{ResetRequested, System};

@@ -8,6 +8,7 @@ pub mod memory;
 pub mod models;
 pub mod pins;
 mod rcc;
+pub mod recorder;
 pub mod shared;
 mod spi;
 mod supply;
@@ -28,6 +29,8 @@ use std::rc::Rc;
 
 /// The core clock after a reset: HSI (RM0468, 8.5.2).
 const RESET_HZ: u64 = 64_000_000;
+/// The board's supply (docs/wiring.md).
+const SUPPLY_MV: u32 = 3300;
 /// Estimate of the core's cycles that a load from a peripheral takes at 520 MHz, with AHB at half and APB at a quarter of
 /// that: two periods of each bus. A store waits in a buffer. Neither was measured.
 const LOAD_CYCLES: u64 = 12;
@@ -76,7 +79,11 @@ impl Chip {
             ethernet_interface: 0,
             ethernet_clocks: false,
             pins: pins::Pins::default(),
+            recorder: recorder::Recorder::default(),
             outside,
+            supply_mv: SUPPLY_MV,
+            hse_failed: false,
+            stopped: false,
             reset: None,
             polls_until: None,
         };
@@ -98,17 +105,17 @@ impl Chip {
     pub fn reset(&mut self, cause: Reset) {
         self.models.reset(&self.map, cause);
         self.shared.system = System::default();
+        self.shared.stopped = false;
         self.shared.pins = pins::Pins::default();
         (
             self.shared.csi,
             self.shared.ethernet_clocks,
             self.shared.ethernet_interface,
         ) = (false, false, 0);
+        let (now, shared) = (self.shared.now(), &mut self.shared);
+        shared.outside.chip_resets(now, &mut shared.findings);
         for port in 0..pins::PORTS {
-            let now = self.shared.now();
-            self.shared
-                .outside
-                .drive(port, 0, 0, now, &mut self.shared.findings);
+            shared.recorder.note(&shared.pins, port, now);
         }
         self.start();
     }
@@ -128,6 +135,13 @@ impl Chip {
     /// From now on `tamper` gets what is written to each register, and gives what arrives there.
     pub fn tamper(&mut self, tamper: Tamper) {
         self.tamper = Some(tamper);
+    }
+
+    /// The 8 MHz of the ST-LINK fail.
+    pub fn fail_clock(&mut self) {
+        self.shared.hse_failed = true;
+        self.models.rcc.hse_fails(&mut self.shared);
+        self.look_ahead();
     }
 
     /// Brings everything to the present, pends what asks for it, and looks when something is due next, or `end`.

@@ -1,7 +1,7 @@
 //! The peripherals that are modelled.
 
 use super::ethernet::Ethernet;
-use super::exti::Exti;
+use super::exti::{Exti, VOLTAGE_DETECTOR};
 use super::map::{Map, RccBit};
 use super::rcc::Rcc;
 use super::shared::{Peripheral, Reset, Shared};
@@ -16,6 +16,7 @@ pub struct Models {
     /// The clock controller, which is asked by all others.
     pub rcc: Rcc,
     pwr: Pwr,
+    exti: Exti,
     /// The Ethernet controller; taken out while it uses memory.
     pub ethernet: Option<Box<Ethernet>>,
     /// By their place in the map.
@@ -31,6 +32,7 @@ enum Kind {
     None,
     Rcc,
     Pwr,
+    Exti,
     Ethernet,
     /// The ports of pins, by number.
     Port(usize),
@@ -43,11 +45,11 @@ fn kind(name: &'static str) -> Kind {
     let other: Box<dyn Peripheral> = match name {
         "RCC" => return Kind::Rcc,
         "PWR" => return Kind::Pwr,
+        "EXTI" => return Kind::Exti,
         "ETH" => return Kind::Ethernet,
         "DBGMCU" => return Kind::Debug,
         "FLASH" => Box::new(FlashInterface),
         "SYSCFG" => Box::new(Syscfg::default()),
-        "EXTI" => Box::new(Exti::default()),
         "IWDG1" => Box::new(Watchdog::default()),
         "SPI1" | "SPI2" | "SPI3" => Box::new(Spi::new(name)),
         _ => match (name.strip_prefix("GPIO"), name.strip_prefix("TIM")) {
@@ -70,6 +72,7 @@ impl Models {
         Self {
             rcc: Rcc::new(cause),
             pwr: Pwr::new(false),
+            exti: Exti::default(),
             ethernet: Some(Box::default()),
             kinds: map.entries().iter().map(|entry| kind(entry.name)).collect(),
             resets: map.entries().iter().map(|entry| entry.reset).collect(),
@@ -119,6 +122,7 @@ impl Models {
         match &mut self.kinds[index] {
             Kind::Rcc => Some(&mut self.rcc),
             Kind::Pwr => Some(&mut self.pwr),
+            Kind::Exti => Some(&mut self.exti),
             Kind::Ethernet => self
                 .ethernet
                 .as_mut()
@@ -150,6 +154,7 @@ impl Models {
                 &mut shared.outside,
                 &mut shared.findings,
             );
+            shared.recorder.note(&shared.pins, port, now);
         } else if let Some(model) = self.model(index) {
             model.write(offset, value, size, shared);
         }
@@ -169,6 +174,8 @@ impl Models {
 
     /// Brings all to the present.
     pub fn advance(&mut self, shared: &mut Shared) {
+        let low = self.pwr.detects_low(shared.supply_mv);
+        self.exti.set_line(VOLTAGE_DETECTOR, low);
         for index in 0..self.kinds.len() {
             if self.due[index] <= shared.now()
                 && let Some(model) = self.model(index)

@@ -1,6 +1,7 @@
 //! Reset and clock control (RM0468, 8).
 
 use super::shared::{Peripheral, Reset, Shared};
+use crate::armv7m::NMI;
 use crate::time::Time;
 
 const CR: u32 = 0x00;
@@ -11,6 +12,8 @@ const PLLCKSELR: u32 = 0x28;
 const PLLCFGR: u32 = 0x2c;
 const PLL1DIVR: u32 = 0x30;
 const PLL3FRACR: u32 = 0x44;
+const CIFR: u32 = 0x64;
+const CICR: u32 = 0x68;
 const CSR: u32 = 0x74;
 const RSR: u32 = 0xd0;
 const AHB1ENR: u32 = 0xd8;
@@ -35,6 +38,10 @@ const LSI_READY: Time = Time::us(130);
 /// Oscillators that can clock the system, by SW: the bit that says they are ready.
 const SYSTEM: [(u32, &str); 4] = [(2, "HSI"), (8, "CSI"), (17, "HSE"), (25, "PLL1")];
 const PLLS: [u32; 3] = [24, 26, 28];
+/// HSEON and HSECSSON of CR; HSECSSF of CIFR.
+const HSE_ON: u32 = 1 << 16;
+const SECURITY_ON: u32 = 1 << 19;
+const SECURITY_FLAG: u32 = 1 << 10;
 /// RSR: flags cleared by RMVF; after power-up; watchdog; software; pin.
 const RMVF: u32 = 1 << 16;
 const POWER_UP: u32 = 0x00e8_0000;
@@ -104,7 +111,8 @@ impl Rcc {
         for (index, &(on, ready, name, takes)) in SWITCHES.iter().enumerate() {
             let (was, is) = (before & 1 << on != 0, value & 1 << on != 0);
             if is && !was {
-                self.ready[index] = now + takes;
+                let never = name == "HSE" && shared.hse_failed;
+                self.ready[index] = if never { Time::NEVER } else { now + takes };
                 if on == PLLS[0] {
                     self.check_pll1(shared);
                 }
@@ -115,6 +123,34 @@ impl Rcc {
         }
         self.words[CR as usize / 4] = value;
         shared.csi = value & 1 << 7 != 0;
+    }
+
+    /// The HSE stops. With the clock security on the core goes on with the HSI, and gets the interrupt that nothing masks
+    /// (RM0468, 8).
+    pub fn hse_fails(&mut self, shared: &mut Shared) {
+        let control = self.control(shared.now());
+        self.ready[3] = Time::NEVER;
+        let (source, system) = (self.word(PLLCKSELR) & 3, self.word(CFGR) >> 3 & 7);
+        let clocks_core = system == 2 || system == 3 && source == 2;
+        if control & SECURITY_ON != 0 && control & HSE_ON != 0 {
+            self.words[CR as usize / 4] &= !HSE_ON;
+            self.words[CIFR as usize / 4] |= SECURITY_FLAG;
+            if source == 2 {
+                for pll in PLLS {
+                    self.words[CR as usize / 4] &= !(1 << pll);
+                }
+            }
+            if clocks_core {
+                self.words[CFGR as usize / 4] &= !0x3f;
+                let before = shared.settings;
+                shared.settings.cfgr = self.word(CFGR);
+                shared.clocks_changed(&before);
+            }
+            shared.system.nvic.pend(NMI);
+        } else if clocks_core {
+            shared.report("the HSE fails, and its clock security is off: the core stops");
+            shared.stopped = true;
+        }
     }
 
     fn check_pll1(&self, shared: &mut Shared) {
@@ -189,6 +225,7 @@ impl Peripheral for Rcc {
                     self.words[offset as usize / 4] = 0;
                 }
             }
+            CICR => self.words[CIFR as usize / 4] &= !value,
             CSR => {
                 if value & !self.word(CSR) & 1 != 0 {
                     self.ready[SWITCHES.len()] = shared.now() + LSI_READY;
@@ -212,5 +249,9 @@ impl Peripheral for Rcc {
             settings.pll1_dividers = self.word(PLL1DIVR);
             shared.clocks_changed(&before);
         }
+    }
+
+    fn asks_for(&self) -> Option<u16> {
+        (self.word(CIFR) & SECURITY_FLAG != 0).then_some(NMI)
     }
 }

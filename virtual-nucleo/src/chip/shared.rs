@@ -2,6 +2,7 @@
 
 use super::clocks::{Clocks, Settings};
 use super::pins::Pins;
+use super::recorder::Recorder;
 use crate::armv7m::System;
 use crate::finding::Findings;
 use crate::outside::Outside;
@@ -37,8 +38,16 @@ pub struct Shared {
     pub ethernet_clocks: bool,
     /// The pins.
     pub pins: Pins,
+    /// What leaves them.
+    pub recorder: Recorder,
     /// What the board is wired to.
     pub outside: Outside,
+    /// Voltage of the supply [mV].
+    pub supply_mv: u32,
+    /// The 8 MHz of the ST-LINK have failed.
+    pub hse_failed: bool,
+    /// The core has lost its clock.
+    pub stopped: bool,
     /// A reset is due.
     pub reset: Option<Reset>,
     /// The core polls for something that will not come before: time may pass to there, or to the next event.

@@ -15,6 +15,8 @@ pub struct Pwr {
     /// The supply is chosen once after power-up.
     chosen: bool,
     ready: Time,
+    /// The voltage detector's output.
+    low: bool,
 }
 
 const CR1: u32 = 0x00;
@@ -25,6 +27,13 @@ const D3CR: u32 = 0x18;
 const SUPPLY: u32 = 0x7;
 const LDO: u32 = 1 << 1;
 const READY: u32 = 1 << 13;
+/// PVDE and PVDO.
+const DETECTOR_ON: u32 = 1 << 4;
+const DETECTOR_OUTPUT: u32 = 1 << 4;
+/// Thresholds of the voltage detector by PLS, with the supply rising, and how much lower they are with it falling [mV] (RM0468, 6;
+/// DS13313, typical values).
+const DETECTOR_MV: [u32; 7] = [1950, 2100, 2250, 2400, 2550, 2700, 2850];
+const HYSTERESIS_MV: u32 = 100;
 
 impl Pwr {
     /// After power-up. The supply stays `chosen` through other resets.
@@ -37,7 +46,22 @@ impl Pwr {
             words,
             chosen,
             ready: Time::default(),
+            low: false,
         }
+    }
+
+    /// Output of the voltage detector at this supply.
+    pub fn detects_low(&mut self, supply_mv: u32) -> bool {
+        let control = self.words[CR1 as usize / 4];
+        let threshold = DETECTOR_MV.get((control >> 5 & 7) as usize);
+        self.low = match threshold {
+            Some(rising) if control & DETECTOR_ON != 0 => {
+                supply_mv < rising - if self.low { 0 } else { HYSTERESIS_MV }
+            }
+            // The other input that can be chosen is a pin, which is not modelled.
+            _ => false,
+        };
+        self.low
     }
 
     /// Whether the supply was chosen.
@@ -55,7 +79,14 @@ impl Peripheral for Pwr {
             0
         };
         match offset {
-            CSR1 => self.words[D3CR as usize / 4] & 3 << 14 | ready,
+            CSR1 => {
+                let low = if self.detects_low(shared.supply_mv) {
+                    DETECTOR_OUTPUT
+                } else {
+                    0
+                };
+                self.words[D3CR as usize / 4] & 3 << 14 | ready | low
+            }
             D3CR => value & !READY | ready,
             _ => value,
         }

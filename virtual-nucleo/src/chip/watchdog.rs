@@ -73,6 +73,7 @@ impl Peripheral for Watchdog {
             (KR, START) => {
                 if !self.runs {
                     self.runs = true;
+                    shared.outside.watchdog_runs();
                     self.feed(now);
                 }
             }

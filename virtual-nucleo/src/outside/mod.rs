@@ -2,9 +2,12 @@
 
 mod ad5764r;
 mod machine;
+mod outputs;
+mod safe_state;
 mod wiring;
 
 pub use machine::Machine;
+pub use outputs::{Output, Role};
 
 use crate::chip::pins::{PORTS, Pin};
 use crate::finding::Findings;
@@ -49,6 +52,9 @@ pub struct SpiClock {
 #[derive(Debug)]
 pub struct Outside {
     wiring: Wiring,
+    /// Lines that the board drives.
+    outputs: Vec<Output>,
+    shown: safe_state::Shown,
     machine: Machine,
     encoders: Vec<Encoder>,
     converters: Vec<Ad5764r>,
@@ -72,6 +78,8 @@ impl Outside {
     pub fn new(machine: Machine) -> Self {
         let wiring = Wiring::of(&machine);
         let mut outside = Self {
+            outputs: outputs::outputs(&machine, &wiring),
+            shown: safe_state::Shown::default(),
             encoders: vec![Encoder::default(); wiring.encoders.len()],
             converters: (0..wiring.converters).map(Ad5764r::new).collect(),
             lines: [0; PORTS],
@@ -88,6 +96,7 @@ impl Outside {
         for pin in wiring
             .closed_loops
             .iter()
+            .chain(&wiring.emergency_stop)
             .chain(&wiring.high)
             .chain(wiring.limits())
         {
@@ -104,6 +113,29 @@ impl Outside {
     /// An encoder.
     pub fn encoder(&self, index: usize) -> Encoder {
         self.encoders.get(index).copied().unwrap_or_default()
+    }
+
+    /// Lines that the board drives.
+    pub fn outputs(&self) -> &[Output] {
+        &self.outputs
+    }
+
+    /// Pins of both channels of the emergency stop.
+    pub fn emergency_stop(&self) -> &[Pin] {
+        &self.wiring.emergency_stop
+    }
+
+    /// The chip was reset: it drives no line.
+    pub fn chip_resets(&mut self, now: Time, findings: &mut Findings) {
+        self.shown = safe_state::Shown::default();
+        for port in 0..PORTS {
+            self.drive(port, 0, 0, now, findings);
+        }
+    }
+
+    /// The watchdog runs from now on.
+    pub fn watchdog_runs(&mut self) {
+        self.shown.watchdog = true;
     }
 
     /// Which encoder's signal comes to a pin.
@@ -141,6 +173,11 @@ impl Outside {
         self.converters.iter().map(Ad5764r::outputs).collect()
     }
 
+    /// Since when all converters give 0 V; `None` if one does not, or none has stepped since the last reset.
+    pub fn zero_since(&self) -> Option<Time> {
+        self.shown.zero
+    }
+
     /// How many complete frames the converters have taken.
     pub fn frames(&self) -> u64 {
         self.converters.iter().map(|converter| converter.frames).sum()
@@ -156,6 +193,7 @@ impl Outside {
         if rises | falls == 0 {
             return;
         }
+        self.check_lines(port, rises, falls, now, findings);
         let is = |edges: u16, pin: Pin| usize::from(pin.port) == port && edges & 1 << pin.number != 0;
         for (converter, sync) in self.converters.iter_mut().zip(SYNC) {
             if is(falls, sync) {
@@ -175,6 +213,7 @@ impl Outside {
             self.advance(now);
             self.converters.iter_mut().for_each(Ad5764r::clear);
         }
+        self.note_voltage(now);
     }
 
     /// A byte on the bus of the converters; what comes back.

@@ -26,7 +26,9 @@ pub struct Wiring {
     pub limit_plus: Vec<Pin>,
     /// Switches at the negative ends, closed.
     pub limit_minus: Vec<Pin>,
-    /// Drives and sources ready, emergency stop not pressed.
+    /// Both channels of the emergency stop, closed.
+    pub emergency_stop: Vec<Pin>,
+    /// Drives and sources ready.
     pub closed_loops: Vec<Pin>,
     /// Inputs by which the process answers.
     pub high: Vec<Pin>,
@@ -51,7 +53,7 @@ fn row(port: char, numbers: impl IntoIterator<Item = u8>) -> Vec<Pin> {
 impl Wiring {
     /// The wiring of the board that belongs to a machine.
     pub fn of(machine: &Machine) -> Self {
-        let emergency_stop = [pin('C', 0), pin('B', 2)];
+        let emergency_stop = vec![pin('C', 0), pin('B', 2)];
         match machine {
             Machine::None => Self::default(),
             Machine::Motion(_) => Self {
@@ -60,12 +62,8 @@ impl Wiring {
                 gates: vec![pin('F', 10), pin('F', 14)],
                 limit_plus: row('G', 0..=6),
                 limit_minus: [row('D', 3..=7), row('G', 8..=9)].concat(),
-                closed_loops: [
-                    row('E', 2..=8),
-                    vec![pin('A', 4), pin('B', 12)],
-                    emergency_stop.to_vec(),
-                ]
-                .concat(),
+                emergency_stop,
+                closed_loops: [row('E', 2..=8), vec![pin('A', 4), pin('B', 12)]].concat(),
                 high: row('B', 8..=11),
                 converters: 3,
             },
@@ -75,7 +73,8 @@ impl Wiring {
                 gates: vec![pin('F', 10), pin('F', 14)],
                 limit_plus: row('G', 0..=3),
                 limit_minus: row('D', 3..=6),
-                closed_loops: [row('E', 2..=5), emergency_stop.to_vec()].concat(),
+                emergency_stop,
+                closed_loops: row('E', 2..=5),
                 high: Vec::new(),
                 converters: 1,
             },
