@@ -70,17 +70,23 @@ pub fn all(files: &[PathBuf], folder: &Path) -> Result<Vec<Pair>> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let next = AtomicUsize::new(0);
     let pairs = Mutex::new(Vec::new());
-    let work = |core: usize| -> Result<()> {
-        let folder = folder.join(format!("peer-{core}"));
-        std::fs::create_dir_all(&folder)?;
-        let peer = Peer::new(&folder)?;
+    // Before any thread starts a program: one that is being written cannot be started, and a process that is just being
+    // started holds all files open.
+    let peers = (0..cores)
+        .map(|core| {
+            let folder = folder.join(format!("peer-{core}"));
+            std::fs::create_dir_all(&folder)?;
+            Peer::new(&folder)
+        })
+        .collect::<Result<Vec<_>>>()?;
+    let work = |peer: &Peer| -> Result<()> {
         let mut worker = Worker::new(LIMIT);
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(file) = files.get(index) else {
                 return Ok(());
             };
-            let pair = pair(index, file, &peer, &mut worker);
+            let pair = pair(index, file, peer, &mut worker);
             let pair = pair.with_context(|| format!("program {}", file.display()))?;
             if let Ok(mut pairs) = pairs.lock() {
                 pairs.push(pair);
@@ -88,7 +94,7 @@ pub fn all(files: &[PathBuf], folder: &Path) -> Result<Vec<Pair>> {
         }
     };
     thread::scope(|scope| {
-        let threads: Vec<_> = (0..cores).map(|core| scope.spawn(move || work(core))).collect();
+        let threads: Vec<_> = peers.iter().map(|peer| scope.spawn(move || work(peer))).collect();
         threads.into_iter().try_for_each(|thread| {
             thread
                 .join()

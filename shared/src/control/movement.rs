@@ -95,8 +95,10 @@ impl MovementCheck {
                 since: 0.0,
             };
         }
-        // Between 0 and what holds it a drive may be told anything.
-        let beyond = velocity - velocity.clamp(state.held.min(0.0), state.held.max(0.0));
+        // Up to what holds it a drive may be told anything, to either side: friction holds it against both, and a loop that hunts
+        // about 0 must not add up on one of them.
+        let held = libm::fabs(state.held);
+        let beyond = velocity - velocity.clamp(-held, held);
         if libm::fabs(beyond) > self.min_velocity {
             state.commanded += beyond * period;
         }
@@ -150,6 +152,19 @@ mod tests {
         }
         let told = (0..100).find(|_| check.step(&mut state, 990, 20.0, 1e-3).is_some());
         assert!(told.is_some());
+    }
+
+    #[test]
+    fn a_loop_that_hunts_about_rest_within_what_held_it_is_left_alone() {
+        let check = MovementCheck::new(100.0, 0.5).against_offset(100.0);
+        let mut state = MovementState::new();
+        for counts in 0..1000 {
+            assert_eq!(check.step(&mut state, 3 * counts, 0.3, 1e-3), None);
+        }
+        for tick in 0..60_000 {
+            let command = if tick / 500 % 2 == 0 { 0.28 } else { -0.28 };
+            assert_eq!(check.step(&mut state, 2997, command, 1e-3), None, "{tick}");
+        }
     }
 
     #[test]
