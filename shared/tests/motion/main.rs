@@ -2,8 +2,6 @@
 
 mod bench;
 mod estop;
-mod excitation;
-mod filters;
 mod holds;
 mod homing;
 mod numbers;
