@@ -8,7 +8,7 @@ use crate::io::AXES;
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::homing::Homing;
 use crate::motion::machine::Machine;
-use crate::protocol::{MotionStatus, PathElement, Refusal, Request, Response, Room};
+use crate::protocol::{LOAD_ELEMENTS, MotionStatus, PathElement, Refusal, Request, Response, Room};
 use crate::state::{Event, State};
 use crate::units::DEG_PER_RAD;
 
@@ -21,7 +21,7 @@ const MOST_OVERRIDE: f64 = 2.0;
 const LEAST_OVERRIDE: f64 = 0.01;
 
 /// How requests reach the controller, which path ticks use too: on a board behind a lock, each time for no longer than
-/// one element takes, or what is asked for at rest.
+/// four elements take that are built, or what is asked for at rest.
 pub trait ControllerAccess {
     /// Calls `use_it` with the controller; no path tick comes meanwhile.
     fn with<R>(&mut self, use_it: impl FnOnce(&mut MotionController) -> R) -> R;
@@ -35,7 +35,7 @@ impl ControllerAccess for MotionController {
 }
 
 /// One request of the PC; `unsent` datagrams could not be sent so far. The answer says what was done or why not; nothing
-/// changes on a refusal, but that the elements before one that is refused are kept.
+/// changes on a refusal, but that the elements before one that is refused for its place are kept.
 pub fn answer(controller: &mut impl ControllerAccess, request: &Request, unsent: u32) -> Response {
     if let Request::LoadElements { elements, last } = request {
         let loaded = load_elements(controller, elements, *last);
@@ -50,16 +50,21 @@ fn load_elements(
     elements: &[PathElement],
     last: bool,
 ) -> Result<Room, Refusal> {
+    let built = elements
+        .iter()
+        .map(PathElement::build)
+        .collect::<Result<heapless::Vec<_, LOAD_ELEMENTS>, _>>();
     controller.with(|controller| {
         controller.hear();
-        controller.may_load_elements(elements.len())
-    })?;
-    for (i, element) in elements.iter().enumerate() {
-        let element = element.build()?;
-        let ends = last && i + 1 == elements.len();
-        controller.with(|controller| controller.load_element(element, ends))?;
-    }
-    Ok(controller.with(|controller| controller.room()))
+        controller.may_load_elements(elements.len())?;
+        // All come at one tick, as the answer says.
+        let built = built?;
+        let count = built.len();
+        for (i, element) in built.into_iter().enumerate() {
+            controller.load_element(element, last && i + 1 == count)?;
+        }
+        Ok(controller.room())
+    })
 }
 
 impl MotionController {
