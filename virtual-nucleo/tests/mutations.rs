@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{causes, motion};
+use common::{causes, motion, plant_fault};
 use virtual_nucleo::time::Time;
 
 /// Peripheral, offset of the register, and what becomes of a value written there.
@@ -241,13 +241,7 @@ fn every_mutation_is_found_by_a_message_that_names_its_cause() {
     let mut missed = Vec::new();
     for (what, peripheral, register, change, ms, expected) in MUTATIONS {
         let mut board = motion();
-        board.tamper(Box::new(move |name, offset, value| {
-            if (name, offset) == (peripheral, register) {
-                change(value)
-            } else {
-                value
-            }
-        }));
+        plant_fault(&mut board, (peripheral, register), change);
         // A frame to everybody, for what shows only when one comes.
         let frame = [&[0xff; 6][..], &[2, 0, 0, 0, 0, 1, 8, 6], &[0; 46]].concat();
         for at in [20, 1650] {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{causes, motion, shipped, tracker};
+use common::{causes, motion, plant_fault, shipped, tracker};
 use plant_file::PlantChoice;
 use virtual_nucleo::board::Board;
 use virtual_nucleo::chip::recorder::{Change, Level};
@@ -175,13 +175,7 @@ fn a_line_that_goes_high_too_early_is_named_with_what_is_missing() {
     ];
     for (what, (peripheral, register, change), expected) in mutations {
         let mut board = motion();
-        board.tamper(Box::new(move |name, offset, value| {
-            if (name, offset) == (peripheral, register) {
-                change(value)
-            } else {
-                value
-            }
-        }));
+        plant_fault(&mut board, (peripheral, register), change);
         board.run(Time::ms(20));
         let found = causes(&board);
         assert!(
@@ -208,13 +202,7 @@ fn an_enable_without_heartbeat_or_later_than_its_voltage_is_named() {
     ];
     for (what, change, expected) in mutations {
         let mut pair = pair();
-        pair.boards[0].tamper(Box::new(move |name, offset, value| {
-            if (name, offset) == ("GPIOF", BSRR) {
-                change(value)
-            } else {
-                value
-            }
-        }));
+        plant_fault(&mut pair.boards[0], ("GPIOF", BSRR), change);
         let mut session = Session::open(&mut pair).expect("both boards answer");
         // With an enable that stays low they are never all on.
         let _ = session.enable(&mut pair);

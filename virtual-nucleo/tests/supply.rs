@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{causes, motion, tracker};
+use common::{causes, motion, plant_fault, tracker};
 use virtual_nucleo::board::Board;
 use virtual_nucleo::chip::pins::pin;
 use virtual_nucleo::time::Time;
@@ -61,13 +61,7 @@ fn a_detector_or_a_clock_security_that_is_left_off_shows() {
     ];
     for (what, peripheral, register, change, clock) in faults {
         let mut board = motion();
-        board.tamper(Box::new(move |name, offset, value| {
-            if (name, offset) == (peripheral, register) {
-                change(value)
-            } else {
-                value
-            }
-        }));
+        plant_fault(&mut board, (peripheral, register), change);
         board.run(STARTED);
         if clock {
             board.chip_mut().fail_clock();

@@ -115,8 +115,10 @@ fn for_seamwright(flags: &[String]) -> Vec<String> {
         let value = std::mem::replace(&mut boards, flag == "--boards");
         match flag.as_str() {
             VIRTUAL if value => EMULATED.to_owned(),
-            "--boards=virtual-nucleo" => format!("--boards={EMULATED}"),
-            _ => flag.clone(),
+            _ => match flag.strip_prefix("--boards=") {
+                Some(VIRTUAL) => format!("--boards={EMULATED}"),
+                _ => flag.clone(),
+            },
         }
     });
     told.collect()

@@ -460,6 +460,19 @@ impl Code {
         }
     }
 
+    /// G0 to G3, CIP and CT: one motion to the coordinates of its block.
+    pub fn leads_to_an_end(self) -> bool {
+        matches!(
+            self,
+            Self::Rapid
+                | Self::Feed
+                | Self::ArcClockwise
+                | Self::ArcCounterClockwise
+                | Self::ArcThrough
+                | Self::TangentArc
+        )
+    }
+
     /// G73 and G81 to G89.
     pub fn is_cycle(self) -> bool {
         matches!(

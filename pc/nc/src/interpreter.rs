@@ -165,7 +165,7 @@ impl Interpreter {
         // With G53 the axes are named.
         let vectors = vectors && !block.has(Code::MachineAxes);
         if let Some(word) = block.own_distance() {
-            let motion = own_motion.or(modal).filter(|code| takes_own_distances(*code));
+            let motion = own_motion.or(modal).filter(|code| code.leads_to_an_end());
             if motion.is_none() || takes.is_some() || block.has(Code::MachineAxes) {
                 return Err(word.value_error("IC( ) and AC( ) are for G0, G1, G2 and G3"));
             }
@@ -426,19 +426,6 @@ impl Interpreter {
     pub(super) fn dwell_before(&mut self) -> f64 {
         self.dwell.take().map_or(0.0, |(time, _)| time)
     }
-}
-
-/// Whether axis words of a motion may be IC( ) and AC( ).
-fn takes_own_distances(code: Code) -> bool {
-    matches!(
-        code,
-        Code::Rapid
-            | Code::Feed
-            | Code::ArcClockwise
-            | Code::ArcCounterClockwise
-            | Code::ArcThrough
-            | Code::TangentArc
-    )
 }
 
 /// Refuses V slides and the direction of the tool, where only axes are meant.

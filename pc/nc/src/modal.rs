@@ -247,17 +247,9 @@ impl Modal {
 }
 
 fn is_motion(code: Code) -> bool {
-    matches!(
+    let spline = matches!(
         code,
-        Code::Rapid
-            | Code::Feed
-            | Code::ArcClockwise
-            | Code::ArcCounterClockwise
-            | Code::ArcThrough
-            | Code::TangentArc
-            | Code::CubicSpline
-            | Code::QuadraticSpline
-            | Code::UniformNurbs
-            | Code::KnotNurbs
-    ) || code.is_cycle()
+        Code::CubicSpline | Code::QuadraticSpline | Code::UniformNurbs | Code::KnotNurbs
+    );
+    code.leads_to_an_end() || spline || code.is_cycle()
 }

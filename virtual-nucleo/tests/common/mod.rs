@@ -135,3 +135,14 @@ pub fn motion() -> Board {
 pub fn tracker() -> Board {
     pair::board(&shipped("tracker"), tracker_machine(&plant()), 2).expect("the image is built")
 }
+
+/// From now on what is written to a register of a peripheral arrives as `change` makes it.
+pub fn plant_fault(board: &mut Board, register: (&'static str, u32), change: fn(u32) -> u32) {
+    board.tamper(Box::new(move |name, offset, value| {
+        if (name, offset) == register {
+            change(value)
+        } else {
+            value
+        }
+    }));
+}

@@ -83,9 +83,8 @@ impl MotionController {
         Ok(())
     }
 
-    /// Takes an element; with `last` the path is complete.
+    /// Takes an element, which may come; with `last` the path is complete.
     pub(super) fn load_element(&mut self, element: Element, last: bool) -> Result<(), Refusal> {
-        self.may_load()?;
         if self.path.complete || (last && element.join != Join::Stop) {
             return Err(Refusal::NoEnd { line: element.line });
         }
