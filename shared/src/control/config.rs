@@ -2,6 +2,9 @@
 //!
 //! Rotary motors take degrees wherever linear ones take mm; the built laws hold radians.
 
+use super::loop_filter::NOTCHES;
+use core::f64::consts::PI;
+use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +32,15 @@ pub struct MotorConfig {
     pub velocity_feed_forward: f64,
     /// Acceleration feed-forward ka \[s\]: the delay of the velocity loop.
     pub acceleration_feed_forward_s: f64,
+    /// Notches in the feedback, in series; none if left out.
+    #[serde(default)]
+    pub notches: Vec<NotchConfig, NOTCHES>,
+    /// Low-pass in the feedback; none if left out.
+    #[serde(default)]
+    pub low_pass: Option<LowPassConfig>,
+    /// Feed-forward of friction; none if left out.
+    #[serde(default)]
+    pub friction: Option<FrictionConfig>,
     /// Largest velocity command \[1/s\].
     pub max_command: f64,
     /// Following-error trip at standstill.
@@ -39,6 +51,57 @@ pub struct MotorConfig {
     pub home_sequence: u8,
     /// How the motor finds its reference mark.
     pub home: HomeConfig,
+}
+
+impl MotorConfig {
+    /// By how much notches and low-pass delay what is slow against them \[s\].
+    pub fn filter_lag_s(&self) -> f64 {
+        let notch = |notch: &NotchConfig| notch.damping * (1.0 - notch.depth) / (PI * notch.frequency_hz);
+        let low_pass = |filter: &LowPassConfig| filter.damping / (PI * filter.frequency_hz);
+        self.notches.iter().map(notch).sum::<f64>() + self.low_pass.as_ref().map_or(0.0, low_pass)
+    }
+}
+
+/// A notch (s² + 2·depth·ζ·ω·s + ω²)/(s² + 2ζω·s + ω²) (mathematics 0.10).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct NotchConfig {
+    /// Where its gain is least \[Hz\], below half the rate of the servo ticks.
+    pub frequency_hz: f64,
+    /// Damping ζ of its poles, above 0: the gain is less than 1/√2 over 2ζ times the frequency, if the depth is 0.
+    pub damping: f64,
+    /// Gain at that frequency, 0…1.
+    pub depth: f64,
+}
+
+/// A low-pass ω²/(s² + 2ζω·s + ω²) (mathematics 0.10).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct LowPassConfig {
+    /// Its corner \[Hz\], below half the rate of the servo ticks.
+    pub frequency_hz: f64,
+    /// Damping ζ of its poles, above 0; 0.7 has no peak.
+    pub damping: f64,
+}
+
+/// Friction, as the speed that a drive falls short of its command by it (mathematics 0.10).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(deny_unknown_fields)]
+pub struct FrictionConfig {
+    /// Coulomb friction \[1/s\] (unit per second).
+    pub coulomb: f64,
+    /// Viscous friction, as a part of the speed.
+    #[serde(default)]
+    pub viscous: f64,
+    /// Speed at which Coulomb friction has turned round, and below which it grows smoothly \[1/s\], above 0.
+    pub reversal_speed: f64,
+    /// So much earlier than the motor moves the drive is told: its dead time \[s\].
+    #[serde(default)]
+    pub lead_s: f64,
+    /// Time constant in which the integral part of the drive's velocity loop takes the friction over \[s\]; 0 for a
+    /// drive without one.
+    #[serde(default)]
+    pub decay_s: f64,
 }
 
 /// Search for one reference mark (mm or degrees).

@@ -2,19 +2,24 @@
 //!
 //! Each law has the human numbers of the machine file, coefficients made from them by a fallible `build`, and a state. Inside everything is mm or rad and seconds.
 
+mod biquad;
 mod config;
 mod derivative;
 mod emergency_stop;
+mod friction;
 mod gantry;
+mod loop_filter;
 mod movement;
 mod pid;
 mod reference_search;
 pub(crate) mod sensible;
 mod trip;
 
-pub use config::{GantryConfig, HomeConfig, MotorConfig};
+pub use config::{FrictionConfig, GantryConfig, HomeConfig, LowPassConfig, MotorConfig, NotchConfig};
 pub use emergency_stop::{DISCREPANCY_US, EmergencyStop};
+pub use friction::{Friction, FrictionState};
 pub use gantry::{Gantry, GantryOutput, GantryState, Ram};
+pub use loop_filter::{LoopFilter, LoopFilterState, NOTCHES};
 pub use movement::{MovementCheck, MovementState};
 pub use pid::{Pid, PidState, Setpoint};
 pub use reference_search::{ReferenceSearch, SearchInput, SearchProgress, SearchState};

@@ -1,10 +1,10 @@
 //! Position loop of one motor with a velocity drive (mathematics 0.10).
 
 use super::derivative::{Derivative, DerivativeState};
-use super::{MotorConfig, NotFinite};
+use super::{Friction, FrictionState, LoopFilter, LoopFilterState, MotorConfig, NotFinite};
 use crate::parameter::{ParameterError, not_negative, positive};
 
-/// PID with velocity and acceleration feed-forward and anti-windup, ready for the tick.
+/// PID with filters behind it, feed-forward of velocity, acceleration and friction, and anti-windup, ready for the tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pid {
     period: f64,
@@ -17,6 +17,8 @@ pub struct Pid {
     derivative: Derivative,
     kv: f64,
     ka: f64,
+    filter: LoopFilter,
+    friction: Friction,
     max_command: f64,
 }
 
@@ -25,6 +27,8 @@ pub struct Pid {
 pub struct PidState {
     derivative: DerivativeState,
     integral: f64,
+    filter: LoopFilterState,
+    friction: FrictionState,
     /// What the limit cut off at the last tick.
     excess: f64,
 }
@@ -56,6 +60,8 @@ impl Pid {
         period_s: f64,
     ) -> Result<Self, ParameterError> {
         let limited = |field, value| not_negative(owner, field, value);
+        let friction = config.friction.as_ref();
+        let friction = friction.map(|friction| Friction::build(owner, friction, unit, period_s));
         let tracking = limited("anti_windup_time_s", config.anti_windup_time_s)?;
         Ok(Self {
             period: positive(owner, "period_s", period_s)?,
@@ -67,12 +73,14 @@ impl Pid {
             derivative: Derivative::build(owner, config.derivative_filter_s, period_s)?,
             kv: limited("velocity_feed_forward", config.velocity_feed_forward)?,
             ka: limited("acceleration_feed_forward_s", config.acceleration_feed_forward_s)?,
+            filter: LoopFilter::build(owner, config, period_s)?,
+            friction: friction.transpose()?.unwrap_or_default(),
             max_command: positive(owner, "max_command", config.max_command)? * unit,
         })
     }
 
     /// One tick: the velocity command for a motor at `position` that should be at `setpoint`; `extra` is
-    /// added before the limit (the gantry's coupling). An input that is not finite changes nothing.
+    /// added before filters and limit (the gantry's coupling). An input that is not finite changes nothing.
     pub fn step(
         &self,
         state: &mut PidState,
@@ -87,8 +95,15 @@ impl Pid {
         let d = self.derivative.step(&mut state.derivative, e);
         let integral = state.integral + self.period * (self.ki * e + state.excess * self.unwind);
         state.integral = integral.clamp(-self.integral_limit, self.integral_limit);
-        let forward = self.kv * setpoint.velocity + self.ka * setpoint.acceleration;
-        let command = self.kp * e + state.integral + self.kd * d + forward + extra;
+        let forward = self.kv * setpoint.velocity
+            + self.ka * setpoint.acceleration
+            + self.friction.step(&mut state.friction, setpoint);
+        let feedback = self.kp * e + state.integral + self.kd * d;
+        let command = if self.filter.is_off() {
+            feedback + forward + extra
+        } else {
+            self.filter.step(&mut state.filter, feedback + extra) + forward
+        };
         let limited = command.clamp(-self.max_command, self.max_command);
         state.excess = limited - command;
         Ok(limited)

@@ -11,6 +11,7 @@ mod requests;
 
 use super::Vibration;
 use super::beams::Beams;
+use super::excitation::Capturing;
 use super::homing::{Homing, HomingStep};
 use super::machine::Machine;
 use super::permit::{BeamLease, Permits};
@@ -22,7 +23,7 @@ use crate::control::UNATTENDED_S;
 use crate::io::{AXES, MOTORS, PROCESS_INPUTS, SIDES};
 use crate::kinematics::AXIS_UNIT;
 use crate::kinematics::Kinematics;
-use crate::protocol::{Datagram, MotionSample, PathState};
+use crate::protocol::{Datagram, ExcitationEnd, MotionSample, PathState};
 use crate::state::{Event, Fault, State};
 use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{BoardPlanning, BoardPlayer, SpeedState};
@@ -112,6 +113,8 @@ pub struct MotionController {
     vibration: [Vibration; MOTORS],
     /// Answers of the process that are missing.
     missing: Missing,
+    /// Excitation of a motor, and what it gave.
+    capturing: Capturing,
 }
 
 impl Default for MotionController {
@@ -160,6 +163,7 @@ impl MotionController {
             servo_ticks: (0, 0, 0),
             vibration: [Vibration::NONE; MOTORS],
             missing: [0; PROCESS_INPUTS],
+            capturing: Capturing::NONE,
         }
     }
 
@@ -218,6 +222,12 @@ impl MotionController {
             vibration.add(error);
         }
         self.watch(input);
+        if self.capturing.runs() {
+            self.capturing.take(&report.excitation);
+            if self.state != State::Idle {
+                self.capturing.end(ExcitationEnd::DrivesOff);
+            }
+        }
         if !self.enabled {
             self.stand_where(report);
         }
@@ -265,6 +275,7 @@ impl MotionController {
             segment: Segment::between(&from, &self.reference, process),
             lease,
             offset: step.offset,
+            excitation: self.capturing.order(),
         };
         let now = self.along[0];
         PathTickOutput {
@@ -319,7 +330,10 @@ impl MotionController {
         let on_at_rest = |machine: &Machine| self.beams.stay_on(&machine.beams);
         if self.state.on_path() {
             self.stop_for(Fault::SessionEnded);
-        } else if self.state == State::Homing || self.machine.as_ref().is_some_and(on_at_rest) {
+        } else if self.state == State::Homing
+            || self.capturing.runs()
+            || self.machine.as_ref().is_some_and(on_at_rest)
+        {
             self.trip(Fault::SessionEnded);
         }
         self.beams.outputs_off();
@@ -339,8 +353,8 @@ impl MotionController {
     /// Faults that the servo ticks found, and those that leave time for a stop on the path.
     fn watch(&mut self, input: &PathTickInput) {
         let stay_on = |machine: &Machine| self.beams.stay_on(&machine.beams);
-        let moves =
-            self.state.on_path() || self.state == State::Homing || self.machine.as_ref().is_some_and(stay_on);
+        let shaken = self.state == State::Homing || self.capturing.runs();
+        let moves = self.state.on_path() || shaken || self.machine.as_ref().is_some_and(stay_on);
         if core::mem::take(&mut self.heard) || !moves {
             self.heard_us = input.now_us;
         }

@@ -97,6 +97,13 @@ impl Machine {
         [x, motors[2], motors[3], motors[4], motors[5], motors[6]]
     }
 
+    /// Limits of the axis of `motor`, if the machine has that motor.
+    pub fn limits_of(&self, motor: usize) -> Option<&AxisLimits> {
+        let fitted = motor != X2 || self.gantry.is_some();
+        let axis = self.limits.get(*MOTOR_AXIS.get(motor)?)?;
+        (fitted && axis.velocity.is_finite()).then_some(axis)
+    }
+
     /// The axes for the pose beside the one of `planned`; a tick of `superimposed`, which continues only
     /// where the machine `goes` along its path.
     pub fn superimpose(

@@ -6,6 +6,7 @@
 
 mod beams;
 mod controller;
+mod excitation;
 mod homing;
 mod levels;
 mod machine;
@@ -22,6 +23,7 @@ mod vibration;
 
 pub use beams::EVENTS;
 pub use controller::{ControllerAccess, MotionController, PathTickInput, PathTickOutput, answer};
+pub use excitation::Chirp;
 pub use machine::Machine;
 pub use permit::BeamLease;
 pub use readback::DARK;

@@ -41,6 +41,17 @@ const NARROWEST_MM: f64 = 10.0;
 /// Derivative parts: one of 1 turns the loop's own speed round.
 const MOST_DERIVATIVE: f64 = 0.5;
 const LONGEST_FILTER_S: f64 = 0.1;
+/// Corners of filters: slower ones stop the loop itself, and near half the rate of the ticks they are none \[Hz\].
+const CORNERS_HZ: RangeInclusive<f64> = 5.0..=0.45 / SERVO_PERIOD_S;
+/// Narrower than that, a notch misses its resonance by the warmth of a day; wider, it is a lag.
+const NOTCH_DAMPINGS: RangeInclusive<f64> = 0.01..=2.0;
+/// With less a low-pass is a resonance itself.
+const LOW_PASS_DAMPINGS: RangeInclusive<f64> = 0.3..=2.0;
+/// Friction slows a drive by less than this part of its speed at 10 V, and of its speed.
+const MOST_COULOMB: f64 = 0.1;
+const MOST_VISCOUS: f64 = 0.5;
+/// Speed at which friction has turned round, lowest (mm/s or °/s): one count in a few ticks.
+const SLOWEST_REVERSAL: f64 = 1e-3;
 /// Powers at 10 V: 100 kW, the strongest lasers there are; or 100 000 turns a minute of a spindle.
 const POWERS_W: RangeInclusive<f64> = 1.0..=1e5;
 /// A beam goes over at most so much again \[mm\].
@@ -131,7 +142,8 @@ fn check_motor(owner: &str, motor: &MotorConfig, axis: &AxisConfig) -> Result<()
         motor.acceleration_feed_forward_s,
         0.0..=LONGEST_FILTER_S,
     )?;
-    let most = most_gain(motor.acceleration_feed_forward_s);
+    check_filters(owner, motor)?;
+    let most = most_gain(motor.acceleration_feed_forward_s + motor.filter_lag_s());
     let kp = of("kp", motor.kp, 1.0..=most)?;
     // A damping of 0.7 at least.
     of("ki", motor.ki, 0.0..=0.5 * kp * kp)?;
@@ -151,6 +163,18 @@ fn check_motor(owner: &str, motor: &MotorConfig, axis: &AxisConfig) -> Result<()
     )?;
     of("velocity_feed_forward", motor.velocity_feed_forward, 0.0..=1.5)?;
 
+    if let Some(friction) = &motor.friction {
+        let slowest = SLOWEST_REVERSAL..=axis.max_velocity;
+        of(
+            "friction.coulomb",
+            friction.coulomb,
+            0.0..=MOST_COULOMB * full_scale,
+        )?;
+        of("friction.viscous", friction.viscous, 0.0..=MOST_VISCOUS)?;
+        of("friction.reversal_speed", friction.reversal_speed, slowest)?;
+        of("friction.lead_s", friction.lead_s, 0.0..=LONGEST_FILTER_S)?;
+        of("friction.decay_s", friction.decay_s, 0.0..=LONGEST_RAMP_S)?;
+    }
     let most = libm::fmin(ERROR_AT_REST * travel, MOST_ERROR_AT_REST);
     let base = of(
         "following_error_base",
@@ -171,6 +195,19 @@ fn check_motor(owner: &str, motor: &MotorConfig, axis: &AxisConfig) -> Result<()
     )
 }
 
+fn check_filters(owner: &str, motor: &MotorConfig) -> Result<(), ParameterError> {
+    let of = |field, value, range| within(owner, field, value, range);
+    for notch in &motor.notches {
+        of("notches.frequency_hz", notch.frequency_hz, CORNERS_HZ)?;
+        of("notches.damping", notch.damping, NOTCH_DAMPINGS)?;
+    }
+    if let Some(low_pass) = &motor.low_pass {
+        of("low_pass.frequency_hz", low_pass.frequency_hz, CORNERS_HZ)?;
+        of("low_pass.damping", low_pass.damping, LOW_PASS_DAMPINGS)?;
+    }
+    Ok(())
+}
+
 fn check_gantry(gantry: &GantryConfig, motor: &MotorConfig) -> Result<(), ParameterError> {
     let of = |field, value, range| within("gantry", field, value, range);
     let everywhere = -LARGEST_MACHINE_MM..=LARGEST_MACHINE_MM;
@@ -181,7 +218,7 @@ fn check_gantry(gantry: &GantryConfig, motor: &MotorConfig) -> Result<(), Parame
         of("y2_mm", y2, y1 + NARROWEST_MM..=LARGEST_MACHINE_MM)?;
     }
     // Both motors answer to a skew, each to its own error besides.
-    let most = 0.5 * (most_gain(motor.acceleration_feed_forward_s) - motor.kp);
+    let most = 0.5 * (most_gain(motor.acceleration_feed_forward_s + motor.filter_lag_s()) - motor.kp);
     of("coupling", gantry.coupling, 0.0..=libm::fmax(most, 0.0))?;
     of(
         "coupling_derivative",

@@ -1,5 +1,6 @@
 //! The servo tick: gratings in, velocity commands out, for seven motors, with the trips that must not wait.
 
+use super::excitation::{Added, ExcitationOrder, ExcitationReport, Exciting};
 use super::permit::BeamLease;
 use super::readback::{ReadbackCheck, ReadbackState};
 use super::segment::Segment;
@@ -14,6 +15,7 @@ use crate::io::{
 };
 use crate::kinematics::AXIS_UNIT;
 use crate::parameter::{ParameterError, check};
+use crate::protocol::ExcitationEnd;
 use crate::state::Fault;
 use crate::ticks::{SERVO_PERIOD_S, SERVO_TICKS_PER_PATH_TICK};
 
@@ -53,7 +55,7 @@ impl Motor {
         // At rest a motor has no following error for more than that.
         let rest = config.following_error_base * unit;
         Ok(Self {
-            movement: MovementCheck::new(full_scale * unit, rest),
+            movement: MovementCheck::new(full_scale * unit, rest).against_offset(full_scale * unit),
             pitch: unit / counts,
             velocity_at_10v: full_scale * unit,
             following: FollowingTrip::build(index as u8, owner, config, unit)?,
@@ -147,6 +149,8 @@ pub struct ServoOrder {
     pub lease: BeamLease,
     /// Position at count 0 of the motors whose reference was just found; the segment is in the new frame.
     pub offset: [Option<f64>; MOTORS],
+    /// A motor is excited.
+    pub excitation: Option<ExcitationOrder>,
 }
 
 /// Data from the servo ticks to the path tick.
@@ -198,6 +202,8 @@ pub struct ServoReport {
     pub lost: u32,
     /// Milliseconds that began without their references, and references that came twice (mod 2³²).
     pub late: u32,
+    /// What was captured of an excitation.
+    pub excitation: ExcitationReport,
 }
 
 /// The servo loops of the motion board. They count the ticks and watch the inputs from boot on, so that the
@@ -209,6 +215,7 @@ pub struct ServoLoops {
     pids: [PidState; MOTORS],
     movements: [MovementState; MOTORS],
     readbacks: [ReadbackState; SIDES],
+    exciting: Exciting,
     enabled: bool,
     coupled: bool,
     homing: bool,
@@ -230,6 +237,8 @@ impl ServoLoops {
     /// Takes new parameters; the drives go off, and every position counts from count 0.
     pub fn configure(&mut self, setup: ServoSetup) {
         self.enabled = false;
+        self.exciting
+            .end(ExcitationEnd::DrivesOff, &mut self.report.excitation);
         self.next = None;
         self.report.trip = None;
         self.report.offset = [0.0; MOTORS];
@@ -253,6 +262,9 @@ impl ServoLoops {
         self.observe(feedback, elapsed);
         if let Err(fault) = self.watch(feedback, elapsed) {
             self.trip(fault);
+        }
+        if elapsed > 1 {
+            self.exciting.end(ExcitationEnd::Gap, &mut self.report.excitation);
         }
         // Their counter wraps at a whole millisecond.
         let begun = (self.report.ticks / SERVO_TICKS_PER_PATH_TICK).wrapping_sub(before);
@@ -293,6 +305,7 @@ impl ServoLoops {
         self.report.power_fault = None;
         self.report.peak_error = [0.0; MOTORS];
         self.report.peak_skew = 0.0;
+        self.report.excitation = ExcitationReport::default();
         report
     }
 
@@ -314,6 +327,9 @@ impl ServoLoops {
             self.ahead = ahead;
         }
         self.enabled = order.enable && self.report.trip.is_none() && self.setup.is_some();
+        let excitation = order.excitation.as_ref().filter(|_| self.enabled);
+        self.exciting
+            .give(excitation, self.last_counts.as_ref().map_or(&[], |counts| counts));
         self.coupled = order.coupled;
         self.homing = order.homing;
         for (index, offset) in order.offset.into_iter().enumerate() {
@@ -461,8 +477,12 @@ impl ServoLoops {
         let report = &mut self.report;
         let phase = report.ticks % SERVO_TICKS_PER_PATH_TICK;
         let mut setpoints = [Setpoint::default(); MOTORS];
+        let added = self.exciting.added();
         for (index, motor) in setup.fitted() {
-            let (position_now, velocity, acceleration) = self.current.at(index, phase);
+            let (mut position_now, velocity, acceleration) = self.current.at(index, phase);
+            if let Some(added) = added.filter(|added| added.motor == index) {
+                position_now += added.reference;
+            }
             setpoints[index] = Setpoint {
                 position: position_now,
                 velocity,
@@ -495,6 +515,17 @@ impl ServoLoops {
                     .map_err(|_| Fault::NotANumber)?;
             }
         }
+        if let Some(added) = added {
+            let (motor, counts) = (
+                added.motor,
+                self.last_counts.map_or(0, |counts| counts[added.motor]),
+            );
+            let told = output[motor] + added.command;
+            let pitch = setup.motors[motor].as_ref().map_or(0.0, |motor| motor.pitch);
+            if self.exciting.allows(counts, pitch, told, &mut report.excitation) {
+                output[motor] = told;
+            }
+        }
         let mut command = MotionCommand {
             enable: true,
             ..MotionCommand::SAFE
@@ -502,6 +533,12 @@ impl ServoLoops {
         for (index, motor) in setup.fitted() {
             motor.moves(index, &mut self.movements[index], self.last_counts, output[index])?;
             command.dac[index] = DacCode::from_ratio(output[index], motor.velocity_at_10v);
+        }
+        if let Some(Added { motor, .. }) = added {
+            let counts = self.last_counts.map_or(0, |counts| counts[motor]);
+            let error = setpoints[motor].position - position[motor];
+            self.exciting
+                .capture(command.dac[motor].0, counts, error, &mut report.excitation);
         }
         let mut shut = Lines::NONE;
         let gates = self.current.process.gates();
@@ -531,6 +568,8 @@ impl ServoLoops {
         if self.enabled {
             self.report.trip.get_or_insert(fault);
         }
+        self.exciting
+            .end(ExcitationEnd::DrivesOff, &mut self.report.excitation);
         self.enabled = false;
     }
 }

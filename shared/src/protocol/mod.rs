@@ -6,6 +6,7 @@
 
 mod datagram;
 mod element;
+mod excitation;
 pub mod framing;
 mod request;
 
@@ -15,6 +16,9 @@ pub use datagram::{
     TrackerTelemetry,
 };
 pub use element::{BadElement, PathChannel, PathElement, PathJoin, PathShape};
+pub use excitation::{
+    CAPTURE_PART, CAPTURE_TICKS, CapturePart, CaptureSample, CaptureState, Excitation, ExcitationEnd, Excited,
+};
 pub use request::{
     Channel, Identity, LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, MotionStatus, PathAction, PathEvent,
     PathLimits, Refusal, Request, Response, Role, Room, TrackerStatus,

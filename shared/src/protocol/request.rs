@@ -1,6 +1,7 @@
 //! Requests of the PC and the answers of the boards.
 
 use super::element::{BadElement, PathElement};
+use super::excitation::{CapturePart, Excitation};
 use crate::config::{MotionConfig, TrackerConfig};
 use crate::geometry::PoseOffset;
 use crate::io::{AXES, MOTORS, SIDES, SLIDE_NAMES, SLIDES};
@@ -117,10 +118,24 @@ pub enum Request {
     Resume,
     /// Beams off and controlled stop on the path; the path is given up. While homing: drives off.
     Stop,
+    /// Shake one motor where it stands and capture what it does; motion board, state idle, axes homed. Until it has ended the
+    /// PC may be silent no longer than on a path, and nothing else moves.
+    Excite(Excitation),
+    /// No more excitation; at any time.
+    EndExcitation,
+    /// What was captured, from this sample on; answered by [`Response::Captured`].
+    ReadCapture {
+        /// Number of the first sample that is wanted.
+        from: u16,
+    },
 }
 
 /// A board's answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "boards do not allocate; one answer exists at a time"
+)]
 pub enum Response {
     /// Accepted.
     Done,
@@ -139,6 +154,8 @@ pub enum Response {
     MotionStatus(MotionStatus),
     /// State of the tracker board.
     TrackerStatus(TrackerStatus),
+    /// A part of what was captured.
+    Captured(CapturePart),
 }
 
 /// Credits of the PC: what the motion board has room for.
@@ -249,6 +266,18 @@ pub enum Refusal {
     /// A field of the configuration makes no sense.
     #[error("a machine parameter is out of range: {0}")]
     Parameter(ParameterError),
+    /// The machine has no such motor.
+    #[error("the machine has no motor number {motor}")]
+    NoSuchMotor {
+        /// Index of the motor.
+        motor: u8,
+    },
+    /// An excitation that the machine cannot do.
+    #[error("a motor cannot be excited like that: {0}")]
+    Excitation(ParameterError),
+    /// Nothing else moves while a motor is excited.
+    #[error("a motor is being excited: wait until that has ended, or end it")]
+    Exciting,
     /// The axes have no reference yet.
     #[error("the axes are not homed")]
     NotHomed,

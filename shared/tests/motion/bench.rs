@@ -16,7 +16,7 @@ use shared::trajectory::{BoardPlanning, PathSpace};
 /// Counts in one mm or degree.
 pub const SCALE: f64 = 10_000.0;
 /// Speed at +10 V \[mm/s, deg/s\].
-const FULL_SPEED: f64 = 400.0;
+pub const FULL_SPEED: f64 = 400.0;
 /// Where the linear marks are on their axes; the machine is switched on 2 mm above them \[mm\].
 pub const MARK: f64 = 500.0;
 /// Where the lower limit switches are, from where the machine is switched on (mm or degrees).
@@ -56,6 +56,9 @@ pub fn config() -> MotionConfig {
         derivative_filter_s: 0.0,
         velocity_feed_forward: 1.0,
         acceleration_feed_forward_s: 0.0,
+        notches: heapless::Vec::new(),
+        low_pass: None,
+        friction: None,
         max_command: FULL_SPEED,
         following_error_base: 0.5,
         following_error_time_s: 0.05,

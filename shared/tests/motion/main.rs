@@ -2,6 +2,8 @@
 
 mod bench;
 mod estop;
+mod excitation;
+mod filters;
 mod holds;
 mod homing;
 mod numbers;

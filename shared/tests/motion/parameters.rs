@@ -2,7 +2,7 @@
 
 use super::bench::{Bench, config};
 use shared::config::{BeamConfig, MotionConfig, ReadbackConfig};
-use shared::control::{GantryConfig, MotorConfig};
+use shared::control::{FrictionConfig, GantryConfig, LowPassConfig, MotorConfig, NotchConfig};
 use shared::kinematics::AxisConfig;
 use shared::parameter::ParameterError;
 use shared::protocol::{Refusal, Request};
@@ -115,4 +115,96 @@ fn loops_that_swing_and_drives_that_cannot_are_refused() {
     motor("home.velocity", -301.0, |m| &mut m.home.velocity);
     motor("home.mark_position", 1200.0, |m| &mut m.home.mark_position);
     motor("home.max_travel", 1e9, |m| &mut m.home.max_travel);
+}
+
+/// Y with something that it may have.
+fn fitted(field: &str, value: f64, fit: impl FnOnce(&mut MotorConfig)) {
+    refused("Y", field, value, |config| {
+        fit(config.motors[2].as_mut().unwrap())
+    });
+}
+
+#[test]
+fn filters_that_are_none_and_those_that_leave_no_margin_are_refused() {
+    let notch = |field: &str, value, frequency_hz, damping, depth| {
+        let notch = NotchConfig {
+            frequency_hz,
+            damping,
+            depth,
+        };
+        fitted(field, value, |motor| motor.notches.push(notch).unwrap());
+    };
+    // Half the rate of the servo ticks is 2000 Hz.
+    for hz in [-80.0, 4.0, 1801.0, 2001.0, 1e9, f64::NAN] {
+        notch("notches.frequency_hz", hz, hz, 0.5, 0.1);
+    }
+    for damping in [0.0, -0.5, 1e-3, 3.0, f64::INFINITY] {
+        notch("notches.damping", damping, 80.0, damping, 0.1);
+    }
+    for depth in [-0.1, 1.1, f64::NAN] {
+        notch("notches.depth", depth, 80.0, 0.5, depth);
+    }
+    let low_pass = |field: &str, value, frequency_hz, damping| {
+        let filter = LowPassConfig {
+            frequency_hz,
+            damping,
+        };
+        fitted(field, value, |motor| motor.low_pass = Some(filter));
+    };
+    low_pass("low_pass.frequency_hz", 2500.0, 2500.0, 0.7);
+    low_pass("low_pass.damping", 0.0, 300.0, 0.0);
+    low_pass("low_pass.damping", 0.2, 300.0, 0.2);
+    // It delays by 0.7/(π·10 Hz) = 22 ms: kp is at most (π/2)/22 ms.
+    low_pass("kp", 100.0, 10.0, 0.7);
+}
+
+#[test]
+fn friction_that_no_drive_has_is_refused() {
+    const FRICTION: FrictionConfig = FrictionConfig {
+        coulomb: 0.3,
+        viscous: 0.0,
+        reversal_speed: 1.0,
+        lead_s: 0.0,
+        decay_s: 0.0,
+    };
+    let friction = |field: &str, value, friction| {
+        fitted(field, value, |motor| motor.friction = Some(friction));
+    };
+    for coulomb in [-0.1, 41.0] {
+        friction(
+            "friction.coulomb",
+            coulomb,
+            FrictionConfig { coulomb, ..FRICTION },
+        );
+    }
+    for viscous in [-0.1, 1.0] {
+        friction(
+            "friction.viscous",
+            viscous,
+            FrictionConfig { viscous, ..FRICTION },
+        );
+    }
+    for reversal_speed in [0.0, -1.0, 301.0] {
+        let wrong = FrictionConfig {
+            reversal_speed,
+            ..FRICTION
+        };
+        friction("friction.reversal_speed", reversal_speed, wrong);
+    }
+    friction(
+        "friction.lead_s",
+        1.0,
+        FrictionConfig {
+            lead_s: 1.0,
+            ..FRICTION
+        },
+    );
+    friction(
+        "friction.decay_s",
+        -1.0,
+        FrictionConfig {
+            decay_s: -1.0,
+            ..FRICTION
+        },
+    );
 }

@@ -9,7 +9,7 @@ use host_link::pass_on;
 use shared::config::{MotionConfig, TrackerConfig};
 use shared::geometry::PoseOffset;
 use shared::io::SLIDES;
-use shared::protocol::{Datagram, Request, Response, Role};
+use shared::protocol::{Datagram, Excitation, Excited, Request, Response, Role};
 use world::simulated::SimulatedBoards;
 
 /// Moments of a job at which its boards are kept.
@@ -175,6 +175,18 @@ pub fn seldom() -> Vec<Request> {
             target_mm: [1.0; SLIDES],
         },
         Request::OffsetPose(PoseOffset::of([0.5, -0.5, 0.001])),
+        Request::Excite(Excitation {
+            motor: 2,
+            excited: Excited::Command,
+            amplitude: 3.0,
+            from_hz: 5.0,
+            to_hz: 400.0,
+            settle_periods: 1,
+            max_travel: 1.0,
+            max_speed: 50.0,
+        }),
+        Request::EndExcitation,
+        Request::ReadCapture { from: 0 },
     ]
 }
 

@@ -572,3 +572,70 @@ fn tools_have_numbers_and_lengths() {
         );
     }
 }
+
+/// All that a motor may have beside its gains.
+const FILTERS: &str = "notches = [{ frequency_hz = 80.0, damping = 0.4, depth = 0.1 }, \
+     { frequency_hz = 340.0, damping = 0.2, depth = 0.0 }]\n\
+     low_pass = { frequency_hz = 600.0, damping = 0.7 }\n\
+     friction = { coulomb = 0.3, reversal_speed = 1.0, viscous = 0.01, lead_s = 0.0005, decay_s = 0.008 }\n";
+
+/// The shipped machine, every motor with `keys` before its `max_command`.
+fn motors_with(keys: &str) -> String {
+    SHIPPED.replace("max_command", &format!("{keys}max_command"))
+}
+
+#[test]
+fn filters_and_friction_of_motors_are_read_and_are_none_where_they_are_left_out() {
+    let plain = MachineFile::parse("m.toml", SHIPPED).unwrap();
+    for motor in plain.motion.motors.iter().flatten() {
+        assert!(motor.notches.is_empty() && motor.low_pass.is_none() && motor.friction.is_none());
+    }
+    let machine = MachineFile::parse("m.toml", &motors_with(FILTERS)).unwrap();
+    for motor in machine.motion.motors.iter().flatten() {
+        let corners: Vec<f64> = motor.notches.iter().map(|notch| notch.frequency_hz).collect();
+        assert_eq!(corners, [80.0, 340.0]);
+        assert_eq!(motor.low_pass.map(|filter| filter.frequency_hz), Some(600.0));
+        assert_eq!(motor.friction.map(|friction| friction.decay_s), Some(0.008));
+    }
+    // The longest of all requests: it must fit into one message.
+    let request = shared::protocol::Request::ConfigureMotion(machine.motion);
+    let most = shared::protocol::framing::MAX_MESSAGE;
+    let bytes = shared::protocol::framing::encode_message(&request, &mut vec![0; 2 * most])
+        .unwrap()
+        .len();
+    assert!(bytes <= 2 + most, "{bytes} bytes of {most}");
+    assert!(bytes > most / 2, "{bytes}");
+}
+
+#[test]
+fn filters_that_are_none_are_told_with_key_and_range() {
+    for (keys, said) in [
+        (
+            "notches = [{ frequency_hz = 2500.0, damping = 0.4, depth = 0.1 }]\n",
+            "notches.frequency_hz of X1 is 2500, but must be from 0 to 2000",
+        ),
+        (
+            "low_pass = { frequency_hz = 1900.0, damping = 0.7 }\n",
+            "low_pass.frequency_hz of X1 is 1900, but must be from 5 to 1800",
+        ),
+        (
+            "notches = [{ frequency_hz = 80.0, damping = 0.0, depth = 0.1 }]\n",
+            "notches.damping of X1 is 0, but must be above 0",
+        ),
+        ("low_pass = { frequency_hz = 80.0 }\n", "missing field `damping`"),
+        (
+            "notches = [{ frequency_hz = 80.0, damping = 0.4, q = 1 }]\n",
+            "unknown field `q`",
+        ),
+        ("friction = { coulomb = 0.3 }\n", "missing field `reversal_speed`"),
+    ] {
+        let error = error_of(&motors_with(keys));
+        assert!(error.contains(said), "{keys}: {error}");
+    }
+    let notch = "{ frequency_hz = 80.0, damping = 0.4, depth = 0.1 }";
+    let error = error_of(&motors_with(&format!("notches = [{notch}, {notch}, {notch}]\n")));
+    assert!(
+        error.contains("invalid length 3") && error.contains("line "),
+        "{error}"
+    );
+}

@@ -4,11 +4,14 @@ use super::MotionController;
 use super::loaded::LoadedPath;
 use crate::config::MotionConfig;
 use crate::geometry::PoseOffset;
-use crate::io::AXES;
+use crate::io::{AXES, MOTOR_AXIS};
 use crate::kinematics::AXIS_UNIT;
+use crate::motion::excitation::{ExcitationOrder, Limits};
 use crate::motion::homing::Homing;
 use crate::motion::machine::Machine;
-use crate::protocol::{LOAD_ELEMENTS, MotionStatus, PathElement, Refusal, Request, Response, Room};
+use crate::protocol::{
+    Excitation, ExcitationEnd, LOAD_ELEMENTS, MotionStatus, PathElement, Refusal, Request, Response, Room,
+};
 use crate::state::{Event, State};
 use crate::units::DEG_PER_RAD;
 
@@ -81,6 +84,11 @@ impl MotionController {
 
     fn obey(&mut self, request: &Request, unsent: u32) -> Response {
         self.hear();
+        if self.capturing.runs()
+            && matches!(request, Request::Home | Request::BeginPath { .. } | Request::Run)
+        {
+            return Response::Refused(Refusal::Exciting);
+        }
         let done = match request {
             Request::Status => return Response::MotionStatus(self.status(unsent)),
             Request::ConfigureMotion(config) => self.configure(config),
@@ -104,6 +112,12 @@ impl MotionController {
             Request::Resume => self.resume(),
             Request::Stop => self.stop(),
             Request::OffsetPose(offset) => self.offset_pose(offset),
+            Request::Excite(excitation) => self.excite(excitation),
+            Request::EndExcitation => {
+                self.capturing.end(ExcitationEnd::Asked);
+                Ok(())
+            }
+            Request::ReadCapture { from } => return Response::Captured(self.capturing.part(*from)),
             _ => Err(Refusal::NotMine),
         };
         match done {
@@ -239,6 +253,31 @@ impl MotionController {
             });
         }
         self.superimposed.want(*offset);
+        Ok(())
+    }
+
+    /// Shakes one motor where it stands.
+    fn excite(&mut self, asked: &Excitation) -> Result<(), Refusal> {
+        let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
+        if self.state != State::Idle {
+            return Err(Refusal::WrongState { state: self.state });
+        }
+        if !self.homed {
+            return Err(Refusal::NotHomed);
+        }
+        if self.capturing.runs() {
+            return Err(Refusal::Exciting);
+        }
+        let motor = usize::from(asked.motor);
+        let axis = machine
+            .limits_of(motor)
+            .ok_or(Refusal::NoSuchMotor { motor: asked.motor })?;
+        let limits = Limits {
+            axis,
+            position: self.measured[MOTOR_AXIS[motor]],
+        };
+        let order = ExcitationOrder::build(asked, limits, self.capturing.next_number());
+        self.capturing.begin(order.map_err(Refusal::Excitation)?);
         Ok(())
     }
 

@@ -54,7 +54,10 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             | Request::Hold
             | Request::Resume
             | Request::Stop
-            | Request::OffsetPose(_) => Err(Refusal::NotMine),
+            | Request::OffsetPose(_)
+            | Request::Excite(_)
+            | Request::EndExcitation
+            | Request::ReadCapture { .. } => Err(Refusal::NotMine),
         };
         match result {
             Ok(()) => Response::Done,

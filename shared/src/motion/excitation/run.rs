@@ -1,0 +1,137 @@
+//! The chirp in the servo ticks, and its limits.
+
+use super::order::ExcitationOrder;
+use crate::protocol::{CAPTURE_TICKS, CaptureSample, ExcitationEnd};
+use crate::ticks::SERVO_TICKS_PER_PATH_TICK;
+
+/// Counts from where the motor stood that a capture has room for.
+const MOST_COUNTS: u64 = i16::MAX as u64;
+/// Samples of one report: the path tick may be a millisecond late.
+const SAMPLES: usize = 2 * SERVO_TICKS_PER_PATH_TICK as usize;
+
+/// What the servo ticks tell of an excitation once a millisecond.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ExcitationReport {
+    /// Number of the excitation.
+    pub number: u32,
+    /// It ended early.
+    pub ended: Option<ExcitationEnd>,
+    samples: [CaptureSample; SAMPLES],
+    taken: usize,
+}
+
+impl ExcitationReport {
+    /// Samples since the last report.
+    pub fn samples(&self) -> &[CaptureSample] {
+        self.samples.get(..self.taken).unwrap_or_default()
+    }
+
+    /// False if a report has no room for it: the path tick is late.
+    fn push(&mut self, sample: CaptureSample) -> bool {
+        let place = self.samples.get_mut(self.taken);
+        let fits = place.is_some();
+        if let Some(place) = place {
+            *place = sample;
+            self.taken += 1;
+        }
+        fits
+    }
+}
+
+/// An excitation under way, or the number of the last one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Exciting {
+    running: Option<Running>,
+    begun: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Running {
+    order: ExcitationOrder,
+    /// Where the motor stood.
+    start: i64,
+    tick: u32,
+}
+
+/// What one servo tick adds (mm or rad, s).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Added {
+    pub motor: usize,
+    pub reference: f64,
+    pub command: f64,
+}
+
+impl Exciting {
+    /// An order of the path tick; the motors are at `counts`.
+    pub fn give(&mut self, order: Option<&ExcitationOrder>, counts: &[i64]) {
+        let Some(order) = order else {
+            self.running = None;
+            return;
+        };
+        if let (true, Some(start)) = (order.number != self.begun, counts.get(order.motor)) {
+            self.begun = order.number;
+            self.running = Some(Running {
+                order: *order,
+                start: *start,
+                tick: 0,
+            });
+        }
+    }
+
+    /// The drives went off, or ticks were lost.
+    pub fn end(&mut self, end: ExcitationEnd, report: &mut ExcitationReport) {
+        if self.running.take().is_some() {
+            report.number = self.begun;
+            report.ended = Some(end);
+        }
+    }
+
+    /// What this tick adds, if anything is excited.
+    pub fn added(&self) -> Option<Added> {
+        let running = self.running.as_ref()?;
+        let order = &running.order;
+        let value = order.chirp.at(running.tick);
+        Some(Added {
+            motor: order.motor,
+            reference: order.reference * value,
+            command: order.command * value,
+        })
+    }
+
+    /// Whether the motor, at `counts` of `pitch`, may be told `command`; if not, the excitation has ended.
+    pub fn allows(&mut self, counts: i64, pitch: f64, command: f64, report: &mut ExcitationReport) -> bool {
+        let Some(running) = &self.running else {
+            return false;
+        };
+        let counts = counts - running.start;
+        let way = libm::fabs(counts as f64 * pitch);
+        let end = if way > running.order.max_travel || counts.unsigned_abs() > MOST_COUNTS {
+            ExcitationEnd::Travel
+        } else if libm::fabs(command) > running.order.max_speed {
+            ExcitationEnd::Speed
+        } else {
+            return true;
+        };
+        self.end(end, report);
+        false
+    }
+
+    /// Ends a tick in which the drive was told `code`.
+    pub fn capture(&mut self, code: i16, counts: i64, error: f64, report: &mut ExcitationReport) {
+        let Some(running) = &mut self.running else { return };
+        let captured = running.tick >= running.order.settle_ticks;
+        running.tick += 1;
+        let done = running.tick >= running.order.settle_ticks + CAPTURE_TICKS as u32;
+        let sample = CaptureSample {
+            command: code,
+            counts: (counts - running.start).clamp(i32::MIN.into(), i32::MAX.into()) as i32,
+            error: error as f32,
+        };
+        report.number = self.begun;
+        if captured && !report.push(sample) {
+            self.end(ExcitationEnd::Gap, report);
+        } else if done {
+            self.running = None;
+        }
+    }
+}
