@@ -19,7 +19,7 @@ pub use design::{Loop, NoDesign, Requirements, design};
 pub use lag::Lag;
 pub use machine_file::{WriteError, rewrite};
 pub use margins::Margins;
-pub use plan::{Planned, TRAVEL, plan};
+pub use plan::{Planned, SETTLE_PERIODS, TRAVEL, WAY, plan, way};
 pub use response::{Capture, Line, NoResponse, Response};
 
 /// A complex number of a response.

@@ -17,11 +17,11 @@ pub enum WriteError {
     NoMotor(String),
 }
 
-/// The machine file `text` with the loop of motor `name`; `date` stands beside what is changed.
+/// The machine file `text` with the loop of motor `name`.
 ///
 /// # Errors
 /// It is no machine file with that motor.
-pub fn rewrite(text: &str, name: &str, found: &Loop, date: &str) -> Result<String, WriteError> {
+pub fn rewrite(text: &str, name: &str, found: &Loop) -> Result<String, WriteError> {
     let mut document: DocumentMut = text.parse()?;
     let motor = document
         .get_mut("motors")
@@ -41,17 +41,17 @@ pub fn rewrite(text: &str, name: &str, found: &Loop, date: &str) -> Result<Strin
     ];
     for (key, value) in values {
         let digits = four_digits(value);
-        replace(motor, key, digits.into(), date);
+        replace(motor, key, digits.into());
     }
     let notches: Array = found.motor.notches.iter().map(table).collect();
     if !notches.is_empty() || motor.contains_key("notches") {
-        replace(motor, "notches", notches.into(), date);
+        replace(motor, "notches", notches.into());
     }
     Ok(document.to_string())
 }
 
 /// A value, with what was there before in a comment behind it; one that stays is left alone.
-fn replace(table: &mut Table, key: &str, mut value: Value, date: &str) {
+fn replace(table: &mut Table, key: &str, mut value: Value) {
     let before = table.get(key).and_then(Item::as_value);
     let plain = |value: &Value| {
         let mut value = value.clone();
@@ -66,7 +66,9 @@ fn replace(table: &mut Table, key: &str, mut value: Value, date: &str) {
         return;
     }
     let was = before.map_or("none".to_owned(), plain);
-    value.decor_mut().set_suffix(format!(" # {date}: was {was}"));
+    value
+        .decor_mut()
+        .set_suffix(format!(" # commissioned; was {was}"));
     value.decor_mut().set_prefix(" ");
     table[key] = Item::Value(value);
 }

@@ -1,7 +1,9 @@
 //! Loops of simulated motors, found from captures of their excitation and judged by a model of their own: the plant linearised
 //! by hand (mathematics 0.11), which knows nothing of captures.
 
-use commission::{Capture, Complex, Loop, Margins, Requirements, Response, design, plan, rewrite};
+use commission::{
+    Capture, Complex, Loop, Margins, Requirements, Response, SETTLE_PERIODS, design, plan, rewrite, way,
+};
 use plant::{ModeConfig, MotionPlant, MotorConfig as TrueMotor, PlantConfig};
 use plant_file::{PlantChoice, PlantFile};
 use shared::control::{MotorConfig, Pid, PidState, Setpoint};
@@ -84,21 +86,31 @@ fn captures(index: usize, config: &TrueMotor, motor: &MotorConfig) -> Vec<Captur
     let start = bench.tick(DacCode(0));
     let mut counts = start;
     let mut captures = Vec::new();
-    for planned in plan(20.0, 0.5 * config.drive.max_acceleration) {
+    let (way, settle) = (way(), u32::from(SETTLE_PERIODS) * CAPTURE_TICKS as u32);
+    for planned in plan(0.5 * config.drive.max_acceleration) {
         let (chirp, amplitude) = (planned.chirp(), planned.amplitude);
         let mut samples = Vec::new();
-        for tick in 0..3 * CAPTURE_TICKS as u32 {
+        for tick in 0..way.ticks() {
             let position = (counts - start) as f64 / motor.counts_per_unit;
-            let feedback = pid
-                .step(&mut state, &Setpoint::default(), position, 0.0)
-                .expect("finite");
-            let command = feedback + amplitude * chirp.at(tick);
-            let code = DacCode::from_ratio(command, motor.velocity_at_10v);
-            if tick >= 2 * CAPTURE_TICKS as u32 {
+            let (place, velocity) = way.at(tick);
+            let setpoint = Setpoint {
+                position: place,
+                velocity,
+                ..Setpoint::default()
+            };
+            let feedback = pid.step(&mut state, &setpoint, position, 0.0).expect("finite");
+            let captured = (settle..settle + CAPTURE_TICKS as u32).contains(&tick);
+            let excited = if tick < settle + CAPTURE_TICKS as u32 {
+                amplitude * chirp.at(tick)
+            } else {
+                0.0
+            };
+            let code = DacCode::from_ratio(feedback + excited, motor.velocity_at_10v);
+            if captured {
                 samples.push(CaptureSample {
                     command: code.0,
-                    counts: (counts - start) as i32,
-                    error: -position as f32,
+                    counts: (counts - start - (place * motor.counts_per_unit).round() as i64) as i32,
+                    error: (place - position) as f32,
                 });
             }
             counts = bench.tick(code);
@@ -271,13 +283,13 @@ fn a_machine_file_keeps_what_it_says_besides() {
     let (config, motor) = with_mode(80.0, 0.05);
     let (_, designed) = found(Y, &config, &motor);
     let text = "# my machine\n[motors.Y]\nkp = 30.0 # by hand\nki = 200.0\nkd = 0.0\nmax_command = 400.0\n\n[motors.Z]\nkp = 5.0\n";
-    let written = rewrite(text, "Y", &designed, "2026-11-26").expect("it is one");
+    let written = rewrite(text, "Y", &designed).expect("it is one");
     println!("{written}");
     assert!(written.starts_with("# my machine\n[motors.Y]\nkp = "));
-    assert!(written.contains("# 2026-11-26: was 30.0"));
+    assert!(written.contains("# commissioned; was 30.0"));
     assert!(written.contains("max_command = 400.0\n"));
     assert!(written.contains("kd = 0.0\n"), "what stays is left alone");
     assert!(written.ends_with("[motors.Z]\nkp = 5.0\n"));
-    assert!(rewrite(text, "X1", &designed, "2026-11-26").is_err());
-    assert!(rewrite("kp = ", "Y", &designed, "2026-11-26").is_err());
+    assert!(rewrite(text, "X1", &designed).is_err());
+    assert!(rewrite("kp = ", "Y", &designed).is_err());
 }
