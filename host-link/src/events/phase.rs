@@ -51,6 +51,15 @@ pub enum Phase {
         /// How many there are.
         of: u32,
     },
+    /// A motor is excited, and what it does is captured.
+    Exciting {
+        /// The motor.
+        motor: &'static str,
+        /// Number of the excitation, from 1.
+        number: usize,
+        /// How many there are.
+        of: usize,
+    },
     /// The machine goes to its park position.
     Parking,
     /// A controlled stop, after a fault or a command.
@@ -74,6 +83,9 @@ impl fmt::Display for Phase {
             Self::TeachingPoint { number, of } => write!(f, "teaching point {number} of {of}"),
             Self::TeachingSeam { number } => write!(f, "teaching point {number}"),
             Self::Calibrating { place, of } => write!(f, "place {place} of {of}"),
+            Self::Exciting { motor, number, of } => {
+                write!(f, "exciting {motor}, {number} of {of}")
+            }
             Self::Parking => f.write_str("parking"),
             Self::Stopping => f.write_str("stopping"),
         }

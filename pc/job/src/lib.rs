@@ -4,6 +4,7 @@ mod calibrating;
 mod cameras;
 mod countdown;
 mod delays;
+mod exciting;
 mod feeding;
 mod following;
 mod images;
@@ -25,6 +26,7 @@ mod waits;
 pub use calibrating::{CameraPictures, PictureRun};
 pub use cameras::{Answer, CameraFigures, Moment, PictureSource, SeamCameras};
 pub use delays::{DelayFigures, Delays};
+pub use exciting::{CapturedMotion, ExcitationRun};
 pub use images::{ImageCameras, Images, ImagesError, WorkerError};
 pub use joint::SeenSeam;
 pub use leading::LedLesson;
@@ -46,7 +48,7 @@ use parts::PartFile;
 use session::Session;
 use shared::io::SIDES;
 use shared::parameter::ParameterError;
-use shared::protocol::{LOAD_BATCH, Refusal, Request, Role};
+use shared::protocol::{ExcitationEnd, LOAD_BATCH, Refusal, Request, Role};
 use shared::state::{Fault, State, TrackerFault, TrackerState};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -99,6 +101,8 @@ pub enum Work<'a> {
     TeachSeam(&'a SeamLesson),
     /// To teach places of the tip, to which the operator leads it.
     Lead(&'a LedLesson),
+    /// To excite motors and capture what they do.
+    Excite(&'a ExcitationRun),
 }
 
 impl Job<'_> {
@@ -251,6 +255,14 @@ pub enum JobError {
     /// No pictures to calibrate a camera from.
     #[error("the camera is not calibrated: {0}")]
     Calibrate(String),
+    /// A motor was not excited to the end.
+    #[error("motor {motor} was not measured: {end}")]
+    Excitation {
+        /// The motor.
+        motor: &'static str,
+        /// Why.
+        end: ExcitationEnd,
+    },
     /// It ended, but its quality cannot be judged.
     #[error("the run cannot be judged: {0}")]
     Judge(String),
@@ -333,6 +345,7 @@ impl Weld {
             Work::Teach => drop(self.teach(session, job)?),
             Work::TeachSeam(lesson) => self.teach_seam(session, job, lesson)?,
             Work::Lead(lesson) => self.lead(session, lesson)?,
+            Work::Excite(run) => self.taught.captured = self.excite(session, job, run)?,
             Work::TeachAndMake => {
                 let part = self.teach(session, job)?;
                 let program = self.plan_taught(job, &part)?;

@@ -45,6 +45,8 @@ pub struct Taught {
     pub seam: Option<TaughtSeam>,
     /// Places to which the tip was led.
     pub led: Vec<TipPoint>,
+    /// What was captured of motors that were excited.
+    pub captured: Vec<CapturedMotion>,
 }
 
 /// Why nothing can be taught. Reads as one sentence.

@@ -23,7 +23,7 @@ mod vibration;
 
 pub use beams::EVENTS;
 pub use controller::{ControllerAccess, MotionController, PathTickInput, PathTickOutput, answer};
-pub use excitation::Chirp;
+pub use excitation::{Chirp, Way};
 pub use machine::Machine;
 pub use permit::BeamLease;
 pub use readback::DARK;

@@ -479,9 +479,13 @@ impl ServoLoops {
         let mut setpoints = [Setpoint::default(); MOTORS];
         let added = self.exciting.added();
         for (index, motor) in setup.fitted() {
-            let (mut position_now, velocity, acceleration) = self.current.at(index, phase);
-            if let Some(added) = added.filter(|added| added.motor == index) {
-                position_now += added.reference;
+            let (mut position_now, mut velocity, acceleration) = self.current.at(index, phase);
+            if let Some(added) = added.filter(|added| MOTOR_AXIS[added.motor] == MOTOR_AXIS[index]) {
+                position_now += added.way;
+                velocity += added.velocity;
+                if added.motor == index {
+                    position_now += added.reference;
+                }
             }
             setpoints[index] = Setpoint {
                 position: position_now,
@@ -515,14 +519,15 @@ impl ServoLoops {
                     .map_err(|_| Fault::NotANumber)?;
             }
         }
+        let mut aside = 0;
         if let Some(added) = added {
-            let (motor, counts) = (
-                added.motor,
-                self.last_counts.map_or(0, |counts| counts[added.motor]),
-            );
+            let motor = added.motor;
             let told = output[motor] + added.command;
-            let pitch = setup.motors[motor].as_ref().map_or(0.0, |motor| motor.pitch);
-            if self.exciting.allows(counts, pitch, told, &mut report.excitation) {
+            let pitch = setup.motors[motor].as_ref().map_or(1.0, |motor| motor.pitch);
+            aside = self
+                .last_counts
+                .map_or(0, |counts| self.exciting.aside(counts[motor], pitch, &added));
+            if self.exciting.allows(aside, pitch, told, &mut report.excitation) {
                 output[motor] = told;
             }
         }
@@ -535,10 +540,9 @@ impl ServoLoops {
             command.dac[index] = DacCode::from_ratio(output[index], motor.velocity_at_10v);
         }
         if let Some(Added { motor, .. }) = added {
-            let counts = self.last_counts.map_or(0, |counts| counts[motor]);
             let error = setpoints[motor].position - position[motor];
             self.exciting
-                .capture(command.dac[motor].0, counts, error, &mut report.excitation);
+                .capture(command.dac[motor].0, aside, error, &mut report.excitation);
         }
         let mut shut = Lines::NONE;
         let gates = self.current.process.gates();

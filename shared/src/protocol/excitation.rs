@@ -25,7 +25,10 @@ pub struct Excitation {
     pub to_hz: f64,
     /// Periods before the one that is captured, in which what was before dies away.
     pub settle_periods: u8,
-    /// It ends where the motor is further than this from where it stood (mm or °), or than 32767 counts.
+    /// Meanwhile the motor goes so far and comes back (mm or °), in 4·`settle_periods` + 2 periods: on the way friction and play
+    /// stay on one side. 0: it stays where it stands. Ended early on its way, it trips for its following error.
+    pub way: f64,
+    /// It ends where the motor is further than this from where it should be (mm or °), or than 32767 counts.
     pub max_travel: f64,
     /// It ends where the drive would be told more than this (mm/s or °/s).
     pub max_speed: f64,
@@ -79,7 +82,7 @@ pub enum CaptureState {
 pub struct CaptureSample {
     /// Code of the converter from this tick to the next, the excitation in it.
     pub command: i16,
-    /// Counts at this tick, from where the motor stood.
+    /// Counts at this tick, from where the motor should be without the chirp.
     pub counts: i32,
     /// Following error at this tick (mm or rad), the excitation in it; in steps of 0.0001, up to 3.2767.
     pub error: f32,

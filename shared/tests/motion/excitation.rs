@@ -20,6 +20,7 @@ const ASKED: Excitation = Excitation {
     from_hz: 5.0,
     to_hz: 400.0,
     settle_periods: 2,
+    way: 0.0,
     max_travel: 1.0,
     max_speed: 50.0,
 };

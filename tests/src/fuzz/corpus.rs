@@ -182,6 +182,7 @@ pub fn seldom() -> Vec<Request> {
             from_hz: 5.0,
             to_hz: 400.0,
             settle_periods: 1,
+            way: 0.0,
             max_travel: 1.0,
             max_speed: 50.0,
         }),

@@ -4,6 +4,7 @@ mod boards;
 mod calibrate;
 mod cameras;
 mod check;
+mod commission;
 mod dry_run;
 mod explain;
 mod measure;
@@ -40,6 +41,7 @@ pub struct Cli {
 enum Command {
     Calibrate(calibrate::Calibrate),
     Check(check::Check),
+    Commission(commission::Commission),
     DryRun(dry_run::DryRun),
     Measure(measure::Measure),
     Plan(plan::Plan),
@@ -53,6 +55,7 @@ impl Cli {
         match self.command {
             Command::Calibrate(command) => command.run(),
             Command::Check(command) => command.run().map(|()| ExitCode::SUCCESS),
+            Command::Commission(command) => command.run(),
             Command::DryRun(command) => command.run(),
             Command::Measure(command) => command.run(),
             Command::Plan(command) => command.run().map(|()| ExitCode::SUCCESS),

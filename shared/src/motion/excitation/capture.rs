@@ -71,7 +71,7 @@ impl Capturing {
         }
         if let Some(end) = report.ended {
             self.end(end);
-        } else if self.taken == CAPTURE_TICKS {
+        } else if report.done {
             self.order = None;
             self.state = CaptureState::Complete;
         }

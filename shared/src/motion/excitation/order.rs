@@ -1,6 +1,7 @@
 //! What may be asked of an excitation, and what the servo ticks are told of it.
 
 use super::chirp::Chirp;
+use super::way::Way;
 use crate::io::MOTOR_NAMES;
 use crate::kinematics::AxisLimits;
 use crate::motion::servo::UNIT;
@@ -10,6 +11,8 @@ use core::f64::consts::PI;
 
 /// Farthest that a motor may be shaken from its place (mm or °).
 const FARTHEST: f64 = 5.0;
+/// Farthest way there and back (mm or °).
+const FARTHEST_WAY: f64 = 100.0;
 /// Fastest line \[Hz\]: a quarter of the rate of the servo ticks.
 const HIGHEST_HZ: f64 = 1000.0;
 /// Most periods before the capture: five seconds.
@@ -37,6 +40,7 @@ pub struct ExcitationOrder {
     pub reference: f64,
     pub chirp: Chirp,
     pub settle_ticks: u32,
+    pub way: Way,
     pub max_travel: f64,
     pub max_speed: f64,
 }
@@ -49,9 +53,11 @@ impl ExcitationOrder {
         let of = |field, value, most| within(owner, field, value, LEAST..=most);
         let fastest = limits.axis.velocity / unit;
         let max_speed = of("excitation.max_speed", asked.max_speed, fastest)?;
+        let way = within(owner, "excitation.way", asked.way, -FARTHEST_WAY..=FARTHEST_WAY)? * unit;
+        let ahead = limits.position + way;
         let room = libm::fmin(
-            limits.axis.max - limits.position,
-            limits.position - limits.axis.min,
+            limits.axis.max - libm::fmax(limits.position, ahead),
+            libm::fmin(limits.position, ahead) - limits.axis.min,
         );
         let farthest = libm::fmin(FARTHEST, libm::fmax(room / unit, LEAST));
         let max_travel = of("excitation.max_travel", asked.max_travel, farthest)?;
@@ -65,9 +71,18 @@ impl ExcitationOrder {
         let periods = f64::from(asked.settle_periods);
         within(owner, "excitation.settle_periods", periods, 1.0..=MOST_PERIODS)?;
         // What would end it at once is refused.
+        let settle_ticks = u32::from(asked.settle_periods) * CAPTURE_TICKS as u32;
+        // What is captured lies about its quarter.
+        let ticks = if way == 0.0 {
+            settle_ticks + CAPTURE_TICKS as u32
+        } else {
+            4 * settle_ticks + 2 * CAPTURE_TICKS as u32
+        };
+        let way = Way::new(way, ticks);
+        let left = max_speed - way.speed() / unit;
         let most = match asked.excited {
-            Excited::Command => libm::fmin(max_speed, 2.0 * PI * from * max_travel),
-            Excited::Reference => libm::fmin(max_travel, max_speed / (2.0 * PI * to)),
+            Excited::Command => libm::fmin(left, 2.0 * PI * from * max_travel),
+            Excited::Reference => libm::fmin(max_travel, left / (2.0 * PI * to)),
         };
         let amplitude = of("excitation.amplitude", asked.amplitude, most)? * unit;
         let (command, reference) = match asked.excited {
@@ -80,7 +95,8 @@ impl ExcitationOrder {
             command,
             reference,
             chirp: Chirp::new(from, to),
-            settle_ticks: u32::from(asked.settle_periods) * CAPTURE_TICKS as u32,
+            settle_ticks,
+            way,
             max_travel: max_travel * unit,
             max_speed: max_speed * unit,
         })

@@ -16,6 +16,8 @@ pub struct ExcitationReport {
     pub number: u32,
     /// It ended early.
     pub ended: Option<ExcitationEnd>,
+    /// It ended, with the motor where it stood.
+    pub done: bool,
     samples: [CaptureSample; SAMPLES],
     taken: usize,
 }
@@ -57,6 +59,10 @@ struct Running {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Added {
     pub motor: usize,
+    /// Place and speed on its way, which is that of all motors of the axis.
+    pub way: f64,
+    pub velocity: f64,
+    /// The chirp, on the reference and on the command.
     pub reference: f64,
     pub command: f64,
 }
@@ -90,20 +96,25 @@ impl Exciting {
     pub fn added(&self) -> Option<Added> {
         let running = self.running.as_ref()?;
         let order = &running.order;
-        let value = order.chirp.at(running.tick);
+        // The chirp ends with what is captured; the way may not yet.
+        let chirps = running.tick < order.settle_ticks + CAPTURE_TICKS as u32;
+        let value = if chirps { order.chirp.at(running.tick) } else { 0.0 };
+        let (way, velocity) = order.way.at(running.tick);
         Some(Added {
             motor: order.motor,
+            way,
+            velocity,
             reference: order.reference * value,
             command: order.command * value,
         })
     }
 
-    /// Whether the motor, at `counts` of `pitch`, may be told `command`; if not, the excitation has ended.
+    /// Whether the motor, at `counts` from where it should be with a `pitch`, may be told `command`; if not, the excitation has
+    /// ended.
     pub fn allows(&mut self, counts: i64, pitch: f64, command: f64, report: &mut ExcitationReport) -> bool {
         let Some(running) = &self.running else {
             return false;
         };
-        let counts = counts - running.start;
         let way = libm::fabs(counts as f64 * pitch);
         let end = if way > running.order.max_travel || counts.unsigned_abs() > MOST_COUNTS {
             ExcitationEnd::Travel
@@ -116,21 +127,29 @@ impl Exciting {
         false
     }
 
-    /// Ends a tick in which the drive was told `code`.
+    /// Counts of a motor with a `pitch` from where it should be without the chirp.
+    pub fn aside(&self, counts: i64, pitch: f64, added: &Added) -> i64 {
+        let start = self.running.as_ref().map_or(0, |running| running.start);
+        counts - start - libm::round(added.way / pitch) as i64
+    }
+
+    /// Ends a tick in which the drive was told `code`, with the motor at `counts` from where it should be.
     pub fn capture(&mut self, code: i16, counts: i64, error: f64, report: &mut ExcitationReport) {
         let Some(running) = &mut self.running else { return };
-        let captured = running.tick >= running.order.settle_ticks;
+        let since = running.tick.checked_sub(running.order.settle_ticks);
+        let captured = since.is_some_and(|since| since < CAPTURE_TICKS as u32);
         running.tick += 1;
-        let done = running.tick >= running.order.settle_ticks + CAPTURE_TICKS as u32;
+        let done = running.tick >= running.order.way.ticks();
         let sample = CaptureSample {
             command: code,
-            counts: (counts - running.start).clamp(i32::MIN.into(), i32::MAX.into()) as i32,
+            counts: counts.clamp(i32::MIN.into(), i32::MAX.into()) as i32,
             error: error as f32,
         };
         report.number = self.begun;
         if captured && !report.push(sample) {
             self.end(ExcitationEnd::Gap, report);
         } else if done {
+            report.done = true;
             self.running = None;
         }
     }

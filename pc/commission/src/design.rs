@@ -1,0 +1,266 @@
+//! Gains and notches with stated margins, on a response as it was measured.
+
+use crate::Complex;
+use crate::controller::{filters, pid};
+use crate::lag::Lag;
+use crate::margins::Margins;
+use crate::response::Response;
+use shared::control::{MotorConfig, NOTCHES, NotchConfig};
+use shared::motion::Chirp;
+use shared::parameter::ParameterError;
+use thiserror::Error;
+
+/// Gains that are tried, each so much above the one before \[1/s\].
+const LEAST_KP: f64 = 2.0;
+const MOST_KP: f64 = 1000.0;
+const STEP: f64 = 1.03;
+/// A notch is worth its lag if the gain grows by this factor at least.
+const WORTH: f64 = 1.15;
+/// Dampings of a notch that are tried: a wide one forgives a resonance that moves, a narrow one lags less.
+const DAMPINGS: [f64; 4] = [0.15, 0.3, 0.5, 0.8];
+/// How far below what is around it a resonance is pushed at most: one that moves must not be pushed down twice.
+const LEAST_DEPTH: f64 = 0.05;
+/// A resonance stands out by this factor from what is around it,
+const PROMINENT: f64 = 1.4;
+/// which begins at this ratio of frequencies to either side.
+const AROUND: f64 = 1.6;
+
+/// Margins that are kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Requirements {
+    /// Gain margin \[dB\].
+    pub gain_db: f64,
+    /// Phase margin \[°\].
+    pub phase_deg: f64,
+    /// Largest peak of the sensitivity.
+    pub peak: f64,
+}
+
+impl Default for Requirements {
+    /// 6 dB, 45° and 2: what textbooks ask for (Åström and Murray, Feedback Systems, 10.3).
+    fn default() -> Self {
+        Self {
+            gain_db: 6.0,
+            phase_deg: 45.0,
+            peak: 2.0,
+        }
+    }
+}
+
+impl Requirements {
+    fn are_kept(&self, margins: &Margins) -> bool {
+        margins.gain_db >= self.gain_db && margins.phase_deg >= self.phase_deg && margins.peak <= self.peak
+    }
+}
+
+/// A loop that was designed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loop {
+    /// The motor with its gains and notches, and feed-forward by the lag.
+    pub motor: MotorConfig,
+    /// What is left of the way to swinging.
+    pub margins: Margins,
+    /// The same with the parameters of before.
+    pub before: Margins,
+    /// Gain and delay of the drive.
+    pub lag: Lag,
+}
+
+/// Why no loop was designed.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum NoDesign {
+    /// Not even the least gain has margins.
+    #[error("no proportional gain above {LEAST_KP} 1/s has the margins: look at the plot of the response")]
+    NoGain,
+    /// The drive's gain or delay is not seen.
+    #[error("too few slow lines are believed: begin the excitation at a lower frequency")]
+    NoLag,
+    /// The parameters of before are out of range.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+}
+
+/// The loop with the highest proportional gain that keeps the margins; the integral and derivative gain go with it, and
+/// notches are added where they raise it.
+///
+/// # Errors
+/// There is none.
+pub fn design(
+    response: &Response,
+    motor: &MotorConfig,
+    requirements: &Requirements,
+) -> Result<Loop, NoDesign> {
+    let before = margins(response, motor)?;
+    let lag = Lag::of(response).ok_or(NoDesign::NoLag)?;
+    // Commands are those of a drive whose gain is right from here on.
+    let mut bare = motor.clone();
+    bare.notches.clear();
+    bare.velocity_at_10v = motor.velocity_at_10v * lag.gain;
+    let response = response.of_gain(1.0 / lag.gain);
+    let mut best = with_highest_gain(&response, &bare, requirements)?;
+    for _ in 0..NOTCHES {
+        let base = best.as_ref().map_or(&bare, |(motor, _)| motor).clone();
+        let Some(resonance) = Resonance::highest(&response, &base)? else {
+            break;
+        };
+        let mut better = None;
+        for damping in DAMPINGS {
+            let mut with = base.clone();
+            let notch = resonance.notch(damping);
+            if with.notches.push(notch).is_err() {
+                continue;
+            }
+            let found = with_highest_gain(&response, &with, requirements)?;
+            better = higher(better, found);
+        }
+        let gain = |found: &Option<(MotorConfig, Margins)>| found.as_ref().map_or(0.0, |(motor, _)| motor.kp);
+        if gain(&better) < WORTH * gain(&best) {
+            break;
+        }
+        best = better;
+    }
+    let (mut motor, margins) = best.ok_or(NoDesign::NoGain)?;
+    motor.velocity_feed_forward = 1.0;
+    motor.acceleration_feed_forward_s = lag.delay_s.max(0.0);
+    Ok(Loop {
+        motor,
+        margins,
+        before,
+        lag,
+    })
+}
+
+impl Response {
+    /// The same of a drive whose commands count for so much more.
+    fn of_gain(&self, factor: f64) -> Self {
+        let mut scaled = self.clone();
+        scaled.lines.iter_mut().for_each(|line| line.gain *= factor);
+        scaled
+    }
+}
+
+fn higher(
+    first: Option<(MotorConfig, Margins)>,
+    second: Option<(MotorConfig, Margins)>,
+) -> Option<(MotorConfig, Margins)> {
+    match (first, second) {
+        (Some(first), Some(second)) if second.0.kp > first.0.kp => Some(second),
+        (None, second) => second,
+        (first, _) => first,
+    }
+}
+
+/// Margins of the loop of `motor` about a response.
+fn margins(response: &Response, motor: &MotorConfig) -> Result<Margins, ParameterError> {
+    let filters = filters(motor)?;
+    Ok(Margins::of(&open_loop(response, |hz| {
+        pid(motor, hz) * filters[number(hz)]
+    })))
+}
+
+fn open_loop(response: &Response, controller: impl Fn(f64) -> Complex) -> Vec<(f64, Complex)> {
+    let lines = response.lines.iter();
+    lines
+        .map(|line| (line.hz, controller(line.hz) * line.gain))
+        .collect()
+}
+
+/// Number of the line at a frequency.
+fn number(hz: f64) -> usize {
+    (hz / Chirp::LINE_HZ).round() as usize
+}
+
+/// The motor with the highest gain up to which the margins are kept.
+fn with_highest_gain(
+    response: &Response,
+    motor: &MotorConfig,
+    requirements: &Requirements,
+) -> Result<Option<(MotorConfig, Margins)>, ParameterError> {
+    let filters = filters(motor)?;
+    // All parts of the controller grow with the proportional gain.
+    let unit = motor.with_gain(1.0);
+    let shape = open_loop(response, |hz| pid(&unit, hz) * filters[number(hz)]);
+    let mut best = None;
+    let mut kp = LEAST_KP;
+    while kp <= MOST_KP {
+        let margins = Margins::of(
+            &shape
+                .iter()
+                .map(|(hz, value)| (*hz, value * kp))
+                .collect::<Vec<_>>(),
+        );
+        // With a small gain the integral part is fast against the loop.
+        match (requirements.are_kept(&margins), &best) {
+            (true, _) => best = Some((motor.with_gain(kp), margins)),
+            (false, Some(_)) => break,
+            (false, None) => {}
+        }
+        kp *= STEP;
+    }
+    Ok(best)
+}
+
+trait WithGain {
+    fn with_gain(&self, kp: f64) -> Self;
+}
+
+impl WithGain for MotorConfig {
+    /// With another proportional gain, and the others in the same proportion to it.
+    fn with_gain(&self, kp: f64) -> Self {
+        let factor = kp / self.kp;
+        Self {
+            kp,
+            ki: self.ki * factor,
+            kd: self.kd * factor,
+            ..self.clone()
+        }
+    }
+}
+
+/// A frequency at which the machine answers more than around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Resonance {
+    hz: f64,
+    /// So many times what is around it.
+    prominence: f64,
+}
+
+impl Resonance {
+    /// That with the highest open-loop gain of those that stand out, behind the notches of `motor`.
+    fn highest(response: &Response, motor: &MotorConfig) -> Result<Option<Self>, ParameterError> {
+        let filters = filters(motor)?;
+        let gains = open_loop(response, |hz| pid(motor, hz) * filters[number(hz)]);
+        let near = |hz: f64, ratio: f64| {
+            let found = gains.iter().min_by(|(a, _), (b, _)| {
+                let off = |at: f64| (at - hz * ratio).abs();
+                off(*a).total_cmp(&off(*b))
+            });
+            found.map_or(f64::INFINITY, |(_, value)| value.norm())
+        };
+        let peaks = gains.windows(3).filter_map(|three| {
+            let [before, (hz, value), after] = three else {
+                return None;
+            };
+            let gain = value.norm();
+            let around = (near(*hz, 1.0 / AROUND) * near(*hz, AROUND)).sqrt();
+            let stands_out = gain > before.1.norm() && gain >= after.1.norm() && gain > PROMINENT * around;
+            stands_out.then_some((
+                gain,
+                Self {
+                    hz: *hz,
+                    prominence: gain / around,
+                },
+            ))
+        });
+        let highest = peaks.max_by(|(a, _), (b, _)| a.total_cmp(b));
+        Ok(highest.map(|(_, resonance)| resonance))
+    }
+
+    fn notch(&self, damping: f64) -> NotchConfig {
+        NotchConfig {
+            frequency_hz: self.hz,
+            damping,
+            depth: (1.0 / self.prominence).max(LEAST_DEPTH),
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Loops in a machine file: values are replaced, everything else stays as it was written, and what was there before is told
+//! beside them.
+
+use crate::design::Loop;
+use shared::control::NotchConfig;
+use thiserror::Error;
+use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value};
+
+/// Why a machine file is not written.
+#[derive(Debug, Error)]
+pub enum WriteError {
+    /// It is no TOML.
+    #[error(transparent)]
+    Toml(#[from] toml_edit::TomlError),
+    /// The motor is not in it.
+    #[error("it has no table [motors.{0}]")]
+    NoMotor(String),
+}
+
+/// The machine file `text` with the loop of motor `name`.
+///
+/// # Errors
+/// It is no machine file with that motor.
+pub fn rewrite(text: &str, name: &str, found: &Loop) -> Result<String, WriteError> {
+    let mut document: DocumentMut = text.parse()?;
+    let motor = document
+        .get_mut("motors")
+        .and_then(|motors| motors.get_mut(name))
+        .and_then(Item::as_table_mut)
+        .ok_or_else(|| WriteError::NoMotor(name.to_owned()))?;
+    let values = [
+        ("velocity_at_10v", found.motor.velocity_at_10v),
+        ("kp", found.motor.kp),
+        ("ki", found.motor.ki),
+        ("kd", found.motor.kd),
+        ("velocity_feed_forward", found.motor.velocity_feed_forward),
+        (
+            "acceleration_feed_forward_s",
+            found.motor.acceleration_feed_forward_s,
+        ),
+    ];
+    for (key, value) in values {
+        let digits = four_digits(value);
+        replace(motor, key, digits.into());
+    }
+    let notches: Array = found.motor.notches.iter().map(table).collect();
+    if !notches.is_empty() || motor.contains_key("notches") {
+        replace(motor, "notches", notches.into());
+    }
+    Ok(document.to_string())
+}
+
+/// A value, with what was there before in a comment behind it; one that stays is left alone.
+fn replace(table: &mut Table, key: &str, mut value: Value) {
+    let before = table.get(key).and_then(Item::as_value);
+    let plain = |value: &Value| {
+        let mut value = value.clone();
+        value.decor_mut().clear();
+        value.to_string()
+    };
+    let same = |before: &Value| match (before.as_float(), value.as_float()) {
+        (Some(before), Some(value)) => four_digits(before) == value,
+        _ => plain(before) == plain(&value),
+    };
+    if before.is_some_and(same) {
+        return;
+    }
+    let was = before.map_or("none".to_owned(), plain);
+    value
+        .decor_mut()
+        .set_suffix(format!(" # commissioned; was {was}"));
+    value.decor_mut().set_prefix(" ");
+    table[key] = Item::Value(value);
+}
+
+fn table(notch: &NotchConfig) -> InlineTable {
+    let fields = [
+        ("frequency_hz", notch.frequency_hz),
+        ("damping", notch.damping),
+        ("depth", notch.depth),
+    ];
+    fields
+        .into_iter()
+        .map(|(key, value)| (key, Value::from(four_digits(value))))
+        .collect()
+}
+
+/// What was measured is no more exact.
+fn four_digits(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    let scale = 10_f64.powi(3 - value.abs().log10().floor() as i32);
+    (value * scale).round() / scale
+}

@@ -1,0 +1,61 @@
+//! Which excitations a motor gets: four bands, so that low frequencies move it well above its noise and high ones stay inside what
+//! its drive accelerates, and all of them on its way, so that friction and play stay on one side.
+
+use shared::motion::{Chirp, Way};
+use shared::protocol::CAPTURE_TICKS;
+use std::f64::consts::TAU;
+
+/// Bands \[Hz\]; each goes beyond its ends, where a chirp has little power, by a tenth.
+const BANDS: [(f64, f64); 4] = [(2.0, 15.0), (15.0, 60.0), (60.0, 200.0), (200.0, 450.0)];
+const BEYOND: f64 = 1.1;
+/// Amplitudes of the captures of a band, as parts of what is allowed: what depends on them is not the machine's response.
+const PARTS: [f64; 3] = [1.0, 0.7, 1.0];
+/// Periods before what is captured.
+pub const SETTLE_PERIODS: u8 = 2;
+/// Way that a motor makes there and back (mm or °).
+pub const WAY: f64 = 20.0;
+/// Farthest that it is moved beside it (mm or °).
+pub const TRAVEL: f64 = 2.0;
+/// Part of that which the excitation itself takes.
+const OF_TRAVEL: f64 = 0.5;
+/// Part of the speed of the way that it takes: the motor never turns round.
+const OF_SPEED: f64 = 0.7;
+
+/// One excitation of the command of a motor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Planned {
+    /// Where the chirp begins and ends \[Hz\].
+    pub from_hz: f64,
+    /// See above.
+    pub to_hz: f64,
+    /// Its amplitude (mm/s or °/s).
+    pub amplitude: f64,
+}
+
+impl Planned {
+    /// What the motor is told beside its way.
+    pub fn chirp(&self) -> Chirp {
+        Chirp::new(self.from_hz, self.to_hz)
+    }
+}
+
+/// The way that a motor makes meanwhile.
+pub fn way() -> Way {
+    Way::new(WAY, (4 * u32::from(SETTLE_PERIODS) + 2) * CAPTURE_TICKS as u32)
+}
+
+/// The excitations of a motor that may move with this acceleration \[1/s²\] (mm or °).
+pub fn plan(acceleration: f64) -> Vec<Planned> {
+    let band = |(from, to): (f64, f64)| {
+        let (from_hz, to_hz) = (from / BEYOND, to * BEYOND);
+        let most = (OF_SPEED * way().speed())
+            .min(acceleration / (TAU * to_hz))
+            .min(OF_TRAVEL * TRAVEL * TAU * from_hz);
+        PARTS.map(|part| Planned {
+            from_hz,
+            to_hz,
+            amplitude: part * most,
+        })
+    };
+    BANDS.into_iter().flat_map(band).collect()
+}

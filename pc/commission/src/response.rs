@@ -1,0 +1,131 @@
+//! The frequency response of a drive with what it moves, from captures of its excitation.
+
+use crate::Complex;
+use crate::plan::Planned;
+use rustfft::FftPlanner;
+use shared::control::MotorConfig;
+use shared::io::DacCode;
+use shared::motion::Chirp;
+use shared::protocol::{CAPTURE_TICKS, CaptureSample};
+use std::collections::BTreeMap;
+use thiserror::Error;
+
+/// Coherence from which a line is believed.
+pub const BELIEVED: f64 = 0.9;
+/// Part of the lines that have to be.
+const MOST: f64 = 0.7;
+
+/// What was captured of one period of an excitation of the command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Capture {
+    /// What was asked for.
+    pub planned: Planned,
+    /// One sample each servo tick.
+    pub samples: Vec<CaptureSample>,
+}
+
+/// From the command of a drive (mm/s or °/s) to the position that its grating reads (mm or °), from one servo tick on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// Lines that were excited and are believed, upwards.
+    pub lines: Vec<Line>,
+    /// Part of the lines excited that are.
+    pub believed: f64,
+}
+
+/// The response at one frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Frequency \[Hz\].
+    pub hz: f64,
+    /// Position for a command of 1 \[s\].
+    pub gain: Complex,
+    /// Part of the power of the position that the excitation explains, 0…1.
+    pub coherence: f64,
+}
+
+/// Why a response is not believed.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum NoResponse {
+    /// There is no capture, or not a whole one.
+    #[error("nothing was captured, or not a whole period")]
+    Empty,
+    /// The position is mostly something else than what was excited.
+    #[error(
+        "only {percent:.0} % of the lines have a coherence above {BELIEVED}: something else than the excitation moves it (friction, play, \
+         noise); excite it more"
+    )]
+    Incoherent {
+        /// Part of the lines that are believed.
+        percent: f64,
+    },
+}
+
+impl Response {
+    /// From captures of a motor. With R the chirp, U the command and Y the position, the response is S_ry/S_ru: the feedback,
+    /// which carries the noise of Y into U, does not bias it (Ljung, System Identification, 13.5). The coherence is
+    /// |S_ry|²/(S_rr·S_yy). The sums go over the captures that have excited a line.
+    ///
+    /// # Errors
+    /// Too few lines are believed.
+    pub fn of(captures: &[Capture], motor: &MotorConfig) -> Result<Self, NoResponse> {
+        let whole = |capture: &Capture| capture.samples.len() == CAPTURE_TICKS;
+        if captures.is_empty() || !captures.iter().all(whole) {
+            return Err(NoResponse::Empty);
+        }
+        let fft = FftPlanner::new().plan_fft_forward(CAPTURE_TICKS);
+        let spectrum = |values: &mut dyn Iterator<Item = f64>| {
+            let mut values: Vec<Complex> = values.map(Complex::from).collect();
+            fft.process(&mut values);
+            values
+        };
+        let mut sums = BTreeMap::<u32, Sums>::new();
+        for capture in captures {
+            let (chirp, amplitude) = (capture.planned.chirp(), capture.planned.amplitude);
+            let command = |sample: &CaptureSample| DacCode(sample.command).ratio() * motor.velocity_at_10v;
+            let position = |sample: &CaptureSample| f64::from(sample.counts) / motor.counts_per_unit;
+            let asked = spectrum(&mut (0..CAPTURE_TICKS as u32).map(|tick| amplitude * chirp.at(tick)));
+            let command = spectrum(&mut capture.samples.iter().map(command));
+            let position = spectrum(&mut capture.samples.iter().map(position));
+            let (first, last) = chirp.lines();
+            for line in first..=last {
+                let index = line as usize;
+                let sums = sums.entry(line).or_default();
+                sums.add(asked[index], command[index], position[index]);
+            }
+        }
+        let lines: Vec<_> = sums
+            .iter()
+            .map(|(number, sums)| Line {
+                hz: f64::from(*number) * Chirp::LINE_HZ,
+                gain: sums.ry / sums.ru,
+                coherence: sums.ry.norm_sqr() / (sums.rr * sums.yy),
+            })
+            .filter(|line| line.coherence >= BELIEVED)
+            .collect();
+        let believed = lines.len() as f64 / sums.len() as f64;
+        if believed < MOST {
+            let percent = 100.0 * believed;
+            return Err(NoResponse::Incoherent { percent });
+        }
+        Ok(Self { lines, believed })
+    }
+}
+
+/// Spectra over all captures: of what was asked for with command and position, and of both alone.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    ru: Complex,
+    ry: Complex,
+    rr: f64,
+    yy: f64,
+}
+
+impl Sums {
+    fn add(&mut self, asked: Complex, command: Complex, position: Complex) {
+        self.ru += asked.conj() * command;
+        self.ry += asked.conj() * position;
+        self.rr += asked.norm_sqr();
+        self.yy += position.norm_sqr();
+    }
+}

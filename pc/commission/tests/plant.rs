@@ -1,0 +1,295 @@
+//! Loops of simulated motors, found from captures of their excitation and judged by a model of their own: the plant linearised
+//! by hand (mathematics 0.11), which knows nothing of captures.
+
+use commission::{
+    Capture, Complex, Loop, Margins, Requirements, Response, SETTLE_PERIODS, design, plan, rewrite, way,
+};
+use plant::{ModeConfig, MotionPlant, MotorConfig as TrueMotor, PlantConfig};
+use plant_file::{PlantChoice, PlantFile};
+use shared::control::{MotorConfig, Pid, PidState, Setpoint};
+use shared::io::{DacCode, MOTOR_NAMES, MOTORS, MotionCommand, SLIDES};
+use shared::protocol::{CAPTURE_TICKS, CaptureSample};
+use shared::ticks::SERVO_PERIOD_S;
+use std::f64::consts::TAU;
+
+/// A motor.
+const Y: usize = 2;
+const MACHINE: &str = "dual-beam-gantry";
+
+/// What the controller believes of motor `index`.
+fn believed(plant: &PlantFile, index: usize) -> MotorConfig {
+    let motor = plant.plant.motors[index].as_ref().expect("it is wired");
+    MotorConfig {
+        counts_per_unit: motor.grating.counts_per_unit,
+        velocity_at_10v: motor.drive.velocity_at_10v,
+        kp: 30.0,
+        ki: 200.0,
+        integral_limit: 20.0,
+        anti_windup_time_s: 0.05,
+        kd: 0.0,
+        derivative_filter_s: 0.0005,
+        velocity_feed_forward: 1.0,
+        acceleration_feed_forward_s: 0.0,
+        notches: Default::default(),
+        low_pass: None,
+        friction: None,
+        max_command: motor.drive.velocity_at_10v,
+        following_error_base: 1.0,
+        following_error_time_s: 0.1,
+        home_sequence: 0,
+        home: shared::control::HomeConfig {
+            velocity: -10.0,
+            mark_position: 0.0,
+            max_travel: 100.0,
+        },
+    }
+}
+
+/// The motor that is tried, where nothing else is wired.
+struct Bench {
+    index: usize,
+    plant: MotionPlant,
+    command: MotionCommand,
+}
+
+impl Bench {
+    fn new(index: usize, config: &TrueMotor) -> Self {
+        let mut motors = [const { None }; MOTORS];
+        motors[index] = Some(config.clone());
+        let wired = PlantConfig {
+            motors,
+            slides: [const { None }; SLIDES],
+            seed: 7,
+        };
+        Self {
+            index,
+            plant: MotionPlant::new(&wired),
+            command: MotionCommand {
+                enable: true,
+                ..MotionCommand::SAFE
+            },
+        }
+    }
+
+    /// Its counts after a servo tick with this command.
+    fn tick(&mut self, code: DacCode) -> i64 {
+        self.command.dac[self.index] = code;
+        self.plant.advance(&self.command).counts[self.index]
+    }
+}
+
+/// Captures of a motor in its loop, with half of the acceleration that its drive has.
+fn captures(index: usize, config: &TrueMotor, motor: &MotorConfig) -> Vec<Capture> {
+    let mut bench = Bench::new(index, config);
+    let pid = Pid::build("motor", motor, 1.0, SERVO_PERIOD_S).expect("sound");
+    let mut state = PidState::default();
+    let start = bench.tick(DacCode(0));
+    let mut counts = start;
+    let mut captures = Vec::new();
+    let (way, settle) = (way(), u32::from(SETTLE_PERIODS) * CAPTURE_TICKS as u32);
+    for planned in plan(0.5 * config.drive.max_acceleration) {
+        let (chirp, amplitude) = (planned.chirp(), planned.amplitude);
+        let mut samples = Vec::new();
+        for tick in 0..way.ticks() {
+            let position = (counts - start) as f64 / motor.counts_per_unit;
+            let (place, velocity) = way.at(tick);
+            let setpoint = Setpoint {
+                position: place,
+                velocity,
+                ..Setpoint::default()
+            };
+            let feedback = pid.step(&mut state, &setpoint, position, 0.0).expect("finite");
+            let captured = (settle..settle + CAPTURE_TICKS as u32).contains(&tick);
+            let excited = if tick < settle + CAPTURE_TICKS as u32 {
+                amplitude * chirp.at(tick)
+            } else {
+                0.0
+            };
+            let code = DacCode::from_ratio(feedback + excited, motor.velocity_at_10v);
+            if captured {
+                samples.push(CaptureSample {
+                    command: code.0,
+                    counts: (counts - start - (place * motor.counts_per_unit).round() as i64) as i32,
+                    error: (place - position) as f32,
+                });
+            }
+            counts = bench.tick(code);
+        }
+        captures.push(Capture { planned, samples });
+    }
+    captures
+}
+
+/// The plant linearised: a PI loop on the speed of the motor behind a dead time, resonances, a command that is held for a
+/// tick.
+fn linearised(config: &TrueMotor, hz: f64) -> Complex {
+    let s = Complex::new(0.0, TAU * hz);
+    let omega = TAU * config.drive.bandwidth_hz;
+    let pi = omega + omega * omega / 4.0 / s;
+    let mut motor = 1.0 / s;
+    let mut grating = 1.0 / (s * s);
+    for mode in &config.mechanics.modes {
+        let own = TAU * mode.frequency_hz;
+        let swing = 1.0 / (s * s + 2.0 * mode.damping * own * s + own * own);
+        motor += mode.motor * s * swing;
+        grating += mode.grating * swing;
+    }
+    let closed = pi * grating / (1.0 + (pi + config.mechanics.damping_per_s) * motor);
+    let dead = (-s * (config.drive.dead_time_s + 50e-6)).exp();
+    let half = s * SERVO_PERIOD_S / 2.0;
+    let held = (half.exp() - (-half).exp()) / (2.0 * half) * (-half).exp();
+    (1.0 + config.drive.gain_error) * dead * held * closed
+}
+
+/// Margins of `motor` about the linearised plant, by a controller computed here.
+fn true_margins(config: &TrueMotor, motor: &MotorConfig) -> Margins {
+    let gain = config.drive.velocity_at_10v / motor.velocity_at_10v;
+    let open = (1..4000).map(|k| f64::from(k) * 0.2).map(|hz| {
+        let z = Complex::from_polar(1.0, -TAU * hz * SERVO_PERIOD_S);
+        let mut controller = motor.kp + motor.ki * SERVO_PERIOD_S / (1.0 - z);
+        let s = Complex::new(0.0, TAU * hz);
+        for notch in &motor.notches {
+            // The analogue notch: what the bilinear transform bends lies far above.
+            let own = TAU * notch.frequency_hz;
+            let damped = |damping: f64| s * s + 2.0 * damping * own * s + own * own;
+            controller *= damped(notch.depth * notch.damping) / damped(notch.damping);
+        }
+        (hz, controller * gain * linearised(config, hz))
+    });
+    Margins::of(&open.collect::<Vec<_>>())
+}
+
+fn found(index: usize, config: &TrueMotor, motor: &MotorConfig) -> (Response, Loop) {
+    let captures = captures(index, config, motor);
+    let response = Response::of(&captures, motor).unwrap_or_else(|error| panic!("{error}"));
+    let designed =
+        design(&response, motor, &Requirements::default()).unwrap_or_else(|error| panic!("{error}"));
+    (response, designed)
+}
+
+fn shipped(index: usize) -> (TrueMotor, MotorConfig) {
+    let plant = PlantChoice::Shipped.of(MACHINE).expect("it is shipped");
+    let config = plant.plant.motors[index].clone().expect("it is wired");
+    let motor = believed(&plant, index);
+    (config, motor)
+}
+
+fn with_mode(frequency_hz: f64, damping: f64) -> (TrueMotor, MotorConfig) {
+    let (mut config, motor) = shipped(Y);
+    let mode = ModeConfig {
+        frequency_hz,
+        damping,
+        motor: 0.25,
+        grating: -1.0,
+        tool: -1.0,
+    };
+    config.mechanics.modes.push(mode).expect("there is room");
+    (config, motor)
+}
+
+#[track_caller]
+fn assert_near(config: &TrueMotor, designed: &Loop) {
+    let truth = true_margins(config, &designed.motor);
+    let said = designed.margins;
+    println!(
+        "said {said:?}\ntrue {truth:?}\nkp {} notches {:?}",
+        designed.motor.kp, designed.motor.notches
+    );
+    assert!((truth.gain_db - said.gain_db).abs() < 1.5, "{truth:?} {said:?}");
+    assert!(
+        (truth.phase_deg - said.phase_deg).abs() < 8.0,
+        "{truth:?} {said:?}"
+    );
+    assert!(truth.peak < 2.3, "{truth:?}");
+}
+
+#[test]
+fn the_response_is_that_of_the_linearised_plant() {
+    let (mut config, motor) = with_mode(120.0, 0.03);
+    config.mechanics.friction = 0.0;
+    let (response, _) = found(Y, &config, &motor);
+    assert!(response.believed > 0.95, "{}", response.believed);
+    for line in &response.lines {
+        let off = line.gain / linearised(&config, line.hz);
+        let (db, degrees) = (20.0 * off.norm().log10(), off.arg().to_degrees());
+        assert!(
+            db.abs() < 0.6 && degrees.abs() < 5.0,
+            "{} Hz: {db} dB, {degrees}°",
+            line.hz
+        );
+    }
+}
+
+#[test]
+fn margins_are_those_of_the_linearised_plant() {
+    for index in [0, 2, 3] {
+        let (config, motor) = shipped(index);
+        let (_, designed) = found(index, &config, &motor);
+        assert_near(&config, &designed);
+        assert!(designed.motor.kp > motor.kp, "{}", MOTOR_NAMES[index]);
+    }
+}
+
+#[test]
+fn resonances_get_notches_and_the_loop_keeps_its_margins() {
+    for (frequency_hz, damping) in [(80.0, 0.05), (40.0, 0.05)] {
+        let (config, motor) = with_mode(frequency_hz, damping);
+        let (_, designed) = found(Y, &config, &motor);
+        println!("{frequency_hz} Hz:");
+        assert_near(&config, &designed);
+    }
+}
+
+#[test]
+fn gain_and_delay_of_the_drive_are_found() {
+    let (mut config, motor) = shipped(Y);
+    config.drive.gain_error = 0.03;
+    config.drive.dead_time_s = 0.0015;
+    let (_, designed) = found(Y, &config, &motor);
+    assert!((designed.lag.gain - 1.03).abs() < 0.01, "{:?}", designed.lag);
+    let lag = 0.0015 + 50e-6 + SERVO_PERIOD_S / 2.0;
+    assert!(
+        (designed.lag.delay_s - lag).abs() < 0.0004,
+        "{:?} {lag}",
+        designed.lag
+    );
+    let v = designed.motor.velocity_at_10v / motor.velocity_at_10v;
+    assert!((v - 1.03).abs() < 0.01, "{v}");
+}
+
+/// Of every motor of drawn machines.
+#[test]
+fn drawn_machines_get_loops_with_margins() {
+    for draw in ["draw:usual:1", "draw:usual:2", "draw:usual:3", "draw:poor:1"] {
+        let plant = draw
+            .parse::<PlantChoice>()
+            .expect("a draw")
+            .of(MACHINE)
+            .expect("a machine");
+        for index in 0..plant.plant.motors.len() {
+            let Some(config) = plant.plant.motors[index].clone() else {
+                continue;
+            };
+            let motor = believed(&plant, index);
+            println!("{draw} {}", MOTOR_NAMES[index]);
+            let (_, designed) = found(index, &config, &motor);
+            assert_near(&config, &designed);
+        }
+    }
+}
+
+#[test]
+fn a_machine_file_keeps_what_it_says_besides() {
+    let (config, motor) = with_mode(80.0, 0.05);
+    let (_, designed) = found(Y, &config, &motor);
+    let text = "# my machine\n[motors.Y]\nkp = 30.0 # by hand\nki = 200.0\nkd = 0.0\nmax_command = 400.0\n\n[motors.Z]\nkp = 5.0\n";
+    let written = rewrite(text, "Y", &designed).expect("it is one");
+    println!("{written}");
+    assert!(written.starts_with("# my machine\n[motors.Y]\nkp = "));
+    assert!(written.contains("# commissioned; was 30.0"));
+    assert!(written.contains("max_command = 400.0\n"));
+    assert!(written.contains("kd = 0.0\n"), "what stays is left alone");
+    assert!(written.ends_with("[motors.Z]\nkp = 5.0\n"));
+    assert!(rewrite(text, "X1", &designed).is_err());
+    assert!(rewrite("kp = ", "Y", &designed).is_err());
+}

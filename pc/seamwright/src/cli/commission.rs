@@ -1,0 +1,205 @@
+//! `seamwright commission`: sets the position loops of a machine by what its drives answer.
+
+use super::boards::{BoardArgs, exit_code};
+use crate::console::outln;
+use crate::terminal::Operator;
+use anyhow::{Context, bail};
+use clap::Args;
+use commission::{
+    Capture, Loop, Margins, Planned, Requirements, Response, SETTLE_PERIODS, TRAVEL, WAY, design, plan,
+    rewrite,
+};
+use config::machine::MachineFile;
+use job::{CapturedMotion, ExcitationRun, Job, Names, Work};
+use shared::io::{MOTOR_AXIS, MOTOR_NAMES, MOTORS};
+use shared::protocol::{Excitation, Excited};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use world::Surroundings;
+
+/// Part of the acceleration of an axis that an excitation uses.
+const OF_ACCELERATION: f64 = 0.5;
+
+/// The machine homes. Each motor then goes 20 mm (20°) there and back, twelve times, while its drive is shaken by up to
+/// 1 mm; from what its grating tells come gain and delay of the drive, and the highest gains with a gain margin of 6 dB, a phase
+/// margin of 45° and a sensitivity of 2 at most, with notches at resonances. Everything must be free to move.
+#[derive(Debug, Args)]
+pub struct Commission {
+    /// Machine file
+    #[arg(long, value_name = "FILE")]
+    machine: PathBuf,
+    /// Motors [default: all that it has]
+    #[arg(long, value_delimiter = ',', value_name = "X1,X2,…")]
+    motors: Vec<String>,
+    #[command(flatten)]
+    boards: BoardArgs,
+    /// Machine file with what was found; may be the same, whose old values then stand beside the new ones [default: it is
+    /// only told]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+impl Commission {
+    /// Measures, designs and writes.
+    pub fn run(self) -> anyhow::Result<ExitCode> {
+        let machine = MachineFile::read(&self.machine)?;
+        self.boards.check(&machine)?;
+        let motors = self.motors(&machine)?;
+        let excitations = motors
+            .iter()
+            .flat_map(|motor| excitations(&machine, *motor))
+            .collect();
+        let run = ExcitationRun { excitations };
+        let job = Job {
+            machine: &machine,
+            work: Work::Excite(&run),
+            part: None,
+            speed_m_per_min: None,
+            from_line: None,
+            surroundings: Surroundings::default().into(),
+            spooling: Default::default(),
+            names: Names {
+                program: "commissioning".to_owned(),
+                machine: self.machine.display().to_string(),
+                seam: None,
+                boards: self.boards.name(),
+            },
+        };
+        let ended = match self.boards.run(&job, Operator::LooksOn, None)? {
+            Ok(ended) => ended,
+            Err(code) => return Ok(code),
+        };
+        if ended.error.is_some() {
+            return exit_code(ended.error);
+        }
+        self.write(&machine, &motors, &ended.taught.captured)?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// Indices of the motors.
+    fn motors(&self, machine: &MachineFile) -> anyhow::Result<Vec<usize>> {
+        let fitted: Vec<_> = (0..MOTORS)
+            .filter(|motor| machine.motion.motors[*motor].is_some())
+            .collect();
+        if self.motors.is_empty() {
+            return Ok(fitted);
+        }
+        let index = |name: &String| {
+            let found = fitted.iter().find(|motor| MOTOR_NAMES[**motor] == name);
+            found.copied().with_context(|| {
+                let names: Vec<_> = fitted.iter().map(|motor| MOTOR_NAMES[*motor]).collect();
+                format!(
+                    "--motors: the machine has no motor {name}; it has {}",
+                    names.join(", ")
+                )
+            })
+        };
+        self.motors.iter().map(index).collect()
+    }
+
+    fn write(
+        &self,
+        machine: &MachineFile,
+        motors: &[usize],
+        captured: &[CapturedMotion],
+    ) -> anyhow::Result<()> {
+        let file = || format!("machine file {}", self.machine.display());
+        let mut text = std::fs::read_to_string(&self.machine).with_context(file)?;
+        let mut refused = Vec::new();
+        for motor in motors {
+            let name = MOTOR_NAMES[*motor];
+            match loop_of(machine, *motor, captured) {
+                Ok(found) => {
+                    tell(name, machine, *motor, &found);
+                    text = rewrite(&text, name, &found).with_context(file)?;
+                }
+                Err(error) => {
+                    outln!("{name}: left as it is: {error:#}");
+                    refused.push(name);
+                }
+            }
+        }
+        if let Some(output) = &self.output {
+            std::fs::write(output, text).with_context(|| format!("cannot write {}", output.display()))?;
+            outln!("{}", output.display());
+        }
+        if !refused.is_empty() {
+            bail!("not commissioned: {}", refused.join(", "));
+        }
+        Ok(())
+    }
+}
+
+/// What motor `index` is told.
+fn excitations(machine: &MachineFile, index: usize) -> Vec<Excitation> {
+    let axis = machine.motion.axes[MOTOR_AXIS[index]].as_ref();
+    let (speed, acceleration) = axis.map_or((0.0, 0.0), |axis| (axis.max_velocity, axis.max_acceleration));
+    let planned = plan(OF_ACCELERATION * acceleration);
+    planned
+        .into_iter()
+        .map(|planned| Excitation {
+            motor: index as u8,
+            excited: Excited::Command,
+            amplitude: planned.amplitude,
+            from_hz: planned.from_hz,
+            to_hz: planned.to_hz,
+            settle_periods: SETTLE_PERIODS,
+            way: WAY,
+            max_travel: TRAVEL,
+            max_speed: speed,
+        })
+        .collect()
+}
+
+fn loop_of(machine: &MachineFile, index: usize, captured: &[CapturedMotion]) -> anyhow::Result<Loop> {
+    let motor = machine.motion.motors[index]
+        .as_ref()
+        .context("the machine has none")?;
+    let own = captured
+        .iter()
+        .filter(|captured| usize::from(captured.excitation.motor) == index);
+    let captures: Vec<_> = own
+        .map(|captured| Capture {
+            planned: Planned {
+                from_hz: captured.excitation.from_hz,
+                to_hz: captured.excitation.to_hz,
+                amplitude: captured.excitation.amplitude,
+            },
+            samples: captured.samples.clone(),
+        })
+        .collect();
+    let response = Response::of(&captures, motor)?;
+    Ok(design(&response, motor, &Requirements::default())?)
+}
+
+fn tell(name: &str, machine: &MachineFile, index: usize, found: &Loop) {
+    let before = machine.motion.motors[index]
+        .as_ref()
+        .map_or(0.0, |motor| motor.kp);
+    outln!(
+        "{name}: drive gain {:.4}, delay {:.2} ms",
+        found.lag.gain,
+        found.lag.delay_s * 1e3
+    );
+    outln!("    before  kp {before:6.1} 1/s  {}", margins(&found.before));
+    outln!(
+        "    now     kp {:6.1} 1/s  {}",
+        found.motor.kp,
+        margins(&found.margins)
+    );
+    for notch in &found.motor.notches {
+        outln!(
+            "    notch at {:.1} Hz, damping {}, depth {:.2}",
+            notch.frequency_hz,
+            notch.damping,
+            notch.depth
+        );
+    }
+}
+
+fn margins(margins: &Margins) -> String {
+    format!(
+        "gain margin {:5.1} dB, phase margin {:5.1}°, sensitivity {:4.2}, crossover {:5.1} Hz",
+        margins.gain_db, margins.phase_deg, margins.peak, margins.crossover_hz
+    )
+}
