@@ -51,8 +51,9 @@ impl DacCode {
     /// The code for `value` when `full_scale` (same unit, may be negative for a reversed drive) is +10 V;
     /// saturates at ±10 V, and is zero for a value that is not a number.
     pub fn from_ratio(value: f64, full_scale: f64) -> Self {
-        let code = crate::units::round_half_away(value / full_scale * 32767.0);
-        Self(code.clamp(-32767.0, 32767.0) as i16)
+        let code = value / full_scale * 32767.0;
+        // The cast rounds towards zero and saturates.
+        Self(((code + libm::copysign(0.5, code)) as i16).max(-32767))
     }
 
     /// Part of the full scale, −1…1.
@@ -86,6 +87,23 @@ impl Bits {
     /// Whether any bit is set.
     pub fn any(self) -> bool {
         self.0 != 0
+    }
+
+    /// The first bit that is set.
+    pub fn first(self) -> Option<u8> {
+        self.any().then(|| self.0.trailing_zeros() as u8)
+    }
+
+    /// The bits that are set in `of`, too.
+    #[must_use]
+    pub fn only(self, of: Self) -> Self {
+        Self(self.0 & of.0)
+    }
+
+    /// The bits that are set in either.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
     }
 }
 

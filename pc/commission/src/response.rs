@@ -12,8 +12,10 @@ use thiserror::Error;
 
 /// Coherence from which a line is believed.
 pub const BELIEVED: f64 = 0.9;
-/// Part of the lines that have to be.
+/// Part of the lines up to this frequency \[Hz\] that have to be. Above it, a machine without a resonance moves by less than
+/// its grating resolves.
 const MOST: f64 = 0.7;
+const MOST_BELOW_HZ: f64 = 200.0;
 
 /// What was captured of one period of an excitation of the command.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +31,7 @@ pub struct Capture {
 pub struct Response {
     /// Lines that were excited and are believed, upwards.
     pub lines: Vec<Line>,
-    /// Part of the lines excited that are.
+    /// Part of the lines excited up to 200 Hz that are.
     pub believed: f64,
 }
 
@@ -52,7 +54,7 @@ pub enum NoResponse {
     Empty,
     /// The position is mostly something else than what was excited.
     #[error(
-        "only {percent:.0} % of the lines have a coherence above {BELIEVED}: something else than the excitation moves it (friction, play, \
+        "only {percent:.0} % of the lines up to {MOST_BELOW_HZ} Hz have a coherence above {BELIEVED}: something else than the excitation moves it (friction, play, \
          noise); excite it more"
     )]
     Incoherent {
@@ -103,7 +105,12 @@ impl Response {
             })
             .filter(|line| line.coherence >= BELIEVED)
             .collect();
-        let believed = lines.len() as f64 / sums.len() as f64;
+        let below = |hz: f64| hz <= MOST_BELOW_HZ;
+        let asked = sums
+            .keys()
+            .filter(|number| below(f64::from(**number) * Chirp::LINE_HZ))
+            .count();
+        let believed = lines.iter().filter(|line| below(line.hz)).count() as f64 / asked as f64;
         if believed < MOST {
             let percent = 100.0 * believed;
             return Err(NoResponse::Incoherent { percent });

@@ -4,7 +4,7 @@
 //! the tool truly is; on a real machine there is nothing to teach with.
 
 use crate::session::Session;
-use crate::{CameraPictures, Job, JobError, TaughtSeam, Weld};
+use crate::{CameraPictures, CapturedMotion, Job, JobError, TaughtSeam, Weld};
 use config::RangeError;
 use config::machine::MachineFile;
 use config::probe::Reading;

@@ -48,11 +48,13 @@ impl Friction {
         })
     }
 
+    /// Whether it adds nothing.
+    pub fn is_off(&self) -> bool {
+        self.coulomb == 0.0 && self.viscous == 0.0
+    }
+
     /// The speed to add for a motor that follows `setpoint`.
     pub fn step(&self, state: &mut FrictionState, setpoint: &Setpoint) -> f64 {
-        if self.coulomb == 0.0 && self.viscous == 0.0 {
-            return 0.0;
-        }
         let velocity = setpoint.velocity + self.lead * setpoint.acceleration;
         let friction =
             self.coulomb * smooth_sign(velocity * self.per_reversal_speed) + self.viscous * velocity;

@@ -38,7 +38,7 @@ pub struct MovementState {
     commanded: f64,
     /// The mean command while it moved slowly.
     held: f64,
-    /// Time since it came there, no longer than counts \[s\].
+    /// Time since it came there \[s\].
     since: f64,
 }
 
@@ -83,24 +83,21 @@ impl MovementCheck {
     /// One tick of `period` \[s\] with the encoder at `counts`, after the command `velocity`. The distance
     /// that was commanded if that is more than the limit.
     pub fn step(&self, state: &mut MovementState, counts: i64, velocity: f64, period: f64) -> Option<f64> {
-        state.since = libm::fmin(state.since + period, LONGEST_S);
+        state.since += period;
         if counts.abs_diff(state.counts) > FLICKER {
             // What is told at speed says nothing of rest.
-            let slow = libm::fabs(velocity) <= self.most_held;
-            let part = if slow { state.since / MEAN_S } else { 0.0 };
-            *state = MovementState {
-                counts,
-                commanded: 0.0,
-                held: state.held + (velocity - state.held) * part,
-                since: 0.0,
-            };
+            if libm::fabs(velocity) <= self.most_held {
+                state.held += (velocity - state.held) * libm::fmin(state.since, LONGEST_S) / MEAN_S;
+            }
+            state.counts = counts;
+            state.commanded = 0.0;
+            state.since = 0.0;
         }
         // Up to what holds it a drive may be told anything, to either side: friction holds it against both, and a loop that hunts
         // about 0 must not add up on one of them.
-        let held = libm::fabs(state.held);
-        let beyond = velocity - velocity.clamp(-held, held);
-        if libm::fabs(beyond) > self.min_velocity {
-            state.commanded += beyond * period;
+        let beyond = libm::fabs(velocity) - libm::fabs(state.held);
+        if beyond > self.min_velocity {
+            state.commanded += libm::copysign(beyond, velocity) * period;
         }
         let way = libm::fabs(state.commanded);
         (way > self.limit).then_some(way)

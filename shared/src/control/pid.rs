@@ -19,6 +19,8 @@ pub struct Pid {
     ka: f64,
     filter: LoopFilter,
     friction: Friction,
+    /// Neither filters nor friction.
+    is_plain: bool,
     max_command: f64,
 }
 
@@ -60,8 +62,10 @@ impl Pid {
         period_s: f64,
     ) -> Result<Self, ParameterError> {
         let limited = |field, value| not_negative(owner, field, value);
+        let filter = LoopFilter::build(owner, config, period_s)?;
         let friction = config.friction.as_ref();
         let friction = friction.map(|friction| Friction::build(owner, friction, unit, period_s));
+        let friction = friction.transpose()?.unwrap_or_default();
         let tracking = limited("anti_windup_time_s", config.anti_windup_time_s)?;
         Ok(Self {
             period: positive(owner, "period_s", period_s)?,
@@ -73,8 +77,9 @@ impl Pid {
             derivative: Derivative::build(owner, config.derivative_filter_s, period_s)?,
             kv: limited("velocity_feed_forward", config.velocity_feed_forward)?,
             ka: limited("acceleration_feed_forward_s", config.acceleration_feed_forward_s)?,
-            filter: LoopFilter::build(owner, config, period_s)?,
-            friction: friction.transpose()?.unwrap_or_default(),
+            is_plain: filter.is_off() && friction.is_off(),
+            filter,
+            friction,
             max_command: positive(owner, "max_command", config.max_command)? * unit,
         })
     }
@@ -95,17 +100,21 @@ impl Pid {
         let d = self.derivative.step(&mut state.derivative, e);
         let integral = state.integral + self.period * (self.ki * e + state.excess * self.unwind);
         state.integral = integral.clamp(-self.integral_limit, self.integral_limit);
-        let forward = self.kv * setpoint.velocity
-            + self.ka * setpoint.acceleration
-            + self.friction.step(&mut state.friction, setpoint);
+        let forward = self.kv * setpoint.velocity + self.ka * setpoint.acceleration;
         let feedback = self.kp * e + state.integral + self.kd * d;
-        let command = if self.filter.is_off() {
+        let command = if self.is_plain {
             feedback + forward + extra
         } else {
-            self.filter.step(&mut state.filter, feedback + extra) + forward
+            self.shaped(state, setpoint, feedback + extra) + forward
         };
         let limited = command.clamp(-self.max_command, self.max_command);
         state.excess = limited - command;
         Ok(limited)
+    }
+
+    /// `feedback` behind the filters, and what friction wants. Apart, so that a loop without them is not slower.
+    #[inline(never)]
+    fn shaped(&self, state: &mut PidState, setpoint: &Setpoint, feedback: f64) -> f64 {
+        self.filter.step(&mut state.filter, feedback) + self.friction.step(&mut state.friction, setpoint)
     }
 }

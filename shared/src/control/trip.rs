@@ -68,10 +68,10 @@ impl EncoderCheck {
 
     /// The fault if the grating went from `last` to `now` counts in one tick.
     pub fn check(&self, last: i64, now: i64) -> Result<(), Fault> {
-        let step = now.saturating_sub(last);
-        if step.unsigned_abs() <= self.limit.unsigned_abs().into() {
+        if now.abs_diff(last) <= self.limit.unsigned_abs().into() {
             return Ok(());
         }
+        let step = now.saturating_sub(last);
         Err(Fault::EncoderStep {
             motor: self.motor,
             seen: step.clamp(i32::MIN.into(), i32::MAX.into()) as i32,

@@ -63,16 +63,15 @@ impl Motor {
         })
     }
 
-    /// The fault if motor number `index` is commanded to move at `velocity` and its grating has not moved for
-    /// too long.
+    /// The fault if motor number `index` is commanded to move at `velocity` and its grating, at `counts`, has not moved for too
+    /// long.
     fn moves(
         &self,
         index: usize,
         state: &mut MovementState,
-        counts: Option<[i64; MOTORS]>,
+        counts: i64,
         velocity: f64,
     ) -> Result<(), Fault> {
-        let counts = counts.map_or(0, |counts| counts[index]);
         match self.movement.step(state, counts, velocity, SERVO_PERIOD_S) {
             None => Ok(()),
             Some(commanded) => Err(Fault::NoMovement {
@@ -86,8 +85,10 @@ impl Motor {
 /// Parameters of the servo loops, checked and ready for [`ServoLoops::configure`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ServoSetup {
-    /// Motors that the machine has.
+    /// Motors that the machine has,
     motors: [Option<Motor>; MOTORS],
+    /// and which these are.
+    fitted: Bits,
     gantry: Option<Gantry>,
     /// Loops of the motors that are not coupled as a gantry.
     pids: [Option<Pid>; MOTORS],
@@ -104,6 +105,7 @@ impl ServoSetup {
     ) -> Result<Self, ParameterError> {
         let mut setup = Self {
             motors: [const { None }; MOTORS],
+            fitted: Bits::NONE,
             gantry,
             pids: [None; MOTORS],
             readbacks: [None; SIDES],
@@ -111,6 +113,7 @@ impl ServoSetup {
         for (index, config) in configs.iter().enumerate() {
             let Some(config) = config else { continue };
             setup.motors[index] = Some(Motor::build(index, config)?);
+            setup.fitted.set(index, true);
             if gantry.is_none() || index >= GANTRY {
                 let pid = Pid::build(MOTOR_NAMES[index], config, UNIT[index], SERVO_PERIOD_S)?;
                 setup.pids[index] = Some(pid);
@@ -366,11 +369,8 @@ impl ServoLoops {
     fn observe(&mut self, feedback: &MotionFeedback, elapsed: u32) {
         let elapsed_us = elapsed.saturating_mul(SERVO_US);
         self.report.estop.step(feedback.estop, elapsed_us);
-        self.report.drive_fault = Bits::NONE;
-        for (index, _) in self.setup.iter().flat_map(ServoSetup::fitted) {
-            let faulty = feedback.drive_fault.get(index);
-            self.report.drive_fault.set(index, faulty);
-        }
+        let fitted = self.setup.as_ref().map_or(Bits::NONE, |setup| setup.fitted);
+        self.report.drive_fault = feedback.drive_fault.only(fitted);
         for (seen, fault) in self.report.laser_fault.iter_mut().zip(feedback.laser_fault) {
             *seen |= fault;
         }
@@ -414,20 +414,17 @@ impl ServoLoops {
             return Err(Fault::EmergencyStop);
         }
         let Some(setup) = &self.setup else { return Ok(()) };
-        for (index, motor) in setup.fitted() {
-            let number = index as u8;
-            if feedback.drive_fault.get(index) {
-                return Err(Fault::Drive { motor: number });
-            }
-            let (plus, minus) = (feedback.limit_plus.get(index), feedback.limit_minus.get(index));
-            if !self.homing && (plus || minus) {
-                return Err(Fault::LimitSwitch {
-                    motor: number,
-                    positive: plus,
-                });
-            }
-            // A step over a lost tick may be longer and says nothing.
-            if elapsed <= 1 {
+        if let Some(motor) = feedback.drive_fault.only(setup.fitted).first() {
+            return Err(Fault::Drive { motor });
+        }
+        let limits = feedback.limit_plus.or(feedback.limit_minus).only(setup.fitted);
+        if let (false, Some(motor)) = (self.homing, limits.first()) {
+            let positive = feedback.limit_plus.get(motor.into());
+            return Err(Fault::LimitSwitch { motor, positive });
+        }
+        // A step over a lost tick may be longer and says nothing.
+        if elapsed <= 1 {
+            for (index, motor) in setup.fitted() {
                 motor.encoder.check(last[index], feedback.counts[index])?;
             }
         }
@@ -480,12 +477,10 @@ impl ServoLoops {
         let added = self.exciting.added();
         for (index, motor) in setup.fitted() {
             let (mut position_now, mut velocity, acceleration) = self.current.at(index, phase);
-            if let Some(added) = added.filter(|added| MOTOR_AXIS[added.motor] == MOTOR_AXIS[index]) {
-                position_now += added.way;
-                velocity += added.velocity;
-                if added.motor == index {
-                    position_now += added.reference;
-                }
+            if let Some(added) = &added {
+                let (place, speed) = added.to(index);
+                position_now += place;
+                velocity += speed;
             }
             setpoints[index] = Setpoint {
                 position: position_now,
@@ -520,13 +515,12 @@ impl ServoLoops {
             }
         }
         let mut aside = 0;
-        if let Some(added) = added {
+        if let Some(added) = &added {
             let motor = added.motor;
             let told = output[motor] + added.command;
             let pitch = setup.motors[motor].as_ref().map_or(1.0, |motor| motor.pitch);
-            aside = self
-                .last_counts
-                .map_or(0, |counts| self.exciting.aside(counts[motor], pitch, &added));
+            let counts = self.last_counts.map_or(0, |counts| counts[motor]);
+            aside = self.exciting.aside(counts, pitch, added);
             if self.exciting.allows(aside, pitch, told, &mut report.excitation) {
                 output[motor] = told;
             }
@@ -536,10 +530,12 @@ impl ServoLoops {
             ..MotionCommand::SAFE
         };
         for (index, motor) in setup.fitted() {
-            motor.moves(index, &mut self.movements[index], self.last_counts, output[index])?;
+            let counts = self.last_counts.as_ref().map_or(0, |counts| counts[index]);
+            motor.moves(index, &mut self.movements[index], counts, output[index])?;
             command.dac[index] = DacCode::from_ratio(output[index], motor.velocity_at_10v);
         }
-        if let Some(Added { motor, .. }) = added {
+        if let Some(Added { motor, .. }) = &added {
+            let motor = *motor;
             let error = setpoints[motor].position - position[motor];
             self.exciting
                 .capture(command.dac[motor].0, aside, error, &mut report.excitation);

@@ -1,6 +1,7 @@
 //! The chirp in the servo ticks, and its limits.
 
 use super::order::ExcitationOrder;
+use crate::io::MOTOR_AXIS;
 use crate::protocol::{CAPTURE_TICKS, CaptureSample, ExcitationEnd};
 use crate::ticks::SERVO_TICKS_PER_PATH_TICK;
 
@@ -67,6 +68,39 @@ pub struct Added {
     pub command: f64,
 }
 
+impl Running {
+    /// Apart, like all that only an excitation does, so that the other ticks are no longer for it.
+    #[cold]
+    #[inline(never)]
+    fn added(&self) -> Added {
+        let order = &self.order;
+        // The chirp ends with what is captured; the way may not yet.
+        let chirps = self.tick < order.settle_ticks + CAPTURE_TICKS as u32;
+        let value = if chirps { order.chirp.at(self.tick) } else { 0.0 };
+        let (way, velocity) = order.way.at(self.tick);
+        Added {
+            motor: order.motor,
+            way,
+            velocity,
+            reference: order.reference * value,
+            command: order.command * value,
+        }
+    }
+}
+
+impl Added {
+    /// To the position and the speed of a motor.
+    #[cold]
+    #[inline(never)]
+    pub fn to(&self, motor: usize) -> (f64, f64) {
+        if MOTOR_AXIS[motor] != MOTOR_AXIS[self.motor] {
+            return (0.0, 0.0);
+        }
+        let own = if motor == self.motor { self.reference } else { 0.0 };
+        (self.way + own, self.velocity)
+    }
+}
+
 impl Exciting {
     /// An order of the path tick; the motors are at `counts`.
     pub fn give(&mut self, order: Option<&ExcitationOrder>, counts: &[i64]) {
@@ -94,23 +128,13 @@ impl Exciting {
 
     /// What this tick adds, if anything is excited.
     pub fn added(&self) -> Option<Added> {
-        let running = self.running.as_ref()?;
-        let order = &running.order;
-        // The chirp ends with what is captured; the way may not yet.
-        let chirps = running.tick < order.settle_ticks + CAPTURE_TICKS as u32;
-        let value = if chirps { order.chirp.at(running.tick) } else { 0.0 };
-        let (way, velocity) = order.way.at(running.tick);
-        Some(Added {
-            motor: order.motor,
-            way,
-            velocity,
-            reference: order.reference * value,
-            command: order.command * value,
-        })
+        self.running.as_ref().map(Running::added)
     }
 
     /// Whether the motor, at `counts` from where it should be with a `pitch`, may be told `command`; if not, the excitation has
     /// ended.
+    #[cold]
+    #[inline(never)]
     pub fn allows(&mut self, counts: i64, pitch: f64, command: f64, report: &mut ExcitationReport) -> bool {
         let Some(running) = &self.running else {
             return false;
@@ -128,12 +152,16 @@ impl Exciting {
     }
 
     /// Counts of a motor with a `pitch` from where it should be without the chirp.
+    #[cold]
+    #[inline(never)]
     pub fn aside(&self, counts: i64, pitch: f64, added: &Added) -> i64 {
         let start = self.running.as_ref().map_or(0, |running| running.start);
         counts - start - libm::round(added.way / pitch) as i64
     }
 
     /// Ends a tick in which the drive was told `code`, with the motor at `counts` from where it should be.
+    #[cold]
+    #[inline(never)]
     pub fn capture(&mut self, code: i16, counts: i64, error: f64, report: &mut ExcitationReport) {
         let Some(running) = &mut self.running else { return };
         let since = running.tick.checked_sub(running.order.settle_ticks);
