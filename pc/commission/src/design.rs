@@ -122,6 +122,8 @@ pub fn design(
     let (mut motor, margins) = best.ok_or(NoDesign::NoGain)?;
     motor.velocity_feed_forward = 1.0;
     motor.acceleration_feed_forward_s = lag.delay_s.max(0.0);
+    // No drive can be told more than its 10 V.
+    motor.max_command = motor.max_command.min(motor.velocity_at_10v.abs());
     Ok(Loop {
         motor,
         margins,

@@ -4,9 +4,9 @@ use crate::response::Response;
 use std::f64::consts::TAU;
 
 /// Up to here a drive is its gain and its delay \[Hz\]: resonances lie above.
-const SLOW_HZ: f64 = 20.0;
+const SLOW_HZ: f64 = 16.0;
 /// Fewest lines for both.
-const FEWEST: usize = 4;
+const FEWEST: usize = 5;
 
 /// A slow command comes out as `gain` times itself, `delay_s` later.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,8 @@ pub struct Lag {
 }
 
 impl Lag {
-    /// Of the slow lines: jω·P = K·exp(−jωτ). None if there are too few of them.
+    /// Of the slow lines, where jω·P = K·(1 + aω²)·exp(−jω·(τ + bω²)): K and τ are what a constant speed sees, the other two are
+    /// the beginning of what the drive does to a fast one. None if there are too few lines.
     pub fn of(response: &Response) -> Option<Self> {
         let slow = response.lines.iter().filter(|line| line.hz <= SLOW_HZ);
         let speeds: Vec<_> = slow
@@ -31,13 +32,24 @@ impl Lag {
         if speeds.len() < FEWEST {
             return None;
         }
-        let gain = speeds.iter().map(|(_, speed)| speed.norm()).sum::<f64>() / speeds.len() as f64;
-        let (above, below) = speeds.iter().fold((0.0, 0.0), |(above, below), (omega, speed)| {
-            (above - omega * speed.arg(), below + omega * omega)
-        });
+        let of = |value: &dyn Fn(&(f64, crate::Complex)) -> [f64; 3]| least_squares(speeds.iter().map(value));
         Some(Self {
-            gain,
-            delay_s: above / below,
+            gain: of(&|(omega, speed)| [1.0, omega * omega, speed.norm()])?,
+            delay_s: of(&|(omega, speed)| [*omega, omega * omega * omega, -speed.arg()])?,
         })
     }
+}
+
+/// The factor of `x` in y = c·x + d·z with the least squares of the differences, of triples x, z, y.
+fn least_squares(triples: impl Iterator<Item = [f64; 3]>) -> Option<f64> {
+    let [mut xx, mut xz, mut zz, mut xy, mut zy] = [0.0; 5];
+    for [x, z, y] in triples {
+        xx += x * x;
+        xz += x * z;
+        zz += z * z;
+        xy += x * y;
+        zy += z * y;
+    }
+    let determinant = xx * zz - xz * xz;
+    (determinant > 0.0).then(|| (xy * zz - zy * xz) / determinant)
 }

@@ -38,6 +38,7 @@ pub fn rewrite(text: &str, name: &str, found: &Loop) -> Result<String, WriteErro
             "acceleration_feed_forward_s",
             found.motor.acceleration_feed_forward_s,
         ),
+        ("max_command", found.motor.max_command),
     ];
     for (key, value) in values {
         let digits = four_digits(value);

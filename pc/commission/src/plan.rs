@@ -13,7 +13,7 @@ const BEYOND: f64 = 1.1;
 const PARTS: [f64; 3] = [1.0, 0.7, 1.0];
 /// Periods before what is captured.
 pub const SETTLE_PERIODS: u8 = 2;
-/// Way that a motor makes there and back (mm or °).
+/// Way that a motor makes there and back, where there is room (mm or °).
 pub const WAY: f64 = 20.0;
 /// Farthest that it is moved beside it (mm or °).
 pub const TRAVEL: f64 = 2.0;
@@ -40,16 +40,16 @@ impl Planned {
     }
 }
 
-/// The way that a motor makes meanwhile.
-pub fn way() -> Way {
-    Way::new(WAY, (4 * u32::from(SETTLE_PERIODS) + 2) * CAPTURE_TICKS as u32)
+/// A way of so many mm or °, as the motor makes it meanwhile.
+pub fn way(length: f64) -> Way {
+    Way::new(length, (4 * u32::from(SETTLE_PERIODS) + 2) * CAPTURE_TICKS as u32)
 }
 
-/// The excitations of a motor that may move with this acceleration \[1/s²\] (mm or °).
-pub fn plan(acceleration: f64) -> Vec<Planned> {
+/// The excitations of a motor that makes a way of this `length` (mm or °) and may move with this acceleration \[1/s²\].
+pub fn plan(length: f64, acceleration: f64) -> Vec<Planned> {
     let band = |(from, to): (f64, f64)| {
         let (from_hz, to_hz) = (from / BEYOND, to * BEYOND);
-        let most = (OF_SPEED * way().speed())
+        let most = (OF_SPEED * way(length).speed())
             .min(acceleration / (TAU * to_hz))
             .min(OF_TRAVEL * TRAVEL * TAU * from_hz);
         PARTS.map(|part| Planned {

@@ -2,7 +2,7 @@
 //! by hand (mathematics 0.11), which knows nothing of captures.
 
 use commission::{
-    Capture, Complex, Loop, Margins, Requirements, Response, SETTLE_PERIODS, design, plan, rewrite, way,
+    Capture, Complex, Loop, Margins, Requirements, Response, SETTLE_PERIODS, WAY, design, plan, rewrite, way,
 };
 use plant::{ModeConfig, MotionPlant, MotorConfig as TrueMotor, PlantConfig};
 use plant_file::{PlantChoice, PlantFile};
@@ -86,8 +86,8 @@ fn captures(index: usize, config: &TrueMotor, motor: &MotorConfig) -> Vec<Captur
     let start = bench.tick(DacCode(0));
     let mut counts = start;
     let mut captures = Vec::new();
-    let (way, settle) = (way(), u32::from(SETTLE_PERIODS) * CAPTURE_TICKS as u32);
-    for planned in plan(0.5 * config.drive.max_acceleration) {
+    let (way, settle) = (way(WAY), u32::from(SETTLE_PERIODS) * CAPTURE_TICKS as u32);
+    for planned in plan(WAY, 0.5 * config.drive.max_acceleration) {
         let (chirp, amplitude) = (planned.chirp(), planned.amplitude);
         let mut samples = Vec::new();
         for tick in 0..way.ticks() {
@@ -115,7 +115,11 @@ fn captures(index: usize, config: &TrueMotor, motor: &MotorConfig) -> Vec<Captur
             }
             counts = bench.tick(code);
         }
-        captures.push(Capture { planned, samples });
+        captures.push(Capture {
+            planned,
+            way: WAY,
+            samples,
+        });
     }
     captures
 }
@@ -209,15 +213,15 @@ fn the_response_is_that_of_the_linearised_plant() {
     config.mechanics.friction = 0.0;
     let (response, _) = found(Y, &config, &motor);
     assert!(response.believed > 0.95, "{}", response.believed);
-    for line in &response.lines {
+    // Above, a line is some tenths of a count.
+    let (mut db, mut degrees): (f64, f64) = (0.0, 0.0);
+    for line in response.lines.iter().filter(|line| line.hz <= 180.0) {
         let off = line.gain / linearised(&config, line.hz);
-        let (db, degrees) = (20.0 * off.norm().log10(), off.arg().to_degrees());
-        assert!(
-            db.abs() < 0.6 && degrees.abs() < 5.0,
-            "{} Hz: {db} dB, {degrees}°",
-            line.hz
-        );
+        db = db.max(20.0 * off.norm().log10().abs());
+        degrees = degrees.max(off.arg().to_degrees().abs());
     }
+    println!("{db:.2} dB, {degrees:.1}°");
+    assert!(db < 0.6 && degrees < 3.0, "{db} dB, {degrees}°");
 }
 
 #[test]
@@ -246,6 +250,7 @@ fn gain_and_delay_of_the_drive_are_found() {
     config.drive.gain_error = 0.03;
     config.drive.dead_time_s = 0.0015;
     let (_, designed) = found(Y, &config, &motor);
+    println!("{:?}", designed.lag);
     assert!((designed.lag.gain - 1.03).abs() < 0.01, "{:?}", designed.lag);
     let lag = 0.0015 + 50e-6 + SERVO_PERIOD_S / 2.0;
     assert!(

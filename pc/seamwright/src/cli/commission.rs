@@ -19,6 +19,10 @@ use world::Surroundings;
 
 /// Part of the acceleration of an axis that an excitation uses.
 const OF_ACCELERATION: f64 = 0.5;
+/// Part of its proportional gains with which a machine is measured.
+const SOFTENED: f64 = 0.25;
+/// Part of the speed of an axis that ends one.
+const OF_SPEED: f64 = 0.9;
 
 /// The machine homes. Each motor then goes 20 mm (20°) there and back, twelve times, while its drive is shaken by up to
 /// 1 mm; from what its grating tells come gain and delay of the drive, and the highest gains with a gain margin of 6 dB, a phase
@@ -50,8 +54,9 @@ impl Commission {
             .flat_map(|motor| excitations(&machine, *motor))
             .collect();
         let run = ExcitationRun { excitations };
+        let softened = softened(&machine);
         let job = Job {
-            machine: &machine,
+            machine: &softened,
             work: Work::Excite(&run),
             part: None,
             speed_m_per_min: None,
@@ -120,6 +125,8 @@ impl Commission {
             }
         }
         if let Some(output) = &self.output {
+            MachineFile::parse(&output.display().to_string(), &text)
+                .context("what was found makes no machine file, and none is written")?;
             std::fs::write(output, text).with_context(|| format!("cannot write {}", output.display()))?;
             outln!("{}", output.display());
         }
@@ -130,11 +137,27 @@ impl Commission {
     }
 }
 
+/// The machine with loops that are too slow to ring, whatever its gains are: in a loop that swings by itself nothing is measured.
+fn softened(machine: &MachineFile) -> MachineFile {
+    let mut softened = machine.clone();
+    for motor in softened.motion.motors.iter_mut().flatten() {
+        motor.kp *= SOFTENED;
+        motor.ki *= SOFTENED * SOFTENED;
+        motor.kd = 0.0;
+    }
+    softened
+}
+
 /// What motor `index` is told.
 fn excitations(machine: &MachineFile, index: usize) -> Vec<Excitation> {
     let axis = machine.motion.axes[MOTOR_AXIS[index]].as_ref();
     let (speed, acceleration) = axis.map_or((0.0, 0.0), |axis| (axis.max_velocity, axis.max_acceleration));
-    let planned = plan(OF_ACCELERATION * acceleration);
+    // To one side there is half of the travel at least.
+    let room = axis.map_or(0.0, |axis| {
+        (axis.travel_max - axis.travel_min) / 2.0 - 2.0 * TRAVEL
+    });
+    let way = WAY.min(room).max(0.0);
+    let planned = plan(way, OF_ACCELERATION * acceleration);
     planned
         .into_iter()
         .map(|planned| Excitation {
@@ -144,9 +167,9 @@ fn excitations(machine: &MachineFile, index: usize) -> Vec<Excitation> {
             from_hz: planned.from_hz,
             to_hz: planned.to_hz,
             settle_periods: SETTLE_PERIODS,
-            way: WAY,
+            way,
             max_travel: TRAVEL,
-            max_speed: speed,
+            max_speed: OF_SPEED * speed,
         })
         .collect()
 }
@@ -165,6 +188,7 @@ fn loop_of(machine: &MachineFile, index: usize, captured: &[CapturedMotion]) -> 
                 to_hz: captured.excitation.to_hz,
                 amplitude: captured.excitation.amplitude,
             },
+            way: captured.excitation.way,
             samples: captured.samples.clone(),
         })
         .collect();
