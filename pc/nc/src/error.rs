@@ -161,7 +161,9 @@ pub enum Problem {
     #[error("WELDON needs the name of a set of the weld data: WELDON=root")]
     NoWeldName,
     /// More in the line of an O word.
-    #[error("this does not belong to the O word")]
+    #[error(
+        "this does not belong to the O word, or the number of the program, before it: write it in a line of its own"
+    )]
     FlowRest,
     /// A condition or count is missing.
     #[error("{0} needs one value in brackets")]

@@ -5,7 +5,7 @@ use super::codes::{Code, Group};
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
 use super::modal::Modal;
-use shared::geometry::Turn;
+use super::outputs::Spindle;
 
 /// Modes of one moment.
 #[derive(Clone, Debug)]
@@ -16,7 +16,7 @@ pub(super) struct Saved {
     to_its_end: bool,
     modal: Modal,
     system: usize,
-    spindle: Option<Turn>,
+    spindle: Spindle,
     place: SourcePosition,
 }
 
@@ -47,7 +47,7 @@ impl Interpreter {
                         to_its_end: code == Code::SaveModesOfSubroutine,
                         modal: self.modal.clone(),
                         system: self.offsets.active,
-                        spindle: self.spindle.turns(),
+                        spindle: self.spindle.clone(),
                         place,
                     });
                 }
@@ -70,14 +70,17 @@ impl Interpreter {
         }
     }
 
-    /// All modes but that of motion. A spindle is not switched by this.
+    /// All modes but that of motion, and S. A spindle is not switched on or off by this.
     fn restore(&mut self, saved: Saved, place: SourcePosition) -> Result<(), NcError> {
-        if saved.spindle != self.spindle.turns() {
+        if saved.spindle.turns() != self.spindle.turns() {
             let (code, why) = (
                 "M72",
                 "the spindle is not as it was at M70 or M73: write M3 or M5 before",
             );
             return Err(Problem::Impossible { code, why }.at(place));
+        }
+        if let Some(pending) = self.spindle.restore(saved.spindle, place) {
+            self.wait(pending);
         }
         let motion = self.modal.motion;
         self.modal = saved.modal;

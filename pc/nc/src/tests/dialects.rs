@@ -193,3 +193,14 @@ fn levels_of_a_cycle_are_said_again_after_g90_or_g91() {
     }
     assert!(run(&format!("{levels}G91 X1 R-7 Z-5\nG90 X5 R2 Z-5\nM2")).is_ok());
 }
+
+#[test]
+fn a_program_number_stands_alone() {
+    assert_eq!(
+        ends(":1234 (NAME)\nM98 P20\nM30\n:20\nG0 X5\nM99"),
+        ends("O1\nG0 X5\nM2")
+    );
+    for body in ["O100 #1=5", "O100 -5", "O100 [5]", ":10 G0 X1", ":10 sub"] {
+        assert!(run(&format!("{body}\nM2")).is_err(), "{body}");
+    }
+}
