@@ -80,6 +80,14 @@ impl Modal {
         }
     }
 
+    /// The G codes are those of `saved` again; what is none stays: F, CTOL, and which point is led.
+    pub(super) fn restore_codes(&mut self, saved: Self) {
+        let now = std::mem::replace(self, saved);
+        self.feed = now.feed.filter(|_| now.feed_mode == self.feed_mode);
+        (self.tip, self.vectors) = (now.tip, now.vectors);
+        self.contour_tolerance = now.contour_tolerance;
+    }
+
     /// mm of a unit of length.
     pub(super) fn unit(&self) -> f64 {
         if self.inches { INCH } else { 1.0 }
