@@ -15,6 +15,7 @@ pub mod off_times;
 pub mod outside;
 pub mod pace;
 pub mod pair;
+pub mod picture;
 pub mod session;
 pub mod time;
 pub mod waveform;

@@ -39,12 +39,29 @@ pub enum SessionError {
     Machine(#[from] MachineError),
 }
 
+/// Requests that give the boards the dual-beam gantry's parameters, in the order of the boards.
+pub fn parameters() -> Result<Vec<Request>, SessionError> {
+    let machine = MachineFile::parse("dual-beam-gantry.toml", MACHINE)?;
+    let tracker = machine.tracking.map(|unit| Request::ConfigureTracker(unit.board));
+    let motion = Request::ConfigureMotion(machine.motion);
+    Ok([motion].into_iter().chain(tracker).collect())
+}
+
 /// Connections to both boards.
 pub struct Session([TcpStream; 2]);
 
 impl Session {
     /// Connects to both boards, once they are on the net, and sends them the dual-beam gantry's parameters.
     pub fn open(pair: &mut Pair) -> Result<Self, SessionError> {
+        let mut session = Self::connect(pair)?;
+        for (board, request) in parameters()?.iter().enumerate() {
+            session.done(pair, board, request)?;
+        }
+        Ok(session)
+    }
+
+    /// Connects to both boards, once they are on the net, and greets them.
+    pub fn connect(pair: &mut Pair) -> Result<Self, SessionError> {
         if !pair.run_to_link(LINK_LIMIT) {
             return Err(SessionError::Link);
         }
@@ -59,13 +76,8 @@ impl Session {
         let hello = Request::Hello {
             schema_hash: SCHEMA_HASH,
         };
-        let machine = MachineFile::parse("dual-beam-gantry.toml", MACHINE)?;
         for board in 0..2 {
             session.ask(pair, board, &hello)?;
-        }
-        session.done(pair, 0, &Request::ConfigureMotion(machine.motion))?;
-        if let Some(unit) = machine.tracking {
-            session.done(pair, 1, &Request::ConfigureTracker(unit.board))?;
         }
         Ok(session)
     }
@@ -100,17 +112,36 @@ impl Session {
         board: usize,
         request: &Request,
     ) -> Result<Response, SessionError> {
+        let [answer] = self.ask_together(pair, board, [request])?;
+        Ok(answer)
+    }
+
+    /// Requests that go out at once, and their answers.
+    pub fn ask_together<const N: usize>(
+        &mut self,
+        pair: &mut Pair,
+        board: usize,
+        requests: [&Request; N],
+    ) -> Result<[Response; N], SessionError> {
         let mut buffer = [0; 2 + MAX_MESSAGE];
-        self.0[board].write_all(encode_message(request, &mut buffer).map_err(io::Error::other)?)?;
+        let mut all = Vec::new();
+        for request in requests {
+            all.extend_from_slice(encode_message(request, &mut buffer).map_err(io::Error::other)?);
+        }
+        self.0[board].write_all(&all)?;
         let end = pair.now() + ANSWER_LIMIT;
-        self.read(pair, board, &mut buffer[..2], end)?;
-        let length = usize::from(u16::from_le_bytes([buffer[0], buffer[1]]));
-        let body = buffer
-            .get_mut(..length)
-            .ok_or(io::ErrorKind::InvalidData)
-            .map_err(io::Error::from)?;
-        self.read(pair, board, body, end)?;
-        Ok(decode_message(body).map_err(io::Error::other)?)
+        let mut answers = [const { Response::Done }; N];
+        for answer in &mut answers {
+            self.read(pair, board, &mut buffer[..2], end)?;
+            let length = usize::from(u16::from_le_bytes([buffer[0], buffer[1]]));
+            let body = buffer
+                .get_mut(..length)
+                .ok_or(io::ErrorKind::InvalidData)
+                .map_err(io::Error::from)?;
+            self.read(pair, board, body, end)?;
+            *answer = decode_message(body).map_err(io::Error::other)?;
+        }
+        Ok(answers)
     }
 
     fn read(&mut self, pair: &mut Pair, board: usize, to: &mut [u8], end: Time) -> io::Result<()> {

@@ -67,3 +67,18 @@ fn both_boards_say_who_they_are() {
         }
     }
 }
+
+#[test]
+fn the_boards_are_on_the_net_after_their_phys_have_negotiated_and_not_before() {
+    let images = [shipped("motion"), shipped("tracker")];
+    let mut pair = Pair::start(
+        [&images[0], &images[1]],
+        plant_file::DEFAULT_MACHINE,
+        &PlantChoice::Shipped,
+    )
+    .expect("both run");
+    // The model's PHYs negotiate for 1.5 s.
+    assert!(!pair.run_to_link(Time::ms(1500)), "at {}", pair.now());
+    assert!(pair.run_to_link(LONGEST));
+    println!("on the net: {}", pair.now());
+}

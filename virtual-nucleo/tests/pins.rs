@@ -6,14 +6,15 @@ use common::{causes, motion, plant_fault, shipped, tracker};
 use plant_file::PlantChoice;
 use virtual_nucleo::board::Board;
 use virtual_nucleo::chip::recorder::{Change, Level};
-use virtual_nucleo::outside::{Output, Role};
+use virtual_nucleo::image::Image;
+use virtual_nucleo::outside::{Output, Outside, Role};
 use virtual_nucleo::pair::{NAMES, Pair};
 use virtual_nucleo::session::Session;
 use virtual_nucleo::time::Time;
 
 /// See `boot.rs`.
 const KNOWN: &str = "reserved bits 0xfffff007 of IFCR of SPI3 are changed";
-/// Port F and CLR are low some microseconds after reset (docs/wiring.md).
+/// All outputs and CLR are low some microseconds after reset (docs/wiring.md).
 const START_UP: Time = Time::us(5);
 
 /// Changes of each line, and what they show of it.
@@ -57,14 +58,11 @@ fn check_start(name: &str, lines: &[Line]) {
             .first()
             .unwrap_or_else(|| panic!("{name}: {output} floats for ever"));
         let converter = output.role == Role::Converter;
-        let on_port_f = !converter && output.role != Role::Process;
         if !converter || output.name == "CLR" {
             assert_eq!(first.level, Level::Low, "{name}: {output} at {}", first.at);
+            assert!(first.at < START_UP, "{name}: {output} floats until {}", first.at);
         } else {
             assert_eq!(first.level, Level::High, "{name}: {output} at {}", first.at);
-        }
-        if on_port_f || output.name == "CLR" {
-            assert!(first.at < START_UP, "{name}: {output} floats until {}", first.at);
         }
         if !converter {
             let high = line.first(Level::High).unwrap_or(Time::NEVER);
@@ -240,4 +238,24 @@ fn the_record_is_a_file_that_a_reader_of_waveforms_understands() {
     assert_eq!(at, 20_000_000);
     assert_eq!(enables, [vcd::Value::Z, vcd::Value::V0]);
     assert!(beats.len() >= 8, "{beats:?}");
+}
+
+#[test]
+fn without_converters_no_line_ever_goes_high_and_the_board_runs_on() {
+    let file = std::fs::read(shipped("motion")).expect("the image is built");
+    let image = Image::read(&file).expect("an image");
+    let mut board = Board::new(image, Outside::nothing(), 1).expect("a board");
+    board.record_pins();
+    board.run(Time::ms(700));
+    let changes = board.chip_mut().shared.recorder.take();
+    let switched = |change: &&Change| [4, 5].contains(&change.pin.port) && change.level != Level::Floating;
+    let driven: Vec<_> = changes.iter().filter(switched).collect();
+    let high: Vec<_> = driven
+        .iter()
+        .filter(|change| change.level == Level::High)
+        .collect();
+    // 16 lines of ports E and F are driven, and no watchdog resets the board.
+    assert!(driven.len() >= 15, "{driven:?}");
+    assert!(high.is_empty(), "{high:?}");
+    assert_eq!(board.resets, 0);
 }

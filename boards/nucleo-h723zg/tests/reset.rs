@@ -1,8 +1,8 @@
 //! What start-up writes before memory is set up, against the manufacturer's description of the chip.
 #![cfg(not(target_os = "none"))]
 
-use board_nucleo_h723zg::pins::{DAC_CLEAR, OUTPUT_MASK, OUTPUT_PORT};
-use board_nucleo_h723zg::reset::{MODE, PORT_CLOCKS, SET_RESET, outputs, port};
+use board_nucleo_h723zg::pins::{DAC_CLEAR, HEARTBEAT, OUTPUT_MASK, PROCESS_OUTPUTS, Pin};
+use board_nucleo_h723zg::reset::{MODE, PORT_CLOCKS, PORTS, SET_RESET, low, outputs, port};
 use stm32_metapac::metadata::{METADATA, Peripheral};
 
 fn peripheral(name: &str) -> &'static Peripheral {
@@ -27,7 +27,7 @@ fn offset(peripheral: &Peripheral, register: &str) -> u32 {
 
 #[test]
 fn the_registers_are_the_chips() {
-    for (number, name) in [(OUTPUT_PORT, "GPIOF"), (DAC_CLEAR.port, "GPIOG")] {
+    for (number, name) in PORTS.into_iter().zip(["GPIOF", "GPIOG", "GPIOE"]) {
         let gpio = peripheral(name);
         assert_eq!(u64::from(port(number)), gpio.address, "{name}");
         assert_eq!(offset(gpio, "MODER"), MODE);
@@ -49,7 +49,7 @@ fn the_registers_are_the_chips() {
         .iter()
         .find(|f| f.name.eq_ignore_ascii_case("AHB4ENR"))
         .unwrap();
-    for (number, name) in [(OUTPUT_PORT, "GPIOFEN"), (DAC_CLEAR.port, "GPIOGEN")] {
+    for (number, name) in PORTS.into_iter().zip(["GPIOFEN", "GPIOGEN", "GPIOEEN"]) {
         let field = clocks
             .fields
             .iter()
@@ -80,4 +80,14 @@ fn outputs_get_the_mode_of_an_output_and_no_other_pin_is_touched() {
     // Out of reset all pins are analog: 0b11.
     let out_of_reset = u32::MAX;
     assert_eq!(out_of_reset & !clear | set, 0x5fd5_557f);
+}
+
+#[test]
+fn heartbeat_clear_and_all_outputs_of_the_process_are_low_from_reset_on() {
+    let is_low = |pin: &Pin| PORTS.contains(&pin.port) && low(pin.port) & 1 << pin.number != 0;
+    for pin in PROCESS_OUTPUTS.iter().chain([&HEARTBEAT, &DAC_CLEAR]) {
+        assert!(is_low(pin), "{pin:?}");
+    }
+    // docs/wiring.md: PF3 to PF10, PF14 and PF15; PG10, PG12, PG14 and PG15; PE0, PE10, PE12, PE14 and PE15.
+    assert_eq!(PORTS.map(low), [0xc7f8, 0xd400, 0xd401]);
 }

@@ -17,10 +17,53 @@ pub struct Word {
     pub value: f64,
     /// A name, written with `=`.
     pub named: bool,
-    /// A step by IC( ), or a coordinate by AC( ), whatever G90 and G91 say.
-    pub step: Option<bool>,
+    /// How it is meant by IC( ) and its like, whatever G90 and G91 say.
+    pub distance: Option<Distance>,
     /// Where it starts.
     pub place: SourcePosition,
+}
+
+/// How the value of one word is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Distance {
+    /// IC( ): a step.
+    Step,
+    /// AC( ): a coordinate.
+    Absolute,
+    /// DC( ): an angle up to whole turns, the short way.
+    Shortest,
+    /// ACP( ): the same in the positive direction.
+    Upward,
+    /// ACN( ): the same in the negative direction.
+    Downward,
+}
+
+impl Distance {
+    /// Of lengths, which have no other ones but coordinates.
+    pub fn is_step(self) -> bool {
+        self == Self::Step
+    }
+
+    /// DC( ), ACP( ) and ACN( ) are for rotary axes.
+    pub fn turns(self) -> bool {
+        matches!(self, Self::Shortest | Self::Upward | Self::Downward)
+    }
+
+    /// The coordinate that `value` means where the axis is at `now`.
+    pub fn coordinate(self, value: f64, now: f64) -> f64 {
+        let turns = (now - value) / 360.0;
+        // Angles that differ by less are the same.
+        let same = 1e-9;
+        value
+            + 360.0
+                * match self {
+                    Self::Step => return now + value,
+                    Self::Absolute => return value,
+                    Self::Shortest => turns.round(),
+                    Self::Upward => (turns - same).ceil(),
+                    Self::Downward => (turns + same).floor(),
+                }
+    }
 }
 
 impl Word {
@@ -59,6 +102,10 @@ pub struct CodeWord {
 }
 
 impl CodeWord {
+    pub(super) fn group(&self) -> Group {
+        self.group
+    }
+
     pub(super) fn new(name: &'static str, code: Code, group: Group, place: SourcePosition) -> Self {
         Self {
             code,
@@ -143,6 +190,8 @@ const LONGEST_LINE: usize = 10_000;
 const WORDS: [&str; 21] = [
     "X", "Y", "Z", "A", "B", "C", "I", "J", "K", "R", "F", "P", "L", "E", "Q", "S", "T", "H", "D", "@", "^",
 ];
+/// Words that are lengths.
+const LENGTHS: [&str; 7] = ["X", "Y", "Z", "I", "J", "K", "R"];
 /// The same, written with `=`.
 const NAMED_WORDS: [&str; 22] = [
     "V1", "V2", "A3", "B3", "C3", "CR", "AR", "TURN", "I1", "J1", "K1", "AP", "RP", "RPL", "CTOL", "ANG",
@@ -164,6 +213,7 @@ pub(super) fn parse(
     scanner.skip_blanks();
     match scanner.peek() {
         None => return Ok(Parsed::Blank),
+        Some('0'..='9' | '%') if is_heidenhain(text) => return Err(Problem::Heidenhain.at(scanner.place())),
         Some('%') => return Ok(Parsed::Percent),
         Some('/') if block_delete => return Ok(Parsed::Blank),
         Some('/') => scanner.step(),
@@ -232,11 +282,34 @@ pub(super) fn parse(
     })
 }
 
-/// G5.1 with Q and nothing else is no curve but what other controllers call high-speed machining.
+/// `0 BEGIN PGM NAME MM`, or `%NAME G71 *` of their DIN/ISO programs.
+fn is_heidenhain(text: &str) -> bool {
+    let text = text.trim_ascii();
+    match text.strip_prefix('%') {
+        Some(name) => {
+            let name = name.trim_end_matches([' ', '*']);
+            name.ends_with(" G70") || name.ends_with(" G71")
+        }
+        None => text
+            .trim_start_matches(|c: char| c.is_ascii_digit())
+            .trim_ascii_start()
+            .starts_with("BEGIN PGM "),
+    }
+}
+
+/// G5.1 with Q and nothing else is no curve but what other controllers call high-speed machining, as is G5 with P alone.
 fn high_speed(block: &mut Block) -> Result<(), NcError> {
     let ([code], [q]) = (&mut block.codes[..], &block.words[..]) else {
         return Ok(());
     };
+    if code.code == Code::CubicSpline && q.address == "P" {
+        if ![0.0, 10000.0].contains(&q.value) {
+            return Err(q.value_error("P10000 begins high-speed machining, P0 ends it"));
+        }
+        *code = CodeWord::new("G5 P", Code::Hint, Group::Hint, code.place);
+        block.words.clear();
+        return Ok(());
+    }
     if code.code != Code::QuadraticSpline || q.address != "Q" {
         return Ok(());
     }
@@ -248,8 +321,14 @@ fn high_speed(block: &mut Block) -> Result<(), NcError> {
     Ok(())
 }
 
-/// G70 and G71 are units but where they have words of a cycle.
+/// G70 and G71 are units but where they have words of a cycle, and G50 is the end of scaling but where it has words.
 fn lathe_cycle(block: &Block) -> Result<(), NcError> {
+    if let Some(code) = block.codes.iter().find(|code| code.name == "G50")
+        && ["S", "X", "Y", "Z"].iter().any(|name| block.word(name).is_some())
+    {
+        let (letter, number, why) = ('G', 50.0, LATHE);
+        return Err(Problem::RefusedCode { letter, number, why }.at(code.place));
+    }
     let units = block
         .code(Group::Units)
         .filter(|code| matches!(code.name, "G70" | "G71"));
@@ -265,7 +344,7 @@ fn lathe_cycle(block: &Block) -> Result<(), NcError> {
 }
 
 /// `#… = …`, behind the `#`.
-fn setting(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<(), NcError> {
+pub(super) fn setting(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<(), NcError> {
     let place = scanner.place();
     let parameter = expression::parameter(scanner, lookup)?;
     scanner.skip_blanks();
@@ -276,7 +355,7 @@ fn setting(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<(), NcError> {
     scanner.skip_blanks();
     let place = scanner.place();
     lookup.next = Some(parameter.clone());
-    let value = expression::value(scanner, lookup)?.ok_or(Problem::NoValue.at(place))?;
+    let value = expression::terms(scanner, lookup)?.ok_or(Problem::NoValue.at(place))?;
     lookup.next = None;
     lookup.settings.push((parameter, value));
     Ok(())
@@ -348,7 +427,10 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
         Problem::TooLarge(_) => Problem::TooLarge(address.clone()).at(place),
         _ => error,
     };
-    let (value, step) = match sign {
+    if !sign && LENGTHS.contains(&address.as_str()) && scanner.has_implied_point() {
+        return Err(Problem::ImpliedPoint(address).at(place));
+    }
+    let (value, distance) = match sign {
         true => siemens::value(scanner, lookup).map_err(of_word)?,
         // X R1 is not X=R1, but a word without a number.
         false if scanner.at_signed_parameter() => (None, None),
@@ -359,7 +441,7 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
             address,
             value,
             named,
-            step,
+            distance,
             place,
         }),
         None if letters > 1 && !named => {
@@ -420,6 +502,10 @@ impl Block {
     /// Puts a code into it, which must not exclude another one.
     pub(super) fn add(&mut self, code: CodeWord) -> Result<(), NcError> {
         let both = code.group == Group::Coolant && code.code != Code::CoolantOff;
+        if code.group == Group::Hint {
+            self.codes.push(code);
+            return Ok(());
+        }
         if let Some(other) = self.code(code.group)
             && !(both && other.code != Code::CoolantOff && other.code != code.code)
         {

@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 114] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 118] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -16,6 +16,8 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 114] = [
     ('G', 63, Code::KnotNurbsEnd, "G6.3", Group::Motion),
     ('G', 80, Code::Radii, "G8", Group::Lathe),
     ('G', 100, Code::SetOffsets, "G10", Group::NonModal),
+    ('G', 150, Code::PolarOff, "G15", Group::Polar),
+    ('G', 160, Code::Polar, "G16", Group::Polar),
     ('G', 170, Code::PlaneXy, "G17", Group::Plane),
     ('G', 180, Code::PlaneZx, "G18", Group::Plane),
     ('G', 190, Code::PlaneYz, "G19", Group::Plane),
@@ -34,6 +36,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 114] = [
     ('G', 434, Code::TipOn, "G43.4", Group::ToolLength),
     ('G', 435, Code::TipByVectors, "G43.5", Group::ToolLength),
     ('G', 490, Code::TipOff, "G49", Group::ToolLength),
+    ('G', 500, Code::Hint, "G50", Group::Hint),
     ('G', 520, Code::LocalOffset, "G52", Group::NonModal),
     ('G', 530, Code::MachineAxes, "G53", Group::NonModal),
     ('G', 540, Code::System(1), "G54", Group::Offset),
@@ -54,6 +57,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 114] = [
     ('G', 6430, Code::WithinTolerance, "G643", Group::PathControl),
     ('G', 6440, Code::WithinTolerance, "G644", Group::PathControl),
     ('G', 6450, Code::WithinTolerance, "G645", Group::PathControl),
+    ('G', 690, Code::Hint, "G69", Group::Hint),
     ('G', 700, Code::Inches, "G70", Group::Units),
     ('G', 710, Code::Millimetres, "G71", Group::Units),
     ('G', 730, Code::ChipBreaking, "G73", Group::Motion),
@@ -120,7 +124,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 114] = [
 ];
 
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 28] = [
+const REFUSED: [(char, u32, &str); 33] = [
     ('G', 70, LATHE),
     ('G', 330, THREADING),
     ('G', 331, THREADING),
@@ -133,6 +137,23 @@ const REFUSED: [(char, u32, &str); 28] = [
     ('G', 411, COMPENSATION),
     ('G', 420, COMPENSATION),
     ('G', 421, COMPENSATION),
+    (
+        'G',
+        510,
+        "coordinates are neither scaled nor mirrored: let the CAM system do so",
+    ),
+    (
+        'G',
+        541,
+        "coordinate systems are G54 to G59.3: G54.1 P has no others",
+    ),
+    ('G', 650, MACRO),
+    ('G', 660, MACRO),
+    (
+        'G',
+        680,
+        "coordinates are rotated by G10 L2 R about the origin of a system, or by ROT and AROT",
+    ),
     (
         'G',
         683,
@@ -172,6 +193,7 @@ const REFUSED: [(char, u32, &str); 28] = [
 ];
 
 pub(super) const LATHE: &str = "lathe codes are not supported";
+const MACRO: &str = "macros are not called with letters: write a subroutine and o<name> call, or M98";
 const THREADING: &str =
     "threading and tapping need a spindle that the axes follow, and this machine has none";
 const PROBING: &str =
@@ -230,6 +252,10 @@ pub enum Code {
     Radii,
     /// G10.
     SetOffsets,
+    /// G15.
+    PolarOff,
+    /// G16: X and Y are distance and angle.
+    Polar,
     /// G17.
     PlaneXy,
     /// G18.
@@ -401,6 +427,8 @@ pub enum Group {
     CycleEnd,
     /// G4 G10 G28 G30 G52 G53 G92, TRANS, ROT, G110 and theirs: they hold in their block only.
     NonModal,
+    /// G15 G16.
+    Polar,
     /// G17 G18 G19.
     Plane,
     /// G20 G21 G70 G71 G700 G710.
@@ -441,7 +469,7 @@ pub enum Group {
     Outputs,
     /// M98 M99 M17.
     Call,
-    /// ORIAXES, G22, G23, and G5.1 with Q alone.
+    /// ORIAXES, G22, G23, G50, G69, and G5 and G5.1 as high-speed machining; several may stand together.
     Hint,
 }
 

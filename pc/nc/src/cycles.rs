@@ -27,6 +27,8 @@ pub(super) struct Sticky {
     code: Option<Code>,
     /// R and the word of the plane's axis, as coordinates or steps \[mm\].
     levels: [Option<f64>; 2],
+    /// Whether they are steps.
+    steps: [bool; 2],
     /// Q \[mm\].
     peck: Option<f64>,
     /// P \[s\].
@@ -83,6 +85,13 @@ impl Interpreter {
         }
         let feed = self.modal.feed_rate(block, mode, place, false)?;
         self.keep_words(block, claims, mode, axis)?;
+        let places = (0..3)
+            .filter(|i| *i != axis)
+            .any(|i| block.word(AXIS_WORDS[i]).is_some());
+        if claims.word(mode, "L").is_some_and(|l| l.value == 0.0) && !places {
+            // For the places in the blocks that follow.
+            return Ok(true);
+        }
         let missing = |word| {
             Problem::Missing {
                 code: mode.name(),
@@ -92,6 +101,13 @@ impl Interpreter {
         };
         let retract = self.sticky.levels[0].ok_or_else(|| missing("R"))?;
         let bottom = self.sticky.levels[1].ok_or_else(|| missing(AXIS_WORDS[axis]))?;
+        if self.sticky.steps != [self.modal.incremental; 2] {
+            let (code, why) = (
+                mode.name(),
+                "controllers differ in what R and the depth mean after a change between G90 and G91: write both again",
+            );
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
         let peck = self.sticky.peck;
         let peck = match mode {
             Code::PeckDrilling | Code::ChipBreaking => peck.ok_or_else(|| missing("Q"))?,
@@ -99,7 +115,11 @@ impl Interpreter {
         };
         let dwell = match mode {
             Code::DrillingWithDwell | Code::BoringWithDwell | Code::BoringWithStop => {
-                self.sticky.dwell.ok_or_else(|| missing("P"))?
+                let dwell = self.sticky.dwell;
+                if dwell.is_none() {
+                    self.tell_once(format!("{} without P does not dwell", mode.name()), place);
+                }
+                dwell.unwrap_or(0.0)
             }
             _ => 0.0,
         };
@@ -110,13 +130,21 @@ impl Interpreter {
             true => (retract + initial, retract + initial + bottom),
             false => (retract, bottom),
         };
+        if !self.modal.level_said && initial > retract {
+            let text = "without G98 or G99 a cycle ends at R, as on LinuxCNC: other controllers go back to where the first one began, for which write G98";
+            self.tell_once(text.to_owned(), place);
+        }
         if retract < bottom {
             let (code, why) = (mode.name(), "R is below the bottom of the hole");
             return Err(Problem::Impossible { code, why }.at(place));
         }
         let repeats = match claims.word(mode, "L") {
             Some(l) if l.value.fract() == 0.0 && (1.0..=MOST).contains(&l.value) => l.value as u32,
-            Some(l) => return Err(l.value_error("a cycle is repeated 1 to 10000 times")),
+            Some(l) => {
+                return Err(l.value_error(
+                    "a cycle is repeated 1 to 10000 times; L0 is for a block without the place of a hole",
+                ));
+            }
             None => 1,
         };
         let cycle = Cycle {
@@ -168,8 +196,11 @@ impl Interpreter {
         let unit = self.modal.unit();
         let length = |word: &super::block::Word| word.value * unit;
         let levels = [claims.word(mode, "R"), block.word(AXIS_WORDS[axis])];
-        for (kept, word) in self.sticky.levels.iter_mut().zip(levels) {
-            *kept = word.map(length).or(*kept);
+        let kept = self.sticky.levels.iter_mut().zip(&mut self.sticky.steps);
+        for ((kept, steps), word) in kept.zip(levels) {
+            if let Some(word) = word {
+                (*kept, *steps) = (Some(length(word)), self.modal.incremental);
+            }
         }
         if let Some(q) = claims.word(mode, "Q") {
             if q.value <= 0.0 {
@@ -181,6 +212,7 @@ impl Interpreter {
             if !(0.0..=super::outputs::LONGEST_DWELL_S).contains(&p.value) {
                 return Err(p.value_error("the time must be from 0 to 86400 s (a day)"));
             }
+            self.tell_seconds(mode.name(), p.value, p.place);
             self.sticky.dwell = Some(p.value);
         }
         Ok(())

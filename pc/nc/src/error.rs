@@ -40,6 +40,16 @@ pub enum Problem {
     /// No character of the dialect.
     #[error("'{0}' is not understood here")]
     Character(char),
+    /// A program of Heidenhain controllers.
+    #[error(
+        "this is a program of a Heidenhain controller, which is not read here: let the CAM system put out RS274/NGC or Siemens 840D"
+    )]
+    Heidenhain,
+    /// Zeros before a number without a point.
+    #[error(
+        "{0} has zeros before it and no point: on controllers with an implied point it is another length, so write the point"
+    )]
+    ImpliedPoint(String),
     /// `(` without `)`.
     #[error("the comment is not closed")]
     OpenComment,
@@ -151,7 +161,9 @@ pub enum Problem {
     #[error("WELDON needs the name of a set of the weld data: WELDON=root")]
     NoWeldName,
     /// More in the line of an O word.
-    #[error("this does not belong to the O word")]
+    #[error(
+        "this does not belong to the O word, or the number of the program, before it: write it in a line of its own"
+    )]
     FlowRest,
     /// A condition or count is missing.
     #[error("{0} needs one value in brackets")]
@@ -244,6 +256,12 @@ pub enum Problem {
     /// An index that no array has.
     #[error("{0} is no index or size of an array: they are whole, from 0, and up to 10000")]
     ArrayIndex(f64),
+    /// DO of a macro without its number.
+    #[error("WHILE [ ] DO has the number of its loop behind it: DO1, DO2 or DO3")]
+    MacroLoop,
+    /// THEN of a macro with something else than a parameter.
+    #[error("THEN has a parameter that is set behind it, in the same line: IF [#1 EQ 5] THEN #2=1")]
+    MacroThen,
     /// FOR without its counter.
     #[error("FOR needs a variable with its first and its last value: FOR NAME=1 TO 5")]
     NoCounter,
@@ -303,7 +321,7 @@ pub enum Problem {
         why: String,
     },
     /// A G or M code of another dialect.
-    #[error("{letter}{number} is not understood")]
+    #[error("{letter}{number} is not understood{}", if *letter == 'M' { ": functions of other machines mean nothing here, so leave it out, or switch an output with M62 to M65" } else { "" })]
     UnknownCode {
         /// G or M.
         letter: char,

@@ -18,6 +18,21 @@ pub(super) fn value(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Op
     value_at(scanner, lookup, 0)
 }
 
+/// The same with operators behind it, as macros have them without brackets: `#2*3+1`. Only those that are marks, as letters begin
+/// words.
+pub(super) fn terms(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Option<f64>, NcError> {
+    let start = scanner.mark();
+    let first = value(scanner, lookup)?;
+    scanner.skip_blanks();
+    match (first, scanner.peek()) {
+        (Some(_), Some('+' | '-' | '*' | '/')) => {
+            scanner.go_back(start);
+            chain(scanner, lookup, 0, Operator::read_mark).map(Some)
+        }
+        _ => Ok(first),
+    }
+}
+
 /// `#` with its number or name; the scanner is behind the `#`.
 pub(super) fn parameter(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Parameter, NcError> {
     parameter_at(scanner, lookup, 0)
@@ -112,6 +127,14 @@ impl Operator {
         }
     }
 
+    /// The operator at the scanner, outside of brackets: what is none ends the expression.
+    fn read_mark(scanner: &mut Scanner) -> Result<Self, NcError> {
+        match scanner.peek() {
+            Some('+' | '-' | '*' | '/') => Self::read(scanner),
+            _ => Ok(Self::Close),
+        }
+    }
+
     /// The operator at the scanner.
     fn read(scanner: &mut Scanner) -> Result<Self, NcError> {
         scanner.skip_blanks();
@@ -186,6 +209,20 @@ impl Operator {
 fn bracket(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<f64, NcError> {
     let open = scanner.place();
     scanner.step();
+    chain(scanner, lookup, depth, |scanner| match scanner.peek() {
+        None => Err(Problem::OpenBracket.at(open)),
+        Some(_) => Operator::read(scanner),
+    })
+}
+
+/// Values and operators, up to the one that closes them.
+fn chain(
+    scanner: &mut Scanner,
+    lookup: &mut dyn Lookup,
+    depth: u32,
+    read: impl Fn(&mut Scanner) -> Result<Operator, NcError>,
+) -> Result<f64, NcError> {
+    let open = scanner.place();
     // Values and the operators behind them that wait for stronger ones.
     let mut waiting: Vec<(f64, Operator)> = Vec::new();
     loop {
@@ -193,11 +230,8 @@ fn bracket(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result
         let place = scanner.place();
         let mut value = value_at(scanner, lookup, depth + 1)?.ok_or(Problem::NoValue.at(place))?;
         scanner.skip_blanks();
-        if scanner.peek().is_none() {
-            return Err(Problem::OpenBracket.at(open));
-        }
         let place = scanner.place();
-        let operator = Operator::read(scanner)?;
+        let operator = read(scanner)?;
         while let Some((before, waits)) = waiting.pop() {
             if waits.strength() < operator.strength() {
                 waiting.push((before, waits));

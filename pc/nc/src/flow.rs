@@ -60,7 +60,7 @@ const KEYWORDS: [(&str, Keyword); 15] = [
     ("CONTINUE", Keyword::Continue),
 ];
 
-/// A line that begins with O.
+/// A line that begins with O, or with a colon and the number of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OWord {
     /// Number or name, lower case.
@@ -87,7 +87,8 @@ pub(super) fn o_word(
         scanner.take(|c| c.is_ascii_digit() || c == '.' || c.is_whitespace());
     }
     let place = scanner.place();
-    if !matches!(scanner.peek(), Some('O' | 'o')) {
+    let colon = scanner.peek() == Some(':');
+    if !colon && !matches!(scanner.peek(), Some('O' | 'o')) {
         scanner.go_back(start);
         return Ok(None);
     }
@@ -110,6 +111,8 @@ pub(super) fn o_word(
     let name = scanner.letters();
     let keyword = if name.is_empty() {
         Keyword::Number
+    } else if colon {
+        return Err(Problem::FlowRest.at(at));
     } else {
         let found = KEYWORDS.iter().find(|(own, _)| *own == name);
         found.ok_or(Problem::UnknownKeyword(name).at(at))?.1
@@ -122,8 +125,9 @@ pub(super) fn o_word(
             match scanner.peek() {
                 None | Some(';') => break,
                 Some('(') => drop(scanner.comment()?),
-                Some('[') => arguments.extend(expression::value(scanner, lookup)?),
-                Some(_) if keyword == Keyword::Number => break,
+                Some('[') if keyword != Keyword::Number => {
+                    arguments.extend(expression::value(scanner, lookup)?)
+                }
                 Some(_) => return Err(Problem::FlowRest.at(at)),
             }
         }

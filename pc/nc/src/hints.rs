@@ -5,11 +5,15 @@ use super::codes::{Code, Group};
 use super::error::SourcePosition;
 use super::interpreter::Interpreter;
 
+/// From here on a whole number of seconds may be one of milliseconds \[s\].
+const LONG_DWELL_S: f64 = 100.0;
+
 impl Interpreter {
     /// What of `block` should be known to a person who expects what another controller does.
     pub(super) fn hints(&mut self, block: &Block) {
-        if let Some(code) = block.code(Group::Hint) {
+        for code in block.codes.iter().filter(|code| code.group() == Group::Hint) {
             let why = match code.name {
+                "G50" | "G69" => "what it ends is not known here, and does not hold",
                 "G22" | "G23" => "the travel of the axes is always checked",
                 "ORIAXES" => "between the ends of a block the tool turns as docs/nc.md says under Turns",
                 _ => "the speed is planned ahead as far as it is needed anyway",
@@ -41,6 +45,17 @@ impl Interpreter {
                 "{name} is taken as G64 with CTOL or the default tolerance: distances and tolerances of single axes are not known here"
             );
             self.tell_once(text, code.place);
+        }
+    }
+
+    /// A dwell that may be meant in milliseconds.
+    pub(super) fn tell_seconds(&mut self, code: &str, time: f64, place: SourcePosition) {
+        if time >= LONG_DWELL_S && time.fract() == 0.0 {
+            let text = format!(
+                "P of {code} is in seconds: P{time} is {time} s, where controllers that count milliseconds dwell {} s",
+                time / 1000.0
+            );
+            self.tell_once(text, place);
         }
     }
 

@@ -181,7 +181,10 @@ impl Interpreter {
         self.save_modes(block)?;
         self.switch(block, &claims)?;
         self.system_and_tool(block, &claims)?;
-        if let (Some(code), Some(motion)) = (takes, block.code(Group::Motion)) {
+        if let (Some(code), Some(motion)) = (takes, block.code(Group::Motion))
+            // The way to the park position is one of rapids anyway.
+            && !(motion.code == Code::Rapid && matches!(code.code, Code::Home | Code::SecondHome))
+        {
             return Err(Problem::AxesTaken(code.name).at(motion.place));
         }
         let feeds = match block.code(Group::NonModal) {
@@ -245,6 +248,9 @@ impl Interpreter {
             self.wait(pending);
         }
         if let Some((time, place)) = dwell {
+            if claims.word(Code::Dwell, "P").is_some() {
+                self.tell_seconds("G4", time, place);
+            }
             self.dwell(time, place);
         }
         Ok(())

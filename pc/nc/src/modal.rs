@@ -50,6 +50,10 @@ pub(super) struct Modal {
     pub(super) absolute_centres: bool,
     /// G99.
     pub(super) to_retract_level: bool,
+    /// G16: X and Y are distance and angle.
+    pub(super) polar: bool,
+    /// G98 or G99 was said.
+    pub(super) level_said: bool,
     feed_mode: FeedMode,
     feed: Option<Feed>,
 }
@@ -69,9 +73,19 @@ impl Modal {
             incremental: false,
             absolute_centres: false,
             to_retract_level: true,
+            polar: false,
+            level_said: false,
             feed_mode: FeedMode::PerMinute,
             feed: None,
         }
+    }
+
+    /// The G codes are those of `saved` again; what is none stays: F, CTOL, and which point is led.
+    pub(super) fn restore_codes(&mut self, saved: Self) {
+        let now = std::mem::replace(self, saved);
+        self.feed = now.feed.filter(|_| now.feed_mode == self.feed_mode);
+        (self.tip, self.vectors) = (now.tip, now.vectors);
+        self.contour_tolerance = now.contour_tolerance;
     }
 
     /// mm of a unit of length.
@@ -110,12 +124,16 @@ impl Modal {
                 Code::PlaneYz => self.plane = Plane::Yz,
                 Code::Inches => self.inches = true,
                 Code::Millimetres => self.inches = false,
+                Code::Polar => self.polar = true,
+                Code::PolarOff => self.polar = false,
                 Code::Absolute => self.incremental = false,
                 Code::Incremental => self.incremental = true,
                 Code::AbsoluteCentres => self.absolute_centres = true,
                 Code::IncrementalCentres => self.absolute_centres = false,
-                Code::ToInitialLevel => self.to_retract_level = false,
-                Code::ToRetractLevel => self.to_retract_level = true,
+                Code::ToInitialLevel | Code::ToRetractLevel => {
+                    self.to_retract_level = code.code == Code::ToRetractLevel;
+                    self.level_said = true;
+                }
                 Code::ExactPath => self.control = PathControl::ExactPath,
                 Code::ExactStop => self.control = PathControl::ExactStop,
                 Code::Continuous => self.control = self.blend(claims)?,

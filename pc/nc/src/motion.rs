@@ -1,9 +1,9 @@
 //! Motions: from the words of a block to where the tip or the axes go.
 
 use super::arc;
-use super::block::{Block, Word};
+use super::block::{Block, Distance, Word};
 use super::claims::Claims;
-use super::codes::Code;
+use super::codes::{Code, Group};
 use super::direction::DIRECTION_WORDS;
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::{Interpreter, no_slides_or_direction};
@@ -49,11 +49,15 @@ impl Interpreter {
         for (axis, name) in AXIS_WORDS.iter().enumerate() {
             let Some(word) = block.word(name) else { continue };
             let value = word.value * if axis < 3 { self.modal.unit() } else { 1.0 };
-            let from = match word.step.unwrap_or(self.modal.incremental) {
-                true => self.programmed(&[axis], word.place)?[axis],
-                false => 0.0,
+            let distance = word.distance.unwrap_or(match self.modal.incremental {
+                true => Distance::Step,
+                false => Distance::Absolute,
+            });
+            let now = match distance {
+                Distance::Absolute => 0.0,
+                _ => self.programmed(&[axis], word.place)?[axis],
             };
-            said[axis] = Some(from + value);
+            said[axis] = Some(distance.coordinate(value, now));
         }
         Ok(said)
     }
@@ -80,6 +84,13 @@ impl Interpreter {
     /// G53: the axes named go to their coordinates, with G0 in axis space, with G1 so that the tip goes straight; whether
     /// that feeds.
     pub(super) fn axes_motion(&mut self, block: &Block, place: SourcePosition) -> Result<bool, NcError> {
+        no_slides_or_direction(block)?;
+        let mut axes = Words::of(block).axes;
+        if axes.iter().all(Option::is_none) && block.code(Group::Motion).is_none() {
+            let text = "G53, G153 and SUPA without axis words change nothing: they hold in their block only";
+            self.tell_once(text.to_owned(), place);
+            return Ok(false);
+        }
         let kinematics = self.setup.kinematics.clone();
         let feeds = match (self.modal.motion, &kinematics) {
             (Some(Code::Rapid), _) => false,
@@ -90,8 +101,6 @@ impl Interpreter {
             let (code, why) = ("G53", "coordinates of axes are absolute: write G90");
             return Err(Problem::Impossible { code, why }.at(place));
         }
-        no_slides_or_direction(block)?;
-        let mut axes = Words::of(block).axes;
         let unit = self.modal.unit();
         axes[..3].iter_mut().flatten().for_each(|value| *value *= unit);
         if axes.iter().all(Option::is_none) {
@@ -274,7 +283,8 @@ impl Interpreter {
             ArcForm::Centre(_) => {
                 let words = arc::CENTRE_WORDS.map(|name| claims.word(mode, name));
                 let [a, b] = plane.axes();
-                let own = |word: Option<&Word>| word.is_some_and(|word| word.step == Some(false));
+                let own =
+                    |word: Option<&Word>| word.is_some_and(|word| word.distance == Some(Distance::Absolute));
                 let now = match self.modal.absolute_centres || words.into_iter().any(own) {
                     true => self.programmed(&[a.min(b), a.max(b)], place)?,
                     false => Coordinates::default(),

@@ -110,6 +110,20 @@ impl Spindle {
         })
     }
 
+    /// S is that of `saved` again, by M72 or M73; it turns as then.
+    pub(super) fn restore(&mut self, saved: Self, place: SourcePosition) -> Option<Pending> {
+        let before = std::mem::replace(self, saved).speed;
+        let speed = self
+            .speed
+            .filter(|_| self.turns.is_some() && before != self.speed)?;
+        Some(Pending {
+            action: ProgramAction::SpindleSpeed(speed),
+            code: "M72",
+            place,
+            at_rest: true,
+        })
+    }
+
     /// Which way it turns.
     pub(super) fn turns(&self) -> Option<Turn> {
         self.turns

@@ -1,33 +1,61 @@
-//! M70 to M73: modes that are saved and restored.
+//! M70 to M73, and SAVE of Siemens subprograms: modes that are saved and restored.
 
 use super::block::Block;
 use super::codes::{Code, Group};
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
 use super::modal::Modal;
-use shared::geometry::Turn;
+use super::offsets::System;
+use super::outputs::Spindle;
 
 /// Modes of one moment.
 #[derive(Clone, Debug)]
 pub(super) struct Saved {
     /// Subroutines that it was in.
     depth: usize,
-    /// M73: they come back where the subroutine ends.
-    to_its_end: bool,
+    by: By,
     modal: Modal,
     system: usize,
-    spindle: Option<Turn>,
+    spindle: Spindle,
     place: SourcePosition,
 }
 
+/// What saved modes, and so when they come back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum By {
+    /// M70: at M72.
+    Program,
+    /// M73: where the subroutine ends, and at M72.
+    Subroutine,
+    /// SAVE behind PROC: where the subprogram ends, with the frame.
+    Header(System),
+}
+
 impl Interpreter {
+    /// SAVE: G codes and frame come back where the subprogram ends, which begins here.
+    pub(super) fn save_codes(&mut self, place: SourcePosition) {
+        self.save(By::Header(self.offsets.frame), place);
+    }
+
+    fn save(&mut self, by: By, place: SourcePosition) {
+        self.saved.push(Saved {
+            depth: self.parameters.depth(),
+            by,
+            modal: self.modal.clone(),
+            system: self.offsets.active,
+            spindle: self.spindle.clone(),
+            place,
+        });
+    }
+
     /// What M70 to M73 of a block ask for.
     pub(super) fn save_modes(&mut self, block: &Block) -> Result<(), NcError> {
         let Some(code) = block.code(Group::SavedModes) else {
             return Ok(());
         };
         let (depth, place) = (self.parameters.depth(), code.place);
-        let own = self.saved.iter().position(|saved| saved.depth == depth);
+        let of_codes = |saved: &Saved| saved.depth == depth && !matches!(saved.by, By::Header(_));
+        let own = self.saved.iter().position(of_codes);
         match code.code {
             Code::RestoreModes => {
                 let (code, why) = ("M72", "no modes were saved here by M70");
@@ -42,14 +70,11 @@ impl Interpreter {
                     self.saved.remove(own);
                 }
                 if code != Code::ForgetModes {
-                    self.saved.push(Saved {
-                        depth,
-                        to_its_end: code == Code::SaveModesOfSubroutine,
-                        modal: self.modal.clone(),
-                        system: self.offsets.active,
-                        spindle: self.spindle.turns(),
-                        place,
-                    });
+                    let by = match code {
+                        Code::SaveModesOfSubroutine => By::Subroutine,
+                        _ => By::Program,
+                    };
+                    self.save(by, place);
                 }
                 Ok(())
             }
@@ -60,24 +85,35 @@ impl Interpreter {
     pub(super) fn leave(&mut self) -> Result<(), NcError> {
         let depth = self.parameters.depth();
         self.parameters.leave();
-        let own = self.saved.iter().position(|saved| saved.depth == depth);
-        match own.map(|own| self.saved.remove(own)) {
-            Some(saved) if saved.to_its_end => {
-                let place = saved.place;
-                self.restore(saved, place)
+        while let Some(saved) = self.saved.pop_if(|saved| saved.depth == depth) {
+            match saved.by {
+                By::Program => {}
+                By::Subroutine => {
+                    let place = saved.place;
+                    self.restore(saved, place)?;
+                }
+                By::Header(frame) => {
+                    self.modal.restore_codes(saved.modal);
+                    self.offsets.active = saved.system;
+                    self.offsets.frame = frame;
+                    self.spline_end = None;
+                }
             }
-            _ => Ok(()),
         }
+        Ok(())
     }
 
-    /// All modes but that of motion. A spindle is not switched by this.
+    /// All modes but that of motion, and S. A spindle is not switched on or off by this.
     fn restore(&mut self, saved: Saved, place: SourcePosition) -> Result<(), NcError> {
-        if saved.spindle != self.spindle.turns() {
+        if saved.spindle.turns() != self.spindle.turns() {
             let (code, why) = (
                 "M72",
                 "the spindle is not as it was at M70 or M73: write M3 or M5 before",
             );
             return Err(Problem::Impossible { code, why }.at(place));
+        }
+        if let Some(pending) = self.spindle.restore(saved.spindle, place) {
+            self.wait(pending);
         }
         let motion = self.modal.motion;
         self.modal = saved.modal;

@@ -169,6 +169,14 @@ impl<'t> Scanner<'t> {
         number
     }
 
+    /// Whether a number of five digits or more without a point begins here with 0, and is not 0.
+    pub(super) fn has_implied_point(&self) -> bool {
+        let rest = self.text[self.next..].trim_start().trim_start_matches(['+', '-']);
+        let end = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+        let zero = rest[..end].bytes().all(|digit| digit == b'0');
+        rest.starts_with('0') && end >= 5 && !zero && !rest[end..].starts_with('.')
+    }
+
     /// Whether an R parameter stands here behind blanks and signs.
     pub(super) fn at_signed_parameter(&self) -> bool {
         let rest = self.text[self.next..].trim_start_matches(|c: char| c.is_whitespace() || "+-".contains(c));

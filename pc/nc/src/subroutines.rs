@@ -134,7 +134,7 @@ fn begins((source, file): Text, name: Name, interpreter: &mut Interpreter) -> Op
 pub(super) fn head(text: &str, line: u32, interpreter: &mut Interpreter) -> Option<OWord> {
     let start = text.trim_start();
     let first = start.chars().next()?;
-    if !matches!(first, 'O' | 'o' | 'N' | 'n' | '/') {
+    if !matches!(first, 'O' | 'o' | ':' | 'N' | 'n' | '/') {
         return None;
     }
     let mut scanner = Scanner::new(text, line);

@@ -148,7 +148,7 @@ impl Stream {
 pub struct Datagrams {
     host: UdpSocket,
     board: IpEndpoint,
-    /// Holds an empty datagram until the board has told its Ethernet address.
+    /// Holds a datagram until the board has told its Ethernet address.
     probe: SocketHandle,
     senders: Vec<(SocketAddr, SocketHandle)>,
 }
@@ -160,7 +160,8 @@ impl Datagrams {
         host.set_nonblocking(true)?;
         let mut socket = socket(DISCARD_PORT).map_err(io::Error::other)?;
         let nobody = IpEndpoint::new(board.addr, DISCARD_PORT);
-        socket.send_slice(&[], nobody).map_err(io::Error::other)?;
+        // What waits is counted in bytes.
+        socket.send_slice(&[0], nobody).map_err(io::Error::other)?;
         Ok(Self {
             host,
             board,

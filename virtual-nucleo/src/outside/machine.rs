@@ -16,7 +16,7 @@ pub enum Machine {
 }
 
 /// What a machine shows after a step.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
     /// Counts of each encoder, and the count at a reference mark if one was passed.
     pub counts: Vec<(i64, Option<i64>)>,
@@ -24,6 +24,19 @@ pub struct Seen {
     pub limit_plus: u8,
     /// The same at the negative ends.
     pub limit_minus: u8,
+}
+
+/// A step: the lines and converter codes at its end, by which the machine was driven, and what it shows from then on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// Enables of the drives.
+    pub enables: Vec<bool>,
+    /// Gates of the beams, or permits.
+    pub gates: Vec<bool>,
+    /// Codes that the converters give out, four of each.
+    pub codes: Vec<i16>,
+    /// What the board can read until the next step.
+    pub seen: Seen,
 }
 
 /// First output of the converters that is the power of a beam.

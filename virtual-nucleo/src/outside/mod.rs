@@ -6,7 +6,7 @@ mod outputs;
 mod safe_state;
 mod wiring;
 
-pub use machine::Machine;
+pub use machine::{Machine, Seen, Step};
 pub use outputs::{Output, Role};
 
 use crate::chip::pins::{PORTS, Pin};
@@ -66,6 +66,8 @@ pub struct Outside {
     next_step: Time,
     /// How many steps it has taken.
     pub steps: u64,
+    /// The steps, if they are recorded.
+    record: Option<Vec<Step>>,
 }
 
 impl Outside {
@@ -86,6 +88,7 @@ impl Outside {
             driven: [(0, 0); PORTS],
             next_step: Time::NEVER,
             steps: 0,
+            record: None,
             machine,
             wiring,
         };
@@ -161,6 +164,16 @@ impl Outside {
         let (driven, levels) = &mut self.driven[usize::from(pin.port)];
         *driven |= 1 << pin.number;
         *levels = *levels & !(1 << pin.number) | u16::from(high) << pin.number;
+    }
+
+    /// From now on every step of the machine is recorded.
+    pub fn record_steps(&mut self) {
+        self.record = Some(Vec::new());
+    }
+
+    /// The steps since they were taken last, in their order.
+    pub fn take_steps(&mut self) -> Vec<Step> {
+        self.record.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
     /// Whether a line is high.
@@ -259,10 +272,10 @@ impl Outside {
         let Some(seen) = self.machine.advance(&enables, &gates, &codes) else {
             return;
         };
-        for (encoder, (counts, mark)) in self.encoders.iter_mut().zip(seen.counts) {
-            encoder.counts = counts;
+        for (encoder, (counts, mark)) in self.encoders.iter_mut().zip(&seen.counts) {
+            encoder.counts = *counts;
             if let Some(mark) = mark {
-                encoder.mark = mark;
+                encoder.mark = *mark;
                 encoder.marks += 1;
             }
         }
@@ -274,6 +287,14 @@ impl Outside {
             for (index, pin) in switches.iter().enumerate() {
                 self.set_input(*pin, pressed & 1 << index == 0);
             }
+        }
+        if let Some(record) = &mut self.record {
+            record.push(Step {
+                enables,
+                gates,
+                codes,
+                seen,
+            });
         }
     }
 }

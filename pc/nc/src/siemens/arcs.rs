@@ -2,7 +2,7 @@
 
 use super::keywords::POINT_WORDS;
 use crate::arc::CENTRE_WORDS;
-use crate::block::{Block, Word};
+use crate::block::{Block, Distance, Word};
 use crate::claims::Claims;
 use crate::codes::Code;
 use crate::error::{NcError, Problem, SourcePosition};
@@ -65,8 +65,8 @@ impl Interpreter {
     pub(crate) fn to_centre(&self, word: Option<&Word>, now: f64) -> f64 {
         let value = word.map_or(0.0, |word| word.value) * self.modal.unit();
         let step = word
-            .and_then(|word| word.step)
-            .unwrap_or(!self.modal.absolute_centres);
+            .and_then(|word| word.distance)
+            .map_or(!self.modal.absolute_centres, Distance::is_step);
         if step { value } else { value - now }
     }
 
@@ -86,7 +86,7 @@ impl Interpreter {
         }
         for (axis, word) in words.into_iter().enumerate() {
             let Some(word) = word else { continue };
-            let steps = word.step.unwrap_or(self.modal.incremental);
+            let steps = word.distance.map_or(self.modal.incremental, Distance::is_step);
             point[axis] = word.value * self.modal.unit() + if steps { now[axis] } else { 0.0 };
         }
         let end: [f64; 3] = std::array::from_fn(|axis| said[axis].unwrap_or(now[axis]));

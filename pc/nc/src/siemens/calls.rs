@@ -30,6 +30,8 @@ pub(crate) struct Call {
 pub(crate) struct Header {
     /// Name, type and the value without an argument.
     parameters: Vec<(String, Kind, f64)>,
+    /// SAVE: the modes of before come back at its end.
+    saves: bool,
 }
 
 /// Words behind PROC that only concern the display and single block.
@@ -144,11 +146,13 @@ pub(super) fn header(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<H
         }
         scanner.step();
     }
+    let mut saves = false;
     loop {
         scanner.skip_blanks();
         let (place, word) = (scanner.place(), scanner.identifier().to_ascii_uppercase());
         match word.as_str() {
-            "" => return Ok(Header { parameters }),
+            "" => return Ok(Header { parameters, saves }),
+            "SAVE" => saves = true,
             word if DISPLAY.contains(&word) => {}
             word => {
                 let problem = keywords::refused_word(word).unwrap_or(Problem::StatementRest);
@@ -253,6 +257,9 @@ impl Reader {
         if arguments.len() > header.parameters.len() {
             let (given, most) = (arguments.len(), header.parameters.len());
             return Err(Problem::Arguments { given, most }.at(place));
+        }
+        if header.saves && self.is_named() {
+            self.interpreter.save_codes(place);
         }
         for (index, (name, kind, default)) in header.parameters.into_iter().enumerate() {
             let value = arguments.get(index).copied().flatten().unwrap_or(default);

@@ -173,7 +173,12 @@ impl Words {
 
     /// GMODE and DMODE must say nothing; AMODE may, but that dwells are in revolutions.
     fn check_modes(&self, first: usize) -> Result<(), NcError> {
-        let other_plane = ![0.0, 1.0].contains(&self.get(first + 1));
+        // Posts leave out an argument of CYCLE81: its 10 is AMODE then, dwells in seconds.
+        let dmode = match (self.name, self.get(first + 1)) {
+            ("CYCLE81", 10.0) => 0.0,
+            (_, dmode) => dmode,
+        };
+        let other_plane = ![0.0, 1.0].contains(&dmode);
         let modes = self.get(first + 2);
         let revolutions = [10.0, 100.0]
             .iter()

@@ -24,8 +24,8 @@ pub(crate) enum Direction {
 /// A jump.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Jump {
-    direction: Direction,
-    target: Target,
+    pub(super) direction: Direction,
+    pub(super) target: Target,
 }
 
 /// What a word of a jump says.

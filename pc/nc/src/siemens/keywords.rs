@@ -90,6 +90,8 @@ const FILES: &str =
     "subprograms are called by their name alone in a line, and are in this program or beside it";
 const ACTIONS: &str = "synchronised actions are not supported: outputs are switched by M62 to M68";
 const TURNED: &str = "a tilted plane is not supported: rotate about Z with ROT";
+const RETRACTION: &str =
+    "its first argument asks for a retraction that is not known here: write 0, and a SUPA G0 before it";
 const LATHE: &str = "lathe codes are not supported";
 
 /// Words that are refused, and why.
@@ -182,8 +184,8 @@ pub(crate) fn refused_word(word: &str) -> Option<Problem> {
 }
 
 /// Whether the cycle `name` changes nothing here; the scanner is behind it then.
-pub(super) fn cycle_without_effect(name: &str, scanner: &mut Scanner) -> bool {
-    let start = scanner.mark();
+pub(super) fn cycle_without_effect(name: &str, scanner: &mut Scanner) -> Result<bool, NcError> {
+    let (place, start) = (scanner.place(), scanner.mark());
     scanner.skip_blanks();
     if scanner.peek() == Some('(') {
         scanner.step();
@@ -192,23 +194,34 @@ pub(super) fn cycle_without_effect(name: &str, scanner: &mut Scanner) -> bool {
         let nothing = match name {
             // High speed is planned ahead anyway, within the tolerance of G64; the others are for displays.
             "CYCLE832" | "WORKPIECE" | "GROUP_BEGIN" | "GROUP_END" => true,
-            "CYCLE800" => is_level(&within),
+            "CYCLE800" => {
+                let level = is_level(&within);
+                let retraction = within.split(',').next().unwrap_or_default();
+                if level && !is_zero(retraction.trim()) {
+                    let (code, why) = ("CYCLE800", RETRACTION);
+                    return Err(Problem::Impossible { code, why }.at(place));
+                }
+                level
+            }
             // F is that of the tip.
             "FGROUP" => within.split(',').all(|axis| "XYZ".contains(axis.trim())),
             _ => false,
         };
         if nothing {
-            return true;
+            return Ok(true);
         }
     }
     scanner.go_back(start);
-    false
+    Ok(false)
 }
 
-/// Whether CYCLE800 with these arguments ends a tilted plane, or has one that is neither tilted nor moved: of its arguments the first
-/// is a retraction, and those from the fifth to the thirteenth are shifts and angles.
+/// Whether CYCLE800 with these arguments ends a tilted plane, or has one that is neither tilted nor moved: those from the fifth to the
+/// thirteenth are shifts and angles.
 fn is_level(arguments: &str) -> bool {
-    let zero = |argument: &str| argument.is_empty() || argument.parse() == Ok(0.0);
     let mut arguments = arguments.split(',').map(str::trim).enumerate();
-    arguments.all(|(index, argument)| !matches!(index, 0 | 4..=12) || zero(argument))
+    arguments.all(|(index, argument)| !matches!(index, 4..=12) || is_zero(argument))
+}
+
+fn is_zero(argument: &str) -> bool {
+    argument.is_empty() || argument.parse() == Ok(0.0)
 }

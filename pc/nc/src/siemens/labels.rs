@@ -78,10 +78,8 @@ fn numbers_of_jumps(text: &str) -> Vec<u32> {
     let upper = text.to_ascii_uppercase();
     let behind = upper.split("GOTO").skip(1);
     let numbers = behind.filter_map(|rest| {
-        let number = rest
-            .trim_start_matches(['F', 'B', 'C'])
-            .trim_start()
-            .strip_prefix('N')?;
+        let number = rest.trim_start_matches(['F', 'B', 'C']).trim_start();
+        let number = number.strip_prefix('N').unwrap_or(number);
         let end = number.find(|c: char| !c.is_ascii_digit());
         number[..end.unwrap_or(number.len())].parse().ok()
     });

@@ -15,6 +15,7 @@ mod holes;
 mod jumps;
 mod keywords;
 pub(super) mod labels;
+mod macros;
 mod pieces;
 mod poles;
 mod repeats;

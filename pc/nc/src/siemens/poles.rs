@@ -2,7 +2,7 @@
 //! G112 set the pole, which is the origin at the start.
 
 use crate::arc::CENTRE_WORDS;
-use crate::block::{Block, Word};
+use crate::block::{Block, Distance, Word};
 use crate::codes::{Code, Group};
 use crate::error::{NcError, Problem, SourcePosition};
 use crate::interpreter::Interpreter;
@@ -35,7 +35,7 @@ impl Interpreter {
             None => self.modal.incremental,
         };
         let value = |word: Option<&Word>, now: f64, unit: f64| match word {
-            Some(word) if word.step.unwrap_or(all_steps) => now + word.value * unit,
+            Some(word) if word.distance.map_or(all_steps, Distance::is_step) => now + word.value * unit,
             Some(word) => word.value * unit,
             None => now,
         };
@@ -60,7 +60,7 @@ impl Interpreter {
                 address: address.to_owned(),
                 value: value / unit,
                 named: false,
-                step: Some(step),
+                distance: Some(if step { Distance::Step } else { Distance::Absolute }),
                 place,
             });
         };

@@ -6,6 +6,7 @@ use super::expression;
 use super::holes::{self, Holes};
 use super::jumps::{self, Jump};
 use super::keywords;
+use super::macros;
 use super::repeats::{self, Repeat};
 use super::variables;
 use crate::error::{NcError, Problem, SourcePosition};
@@ -25,14 +26,17 @@ pub struct Statement {
 pub(crate) enum What {
     /// What changes nothing here, and a conditional jump whose condition does not hold.
     Nothing,
+    /// THEN with parameters.
+    Set(Vec<(Parameter, f64)>),
     /// DEF.
     Define(Vec<(String, Variable)>),
     /// IF, with its condition.
     If(bool),
     Else,
     EndIf,
-    While(bool),
-    EndWhile,
+    /// WHILE with its condition, and the number of its DO, or 0.
+    While(bool, u8),
+    EndWhile(u8),
     /// FOR: the counter, its first and its last value.
     For(Parameter, f64, f64),
     EndFor,
@@ -66,8 +70,11 @@ pub(super) fn read(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<Option
         "IF" => condition(scanner, lookup)?,
         "ELSE" => What::Else,
         "ENDIF" => What::EndIf,
-        "WHILE" => What::While(expression::value(scanner, lookup)? != 0.0),
-        "ENDWHILE" => What::EndWhile,
+        "WHILE" => {
+            let holds = expression::value(scanner, lookup)? != 0.0;
+            What::While(holds, macros::number_of_loop(scanner)?)
+        }
+        "ENDWHILE" => What::EndWhile(0),
         "FOR" => counter(scanner, lookup)?,
         "ENDFOR" => What::EndFor,
         "LOOP" => What::Loop,
@@ -85,9 +92,17 @@ pub(super) fn read(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<Option
             What::Nothing
         }
         "MCALL" => What::DrillAfterMotions(drilling::modal(scanner, lookup)?),
+        name if macros::end_of_loop(name).is_some() => {
+            What::EndWhile(macros::end_of_loop(name).unwrap_or_default())
+        }
+        name if name.starts_with("GOTO")
+            && let Some(jump) = macros::jump(name, scanner) =>
+        {
+            What::Jump(jump)
+        }
         name => match jumps::direction(name) {
             Some(direction) => What::Jump(jumps::target(scanner, direction)?),
-            None if keywords::cycle_without_effect(name, scanner) => What::Nothing,
+            None if keywords::cycle_without_effect(name, scanner)? => What::Nothing,
             None => match cycle(name, scanner, lookup, place)? {
                 Some(cycle) => cycle,
                 None => {
@@ -132,11 +147,15 @@ fn condition(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<What, NcErro
     let holds = expression::value(scanner, lookup)? != 0.0;
     scanner.skip_blanks();
     let name = scanner.identifier().to_ascii_uppercase();
+    if let Some(jump) = macros::jump(&name, scanner) {
+        return Ok(if holds { What::Jump(jump) } else { What::Nothing });
+    }
     match jumps::direction(&name) {
         Some(direction) => {
             let jump = jumps::target(scanner, direction)?;
             Ok(if holds { What::Jump(jump) } else { What::Nothing })
         }
+        None if name == "THEN" => macros::then(scanner, lookup, holds),
         None if name.is_empty() => Ok(What::If(holds)),
         None => Err(Problem::StatementRest.at(scanner.place())),
     }
@@ -171,6 +190,10 @@ impl Reader {
         self.interpreter.branches |= branches;
         match statement.what {
             What::Nothing => Ok(()),
+            What::Set(settings) => settings.into_iter().try_for_each(|(parameter, value)| {
+                let set = self.interpreter.set(&parameter, value);
+                set.map_err(|problem| problem.at(place))
+            }),
             What::Define(variables) => {
                 for (name, variable) in variables {
                     self.interpreter.parameters.define(name, variable);

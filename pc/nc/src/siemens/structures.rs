@@ -1,5 +1,6 @@
 //! IF, WHILE, FOR, LOOP and REPEAT … UNTIL of Siemens programs: which line is the next one.
 
+use super::macros;
 use super::statement::{Statement, What};
 use crate::branches::Open;
 use crate::error::{NcError, Problem, SourcePosition};
@@ -22,7 +23,8 @@ pub(crate) struct Structure {
 #[derive(Clone, Debug, PartialEq)]
 enum Form {
     If,
-    While,
+    /// With the number of its DO, or 0.
+    While(u8),
     /// The counter, and its last value.
     For(Parameter, f64),
     Loop,
@@ -34,7 +36,7 @@ impl Form {
     fn words(&self) -> (&'static str, &'static str) {
         match self {
             Self::If => ("IF", "ENDIF"),
-            Self::While => ("WHILE", "ENDWHILE"),
+            Self::While(number) => macros::words(*number),
             Self::For(..) => ("FOR", "ENDFOR"),
             Self::Loop => ("LOOP", "ENDLOOP"),
             Self::Repeat => ("REPEAT", "UNTIL"),
@@ -73,7 +75,9 @@ pub(super) fn edge(text: &str) -> Option<Edge> {
     if is(&["ELSE"]) {
         return Some(Edge::Else);
     }
-    if is(&["ENDIF", "ENDWHILE", "ENDFOR", "ENDLOOP", "UNTIL"]) {
+    if is(&[
+        "ENDIF", "ENDWHILE", "ENDFOR", "ENDLOOP", "UNTIL", "END1", "END2", "END3",
+    ]) {
         return Some(Edge::Closes);
     }
     if is(&["WHILE", "FOR", "LOOP"]) {
@@ -82,7 +86,8 @@ pub(super) fn edge(text: &str) -> Option<Edge> {
     let (is_if, is_repeat) = (is(&["IF"]), is(&["REPEAT"]));
     let rest = scanner.take(|c| c != ';').to_ascii_uppercase();
     // With a jump or with labels both are a line of their own.
-    let opens = is_if && !rest.contains("GOTO") || is_repeat && rest.trim().is_empty();
+    let line = rest.contains("GOTO") || rest.contains("THEN");
+    let opens = is_if && !line || is_repeat && rest.trim().is_empty();
     opens.then_some(Edge::Opens)
 }
 
@@ -101,9 +106,9 @@ impl Reader {
                 while self.skip(Form::If, place)? == Edge::Else {}
             }
             What::EndIf => drop(self.close_structure(&Form::If, "ENDIF", place)?),
-            What::While(true) => self.open(Form::While, itself, before),
-            What::While(false) => drop(self.skip(Form::While, place)?),
-            What::EndWhile => self.again(Form::While, "ENDWHILE", place)?,
+            What::While(true, number) => self.open(Form::While(number), itself, before),
+            What::While(false, number) => drop(self.skip(Form::While(number), place)?),
+            What::EndWhile(number) => self.again(Form::While(number), macros::words(number).1, place)?,
             What::For(counter, first, last) => {
                 let now = self.interpreter.set(&counter, first);
                 now.map_err(|problem| problem.at(place))?;
@@ -165,7 +170,7 @@ impl Reader {
             return Err(Problem::SameAgain(open.form.words().0.to_owned()).at(place));
         }
         let (offset, line) = open.back;
-        if open.form != Form::While {
+        if !matches!(open.form, Form::While(_)) {
             // WHILE opens itself again.
             let conditions = now;
             self.level()

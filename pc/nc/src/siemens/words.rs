@@ -2,7 +2,7 @@
 
 use super::expression;
 use crate::arc::CENTRE_WORDS;
-use crate::block::{Block, Word};
+use crate::block::{Block, Distance, Word};
 use crate::error::{NcError, Problem, SourcePosition};
 use crate::parameters::{Lookup, Parameter};
 use crate::program::AXIS_WORDS;
@@ -79,22 +79,25 @@ fn parts(scanner: &mut Scanner, lookup: &mut dyn Lookup, place: SourcePosition) 
     }
 }
 
-/// Behind `=`: the value, and whether `IC(…)` makes it a step, or `AC(…)` a coordinate.
+/// Behind `=`: the value, and how `IC(…)` and its like say it is meant.
 pub(crate) fn value(
     scanner: &mut Scanner,
     lookup: &mut dyn Lookup,
-) -> Result<(Option<f64>, Option<bool>), NcError> {
+) -> Result<(Option<f64>, Option<Distance>), NcError> {
     scanner.skip_blanks();
     let (place, start) = (scanner.place(), scanner.mark());
-    let step = match scanner.letters().as_str() {
-        "IC" => Some(true),
-        "AC" => Some(false),
+    let distance = match scanner.letters().as_str() {
+        "IC" => Some(Distance::Step),
+        "AC" => Some(Distance::Absolute),
+        "DC" => Some(Distance::Shortest),
+        "ACP" => Some(Distance::Upward),
+        "ACN" => Some(Distance::Downward),
         _ => None,
     };
-    if step.is_some() && scanner.peek() == Some('(') {
+    if distance.is_some() && scanner.peek() == Some('(') {
         scanner.step();
         let value = expression::closed(scanner, lookup, place, ')', 0)?;
-        return Ok((Some(value), step));
+        return Ok((Some(value), distance));
     }
     scanner.go_back(start);
     Ok((expression::terms(scanner, lookup)?, None))
@@ -120,7 +123,11 @@ pub(crate) fn tool_name(scanner: &mut Scanner) -> Result<Option<String>, NcError
 
 /// Refuses what these words do not go together with.
 pub(crate) fn check(block: &Block, place: SourcePosition) -> Result<(), NcError> {
-    for word in block.words.iter().filter(|word| word.step.is_some()) {
+    for word in &block.words {
+        let Some(distance) = word.distance else { continue };
+        if distance.turns() && !["A", "B", "C"].contains(&word.address.as_str()) {
+            return Err(word.value_error("DC( ), ACP( ) and ACN( ) are for A B C"));
+        }
         let address = word.address.as_str();
         let centre = CENTRE_WORDS.contains(&address) || super::keywords::POINT_WORDS.contains(&address);
         if !AXIS_WORDS.contains(&address) && !centre && address != "AP" && address != "RP" {
@@ -136,9 +143,9 @@ pub(crate) fn check(block: &Block, place: SourcePosition) -> Result<(), NcError>
 }
 
 impl Block {
-    /// The first axis word whose IC( ) or AC( ) says how it is meant.
+    /// The first axis word that says by IC( ) or its like how it is meant.
     pub(crate) fn own_distance(&self) -> Option<&Word> {
         let mut words = self.words.iter();
-        words.find(|word| word.step.is_some() && AXIS_WORDS.contains(&word.address.as_str()))
+        words.find(|word| word.distance.is_some() && AXIS_WORDS.contains(&word.address.as_str()))
     }
 }

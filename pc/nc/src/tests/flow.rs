@@ -133,6 +133,25 @@ fn modes_are_saved_and_restored() {
 }
 
 #[test]
+fn speeds_of_the_spindle_come_back_with_the_modes() {
+    let speeds = |body: &str| -> Vec<f64> {
+        let program = run(body).unwrap();
+        let events = program.paths[2..].iter().flat_map(|path| &path.events);
+        let speeds = events.filter_map(|event| match event.action {
+            ProgramAction::SpindleSpeed(speed) => Some(speed),
+            _ => None,
+        });
+        speeds.collect()
+    };
+    assert_eq!(speeds("S2500\nM70\nS300\nM72\nM3\nG0 X1\nM2"), [2500.0]);
+    assert_eq!(
+        speeds("S2500 M3\nG0 X1\nM70\nS300\nG0 X2\nM72\nG0 X3\nM2"),
+        [2500.0, 300.0, 2500.0]
+    );
+    assert_eq!(speeds("S2500 M3\nM70\nG0 X1\nM72\nG0 X3\nM2"), [2500.0]);
+}
+
+#[test]
 fn a_program_may_end_in_several_ways() {
     let notices = |body: &str| run(body).unwrap().notices.len();
     assert_eq!(notices("G0 X5\nM2\nwhat follows is not read"), 0);

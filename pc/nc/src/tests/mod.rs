@@ -2,6 +2,7 @@
 
 mod coordinates;
 mod cycles;
+mod dialects;
 mod direction;
 mod explain;
 mod flow;

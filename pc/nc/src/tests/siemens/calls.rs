@@ -2,7 +2,7 @@
 
 use super::{wrong, xs};
 use crate::tests::{HEADER, run};
-use crate::{Options, Setup, interpret};
+use crate::{FeedRate, Options, Setup, interpret};
 use std::sync::Arc;
 
 /// X of all motions of a program with subprograms behind its end.
@@ -126,4 +126,27 @@ fn a_tape_mark_may_follow_the_header_of_an_archive() {
     assert_eq!(program.paths.len(), 1);
     let text = "%_N_PART_MPF\nG0 X1 Y0 Z0\n%\nwhat follows is not read";
     assert_eq!(interpret(text, Options::default()).unwrap().paths.len(), 1);
+}
+
+#[test]
+fn a_subprogram_with_save_leaves_codes_and_frame_as_they_were() {
+    let inner = |save: &str| format!("PROC SUB1 {save}\nG1 G91 G55 X2 F100\nTRANS X50\nM17");
+    assert_eq!(
+        with("TRANS X10\nG0 X1\nSUB1\nX1\nG0 X2", &inner("SAVE")),
+        [11.0, 13.0, 11.0, 12.0]
+    );
+    assert_eq!(
+        with("TRANS X10\nG0 X1\nSUB1\nX1\nG0 X2", &inner("")),
+        [11.0, 13.0, 14.0, 16.0]
+    );
+    // At each of its ends, and behind what M70 saved in it.
+    let twice = "PROC SUB1 SAVE DISPLOF\nM70\nG0 G91 X2\nM72\nIF 1==1\nG91\nRET\nENDIF\nM17";
+    assert_eq!(with("G0 X1\nSUB1 P2\nG0 X9", twice), [1.0, 3.0, 5.0, 9.0]);
+    // F is no G code, and is kept.
+    let program = run("G1 X1 F500\nSUB1\nX7\nM30\nPROC SUB1 SAVE\nG0 X2 F100\nRET").unwrap();
+    let last = program.paths.last().unwrap().targets.last().unwrap();
+    assert_eq!(
+        (last.words.axes[0], last.feed),
+        (Some(7.0), Some(FeedRate::PerMinute(100.0)))
+    );
 }

@@ -39,6 +39,13 @@ fn a_hole_is_where_the_tip_is() {
         zs("CYCLE89(15,0,2,-10,,0)"),
         [rapid(2.0), feed(-10.0), feed(2.0), rapid(15.0)]
     );
+    // Of nine arguments of CYCLE81 posts leave one out, and 10 is AMODE.
+    assert_eq!(
+        zs("CYCLE81(15,0,2,-10,,0,0,10)"),
+        [rapid(2.0), feed(-10.0), rapid(15.0)]
+    );
+    assert!(wrong("F100\nCYCLE81(15,0,2,-10,,0,0,2)").contains("GMODE, DMODE"));
+    assert!(wrong("F100\nCYCLE82(15,0,2,-10,,0,0,10)").contains("GMODE, DMODE"));
     // Chips are taken out: first 4 deep, then 3, then 2, and what is left in two.
     let pecks = zs("CYCLE83(15,0,2,-12,,,4,1,0,0,0.5,1)");
     let depths: Vec<f64> = pecks

@@ -55,6 +55,23 @@ fn steps_and_coordinates_hold_for_one_word() {
 }
 
 #[test]
+fn rotary_axes_go_the_short_way_or_one_way() {
+    let cs = |body: &str| -> Vec<f64> {
+        let paths = run(&format!("{body}\nM2")).unwrap().paths;
+        let targets = paths[2..].iter().flat_map(|path| &path.targets);
+        targets.filter_map(|target| target.words.axes[5]).collect()
+    };
+    assert_eq!(cs("G0 C=DC(278)\nC=DC(10)\nC=DC(730)"), [-82.0, 10.0]);
+    assert_eq!(
+        cs("G0 C90\nC=ACP(80)\nC=ACP(80) X1\nC=ACN(90)"),
+        [90.0, 440.0, 440.0, 90.0]
+    );
+    assert_eq!(cs("G0 C-350\nG91 C=DC(0)"), [-350.0, -360.0]);
+    assert!(wrong("G0 X=DC(5)").contains("are for A B C"));
+    assert!(wrong("G53 G0 C=DC(5)").contains("are for G0, G1, G2 and G3"));
+}
+
+#[test]
 fn the_radius_of_an_arc_may_be_named() {
     let program = run("F600 G2 X10 CR=5\nX0 CR=-5\nM2").unwrap();
     let ways: Vec<_> = program.paths[2]
@@ -110,7 +127,7 @@ fn words_of_a_post_processor_for_siemens_are_understood() {
     assert!(wrong("T=\"\"").contains("T=\"NAME\" needs the name of a tool"));
     assert!(wrong("G71 Q1 X1").contains("lathe codes are not supported"));
     assert!(wrong("F1 G1 X1 D12").contains("D"));
-    assert!(wrong("CYCLE800(1)").contains("CYCLE"));
+    assert!(wrong("CYCLE800(1)").contains("a retraction that is not known"));
     assert!(run("CYCLE800(0,\"TC1\",0,57,0,0,0,0,0.0,0,0,0,0,-1)\nFGROUP(X,Y,Z)\nG0 X1\nM2").is_ok());
     assert!(run("CYCLE800()\nG710 FNORM\nD1 G54 G0 X1\nM2").is_ok());
 }

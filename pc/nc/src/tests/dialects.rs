@@ -1,0 +1,206 @@
+//! What programs of other controllers have, and what is told or refused of it.
+
+use super::*;
+
+fn told(body: &str) -> Vec<String> {
+    let program = run(body).unwrap_or_else(|error| panic!("{error}"));
+    program.notices.into_iter().map(|notice| notice.text).collect()
+}
+
+fn wrong(body: &str) -> String {
+    run(body).unwrap_err().to_string()
+}
+
+/// Where each motion behind the header leads, X Y Z.
+fn ends(body: &str) -> Vec<[f64; 3]> {
+    let program = run(body).unwrap_or_else(|error| panic!("{error}"));
+    let mut at = [0.0; 3];
+    let mut ends = Vec::new();
+    for target in program.paths[2..].iter().flat_map(|path| &path.targets) {
+        for (at, said) in at.iter_mut().zip(target.words.axes) {
+            *at = said.unwrap_or(*at);
+        }
+        ends.push(at);
+    }
+    ends
+}
+
+#[test]
+fn g53_alone_moves_nothing_which_is_told() {
+    for word in ["G53", "G53 M8", "SUPA D0"] {
+        assert_eq!(
+            ends(&format!("F100\nG1 X1\n{word}\nX2\nM2")),
+            [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]
+        );
+        let told = told(&format!("{word}\nG53\nM2"));
+        let about = told.iter().filter(|text| text.contains("without axis words"));
+        assert_eq!(about.count(), 1, "{word}: {told:?}");
+    }
+}
+
+#[test]
+fn g0_may_stand_beside_g28_and_holds_after_it() {
+    let program = run("F100\nG1 X5\nG0 G91 G28 Z0\nG90 X7\nM2").unwrap();
+    let motions: Vec<_> = program.paths[2..].iter().map(|path| path.motion).collect();
+    assert_eq!(motions, [Motion::Feed, Motion::Rapid, Motion::Rapid]);
+    let first = run("F100\nG1 X5\nG91 G28 Z0\nG90 G0 X7\nM2").unwrap();
+    let ways = |program: &Program| -> Vec<_> {
+        let targets = program.paths.iter().flat_map(|path| &path.targets);
+        targets.map(|target| (target.way.clone(), target.words)).collect()
+    };
+    assert_eq!(ways(&program), ways(&first));
+    assert!(wrong("F100\nG1 G28 Z0\nM2").contains("G28 takes the axis words"));
+    assert!(wrong("G0 G92 X0\nM2").contains("G92 takes the axis words"));
+}
+
+#[test]
+fn what_ends_modes_of_other_controllers_changes_nothing() {
+    let told = told("G15 G17 G23 G40 G49 G50 G69 G80\nG5 P10000\nG0 X1\nG5 P0\nM2");
+    for code in ["G23", "G50", "G69", "G5 P"] {
+        let about = told
+            .iter()
+            .filter(|text| text.starts_with(&format!("{code} changes nothing")));
+        assert_eq!(about.count(), 1, "{code}: {told:?}");
+    }
+    assert!(wrong("G50 S2000\nM2").contains("lathe"));
+    assert!(wrong("G50 X100 Z50\nM2").contains("lathe"));
+    assert!(wrong("G5 P2\nM2").contains("P10000 begins"));
+    for (code, why) in [
+        ("G51 X0 Y0 P2", "neither scaled nor mirrored"),
+        ("G54.1 P3", "G54 to G59.3"),
+        ("G65 P9000 A1", "write a subroutine"),
+        ("G68 X0 Y0 R30", "ROT"),
+        ("M200", "M62 to M65"),
+    ] {
+        assert!(wrong(&format!("{code}\nM2")).contains(why), "{code}");
+    }
+}
+
+#[test]
+fn g16_makes_x_and_y_distance_and_angle() {
+    let holes = |body: &str| -> Vec<[f64; 2]> {
+        let bottoms = ends(body).into_iter().filter(|end| end[2] == -5.0);
+        bottoms
+            .map(|[x, y, _]| [x, y].map(|value| (value * 1e6).round() / 1e6))
+            .collect()
+    };
+    assert_eq!(
+        holes("G16 G99 G81 X10 Y90 Z-5 R2 F100\nY180\nG91 Y90 R2 Z-7\nG90 G15 X3 Y4 R2 Z-5\nM2"),
+        [[0.0, 10.0], [-10.0, 0.0], [0.0, -10.0], [3.0, 4.0]]
+    );
+    // Axes of the machine and offsets are as ever.
+    assert_eq!(ends("G16\nG53 G0 X5 Y7\nM2"), [[5.0, 7.0, 0.0]]);
+    assert!(wrong("G16 G91 X10\nM2").contains("write it with G90"));
+    assert!(wrong("G18 G16 G0 X10\nM2").contains("G17"));
+}
+
+#[test]
+fn a_number_with_an_implied_point_is_refused() {
+    for word in ["X0019685", "Y-0008937", "Z00100", "I+00012"] {
+        let problem = wrong(&format!("F100\nG1 {word}\nM2"));
+        assert!(problem.contains("write the point"), "{problem}");
+    }
+    assert_eq!(
+        ends("G0 X0010 Y00010.5 Z0\nX00000\nM2")[..1],
+        [[10.0, 10.5, 0.0]],
+        "LinuxCNC's are as they were"
+    );
+}
+
+#[test]
+fn programs_of_heidenhain_get_one_sentence() {
+    for text in [
+        "0 BEGIN PGM PART MM\nM2",
+        "; a comment\n0010 BEGIN PGM 100 IN\n",
+        "% 123 G71\nG90\n",
+        "%PART G70 *\nM2",
+    ] {
+        let problem = interpret(text, Options::default()).unwrap_err().problem;
+        assert_eq!(problem, Problem::Heidenhain, "{text}");
+    }
+    assert!(interpret("%PART\nG71\nM2", Options::default()).is_ok());
+}
+
+#[test]
+fn loops_and_jumps_of_macros_are_understood() {
+    let xs = |body: &str| -> Vec<f64> { ends(body).into_iter().map(|end| end[0]).collect() };
+    assert_eq!(
+        xs("#1=0\nWHILE[#1LT3]DO1\n#1=#1+1\nG0X#1\nEND1\nX9\nM2"),
+        [1.0, 2.0, 3.0, 9.0]
+    );
+    assert_eq!(
+        xs(
+            "#1=1\nWHILE [#1 LE 2] DO 1\n#2=1\nWHILE [#2 LE 2] DO2\nG0 X[#1*10+#2]\n#2=#2+1\nEND2\n#1=#1+1\nEND1 (done)\nM2"
+        ),
+        [11.0, 12.0, 21.0, 22.0]
+    );
+    assert_eq!(
+        xs("#1=1\nN10 G0 X#1\n#1=#1+1\nIF[#1EQ3]GOTO20(out)\nGOTO10\nN20 X9\nM2"),
+        [1.0, 2.0, 9.0]
+    );
+    assert_eq!(
+        xs("#1=5\nIF [#1 GT 3] THEN #1=3\nIF [#1 GT 3] THEN #1=1/0 (not run)\nG0 X#1\nM2"),
+        [3.0]
+    );
+    assert_eq!(xs("#1=2+3*4-[1+1]*2/4\nG0 X#1\n#2=-#1\nX#2\nM2"), [13.0, -13.0]);
+    assert!(wrong("WHILE [1 EQ 1] DO4\nM2").contains("DO1, DO2 or DO3"));
+    assert!(wrong("WHILE [1 EQ 1] DO\nM2").contains("DO1, DO2 or DO3"));
+    assert!(wrong("#1=0\nWHILE [#1 LT 1] DO1\n#1=1\nEND2\nM2").contains("END2 has no DO2"));
+    assert!(wrong("END1\nM2").contains("END1 has no DO1"));
+    assert!(wrong("IF [1 EQ 1] THEN G0 X1\nM2").contains("THEN has a parameter"));
+    assert!(wrong("#1=2*\nM2").contains("a value is missing"));
+    assert!(wrong("GOTO 77\nM2").contains("N77 is not in this program"));
+}
+
+#[test]
+fn where_controllers_differ_in_cycles_and_dwells_that_is_told() {
+    let about = |body: &str, words: &str| told(body).iter().filter(|text| text.contains(words)).count();
+    let retract = "without G98 or G99";
+    assert_eq!(about("G0 Z9\nG81 X1 Z-5 R2 F100\nX2\nM2", retract), 1);
+    for said in [
+        "G0 Z9\nG98 G81 X1 Z-5 R2 F100\nM2",
+        "G0 Z2\nG81 X1 Z-5 R2 F100\nM2",
+    ] {
+        assert_eq!(about(said, retract), 0, "{said}");
+    }
+    assert_eq!(about("G4 P4000\nG0 X1\nM2", "dwell 4 s"), 1);
+    assert_eq!(about("G4 P99\nG4 P100.5\nG4 F500\nG0 X1\nM2", "milliseconds"), 0);
+    assert_eq!(
+        about("G0 Z9\nG99 G82 X1 Z-5 R2 P200 F100\nM2", "P of G82 is in seconds"),
+        1
+    );
+    // Without P there is no dwell.
+    assert_eq!(
+        about(
+            "G0 Z9\nG99 G82 X1 Z-5 R2 F100\nX2\nM2",
+            "G82 without P does not dwell"
+        ),
+        1
+    );
+    let drilled = ends("G0 X1 Z2\nG99 G82 Z-5 R2 P0.2 F100 L0\nX3\nM2");
+    assert_eq!(drilled[1..], [[3.0, 0.0, 2.0], [3.0, 0.0, -5.0], [3.0, 0.0, 2.0]]);
+    assert!(wrong("G99 G82 X1 Z-5 R2 P0.2 F100 L0\nM2").contains("without the place of a hole"));
+}
+
+#[test]
+fn levels_of_a_cycle_are_said_again_after_g90_or_g91() {
+    let levels = "G0 Z9\nG99 G81 X1 Z-5 R2 F100\n";
+    for step in ["G91 X1", "G91 X1 R2", "G91 X1 Z-5"] {
+        assert!(
+            wrong(&format!("{levels}{step}\nM2")).contains("write both again"),
+            "{step}"
+        );
+    }
+    assert!(run(&format!("{levels}G91 X1 R-7 Z-5\nG90 X5 R2 Z-5\nM2")).is_ok());
+}
+
+#[test]
+fn a_program_number_stands_alone() {
+    assert_eq!(
+        ends(":1234 (NAME)\nM98 P20\nM30\n:20\nG0 X5\nM99"),
+        ends("O1\nG0 X5\nM2")
+    );
+    for body in ["O100 #1=5", "O100 -5", "O100 [5]", ":10 G0 X1", ":10 sub"] {
+        assert!(run(&format!("{body}\nM2")).is_err(), "{body}");
+    }
+}

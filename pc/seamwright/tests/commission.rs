@@ -1,0 +1,118 @@
+//! `seamwright commission` on simulated boards, as a person uses it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::tempdir;
+
+/// A drawn machine whose loops swing with the shipped gains.
+const RINGS: &str = "draw:usual:1";
+
+fn shipped(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file)
+}
+
+fn seamwright(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_seamwright"))
+        .args(arguments)
+        .args(["--boards", "simulated"])
+        .output()
+        .expect("it runs")
+}
+
+fn commission(machine: &Path, more: &[&str]) -> Output {
+    let machine = machine.to_str().expect("a path");
+    seamwright(&[&["commission", "--machine", machine], more].concat())
+}
+
+fn weld(machine: &Path, report: &Path) -> Output {
+    let (program, seam) = (
+        shipped("programs/t-seam-400.ngc"),
+        shipped("programs/t-seam-400-deviation.csv"),
+    );
+    let [machine, program, seam, report] =
+        [machine, &program, &seam, report].map(|path| path.to_str().expect("a path"));
+    seamwright(&[
+        "weld",
+        program,
+        "--machine",
+        machine,
+        "--seam",
+        seam,
+        "--report",
+        report,
+        "--plant",
+        RINGS,
+        "--camera",
+        "geometric",
+    ])
+}
+
+#[track_caller]
+fn assert_refused(output: &Output, because: &str) {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_ne!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains(because), "{said}");
+}
+
+#[test]
+fn a_machine_whose_loops_swing_welds_when_it_is_commissioned() {
+    let folder = tempdir().expect("a folder");
+    let machine = folder.path().join("machine.toml");
+    std::fs::copy(shipped("machines/dual-beam-gantry.toml"), &machine).expect("copied");
+    std::fs::copy(
+        shipped("machines/dual-beam-gantry.plant.toml"),
+        folder.path().join("machine.plant.toml"),
+    )
+    .expect("copied");
+    let report = folder.path().join("report");
+    assert_ne!(
+        weld(&machine, &report).status.code(),
+        Some(0),
+        "it welds as it is"
+    );
+
+    // What was measured, and nothing written, where no file is named.
+    let before = std::fs::read_to_string(&machine).expect("it is there");
+    let told = commission(&machine, &["--plant", RINGS, "--motors", "B"]);
+    let said = String::from_utf8_lossy(&told.stdout);
+    assert_eq!(told.status.code(), Some(0), "{said}");
+    assert!(said.contains("before  kp  120.0 1/s  gain margin  -"), "{said}");
+    assert_eq!(std::fs::read_to_string(&machine).expect("it is there"), before);
+
+    let output = machine.to_str().expect("a path");
+    let commissioned = commission(&machine, &["--plant", RINGS, "-o", output]);
+    let said = String::from_utf8_lossy(&commissioned.stdout);
+    assert_eq!(commissioned.status.code(), Some(0), "{said}");
+    let after = std::fs::read_to_string(&machine).expect("it is there");
+    assert!(after.contains("# commissioned; was 120.0"), "{after}");
+    assert_eq!(
+        after.lines().filter(|line| line.starts_with('#')).count(),
+        before.lines().filter(|line| line.starts_with('#')).count(),
+    );
+    let ended = weld(&machine, &report);
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert_eq!(ended.status.code(), Some(0), "{said}");
+}
+
+#[test]
+fn what_cannot_be_commissioned_is_told() {
+    let machine = shipped("machines/pipe-welder.toml");
+    assert_refused(
+        &commission(&machine, &["--motors", "Y"]),
+        "--motors: the machine has no motor Y; it has X1, Z, B, C",
+    );
+    assert_refused(
+        &commission(&machine, &["--motors", ""]),
+        "--motors: the machine has no motor ;",
+    );
+    assert_refused(&commission(Path::new("none.toml"), &[]), "none.toml");
+    let folder = tempdir().expect("a folder");
+    let nowhere = folder.path().join("none/machine.toml");
+    assert_refused(
+        &commission(
+            &machine,
+            &["--motors", "Z", "-o", nowhere.to_str().expect("a path")],
+        ),
+        "cannot write",
+    );
+}
