@@ -49,6 +49,13 @@ impl Commission {
         let machine = MachineFile::read(&self.machine)?;
         self.boards.check(&machine)?;
         let motors = self.motors(&machine)?;
+        if let Some(output) = &self.output {
+            // Before anything moves.
+            let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
+            if folder.is_some_and(|folder| !folder.is_dir()) {
+                bail!("cannot write {}: there is no such folder", output.display());
+            }
+        }
         let excitations = motors
             .iter()
             .flat_map(|motor| excitations(&machine, *motor))
