@@ -1,12 +1,13 @@
 //! From a line of text to a block: codes by modal group, words by their letter, parameters that it sets.
 
-use super::codes::{CODES, Code, Group, LATHE, NEAR, refused};
+use super::codes::{CODES, Code, Group, LATHE, NEAR, of_other_machines, refused};
 use super::error::{NcError, Problem, SourcePosition};
 use super::expression;
 use super::flow::{self, OWord};
 use super::parameters::{InBlock, Lookup, Parameter};
 use super::scanner::Scanner;
 use super::siemens::{self, Read, Statement};
+use std::collections::BTreeSet;
 
 /// A word with its value.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,6 +134,8 @@ pub struct Block {
     pub tool_name: Option<(String, SourcePosition)>,
     /// WELDON with the name of its data, or WELDOFF without.
     pub weld: Option<(Option<String>, SourcePosition)>,
+    /// M codes that are passed over.
+    pub passed_over: Vec<(u16, SourcePosition)>,
     /// Comments, in their order.
     pub comments: Vec<(String, SourcePosition)>,
 }
@@ -155,10 +158,10 @@ impl Block {
 
     /// Whether it has comments and nothing else.
     pub fn is_comment(&self) -> bool {
-        self.settings_alone() && self.settings.is_empty()
+        self.settings_alone() && self.settings.is_empty() && self.passed_over.is_empty()
     }
 
-    /// Whether it sets parameters and does nothing else.
+    /// Whether it sets parameters, if it does anything.
     pub fn settings_alone(&self) -> bool {
         self.codes.is_empty() && self.words.is_empty() && self.weld.is_none() && self.tool_name.is_none()
     }
@@ -191,19 +194,27 @@ const WORDS: [&str; 21] = [
     "X", "Y", "Z", "A", "B", "C", "I", "J", "K", "R", "F", "P", "L", "E", "Q", "S", "T", "H", "D", "@", "^",
 ];
 /// Words that are lengths.
-const LENGTHS: [&str; 7] = ["X", "Y", "Z", "I", "J", "K", "R"];
+pub(super) const LENGTHS: [&str; 7] = ["X", "Y", "Z", "I", "J", "K", "R"];
 /// The same, written with `=`.
 const NAMED_WORDS: [&str; 22] = [
     "V1", "V2", "A3", "B3", "C3", "CR", "AR", "TURN", "I1", "J1", "K1", "AP", "RP", "RPL", "CTOL", "ANG",
     "RND", "RNDM", "CHF", "CHR", "FRC", "FRCM",
 ];
 
-/// Reads line number `line`, in which `lookup` knows the values of parameters. Blocks that begin with `/` are left out with
-/// `block_delete`.
+/// What of a program is not carried out.
+#[derive(Clone, Copy)]
+pub(super) struct Skipped<'a> {
+    /// Blocks that begin with `/`.
+    pub(super) blocks: bool,
+    /// M codes that mean nothing here.
+    pub(super) functions: &'a BTreeSet<u16>,
+}
+
+/// Reads line number `line`, in which `lookup` knows the values of parameters.
 pub(super) fn parse(
     text: &str,
     line: u32,
-    block_delete: bool,
+    skipped: Skipped<'_>,
     lookup: &mut dyn Lookup,
 ) -> Result<Parsed, NcError> {
     let mut scanner = Scanner::new(text, line);
@@ -215,7 +226,7 @@ pub(super) fn parse(
         None => return Ok(Parsed::Blank),
         Some('0'..='9' | '%') if is_heidenhain(text) => return Err(Problem::Heidenhain.at(scanner.place())),
         Some('%') => return Ok(Parsed::Percent),
-        Some('/') if block_delete => return Ok(Parsed::Blank),
+        Some('/') if skipped.blocks => return Ok(Parsed::Blank),
         Some('/') => scanner.step(),
         Some(_) => {}
     }
@@ -247,7 +258,7 @@ pub(super) fn parse(
             '0'..='9' | '.' | '+' | '-' | '[' => return Err(Problem::LooseNumber.at(place)),
             '@' | '^' => {
                 let word = word(&mut scanner, lookup)?;
-                take(&mut block, word, false)?;
+                take(&mut block, word, false, skipped)?;
             }
             c if c.is_ascii_alphabetic() || c == '_' => {
                 if matches!(c, 'W' | 'w') && weld(&mut scanner, &mut block)? {
@@ -261,7 +272,7 @@ pub(super) fn parse(
                         Some(name) => block.tool_name = Some((name, place)),
                         None => {
                             let word = word(&mut scanner, lookup)?;
-                            take(&mut block, word, first)?;
+                            take(&mut block, word, first, skipped)?;
                         }
                     },
                 }
@@ -456,7 +467,7 @@ fn word(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Word, NcError>
 }
 
 /// Puts a word where it belongs in its block; it may be the `first`.
-fn take(block: &mut Block, mut word: Word, first: bool) -> Result<(), NcError> {
+fn take(block: &mut Block, mut word: Word, first: bool, skipped: Skipped<'_>) -> Result<(), NcError> {
     if word.named && matches!(word.address.as_str(), "S1" | "M1") {
         // Of the first spindle, which is the only one.
         (word.address, word.named) = (word.address[..1].to_owned(), false);
@@ -470,7 +481,14 @@ fn take(block: &mut Block, mut word: Word, first: bool) -> Result<(), NcError> {
         }
         ("G" | "M", false) => match code(&word) {
             Err(_) if siemens::is_without_effect(&word.address, word.value) => Ok(()),
-            code => block.add(code?),
+            Err(error) => match of_other_machines(&word.address, word.value) {
+                Some(number) if skipped.functions.contains(&number) => {
+                    block.passed_over.push((number, word.place));
+                    Ok(())
+                }
+                _ => Err(error),
+            },
+            Ok(code) => block.add(code),
         },
         ("U" | "V" | "W", false) => Err(Problem::NoParallelAxes(word.address).at(word.place)),
         (address, named) => {

@@ -200,7 +200,7 @@ const PROBING: &str =
     "the boards have no probe input for programs: teach the part instead (seamwright teach)";
 const COMPENSATION: &str =
     "cutter compensation is not supported: let the CAM system put out the path of the tool's centre";
-const OVERRIDES: &str = "programs do not lock the operator's feed override";
+const OVERRIDES: &str = "programs do not lock the operator's feed override: leave it out, or list it under passed_over in [program] of the machine file";
 
 /// G501 to G599: coordinate systems of Siemens, of which there are fewer here.
 const FAR_SYSTEMS: std::ops::RangeInclusive<f64> = 5010.0..=5990.0;
@@ -215,6 +215,21 @@ pub(super) fn refused(letter: char, tenths: f64) -> Option<&'static str> {
         .find(|(own, number, _)| *own == letter && (tenths - f64::from(*number)).abs() < NEAR)?;
     Some(found.2)
 }
+
+/// The number of an M code that is none of the dialect, and that only the builder of another machine knows; those of
+/// [`OVERRIDES`] change nothing here, and so may be one.
+pub(super) fn of_other_machines(address: &str, value: f64) -> Option<u16> {
+    let whole = value.fract() == 0.0 && (0.0..=MOST_FUNCTION).contains(&value);
+    let tenths = value * 10.0;
+    let known = CODES
+        .iter()
+        .any(|(letter, own, ..)| *letter == 'M' && f64::from(*own) == tenths);
+    let refused = refused('M', tenths).is_some_and(|why| why != OVERRIDES);
+    (address == "M" && whole && !known && !refused).then_some(value as u16)
+}
+
+/// Largest number of an M code.
+const MOST_FUNCTION: f64 = 9999.0;
 
 /// Codes are this near to their tenths.
 pub(super) const NEAR: f64 = 1e-3;

@@ -102,11 +102,15 @@ impl Interpreter {
         let retract = self.sticky.levels[0].ok_or_else(|| missing("R"))?;
         let bottom = self.sticky.levels[1].ok_or_else(|| missing(AXIS_WORDS[axis]))?;
         if self.sticky.steps != [self.modal.incremental; 2] {
-            let (code, why) = (
-                mode.name(),
-                "controllers differ in what R and the depth mean after a change between G90 and G91: write both again",
+            let now = if self.modal.incremental {
+                "steps"
+            } else {
+                "coordinates"
+            };
+            let text = format!(
+                "after a change between G90 and G91 the numbers of R and the depth from before are taken as {now}, as on LinuxCNC: other controllers keep the levels, so write both again"
             );
-            return Err(Problem::Impossible { code, why }.at(place));
+            self.tell_once(text, place);
         }
         let peck = self.sticky.peck;
         let peck = match mode {

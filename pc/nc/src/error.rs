@@ -321,7 +321,7 @@ pub enum Problem {
         why: String,
     },
     /// A G or M code of another dialect.
-    #[error("{letter}{number} is not understood{}", if *letter == 'M' { ": functions of other machines mean nothing here, so leave it out, or switch an output with M62 to M65" } else { "" })]
+    #[error("{letter}{number} is not understood{}", if *letter == 'M' && number.fract() == 0.0 && *number <= 9999.0 { ": it is a function of another machine, so list it under passed_over in [program] of the machine file if it may be left out, or switch an output with M62 to M65" } else { "" })]
     UnknownCode {
         /// G or M.
         letter: char,

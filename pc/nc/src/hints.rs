@@ -1,6 +1,6 @@
 //! Codes of other controllers that are accepted and do little or nothing here, which is told once.
 
-use super::block::Block;
+use super::block::{Block, LENGTHS};
 use super::codes::{Code, Group};
 use super::error::SourcePosition;
 use super::interpreter::Interpreter;
@@ -45,6 +45,34 @@ impl Interpreter {
                 "{name} is taken as G64 with CTOL or the default tolerance: distances and tolerances of single axes are not known here"
             );
             self.tell_once(text, code.place);
+        }
+    }
+
+    /// Lengths without G20 and G21 before them; 0 is the same in all units.
+    pub(super) fn unit_hint(&mut self, block: &Block) {
+        if self.unit_clear {
+            return;
+        }
+        if block.code(Group::Units).is_some() {
+            self.unit_clear = true;
+            return;
+        }
+        let takes = block.codes.iter().find(|code| code.code.takes_axes());
+        let moves = match takes {
+            Some(code) => matches!(code.code, Code::Home | Code::SecondHome),
+            None => self.modal.motion.is_some(),
+        };
+        let mut words = block.words.iter();
+        let length = words.find(|word| word.value != 0.0 && LENGTHS.contains(&word.address.as_str()));
+        if let Some(word) = length.filter(|_| moves) {
+            let unit = if self.modal.inches {
+                "inches, as the machine file says"
+            } else {
+                "mm"
+            };
+            let text = format!("neither G20 nor G21 before the first motion: lengths are {unit}");
+            self.tell_once(text, word.place);
+            self.unit_clear = true;
         }
     }
 

@@ -77,6 +77,8 @@ pub(super) struct Interpreter {
     /// Weld data that was called so far, by name.
     pub(super) welds: Vec<String>,
     pub(super) notices: Vec<Notice>,
+    /// The program has said its unit of length, or was told which one it is.
+    pub(super) unit_clear: bool,
     pub(super) branches: bool,
     pub(super) ended: bool,
     /// How often a parameter that stands for the state was read.
@@ -121,6 +123,7 @@ impl Interpreter {
             saved: Vec::new(),
             welds: Vec::new(),
             notices: Vec::new(),
+            unit_clear: false,
             branches: false,
             ended: false,
             looks: 0,
@@ -139,6 +142,12 @@ impl Interpreter {
         }
         for (comment, place) in &block.comments {
             self.remark(comment, *place);
+        }
+        for (number, place) in &block.passed_over {
+            self.tell_once(
+                format!("M{number} is passed over, as the machine file says"),
+                *place,
+            );
         }
         if block.settings_alone() {
             return Ok(());
@@ -178,6 +187,7 @@ impl Interpreter {
         self.modal.block(block, &claims, &setup)?;
         self.modal_corner(block)?;
         self.hints(block);
+        self.unit_hint(block);
         self.save_modes(block)?;
         self.switch(block, &claims)?;
         self.system_and_tool(block, &claims)?;

@@ -1,6 +1,6 @@
 //! Lines of a program one after the other: loops, conditions and subroutines decide which is the next.
 
-use super::block::{Parsed, parse};
+use super::block::{Parsed, Skipped, parse};
 use super::branches::Open;
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
@@ -201,7 +201,11 @@ impl Reader {
         let here = self.position.here();
         self.position.executed += 1;
         self.conditions_before = self.interpreter.conditions();
-        let parsed = parse(&text, here.line, self.options.block_delete, &mut self.interpreter)?;
+        let skipped = Skipped {
+            blocks: self.options.block_delete,
+            functions: &self.options.setup.passed_over,
+        };
+        let parsed = parse(&text, here.line, skipped, &mut self.interpreter)?;
         let seen = self.position.seen;
         // Some archives have a tape mark behind the header of the program.
         self.position.seen |= parsed != Parsed::Blank && (seen || !calls::is_archive_header(&text));

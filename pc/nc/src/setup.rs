@@ -2,7 +2,7 @@
 
 use super::program::{PathControl, Plane};
 use shared::io::AXES;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -40,6 +40,8 @@ pub struct Setup {
     pub homes: [[f64; AXES]; 2],
     /// Lengths of tools by number, beyond the tip of the machine along its tool \[mm\]; without any, all end there.
     pub tools: BTreeMap<u32, f64>,
+    /// Numbers of M codes that mean nothing here and are passed over, which is told. Those that mean something keep their meaning.
+    pub passed_over: BTreeSet<u16>,
     /// Where subroutines in files of their own are.
     pub folders: Vec<PathBuf>,
     /// From axes to the tip; without it a program has to say where the tip is after motions of axes.
@@ -58,6 +60,7 @@ impl Default for Setup {
             fitted: [true; AXES],
             homes: [[0.0; AXES]; 2],
             tools: BTreeMap::new(),
+            passed_over: BTreeSet::new(),
             folders: Vec::new(),
             kinematics: None,
         }

@@ -219,7 +219,7 @@ fn a_seam_and_boards_that_do_not_suit_the_machine_are_told_with_the_remedy() {
     assert_says(&said, &["t-seam-400.ngc", "follows the seam", "--seam FILE"]);
 
     let machine = without_tracker("no-tracker.toml");
-    let program = "G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nG0 X910\nM2\n";
+    let program = "G21 G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nG0 X910\nM2\n";
     let said = Attempt {
         machine: machine.clone(),
         program: written("untracked.ngc", program),
@@ -342,7 +342,7 @@ fn a_panel_is_not_taught_by_a_machine_without_a_probe_nor_with_settings_that_mak
 #[test]
 fn a_program_outside_travel_is_named_by_axis_and_amount() {
     let program = |name, axis: &str| {
-        let program = format!("G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nG0 {axis}\nM2\n");
+        let program = format!("G21 G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nG0 {axis}\nM2\n");
         Attempt {
             program: written(name, &program),
             ..Attempt::new()

@@ -105,7 +105,7 @@ impl Planner {
             welding: Arc::new(machine.welding.clone()),
             tracks: machine.tracking.is_some(),
             planning: machine.planning.clone(),
-            program: machine.program,
+            program: machine.program.clone(),
             tools: machine.tools.clone(),
         })
     }

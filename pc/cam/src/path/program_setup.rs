@@ -40,6 +40,7 @@ impl Planner {
             fitted: self.fitted,
             homes: [park, park],
             tools: self.tools.clone(),
+            passed_over: program.passed_over.numbers().clone(),
             kinematics: Some(Arc::new(kinematics)),
             ..Setup::default()
         }

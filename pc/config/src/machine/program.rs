@@ -5,9 +5,11 @@ use super::{MachineFile, Mistake};
 use crate::in_range;
 use serde::Deserialize;
 use shared::io::{AXES, AXIS_NAMES};
+use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
 
 /// `[program]`: each key has the default of RS274/NGC as `docs/nc.md` states it.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ProgramConfig {
     /// Of lengths and feeds.
@@ -22,6 +24,8 @@ pub struct ProgramConfig {
     pub tolerance_mm: Option<f64>,
     /// A B C of the first motion of the tip, where it does not say them \[°\].
     pub rotary_deg: Rotary,
+    /// M codes that programs are read without.
+    pub passed_over: PassedOver,
 }
 
 impl Default for ProgramConfig {
@@ -33,6 +37,7 @@ impl Default for ProgramConfig {
             path_mode: PathMode::default(),
             tolerance_mm: None,
             rotary_deg: Rotary::default(),
+            passed_over: PassedOver::default(),
         }
     }
 }
@@ -87,6 +92,66 @@ impl Rotary {
     pub fn into_array(self) -> [Option<f64>; 3] {
         [self.A, self.B, self.C]
     }
+}
+
+/// M codes of other machines, by their numbers.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "Vec<String>")]
+pub struct PassedOver(BTreeSet<u16>);
+
+/// Largest number of an M code.
+const MOST_FUNCTION: u16 = 9999;
+/// M codes with a meaning of their own in programs, and M19, which would leave a spindle where it must not be.
+const KNOWN: [RangeInclusive<u16>; 9] = [
+    0..=9,
+    17..=17,
+    19..=19,
+    30..=30,
+    40..=45,
+    48..=48,
+    60..=68,
+    70..=73,
+    98..=99,
+];
+
+impl PassedOver {
+    /// Their numbers.
+    pub fn numbers(&self) -> &BTreeSet<u16> {
+        &self.0
+    }
+}
+
+impl TryFrom<Vec<String>> for PassedOver {
+    type Error = String;
+
+    fn try_from(codes: Vec<String>) -> Result<Self, String> {
+        codes
+            .iter()
+            .map(|code| function(code))
+            .collect::<Result<_, _>>()
+            .map(Self)
+    }
+}
+
+/// The number of an M code that may be passed over.
+fn function(code: &str) -> Result<u16, String> {
+    let digits = code
+        .strip_prefix('M')
+        .filter(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()));
+    let number = digits
+        .and_then(|digits| digits.parse().ok())
+        .filter(|number| *number <= MOST_FUNCTION);
+    let Some(number) = number else {
+        return Err(format!(
+            "\"{code}\" is no M code: only those are passed over, up to \"M9999\""
+        ));
+    };
+    if KNOWN.iter().any(|known| known.contains(&number)) {
+        return Err(format!(
+            "\"{code}\" has a meaning in programs (docs/nc.md), and is not passed over"
+        ));
+    }
+    Ok(number)
 }
 
 /// A tolerance only of a G64, and only axes that the machine has, within their travel.

@@ -477,8 +477,11 @@ fn programs_begin_with_the_modes_that_the_file_says() {
             B: Some(30.0),
             ..Rotary::default()
         },
+        passed_over: PassedOver::default(),
     };
     assert_eq!(of(all), wanted);
+    let passed = of("[program]\npassed_over = [\"M31\", \"M50\", \"M9026\"]").passed_over;
+    assert_eq!(passed.numbers().iter().collect::<Vec<_>>(), [&31, &50, &9026]);
     assert_eq!(of("[program]\npath_mode = \"G61.1\"").path_mode, PathMode::G61_1);
 }
 
@@ -525,6 +528,31 @@ fn what_programs_cannot_begin_with_is_told_with_file_line_and_key() {
             "[program.rotary_deg]\nB = 0.0\nC = 1000.0",
             3,
             "program.rotary_deg.C is 1000, but must be within the travel",
+        ),
+        (
+            "passed_over = [\"M31\", \"M5\"]",
+            1,
+            "program.passed_over: \"M5\" has a meaning in programs (docs/nc.md), and is not passed over",
+        ),
+        (
+            "plane = \"G18\"\npassed_over = [\"M19\"]",
+            2,
+            "program.passed_over: \"M19\" has a meaning",
+        ),
+        (
+            "passed_over = [\"G31\"]",
+            1,
+            "program.passed_over: \"G31\" is no M code: only those are passed over, up to \"M9999\"",
+        ),
+        (
+            "passed_over = [\"M10000\"]",
+            1,
+            "program.passed_over: \"M10000\" is no M code",
+        ),
+        (
+            "passed_over = [\"M31.5\"]",
+            1,
+            "program.passed_over: \"M31.5\" is no M code",
         ),
         (
             "rotary_deg = { X = 0.0 }",

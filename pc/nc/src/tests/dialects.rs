@@ -183,15 +183,124 @@ fn where_controllers_differ_in_cycles_and_dwells_that_is_told() {
 }
 
 #[test]
-fn levels_of_a_cycle_are_said_again_after_g90_or_g91() {
-    let levels = "G0 Z9\nG99 G81 X1 Z-5 R2 F100\n";
-    for step in ["G91 X1", "G91 X1 R2", "G91 X1 Z-5"] {
+fn numbers_of_a_cycle_hold_after_g90_and_g91_as_on_linuxcnc_which_is_told() {
+    let levels = "G0 Z9\nG98 G81 X1 Z-5 R2 F100\n";
+    for (step, retract, bottom) in [
+        ("G91 X1", 11.0, 6.0),
+        ("G91 X1 R-3", 6.0, 1.0),
+        ("G91 X1 Z-1", 11.0, 10.0),
+    ] {
+        let body = format!("{levels}{step}\nX1\nM2");
+        let heights: Vec<f64> = ends(&body)[5..].iter().map(|end| end[2]).collect();
         assert!(
-            wrong(&format!("{levels}{step}\nM2")).contains("write both again"),
-            "{step}"
+            heights.contains(&retract) && heights.contains(&bottom),
+            "{step}: {heights:?}"
+        );
+        let told = told(&body);
+        let about = told
+            .iter()
+            .filter(|text| text.contains("are taken as steps, as on LinuxCNC"));
+        assert_eq!(about.count(), 1, "{step}: {told:?}");
+    }
+    let said = told(&format!("{levels}G91 X1 R-7 Z-5\nG90 X5 R2 Z-5\nM2"));
+    assert_eq!(said, <[String; 0]>::default());
+}
+
+/// Problem or notices of `text`, on a machine whose file lists M31, M50 and M9026.
+fn with_functions(text: &str) -> Result<Vec<(u32, String)>, String> {
+    let setup = Setup {
+        passed_over: [31, 50, 9026].into(),
+        ..Setup::default()
+    };
+    let options = Options {
+        setup: setup.into(),
+        ..Options::default()
+    };
+    let program = interpret(text, options).map_err(|error| error.to_string())?;
+    let notices = program.notices.into_iter();
+    Ok(notices.map(|notice| (notice.place.line, notice.text)).collect())
+}
+
+#[test]
+fn functions_of_other_machines_are_passed_over_where_the_machine_file_lists_them() {
+    let text = "G21 G0 X5\nM31\nM31 G1 X6 F100 M9026 (both)\nN5 M50\nM31\nM2";
+    let passed = |number: u16| format!("M{number} is passed over, as the machine file says");
+    let told = with_functions(text).unwrap();
+    assert_eq!(told, [(2, passed(31)), (3, passed(9026)), (4, passed(50))]);
+    // The rest of their blocks means what it meant, or is refused as before.
+    assert_eq!(ends("G0 X5 M40\nM2"), [[5.0, 0.0, 0.0]]);
+    let of = |text: &str| with_functions(text).unwrap_err();
+    assert_eq!(
+        of("M31 P5\nM2"),
+        "line 1, column 5: P belongs to no code of this block"
+    );
+    assert!(of("X5 M31\nM2").contains("axis words without a motion"));
+    // What is not listed is an error, with the way out.
+    for code in ["M32", "M131"] {
+        let problem = of(&format!("{code}\nM2"));
+        assert!(
+            problem.contains(&format!("{code} is not understood")),
+            "{problem}"
+        );
+        assert!(problem.contains("list it under passed_over in [program] of the machine file"));
+    }
+    for code in ["M10000", "M31.5", "G5.5"] {
+        let problem = of(&format!("{code}\nM2"));
+        assert!(
+            problem.ends_with(&format!("{code} is not understood")),
+            "{problem}"
         );
     }
-    assert!(run(&format!("{levels}G91 X1 R-7 Z-5\nG90 X5 R2 Z-5\nM2")).is_ok());
+    assert!(wrong("M31\nM2").contains("passed_over"));
+    assert!(wrong("M50\nM2").contains("passed_over"));
+    assert!(of("M19\nM2").contains("the spindle is not positioned"));
+}
+
+#[test]
+fn what_has_a_meaning_is_never_passed_over() {
+    let setup = Setup {
+        passed_over: (0..=9999).collect(),
+        ..Setup::default()
+    };
+    let options = Options {
+        setup: setup.into(),
+        ..Options::default()
+    };
+    let told = |text: &str| interpret(text, options.clone()).map(|program| program.notices);
+    assert_eq!(told("M30\nM77").unwrap(), []);
+    assert!(told("M19\nM2").is_err());
+    let told = told("M77\nM2").unwrap();
+    assert_eq!(told[0].text, "M77 is passed over, as the machine file says");
+}
+
+#[test]
+fn a_unit_that_is_not_said_before_lengths_is_told_once() {
+    let told = |text: &str, inches: bool| -> Vec<(u32, String)> {
+        let setup = Setup {
+            inches,
+            ..Setup::default()
+        };
+        let options = Options {
+            setup: setup.into(),
+            ..Options::default()
+        };
+        let notices = interpret(text, options).unwrap().notices.into_iter();
+        let lines = notices.map(|notice| (notice.place.line, notice.text));
+        lines
+            .filter(|(_, text)| text.starts_with("neither G20"))
+            .collect()
+    };
+    let text = |unit: &str| format!("neither G20 nor G21 before the first motion: lengths are {unit}");
+    let body = "G10 L2 P1 X5\nG0 X0 Y0 A5\nG1 X5 F100\nX6\nG21\nX7\nM2";
+    assert_eq!(told(body, false), [(3, text("mm"))]);
+    assert_eq!(told(body, true), [(3, text("inches, as the machine file says"))]);
+    assert_eq!(told("G28 Z5\nG21\nM2", false), [(1, text("mm"))]);
+    assert_eq!(told("G53 G0 Z5\nG21\nM2", false), [(1, text("mm"))]);
+    for unit in ["G20", "G21", "G70", "G71", "G700", "G710"] {
+        assert_eq!(told(&format!("{unit}\nG0 X5\nM2"), false), []);
+        assert_eq!(told(&format!("G0 X0\n{unit} X5\nX6\nM2"), false), []);
+    }
+    assert_eq!(told("G91 G28 Z0\nG90 G0 A90 C5\nG4 P1\nM2", false), []);
 }
 
 #[test]

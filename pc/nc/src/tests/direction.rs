@@ -133,7 +133,7 @@ fn what_other_controllers_say_besides_is_told_once() {
             .map(|notice| (notice.place.line, notice.text))
             .collect::<Vec<_>>()
     };
-    let once = told("G05.1 Q1\nG0 X1\nG05.1 Q0\nN7 ORIWKS ORIAXES\nORIAXES\nG642\nG0 X2\nG642");
+    let once = told("G05.1 Q1\nG21 G0 X1\nG05.1 Q0\nN7 ORIWKS ORIAXES\nORIAXES\nG642\nG0 X2\nG642");
     let lines: Vec<_> = once.iter().map(|(line, _)| *line).collect();
     assert_eq!(lines, [1, 4, 6], "{once:?}");
     assert!(once[0].1.starts_with("G5.1 Q changes nothing"), "{once:?}");

@@ -123,9 +123,9 @@ fn a_program_with_offset_subroutine_arc_and_inches_is_told_block_by_block() {
 
 #[test]
 fn a_cycle_is_told_with_the_motions_that_it_makes_and_a_nurbs_where_it_ends() {
-    let text = "G0 X0 Y0 Z50 A0 B0 C0\nG99 G82 X10 Z-5 R2 P0.5 F100\nG80\nG5.2 P1 L3\nX20 Y0 P1\nX20 Y10 P1\nX30 Y10 P1\nG5.3\n\
+    let text = "G21 G0 X0 Y0 Z50 A0 B0 C0\nG99 G82 X10 Z-5 R2 P0.5 F100\nG80\nG5.2 P1 L3\nX20 Y0 P1\nX20 Y10 P1\nX30 Y10 P1\nG5.3\n\
                 G53 G0 Z100\nM2";
-    let wanted = "1: G0 X0 Y0 Z50 A0 B0 C0
+    let wanted = "1: G21 G0 X0 Y0 Z50 A0 B0 C0
    straight, rapid, to X0 Y0 Z50 mm, A0 B0 C0 deg in G54
    tip at X0 Y0 Z50 mm, A0 B0 C0 deg
 2: G99 G82 X10 Z-5 R2 P0.5 F100

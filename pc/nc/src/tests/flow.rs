@@ -157,7 +157,7 @@ fn a_program_may_end_in_several_ways() {
     assert_eq!(notices("G0 X5\nM2\nwhat follows is not read"), 0);
     assert_eq!(notices("G0 X5"), 1);
     assert_eq!(notices("G0 X5\nM30\n%\n"), 0);
-    let text = "%\nO0001 (part)\nG0 X5\n%\nnothing\n";
+    let text = "%\nO0001 (part)\nG21 G0 X5\n%\nnothing\n";
     assert_eq!(interpret(text, Options::default()).unwrap().notices, []);
     let program = run("(MSG, hello)\n#1=3\n(debug, one: #1, two: #<none>)\n(a comment)\nM2").unwrap();
     let texts: Vec<_> = program

@@ -1,6 +1,7 @@
 //! What a machine file lets programs begin with, as it comes out of their paths.
 
 use super::*;
+use config::machine::PassedOver;
 
 /// `text` on the A/C head with `more` at the end of its file, and where the axes stand at the end of every path (mm, degrees).
 fn ends(more: &str, text: &str) -> (Vec<PlannedPath>, Vec<[f64; AXES]>) {
@@ -123,4 +124,31 @@ fn a_longer_tool_ends_where_the_program_says_however_the_head_leans() {
         "{}",
         paths[2].length_mm()
     );
+}
+
+#[test]
+fn a_machine_file_passes_over_just_the_codes_that_mean_nothing_to_a_program() {
+    let all = Options {
+        setup: std::sync::Arc::new(nc::Setup {
+            passed_over: (0..=9999).collect(),
+            ..nc::Setup::default()
+        }),
+        ..Options::default()
+    };
+    for number in 0..=9999 {
+        let code = format!("M{number}");
+        let read = interpret(&format!("{code}\nM2"), all.clone());
+        let passed = read.is_ok_and(|program| {
+            let mut notices = program.notices.iter();
+            notices.any(|notice| notice.text == format!("{code} is passed over, as the machine file says"))
+        });
+        assert_eq!(PassedOver::try_from(vec![code.clone()]).is_ok(), passed, "{code}");
+    }
+}
+
+#[test]
+fn a_program_runs_without_the_codes_that_the_machine_file_passes_over() {
+    let text = "G21\nG0 X500 Y500 Z100\nM31 G1 X520 F1200\nM2";
+    let (_, axes) = ends("[program]\npassed_over = [\"M31\"]", text);
+    assert_near(axes[1][0], 520.0);
 }
