@@ -1,7 +1,8 @@
 //! The frequency response of a position loop's controller, as the board computes it.
 
 use crate::Complex;
-use rustfft::FftPlanner;
+use rustfft::algorithm::Radix4;
+use rustfft::{Fft, FftDirection};
 use shared::control::{LoopFilter, LoopFilterState, MotorConfig};
 use shared::parameter::ParameterError;
 use shared::protocol::CAPTURE_TICKS;
@@ -27,9 +28,7 @@ pub fn filters(motor: &MotorConfig) -> Result<Vec<Complex>, ParameterError> {
         let impulse = if tick == 0 { 1.0 } else { 0.0 };
         spectrum[tick % CAPTURE_TICKS] += filter.step(&mut state, impulse);
     }
-    FftPlanner::new()
-        .plan_fft_forward(CAPTURE_TICKS)
-        .process(&mut spectrum);
+    Radix4::new(CAPTURE_TICKS, FftDirection::Forward).process(&mut spectrum);
     Ok(spectrum)
 }
 

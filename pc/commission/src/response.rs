@@ -2,7 +2,8 @@
 
 use crate::Complex;
 use crate::plan::{Planned, SETTLE_PERIODS, way};
-use rustfft::FftPlanner;
+use rustfft::algorithm::Radix4;
+use rustfft::{Fft, FftDirection};
 use shared::control::MotorConfig;
 use shared::io::DacCode;
 use shared::motion::Chirp;
@@ -82,7 +83,7 @@ impl Response {
         if captures.is_empty() || !captures.iter().all(whole) {
             return Err(NoResponse::Empty);
         }
-        let fft = FftPlanner::new().plan_fft_forward(CAPTURE_TICKS);
+        let fft = Radix4::new(CAPTURE_TICKS, FftDirection::Forward);
         let spectrum = |values: &mut dyn Iterator<Item = f64>| {
             let mut values: Vec<Complex> = values.map(Complex::from).collect();
             fft.process(&mut values);

@@ -256,7 +256,7 @@ impl MotionController {
         Ok(())
     }
 
-    /// Shakes one motor where it stands.
+    /// Shakes one motor, where it stands or on a way there and back.
     fn excite(&mut self, asked: &Excitation) -> Result<(), Refusal> {
         let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
         if self.state != State::Idle {
