@@ -28,15 +28,20 @@ fn ask(stream: &mut TcpStream, request: &Request) -> io::Result<Response> {
     decode_message(body).map_err(io::Error::other)
 }
 
-#[test]
-fn both_boards_say_who_they_are() {
+/// Both boards with their shipped images, out of reset.
+fn both() -> Pair {
     let images = [shipped("motion"), shipped("tracker")];
-    let mut pair = Pair::start(
+    Pair::start(
         [&images[0], &images[1]],
         plant_file::DEFAULT_MACHINE,
         &PlantChoice::Shipped,
     )
-    .expect("both run");
+    .expect("both run")
+}
+
+#[test]
+fn both_boards_say_who_they_are() {
+    let mut pair = both();
     let ports = pair.ports().expect("there are some");
     let over = AtomicBool::new(false);
     let answers = std::thread::scope(|scope| {
@@ -70,13 +75,7 @@ fn both_boards_say_who_they_are() {
 
 #[test]
 fn the_boards_are_on_the_net_after_their_phys_have_negotiated_and_not_before() {
-    let images = [shipped("motion"), shipped("tracker")];
-    let mut pair = Pair::start(
-        [&images[0], &images[1]],
-        plant_file::DEFAULT_MACHINE,
-        &PlantChoice::Shipped,
-    )
-    .expect("both run");
+    let mut pair = both();
     // The model's PHYs negotiate for 1.5 s.
     assert!(!pair.run_to_link(Time::ms(1500)), "at {}", pair.now());
     assert!(pair.run_to_link(LONGEST));

@@ -8,6 +8,7 @@ use shared::protocol::{Request, Response};
 use shared::tracking::{TickInput, TrackerController};
 use shared::trajectory::BoardPlanning;
 use std::fmt::{self, Display, Formatter};
+use std::iter::Peekable;
 use virtual_nucleo::outside::{Seen, Step};
 
 /// Servo ticks of a path tick.
@@ -21,6 +22,9 @@ const CODES: [&str; 12] = [
     "code 0", "code 1", "code 2", "code 3", "code 4", "code 5", "code 6", "code 7", "code 8", "code 9",
     "code 10", "code 11",
 ];
+
+/// What was asked of a board, in its order.
+type Requests<'a> = Peekable<std::slice::Iter<'a, Asked>>;
 
 /// The first thing that is not the same.
 #[derive(Debug)]
@@ -116,6 +120,34 @@ impl Same {
         Ok(())
     }
 
+    /// Has what was asked after `tick` handled here, and compares the answers.
+    fn requests(
+        &mut self,
+        asked: &mut Requests<'_>,
+        tick: u32,
+        mut handle: impl FnMut(&Request, u32) -> Response,
+    ) -> Result<(), Difference> {
+        while let Some(asked) = asked.next_if(|asked| asked.tick == tick) {
+            let unsent = match &asked.answer {
+                Response::MotionStatus(status) => status.unsent,
+                Response::TrackerStatus(status) => status.unsent,
+                _ => 0,
+            };
+            self.answer(asked, handle(&asked.request, unsent))?;
+        }
+        Ok(())
+    }
+
+    /// The same at the end of a record, where nothing of what was asked is left.
+    fn after_all(self, mut asked: Requests<'_>) -> Self {
+        assert_eq!(
+            asked.next().map(|asked| asked.tick),
+            None,
+            "a request was left out"
+        );
+        self
+    }
+
     /// Compares answers by what is sent of them.
     fn answer(&mut self, asked: &Asked, here: Response) -> Result<(), Difference> {
         self.answers += 1;
@@ -195,20 +227,11 @@ pub fn motion(record: &Record) -> Result<Same, Difference> {
         }
         servo.give(&output.order);
         controller.plan(&mut planning);
-        while let Some(asked) = asked.next_if(|asked| asked.tick == tick) {
-            let unsent = match &asked.answer {
-                Response::MotionStatus(status) => status.unsent,
-                _ => 0,
-            };
-            same.answer(asked, controller.handle(&asked.request, unsent))?;
-        }
+        same.requests(&mut asked, tick, |request, unsent| {
+            controller.handle(request, unsent)
+        })?;
     }
-    assert_eq!(
-        asked.next().map(|asked| asked.tick),
-        None,
-        "a request was left out"
-    );
-    Ok(same)
+    Ok(same.after_all(asked))
 }
 
 /// The tracker board's record.
@@ -232,18 +255,9 @@ pub fn tracker(record: &Record) -> Result<Same, Difference> {
         }
         let codes = output.command.dac.iter().map(|code| code.0).collect();
         same.outputs(next, &driven(&output.command, codes, &next.seen))?;
-        while let Some(asked) = asked.next_if(|asked| asked.tick == tick) {
-            let unsent = match &asked.answer {
-                Response::TrackerStatus(status) => status.unsent,
-                _ => 0,
-            };
-            same.answer(asked, controller.handle(&asked.request, unsent))?;
-        }
+        same.requests(&mut asked, tick, |request, unsent| {
+            controller.handle(request, unsent)
+        })?;
     }
-    assert_eq!(
-        asked.next().map(|asked| asked.tick),
-        None,
-        "a request was left out"
-    );
-    Ok(same)
+    Ok(same.after_all(asked))
 }

@@ -1,4 +1,4 @@
-//! The chirp in the servo ticks, and its limits.
+//! An excitation in the servo ticks: the chirp and the way, the limits that end it, and its samples.
 
 use super::order::ExcitationOrder;
 use crate::io::MOTOR_AXIS;
