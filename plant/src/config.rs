@@ -53,6 +53,9 @@ pub struct DriveConfig {
     pub max_acceleration: f64,
     /// Deceleration of the brake that closes when the drive is disabled \[1/s²\].
     pub brake: f64,
+    /// From the enable on the brake stays closed for so long \[s\].
+    #[serde(default)]
+    pub enable_s: f64,
     /// Error of the gain, as part of it: speed is (1 + this) times what the voltage says.
     #[serde(default)]
     pub gain_error: f64,
@@ -168,6 +171,9 @@ pub struct SlideConfig {
     pub lag_s: f64,
     /// Time constant of the brake that closes when the drives are disabled \[s\].
     pub brake_s: f64,
+    /// From the enable on the brake stays closed for so long \[s\].
+    #[serde(default)]
+    pub enable_s: f64,
     /// Error of the gain, as part of it.
     #[serde(default)]
     pub gain_error: f64,

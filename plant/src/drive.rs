@@ -265,6 +265,7 @@ mod tests {
         dead_time_s: 0.0,
         max_acceleration: 4000.0,
         brake: 4000.0,
+        enable_s: 0.0,
         gain_error: 0.0,
         offset: 0.0,
         noise: 0.0,

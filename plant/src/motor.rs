@@ -15,6 +15,9 @@ const STEPS: u32 = 5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunningMotor {
     velocity_at_10v: f64,
+    /// Servo ticks from the enable until the brake opens, and those that are left.
+    enable_ticks: u32,
+    braked_ticks: u32,
     drive: Drive,
     grating: Grating,
 }
@@ -27,6 +30,8 @@ impl RunningMotor {
         let noise = |of| Noise::new(seed, 2 * number + of);
         Self {
             velocity_at_10v: config.drive.velocity_at_10v,
+            enable_ticks: (config.drive.enable_s / TICK + 0.5) as u32,
+            braked_ticks: 0,
             drive: Drive::new(
                 &config.drive,
                 &config.mechanics,
@@ -41,11 +46,15 @@ impl RunningMotor {
     /// One servo tick with the velocity command `dac`, or with the brake closed, and what its grating and switches
     /// tell at the end.
     pub fn advance(&mut self, enable: bool, dac: DacCode) -> Reading {
-        if enable {
+        if !enable {
+            self.braked_ticks = self.enable_ticks;
+        }
+        if self.braked_ticks == 0 {
             self.drive.run(dac.ratio() * self.velocity_at_10v, STEPS);
         } else {
             self.drive.brake(STEPS);
         }
+        self.braked_ticks = self.braked_ticks.saturating_sub(1);
         self.grating.read(self.drive.at_grating())
     }
 

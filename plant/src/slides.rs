@@ -19,6 +19,9 @@ pub struct Slide {
     offset: f64,
     lag: f64,
     brake: f64,
+    /// Control ticks from the enable until the brake opens, and those that are left.
+    enable_ticks: u32,
+    braked_ticks: u32,
     half_backlash: f64,
     delayed: [f64; LONGEST_FIFO],
     fifo: usize,
@@ -49,6 +52,8 @@ impl Slide {
             offset: config.offset,
             lag: 1.0 - libm::exp(-step / config.lag_s),
             brake: 1.0 - libm::exp(-step / config.brake_s),
+            enable_ticks: (config.enable_s / TICK + 0.5) as u32,
+            braked_ticks: 0,
             half_backlash: config.backlash / 2.0,
             delayed: [0.0; LONGEST_FIFO],
             fifo: dead_steps.clamp(1, LONGEST_FIFO),
@@ -63,6 +68,11 @@ impl Slide {
     /// One control tick of 1 ms with `ratio` of 10 V; `None` is a disabled drive, whose brake closes and which forgets the
     /// commands on their way.
     pub fn advance(&mut self, ratio: Option<f64>) {
+        if ratio.is_none() {
+            self.braked_ticks = self.enable_ticks;
+        }
+        let ratio = ratio.filter(|_| self.braked_ticks == 0);
+        self.braked_ticks = self.braked_ticks.saturating_sub(1);
         let command = ratio.map(|ratio| self.runaway.unwrap_or(ratio * self.velocity_at_10v + self.offset));
         let coefficient = match command {
             Some(_) => self.lag,

@@ -79,6 +79,7 @@ const OWNERS: &[&str] = &[
     "head",
     "tracking",
     "link",
+    "drives",
     "output 1",
     "output 2",
     "output 3",
@@ -186,6 +187,7 @@ const FIELDS: &[&str] = &[
     "unlock_mm",
     "search_height_mm",
     "view_mm",
+    "drive_enable_ms",
 ];
 
 impl ParameterError {

@@ -124,6 +124,7 @@ fn spike(friction: Option<FrictionConfig>, presliding: f64) -> f64 {
         dead_time_s: 0.0005,
         max_acceleration: 4000.0,
         brake: 4000.0,
+        enable_s: 0.0,
         gain_error: 0.0,
         offset: 0.0,
         noise: 0.0,

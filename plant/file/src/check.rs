@@ -10,6 +10,8 @@ const DRIVE_DEAD_TIME: f64 = 2e-3;
 const SLIDE_DEAD_TIME: f64 = 4e-3;
 /// Highest frequency of a resonance \[Hz\]: its model is stable up to 6.4 kHz, and right to 1 % of its frequency up to this.
 const HIGHEST_MODE: f64 = 1500.0;
+/// Longest time until a brake opens \[s\].
+const MOST_ENABLE: f64 = 2.0;
 /// Bandwidths that the model of a drive resolves \[Hz\].
 const BANDWIDTH: [f64; 2] = [1.0, 1000.0];
 
@@ -83,6 +85,7 @@ fn drive(key: &str, drive: &DriveConfig) -> Result<(), Mistake> {
             ("dead_time_s", drive.dead_time_s, BeWithin(0.0, DRIVE_DEAD_TIME)),
             ("max_acceleration", drive.max_acceleration, BePositive),
             ("brake", drive.brake, BePositive),
+            ("enable_s", drive.enable_s, BeWithin(0.0, MOST_ENABLE)),
             ("gain_error", drive.gain_error, BeWithin(-0.5, 0.5)),
             ("offset", drive.offset, BeFinite),
             ("noise", drive.noise, NotBeNegative),
@@ -177,6 +180,7 @@ fn slide(key: &str, slide: &SlideConfig) -> Result<(), Mistake> {
             ("dead_time_s", slide.dead_time_s, BeWithin(0.0, SLIDE_DEAD_TIME)),
             ("lag_s", slide.lag_s, BePositive),
             ("brake_s", slide.brake_s, BePositive),
+            ("enable_s", slide.enable_s, BeWithin(0.0, MOST_ENABLE)),
             ("gain_error", slide.gain_error, BeWithin(-0.5, 0.5)),
             ("offset", slide.offset, BeFinite),
             ("backlash", slide.backlash, NotBeNegative),

@@ -70,6 +70,12 @@ pub fn around(mut shipped: PlantFile, quality: Quality, seed: u32) -> PlantFile 
             camera.beside_spot_mm = [draw.error(0.015), draw.error(0.015)];
         }
     }
+    for motor in shipped.plant.motors.iter_mut().flatten() {
+        motor.drive.enable_s = draw.between(0.02, 0.15);
+    }
+    for slide in shipped.plant.slides.iter_mut().flatten() {
+        slide.enable_s = draw.between(0.02, 0.15);
+    }
     shipped
 }
 

@@ -26,6 +26,9 @@ pub struct MotionConfig {
     pub process: ProcessIo,
     /// A running path, or homing, stops when nothing was received from the PC for this long \[ms\].
     pub link_timeout_ms: u32,
+    /// From their enable on, drives take so long until they follow a command, brakes open and all \[ms\]; they are told 0 V until
+    /// then.
+    pub drive_enable_ms: u32,
 }
 
 impl MotionConfig {

@@ -14,6 +14,9 @@ pub struct TrackerConfig {
     pub slides: [SlideConfig; SLIDES],
     /// Map and control law.
     pub tracking: TrackingConfig,
+    /// From their enable on, drives take so long until they follow a command, brakes open and all \[ms\]; they are told 0 V until
+    /// then.
+    pub drive_enable_ms: u32,
 }
 
 /// The two heads on the arc plate (mathematics 0.5–0.7).

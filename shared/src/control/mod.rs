@@ -20,7 +20,7 @@ pub use emergency_stop::{DISCREPANCY_US, EmergencyStop};
 pub use friction::{Friction, FrictionState};
 pub use gantry::{Gantry, GantryOutput, GantryState, Ram};
 pub use loop_filter::{LoopFilter, LoopFilterState, NOTCHES};
-pub use movement::{MovementCheck, MovementState};
+pub use movement::{MOST_OFFSET, MovementCheck, MovementState};
 pub use pid::{Pid, PidState, Setpoint};
 pub use reference_search::{ReferenceSearch, SearchInput, SearchProgress, SearchState};
 pub use trip::{EncoderCheck, FollowingTrip};

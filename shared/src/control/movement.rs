@@ -11,8 +11,8 @@
 const FLICKER: u64 = 2;
 /// Part of the speed at 10 V by which the command of a healthy drive at rest changes: 10 mV.
 const TREMBLE: f64 = 1e-3;
-/// Part of the speed at 10 V that may hold it there against the offset of its analog input: 50 mV.
-const OFFSET: f64 = 5e-3;
+/// Part of the speed at 10 V that may hold a drive at rest against the offset of its analog input: 50 mV.
+pub const MOST_OFFSET: f64 = 5e-3;
 /// The command that holds it is the mean over this time while it moves slowly \[s\].
 const MEAN_S: f64 = 0.05;
 /// A single movement counts for no longer \[s\]: a grating that jumps when it dies must not be taken for one.
@@ -70,7 +70,7 @@ impl MovementCheck {
     #[must_use]
     pub fn against_offset(self, full_scale: f64) -> Self {
         Self {
-            most_held: libm::fabs(full_scale) * OFFSET,
+            most_held: libm::fabs(full_scale) * MOST_OFFSET,
             ..self
         }
     }

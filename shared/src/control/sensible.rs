@@ -15,6 +15,14 @@ const BESIDE: f64 = 0.1;
 /// A search goes over the travel there, back, and over the mark again.
 const SEARCHES: f64 = 3.0;
 
+/// Drives with holding brakes take tenths of a second until they follow commands \[ms\].
+const ENABLES_MS: RangeInclusive<f64> = 0.0..=2000.0;
+
+/// Time from the enable of the drives until they follow commands.
+pub fn check_enable(drive_enable_ms: u32) -> Result<(), ParameterError> {
+    within("drives", "drive_enable_ms", f64::from(drive_enable_ms), ENABLES_MS).map(|_| ())
+}
+
 /// A search inside `travel`, no faster than `fastest`.
 pub fn check_home(
     owner: &str,

@@ -76,6 +76,8 @@ pub struct MotionController {
     servo_setup: Option<ServoSetup>,
     /// Drives were ordered on at the last tick.
     enabled: bool,
+    /// Ticks until they follow commands.
+    enabling: u32,
     /// They have to go off since then, whatever was asked for after that.
     released: bool,
     homing: Option<Homing>,
@@ -138,6 +140,7 @@ impl MotionController {
             machine: None,
             servo_setup: None,
             enabled: false,
+            enabling: 0,
             released: false,
             homing: None,
             homed: false,
@@ -228,7 +231,11 @@ impl MotionController {
                 self.capturing.end(ExcitationEnd::DrivesOff);
             }
         }
-        if !self.enabled {
+        self.enabling = match (self.enabled, &self.machine) {
+            (false, Some(machine)) => machine.enable_ticks,
+            _ => self.enabling.saturating_sub(input.elapsed),
+        };
+        if !self.enabled || self.enabling > 0 {
             self.stand_where(report);
         }
         if self.state.on_path() {
@@ -243,7 +250,7 @@ impl MotionController {
         // to go off do so before a search begins.
         let ready = self.servo_setup.is_none() && !core::mem::take(&mut self.released);
         match self.state {
-            State::Homing if ready => step = self.home(report),
+            State::Homing if ready && self.enabling == 0 => step = self.home(report),
             State::Off | State::Homing | State::Idle | State::Fault => {}
             State::Running | State::Holding | State::Stopping => self.travel(),
         }
@@ -269,6 +276,7 @@ impl MotionController {
         self.enabled = ready && self.state.drives_on();
         let order = ServoOrder {
             enable: self.enabled,
+            enabling: self.enabling > 0,
             coupled: self.homed && self.enabled && self.homing.is_none(),
             homing: self.homing.is_some(),
             tick: self.tick as u32,

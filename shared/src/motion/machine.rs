@@ -37,6 +37,8 @@ pub struct Machine {
     pub inputs: ProcessInputs,
     /// The PC may be silent for so long while a path runs \[µs\].
     pub link_timeout_us: u64,
+    /// Path ticks until a drive follows commands.
+    pub enable_ticks: u32,
     limits: [AxisLimits; AXES],
     /// How far beyond its travel an axis may be: twice its way to a stop from its highest speed (mm, rad).
     overrun: [f64; AXES],
@@ -56,6 +58,7 @@ impl Machine {
             homing: HomingPlan::build(config)?,
             beams,
             link_timeout_us: u64::from(config.link_timeout_ms) * 1000,
+            enable_ticks: config.drive_enable_ms,
             overrun: limits.map(|axis| OVERRUN * full_stop(&axis)),
             limits,
             gantry,

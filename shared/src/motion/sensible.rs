@@ -3,7 +3,7 @@
 
 use super::readback::DARK;
 use crate::config::{BeamConfig, MotionConfig};
-use crate::control::sensible::{MOST_COUNTS, SCALES, SHORTEST_TRAVEL, check_home};
+use crate::control::sensible::{MOST_COUNTS, SCALES, SHORTEST_TRAVEL, check_enable, check_home};
 use crate::control::{GantryConfig, MotorConfig};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES};
 use crate::kinematics::{AXIS_OWNERS, AxisConfig};
@@ -99,7 +99,7 @@ pub fn check(config: &MotionConfig) -> Result<(), ParameterError> {
         f64::from(config.link_timeout_ms),
         SILENCES_MS,
     )?;
-    Ok(())
+    check_enable(config.drive_enable_ms)
 }
 
 fn check_axis(number: usize, axis: &AxisConfig) -> Result<(), ParameterError> {

@@ -140,6 +140,8 @@ impl ServoSetup {
 pub struct ServoOrder {
     /// Drives on.
     pub enable: bool,
+    /// They do not follow commands yet: 0 V.
+    pub enabling: bool,
     /// The gantry is square: couple X1 and X2, and watch the skew.
     pub coupled: bool,
     /// Limit switches are part of the search, not a fault.
@@ -220,6 +222,7 @@ pub struct ServoLoops {
     readbacks: [ReadbackState; SIDES],
     exciting: Exciting,
     enabled: bool,
+    enabling: bool,
     coupled: bool,
     homing: bool,
     current: Segment,
@@ -316,7 +319,7 @@ impl ServoLoops {
     pub fn give(&mut self, order: &ServoOrder) {
         if !order.enable {
             self.report.trip = None;
-        } else if !self.enabled && self.report.trip.is_none() {
+        } else if (!self.enabled || order.enabling) && self.report.trip.is_none() {
             self.pids = Default::default();
             self.gantry = GantryState::default();
             self.movements = Default::default();
@@ -333,6 +336,7 @@ impl ServoLoops {
         let excitation = order.excitation.as_ref().filter(|_| self.enabled);
         self.exciting
             .give(excitation, self.last_counts.as_ref().map_or(&[], |counts| counts));
+        self.enabling = order.enabling;
         self.coupled = order.coupled;
         self.homing = order.homing;
         for (index, offset) in order.offset.into_iter().enumerate() {
@@ -471,6 +475,12 @@ impl ServoLoops {
         let Some(setup) = &self.setup else {
             return Ok(MotionCommand::SAFE);
         };
+        if self.enabling {
+            return Ok(MotionCommand {
+                enable: true,
+                ..MotionCommand::SAFE
+            });
+        }
         let report = &mut self.report;
         let phase = report.ticks % SERVO_TICKS_PER_PATH_TICK;
         let mut setpoints = [Setpoint::default(); MOTORS];

@@ -88,6 +88,8 @@ pub struct TrackerController<const KNOTS: usize> {
     /// The machine was on the loaded path at the last tick.
     on_path: bool,
     slides: [Slide; SLIDES],
+    /// Control ticks for which the drives are on, up to those in which they begin to follow commands.
+    on_ticks: u32,
     /// One a slide, once homing has begun.
     searches: Vec<SearchState<1>, SLIDES>,
     /// Of the last tick.
@@ -110,6 +112,8 @@ pub struct TrackerController<const KNOTS: usize> {
 struct Slide {
     /// Position at zero counts \[mm\], once the mark was found.
     offset: Option<f64>,
+    /// Control ticks since then in which it was held there to learn what holds it.
+    held_ticks: u32,
     law: LawState,
     position: f64,
     target: f64,
@@ -133,6 +137,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     pub const fn new() -> Self {
         const SLIDE: Slide = Slide {
             offset: None,
+            held_ticks: 0,
             law: LawState::new(),
             position: 0.0,
             target: 0.0,
@@ -155,6 +160,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             jog: None,
             on_path: false,
             slides: [SLIDE; SLIDES],
+            on_ticks: 0,
             searches: Vec::new(),
             feedback: SlideFeedback::NONE,
             estop: EmergencyStop::new(),
@@ -323,7 +329,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         }
         match self.state {
             TrackerState::Off | TrackerState::Fault => self.rest(),
-            TrackerState::Homing => self.search(parameters),
+            TrackerState::Homing => self.search(parameters, periods),
             TrackerState::Ready | TrackerState::Tracking => self.follow(parameters, motion_now, snapshot),
         }
     }
@@ -381,6 +387,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     /// Drives off.
     fn rest(&mut self) -> SlideCommand {
         self.jog = None;
+        self.on_ticks = 0;
         for slide in &mut self.slides {
             slide.law.reset();
             slide.target = slide.position;
@@ -388,17 +395,24 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         Command::SAFE
     }
 
-    /// Homing: all slides search at once.
-    fn search(&mut self, parameters: &TrackerParameters) -> SlideCommand {
+    /// Homing: once their drives follow, all slides search at once, and each is held where it found its mark until what
+    /// holds it is learnt.
+    fn search(&mut self, parameters: &TrackerParameters, periods: u32) -> SlideCommand {
         let mut command = Command::SAFE;
         command.enable = true;
+        if self.on_ticks < parameters.enable_ticks {
+            self.on_ticks = self.on_ticks.saturating_add(periods);
+            return command;
+        }
         for (i, search) in self.searches.iter_mut().enumerate() {
             let slide = &mut self.slides[i];
             let of = &parameters.slides[i];
-            slide.target = slide.position;
             if slide.offset.is_some() {
+                slide.held_ticks = slide.held_ticks.saturating_add(periods);
+                command.dac[i] = slide.law.learn_drift(&of.law, slide.target, slide.position).dac;
                 continue;
             }
+            slide.target = slide.position;
             let input = SearchInput {
                 counts: self.feedback.counts[i],
                 mark: self.feedback.mark[i],
@@ -409,7 +423,12 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 SearchProgress::Moving => {
                     command.dac[i] = DacCode::from_ratio(search.velocity(), of.law.full_scale);
                 }
-                SearchProgress::Done { offset } => slide.offset = Some(offset[0]),
+                SearchProgress::Done { offset } => {
+                    slide.offset = Some(offset[0]);
+                    slide.held_ticks = 0;
+                    slide.law.reset();
+                    slide.target += offset[0];
+                }
                 SearchProgress::Failed { .. } => {
                     self.report(TrackerFault::MarkNotFound { slide: i as u8 });
                     self.state = TrackerState::Fault;
@@ -417,12 +436,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 }
             }
         }
-        if self.homed() {
-            self.read_slides(parameters);
-            for slide in &mut self.slides {
-                slide.law.reset();
-                slide.target = slide.position;
-            }
+        let mut of = self.slides.iter().zip(&parameters.slides);
+        let learnt = of.all(|(slide, of)| slide.held_ticks >= of.learn_ticks);
+        if self.homed() && learnt {
             self.state = TrackerState::Ready;
         }
         command

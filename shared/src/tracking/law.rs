@@ -1,6 +1,7 @@
 //! From the seam to the velocity of one slide (mathematics 0.8.4).
 
 use super::map::Estimate;
+use crate::control::MOST_OFFSET;
 use crate::io::DacCode;
 
 /// Coefficients of one slide's control law, ready for use.
@@ -83,6 +84,8 @@ pub struct LawOutput {
 pub struct LawState {
     integral: f64,
     last_velocity: f64,
+    /// The command that holds the slide at rest, against the offset of its drive's analog input \[mm/s\].
+    drift: f64,
 }
 
 impl LawState {
@@ -91,14 +94,36 @@ impl LawState {
         Self {
             integral: 0.0,
             last_velocity: 0.0,
+            drift: 0.0,
         }
+    }
+
+    /// The command that holds the slide at rest \[mm/s\].
+    pub fn drift(&self) -> f64 {
+        self.drift
+    }
+
+    /// One tick at rest at `target` \[mm\] in which the command that holds the slide is learnt: an integral part beside kp
+    /// makes a loop with two poles at -kp/2. What is learnt is no more than 50 mV; [`Self::step`] adds it.
+    pub fn learn_drift(&mut self, law: &SlideLaw, target: f64, position: f64) -> LawOutput {
+        let most = libm::fabs(law.full_scale) * MOST_OFFSET;
+        let change = law.kp * law.kp / 4.0 * (target - position) * law.dt;
+        if change.is_finite() {
+            self.drift = (self.drift + change).clamp(-most, most);
+        }
+        let at_rest = SlideLaw {
+            ki: 0.0,
+            dead_band: 0.0,
+            ..*law
+        };
+        self.step(&at_rest, Some(SlideTarget::rest(target)), position)
     }
 
     /// One tick: the command that brings the slide, now at `position` \[mm\], to its target.
     pub fn step(&mut self, law: &SlideLaw, target: Option<SlideTarget>, position: f64) -> LawOutput {
         let finite = target.filter(|t| (t.position + t.velocity + position).is_finite());
         let mut flag = LawFlag::Free;
-        let mut velocity = 0.0;
+        let mut velocity = self.drift;
         if let Some(target) = finite {
             let error = target.position - position;
             // Near the seam and staying there, the slide is left alone; near one that leads away, it goes along.
@@ -110,7 +135,7 @@ impl LawState {
                 (false, _) => (error, target.velocity),
             };
             let integral = self.integral + law.ki * error * law.dt;
-            let wanted = along + law.kp * error + integral;
+            let wanted = along + law.kp * error + integral + self.drift;
             velocity = wanted.clamp(-law.max_velocity, law.max_velocity);
             if velocity == wanted {
                 self.integral = integral;
@@ -124,8 +149,8 @@ impl LawState {
         let step = law.max_acceleration * law.dt;
         velocity = velocity.clamp(self.last_velocity - step, self.last_velocity + step);
         let (min, max) = law.travel;
-        if (position >= max && velocity > 0.0) || (position <= min && velocity < 0.0) {
-            velocity = 0.0;
+        if (position >= max && velocity > self.drift) || (position <= min && velocity < self.drift) {
+            velocity = self.drift;
             flag = LawFlag::SoftLimit;
         }
         self.last_velocity = velocity;
@@ -136,9 +161,12 @@ impl LawState {
         }
     }
 
-    /// Starts from rest.
+    /// Starts from rest; what holds the slide there is still known.
     pub fn reset(&mut self) {
-        *self = Self::default();
+        *self = Self {
+            drift: self.drift,
+            ..Self::new()
+        };
     }
 }
 
@@ -187,6 +215,7 @@ mod tests {
         let mut state = LawState {
             integral: 1.0,
             last_velocity: 8.0,
+            drift: 0.0,
         };
         assert_eq!(state.step(&LAW, None, 0.0).velocity, 3.0);
         let last = state.step(&LAW, None, 0.0);
@@ -196,6 +225,39 @@ mod tests {
             state.step(&LAW, Some(SlideTarget::rest(f64::NAN)), 0.0).flag,
             LawFlag::NoTarget
         );
+    }
+
+    #[test]
+    fn what_holds_a_drive_with_an_offset_is_learnt_and_holds_it_at_its_target() {
+        let law = SlideLaw { ki: 0.0, ..LAW };
+        let (offset, mut position, mut state) = (0.2, 0.0, LawState::new());
+        // Ten time constants: of 0.2 mm/s a two-thousandth is left.
+        for _ in 0..500 {
+            position += (state.learn_drift(&law, 0.0, position).velocity + offset) * law.dt;
+        }
+        assert!((state.drift() + offset).abs() < 2e-4, "{}", state.drift());
+        // 0.005 mm without it.
+        for _ in 0..500 {
+            position += (state.step(&law, Some(SlideTarget::rest(1.0)), position).velocity + offset) * law.dt;
+        }
+        assert!((position - 1.0).abs() < 1e-5, "{position}");
+        // It stands where it has no target, and at the end of its travel.
+        state.reset();
+        for _ in 0..3 {
+            let stopped = state.step(&law, None, position);
+            assert_eq!(stopped.velocity, state.drift());
+        }
+        let outward = state.step(&law, Some(SlideTarget::rest(13.0)), 12.0);
+        assert_eq!((outward.velocity, outward.flag), (state.drift(), LawFlag::SoftLimit));
+    }
+
+    #[test]
+    fn no_more_than_50_mv_is_learnt() {
+        let mut state = LawState::new();
+        for _ in 0..10_000 {
+            state.learn_drift(&LAW, 1.0, 0.0);
+        }
+        assert!((state.drift() - 0.5).abs() < 1e-9, "{}", state.drift());
     }
 
     #[test]

@@ -13,6 +13,8 @@ use crate::io::{SLIDE_NAMES, SLIDES};
 use crate::parameter::{ParameterError, check, not_negative, positive};
 use crate::ticks::TRACKER_PERIOD_S;
 
+/// What holds a slide is learnt in so many time constants of the loop that learns it, 2/kp.
+const LEARNING: f64 = 10.0;
 /// Steeper than this, U would have to be faster than the path.
 const STEEPEST: f64 = 1.0;
 
@@ -39,6 +41,8 @@ pub struct TrackerParameters {
     pub frame_ticks: u32,
     /// Path states older than this stop the slides \[µs\].
     pub stale_path_us: u64,
+    /// Control ticks until a drive follows commands.
+    pub enable_ticks: u32,
     /// Control ticks in saturation that are reported.
     pub saturation_ticks: u32,
 }
@@ -52,6 +56,8 @@ pub struct SlideParameters {
     pub counts_per_mm: f64,
     /// Control ticks from one end of the travel to the other at full speed.
     pub travel_ticks: u32,
+    /// Control ticks in which it learns what holds it at rest.
+    pub learn_ticks: u32,
     /// Search for its reference mark.
     pub search: ReferenceSearch<1>,
     /// Trips.
@@ -161,6 +167,7 @@ impl TrackerConfig {
             preview,
             frame_ticks: tracking.frame_period_ms,
             stale_path_us: u64::from(tracking.stale_path_ms) * 1000,
+            enable_ticks: self.drive_enable_ms,
             saturation_ticks: tracking.saturation_trip_ms,
         })
     }
@@ -200,6 +207,7 @@ impl SlideConfig {
                 full_scale,
             },
             counts_per_mm,
+            learn_ticks: libm::ceil(LEARNING * 2.0 / tracking.kp / TRACKER_PERIOD_S) as u32,
             travel_ticks: libm::ceil((max - min) / max_velocity / TRACKER_PERIOD_S) as u32,
             search: ReferenceSearch::build(
                 [name],

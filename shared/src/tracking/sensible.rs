@@ -1,7 +1,7 @@
 //! What the tracker board's parameters may be, by what they mean.
 
 use crate::config::{SlideConfig, TrackerConfig};
-use crate::control::sensible::{MOST_COUNTS, SCALES, check_home};
+use crate::control::sensible::{MOST_COUNTS, SCALES, check_enable, check_home};
 use crate::io::SLIDE_NAMES;
 use crate::parameter::{ParameterError, within, within_either_sign};
 use crate::ticks::TRACKER_PERIOD_S;
@@ -37,6 +37,7 @@ const SATURATIONS_MS: RangeInclusive<f64> = 1.0..=5000.0;
 /// Checks all of a configuration that can be built.
 pub fn check(config: &TrackerConfig) -> Result<(), ParameterError> {
     within("head", "camera_lead_mm", config.head.camera_lead_mm, LEADS_MM)?;
+    check_enable(config.drive_enable_ms)?;
     let (mut narrowest, mut lowest) = (f64::INFINITY, f64::INFINITY);
     for (number, slide) in config.slides.iter().enumerate() {
         check_slide(SLIDE_NAMES[number], slide)?;

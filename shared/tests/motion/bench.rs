@@ -117,6 +117,7 @@ pub fn config() -> MotionConfig {
         beams: [Some(beam.clone()), Some(beam)],
         process: ProcessIo::default(),
         link_timeout_ms: 500,
+        drive_enable_ms: 0,
     }
 }
 

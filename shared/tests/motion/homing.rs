@@ -1,7 +1,8 @@
 //! The search for the marks, first, again, and in vain.
 
-use super::bench::{Bench, MARK, config};
-use shared::io::MotionCommand;
+use super::bench::{Bench, FULL_SPEED, MARK, config};
+use shared::config::MotionConfig;
+use shared::io::{DacCode, MOTORS, MotionCommand};
 use shared::protocol::Request;
 use shared::state::{Fault, State};
 
@@ -44,6 +45,53 @@ fn homing_again_finds_the_same_positions() {
     assert_eq!((status.state, status.homed), (State::Homing, false));
     bench.until(State::Idle, 5000);
     assert!(bench.status().homed);
+    agrees(&mut bench);
+}
+
+#[test]
+fn drives_whose_brakes_open_late_are_told_nothing_before() {
+    let braked = |drive_enable_ms| {
+        let mut bench = Bench::new();
+        bench.done(&Request::ConfigureMotion(MotionConfig {
+            drive_enable_ms,
+            ..config()
+        }));
+        bench.run_ms(3);
+        bench.done(&Request::Home);
+        bench.blocked = [true; MOTORS];
+        bench.run_ms(2);
+        for _ in 2..250 {
+            bench.run_ms(1);
+            if drive_enable_ms > 0 {
+                assert!(bench.command.enable && bench.command.dac == [DacCode::ZERO; MOTORS]);
+            }
+        }
+        bench.blocked = [false; MOTORS];
+        bench
+    };
+    let mut bench = braked(260);
+    bench.until(State::Idle, 5000);
+    agrees(&mut bench);
+    assert!(matches!(braked(0).fault(), Some(Fault::NoMovement { .. })));
+}
+
+#[test]
+fn an_axis_that_sags_while_its_brake_opens_stays_where_it_came_to_rest() {
+    let mut bench = Bench::new();
+    bench.done(&Request::ConfigureMotion(MotionConfig {
+        drive_enable_ms: 100,
+        ..config()
+    }));
+    bench.run_ms(3);
+    bench.done(&Request::Home);
+    bench.run_ms(50);
+    bench.position[3] -= 0.05;
+    bench.run_ms(51);
+    // The search begins, 1 mm/s after each ms; no step back to where it was, which would be kp times 0.05 mm.
+    bench.run_ms(2);
+    let told = bench.command.dac[3].ratio() * FULL_SPEED;
+    assert!(told.abs() < 2.0, "{told}");
+    bench.until(State::Idle, 5000);
     agrees(&mut bench);
 }
 

@@ -66,6 +66,7 @@ pub fn config() -> TrackerConfig {
             max_seam_deviation_mm: 24.0,
             max_seam_slope: 1.0,
         },
+        drive_enable_ms: 0,
     }
 }
 

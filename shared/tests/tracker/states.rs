@@ -1,6 +1,8 @@
 //! Every transition of the state machine, every refusal, every fault.
 
 use crate::bench::{Bench, PATH_ID, Shape, config};
+use plant_file::{DEFAULT_MACHINE, PlantFile};
+use shared::config::TrackerConfig;
 use shared::io::SlideCommand;
 use shared::parameter::ParameterError;
 use shared::protocol::{Datagram, Measurement, Refusal, Request, Response};
@@ -33,6 +35,47 @@ fn tracking() -> Bench {
 
 fn wrong_state(state: TrackerState) -> Response {
     Response::Refused(Refusal::WrongTrackerState { state })
+}
+
+/// Slides whose drives have an offset of 30 mV, this way or that, and follow 250 ms after their enable.
+fn late_and_offset(drive_enable_ms: u32) -> Bench {
+    let mut plant = PlantFile::shipped(DEFAULT_MACHINE).unwrap_or_else(|error| panic!("{error}"));
+    for (slide, offset) in plant.plant.slides.iter_mut().flatten().zip([0.3, -0.3, -0.3, 0.3]) {
+        slide.offset = offset;
+        slide.enable_s = 0.25;
+    }
+    let mut bench = bench();
+    bench.plant = plant.slides();
+    bench.path_id = 99;
+    bench.prepare_with(TrackerConfig {
+        drive_enable_ms,
+        ..config()
+    });
+    bench
+}
+
+#[test]
+fn slides_learn_what_holds_them_against_the_offsets_of_their_drives() {
+    let mut bench = late_and_offset(260);
+    assert_eq!(bench.controller.state(), TrackerState::Ready);
+    for _ in 0..200 {
+        bench.run_ms(100);
+        bench.status();
+        let sample = &bench.last.sample;
+        assert_eq!((sample.state, sample.fault), (TrackerState::Ready, None));
+        for slide in 0..4 {
+            let off = sample.slides_mm[slide] - sample.target_mm[slide];
+            // Two counts; 7.5 um where it is not known.
+            assert!(off.abs() < 0.001, "slide {slide}: {off}");
+        }
+    }
+}
+
+#[test]
+fn slides_that_are_told_to_move_before_their_brakes_open_are_found_dead() {
+    let bench = late_and_offset(0);
+    assert_eq!(bench.controller.state(), TrackerState::Fault);
+    assert!(matches!(bench.last.sample.fault, Some(TrackerFault::NoMovement { .. })));
 }
 
 #[test]

@@ -22,6 +22,7 @@ fn drive(par: &Value, position: f64) -> Drive {
         dead_time_s: number(par, "delay"),
         max_acceleration: DRIVE_ACCELERATION,
         brake: DRIVE_ACCELERATION,
+        enable_s: 0.0,
         gain_error: 0.0,
         offset: 0.0,
         noise: 0.0,

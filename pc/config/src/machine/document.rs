@@ -19,6 +19,8 @@ use std::collections::BTreeMap;
 pub struct Document {
     name: String,
     link_timeout_ms: u32,
+    #[serde(default = "usual_enable_ms")]
+    drive_enable_ms: u32,
     kinematics: KinematicsConfig,
     axes: ByAxis<AxisConfig>,
     motors: Motors,
@@ -97,8 +99,9 @@ impl TryFrom<Document> for MachineFile {
                 beams,
                 process,
                 link_timeout_ms: d.link_timeout_ms,
+                drive_enable_ms: d.drive_enable_ms,
             },
-            tracking: tracking_unit(d.head, d.slides, d.tracking, d.cameras)?,
+            tracking: tracking_unit(d.drive_enable_ms, d.head, d.slides, d.tracking, d.cameras)?,
             outputs,
             inputs,
             welding: WeldData::default(),
@@ -111,8 +114,14 @@ impl TryFrom<Document> for MachineFile {
     }
 }
 
+/// Servo drives with holding brakes take about so long \[ms\].
+fn usual_enable_ms() -> u32 {
+    200
+}
+
 /// All tables of a tracker, or none.
 fn tracking_unit(
+    drive_enable_ms: u32,
     head: Option<HeadConfig>,
     slides: Option<Slides>,
     tracking: Option<TrackingConfig>,
@@ -128,6 +137,7 @@ fn tracking_unit(
             head: head.ok_or(missing("head"))?,
             slides: [slides.U1, slides.V1, slides.U2, slides.V2],
             tracking: tracking.ok_or(missing("tracking"))?,
+            drive_enable_ms,
         },
         cameras: cameras.ok_or(missing("cameras"))?,
     }))

@@ -23,7 +23,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     pub(super) fn told(&mut self, parameters: &TrackerParameters, command: &SlideCommand) {
         for (i, (slide, of)) in self.slides.iter_mut().zip(&parameters.slides).enumerate() {
             if command.enable {
-                slide.watch.command(command.dac[i].ratio() * of.law.full_scale);
+                let told = command.dac[i].ratio() * of.law.full_scale;
+                slide.watch.command(told - slide.law.drift());
             } else {
                 slide.watch.rest(self.feedback.counts[i]);
             }
