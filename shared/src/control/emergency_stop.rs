@@ -45,6 +45,11 @@ impl EmergencyStop {
         }
     }
 
+    /// Channels that are open.
+    pub fn open(&self) -> [bool; ESTOP_CHANNELS] {
+        self.open
+    }
+
     /// Either channel is open.
     pub fn is_pressed(&self) -> bool {
         self.open[0] || self.open[1]

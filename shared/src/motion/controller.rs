@@ -23,7 +23,7 @@ use crate::control::UNATTENDED_S;
 use crate::io::{AXES, MOTORS, PROCESS_INPUTS, SIDES};
 use crate::kinematics::AXIS_UNIT;
 use crate::kinematics::Kinematics;
-use crate::protocol::{Datagram, ExcitationEnd, MotionSample, PathState};
+use crate::protocol::{Datagram, ExcitationEnd, Inputs, MotionSample, PathState};
 use crate::state::{Event, Fault, State};
 use crate::ticks::PATH_PERIOD_S;
 use crate::trajectory::{BoardPlanning, BoardPlayer, SpeedState};
@@ -117,6 +117,7 @@ pub struct MotionController {
     missing: Missing,
     /// Excitation of a motor, and what it gave.
     capturing: Capturing,
+    inputs: Inputs,
 }
 
 impl Default for MotionController {
@@ -167,6 +168,7 @@ impl MotionController {
             vibration: [Vibration::NONE; MOTORS],
             missing: [0; PROCESS_INPUTS],
             capturing: Capturing::NONE,
+            inputs: Inputs::NONE,
         }
     }
 
@@ -375,7 +377,9 @@ impl MotionController {
         }
         let estop = input.report.estop;
         let burns = matches!(input.report.power_fault, Some(Fault::BeamNotOff { .. }));
-        self.cause_remains = estop.is_pressed() || input.report.drive_fault.any() || burns;
+        let drive_fault = input.report.drive_fault.only(input.report.fitted).any();
+        self.cause_remains = estop.is_pressed() || drive_fault || burns;
+        self.note_inputs(&input.report);
         self.estop_untested = estop.stayed_closed().is_some();
         self.power_measured = input.report.power_measured;
         if let (true, Some(fault)) = (self.state.drives_on(), input.report.trip) {
@@ -418,6 +422,23 @@ impl MotionController {
         if let (State::Running, Some(side)) = (self.state, faulty) {
             self.stop_for(Fault::Laser { side });
         }
+    }
+
+    /// What the servo ticks read.
+    fn note_inputs(&mut self, report: &ServoReport) {
+        for (seen, mark) in self.inputs.marks.iter_mut().zip(report.mark) {
+            *seen = mark.or(*seen);
+        }
+        self.inputs = Inputs {
+            counts: report.counts,
+            marks: self.inputs.marks,
+            limit_plus: report.limit_plus.0,
+            limit_minus: report.limit_minus.0,
+            drive_fault: report.drive_fault.0,
+            estop: report.estop.open(),
+            laser_fault: report.laser_fault,
+            process: report.process.0,
+        };
     }
 
     /// The power of a beam is wrong: no gate opens any more, and the machine stops, on its path if it is on one.

@@ -199,8 +199,10 @@ pub struct ServoReport {
     pub lapsed: [bool; SIDES],
     /// The emergency stop now.
     pub estop: EmergencyStop,
-    /// Drives that report a fault now.
+    /// Drives that report a fault now, or are not there.
     pub drive_fault: Bits,
+    /// Motors that the machine has.
+    pub fitted: Bits,
     /// Servo ticks since boot (mod 2³²).
     pub ticks: u32,
     /// Servo ticks that were never served (mod 2³²).
@@ -373,8 +375,8 @@ impl ServoLoops {
     fn observe(&mut self, feedback: &MotionFeedback, elapsed: u32) {
         let elapsed_us = elapsed.saturating_mul(SERVO_US);
         self.report.estop.step(feedback.estop, elapsed_us);
-        let fitted = self.setup.as_ref().map_or(Bits::NONE, |setup| setup.fitted);
-        self.report.drive_fault = feedback.drive_fault.only(fitted);
+        self.report.fitted = self.setup.as_ref().map_or(Bits::NONE, |setup| setup.fitted);
+        self.report.drive_fault = feedback.drive_fault;
         for (seen, fault) in self.report.laser_fault.iter_mut().zip(feedback.laser_fault) {
             *seen |= fault;
         }

@@ -8,6 +8,7 @@ mod datagram;
 mod element;
 mod excitation;
 pub mod framing;
+mod inputs;
 mod request;
 
 pub use datagram::{
@@ -19,6 +20,7 @@ pub use element::{BadElement, PathChannel, PathElement, PathJoin, PathShape};
 pub use excitation::{
     CAPTURE_PART, CAPTURE_TICKS, CapturePart, CaptureSample, CaptureState, Excitation, ExcitationEnd, Excited,
 };
+pub use inputs::Inputs;
 pub use request::{
     Channel, Identity, LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, MotionStatus, PathAction, PathEvent,
     PathLimits, Refusal, Request, Response, Role, Room, TrackerStatus,

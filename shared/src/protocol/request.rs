@@ -2,6 +2,7 @@
 
 use super::element::{BadElement, PathElement};
 use super::excitation::{CapturePart, Excitation};
+use super::inputs::Inputs;
 use crate::config::{MotionConfig, TrackerConfig};
 use crate::geometry::PoseOffset;
 use crate::io::{AXES, MOTORS, SIDES, SLIDE_NAMES, SLIDES};
@@ -42,6 +43,8 @@ pub enum Request {
     /// Answered by [`Response::MotionStatus`] or [`Response::TrackerStatus`]; as any request it renews the lease of
     /// the session.
     Status,
+    /// What the board reads at its connectors; answered by [`Response::Inputs`], in any state.
+    Inputs,
     /// Parameters of the machine; motion board, only in state off.
     ConfigureMotion(MotionConfig),
     /// Parameters of the machine; tracker board, only in state off.
@@ -156,6 +159,8 @@ pub enum Response {
     TrackerStatus(TrackerStatus),
     /// A part of what was captured.
     Captured(CapturePart),
+    /// What the board reads.
+    Inputs(Inputs),
 }
 
 /// Credits of the PC: what the motion board has room for.

@@ -94,6 +94,8 @@ pub struct TrackerController<const KNOTS: usize> {
     searches: Vec<SearchState<1>, SLIDES>,
     /// Of the last tick.
     feedback: SlideFeedback,
+    /// Counts at the reference marks that were seen last.
+    marks: [Option<i64>; SLIDES],
     estop: EmergencyStop,
     ticks: u32,
     lost: u32,
@@ -163,6 +165,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             on_ticks: 0,
             searches: Vec::new(),
             feedback: SlideFeedback::NONE,
+            marks: [None; SLIDES],
             estop: EmergencyStop::new(),
             ticks: 0,
             lost: 0,
@@ -186,6 +189,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         self.ticks = self.ticks.wrapping_add(input.periods);
         self.lost = self.lost.wrapping_add(input.periods.saturating_sub(1));
         self.feedback = input.feedback;
+        for (seen, mark) in self.marks.iter_mut().zip(input.feedback.mark) {
+            *seen = mark.or(*seen);
+        }
         self.watch_estop(input.periods);
         let motion_now = self.clock.to_remote(input.now_us);
         let snapshot = motion_now.and_then(|now| self.snapshot(now));

@@ -6,6 +6,7 @@ mod excitation;
 mod filters;
 mod holds;
 mod homing;
+mod inputs;
 mod numbers;
 mod parameters;
 mod permits;

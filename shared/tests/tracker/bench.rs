@@ -66,7 +66,8 @@ pub fn config() -> TrackerConfig {
             max_seam_deviation_mm: 24.0,
             max_seam_slope: 1.0,
         },
-        drive_enable_ms: 0,
+        // The brakes of the plant open after 100 ms.
+        drive_enable_ms: 110,
     }
 }
 

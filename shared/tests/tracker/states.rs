@@ -91,6 +91,27 @@ fn without_parameters_it_is_off_and_cannot_home() {
 }
 
 #[test]
+fn without_parameters_it_tells_what_it_reads() {
+    let mut bench = bench();
+    bench.change_inputs = |feedback| {
+        feedback.counts[2] = -70;
+        feedback.mark[2] = Some(-65);
+        feedback.limit_plus.set(0, true);
+        feedback.limit_minus.set(3, true);
+        feedback.drive_fault.set(1, true);
+        feedback.estop = [true, false];
+    };
+    bench.run_ms(10);
+    let Response::Inputs(told) = bench.ask(Request::Inputs) else {
+        panic!("no inputs")
+    };
+    assert_eq!((told.counts[2], told.marks[2]), (-70, Some(-65)));
+    assert_eq!((told.limit_plus, told.limit_minus, told.drive_fault), (1, 1 << 3, 1 << 1));
+    assert_eq!(told.estop, [true, false]);
+    assert_eq!(bench.last.command, SlideCommand::SAFE);
+}
+
+#[test]
 fn bad_parameters_are_named_and_change_nothing() {
     let mut bench = bench();
     let mut bad = config();

@@ -128,7 +128,7 @@ fn while_homing_too() {
         let mut bench = Bench::new(Shape::Straight, |_, _| (0.2, 0.1));
         bench.accept(Request::ConfigureTracker(config()));
         bench.accept(Request::Home);
-        bench.run_ms(30);
+        bench.run_ms(140);
         assert_eq!(bench.controller.state(), TrackerState::Homing);
         bench.plant.fail(1, fault);
         let gone = until_off(&mut bench, 1000).expect("no trip")[1];

@@ -160,6 +160,7 @@ fn moments(mut boards: SimulatedBoards, said: &[Said]) -> Vec<(SimulatedBoards, 
 pub fn seldom() -> Vec<Request> {
     vec![
         Request::Status,
+        Request::Inputs,
         Request::Home,
         Request::Disable,
         Request::Reset,

@@ -91,6 +91,7 @@ impl MotionController {
         }
         let done = match request {
             Request::Status => return Response::MotionStatus(self.status(unsent)),
+            Request::Inputs => return Response::Inputs(self.inputs),
             Request::ConfigureMotion(config) => self.configure(config),
             Request::Home => self.start_homing(),
             Request::Disable => self.disable(),

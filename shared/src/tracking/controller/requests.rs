@@ -2,7 +2,7 @@
 
 use super::TrackerController;
 use crate::io::SLIDES;
-use crate::protocol::{Refusal, Request, Response, TrackerStatus};
+use crate::protocol::{Inputs, Refusal, Request, Response, TrackerStatus};
 use crate::state::TrackerState;
 use crate::trajectory::PathSpace;
 
@@ -12,6 +12,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         self.attended = true;
         let result = match request {
             Request::Status => return Response::TrackerStatus(self.status(unsent)),
+            Request::Inputs => return Response::Inputs(self.inputs()),
             Request::ConfigureTracker(config) => self.allow(&[TrackerState::Off]).and_then(|()| {
                 self.parameters = Some(config.build().map_err(Refusal::Parameter)?);
                 self.slides = Default::default();
@@ -131,6 +132,21 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             TrackerState::Ready,
             TrackerState::Fault,
         ])
+    }
+
+    /// What the last tick read.
+    fn inputs(&self) -> Inputs {
+        let feedback = &self.feedback;
+        let mut inputs = Inputs {
+            limit_plus: feedback.limit_plus.0,
+            limit_minus: feedback.limit_minus.0,
+            drive_fault: feedback.drive_fault.0,
+            estop: feedback.estop,
+            ..Inputs::NONE
+        };
+        inputs.counts[..SLIDES].copy_from_slice(&feedback.counts);
+        inputs.marks[..SLIDES].copy_from_slice(&self.marks);
+        inputs
     }
 
     fn status(&self, unsent: u32) -> TrackerStatus {
