@@ -120,6 +120,9 @@ pub struct Feedback<const N: usize> {
     pub limit_minus: Bits,
     /// Drive reports a fault.
     pub drive_fault: Bits,
+    /// A converter did not read back what it was told: all outputs are off until the board is reset, and every drive reports
+    /// a fault.
+    pub converter_failed: bool,
     /// Channels of the emergency stop that are open: both when it is pressed, and either one stops.
     pub estop: [bool; ESTOP_CHANNELS],
     /// Laser source reports a fault, per side (motion board).
@@ -141,6 +144,7 @@ impl<const N: usize> Feedback<N> {
         limit_plus: Bits::NONE,
         limit_minus: Bits::NONE,
         drive_fault: Bits::NONE,
+        converter_failed: false,
         estop: [false; ESTOP_CHANNELS],
         laser_fault: [false; SIDES],
         beam_power: [None; SIDES],

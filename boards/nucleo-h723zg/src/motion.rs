@@ -94,7 +94,8 @@ impl Axes {
         inputs.fill(&MOTION, &mut feedback);
         feedback.laser_fault = LASERS_READY.map(|pin| inputs.open(pin));
         feedback.process = inputs.high(&PROCESS_INPUTS);
-        if self.outputs.failed() {
+        feedback.converter_failed = self.outputs.failed();
+        if feedback.converter_failed {
             feedback.drive_fault = Bits(ALL_DRIVES);
         }
         feedback

@@ -76,7 +76,8 @@ impl Slides {
         encoders::fill(&mut self.encoders, &mut feedback);
         switch(mask(&CAMERA_TRIGGERS), false);
         Snapshot::take().fill(&TRACKER, &mut feedback);
-        if self.outputs.failed() {
+        feedback.converter_failed = self.outputs.failed();
+        if feedback.converter_failed {
             feedback.drive_fault = Bits(ALL_DRIVES);
         }
         feedback

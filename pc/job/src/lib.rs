@@ -7,6 +7,7 @@ mod delays;
 mod exciting;
 mod feeding;
 mod following;
+pub mod fresh_board;
 mod images;
 mod joint;
 mod leading;

@@ -20,7 +20,13 @@ const ENABLES_MS: RangeInclusive<f64> = 0.0..=2000.0;
 
 /// Time from the enable of the drives until they follow commands.
 pub fn check_enable(drive_enable_ms: u32) -> Result<(), ParameterError> {
-    within("drives", "drive_enable_ms", f64::from(drive_enable_ms), ENABLES_MS).map(|_| ())
+    within(
+        "drives",
+        "drive_enable_ms",
+        f64::from(drive_enable_ms),
+        ENABLES_MS,
+    )
+    .map(|_| ())
 }
 
 /// A search inside `travel`, no faster than `fastest`.

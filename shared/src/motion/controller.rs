@@ -435,6 +435,7 @@ impl MotionController {
             limit_plus: report.limit_plus.0,
             limit_minus: report.limit_minus.0,
             drive_fault: report.drive_fault.0,
+            converter_failed: report.converter_failed,
             estop: report.estop.open(),
             laser_fault: report.laser_fault,
             process: report.process.0,

@@ -203,6 +203,8 @@ pub struct ServoReport {
     pub drive_fault: Bits,
     /// Motors that the machine has.
     pub fitted: Bits,
+    /// A converter has failed since reset.
+    pub converter_failed: bool,
     /// Servo ticks since boot (mod 2³²).
     pub ticks: u32,
     /// Servo ticks that were never served (mod 2³²).
@@ -377,6 +379,7 @@ impl ServoLoops {
         self.report.estop.step(feedback.estop, elapsed_us);
         self.report.fitted = self.setup.as_ref().map_or(Bits::NONE, |setup| setup.fitted);
         self.report.drive_fault = feedback.drive_fault;
+        self.report.converter_failed = feedback.converter_failed;
         for (seen, fault) in self.report.laser_fault.iter_mut().zip(feedback.laser_fault) {
             *seen |= fault;
         }

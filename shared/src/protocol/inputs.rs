@@ -18,6 +18,8 @@ pub struct Inputs {
     pub limit_minus: u8,
     /// Drives that do not say that they are ready.
     pub drive_fault: u8,
+    /// A converter did not read back what it was told; the board's log says which. All outputs are off until a reset.
+    pub converter_failed: bool,
     /// Channels of the emergency stop that are open.
     pub estop: [bool; ESTOP_CHANNELS],
     /// Sources that report a fault; motion board.
@@ -34,6 +36,7 @@ impl Inputs {
         limit_plus: 0,
         limit_minus: 0,
         drive_fault: 0,
+        converter_failed: false,
         estop: [false; ESTOP_CHANNELS],
         laser_fault: [false; SIDES],
         process: 0,

@@ -248,7 +248,10 @@ mod tests {
             assert_eq!(stopped.velocity, state.drift());
         }
         let outward = state.step(&law, Some(SlideTarget::rest(13.0)), 12.0);
-        assert_eq!((outward.velocity, outward.flag), (state.drift(), LawFlag::SoftLimit));
+        assert_eq!(
+            (outward.velocity, outward.flag),
+            (state.drift(), LawFlag::SoftLimit)
+        );
     }
 
     #[test]

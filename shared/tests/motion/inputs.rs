@@ -20,6 +20,7 @@ fn a_board_without_parameters_tells_what_it_reads() {
     bench.inputs.limit_plus.set(1, true);
     bench.inputs.limit_minus.set(6, true);
     bench.inputs.drive_fault.set(2, true);
+    bench.inputs.converter_failed = true;
     bench.inputs.estop = [false, true];
     bench.inputs.laser_fault = [true, false];
     bench.inputs.process.set(3, true);
@@ -30,6 +31,7 @@ fn a_board_without_parameters_tells_what_it_reads() {
         limit_plus: 1 << 1,
         limit_minus: 1 << 6,
         drive_fault: 1 << 2,
+        converter_failed: true,
         estop: [false, true],
         laser_fault: [true, false],
         process: 1 << 3,

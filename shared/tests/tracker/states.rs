@@ -40,7 +40,13 @@ fn wrong_state(state: TrackerState) -> Response {
 /// Slides whose drives have an offset of 30 mV, this way or that, and follow 250 ms after their enable.
 fn late_and_offset(drive_enable_ms: u32) -> Bench {
     let mut plant = PlantFile::shipped(DEFAULT_MACHINE).unwrap_or_else(|error| panic!("{error}"));
-    for (slide, offset) in plant.plant.slides.iter_mut().flatten().zip([0.3, -0.3, -0.3, 0.3]) {
+    for (slide, offset) in plant
+        .plant
+        .slides
+        .iter_mut()
+        .flatten()
+        .zip([0.3, -0.3, -0.3, 0.3])
+    {
         slide.offset = offset;
         slide.enable_s = 0.25;
     }
@@ -75,7 +81,10 @@ fn slides_learn_what_holds_them_against_the_offsets_of_their_drives() {
 fn slides_that_are_told_to_move_before_their_brakes_open_are_found_dead() {
     let bench = late_and_offset(0);
     assert_eq!(bench.controller.state(), TrackerState::Fault);
-    assert!(matches!(bench.last.sample.fault, Some(TrackerFault::NoMovement { .. })));
+    assert!(matches!(
+        bench.last.sample.fault,
+        Some(TrackerFault::NoMovement { .. })
+    ));
 }
 
 #[test]
@@ -106,7 +115,10 @@ fn without_parameters_it_tells_what_it_reads() {
         panic!("no inputs")
     };
     assert_eq!((told.counts[2], told.marks[2]), (-70, Some(-65)));
-    assert_eq!((told.limit_plus, told.limit_minus, told.drive_fault), (1, 1 << 3, 1 << 1));
+    assert_eq!(
+        (told.limit_plus, told.limit_minus, told.drive_fault),
+        (1, 1 << 3, 1 << 1)
+    );
     assert_eq!(told.estop, [true, false]);
     assert_eq!(bench.last.command, SlideCommand::SAFE);
 }

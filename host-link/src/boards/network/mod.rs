@@ -90,7 +90,7 @@ impl Default for Timeouts {
 
 /// A session with one or two boards in a network.
 pub struct NetworkBoards {
-    motion: Connection,
+    motion: Option<Connection>,
     tracker: Option<Connection>,
     path_states_target: Option<([u8; 4], u16)>,
     incoming: Receiver<Incoming>,
@@ -149,10 +149,39 @@ impl NetworkBoards {
         let open = |endpoint| Connection::open(Role::Tracker, endpoint, patience, &sender, &bad);
         let tracker = tracker.map(open).transpose()?;
         let seen_from_here = |tracker: &Connection| (tracker.board.ip().octets(), tracker.board.port());
+        let target = tracker
+            .as_ref()
+            .map(|tracker| path_states_target.unwrap_or_else(|| seen_from_here(tracker)));
         Ok(Self {
-            path_states_target: tracker
-                .as_ref()
-                .map(|tracker| path_states_target.unwrap_or_else(|| seen_from_here(tracker))),
+            path_states_target: target,
+            ..Self::of([Some(motion), tracker], sender, incoming, bad)
+        })
+    }
+
+    /// Connects to one board, whichever it is, as [`Self::connect`] does.
+    ///
+    /// # Errors
+    /// As those of [`Self::connect`], but for the role.
+    pub fn connect_one(board: &Endpoint, patience: Timeouts) -> Result<(Self, Role), LinkError> {
+        let (sender, incoming) = sync_channel(WAITING);
+        let bad = Arc::new(AtomicU32::new(0));
+        let open = |role| Connection::open(role, board, patience, &sender, &bad);
+        let (connections, role) = match open(Role::Motion) {
+            Err(LinkError::WrongRole { found, .. }) => ([None, Some(open(found)?)], found),
+            motion => ([Some(motion?), None], Role::Motion),
+        };
+        Ok((Self::of(connections, sender, incoming, bad), role))
+    }
+
+    /// A session with these boards.
+    fn of(
+        [motion, tracker]: [Option<Connection>; 2],
+        sender: SyncSender<Incoming>,
+        incoming: Receiver<Incoming>,
+        bad: Arc<AtomicU32>,
+    ) -> Self {
+        Self {
+            path_states_target: None,
             motion,
             tracker,
             incoming,
@@ -164,7 +193,7 @@ impl NetworkBoards {
             interrupted: Arc::default(),
             stopped: false,
             stall_detector: StallDetector::new(),
-        })
+        }
     }
 
     /// As soon as `interrupted` is set a stop is sent to the motion board, whatever else is being waited for.
@@ -194,13 +223,15 @@ impl NetworkBoards {
         if self.interrupted.load(Ordering::Relaxed) && !self.stopped {
             self.stopped = true;
             // Where it fails the next request says why.
-            let _ = self.motion.stream.tell(&Request::Stop);
+            if let Some(motion) = &mut self.motion {
+                let _ = motion.stream.tell(&Request::Stop);
+            }
         }
     }
 
     fn stream(&mut self, role: Role) -> Result<&mut Stream, LinkError> {
         let connection = match role {
-            Role::Motion => Some(&mut self.motion),
+            Role::Motion => self.motion.as_mut(),
             Role::Tracker => self.tracker.as_mut(),
         };
         let connection = connection.ok_or(LinkError::Absent { role })?;
@@ -209,7 +240,7 @@ impl NetworkBoards {
 
     fn connection(&self, role: Role) -> Option<&Connection> {
         match role {
-            Role::Motion => Some(&self.motion),
+            Role::Motion => self.motion.as_ref(),
             Role::Tracker => self.tracker.as_ref(),
         }
     }

@@ -9,6 +9,7 @@ mod dry_run;
 mod explain;
 mod measure;
 mod plan;
+mod probe;
 mod teach;
 mod teach_places;
 mod teach_seam;
@@ -45,6 +46,7 @@ enum Command {
     DryRun(dry_run::DryRun),
     Measure(measure::Measure),
     Plan(plan::Plan),
+    Probe(probe::Probe),
     Teach(teach::Teach),
     Weld(weld::Weld),
 }
@@ -59,6 +61,7 @@ impl Cli {
             Command::DryRun(command) => command.run(),
             Command::Measure(command) => command.run(),
             Command::Plan(command) => command.run().map(|()| ExitCode::SUCCESS),
+            Command::Probe(command) => command.run(),
             Command::Teach(command) => command.run(),
             Command::Weld(command) => command.run(),
         }

@@ -141,6 +141,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             limit_plus: feedback.limit_plus.0,
             limit_minus: feedback.limit_minus.0,
             drive_fault: feedback.drive_fault.0,
+            converter_failed: feedback.converter_failed,
             estop: feedback.estop,
             ..Inputs::NONE
         };
