@@ -28,7 +28,14 @@ const JOBS: [(&str, &str); 5] = [
     ("stir-gantry", "programs/stir-contour.ngc"),
 ];
 /// The real seams of the dual-beam gantry's job.
-const SEAM: &str = "programs/t-seam-400-deviation.csv";
+pub const SEAM: &str = "programs/t-seam-400-deviation.csv";
+
+/// The shipped job of a machine.
+pub fn job_of(machine: &str) -> Option<&'static str> {
+    JOBS.iter()
+        .find(|(name, _)| *name == machine)
+        .map(|(_, job)| *job)
+}
 
 /// Boards that run beside seamwright.
 enum Running {
@@ -199,7 +206,7 @@ impl BoardFlags {
             MACHINE_VARIABLE,
             shipped(&format!("machines/{DEFAULT_MACHINE}.toml")),
         )];
-        if let Some((_, job)) = JOBS.iter().find(|(name, _)| *name == machine) {
+        if let Some(job) = job_of(&machine) {
             defaults.push((JOB_VARIABLE, shipped(job)));
         }
         if machine == DEFAULT_MACHINE {

@@ -11,6 +11,7 @@ mod markdown;
 mod nc;
 mod planner;
 mod report;
+mod robustness;
 mod row;
 mod table;
 mod trajectories;
@@ -24,6 +25,8 @@ use benchmarks::MACHINES_FILE;
 use benchmarks::machine_files::pack;
 use benchmarks::record::{NOTHING, Record, Tally};
 use clap::Subcommand;
+use plant_file::Quality;
+use robustness::Draws;
 use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -96,6 +99,22 @@ pub enum Benchmark {
         #[arg(long, value_name = "N", default_value_t = 0)]
         seed: u64,
     },
+    /// Draw machines at random and let each weld the shipped job of its kind on simulated boards, with the shipped gains and
+    /// commissioned; fails if a commissioned one does not weld within its limits. A draw takes half a minute
+    Robustness {
+        /// Which machine
+        #[arg(long, value_name = "NAME", default_value = plant_file::DEFAULT_MACHINE)]
+        machine: String,
+        /// usual or poor
+        #[arg(long, default_value_t = Quality::Usual)]
+        quality: Quality,
+        /// How many
+        #[arg(long, value_name = "N", default_value_t = 10)]
+        draws: u32,
+        /// Seed of the first; the others follow
+        #[arg(long, value_name = "N", default_value_t = 1)]
+        seed: u32,
+    },
     /// Check a program of many short lines with `seamwright check`: time and memory
     Check {
         /// How many
@@ -134,7 +153,11 @@ impl Benchmark {
                 instructions: true, ..
             } => &[Tool::Valgrind],
             Self::Nc { .. } => &[Tool::LinuxCnc],
-            Self::Check { .. } | Self::Curves { .. } | Self::Hands { .. } | Self::Trajectories { .. } => &[],
+            Self::Check { .. }
+            | Self::Curves { .. }
+            | Self::Hands { .. }
+            | Self::Robustness { .. }
+            | Self::Trajectories { .. } => &[],
         }
     }
 
@@ -146,6 +169,17 @@ impl Benchmark {
             Self::Curves { random, seed, record } => curves::run(random, seed, record),
             Self::Check { lines } => check::run(lines),
             Self::Hands { programs, seed } => hands::run(programs, seed),
+            Self::Robustness {
+                machine,
+                quality,
+                draws,
+                seed,
+            } => robustness::run(&Draws {
+                machine,
+                quality,
+                seed,
+                draws,
+            }),
             Self::Nc {
                 programs,
                 random,
