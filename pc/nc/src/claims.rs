@@ -127,7 +127,8 @@ fn may_have(code: Code) -> &'static [&'static str] {
         Code::Call => &["L"],
         Code::ToolLength | Code::MoreLength => &["H", "D"],
         Code::TipOn | Code::TipByVectors => &["H"],
-        code if code.is_cycle() => &["R", "Q", "P", "L"],
+        // K is what other controllers have for L.
+        code if code.is_cycle() => &["R", "Q", "P", "L", "K"],
         _ => &[],
     }
 }

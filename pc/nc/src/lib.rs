@@ -20,6 +20,7 @@ mod error;
 mod explain;
 mod expression;
 mod flow;
+mod foreign;
 mod hints;
 mod interpreter;
 mod levels;

@@ -28,6 +28,8 @@ pub(super) struct Position {
     pub(super) labels: BTreeMap<(Option<String>, u32, u32), Arc<Labels>>,
     /// Anything but blank lines was seen.
     seen: bool,
+    /// The main program has come to the number of a subroutine.
+    pub(super) in_subroutine: bool,
     /// Lines that were run.
     pub(super) executed: u64,
     /// Lines that were read inside loops and subroutines.
@@ -114,6 +116,7 @@ impl Reader {
             found: BTreeMap::new(),
             labels: BTreeMap::new(),
             seen: false,
+            in_subroutine: false,
             executed: 0,
             repeated: 0,
         };

@@ -113,7 +113,7 @@ fn what_does_not_end_is_told() {
         Problem::FlowEnd { wanted: "while", .. }
     ));
     assert!(matches!(problem("o1 call\nM2").0, Problem::NoSubroutine { .. }));
-    assert_eq!(problem("M99").0, Problem::EndlessProgram);
+    assert_eq!(problem("M98 P7\nO7\nG0 X5\nM99").0, Problem::EndlessProgram);
     assert!(matches!(problem("o1 whatever\nM2").0, Problem::UnknownKeyword(_)));
     assert_eq!(problem("o1 repeat\nM2").0, Problem::FlowValue("repeat"));
 }
