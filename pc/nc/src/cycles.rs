@@ -18,6 +18,8 @@ use shared::io::AXES;
 const PECK_CLEARANCE: f64 = 0.254;
 /// Most holes of one block, and most pecks of one hole.
 const MOST: f64 = 10_000.0;
+/// Most pecks of one block.
+const MOST_PECKS: f64 = 100_000.0;
 /// Codes of spindle events in cycles.
 const SPINDLE: &str = "the spindle in a canned cycle";
 
@@ -163,6 +165,13 @@ impl Interpreter {
         if level < retract {
             self.cycle_rapid(&cycle, None, retract)?;
             level = retract;
+        }
+        if peck > 0.0 && f64::from(repeats) * (retract - bottom) / peck > MOST_PECKS {
+            let (code, why) = (
+                mode.name(),
+                "Q is too small for the depth and number of the holes",
+            );
+            return Err(Problem::Impossible { code, why }.at(place));
         }
         for _ in 0..repeats {
             match block.polar_step {

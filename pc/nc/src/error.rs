@@ -190,7 +190,7 @@ pub enum Problem {
     #[error("more than {0} subroutines inside each other")]
     CallDepth(usize),
     /// A loop without an end.
-    #[error("more than {0} lines in loops and subroutines: the program does not seem to end")]
+    #[error("loops and subroutines have run more than {0} lines again: the program does not seem to end")]
     Endless(u64),
     /// A loop in which nothing changes.
     #[error("the loop {0} never ends: nothing is set in it that its conditions depend on")]

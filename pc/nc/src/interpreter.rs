@@ -83,6 +83,8 @@ pub(super) struct Interpreter {
     pub(super) ended: bool,
     /// How often a parameter that stands for the state was read.
     pub(super) looks: u64,
+    /// Motions since the reader took them.
+    pub(super) motions: u64,
     /// Line that is read, for #<_line>.
     pub(super) line: u32,
 }
@@ -127,6 +129,7 @@ impl Interpreter {
             branches: false,
             ended: false,
             looks: 0,
+            motions: 0,
             line: 0,
         }
     }

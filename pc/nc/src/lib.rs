@@ -16,6 +16,7 @@ mod claims;
 mod codes;
 mod cycles;
 mod direction;
+mod effort;
 mod error;
 mod explain;
 mod expression;

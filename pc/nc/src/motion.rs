@@ -424,6 +424,7 @@ impl Interpreter {
         }
         self.corners.forget();
         self.said = None;
+        self.motions += 1;
         let target = Target {
             way,
             words,
@@ -448,6 +449,7 @@ impl Interpreter {
         self.retract(&mut way, &mut words, place, true)?;
         self.corners.forget();
         self.said = None;
+        self.motions += 1;
         let target = Target {
             way,
             words,
