@@ -27,7 +27,7 @@ fn ends(body: &str) -> Vec<[f64; 3]> {
 
 #[test]
 fn g53_alone_moves_nothing_which_is_told() {
-    for word in ["G53", "G53 M8", "SUPA D0"] {
+    for word in ["G53", "G53 M8", "SUPA D0", "G53 G0"] {
         assert_eq!(
             ends(&format!("F100\nG1 X1\n{word}\nX2\nM2")),
             [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]
