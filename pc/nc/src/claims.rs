@@ -107,6 +107,7 @@ fn needs(code: Code) -> &'static [&'static str] {
 fn with_vectors(code: Code) -> &'static [&'static str] {
     match code {
         Code::Rapid | Code::Feed => &VECTOR_LETTERS,
+        code if code.is_cycle() => &["R", "Q", "P", "L"],
         _ => may_have(code),
     }
 }

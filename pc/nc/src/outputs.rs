@@ -52,6 +52,8 @@ pub(super) struct Spindle {
     /// S \[r/min\].
     speed: Option<f64>,
     turns: Option<Turn>,
+    /// An S has been read.
+    said: bool,
     /// The M3 or M4 by which it turns with no S so far.
     without_speed: Option<(&'static str, SourcePosition)>,
 }
@@ -71,6 +73,7 @@ impl Spindle {
         let s = block.word("S");
         let own = block.code(Group::Spindle);
         if let Some(s) = s {
+            self.said = true;
             if s.value < 0.0 {
                 return Err(s.value_error("the spindle speed must be 0 r/min or more"));
             }
@@ -117,10 +120,12 @@ impl Spindle {
         Ok(())
     }
 
-    /// S is `speed` \[r/min\], if it was not said; whether it was not.
+    /// S is `speed` \[r/min\], if the program has said none; whether it has not.
     pub(super) fn begin_with(&mut self, speed: f64) -> bool {
-        let unsaid = self.speed.is_none();
-        self.speed.get_or_insert(speed);
+        let unsaid = self.speed.is_none() && !self.said;
+        if unsaid {
+            self.speed = Some(speed);
+        }
         unsaid
     }
 

@@ -345,6 +345,11 @@ fn codes_of_other_controllers_that_concern_no_motion_are_told() {
             "{code}: {told:?}"
         );
     }
+    assert_eq!(
+        ends("G0 X5\nG90 G50.1 X0 Y0\nY2\nM2"),
+        [[5.0, 0.0, 0.0], [5.0, 2.0, 0.0]]
+    );
+    assert!(wrong("G0 G50.1 X0\nM2").contains("G50.1 takes the axis words"));
     for body in [
         "G103 Q1",
         "G8 P2",

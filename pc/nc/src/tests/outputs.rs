@@ -255,6 +255,7 @@ fn s_beside_a_function_that_is_passed_over_is_not_taken_for_the_speed() {
         let options = Options {
             setup: std::sync::Arc::new(Setup {
                 passed_over: [851].into(),
+                spindle_rpm: Some(900.0),
                 ..Setup::default()
             }),
             ..Options::default()
