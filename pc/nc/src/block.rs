@@ -4,6 +4,7 @@ use super::codes::{CODES, Code, Group, LATHE, NEAR, of_other_machines, refused};
 use super::error::{NcError, Problem, SourcePosition};
 use super::expression;
 use super::flow::{self, OWord};
+use super::foreign;
 use super::parameters::{InBlock, Lookup, Parameter};
 use super::scanner::Scanner;
 use super::siemens::{self, Read, Statement};
@@ -227,7 +228,13 @@ pub(super) fn parse(
         Some('0'..='9' | '%') if is_heidenhain(text) => return Err(Problem::Heidenhain.at(scanner.place())),
         Some('%') => return Ok(Parsed::Percent),
         Some('/') if skipped.blocks => return Ok(Parsed::Blank),
-        Some('/') => scanner.step(),
+        Some('/') => {
+            scanner.step();
+            // The number of one of several switches, on other controllers.
+            if let Some('1'..='9') = scanner.peek() {
+                scanner.step();
+            }
+        }
         Some(_) => {}
     }
     if let Some(word) = flow::o_word(&mut scanner, lookup, true)? {
@@ -277,12 +284,13 @@ pub(super) fn parse(
                     },
                 }
             }
+            '$' => return Err(Problem::Dollar.at(place)),
             c => return Err(Problem::Character(c).at(place)),
         }
         first = false;
     }
     block.settings = std::mem::take(&mut lookup.settings);
-    high_speed(&mut block)?;
+    foreign::adapt(&mut block)?;
     lathe_cycle(&block)?;
     siemens::check(&block, SourcePosition { line, column: 1 })?;
     // A block number alone does nothing.
@@ -306,30 +314,6 @@ fn is_heidenhain(text: &str) -> bool {
             .trim_ascii_start()
             .starts_with("BEGIN PGM "),
     }
-}
-
-/// G5.1 with Q and nothing else is no curve but what other controllers call high-speed machining, as is G5 with P alone.
-fn high_speed(block: &mut Block) -> Result<(), NcError> {
-    let ([code], [q]) = (&mut block.codes[..], &block.words[..]) else {
-        return Ok(());
-    };
-    if code.code == Code::CubicSpline && q.address == "P" {
-        if ![0.0, 10000.0].contains(&q.value) {
-            return Err(q.value_error("P10000 begins high-speed machining, P0 ends it"));
-        }
-        *code = CodeWord::new("G5 P", Code::Hint, Group::Hint, code.place);
-        block.words.clear();
-        return Ok(());
-    }
-    if code.code != Code::QuadraticSpline || q.address != "Q" {
-        return Ok(());
-    }
-    if q.number_below(2).is_none() {
-        return Err(q.value_error("Q1 begins high-speed machining, Q0 ends it"));
-    }
-    *code = CodeWord::new("G5.1 Q", Code::Hint, Group::Hint, code.place);
-    block.words.clear();
-    Ok(())
 }
 
 /// G70 and G71 are units but where they have words of a cycle, and G50 is the end of scaling but where it has words.

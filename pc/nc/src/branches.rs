@@ -61,7 +61,11 @@ impl Reader {
         let label = word.label.clone();
         let (offset, line) = (self.level().offset, self.level().line);
         match word.keyword {
-            Keyword::Number => Ok(()),
+            Keyword::Number => {
+                // Its own number is at its start.
+                self.position.in_subroutine |= self.interpreter.placed && self.position.depth() == 0;
+                Ok(())
+            }
             Keyword::Sub => self
                 .skip_to(word, "sub", &[Keyword::EndSub], "endsub")
                 .map(|_| ()),

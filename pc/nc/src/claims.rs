@@ -107,6 +107,7 @@ fn needs(code: Code) -> &'static [&'static str] {
 fn with_vectors(code: Code) -> &'static [&'static str] {
     match code {
         Code::Rapid | Code::Feed => &VECTOR_LETTERS,
+        code if code.is_cycle() => &["R", "Q", "P", "L"],
         _ => may_have(code),
     }
 }
@@ -127,7 +128,8 @@ fn may_have(code: Code) -> &'static [&'static str] {
         Code::Call => &["L"],
         Code::ToolLength | Code::MoreLength => &["H", "D"],
         Code::TipOn | Code::TipByVectors => &["H"],
-        code if code.is_cycle() => &["R", "Q", "P", "L"],
+        // K is what other controllers have for L.
+        code if code.is_cycle() => &["R", "Q", "P", "L", "K"],
         _ => &[],
     }
 }

@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 118] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 125] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -15,7 +15,9 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 118] = [
     ('G', 62, Code::KnotNurbs, "G6.2", Group::Motion),
     ('G', 63, Code::KnotNurbsEnd, "G6.3", Group::Motion),
     ('G', 80, Code::Radii, "G8", Group::Lathe),
+    ('G', 90, Code::StopHere, "G9", Group::StopHere),
     ('G', 100, Code::SetOffsets, "G10", Group::NonModal),
+    ('G', 110, Code::Hint, "G11", Group::Hint),
     ('G', 150, Code::PolarOff, "G15", Group::Polar),
     ('G', 160, Code::Polar, "G16", Group::Polar),
     ('G', 170, Code::PlaneXy, "G17", Group::Plane),
@@ -37,6 +39,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 118] = [
     ('G', 435, Code::TipByVectors, "G43.5", Group::ToolLength),
     ('G', 490, Code::TipOff, "G49", Group::ToolLength),
     ('G', 500, Code::Hint, "G50", Group::Hint),
+    ('G', 501, Code::Hint, "G50.1", Group::Hint),
     ('G', 520, Code::LocalOffset, "G52", Group::NonModal),
     ('G', 530, Code::MachineAxes, "G53", Group::NonModal),
     ('G', 540, Code::System(1), "G54", Group::Offset),
@@ -51,6 +54,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 118] = [
     ('G', 600, Code::ExactStop, "G60", Group::PathControl),
     ('G', 610, Code::ExactPath, "G61", Group::PathControl),
     ('G', 611, Code::ExactStop, "G61.1", Group::PathControl),
+    ('G', 620, Code::Hint, "G62", Group::Hint),
     ('G', 640, Code::Continuous, "G64", Group::PathControl),
     ('G', 6410, Code::WithinTolerance, "G641", Group::PathControl),
     ('G', 6420, Code::WithinTolerance, "G642", Group::PathControl),
@@ -83,10 +87,13 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 118] = [
     ('G', 990, Code::ToRetractLevel, "G99", Group::ReturnLevel),
     ('G', 7000, Code::Inches, "G700", Group::Units),
     ('G', 7100, Code::Millimetres, "G710", Group::Units),
+    ('G', 1030, Code::Hint, "G103", Group::Hint),
     ('G', 1100, Code::PoleFromTip, "G110", Group::NonModal),
     ('G', 1110, Code::Pole, "G111", Group::NonModal),
     ('G', 1120, Code::PoleFromPole, "G112", Group::NonModal),
     ('G', 1530, Code::MachineAxes, "G153", Group::NonModal),
+    ('G', 1870, Code::Hint, "G187", Group::Hint),
+    ('G', 2550, Code::Hint, "G255", Group::Hint),
     ('G', 5000, Code::NoSystem, "G500", Group::Offset),
     ('G', 5050, Code::System(5), "G505", Group::Offset),
     ('G', 5060, Code::System(6), "G506", Group::Offset),
@@ -124,8 +131,11 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 118] = [
 ];
 
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 33] = [
+const REFUSED: [(char, u32, &str); 42] = [
     ('G', 70, LATHE),
+    ('G', 120, POCKET),
+    ('G', 130, POCKET),
+    ('G', 310, PROBING),
     ('G', 330, THREADING),
     ('G', 331, THREADING),
     ('G', 380, PROBING),
@@ -137,6 +147,17 @@ const REFUSED: [(char, u32, &str); 33] = [
     ('G', 411, COMPENSATION),
     ('G', 420, COMPENSATION),
     ('G', 421, COMPENSATION),
+    (
+        'G',
+        440,
+        "lengths of tools are added: write G43 H, and the length with the other sign",
+    ),
+    (
+        'G',
+        511,
+        "coordinates are neither scaled nor mirrored: let the CAM system do so",
+    ),
+    ('G', 630, "the operator can always override the feed: write G64"),
     (
         'G',
         510,
@@ -184,6 +205,13 @@ const REFUSED: [(char, u32, &str); 33] = [
         960,
         "constant surface speed is for lathes: write G97 and S in r/min",
     ),
+    (
+        'G',
+        2540,
+        "coordinates do not turn with rotary axes: the tip is controlled anyway",
+    ),
+    ('M', 970, LOCAL_CALL),
+    ('M', 1980, LOCAL_CALL),
     ('M', 190, "the spindle is not positioned by programs"),
     ('M', 490, OVERRIDES),
     ('M', 500, OVERRIDES),
@@ -192,6 +220,8 @@ const REFUSED: [(char, u32, &str); 33] = [
     ('M', 530, OVERRIDES),
 ];
 
+const POCKET: &str = "circular pockets are not supported: let the CAM system put out their motions";
+const LOCAL_CALL: &str = "write M98 P and the number of an O word: there are no subroutines by block number, and none in other folders";
 pub(super) const LATHE: &str = "lathe codes are not supported";
 const MACRO: &str = "macros are not called with letters: write a subroutine and o<name> call, or M98";
 const THREADING: &str =
@@ -265,6 +295,8 @@ pub enum Code {
     KnotNurbsEnd,
     /// G8: X is a radius, as it always is.
     Radii,
+    /// G9: the motion of this block ends at rest.
+    StopHere,
     /// G10.
     SetOffsets,
     /// G15.
@@ -468,6 +500,8 @@ pub enum Group {
     ReturnLevel,
     /// G8.
     Lathe,
+    /// G9.
+    StopHere,
     /// M0 M1 M2 M30 M60.
     Stop,
     /// M3 M4 M5.
@@ -484,7 +518,8 @@ pub enum Group {
     Outputs,
     /// M98 M99 M17.
     Call,
-    /// ORIAXES, G22, G23, G50, G69, and G5 and G5.1 as high-speed machining; several may stand together.
+    /// ORIAXES, G11, G22, G23, G50, G50.1, G62, G69, G103, G187, G255, and G5, G5.1 and G8 as high-speed machining; several may
+    /// stand together.
     Hint,
 }
 

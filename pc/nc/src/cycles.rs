@@ -18,6 +18,8 @@ use shared::io::AXES;
 const PECK_CLEARANCE: f64 = 0.254;
 /// Most holes of one block, and most pecks of one hole.
 const MOST: f64 = 10_000.0;
+/// Most pecks of one block.
+const MOST_PECKS: f64 = 100_000.0;
 /// Codes of spindle events in cycles.
 const SPINDLE: &str = "the spindle in a canned cycle";
 
@@ -88,7 +90,8 @@ impl Interpreter {
         let places = (0..3)
             .filter(|i| *i != axis)
             .any(|i| block.word(AXIS_WORDS[i]).is_some());
-        if claims.word(mode, "L").is_some_and(|l| l.value == 0.0) && !places {
+        let repeats = repeats(block, claims, mode, places)?;
+        if repeats == 0 {
             // For the places in the blocks that follow.
             return Ok(true);
         }
@@ -142,15 +145,6 @@ impl Interpreter {
             let (code, why) = (mode.name(), "R is below the bottom of the hole");
             return Err(Problem::Impossible { code, why }.at(place));
         }
-        let repeats = match claims.word(mode, "L") {
-            Some(l) if l.value.fract() == 0.0 && (1.0..=MOST).contains(&l.value) => l.value as u32,
-            Some(l) => {
-                return Err(l.value_error(
-                    "a cycle is repeated 1 to 10000 times; L0 is for a block without the place of a hole",
-                ));
-            }
-            None => 1,
-        };
         let cycle = Cycle {
             code: mode,
             axis,
@@ -171,6 +165,13 @@ impl Interpreter {
         if level < retract {
             self.cycle_rapid(&cycle, None, retract)?;
             level = retract;
+        }
+        if peck > 0.0 && f64::from(repeats) * (retract - bottom) / peck > MOST_PECKS {
+            let (code, why) = (
+                mode.name(),
+                "Q is too small for the depth and number of the holes",
+            );
+            return Err(Problem::Impossible { code, why }.at(place));
         }
         for _ in 0..repeats {
             match block.polar_step {
@@ -337,5 +338,25 @@ impl Interpreter {
             (true, None) => self.rapid(Way::Line, words, place),
             (false, _) => Ok(()),
         }
+    }
+}
+
+/// How often the cycle `mode` of `block` is run; 0 if it is for the `places` of the blocks that follow.
+fn repeats(block: &Block, claims: &Claims, mode: Code, places: bool) -> Result<u32, NcError> {
+    let (l, k) = (claims.word(mode, "L"), claims.word(mode, "K"));
+    if let Some(k) = k
+        && (l.is_some() || !(places || block.has(mode)))
+    {
+        return Err(Problem::Orphan(k.label()).at(k.place));
+    }
+    match l.or(k) {
+        None => Ok(1),
+        Some(word) if word.value == 0.0 && !places => Ok(0),
+        Some(word) if word.value.fract() == 0.0 && (1.0..=MOST).contains(&word.value) => {
+            Ok(word.value as u32)
+        }
+        Some(word) => Err(word.value_error(
+            "a cycle is repeated 1 to 10000 times; 0 is for a block without the place of a hole",
+        )),
     }
 }

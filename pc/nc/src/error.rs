@@ -40,6 +40,11 @@ pub enum Problem {
     /// No character of the dialect.
     #[error("'{0}' is not understood here")]
     Character(char),
+    /// A command to Grbl, or a variable of Siemens.
+    #[error(
+        "'$' begins a command to Grbl or a variable of a Siemens controller, which are no part of programs here: leave it out"
+    )]
+    Dollar,
     /// A program of Heidenhain controllers.
     #[error(
         "this is a program of a Heidenhain controller, which is not read here: let the CAM system put out RS274/NGC or Siemens 840D"
@@ -53,9 +58,6 @@ pub enum Problem {
     /// `(` without `)`.
     #[error("the comment is not closed")]
     OpenComment,
-    /// `(` inside a comment.
-    #[error("comments cannot be nested")]
-    NestedComment,
     /// A letter without a number.
     #[error("{0} needs a number")]
     NoNumber(String),
@@ -188,7 +190,7 @@ pub enum Problem {
     #[error("more than {0} subroutines inside each other")]
     CallDepth(usize),
     /// A loop without an end.
-    #[error("more than {0} lines in loops and subroutines: the program does not seem to end")]
+    #[error("loops and subroutines have run more than {0} lines again: the program does not seem to end")]
     Endless(u64),
     /// A loop in which nothing changes.
     #[error("the loop {0} never ends: nothing is set in it that its conditions depend on")]
@@ -201,8 +203,10 @@ pub enum Problem {
         /// What is wrong there.
         problem: Box<Problem>,
     },
-    /// M99 in the main program.
-    #[error("M99 in the main program would repeat it for ever: write M2")]
+    /// The main program has gone on into a subroutine, to its M99.
+    #[error(
+        "the main program goes on into this subroutine, whose M99 would repeat it for ever: write M2 before the O word"
+    )]
     EndlessProgram,
     /// The position is needed where the program does not say it.
     #[error("where the tip is here is not known: write a G0 with X Y Z and all rotary axes before")]

@@ -13,12 +13,22 @@ impl Interpreter {
     pub(super) fn hints(&mut self, block: &Block) {
         for code in block.codes.iter().filter(|code| code.group() == Group::Hint) {
             let why = match code.name {
-                "G50" | "G69" => "what it ends is not known here, and does not hold",
+                "G11" | "G50" | "G50.1" | "G69" | "G255" => {
+                    "what it ends is not known here, and does not hold"
+                }
                 "G22" | "G23" => "the travel of the axes is always checked",
+                "G62" | "G187" => "how closely the path is followed is said by G61 and G64 P",
+                "G103" => "as many blocks are read ahead as are needed",
                 "ORIAXES" => "between the ends of a block the tool turns as docs/nc.md says under Turns",
                 _ => "the speed is planned ahead as far as it is needed anyway",
             };
             self.tell_once(format!("{} changes nothing: {why}", code.name), code.place);
+        }
+        if let Some(code) = block.code(Group::ToolLength)
+            && code.name == "H0"
+        {
+            let text = "H0 without G43 is taken as G49: no length of a tool";
+            self.tell_once(text.to_owned(), code.place);
         }
         if let Some(code) = block.code(Group::Units)
             && code.name.starts_with("G7")

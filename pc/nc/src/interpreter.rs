@@ -83,6 +83,8 @@ pub(super) struct Interpreter {
     pub(super) ended: bool,
     /// How often a parameter that stands for the state was read.
     pub(super) looks: u64,
+    /// Motions since the reader took them.
+    pub(super) motions: u64,
     /// Line that is read, for #<_line>.
     pub(super) line: u32,
 }
@@ -127,6 +129,7 @@ impl Interpreter {
             branches: false,
             ended: false,
             looks: 0,
+            motions: 0,
             line: 0,
         }
     }
@@ -212,6 +215,9 @@ impl Interpreter {
         if !feeds {
             self.modal.check_no_feed(block)?;
         }
+        if block.has(Code::StopHere) {
+            self.open = false;
+        }
         if let Some(drilling) = &self.modal_drilling
             && takes.is_none()
             && let Some(word) = AXIS_WORDS.iter().find_map(|name| block.word(name))
@@ -251,6 +257,7 @@ impl Interpreter {
         } else if let Some(code) = block.code(Group::Tool) {
             self.change_tool(*code);
         }
+        self.speed_of_machine(block);
         for pending in self.spindle.block(block)? {
             self.wait(pending);
         }
@@ -264,6 +271,22 @@ impl Interpreter {
             self.dwell(time, place);
         }
         Ok(())
+    }
+
+    /// A spindle that the program turns without an S has the speed of the machine file, if that says one.
+    fn speed_of_machine(&mut self, block: &Block) {
+        if let Some(speed) = self.setup.spindle_rpm
+            && let Some(code) = block.code(Group::Spindle)
+            && code.code != Code::SpindleOff
+            && block.word("S").is_none()
+            && self.spindle.begin_with(speed)
+        {
+            let text = format!(
+                "{} without S: the spindle turns at {speed} r/min, as the machine file says",
+                code.name
+            );
+            self.tell_once(text, code.place);
+        }
     }
 
     /// WELDON with a name, WELDOFF without: both at rest.
@@ -357,6 +380,10 @@ impl Interpreter {
             "DEBUG" | "PRINT" => Some(self.with_values(text.trim())),
             _ => None,
         };
+        if message.is_none() && comment.contains('(') {
+            let text = "a comment inside a comment: all up to the last ) is no part of the program";
+            self.tell_once(text.to_owned(), place);
+        }
         let said = message.clone().unwrap_or_else(|| comment.trim().to_owned());
         self.said = Some(said).filter(|said| !said.is_empty());
         if let Some(message) = message {

@@ -189,8 +189,13 @@ impl Reader {
 
     /// A subroutine ends by M99, or begins again.
     fn leave_numbered(&mut self, place: SourcePosition) -> Result<(), NcError> {
-        if self.position.levels.len() == 1 {
-            return Err(Problem::EndlessProgram.at(place));
+        if self.position.depth() == 0 {
+            if self.position.in_subroutine {
+                return Err(Problem::EndlessProgram.at(place));
+            }
+            let text = "M99 in the main program ends it: it is not repeated here";
+            self.interpreter.notice(text.to_owned(), place);
+            return self.interpreter.finish("M99", place);
         }
         self.leave_again()
     }

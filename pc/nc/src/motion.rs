@@ -3,7 +3,7 @@
 use super::arc;
 use super::block::{Block, Distance, Word};
 use super::claims::Claims;
-use super::codes::{Code, Group};
+use super::codes::Code;
 use super::direction::DIRECTION_WORDS;
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::{Interpreter, no_slides_or_direction};
@@ -86,7 +86,7 @@ impl Interpreter {
     pub(super) fn axes_motion(&mut self, block: &Block, place: SourcePosition) -> Result<bool, NcError> {
         no_slides_or_direction(block)?;
         let mut axes = Words::of(block).axes;
-        if axes.iter().all(Option::is_none) && block.code(Group::Motion).is_none() {
+        if axes.iter().all(Option::is_none) {
             let text = "G53, G153 and SUPA without axis words change nothing: they hold in their block only";
             self.tell_once(text.to_owned(), place);
             return Ok(false);
@@ -103,10 +103,6 @@ impl Interpreter {
         }
         let unit = self.modal.unit();
         axes[..3].iter_mut().flatten().for_each(|value| *value *= unit);
-        if axes.iter().all(Option::is_none) {
-            let (code, word) = ("G53", "an axis word");
-            return Err(Problem::Missing { code, word }.at(place));
-        }
         match kinematics.filter(|_| feeds) {
             None => self.go_in_axes(axes, place).map(|()| false),
             Some(kinematics) => {
@@ -428,6 +424,7 @@ impl Interpreter {
         }
         self.corners.forget();
         self.said = None;
+        self.motions += 1;
         let target = Target {
             way,
             words,
@@ -448,9 +445,11 @@ impl Interpreter {
         feed: FeedRate,
         place: SourcePosition,
     ) -> Result<(), NcError> {
+        self.spindle.check_speed()?;
         self.retract(&mut way, &mut words, place, true)?;
         self.corners.forget();
         self.said = None;
+        self.motions += 1;
         let target = Target {
             way,
             words,

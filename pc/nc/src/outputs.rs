@@ -52,6 +52,10 @@ pub(super) struct Spindle {
     /// S \[r/min\].
     speed: Option<f64>,
     turns: Option<Turn>,
+    /// An S has been read.
+    said: bool,
+    /// The M3 or M4 by which it turns with no S so far.
+    without_speed: Option<(&'static str, SourcePosition)>,
 }
 
 impl Spindle {
@@ -67,23 +71,29 @@ impl Spindle {
             });
         };
         let s = block.word("S");
+        let own = block.code(Group::Spindle);
         if let Some(s) = s {
+            self.said = true;
             if s.value < 0.0 {
                 return Err(s.value_error("the spindle speed must be 0 r/min or more"));
             }
+            if !block.passed_over.is_empty() && own.is_none() {
+                return self.speed_of_other_function(s).map(|()| events);
+            }
             self.speed = Some(s.value);
+            self.without_speed = None;
         }
-        match (block.code(Group::Spindle), s) {
+        match (own, s) {
             (Some(code), _) if code.code == Code::SpindleOff => {
                 self.turns = None;
+                self.without_speed = None;
                 add(ProgramAction::SpindleOff, code.name, code.place);
             }
             (Some(code), _) => {
-                let missing = Problem::Missing {
-                    code: code.name,
-                    word: "S, here or before",
-                };
-                let speed = self.speed.ok_or(missing.at(code.place))?;
+                let speed = self.speed.unwrap_or_else(|| {
+                    self.without_speed = Some((code.name, code.place));
+                    0.0
+                });
                 let turn = match code.code {
                     Code::SpindleCounterClockwise => Turn::CounterClockwise,
                     _ => Turn::Clockwise,
@@ -100,8 +110,39 @@ impl Spindle {
         Ok(events)
     }
 
+    /// S beside a function that is passed over may be a word of that function: what the spindle does is not known from it.
+    fn speed_of_other_function(&mut self, s: &Word) -> Result<(), NcError> {
+        if self.turns.is_some() {
+            let why = "it may belong to the function that is passed over: write the speed of the spindle in a block of its own";
+            return Err(s.value_error(why));
+        }
+        self.speed = None;
+        Ok(())
+    }
+
+    /// S is `speed` \[r/min\], if the program has said none; whether it has not.
+    pub(super) fn begin_with(&mut self, speed: f64) -> bool {
+        let unsaid = self.speed.is_none() && !self.said;
+        if unsaid {
+            self.speed = Some(speed);
+        }
+        unsaid
+    }
+
+    /// M3 or M4 without an S turns at 0 r/min, and nothing may be fed so.
+    pub(super) fn check_speed(&self) -> Result<(), NcError> {
+        match self.without_speed {
+            Some((code, place)) => {
+                let word = "S, here or before the first motion that feeds, or spindle_rpm in [program] of the machine file";
+                Err(Problem::Missing { code, word }.at(place))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// It stops, if it turns, as `code` asks for.
     pub(super) fn stop(&mut self, code: &'static str, place: SourcePosition) -> Option<Pending> {
+        self.without_speed = None;
         self.turns.take().map(|_| Pending {
             action: ProgramAction::SpindleOff,
             code,

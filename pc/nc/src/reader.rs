@@ -2,6 +2,7 @@
 
 use super::block::{Parsed, Skipped, parse};
 use super::branches::Open;
+use super::effort::Effort;
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
 use super::levels::{Called, Level};
@@ -15,9 +16,6 @@ use super::subroutines::Found;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Most lines that are read inside loops and subroutines, with those that are passed over.
-const MOST_LINES: u64 = 1_000_000;
-
 /// How far a program has been run.
 #[derive(Clone)]
 pub(super) struct Position {
@@ -28,10 +26,11 @@ pub(super) struct Position {
     pub(super) labels: BTreeMap<(Option<String>, u32, u32), Arc<Labels>>,
     /// Anything but blank lines was seen.
     seen: bool,
+    /// The main program has come to the number of a subroutine.
+    pub(super) in_subroutine: bool,
     /// Lines that were run.
     pub(super) executed: u64,
-    /// Lines that were read inside loops and subroutines.
-    repeated: u64,
+    effort: Effort,
 }
 
 impl Position {
@@ -114,8 +113,9 @@ impl Reader {
             found: BTreeMap::new(),
             labels: BTreeMap::new(),
             seen: false,
+            in_subroutine: false,
             executed: 0,
-            repeated: 0,
+            effort: Effort::default(),
         };
         let interpreter = Interpreter::new(&options.setup, options.optional_stop);
         Self::at(position, interpreter, options)
@@ -155,7 +155,8 @@ impl Reader {
         }
         let read = self.lines.next();
         let offset = self.lines.offset;
-        let level = self.level();
+        // The main program is never left.
+        let level = self.position.levels.last_mut().expect("the main program");
         let may_repeat = called || level.open.iter().any(Open::loops) || level.line < level.repeats_to;
         level.offset = offset;
         level.line += 1;
@@ -163,9 +164,13 @@ impl Reader {
         match read {
             Ok(Some(text)) => {
                 self.interpreter.line = line;
-                self.position.repeated += u64::from(may_repeat);
-                if self.position.repeated > MOST_LINES {
-                    return Err(Problem::Endless(MOST_LINES).at(SourcePosition { line, column: 1 }));
+                let effort = &mut self.position.effort;
+                if may_repeat {
+                    effort.motions(std::mem::take(&mut self.interpreter.motions));
+                }
+                effort.line(level.file.as_deref(), line, text.len(), may_repeat);
+                if let Some(most) = effort.exceeded() {
+                    return Err(Problem::Endless(most).at(SourcePosition { line, column: 1 }));
                 }
                 Ok(Some(text))
             }

@@ -96,14 +96,19 @@ impl<'t> Scanner<'t> {
         let start = self.place();
         self.step();
         let rest = &self.text[self.next..];
-        let Some(length) = rest.find(')') else {
+        let mut depth = 1;
+        let closing = rest.bytes().position(|byte| {
+            match byte {
+                b'(' => depth += 1,
+                b')' => depth -= 1,
+                _ => {}
+            }
+            depth == 0
+        });
+        let Some(length) = closing else {
             return Err(Problem::OpenComment.at(start));
         };
         let inside = rest[..length].to_owned();
-        if let Some(nested) = inside.find('(') {
-            self.next += nested;
-            return Err(Problem::NestedComment.at(self.place()));
-        }
         self.next += length + 1;
         Ok(inside)
     }

@@ -41,6 +41,7 @@ impl Planner {
             homes: [park, park],
             tools: self.tools.clone(),
             passed_over: program.passed_over.numbers().clone(),
+            spindle_rpm: program.spindle_rpm,
             kinematics: Some(Arc::new(kinematics)),
             ..Setup::default()
         }

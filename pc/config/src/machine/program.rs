@@ -26,6 +26,8 @@ pub struct ProgramConfig {
     pub rotary_deg: Rotary,
     /// M codes that programs are read without.
     pub passed_over: PassedOver,
+    /// S of M3 and M4 in programs that have said none \[r/min\].
+    pub spindle_rpm: Option<f64>,
 }
 
 impl Default for ProgramConfig {
@@ -38,6 +40,7 @@ impl Default for ProgramConfig {
             tolerance_mm: None,
             rotary_deg: Rotary::default(),
             passed_over: PassedOver::default(),
+            spindle_rpm: None,
         }
     }
 }
@@ -101,8 +104,8 @@ pub struct PassedOver(BTreeSet<u16>);
 
 /// Largest number of an M code.
 const MOST_FUNCTION: u16 = 9999;
-/// M codes with a meaning of their own in programs, and M19, which would leave a spindle where it must not be.
-const KNOWN: [RangeInclusive<u16>; 9] = [
+/// M codes with a meaning of their own in programs, M19, which would leave a spindle where it must not be, and calls of other controllers.
+const KNOWN: [RangeInclusive<u16>; 10] = [
     0..=9,
     17..=17,
     19..=19,
@@ -111,7 +114,8 @@ const KNOWN: [RangeInclusive<u16>; 9] = [
     48..=48,
     60..=68,
     70..=73,
-    98..=99,
+    97..=99,
+    198..=198,
 ];
 
 impl PassedOver {
@@ -154,7 +158,7 @@ fn function(code: &str) -> Result<u16, String> {
     Ok(number)
 }
 
-/// A tolerance only of a G64, and only axes that the machine has, within their travel.
+/// A tolerance only of a G64, a speed that turns, and only axes that the machine has, within their travel.
 pub(super) fn check(machine: &MachineFile) -> Result<(), Mistake> {
     let program = &machine.program;
     if let Some(tolerance) = program.tolerance_mm {
@@ -162,6 +166,14 @@ pub(super) fn check(machine: &MachineFile) -> Result<(), Mistake> {
         let blends = program.path_mode == PathMode::G64;
         in_range(key, tolerance, blends, "left out: path_mode is not \"G64\"")?;
         in_range(key, tolerance, tolerance > 0.0, "above 0")?;
+    }
+    if let Some(speed) = program.spindle_rpm {
+        in_range(
+            "program.spindle_rpm",
+            speed,
+            speed > 0.0 && speed.is_finite(),
+            "above 0",
+        )?;
     }
     let fitted = machine.motion.kinematics.fitted();
     for (axis, angle) in (AXES - 3..).zip(program.rotary_deg.into_array()) {

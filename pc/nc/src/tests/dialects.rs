@@ -27,7 +27,7 @@ fn ends(body: &str) -> Vec<[f64; 3]> {
 
 #[test]
 fn g53_alone_moves_nothing_which_is_told() {
-    for word in ["G53", "G53 M8", "SUPA D0"] {
+    for word in ["G53", "G53 M8", "SUPA D0", "G53 G0"] {
         assert_eq!(
             ends(&format!("F100\nG1 X1\n{word}\nX2\nM2")),
             [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]
@@ -312,4 +312,152 @@ fn a_program_number_stands_alone() {
     for body in ["O100 #1=5", "O100 -5", "O100 [5]", ":10 G0 X1", ":10 sub"] {
         assert!(run(&format!("{body}\nM2")).is_err(), "{body}");
     }
+}
+
+#[test]
+fn a_comment_may_have_others_inside() {
+    let program =
+        run("G0 X5 (T1 (end mill) D=6)\nY2 (a (b) (c (d))) Z7\n(MSG, hook (left) first)\nM2").unwrap();
+    assert_eq!(program.paths[2].targets[0].words.axes[0], Some(5.0));
+    let second = program.paths[3].targets[0].words.axes;
+    assert_eq!(second[1..3], [Some(2.0), Some(7.0)]);
+    let told: Vec<_> = program
+        .notices
+        .iter()
+        .map(|notice| notice.text.as_str())
+        .collect();
+    let text = "a comment inside a comment: all up to the last ) is no part of the program";
+    assert_eq!(told, [text, "hook (left) first"]);
+    assert!(wrong("G0 X5 (a (b)\nM2").contains("the comment is not closed"));
+    assert!(wrong("G0 X5 (a) b)\nM2").contains("B needs a number"));
+}
+
+#[test]
+fn codes_of_other_controllers_that_concern_no_motion_are_told() {
+    let body = "G187 P2 E0.025\nG103 P1\nG103\nG8 P1\nG5.1 Q1 R5\nG62 G11\nG50.1 X0 Y0\nG255\nG1 X5 F100\nM2";
+    assert_eq!(ends(body), [[5.0, 0.0, 0.0]]);
+    let told = told(body);
+    for code in ["G187", "G103", "G8 P", "G5.1 Q", "G62", "G11", "G50.1", "G255"] {
+        let start = format!("{code} changes nothing");
+        assert_eq!(
+            told.iter().filter(|text| text.starts_with(&start)).count(),
+            1,
+            "{code}: {told:?}"
+        );
+    }
+    assert_eq!(
+        ends("G0 X5\nG90 G50.1 X0 Y0\nY2\nM2"),
+        [[5.0, 0.0, 0.0], [5.0, 2.0, 0.0]]
+    );
+    assert!(wrong("G0 G50.1 X0\nM2").contains("G50.1 takes the axis words"));
+    for body in [
+        "G103 Q1",
+        "G8 P2",
+        "G8 P1 X5",
+        "G5.1 Q1 R5 X1",
+        "G187 G1 X5 F100 P2",
+    ] {
+        let axes = body.contains('X');
+        let error = wrong(&format!("{body}\nM2"));
+        assert!(
+            axes || error.contains("belongs to no code") || error.contains("begins"),
+            "{body}: {error}"
+        );
+    }
+    for (code, why) in [
+        ("G51.1 X0", "mirrored"),
+        ("G254", "do not turn"),
+        ("G12 I5 F100", "pockets"),
+        ("G31 Z-5", "no probe input"),
+        ("G44 H1", "write G43"),
+        ("M97 P5", "write M98"),
+        ("M198 P5", "write M98"),
+        ("$H", "command to Grbl"),
+    ] {
+        let error = wrong(&format!("{code}\nM2"));
+        assert!(error.contains(why), "{code}: {error}");
+    }
+}
+
+#[test]
+fn g9_stops_after_its_motion_alone() {
+    let paths = |body: &str| {
+        let program = run(&format!("F600\n{body}\nM2")).unwrap();
+        let feeds = program.paths.iter().filter(|path| path.motion == Motion::Feed);
+        feeds.map(|path| path.targets.len()).collect::<Vec<_>>()
+    };
+    assert_eq!(paths("G1 X5\nX10\nX15"), [3]);
+    assert_eq!(paths("G1 X5\nG9 X10\nX15\nX20"), [2, 2]);
+    assert_eq!(paths("G9 G1 X5\nX10 G9\nX15"), [1, 1, 1]);
+}
+
+#[test]
+fn h0_is_no_length_of_a_tool() {
+    let program = run("G43.1 Z20\nG0 Z100\nG0 Z100 H0\nX5\nM2").unwrap();
+    let same = run("G43.1 Z20\nG0 Z100\nG49 G0 Z100\nX5\nM2").unwrap();
+    let ways = |program: &Program| -> Vec<_> {
+        let targets = program.paths.iter().flat_map(|path| &path.targets);
+        targets.map(|target| target.words).collect()
+    };
+    assert_eq!(ways(&program), ways(&same));
+    assert_eq!(
+        told("G28 Z0 H0\nM2")[0],
+        "H0 without G43 is taken as G49: no length of a tool"
+    );
+    assert!(run("G49 H0\nG43 H0\nM2").is_ok());
+    assert!(wrong("G0 Z5 H1\nM2").contains("H belongs to no code"));
+    assert!(wrong("G49 H1\nM2").contains("H belongs to no code"));
+}
+
+#[test]
+fn g4_has_its_time_as_x_too() {
+    let dwells = |body: &str| {
+        let program = run(&format!("{body}\nG0 X7\nM2")).unwrap();
+        program.paths[2].dwell_before_s
+    };
+    assert_eq!(dwells("G4 X1.5"), 1.5);
+    assert_eq!(dwells("F100\nG1\nG4 X2"), 2.0);
+    assert!(wrong("G4 X1 Y2\nM2").contains("G4 needs P"));
+    assert!(wrong("G4 G0 X1\nM2").contains("G4 needs P"));
+}
+
+#[test]
+fn k_repeats_cycles_as_l_does() {
+    for (k, l) in [
+        ("G91 G81 X5 Z-5 R2 K3", "G91 G81 X5 Z-5 R2 L3"),
+        ("G81 Z-5 R2 K0\nX5\nX6", "G81 Z-5 R2 L0\nX5\nX6"),
+        ("G81 X1 Z-5 R2\nX5 K2", "G81 X1 Z-5 R2\nX5 L2"),
+    ] {
+        assert_eq!(
+            ends(&format!("F100\n{k}\nM2")),
+            ends(&format!("F100\n{l}\nM2")),
+            "{k}"
+        );
+    }
+    for wrongly in ["G81 X5 Z-5 R2 K2 L2", "G81 X5 Z-5 R2\nK2", "G81 X5 Z-5 R2 K1.5"] {
+        assert!(run(&format!("F100\n{wrongly}\nM2")).is_err(), "{wrongly}");
+    }
+}
+
+#[test]
+fn block_delete_may_have_the_number_of_its_switch() {
+    assert_eq!(
+        ends("/1 G0 X5\n/2X6\n/N7 X7\nM2"),
+        [[5.0, 0.0, 0.0], [6.0, 0.0, 0.0], [7.0, 0.0, 0.0]]
+    );
+    let options = Options {
+        block_delete: true,
+        ..Options::default()
+    };
+    let program = interpret(&format!("{HEADER}/1 G0 X5\n/9X6\nM2"), options).unwrap();
+    assert_eq!(program.paths.len(), 2);
+}
+
+#[test]
+fn m99_ends_a_main_program_that_is_not_in_a_subroutine() {
+    let told = told("G0 X5\nM99\n%");
+    assert_eq!(told, ["M99 in the main program ends it: it is not repeated here"]);
+    let program = interpret("O5\nG0 X5 Y5 Z5\nM99\nG0 X9", Options::default()).unwrap();
+    assert_eq!(program.paths.len(), 1);
+    assert!(wrong("M98 P7\nO7\nG0 X5\nM99").contains("goes on into this subroutine"));
 }

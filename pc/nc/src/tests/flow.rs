@@ -74,9 +74,13 @@ fn a_long_program_may_have_calls_loops_and_conditions() {
     let flow = "o1 sub\nG0 X1\no1 endsub\no1 call\no2 repeat [2]\no2 endrepeat\no3 if [1]\n";
     let program = run(&format!("{flow}{straight}o3 endif\nG0 X2\nM2")).unwrap();
     assert_eq!(program.paths.len(), 4);
-    // In a subroutine the same lines are too many.
-    let called = format!("o1 sub\n{straight}o1 endsub\no1 call\nM2");
-    assert!(matches!(problem(&called).0, Problem::Endless(_)));
+    // A subroutine may be as long; called again and again its lines are too many.
+    let called = |calls: &str| format!("o1 sub\n{straight}o1 endsub\n{calls}M2");
+    assert!(run(&called("o1 call\n")).is_ok());
+    assert!(matches!(
+        problem(&called("o1 call\no1 call\n")).0,
+        Problem::Endless(_)
+    ));
 }
 
 #[test]
@@ -85,6 +89,15 @@ fn what_does_not_end_is_told() {
     let passed = "G1 X1\n".repeat(3000);
     let passed = format!("o1 while [1]\n#1=1\no2 if [0]\n{passed}o2 endif\no1 endwhile\nM2");
     assert!(matches!(problem(&passed).0, Problem::Endless(_)));
+    // So do motions of cycles, and the length of lines.
+    let holes = "F100\no1 while [1]\n#1=1\nG81 X1 Y1 Z-1 R1 L5000\no1 endwhile\nM2";
+    assert!(matches!(problem(holes).0, Problem::Endless(_)));
+    let long = format!("o1 while [1]\n#1=1 ({})\no1 endwhile\nM2", "-".repeat(9000));
+    assert!(matches!(problem(&long).0, Problem::Endless(_)));
+    assert!(matches!(
+        problem("F100\nG83 X1 Z-5 R2 Q0.001 L100\nM2").0,
+        Problem::Impossible { code: "G83", .. }
+    ));
     let same = |body: &str| matches!(problem(&format!("{body}\nM2")).0, Problem::SameAgain(_));
     assert!(same("#1=1\no1 while [#1 LT 2]\nG0 X1\no1 endwhile"));
     assert!(same("o1 do\no2 if [0]\no1 break\no2 endif\no1 while [1]"));
@@ -113,7 +126,7 @@ fn what_does_not_end_is_told() {
         Problem::FlowEnd { wanted: "while", .. }
     ));
     assert!(matches!(problem("o1 call\nM2").0, Problem::NoSubroutine { .. }));
-    assert_eq!(problem("M99").0, Problem::EndlessProgram);
+    assert_eq!(problem("M98 P7\nO7\nG0 X5\nM99").0, Problem::EndlessProgram);
     assert!(matches!(problem("o1 whatever\nM2").0, Problem::UnknownKeyword(_)));
     assert_eq!(problem("o1 repeat\nM2").0, Problem::FlowValue("repeat"));
 }

@@ -145,8 +145,6 @@ fn g53_moves_axes_once_and_needs_g0() {
 
     assert_eq!(problem("F5\nG1 G53 X5\nM2"), (Problem::AxesNeedRapid, 2));
     assert_eq!(problem("G53 G0 V1=2\nM2"), (Problem::Orphan("V1=".into()), 1));
-    let (code, word) = ("G53", "an axis word");
-    assert_eq!(problem("G53 G0\nM2"), (Problem::Missing { code, word }, 1));
     assert_eq!(problem("M62 P0\nG53 G0 Z5\nM2"), (Problem::OnInAxes("M62"), 1));
     assert!(run("M63 P0\nG53 G0 Z5\nM2").is_ok());
 }

@@ -68,15 +68,20 @@ fn immediate_outputs_end_the_path() {
     assert_eq!(problem("M64 P0\nG53 G0 Z5\nM2"), (Problem::OnInAxes("M64"), 1));
 }
 
+/// What M3 or M4 with a speed gives, and M5.
+fn on(code: &'static str, turn: Turn, rpm: f64) -> Vec<(usize, ProgramAction, &'static str)> {
+    vec![
+        (0, ProgramAction::SpindleSpeed(rpm), code),
+        (0, ProgramAction::SpindleOn(turn), code),
+    ]
+}
+
+fn off(code: &'static str) -> Vec<(usize, ProgramAction, &'static str)> {
+    vec![(0, ProgramAction::SpindleOff, code)]
+}
+
 #[test]
 fn a_spindle_turns_at_s_and_stops_with_the_program() {
-    let on = |code: &'static str, turn, rpm: f64| {
-        vec![
-            (0, ProgramAction::SpindleSpeed(rpm), code),
-            (0, ProgramAction::SpindleOn(turn), code),
-        ]
-    };
-    let off = |code: &'static str| vec![(0, ProgramAction::SpindleOff, code)];
     let body = "F600\nS500\nM3\nG4 P2\nG1 X10\nS600\nX20\nM5\nM4\nX30\nM2";
     let expected = [
         (Motion::Stand, 0, on("M3", Turn::Clockwise, 500.0)),
@@ -94,8 +99,6 @@ fn a_spindle_turns_at_s_and_stops_with_the_program() {
         (Motion::Stand, 0, off("M2")),
     ];
     assert_eq!(seen(body), expected);
-    let (code, word) = ("M3", "S, here or before");
-    assert_eq!(problem("M3\nM2"), (Problem::Missing { code, word }, 1));
     assert!(matches!(
         problem("S-1 M3\nM2"),
         (Problem::Value { value: -1.0, .. }, 1)
@@ -183,4 +186,90 @@ fn a_weld_is_called_by_its_name_and_both_its_ends_are_at_rest() {
         let error = error_of(text);
         assert!(error.starts_with(told), "{error}");
     }
+}
+
+#[test]
+fn m3_without_s_turns_at_0_and_nothing_is_fed_so() {
+    let body = "M3\nG4 P2\nS500\nG1 X10 F600\nM2";
+    let expected = [
+        (Motion::Stand, 0, on("M3", Turn::Clockwise, 0.0)),
+        (
+            Motion::Feed,
+            1,
+            vec![(0, ProgramAction::SpindleSpeed(500.0), "S")],
+        ),
+        (Motion::Stand, 0, off("M2")),
+    ];
+    assert_eq!(seen(body), expected);
+    // S may stand in the block that feeds; rapids need none.
+    for body in [
+        "M4\nG0 X5\nG1 X10 F600 S1",
+        "M3\nM5\nG1 X10 F600",
+        "M3 S0\nG1 X10 F600",
+    ] {
+        assert!(run(&format!("{body}\nM2")).is_ok(), "{body}");
+    }
+    for feed in ["G1 X5", "G2 X5 R9", "G81 X5 Z-5 R2", "G5 X9 Y0 I1 J1 P1 Q1"] {
+        let text = format!("F600\nM4\nG0 X1\n{feed}\nM2");
+        let (problem, line) = problem(&text);
+        assert!(
+            matches!(problem, Problem::Missing { code: "M4", .. }),
+            "{feed}: {problem}"
+        );
+        assert_eq!(line, 2, "{feed}");
+    }
+}
+
+#[test]
+fn the_machine_file_may_say_s_for_programs_that_do_not() {
+    let read = |body: &str| {
+        let options = Options {
+            setup: std::sync::Arc::new(Setup {
+                spindle_rpm: Some(900.0),
+                ..Setup::default()
+            }),
+            ..Options::default()
+        };
+        interpret(&format!("{HEADER}{body}"), options).unwrap()
+    };
+    let program = read("M3\nG1 X10 F600\nS500\nX20\nM5\nM3\nX30\nM2");
+    let speeds: Vec<_> = program
+        .paths
+        .iter()
+        .flat_map(|path| &path.events)
+        .filter_map(|event| match event.action {
+            ProgramAction::SpindleSpeed(speed) => Some(speed),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(speeds, [900.0, 500.0, 500.0]);
+    let text = "M3 without S: the spindle turns at 900 r/min, as the machine file says";
+    let told = program.notices.iter().filter(|notice| notice.text == text);
+    assert_eq!(told.count(), 1);
+    assert_eq!(read("M3 S5\nG1 X10 F600\nM2").notices, []);
+}
+
+#[test]
+fn s_beside_a_function_that_is_passed_over_is_not_taken_for_the_speed() {
+    let read = |body: &str| {
+        let options = Options {
+            setup: std::sync::Arc::new(Setup {
+                passed_over: [851].into(),
+                spindle_rpm: Some(900.0),
+                ..Setup::default()
+            }),
+            ..Options::default()
+        };
+        interpret(&format!("{HEADER}{body}"), options).map_err(|error| error.problem)
+    };
+    assert!(read("M851 S100\nS15000 M3\nG1 X10 F600\nM2").is_ok());
+    assert!(read("M851 S100 M3\nG1 X10 F600\nM2").is_ok());
+    assert!(matches!(
+        read("S500\nM851 S100\nM3\nG1 X10 F600\nM2"),
+        Err(Problem::Missing { code: "M3", .. })
+    ));
+    assert!(matches!(
+        read("S500 M3\nM851 S100\nG1 X10 F600\nM2"),
+        Err(Problem::Value { .. })
+    ));
 }
