@@ -30,6 +30,7 @@ fn images() -> Images {
     let of = ImageCameras {
         calibrations: std::array::from_fn(|side| unit.cameras.nominal(side)),
         kept: None,
+        noted: None,
     };
     Images::begin(&of, Box::new(Blind), &unit, heads).unwrap()
 }

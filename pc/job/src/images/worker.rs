@@ -1,6 +1,7 @@
 //! The thread that turns the pictures of one camera into measurements.
 
 use super::ends::SeamEnds;
+use super::sightings::{Sighting, SightingLog};
 use crate::joint::{SeenEnd, SeenSeam};
 use camera::{Arrival, Camera, CameraError, Picture};
 use config::calibration::Calibration;
@@ -25,6 +26,8 @@ pub(super) struct Strobe {
     pub time_us: u64,
     /// How far the camera moved since the strobe before; `None` if what was seen before tells nothing any more.
     pub moved: Option<Moved>,
+    /// How far it moves from the strobe to the exposure.
+    pub goes_on: Moved,
     /// Whether it is asked where the seam ends in its picture.
     pub ends: bool,
 }
@@ -56,6 +59,16 @@ pub enum WorkerError {
     /// Its pictures are none.
     #[error(transparent)]
     Image(#[from] ImageError),
+    /// The tracker would believe nothing that is seen so far from where it was told.
+    #[error(
+        "its calibration says that it is {is_mm:.3} mm ahead of its spot, and the machine file says {told_mm:.3}: put that lead, or the mean of both cameras, into camera_lead_mm"
+    )]
+    Lead {
+        /// By the calibration \[mm\].
+        is_mm: f64,
+        /// By the machine file \[mm\].
+        told_mm: f64,
+    },
     /// The thread is gone, or hangs.
     #[error("the thread that measures its pictures has ended: please report this, with the command line")]
     Gone,
@@ -65,6 +78,16 @@ pub enum WorkerError {
 struct Outlet {
     waker: Option<Waker>,
     events: Events,
+}
+
+/// How a camera's pictures lie to what the tracker knows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Geometry {
+    pub calibration: Calibration,
+    /// How much further ahead it is than the tracker was told \[mm\].
+    pub ahead_mm: f64,
+    /// How far ahead of it the tracker believes what it is told \[mm\].
+    pub reach_mm: f64,
 }
 
 /// A camera, its observer, and a thread for both.
@@ -81,8 +104,8 @@ impl Worker {
         side: usize,
         camera: Box<dyn Camera>,
         observer: Observer,
-        calibration: Calibration,
-        reach_mm: f64,
+        geometry: Geometry,
+        noted: Option<SightingLog>,
     ) -> Self {
         let (strobes, told) = channel();
         let (answer, answers) = channel();
@@ -92,11 +115,12 @@ impl Worker {
             outlet: Arc::clone(&outlet),
             camera,
             observer,
-            calibration,
+            geometry,
+            noted,
             waiting: VecDeque::new(),
             moved: Some(Moved::default()),
             picture: Picture::default(),
-            ends: SeamEnds::new(reach_mm),
+            ends: SeamEnds::new(geometry.reach_mm),
         };
         let thread = std::thread::spawn(move || {
             // The end of the session is no error.
@@ -160,7 +184,8 @@ struct Work {
     outlet: Arc<OnceLock<Outlet>>,
     camera: Box<dyn Camera>,
     observer: Observer,
-    calibration: Calibration,
+    geometry: Geometry,
+    noted: Option<SightingLog>,
     /// Strobes without an answer.
     waiting: VecDeque<Strobe>,
     /// Since the last picture that arrived.
@@ -202,7 +227,7 @@ impl Work {
                 self.note(strobe.moved);
                 let arrived = strobe.capture == capture && arrival == Arrival::Picture;
                 let seen = if arrived {
-                    self.look(at, strobe.ends)?
+                    self.look(at, &strobe)?
                 } else {
                     MeasuredStrobe {
                         capture: strobe.capture,
@@ -276,8 +301,8 @@ impl Work {
         };
     }
 
-    /// Measures the picture that arrived at `arrived`, and looks for ends of the seam in it if they are asked for.
-    fn look(&mut self, arrived: Instant, ends: bool) -> Result<MeasuredStrobe, WorkerError> {
+    /// Measures the picture of `strobe` that arrived at `arrived`, and looks for ends of the seam in it if they are asked for.
+    fn look(&mut self, arrived: Instant, strobe: &Strobe) -> Result<MeasuredStrobe, WorkerError> {
         let moved = self.moved.replace(Moved::default());
         if moved.is_none() {
             self.observer.forget();
@@ -285,13 +310,29 @@ impl Work {
         }
         let moved = moved.unwrap_or_default();
         let observation = self.observer.observe(&self.picture.image()?, moved)?;
-        let seen_ends = if ends {
+        let seen_ends = if strobe.ends {
             self.ends.look(self.observer.detector(), &observation, &moved)
         } else {
             self.ends.forget();
             [None; 2]
         };
-        let to_side = |(lateral, travel, height)| self.calibration.side_measurement(lateral, travel, height);
+        if let Some(noted) = &self.noted {
+            noted.push(Sighting {
+                capture: self.picture.capture,
+                status: observation.report.status,
+                measured: observation.report.seam().copied(),
+                ends: seen_ends,
+            });
+        }
+        // Seen from where the camera was at the strobe, of which the tracker knows where it was.
+        let Strobe { goes_on, .. } = strobe;
+        let to_side = |(lateral, travel, height)| {
+            self.geometry.calibration.side_measurement(
+                lateral + goes_on.lateral_mm,
+                travel + goes_on.travel_mm + self.geometry.ahead_mm,
+                height + goes_on.height_mm,
+            )
+        };
         let both = observation.seam.zip(observation.report.measured);
         let seen = both.map(|(seam, measured)| SeenSeam {
             seam,
