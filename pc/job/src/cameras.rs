@@ -123,8 +123,15 @@ pub trait PictureSource: Send {
     }
 
     /// Tells the simulated camera of `side` where the machine truly was when it exposed for `capture`; `None` if nobody knows any
-    /// more.
-    fn tell(&mut self, _side: usize, _capture: &Capture, _at: Option<(&MachineGeometry, &MachinePosition)>) {}
+    /// more. A picture that is not `wanted` may be lost.
+    fn tell(
+        &mut self,
+        _side: usize,
+        _capture: &Capture,
+        _at: Option<(&MachineGeometry, &MachinePosition)>,
+        _wanted: bool,
+    ) {
+    }
 }
 
 /// Real cameras, as the machine file names them.

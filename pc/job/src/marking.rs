@@ -85,8 +85,7 @@ impl Weld {
             .map(|tracking| tracking.heads)
             .ok_or_else(|| wrong("the machine has no cameras".to_owned()))?;
         let spots = [run.side, 1 - run.side].map(|side| (heads.spot(&pose, side), side));
-        let [own, other] =
-            spots.map(|(spot, side)| spot.point(0.0, 0.0, point.v_follow()[side]));
+        let [own, other] = spots.map(|(spot, side)| spot.point(0.0, 0.0, point.v_follow()[side]));
         let place = Place {
             heads,
             axes: self.angles(&pose)?,
@@ -154,7 +153,8 @@ impl Weld {
 
     /// Runs a program of one block after another.
     fn run_text(&mut self, session: &mut Session, text: &str, phase: Phase) -> Result<(), JobError> {
-        let program = interpret(text, Options::default()).map_err(|error| JobError::Plan(error.to_string()))?;
+        let program =
+            interpret(text, Options::default()).map_err(|error| JobError::Plan(error.to_string()))?;
         for path in self.planner.program(&program, &session.motion.reference, None)? {
             self.path(session, path, phase)?;
         }
@@ -178,7 +178,11 @@ impl Weld {
         let new = |tick: u32| (1..1 << 31).contains(&tick.wrapping_sub(since));
         let mut ends = [None; 2];
         for sample in session.record.motion().iter().filter(|sample| new(sample.tick)) {
-            for switched in sample.switched.iter().filter(|line| usize::from(line.line) == side) {
+            for switched in sample
+                .switched
+                .iter()
+                .filter(|line| usize::from(line.line) == side)
+            {
                 let time_us = sample.time_us.saturating_sub(TICK_US) + u64::from(switched.at_us);
                 let axes = session.record.axes_at(time_us);
                 ends[usize::from(!switched.on)] = axes.map(|axes| (switched.on, axes));

@@ -73,7 +73,10 @@ mod tests {
             delay_s: 0.001,
         });
         let near = |is: [f64; 2], wanted: [f64; 2]| {
-            assert!(is.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-12), "{is:?}");
+            assert!(
+                is.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-12),
+                "{is:?}"
+            );
         };
         near(mounted.slides_mm(1, &capture(1, 1.0)), [1.1, 0.3]);
         near(mounted.slides_mm(1, &capture(2, 1.05)), [1.16, 0.3]);

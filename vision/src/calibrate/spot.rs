@@ -81,6 +81,8 @@ pub struct SpotFit {
     pub bent_mm: f64,
     /// How much longer a mark is at either end than the way of its spot: half of its width, about \[mm\].
     pub longer_mm: f64,
+    /// Where in the picture the mark of the head's own beam is, u and n on the mean \[mm\].
+    pub seen_mm: [f64; 2],
     /// Pictures that show a mark.
     pub pictures: usize,
     /// Ends that were seen, each counted once a pass.
@@ -113,7 +115,9 @@ pub enum SpotError {
         found: usize,
     },
     /// Pictures do not agree.
-    #[error("the pictures scatter by {um:.1} µm about the marks (may be 12 µm): is something loose, or the mark ragged?")]
+    #[error(
+        "the pictures scatter by {um:.1} µm about the marks (may be 12 µm): is something loose, or the mark ragged?"
+    )]
     Scatter {
         /// Root of the mean square \[µm\].
         um: f64,
@@ -191,6 +195,7 @@ pub fn spot_offset(
         offset_v_mm,
         scatter_mm: across[0].scatter_mm.max(across[1].scatter_mm),
         bent_mm: across[0].bent_mm.max(across[1].bent_mm),
+        seen_mm: across[0].seen_mm,
         pictures,
         ..along
     })
@@ -210,6 +215,8 @@ struct Reading {
     beside_mm: f64,
     /// How much of that comes from the place in the picture \[mm\].
     in_picture_mm: f64,
+    /// u and n of that place \[mm\].
+    seen_mm: [f64; 2],
 }
 
 /// Readings of a mark, by pictures that show it well within its ends if the camera is `lead_mm` ahead.
@@ -231,7 +238,8 @@ fn readings(
         let along_mm = along + lead_mm + a;
         let share = (along_mm - from[0]) / (to[0] - from[0]);
         let in_picture = [row_u, row_v].map(|row| row[0] * u + row[1] * n);
-        let beside = |k: usize, head: f64| head + in_picture[k] - (from[k + 1] + (to[k + 1] - from[k + 1]) * share);
+        let beside =
+            |k: usize, head: f64| head + in_picture[k] - (from[k + 1] + (to[k + 1] - from[k + 1]) * share);
         (from[0] + END_MM..to[0] - END_MM)
             .contains(&along_mm)
             .then_some(Reading {
@@ -239,6 +247,7 @@ fn readings(
                 along_mm,
                 beside_mm: e[0] * beside(0, head_u) + e[1] * beside(1, head_v),
                 in_picture_mm: e[0] * in_picture[0] + e[1] * in_picture[1],
+                seen_mm: [u, n],
             })
     };
     sightings.iter().filter_map(reading).collect()
@@ -277,6 +286,7 @@ struct Across {
     mean: Found,
     scatter_mm: f64,
     bent_mm: f64,
+    seen_mm: [f64; 2],
 }
 
 impl Across {
@@ -335,6 +345,10 @@ impl Across {
             },
             scatter_mm,
             bent_mm,
+            seen_mm: [0, 1].map(|k| {
+                let seen: Vec<f64> = readings.iter().map(|reading| reading.seen_mm[k]).collect();
+                spread(&seen).value
+            }),
         })
     }
 }
@@ -371,13 +385,18 @@ fn along(marks: &[BurntMark; 2], sightings: &[MarkSighting], lead_mm: f64) -> Re
     if ends.len() < FEWEST_ENDS {
         return Err(few);
     }
-    let rows = || ends.iter().map(|[speed, end, from]| (Vector3::new(1.0, *speed, *end), *from));
+    let rows = || {
+        ends.iter()
+            .map(|[speed, end, from]| (Vector3::new(1.0, *speed, *end), *from))
+    };
     let information: Matrix3<f64> = rows().map(|(x, _)| x * x.transpose()).sum();
     let sums: Vector3<f64> = rows().map(|(x, from)| x * from).sum();
     // Speeds or ends of one kind only tell nothing of the others.
     let inverse = information.try_inverse().filter(|inverse| {
         let [lead, delay, longer] = [0, 1, 2].map(|k| inverse[(k, k)]);
-        let fastest = ends.iter().fold(0.0, |fastest: f64, end| fastest.max(end[0].abs()));
+        let fastest = ends
+            .iter()
+            .fold(0.0, |fastest: f64, end| fastest.max(end[0].abs()));
         lead < 1.0 && longer < 1.0 && delay * fastest * fastest < 1.0
     });
     let inverse = inverse.ok_or(few)?;
@@ -399,6 +418,7 @@ fn along(marks: &[BurntMark; 2], sightings: &[MarkSighting], lead_mm: f64) -> Re
         delay_s: found[1],
         scatter_mm: 0.0,
         bent_mm: 0.0,
+        seen_mm: [0.0; 2],
         longer_mm: found[2].value,
         pictures: 0,
         ends: ends.len(),

@@ -20,7 +20,9 @@ pub enum SpotCalibrationError {
     #[error(transparent)]
     Fit(#[from] SpotError),
     /// They tell it too roughly.
-    #[error("{what} is uncertain by {by} (2 σ; may be {most}): burn a longer mark, or look for what is loose")]
+    #[error(
+        "{what} is uncertain by {by} (2 σ; may be {most}): burn a longer mark, or look for what is loose"
+    )]
     Uncertain {
         /// What.
         what: &'static str,
@@ -100,6 +102,7 @@ pub fn spot(
         scatter_mm,
         bent_mm,
         longer_mm,
+        seen_mm,
         pictures,
         ends,
         ..
@@ -117,16 +120,17 @@ pub fn spot(
         ),
         Figure::new(
             "strobe delay",
-            format!(
-                "{:.3} ± {:.3} ms",
-                MS_PER_S * fit.delay_s.value,
-                MS_PER_S * delay
-            ),
+            format!("{:.3} ± {:.3} ms", MS_PER_S * fit.delay_s.value, MS_PER_S * delay),
             format!("was {:.3} ms", MS_PER_S * before.delay_s()),
         ),
         Figure::new(
             "pictures of the marks, their ends",
             format!("{pictures}, {ends}"),
+            String::new(),
+        ),
+        Figure::new(
+            "mark in the picture, across and up",
+            format!("{:+.3} {:+.3} mm", seen_mm[0], seen_mm[1]),
             String::new(),
         ),
         Figure::new("scatter of a picture", um(scatter_mm), "at most 12 µm".to_owned()),

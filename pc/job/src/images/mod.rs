@@ -27,7 +27,7 @@ use shared::tracking::frames::Heads;
 use std::collections::VecDeque;
 use std::time::Duration;
 use vision::{Detector, Joint, Moved, Observer, ObserverConfig, Walls};
-use worker::{Geometry, Strobe, Worker};
+use worker::{Geometry, Looks, Strobe, Worker};
 
 /// A capture whose place is still unknown this long after its answer was due is given up \[µs\].
 const GIVE_UP_US: u64 = 200_000;
@@ -49,8 +49,9 @@ pub struct ImageCameras {
     pub calibrations: [Calibration; SIDES],
     /// Where every picture is kept, if it is.
     pub kept: Option<[PictureQueue; SIDES]>,
-    /// Where what every picture shows is noted, if it is.
-    pub noted: Option<[SightingLog; SIDES]>,
+    /// A camera (0 or 1) whose pictures are noted, and where. Nothing else is wanted then: those of the other one are not
+    /// measured, nor are its own while nobody asks for ends.
+    pub noted: Option<(usize, SightingLog)>,
 }
 
 /// Both cameras.
@@ -92,6 +93,8 @@ struct Waiting {
     due_us: u64,
     /// Whether its camera was told what stands before it.
     told: bool,
+    /// Whether anybody looks at its picture.
+    wanted: bool,
 }
 
 /// Trouble with a camera.
@@ -146,6 +149,11 @@ impl Images {
                     sigma: WALL_SIGMA,
                 }),
             };
+            let (looks, noted) = match &of.noted {
+                None => (Looks::Always, None),
+                Some((noted, log)) if *noted == side => (Looks::ForEnds, Some(log.clone())),
+                Some(_) => (Looks::Never, None),
+            };
             Ok(Side {
                 worker: Worker::start(
                     side,
@@ -156,7 +164,8 @@ impl Images {
                         ahead_mm,
                         reach_mm: REACH * believes_mm - ahead_mm,
                     },
-                    of.noted.as_ref().map(|logs| logs[side].clone()),
+                    looks,
+                    noted,
                 ),
                 waiting: VecDeque::new(),
                 figures: CameraFigures::default(),
@@ -214,7 +223,7 @@ impl Images {
                 }
                 waiting.told = true;
                 let known = position.as_ref().map(|position| (at.machine, position));
-                self.source.tell(k, &waiting.capture, known);
+                self.source.tell(k, &waiting.capture, known, waiting.wanted);
             }
         }
     }
@@ -257,6 +266,7 @@ impl SeamCameras for Images {
                 // One after the other.
                 due_us: due_us.max(before),
                 told: false,
+                wanted: this.worker.wants(self.ends),
             });
             let goes_on = moved.and_then(|moved| {
                 let period_us = strobe_us.checked_sub(before_us?).filter(|us| *us > 0)?;

@@ -90,9 +90,31 @@ pub(super) struct Geometry {
     pub reach_mm: f64,
 }
 
+/// At which pictures anybody looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Looks {
+    /// At all of them.
+    Always,
+    /// At those in which ends are asked for.
+    ForEnds,
+    /// At none.
+    Never,
+}
+
+impl Looks {
+    fn at(self, ends: bool) -> bool {
+        match self {
+            Self::Always => true,
+            Self::ForEnds => ends,
+            Self::Never => false,
+        }
+    }
+}
+
 /// A camera, its observer, and a thread for both.
 pub(super) struct Worker {
     outlet: Arc<OnceLock<Outlet>>,
+    looks: Looks,
     strobes: Option<Sender<Strobe>>,
     answers: Receiver<Result<MeasuredStrobe, WorkerError>>,
     thread: Option<JoinHandle<()>>,
@@ -105,6 +127,7 @@ impl Worker {
         camera: Box<dyn Camera>,
         observer: Observer,
         geometry: Geometry,
+        looks: Looks,
         noted: Option<SightingLog>,
     ) -> Self {
         let (strobes, told) = channel();
@@ -116,6 +139,7 @@ impl Worker {
             camera,
             observer,
             geometry,
+            looks,
             noted,
             waiting: VecDeque::new(),
             moved: Some(Moved::default()),
@@ -131,6 +155,7 @@ impl Worker {
         });
         Self {
             outlet,
+            looks,
             strobes: Some(strobes),
             answers,
             thread: Some(thread),
@@ -142,6 +167,11 @@ impl Worker {
         let events = events.clone();
         // A session has one.
         let _ = self.outlet.set(Outlet { waker, events });
+    }
+
+    /// Whether it looks at a picture, in which ends are asked for or not.
+    pub fn wants(&self, ends: bool) -> bool {
+        self.looks.at(ends)
     }
 
     /// Tells of a strobe. If the thread has ended, its error is the next answer.
@@ -185,6 +215,7 @@ struct Work {
     camera: Box<dyn Camera>,
     observer: Observer,
     geometry: Geometry,
+    looks: Looks,
     noted: Option<SightingLog>,
     /// Strobes without an answer.
     waiting: VecDeque<Strobe>,
@@ -304,6 +335,15 @@ impl Work {
     /// Measures the picture of `strobe` that arrived at `arrived`, and looks for ends of the seam in it if they are asked for.
     fn look(&mut self, arrived: Instant, strobe: &Strobe) -> Result<MeasuredStrobe, WorkerError> {
         let moved = self.moved.replace(Moved::default());
+        if !self.looks.at(strobe.ends) {
+            return Ok(MeasuredStrobe {
+                capture: self.picture.capture,
+                observation: None,
+                seen: None,
+                measurement: None,
+                arrived,
+            });
+        }
         if moved.is_none() {
             self.observer.forget();
             self.ends.forget();

@@ -76,7 +76,13 @@ impl PictureSource for RenderedPictures {
         }
     }
 
-    fn tell(&mut self, side: usize, capture: &Capture, at: Option<(&MachineGeometry, &MachinePosition)>) {
+    fn tell(
+        &mut self,
+        side: usize,
+        capture: &Capture,
+        at: Option<(&MachineGeometry, &MachinePosition)>,
+        wanted: bool,
+    ) {
         let standpoint = Standpoint {
             side,
             slides_mm: self.mounts[side].slides_mm(side, capture),
@@ -89,8 +95,11 @@ impl PictureSource for RenderedPictures {
                     marks.strobed(capture, machine, &seams);
                 }
                 let marks = self.marks.as_ref();
-                View::of(&self.cameras, machine, &seams, marks, position, &standpoint)
-                    .map_or(FieldOfView::Nothing, FieldOfView::Seam)
+                let view = || View::of(&self.cameras, machine, &seams, marks, position, &standpoint);
+                match wanted {
+                    true => view().map_or(FieldOfView::Nothing, FieldOfView::Seam),
+                    false => FieldOfView::Unknown,
+                }
             }
             None => FieldOfView::Unknown,
         };

@@ -15,7 +15,6 @@ use config::calibration::Calibration;
 use config::machine::{JointForm, MachineFile};
 use job::{ImageCameras, Job, MarkRun, Names, SightingLog, Work};
 use nc::Options;
-use shared::io::SIDES;
 use shared::units::MM_S_PER_M_MIN;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -95,7 +94,9 @@ impl Spot {
         if drifted {
             let [u, v] = found.moved_mm.map(|mm| 1e3 * mm);
             let to_do = match self.check {
-                true => "do not weld with the old calibration: run the command again with --output in place of --check",
+                true => {
+                    "do not weld with the old calibration: run the command again with --output in place of --check"
+                }
                 false => "if the camera or the head was not touched since, look for what is loose or warm",
             };
             errln!(
@@ -157,7 +158,7 @@ impl Spot {
         }
         self.warn(matches!(self.boards.choice, BoardChoice::At { .. }))?;
         let seam = self.coupon.deviation(&source)?;
-        let noted = <[SightingLog; SIDES]>::default();
+        let noted = SightingLog::default();
         let run = MarkRun {
             program: &program,
             side,
@@ -165,12 +166,12 @@ impl Spot {
             mark_speed_mm_s: self.mark_speed * MM_S_PER_M_MIN,
             length_mm: self.length,
             pass_speed_mm_s: self.speed * MM_S_PER_M_MIN,
-            noted: noted[side].clone(),
+            noted: noted.clone(),
         };
         let images = ImageCameras {
             calibrations,
             kept: None,
-            noted: Some(noted),
+            noted: Some((side, noted)),
         };
         let name = |path: &Path| path.display().to_string();
         let job = Job {
