@@ -15,13 +15,15 @@ use nc::{Options, Program, interpret};
 use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::tracking::frames::{Heads, SpotFrame};
+use shared::trajectory::SpeedLimits;
 use shared::units::DEG_PER_RAD;
 use std::time::Duration;
 use vision::calibrate::{BurntMark, MarkSighting};
 
-/// Way on either side of marks and passes over which the machine gets up to its speed \[mm\]: at 10 m/min with 1500 mm/s² and
-/// 30,000 mm/s³ it takes 14 mm.
-const RUN_UP_MM: f64 = 15.0;
+/// The machine gets up to its speed, and comes to rest, within so many times the way that it takes, and this beside it \[mm\]: as
+/// far as pictures show the marks.
+const RUN_UP: f64 = 1.25;
+const SEEN_MM: f64 = 1.5;
 /// Between the two marks \[mm\]: no picture shows ends of both.
 const APART_MM: f64 = 5.0;
 /// Two speeds of the passes, as parts of the faster one: a delay shows by their difference.
@@ -32,8 +34,8 @@ const LAST_PICTURES_S: f64 = 0.15;
 const SPEED_US: u64 = 2_000;
 /// A tick of the motion board's telemetry \[µs\].
 const TICK_US: u64 = 1000;
-/// Slower than this part of its speed a pass has not begun, or has ended.
-const UNDER_WAY: f64 = 0.5;
+/// Part of its speed by which the machine may be off that in a picture that counts.
+const UNDER_WAY: f64 = 0.1;
 /// Longest time for the strobes to begin.
 const LIMIT: Duration = Duration::from_secs(10);
 
@@ -94,6 +96,13 @@ impl Weld {
             v_follow: point.v_follow(),
         };
         let lead_mm = heads.camera_lead();
+        let run_up_mm = |velocity: f64| {
+            let limits = SpeedLimits {
+                velocity,
+                ..weld.limits
+            };
+            RUN_UP * limits.ramp() + SEEN_MM
+        };
         let passes = 2 * SPEEDS.len() as u32;
         let phase = |step: u32| Phase::Calibrating {
             place: step + 1,
@@ -104,7 +113,7 @@ impl Weld {
         for (k, (_, side)) in spots.into_iter().enumerate() {
             let aside = if k == 0 { Vector3::zeros() } else { own - other };
             let from = k as f64 * (run.length_mm + APART_MM);
-            let text = place.mark_text(run, side, aside, from);
+            let text = place.mark_text(run, side, aside, [from, run_up_mm(run.mark_speed_mm_s)]);
             let ends = self.burn(session, run, &place, side, &text, phase(k as u32))?;
             // The beam of that head, in the frame of this one.
             let beam = heads.spot(&place.pose, side).v;
@@ -114,23 +123,21 @@ impl Weld {
             });
         }
 
-        let reach = [
-            -lead_mm - RUN_UP_MM,
-            2.0 * run.length_mm + APART_MM - lead_mm + RUN_UP_MM,
-        ];
+        let seen_from = -lead_mm;
+        let seen_to = 2.0 * run.length_mm + APART_MM - lead_mm;
         let mut sightings = Vec::new();
         for (k, share) in SPEEDS.into_iter().enumerate() {
             let speed = run.pass_speed_mm_s * share;
+            let run_up = run_up_mm(speed);
+            let reach = [seen_from - run_up, seen_to + run_up];
             for (back, [from, to]) in [reach, [reach[1], reach[0]]].into_iter().enumerate() {
                 let pass = 2 * k as u32 + back as u32;
-                let text = place.pass_text(speed, from, to);
-                let seen = self.pass(session, run, &place, &text, phase(SIDES as u32 + pass))?;
-                let under_way = |seen: &MarkSighting| seen.speed_mm_s.abs() > UNDER_WAY * speed;
-                sightings.extend(
-                    seen.into_iter()
-                        .map(|seen| MarkSighting { pass, ..seen })
-                        .filter(under_way),
-                );
+                let phase = phase(SIDES as u32 + pass);
+                self.run_text(session, &place.go_text(from), phase)?;
+                let seen = self.pass(session, run, &place, &place.pass_text(speed, to), phase)?;
+                let under_way = |seen: &MarkSighting| (seen.speed_mm_s.abs() / speed - 1.0).abs() < UNDER_WAY;
+                let of_pass = seen.into_iter().map(|seen| MarkSighting { pass, ..seen });
+                sightings.extend(of_pass.filter(under_way));
             }
         }
         let [own, other] = [marks[0], marks[1]];
@@ -276,10 +283,10 @@ impl Place {
         tip_words(&position.into(), &self.axes, &self.v_follow)
     }
 
-    /// A program that burns the mark of a beam.
-    fn mark_text(&self, run: &MarkRun, side: usize, aside: Vector3<f64>, from: f64) -> String {
+    /// A program that burns the mark of a beam, after a run-up.
+    fn mark_text(&self, run: &MarkRun, side: usize, aside: Vector3<f64>, [from, run_up]: [f64; 2]) -> String {
         let to = from + run.length_mm;
-        let words = [from - RUN_UP_MM, from, to, to + RUN_UP_MM].map(|along| self.words(along, aside));
+        let words = [from - run_up, from, to, to + run_up].map(|along| self.words(along, aside));
         let [start, on, off, end] = words;
         let feed = run.mark_speed_mm_s * 60.0;
         format!(
@@ -289,11 +296,17 @@ impl Place {
         )
     }
 
-    /// A program that passes over the marks.
-    fn pass_text(&self, speed_mm_s: f64, from: f64, to: f64) -> String {
-        let [start, end] = [from, to].map(|along| self.words(along, Vector3::zeros()));
+    /// A program that goes to where a pass begins.
+    fn go_text(&self, along_mm: f64) -> String {
+        let words = self.words(along_mm, Vector3::zeros());
+        format!("G21 G90 G94 G64 G43.4\nG0 {words}\nM2\n")
+    }
+
+    /// A program that passes over the marks from there.
+    fn pass_text(&self, speed_mm_s: f64, to: f64) -> String {
+        let words = self.words(to, Vector3::zeros());
         let feed = speed_mm_s * 60.0;
-        format!("G21 G90 G94 G64 G43.4\nG0 {start}\nF{feed}\nG1 {end}\nM2\n")
+        format!("G21 G90 G94 G64 G43.4\nF{feed}\nG1 {words}\nM2\n")
     }
 
     /// Where a head is in the frame of the marks, with its slides so: along travel, U, V \[mm\].

@@ -192,3 +192,65 @@ fn hit(
     let way = (on_plate - from).dot(&planned.normal) / spot.v.dot(&planned.normal);
     way.is_finite().then(|| from + spot.v * way)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::seams::tests::{heads, wavy_seam};
+    use crate::tests::{axes_at, machine, motion_sample};
+    use shared::io::{Switched, SwitchedLines};
+
+    /// A beam goes on half a millisecond after tick 20 and off a quarter after tick 80, at 0.05 mm a tick: the mark is as long,
+    /// and a width more.
+    #[test]
+    fn a_mark_lies_where_the_spot_was_while_its_gate_was_open() {
+        const PLACE: f64 = 200.0;
+        let (machine, seams) = (machine(), TrueSeams::of([wavy_seam()]));
+        let pose_at = |s: f64| wavy_seam().planned(s).unwrap().0;
+        let sample = |tick: u32| {
+            let mut switched = SwitchedLines::NONE;
+            let mut switch = |on, at_us| switched.push(Switched { line: 0, on, at_us });
+            match tick {
+                21 => switch(true, 500),
+                81 => switch(false, 250),
+                _ => {}
+            }
+            MotionSample {
+                beams: [(21..81).contains(&tick), false],
+                switched,
+                axes: axes_at(&pose_at(PLACE + 0.05 * f64::from(tick))),
+                truth: None,
+                ..motion_sample(tick)
+            }
+        };
+        let mut marks = Marks::default();
+        let capture = |number: u32| Capture {
+            number,
+            time_us: 0,
+            motion_time_us: u64::from(number) * 5_000,
+            s_mm: 0.0,
+            path_id: 1,
+            slides_mm: [0.0; SLIDES],
+            truth_mm: Some([0.1, 0.0, 0.0, 0.0]),
+        };
+        for tick in 0..=100 {
+            marks.motion(&[sample(tick)]);
+            if tick % 5 == 0 {
+                marks.strobed(&capture(tick / 5), &machine, &seams);
+            }
+        }
+        let middle = (0.05 * 20.5 + 0.05 * 80.25) / 2.0;
+        let seen = |s: f64, u: f64| {
+            let spot = heads().spot(&pose_at(s), 0);
+            marks.seen(&CameraFrame::new(&spot, 0.0, [0.0; 2], u, 0.0))
+        };
+        let at = seen(PLACE + middle, 0.1).expect("a mark");
+        let [from, to] = at.ends_mm;
+        // The path bends: the spot goes a little more or less than the tip.
+        assert!((to - from - 0.05 * 59.75 - WIDTH_MM).abs() < 0.03, "{at:?}");
+        assert!((from + to).abs() < 0.03 && at.lateral_mm.abs() < 0.005, "{at:?}");
+        let beside = seen(PLACE + middle, 0.3).expect("a mark");
+        assert!((beside.lateral_mm.abs() - 0.2).abs() < 0.005, "{beside:?}");
+        assert_eq!(seen(PLACE + 30.0, 0.1), None);
+    }
+}

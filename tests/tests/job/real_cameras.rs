@@ -11,7 +11,8 @@ use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex};
 use world::{
-    CameraChoice, FieldOfView, PictureChoice, RenderedCamera, RenderedWorld, SceneFile, TrueSeams, View,
+    CameraChoice, FieldOfView, PictureChoice, RenderedCamera, RenderedWorld, SceneFile, Standpoint,
+    TrueSeams, View,
 };
 
 /// So many strobes later a frame is with the session at the latest.
