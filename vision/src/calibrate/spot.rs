@@ -11,6 +11,8 @@ use thiserror::Error;
 /// Marks are divided along travel into parts so long \[mm\]: work has another texture in each, which moves what is measured by
 /// about a µm, the same way in every pass.
 const PART_MM: f64 = 1.0;
+/// So many neighbouring parts are off alike: waves of a machine's guideways, scales and cogging reach over them.
+const ALIKE: f64 = 4.0;
 /// Fewest such parts of a mark that are seen.
 const FEWEST_PARTS: usize = 8;
 /// Nearer to an end of a mark than this it is not measured \[mm\]: an end that is in focus is round.
@@ -335,12 +337,12 @@ impl Across {
         };
         let by_pass = spread(&passes.iter().map(of_pass).collect::<Vec<_>>());
         let scale = SCALE * rms(&mut readings.iter().map(|reading| reading.in_picture_mm));
-        let independent = |spread: Found, count: usize| spread.sigma / (count as f64).sqrt();
+        let independent = |spread: Found, count: f64| spread.sigma / count.sqrt();
         Ok(Self {
             mean: Found {
                 value: by_part.value,
-                sigma: independent(by_part, parts.len())
-                    .hypot(independent(by_pass, passes.len()))
+                sigma: independent(by_part, parts.len() as f64 / ALIKE)
+                    .hypot(independent(by_pass, passes.len() as f64))
                     .hypot(scale),
             },
             scatter_mm,

@@ -141,6 +141,7 @@ impl Spot {
         for calibration in &mut calibrations {
             calibration.spot = None;
         }
+        self.warn(matches!(self.boards.choice, BoardChoice::At { .. }))?;
         let source = source(&self.boards.choice, cameras, self.coupon.scene.as_deref())?;
         if cameras.joint == JointForm::Corner {
             bail!(
@@ -156,7 +157,6 @@ impl Spot {
                 self.at.display()
             );
         }
-        self.warn(matches!(self.boards.choice, BoardChoice::At { .. }))?;
         let seam = self.coupon.deviation(&source)?;
         let noted = SightingLog::default();
         let run = MarkRun {
