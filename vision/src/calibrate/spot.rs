@@ -30,6 +30,9 @@ const ENDS_MM: f64 = 0.08;
 const FEWEST_ENDS: usize = 8;
 /// What the camera–slide matrix may be wrong by: it is calibrated to 1 %.
 const SCALE: f64 = 0.01;
+/// What is in every picture of a mark alike \[mm\]: play of a slide between its encoder and the head, 0.5 to 2 µm, and what is left of the
+/// texture in heights.
+const FLOOR_MM: f64 = 0.001;
 /// Least sine of the angle between two beams at which the other one's mark tells the height.
 const LEAST_SINE: f64 = 0.2;
 
@@ -126,7 +129,7 @@ pub enum SpotError {
     },
     /// It is bent.
     #[error(
-        "the mark of beam {beam} is not straight: parts of it are {um:.1} µm rms off a line (may be 6 µm); did the plate move or warp?"
+        "the mark of beam {beam} is not straight: parts of it are {um:.1} µm rms off a line (may be 6 µm); did the plate move or warp, or do loops swing (seamwright commission)?"
     )]
     Bent {
         /// 1 for the head's own beam, 2 for the other one.
@@ -343,7 +346,8 @@ impl Across {
                 value: by_part.value,
                 sigma: independent(by_part, parts.len() as f64 / ALIKE)
                     .hypot(independent(by_pass, passes.len() as f64))
-                    .hypot(scale),
+                    .hypot(scale)
+                    .hypot(FLOOR_MM),
             },
             scatter_mm,
             bent_mm,
