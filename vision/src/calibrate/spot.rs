@@ -30,9 +30,9 @@ const ENDS_MM: f64 = 0.08;
 const FEWEST_ENDS: usize = 8;
 /// What the camera–slide matrix may be wrong by: it is calibrated to 1 %.
 const SCALE: f64 = 0.01;
-/// What is in every picture of a mark alike \[mm\]: play of a slide between its encoder and the head, 0.5 to 2 µm, and what is left of the
-/// texture in heights.
-const FLOOR_MM: f64 = 0.001;
+/// What is in every picture of a mark alike \[mm\]: play of a slide between its encoder and the head, 0.5 to 2 µm, what both heads' axes
+/// repeat to, and what is left of the texture in heights.
+const FLOOR_MM: f64 = 0.0015;
 /// Least sine of the angle between two beams at which the other one's mark tells the height.
 const LEAST_SINE: f64 = 0.2;
 
