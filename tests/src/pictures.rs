@@ -83,6 +83,7 @@ pub(crate) fn through_pictures(
     let images = ImageCameras {
         calibrations: std::array::from_fn(|side| cameras.nominal(side)),
         kept: None,
+        noted: None,
     };
     let program = program();
     let surroundings = Surroundings {

@@ -73,6 +73,13 @@ impl Record {
         Some((MachinePosition::between(before, after, ratio), before))
     }
 
+    /// Where the axes were at a time of the motion clock by what the board measured, also of a simulated machine (mm, rad); `None`
+    /// as in [`Record::machine_at`].
+    pub fn axes_at(&self, time_us: u64) -> Option<[f64; AXES]> {
+        let (before, after, ratio) = around(self.motion(), time_us)?;
+        Some(between(&before.axes, &after.axes, ratio))
+    }
+
     /// All samples, once the job has ended.
     pub fn finish(self) -> Recorded {
         Recorded::new(self.motion.finish(), self.tracker.finish(), self.spooling)

@@ -7,7 +7,7 @@
 
 use crate::session::Session;
 use crate::{Job, JobError, Weld};
-use cam::path::CAPACITY;
+use cam::path::{CAPACITY, PlannedPath};
 use camera::calibrate::ReferencePicture;
 use camera::{Picture, PictureQueue};
 use config::calibration::Calibration;
@@ -61,6 +61,23 @@ pub struct CameraPictures {
 }
 
 impl Weld {
+    /// Goes to before the weld of `program`: its path, and where the weld begins on that \[mm\].
+    pub(super) fn before_weld(
+        &mut self,
+        session: &mut Session,
+        job: &Job,
+        program: &Program,
+    ) -> Result<(PlannedPath, f64), JobError> {
+        for path in job.plan(program, &self.planner, &session.motion.reference)? {
+            if let Some((begin, _)) = path.weld() {
+                return Ok((path, begin));
+            }
+            self.path(session, path, Phase::Approaching)?;
+        }
+        let nothing = "the program has no weld in front of which the camera could look at the seam";
+        Err(JobError::Calibrate(nothing.to_owned()))
+    }
+
     /// Takes the pictures of `run`.
     pub(super) fn take_pictures(
         &mut self,
@@ -68,22 +85,8 @@ impl Weld {
         job: &Job,
         run: &PictureRun,
     ) -> Result<CameraPictures, JobError> {
-        let planned = job.plan(run.program, &self.planner, &session.motion.reference)?;
-        let mut weld = None;
-        for path in planned {
-            if path.weld().is_some() {
-                weld = Some(path);
-                break;
-            }
-            self.path(session, path, Phase::Approaching)?;
-        }
-        let nothing = || {
-            JobError::Calibrate(
-                "the program has no weld in front of which the camera could look at the seam".to_owned(),
-            )
-        };
-        let weld = weld.ok_or_else(nothing)?;
-        let (path, (begin, _)) = (weld.knot_path(), weld.weld().ok_or_else(nothing)?);
+        let (weld, begin) = self.before_weld(session, job, run.program)?;
+        let path = weld.knot_path();
         let lead = session
             .tracking
             .as_ref()
@@ -231,7 +234,8 @@ fn look(
             .as_ref()
             .and_then(|tracking| tracking.strobed.as_ref());
         for picture in run.queue.take() {
-            if let Some(slides) = strobed.and_then(|strobed| strobed.get(&picture.capture)) {
+            if let Some(strobe) = strobed.and_then(|strobed| strobed.get(&picture.capture)) {
+                let slides = strobe.slides_mm;
                 taken = Some((picture, [slides[2 * run.side], slides[2 * run.side + 1]]));
             }
         }

@@ -10,7 +10,7 @@ use host_link::record::MachinePosition;
 use serde::Serialize;
 use shared::geometry::Pose;
 use shared::io::SIDES;
-use shared::protocol::{Capture, Measurement};
+use shared::protocol::{Capture, Measurement, MotionSample};
 
 /// The cameras of a session, whatever they are: captures in, measurements out.
 pub trait SeamCameras: Send {
@@ -20,6 +20,9 @@ pub trait SeamCameras: Send {
     /// Takes a capture of the tracker board; `strobe_us` is when by the motion board's clock, `pose` what was planned for
     /// that time, if it is known.
     fn strobe(&mut self, capture: Capture, strobe_us: u64, pose: Option<Pose>);
+
+    /// Takes what the motion board told, tick by tick.
+    fn motion(&mut self, _samples: &[MotionSample]) {}
 
     /// From now on answers tell, or do not tell, where the seams end in the pictures that are strobed.
     fn look_for_ends(&mut self, _wanted: bool) {}
@@ -106,14 +109,29 @@ pub trait PictureSource: Send {
         false
     }
 
+    /// How long after its strobe the simulated camera of `side` exposes \[µs\].
+    fn delay_us(&self, _side: usize) -> u64 {
+        0
+    }
+
+    /// Tells simulated cameras what the motion board told, tick by tick: what was burnt can then be seen.
+    fn motion(&mut self, _samples: &[MotionSample]) {}
+
     /// How much later than others a simulated picture comes \[µs\].
     fn late_us(&self, _capture: u32, _side: usize) -> u64 {
         0
     }
 
-    /// Tells the simulated camera of `side` where the machine truly was at the strobe of `capture`; `None` if nobody knows any
-    /// more.
-    fn tell(&mut self, _side: usize, _capture: &Capture, _at: Option<(&MachineGeometry, &MachinePosition)>) {}
+    /// Tells the simulated camera of `side` where the machine truly was when it exposed for `capture`; `None` if nobody knows any
+    /// more. A picture that is not `wanted` may be lost.
+    fn tell(
+        &mut self,
+        _side: usize,
+        _capture: &Capture,
+        _at: Option<(&MachineGeometry, &MachinePosition)>,
+        _wanted: bool,
+    ) {
+    }
 }
 
 /// Real cameras, as the machine file names them.

@@ -11,6 +11,7 @@ pub mod fresh_board;
 mod images;
 mod joint;
 mod leading;
+mod marking;
 mod operator;
 mod planned;
 mod recentring;
@@ -28,9 +29,10 @@ pub use calibrating::{CameraPictures, PictureRun};
 pub use cameras::{Answer, CameraFigures, Moment, PictureSource, SeamCameras};
 pub use delays::{DelayFigures, Delays};
 pub use exciting::{CapturedMotion, ExcitationRun};
-pub use images::{ImageCameras, Images, ImagesError, WorkerError};
+pub use images::{ImageCameras, Images, ImagesError, Sighting, SightingLog, WorkerError};
 pub use joint::SeenSeam;
 pub use leading::LedLesson;
+pub use marking::{MarkRun, SeenMarks};
 pub use run_record::{ByBoard, Recentred, RunRecord, TrackingRecord};
 pub use seam_teaching::{SeamLesson, TaughtSeam};
 pub use surroundings::{Surroundings, SurroundingsError};
@@ -98,6 +100,8 @@ pub enum Work<'a> {
     TeachAndMake,
     /// To take pictures to calibrate a camera from.
     Pictures(&'a PictureRun<'a>),
+    /// To burn marks, and to look back at them.
+    Mark(&'a MarkRun<'a>),
     /// To teach both seams of a rib.
     TeachSeam(&'a SeamLesson),
     /// To teach places of the tip, to which the operator leads it.
@@ -343,6 +347,7 @@ impl Weld {
         match job.work {
             Work::Program(program) => self.program(session, job, program)?,
             Work::Pictures(run) => self.taught.pictures = self.take_pictures(session, job, run)?,
+            Work::Mark(run) => self.taught.marks = Some(self.mark(session, job, run)?),
             Work::Teach => drop(self.teach(session, job)?),
             Work::TeachSeam(lesson) => self.teach_seam(session, job, lesson)?,
             Work::Lead(lesson) => self.lead(session, lesson)?,

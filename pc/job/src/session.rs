@@ -371,6 +371,7 @@ impl<'a> Session<'a> {
             (Datagram::MotionTelemetry(telemetry), tracking) => {
                 if let (Some(newest), Some(tracking)) = (telemetry.samples.last(), tracking) {
                     tracking.saw_motion(newest.time_us, arrived_us);
+                    tracking.cameras.motion(&telemetry.samples);
                 }
                 self.record.add_motion(&telemetry.samples);
                 let samples = telemetry.samples.as_slice().into();

@@ -4,7 +4,7 @@
 //! the tool truly is; on a real machine there is nothing to teach with.
 
 use crate::session::Session;
-use crate::{CameraPictures, CapturedMotion, Job, JobError, TaughtSeam, Weld};
+use crate::{CameraPictures, CapturedMotion, Job, JobError, SeenMarks, TaughtSeam, Weld};
 use config::RangeError;
 use config::machine::MachineFile;
 use config::probe::Reading;
@@ -39,6 +39,8 @@ pub struct Taught {
     pub program: Option<String>,
     /// Pictures to calibrate a camera from.
     pub pictures: CameraPictures,
+    /// Marks of the beams, and what a camera saw of them.
+    pub marks: Option<SeenMarks>,
     /// What a person should know of it, a sentence each.
     pub notes: Vec<String>,
     /// The seams of a rib.

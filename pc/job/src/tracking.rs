@@ -52,6 +52,15 @@ pub(super) struct Watched {
     pub sides: [Option<SeamSighting>; SIDES],
 }
 
+/// What is known of a strobe.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strobed {
+    /// U1, V1, U2, V2 \[mm\].
+    pub slides_mm: [f64; SLIDES],
+    /// By the motion board's clock \[µs\].
+    pub time_us: u64,
+}
+
 /// Pictures while somebody watches.
 #[derive(Clone, Debug, Default)]
 struct Watch {
@@ -85,8 +94,8 @@ pub(super) struct Tracking {
     in_sight: [u32; SIDES],
     /// Planned pose of the newest capture.
     stands: Option<Pose>,
-    /// Where the slides were at the strobe of each capture, while somebody asks for that \[mm\].
-    pub strobed: Option<BTreeMap<u32, [f64; SLIDES]>>,
+    /// What is known of the strobe of each capture, while somebody asks for that.
+    pub strobed: Option<BTreeMap<u32, Strobed>>,
     /// The newest path that welds, and from where to where \[mm\].
     weld: Option<(u32, (f64, f64))>,
     /// The latest paths, by their numbers.
@@ -266,7 +275,13 @@ impl Tracking {
             watch.strobed.insert(capture.number, capture.slides_mm);
         }
         if let Some(strobed) = &mut self.strobed {
-            strobed.insert(capture.number, capture.slides_mm);
+            strobed.insert(
+                capture.number,
+                Strobed {
+                    slides_mm: capture.slides_mm,
+                    time_us: on_motion,
+                },
+            );
         }
         // At rest a capture names no path: the machine stands where it was seen last on one.
         self.stands = match capture.path_id {
@@ -278,7 +293,7 @@ impl Tracking {
             self.strobes.pop_front();
         }
         self.strobes.push_back((capture, on_motion));
-        let wanted = self.watch.is_some() || self.near_an_end(&capture);
+        let wanted = self.watch.is_some() || self.strobed.is_some() || self.near_an_end(&capture);
         self.cameras.look_for_ends(wanted);
         self.cameras.strobe(capture, on_motion, pose);
     }

@@ -1,6 +1,6 @@
 //! Cameras that measure by geometry: no images, but lead, delay and noise.
 
-use crate::{SharedSeams, TrueSeams, mounted};
+use crate::{Mounted, SharedSeams, TrueSeams};
 use host_link::geometry::MachineGeometry;
 use host_link::record::MachinePosition;
 use job::{Answer, CameraFigures, ImagesError, Moment, SeamCameras};
@@ -21,7 +21,7 @@ const GIVE_UP_US: u64 = 200_000;
 pub struct GeometricCameras {
     processing_us: u64,
     sigma_mm: f64,
-    mounts: [CameraMount; SIDES],
+    mounts: [Mounted; SIDES],
     noise: SplitMix64,
     seams: SharedSeams,
     waiting: VecDeque<Waiting>,
@@ -35,6 +35,8 @@ struct Waiting {
     strobe_us: u64,
     due_us: u64,
     noise: [f64; 2 * SIDES],
+    /// Where the slides were for each camera, as it is mounted \[mm\].
+    slides_mm: [[f64; 2]; SIDES],
 }
 
 impl GeometricCameras {
@@ -50,7 +52,7 @@ impl GeometricCameras {
         Self {
             processing_us,
             sigma_mm,
-            mounts,
+            mounts: mounts.map(Mounted::new),
             noise: SplitMix64::new(seed),
             seams,
             waiting: VecDeque::new(),
@@ -62,9 +64,11 @@ impl GeometricCameras {
 impl SeamCameras for GeometricCameras {
     fn strobe(&mut self, capture: Capture, strobe_us: u64, _pose: Option<Pose>) {
         let noise = std::array::from_fn(|_| self.sigma_mm * self.noise.gauss()[0]);
+        let slides_mm = std::array::from_fn(|side| self.mounts[side].slides_mm(side, &capture));
         self.waiting.push_back(Waiting {
             capture,
             strobe_us,
+            slides_mm,
             due_us: strobe_us + self.processing_us,
             noise,
         });
@@ -80,19 +84,21 @@ impl SeamCameras for GeometricCameras {
             if next.due_us > at.now_us {
                 break;
             }
-            match (at.position)(next.strobe_us) {
-                Some(position) => {
-                    let measurement = next.measure(at.machine, &position, &self.seams.get(), &self.mounts);
+            let exposed = |mount: &Mounted| (at.position)(next.strobe_us + mount.delay_us());
+            match self.mounts.each_ref().map(exposed) {
+                [Some(first), Some(second)] => {
+                    let positions = [first, second];
+                    let measurement = next.measure(at.machine, &positions, &self.seams.get(), &self.mounts);
                     self.waiting.pop_front();
                     if measurement.sides != [None; SIDES] {
                         return Ok(Some(measurement.into()));
                     }
                 }
-                None if at.now_us > next.due_us + GIVE_UP_US => {
+                _ if at.now_us > next.due_us + GIVE_UP_US => {
                     self.waiting.pop_front();
                     self.given_up += 1;
                 }
-                None => break,
+                _ => break,
             }
         }
         Ok(None)
@@ -108,20 +114,22 @@ impl SeamCameras for GeometricCameras {
 }
 
 impl Waiting {
-    /// What both cameras see: the seam beside their centre, in the plane of the lead.
+    /// What both cameras see, each from where the machine was when it exposed: the seam beside their centre, in the plane of
+    /// their lead.
     fn measure(
         &self,
         machine: &MachineGeometry,
-        position: &MachinePosition,
+        positions: &[MachinePosition; SIDES],
         seams: &TrueSeams,
-        mounts: &[CameraMount; SIDES],
+        mounts: &[Mounted; SIDES],
     ) -> Measurement {
-        let pose = machine.pose(position);
-        let slides = mounted(&self.capture, mounts);
         let heads = seams.heads();
         let side = |k: usize| {
-            let (_, crossing) = seams.facing(k, &heads.spot(&pose, k), heads.camera_lead())?;
-            let (du, dv) = (crossing.u - slides[2 * k], crossing.v - slides[2 * k + 1]);
+            let spot = heads.spot(&machine.pose(&positions[k]), k);
+            let lead = mounts[k].lead_mm(heads.camera_lead());
+            let (_, crossing) = seams.facing(k, &spot, lead)?;
+            let [u, v] = self.slides_mm[k];
+            let (du, dv) = (crossing.u - u, crossing.v - v);
             (du.abs().max(dv.abs()) < FIELD_MM).then(|| SideMeasurement {
                 along_mm: 0.0,
                 delta_u_mm: du + self.noise[2 * k],

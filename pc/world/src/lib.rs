@@ -9,6 +9,7 @@ pub mod deviation;
 pub mod emulated;
 mod followed;
 mod geometric;
+mod marks;
 mod mounts;
 mod probe;
 mod rendered;
@@ -22,12 +23,12 @@ pub use deviation::{Deviation, SeamError, check_seam};
 pub use emulated::BoardsError;
 pub use followed::{NotFollowed, not_followed};
 pub use geometric::GeometricCameras;
-use mounts::mounted;
+use mounts::Mounted;
 pub use probe::SimulatedProbe;
 pub use rendered::{
     Dark, Direction, DirtSpot, FieldOfView, Grooves, JointStretch, Plate, Plates, RenderedCamera,
-    RenderedPictures, RenderedWorld, SceneError, SceneFile, Scratch, SensorFile, StrayLight, SurfaceFinish,
-    TackStretch, View, ViewForm,
+    RenderedPictures, RenderedWorld, SceneError, SceneFile, Scratch, SensorFile, Standpoint, StrayLight,
+    SurfaceFinish, TackStretch, View, ViewForm,
 };
 pub use seams::{Crossing, SharedSeams, TrueSeam, TrueSeams};
-pub use surroundings::{CameraChoice, DrawingError, PictureChoice, Surroundings, World};
+pub use surroundings::{CameraChoice, DrawingError, PictureChoice, Surroundings, Workpiece, World};

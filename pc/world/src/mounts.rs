@@ -1,11 +1,86 @@
-//! Where simulated cameras truly are.
+//! Where simulated cameras truly are, and when they expose.
 
 use plant_file::CameraMount;
-use shared::io::{SIDES, SLIDES};
 use shared::protocol::Capture;
 
-/// Slide positions at which cameras that are mounted right would see what these see \[mm\].
-pub fn mounted(capture: &Capture, mounts: &[CameraMount; SIDES]) -> [f64; SLIDES] {
-    let slides = capture.truth_mm.unwrap_or(capture.slides_mm);
-    std::array::from_fn(|i| slides[i] + mounts[i / 2].beside_spot_mm[i % 2])
+/// A camera as it is mounted, from strobe to strobe.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Mounted {
+    mount: CameraMount,
+    /// Time of the last strobe by the tracker's clock \[µs\], and its slides \[mm\].
+    last: Option<(u64, [f64; 2])>,
+}
+
+impl Mounted {
+    /// One that is mounted so.
+    pub fn new(mount: CameraMount) -> Self {
+        Self { mount, last: None }
+    }
+
+    /// How far ahead of the spot it is, on a machine whose controller believes `believed_mm` \[mm\].
+    pub fn lead_mm(&self, believed_mm: f64) -> f64 {
+        self.mount.lead_mm.unwrap_or(believed_mm) + self.mount.lead_error_mm
+    }
+
+    /// From the strobe to the exposure \[µs\].
+    pub fn delay_us(&self) -> u64 {
+        (self.mount.delay_s * 1e6).round() as u64
+    }
+
+    /// Slides of `side` at the exposure at which a camera that is mounted right would see what this one sees \[mm\]. Captures
+    /// come in the order of their strobes; from the strobe on the slides go on as they went since the one before.
+    pub fn slides_mm(&mut self, side: usize, capture: &Capture) -> [f64; 2] {
+        let slides = capture.truth_mm.unwrap_or(capture.slides_mm);
+        let here = [slides[2 * side], slides[2 * side + 1]];
+        let share = |(before, _): (u64, [f64; 2])| {
+            let period = capture.time_us.saturating_sub(before);
+            // After a pause nothing is known of how they go.
+            (1..=LONGEST_PERIOD_US)
+                .contains(&period)
+                .then(|| self.mount.delay_s * 1e6 / period as f64)
+        };
+        let going = self.last.and_then(|last| Some((last.1, share(last)?)));
+        self.last = Some((capture.time_us, here));
+        std::array::from_fn(|i| {
+            let went = going.map_or(0.0, |(before, share)| (here[i] - before[i]) * share);
+            here[i] + went + self.mount.beside_spot_mm[i]
+        })
+    }
+}
+
+/// Strobes further apart are not of one row \[µs\].
+const LONGEST_PERIOD_US: u64 = 50_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slides_go_on_from_the_strobe_to_the_exposure() {
+        let capture = |number: u32, u: f64| Capture {
+            number,
+            time_us: u64::from(number) * 5_000,
+            motion_time_us: 0,
+            s_mm: 0.0,
+            path_id: 0,
+            slides_mm: [9.0; 4],
+            truth_mm: Some([0.0, 0.0, u, 0.5]),
+        };
+        let mut mounted = Mounted::new(CameraMount {
+            beside_spot_mm: [0.1, -0.2],
+            lead_mm: Some(11.0),
+            lead_error_mm: -0.25,
+            delay_s: 0.001,
+        });
+        let near = |is: [f64; 2], wanted: [f64; 2]| {
+            assert!(
+                is.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-12),
+                "{is:?}"
+            );
+        };
+        near(mounted.slides_mm(1, &capture(1, 1.0)), [1.1, 0.3]);
+        near(mounted.slides_mm(1, &capture(2, 1.05)), [1.16, 0.3]);
+        near(mounted.slides_mm(1, &capture(40, 3.0)), [3.1, 0.3]);
+        assert_eq!((mounted.delay_us(), mounted.lead_mm(10.0)), (1_000, 10.75));
+    }
 }

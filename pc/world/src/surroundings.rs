@@ -32,6 +32,18 @@ pub struct Surroundings {
     pub seed: u64,
     /// How simulated cameras are mounted.
     pub mounts: [CameraMount; SIDES],
+    /// What lies before rendered cameras.
+    pub work: Workpiece,
+}
+
+/// What lies before rendered cameras.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Workpiece {
+    /// Work with seams.
+    #[default]
+    Seams,
+    /// A bare plate where the seams would be, on which beams leave marks.
+    BarePlate,
 }
 
 impl Default for Surroundings {
@@ -42,6 +54,7 @@ impl Default for Surroundings {
             cameras: CameraChoice::default(),
             seed: 1,
             mounts: Default::default(),
+            work: Workpiece::default(),
         }
     }
 }
@@ -130,7 +143,9 @@ impl job::Surroundings for World {
     fn cameras(&self, unit: &TrackingUnit, heads: Heads) -> Result<Box<dyn SeamCameras>, ImagesError> {
         let seams = SharedSeams::new(TrueSeams::none(heads));
         *self.seams.lock().unwrap_or_else(PoisonError::into_inner) = Some(seams.clone());
-        let Surroundings { seed, mounts, .. } = self.settings;
+        let Surroundings {
+            seed, mounts, work, ..
+        } = self.settings;
         Ok(match &self.settings.cameras {
             CameraChoice::Geometric => Box::new(GeometricCameras::new(
                 (unit.cameras.processing_ms * 1e3) as u64,
@@ -140,7 +155,7 @@ impl job::Surroundings for World {
                 seams,
             )),
             CameraChoice::Images(images, PictureChoice::Rendered(scene)) => {
-                let source = RenderedPictures::new(scene, &unit.cameras, &heads, mounts, seed, seams);
+                let source = RenderedPictures::new(scene, &unit.cameras, &heads, mounts, seed, seams, work);
                 Box::new(Images::begin(images, Box::new(source), unit, heads)?)
             }
             CameraChoice::Images(images, PictureChoice::Real(open)) => {

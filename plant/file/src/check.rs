@@ -14,6 +14,10 @@ const HIGHEST_MODE: f64 = 1500.0;
 const MOST_ENABLE: f64 = 2.0;
 /// Bandwidths that the model of a drive resolves \[Hz\].
 const BANDWIDTH: [f64; 2] = [1.0, 1000.0];
+/// How far a camera may be from its lead \[mm\]: half of the usual lead.
+const LEAD_ERROR: [f64; 2] = [-5.0, 5.0];
+/// Longest delay of a camera's exposure \[s\]: some frames.
+const CAMERA_DELAY: f64 = 0.02;
 
 /// What a value must be.
 enum Must {
@@ -58,9 +62,18 @@ pub fn plant(file: &PlantFile) -> Result<(), Mistake> {
     for (number, mount) in file.cameras.iter().enumerate() {
         let [u, v] = mount.beside_spot_mm;
         let key = format!("cameras.{}", number + 1);
+        let [least, most] = LEAD_ERROR;
+        if let Some(lead) = mount.lead_mm {
+            all(&key, &[("lead_mm", lead, BePositive)])?;
+        }
         all(
             &key,
-            &[("beside_spot_mm", u, BeFinite), ("beside_spot_mm", v, BeFinite)],
+            &[
+                ("beside_spot_mm", u, BeFinite),
+                ("beside_spot_mm", v, BeFinite),
+                ("lead_error_mm", mount.lead_error_mm, BeWithin(least, most)),
+                ("delay_s", mount.delay_s, BeWithin(0.0, CAMERA_DELAY)),
+            ],
         )?;
     }
     Ok(())

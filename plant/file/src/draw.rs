@@ -69,6 +69,11 @@ pub fn around(mut shipped: PlantFile, quality: Quality, seed: u32) -> PlantFile 
         for camera in &mut shipped.cameras {
             camera.beside_spot_mm = [draw.error(0.015), draw.error(0.015)];
         }
+        // After all else: a seed keeps the machine that it had before cameras had these.
+        for camera in &mut shipped.cameras {
+            camera.lead_error_mm = draw.error(0.1);
+            camera.delay_s = draw.amount(0.02e-3, 0.2e-3);
+        }
     }
     for motor in shipped.plant.motors.iter_mut().flatten() {
         motor.drive.enable_s = draw.between(0.02, 0.15);

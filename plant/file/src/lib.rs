@@ -37,6 +37,15 @@ pub struct CameraMount {
     /// seems to be as far on the other side.
     #[serde(default)]
     pub beside_spot_mm: [f64; 2],
+    /// How far it is ahead of the spot \[mm\]; the lead of the machine file if left out.
+    #[serde(default)]
+    pub lead_mm: Option<f64>,
+    /// So much further ahead than that \[mm\].
+    #[serde(default)]
+    pub lead_error_mm: f64,
+    /// It exposes so long after its strobe \[s\].
+    #[serde(default)]
+    pub delay_s: f64,
 }
 
 /// Which plant.

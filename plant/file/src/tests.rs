@@ -109,6 +109,16 @@ fn mistakes_are_named_with_file_line_and_value() {
         ),
         (
             "[slides.U1]",
+            "[cameras.1]\ndelay_s = 0.5\n[slides.U1]",
+            "cameras.1.delay_s = 0.5 must be from 0 to 0.02",
+        ),
+        (
+            "[slides.U1]",
+            "[cameras.2]\nlead_error_mm = -12.0\n[slides.U1]",
+            "cameras.2.lead_error_mm = -12 must be from -5 to 5",
+        ),
+        (
+            "[slides.U1]",
             "[cameras.3]\n[slides.U1]",
             "cameras.3 is not known: there are 1, 2",
         ),

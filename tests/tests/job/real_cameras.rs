@@ -11,7 +11,8 @@ use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex};
 use world::{
-    CameraChoice, FieldOfView, PictureChoice, RenderedCamera, RenderedWorld, SceneFile, TrueSeams, View,
+    CameraChoice, FieldOfView, PictureChoice, RenderedCamera, RenderedWorld, SceneFile, Standpoint,
+    TrueSeams, View,
 };
 
 /// So many strobes later a frame is with the session at the latest.
@@ -249,7 +250,12 @@ impl World {
                     continue;
                 }
                 let cameras = &self.file.tracking.as_ref().unwrap().cameras;
-                let view = View::of(cameras, &self.machine, &self.seams, &position, &slides, side);
+                let standpoint = Standpoint {
+                    side,
+                    slides_mm: [slides[2 * side], slides[2 * side + 1]],
+                    lead_mm: self.seams.heads().camera_lead(),
+                };
+                let view = View::of(cameras, &self.machine, &self.seams, None, &position, &standpoint);
                 let field_of_view = view.map_or(FieldOfView::Nothing, FieldOfView::Seam);
                 lens.strobes.send((self.frames, field_of_view)).unwrap();
             }
@@ -291,6 +297,7 @@ fn weld_outside(wire: Wire, told: Option<Arc<Deviation>>) -> (Ended, World) {
     let images = ImageCameras {
         calibrations: std::array::from_fn(|side| unit.cameras.nominal(side)),
         kept: None,
+        noted: None,
     };
     job.surroundings = Surroundings {
         cameras: CameraChoice::Images(Box::new(images), PictureChoice::Real(Arc::new(open))),

@@ -59,6 +59,7 @@ fn job_before<'a>(machine: &'a MachineFile, program: &'a Program, drawing: &Prog
     let pictures = ImageCameras {
         calibrations: cameras.calibrations(Path::new("")).unwrap(),
         kept: None,
+        noted: None,
     };
     Job {
         surroundings: Surroundings {

@@ -5,6 +5,7 @@ mod common;
 mod corner;
 mod depth;
 mod slides;
+mod spot;
 mod transfer;
 
 use common::OPTICS;

@@ -2,6 +2,7 @@
 
 mod pictures;
 pub mod procedure;
+pub mod spot;
 
 pub use pictures::{PICTURES, ReferencePicture, parse_list, read_pictures};
 pub use procedure::CalibrateError;

@@ -87,7 +87,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    fn new(text: &'static str, found: String, beside: String) -> Self {
+    pub(super) fn new(text: &'static str, found: String, beside: String) -> Self {
         Self { text, found, beside }
     }
 }

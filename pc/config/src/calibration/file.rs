@@ -1,12 +1,18 @@
 //! The calibration file as it is written: degrees and µm.
 
-use super::{Calibration, CalibrationError, SlideMap};
+use super::{Calibration, CalibrationError, SlideMap, SpotCalibration};
 use crate::toml_file;
 use serde::{Deserialize, Serialize};
 use vision::{Optics, PhotonTransfer, Profile};
 
 /// µm in a mm.
 const UM_PER_MM: f64 = 1e3;
+
+/// µs in a s.
+const US_PER_S: f64 = 1e6;
+
+/// Longest delay of an exposure \[s\]: some frames; what is more belongs to another strobe.
+const MOST_DELAY_S: f64 = 0.02;
 
 /// Decimals of what is written: 10⁻⁹ of a mm or of a whole.
 const DECIMALS: f64 = 1e9;
@@ -67,12 +73,21 @@ struct CornerTable {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+struct SpotTable {
+    lead_mm: f64,
+    delay_us: f64,
+    uncertainty_um: [f64; 2],
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Document {
     optics: OpticsTable,
     photon_transfer: PhotonTransferTable,
     profile: ProfileTable,
     slides: SlidesTable,
     corner: Option<CornerTable>,
+    spot: Option<SpotTable>,
 }
 
 impl From<OpticsTable> for Optics {
@@ -175,6 +190,14 @@ pub(super) fn parse(name: &str, text: &str) -> Result<Calibration, CalibrationEr
             ));
         }
     }
+    let spot = document.spot.map(|spot| SpotCalibration {
+        lead_mm: spot.lead_mm,
+        delay_s: spot.delay_us / US_PER_S,
+        uncertainty_mm: spot.uncertainty_um.map(|um| um / UM_PER_MM),
+    });
+    if let Some(found) = &spot {
+        check_spot(found).map_err(|reason| wrong("spot", reason))?;
+    }
     Ok(Calibration {
         optics,
         photon_transfer: document.photon_transfer.into(),
@@ -184,7 +207,30 @@ pub(super) fn parse(name: &str, text: &str) -> Result<Calibration, CalibrationEr
         },
         slides,
         corner_offset_mm: corner.map(|offset| offset.map(|um| um / UM_PER_MM)),
+        spot,
     })
+}
+
+/// What is wrong with what was found of a spot.
+fn check_spot(spot: &SpotCalibration) -> Result<(), String> {
+    let most_delay = MOST_DELAY_S * US_PER_S;
+    if !(spot.lead_mm.is_finite() && spot.lead_mm > 0.0) {
+        return Err(format!("lead_mm is {}, but must be above 0", spot.lead_mm));
+    }
+    let delay = spot.delay_s * US_PER_S;
+    if !(spot.delay_s.is_finite() && spot.delay_s.abs() <= MOST_DELAY_S) {
+        return Err(format!(
+            "delay_us is {delay:.0}, but must be within ±{most_delay:.0}: look at the trigger and the exposure of the camera"
+        ));
+    }
+    let wrong = |um: &f64| !(um.is_finite() && *um >= 0.0);
+    match spot.uncertainty_mm.iter().find(|um| wrong(um)) {
+        Some(mm) => Err(format!(
+            "uncertainty_um is {}, but must be 0 or more",
+            mm * UM_PER_MM
+        )),
+        None => Ok(()),
+    }
 }
 
 /// The text of a file.
@@ -203,6 +249,11 @@ pub(super) fn write(calibration: &Calibration) -> String {
         },
         corner: calibration.corner_offset_mm.map(|offset| CornerTable {
             offset_um: offset.map(um),
+        }),
+        spot: calibration.spot.map(|spot| SpotTable {
+            lead_mm: rounded(spot.lead_mm),
+            delay_us: rounded(spot.delay_s * US_PER_S),
+            uncertainty_um: spot.uncertainty_mm.map(um),
         }),
     };
     let text = toml::to_string(&document).expect("numbers in tables are TOML");

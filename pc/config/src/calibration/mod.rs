@@ -27,6 +27,19 @@ pub struct Calibration {
     /// What is added to u and n of a measured corner so that they agree with the same seam's as a gap \[mm\]: a rounded
     /// root looks higher than it is. `None` if it was not measured.
     pub corner_offset_mm: Option<[f64; 2]>,
+    /// Where and when the camera truly looks, if that was measured against the spot.
+    pub spot: Option<SpotCalibration>,
+}
+
+/// What a mark of the beam tells of a camera, beside the offset of [`SlideMap`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpotCalibration {
+    /// How far ahead of the spot the camera is \[mm\].
+    pub lead_mm: f64,
+    /// From the strobe to the exposure \[s\].
+    pub delay_s: f64,
+    /// Of the offset in U and V, two standard deviations \[mm\].
+    pub uncertainty_mm: [f64; 2],
 }
 
 /// How the camera's frame (u across, n out of the work, mathematics 0.12) lies to the slides that carry it:
@@ -90,7 +103,13 @@ impl Calibration {
             profile: Profile::expected(&optics),
             slides: SlideMap::nominal(mount_rad),
             corner_offset_mm: None,
+            spot: None,
         }
+    }
+
+    /// From the strobe to the exposure, as far as that is known \[s\].
+    pub fn delay_s(&self) -> f64 {
+        self.spot.map_or(0.0, |spot| spot.delay_s)
     }
 
     /// Reads the file at `path`.

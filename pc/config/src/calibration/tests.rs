@@ -41,6 +41,11 @@ fn measured() -> Calibration {
             offset_mm: [0.031_234_567, -0.047_654_321],
         },
         corner_offset_mm: Some([0.001_234_5, 0.004_912_3]),
+        spot: Some(SpotCalibration {
+            lead_mm: 10.123_456,
+            delay_s: 0.000_345_678,
+            uncertainty_mm: [0.001_234, 0.002_345],
+        }),
         ..nominal(-30.0)
     }
 }
@@ -114,6 +119,7 @@ fn a_file_says_what_was_measured() {
         let [wrote, read] = [camera, read].map(|c| {
             let (o, p) = (c.optics, c.profile);
             let corner = c.corner_offset_mm.unwrap_or_default();
+            let spot = c.spot.unwrap_or_default();
             let [m0, m1] = c.slides.matrix;
             [
                 vec![
@@ -125,7 +131,8 @@ fn a_file_says_what_was_measured() {
                 ],
                 vec![o.rows as f64, o.columns as f64, p.fine_mm, p.coarse_mm],
                 vec![c.photon_transfer.full_well, c.photon_transfer.read_noise],
-                [m0, m1, c.slides.offset_mm, corner].concat(),
+                [m0, m1, c.slides.offset_mm, corner, spot.uncertainty_mm].concat(),
+                vec![spot.lead_mm, spot.delay_s],
             ]
             .concat()
         });
@@ -200,6 +207,19 @@ fn a_value_that_makes_no_sense_is_named_with_its_line() {
             "fine_um is NaN",
         ),
         ("4.9123", "inf", "[corner]", "offset_um is inf"),
+        (
+            "lead_mm = 10.123456",
+            "lead_mm = -1.0",
+            "[spot]",
+            "lead_mm is -1, but must be above 0",
+        ),
+        (
+            "delay_us = 345.678",
+            "delay_us = 40000.0",
+            "[spot]",
+            "delay_us is 40000, but must be within ±20000",
+        ),
+        ("2.345", "nan", "[spot]", "uncertainty_um is NaN"),
         // More than a terabyte of pixels, and pixels without end.
         (
             "columns = 400",

@@ -6,8 +6,10 @@
 //! emulated boards wait for the PC. Pictures of real cameras are answered when they come, and never waited for.
 
 mod ends;
+mod sightings;
 mod worker;
 
+pub use sightings::{Sighting, SightingLog};
 pub use worker::{MeasuredStrobe, WorkerError};
 
 use crate::cameras::{Answer, CameraFigures, Moment, PictureSource, SeamCameras};
@@ -20,12 +22,12 @@ use host_link::events::Events;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::SIDES;
-use shared::protocol::{Capture, Measurement};
+use shared::protocol::{Capture, Measurement, MotionSample};
 use shared::tracking::frames::Heads;
 use std::collections::VecDeque;
 use std::time::Duration;
 use vision::{Detector, Joint, Moved, Observer, ObserverConfig, Walls};
-use worker::{Strobe, Worker};
+use worker::{Geometry, Looks, Strobe, Worker};
 
 /// A capture whose place is still unknown this long after its answer was due is given up \[µs\].
 const GIVE_UP_US: u64 = 200_000;
@@ -35,6 +37,8 @@ const PATIENCE: Duration = Duration::from_secs(60);
 const FURTHEST_MM: f64 = 5.0;
 /// Share of what the tracker believes of places ahead of a camera that is used.
 const REACH: f64 = 0.9;
+/// Share of it by which a camera may be beside the lead that the tracker was told: the rest is for where in the picture the seam is.
+const AHEAD: f64 = 0.5;
 /// What the walls of a corner are off their nominal slopes, standard deviation.
 const WALL_SIGMA: f64 = 0.01;
 
@@ -45,6 +49,9 @@ pub struct ImageCameras {
     pub calibrations: [Calibration; SIDES],
     /// Where every picture is kept, if it is.
     pub kept: Option<[PictureQueue; SIDES]>,
+    /// A camera (0 or 1) whose pictures are noted, and where. Nothing else is wanted then: those of the other one are not
+    /// measured, nor are its own while nobody asks for ends.
+    pub noted: Option<(usize, SightingLog)>,
 }
 
 /// Both cameras.
@@ -54,8 +61,8 @@ pub struct Images {
     heads: Heads,
     calibrations: [Calibration; SIDES],
     source: Box<dyn PictureSource>,
-    /// Of the last capture.
-    last: Option<(Pose, Capture)>,
+    /// Of the last capture, and when it was strobed by the motion board's clock \[µs\].
+    last: Option<(Pose, Capture, u64)>,
     given_up: u32,
     /// Whether it is asked where the seams end.
     ends: bool,
@@ -86,6 +93,8 @@ struct Waiting {
     due_us: u64,
     /// Whether its camera was told what stands before it.
     told: bool,
+    /// Whether anybody looks at its picture.
+    wanted: bool,
 }
 
 /// Trouble with a camera.
@@ -110,9 +119,17 @@ impl Images {
         heads: Heads,
     ) -> Result<Self, ImagesError> {
         let cameras = &unit.cameras;
-        let reach_mm = REACH * unit.board.tracking.gate_mm.min(unit.board.head.camera_lead_mm);
+        let believes_mm = unit.board.tracking.gate_mm.min(unit.board.head.camera_lead_mm);
         let mut begin = |side: usize| -> Result<Side, WorkerError> {
             let calibration = of.calibrations[side];
+            let lead_mm = heads.camera_lead();
+            let ahead_mm = calibration.spot.map_or(0.0, |spot| spot.lead_mm - lead_mm);
+            if ahead_mm.abs() > AHEAD * believes_mm {
+                return Err(WorkerError::Lead {
+                    is_mm: lead_mm + ahead_mm,
+                    told_mm: lead_mm,
+                });
+            }
             let camera = source.open(side)?;
             let camera = match &of.kept {
                 Some(queues) => Box::new(RecordingCamera::new(camera, queues[side].clone())),
@@ -132,13 +149,23 @@ impl Images {
                     sigma: WALL_SIGMA,
                 }),
             };
+            let (looks, noted) = match &of.noted {
+                None => (Looks::Always, None),
+                Some((noted, log)) if *noted == side => (Looks::ForEnds, Some(log.clone())),
+                Some(_) => (Looks::Never, None),
+            };
             Ok(Side {
                 worker: Worker::start(
                     side,
                     camera,
                     Observer::new(detector, config, joint),
-                    calibration,
-                    reach_mm,
+                    Geometry {
+                        calibration,
+                        ahead_mm,
+                        reach_mm: REACH * believes_mm - ahead_mm,
+                    },
+                    looks,
+                    noted,
                 ),
                 waiting: VecDeque::new(),
                 figures: CameraFigures::default(),
@@ -161,7 +188,7 @@ impl Images {
 
     /// How far a camera moved since the last capture; `None` if that is not known, or too far to see the same place.
     fn moved(&self, side: usize, pose: &Pose, capture: &Capture) -> Option<Moved> {
-        let (last_pose, last) = self.last.as_ref()?;
+        let (last_pose, last, _) = self.last.as_ref()?;
         let (u, v) = (2 * side, 2 * side + 1);
         let ahead = [self.heads.camera_lead(), self.cameras.focus_above_mm()];
         let mount = self.calibrations[side].slides.mount_rad();
@@ -187,7 +214,7 @@ impl Images {
     fn tell(&mut self, at: Moment) {
         for (k, side) in self.sides.iter_mut().enumerate() {
             for waiting in side.waiting.iter_mut().filter(|waiting| !waiting.told) {
-                let position = (at.position)(waiting.strobe_us);
+                let position = (at.position)(waiting.strobe_us + self.source.delay_us(k));
                 if position.is_none() {
                     if at.now_us <= waiting.due_us + GIVE_UP_US {
                         break;
@@ -196,7 +223,7 @@ impl Images {
                 }
                 waiting.told = true;
                 let known = position.as_ref().map(|position| (at.machine, position));
-                self.source.tell(k, &waiting.capture, known);
+                self.source.tell(k, &waiting.capture, known, waiting.wanted);
             }
         }
     }
@@ -223,6 +250,8 @@ impl SeamCameras for Images {
     }
 
     fn strobe(&mut self, capture: Capture, strobe_us: u64, pose: Option<Pose>) {
+        let delay_s = self.calibrations.map(|calibration| calibration.delay_s());
+        let before_us = self.last.as_ref().map(|(.., us)| *us);
         for side in 0..SIDES {
             let moved = pose.and_then(|pose| self.moved(side, &pose, &capture));
             let late = self.source.late_us(capture.number, side);
@@ -237,15 +266,26 @@ impl SeamCameras for Images {
                 // One after the other.
                 due_us: due_us.max(before),
                 told: false,
+                wanted: this.worker.wants(self.ends),
+            });
+            let goes_on = moved.and_then(|moved| {
+                let period_us = strobe_us.checked_sub(before_us?).filter(|us| *us > 0)?;
+                let period_s = 1e-6 * period_us as f64;
+                Some(times(&moved, delay_s[side] / period_s))
             });
             this.worker.strobe(Strobe {
                 capture: capture.number,
                 time_us: strobe_us,
+                goes_on: goes_on.unwrap_or_default(),
                 moved,
                 ends: self.ends,
             });
         }
-        self.last = pose.map(|pose| (pose, capture));
+        self.last = pose.map(|pose| (pose, capture, strobe_us));
+    }
+
+    fn motion(&mut self, samples: &[MotionSample]) {
+        self.source.motion(samples);
     }
 
     fn look_for_ends(&mut self, wanted: bool) {
@@ -337,6 +377,15 @@ impl Side {
     /// The answer to a capture, if it is held.
     fn give(&mut self, capture: u32) -> Option<Held> {
         self.held.take_if(|held| held.seen.capture == capture)
+    }
+}
+
+/// So many times as far.
+fn times(moved: &Moved, factor: f64) -> Moved {
+    Moved {
+        travel_mm: factor * moved.travel_mm,
+        lateral_mm: factor * moved.lateral_mm,
+        height_mm: factor * moved.height_mm,
     }
 }
 

@@ -30,6 +30,7 @@ fn images() -> Images {
     let of = ImageCameras {
         calibrations: std::array::from_fn(|side| unit.cameras.nominal(side)),
         kept: None,
+        noted: None,
     };
     Images::begin(&of, Box::new(Blind), &unit, heads).unwrap()
 }
@@ -85,11 +86,27 @@ fn nothing_is_known_of_a_way_that_is_too_far_or_begins_nowhere() {
 
 /// What comes of 60 strobes of a camera; `tell` is called after each.
 fn seen(camera: Box<dyn Camera>, unit: &TrackingUnit, tell: impl Fn(u32)) -> Vec<MeasuredStrobe> {
+    seen_by(camera, unit, 0.0, Moved::default(), tell)
+}
+
+/// The same of a camera that is so much further ahead than the tracker was told, and moves on before it exposes.
+fn seen_by(
+    camera: Box<dyn Camera>,
+    unit: &TrackingUnit,
+    ahead_mm: f64,
+    goes_on: Moved,
+    tell: impl Fn(u32),
+) -> Vec<MeasuredStrobe> {
     let calibration = unit.cameras.nominal(0);
     let (optics, noise) = (calibration.optics, calibration.photon_transfer);
     let detector = Detector::new(optics, noise, calibration.profile).unwrap();
     let observer = Observer::new(detector, ObserverConfig::default(), Joint::Gap);
-    let worker = Worker::start(0, camera, observer, calibration, 0.9);
+    let geometry = Geometry {
+        calibration,
+        ahead_mm,
+        reach_mm: 0.9,
+    };
+    let worker = Worker::start(0, camera, observer, geometry, Looks::Always, None);
     let strobe = |capture: u32| {
         let way = Moved {
             travel_mm: 0.4,
@@ -99,6 +116,7 @@ fn seen(camera: Box<dyn Camera>, unit: &TrackingUnit, tell: impl Fn(u32)) -> Vec
             capture,
             time_us: 5_000 * u64::from(capture),
             moved: Some(way),
+            goes_on,
             ends: false,
         });
         tell(capture);
@@ -145,6 +163,44 @@ fn after_a_while_without_the_seam_its_place_is_told_from_the_first_picture_on() 
         assert_eq!(strobe.seen.is_some(), should, "{strobe:?}");
         assert_eq!(strobe.measurement.is_some(), should, "{strobe:?}");
     }
+}
+
+/// The tracker latches where the camera is at the strobe, and has one lead for both.
+#[test]
+fn what_is_seen_counts_for_where_the_camera_was_at_the_strobe() {
+    let goes_on = Moved {
+        travel_mm: 0.3,
+        lateral_mm: 0.02,
+        height_mm: -0.01,
+    };
+    let run = |ahead_mm, goes_on| {
+        let (unit, camera, tell) = rendered(&SceneFile::default());
+        let all = seen_by(Box::new(camera), &unit, ahead_mm, goes_on, |capture| {
+            tell.send(view(capture, 0.05)).unwrap();
+        });
+        (unit, all)
+    };
+    let (unit, plain) = run(0.0, Moved::default());
+    let (_, late) = run(0.2, goes_on);
+    let map = unit.cameras.nominal(0).slides;
+    let [u, v] = map.deltas(0.02, -0.01);
+    let mut compared = 0;
+    for (plain, late) in plain.iter().zip(&late) {
+        assert_eq!(plain.observation, late.observation);
+        for (plain, late) in [
+            (plain.measurement, late.measurement),
+            (plain.seen.map(|seen| seen.here), late.seen.map(|seen| seen.here)),
+        ] {
+            let (Some(plain), Some(late)) = (plain, late) else {
+                continue;
+            };
+            compared += 1;
+            assert!((late.along_mm - plain.along_mm - 0.5).abs() < 1e-12);
+            assert!((late.delta_u_mm - plain.delta_u_mm - u).abs() < 1e-12);
+            assert!((late.delta_v_mm - plain.delta_v_mm - v).abs() < 1e-12);
+        }
+    }
+    assert!(compared > 100, "{compared}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The thread that turns the pictures of one camera into measurements.
 
 use super::ends::SeamEnds;
+use super::sightings::{Sighting, SightingLog};
 use crate::joint::{SeenEnd, SeenSeam};
 use camera::{Arrival, Camera, CameraError, Picture};
 use config::calibration::Calibration;
@@ -25,6 +26,8 @@ pub(super) struct Strobe {
     pub time_us: u64,
     /// How far the camera moved since the strobe before; `None` if what was seen before tells nothing any more.
     pub moved: Option<Moved>,
+    /// How far it moves from the strobe to the exposure.
+    pub goes_on: Moved,
     /// Whether it is asked where the seam ends in its picture.
     pub ends: bool,
 }
@@ -56,6 +59,16 @@ pub enum WorkerError {
     /// Its pictures are none.
     #[error(transparent)]
     Image(#[from] ImageError),
+    /// The tracker would believe nothing that is seen so far from where it was told.
+    #[error(
+        "its calibration says that it is {is_mm:.3} mm ahead of its spot, and the machine file says {told_mm:.3}: put that lead, or the mean of both cameras, into camera_lead_mm"
+    )]
+    Lead {
+        /// By the calibration \[mm\].
+        is_mm: f64,
+        /// By the machine file \[mm\].
+        told_mm: f64,
+    },
     /// The thread is gone, or hangs.
     #[error("the thread that measures its pictures has ended: please report this, with the command line")]
     Gone,
@@ -67,9 +80,41 @@ struct Outlet {
     events: Events,
 }
 
+/// How a camera's pictures lie to what the tracker knows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Geometry {
+    pub calibration: Calibration,
+    /// How much further ahead it is than the tracker was told \[mm\].
+    pub ahead_mm: f64,
+    /// How far ahead of it the tracker believes what it is told \[mm\].
+    pub reach_mm: f64,
+}
+
+/// At which pictures anybody looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Looks {
+    /// At all of them.
+    Always,
+    /// At those in which ends are asked for.
+    ForEnds,
+    /// At none.
+    Never,
+}
+
+impl Looks {
+    fn at(self, ends: bool) -> bool {
+        match self {
+            Self::Always => true,
+            Self::ForEnds => ends,
+            Self::Never => false,
+        }
+    }
+}
+
 /// A camera, its observer, and a thread for both.
 pub(super) struct Worker {
     outlet: Arc<OnceLock<Outlet>>,
+    looks: Looks,
     strobes: Option<Sender<Strobe>>,
     answers: Receiver<Result<MeasuredStrobe, WorkerError>>,
     thread: Option<JoinHandle<()>>,
@@ -81,8 +126,9 @@ impl Worker {
         side: usize,
         camera: Box<dyn Camera>,
         observer: Observer,
-        calibration: Calibration,
-        reach_mm: f64,
+        geometry: Geometry,
+        looks: Looks,
+        noted: Option<SightingLog>,
     ) -> Self {
         let (strobes, told) = channel();
         let (answer, answers) = channel();
@@ -92,11 +138,13 @@ impl Worker {
             outlet: Arc::clone(&outlet),
             camera,
             observer,
-            calibration,
+            geometry,
+            looks,
+            noted,
             waiting: VecDeque::new(),
             moved: Some(Moved::default()),
             picture: Picture::default(),
-            ends: SeamEnds::new(reach_mm),
+            ends: SeamEnds::new(geometry.reach_mm),
         };
         let thread = std::thread::spawn(move || {
             // The end of the session is no error.
@@ -107,6 +155,7 @@ impl Worker {
         });
         Self {
             outlet,
+            looks,
             strobes: Some(strobes),
             answers,
             thread: Some(thread),
@@ -118,6 +167,11 @@ impl Worker {
         let events = events.clone();
         // A session has one.
         let _ = self.outlet.set(Outlet { waker, events });
+    }
+
+    /// Whether it looks at a picture, in which ends are asked for or not.
+    pub fn wants(&self, ends: bool) -> bool {
+        self.looks.at(ends)
     }
 
     /// Tells of a strobe. If the thread has ended, its error is the next answer.
@@ -160,7 +214,9 @@ struct Work {
     outlet: Arc<OnceLock<Outlet>>,
     camera: Box<dyn Camera>,
     observer: Observer,
-    calibration: Calibration,
+    geometry: Geometry,
+    looks: Looks,
+    noted: Option<SightingLog>,
     /// Strobes without an answer.
     waiting: VecDeque<Strobe>,
     /// Since the last picture that arrived.
@@ -202,7 +258,7 @@ impl Work {
                 self.note(strobe.moved);
                 let arrived = strobe.capture == capture && arrival == Arrival::Picture;
                 let seen = if arrived {
-                    self.look(at, strobe.ends)?
+                    self.look(at, &strobe)?
                 } else {
                     MeasuredStrobe {
                         capture: strobe.capture,
@@ -276,22 +332,47 @@ impl Work {
         };
     }
 
-    /// Measures the picture that arrived at `arrived`, and looks for ends of the seam in it if they are asked for.
-    fn look(&mut self, arrived: Instant, ends: bool) -> Result<MeasuredStrobe, WorkerError> {
+    /// Measures the picture of `strobe` that arrived at `arrived`, and looks for ends of the seam in it if they are asked for.
+    fn look(&mut self, arrived: Instant, strobe: &Strobe) -> Result<MeasuredStrobe, WorkerError> {
         let moved = self.moved.replace(Moved::default());
+        if !self.looks.at(strobe.ends) {
+            return Ok(MeasuredStrobe {
+                capture: self.picture.capture,
+                observation: None,
+                seen: None,
+                measurement: None,
+                arrived,
+            });
+        }
         if moved.is_none() {
             self.observer.forget();
             self.ends.forget();
         }
         let moved = moved.unwrap_or_default();
         let observation = self.observer.observe(&self.picture.image()?, moved)?;
-        let seen_ends = if ends {
+        let seen_ends = if strobe.ends {
             self.ends.look(self.observer.detector(), &observation, &moved)
         } else {
             self.ends.forget();
             [None; 2]
         };
-        let to_side = |(lateral, travel, height)| self.calibration.side_measurement(lateral, travel, height);
+        if let Some(noted) = &self.noted {
+            noted.push(Sighting {
+                capture: self.picture.capture,
+                status: observation.report.status,
+                measured: observation.report.seam().copied(),
+                ends: seen_ends,
+            });
+        }
+        // Seen from where the camera was at the strobe, of which the tracker knows where it was.
+        let Strobe { goes_on, .. } = strobe;
+        let to_side = |(lateral, travel, height)| {
+            self.geometry.calibration.side_measurement(
+                lateral + goes_on.lateral_mm,
+                travel + goes_on.travel_mm + self.geometry.ahead_mm,
+                height + goes_on.height_mm,
+            )
+        };
         let both = observation.seam.zip(observation.report.measured);
         let seen = both.map(|(seam, measured)| SeenSeam {
             seam,

@@ -75,6 +75,7 @@ impl CameraArgs {
                 let images = ImageCameras {
                     calibrations: unit.cameras.calibrations(folder)?,
                     kept,
+                    noted: None,
                 };
                 let source = source(boards, &unit.cameras, self.scene.as_deref())?;
                 Ok(CameraChoice::Images(Box::new(images), source))

@@ -20,7 +20,7 @@ use std::str::FromStr;
 use std::sync::{Arc, Mutex};
 use teach::seam::{Cameras, Drawing, Ended, Head, MachinePose, SeamEnd, SeamFile};
 use world::Deviation;
-use world::Surroundings;
+use world::{Surroundings, Workpiece};
 
 /// A seam that ends more than this before its drawing does was lost \[mm\].
 const ENDS_EARLY: f64 = 5.0;
@@ -171,6 +171,7 @@ impl SeamArgs {
                 cameras,
                 seed,
                 mounts: boards.mounts(machine)?,
+                work: Workpiece::Seams,
             }
             .into(),
             spooling: Default::default(),

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use teach::write_points;
-use world::{Deviation, DrawingError, SeamError, Surroundings, not_followed};
+use world::{Deviation, DrawingError, SeamError, Surroundings, Workpiece, not_followed};
 
 /// Names of the planned program and of the taught points in the report.
 const PROGRAM: &str = "program.ngc";
@@ -138,6 +138,7 @@ impl Weld {
                 cameras: cameras.clone(),
                 seed: self.seed,
                 mounts: self.boards.mounts(&machine)?,
+                work: Workpiece::Seams,
             }
             .into(),
             spooling: Spooling::in_folder(&self.report),
@@ -276,6 +277,7 @@ impl Weld {
                 return Ok(());
             }
             (Work::Pictures(run), _) => run.program,
+            (Work::Mark(run), _) => run.program,
             (Work::Teach | Work::TeachAndMake, None) => return Err(NoTeaching::Part.into()),
             (Work::TeachSeam(_) | Work::Lead(_) | Work::Excite(_), _) => return Ok(()),
         };

@@ -14,7 +14,7 @@ pub use scene_effects::{
 };
 pub use scene_file::{Dark, SceneError, SceneFile, Scratch, SurfaceFinish};
 pub use source::RenderedPictures;
-pub use view::{View, ViewForm};
+pub use view::{Standpoint, View, ViewForm};
 
 use camera::{Arrival, Camera, CameraError, Picture};
 use config::machine::{CameraConfig, JointForm};

@@ -3,8 +3,9 @@
 use super::scene_file::SceneFile;
 use super::stretches::Stretches;
 use super::view::{View, ViewForm};
+use crate::marks::WIDTH_MM;
 use std::f64::consts::TAU;
-use vision::render::{Blob, Gap, Joint, Light, Root, Scene, SplitMix64, Stripe, Texture};
+use vision::render::{Blob, Gap, Joint, Light, Root, Scene, SplitMix64, Stripe, Tack, Texture};
 use vision::{Corner, PhotonTransfer, PlateSeam};
 
 /// How far apart on the texture the two sides are, so that they show different places of it \[mm\].
@@ -13,6 +14,8 @@ const APART_MM: f64 = 3.1;
 const SPATTER_MM: [f64; 2] = [0.5, 0.6];
 /// The dark line where two walls touch \[mm\], and how bright it is.
 const CONTACT: (f64, f64) = (0.02, 0.35);
+/// How much wider than a mark the plate beyond its ends is rendered over it, so that no edge of it stays \[mm\].
+const COVERS_MM: f64 = 0.02;
 /// Light from wall to wall at the root of a corner.
 const INTERREFLECTION: f64 = 0.2;
 
@@ -49,6 +52,14 @@ impl Draw<'_> {
                     width_mm,
                 }))
             }
+            ViewForm::Bare { pitch, roll, mark } => Joint::Gap(Gap::new(PlateSeam {
+                height_mm: height_mm - roll * view.lateral_mm,
+                pitch,
+                roll,
+                lateral_mm: view.lateral_mm,
+                yaw_rad: mark.map_or(0.0, |mark| mark.yaw_rad),
+                width_mm: mark.map_or(0.0, |_| WIDTH_MM),
+            })),
             ViewForm::Corner { walls } => Joint::Corner(Root {
                 interreflection: INTERREFLECTION,
                 ..Root::new(Corner {
@@ -67,6 +78,17 @@ impl Draw<'_> {
         };
         if self.textures[1] != self.textures[0] {
             scene.right_texture = Some(self.textures[1]);
+        }
+        if let ViewForm::Bare { mark: Some(mark), .. } = view.form {
+            // Beyond its ends there is the plate.
+            let [from, to] = mark.ends_mm.map(|end| end + position_mm[0]);
+            for reaches_mm in [[f64::NEG_INFINITY, from], [to, f64::INFINITY]] {
+                scene.tacks.push(Tack {
+                    reaches_mm,
+                    width_mm: WIDTH_MM + COVERS_MM,
+                    brightness: 1.0,
+                });
+            }
         }
         if let ViewForm::Corner { .. } = view.form {
             let (width_mm, factor) = CONTACT;

@@ -1,9 +1,9 @@
 //! Rendered pictures for a job: of where the machine truly was at each strobe.
 
 use super::background::Background;
-use super::{FieldOfView, RenderedWorld, SceneFile, View};
-use crate::SharedSeams;
-use crate::mounted;
+use super::{FieldOfView, RenderedWorld, SceneFile, Standpoint, View};
+use crate::marks::Marks;
+use crate::{Mounted, SharedSeams, Workpiece};
 use camera::{Camera, CameraError};
 use config::machine::CameraConfig;
 use host_link::geometry::MachineGeometry;
@@ -11,7 +11,7 @@ use host_link::record::MachinePosition;
 use job::PictureSource;
 use plant_file::CameraMount;
 use shared::io::SIDES;
-use shared::protocol::Capture;
+use shared::protocol::{Capture, MotionSample};
 use shared::tracking::frames::Heads;
 use std::sync::mpsc::Sender;
 
@@ -19,14 +19,17 @@ use std::sync::mpsc::Sender;
 pub struct RenderedPictures {
     world: RenderedWorld,
     cameras: CameraConfig,
-    mounts: [CameraMount; SIDES],
+    mounts: [Mounted; SIDES],
+    believed_lead_mm: f64,
     seams: SharedSeams,
+    /// Those on a bare plate, which is there in place of the seams.
+    marks: Option<Marks>,
     /// Senders of the field of view of each camera.
     tell: [Option<Sender<FieldOfView>>; SIDES],
 }
 
 impl RenderedPictures {
-    /// Pictures of `seams` that look as `scene` says, of cameras mounted so. `seed` starts all noise.
+    /// Pictures of `seams`, or of a bare plate where they would be, that look as `scene` says, of cameras mounted so. `seed` starts all noise.
     pub fn new(
         scene: &SceneFile,
         cameras: &CameraConfig,
@@ -34,12 +37,15 @@ impl RenderedPictures {
         mounts: [CameraMount; SIDES],
         seed: u64,
         seams: SharedSeams,
+        work: Workpiece,
     ) -> Self {
         Self {
             world: RenderedWorld::new(scene, cameras, heads, seed),
             cameras: cameras.clone(),
-            mounts,
+            mounts: mounts.map(Mounted::new),
+            believed_lead_mm: heads.camera_lead(),
             seams,
+            marks: (work == Workpiece::BarePlate).then(Marks::default),
             tell: [const { None }; SIDES],
         }
     }
@@ -60,12 +66,40 @@ impl PictureSource for RenderedPictures {
         self.world.late_us(capture, side)
     }
 
-    fn tell(&mut self, side: usize, capture: &Capture, at: Option<(&MachineGeometry, &MachinePosition)>) {
+    fn delay_us(&self, side: usize) -> u64 {
+        self.mounts[side].delay_us()
+    }
+
+    fn motion(&mut self, samples: &[MotionSample]) {
+        if let Some(marks) = &mut self.marks {
+            marks.motion(samples);
+        }
+    }
+
+    fn tell(
+        &mut self,
+        side: usize,
+        capture: &Capture,
+        at: Option<(&MachineGeometry, &MachinePosition)>,
+        wanted: bool,
+    ) {
+        let standpoint = Standpoint {
+            side,
+            slides_mm: self.mounts[side].slides_mm(side, capture),
+            lead_mm: self.mounts[side].lead_mm(self.believed_lead_mm),
+        };
         let field_of_view = match at {
             Some((machine, position)) => {
-                let slides = mounted(capture, &self.mounts);
-                View::of(&self.cameras, machine, &self.seams.get(), position, &slides, side)
-                    .map_or(FieldOfView::Nothing, FieldOfView::Seam)
+                let seams = self.seams.get();
+                if let Some(marks) = &mut self.marks {
+                    marks.strobed(capture, machine, &seams);
+                }
+                let marks = self.marks.as_ref();
+                let view = || View::of(&self.cameras, machine, &seams, marks, position, &standpoint);
+                match wanted {
+                    true => view().map_or(FieldOfView::Nothing, FieldOfView::Seam),
+                    false => FieldOfView::Unknown,
+                }
             }
             None => FieldOfView::Unknown,
         };

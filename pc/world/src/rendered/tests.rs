@@ -36,6 +36,15 @@ fn standing(seams: &TrueSeams, s: f64, off: [f64; 2]) -> (MachinePosition, [f64;
     (MachinePosition::Axes(axes_at(&pose)), slides)
 }
 
+/// Of a camera that is mounted right.
+fn standpoint(slides: &[f64; SLIDES], side: usize) -> Standpoint {
+    Standpoint {
+        side,
+        slides_mm: [slides[2 * side], slides[2 * side + 1]],
+        lead_mm: heads().camera_lead(),
+    }
+}
+
 fn picture(
     camera: &mut RenderedCamera,
     tell: &Sender<FieldOfView>,
@@ -106,7 +115,15 @@ fn what_is_measured_in_rendered_pictures_is_where_the_seam_truly_is() {
                 let mut sum = [0.0; 2];
                 for i in 0..PICTURES {
                     let (position, slides) = standing(&seams, from + 0.4 * f64::from(i), off);
-                    let view = View::of(&cameras, &machine, &seams, &position, &slides, side).unwrap();
+                    let view = View::of(
+                        &cameras,
+                        &machine,
+                        &seams,
+                        None,
+                        &position,
+                        &standpoint(&slides, side),
+                    )
+                    .unwrap();
                     let (_, picture) = picture(&mut camera, &tell, i, view);
                     let seen = measured(&calibration, joint, &picture);
                     let miss = miss(&seams, &calibration, side, &position, &slides, &seen);

@@ -1,11 +1,11 @@
 //! What is truly in the field of view of a camera at a strobe.
 
+use crate::marks::{Marks, SeenMark};
 use crate::{TrueSeam, TrueSeams};
 use camera::{CameraFrame, walls};
 use config::machine::{CameraConfig, JointForm};
 use host_link::geometry::MachineGeometry;
 use host_link::record::MachinePosition;
-use shared::io::SLIDES;
 use shared::tracking::frames::Heads;
 
 /// How far along the seam its direction is taken \[mm\].
@@ -38,6 +38,15 @@ pub enum ViewForm {
         /// ψ: angle of the seam against travel \[rad\].
         yaw_rad: f64,
     },
+    /// A bare plate, and the mark on it, if there is one near; the place is that of the mark at a = 0.
+    Bare {
+        /// p: slope of the plate along travel.
+        pitch: f64,
+        /// q: slope of the plate across travel.
+        roll: f64,
+        /// The mark.
+        mark: Option<SeenMark>,
+    },
     /// Two walls; the place of the seam is that in the focal plane.
     Corner {
         /// dn/du of the walls left and right of the seam.
@@ -45,28 +54,40 @@ pub enum ViewForm {
     },
 }
 
+/// Where a camera is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standpoint {
+    /// 0 or 1.
+    pub side: usize,
+    /// Slides at which a camera that is mounted right would see what this one sees \[mm\].
+    pub slides_mm: [f64; 2],
+    /// How far ahead of the spot \[mm\].
+    pub lead_mm: f64,
+}
+
 impl View {
-    /// What the camera of `side` (0 or 1) has before it, with the machine at `position` and the slides at `slides`
-    /// \[mm\]; `None` where there is no seam near.
+    /// What a camera has before it, with the machine at `position`; `None` where there is no seam near. On a bare plate that is
+    /// one of the `marks` in place of the seam.
     pub fn of(
         cameras: &CameraConfig,
         machine: &MachineGeometry,
         seams: &TrueSeams,
+        marks: Option<&Marks>,
         position: &MachinePosition,
-        slides: &[f64; SLIDES],
-        side: usize,
+        at: &Standpoint,
     ) -> Option<Self> {
-        let heads = seams.heads();
+        let (heads, side) = (seams.heads(), at.side);
         let spot = heads.spot(&machine.pose(position), side);
         let mount = cameras.mount_deg[side].to_radians();
-        let lead = heads.camera_lead();
+        let lead = at.lead_mm;
         let ahead = [lead, cameras.focus_above_mm()];
-        let frame = CameraFrame::new(&spot, mount, ahead, slides[2 * side], slides[2 * side + 1]);
+        let frame = CameraFrame::new(&spot, mount, ahead, at.slides_mm[0], at.slides_mm[1]);
         let (seam, crossing) = seams.facing(side, &spot, lead)?;
         let seen = SeamAtCamera { seam, side, frame };
-        match cameras.joint {
-            JointForm::Gap => seen.plate(crossing.s),
-            JointForm::Corner => seen.corner(crossing.s, cameras.optics.tilt_rad.tan(), heads),
+        match (marks, cameras.joint) {
+            (Some(marks), _) => seen.bare(crossing.s, marks),
+            (None, JointForm::Gap) => seen.plate(crossing.s),
+            (None, JointForm::Corner) => seen.corner(crossing.s, cameras.optics.tilt_rad.tan(), heads),
         }
     }
 }
@@ -100,6 +121,22 @@ impl SeamAtCamera<'_> {
                 roll,
                 yaw_rad: yaw.atan(),
             },
+        })
+    }
+
+    /// The plate in which the seam would be, with a mark in its place.
+    fn bare(&self, s: f64, marks: &Marks) -> Option<View> {
+        let seam = self.plate(s)?;
+        let ViewForm::Plate { pitch, roll, .. } = seam.form else {
+            return None;
+        };
+        let mark = marks.seen(&self.frame);
+        let lateral_mm = mark.map_or(seam.lateral_mm, |mark| mark.lateral_mm);
+        Some(View {
+            lateral_mm,
+            height_mm: seam.height_mm + roll * (lateral_mm - seam.lateral_mm),
+            form: ViewForm::Bare { pitch, roll, mark },
+            ..seam
         })
     }
 

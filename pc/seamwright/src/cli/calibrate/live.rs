@@ -3,6 +3,7 @@
 use super::super::boards::{BoardArgs, exit_code};
 use super::super::cameras::source;
 use super::super::{read_program, waits};
+use super::coupon::Coupon;
 use super::{Camera, Meets};
 use crate::terminal::Operator;
 use anyhow::{Context, bail};
@@ -17,11 +18,7 @@ use shared::io::SIDES;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use world::Deviation;
-use world::{CameraChoice, PictureChoice, Surroundings};
-
-/// Seams of a simulated coupon: straight, and where they are drawn.
-const COUPON: &str = "s_mm,u1_mm,v1_mm,u2_mm,v2_mm\n0,0,0,0,0\n100000,0,0,0,0\n";
+use world::{CameraChoice, PictureChoice, Surroundings, Workpiece};
 
 /// The machine homes, goes to where PROGRAM begins to weld and looks at the seam before it, with the beams off: a straight
 /// gap along travel, level, in sight of the camera. Its slides step through focus, then there and back at every place along
@@ -40,15 +37,8 @@ pub struct Live {
     places: u32,
     #[command(flatten)]
     boards: BoardArgs,
-    /// Deviation of the seams of a simulated world (CSV) [default: none, a straight coupon]
-    #[arg(long, value_name = "FILE")]
-    seam: Option<PathBuf>,
-    /// What the seams of a simulated world look like (TOML) [default: ground plates]
-    #[arg(long, value_name = "FILE")]
-    scene: Option<PathBuf>,
-    /// Start of the noise of simulated cameras
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
+    #[command(flatten)]
+    coupon: Coupon,
 }
 
 impl Live {
@@ -59,7 +49,7 @@ impl Live {
 
     /// Takes the pictures and calibrates from them; an exit code if it was interrupted.
     pub fn find(&self) -> anyhow::Result<Result<CalibrationResult, ExitCode>> {
-        let (Some(machine_file), Some(side)) = (&self.camera.machine, self.camera.side) else {
+        let (Some(machine_file), Some(side)) = (&self.camera.which.machine, self.camera.which.side) else {
             bail!("which camera? give --machine FILE --side 1|2");
         };
         let machine = MachineFile::read(machine_file)?;
@@ -68,11 +58,11 @@ impl Live {
             bail!("machine file {}: it has no cameras", machine_file.display());
         };
         let cameras = &unit.cameras;
-        let before = self.camera.before()?;
+        let before = self.camera.which.before()?;
         let mut calibrations = cameras.calibrations(machine_file.parent().unwrap_or(Path::new("")))?;
         let side = usize::from(side) - 1;
         calibrations[side] = before;
-        let source = source(&self.boards.choice, cameras, self.scene.as_deref())?;
+        let source = source(&self.boards.choice, cameras, self.coupon.scene.as_deref())?;
         if let (PictureChoice::Rendered(_), JointForm::Corner) = (&source, cameras.joint) {
             bail!(
                 "machine file {}: its simulated seams are closed corners, and a coupon is a gap; calibrate a machine with \
@@ -87,12 +77,7 @@ impl Live {
                 self.at.display()
             );
         }
-        let seam = match (&self.seam, &source) {
-            (Some(file), _) => Some(Deviation::read(file)?),
-            (None, PictureChoice::Rendered(_)) => Some(Deviation::parse("coupon", COUPON)?),
-            // A real camera sees the seam.
-            (None, PictureChoice::Real(_)) => None,
-        };
+        let seam = self.coupon.deviation(&source)?;
         let queues = <[PictureQueue; SIDES]>::default();
         let picture_run = PictureRun {
             program: &program,
@@ -104,6 +89,7 @@ impl Live {
         let images = ImageCameras {
             calibrations,
             kept: Some(queues),
+            noted: None,
         };
         let name = |path: &Path| path.display().to_string();
         let job = Job {
@@ -116,15 +102,16 @@ impl Live {
                 seam: seam.map(Arc::new),
                 drawing: None,
                 cameras: CameraChoice::Images(Box::new(images), source),
-                seed: self.seed,
+                seed: self.coupon.seed,
                 mounts: self.boards.mounts(&machine)?,
+                work: Workpiece::Seams,
             }
             .into(),
             spooling: Default::default(),
             names: Names {
                 program: name(&self.at),
                 machine: name(machine_file),
-                seam: self.seam.as_deref().map(name),
+                seam: self.coupon.seam.as_deref().map(name),
                 boards: self.boards.name(),
             },
         };

@@ -1,6 +1,8 @@
 //! `seamwright calibrate`: calibration of a camera, with the machine or from pictures with known values.
 
+mod coupon;
 mod live;
+mod spot;
 
 use crate::console::{out, outln};
 use anyhow::{Context, bail};
@@ -30,6 +32,8 @@ pub struct Calibrate {
 enum What {
     /// Profile and slides in one go, with the machine before a straight seam
     Camera(Box<live::Live>),
+    /// Beam to camera, lead and strobe delay, with the machine, from marks of its beams
+    Spot(Box<spot::Spot>),
     /// Full well and read noise, from pairs of equal pictures at several levels of light: file,pair
     Noise(Folder),
     /// Width of the sharp band, from a textured plate that the slides step through focus: file,u_mm,v_mm
@@ -66,6 +70,16 @@ struct Folder {
 /// The camera, and where its calibration goes.
 #[derive(Debug, Args)]
 struct Camera {
+    #[command(flatten)]
+    which: WhichCamera,
+    /// Where the calibration goes (TOML); it may be the one it begins with
+    #[arg(short, long)]
+    output: PathBuf,
+}
+
+/// The camera.
+#[derive(Debug, Args)]
+struct WhichCamera {
     /// Calibration to begin with; without it the machine file says what the camera is
     #[arg(long)]
     calibration: Option<PathBuf>,
@@ -75,9 +89,6 @@ struct Camera {
     /// Side of the camera, 1 or 2
     #[arg(long, value_parser = clap::value_parser!(u8).range(1..=2))]
     side: Option<u8>,
-    /// Where the calibration goes (TOML); it may be the one it begins with
-    #[arg(short, long)]
-    output: PathBuf,
 }
 
 /// The offset between beam and camera.
@@ -105,6 +116,7 @@ impl Calibrate {
                 Ok(found) => (live.camera(), found),
                 Err(code) => return Ok(code),
             },
+            What::Spot(spot) => return spot.run(),
             What::Noise(folder) => folder.find(|pictures, before| {
                 procedure::noise(&read_pictures(pictures, procedure::NOISE)?, before)
             })?,
@@ -134,12 +146,12 @@ impl Folder {
         &self,
         procedure: impl Fn(&Path, &Calibration) -> Result<CalibrationResult, CalibrateError>,
     ) -> anyhow::Result<(&Camera, CalibrationResult)> {
-        let found = procedure(&self.pictures, &self.camera.before()?);
+        let found = procedure(&self.pictures, &self.camera.which.before()?);
         Ok((&self.camera, found.with_context(|| self.camera.not_written())?))
     }
 }
 
-impl Camera {
+impl WhichCamera {
     /// What is known before.
     fn before(&self) -> anyhow::Result<Calibration> {
         if let Some(file) = &self.calibration {
@@ -153,7 +165,9 @@ impl Camera {
         };
         Ok(unit.cameras.nominal(usize::from(side) - 1))
     }
+}
 
+impl Camera {
     fn not_written(&self) -> String {
         format!("{} is not written", self.output.display())
     }
