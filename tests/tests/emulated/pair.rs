@@ -57,11 +57,19 @@ impl Pair {
             .unwrap_or_else(|error| panic!("{error}"))
     }
 
-    /// `seamwright weld` with the shipped job on these boards.
+    /// `seamwright weld` with the shipped job on these boards. Its cameras see where the seam is: what is tried with it is not what
+    /// pictures show, and they are most of its work.
     pub fn seamwright(&self, seam: Option<&Path>) -> Command {
         let mut command = bound_to_parent(program(PROGRAM_VARIABLES[0]));
         command
-            .args(["weld", "--boards", "emulated", "--machine"])
+            .args([
+                "weld",
+                "--boards",
+                "emulated",
+                "--camera",
+                "geometric",
+                "--machine",
+            ])
             .arg(shipped(MACHINE))
             .arg("--seam")
             .arg(seam.map_or_else(|| shipped(SEAM), Path::to_owned))
