@@ -46,15 +46,15 @@ impl RunningMotor {
     /// One servo tick with the velocity command `dac`, or with the brake closed, and what its grating and switches
     /// tell at the end.
     pub fn advance(&mut self, enable: bool, dac: DacCode) -> Reading {
-        if !enable {
-            self.braked_ticks = self.enable_ticks;
-        }
-        if self.braked_ticks == 0 {
+        if enable && self.braked_ticks == 0 {
             self.drive.run(dac.ratio() * self.velocity_at_10v, STEPS);
         } else {
+            self.braked_ticks = match enable {
+                true => self.braked_ticks - 1,
+                false => self.enable_ticks,
+            };
             self.drive.brake(STEPS);
         }
-        self.braked_ticks = self.braked_ticks.saturating_sub(1);
         self.grating.read(self.drive.at_grating())
     }
 

@@ -424,22 +424,25 @@ impl MotionController {
         }
     }
 
-    /// What the servo ticks read.
+    /// What the servo ticks read; not on a path, where a tick has the most to do.
     fn note_inputs(&mut self, report: &ServoReport) {
-        for (seen, mark) in self.inputs.marks.iter_mut().zip(report.mark) {
-            *seen = mark.or(*seen);
+        if self.state.on_path() {
+            return;
         }
-        self.inputs = Inputs {
-            counts: report.counts,
-            marks: self.inputs.marks,
-            limit_plus: report.limit_plus.0,
-            limit_minus: report.limit_minus.0,
-            drive_fault: report.drive_fault.0,
-            converter_failed: report.converter_failed,
-            estop: report.estop.open(),
-            laser_fault: report.laser_fault,
-            process: report.process.0,
-        };
+        let inputs = &mut self.inputs;
+        for (seen, mark) in inputs.marks.iter_mut().zip(&report.mark) {
+            if mark.is_some() {
+                *seen = *mark;
+            }
+        }
+        inputs.counts = report.counts;
+        inputs.limit_plus = report.limit_plus.0;
+        inputs.limit_minus = report.limit_minus.0;
+        inputs.drive_fault = report.drive_fault.0;
+        inputs.converter_failed = report.converter_failed;
+        inputs.estop = report.estop.open();
+        inputs.laser_fault = report.laser_fault;
+        inputs.process = report.process.0;
     }
 
     /// The power of a beam is wrong: no gate opens any more, and the machine stops, on its path if it is on one.

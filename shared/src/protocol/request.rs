@@ -43,7 +43,8 @@ pub enum Request {
     /// Answered by [`Response::MotionStatus`] or [`Response::TrackerStatus`]; as any request it renews the lease of
     /// the session.
     Status,
-    /// What the board reads at its connectors; answered by [`Response::Inputs`], in any state.
+    /// What the board reads at its connectors; answered by [`Response::Inputs`], in any state. The motion board tells on a path what it
+    /// read before it.
     Inputs,
     /// Parameters of the machine; motion board, only in state off.
     ConfigureMotion(MotionConfig),
