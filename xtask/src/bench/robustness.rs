@@ -51,7 +51,9 @@ struct Drawn {
 /// Draws, commissions and welds; succeeds if all that were commissioned weld within their limits.
 pub fn run(draws: &Draws) -> Result<ExitCode> {
     let program = build_seamwright()?.display().to_string();
-    let folder = super::folder()?.join("robustness");
+    // Of its own, so that several can run side by side.
+    let name = format!("robustness-{}-{}-{}", draws.machine, draws.quality, draws.seed);
+    let folder = super::folder()?.join(name);
     fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let mut all = Vec::new();
     for seed in draws.seed..draws.seed.saturating_add(draws.draws) {
