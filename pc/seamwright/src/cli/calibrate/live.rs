@@ -1,24 +1,21 @@
 //! `seamwright calibrate camera`: with the machine.
 
-use super::super::boards::{BoardArgs, exit_code};
+use super::super::boards::BoardArgs;
 use super::super::cameras::source;
-use super::super::{read_program, waits};
 use super::coupon::Coupon;
+use super::on_machine::OnMachine;
 use super::{Camera, Meets};
-use crate::terminal::Operator;
 use anyhow::{Context, bail};
 use camera::PictureQueue;
 use camera::calibrate::procedure;
 use camera::calibrate::procedure::CalibrationResult;
 use clap::Args;
 use config::machine::{JointForm, MachineFile};
-use job::{ImageCameras, Job, Names, PictureRun, Work};
-use nc::Options;
+use job::{ImageCameras, PictureRun, Work};
 use shared::io::SIDES;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use world::{CameraChoice, PictureChoice, Surroundings, Workpiece};
+use world::{PictureChoice, Workpiece};
 
 /// The machine homes, goes to where PROGRAM begins to weld and looks at the seam before it, with the beams off: a straight
 /// gap along travel, level, in sight of the camera. Its slides step through focus, then there and back at every place along
@@ -70,14 +67,14 @@ impl Live {
                 machine_file.display()
             );
         }
-        let program = read_program(&self.at, &machine, Options::default())?;
-        if let Some(waits) = waits::told(&program, 0) {
-            bail!(
-                "program {} {waits}, which a calibration does not: leave that out",
-                self.at.display()
-            );
-        }
-        let seam = self.coupon.deviation(&source)?;
+        let on_machine = OnMachine {
+            machine: &machine,
+            file: machine_file,
+            at: &self.at,
+            boards: &self.boards,
+            coupon: &self.coupon,
+        };
+        let program = on_machine.program()?;
         let queues = <[PictureQueue; SIDES]>::default();
         let picture_run = PictureRun {
             program: &program,
@@ -91,37 +88,11 @@ impl Live {
             kept: Some(queues),
             noted: None,
         };
-        let name = |path: &Path| path.display().to_string();
-        let job = Job {
-            machine: &machine,
-            work: Work::Pictures(&picture_run),
-            part: None,
-            speed_m_per_min: None,
-            from_line: None,
-            surroundings: Surroundings {
-                seam: seam.map(Arc::new),
-                drawing: None,
-                cameras: CameraChoice::Images(Box::new(images), source),
-                seed: self.coupon.seed,
-                mounts: self.boards.mounts(&machine)?,
-                work: Workpiece::Seams,
-            }
-            .into(),
-            spooling: Default::default(),
-            names: Names {
-                program: name(&self.at),
-                machine: name(machine_file),
-                seam: self.coupon.seam.as_deref().map(name),
-                boards: self.boards.name(),
-            },
-        };
-        let ended = match self.boards.run(&job, Operator::LooksOn, None)? {
+        let work = Work::Pictures(&picture_run);
+        let ended = match on_machine.run(work, images, source, Workpiece::Seams)? {
             Ok(ended) => ended,
             Err(code) => return Ok(Err(code)),
         };
-        if ended.error.is_some() {
-            return exit_code(ended.error).map(Err);
-        }
         let pictures = &ended.taught.pictures;
         let not_written = || self.camera.not_written();
         let profile = procedure::profile(&pictures.profile, &before).with_context(not_written)?;

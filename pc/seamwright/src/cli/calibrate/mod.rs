@@ -2,6 +2,7 @@
 
 mod coupon;
 mod live;
+mod on_machine;
 mod spot;
 
 use crate::console::{out, outln};

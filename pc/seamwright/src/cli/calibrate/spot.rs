@@ -1,25 +1,22 @@
 //! `seamwright calibrate spot`: where a camera looks beside its spot, with the machine.
 
-use super::super::boards::{BoardArgs, BoardChoice, exit_code};
+use super::super::boards::{BoardArgs, BoardChoice};
 use super::super::cameras::source;
-use super::super::{read_program, waits};
 use super::coupon::Coupon;
+use super::on_machine::OnMachine;
 use super::{WhichCamera, table, write_whole};
 use crate::console::{errln, out, outln};
-use crate::terminal::Operator;
 use anyhow::{Context, bail};
 use camera::calibrate::spot;
 use camera::calibrate::spot::SpotResult;
 use clap::Args;
 use config::calibration::Calibration;
 use config::machine::{JointForm, MachineFile};
-use job::{ImageCameras, Job, MarkRun, Names, SightingLog, Work};
-use nc::Options;
+use job::{ImageCameras, MarkRun, SightingLog, Work};
 use shared::units::MM_S_PER_M_MIN;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use world::{CameraChoice, Surroundings, Workpiece};
+use world::Workpiece;
 
 /// Exit code of a check that finds a drift: it has worked, and what it found is outside its limit.
 const DRIFTED: u8 = 3;
@@ -150,14 +147,14 @@ impl Spot {
                 machine_file.display()
             );
         }
-        let program = read_program(&self.at, &machine, Options::default())?;
-        if let Some(waits) = waits::told(&program, 0) {
-            bail!(
-                "program {} {waits}, which a calibration does not: leave that out",
-                self.at.display()
-            );
-        }
-        let seam = self.coupon.deviation(&source)?;
+        let on_machine = OnMachine {
+            machine: &machine,
+            file: machine_file,
+            at: &self.at,
+            boards: &self.boards,
+            coupon: &self.coupon,
+        };
+        let program = on_machine.program()?;
         let noted = SightingLog::default();
         let run = MarkRun {
             program: &program,
@@ -173,37 +170,10 @@ impl Spot {
             kept: None,
             noted: Some((side, noted)),
         };
-        let name = |path: &Path| path.display().to_string();
-        let job = Job {
-            machine: &machine,
-            work: Work::Mark(&run),
-            part: None,
-            speed_m_per_min: None,
-            from_line: None,
-            surroundings: Surroundings {
-                seam: seam.map(Arc::new),
-                drawing: None,
-                cameras: CameraChoice::Images(Box::new(images), source),
-                seed: self.coupon.seed,
-                mounts: self.boards.mounts(&machine)?,
-                work: Workpiece::BarePlate,
-            }
-            .into(),
-            spooling: Default::default(),
-            names: Names {
-                program: name(&self.at),
-                machine: name(machine_file),
-                seam: self.coupon.seam.as_deref().map(name),
-                boards: self.boards.name(),
-            },
-        };
-        let ended = match self.boards.run(&job, Operator::LooksOn, None)? {
+        let ended = match on_machine.run(Work::Mark(&run), images, source, Workpiece::BarePlate)? {
             Ok(ended) => ended,
             Err(code) => return Ok(Err(code)),
         };
-        if ended.error.is_some() {
-            return exit_code(ended.error).map(Err);
-        }
         let Some(seen) = ended.taught.marks else {
             bail!("no marks were burnt");
         };
