@@ -4,23 +4,39 @@
 //! ```text
 //! Planned → excitation, captures → Response (gain and coherence at lines) → Lag (gain and delay of the drive)
 //!                                                   → design: controller × response → Margins → Loop → machine file
+//! capture in which the motor turns round, Response → friction → Loop
 //! ```
 //! No model of the mechanics is assumed: margins are those of the controller as it is built and the response as it was measured.
 
+mod circle;
 mod controller;
 mod design;
+mod friction;
 mod lag;
 mod machine_file;
 mod margins;
 mod plan;
 mod response;
 
+pub use circle::{REVERSALS_DEG, Turn, TurnFigures, bidirectional_mm};
 pub use design::{Loop, NoDesign, Requirements, design};
+pub use friction::{NoFriction, friction};
 pub use lag::Lag;
 pub use machine_file::{WriteError, rewrite};
 pub use margins::Margins;
-pub use plan::{Planned, SETTLE_PERIODS, TRAVEL, WAY, plan, way};
+pub use plan::{Planned, SETTLE_PERIODS, TRAVEL, TURNS_HZ, WAY, plan, turns, way};
 pub use response::{Capture, Line, NoResponse, Response};
+
+use rustfft::algorithm::Radix4;
+use rustfft::{Fft, FftDirection};
+use shared::protocol::CAPTURE_TICKS;
 
 /// A complex number of a response.
 pub type Complex = rustfft::num_complex::Complex<f64>;
+
+/// The spectrum of a capture.
+fn spectrum(values: impl Iterator<Item = f64>) -> Vec<Complex> {
+    let mut values: Vec<Complex> = values.map(Complex::from).collect();
+    Radix4::new(CAPTURE_TICKS, FftDirection::Forward).process(&mut values);
+    values
+}

@@ -2,7 +2,7 @@
 //! beside them.
 
 use crate::design::Loop;
-use shared::control::NotchConfig;
+use shared::control::{FrictionConfig, NotchConfig};
 use thiserror::Error;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value};
 
@@ -44,16 +44,19 @@ pub fn rewrite(text: &str, name: &str, found: &Loop) -> Result<String, WriteErro
         let digits = four_digits(value);
         replace(motor, key, digits.into());
     }
-    let notches: Array = found.motor.notches.iter().map(table).collect();
+    let notches: Array = found.motor.notches.iter().map(of_notch).collect();
     if !notches.is_empty() || motor.contains_key("notches") {
         replace(motor, "notches", notches.into());
+    }
+    if let Some(friction) = &found.motor.friction {
+        replace(motor, "friction", of_friction(friction).into());
     }
     Ok(document.to_string())
 }
 
 /// A value, with what was there before in a comment behind it; one that stays is left alone.
 fn replace(table: &mut Table, key: &str, mut value: Value) {
-    let before = table.get(key).and_then(Item::as_value);
+    let before = table.get(key).cloned().and_then(|item| item.into_value().ok());
     let plain = |value: &Value| {
         let mut value = value.clone();
         value.decor_mut().clear();
@@ -63,10 +66,10 @@ fn replace(table: &mut Table, key: &str, mut value: Value) {
         (Some(before), Some(value)) => four_digits(before) == value,
         _ => plain(before) == plain(&value),
     };
-    if before.is_some_and(same) {
+    if before.as_ref().is_some_and(same) {
         return;
     }
-    let was = before.map_or("none".to_owned(), plain);
+    let was = before.as_ref().map_or("none".to_owned(), plain);
     value
         .decor_mut()
         .set_suffix(format!(" # commissioned; was {was}"));
@@ -74,12 +77,25 @@ fn replace(table: &mut Table, key: &str, mut value: Value) {
     table[key] = Item::Value(value);
 }
 
-fn table(notch: &NotchConfig) -> InlineTable {
-    let fields = [
+fn of_notch(notch: &NotchConfig) -> InlineTable {
+    table([
         ("frequency_hz", notch.frequency_hz),
         ("damping", notch.damping),
         ("depth", notch.depth),
-    ];
+    ])
+}
+
+fn of_friction(friction: &FrictionConfig) -> InlineTable {
+    table([
+        ("coulomb", friction.coulomb),
+        ("viscous", friction.viscous),
+        ("reversal_speed", friction.reversal_speed),
+        ("lead_s", friction.lead_s),
+        ("decay_s", friction.decay_s),
+    ])
+}
+
+fn table<const N: usize>(fields: [(&str, f64); N]) -> InlineTable {
     fields
         .into_iter()
         .map(|(key, value)| (key, Value::from(four_digits(value))))

@@ -22,6 +22,17 @@ const OF_TRAVEL: f64 = 0.5;
 /// Part of the speed of the way that it takes: the motor never turns round.
 const OF_SPEED: f64 = 0.7;
 
+/// How often a motor goes there and back in the capture in which it turns round: as slowly as a capture has it \[Hz\].
+pub const TURNS_HZ: f64 = Chirp::LINE_HZ;
+
+/// How far it goes to either side then (mm or °), if it may move with this speed \[1/s\] and acceleration \[1/s²\].
+pub fn turns(speed: f64, acceleration: f64) -> f64 {
+    let omega = TAU * TURNS_HZ;
+    (OF_TRAVEL * TRAVEL)
+        .min(speed / omega)
+        .min(acceleration / (omega * omega))
+}
+
 /// One excitation of the command of a motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planned {

@@ -1,9 +1,7 @@
 //! The frequency response of a drive with what it moves, from captures of its excitation.
 
-use crate::Complex;
 use crate::plan::{Planned, SETTLE_PERIODS, way};
-use rustfft::algorithm::Radix4;
-use rustfft::{Fft, FftDirection};
+use crate::{Complex, spectrum};
 use shared::control::MotorConfig;
 use shared::io::DacCode;
 use shared::motion::Chirp;
@@ -83,12 +81,6 @@ impl Response {
         if captures.is_empty() || !captures.iter().all(whole) {
             return Err(NoResponse::Empty);
         }
-        let fft = Radix4::new(CAPTURE_TICKS, FftDirection::Forward);
-        let spectrum = |values: &mut dyn Iterator<Item = f64>| {
-            let mut values: Vec<Complex> = values.map(Complex::from).collect();
-            fft.process(&mut values);
-            values
-        };
         let mut sums = BTreeMap::<u32, Sums>::new();
         for capture in captures {
             let (chirp, amplitude) = (capture.planned.chirp(), capture.planned.amplitude);
@@ -98,9 +90,9 @@ impl Response {
                 DacCode(sample.command).ratio() * motor.velocity_at_10v - way.at(FIRST_TICK + tick).1
             };
             let position = |sample: &CaptureSample| f64::from(sample.counts) / motor.counts_per_unit;
-            let asked = spectrum(&mut (0..CAPTURE_TICKS as u32).map(|tick| amplitude * chirp.at(tick)));
-            let command = spectrum(&mut (0..).zip(&capture.samples).map(command));
-            let position = spectrum(&mut capture.samples.iter().map(position));
+            let asked = spectrum((0..CAPTURE_TICKS as u32).map(|tick| amplitude * chirp.at(tick)));
+            let command = spectrum((0..).zip(&capture.samples).map(command));
+            let position = spectrum(capture.samples.iter().map(position));
             let (first, last) = chirp.lines();
             for line in first..=last {
                 let index = line as usize;

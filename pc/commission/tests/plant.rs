@@ -2,7 +2,8 @@
 //! by hand (mathematics 0.11), which knows nothing of captures.
 
 use commission::{
-    Capture, Complex, Loop, Margins, Requirements, Response, SETTLE_PERIODS, WAY, design, plan, rewrite, way,
+    Capture, Complex, Loop, Margins, NoFriction, Requirements, Response, SETTLE_PERIODS, TURNS_HZ, WAY,
+    design, friction, plan, rewrite, way,
 };
 use plant::{ModeConfig, MotionPlant, MotorConfig as TrueMotor, PlantConfig};
 use plant_file::{PlantChoice, PlantFile};
@@ -297,4 +298,107 @@ fn a_machine_file_keeps_what_it_says_besides() {
     assert!(written.ends_with("[motors.Z]\nkp = 5.0\n"));
     assert!(rewrite(text, "X1", &designed).is_err());
     assert!(rewrite("kp = ", "Y", &designed).is_err());
+}
+
+/// A period in which a motor turns round twice, in its loop without feed-forward, as the board captures it.
+fn turning(index: usize, config: &TrueMotor, motor: &MotorConfig, amplitude: f64) -> Vec<CaptureSample> {
+    let mut bench = Bench::new(index, config);
+    let pid = Pid::build("motor", motor, 1.0, SERVO_PERIOD_S).expect("sound");
+    let mut state = PidState::default();
+    let start = bench.tick(DacCode(0));
+    let mut counts = start;
+    let mut samples = Vec::new();
+    for tick in 0..3 * CAPTURE_TICKS {
+        let position = (counts - start) as f64 / motor.counts_per_unit;
+        let place = amplitude * (TAU * TURNS_HZ * tick as f64 * SERVO_PERIOD_S).sin();
+        let setpoint = Setpoint {
+            position: place,
+            ..Setpoint::default()
+        };
+        let feedback = pid.step(&mut state, &setpoint, position, 0.0).expect("finite");
+        let code = DacCode::from_ratio(feedback, motor.velocity_at_10v);
+        if tick >= 2 * CAPTURE_TICKS {
+            samples.push(CaptureSample {
+                command: code.0,
+                counts: (counts - start) as i32,
+                error: (place - position) as f32,
+            });
+        }
+        counts = bench.tick(code);
+    }
+    samples
+}
+
+/// The largest following error of a motor on a circle of R100 at 9 m/min, after the first turn.
+fn on_a_circle(index: usize, config: &TrueMotor, motor: &MotorConfig) -> f64 {
+    let mut bench = Bench::new(index, config);
+    let pid = Pid::build("motor", motor, 1.0, SERVO_PERIOD_S).expect("sound");
+    let mut state = PidState::default();
+    let start = bench.tick(DacCode(0));
+    let mut counts = start;
+    let omega = 1.5;
+    let turn = TAU / omega;
+    let mut most: f64 = 0.0;
+    for tick in 0..(2.0 * turn / SERVO_PERIOD_S) as u32 {
+        let t = f64::from(tick) * SERVO_PERIOD_S;
+        // It begins at rest, where it turns round.
+        let (sin, cos) = (omega * t).sin_cos();
+        let setpoint = Setpoint {
+            position: 100.0 * (1.0 - cos),
+            velocity: 100.0 * omega * sin,
+            acceleration: 100.0 * omega * omega * cos,
+        };
+        let position = (counts - start) as f64 / motor.counts_per_unit;
+        let command = pid.step(&mut state, &setpoint, position, 0.0).expect("finite");
+        let code = DacCode::from_ratio(command, motor.velocity_at_10v);
+        counts = bench.tick(code);
+        if t > turn {
+            most = most.max((setpoint.position - position).abs());
+        }
+    }
+    most
+}
+
+#[test]
+fn friction_is_found_and_reversals_cost_less() {
+    for draw in ["draw:usual:1", "draw:usual:2", "draw:usual:3", "draw:poor:1"] {
+        let plant = draw
+            .parse::<PlantChoice>()
+            .expect("a draw")
+            .of(MACHINE)
+            .expect("a machine");
+        for index in 0..4 {
+            let config = plant.plant.motors[index].clone().expect("wired");
+            let motor = believed(&plant, index);
+            let (response, designed) = found(index, &config, &motor);
+            for amplitude in [1.0, 0.15] {
+                let samples = turning(index, &config, &motor, amplitude);
+                let found = friction(&response, &samples, &motor, designed.lag.delay_s)
+                    .unwrap_or_else(|error| panic!("{draw} {}: {error}", MOTOR_NAMES[index]));
+                let mut with = designed.motor.clone();
+                with.friction = Some(found);
+                let [before, after] =
+                    [&designed.motor, &with].map(|motor| on_a_circle(index, &config, motor));
+                println!(
+                    "{draw} {}: {before:.5} mm, then {after:.5} mm: {found:?}",
+                    MOTOR_NAMES[index]
+                );
+                assert!(after < 0.8 * before, "{before} {after}");
+            }
+        }
+    }
+}
+
+/// A motor without friction has none to be found, and half a capture has nothing.
+#[test]
+fn where_there_is_no_friction_none_is_found() {
+    let (mut config, motor) = shipped(Y);
+    config.mechanics.friction = 0.0;
+    config.mechanics.backlash = 0.0;
+    let (response, designed) = found(Y, &config, &motor);
+    let samples = turning(Y, &config, &motor, 1.0);
+    let found = |samples: &[CaptureSample]| friction(&response, samples, &motor, designed.lag.delay_s);
+    let none = found(&samples);
+    assert!(matches!(none, Err(NoFriction::Unlike { .. })), "{none:?}");
+    assert_eq!(found(&samples[..CAPTURE_TICKS / 2]), Err(NoFriction::Empty));
 }

@@ -1,5 +1,6 @@
 //! What is left of a job: `report.json` and `log.csv` for programs, plots and a table for people.
 
+mod circle;
 mod draw;
 mod dry_run;
 mod ended;
@@ -9,6 +10,7 @@ mod plots;
 mod table;
 pub mod unwelded;
 
+pub use circle::write_circle;
 pub use dry_run::write_dry_run;
 pub use ended::{Ended, ended};
 pub use log::{LOG, LogColumns, LogWriter};

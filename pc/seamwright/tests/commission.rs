@@ -85,6 +85,7 @@ fn a_machine_whose_loops_swing_welds_when_it_is_commissioned() {
     assert_eq!(commissioned.status.code(), Some(0), "{said}");
     let after = std::fs::read_to_string(&machine).expect("it is there");
     assert!(after.contains("# commissioned; was 120.0"), "{after}");
+    assert!(after.contains("friction = { coulomb = "), "{after}");
     assert_eq!(
         after.lines().filter(|line| line.starts_with('#')).count(),
         before.lines().filter(|line| line.starts_with('#')).count(),
@@ -92,6 +93,39 @@ fn a_machine_whose_loops_swing_welds_when_it_is_commissioned() {
     let ended = weld(&machine, &report);
     let said = String::from_utf8_lossy(&ended.stderr);
     assert_eq!(ended.status.code(), Some(0), "{said}");
+
+    let plot = folder.path().join("circle.svg");
+    let plot = plot.to_str().expect("a path");
+    let round = circle(&machine, &["--plant", RINGS, "--within", "0.02", "-o", plot]);
+    let said = String::from_utf8_lossy(&round.stdout);
+    assert_eq!(round.status.code(), Some(0), "{said}");
+    assert!(said.contains("circular deviation G(b)"), "{said}");
+    assert!(Path::new(plot).metadata().expect("a plot").len() > 10_000);
+    let narrow = circle(
+        &machine,
+        &["--plant", RINGS, "--within", "0.0001", "--speed", "1"],
+    );
+    assert_eq!(narrow.status.code(), Some(3), "{narrow:?}");
+}
+
+fn circle(machine: &Path, more: &[&str]) -> Output {
+    let machine = machine.to_str().expect("a path");
+    seamwright(&[&["circle", "--machine", machine], more].concat())
+}
+
+#[test]
+fn a_circle_that_cannot_be_made_is_told() {
+    let machine = shipped("machines/pipe-welder.toml");
+    assert_refused(&circle(&machine, &["--plane", "yz"]), "the machine has no axis Y");
+    let machine = shipped("machines/dual-beam-gantry.toml");
+    assert_refused(
+        &circle(&machine, &["--radius", "2000"]),
+        "does not fit into the travel of",
+    );
+    assert_refused(
+        &circle(&machine, &["--radius", "-1"]),
+        "must be a number of mm above 0",
+    );
 }
 
 #[test]

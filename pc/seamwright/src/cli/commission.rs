@@ -6,12 +6,14 @@ use crate::terminal::Operator;
 use anyhow::{Context, bail};
 use clap::Args;
 use commission::{
-    Capture, Loop, Margins, Planned, Requirements, Response, SETTLE_PERIODS, TRAVEL, WAY, design, plan,
-    rewrite,
+    Capture, Loop, Margins, NoFriction, Planned, Requirements, Response, SETTLE_PERIODS, TRAVEL, TURNS_HZ,
+    WAY, design, friction, plan, rewrite, turns,
 };
 use config::machine::MachineFile;
 use job::{CapturedMotion, ExcitationRun, Job, Names, Work};
+use shared::control::FrictionConfig;
 use shared::io::{MOTOR_AXIS, MOTOR_NAMES, MOTORS};
+use shared::kinematics::AXIS_UNIT;
 use shared::protocol::{Excitation, Excited};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,12 +23,15 @@ use world::Surroundings;
 const OF_ACCELERATION: f64 = 0.5;
 /// Part of its proportional gains with which a machine is measured.
 const SOFTENED: f64 = 0.25;
+/// Part of the skew that trips a gantry.
+const OF_SKEW: f64 = 0.5;
 /// Part of the speed of an axis that ends one.
 const OF_SPEED: f64 = 0.9;
 
 /// The machine homes. Each motor then goes 20 mm (20°) there and back, twelve times, while its drive is shaken by up to
 /// 1 mm; from what its grating tells come gain and delay of the drive, and the highest gains with a gain margin of 6 dB, a phase
-/// margin of 45° and a sensitivity of 2 at most, with notches at resonances. Everything must be free to move.
+/// margin of 45° and a sensitivity of 2 at most, with notches at resonances. At last it swings 1 mm (1°) to both sides where it
+/// stands, for the feed-forward of its friction. Everything must be free to move.
 #[derive(Debug, Args)]
 pub struct Commission {
     /// Machine file
@@ -123,7 +128,7 @@ impl Commission {
             match loop_of(machine, *motor, captured) {
                 Ok(found) => {
                     tell(name, machine, *motor, &found);
-                    text = rewrite(&text, name, &found).with_context(file)?;
+                    text = rewrite(&text, name, &found.of_loop).with_context(file)?;
                 }
                 Err(error) => {
                     outln!("{name}: left as it is: {error:#}");
@@ -164,31 +169,54 @@ fn excitations(machine: &MachineFile, index: usize) -> Vec<Excitation> {
         (axis.travel_max - axis.travel_min) / 2.0 - 2.0 * TRAVEL
     });
     let way = WAY.min(room).max(0.0);
-    let planned = plan(way, OF_ACCELERATION * acceleration);
-    planned
-        .into_iter()
-        .map(|planned| Excitation {
-            motor: index as u8,
-            excited: Excited::Command,
-            amplitude: planned.amplitude,
-            from_hz: planned.from_hz,
-            to_hz: planned.to_hz,
-            settle_periods: SETTLE_PERIODS,
-            way,
-            max_travel: TRAVEL,
-            max_speed: OF_SPEED * speed,
-        })
-        .collect()
+    let (speed, acceleration) = (OF_SPEED * speed, OF_ACCELERATION * acceleration);
+    let turning = Excitation {
+        motor: index as u8,
+        excited: Excited::Reference,
+        amplitude: turns(speed, acceleration).min(askew(machine, index)),
+        from_hz: TURNS_HZ,
+        to_hz: TURNS_HZ,
+        settle_periods: SETTLE_PERIODS,
+        way: 0.0,
+        max_travel: TRAVEL,
+        max_speed: speed,
+    };
+    let on_the_way = plan(way, acceleration).into_iter().map(|planned| Excitation {
+        excited: Excited::Command,
+        amplitude: planned.amplitude,
+        from_hz: planned.from_hz,
+        to_hz: planned.to_hz,
+        way,
+        ..turning
+    });
+    on_the_way.chain([turning]).collect()
 }
 
-fn loop_of(machine: &MachineFile, index: usize, captured: &[CapturedMotion]) -> anyhow::Result<Loop> {
+/// How far motor `index` may go to either side of where it stands alone (mm or °): of a gantry, without tripping its skew.
+fn askew(machine: &MachineFile, index: usize) -> f64 {
+    match &machine.motion.gantry {
+        Some(gantry) if MOTOR_AXIS[index] == MOTOR_AXIS[0] => OF_SKEW * gantry.skew_trip_mm,
+        _ => f64::INFINITY,
+    }
+}
+
+/// What was found of a motor; its friction, or why that stays as it was.
+struct Found {
+    of_loop: Loop,
+    friction: Result<FrictionConfig, NoFriction>,
+}
+
+fn loop_of(machine: &MachineFile, index: usize, captured: &[CapturedMotion]) -> anyhow::Result<Found> {
     let motor = machine.motion.motors[index]
         .as_ref()
         .context("the machine has none")?;
     let own = captured
         .iter()
         .filter(|captured| usize::from(captured.excitation.motor) == index);
-    let captures: Vec<_> = own
+    let (on_the_way, turning): (Vec<_>, Vec<_>) =
+        own.partition(|captured| captured.excitation.excited == Excited::Command);
+    let captures: Vec<_> = on_the_way
+        .into_iter()
         .map(|captured| Capture {
             planned: Planned {
                 from_hz: captured.excitation.from_hz,
@@ -200,10 +228,24 @@ fn loop_of(machine: &MachineFile, index: usize, captured: &[CapturedMotion]) -> 
         })
         .collect();
     let response = Response::of(&captures, motor)?;
-    Ok(design(&response, motor, &Requirements::default())?)
+    let mut of_loop = design(&response, motor, &Requirements::default())?;
+    let samples = turning.first().map_or(&[][..], |captured| &captured.samples);
+    let friction = friction(&response, samples, motor, of_loop.lag.delay_s);
+    if let Ok(found) = &friction {
+        of_loop.motor.friction = Some(*found);
+    }
+    Ok(Found { of_loop, friction })
 }
 
-fn tell(name: &str, machine: &MachineFile, index: usize, found: &Loop) {
+fn tell(
+    name: &str,
+    machine: &MachineFile,
+    index: usize,
+    Found {
+        of_loop: found,
+        friction,
+    }: &Found,
+) {
     let before = machine.motion.motors[index]
         .as_ref()
         .map_or(0.0, |motor| motor.kp);
@@ -225,6 +267,21 @@ fn tell(name: &str, machine: &MachineFile, index: usize, found: &Loop) {
             notch.damping,
             notch.depth
         );
+    }
+    match friction {
+        Err(error) => outln!("    friction left as it is: {error}"),
+        Ok(friction) => {
+            let unit = match AXIS_UNIT[MOTOR_AXIS[index]] {
+                1.0 => "mm/s",
+                _ => "°/s",
+            };
+            outln!(
+                "    friction {:.3} {unit}, turned round at {:.2} {unit}, taken over in {:.1} ms",
+                friction.coulomb,
+                friction.reversal_speed,
+                friction.decay_s * 1e3,
+            );
+        }
     }
 }
 

@@ -4,6 +4,7 @@ mod boards;
 mod calibrate;
 mod cameras;
 mod check;
+mod circle;
 mod commission;
 mod dry_run;
 mod explain;
@@ -42,6 +43,7 @@ pub struct Cli {
 enum Command {
     Calibrate(calibrate::Calibrate),
     Check(check::Check),
+    Circle(circle::Circle),
     Commission(commission::Commission),
     DryRun(dry_run::DryRun),
     Measure(measure::Measure),
@@ -57,6 +59,7 @@ impl Cli {
         match self.command {
             Command::Calibrate(command) => command.run(),
             Command::Check(command) => command.run().map(|()| ExitCode::SUCCESS),
+            Command::Circle(command) => command.run(),
             Command::Commission(command) => command.run(),
             Command::DryRun(command) => command.run(),
             Command::Measure(command) => command.run(),
