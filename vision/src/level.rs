@@ -2,6 +2,7 @@
 
 use crate::cells::Cells;
 use crate::height_field::HeightField;
+use wide::f32x4;
 
 /// Cells that one turn of the inner loop takes.
 const LANES: usize = 4;
@@ -198,39 +199,47 @@ impl Sums {
 
 /// Sums over a column of cells. If the sharpest count most, each counts √T.
 fn compare<const SHARPEST: bool>(energy: &[f32], noise: &[f32], amplitude: f32, depths: Depths) -> Sums {
-    let mut sums = [[0.0_f32; LANES]; 7];
-    let mut x: [f32; LANES] = std::array::from_fn(|lane| depths.first + depths.step * lane as f32);
-    let step = depths.step * LANES as f32;
-    for (energy, noise) in energy.chunks_exact(LANES).zip(noise.chunks_exact(LANES)) {
-        for lane in 0..LANES {
-            let square = 1.0 + x[lane] * x[lane];
-            let profile = 1.0 / (square * square.sqrt());
-            let signal = amplitude * profile;
-            let expected = signal + noise[lane];
-            let both = expected + energy[lane];
-            let one = 1.0 / (expected * both);
-            let psi = (energy[lane] - expected) * expected * one;
-            let share = signal * both * one;
-            let g = -3.0 * x[lane] * share * (square.sqrt() * profile);
-            let counted = if SHARPEST { profile.sqrt() } else { 1.0 };
-            let counted_g = counted * g;
-            let counted_gx = counted_g * x[lane];
-            let w = share * profile;
-            sums[0][lane] += psi * counted_g;
-            sums[1][lane] += psi * counted_gx;
-            sums[2][lane] += g * counted_g;
-            sums[3][lane] += g * counted_gx;
-            sums[4][lane] += g * x[lane] * counted_gx;
-            sums[5][lane] += w * psi;
-            sums[6][lane] += w;
-            x[lane] += step;
+    let one = f32x4::splat(1.0);
+    let amplitude = f32x4::splat(amplitude);
+    let mut sums = [f32x4::ZERO; 7];
+    let mut x = f32x4::from(std::array::from_fn(|lane| {
+        depths.first + depths.step * lane as f32
+    }));
+    let step = f32x4::splat(depths.step * LANES as f32);
+    for (energy, noise) in energy.as_chunks().0.iter().zip(noise.as_chunks().0) {
+        let (energy, noise) = (f32x4::new(*energy), f32x4::new(*noise));
+        let square = one + x * x;
+        let root = square.sqrt();
+        let profile = one / (square * root);
+        let signal = amplitude * profile;
+        let expected = signal + noise;
+        let both = expected + energy;
+        let per_product = one / (expected * both);
+        let psi = (energy - expected) * expected * per_product;
+        let share = signal * both * per_product;
+        let g = f32x4::splat(-3.0) * x * share * (root * profile);
+        let counted_g = if SHARPEST { profile.sqrt() * g } else { g };
+        let counted_gx = counted_g * x;
+        let w = share * profile;
+        let terms = [
+            psi * counted_g,
+            psi * counted_gx,
+            g * counted_g,
+            g * counted_gx,
+            g * x * counted_gx,
+            w * psi,
+            w,
+        ];
+        for (sum, term) in sums.iter_mut().zip(terms) {
+            *sum += term;
         }
+        x += step;
     }
-    let sum = |k: usize| sums[k].iter().sum::<f32>();
+    let [score, score_x, one, two, three, amplitude, weight] = sums.map(f32x4::reduce_add);
     Sums {
-        score: [sum(0), sum(1)],
-        information: [sum(2), sum(3), sum(4)],
-        amplitude: [sum(5), sum(6)],
+        score: [score, score_x],
+        information: [one, two, three],
+        amplitude: [amplitude, weight],
     }
 }
 

@@ -11,6 +11,7 @@ mod layout;
 mod machine;
 mod mutants;
 mod setup;
+mod side_by_side;
 mod size;
 mod tally;
 mod test;

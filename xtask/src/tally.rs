@@ -18,9 +18,9 @@ pub struct Tally {
 
 /// Tests, as their runners count them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Counts {
-    passed: u32,
-    failed: u32,
+pub struct Counts {
+    pub passed: u32,
+    pub failed: u32,
 }
 
 impl Tally {
@@ -36,9 +36,14 @@ impl Tally {
 
     /// Runs the tests of `command`, once it is `ready`.
     pub fn test(&mut self, what: &str, ready: impl FnOnce() -> Result<Command>) {
+        self.counted(what, || ready().and_then(watch));
+    }
+
+    /// Does a step that counts tests, and says whether it ended well.
+    pub fn counted(&mut self, what: &str, step: impl FnOnce() -> Result<(Counts, bool)>) {
         eprintln!("\n=== {what}");
         let started = Instant::now();
-        match ready().and_then(watch) {
+        match step() {
             Ok((counts, succeeded)) => {
                 self.counts.add(counts);
                 if !succeeded && counts.failed == 0 {
@@ -79,13 +84,14 @@ impl Tally {
 }
 
 impl Counts {
-    fn add(&mut self, other: Self) {
+    /// Adds what another runner counted.
+    pub fn add(&mut self, other: Self) {
         self.passed += other.passed;
         self.failed += other.failed;
     }
 
     /// Reads a line like `test result: ok. 7 passed; 0 failed; 0 ignored; …`; `None` for any other line.
-    fn from_line(line: &str) -> Option<Self> {
+    pub fn from_line(line: &str) -> Option<Self> {
         let (_, numbers) = line.strip_prefix("test result: ")?.split_once(". ")?;
         let number = |name: &str| -> Option<u32> {
             numbers
@@ -100,7 +106,7 @@ impl Counts {
 }
 
 /// Runs a test runner, shows what it prints, and adds up what it counts; also whether it succeeded.
-fn watch(mut command: Command) -> Result<(Counts, bool)> {
+pub fn watch(mut command: Command) -> Result<(Counts, bool)> {
     let mut child = command
         .current_dir(root())
         .stdout(Stdio::piped())

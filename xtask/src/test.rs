@@ -2,7 +2,7 @@
 //!
 //! Every step runs, whatever became of the one before.
 //!
-//! All steps on the host select the whole workspace with its default features: cargo compiles a crate once for every set of
+//! All steps on the host select the whole workspace with the same features: cargo compiles a crate once for every set of
 //! features of its dependencies, and these depend on what is selected.
 
 use crate::bench;
@@ -10,6 +10,7 @@ use crate::cargo::{self, cargo, target_directory};
 use crate::emulate;
 use crate::firmware::{Board, Firmware, TARGET};
 use crate::setup::WINDOWS;
+use crate::side_by_side;
 use crate::size;
 use crate::tally::Tally;
 use crate::virtual_nucleo;
@@ -23,9 +24,9 @@ use std::process::{Command, ExitCode};
 /// The tests that boot emulated boards: they run only where they are named.
 const EMULATED: [&str; 2] = ["--test", "emulated"];
 
-/// Feature of the PC that needs the library of real cameras; the tests take the simulated one that it comes with.
+/// Feature of the PC that needs the library of real cameras; its tests take the simulated one that it comes with. One set of
+/// features for everything: without it the PC's programs are linted for Windows, and tested by [`check`].
 const CAMERAS: [&str; 2] = ["--features", "seamwright/aravis"];
-const CAMERA_TESTS: [&str; 2] = ["--test", "aravis"];
 
 /// Boards with tests that are no part of the suite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -52,21 +53,14 @@ pub fn virtual_nucleo() -> ExitCode {
 /// Runs what needs cargo only: format, lints, tests of the host, with whole jobs on simulated boards.
 pub fn check() -> ExitCode {
     let mut tally = Tally::default();
-    host(&mut tally);
+    host(&mut tally, &[]);
     tally.close()
 }
 
 /// Runs everything.
 pub fn run() -> ExitCode {
     let mut tally = Tally::default();
-    host(&mut tally);
-    let program = ["--bin", "seamwright"];
-    tally.check("lints with real cameras", || {
-        clippy(&[&["--workspace"], &CAMERAS[..], &program, &CAMERA_TESTS].concat())
-    });
-    tally.test("tests of real cameras", || {
-        cargo(&[&["test", "--workspace"], &CAMERAS[..], &CAMERA_TESTS].concat())
-    });
+    host(&mut tally, &CAMERAS);
     tally.check("lints of the PC's programs on Windows", || {
         clippy(&[
             "--package",
@@ -98,13 +92,14 @@ pub fn run() -> ExitCode {
     tally.close()
 }
 
-fn host(tally: &mut Tally) {
+/// With these `features`, or with the default ones.
+fn host(tally: &mut Tally, features: &[&str]) {
     tally.check("format", || cargo::run(&["fmt", "--all", "--check"]));
     tally.check("lints of the host", || {
-        clippy(&[&["--workspace", "--all-targets"], &EMULATED[..]].concat())
+        clippy(&[&["--workspace", "--all-targets"], features, &EMULATED].concat())
     });
-    tally.test("tests of the host", || {
-        cargo(&["test", "--workspace", "--no-fail-fast"])
+    tally.counted("tests of the host", || {
+        side_by_side::run(&[&["--workspace"], features].concat())
     });
 }
 
@@ -119,13 +114,19 @@ fn emulated_tests() -> Result<Command> {
     let logs = target_directory()?.join("emulated");
     let boot = emulate::build(logs, 1.0, DEFAULT_MACHINE.to_owned(), PlantChoice::Shipped)?;
     let test = ["test", "--workspace", "--no-fail-fast"];
-    let mut command = cargo(&[&test[..], &EMULATED, &["--", "--test-threads=2"]].concat())?;
+    let mut command = cargo(&[&test[..], &CAMERAS, &EMULATED, &["--", "--test-threads=2"]].concat())?;
     command.envs(
         BOOT_VARIABLES
             .into_iter()
             .zip([boot.motion, boot.tracker, boot.plugin]),
     );
-    cargo::run(&["build", "--quiet", "--workspace", "--bin", "seamwright"])?;
+    cargo::run(
+        &[
+            &["build", "--quiet", "--workspace", "--bin", "seamwright"],
+            &CAMERAS[..],
+        ]
+        .concat(),
+    )?;
     let seamwright = target_directory()?.join("debug").join("seamwright");
     let xtask = env::current_exe().context("cannot find this program's own file")?;
     command.envs(PROGRAM_VARIABLES.into_iter().zip([seamwright, xtask]));

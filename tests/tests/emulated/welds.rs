@@ -11,8 +11,9 @@ use system_tests::{
 use world::SceneFile;
 use world::simulated::SimulatedBoards;
 
-/// Does `job` on emulated and on simulated boards: no spot is ever further than `limit_mm` from its seam, and both agree.
-fn assert_welds(name: &str, limit_mm: f64, job: impl Fn(&mut dyn Boards) -> Ended) {
+/// Does `job` on emulated and on simulated boards: no spot is ever further than `limit_mm` from its seam, and both agree. The
+/// emulated boards and how it ended there.
+fn assert_welds(name: &str, limit_mm: f64, job: impl Fn(&mut dyn Boards) -> Ended) -> (Pair, Ended) {
     let mut pair = Pair::boot(name);
     let ended = job(&mut pair.connect());
     assert_on_seam(&ended, limit_mm);
@@ -30,6 +31,7 @@ fn assert_welds(name: &str, limit_mm: f64, job: impl Fn(&mut dyn Boards) -> Ende
         );
     }
     pair.assert_off();
+    (pair, ended)
 }
 
 #[test]
@@ -40,17 +42,10 @@ fn the_shipped_job_at_5_m_per_min() {
 }
 
 #[test]
-fn the_shipped_job_at_9_m_per_min() {
-    assert_welds("weld-9", 0.03, |boards| {
+fn the_shipped_job_at_9_m_per_min_and_again_before_a_subscriber_that_sleeps() {
+    let (mut pair, alone) = assert_welds("weld-9", 0.03, |boards| {
         weld_through_pictures(boards, JointForm::Gap, SceneFile::default(), 9.0)
     });
-}
-
-#[test]
-fn a_subscriber_that_sleeps_changes_nothing() {
-    let mut pair = Pair::boot("weld-sleeper");
-    let scene = SceneFile::default();
-    let alone = weld_through_pictures(&mut pair.connect(), JointForm::Gap, scene, 9.0);
     let (watched, lost) = weld_before_a_sleeper(&mut pair.connect(), 9.0);
     assert_served(&watched.report);
     assert!(lost > 1000, "{lost}");
