@@ -1,7 +1,7 @@
 //! Plot of a circular test.
 
 use crate::ReportError;
-use crate::draw::{AS_CURVES, Curve, Panel, figure};
+use crate::draw::{AS_CURVES, Curve, POINTS, Panel, figure};
 use commission::{REVERSALS_DEG, Turn};
 use std::path::Path;
 
@@ -25,7 +25,9 @@ pub fn write_circle(path: &Path, title: &str, turns: &[Turn; 2]) -> Result<(), R
             let radius = CIRCLE + FARTHEST * 1e3 * off / most_um;
             (radius * cos, radius * sin)
         };
-        turn.course().map(place).collect()
+        // A plot would keep the highest and the lowest of many, and a circle goes to all sides.
+        let step = turn.places.len().div_ceil(POINTS).max(1);
+        turn.course().step_by(step).map(place).collect()
     };
     let over_angle = |turn: &Turn| {
         let mut course: Vec<_> = turn.course().map(|(angle, off)| (angle, 1e3 * off)).collect();

@@ -6,7 +6,7 @@ use plotters::prelude::*;
 use std::path::Path;
 
 /// Points of a curve; more are not seen.
-const POINTS: usize = 1600;
+pub(super) const POINTS: usize = 1600;
 const FONT: &str = "sans-serif";
 /// Colours that can be told apart by everyone (Okabe and Ito).
 const COLOURS: [RGBColor; 7] = [
