@@ -4,7 +4,7 @@ use crate::armv7m::{self, LockUp};
 use crate::chip::ethernet::Ethernet;
 use crate::chip::memory::{self, Dma, Incoherent, Reach, junk};
 use crate::chip::shared::Shared;
-use crate::chip::{Chip, Tamper};
+use crate::chip::{Chip, Tamper, Watch};
 use crate::cpu::{Cpu, Register, Stop, UnicornCpu, Unmapped};
 use crate::finding::Finding;
 use crate::image::{FLASH, Image};
@@ -110,6 +110,11 @@ impl Board {
     /// From now on `tamper` gets what is written to each register, and gives what arrives there.
     pub fn tamper(&mut self, tamper: Tamper) {
         self.chip_mut().tamper(tamper);
+    }
+
+    /// From now on `watch` is told every access to a register of a peripheral.
+    pub fn watch(&mut self, watch: Watch) {
+        self.chip_mut().watch(watch);
     }
 
     /// From now on the chip's recorder notes every change of a pin.

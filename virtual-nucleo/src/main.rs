@@ -2,6 +2,7 @@
 
 use plant_file::PlantChoice;
 use std::io::Read;
+use std::net::Ipv4Addr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -12,7 +13,7 @@ use virtual_nucleo::pair::{NAMES, Pair, PairError};
 use virtual_nucleo::session::LINK_LIMIT;
 use virtual_nucleo::time::Time;
 
-const USAGE: &str = "virtual-nucleo MOTION TRACKER [--machine NAME] [--plant PLANT] [--folder FOLDER] [--rate R] [--ms TIME] [--vcd FILE]
+const USAGE: &str = "virtual-nucleo MOTION TRACKER [--machine NAME] [--plant PLANT] [--folder FOLDER] [--rate R] [--ms TIME] [--vcd FILE] [--at ADDRESS,ADDRESS]
 
 Runs both firmware images on models of the NUCLEO-H723ZG, writes FOLDER/session.toml, and ends when its standard
 input ends or, with --ms, after that much time of the boards. It fails if anything was found.
@@ -21,7 +22,9 @@ input ends or, with --ms, after that much time of the boards. It fails if anythi
     --plant    what is true of it: a plant file, draw:usual:SEED or draw:poor:SEED
     --folder   where session and pace are written; default: virtual-nucleo in the folder for temporary files
     --rate     the boards' time per wall time at most; default 1
-    --vcd      records what leaves every pin of both boards, from reset on: 0, 1, z floating, x a peripheral's";
+    --vcd      records what leaves every pin of both boards, from reset on: 0, 1, z floating, x a peripheral's
+    --at       addresses of the loopback interface at which the boards have their own ports, as 127.0.71.11,127.0.71.12, for programs
+               that are told an address; default: 127.0.0.1 and unused ports";
 
 /// From the link to where a board takes a connection: in the first second it may not have found the PC's Ethernet address again, and it
 /// drops a connection that is not complete after 0.5 s (link/src/stack.rs).
@@ -35,6 +38,7 @@ struct Options {
     rate: f64,
     end: Time,
     waveform: Option<PathBuf>,
+    at: Option<[Ipv4Addr; 2]>,
 }
 
 fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
@@ -47,6 +51,7 @@ fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
         rate: 1.0,
         end: Time::NEVER,
         waveform: None,
+        at: None,
     };
     let mut arguments = arguments;
     while let Some(argument) = arguments.next() {
@@ -57,12 +62,20 @@ fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
             "--rate" => options.rate = arguments.next()?.parse().ok().filter(|rate| *rate > 0.0)?,
             "--ms" => options.end = Time::ms(arguments.next()?.parse().ok()?),
             "--vcd" => options.waveform = Some(arguments.next()?.into()),
+            "--at" => options.at = Some(addresses(&arguments.next()?)?),
             image if !image.starts_with('-') => images.push(PathBuf::from(image)),
             _ => return None,
         }
     }
     options.images = images.try_into().ok()?;
     Some(options)
+}
+
+/// Two addresses of the loopback interface, with a comma between them.
+fn addresses(text: &str) -> Option<[Ipv4Addr; 2]> {
+    let (motion, tracker) = text.split_once(',')?;
+    let both = [motion.parse().ok()?, tracker.parse().ok()?];
+    both.iter().all(Ipv4Addr::is_loopback).then_some(both)
 }
 
 fn main() -> ExitCode {
@@ -83,7 +96,7 @@ fn main() -> ExitCode {
 /// Runs the boards; how many findings there are.
 fn run(options: &Options) -> Result<usize, PairError> {
     let [motion, tracker] = &options.images;
-    let mut pair = Pair::start([motion, tracker], &options.machine, &options.plant)?;
+    let mut pair = Pair::start_at(options.at, [motion, tracker], &options.machine, &options.plant)?;
     let file = |path: &Path, source| PairError::File {
         path: path.to_owned(),
         source,

@@ -83,14 +83,26 @@ pub struct Pair {
     /// Motion and tracker board.
     pub boards: Vec<Board>,
     gateway: Gateway,
+    /// Addresses of the loopback interface by which they are reached.
+    hosts: [Ipv4Addr; 2],
     now: Time,
     /// Where the pins are recorded, and what became of that.
     waveform: Option<io::Result<Waveform>>,
 }
 
 impl Pair {
-    /// Both boards at power-up, wired to this machine.
+    /// Both boards at power-up, wired to this machine, on unused ports of the loopback interface.
     pub fn start(images: [&Path; 2], machine: &str, plant: &PlantChoice) -> Result<Self, PairError> {
+        Self::start_at(None, images, machine, plant)
+    }
+
+    /// The same, with the ports that every board has, at an address of the loopback interface for each.
+    pub fn start_at(
+        at: Option<[Ipv4Addr; 2]>,
+        images: [&Path; 2],
+        machine: &str,
+        plant: &PlantChoice,
+    ) -> Result<Self, PairError> {
         let plant = plant.of(machine)?;
         let boards = vec![
             board(images[0], motion_machine(&plant), 1)?,
@@ -98,7 +110,8 @@ impl Pair {
         ];
         Ok(Self {
             boards,
-            gateway: Gateway::open(&ADDRESSES).map_err(PairError::Ports)?,
+            gateway: Gateway::open(&ADDRESSES, at.as_ref().map(|at| &at[..])).map_err(PairError::Ports)?,
+            hosts: at.unwrap_or([Ipv4Addr::LOCALHOST; 2]),
             now: Time::default(),
             waveform: None,
         })
@@ -184,8 +197,7 @@ impl Pair {
     pub fn session(&self, machine: &str, plant: &PlantChoice, pace: &Path) -> Result<String, PairError> {
         let (plant, pace) = (plant.to_string(), pace.display().to_string());
         let mut text = format!("machine = {machine:?}\nplant = {plant:?}\npace = {pace:?}\n");
-        for (name, (requests, datagrams)) in NAMES.iter().zip(self.ports()?) {
-            let host = Ipv4Addr::LOCALHOST;
+        for ((name, host), (requests, datagrams)) in NAMES.iter().zip(self.hosts).zip(self.ports()?) {
             text += &format!("\n[{name}]\nhost = \"{host}\"\ntcp = {requests}\nudp = {datagrams}\n");
         }
         text += &format!(

@@ -35,7 +35,7 @@ pub enum OtherBoards {
     VirtualNucleo,
 }
 
-/// Checks the model of the real board and runs its tests, with the images as they are now.
+/// Checks the model of the real board and runs its tests, and jobs on its boards, with the images as they are now.
 pub fn virtual_nucleo() -> ExitCode {
     let mut tally = Tally::default();
     tally.check("format of the virtual board", || {
@@ -47,6 +47,10 @@ pub fn virtual_nucleo() -> ExitCode {
         cargo::run_command(command, "cargo clippy")
     });
     tally.test("tests of the virtual board", virtual_nucleo::tests);
+    tally.check("lints of the jobs on the virtual board", || {
+        clippy(&[&["--workspace"], &virtual_nucleo::JOBS[..]].concat())
+    });
+    tally.test("jobs on the virtual board", virtual_nucleo::jobs);
     tally.close()
 }
 

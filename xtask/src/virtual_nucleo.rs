@@ -1,9 +1,9 @@
 //! The model of the real board: built in its own workspace, into one folder of its own, and run as a program.
 
-use crate::cargo::{cargo, run_command, target_directory};
+use crate::cargo::{self, cargo, run_command, target_directory};
 use crate::firmware::{self, Board, Firmware};
 use anyhow::{Context, Result, bail};
-use emulator::bound_to_parent;
+use emulator::{PROGRAM_VARIABLES, bound_to_parent};
 use plant_file::PlantChoice;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -12,8 +12,11 @@ use std::process::{Child, ChildStdout, Command, Stdio};
 
 /// Its manifest.
 pub const MANIFEST: [&str; 2] = ["--manifest-path", "virtual-nucleo/Cargo.toml"];
-/// Variable by which its tests find the images.
+/// Variables by which tests find the images and the program.
 const IMAGES: &str = "SEAMWRIGHT_NUCLEO_IMAGES";
+const PROGRAM: &str = "SEAMWRIGHT_VIRTUAL_NUCLEO";
+/// The tests of jobs on its boards: they run only where they are named.
+pub const JOBS: [&str; 2] = ["--test", "virtual_nucleo"];
 /// How the line begins in which it tells where its boards are to be found.
 const SESSION: &str = "session: ";
 
@@ -33,6 +36,30 @@ pub fn tests() -> Result<Command> {
     Ok(command)
 }
 
+/// Jobs on its boards, two at a time as on emulated ones, with all that they run built.
+pub fn jobs() -> Result<Command> {
+    let [motion, _] = firmware::build(Firmware::ALL, Board::NucleoH723zg)?;
+    let images = motion.parent().context("an image lies in no folder")?;
+    let program = build()?;
+    cargo::run(&["build", "--quiet", "--workspace", "--bin", "seamwright"])?;
+    let seamwright = target_directory()?.join("debug").join("seamwright");
+    let test = ["test", "--workspace", "--no-fail-fast"];
+    let mut command = cargo(&[&test[..], &JOBS, &["--", "--test-threads=2"]].concat())?;
+    command
+        .env(IMAGES, images)
+        .env(PROGRAM, program)
+        .env(PROGRAM_VARIABLES[0], seamwright);
+    Ok(command)
+}
+
+/// Builds the program; returns it.
+fn build() -> Result<PathBuf> {
+    eprintln!("building virtual-nucleo");
+    let build = ["build", "--quiet", "--release"];
+    run_command(command(&build)?, "building virtual-nucleo")?;
+    Ok(folder()?.join("release").join("virtual-nucleo"))
+}
+
 fn folder() -> Result<PathBuf> {
     Ok(target_directory()?.join("virtual-nucleo"))
 }
@@ -49,11 +76,9 @@ pub struct Running {
 /// Builds program and images, and runs both boards.
 pub fn boot(rate: f64, machine: &str, plant: &PlantChoice) -> Result<Running> {
     let images = firmware::build(Firmware::ALL, Board::NucleoH723zg)?;
-    let build = ["build", "--quiet", "--release"];
-    eprintln!("building virtual-nucleo");
-    run_command(command(&build)?, "building virtual-nucleo")?;
+    let program = build()?;
     let run = folder()?.join("boards").join(std::process::id().to_string());
-    let mut program = bound_to_parent(folder()?.join("release").join("virtual-nucleo"));
+    let mut program = bound_to_parent(program);
     program.args(images).args(["--machine", machine]);
     if *plant != PlantChoice::Shipped {
         program.args(["--plant", &plant.to_string()]);

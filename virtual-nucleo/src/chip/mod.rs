@@ -47,6 +47,24 @@ const D2_CLOCKS: [(u32, u32); 2] = [(0xdc, 29), (0xdc, 30)];
 /// peripheral, the offset of the register and the value. The core's own registers are those of `CORE`, by their addresses.
 pub type Tamper = Box<dyn FnMut(&str, u32, u32) -> u32>;
 
+/// An access to a register of a peripheral.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RegisterAccess {
+    /// The peripheral, as the reference manual calls it.
+    pub peripheral: &'static str,
+    /// Offset of the register.
+    pub offset: u32,
+    /// What was read or written.
+    pub value: u32,
+    /// Written, not read.
+    pub written: bool,
+    /// Number of the exception that runs; 0 if none does.
+    pub exception: u16,
+}
+
+/// Is told every access to a register of a peripheral, in their order.
+pub type Watch = Box<dyn FnMut(RegisterAccess)>;
+
 /// The chip.
 pub struct Chip {
     /// What the peripherals share.
@@ -57,6 +75,7 @@ pub struct Chip {
     pub domain2: Domain2,
     map: Map,
     tamper: Option<Tamper>,
+    watch: Option<Watch>,
     /// Cycle at which something is due.
     deadline: u64,
     /// Until when the chip is run.
@@ -92,6 +111,7 @@ impl Chip {
             domain2: Domain2::default(),
             map,
             tamper: None,
+            watch: None,
             deadline: 0,
             end: Time::default(),
             instructions: 0,
@@ -135,6 +155,24 @@ impl Chip {
     /// From now on `tamper` gets what is written to each register, and gives what arrives there.
     pub fn tamper(&mut self, tamper: Tamper) {
         self.tamper = Some(tamper);
+    }
+
+    /// From now on `watch` is told every access to a register of a peripheral.
+    pub fn watch(&mut self, watch: Watch) {
+        self.watch = Some(watch);
+    }
+
+    /// Tells an access to peripheral `index` to who watches.
+    fn tell(&mut self, index: usize, offset: u32, value: u32, written: bool) {
+        if let Some(watch) = &mut self.watch {
+            watch(RegisterAccess {
+                peripheral: self.map.entries()[index].name,
+                offset,
+                value,
+                written,
+                exception: self.shared.system.nvic.running(),
+            });
+        }
     }
 
     /// The 8 MHz of the ST-LINK fail.
@@ -216,6 +254,7 @@ impl Chip {
         };
         let offset = address - self.map.entries()[index].address;
         let value = self.models.read(index, offset & !3, &mut self.shared);
+        self.tell(index, offset & !3, value, false);
         if let Some(time) = self.shared.polls_until.take() {
             let clock = &mut self.shared.clock;
             clock.cycles = clock.cycles.max(clock.cycle_at(time).min(self.deadline));
@@ -255,6 +294,7 @@ impl Chip {
             }
         }
         self.models.write(index, offset, value, size, &mut self.shared);
+        self.tell(index, offset, value, true);
         if name == "RCC" {
             self.models.apply_resets(&self.map);
         }

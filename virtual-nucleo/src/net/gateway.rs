@@ -42,8 +42,13 @@ pub struct Gateway {
 }
 
 impl Gateway {
-    /// Takes unused ports of the loopback interface for the boards with these addresses.
-    pub fn open(boards: &[Ipv4Addr]) -> io::Result<Self> {
+    /// Takes unused ports of the loopback interface for the boards with these addresses; or, at an address of that interface for
+    /// each board, the ports that every board has.
+    pub fn open(boards: &[Ipv4Addr], at: Option<&[Ipv4Addr]>) -> io::Result<Self> {
+        let host = |index: usize, port| match at.and_then(|at| at.get(index)) {
+            Some(address) => (*address, port),
+            None => (Ipv4Addr::LOCALHOST, 0),
+        };
         let mut queues = Queues::default();
         let config = Config::new(HardwareAddress::Ethernet(MAC));
         let mut interface = Interface::new(config, &mut queues, Instant::ZERO);
@@ -54,11 +59,13 @@ impl Gateway {
         let end = |address: &Ipv4Addr, port| IpEndpoint::new(IpAddress::Ipv4(*address), port);
         let streams = boards
             .iter()
-            .map(|board| Streams::listen(end(board, REQUEST_PORT)));
+            .enumerate()
+            .map(|(index, board)| Streams::listen(end(board, REQUEST_PORT), host(index, REQUEST_PORT)));
         let mut sockets = SocketSet::new(Vec::new());
-        let datagrams = boards
-            .iter()
-            .map(|board| Datagrams::bind(end(board, DATAGRAM_PORT), &mut sockets));
+        let datagrams = boards.iter().enumerate().map(|(index, board)| {
+            let host = host(index, DATAGRAM_PORT);
+            Datagrams::bind(end(board, DATAGRAM_PORT), host, &mut sockets)
+        });
         Ok(Self {
             queues,
             interface,

@@ -34,9 +34,9 @@ struct Stream {
 }
 
 impl Streams {
-    /// Listens on an unused port for streams to `board`.
-    pub fn listen(board: IpEndpoint) -> io::Result<Self> {
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
+    /// Listens at `host` for streams to `board`.
+    pub fn listen(board: IpEndpoint, host: (Ipv4Addr, u16)) -> io::Result<Self> {
+        let listener = TcpListener::bind(host)?;
         listener.set_nonblocking(true)?;
         Ok(Self {
             listener,
@@ -154,9 +154,13 @@ pub struct Datagrams {
 }
 
 impl Datagrams {
-    /// Takes datagrams for `board` on an unused port.
-    pub fn bind(board: IpEndpoint, sockets: &mut SocketSet<'static>) -> io::Result<Self> {
-        let host = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
+    /// Takes datagrams for `board` at `host`.
+    pub fn bind(
+        board: IpEndpoint,
+        host: (Ipv4Addr, u16),
+        sockets: &mut SocketSet<'static>,
+    ) -> io::Result<Self> {
+        let host = UdpSocket::bind(host)?;
         host.set_nonblocking(true)?;
         let mut socket = socket(DISCARD_PORT).map_err(io::Error::other)?;
         let nobody = IpEndpoint::new(board.addr, DISCARD_PORT);

@@ -85,6 +85,9 @@ impl Ethernet {
         frame.resize(frame.len().max(SHORTEST), 0);
         let end = now + Time(BYTE.0 * (frame.len() as u64 + AROUND));
         if self.phy.link(now) {
+            if let Some(record) = &mut self.record {
+                record.sent.push(frame.clone());
+            }
             self.sent.push_back((end, frame));
         }
         self.rings.under_way = Some((end, descriptor));
@@ -133,6 +136,9 @@ impl Ethernet {
             memory.write_word(descriptor + 12, WHOLE | (frame.len() as u32 + CHECKSUM));
             self.rings.receiving = next(self.rings.receiving, self.word(RX_LENGTH));
             self.raise(RECEIVED);
+            if let Some(record) = &mut self.record {
+                record.received.push(frame);
+            }
         }
         true
     }

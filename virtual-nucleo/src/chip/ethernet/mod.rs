@@ -51,6 +51,15 @@ const HIGHEST_MDC_HZ: u64 = 2_500_000;
 /// Signals that RMII needs.
 const SIGNALS: [&str; 7] = ["REF_CLK", "CRS_DV", "RXD0", "RXD1", "TX_EN", "TXD0", "TXD1"];
 
+/// Frames that have passed the port, each way in their order.
+#[derive(Debug, Default)]
+pub struct Frames {
+    /// Put into the board's memory.
+    pub received: Vec<Vec<u8>>,
+    /// Sent by the board.
+    pub sent: Vec<Vec<u8>>,
+}
+
 /// The controller.
 #[derive(Debug)]
 pub struct Ethernet {
@@ -69,6 +78,8 @@ pub struct Ethernet {
     pub sent: VecDeque<(Time, Vec<u8>)>,
     /// Frames that no descriptor was free for.
     pub lost: u64,
+    /// What has passed, if it is recorded.
+    pub record: Option<Frames>,
 }
 
 impl Default for Ethernet {
@@ -85,6 +96,7 @@ impl Default for Ethernet {
             arriving: VecDeque::new(),
             sent: VecDeque::new(),
             lost: 0,
+            record: None,
         }
     }
 }
