@@ -6,6 +6,9 @@ use anyhow::{Context, Result, bail};
 use shared::geometry::Turn;
 
 const INCH: f64 = 25.4;
+/// With G93 the peer raises a feed to so many units a minute, which its manual does not say: F is the most, and the feed of a
+/// motion with this one is not known.
+const LEAST_FEED: f64 = 0.1;
 
 /// The commands that `text` consists of, as a list. Lines of another form are what the program says to people.
 pub fn read(text: &str) -> Result<Vec<Item>> {
@@ -139,10 +142,17 @@ impl Canon {
             to: Some(to),
             length: from.map(|from| straight(&from, &to)),
             middle: None,
-            feed: (kind != Kind::Rapid).then_some(if turns { self.feed } else { self.feed_mm }),
+            feed: match kind {
+                Kind::Rapid => None,
+                _ => self.known(if turns { self.feed } else { self.feed_mm }),
+            },
             line: 0,
         });
         Ok(())
+    }
+
+    fn known(&self, feed: f64) -> Option<f64> {
+        (self.feed != LEAST_FEED).then_some(feed)
     }
 
     /// First and second end, first and second coordinate of the centre, turns, end along the axis, A B C.
@@ -180,7 +190,7 @@ impl Canon {
             to: Some(self.to_work(to)),
             length: measured.map(|(length, _)| length),
             middle: measured.map(|(_, middle)| in_work(middle)),
-            feed: Some(self.feed_mm),
+            feed: self.known(self.feed_mm),
             line: 0,
         };
         self.list.motion(motion);
@@ -273,6 +283,19 @@ mod tests {
             near(&arc.middle.unwrap_or_default(), &[25.4 + 12.7, 38.1, 0.0]),
             "{arc:?}"
         );
+    }
+
+    #[test]
+    fn the_least_feed_of_the_peer_is_not_compared() {
+        let text = "1 N..... SET_FEED_RATE(0.100000000)\n\
+                    2 N..... STRAIGHT_FEED(1.0, 0.0, 0.0, 0.0, 0.0, 0.0)\n\
+                    3 N..... SET_FEED_RATE(0.110000000)\n\
+                    4 N..... STRAIGHT_FEED(2.0, 0.0, 0.0, 0.0, 0.0, 0.0)\n";
+        let items = read(text).expect("commands");
+        let [Item::Motion(least), Item::Motion(other)] = &items[..] else {
+            panic!("{items:?}");
+        };
+        assert_eq!((least.feed, other.feed), (None, Some(0.11)));
     }
 
     #[test]

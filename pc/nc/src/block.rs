@@ -5,6 +5,7 @@ use super::error::{NcError, Problem, SourcePosition};
 use super::expression;
 use super::flow::{self, OWord};
 use super::foreign;
+use super::grbl;
 use super::parameters::{InBlock, Lookup, Parameter};
 use super::scanner::Scanner;
 use super::siemens::{self, Read, Statement};
@@ -135,8 +136,8 @@ pub struct Block {
     pub tool_name: Option<(String, SourcePosition)>,
     /// WELDON with the name of its data, or WELDOFF without.
     pub weld: Option<(Option<String>, SourcePosition)>,
-    /// M codes that are passed over.
-    pub passed_over: Vec<(u16, SourcePosition)>,
+    /// M codes and commands to Grbl that are passed over.
+    pub passed_over: Vec<(String, SourcePosition)>,
     /// Comments, in their order.
     pub comments: Vec<(String, SourcePosition)>,
 }
@@ -209,6 +210,10 @@ pub(super) struct Skipped<'a> {
     pub(super) blocks: bool,
     /// M codes that mean nothing here.
     pub(super) functions: &'a BTreeSet<u16>,
+    /// Commands to Grbl that move nothing.
+    pub(super) commands: bool,
+    /// Something has moved.
+    pub(super) moved: bool,
 }
 
 /// Reads line number `line`, in which `lookup` knows the values of parameters.
@@ -283,6 +288,10 @@ pub(super) fn parse(
                         }
                     },
                 }
+            }
+            '$' | '?' if first && skipped.commands => {
+                let command = grbl::command(&mut scanner, skipped.moved)?;
+                block.passed_over.push((command, place));
             }
             '$' => return Err(Problem::Dollar.at(place)),
             c => return Err(Problem::Character(c).at(place)),
@@ -467,7 +476,7 @@ fn take(block: &mut Block, mut word: Word, first: bool, skipped: Skipped<'_>) ->
             Err(_) if siemens::is_without_effect(&word.address, word.value) => Ok(()),
             Err(error) => match of_other_machines(&word.address, word.value) {
                 Some(number) if skipped.functions.contains(&number) => {
-                    block.passed_over.push((number, word.place));
+                    block.passed_over.push((format!("M{number}"), word.place));
                     Ok(())
                 }
                 _ => Err(error),

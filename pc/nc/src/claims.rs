@@ -33,8 +33,7 @@ impl<'b> Claims<'b> {
             .filter(|w| SHARED.contains(&w.address.as_str()))
         {
             let address = word.address.as_str();
-            // The edge of a tool, on other controllers.
-            if address == "D" && word.number_below(10).is_some() && block.code(Group::ToolLength).is_none() {
+            if address == "D" && is_edge(block, word) {
                 continue;
             }
             let takes = |words: fn(Code) -> &'static [&'static str]| {
@@ -76,6 +75,13 @@ impl<'b> Claims<'b> {
             .find(|(word, owner)| *owner == code && word.address == address);
         found.map(|(word, _)| *word)
     }
+}
+
+/// Whether D is the edge of a tool, or beside T and M6 the number of its radius, on other controllers.
+fn is_edge(block: &Block, word: &Word) -> bool {
+    let of_tool = block.word("T").is_some() || block.has(Code::ChangeTool);
+    let count = if of_tool { 100 } else { 10 };
+    block.code(Group::ToolLength).is_none() && word.number_below(count).is_some()
 }
 
 /// Whether a word cannot belong to anything but a motion.

@@ -347,6 +347,14 @@ pub enum Code {
     Turn,
     /// AROT.
     MoreTurn,
+    /// MIRROR.
+    Mirror,
+    /// AMIRROR.
+    MoreMirror,
+    /// SCALE.
+    Scale,
+    /// ASCALE.
+    MoreScale,
     /// G110.
     PoleFromTip,
     /// G111.
@@ -472,7 +480,7 @@ pub enum Group {
     Motion,
     /// G80, which may stand beside a motion.
     CycleEnd,
-    /// G4 G10 G28 G30 G52 G53 G92, TRANS, ROT, G110 and theirs: they hold in their block only.
+    /// G4 G10 G28 G30 G52 G53 G92, TRANS, ROT, MIRROR, SCALE, G110 and theirs: they hold in their block only.
     NonModal,
     /// G15 G16.
     Polar,
@@ -579,6 +587,10 @@ impl Code {
                 | Self::MoreShift
                 | Self::Turn
                 | Self::MoreTurn
+                | Self::Mirror
+                | Self::MoreMirror
+                | Self::Scale
+                | Self::MoreScale
                 | Self::PoleFromTip
                 | Self::Pole
                 | Self::PoleFromPole

@@ -42,9 +42,15 @@ pub enum Problem {
     Character(char),
     /// A command to Grbl, or a variable of Siemens.
     #[error(
-        "'$' begins a command to Grbl or a variable of a Siemens controller, which are no part of programs here: leave it out"
+        "'$' begins a command to Grbl or a variable of a Siemens controller, which are no part of programs here: leave it out, or list \"$\" under passed_over in [program] of the machine file"
     )]
     Dollar,
+    /// A command to Grbl that does something.
+    #[error("{0} is no command to Grbl that may be left out: take it out of the program")]
+    GrblCommand(String),
+    /// The search of the reference marks after a motion.
+    #[error("$H after a motion leads the axes to their reference marks, which programs do not: write G28")]
+    HomeAmidst,
     /// A program of Heidenhain controllers.
     #[error(
         "this is a program of a Heidenhain controller, which is not read here: let the CAM system put out RS274/NGC or Siemens 840D"
@@ -217,6 +223,9 @@ pub enum Problem {
     /// An arc that is not in a plane of the machine.
     #[error("arcs in G18 and G19 are not possible in a coordinate system that is rotated about Z")]
     TiltedArc,
+    /// An arc with a factor for X and another one for Y.
+    #[error("an arc needs the same factor of SCALE for X and Y: with these it is an ellipse")]
+    StretchedArc,
     /// What is not possible in this mode.
     #[error("{code}: {why}")]
     Impossible {

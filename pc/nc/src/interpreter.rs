@@ -134,6 +134,11 @@ impl Interpreter {
         }
     }
 
+    /// Whether the machine may stand elsewhere than where the program began.
+    pub(super) fn has_moved(&self) -> bool {
+        self.placed || self.lost || self.known.contains(&true)
+    }
+
     /// Carries out a block: parameters, modes and feed, outputs, tool, spindle, dwell, offsets, motion, stop.
     pub(super) fn block(&mut self, block: &Block) -> Result<(), NcError> {
         for (parameter, value) in &block.settings {
@@ -146,11 +151,8 @@ impl Interpreter {
         for (comment, place) in &block.comments {
             self.remark(comment, *place);
         }
-        for (number, place) in &block.passed_over {
-            self.tell_once(
-                format!("M{number} is passed over, as the machine file says"),
-                *place,
-            );
+        for (name, place) in &block.passed_over {
+            self.tell_once(format!("{name} is passed over, as the machine file says"), *place);
         }
         if block.settings_alone() {
             return Ok(());
@@ -238,6 +240,13 @@ impl Interpreter {
             self.wait(pending);
         }
         if let Some((name, place)) = &block.weld {
+            if name.is_some() && self.offsets.frame.reshapes() {
+                let (code, why) = (
+                    "WELDON",
+                    "MIRROR or SCALE hold, and its data do not follow them: write the coordinates of the weld as they are",
+                );
+                return Err(Problem::Impossible { code, why }.at(*place));
+            }
             self.weld(name.as_deref(), *place);
         }
         if let Some(t) = block.word("T") {

@@ -22,6 +22,8 @@ mod explain;
 mod expression;
 mod flow;
 mod foreign;
+mod frame;
+mod grbl;
 mod hints;
 mod interpreter;
 mod levels;

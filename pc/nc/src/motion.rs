@@ -13,6 +13,7 @@ use super::program::{
     AXIS_WORDS, ArcForm, ArcWay, ControlPoint, EXTENSION_WORDS, FeedRate, Motion, NurbsWay, Plane,
     ProgramPath, Target, Way, Words,
 };
+use shared::geometry::Turn;
 use shared::io::AXES;
 
 impl Interpreter {
@@ -198,7 +199,14 @@ impl Interpreter {
             return Err(Problem::NotTip.at(place));
         }
         self.modal.closed = false;
+        self.check_reshaped(block, mode.is_cycle(), place)?;
         let direction = self.direction(block, claims, mode)?;
+        if let Some((_, place)) = direction
+            && self.offsets.frame.reshapes()
+        {
+            let (code, why) = ("MIRROR or SCALE", "directions of the tool do not follow it");
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
         if mode.is_cycle() {
             return self.canned_cycle(block, claims, mode, place);
         }
@@ -269,13 +277,14 @@ impl Interpreter {
     ) -> Result<ArcWay, NcError> {
         let plane = self.modal.plane;
         let mut way = arc::way(claims, mode, plane, place, known)?;
-        if self.offsets.turned() && plane != Plane::Xy {
-            return Err(Problem::TiltedArc.at(place));
-        }
+        let (factor, turn) = self.framed_arc(plane, way.turn, place)?;
+        way.turn = turn;
         way.form = match way.form {
             // That of an opening angle is in mm.
-            ArcForm::Radius(radius) if known.is_none() => ArcForm::Radius(radius * self.modal.unit()),
-            ArcForm::Radius(radius) => ArcForm::Radius(radius),
+            ArcForm::Radius(radius) if known.is_none() => {
+                ArcForm::Radius(radius * self.modal.unit() * factor)
+            }
+            ArcForm::Radius(radius) => ArcForm::Radius(radius * factor),
             ArcForm::Centre(_) => {
                 let words = arc::CENTRE_WORDS.map(|name| claims.word(mode, name));
                 let [a, b] = plane.axes();
@@ -294,6 +303,25 @@ impl Interpreter {
             }
         };
         Ok(way)
+    }
+
+    /// What the coordinate system and the frame make of an arc: how many times as large it is, and its sense.
+    pub(super) fn framed_arc(
+        &self,
+        plane: Plane,
+        turn: Turn,
+        place: SourcePosition,
+    ) -> Result<(f64, Turn), NcError> {
+        let frame = &self.offsets.frame;
+        if plane != Plane::Xy && (self.offsets.turned() || frame.reshapes()) {
+            return Err(Problem::TiltedArc.at(place));
+        }
+        let (factor, mirrored) = frame.of_arcs().ok_or(Problem::StretchedArc.at(place))?;
+        let other = match turn {
+            Turn::Clockwise => Turn::CounterClockwise,
+            Turn::CounterClockwise => Turn::Clockwise,
+        };
+        Ok((factor, if mirrored { other } else { turn }))
     }
 
     /// G5 and G5.1: one Bézier curve in the plane X Y, to the coordinates `said`.

@@ -1,8 +1,9 @@
 //! From coordinates of the program to the tip: coordinate systems, G52 and G92 (RS274/NGC as LinuxCNC has it).
 //!
-//! tip = offset of the system + rotation about Z · (local offset + offset of the frame + its rotation · programmed); rotary axes
-//! have offsets alone. The frame is that of TRANS and ROT in Siemens programs.
+//! tip = offset of the system + rotation about Z · (local offset + frame(programmed)); rotary axes have offsets alone. The frame is
+//! that of Siemens programs.
 
+use super::frame::Frame;
 use shared::io::AXES;
 
 /// Coordinate systems, G54 to G59.3.
@@ -21,20 +22,6 @@ pub(super) struct System {
     pub(super) rotation: f64,
 }
 
-impl System {
-    /// Goes on by an offset in its own coordinates.
-    pub(super) fn shift(&mut self, by: &Coordinates) {
-        let [x, y] = turn([by[0], by[1]], self.rotation);
-        self.offset[0] += x;
-        self.offset[1] += y;
-        (2..AXES).for_each(|axis| self.offset[axis] += by[axis]);
-    }
-
-    fn is_none(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
 /// All offsets.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Offsets {
@@ -45,8 +32,8 @@ pub(super) struct Offsets {
     pub(super) local: Coordinates,
     /// Whether that holds.
     pub(super) local_on: bool,
-    /// TRANS and ROT.
-    pub(super) frame: System,
+    /// TRANS, ROT, MIRROR and SCALE.
+    pub(super) frame: Frame,
 }
 
 impl Offsets {
@@ -61,29 +48,23 @@ impl Offsets {
 
     /// Whether X and Y of the program are not along those of the tip.
     pub(super) fn turned(&self) -> bool {
-        self.rotation() != 0.0
+        self.system().rotation != 0.0 || self.frame.turned()
     }
 
-    /// Of programmed coordinates about Z \[deg\].
-    fn rotation(&self) -> f64 {
-        self.system().rotation + self.frame.rotation
-    }
-
-    /// Whether TRANS or ROT hold.
+    /// Whether TRANS, ROT, MIRROR or SCALE hold.
     pub(super) fn has_frame(&self) -> bool {
         !self.frame.is_none()
     }
 
-    /// A direction in the plane X Y, turned with the system.
-    pub(super) fn direction(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        turn([x, y], self.rotation())
+    /// A direction in the plane X Y, turned with the system and the frame.
+    pub(super) fn direction(&self, own: [f64; 2]) -> [f64; 2] {
+        turn(self.frame.direction(own), self.system().rotation)
     }
 
     pub(super) fn to_tip(&self, programmed: &Coordinates) -> Coordinates {
         let local = self.local_now();
-        let mut framed = self.frame;
-        framed.shift(programmed);
-        let mut tip: Coordinates = std::array::from_fn(|i| framed.offset[i] + local[i]);
+        let framed = self.frame.apply(programmed);
+        let mut tip: Coordinates = std::array::from_fn(|i| framed[i] + local[i]);
         [tip[0], tip[1]] = turn([tip[0], tip[1]], self.system().rotation);
         std::array::from_fn(|i| tip[i] + self.system().offset[i])
     }
@@ -91,9 +72,8 @@ impl Offsets {
     pub(super) fn to_programmed(&self, tip: &Coordinates) -> Coordinates {
         let local = self.local_now();
         let from_system = self.in_system(tip);
-        let mut own = std::array::from_fn(|i| from_system[i] - local[i] - self.frame.offset[i]);
-        [own[0], own[1]] = turn([own[0], own[1]], -self.frame.rotation);
-        own
+        self.frame
+            .undo(&std::array::from_fn(|i| from_system[i] - local[i]))
     }
 
     /// Coordinates in the system, without the local offset.
@@ -134,10 +114,10 @@ mod tests {
             );
         };
         offsets.frame.shift(&[4.0, 3.0, 1.0, 0.0, 0.0, 0.0]);
-        offsets.frame.rotation = 20.0;
+        offsets.frame.turn(20.0);
         offsets.frame.shift(&[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         there(&offsets);
-        offsets.frame = System::default();
+        offsets.frame = Frame::default();
         let tip = offsets.to_tip(&[10.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let (sin, cos) = 30f64.to_radians().sin_cos();
         let expected = [

@@ -209,6 +209,8 @@ impl Reader {
         let skipped = Skipped {
             blocks: self.options.block_delete,
             functions: &self.options.setup.passed_over,
+            commands: self.options.setup.grbl_commands,
+            moved: self.interpreter.has_moved(),
         };
         let parsed = parse(&text, here.line, skipped, &mut self.interpreter)?;
         let seen = self.position.seen;

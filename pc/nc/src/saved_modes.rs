@@ -3,9 +3,9 @@
 use super::block::Block;
 use super::codes::{Code, Group};
 use super::error::{NcError, Problem, SourcePosition};
+use super::frame::Frame;
 use super::interpreter::Interpreter;
 use super::modal::Modal;
-use super::offsets::System;
 use super::outputs::Spindle;
 
 /// Modes of one moment.
@@ -28,7 +28,7 @@ enum By {
     /// M73: where the subroutine ends, and at M72.
     Subroutine,
     /// SAVE behind PROC: where the subprogram ends, with the frame.
-    Header(System),
+    Header(Frame),
 }
 
 impl Interpreter {

@@ -33,11 +33,21 @@ impl Interpreter {
         let place = code.place;
         let other_offsets = matches!(code.code, Code::SetOffsets | Code::LocalOffset | Code::OffsetHere);
         if other_offsets && self.offsets.has_frame() {
-            let (code, why) = (code.name, "TRANS or ROT hold: end them first by TRANS alone");
+            let (code, why) = (
+                code.name,
+                "TRANS, ROT, MIRROR or SCALE hold: end them first by TRANS alone",
+            );
             return Err(Problem::Impossible { code, why }.at(place));
         }
         match code.code {
-            Code::Shift | Code::MoreShift | Code::Turn | Code::MoreTurn => {
+            Code::Shift
+            | Code::MoreShift
+            | Code::Turn
+            | Code::MoreTurn
+            | Code::Mirror
+            | Code::MoreMirror
+            | Code::Scale
+            | Code::MoreScale => {
                 self.frame(block, claims, code.code, code.name)?;
             }
             Code::Pole | Code::PoleFromTip | Code::PoleFromPole => self.set_pole(block, code.code, place)?,

@@ -42,6 +42,8 @@ pub struct Setup {
     pub tools: BTreeMap<u32, f64>,
     /// Numbers of M codes that mean nothing here and are passed over, which is told. Those that mean something keep their meaning.
     pub passed_over: BTreeSet<u16>,
+    /// Lines for a Grbl controller itself that move nothing are passed over, which is told.
+    pub grbl_commands: bool,
     /// S of M3 and M4 in programs that have said none \[r/min\].
     pub spindle_rpm: Option<f64>,
     /// Where subroutines in files of their own are.
@@ -63,6 +65,7 @@ impl Default for Setup {
             homes: [[0.0; AXES]; 2],
             tools: BTreeMap::new(),
             passed_over: BTreeSet::new(),
+            grbl_commands: false,
             spindle_rpm: None,
             folders: Vec::new(),
             kinematics: None,

@@ -41,6 +41,7 @@ impl Planner {
             homes: [park, park],
             tools: self.tools.clone(),
             passed_over: program.passed_over.numbers().clone(),
+            grbl_commands: program.passed_over.grbl_commands(),
             spindle_rpm: program.spindle_rpm,
             kinematics: Some(Arc::new(kinematics)),
             ..Setup::default()

@@ -24,7 +24,7 @@ pub struct ProgramConfig {
     pub tolerance_mm: Option<f64>,
     /// A B C of the first motion of the tip, where it does not say them \[°\].
     pub rotary_deg: Rotary,
-    /// M codes that programs are read without.
+    /// M codes, and commands to Grbl, that programs are read without.
     pub passed_over: PassedOver,
     /// S of M3 and M4 in programs that have said none \[r/min\].
     pub spindle_rpm: Option<f64>,
@@ -97,10 +97,16 @@ impl Rotary {
     }
 }
 
-/// M codes of other machines, by their numbers.
+/// M codes of other machines, by their numbers, and commands to Grbl.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "Vec<String>")]
-pub struct PassedOver(BTreeSet<u16>);
+pub struct PassedOver {
+    numbers: BTreeSet<u16>,
+    grbl_commands: bool,
+}
+
+/// Stands for the commands to Grbl.
+const GRBL: &str = "$";
 
 /// Largest number of an M code.
 const MOST_FUNCTION: u16 = 9999;
@@ -119,9 +125,14 @@ const KNOWN: [RangeInclusive<u16>; 10] = [
 ];
 
 impl PassedOver {
-    /// Their numbers.
+    /// Numbers of M codes.
     pub fn numbers(&self) -> &BTreeSet<u16> {
-        &self.0
+        &self.numbers
+    }
+
+    /// Commands to Grbl that move nothing.
+    pub fn grbl_commands(&self) -> bool {
+        self.grbl_commands
     }
 }
 
@@ -129,11 +140,11 @@ impl TryFrom<Vec<String>> for PassedOver {
     type Error = String;
 
     fn try_from(codes: Vec<String>) -> Result<Self, String> {
-        codes
-            .iter()
-            .map(|code| function(code))
-            .collect::<Result<_, _>>()
-            .map(Self)
+        let functions = codes.iter().filter(|code| *code != GRBL);
+        Ok(Self {
+            numbers: functions.map(|code| function(code)).collect::<Result<_, _>>()?,
+            grbl_commands: codes.iter().any(|code| code == GRBL),
+        })
     }
 }
 
@@ -147,7 +158,7 @@ fn function(code: &str) -> Result<u16, String> {
         .filter(|number| *number <= MOST_FUNCTION);
     let Some(number) = number else {
         return Err(format!(
-            "\"{code}\" is no M code: only those are passed over, up to \"M9999\""
+            "\"{code}\" is no M code: only those, up to \"M9999\", and \"$\" for commands to Grbl are passed over"
         ));
     };
     if KNOWN.iter().any(|known| known.contains(&number)) {

@@ -483,6 +483,10 @@ fn programs_begin_with_the_modes_that_the_file_says() {
     assert_eq!(of(all), wanted);
     let passed = of("[program]\npassed_over = [\"M31\", \"M50\", \"M9026\"]").passed_over;
     assert_eq!(passed.numbers().iter().collect::<Vec<_>>(), [&31, &50, &9026]);
+    assert!(!passed.grbl_commands());
+    let passed = of("[program]\npassed_over = [\"$\", \"M31\"]").passed_over;
+    assert_eq!(passed.numbers().iter().collect::<Vec<_>>(), [&31]);
+    assert!(passed.grbl_commands());
     assert_eq!(of("[program]\npath_mode = \"G61.1\"").path_mode, PathMode::G61_1);
 }
 
@@ -548,7 +552,7 @@ fn what_programs_cannot_begin_with_is_told_with_file_line_and_key() {
         (
             "passed_over = [\"G31\"]",
             1,
-            "program.passed_over: \"G31\" is no M code: only those are passed over, up to \"M9999\"",
+            "program.passed_over: \"G31\" is no M code: only those, up to \"M9999\", and \"$\" for commands to Grbl are passed over",
         ),
         (
             "passed_over = [\"M10000\"]",

@@ -48,8 +48,10 @@ pub fn offset(writer: &mut Writer) {
     }
 }
 
-/// G20 or G21, with a feed.
+/// G20 or G21, with a feed. The length of a tool ends before: the machine of `rs274` does not change its unit with that of the
+/// program, as that of LinuxCNC does.
 pub fn units(writer: &mut Writer) {
+    writer.block("G49");
     writer.inches = writer.random.percent(60);
     writer.block(if writer.inches { "G20" } else { "G21" });
     writer.block(if writer.inches { "F30" } else { "F700" });

@@ -149,7 +149,12 @@ fn offsets(before: &Before, after: &Interpreter) -> Vec<String> {
         changes.push(format!("coordinate system {}: {text}", system_name(new.active)));
     }
     if old.frame != new.frame {
-        changes.push(format!("frame (TRANS, ROT): {}", system(&new.frame, after)));
+        let origin = of_fitted(&new.frame.offset, after);
+        let frame = format!(
+            "frame (TRANS, ROT, MIRROR, SCALE): origin at {origin}, {}",
+            new.frame.words()
+        );
+        changes.push(frame);
     }
     let local = new.local_now();
     if old.local_now() != local {

@@ -97,9 +97,6 @@ impl Interpreter {
         let planes = [self.modal.plane, Plane::Xy, Plane::Zx, Plane::Yz];
         let plane = planes.into_iter().find(flat);
         let plane = plane.ok_or_else(|| wrong("arcs lie in the plane X Y, Z X or Y Z: this one does not"))?;
-        if self.offsets.turned() && plane != Plane::Xy {
-            return Err(Problem::TiltedArc.at(place));
-        }
         let [a, b] = plane.axes();
         // Seen from the start.
         let p = [point[a] - now[a], point[b] - now[b]];
@@ -113,13 +110,14 @@ impl Interpreter {
         offset[a] = (e[1] * pp - p[1] * ee) / (2.0 * cross);
         offset[b] = (p[0] * ee - e[0] * pp) / (2.0 * cross);
         [offset[0], offset[1]] = self.offsets.direction([offset[0], offset[1]]);
+        let turn = match cross > 0.0 {
+            true => Turn::CounterClockwise,
+            false => Turn::Clockwise,
+        };
+        let (_, turn) = self.framed_arc(plane, turn, place)?;
         Ok(ArcWay {
             plane,
-            turn: if cross > 0.0 {
-                Turn::CounterClockwise
-            } else {
-                Turn::Clockwise
-            },
+            turn,
             form: ArcForm::Centre(offset),
             more_turns: 0,
         })

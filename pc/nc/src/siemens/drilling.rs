@@ -1,6 +1,7 @@
 //! CYCLE81, CYCLE82, CYCLE83, CYCLE85 and CYCLE89: a hole where the tip is, or with MCALL after every motion.
 
 use super::calls::arguments;
+use crate::block::Block;
 use crate::error::{NcError, Problem, SourcePosition};
 use crate::interpreter::Interpreter;
 use crate::outputs::LONGEST_DWELL_S;
@@ -271,6 +272,7 @@ impl Interpreter {
         if self.offsets.turned() && axis != 2 {
             return Err(Problem::TiltedArc.at(place));
         }
+        self.check_reshaped(&Block::default(), true, place)?;
         let unit = self.modal.unit();
         let own = self.modal.mm_min().ok_or(Problem::NoFeed(name).at(place));
         let [feed_in, feed_out] = match drilling.feeds {

@@ -9,7 +9,7 @@ use crate::scanner::Scanner;
 pub(crate) const POINT_WORDS: [&str; 3] = ["I1", "J1", "K1"];
 
 /// Words and the codes that they are here.
-const CODES: [(&str, Code, Group); 10] = [
+const CODES: [(&str, Code, Group); 14] = [
     ("TRAORI", Code::TipOn, Group::ToolLength),
     ("TRAFOOF", Code::TipOff, Group::ToolLength),
     ("ORIAXES", Code::Hint, Group::Hint),
@@ -20,6 +20,10 @@ const CODES: [(&str, Code, Group); 10] = [
     ("ATRANS", Code::MoreShift, Group::NonModal),
     ("ROT", Code::Turn, Group::NonModal),
     ("AROT", Code::MoreTurn, Group::NonModal),
+    ("MIRROR", Code::Mirror, Group::NonModal),
+    ("AMIRROR", Code::MoreMirror, Group::NonModal),
+    ("SCALE", Code::Scale, Group::NonModal),
+    ("ASCALE", Code::MoreScale, Group::NonModal),
 ];
 
 /// Words without an effect here: what they ask for is always so, or what they change is not there.
@@ -84,7 +88,7 @@ const M_WITHOUT_EFFECT: [u32; 6] = [40, 41, 42, 43, 44, 45];
 const SPLINE: &str = "splines through points are not supported: write G1 with G64 P, G5 or G6.2";
 const CYCLE: &str = "this cycle is not supported: write its motions out, or let the CAM system do so";
 const TAPPING: &str = "threading and tapping need a spindle that the axes follow, and this machine has none";
-const FRAME: &str = "only TRANS, ATRANS, ROT and AROT about Z change the coordinates of a program";
+const FRAME: &str = "only TRANS, MIRROR, SCALE, ROT about Z and ATRANS, AMIRROR, ASCALE, AROT change the coordinates of a program";
 const SPINDLE: &str = "the spindle is not positioned by programs";
 const FILES: &str =
     "subprograms are called by their name alone in a line, and are in this program or beside it";
@@ -95,16 +99,12 @@ const RETRACTION: &str =
 const LATHE: &str = "lathe codes are not supported";
 
 /// Words that are refused, and why.
-const REFUSED: [(&str, &str); 50] = [
+const REFUSED: [(&str, &str); 46] = [
     ("ASPLINE", SPLINE),
     ("CSPLINE", SPLINE),
     ("BSPLINE", SPLINE),
     ("POLY", SPLINE),
     ("INVCW", SPLINE),
-    ("SCALE", FRAME),
-    ("ASCALE", FRAME),
-    ("MIRROR", FRAME),
-    ("AMIRROR", FRAME),
     ("ROTS", FRAME),
     ("AROTS", FRAME),
     ("TOFRAME", FRAME),

@@ -257,6 +257,50 @@ fn functions_of_other_machines_are_passed_over_where_the_machine_file_lists_them
 }
 
 #[test]
+fn commands_to_grbl_are_passed_over_where_the_machine_file_lists_them() {
+    let with_commands = |text: &str| {
+        let setup = Setup {
+            grbl_commands: true,
+            ..Setup::default()
+        };
+        let options = Options {
+            setup: setup.into(),
+            ..Options::default()
+        };
+        let program = interpret(text, options).map_err(|error| error.to_string())?;
+        let notices = program.notices.into_iter();
+        Ok(notices
+            .map(|notice| (notice.place.line, notice.text))
+            .collect::<Vec<_>>())
+    };
+    let passed = |name: &str| format!("{name} is passed over, as the machine file says");
+    let text = "$I ; build\n?\n $ h\n$32 = 1 (laser)\nG21 G0 X5\n$$\n$I\nM2";
+    let told = with_commands(text).unwrap();
+    let names = [(1, "$I"), (2, "?"), (3, "$H"), (4, "$32=1"), (6, "$$")];
+    assert_eq!(told, names.map(|(line, name)| (line, passed(name))));
+    let of = |text: &str| -> String { with_commands(text).unwrap_err() };
+    // They would move something, or change what the program does.
+    for (text, problem) in [
+        (
+            "$J=G91 X5 F100\nM2",
+            "line 1, column 1: $J=G91X5F100 is no command",
+        ),
+        ("$C\nM2", "$C is no command to Grbl that may be left out"),
+        ("$N0=G20\nM2", "$N0=G20 is no command"),
+        (
+            "$P_UIFR[1,X,TR]=5\nM2",
+            "is no command to Grbl that may be left out",
+        ),
+        ("G0 X5\n$H\nM2", "line 2, column 1: $H after a motion"),
+        ("G53 G0 X5\n$H\nM2", "line 2, column 1: $H after a motion"),
+        ("G0 X5 $H\nM2", "'$' begins"),
+    ] {
+        assert!(of(text).contains(problem), "{text}: {}", of(text));
+    }
+    assert!(wrong("$I\nM2").contains("list \"$\" under passed_over"));
+}
+
+#[test]
 fn what_has_a_meaning_is_never_passed_over() {
     let setup = Setup {
         passed_over: (0..=9999).collect(),

@@ -127,6 +127,9 @@ fn words_of_a_post_processor_for_siemens_are_understood() {
     assert!(wrong("T=\"\"").contains("T=\"NAME\" needs the name of a tool"));
     assert!(wrong("G71 Q1 X1").contains("lathe codes are not supported"));
     assert!(wrong("F1 G1 X1 D12").contains("D"));
+    // Beside a tool it is the number of its radius.
+    assert!(run("T17 D17 M6\nM2").is_ok() && run("T17\nD17 M6\nM2").is_ok());
+    assert!(wrong("T17 D17.5 M6").contains("D belongs to no code"));
     assert!(wrong("CYCLE800(1)").contains("a retraction that is not known"));
     assert!(run("CYCLE800(0,\"TC1\",0,57,0,0,0,0,0.0,0,0,0,0,-1)\nFGROUP(X,Y,Z)\nG0 X1\nM2").is_ok());
     assert!(run("CYCLE800()\nG710 FNORM\nD1 G54 G0 X1\nM2").is_ok());
@@ -223,7 +226,7 @@ fn words_without_effect_are_passed_over_and_others_refused_with_a_reason() {
             "a tilted plane is not supported",
         ),
         ("FGROUP(X,Y,A)", "F is the speed of the tip"),
-        ("MIRROR X0", "only TRANS, ATRANS, ROT and AROT"),
+        ("ROTS X30", "only TRANS, MIRROR, SCALE"),
         ("G510", "coordinate systems are G54 to G57 and G505 to G509"),
         ("M2=3", "M2= is not understood"),
         ("L6", "there is no such word, and no subprogram L6"),
