@@ -277,12 +277,33 @@ impl Reader {
         place: SourcePosition,
     ) -> Result<(), NcError> {
         match self.level().called() {
-            None => self.interpreter.finish(code, place),
+            None => {
+                self.ends_text(code, place)?;
+                self.interpreter.finish(code, place)
+            }
             Some(Called::Name { .. } | Called::Number) => self.leave_again(),
             Some(Called::OWord(_) | Called::Part { .. }) => {
                 let why = "it stands in a part that REPEAT runs again, or in a subroutine of O words";
                 Err(Problem::Impossible { code, why }.at(place))
             }
         }
+    }
+
+    /// What stands behind M17 in the main program would be left out, and machines of other builders switch with M17.
+    fn ends_text(&mut self, code: &'static str, place: SourcePosition) -> Result<(), NcError> {
+        if code != "M17" {
+            return Ok(());
+        }
+        let mut behind = false;
+        for_each_line(self.level(), place, |found, text| {
+            let only_ends = ["M2", "M02", "M30"].contains(&text.trim());
+            behind = found.line + 1 > place.line && says_something(text) && !only_ends;
+            behind
+        })?;
+        if behind {
+            let why = "it ends the program (Siemens), and blocks stand behind it; leave it out, or end the program with M30";
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
+        Ok(())
     }
 }

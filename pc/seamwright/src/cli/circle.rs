@@ -45,13 +45,13 @@ pub struct Circle {
     #[arg(long, value_enum, default_value_t = Plane::Xy, ignore_case = true)]
     plane: Plane,
     /// Radius [mm]
-    #[arg(long, value_name = "MM", value_parser = positive, default_value_t = 100.0)]
+    #[arg(long, value_name = "MM", value_parser = positive, default_value_t = 100.0, allow_negative_numbers = true)]
     radius: f64,
     /// Speed [m/min]
-    #[arg(long, value_name = "M_PER_MIN", value_parser = speed, default_value_t = 9.0)]
+    #[arg(long, value_name = "M_PER_MIN", value_parser = speed, default_value_t = 9.0, allow_negative_numbers = true)]
     speed: f64,
     /// Farthest that the tool may be from the circle [mm; default: nothing is judged]
-    #[arg(long, value_name = "MM", value_parser = positive)]
+    #[arg(long, value_name = "MM", value_parser = positive, allow_negative_numbers = true)]
     within: Option<f64>,
     #[command(flatten)]
     boards: BoardArgs,

@@ -48,7 +48,10 @@ fn the_end_of_a_program_ends_a_subprogram_that_calls_return_from() {
         with("SUB1\nG0 X9", "PROC SUB1\nIF 1==1\nG0 X1\nRET\nENDIF\nG0 X2"),
         [1.0, 9.0]
     );
-    assert_eq!(xs("G0 X1\nM17\nG0 X2"), [1.0]);
+    assert_eq!(xs("G0 X1\nM17\n; nothing\n%\n"), [1.0]);
+    assert!(
+        wrong("G0 X1\nM17\nG0 X2").contains("M17: it ends the program (Siemens), and blocks stand behind it")
+    );
     assert_eq!(xs("G0 X1\nRET\nG0 X2"), [1.0]);
     // Labels are those of the program that jumps.
     assert_eq!(
