@@ -232,7 +232,9 @@ impl Circle {
     fn judge(&self, turns: &[Turn; 2]) -> anyhow::Result<ExitCode> {
         let figures = turns.each_ref().map(Turn::figures);
         let [Some(there), Some(back)] = figures else {
-            bail!("parts of the circle are missing in the telemetry: repeat it");
+            bail!(
+                "no whole turn was seen within {ON_CIRCLE_MM} mm of the circle: a loop swings (commission it), or telemetry is missing (repeat it)"
+            );
         };
         let title = format!(
             "circle of {} mm in {}{} at {:.2} m/min: {}",
