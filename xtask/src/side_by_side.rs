@@ -22,7 +22,7 @@ struct Program {
 /// documentation; what they counted, and whether all ended well.
 pub fn run(selection: &[&str]) -> Result<(Counts, bool)> {
     let mut programs = built(selection)?;
-    // The smallest is run first where the queue is taken from its end: programs in which much is linked are those that run jobs.
+    // Taken from its end, the queue gives the largest first: programs in which much is linked are those that run jobs.
     programs.sort_by_key(|program| program.file.metadata().map_or(0, |file| file.len()));
     let (queue, total) = (Mutex::new(programs), Mutex::new((Counts::default(), true)));
     let lanes = thread::available_parallelism().map_or(1, usize::from);

@@ -172,6 +172,11 @@ fn found(index: usize, config: &TrueMotor, motor: &MotorConfig) -> (Response, Lo
     (response, designed)
 }
 
+fn drawn(draw: &str) -> PlantFile {
+    let choice: PlantChoice = draw.parse().expect("a draw");
+    choice.of(MACHINE).expect("a machine")
+}
+
 fn shipped(index: usize) -> (TrueMotor, MotorConfig) {
     let plant = PlantChoice::Shipped.of(MACHINE).expect("it is shipped");
     let config = plant.plant.motors[index].clone().expect("it is wired");
@@ -267,11 +272,7 @@ fn gain_and_delay_of_the_drive_are_found() {
 #[test]
 fn drawn_machines_get_loops_with_margins() {
     for draw in ["draw:usual:1", "draw:usual:2", "draw:usual:3", "draw:poor:1"] {
-        let plant = draw
-            .parse::<PlantChoice>()
-            .expect("a draw")
-            .of(MACHINE)
-            .expect("a machine");
+        let plant = drawn(draw);
         for index in 0..plant.plant.motors.len() {
             let Some(config) = plant.plant.motors[index].clone() else {
                 continue;
@@ -362,11 +363,7 @@ fn on_a_circle(index: usize, config: &TrueMotor, motor: &MotorConfig) -> f64 {
 #[test]
 fn friction_is_found_and_reversals_cost_less() {
     for draw in ["draw:usual:1", "draw:usual:2", "draw:usual:3", "draw:poor:1"] {
-        let plant = draw
-            .parse::<PlantChoice>()
-            .expect("a draw")
-            .of(MACHINE)
-            .expect("a machine");
+        let plant = drawn(draw);
         for index in 0..4 {
             let config = plant.plant.motors[index].clone().expect("wired");
             let motor = believed(&plant, index);

@@ -9,7 +9,7 @@ use emulator::{SESSION_VARIABLE, Session};
 use host_link::boards::{Boards, Endpoint, NetworkBoards, Timeouts};
 use host_link::events::Interest;
 use host_link::{Command, control};
-use job::{Job, JobError, run};
+use job::{Job, JobError, Names, Work, run};
 use plant_file::{CameraMount, PlantChoice, PlantFileError};
 use report::{Ended, LogColumns, LogWriter, ended};
 use shared::io::SIDES;
@@ -20,6 +20,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
+use world::Surroundings;
 use world::emulated;
 use world::emulated::BoardsError;
 use world::simulated::SimulatedBoards;
@@ -159,6 +160,30 @@ impl BoardArgs {
             Some(Err(error)) => errln!("seamwright: cannot write the log while the job runs: {error}"),
         }
         Ok(Ok(ended(job, record)))
+    }
+
+    /// `work` of `machine`, which `file` is of, with nothing around it and no part to judge; reports call it `program`.
+    pub fn bare_job<'a>(
+        &self,
+        (machine, file): (&'a MachineFile, &Path),
+        work: Work<'a>,
+        program: String,
+    ) -> Job<'a> {
+        Job {
+            machine,
+            work,
+            part: None,
+            speed_m_per_min: None,
+            from_line: None,
+            surroundings: Surroundings::default().into(),
+            spooling: Default::default(),
+            names: Names {
+                program,
+                machine: file.display().to_string(),
+                seam: None,
+                boards: self.name(),
+            },
+        }
     }
 
     /// What the report calls them.

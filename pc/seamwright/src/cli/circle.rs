@@ -13,13 +13,12 @@ use config::machine::MachineFile;
 use emulator::MACHINE_VARIABLE;
 use host_link::geometry::MachineGeometry;
 use host_link::record::MachinePosition;
-use job::{Job, Names, Work};
+use job::Work;
 use nc::{Options, interpret};
 use report::{Ended, write_circle};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
-use world::Surroundings;
 
 /// Room between the circle and the ends of travel \[mm\].
 const ROOM_MM: f64 = 5.0;
@@ -118,21 +117,9 @@ impl Circle {
         planner
             .program(&program, &machine.homed_axes(), None)
             .with_context(refused)?;
-        let job = Job {
-            machine: &machine,
-            work: Work::Program(&program),
-            part: None,
-            speed_m_per_min: None,
-            from_line: None,
-            surroundings: Surroundings::default().into(),
-            spooling: Default::default(),
-            names: Names {
-                program: "circular test".to_owned(),
-                machine: self.machine.display().to_string(),
-                seam: None,
-                boards: self.boards.name(),
-            },
-        };
+        let work = Work::Program(&program);
+        let of = (&machine, &*self.machine);
+        let job = self.boards.bare_job(of, work, "circular test".to_owned());
         let ended = match self.boards.run(&job, Operator::LooksOn, None)? {
             Ok(ended) => ended,
             Err(code) => return Ok(code),
@@ -140,11 +127,9 @@ impl Circle {
         if ended.error.is_some() {
             return exit_code(ended.error);
         }
-        let turns = [false, true].map(|backwards| self.turn(&machine, &ended, centre, backwards));
-        let [Ok(there), Ok(back)] = turns else {
-            bail!("a machine parameter is out of range");
-        };
-        self.judge(&[there, back])
+        let geometry = MachineGeometry::build(&machine.motion)?;
+        let turns = [false, true].map(|backwards| self.turn(&geometry, &ended, centre, backwards));
+        self.judge(&turns)
     }
 
     /// Of the circle: the tip, by X, Y, Z \[mm\], nearest to where it is at the reference marks.
@@ -186,14 +171,7 @@ impl Circle {
     }
 
     /// The whole turn behind the run-in of one direction.
-    fn turn(
-        &self,
-        machine: &MachineFile,
-        ended: &Ended,
-        centre: [f64; 3],
-        backwards: bool,
-    ) -> anyhow::Result<Turn> {
-        let geometry = MachineGeometry::build(&machine.motion)?;
+    fn turn(&self, geometry: &MachineGeometry, ended: &Ended, centre: [f64; 3], backwards: bool) -> Turn {
         let [first, second] = self.plane.axes();
         let mut turn = Turn {
             radius_mm: self.radius,
@@ -226,7 +204,7 @@ impl Circle {
                 turn.places.push(place);
             }
         }
-        Ok(turn)
+        turn
     }
 
     fn judge(&self, turns: &[Turn; 2]) -> anyhow::Result<ExitCode> {

@@ -10,14 +10,13 @@ use commission::{
     WAY, design, friction, plan, rewrite, turns,
 };
 use config::machine::MachineFile;
-use job::{CapturedMotion, ExcitationRun, Job, Names, Work};
+use job::{CapturedMotion, ExcitationRun, Work};
 use shared::control::FrictionConfig;
 use shared::io::{MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use shared::kinematics::AXIS_UNIT;
 use shared::protocol::{Excitation, Excited};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use world::Surroundings;
 
 /// Part of the acceleration of an axis that an excitation uses.
 const OF_ACCELERATION: f64 = 0.5;
@@ -67,21 +66,10 @@ impl Commission {
             .collect();
         let run = ExcitationRun { excitations };
         let softened = softened(&machine);
-        let job = Job {
-            machine: &softened,
-            work: Work::Excite(&run),
-            part: None,
-            speed_m_per_min: None,
-            from_line: None,
-            surroundings: Surroundings::default().into(),
-            spooling: Default::default(),
-            names: Names {
-                program: "commissioning".to_owned(),
-                machine: self.machine.display().to_string(),
-                seam: None,
-                boards: self.boards.name(),
-            },
-        };
+        let of = (&softened, &*self.machine);
+        let job = self
+            .boards
+            .bare_job(of, Work::Excite(&run), "commissioning".to_owned());
         let ended = match self.boards.run(&job, Operator::LooksOn, None)? {
             Ok(ended) => ended,
             Err(code) => return Ok(code),

@@ -7,14 +7,13 @@ use crate::terminal::Operator;
 use anyhow::{Context, anyhow};
 use cam::path::{Planner, Tip};
 use config::machine::MachineFile;
-use job::{Job, LedLesson, Names, Work};
+use job::{LedLesson, Work};
 use parts::PartFile;
 use shared::io::AXES;
 use shared::kinematics::AXIS_UNIT;
 use std::path::Path;
 use std::process::ExitCode;
 use teach::TipFile;
-use world::Surroundings;
 
 impl SeamArgs {
     /// Teaches the places of `part`.
@@ -39,21 +38,8 @@ impl SeamArgs {
             outln!("{}: continues after place {}", output.display(), points.len());
         }
         let lesson = LedLesson { start, points, file };
-        let job = Job {
-            machine,
-            work: Work::Lead(&lesson),
-            part: None,
-            speed_m_per_min: None,
-            from_line: None,
-            surroundings: Surroundings::default().into(),
-            spooling: Default::default(),
-            names: Names {
-                program: part.path().display().to_string(),
-                machine: machine_path.display().to_string(),
-                seam: None,
-                boards: boards.name(),
-            },
-        };
+        let program = part.path().display().to_string();
+        let job = boards.bare_job((machine, machine_path), Work::Lead(&lesson), program);
         let ended = match boards.run(&job, Operator::LeadsByLines { always: true }, None)? {
             Ok(ended) => ended,
             Err(code) => return Ok(code),
