@@ -1,9 +1,9 @@
 //! The model of the real board: built in its own workspace, into one folder of its own, and run as a program.
 
-use crate::cargo::{self, cargo, run_command, target_directory};
+use crate::cargo::{cargo, run_command, target_directory};
 use crate::firmware::{self, Board, Firmware};
 use anyhow::{Context, Result, bail};
-use emulator::{PROGRAM_VARIABLES, bound_to_parent};
+use emulator::bound_to_parent;
 use plant_file::PlantChoice;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -15,8 +15,6 @@ pub const MANIFEST: [&str; 2] = ["--manifest-path", "virtual-nucleo/Cargo.toml"]
 /// Variables by which tests find the images and the program.
 const IMAGES: &str = "SEAMWRIGHT_NUCLEO_IMAGES";
 const PROGRAM: &str = "SEAMWRIGHT_VIRTUAL_NUCLEO";
-/// The tests of jobs on its boards: they run only where they are named.
-pub const JOBS: [&str; 2] = ["--test", "virtual_nucleo"];
 /// How the line begins in which it tells where its boards are to be found.
 const SESSION: &str = "session: ";
 
@@ -36,20 +34,16 @@ pub fn tests() -> Result<Command> {
     Ok(command)
 }
 
-/// Jobs on its boards, two at a time as on emulated ones, with all that they run built.
-pub fn jobs() -> Result<Command> {
+/// Those of the `tests` on boards that it can run, with all that they need built; `selection` as `cargo test` has it.
+pub fn jobs(mut tests: Command, selection: &[&str]) -> Result<Command> {
     let [motion, _] = firmware::build(Firmware::ALL, Board::NucleoH723zg)?;
     let images = motion.parent().context("an image lies in no folder")?;
-    let program = build()?;
-    cargo::run(&["build", "--quiet", "--workspace", "--bin", "seamwright"])?;
-    let seamwright = target_directory()?.join("debug").join("seamwright");
-    let test = ["test", "--workspace", "--no-fail-fast"];
-    let mut command = cargo(&[&test[..], &JOBS, &["--", "--test-threads=2"]].concat())?;
-    command
+    tests
+        .args(selection)
+        .args(["--skip", "on_qemu::"])
         .env(IMAGES, images)
-        .env(PROGRAM, program)
-        .env(PROGRAM_VARIABLES[0], seamwright);
-    Ok(command)
+        .env(PROGRAM, build()?);
+    Ok(tests)
 }
 
 /// Builds the program; returns it.

@@ -11,8 +11,8 @@ use system_tests::{
 use world::SceneFile;
 use world::simulated::SimulatedBoards;
 
-/// Does `job` on emulated and on simulated boards: no spot is ever further than `limit_mm` from its seam, and both agree. The
-/// emulated boards and how it ended there.
+/// Does `job` on a pair of boards and on simulated ones: no spot is ever further than `limit_mm` from its seam, and both agree. The
+/// pair and how it ended there.
 fn assert_welds(name: &str, limit_mm: f64, job: impl Fn(&mut dyn Boards) -> Ended) -> (Pair, Ended) {
     let mut pair = Pair::boot(name);
     let ended = job(&mut pair.connect());
@@ -24,11 +24,8 @@ fn assert_welds(name: &str, limit_mm: f64, job: impl Fn(&mut dyn Boards) -> Ende
     let both = deviations(&ended.report)
         .into_iter()
         .zip(deviations(&simulated.report));
-    for (emulated, simulated) in both {
-        assert!(
-            (emulated - simulated).abs() < 0.01,
-            "{emulated} and {simulated} mm"
-        );
+    for (here, simulated) in both {
+        assert!((here - simulated).abs() < 0.01, "{here} and {simulated} mm");
     }
     pair.assert_off();
     (pair, ended)
@@ -69,7 +66,7 @@ fn the_disturbed_job_at_9_m_per_min() {
 fn a_light_that_fails_for_good_ends_the_weld() {
     let mut pair = Pair::boot("dark");
     assert_stops_in_the_dark(&mut pair.connect(), JointForm::Gap, 9.0);
-    pair.boards.check().unwrap_or_else(|error| panic!("{error}"));
+    pair.check();
 }
 
 #[test]

@@ -1,6 +1,6 @@
-//! Boards wired to another machine than the dual-beam gantry.
+//! Homing to a machine's own reference marks, judged by where the simulated machine is.
 
-use crate::pair::{Pair, assert_served, status};
+use crate::pair::{Pair, status};
 use config::machine::MachineFile;
 use host_link::boards::{Boards, command};
 use shared::io::{AXES, MOTOR_AXIS, MOTORS};
@@ -8,7 +8,7 @@ use shared::kinematics::AXIS_UNIT;
 use shared::protocol::{Datagram, MotionSample, Request, Role};
 use shared::state::State;
 use std::time::{Duration, Instant};
-use system_tests::{JOBS, assert_within_limits, shipped, weld_job};
+use system_tests::shipped;
 
 /// A few counts of the gratings (mm or degrees).
 const FEW_COUNTS: f64 = 0.002;
@@ -56,38 +56,4 @@ fn the_pipe_welder_homes_to_its_own_marks() {
     drop(boards);
     let (motion, _) = pair.assert_off();
     assert!(motion.homed);
-}
-
-/// The shipped job of a machine keeps the limits of its part.
-#[track_caller]
-fn assert_welds(machine: &str) {
-    let (_, job) = JOBS
-        .into_iter()
-        .find(|(name, _)| *name == machine)
-        .expect("a shipped job");
-    let mut pair = Pair::boot_as(&format!("job-{machine}"), machine);
-    let ended = weld_job(&mut pair.connect_without_tracker(), machine, job);
-    assert_within_limits(&ended);
-    assert_served(&ended.report);
-    pair.assert_off();
-}
-
-#[test]
-fn the_pipe_welder_keeps_the_limits_of_its_saddle() {
-    assert_welds("pipe-welder");
-}
-
-#[test]
-fn the_ac_head_keeps_the_limits_of_its_panel() {
-    assert_welds("ac-head");
-}
-
-#[test]
-fn the_wire_arc_machine_keeps_the_limits_of_its_leaf() {
-    assert_welds("wire-arc");
-}
-
-#[test]
-fn the_stir_gantry_keeps_the_limits_of_its_contour() {
-    assert_welds("stir-gantry");
 }

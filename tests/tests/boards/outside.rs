@@ -1,27 +1,23 @@
-//! What happens to boards from outside during a weld: a board that freezes, dies or is reset, a cable that is out, a PC
-//! that dies or is paused, and a crowd on the network. Beams are off in time, the machine stops on its path, and who is
-//! blamed is who it was.
+//! What happens around the boards during a weld: a PC that dies or is paused, and a crowd on the network. The machine stops on its
+//! path, and who is blamed is who it was.
 
 use crate::pair::{Pair, assert_served, status};
 use crate::process::{Process, wait_until};
-use emulator::{BoardAction, BoardTime, Session};
-use host_link::boards::Boards;
+use emulator::{BoardTime, Session};
 use nix::sys::signal::Signal;
-use report::Ended;
 use serde_json::Value;
 use shared::protocol::framing::{MAX_DATAGRAM, encode_datagram};
 use shared::protocol::{
-    BeamPermit, ClockReply, ClockRequest, Datagram, Measurement, MotionSample, PathState, Permit, Request,
-    Response, Role, SideMeasurement,
+    BeamPermit, ClockReply, ClockRequest, Datagram, Measurement, PathState, Permit, SideMeasurement,
 };
-use shared::state::{Fault, State, TrackerFault};
+use shared::state::State;
 use std::fs;
 use std::net::{Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
-use system_tests::{TappedBoards, assert_on_seam, shipped_seam, weld};
+use system_tests::{assert_on_seam, shipped_seam, weld};
 
 /// No crowd lasts longer than this.
 const LONGEST: Duration = Duration::from_secs(180);
@@ -34,118 +30,6 @@ const CONNECTS_EVERY: Duration = Duration::from_millis(20);
 const LOOK: Duration = Duration::from_micros(100);
 /// Speed of the welds \[m/min\].
 const FAST: f64 = 9.0;
-/// Way into the weld at which something happens \[mm\].
-const AFTER_MM: f64 = 150.0;
-/// A permit is valid for so long on emulated boards \[ms\].
-const PERMIT_MS: u32 = 10;
-
-/// Welds, and does `act` once the beams have been on for a while; the last sample of the motion board before.
-fn weld_and(pair: &mut Pair, act: impl FnOnce(&mut Pair)) -> (Ended, MotionSample) {
-    let mut boards = pair.connect();
-    let (mut on_mm, mut last, mut act) = (None, None, Some(act));
-    let mut overheard = TappedBoards {
-        boards: &mut boards as &mut dyn Boards,
-        on_sample: |_: &mut dyn Boards, sample: &MotionSample| {
-            if sample.beams == [true; 2] {
-                on_mm.get_or_insert(sample.s_mm);
-            }
-            if on_mm.is_some_and(|on| sample.s_mm >= on + AFTER_MM)
-                && let Some(act) = act.take()
-            {
-                last = Some(*sample);
-                act(pair);
-            }
-        },
-    };
-    let ended = weld(&mut overheard, shipped_seam(), FAST);
-    (ended, last.expect("a weld"))
-}
-
-/// A batch of telemetry, and how far emulated boards may be ahead of what the PC has handled: by so much later than the
-/// sample that the test acts on, something happens on the boards \[ms\].
-const LATE_MS: u32 = 25 + PERMIT_MS;
-
-/// Checks that the machine was stopped by a beam's lost permit, in time after `last`, and stands with its drives off, and
-/// that `whom` is blamed.
-#[track_caller]
-fn assert_shut_in_time(pair: &Pair, ended: &Ended, last: &MotionSample, whom: &str) {
-    let error = ended.error.as_ref().expect("an error").to_string();
-    let motion = match pair.connect_motion().request(Role::Motion, &Request::Status) {
-        Ok(Response::MotionStatus(motion)) => motion,
-        other => panic!("{other:?}"),
-    };
-    match motion.fault {
-        Some(Fault::PermitLost { s_mm, .. }) => {
-            let way = f64::from(s_mm) - last.s_mm;
-            println!("beams off {way:.2} mm after the last telemetry: {error}");
-            assert!(way <= last.speed_mm_s * 1e-3 * f64::from(LATE_MS), "{way} mm");
-            assert_eq!(motion.state, State::Fault);
-        }
-        // The PC received it first, and stopped the path.
-        fault => assert_eq!((motion.state, fault), (State::Off, None), "{error}"),
-    }
-    assert!(error.contains(whom), "{error}");
-}
-
-#[test]
-fn a_tracker_that_freezes_is_reset_dies_or_is_cut_off_shuts_the_beams_in_time() {
-    for action in [
-        Some(BoardAction::Freeze),
-        Some(BoardAction::Reset),
-        Some(BoardAction::CableOut),
-        None,
-    ] {
-        println!("{action:?}");
-        let mut pair = Pair::boot("tracker-fails");
-        let (ended, last) = weld_and(&mut pair, |pair| match action {
-            Some(action) => pair.boards.act(Role::Tracker, action).expect("a board"),
-            None => pair.boards.kill(Role::Tracker).expect("a board"),
-        });
-        assert_shut_in_time(&pair, &ended, &last, "tracker");
-    }
-}
-
-#[test]
-fn a_motion_board_that_freezes_is_reset_or_dies_is_blamed_and_the_slides_stop() {
-    for action in [Some(BoardAction::Freeze), Some(BoardAction::Reset), None] {
-        println!("{action:?}");
-        let mut pair = Pair::boot("motion-fails");
-        let (ended, last) = weld_and(&mut pair, |pair| match action {
-            Some(action) => pair.boards.act(Role::Motion, action).expect("a board"),
-            None => pair.boards.kill(Role::Motion).expect("a board"),
-        });
-        let error = ended.error.as_ref().expect("an error").to_string();
-        println!("{error}");
-        assert!(error.contains("motion"), "{error}");
-        match action {
-            Some(BoardAction::Freeze) => {
-                pair.boards.act(Role::Motion, BoardAction::GoOn).expect("a board");
-            }
-            Some(_) => {}
-            None => continue,
-        }
-        let (motion, tracker) = status(&mut pair.connect());
-        assert!(
-            matches!(tracker.fault, Some(TrackerFault::PathStale { .. })),
-            "{tracker:?}"
-        );
-        match action {
-            // The time of its plant stood still with it, so its first tick afterwards is the one in which no permit comes.
-            Some(BoardAction::Freeze) => {
-                let Some(Fault::PermitLost { s_mm, .. }) = motion.fault else {
-                    panic!("{:?}", motion.fault);
-                };
-                let way = f64::from(s_mm) - last.s_mm;
-                assert!(way <= last.speed_mm_s * 1e-3 * f64::from(LATE_MS), "{way} mm");
-            }
-            _ => assert_eq!(
-                (motion.state, motion.fault, motion.homed),
-                (State::Off, None, false)
-            ),
-        }
-    }
-}
-
 /// A connection that says nothing keeps its place for so long, by the time of the boards.
 const LEASE: Duration = Duration::from_secs(5);
 /// Longer than a machine takes to miss its PC and to stop, by the time of the boards.
@@ -157,7 +41,7 @@ const BEAMS_ON: Duration = Duration::from_secs(2);
 /// Waits until the boards have gone on for so long by their own time, which goes slower than the wall's on a busy computer.
 #[track_caller]
 fn let_pass(pair: &Pair, time: Duration) {
-    let boards = BoardTime::of(&pair.boards.session().pace).expect("boards that run");
+    let boards = BoardTime::of(&pair.session().pace).expect("boards that run");
     let now = || boards.now().expect("boards that run");
     let begin = now();
     wait_until("the boards", || now() - begin >= time);
@@ -212,22 +96,6 @@ fn a_pc_that_is_started_anew_takes_the_place_of_one_that_is_silent() {
     let (status, said) = anew.end();
     assert_eq!(status.code(), Some(130), "{said:#?}");
     pair.assert_off();
-}
-
-#[test]
-fn a_motion_board_that_is_cut_off_stops_by_itself() {
-    let mut pair = Pair::boot("motion-cut-off");
-    let cut = |pair: &mut Pair| {
-        pair.boards
-            .act(Role::Motion, BoardAction::CableOut)
-            .expect("a board");
-    };
-    let (ended, last) = weld_and(&mut pair, cut);
-    pair.boards
-        .act(Role::Motion, BoardAction::CableIn)
-        .expect("a board");
-    // The session that was cut off keeps its place until its lease has run out.
-    assert_shut_in_time(&pair, &ended, &last, "motion");
 }
 
 /// A crowd that sends frames of every kind to both boards, until dropped: 10⁴ a second in all, and 100 connections, by the
@@ -356,9 +224,9 @@ fn forged() -> Vec<Vec<u8>> {
 #[test]
 fn a_crowd_on_the_network_changes_nothing() {
     let mut pair = Pair::boot("crowd");
-    let time = BoardTime::of(&pair.boards.session().pace).expect("boards that run");
+    let time = BoardTime::of(&pair.session().pace).expect("boards that run");
     let now = || time.now().expect("boards that run").as_secs_f64();
-    let crowd = Crowd::on(pair.boards.session());
+    let crowd = Crowd::on(pair.session());
     let begin = now();
     let ended = weld(&mut pair.connect(), shipped_seam(), FAST);
     let seconds = now() - begin;

@@ -1,9 +1,8 @@
 //! Jobs that are refused, interrupted or cut off: the machine stands on its path, the beams and, but for the
 //! operator's work, the drives are off, and nothing is left running.
 
-use crate::pair::{Pair, program, scratch, status};
-use crate::process::{Process, runs, wait_until};
-use emulator::PROGRAM_VARIABLES;
+use crate::pair::{Pair, scratch, status};
+use crate::process::Process;
 use host_link::boards::Boards;
 use job::JobError;
 use nix::sys::signal::Signal;
@@ -11,9 +10,6 @@ use serde_json::Value;
 use shared::protocol::{Datagram, MotionSample, TELEMETRY_BATCH};
 use shared::state::{Fault, State, TrackerState};
 use std::fs;
-use std::os::unix::fs::symlink;
-use std::os::unix::process::ExitStatusExt;
-use std::process::Command;
 use std::time::{Duration, Instant};
 use system_tests::{assert_on_seam, seam, seam_file, shipped_seam, weld};
 
@@ -147,58 +143,4 @@ fn without_the_pc_the_machine_stops_on_its_path_and_welds_again_later() {
     assert_on_seam(&weld(&mut boards, shipped_seam(), 9.0), 0.05);
     drop(boards);
     pair.assert_off();
-}
-
-fn xtask_weld() -> Command {
-    let mut command = Command::new(program(PROGRAM_VARIABLES[1]));
-    let report = scratch("xtask-report");
-    command.args(["--no-setup", "weld", "--report"]).arg(report);
-    command
-}
-
-#[test]
-fn xtask_leaves_no_process_whether_it_is_asked_to_end_or_killed() {
-    for signal in [Signal::SIGINT, Signal::SIGTERM, Signal::SIGKILL] {
-        let mut xtask = Process::start(xtask_weld());
-        xtask.wait_for("searching reference marks");
-        let started = xtask.descendants();
-        assert!(started.len() >= 3, "two boards and seamwright: {started:?}");
-        xtask.signal(signal);
-        let (status, said) = xtask.end();
-        match signal {
-            Signal::SIGKILL => assert_eq!(status.signal(), Some(9), "{said:#?}"),
-            _ => assert_eq!(status.code(), Some(130), "{said:#?}"),
-        }
-        wait_until("the end of its processes", || {
-            !started.iter().any(|pid| runs(*pid))
-        });
-    }
-}
-
-#[test]
-fn a_missing_emulator_is_named_with_its_package() {
-    // Every program there is, but for the emulator.
-    let folder = scratch("path-without-qemu");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("the scratch folder is writable");
-    let path = std::env::var_os("PATH").expect("a PATH");
-    for file in std::env::split_paths(&path)
-        .filter_map(|p| fs::read_dir(p).ok())
-        .flatten()
-    {
-        let file = file.expect("a folder that can be read");
-        if file.file_name() != "qemu-system-arm" {
-            // Of two with the same name the first counts.
-            let _ = symlink(file.path(), folder.join(file.file_name()));
-        }
-    }
-    let mut command = xtask_weld();
-    command.env("PATH", &folder);
-    let (status, said) = Process::start(command).end();
-    assert_eq!(status.code(), Some(1), "{said:#?}");
-    let last = said.last().expect("a reason");
-    assert!(
-        last.starts_with("error: ") && last.contains("package qemu-system-arm"),
-        "{last}"
-    );
 }
