@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 125] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 129] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -39,7 +39,8 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 125] = [
     ('G', 435, Code::TipByVectors, "G43.5", Group::ToolLength),
     ('G', 490, Code::TipOff, "G49", Group::ToolLength),
     ('G', 500, Code::Hint, "G50", Group::Hint),
-    ('G', 501, Code::Hint, "G50.1", Group::Hint),
+    ('G', 501, Code::MirrorNoMore, "G50.1", Group::NonModal),
+    ('G', 511, Code::MirrorAxes, "G51.1", Group::NonModal),
     ('G', 520, Code::LocalOffset, "G52", Group::NonModal),
     ('G', 530, Code::MachineAxes, "G53", Group::NonModal),
     ('G', 540, Code::System(1), "G54", Group::Offset),
@@ -61,6 +62,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 125] = [
     ('G', 6430, Code::WithinTolerance, "G643", Group::PathControl),
     ('G', 6440, Code::WithinTolerance, "G644", Group::PathControl),
     ('G', 6450, Code::WithinTolerance, "G645", Group::PathControl),
+    ('G', 680, Code::TurnAbout, "G68", Group::NonModal),
     ('G', 690, Code::Hint, "G69", Group::Hint),
     ('G', 700, Code::Inches, "G70", Group::Units),
     ('G', 710, Code::Millimetres, "G71", Group::Units),
@@ -87,6 +89,8 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 125] = [
     ('G', 990, Code::ToRetractLevel, "G99", Group::ReturnLevel),
     ('G', 7000, Code::Inches, "G700", Group::Units),
     ('G', 7100, Code::Millimetres, "G710", Group::Units),
+    ('G', 1000, Code::MirrorNoMore, "G100", Group::NonModal),
+    ('G', 1010, Code::MirrorAxes, "G101", Group::NonModal),
     ('G', 1030, Code::Hint, "G103", Group::Hint),
     ('G', 1100, Code::PoleFromTip, "G110", Group::NonModal),
     ('G', 1110, Code::Pole, "G111", Group::NonModal),
@@ -131,7 +135,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 125] = [
 ];
 
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 42] = [
+const REFUSED: [(char, u32, &str); 40] = [
     ('G', 70, LATHE),
     ('G', 120, POCKET),
     ('G', 130, POCKET),
@@ -152,17 +156,8 @@ const REFUSED: [(char, u32, &str); 42] = [
         440,
         "lengths of tools are added: write G43 H, and the length with the other sign",
     ),
-    (
-        'G',
-        511,
-        "coordinates are neither scaled nor mirrored: let the CAM system do so",
-    ),
     ('G', 630, "the operator can always override the feed: write G64"),
-    (
-        'G',
-        510,
-        "coordinates are neither scaled nor mirrored: let the CAM system do so",
-    ),
+    ('G', 510, "coordinates are not scaled: let the CAM system do so"),
     (
         'G',
         541,
@@ -172,18 +167,13 @@ const REFUSED: [(char, u32, &str); 42] = [
     ('G', 660, MACRO),
     (
         'G',
-        680,
-        "coordinates are rotated by G10 L2 R about the origin of a system, or by ROT and AROT",
-    ),
-    (
-        'G',
         683,
-        "tilted work planes are not supported: rotate about Z with G10 L2 R",
+        "tilted work planes are not supported: rotate about Z with G68",
     ),
     (
         'G',
         682,
-        "tilted work planes are not supported: rotate about Z with G10 L2 R",
+        "tilted work planes are not supported: rotate about Z with G68",
     ),
     ('G', 720, LATHE),
     ('G', 740, THREADING),
@@ -223,7 +213,8 @@ const REFUSED: [(char, u32, &str); 42] = [
 const POCKET: &str = "circular pockets are not supported: let the CAM system put out their motions";
 const LOCAL_CALL: &str = "write M98 P and the number of an O word: there are no subroutines by block number, and none in other folders";
 pub(super) const LATHE: &str = "lathe codes are not supported";
-const MACRO: &str = "macros are not called with letters: write a subroutine and o<name> call, or M98";
+const MACRO: &str =
+    "macros are not called after motions, and G65 stands first in its block: write G65 P where it is to run";
 const THREADING: &str =
     "threading and tapping need a spindle that the axes follow, and this machine has none";
 const PROBING: &str =
@@ -347,6 +338,12 @@ pub enum Code {
     Turn,
     /// AROT.
     MoreTurn,
+    /// G51.1, G101: X Y Z are mirrored.
+    MirrorAxes,
+    /// G50.1, G100: they are not any more.
+    MirrorNoMore,
+    /// G68: a rotation about a point.
+    TurnAbout,
     /// MIRROR.
     Mirror,
     /// AMIRROR.
@@ -480,7 +477,7 @@ pub enum Group {
     Motion,
     /// G80, which may stand beside a motion.
     CycleEnd,
-    /// G4 G10 G28 G30 G52 G53 G92, TRANS, ROT, MIRROR, SCALE, G110 and theirs: they hold in their block only.
+    /// G4 G10 G28 G30 G52 G53 G92, TRANS, ROT, MIRROR, SCALE, G110 and theirs, G50.1 G51.1 G68 G100 G101: they are for their block only.
     NonModal,
     /// G15 G16.
     Polar,
@@ -526,7 +523,7 @@ pub enum Group {
     Outputs,
     /// M98 M99 M17.
     Call,
-    /// ORIAXES, G11, G22, G23, G50, G50.1, G62, G69, G103, G187, G255, and G5, G5.1 and G8 as high-speed machining; several may
+    /// ORIAXES, G11, G22, G23, G50, G62, G69, G103, G187, G255, and G5, G5.1 and G8 as high-speed machining; several may
     /// stand together.
     Hint,
 }
@@ -587,6 +584,9 @@ impl Code {
                 | Self::MoreShift
                 | Self::Turn
                 | Self::MoreTurn
+                | Self::MirrorAxes
+                | Self::MirrorNoMore
+                | Self::TurnAbout
                 | Self::Mirror
                 | Self::MoreMirror
                 | Self::Scale

@@ -74,9 +74,15 @@ impl Interpreter {
         place: SourcePosition,
     ) -> Result<bool, NcError> {
         let axis = self.modal.plane.axis();
-        let mut others = AXIS_WORDS[3..].iter().chain(&EXTENSION_WORDS);
-        if let Some(word) = others.find_map(|name| block.word(name)) {
+        if let Some(word) = EXTENSION_WORDS.iter().find_map(|name| block.word(name)) {
             return Err(Problem::Orphan(word.label()).at(word.place));
+        }
+        if let Some(word) = AXIS_WORDS[3..].iter().find_map(|name| block.word(name)) {
+            let (code, why) = (
+                mode.name(),
+                "only X, Y and Z are moved in a cycle: turn the tool by G0, with G80 before, and begin the cycle again",
+            );
+            return Err(Problem::Impossible { code, why }.at(word.place));
         }
         if self.modal.inverse_time() {
             let (code, why) = (mode.name(), "a canned cycle has no time: write G94");

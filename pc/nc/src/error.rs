@@ -109,6 +109,32 @@ pub enum Problem {
         "there is no tool {0}: give it a table [tools.{0}] in the machine file, or its length with G10 L1 P{0} Z"
     )]
     NoTool(u32),
+    /// A value of Fanuc controllers.
+    #[error(
+        "#{0} is a value of the controller on Fanuc's, which is not known here: write its value, or set it before"
+    )]
+    OfControl(u32),
+    /// A parameter of a macro that has not been given to it.
+    #[error(
+        "#{0} has no value here: give it to the macro, as controllers leave out the words and terms of such parameters"
+    )]
+    Vacant(u32),
+    /// `#1 EQ #0` of one that was set to 0.
+    #[error(
+        "#{0} was set to 0: with EQ #0 and NE #0 Fanuc controllers ask whether it has a value, and others whether it is 0, so write EQ 0 or NE 0"
+    )]
+    EqualsVacant(u32),
+    /// `#3000=`.
+    #[error("the program stops with the alarm {0} here, by #3000: what it asks for before does not hold")]
+    Alarm(f64),
+    /// `#3006=`.
+    #[error("#3006 stops Fanuc controllers with a message: write M0, and the message in ( ) before it")]
+    StopByParameter,
+    /// A letter of G65 that is no argument.
+    #[error(
+        "{0} is no argument of a macro that G65 calls: write G65 P, L if it is to run several times, and letters with values"
+    )]
+    MacroArgument(char),
     /// The system sets it.
     #[error("{0} cannot be set by a program")]
     ReadOnly(String),
@@ -307,7 +333,9 @@ pub enum Problem {
     )]
     NoSubprogram(String),
     /// MCALL of something else than a drilling cycle.
-    #[error("MCALL {0}: only CYCLE81, CYCLE82, CYCLE83, CYCLE85 and CYCLE89 are called after motions")]
+    #[error(
+        "MCALL {0}: only CYCLE81, CYCLE82, CYCLE83, CYCLE85, CYCLE87, CYCLE88 and CYCLE89 are called after motions"
+    )]
     ModalCall(String),
     /// More arguments than a subprogram has.
     #[error("the subprogram takes {most} arguments by its PROC, and {given} are given")]

@@ -209,10 +209,26 @@ impl Operator {
 fn bracket(scanner: &mut Scanner, lookup: &mut dyn Lookup, depth: u32) -> Result<f64, NcError> {
     let open = scanner.place();
     scanner.step();
+    if let Some(holds) = vacancy(scanner, lookup)? {
+        return Ok(f64::from(u8::from(holds)));
+    }
     chain(scanner, lookup, depth, |scanner| match scanner.peek() {
         None => Err(Problem::OpenBracket.at(open)),
         Some(_) => Operator::read(scanner),
     })
+}
+
+/// `#1 EQ #0]` and `#1 NE #0]`, behind the bracket: whether the parameter has no value, or has one.
+fn vacancy(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Option<bool>, NcError> {
+    let place = scanner.place();
+    let Some((number, operator)) = scanner.vacancy() else {
+        return Ok(None);
+    };
+    let vacant = !lookup.has_value(number);
+    if !vacant && lookup.value(&Parameter::Numbered(number)) == Some(0.0) {
+        return Err(Problem::EqualsVacant(number).at(place));
+    }
+    Ok(Some(vacant == (operator == "EQ")))
 }
 
 /// Values and operators, up to the one that closes them.

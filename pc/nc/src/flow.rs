@@ -94,6 +94,10 @@ pub(super) fn o_word(
     }
     scanner.step();
     scanner.skip_blanks();
+    if colon && matches!(scanner.peek(), Some('O' | 'o')) {
+        // As some posts write it.
+        scanner.step();
+    }
     // Words of other controllers may begin with it.
     if scanner.peek().is_some_and(|c| c.is_ascii_alphabetic()) {
         scanner.go_back(start);
@@ -107,9 +111,13 @@ pub(super) fn o_word(
         format!("{}", number.round())
     };
     scanner.skip_blanks();
-    let at = scanner.place();
+    let (at, behind) = (scanner.place(), scanner.mark());
     let name = scanner.letters();
-    let keyword = if name.is_empty() {
+    let keyword = if name.len() == 1 {
+        // A word behind the number of a program.
+        scanner.go_back(behind);
+        Keyword::Number
+    } else if name.is_empty() {
         Keyword::Number
     } else if colon {
         return Err(Problem::FlowRest.at(at));

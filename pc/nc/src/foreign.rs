@@ -2,8 +2,7 @@
 
 use super::block::{Block, CodeWord, Word};
 use super::codes::{Code, Group};
-use super::error::{NcError, Problem};
-use super::program::AXIS_WORDS;
+use super::error::NcError;
 
 /// Codes that change nothing here, with the words that they may have.
 const HINTS: [(&str, &[&str]); 2] = [("G103", &["P"]), ("G187", &["P", "E"])];
@@ -12,7 +11,6 @@ const HINTS: [(&str, &[&str]); 2] = [("G103", &["P"]), ("G187", &["P", "E"])];
 pub(super) fn adapt(block: &mut Block) -> Result<(), NcError> {
     high_speed(block)?;
     hint(block);
-    end_of_mirroring(block)?;
     no_length(block);
     dwell(block);
     Ok(())
@@ -52,20 +50,6 @@ fn hint(block: &mut Block) {
     if let Some((_, own)) = HINTS.iter().find(|(name, _)| *name == code.name) {
         block.words.retain(|word| !own.contains(&word.address.as_str()));
     }
-}
-
-/// The axes of G50.1 are those that are mirrored no more: there are none, and no motion is made of them.
-fn end_of_mirroring(block: &mut Block) -> Result<(), NcError> {
-    if block.codes.iter().all(|code| code.name != "G50.1") {
-        return Ok(());
-    }
-    if let Some(motion) = block.code(Group::Motion) {
-        return Err(Problem::AxesTaken("G50.1").at(motion.place));
-    }
-    block
-        .words
-        .retain(|word| !AXIS_WORDS.contains(&word.address.as_str()));
-    Ok(())
 }
 
 /// H0 is no length of a tool, with G49 or as a word of its own.

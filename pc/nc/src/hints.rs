@@ -12,10 +12,11 @@ impl Interpreter {
     /// What of `block` should be known to a person who expects what another controller does.
     pub(super) fn hints(&mut self, block: &Block) {
         for code in block.codes.iter().filter(|code| code.group() == Group::Hint) {
+            if code.name == "G69" && self.end_rotation() {
+                continue;
+            }
             let why = match code.name {
-                "G11" | "G50" | "G50.1" | "G69" | "G255" => {
-                    "what it ends is not known here, and does not hold"
-                }
+                "G11" | "G50" | "G69" | "G255" => "what it ends is not known here, and does not hold",
                 "G22" | "G23" => "the travel of the axes is always checked",
                 "G62" | "G187" => "how closely the path is followed is said by G61 and G64 P",
                 "G103" => "as many blocks are read ahead as are needed",
@@ -46,6 +47,11 @@ impl Interpreter {
             let text =
                 "D changes nothing: a tool has one length, that of G43 H, and no radius is compensated";
             self.tell_once(text.to_owned(), edge.place);
+        }
+        let of_lathes = ["I", "J", "Q"].iter().find_map(|name| block.word(name));
+        if let Some(word) = of_lathes.filter(|_| block.has(Code::SetOffsets)) {
+            let text = "I, J and Q of G10 change nothing: they are angles and place of tools of lathes";
+            self.tell_once(text.to_owned(), word.place);
         }
         if let Some(code) = block.code(Group::PathControl)
             && code.code == Code::WithinTolerance

@@ -76,6 +76,8 @@ pub(super) struct Interpreter {
     pub(super) saved: Vec<Saved>,
     /// Weld data that was called so far, by name.
     pub(super) welds: Vec<String>,
+    /// Between WELDON and WELDOFF.
+    welding: bool,
     pub(super) notices: Vec<Notice>,
     /// The program has said its unit of length, or was told which one it is.
     pub(super) unit_clear: bool,
@@ -124,6 +126,7 @@ impl Interpreter {
             open: false,
             saved: Vec::new(),
             welds: Vec::new(),
+            welding: false,
             notices: Vec::new(),
             unit_clear: false,
             branches: false,
@@ -190,6 +193,7 @@ impl Interpreter {
         }
         let setup = self.setup.clone();
         self.modal.block(block, &claims, &setup)?;
+        self.first_motion(block, takes.is_some());
         self.modal_corner(block)?;
         self.hints(block);
         self.unit_hint(block);
@@ -232,6 +236,19 @@ impl Interpreter {
         Ok(())
     }
 
+    /// Axis words before any motion code are a rapid, as on controllers that begin with G0.
+    fn first_motion(&mut self, block: &Block, taken: bool) {
+        let word = AXIS_WORDS.iter().find_map(|name| block.word(name));
+        // Those beside a function that is passed over may be its own.
+        let taken = taken || block.has(Code::MachineAxes) || !block.passed_over.is_empty();
+        if let Some(word) = word.filter(|_| !taken)
+            && self.modal.begins_with_rapid()
+        {
+            let text = "neither G0 nor G1 before the first motion: it is a rapid, as no feed was said that G1 would need";
+            self.tell_once(text.to_owned(), word.place);
+        }
+    }
+
     /// Outputs, spindle, coolant and dwell of a block.
     fn switch(&mut self, block: &Block, claims: &Claims) -> Result<(), NcError> {
         let dwell = dwell(block, claims)?;
@@ -240,14 +257,8 @@ impl Interpreter {
             self.wait(pending);
         }
         if let Some((name, place)) = &block.weld {
-            if name.is_some() && self.offsets.frame.reshapes() {
-                let (code, why) = (
-                    "WELDON",
-                    "MIRROR or SCALE hold, and its data do not follow them: write the coordinates of the weld as they are",
-                );
-                return Err(Problem::Impossible { code, why }.at(*place));
-            }
             self.weld(name.as_deref(), *place);
+            self.check_weld_as_it_is("WELDON", *place)?;
         }
         if let Some(t) = block.word("T") {
             self.tool_numbers[0] = tool(t)?;
@@ -311,6 +322,7 @@ impl Interpreter {
             }
             None => (ProgramAction::WeldOff, "WELDOFF"),
         };
+        self.welding = name.is_some();
         self.wait(Pending {
             action,
             code,
@@ -318,6 +330,26 @@ impl Interpreter {
             at_rest: true,
         });
         self.stand();
+    }
+
+    /// Refuses mirrors and scales that hold between WELDON and WELDOFF.
+    pub(super) fn check_weld_as_it_is(
+        &self,
+        code: &'static str,
+        place: SourcePosition,
+    ) -> Result<(), NcError> {
+        let why = match code {
+            "WELDON" => {
+                "MIRROR or SCALE hold, and its data do not follow them: write the coordinates of the weld as they are"
+            }
+            _ => {
+                "a weld is open, and its data do not follow: write WELDOFF before, and the coordinates of welds as they are"
+            }
+        };
+        match self.welding && self.offsets.frame.reshapes() {
+            true => Err(Problem::Impossible { code, why }.at(place)),
+            false => Ok(()),
+        }
     }
 
     /// The machine stands for a time \[s\].

@@ -72,6 +72,8 @@ pub(super) struct Call {
 pub(super) enum Called {
     /// M98.
     Number,
+    /// G65, with arguments by the numbers of their parameters.
+    Macro(Vec<(u32, f64)>),
     /// An O word with this number or name.
     OWord(String),
     /// Its name, in a Siemens program, with arguments that its PROC takes.
@@ -85,7 +87,7 @@ pub(super) enum Called {
 
 impl Called {
     fn has_own_parameters(&self) -> bool {
-        matches!(self, Self::OWord(_) | Self::Name { .. })
+        matches!(self, Self::Macro(_) | Self::OWord(_) | Self::Name { .. })
     }
 }
 
@@ -223,6 +225,10 @@ impl Reader {
         if self.is_named() {
             self.interpreter.leave()?;
             self.interpreter.parameters.enter(&[]);
+        }
+        if let Some(Called::Macro(arguments)) = self.level().called().cloned() {
+            self.interpreter.leave()?;
+            self.interpreter.parameters.enter_macro(&arguments);
         }
         self.jump(begins.0, begins.1);
         Ok(())

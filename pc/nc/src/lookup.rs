@@ -74,7 +74,15 @@ fn place(number: u32) -> Option<Place> {
     }
 }
 
+/// Alarms and stops of Fanuc controllers.
+const ALARM: u32 = 3000;
+const STOP: u32 = 3006;
+
 impl Lookup for Interpreter {
+    fn has_value(&mut self, number: u32) -> bool {
+        place(number).is_some() || self.parameters.has_value(number)
+    }
+
     fn value(&mut self, parameter: &Parameter) -> Option<f64> {
         match parameter {
             Parameter::Numbered(number) => match place(*number) {
@@ -186,6 +194,8 @@ impl Interpreter {
             None if READ_ONLY.contains(number) || *number == 0 => {
                 return Err(Problem::ReadOnly(parameter.to_string()));
             }
+            None if *number == ALARM => return Err(Problem::Alarm(value)),
+            None if *number == STOP => return Err(Problem::StopByParameter),
             None => self.parameters.set(parameter, value)?,
         }
         Ok(())

@@ -200,6 +200,7 @@ impl Interpreter {
         }
         self.modal.closed = false;
         self.check_reshaped(block, mode.is_cycle(), place)?;
+        self.check_both_said(block)?;
         let direction = self.direction(block, claims, mode)?;
         if let Some((_, place)) = direction
             && self.offsets.frame.reshapes()

@@ -4,6 +4,7 @@
 //! that of Siemens programs.
 
 use super::frame::Frame;
+use super::mirror::Foreign;
 use shared::io::AXES;
 
 /// Coordinate systems, G54 to G59.3.
@@ -34,6 +35,8 @@ pub(super) struct Offsets {
     pub(super) local_on: bool,
     /// TRANS, ROT, MIRROR and SCALE.
     pub(super) frame: Frame,
+    /// What of other controllers the frame is made of, if not of those.
+    pub(super) foreign: Foreign,
 }
 
 impl Offsets {

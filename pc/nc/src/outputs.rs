@@ -140,6 +140,28 @@ impl Spindle {
         }
     }
 
+    /// It turns as with M3, at the S that was said.
+    pub(super) fn start(
+        &mut self,
+        code: &'static str,
+        place: SourcePosition,
+    ) -> Result<[Pending; 2], NcError> {
+        let word = "S before it, as it turns the spindle";
+        let speed = self.speed.ok_or(Problem::Missing { code, word }.at(place))?;
+        let turn = Turn::Clockwise;
+        self.turns = Some(turn);
+        let event = |action| Pending {
+            action,
+            code,
+            place,
+            at_rest: true,
+        };
+        Ok([
+            event(ProgramAction::SpindleSpeed(speed)),
+            event(ProgramAction::SpindleOn(turn)),
+        ])
+    }
+
     /// It stops, if it turns, as `code` asks for.
     pub(super) fn stop(&mut self, code: &'static str, place: SourcePosition) -> Option<Pending> {
         self.without_speed = None;

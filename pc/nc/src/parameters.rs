@@ -3,13 +3,18 @@
 use super::error::Problem;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::RangeInclusive;
 
 /// Largest number of a parameter.
 const LAST: f64 = 5602.0;
-/// Parameters of a subroutine itself, 1 to this one.
+/// Parameters of a subroutine itself, 1 to this one, and those of a macro that G65 calls.
 const OWN: u32 = 30;
+const OWN_OF_MACRO: u32 = 33;
 /// R parameters: R0 to the one before.
 const SIEMENS: u16 = 300;
+
+/// Numbers that on Fanuc controllers are values of the controller: offsets of tools, alarms and clocks, modes, and where the axes are.
+const OF_CONTROL: [RangeInclusive<u32>; 4] = [2001..=2999, 3000..=3021, 4001..=4130, 5001..=5060];
 
 /// What the last M66 found.
 pub(super) const INPUT: u32 = 5399;
@@ -93,6 +98,8 @@ impl Parameter {
     pub(super) fn no_value(&self) -> Problem {
         match self {
             Self::Numbered(INPUT) => Problem::InputUnknown,
+            Self::Numbered(number) if is_of_control(*number) => Problem::OfControl(*number),
+            Self::Numbered(number) => Problem::Vacant(*number),
             _ => Problem::Undefined(self.to_string()),
         }
     }
@@ -114,6 +121,11 @@ impl fmt::Display for Parameter {
 pub(super) trait Lookup {
     /// The value; none of a name that has not been set.
     fn value(&mut self, parameter: &Parameter) -> Option<f64>;
+
+    /// Whether a numbered parameter has been given a value.
+    fn has_value(&mut self, _number: u32) -> bool {
+        true
+    }
 
     /// Whether the block that is read sets it.
     fn is_set_here(&self, _parameter: &Parameter) -> bool {
@@ -148,6 +160,10 @@ impl Lookup for InBlock<'_> {
         }
     }
 
+    fn has_value(&mut self, number: u32) -> bool {
+        self.before.has_value(number)
+    }
+
     fn is_set_here(&self, parameter: &Parameter) -> bool {
         self.next
             .iter()
@@ -159,9 +175,18 @@ impl Lookup for InBlock<'_> {
 /// What one level of a program calls its own.
 #[derive(Clone, Debug, Default)]
 struct Level {
-    own: [f64; OWN as usize],
+    own: BTreeMap<u32, f64>,
+    /// It was called by G65: what is not given to it has no value.
+    is_macro: bool,
     named: BTreeMap<String, f64>,
     variables: BTreeMap<String, Variable>,
+}
+
+impl Level {
+    fn owns(&self, number: u32) -> bool {
+        let last = if self.is_macro { OWN_OF_MACRO } else { OWN };
+        (1..=last).contains(&number)
+    }
 }
 
 /// Values that programs set.
@@ -191,11 +216,29 @@ impl Default for Parameters {
 impl Parameters {
     /// A subroutine begins, with its arguments.
     pub(super) fn enter(&mut self, arguments: &[f64]) {
-        let mut level = Level::default();
-        for (place, value) in level.own.iter_mut().zip(arguments) {
-            *place = *value;
+        let own = (1..=OWN).zip(arguments.iter().copied()).collect();
+        self.levels.push(Level {
+            own,
+            ..Level::default()
+        });
+    }
+
+    /// A macro begins, with the numbers of its arguments.
+    pub(super) fn enter_macro(&mut self, arguments: &[(u32, f64)]) {
+        self.levels.push(Level {
+            own: arguments.iter().copied().collect(),
+            is_macro: true,
+            ..Level::default()
+        });
+    }
+
+    /// Whether a numbered one has been given a value.
+    pub(super) fn has_value(&self, number: u32) -> bool {
+        let level = self.levels.last();
+        match level.filter(|level| level.owns(number)) {
+            Some(level) => level.own.contains_key(&number),
+            None => self.numbered.contains_key(&number),
         }
-        self.levels.push(level);
     }
 
     /// Subroutines inside each other, with the main program.
@@ -210,12 +253,18 @@ impl Parameters {
         }
     }
 
-    /// Numbered ones are 0 until they are set.
+    /// Numbered ones are 0 until they are set, but for those of macros and of controllers.
     pub(super) fn get(&self, parameter: &Parameter) -> Option<f64> {
         let level = self.levels.last()?;
         match parameter {
-            Parameter::Numbered(number @ 1..=OWN) => level.own.get(*number as usize - 1).copied(),
-            Parameter::Numbered(number) => Some(self.numbered.get(number).copied().unwrap_or(0.0)),
+            Parameter::Numbered(number) if level.owns(*number) => {
+                let value = level.own.get(number).copied();
+                value.or((!level.is_macro).then_some(0.0))
+            }
+            Parameter::Numbered(number) => {
+                let value = self.numbered.get(number).copied();
+                value.or((!is_of_control(*number)).then_some(0.0))
+            }
             Parameter::Named(name) if name.starts_with('_') => self.global.get(name).copied(),
             Parameter::Named(name) => level.named.get(name).copied(),
             Parameter::Siemens(number) => Some(self.siemens.get(number).copied().unwrap_or(0.0)),
@@ -241,7 +290,9 @@ impl Parameters {
             return Ok(());
         };
         match parameter {
-            Parameter::Numbered(number @ 1..=OWN) => level.own[*number as usize - 1] = value,
+            Parameter::Numbered(number) if level.owns(*number) => {
+                level.own.insert(*number, value);
+            }
             Parameter::Numbered(number) => {
                 self.numbered.insert(*number, value);
             }
@@ -268,6 +319,10 @@ impl Parameters {
         }
         Ok(())
     }
+}
+
+fn is_of_control(number: u32) -> bool {
+    OF_CONTROL.iter().any(|numbers| numbers.contains(&number))
 }
 
 /// The global parameter that a variable is where it is not defined.

@@ -7,6 +7,7 @@ use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
 use super::levels::{Called, Level};
 use super::parameters::Parameter;
+use super::parts;
 use super::program::Program;
 use super::setup::Options;
 use super::siemens::calls;
@@ -203,9 +204,42 @@ impl Reader {
         let Some(text) = self.next_line()? else {
             return self.end_of_text();
         };
-        let here = self.position.here();
         self.position.executed += 1;
         self.conditions_before = self.interpreter.conditions();
+        let deleted = self.options.block_delete && text.trim_start().starts_with('/');
+        let Some(parts) = parts::of(&text).filter(|_| !deleted) else {
+            return self.part_of_line(text);
+        };
+        let mut settings = Vec::new();
+        let before = self.next_place();
+        for part in parts {
+            let goes_on = self.part_of_line(part)?;
+            settings.extend(self.ran.take().into_iter().flat_map(|ran| ran.settings));
+            if !goes_on {
+                return Ok(false);
+            }
+            // A loop that is over, or a jump, leaves the rest of the line out.
+            if self.next_place() != before {
+                break;
+            }
+        }
+        self.ran = Some(Ran {
+            kind: Kind::Flow,
+            text,
+            settings,
+        });
+        Ok(true)
+    }
+
+    /// How many programs run inside each other, and where the next line of the innermost begins.
+    fn next_place(&mut self) -> (usize, u64) {
+        let depth = self.position.depth();
+        (depth, self.level().offset)
+    }
+
+    /// Carries out a line, or a statement of one.
+    fn part_of_line(&mut self, text: String) -> Result<bool, NcError> {
+        let here = self.position.here();
         let skipped = Skipped {
             blocks: self.options.block_delete,
             functions: &self.options.setup.passed_over,

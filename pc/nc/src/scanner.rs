@@ -182,6 +182,38 @@ impl<'t> Scanner<'t> {
         rest.starts_with('0') && end >= 5 && !zero && !rest[end..].starts_with('.')
     }
 
+    /// The number and the operator of `#1 EQ #0]` or `#1 NE #0]`, if that stands here; the scanner goes behind it.
+    pub(super) fn vacancy(&mut self) -> Option<(u32, String)> {
+        let rest = self.text[self.next..]
+            .trim_start()
+            .strip_prefix('#')?
+            .trim_start();
+        let digits = rest.len() - rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        let number = rest[..digits].parse().ok()?;
+        let rest = rest[digits..].trim_start();
+        let operator = rest.get(..2)?.to_ascii_uppercase();
+        let behind = rest[2..]
+            .trim_start()
+            .strip_prefix("#0")?
+            .trim_start()
+            .strip_prefix(']')?;
+        if !matches!(operator.as_str(), "EQ" | "NE") {
+            return None;
+        }
+        self.next = self.text.len() - behind.len();
+        Some((number, operator))
+    }
+
+    /// Whether G65 stands here.
+    pub(super) fn at_macro_call(&self) -> bool {
+        match self.text.as_bytes()[self.next..] {
+            [b'G' | b'g', b'6', b'5', ref rest @ ..] => {
+                !matches!(rest.first(), Some(byte) if byte.is_ascii_digit() || *byte == b'.')
+            }
+            _ => false,
+        }
+    }
+
     /// Whether an R parameter stands here behind blanks and signs.
     pub(super) fn at_signed_parameter(&self) -> bool {
         let rest = self.text[self.next..].trim_start_matches(|c: char| c.is_whitespace() || "+-".contains(c));

@@ -15,10 +15,13 @@ impl Interpreter {
         if let Some(code) = block.code(Group::Offset)
             && let Code::System(number) = code.code
         {
-            self.offsets.active = usize::from(number) - 1;
+            let index = usize::from(number) - 1;
+            self.check_same_system(block, index)?;
+            self.offsets.active = index;
             self.spline_end = None;
         }
         if block.has(Code::NoSystem) {
+            self.check_same_system(block, NO_SYSTEM)?;
             self.offsets.active = NO_SYSTEM;
             self.spline_end = None;
         }
@@ -32,6 +35,9 @@ impl Interpreter {
     pub(super) fn settings(&mut self, block: &Block, claims: &Claims, code: CodeWord) -> Result<(), NcError> {
         let place = code.place;
         let other_offsets = matches!(code.code, Code::SetOffsets | Code::LocalOffset | Code::OffsetHere);
+        if other_offsets {
+            self.check_no_foreign(code.name, place)?;
+        }
         if other_offsets && self.offsets.has_frame() {
             let (code, why) = (
                 code.name,
@@ -48,7 +54,11 @@ impl Interpreter {
             | Code::MoreMirror
             | Code::Scale
             | Code::MoreScale => {
+                self.check_no_foreign(code.name, place)?;
                 self.frame(block, claims, code.code, code.name)?;
+            }
+            Code::MirrorAxes | Code::MirrorNoMore | Code::TurnAbout => {
+                self.foreign_frame(block, claims, (code.code, code.name), place)?;
             }
             Code::Pole | Code::PoleFromTip | Code::PoleFromPole => self.set_pole(block, code.code, place)?,
             Code::SetOffsets => self.set_offsets(block, claims, place)?,

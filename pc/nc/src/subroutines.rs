@@ -3,6 +3,7 @@
 use super::error::{NcError, Problem, SourcePosition};
 use super::flow::{self, Keyword, OWord};
 use super::interpreter::Interpreter;
+use super::parts;
 use super::scanner::Scanner;
 use super::siemens::calls;
 use super::source::Source;
@@ -55,7 +56,8 @@ impl Name<'_> {
             Self::OWord(name) => {
                 let word = head(text, line, interpreter)?;
                 let begins = matches!(word.keyword, Keyword::Sub | Keyword::Number);
-                (begins && word.label == *name).then_some(false)
+                // Words behind its number are its first ones.
+                (begins && word.label == *name).then(|| parts::of(text).is_some())
             }
         }
     }

@@ -56,7 +56,7 @@ pub(super) fn by_name(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<
     call(scanner, lookup, place, name, arguments).map(Some)
 }
 
-/// `L123`, where nothing but P follows. Zeros before the number belong to the name.
+/// `L123` or `L123(1, 2)`, where nothing but P follows. Zeros before the number belong to the name.
 pub(super) fn by_number(
     scanner: &mut Scanner,
     lookup: &mut dyn Lookup,
@@ -64,12 +64,17 @@ pub(super) fn by_number(
     let (place, start) = (scanner.place(), scanner.mark());
     let name = scanner.identifier().to_owned();
     scanner.skip_blanks();
-    let alone = matches!(scanner.peek(), None | Some(';' | 'P' | 'p'));
-    if name.len() < 2 || !alone {
+    let arguments = match scanner.peek() {
+        _ if name.len() < 2 => None,
+        None | Some(';' | 'P' | 'p') => Some(Vec::new()),
+        Some('(') => Some(arguments(scanner, lookup)?),
+        _ => None,
+    };
+    let Some(arguments) = arguments else {
         scanner.go_back(start);
         return Ok(None);
-    }
-    call(scanner, lookup, place, name, Vec::new()).map(Some)
+    };
+    call(scanner, lookup, place, name, arguments).map(Some)
 }
 
 fn call(
@@ -282,8 +287,9 @@ impl Reader {
                 self.interpreter.finish(code, place)
             }
             Some(Called::Name { .. } | Called::Number) => self.leave_again(),
-            Some(Called::OWord(_) | Called::Part { .. }) => {
-                let why = "it stands in a part that REPEAT runs again, or in a subroutine of O words";
+            Some(Called::Macro(_) | Called::OWord(_) | Called::Part { .. }) => {
+                let why =
+                    "it stands in a part that REPEAT runs again, or in a subroutine of O words or of G65";
                 Err(Problem::Impossible { code, why }.at(place))
             }
         }

@@ -39,6 +39,11 @@ impl Corners {
     pub(crate) fn forget(&mut self) {
         (self.last, self.begins) = (None, None);
     }
+
+    /// RNDM= rounds every corner.
+    pub(crate) fn rounds(&self) -> bool {
+        self.rounding > 0.0
+    }
 }
 
 impl Reader {
@@ -83,7 +88,7 @@ impl Interpreter {
 
     fn wants_corner(&self, block: &Block) -> bool {
         let words = ["RND", "RNDM", "CHF", "CHR"];
-        let wanted = self.corners.rounding > 0.0 || words.iter().any(|name| block.word(name).is_some());
+        let wanted = self.corners.rounds() || words.iter().any(|name| block.word(name).is_some());
         wanted && !self.corners.looks_ahead
     }
 

@@ -1,7 +1,8 @@
-//! CYCLE81, CYCLE82, CYCLE83, CYCLE85 and CYCLE89: a hole where the tip is, or with MCALL after every motion.
+//! CYCLE81, CYCLE82, CYCLE83, CYCLE85, CYCLE87, CYCLE88 and CYCLE89: a hole where the tip is, or with MCALL after every motion.
 
 use super::calls::arguments;
-use crate::block::Block;
+use crate::block::{Block, CodeWord};
+use crate::codes::{Code, Group};
 use crate::error::{NcError, Problem, SourcePosition};
 use crate::interpreter::Interpreter;
 use crate::outputs::LONGEST_DWELL_S;
@@ -37,6 +38,8 @@ pub(crate) struct Drilling {
     feeds: Option<[f64; 2]>,
     /// It comes out of the hole with its feed.
     feeds_out: bool,
+    /// At the bottom the spindle stops, and the operator continues.
+    stops: bool,
 }
 
 /// Depths of a CYCLE83.
@@ -74,7 +77,9 @@ pub(super) fn cycle(
     lookup: &mut dyn Lookup,
     place: SourcePosition,
 ) -> Result<Option<Drilling>, NcError> {
-    let names = ["CYCLE81", "CYCLE82", "CYCLE83", "CYCLE85", "CYCLE89"];
+    let names = [
+        "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE85", "CYCLE87", "CYCLE88", "CYCLE89",
+    ];
     let Some(name) = names.into_iter().find(|own| *own == name) else {
         return Ok(None);
     };
@@ -111,7 +116,12 @@ impl Words {
         if bottom > reference || retract < reference + distance {
             return Err(self.wrong("the levels are not from top to bottom RTP, RFP + SDIS and DP"));
         }
-        let dwell = if self.name == "CYCLE83" { 15 } else { 5 };
+        let dwell = match self.name {
+            "CYCLE83" => 15,
+            // It has none.
+            "CYCLE87" => usize::MAX,
+            _ => 5,
+        };
         let mut drilling = Drilling {
             name: self.name,
             place: self.place,
@@ -123,6 +133,7 @@ impl Words {
             pecks: None,
             feeds: None,
             feeds_out: matches!(self.name, "CYCLE85" | "CYCLE89"),
+            stops: matches!(self.name, "CYCLE87" | "CYCLE88"),
         };
         let modes = match self.name {
             "CYCLE83" => {
@@ -140,6 +151,14 @@ impl Words {
                 }
                 drilling.feeds = Some(feeds);
                 8
+            }
+            "CYCLE87" | "CYCLE88" => {
+                let sense = if self.name == "CYCLE87" { 5 } else { 6 };
+                if self.get(sense) != 3.0 {
+                    return Err(self
+                        .wrong("its last argument SDIR is 3: the spindle turns that way only, as with M3"));
+                }
+                sense + 1
             }
             _ => 6,
         };
@@ -281,6 +300,11 @@ impl Interpreter {
         };
         let above = (drilling.reference + drilling.distance) * unit;
         let (bottom, retract) = (drilling.bottom * unit, drilling.retract * unit);
+        if drilling.stops && self.spindle.turns().is_none() {
+            for event in self.spindle.start(name, place)? {
+                self.wait(event);
+            }
+        }
         let control = std::mem::replace(&mut self.modal.control, PathControl::ExactPath);
         self.go_to_level(axis, above, None, place)?;
         let rate = |mm_min: f64| Some(FeedRate::PerMinute(mm_min));
@@ -300,6 +324,12 @@ impl Interpreter {
         }
         self.go_to_level(axis, bottom, rate(feed_in), place)?;
         self.stay(drilling.dwell, place);
+        if drilling.stops {
+            if let Some(stop) = self.spindle.stop(name, place) {
+                self.wait(stop);
+            }
+            self.pause(CodeWord::new("M0", Code::Pause, Group::Stop, place));
+        }
         if drilling.feeds_out {
             self.go_to_level(axis, above, rate(feed_out), place)?;
         }

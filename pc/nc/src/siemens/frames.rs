@@ -46,7 +46,7 @@ impl Interpreter {
             }
         }
         self.offsets.frame = frame;
-        Ok(())
+        self.check_weld_as_it_is(name, place)
     }
 
     /// By how much ROT or AROT turns about Z \[deg\].
@@ -101,15 +101,17 @@ impl Interpreter {
             return impossible("cycles need Z as it is: mirror or scale X and Y alone", place);
         }
         let corner = CORNERS.iter().find_map(|name| block.word(name));
+        let corner = corner.map(|word| word.place);
+        let corner = corner.or(self.corners.rounds().then_some(place));
         let of_its_length = frame
             .of_arcs()
             .is_some_and(|(factor, _)| (factor - 1.0).abs() < 1e-12);
-        if let Some(word) = corner
+        if let Some(place) = corner
             && !of_its_length
         {
             return impossible(
-                "roundings and chamfers are not scaled: write their motions out",
-                word.place,
+                "roundings and chamfers are not scaled: write their motions out, and RNDM=0 before",
+                place,
             );
         }
         Ok(())

@@ -99,7 +99,7 @@ const RETRACTION: &str =
 const LATHE: &str = "lathe codes are not supported";
 
 /// Words that are refused, and why.
-const REFUSED: [(&str, &str); 46] = [
+const REFUSED: [(&str, &str); 44] = [
     ("ASPLINE", SPLINE),
     ("CSPLINE", SPLINE),
     ("BSPLINE", SPLINE),
@@ -123,8 +123,6 @@ const REFUSED: [(&str, &str); 46] = [
     ("CYCLE77", CYCLE),
     ("CYCLE79", CYCLE),
     ("CYCLE86", CYCLE),
-    ("CYCLE87", CYCLE),
-    ("CYCLE88", CYCLE),
     ("CYCLE801", CYCLE),
     ("CYCLE802", CYCLE),
     ("CYCLE899", CYCLE),

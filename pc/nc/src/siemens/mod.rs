@@ -83,6 +83,9 @@ pub(super) fn read(scanner: &mut Scanner, block: &mut Block, lookup: &mut InBloc
 fn single_letter(scanner: &mut Scanner, block: &Block, lookup: &mut InBlock) -> Result<Read, NcError> {
     match scanner.peek() {
         Some('R' | 'r') if variables::assignment(scanner, lookup)? => Ok(Read::Words),
+        Some('G' | 'g') if scanner.at_macro_call() && block.is_empty() && lookup.settings.is_empty() => {
+            Ok(Read::statement(macros::call(scanner, lookup)?))
+        }
         Some('L' | 'l') if block.is_empty() => {
             Ok(calls::by_number(scanner, lookup)?.map_or(Read::Nothing, Read::statement))
         }

@@ -6,7 +6,7 @@ use super::expression;
 use super::holes::{self, Holes};
 use super::jumps::{self, Jump};
 use super::keywords;
-use super::macros;
+use super::macros::{self, MacroCall};
 use super::repeats::{self, Repeat};
 use super::variables;
 use crate::error::{NcError, Problem, SourcePosition};
@@ -49,6 +49,8 @@ pub(crate) enum What {
     /// REPEAT with labels, and REPEATB.
     Repeat(Repeat),
     Call(Call),
+    /// G65.
+    CallMacro(MacroCall),
     /// PROC.
     Header(Header),
     /// RET.
@@ -70,7 +72,12 @@ pub(super) fn read(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<Option
         "IF" => condition(scanner, lookup)?,
         "ELSE" => What::Else,
         "ENDIF" => What::EndIf,
-        "WHILE" => {
+        "WH" if scanner.peek() != Some('[') => {
+            scanner.go_back(start);
+            return Ok(None);
+        }
+        // Fanuc's need two letters only.
+        "WHILE" | "WH" => {
             let holds = expression::value(scanner, lookup)? != 0.0;
             What::While(holds, macros::number_of_loop(scanner)?)
         }
@@ -203,6 +210,7 @@ impl Reader {
             What::Jump(jump) => self.jump_to(&jump, place),
             What::Repeat(repeat) => self.repeat(&repeat, place),
             What::Call(call) => self.call_named(call, place),
+            What::CallMacro(call) => self.call_macro(call, place),
             What::Header(header) => self.bind(header, place),
             What::Return => self.end_subprogram("RET", place),
             What::Drill(drilling) => self.interpreter.drill(&drilling, place),

@@ -5,6 +5,7 @@ use super::statement::{Statement, What};
 use crate::branches::Open;
 use crate::error::{NcError, Problem, SourcePosition};
 use crate::parameters::{Lookup, Parameter};
+use crate::parts;
 use crate::reader::Reader;
 use crate::scanner::Scanner;
 
@@ -66,6 +67,13 @@ pub(super) enum Edge {
 
 /// What the statement of a line, if there is one, means for the structures around it.
 pub(super) fn edge(text: &str) -> Option<Edge> {
+    match parts::of(text) {
+        Some(parts) => parts.iter().find_map(|part| edge_of_statement(part)),
+        None => edge_of_statement(text),
+    }
+}
+
+fn edge_of_statement(text: &str) -> Option<Edge> {
     let mut scanner = Scanner::new(text, 0);
     scanner.skip_block_number();
     super::words::label(&mut scanner);
@@ -80,7 +88,7 @@ pub(super) fn edge(text: &str) -> Option<Edge> {
     ]) {
         return Some(Edge::Closes);
     }
-    if is(&["WHILE", "FOR", "LOOP"]) {
+    if is(&["WHILE", "WH", "FOR", "LOOP"]) {
         return Some(Edge::Opens);
     }
     let (is_if, is_repeat) = (is(&["IF"]), is(&["REPEAT"]));

@@ -6,6 +6,8 @@ mod dialects;
 mod direction;
 mod explain;
 mod flow;
+mod macros;
+mod mirror;
 mod modes;
 mod nurbs;
 mod outputs;
@@ -83,7 +85,7 @@ fn what_cannot_be_done_is_named_with_its_line() {
     ));
     assert!(matches!(problem("F-5\nM2"), (Problem::Value { .. }, 1)));
     let bare = |text: &str| interpret(text, Options::default()).unwrap_err().problem;
-    assert_eq!(bare("G43.4\nX5\nM2"), Problem::NoMotion);
+    assert_eq!(bare("G43.4\nF9\nX5\nM2"), Problem::NoMotion);
 }
 
 #[test]

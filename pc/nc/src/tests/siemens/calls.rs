@@ -22,6 +22,14 @@ fn subprograms_are_called_by_name_and_by_number() {
         ),
         [1.0, 2.0, 3.0, 4.0, 9.0]
     );
+    assert_eq!(
+        with(
+            "L140(2,7) P2\nG0 X9",
+            "PROC L140(REAL FIRST, REAL SECOND)\nG0 X=FIRST\nX=SECOND\nRET"
+        ),
+        [2.0, 7.0, 2.0, 7.0, 9.0]
+    );
+    assert!(wrong("L140(2)").contains("L140"));
     // Two calls inside each other, each with its own variables; R parameters are those of all.
     let inner = "PROC OUTER(REAL DEPTH, INT COUNT=2)\nDEF REAL HERE=DEPTH\nINNER(DEPTH+1)\nG0 X=HERE+COUNT\nRET\nPROC INNER(REAL DEPTH)\nG0 X=DEPTH\nRET";
     assert_eq!(with("OUTER(10)\nOUTER(20,7)", inner), [11.0, 12.0, 21.0, 27.0]);

@@ -79,6 +79,54 @@ fn mcall_drills_after_every_motion_until_it_ends() {
 }
 
 #[test]
+fn boring_that_stops_at_the_bottom_waits_with_the_spindle_off() {
+    let cycle = "CYCLE87(15,0,2,-10,,3)";
+    assert_eq!(
+        zs(&format!("S9 M3\n{cycle}")),
+        [(2.0, None), (-10.0, Some(100.0)), (15.0, None)]
+    );
+    assert_eq!(
+        zs("S9 M3\nCYCLE88(15,1,2,,5,0.5,3)"),
+        [(3.0, None), (-4.0, Some(100.0)), (15.0, None)]
+    );
+    // At each hole the spindle turns, stops at the bottom, and the operator continues.
+    let text = format!("G0 Z20\nF100 S900\nMCALL {cycle}\nX10 Y10\nX20\nMCALL\nX30\nM2");
+    let program = run(&text).unwrap();
+    let mut seen = Vec::new();
+    for path in &program.paths[3..] {
+        seen.extend(path.waits_before.iter().map(|_| "waits".to_owned()));
+        for event in &path.events {
+            seen.push(match event.action {
+                crate::ProgramAction::SpindleOn(shared::geometry::Turn::Clockwise) => "M3".to_owned(),
+                crate::ProgramAction::SpindleOff => "M5".to_owned(),
+                crate::ProgramAction::SpindleSpeed(speed) => format!("S{speed}"),
+                other => format!("{other:?}"),
+            });
+        }
+        seen.extend(
+            path.targets
+                .iter()
+                .filter_map(|target| target.words.axes[2])
+                .map(|z| format!("Z{z}")),
+        );
+    }
+    let hole = ["S900", "M3", "Z2", "Z-10", "M5", "waits", "Z15"];
+    assert_eq!(seen, [hole, hole].concat());
+    for (cycle, text) in [
+        ("CYCLE87(15,0,2,-10)", "SDIR is 3"),
+        ("CYCLE87(15,0,2,-10,,4)", "SDIR is 3"),
+        ("CYCLE88(15,0,2,-10,,3)", "SDIR is 3"),
+        ("CYCLE88(15,0,2,-10,,0,4)", "SDIR is 3"),
+        ("CYCLE87(15,0,2,-10,,3)", "CYCLE87 needs S before it"),
+        ("CYCLE84(15,0,2,-10,,,3,,1)", "CYCLE84"),
+        ("CYCLE840(15,0,2,-10,,,4,3,1)", "CYCLE840"),
+    ] {
+        let refusal = wrong(&format!("F9\n{cycle}"));
+        assert!(refusal.contains(text), "{cycle}: {refusal}");
+    }
+}
+
+#[test]
 fn cycles_that_would_mean_something_else_are_refused() {
     for (body, text) in [
         ("CYCLE81(15,0,2)", "DP or DPR"),

@@ -99,6 +99,44 @@ fn what_mirror_and_scale_do_not_reach_is_refused() {
     assert!(wrong("SCALE X2 Y2\nF100 G0 X0 Y0 Z0\nG1 X5 RND=1\nY5").contains("are not scaled"));
     assert!(wrong("MIRROR X0\nWELDON=root").contains("its data do not follow"));
     assert!(wrong("MIRROR X0\nG92 X0").contains("end them first by TRANS"));
+    let rounded = |between: &str| format!("F100 G0 X0 Y0 Z0\nRNDM=1\nG1 X5\n{between}\nG1 Y5\nX0\nRNDM=0");
+    let text = wrong(&rounded("SCALE X2 Y2"));
+    assert!(
+        text.contains("line 9, column 4: MIRROR or SCALE: roundings and chamfers"),
+        "{text}"
+    );
+    assert!(wrong(&rounded("ASCALE X2")).contains("RNDM=0 before"));
+    assert!(run(&format!("{}\nM2", rounded("RNDM=0\nSCALE X2 Y2"))).is_ok());
+    assert!(run(&format!("{}\nM2", rounded("MIRROR X0"))).is_ok());
     assert!(run("MIRROR X0\nF100 G81 X1 Y1 Z-1 R1\nM2").is_ok());
     assert!(run("MIRROR X0\nF100 G0 X0 Y0 Z0\nG1 X5 RND=1\nY5\nM2").is_ok());
+}
+
+#[test]
+fn no_mirror_or_scale_begins_in_an_open_weld() {
+    let open = |body: &str| format!("F100 G0 X0 Y0 Z0\nWELDON=root\nG1 X5\n{body}\nG1 X6\nWELDOFF\nX7");
+    for body in [
+        "MIRROR X0",
+        "AMIRROR Y0",
+        "SCALE X2",
+        "ASCALE X2 Y2",
+        "G51.1 X0",
+        "G101 Y0",
+    ] {
+        let text = wrong(&open(body));
+        assert!(
+            text.contains("line 8, column 1") && text.contains("a weld is open"),
+            "{body}: {text}"
+        );
+    }
+    for body in [
+        "MIRROR",
+        "TRANS X1",
+        "AROT RPL=5",
+        "WELDOFF\nMIRROR X0",
+        "WELDOFF\nSCALE X2\nSCALE\nWELDON=cap",
+    ] {
+        let result = run(&format!("{}\nM2", open(body)));
+        assert!(result.is_ok(), "{body}: {result:?}");
+    }
 }
