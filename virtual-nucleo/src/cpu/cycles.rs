@@ -11,9 +11,10 @@
 
 mod decode;
 
-pub use decode::Instruction;
+pub use decode::{Instruction, Value};
 
 use crate::chip::memory::{AXI, D2, DTCM};
+use crate::image::FLASH;
 use std::str::FromStr;
 
 /// How the core's cycles are counted.
@@ -77,6 +78,11 @@ pub enum Class {
     Store,
     /// Store of a byte or a half-word: 4 in a row (measured).
     StorePart,
+    /// Load of two words or a double: nothing beside it, its address is needed a cycle earlier, and its value is there up to two cycles
+    /// later (measured).
+    LoadTwo,
+    /// Store of two words or a double: nothing beside it, its address is needed a cycle earlier; 1 more if not aligned (measured).
+    StoreTwo,
     /// Load of this many registers: two in a cycle and nothing beside them, 1 more if not aligned, 1 for the address, and up to 3
     /// until the last is there (measured).
     LoadMultiple(u32),
@@ -118,6 +124,8 @@ impl Class {
             Self::Divide => [2 * 2, 2 * 20],
             Self::Load => [1, 2 * 3],
             Self::LoadPart | Self::StorePart => [1, 2 * 4],
+            Self::LoadTwo => [2, 2 * 4],
+            Self::StoreTwo => [2, 2 * 3],
             Self::LoadMultiple(registers) => [2 * registers.div_ceil(2), 2 * (registers.div_ceil(2) + 5)],
             Self::StoreMultiple(registers) => [2 * registers.div_ceil(2), 2 * (registers.div_ceil(2) + 2)],
             Self::Special => [2, 2 * 3],
@@ -135,12 +143,16 @@ impl Class {
     }
 
     fn stores(self) -> bool {
-        matches!(self, Self::Store | Self::StorePart | Self::StoreMultiple(_))
+        matches!(
+            self,
+            Self::Store | Self::StorePart | Self::StoreTwo | Self::StoreMultiple(_)
+        )
     }
 
     /// Transfers of 64 bits on the bus; of several registers one more where they are not aligned to that.
     fn transfers(self) -> u32 {
         match self {
+            Self::LoadTwo | Self::StoreTwo => 2,
             Self::LoadMultiple(registers) | Self::StoreMultiple(registers) => registers / 2 + 1,
             _ => 1,
         }
@@ -155,22 +167,11 @@ const STORE_WAIT: u32 = 2 * 10;
 /// The same of a load from flash: three wait states of the AXI bus more (FLASH_ACR.LATENCY at 260 MHz; RM0468, 4.3.8).
 pub(super) const FLASH_WAIT: u32 = LOAD_WAIT + 2 * 2 * 3;
 
-/// Where an instruction accesses memory.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Base {
-    /// By the stack pointer: in the data TCM, which is never waited for.
-    Stack,
-    /// By the program counter: in flash.
-    Code,
-    /// By this register.
-    Register(u8),
-}
-
 /// An access to memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Access {
-    /// Where it is.
-    pub base: Base,
+    /// The register by which it accesses: 13 the stack pointer, 15 the program counter.
+    pub base: u8,
     /// Whether it stores.
     pub stores: bool,
     /// Transfers of 64 bits on the bus.
@@ -205,8 +206,8 @@ pub struct Block {
     pub bytes: u32,
     /// What they take but for `accesses`.
     pub half_cycles: u32,
-    /// Registers that hold at the block's begin by what it accesses memory, and accesses.
-    pub accesses: Vec<(u8, Access)>,
+    /// Accesses by what registers hold at the block's begin.
+    pub accesses: Vec<Access>,
 }
 
 impl Block {
@@ -220,7 +221,8 @@ impl Block {
             bytes: code.len() as u32,
             ..Self::default()
         };
-        let (mut at, mut written, mut conditional) = (0, 0, 0);
+        let mut values = VALUES;
+        let (mut at, mut conditional) = (0, 0);
         while let Some(&first) = half_words.get(at) {
             let second = half_words.get(at + 1).copied().unwrap_or(0);
             let instruction = Instruction::decode(first, second);
@@ -233,9 +235,9 @@ impl Block {
                 Cycles::Most => most,
             };
             if let (Cycles::Most, Some(access)) = (cycles, instruction.access) {
-                block.wait(access, written);
+                block.wait(access, &values);
             }
-            written |= instruction.writes;
+            instruction.change(&mut values);
             conditional = decode::instructions_of_it(first).unwrap_or(conditional.max(1) - 1);
             block.instructions += 1;
             at += decode::half_words(first);
@@ -243,15 +245,25 @@ impl Block {
         block
     }
 
-    /// Counts what an access waits; notes it where that is seen only when the block runs. What is in registers that are `written`
-    /// before it is not known then.
-    fn wait(&mut self, access: Access, written: u16) {
-        match access.base {
-            Base::Stack => {}
-            Base::Register(register) if written >> register & 1 == 0 => {
-                self.accesses.push((register, access))
-            }
-            Base::Register(_) | Base::Code => self.half_cycles += access.longest_wait(),
+    /// Counts what an access waits; notes it where that is seen only when the block runs.
+    fn wait(&mut self, access: Access, values: &[Value; 16]) {
+        match values[usize::from(access.base & 15)] {
+            Value::First(base) => self.accesses.push(Access { base, ..access }),
+            Value::Near(address) => self.half_cycles += access.wait(address),
+            Value::Unknown => self.half_cycles += access.longest_wait(),
         }
     }
 }
+
+/// The registers at a block's begin: the stack is in the data TCM, code in flash.
+const VALUES: [Value; 16] = {
+    let mut values = [Value::Unknown; 16];
+    let mut register = 0;
+    while register < 16 {
+        values[register] = Value::First(register as u8);
+        register += 1;
+    }
+    values[13] = Value::Near(DTCM.0);
+    values[15] = Value::Near(FLASH);
+    values
+};

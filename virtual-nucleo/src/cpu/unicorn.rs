@@ -76,8 +76,13 @@ impl<B: Bus + 'static> UnicornCpu<B> {
 
 fn begin_block<B: Bus>(engine: &mut Unicorn<State<B>>, address: u64, size: u32) {
     let block = block(engine, address, size);
-    let wait =
-        |(register, access): &(u8, cycles::Access)| access.wait(read(engine, number(Register::R(*register))));
+    let wait = |access: &cycles::Access| {
+        let register = match access.base {
+            14 => Register::Lr,
+            other => Register::R(other),
+        };
+        access.wait(read(engine, number(register)))
+    };
     let waits: u32 = block.accesses.iter().map(wait).sum();
     let bus = &mut engine.get_data_mut().bus;
     let run = match bus.step(address as u32, &block, block.half_cycles + waits) {

@@ -1,6 +1,26 @@
 //! Classes of instructions by their encodings (ARMv7-M A5 and A6).
 
-use super::{Access, Base, Class};
+use super::{Access, Class};
+
+/// What is known of a register's value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Value {
+    /// Near what this register held at the block's begin.
+    First(u8),
+    /// Near this address.
+    Near(u32),
+    /// Nothing.
+    Unknown,
+}
+
+/// What an instruction makes of a register, if that is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Result {
+    /// A value near that of another one.
+    Near(u8),
+    /// An address whose upper half is this.
+    Upper(u16),
+}
 
 /// An instruction as far as its cycles go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +31,8 @@ pub struct Instruction {
     pub access: Option<Access>,
     /// Registers R0 to R15 that it may write, one bit each.
     pub writes: u16,
+    /// What they are then, if that is known.
+    pub result: Option<Result>,
 }
 
 impl Instruction {
@@ -23,25 +45,44 @@ impl Instruction {
         }
     }
 
+    /// Changes what is known of the registers.
+    pub fn change(&self, values: &mut [Value; 16]) {
+        let value = match self.result {
+            Some(Result::Near(register)) => values[usize::from(register & 15)],
+            Some(Result::Upper(half)) => Value::Near(u32::from(half) << 16),
+            None => Value::Unknown,
+        };
+        for (register, old) in values.iter_mut().enumerate() {
+            // The stack pointer stays in its memory.
+            if register != 13 && self.writes >> register & 1 == 1 {
+                *old = value;
+            }
+        }
+    }
+
     fn new(class: Class, writes: u16) -> Self {
         Self {
             class,
             access: None,
             writes,
+            result: None,
+        }
+    }
+
+    /// The sum of this register and a constant, or a copy.
+    fn near(register: u16, writes: u16) -> Self {
+        Self {
+            result: Some(Result::Near((register & 15) as u8)),
+            ..Self::new(Class::Integer, writes)
         }
     }
 
     /// Loads or stores by register `base`.
     fn memory(class: Class, base: u16, writes: u16) -> Self {
-        let base = match base & 15 {
-            13 => Base::Stack,
-            15 => Base::Code,
-            register => Base::Register(register as u8),
-        };
         let (stores, transfers) = (class.stores(), class.transfers());
         Self {
             access: Some(Access {
-                base,
+                base: (base & 15) as u8,
                 stores,
                 transfers,
             }),
@@ -84,9 +125,14 @@ fn narrow(first: u16) -> Instruction {
         0x28..=0x2f | 0x45 | 0xb0 | 0xbe | 0xbf => Instruction::new(Integer, 0),
         0x42 if first & 0xc0 != 0x40 => Instruction::new(Integer, 0),
         0x43 if first & 0xc0 == 0x40 => Instruction::new(Multiply, bit(low)),
+        0x1c..=0x1f => Instruction::near(middle, bit(low)),
+        0x30..=0x3f => Instruction::near(high, bit(high)),
+        0x46 => Instruction::near(first >> 3, bit(first >> 4 & 8 | low)),
+        0xa0..=0xa7 => Instruction::near(15, bit(high)),
+        0xa8..=0xaf => Instruction::near(13, bit(high)),
         0x00..=0x1f | 0x40..=0x43 => Instruction::new(Integer, bit(low)),
-        0x20..=0x3f | 0xa0..=0xaf => Instruction::new(Integer, bit(high)),
-        0x44 | 0x46 => Instruction::new(Integer, bit(first >> 4 & 8 | low)),
+        0x20..=0x27 => Instruction::new(Integer, bit(high)),
+        0x44 => Instruction::new(Integer, bit(first >> 4 & 8 | low)),
         0x47 => Instruction::new(Branch, bit(14)),
         0x48..=0x4f => Instruction::memory(Load, 15, bit(high)),
         0x50 | 0x51 | 0x60..=0x67 => Instruction::memory(Store, middle, 0),
@@ -130,6 +176,15 @@ fn arithmetic(first: u16, second: u16) -> Instruction {
         _ => false,
     };
     match first {
+        // ADD and SUB of constants, of two lengths; MOVT.
+        _ if matches!(first & 0xfbe0, 0xf100 | 0xf1a0 | 0xf200 | 0xf2a0) => Instruction::near(first, lower),
+        _ if first & 0xfbf0 == 0xf2c0 => {
+            let half = first << 12 | (first & 1 << 10) << 1 | second >> 4 & 0x700 | second & 0xff;
+            Instruction {
+                result: Some(Result::Upper(half)),
+                ..Instruction::new(Integer, lower)
+            }
+        }
         _ if shifts => Instruction::new(Shifted, lower),
         _ if first & 0xffd0 == 0xfb90 && second & 0xf0 == 0xf0 => Instruction::new(Divide, lower),
         _ if first & 0xff00 == 0xfb00 => Instruction::new(Multiply, upper | lower),
@@ -158,8 +213,8 @@ fn dual(first: u16, second: u16) -> Instruction {
     match (first & 1 << 4 != 0, is_exclusive) {
         (true, true) => Instruction::memory(Class::LoadPart, base, results),
         (false, true) => Instruction::memory(Class::StorePart, base, results | bit(second)),
-        (true, false) => Instruction::memory(Class::LoadMultiple(2), base, results | written_back),
-        (false, false) => Instruction::memory(Class::StoreMultiple(2), base, written_back),
+        (true, false) => Instruction::memory(Class::LoadTwo, base, results | written_back),
+        (false, false) => Instruction::memory(Class::StoreTwo, base, written_back),
     }
 }
 
@@ -227,9 +282,9 @@ fn float_memory(first: u16, second: u16) -> Instruction {
     // Indexed and not written back: one register.
     if first & 0x0120 == 0x0100 {
         let class = match (is_load, is_double) {
-            (true, true) => LoadMultiple(2),
+            (true, true) => LoadTwo,
             (true, false) => Load,
-            (false, true) => StoreMultiple(2),
+            (false, true) => StoreTwo,
             (false, false) => Store,
         };
         return Instruction::memory(class, base, 0).in_one();
@@ -250,7 +305,7 @@ mod tests {
     use Class::*;
 
     /// Half-words, what a disassembler says, and class.
-    const KNOWN: [(u16, u16, &str, Class); 52] = [
+    const KNOWN: [(u16, u16, &str, Class); 54] = [
         (0x2200, 0, "movs r2, #0", Integer),
         (0x4281, 0, "cmp r1, r0", Integer),
         (0x1840, 0, "adds r0, r0, r1", Integer),
@@ -282,10 +337,12 @@ mod tests {
         (0x8008, 0, "strh r0, [r1]", StorePart),
         (0xe841, 0x0200, "strex r2, r0, [r1]", StorePart),
         (0xbd70, 0, "pop {r4, r5, r6, pc}", LoadMultiple(4)),
-        (0xc907, 0, "ldm r1!, {r0, r1, r2}", LoadMultiple(3)),
-        (0xe9d1, 0x0200, "ldrd r0, r2, [r1]", LoadMultiple(2)),
-        (0xed91, 0x0b00, "vldr d0, [r1]", LoadMultiple(2)),
+        (0xc905, 0, "ldm r1!, {r0, r2}", LoadMultiple(2)),
+        (0xe9d1, 0x0200, "ldrd r0, r2, [r1]", LoadTwo),
+        (0xed91, 0x0b00, "vldr d0, [r1]", LoadTwo),
         (0xecbd, 0x8b04, "vpop {d8, d9}", LoadMultiple(4)),
+        (0xe9c1, 0x0200, "strd r0, r2, [r1]", StoreTwo),
+        (0xed81, 0x0b00, "vstr d0, [r1]", StoreTwo),
         (0xb5f0, 0, "push {r4, r5, r6, r7, lr}", StoreMultiple(5)),
         (0xe92d, 0x4ff0, "push.w {r4-r11, lr}", StoreMultiple(9)),
         (0xd0fe, 0, "beq", Branch),
@@ -319,11 +376,30 @@ mod tests {
             (0x46a4, 0, "mov r12, r4", 1 << 12),
             (0xf841, 0x0b04, "str r0, [r1], #4", 1 << 1),
             (0xe9d1, 0x0200, "ldrd r0, r2, [r1]", 0b101),
-            (0xc907, 0, "ldm r1!, {r0, r1, r2}", 0b111),
+            (0xc905, 0, "ldm r1!, {r0, r2}", 0b111),
             (0xed91, 0x0b00, "vldr d0, [r1]", 0),
             (0xee10, 0x3a10, "vmov r3, s0", 1 << 3),
         ] {
             assert_eq!(Instruction::decode(first, second).writes, writes, "{text}");
+        }
+    }
+
+    #[test]
+    fn addresses_are_followed_through_a_block() {
+        let mut values = [0, 1, 2].map(Value::First).into_iter().collect::<Vec<_>>();
+        values.resize(13, Value::Unknown);
+        values.resize(16, Value::Near(0x2000_0000));
+        let mut values: [Value; 16] = values.try_into().expect("sixteen");
+        for (first, second, text, register, value) in [
+            (0xf2c2, 0x4300, "movt r3, #0x2400", 3, Value::Near(0x2400_0000)),
+            (0xf103, 0x0410, "add.w r4, r3, #16", 4, Value::Near(0x2400_0000)),
+            (0xa801, 0, "add r0, sp, #4", 0, Value::Near(0x2000_0000)),
+            (0x460d, 0, "mov r5, r1", 5, Value::First(1)),
+            (0x3208, 0, "adds r2, #8", 2, Value::First(2)),
+            (0x6809, 0, "ldr r1, [r1]", 1, Value::Unknown),
+        ] {
+            Instruction::decode(first, second).change(&mut values);
+            assert_eq!(values[register], value, "{text}");
         }
     }
 
