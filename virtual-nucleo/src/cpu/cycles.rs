@@ -182,7 +182,8 @@ impl Access {
     /// Half cycles that it waits at most if its base holds this address. What is on the bus waits there ([`Bus`](super::Bus)).
     pub fn wait(&self, address: u32) -> u32 {
         let lies_in = |(begin, length): (u32, usize)| address.wrapping_sub(begin) < length as u32;
-        if lies_in(DTCM) || lies_in(D2) || address >= 0x4000_0000 {
+        let is_on_bus = matches!(address, 0x4000_0000..0x6000_0000 | 0xe000_0000..0xe010_0000) || lies_in(D2);
+        if lies_in(DTCM) || is_on_bus {
             0
         } else if lies_in(AXI) && !self.stores {
             self.transfers * LOAD_WAIT
@@ -237,7 +238,9 @@ impl Block {
             if let (Cycles::Most, Some(access)) = (cycles, instruction.access) {
                 block.wait(access, &values);
             }
-            instruction.change(&mut values);
+            // What IT skips makes nothing.
+            let made = instruction.made.filter(|_| conditional == 0);
+            Instruction { made, ..instruction }.change(&mut values);
             conditional = decode::instructions_of_it(first).unwrap_or(conditional.max(1) - 1);
             block.instructions += 1;
             at += decode::half_words(first);

@@ -15,7 +15,7 @@ pub enum Value {
 
 /// What an instruction makes of a register, if that is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Result {
+pub enum Made {
     /// A value near that of another one.
     Near(u8),
     /// An address whose upper half is this.
@@ -31,8 +31,8 @@ pub struct Instruction {
     pub access: Option<Access>,
     /// Registers R0 to R15 that it may write, one bit each.
     pub writes: u16,
-    /// What they are then, if that is known.
-    pub result: Option<Result>,
+    /// What it makes of them, if that is known.
+    pub made: Option<Made>,
 }
 
 impl Instruction {
@@ -47,9 +47,9 @@ impl Instruction {
 
     /// Changes what is known of the registers.
     pub fn change(&self, values: &mut [Value; 16]) {
-        let value = match self.result {
-            Some(Result::Near(register)) => values[usize::from(register & 15)],
-            Some(Result::Upper(half)) => Value::Near(u32::from(half) << 16),
+        let value = match self.made {
+            Some(Made::Near(register)) => values[usize::from(register & 15)],
+            Some(Made::Upper(half)) => Value::Near(u32::from(half) << 16),
             None => Value::Unknown,
         };
         for (register, old) in values.iter_mut().enumerate() {
@@ -65,14 +65,14 @@ impl Instruction {
             class,
             access: None,
             writes,
-            result: None,
+            made: None,
         }
     }
 
     /// The sum of this register and a constant, or a copy.
     fn near(register: u16, writes: u16) -> Self {
         Self {
-            result: Some(Result::Near((register & 15) as u8)),
+            made: Some(Made::Near((register & 15) as u8)),
             ..Self::new(Class::Integer, writes)
         }
     }
@@ -181,7 +181,7 @@ fn arithmetic(first: u16, second: u16) -> Instruction {
         _ if first & 0xfbf0 == 0xf2c0 => {
             let half = first << 12 | (first & 1 << 10) << 1 | second >> 4 & 0x700 | second & 0xff;
             Instruction {
-                result: Some(Result::Upper(half)),
+                made: Some(Made::Upper(half)),
                 ..Instruction::new(Integer, lower)
             }
         }
