@@ -8,12 +8,13 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
+use virtual_nucleo::cpu::cycles::Cycles;
 use virtual_nucleo::pace::Pace;
 use virtual_nucleo::pair::{NAMES, Pair, PairError};
 use virtual_nucleo::session::LINK_LIMIT;
 use virtual_nucleo::time::Time;
 
-const USAGE: &str = "virtual-nucleo MOTION TRACKER [--machine NAME] [--plant PLANT] [--folder FOLDER] [--rate R] [--ms TIME] [--vcd FILE] [--at ADDRESS,ADDRESS]
+const USAGE: &str = "virtual-nucleo MOTION TRACKER [--machine NAME] [--plant PLANT] [--folder FOLDER] [--rate R] [--ms TIME] [--vcd FILE] [--at ADDRESS,ADDRESS] [--cycles COUNT]
 
 Runs both firmware images on models of the NUCLEO-H723ZG, writes FOLDER/session.toml, and ends when its standard
 input ends or, with --ms, after that much time of the boards. It fails if anything was found.
@@ -24,7 +25,8 @@ input ends or, with --ms, after that much time of the boards. It fails if anythi
     --rate     the boards' time per wall time at most; default 1
     --vcd      records what leaves every pin of both boards, from reset on: 0, 1, z floating, x a peripheral's
     --at       addresses of the loopback interface at which the boards have their own ports, as 127.0.71.11,127.0.71.12, for programs
-               that are told an address; default: 127.0.0.1 and unused ports";
+               that are told an address; default: 127.0.0.1 and unused ports
+    --cycles   what instructions take: one (a cycle each; default), least or most, between which the chip's cycles are expected";
 
 /// From the link to where a board takes a connection: in the first second it may not have found the PC's Ethernet address again, and it
 /// drops a connection that is not complete after 0.5 s (link/src/stack.rs).
@@ -39,6 +41,7 @@ struct Options {
     end: Time,
     waveform: Option<PathBuf>,
     at: Option<[Ipv4Addr; 2]>,
+    cycles: Cycles,
 }
 
 fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
@@ -52,6 +55,7 @@ fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
         end: Time::NEVER,
         waveform: None,
         at: None,
+        cycles: Cycles::default(),
     };
     let mut arguments = arguments;
     while let Some(argument) = arguments.next() {
@@ -63,6 +67,7 @@ fn options(arguments: impl Iterator<Item = String>) -> Option<Options> {
             "--ms" => options.end = Time::ms(arguments.next()?.parse().ok()?),
             "--vcd" => options.waveform = Some(arguments.next()?.into()),
             "--at" => options.at = Some(addresses(&arguments.next()?)?),
+            "--cycles" => options.cycles = arguments.next()?.parse().ok()?,
             image if !image.starts_with('-') => images.push(PathBuf::from(image)),
             _ => return None,
         }
@@ -97,6 +102,9 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<usize, PairError> {
     let [motion, tracker] = &options.images;
     let mut pair = Pair::start_at(options.at, [motion, tracker], &options.machine, &options.plant)?;
+    pair.boards
+        .iter_mut()
+        .for_each(|board| board.count(options.cycles));
     let file = |path: &Path, source| PairError::File {
         path: path.to_owned(),
         source,

@@ -20,8 +20,9 @@ const CPUID: u32 = 0x411f_c271;
 const DATA_CACHE: u32 = 0xf01f_e019;
 /// The same of the instruction cache of 32 KB, 2 ways.
 const INSTRUCTION_CACHE: u32 = 0xf03f_e009;
-/// Bit of the data cache in the configuration and control register.
+/// Bits of the caches in the configuration and control register.
 const DATA_CACHE_ON: u32 = 1 << 16;
+const INSTRUCTION_CACHE_ON: u32 = 1 << 17;
 
 /// Registers and state of the core beside those that instructions name.
 #[derive(Clone, Debug)]
@@ -82,6 +83,11 @@ impl System {
     /// Whether the data cache is on.
     pub fn data_cache(&self) -> bool {
         self.configuration & DATA_CACHE_ON != 0
+    }
+
+    /// Whether the instruction cache is on.
+    pub fn instruction_cache(&self) -> bool {
+        self.configuration & INSTRUCTION_CACHE_ON != 0
     }
 
     /// Whether the fault `number` has a handler of its own (SHCSR).

@@ -1,8 +1,12 @@
 //! The processor's instructions; exceptions, time and everything on the bus are this program's own.
 
+pub mod cycles;
+pub mod fetch;
 mod unicorn;
 
 pub use unicorn::UnicornCpu;
+
+use cycles::Block;
 
 /// Registers of the core (ARMv7-M B1.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,8 +79,8 @@ pub enum Step {
 
 /// What the core sees. It is called while the core runs.
 pub trait Bus {
-    /// A block of `instructions` at `pc` is about to run.
-    fn step(&mut self, pc: u32, instructions: u32) -> Step;
+    /// A block of instructions at `pc` is about to run, and takes `half_cycles` but for what it waits on the bus.
+    fn step(&mut self, pc: u32, block: &Block, half_cycles: u32) -> Step;
     /// Whether the pending exception is taken now.
     fn preempts(&mut self, masks: Masks) -> bool;
     /// A load from a window of [`Cpu::map_bus`].

@@ -3,7 +3,9 @@
 //! Its own mode for microcontrollers is not used, because it is a Cortex-M33 without double precision. Memory hooks are not
 //! used, because they break IT blocks: what is to be seen on the bus is mapped as input and output instead.
 
+use super::cycles::{self, Block, Cycles};
 use super::{Access, Bus, Cpu, Masks, Register, Step, Stop, Unmapped};
+use std::rc::Rc;
 use unicorn_engine::{Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, Unicorn, uc_error};
 
 /// Of QEMU: a branch to an EXC_RETURN value, and a supervisor call.
@@ -14,8 +16,9 @@ const NOWHERE: u64 = 0xffff_fffe;
 
 struct State<B> {
     bus: B,
-    /// Instructions of the block that begins at each half-word of [`CODE`]; 0 is not yet known.
-    lengths: Vec<u8>,
+    /// The block that begins at each half-word of [`CODE`], once it has run.
+    blocks: Vec<Option<Rc<Block>>>,
+    cycles: Cycles,
     stop: Option<Stop>,
 }
 
@@ -33,7 +36,8 @@ impl<B: Bus + 'static> UnicornCpu<B> {
     pub fn new(bus: B) -> Result<Self, uc_error> {
         let state = State {
             bus,
-            lengths: vec![0; CODE_LENGTH / 2],
+            blocks: vec![None; CODE_LENGTH / 2],
+            cycles: Cycles::default(),
             stop: None,
         };
         let mut engine = Unicorn::new_with_data(Arch::ARM, Mode::THUMB | Mode::LITTLE_ENDIAN, state)?;
@@ -61,21 +65,27 @@ impl<B: Bus + 'static> UnicornCpu<B> {
         })?;
         Ok(Self { engine })
     }
+
+    /// From now on cycles are counted so.
+    pub fn count(&mut self, cycles: Cycles) {
+        let state = self.engine.get_data_mut();
+        state.cycles = cycles;
+        state.blocks.fill(None);
+    }
 }
 
 fn begin_block<B: Bus>(engine: &mut Unicorn<State<B>>, address: u64, size: u32) {
-    let index = (address.wrapping_sub(CODE) / 2) as usize;
-    let known = engine.get_data().lengths.get(index).copied().unwrap_or(0);
-    let instructions = if known > 0 {
-        u32::from(known)
-    } else {
-        let count = count_instructions(engine, address, size);
-        if let Some(length) = engine.get_data_mut().lengths.get_mut(index) {
-            *length = u8::try_from(count).unwrap_or(0);
-        }
-        count
+    let block = block(engine, address, size);
+    let wait = |access: &cycles::Access| {
+        let register = match access.base {
+            14 => Register::Lr,
+            other => Register::R(other),
+        };
+        access.wait(read(engine, number(register)))
     };
-    let run = match engine.get_data_mut().bus.step(address as u32, instructions) {
+    let waits: u32 = block.accesses.iter().map(wait).sum();
+    let bus = &mut engine.get_data_mut().bus;
+    let run = match bus.step(address as u32, &block, block.half_cycles + waits) {
         Step::Run => true,
         Step::Stop => false,
         Step::Pending => {
@@ -92,17 +102,19 @@ fn begin_block<B: Bus>(engine: &mut Unicorn<State<B>>, address: u64, size: u32) 
     }
 }
 
-/// Instructions in a block: those of 32 bits begin with 0b11101, 0b11110 or 0b11111 (ARMv7-M A5.1).
-fn count_instructions<B>(engine: &Unicorn<State<B>>, address: u64, size: u32) -> u32 {
-    let Ok(code) = engine.mem_read_as_vec(address, size as usize) else {
-        return 1;
-    };
-    let (mut at, mut count) = (0, 0);
-    while let Some(high) = code.get(at + 1) {
-        at += if high >> 3 >= 0b11101 { 4 } else { 2 };
-        count += 1;
+/// The block of `size` bytes at `address`.
+fn block<B>(engine: &mut Unicorn<State<B>>, address: u64, size: u32) -> Rc<Block> {
+    let index = (address.wrapping_sub(CODE) / 2) as usize;
+    if let Some(Some(block)) = engine.get_data().blocks.get(index) {
+        return Rc::clone(block);
     }
-    count
+    let code = engine.mem_read_as_vec(address, size as usize).unwrap_or_default();
+    let state = engine.get_data_mut();
+    let block = Rc::new(Block::read(&code, state.cycles));
+    if let Some(place) = state.blocks.get_mut(index) {
+        *place = Some(Rc::clone(&block));
+    }
+    block
 }
 
 fn halt<B>(engine: &mut Unicorn<State<B>>, stop: Stop) {
