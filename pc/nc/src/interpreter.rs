@@ -193,7 +193,6 @@ impl Interpreter {
         }
         let setup = self.setup.clone();
         self.modal.block(block, &claims, &setup)?;
-        self.first_motion(block, takes.is_some());
         self.modal_corner(block)?;
         self.hints(block);
         self.unit_hint(block);
@@ -234,19 +233,6 @@ impl Interpreter {
             self.stop(*code)?;
         }
         Ok(())
-    }
-
-    /// Axis words before any motion code are a rapid, as on controllers that begin with G0.
-    fn first_motion(&mut self, block: &Block, taken: bool) {
-        let word = AXIS_WORDS.iter().find_map(|name| block.word(name));
-        // Those beside a function that is passed over may be its own.
-        let taken = taken || block.has(Code::MachineAxes) || !block.passed_over.is_empty();
-        if let Some(word) = word.filter(|_| !taken)
-            && self.modal.begins_with_rapid()
-        {
-            let text = "neither G0 nor G1 before the first motion: it is a rapid, as no feed was said that G1 would need";
-            self.tell_once(text.to_owned(), word.place);
-        }
     }
 
     /// Outputs, spindle, coolant and dwell of a block.

@@ -30,8 +30,6 @@ struct Feed {
 pub(super) struct Modal {
     /// G0, G1, G2, G3, G5, G5.1 or a cycle; none after a NURBS, and after G80 where no cycle was on.
     pub(super) motion: Option<Code>,
-    /// No motion was said so far.
-    unsaid: bool,
     /// G0 or G1 before a cycle: G80 goes back to it.
     before_cycle: Option<Code>,
     /// The last motion was a G6.2, which a G6.3 may close once more.
@@ -64,7 +62,6 @@ impl Modal {
     pub(super) fn new(setup: &Setup) -> Self {
         Self {
             motion: None,
-            unsaid: true,
             before_cycle: None,
             closed: false,
             tip: setup.tip_control,
@@ -153,7 +150,6 @@ impl Modal {
                         self.before_cycle = self.motion;
                     }
                     self.motion = Some(motion);
-                    self.unsaid = false;
                 }
                 // The others have their own places, or confirm the only state there is.
                 _ => {}
@@ -163,16 +159,6 @@ impl Modal {
             self.set_contour_tolerance(tolerance.value, setup);
         }
         Ok(())
-    }
-
-    /// Coordinates before any motion code are those of a rapid where no feed was said, without which G1 would be an error; whether that
-    /// is so now.
-    pub(super) fn begins_with_rapid(&mut self) -> bool {
-        let begins = self.unsaid && self.feed.is_none() && self.feed_mode == FeedMode::PerMinute;
-        if begins {
-            (self.motion, self.unsaid) = (Some(Code::Rapid), false);
-        }
-        begins
     }
 
     /// G80. Controllers whose cycles are in a group of their own go on as before the cycle.

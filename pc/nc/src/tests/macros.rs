@@ -1,6 +1,6 @@
 //! Macros of Fanuc programs, numbers of programs, and lines with several statements.
 
-use super::dialects::{ends, told, wrong};
+use super::dialects::{ends, wrong};
 use super::*;
 
 /// X of each motion.
@@ -201,30 +201,4 @@ fn values_of_fanuc_controllers_are_not_made_up() {
     assert!(wrong("IF [1 EQ 1] THEN #3000=12 (NO ARGUMENT)\nM2").contains("stops with the alarm 12"));
     assert!(run("IF [1 EQ 2] THEN #3000=12 (NO ARGUMENT)\nM2").is_ok());
     assert!(wrong("#3006=1\nM2").contains("write M0"));
-}
-
-#[test]
-fn the_first_motion_is_a_rapid_where_no_feed_was_said() {
-    let start = |body: &str| interpret(&format!("{body}\nM2"), Options::default());
-    let program = start("G21 G90 G54 G80\nG43 H1 Z50\nX5\nG1 X6 F100").unwrap();
-    let motions: Vec<_> = program.paths.iter().map(|path| path.motion).collect();
-    assert_eq!(motions, [Motion::Rapid, Motion::Rapid, Motion::Feed]);
-    let about = |program: &Program| {
-        program
-            .notices
-            .iter()
-            .filter(|notice| notice.text.contains("it is a rapid"))
-            .count()
-    };
-    assert_eq!(about(&program), 1);
-    assert_eq!(about(&start("G0 X5\nX6").unwrap()), 0);
-    for body in [
-        "F100\nX5",
-        "X5 F100",
-        "G93\nX5",
-        "G1 X1 F100\nG81 Z-1 R1\nG80\nG53 X1",
-    ] {
-        assert!(start(body).is_err(), "{body}");
-    }
-    assert!(told("X7\nM2").is_empty(), "G0 was said in the header");
 }
