@@ -28,11 +28,7 @@ const BOARDS: [&str; 2] = ["--test", "boards"];
 /// features for everything: without it the PC's programs are linted for Windows, and tested by [`check`].
 const CAMERAS: [&str; 2] = ["--features", "seamwright/aravis"];
 
-/// Of the tests on boards, those that the suite runs on the model of the real one, too: it has to be built for them, which takes
-/// longer than they do.
-const ON_VIRTUAL_BOARDS: [&str; 1] = ["welds::the_shipped_job_at_9_m_per_min"];
-
-/// Boards with tests that are not all part of the suite.
+/// Boards with tests that are no part of the suite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum OtherBoards {
     /// The model of the real one.
@@ -52,7 +48,7 @@ pub fn virtual_nucleo() -> ExitCode {
     });
     tally.test("tests of the virtual board", virtual_nucleo::tests);
     tally.test("tests on virtual boards", || {
-        virtual_nucleo::jobs(board_tests(&[])?, &[])
+        virtual_nucleo::jobs(board_tests(&[])?)
     });
     tally.close()
 }
@@ -96,9 +92,6 @@ pub fn run() -> ExitCode {
     });
     tally.check("stack that runs over on mps2-an500", bench::stack_overflow);
     tally.test("tests on emulated boards", emulated_tests);
-    tally.test("weld on virtual boards", || {
-        virtual_nucleo::jobs(board_tests(&CAMERAS)?, &ON_VIRTUAL_BOARDS)
-    });
     tally.close()
 }
 
