@@ -6,8 +6,8 @@ use super::effort::Effort;
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
 use super::levels::{Called, Level};
+use super::line_parts;
 use super::parameters::Parameter;
-use super::parts;
 use super::program::Program;
 use super::setup::Options;
 use super::siemens::calls;
@@ -207,7 +207,7 @@ impl Reader {
         self.position.executed += 1;
         self.conditions_before = self.interpreter.conditions();
         let deleted = self.options.block_delete && text.trim_start().starts_with('/');
-        let Some(parts) = parts::of(&text).filter(|_| !deleted) else {
+        let Some(parts) = line_parts::of(&text).filter(|_| !deleted) else {
             return self.part_of_line(text);
         };
         let mut settings = Vec::new();

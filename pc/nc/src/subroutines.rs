@@ -3,7 +3,7 @@
 use super::error::{NcError, Problem, SourcePosition};
 use super::flow::{self, Keyword, OWord};
 use super::interpreter::Interpreter;
-use super::parts;
+use super::line_parts;
 use super::scanner::Scanner;
 use super::siemens::calls;
 use super::source::Source;
@@ -57,7 +57,7 @@ impl Name<'_> {
                 let word = head(text, line, interpreter)?;
                 let begins = matches!(word.keyword, Keyword::Sub | Keyword::Number);
                 // Words behind its number are its first ones.
-                (begins && word.label == *name).then(|| parts::of(text).is_some())
+                (begins && word.label == *name).then(|| line_parts::of(text).is_some())
             }
         }
     }

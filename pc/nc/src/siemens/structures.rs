@@ -4,8 +4,8 @@ use super::macros;
 use super::statement::{Statement, What};
 use crate::branches::Open;
 use crate::error::{NcError, Problem, SourcePosition};
+use crate::line_parts;
 use crate::parameters::{Lookup, Parameter};
-use crate::parts;
 use crate::reader::Reader;
 use crate::scanner::Scanner;
 
@@ -67,7 +67,7 @@ pub(super) enum Edge {
 
 /// What the statement of a line, if there is one, means for the structures around it.
 pub(super) fn edge(text: &str) -> Option<Edge> {
-    match parts::of(text) {
+    match line_parts::of(text) {
         Some(parts) => parts.iter().find_map(|part| edge_of_statement(part)),
         None => edge_of_statement(text),
     }

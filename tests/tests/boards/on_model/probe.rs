@@ -1,3 +1,5 @@
+//! A first look at boards by `seamwright probe`, which is told their addresses.
+
 use crate::model::Model;
 use crate::pair::{Pair, program};
 use emulator::{PROGRAM_VARIABLES, bound_to_parent};
