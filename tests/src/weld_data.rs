@@ -9,7 +9,7 @@ use job::{Job, Names, Work};
 use nalgebra::Vector3;
 use nc::{Options, interpret};
 use report::Ended;
-use shared::io::AXES;
+use shared::io::{AXES, MOTORS};
 use shared::protocol::MotionSample;
 use world::Surroundings;
 
@@ -102,10 +102,11 @@ impl WeldDataRun {
         ids.into_iter().map(burnt).collect()
     }
 
-    /// The true tip in the frame of the work \[mm\].
+    /// The tip in the frame of the work, where it truly is if the machine knows, else by gratings and encoders \[mm\].
     pub fn tip(&self, sample: &MotionSample) -> Vector3<f64> {
-        let motors = sample.truth.expect("a simulated machine");
-        let axes: [f64; AXES] = std::array::from_fn(|axis| motors[if axis == 0 { 0 } else { axis + 1 }]);
+        let of_motors =
+            |motors: [f64; MOTORS]| std::array::from_fn(|axis| motors[if axis == 0 { 0 } else { axis + 1 }]);
+        let axes: [f64; AXES] = sample.truth.map_or(sample.axes, of_motors);
         self.planner.kinematics().forward(&axes).position
     }
 }

@@ -38,14 +38,15 @@ pub const WINDOWS: &str = "x86_64-pc-windows-gnu";
 /// Version of cargo-mutants whose flags and files are known here.
 const MUTANTS: &str = "27.1.0";
 
-/// For everything but counting, changing the code, comparing interpreters and virtual boards.
-pub const ALL: [Tool; 6] = [
+/// For everything but counting, changing the code and comparing interpreters.
+pub const ALL: [Tool; 7] = [
     Tool::ArmTarget,
     Tool::WindowsTarget,
     Tool::Components,
     Tool::Qemu,
     Tool::Aravis,
     Tool::Python,
+    Tool::UnicornBuild,
 ];
 /// For emulated boards.
 pub const EMULATION: [Tool; 2] = [Tool::ArmTarget, Tool::Qemu];

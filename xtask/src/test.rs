@@ -28,7 +28,10 @@ const BOARDS: [&str; 2] = ["--test", "boards"];
 /// features for everything: without it the PC's programs are linted for Windows, and tested by [`check`].
 const CAMERAS: [&str; 2] = ["--features", "seamwright/aravis"];
 
-/// Boards with tests that are no part of the suite.
+/// Of the tests on boards, the one that the suite runs on the model of the real one, too.
+const ON_VIRTUAL_BOARDS: [&str; 1] = ["welds::the_shipped_job_at_5_m_per_min"];
+
+/// Boards with tests that are not all part of the suite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum OtherBoards {
     /// The model of the real one.
@@ -48,7 +51,7 @@ pub fn virtual_nucleo() -> ExitCode {
     });
     tally.test("tests of the virtual board", virtual_nucleo::tests);
     tally.test("tests on virtual boards", || {
-        virtual_nucleo::jobs(board_tests(&[])?)
+        virtual_nucleo::jobs(board_tests(&[])?, &[])
     });
     tally.close()
 }
@@ -92,6 +95,9 @@ pub fn run() -> ExitCode {
     });
     tally.check("stack that runs over on mps2-an500", bench::stack_overflow);
     tally.test("tests on emulated boards", emulated_tests);
+    tally.test("weld on virtual boards", || {
+        virtual_nucleo::jobs(board_tests(&CAMERAS)?, &ON_VIRTUAL_BOARDS)
+    });
     tally.close()
 }
 
@@ -131,14 +137,14 @@ fn emulated_tests() -> Result<Command> {
     Ok(command)
 }
 
-/// The tests on boards, two at a time: a pair of boards keeps about one core busy in real time. Where a core is short, their time
-/// waits (docs/decisions/0005). seamwright is the one that the tests of the host have built.
+/// The tests on boards, three at a time: some run in real time and leave two cores idle now and then. Where a core is short, the
+/// boards' time waits (docs/decisions/0005). seamwright is the one that the tests of the host have built.
 fn board_tests(features: &[&str]) -> Result<Command> {
     let build = ["build", "--quiet", "--workspace", "--bin", "seamwright"];
     cargo::run(&[&build[..], features].concat())?;
     let seamwright = target_directory()?.join("debug").join("seamwright");
     let test = ["test", "--workspace", "--no-fail-fast"];
-    let mut command = cargo(&[&test[..], features, &BOARDS, &["--", "--test-threads=2"]].concat())?;
+    let mut command = cargo(&[&test[..], features, &BOARDS, &["--", "--test-threads=3"]].concat())?;
     command.env(PROGRAM_VARIABLES[0], seamwright);
     Ok(command)
 }

@@ -34,11 +34,12 @@ pub fn tests() -> Result<Command> {
     Ok(command)
 }
 
-/// Those of the `tests` on boards that it can run, with all that they need built.
-pub fn jobs(mut tests: Command) -> Result<Command> {
+/// Those of the `tests` on boards that it can run, with all that they need built; `selection` as `cargo test` has it.
+pub fn jobs(mut tests: Command, selection: &[&str]) -> Result<Command> {
     let [motion, _] = firmware::build(Firmware::ALL, Board::NucleoH723zg)?;
     let images = motion.parent().context("an image lies in no folder")?;
     tests
+        .args(selection)
         .args(["--skip", "on_qemu::"])
         .env(IMAGES, images)
         .env(PROGRAM, build()?);

@@ -51,6 +51,13 @@ pub fn of(programs: &[Told], pairs: &[Pair]) -> String {
         "refused by the peer",
         pairs.iter().map(|pair| (name(pair), &pair.peer)),
     ));
+    text.push_str(&reasons(
+        "refused by both, as we say it",
+        pairs
+            .iter()
+            .filter(|pair| !pair.peer.accepted())
+            .map(|pair| (name(pair), &pair.ours)),
+    ));
     let only_ours = by(&|pair| pair.ours.accepted() && !pair.peer.accepted());
     if only_ours > 0 {
         writeln!(text, "\naccepted by us only: {only_ours}").ok();

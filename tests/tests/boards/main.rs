@@ -1,6 +1,6 @@
 //! Whole jobs on boards that run the firmware: emulated ones, or the model of the real one. `cargo xtask test`, and the same with
-//! `--boards virtual-nucleo`, builds what they need and runs two at a time: a pair of boards keeps about one core busy, and
-//! waits where a core is short.
+//! `--boards virtual-nucleo`, builds what they need and runs three at a time: a pair of boards keeps about one core busy in
+//! real time, and waits where a core is short.
 
 mod machines;
 mod model;

@@ -15,6 +15,9 @@ use std::process::Command;
 use system_tests::{MACHINE, PROGRAM, SEAM, shipped};
 use world::emulated;
 
+/// The boards' time per wall time that a job may take; what it does take is what the host has processors for.
+const AT_MOST: f64 = 4.0;
+
 /// Boards that run, with a folder of their own.
 pub struct Pair {
     boards: Running,
@@ -27,19 +30,30 @@ enum Running {
 }
 
 impl Pair {
-    /// Boots boards; `name` is that of their folder.
+    /// Boots boards that run in real time; `name` is that of their folder.
     pub fn boot(name: &str) -> Self {
         Self::boot_as(name, DEFAULT_MACHINE)
     }
 
-    /// Boots boards that are wired to `machine`.
+    /// The same, wired to `machine`.
     pub fn boot_as(name: &str, machine: &str) -> Self {
+        Self::boot_at(name, machine, 1.0)
+    }
+
+    /// Boots boards that are wired to `machine`, for jobs that nothing from outside disturbs: they may run faster than real time,
+    /// as they wait for the job, which handles all that they say.
+    pub fn for_jobs(name: &str, machine: &str) -> Self {
+        Self::boot_at(name, machine, AT_MOST)
+    }
+
+    fn boot_at(name: &str, machine: &str, rate: f64) -> Self {
         if Model::is_wanted() {
             return Self::of_model(name, |folder| Model::boot(folder, machine, &[]));
         }
         let folder = scratch(name);
         let mut options = Options::from_environment(folder.clone()).expect("what to boot");
         options.machine = machine.to_owned();
+        options.rate = rate;
         let boards = emulator::Boards::boot(&options).unwrap_or_else(|error| panic!("{error}"));
         boards
             .session()

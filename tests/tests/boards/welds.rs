@@ -3,6 +3,7 @@
 use crate::pair::{Pair, assert_served};
 use config::machine::JointForm;
 use host_link::boards::Boards;
+use plant_file::DEFAULT_MACHINE;
 use report::Ended;
 use system_tests::{
     assert_held_weld_goes_on, assert_on_seam, assert_stops_in_the_dark, deviations, seam, short_lines, sines,
@@ -14,7 +15,7 @@ use world::simulated::SimulatedBoards;
 /// Does `job` on a pair of boards and on simulated ones: no spot is ever further than `limit_mm` from its seam, and both agree. The
 /// pair and how it ended there.
 fn assert_welds(name: &str, limit_mm: f64, job: impl Fn(&mut dyn Boards) -> Ended) -> (Pair, Ended) {
-    let mut pair = Pair::boot(name);
+    let mut pair = Pair::for_jobs(name, DEFAULT_MACHINE);
     let ended = job(&mut pair.connect());
     assert_on_seam(&ended, limit_mm);
     assert_served(&ended.report);
@@ -64,14 +65,14 @@ fn the_disturbed_job_at_9_m_per_min() {
 
 #[test]
 fn a_light_that_fails_for_good_ends_the_weld() {
-    let mut pair = Pair::boot("dark");
+    let mut pair = Pair::for_jobs("dark", DEFAULT_MACHINE);
     assert_stops_in_the_dark(&mut pair.connect(), JointForm::Gap, 9.0);
     pair.check();
 }
 
 #[test]
 fn a_held_weld_goes_on_over_the_place() {
-    let mut pair = Pair::boot("hold");
+    let mut pair = Pair::for_jobs("hold", DEFAULT_MACHINE);
     let ended = assert_held_weld_goes_on(&mut pair.connect(), 5.0);
     assert_served(&ended.report);
     pair.assert_off();
@@ -84,7 +85,7 @@ fn sines_of_1_mm_at_9_m_per_min() {
 
 #[test]
 fn short_lines_at_6_m_per_min() {
-    let mut pair = Pair::boot("short-lines");
+    let mut pair = Pair::for_jobs("short-lines", DEFAULT_MACHINE);
     let ended = short_lines(&mut pair.connect());
     assert!(ended.error.is_none(), "{:?}", ended.error);
     assert_served(&ended.report);

@@ -4,7 +4,7 @@
 mod tests;
 
 use super::{Moving, pose::unit, rotate};
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::{PI, SQRT_2, TAU};
 use nalgebra::Vector3;
 use thiserror::Error;
 
@@ -15,8 +15,9 @@ const SAME_POINT: f64 = 1e-6;
 const SAME_TURN: f64 = 1e-6;
 /// Radii at start and end may differ by this share of the larger one,
 const RADIUS_SHARE: f64 = 1e-3;
-/// and by this much in any case, which is above the rounding of programs with three decimals \[mm\],
-const LEAST_TOLERANCE: f64 = 0.005;
+/// and by this much in any case \[mm\]: a point that is rounded to two decimals is up to 0.005·√2 mm off, and start and end are each
+/// with the centre,
+const LEAST_TOLERANCE: f64 = 0.02 * SQRT_2;
 /// but never by more than this \[mm\].
 const MOST_TOLERANCE: f64 = 0.5;
 
@@ -78,7 +79,7 @@ pub struct Arc {
 impl Arc {
     /// By how much radii may differ, in words.
     pub const RADIUS_LIMITS: &str =
-        "0.1 % of the radius, but 0.005 mm in any case and never more than 0.5 mm";
+        "0.1 % of the radius, but 0.028 mm in any case and never more than 0.5 mm";
 
     /// Largest difference of the radii at start and end of an arc, of which `radius` is the larger one \[mm\]: as
     /// LinuxCNC takes them.

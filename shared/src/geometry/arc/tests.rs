@@ -128,7 +128,7 @@ fn what_is_no_arc_is_refused_with_the_reason() {
     assert_eq!(
         mismatch,
         "radius mismatch: the start is 10.0000 mm from the centre, the end 10.2000 mm, a difference of 0.2000 mm; \
-         0.0102 mm is allowed here (0.1 % of the radius, but 0.005 mm in any case and never more than 0.5 mm); correct \
+         0.0283 mm is allowed here (0.1 % of the radius, but 0.028 mm in any case and never more than 0.5 mm); correct \
          the centre or the end"
     );
     assert!(refused(Arc::about_centre(x, y, x, z, ccw)).starts_with("zero radius"));
@@ -141,10 +141,10 @@ fn what_is_no_arc_is_refused_with_the_reason() {
 #[test]
 fn radii_may_differ_as_much_as_linuxcnc_lets_them() {
     let table = [
-        (0.1, 0.0049, true),
-        (0.1, 0.0051, false),
-        (4.9, 0.00499, true),
-        (4.9, 0.00501, false),
+        (0.1, 0.0282, true),
+        (0.1, 0.0284, false),
+        (28.0, 0.0282, true),
+        (28.0, 0.0284, false),
         (50.0, 0.0499, true),
         (50.0, 0.0501, false),
         (499.0, 0.498, true),

@@ -108,13 +108,13 @@ fn arcs_that_do_not_exist_are_named() {
     assert_eq!(
         message("G1 X610\nG3 X660 Y560 J50"),
         "line 6, column 4: no arc here: radius mismatch: the start is 50.0000 mm from the centre, the end 50.9902 mm, a \
-         difference of 0.9902 mm; 0.0510 mm is allowed here (0.1 % of the radius, but 0.005 mm in any case and never more \
+         difference of 0.9902 mm; 0.0510 mm is allowed here (0.1 % of the radius, but 0.028 mm in any case and never more \
          than 0.5 mm); correct the centre or the end"
     );
     assert_eq!(
         message("G3 X700 R49"),
         "line 5, column 4: half the distance of the arc's ends is 50.0000 mm, and R is less than that by 1.0000 mm; \
-         0.0500 mm is allowed here (0.1 % of the radius, but 0.005 mm in any case and never more than 0.5 mm); correct R or \
+         0.0500 mm is allowed here (0.1 % of the radius, but 0.028 mm in any case and never more than 0.5 mm); correct R or \
          the end"
     );
     assert_eq!(
