@@ -232,6 +232,7 @@ pub(super) fn parse(
         None => return Ok(Parsed::Blank),
         Some('0'..='9' | '%') if is_heidenhain(text) => return Err(Problem::Heidenhain.at(scanner.place())),
         Some('%') => return Ok(Parsed::Percent),
+        Some('/') if scanner.at_slashes() => return Ok(Parsed::Blank),
         Some('/') if skipped.blocks => return Ok(Parsed::Blank),
         Some('/') => {
             scanner.step();
@@ -262,6 +263,7 @@ pub(super) fn parse(
                 block.comments.push((comment, place));
                 continue;
             }
+            '/' if scanner.at_slashes() => break,
             '/' => return Err(Problem::DeleteInside.at(place)),
             '#' => {
                 scanner.step();

@@ -81,6 +81,7 @@ fn cuts(text: &str) -> Vec<usize> {
             b'"' => quoted = !quoted,
             _ if quoted => {}
             b';' => break,
+            b'/' if bytes[at..].starts_with(b"//") => break,
             b'(' => {
                 at = behind_comment(bytes, at);
                 continue;

@@ -77,6 +77,7 @@ impl Kind {
     fn of(parsed: &Parsed, text: &str) -> Self {
         match (parsed, text.trim_start().chars().next()) {
             (Parsed::Blank, None | Some(';')) | (Parsed::Percent, _) => Self::Blank,
+            (Parsed::Blank, _) if text.trim_start().starts_with("//") => Self::Blank,
             (Parsed::Blank, Some('/')) => Self::Deleted,
             (Parsed::Block(block), _) if block.is_comment() => Self::Blank,
             (Parsed::Flow(_) | Parsed::Statement(_), _) => Self::Flow,

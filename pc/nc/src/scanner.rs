@@ -204,6 +204,11 @@ impl<'t> Scanner<'t> {
         Some((number, operator))
     }
 
+    /// Whether `//` stands here, which begins a comment for Mach3 and is nothing else to others.
+    pub(super) fn at_slashes(&self) -> bool {
+        self.text[self.next..].starts_with("//")
+    }
+
     /// Whether G65 stands here.
     pub(super) fn at_macro_call(&self) -> bool {
         match self.text.as_bytes()[self.next..] {

@@ -454,6 +454,23 @@ fn block_delete_may_have_the_number_of_its_switch() {
 }
 
 #[test]
+fn two_slashes_begin_a_comment_whatever_block_delete_says() {
+    let body = "//O1 (a hole) G0 X1\n  // X2\nG0 X5 // the end; or (not\n/X6\nM2";
+    assert_eq!(ends(body), [[5.0, 0.0, 0.0], [6.0, 0.0, 0.0]]);
+    let options = Options {
+        block_delete: true,
+        ..Options::default()
+    };
+    let program = interpret(&format!("{HEADER}{body}"), options).unwrap();
+    assert_eq!(program.paths.len(), 3);
+    assert_eq!(
+        ends("#1=0\nWHILE [#1 LT 2] DO1 // twice DO2\n#1=[#1+1]\nG0 X#1\nEND1\nM2"),
+        [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]
+    );
+    assert_eq!(problem("G0 X5 /X6\nM2"), (Problem::DeleteInside, 1));
+}
+
+#[test]
 fn m99_ends_a_main_program_that_is_not_in_a_subroutine() {
     let told = told("G0 X5\nM99\n%");
     assert_eq!(told, ["M99 in the main program ends it: it is not repeated here"]);
