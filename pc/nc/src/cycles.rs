@@ -91,7 +91,7 @@ impl Interpreter {
         if self.offsets.turned() && axis != 2 {
             return Err(Problem::TiltedArc.at(place));
         }
-        let feed = self.modal.feed_rate(block, mode, place, false)?;
+        let feed = self.feed_rate(block, mode, place, false)?;
         self.keep_words(block, claims, mode, axis)?;
         let places = (0..3)
             .filter(|i| *i != axis)

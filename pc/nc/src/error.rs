@@ -437,7 +437,9 @@ pub enum Problem {
         words: &'static str,
     },
     /// A feed motion without F.
-    #[error("{0} needs a feed: no F was given, or none since G94")]
+    #[error(
+        "{0} needs a feed: no F was given, or none since G94; write F, or feed_mm_min in [program] of the machine file"
+    )]
     NoFeed(&'static str),
     /// A feed motion with G93 and without F.
     #[error("with G93 every block that feeds has its own F: 1 / (minutes that {0} takes)")]

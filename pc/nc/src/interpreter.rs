@@ -11,7 +11,9 @@ use super::nurbs::{OpenNurbs, Progress};
 use super::offsets::{Coordinates, Offsets};
 use super::outputs::{Pending, Spindle, coolant, dwell, output};
 use super::parameters::Parameters;
-use super::program::{AXIS_WORDS, EXTENSION_WORDS, Motion, Notice, Program, ProgramAction, ProgramPath};
+use super::program::{
+    AXIS_WORDS, EXTENSION_WORDS, FeedRate, Motion, Notice, Program, ProgramAction, ProgramPath,
+};
 use super::reading::RemainingBlocks;
 use super::saved_modes::Saved;
 use super::setup::Setup;
@@ -292,6 +294,30 @@ impl Interpreter {
                 code.name
             );
             self.tell_once(text, code.place);
+        }
+    }
+
+    /// F for a motion of `mode`, see [`Modal::feed_rate`].
+    pub(super) fn feed_rate(
+        &mut self,
+        block: &Block,
+        mode: Code,
+        place: SourcePosition,
+        turns_only: bool,
+    ) -> Result<FeedRate, NcError> {
+        if !turns_only {
+            self.feed_of_machine(mode.name(), place);
+        }
+        self.modal.feed_rate(block, mode, place, turns_only)
+    }
+
+    /// A program that feeds by `code` without having said any F has the feed of the machine file, if that says one.
+    pub(super) fn feed_of_machine(&mut self, code: &str, place: SourcePosition) {
+        if let Some(feed) = self.setup.feed_mm_min
+            && self.modal.begin_with(feed)
+        {
+            let text = format!("{code} without F: the feed is {feed} mm/min, as the machine file says");
+            self.tell_once(text, place);
         }
     }
 

@@ -56,6 +56,8 @@ pub(super) struct Modal {
     pub(super) level_said: bool,
     feed_mode: FeedMode,
     feed: Option<Feed>,
+    /// F was said.
+    feed_said: bool,
 }
 
 impl Modal {
@@ -77,6 +79,7 @@ impl Modal {
             level_said: false,
             feed_mode: FeedMode::PerMinute,
             feed: None,
+            feed_said: false,
         }
     }
 
@@ -84,6 +87,7 @@ impl Modal {
     pub(super) fn restore_codes(&mut self, saved: Self) {
         let now = std::mem::replace(self, saved);
         self.feed = now.feed.filter(|_| now.feed_mode == self.feed_mode);
+        self.feed_said = now.feed_said;
         (self.tip, self.vectors) = (now.tip, now.vectors);
         self.contour_tolerance = now.contour_tolerance;
     }
@@ -109,6 +113,7 @@ impl Modal {
             if f.value < 0.0 || (f.value == 0.0 && self.feed_mode == FeedMode::InverseTime) {
                 return Err(f.value_error("the feed must be above 0"));
             }
+            self.feed_said = true;
             if self.feed_mode == FeedMode::PerMinute {
                 let (written, mm_min) = (f.value, f.value * self.unit());
                 self.feed = (written > 0.0).then_some(Feed { written, mm_min });
@@ -166,6 +171,16 @@ impl Modal {
         let straight = |code: &Code| matches!(code, Code::Rapid | Code::Feed);
         let cycle = self.motion.filter(|code| code.is_cycle());
         self.motion = cycle.and(self.before_cycle).filter(straight);
+    }
+
+    /// Whether a program that has said no F so far begins with this one \[mm/min\].
+    pub(super) fn begin_with(&mut self, mm_min: f64) -> bool {
+        let begins = !self.feed_said && self.feed_mode == FeedMode::PerMinute && self.feed.is_none();
+        if begins {
+            let written = mm_min / self.unit();
+            self.feed = Some(Feed { written, mm_min });
+        }
+        begins
     }
 
     /// A feed of the other mode means nothing any more.

@@ -120,7 +120,7 @@ impl Interpreter {
                     ..Words::default()
                 };
                 let turns_only = (0..3).all(|axis| !self.moves(&words, axis));
-                let feed = self.modal.feed_rate(block, Code::Feed, place, turns_only)?;
+                let feed = self.feed_rate(block, Code::Feed, place, turns_only)?;
                 if self.learn(&words) {
                     self.feed_motion(Way::Line, words, feed, place)?;
                 }
@@ -233,7 +233,7 @@ impl Interpreter {
             return Ok(false);
         }
         let turns_only = mode == Code::Feed && (0..3).all(|axis| !self.moves(&words, axis));
-        let feed = self.modal.feed_rate(block, mode, place, turns_only)?;
+        let feed = self.feed_rate(block, mode, place, turns_only)?;
         if opens_nurbs(mode) {
             self.open_nurbs(block, claims, mode, place, feed)?;
             return Ok(true);

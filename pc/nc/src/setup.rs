@@ -46,6 +46,8 @@ pub struct Setup {
     pub grbl_commands: bool,
     /// S of M3 and M4 in programs that have said none \[r/min\].
     pub spindle_rpm: Option<f64>,
+    /// F of programs that have said none \[mm/min\].
+    pub feed_mm_min: Option<f64>,
     /// Where subroutines in files of their own are.
     pub folders: Vec<PathBuf>,
     /// From axes to the tip; without it a program has to say where the tip is after motions of axes.
@@ -67,6 +69,7 @@ impl Default for Setup {
             passed_over: BTreeSet::new(),
             grbl_commands: false,
             spindle_rpm: None,
+            feed_mm_min: None,
             folders: Vec::new(),
             kinematics: None,
         }

@@ -43,6 +43,7 @@ impl Planner {
             passed_over: program.passed_over.numbers().clone(),
             grbl_commands: program.passed_over.grbl_commands(),
             spindle_rpm: program.spindle_rpm,
+            feed_mm_min: program.feed_mm_min,
             kinematics: Some(Arc::new(kinematics)),
             ..Setup::default()
         }

@@ -28,6 +28,8 @@ pub struct ProgramConfig {
     pub passed_over: PassedOver,
     /// S of M3 and M4 in programs that have said none \[r/min\].
     pub spindle_rpm: Option<f64>,
+    /// F of programs that have said none \[mm/min\].
+    pub feed_mm_min: Option<f64>,
 }
 
 impl Default for ProgramConfig {
@@ -41,6 +43,7 @@ impl Default for ProgramConfig {
             rotary_deg: Rotary::default(),
             passed_over: PassedOver::default(),
             spindle_rpm: None,
+            feed_mm_min: None,
         }
     }
 }
@@ -169,7 +172,7 @@ fn function(code: &str) -> Result<u16, String> {
     Ok(number)
 }
 
-/// A tolerance only of a G64, a speed that turns, and only axes that the machine has, within their travel.
+/// A tolerance only of a G64, speeds above 0, and only axes that the machine has, within their travel.
 pub(super) fn check(machine: &MachineFile) -> Result<(), Mistake> {
     let program = &machine.program;
     if let Some(tolerance) = program.tolerance_mm {
@@ -178,13 +181,12 @@ pub(super) fn check(machine: &MachineFile) -> Result<(), Mistake> {
         in_range(key, tolerance, blends, "left out: path_mode is not \"G64\"")?;
         in_range(key, tolerance, tolerance > 0.0, "above 0")?;
     }
-    if let Some(speed) = program.spindle_rpm {
-        in_range(
-            "program.spindle_rpm",
-            speed,
-            speed > 0.0 && speed.is_finite(),
-            "above 0",
-        )?;
+    for (key, speed) in [
+        ("program.spindle_rpm", program.spindle_rpm),
+        ("program.feed_mm_min", program.feed_mm_min),
+    ] {
+        let Some(speed) = speed else { continue };
+        in_range(key, speed, speed > 0.0 && speed.is_finite(), "above 0")?;
     }
     let fitted = machine.motion.kinematics.fitted();
     for (axis, angle) in (AXES - 3..).zip(program.rotary_deg.into_array()) {

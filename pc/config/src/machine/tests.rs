@@ -466,7 +466,7 @@ fn programs_begin_with_the_modes_that_the_file_says() {
     assert_eq!(of(""), ProgramConfig::default());
     assert_eq!(of("[program]\nplane = \"G18\"").plane, ArcPlane::G18);
     let all = "[program]\nunits = \"inch\"\nplane = \"G19\"\ntip_control = false\npath_mode = \"G64\"\n\
-               tolerance_mm = 0.02\nrotary_deg = { B = 30.0 }\nspindle_rpm = 600";
+               tolerance_mm = 0.02\nrotary_deg = { B = 30.0 }\nspindle_rpm = 600\nfeed_mm_min = 300";
     let wanted = ProgramConfig {
         units: LengthUnit::Inch,
         plane: ArcPlane::G19,
@@ -479,6 +479,7 @@ fn programs_begin_with_the_modes_that_the_file_says() {
         },
         passed_over: PassedOver::default(),
         spindle_rpm: Some(600.0),
+        feed_mm_min: Some(300.0),
     };
     assert_eq!(of(all), wanted);
     let passed = of("[program]\npassed_over = [\"M31\", \"M50\", \"M9026\"]").passed_over;
@@ -518,6 +519,11 @@ fn what_programs_cannot_begin_with_is_told_with_file_line_and_key() {
             "tolerance_mm = 0",
             1,
             "program.tolerance_mm is 0, but must be above 0",
+        ),
+        (
+            "feed_mm_min = -1",
+            1,
+            "program.feed_mm_min is -1, but must be above 0",
         ),
         (
             "spindle_rpm = 0",

@@ -293,6 +293,9 @@ impl Interpreter {
         }
         self.check_reshaped(&Block::default(), true, place)?;
         let unit = self.modal.unit();
+        if drilling.feeds.is_none() {
+            self.feed_of_machine(name, place);
+        }
         let own = self.modal.mm_min().ok_or(Problem::NoFeed(name).at(place));
         let [feed_in, feed_out] = match drilling.feeds {
             Some([a, b]) if a > 0.0 && b > 0.0 => [a * unit, b * unit],

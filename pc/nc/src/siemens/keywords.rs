@@ -86,6 +86,8 @@ const G_WITHOUT_EFFECT: [u32; 6] = [290, 450, 451, 601, 602, 603];
 const M_WITHOUT_EFFECT: [u32; 6] = [40, 41, 42, 43, 44, 45];
 
 const SPLINE: &str = "splines through points are not supported: write G1 with G64 P, G5 or G6.2";
+const KNOTS: &str =
+    "its curve depends on knots that the controller chooses: write G1 with G64 P, or G6.2 with its knots";
 const CYCLE: &str = "this cycle is not supported: write its motions out, or let the CAM system do so";
 const TAPPING: &str = "threading and tapping need a spindle that the axes follow, and this machine has none";
 const FRAME: &str = "only TRANS, MIRROR, SCALE, ROT about Z and ATRANS, AMIRROR, ASCALE, AROT change the coordinates of a program";
@@ -102,7 +104,7 @@ const LATHE: &str = "lathe codes are not supported";
 const REFUSED: [(&str, &str); 44] = [
     ("ASPLINE", SPLINE),
     ("CSPLINE", SPLINE),
-    ("BSPLINE", SPLINE),
+    ("BSPLINE", KNOTS),
     ("POLY", SPLINE),
     ("INVCW", SPLINE),
     ("ROTS", FRAME),

@@ -250,6 +250,43 @@ fn the_machine_file_may_say_s_for_programs_that_do_not() {
 }
 
 #[test]
+fn the_machine_file_may_say_f_for_programs_that_do_not() {
+    let read = |body: &str| {
+        let options = Options {
+            setup: std::sync::Arc::new(Setup {
+                feed_mm_min: Some(254.0),
+                ..Setup::default()
+            }),
+            ..Options::default()
+        };
+        interpret(&format!("{HEADER}{body}"), options)
+    };
+    let feeds = |body: &str| -> Vec<_> {
+        let program = read(body).unwrap();
+        let targets = program.paths.iter().flat_map(|path| &path.targets);
+        targets.filter_map(|target| target.feed).collect()
+    };
+    let [own, said] = [254.0, 600.0].map(FeedRate::PerMinute);
+    assert_eq!(feeds("G1 X10\nF600 X20\nG2 X30 I5\nM2"), [own, said, said]);
+    assert_eq!(feeds("G20 G2 X1 I0.5\nG81 Z-1 R1\nM2")[0], own);
+    let program = read("G1 X10\nX20\nM2").unwrap();
+    let text = "G1 without F: the feed is 254 mm/min, as the machine file says";
+    let told = program.notices.iter().filter(|notice| notice.text == text);
+    assert_eq!(told.count(), 1);
+    assert_eq!(read("F600\nG1 X10\nM2").unwrap().notices, []);
+    for refused in [
+        // It has said one, which means nothing any more.
+        "F600 G1 X10\nG93 G1 X5 F2\nG94 G1 X10\nM2",
+        "F600 G1 X10\nF0\nX20\nM2",
+        // Degrees a minute are another thing.
+        "G1 B5\nM2",
+        "G93 G1 X10\nM2",
+    ] {
+        assert!(read(refused).is_err(), "{refused}");
+    }
+}
+
+#[test]
 fn s_beside_a_function_that_is_passed_over_is_not_taken_for_the_speed() {
     let read = |body: &str| {
         let options = Options {

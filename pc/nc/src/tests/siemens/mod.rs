@@ -219,7 +219,11 @@ fn words_without_effect_are_passed_over_and_others_refused_with_a_reason() {
     assert!(run(words).is_ok(), "{:?}", run(words));
     for (body, reason) in [
         ("SPOS=0", "the spindle is not positioned"),
-        ("BSPLINE", "splines through points"),
+        ("CSPLINE", "splines through points"),
+        (
+            "BSPLINE",
+            "its curve depends on knots that the controller chooses",
+        ),
         ("SLOT1(9,0,2,-5)", "this cycle is not supported"),
         (
             "CYCLE800(1,\"\",0,57,0,0,0,30,0,0,0,0,0,1)",
