@@ -5,6 +5,7 @@
 //! time; never by the wall clock, never in the latest state. So the world is the same for emulated boards,
 //! which run in real time, and for simulated ones, which do not.
 
+mod boards;
 pub mod deviation;
 pub mod emulated;
 mod followed;
@@ -19,6 +20,7 @@ mod surroundings;
 #[cfg(test)]
 mod tests;
 
+pub use boards::BoardChoice;
 pub use deviation::{Deviation, SeamError, check_seam};
 pub use emulated::BoardsError;
 pub use followed::{NotFollowed, not_followed};

@@ -5,8 +5,6 @@ use crate::terminal::{Operator, Terminal};
 use anyhow::{Context, bail};
 use clap::Args;
 use config::machine::MachineFile;
-use emulator::{SESSION_VARIABLE, Session};
-use host_link::boards::{Boards, Endpoint, NetworkBoards, Timeouts};
 use host_link::events::Interest;
 use host_link::{Command, control};
 use job::{Job, JobError, Names, Work, run};
@@ -15,15 +13,10 @@ use report::{Ended, LogColumns, LogWriter, ended};
 use shared::io::SIDES;
 use std::path::Path;
 use std::process::ExitCode;
-use std::str::FromStr;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
-use world::Surroundings;
-use world::emulated;
-use world::emulated::BoardsError;
-use world::simulated::SimulatedBoards;
+use world::{BoardChoice, BoardsError, Surroundings};
 
 /// Exit code after Ctrl-C, as shells have it; after SIGTERM and SIGHUP, which are treated alike, too.
 const INTERRUPTED: u8 = 130;
@@ -32,8 +25,6 @@ const POLL: Duration = Duration::from_millis(20);
 
 /// Events that wait for the disk: more than half a minute of both boards.
 const LOGGED: usize = 1 << 14;
-/// Largest number of wrong letters in a misspelt word.
-const NEAR: usize = 2;
 
 /// Which boards, and the machine that simulated and emulated ones are wired to.
 #[derive(Clone, Debug, Args)]
@@ -45,51 +36,6 @@ pub struct BoardArgs {
     /// [default: as shipped, without errors]
     #[arg(long)]
     plant: Option<PlantChoice>,
-}
-
-/// Which boards.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum BoardChoice {
-    /// Of `cargo xtask emulate` or `cargo xtask weld`.
-    Emulated,
-    /// In this program.
-    Simulated,
-    /// In the network.
-    At {
-        /// Address of the motion board.
-        motion: String,
-        /// Address of the tracker board, if there is one.
-        tracker: Option<String>,
-    },
-}
-
-impl FromStr for BoardChoice {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let (motion, tracker) = match text.split_once(',') {
-            Some((motion, tracker)) => (motion, Some(tracker)),
-            None => (text, None),
-        };
-        match text {
-            "emulated" => Ok(Self::Emulated),
-            "simulated" => Ok(Self::Simulated),
-            _ if motion.is_empty() || tracker == Some("") || is_meant(text) => {
-                Err("must be emulated, simulated, or the addresses MOTION,TRACKER (MOTION without a tracker)")
-            }
-            _ => Ok(Self::At {
-                motion: motion.to_owned(),
-                tracker: tracker.map(str::to_owned),
-            }),
-        }
-    }
-}
-
-/// Whether it is nearly one of the words, and no board's name.
-fn is_meant(text: &str) -> bool {
-    let text = text.to_lowercase();
-    let near = |word| strsim::damerau_levenshtein(&text, word) <= NEAR;
-    ["emulated", "simulated"].into_iter().any(near)
 }
 
 impl BoardArgs {
@@ -207,63 +153,6 @@ impl BoardArgs {
     }
 }
 
-impl BoardChoice {
-    /// What the report calls it.
-    pub fn name(&self) -> String {
-        match self {
-            Self::Emulated => "emulated".to_owned(),
-            Self::Simulated => "simulated".to_owned(),
-            Self::At {
-                motion,
-                tracker: None,
-            } => motion.clone(),
-            Self::At {
-                motion,
-                tracker: Some(tracker),
-            } => format!("{motion},{tracker}"),
-        }
-    }
-
-    /// Connects; simulated boards become the machine whose kinematics are `wanted`, emulated ones must have been
-    /// booted as it, and with the same `plant`. The tracker board is left alone unless the machine is `tracked`.
-    /// `interrupted` stops the machine.
-    fn connect(
-        &self,
-        wanted: &'static str,
-        plant: &PlantChoice,
-        tracked: bool,
-        interrupted: Arc<AtomicBool>,
-    ) -> Result<Box<dyn Boards + Send>, BoardsError> {
-        let patience = Timeouts::default();
-        match self {
-            Self::Simulated => Ok(Box::new(SimulatedBoards::wired_to(&plant.of(wanted)?))),
-            Self::At { motion, tracker } => {
-                let motion = Endpoint::board(motion);
-                let tracker = tracker.as_deref().map(Endpoint::board);
-                let boards = NetworkBoards::connect(&motion, tracker.as_ref(), None, patience)?;
-                Ok(Box::new(boards.stopped_by(interrupted)))
-            }
-            Self::Emulated if cfg!(not(target_os = "linux")) => Err(BoardsError::NeedsLinux),
-            Self::Emulated => {
-                let path = std::env::var_os(SESSION_VARIABLE).ok_or(BoardsError::NoEmulator)?;
-                let session = Session::read(Path::new(&path))?;
-                if session.machine != wanted {
-                    let wired = session.machine;
-                    return Err(BoardsError::WrongMachine { wired, wanted });
-                }
-                if session.plant != plant.to_string() {
-                    return Err(BoardsError::WrongPlant {
-                        wired: session.plant,
-                        wanted: plant.to_string(),
-                    });
-                }
-                let boards = emulated::connect(&session, tracked, patience)?;
-                Ok(Box::new(boards.stopped_by(interrupted)))
-            }
-        }
-    }
-}
-
 /// Does `connect`, which may wait for boards that are silent, unless the operator gives up before: `None`.
 fn unless_interrupted<T: Send + 'static>(
     connect: impl FnOnce() -> Result<T, BoardsError> + Send + 'static,
@@ -296,21 +185,6 @@ pub fn exit_code(error: Option<JobError>) -> anyhow::Result<ExitCode> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn boards_are_chosen_by_word_or_by_address() {
-        assert_eq!("emulated".parse(), Ok(BoardChoice::Emulated));
-        assert_eq!("simulated".parse(), Ok(BoardChoice::Simulated));
-        let two = "192.168.7.10,192.168.7.11".parse::<BoardChoice>().unwrap();
-        assert_eq!(two.name(), "192.168.7.10,192.168.7.11");
-        let one = "192.168.7.10".parse::<BoardChoice>().unwrap();
-        assert_eq!(one.name(), "192.168.7.10");
-        for wrong in ["", "192.168.7.10,", ",x", "simulatd", "Simulated", "emulator"] {
-            let said = wrong.parse::<BoardChoice>().unwrap_err();
-            assert!(said.starts_with("must be emulated, simulated, or"), "{wrong}");
-        }
-        assert!("gantry-motion".parse::<BoardChoice>().is_ok());
-    }
 
     #[test]
     fn a_silent_board_is_not_waited_for_once_the_operator_gives_up() {

@@ -1,6 +1,5 @@
 //! Which cameras a command uses.
 
-use super::boards::BoardChoice;
 use crate::console::{errln, outln};
 use anyhow::bail;
 use camera::{CameraError, PictureQueue, PictureWriter};
@@ -8,7 +7,7 @@ use clap::{Args, ValueEnum};
 use config::machine::{CameraConfig, MachineFile};
 use job::ImageCameras;
 use std::path::{Path, PathBuf};
-use world::{CameraChoice, PictureChoice, SceneFile};
+use world::{BoardChoice, CameraChoice, PictureChoice, SceneFile};
 
 /// Cameras of a machine that follows seams.
 #[derive(Debug, Args)]

@@ -1,7 +1,7 @@
 //! `seamwright probe`: the first look at a board that has been flashed.
 
 use super::OUTSIDE;
-use super::boards::BoardChoice;
+
 use crate::console::{errln, outln};
 use anyhow::{Context, bail};
 use clap::Args;
@@ -16,6 +16,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Duration;
+use world::BoardChoice;
 use world::simulated::SimulatedBoards;
 
 /// Between two looks of a person at work.

@@ -21,7 +21,7 @@ use shared::io::ESTOP_CHANNELS;
 use shared::protocol::{ClockReply, ClockRequest, Datagram, Identity, Request, Response, Role};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tracker::TrackerBoard;
 
 /// Knots a simulated board has room for, as the real ones.
@@ -94,6 +94,27 @@ pub struct SimulatedBoards {
     tracker: TrackerBoard,
     identities: [Identity; 2],
     cut_off: Option<Role>,
+    pace: Option<Pace>,
+}
+
+/// What keeps simulated time from running ahead of a clock.
+#[derive(Clone, Copy, Debug)]
+struct Pace {
+    began: Instant,
+    /// Simulated time for each unit of the clock's.
+    rate: f64,
+}
+
+impl Pace {
+    /// Waits until the clock is where `now_us` of simulated time is. Time that the computer was too slow for is not made up.
+    fn wait_for(&mut self, now_us: u64) {
+        let (due, elapsed) = (
+            Duration::from_micros(now_us).div_f64(self.rate),
+            self.began.elapsed(),
+        );
+        std::thread::sleep(due.saturating_sub(elapsed));
+        self.began += elapsed.saturating_sub(due);
+    }
 }
 
 impl Default for SimulatedBoards {
@@ -121,10 +142,21 @@ impl SimulatedBoards {
             tracker: TrackerBoard::new(plant.slides()),
             identities: [identity(Role::Motion), identity(Role::Tracker)],
             cut_off: None,
+            pace: None,
         };
         boards.enter(SERVO_US, SimulationEvent::ServoTick);
         boards.enter(CONTROL_PHASE_US, SimulationEvent::ControlTick);
         boards
+    }
+
+    /// Boards for somebody who watches: from now on their time does not run ahead of the clock's times `rate`, above 0. What they
+    /// do stays the same to the bit.
+    pub fn at_pace(mut self, rate: f64) -> Self {
+        self.pace = Some(Pace {
+            began: Instant::now(),
+            rate,
+        });
+        self
     }
 
     /// Presses or releases the emergency stop of both boards.
@@ -262,6 +294,9 @@ impl Boards for SimulatedBoards {
     fn receive(&mut self, timeout: Duration) -> Result<Option<(Role, Datagram)>, LinkError> {
         let end_us = self.now_us + timeout.as_micros() as u64;
         while self.inbox.is_empty() && self.step(end_us) {}
+        if let Some(pace) = &mut self.pace {
+            pace.wait_for(self.now_us);
+        }
         Ok(self.inbox.pop_front())
     }
 

@@ -1,6 +1,6 @@
 //! `seamwright calibrate spot`: where a camera looks beside its spot, with the machine.
 
-use super::super::boards::{BoardArgs, BoardChoice};
+use super::super::boards::BoardArgs;
 use super::super::cameras::source;
 use super::coupon::Coupon;
 use super::on_machine::OnMachine;
@@ -16,7 +16,7 @@ use job::{ImageCameras, MarkRun, SightingLog, Work};
 use shared::units::MM_S_PER_M_MIN;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use world::Workpiece;
+use world::{BoardChoice, Workpiece};
 
 /// Exit code of a check that finds a drift: it has worked, and what it found is outside its limit.
 const DRIFTED: u8 = 3;
