@@ -44,6 +44,19 @@ pub struct PlateFeatures {
     pub depth_slope: f64,
 }
 
+impl PlateFeatures {
+    /// Row of the band at a column.
+    pub fn row_on(&self, optics: &Optics, column: f64) -> f64 {
+        self.band_row + self.band_slope * (column - optics.centre()[1])
+    }
+
+    /// A line along the seam through the band at `column`, from `reach` rows above to as many below: rows and columns.
+    pub fn line_at(&self, optics: &Optics, column: f64, reach: f64) -> [[f64; 2]; 2] {
+        let row = self.row_on(optics, column);
+        [-reach, reach].map(|rows| [row + rows, column + self.edge_slope * rows])
+    }
+}
+
 /// Two walls that meet in a corner: n = h + b·(u − u0), with b of the wall on that side of u0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {

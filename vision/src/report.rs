@@ -1,5 +1,7 @@
 //! What a picture says.
 
+use crate::geometry::PlateSeam;
+
 /// How a picture ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -168,6 +170,18 @@ impl Measured {
     /// u0 of mathematics 0.12: u of the seam at a = 0, along its angle \[mm\].
     pub fn lateral_on_axis_mm(&self) -> f64 {
         self.lateral_mm - self.travel_mm * self.yaw_rad.tan()
+    }
+
+    /// The plate and the gap in it, which a picture of this shows.
+    pub fn plate_seam(&self) -> PlateSeam {
+        PlateSeam {
+            height_mm: self.plate_height_mm(),
+            pitch: 0.0,
+            roll: self.roll,
+            lateral_mm: self.lateral_on_axis_mm(),
+            yaw_rad: self.yaw_rad,
+            width_mm: self.width_mm,
+        }
     }
 }
 

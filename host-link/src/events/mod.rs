@@ -126,4 +126,7 @@ pub struct SeamInPicture {
     pub width_mm: f64,
     /// 0…1.
     pub quality: f64,
+    /// Where the edges of the seam are in the picture, each from one end to the other: \[row, column\] from the top left pixel's
+    /// middle. A closed corner has the same twice.
+    pub edges: [[[f32; 2]; 2]; 2],
 }

@@ -14,8 +14,8 @@ use super::{Outcome, words};
 use crate::Picture;
 use config::calibration::Calibration;
 use vision::{
-    Corner, CornerFeatures, EDGE_ROWS_MM, Form, GeometryError, Measured, Optics, PlateFeatures, PlateSeam,
-    Second, Status,
+    Corner, CornerFeatures, EDGE_ROWS_MM, Form, GeometryError, Measured, Optics, PlateFeatures, Second,
+    Status,
 };
 
 const YELLOW: Colour = [255, 210, 0];
@@ -157,15 +157,7 @@ impl Band {
 
 fn gap(canvas: &mut Canvas, measured: &Measured, optics: &Optics, band: &Band) -> Result<(), GeometryError> {
     let seen = measured.sigma.lateral_mm.is_finite();
-    let seam = PlateSeam {
-        height_mm: measured.plate_height_mm(),
-        pitch: 0.0,
-        roll: measured.roll,
-        lateral_mm: measured.lateral_on_axis_mm(),
-        yaw_rad: measured.yaw_rad,
-        width_mm: measured.width_mm,
-    };
-    let features = seam.features(optics)?;
+    let features = measured.plate_seam().features(optics)?;
     let step = step_rows(measured, optics);
     let middle = features.seam[1];
     let ends = [0.0, middle, middle, band.columns - 1.0];
@@ -173,7 +165,7 @@ fn gap(canvas: &mut Canvas, measured: &Measured, optics: &Optics, band: &Band) -
     let line: Vec<_> = ends
         .iter()
         .zip(rows)
-        .map(|(column, step)| [row_on(&features, optics, *column) + step / 2.0, *column])
+        .map(|(column, step)| [features.row_on(optics, *column) + step / 2.0, *column])
         .collect();
     // Without a gap there is no step that could be seen.
     let whole = [line[0], line[3]];
@@ -185,14 +177,7 @@ fn gap(canvas: &mut Canvas, measured: &Measured, optics: &Optics, band: &Band) -
     if seen {
         let reach = EDGE_ROWS_MM / g;
         for column in features.edges {
-            let row = row_on(&features, optics, column);
-            edge(
-                canvas,
-                [row, column],
-                features.edge_slope,
-                reach,
-                Pen::new(GREEN, 1.5),
-            );
+            canvas.lines(&features.line_at(optics, column, reach), Pen::new(GREEN, 1.5));
         }
         cross(canvas, features.seam);
     }
@@ -218,11 +203,6 @@ fn corner(canvas: &mut Canvas, measured: &Measured, optics: &Optics, band: &Band
     cross(canvas, features.vertex);
 }
 
-/// Row of the band at a column.
-fn row_on(features: &PlateFeatures, optics: &Optics, column: f64) -> f64 {
-    features.band_row + features.band_slope * (column - optics.centre()[1])
-}
-
 /// Rows by which the band is higher on the right of the gap.
 fn step_rows(measured: &Measured, optics: &Optics) -> f64 {
     measured.step_mm / (optics.tilt_rad.sin() * optics.object_pixel_mm())
@@ -234,16 +214,9 @@ fn draw_second(canvas: &mut Canvas, features: &PlateFeatures, optics: &Optics, s
     let middle = optics.centre()[1] + second.lateral_mm / g;
     for side in [-0.5, 0.5] {
         let column = middle + side * second.width_mm / g;
-        let place = [row_on(features, optics, column), column];
-        let pen = Pen::new(CYAN, 1.0).dashed(5.0);
-        edge(canvas, place, features.edge_slope, EDGE_ROWS_MM / g, pen);
+        let line = features.line_at(optics, column, EDGE_ROWS_MM / g);
+        canvas.lines(&line, Pen::new(CYAN, 1.0).dashed(5.0));
     }
-}
-
-/// A line through `place` that gains `slope` columns a row, `reach` rows up and down.
-fn edge(canvas: &mut Canvas, [row, column]: [f64; 2], slope: f64, reach: f64, pen: Pen) {
-    let end = |rows: f64| [row + rows, column + slope * rows];
-    canvas.lines(&[end(-reach), end(reach)], pen);
 }
 
 fn cross(canvas: &mut Canvas, [row, column]: [f64; 2]) {

@@ -6,6 +6,7 @@
 //! emulated boards wait for the PC. Pictures of real cameras are answered when they come, and never waited for.
 
 mod ends;
+mod shown;
 mod sightings;
 mod worker;
 

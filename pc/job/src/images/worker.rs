@@ -1,12 +1,13 @@
 //! The thread that turns the pictures of one camera into measurements.
 
 use super::ends::SeamEnds;
+use super::shown;
 use super::sightings::{Sighting, SightingLog};
 use crate::joint::{SeenEnd, SeenSeam};
 use camera::{Arrival, Camera, CameraError, Picture};
 use config::calibration::Calibration;
 use host_link::boards::Waker;
-use host_link::events::{Event, Events, MeasuredPicture, SeamInPicture};
+use host_link::events::Events;
 use shared::protocol::SideMeasurement;
 use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
@@ -272,8 +273,9 @@ impl Work {
                     return Ok(());
                 }
                 self.wake();
-                if arrived {
-                    self.show(&seen);
+                if let (true, Some(outlet)) = (arrived, self.outlet.get()) {
+                    let optics = &self.geometry.calibration.optics;
+                    shown::tell(&outlet.events, self.side, &self.picture, &seen, optics);
                 }
                 if strobe.capture == capture {
                     break;
@@ -287,37 +289,6 @@ impl Work {
         if let Some(waker) = self.outlet.get().and_then(|outlet| outlet.waker.as_ref()) {
             waker.wake();
         }
-    }
-
-    /// Tells who is interested of the picture and of what is seen in it, after the answer has left.
-    fn show(&self, seen: &MeasuredStrobe) {
-        let Some(Outlet { events, .. }) = self.outlet.get() else {
-            return;
-        };
-        if !events.want_pictures() {
-            return;
-        }
-        let seam = seen.observation.and_then(|observation| observation.seam);
-        let Picture {
-            rows,
-            columns,
-            ref pixels,
-            ..
-        } = self.picture;
-        events.publish(Event::Picture(Arc::new(MeasuredPicture {
-            side: self.side,
-            capture: seen.capture,
-            rows,
-            columns,
-            pixels: pixels.clone(),
-            seam: seam.map(|seam| SeamInPicture {
-                lateral_mm: seam.lateral_mm,
-                travel_mm: seam.travel_mm,
-                height_mm: seam.mean.map(|mean| mean.height_mm),
-                width_mm: seam.width_mm,
-                quality: seam.quality,
-            }),
-        })));
     }
 
     /// Sums up how far the camera moved.
