@@ -63,6 +63,11 @@ const GAP: [(&str, &str); SIDES] = [
 ];
 
 impl SeamLimits {
+    /// Largest distance of a spot from its seam, along U and along V \[mm\].
+    pub fn deviation_mm(&self) -> f64 {
+        self.deviation_mm.get()
+    }
+
     /// Most that the speed may fall below the feed \[%\].
     pub fn speed_dip(&self) -> Percent {
         self.speed_dip_percent

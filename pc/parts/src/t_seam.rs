@@ -45,6 +45,11 @@ impl TSeam {
         &self.teaching
     }
 
+    /// What the weld is judged by.
+    pub fn limits(&self) -> &SeamLimits {
+        &self.limits
+    }
+
     /// Where the taught seams are, as the part file says.
     pub fn taught(&self) -> Option<&Path> {
         self.taught.as_deref()
