@@ -6,6 +6,7 @@ mod emulate;
 mod firmware;
 mod flash;
 mod fuzz;
+mod hmi;
 mod interrupt;
 mod layout;
 mod machine;
@@ -38,13 +39,20 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install what is missing: the Arm and Windows targets of Rust, QEMU, Aravis, Python
+    /// Install what is missing: the Arm and Windows targets of Rust, QEMU, Aravis, Python, drivers and fonts of the screen
     Setup,
     /// Weld on two emulated boards, or with --boards virtual-nucleo on two models of the real one: set up, build, boot, and run
     /// `seamwright weld` with the flags given
     #[command(disable_help_flag = true)]
     Weld {
         /// Flags of `seamwright weld`; the machine defaults to the dual-beam gantry, the job to that of the machine
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        flags: Vec<String>,
+    },
+    /// The operator's screen on simulated boards, in real time: set up, build, and open `seamwright-hmi` with the flags given
+    #[command(disable_help_flag = true)]
+    Hmi {
+        /// Flags of `seamwright-hmi`; the machine defaults to the dual-beam gantry
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         flags: Vec<String>,
     },
@@ -102,7 +110,8 @@ fn main() -> ExitCode {
                 machine.map_or_else(|| Ok(DEFAULT_MACHINE.to_owned()), |file| machine::name(&file))?;
             emulate::run(rate, machine, plant.unwrap_or_default())
         }),
-        Task::Check => set_up(&[setup::Tool::Components]).map(|()| test::check()),
+        Task::Hmi { flags } => set_up(&[setup::Tool::Screen]).and_then(|()| hmi::run(&flags)),
+        Task::Check => set_up(&[setup::Tool::Components, setup::Tool::Screen]).map(|()| test::check()),
         Task::Test { boards: None } => set_up(&setup::ALL).map(|()| test::run()),
         Task::Test {
             boards: Some(test::OtherBoards::VirtualNucleo),

@@ -29,6 +29,8 @@ pub enum Tool {
     Mutants,
     /// Another interpreter of NC programs, and the programs that come with it.
     LinuxCnc,
+    /// What draws the operator's screen, in a window or without one, and letters of every language that it speaks.
+    Screen,
     /// What Unicorn, the core of the virtual NUCLEO, is built with.
     UnicornBuild,
 }
@@ -39,13 +41,14 @@ pub const WINDOWS: &str = "x86_64-pc-windows-gnu";
 const MUTANTS: &str = "27.1.0";
 
 /// For everything but counting, changing the code and comparing interpreters.
-pub const ALL: [Tool; 7] = [
+pub const ALL: [Tool; 8] = [
     Tool::ArmTarget,
     Tool::WindowsTarget,
     Tool::Components,
     Tool::Qemu,
     Tool::Aravis,
     Tool::Python,
+    Tool::Screen,
     Tool::UnicornBuild,
 ];
 /// For emulated boards.
@@ -94,6 +97,18 @@ pub fn run(wants: &[Tool]) -> Result<()> {
                 || Path::new("/usr/bin/rs274").exists() && runs("dpkg", &["-L", "linuxcnc-uspace"]),
                 "LinuxCNC 2.9 is in Debian 12 and later",
             )?,
+            Tool::Screen => debian(
+                &[
+                    "mesa-vulkan-drivers",
+                    "libgl1-mesa-dri",
+                    "libegl1",
+                    "libxkbcommon-x11-0",
+                    "fontconfig",
+                    "fonts-droid-fallback",
+                ],
+                has_screen,
+                "install drivers of Vulkan and OpenGL (Mesa's draw without a graphics card), and a font for Chinese, by hand",
+            )?,
             Tool::UnicornBuild => debian(
                 &["cmake", "g++", "libclang-dev"],
                 || runs("cmake", &["--version"]) && runs("c++", &["--version"]) && has_libclang(),
@@ -102,6 +117,24 @@ pub fn run(wants: &[Tool]) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Whether programs can draw, and have letters for Chinese.
+fn has_screen() -> bool {
+    let any = |folder: &str, ending: &str| {
+        let files = fs::read_dir(folder).into_iter().flatten().flatten();
+        files
+            .into_iter()
+            .any(|file| file.file_name().to_string_lossy().ends_with(ending))
+    };
+    let vulkan = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"]
+        .iter()
+        .any(|folder| any(folder, ".json"));
+    let fonts = Command::new("fc-list")
+        .arg(":lang=zh-cn")
+        .stderr(Stdio::null())
+        .output();
+    vulkan && fonts.is_ok_and(|output| !output.stdout.is_empty())
 }
 
 /// Whether the generator of bindings finds libclang: where it is told, or where Debian puts it.

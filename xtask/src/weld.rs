@@ -217,7 +217,7 @@ impl BoardFlags {
 }
 
 /// A shipped file, by its short name where that is enough.
-fn shipped(file: &str) -> String {
+pub fn shipped(file: &str) -> String {
     if env::current_dir().is_ok_and(|directory| directory == root()) {
         return file.to_owned();
     }

@@ -1,0 +1,20 @@
+//! The operator's screen: what a job does, live, and what an operator may ask of it.
+//!
+//! The screen is one more client of [`host_link::control`]: it sends [`host_link::Command`]s and subscribes to events, as the
+//! terminal does, and has no other way to a board. It never delays a job: what it is too slow for is dropped by its subscription.
+//!
+//! - [`loaded`]: a program that was read, planned and predicted for a machine, before anything moves.
+//! - [`running`]: its job, on a thread of its own.
+//! - [`live`]: what the screen knows of that job, folded from its events; bounded, however long the job.
+//! - [`records`]: reports of past jobs, read back.
+//! - [`texts`]: everything that the screen says, in every language.
+//! - [`station`]: what is loaded, the job that runs, and what may be asked of it now.
+//! - [`screen`]: the pages. They read the station and ask it for what the operator wants.
+
+pub mod live;
+pub mod loaded;
+pub mod records;
+pub mod running;
+pub mod screen;
+pub mod station;
+pub mod texts;

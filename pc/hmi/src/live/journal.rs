@@ -1,0 +1,125 @@
+//! What happened, for the operator: newest last, the oldest forgotten beyond a bound.
+
+use host_link::events::{Phase, Question};
+use shared::protocol::Identity;
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// Entries that are kept.
+const KEPT: usize = 1000;
+
+/// How much an entry matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// To be read back.
+    Note,
+    /// The machine waits for the operator.
+    Waits,
+    /// The machine has stopped by itself, or a job ended early.
+    Alarm,
+}
+
+/// Something that happened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// When, by the screen's clock.
+    pub at: Duration,
+    /// How much it matters.
+    pub severity: Severity,
+    /// What.
+    pub what: What,
+    /// The operator has taken note of it.
+    pub acknowledged: bool,
+}
+
+/// What happened.
+#[derive(Clone, Debug, PartialEq)]
+pub enum What {
+    /// A part of a job began.
+    Phase(Phase),
+    /// The machine waits.
+    Question(Question),
+    /// The boards are connected: their firmware.
+    Connected(Vec<String>),
+    /// A job came to its end.
+    Finished,
+    /// In words of the boards, of the job or of the program.
+    Said(String),
+}
+
+/// All that happened.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Journal(VecDeque<Entry>);
+
+impl Journal {
+    fn add(&mut self, at: Duration, severity: Severity, what: What) {
+        if self.0.len() == KEPT {
+            self.0.pop_front();
+        }
+        self.0.push_back(Entry {
+            at,
+            severity,
+            what,
+            acknowledged: severity < Severity::Alarm,
+        });
+    }
+
+    pub(super) fn connected(&mut self, at: Duration, motion: Option<&Identity>, tracker: Option<&Identity>) {
+        let named = motion.into_iter().chain(tracker);
+        let firmware = named.map(|board| format!("{} {}", board.board, board.firmware));
+        self.add(at, Severity::Note, What::Connected(firmware.collect()));
+    }
+
+    pub(super) fn phase(&mut self, at: Duration, phase: Phase) {
+        self.add(at, Severity::Note, What::Phase(phase));
+    }
+
+    pub(super) fn question(&mut self, at: Duration, question: &Question) {
+        self.add(at, Severity::Waits, What::Question(question.clone()));
+    }
+
+    pub(super) fn message(&mut self, at: Duration, text: &str) {
+        self.add(at, Severity::Note, What::Said(text.to_owned()));
+    }
+
+    pub(super) fn fault(&mut self, at: Duration, text: &str) {
+        self.alarm(at, text);
+    }
+
+    /// Something is wrong that the operator has to know. What was said last is not said again.
+    pub fn alarm(&mut self, at: Duration, text: &str) {
+        let said = self
+            .0
+            .iter()
+            .rev()
+            .find(|entry| entry.severity == Severity::Alarm && !entry.acknowledged);
+        let again = said
+            .is_some_and(|entry| matches!(&entry.what, What::Said(said) if text.ends_with(said.as_str())));
+        if !again {
+            self.add(at, Severity::Alarm, What::Said(text.to_owned()));
+        }
+    }
+
+    pub(super) fn end(&mut self, at: Duration, error: Option<&str>) {
+        match error {
+            // The job's sentence ends with the fault's, which is told already.
+            Some(error) => self.alarm(at, error),
+            None => self.add(at, Severity::Note, What::Finished),
+        }
+    }
+
+    /// All entries, oldest first.
+    pub fn entries(&self) -> impl DoubleEndedIterator<Item = &Entry> {
+        self.0.iter()
+    }
+
+    /// Alarms that nobody has taken note of yet, oldest first.
+    pub fn open_alarms(&self) -> impl DoubleEndedIterator<Item = &Entry> {
+        self.entries().filter(|entry| !entry.acknowledged)
+    }
+
+    /// The operator has taken note of all alarms.
+    pub fn acknowledge(&mut self) {
+        self.0.iter_mut().for_each(|entry| entry.acknowledged = true);
+    }
+}

@@ -1,0 +1,144 @@
+//! What the screen knows of a job: its events, folded as they come. It is bounded, however long the job.
+
+mod deviations;
+mod journal;
+mod signals;
+
+pub use deviations::{Bin, Deviations};
+pub use journal::{Entry, Journal, Severity, What};
+pub use signals::{SIGNALS, Signal, Signals, Unit};
+
+use cam::along::Along;
+use host_link::events::{Event, MeasuredPicture, Phase, Question};
+use shared::io::SIDES;
+use shared::protocol::{MotionSample, MotionStatus, TrackerStatus};
+use shared::state::State;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// After so long without a word from the boards, what is shown is old, and nothing can be commanded.
+const SILENCE: Duration = Duration::from_millis(500);
+
+/// A job, as its events tell it.
+#[derive(Debug, Default)]
+pub struct Live {
+    /// What it is doing.
+    pub phase: Option<Phase>,
+    /// What the machine waits for.
+    pub question: Option<Question>,
+    /// The motion board, as it said last.
+    pub motion: Option<Box<MotionStatus>>,
+    /// The tracker board, as it said last.
+    pub tracker: Option<TrackerStatus>,
+    /// The newest tick of the motion board.
+    pub newest: Option<MotionSample>,
+    /// The latest picture of each camera.
+    pub pictures: [Option<Arc<MeasuredPicture>>; SIDES],
+    /// How far the spots were beside their seams.
+    pub deviations: Deviations,
+    /// What the boards' telemetry tells, over time.
+    pub signals: Signals,
+    /// What happened.
+    pub journal: Journal,
+    /// Samples that the screen was too slow for.
+    pub lost: u64,
+    /// The job has ended.
+    pub ended: bool,
+    along: Along,
+    /// When a board was heard last, by the screen's clock.
+    heard: Option<Duration>,
+}
+
+impl Live {
+    /// Of a job whose paths are counted by `along`. What happened before is in `journal`.
+    pub fn new(along: Along, journal: Journal) -> Self {
+        Self {
+            along,
+            journal,
+            ..Self::default()
+        }
+    }
+
+    /// Takes an event that came at `now` by the screen's clock.
+    pub fn take(&mut self, event: &Event, now: Duration) {
+        match event {
+            Event::Connected { motion, tracker } => {
+                self.heard = Some(now);
+                self.journal.connected(now, motion.as_ref(), tracker.as_ref());
+            }
+            Event::Status { motion, tracker } => {
+                self.heard = Some(now);
+                if motion.state == State::Running {
+                    self.question = None;
+                }
+                self.motion = Some(motion.clone());
+                self.tracker.clone_from(tracker);
+            }
+            Event::MotionSamples(samples) => {
+                self.heard = Some(now);
+                samples.iter().for_each(|sample| self.signals.motion(sample));
+                self.newest = samples.last().copied().or(self.newest);
+            }
+            Event::TrackerSamples(samples) => {
+                for sample in samples.iter() {
+                    self.signals.tracker(sample);
+                    let at = self.newest.filter(|newest| newest.beams.contains(&true));
+                    if let Some(newest) = at
+                        && let Some(along_mm) = self.along.at(newest.path_id, newest.s_mm)
+                    {
+                        self.deviations.tick(along_mm, newest.beams, sample);
+                    }
+                }
+            }
+            Event::Picture(picture) => {
+                if let Some(latest) = self.pictures.get_mut(picture.side) {
+                    *latest = Some(Arc::clone(picture));
+                }
+            }
+            Event::Phase(phase) => {
+                (self.phase, self.question) = (Some(*phase), None);
+                self.journal.phase(now, *phase);
+            }
+            Event::Question(question) => {
+                self.question = Some(question.clone());
+                self.journal.question(now, question);
+            }
+            Event::Message(text) => self.journal.message(now, text),
+            Event::MotionFault(fault) => self.journal.fault(now, &fault.to_string()),
+            Event::TrackerFault(fault) => self.journal.fault(now, &fault.to_string()),
+            Event::End { error, .. } => {
+                (self.ended, self.question) = (true, None);
+                self.journal.end(now, error.as_deref());
+            }
+            Event::Progress { .. } | Event::Capture(_) | Event::Measurement { .. } => {}
+        }
+    }
+
+    /// How long the boards have been silent, where that is too long to trust what is shown; `None` before they were heard.
+    pub fn silent_for(&self, now: Duration) -> Option<Duration> {
+        let silent = now.saturating_sub(self.heard?);
+        (!self.ended && silent > SILENCE).then_some(silent)
+    }
+
+    /// State of the motion board, as it said last.
+    pub fn state(&self) -> Option<State> {
+        self.motion.as_ref().map(|motion| motion.state)
+    }
+
+    /// Whether a beam is on.
+    pub fn beam_is_on(&self) -> bool {
+        let on = |sample: &MotionSample| sample.beams.contains(&true);
+        !self.ended && self.newest.as_ref().is_some_and(on)
+    }
+
+    /// Path and place that the machine is at, as the newest tick says: number and \[mm\].
+    pub fn place(&self) -> Option<(u32, f64)> {
+        self.newest.as_ref().map(|newest| (newest.path_id, newest.s_mm))
+    }
+
+    /// Length along all that works \[mm\].
+    pub fn along_mm(&self) -> Option<f64> {
+        let (path, s_mm) = self.place()?;
+        self.along.at(path, s_mm)
+    }
+}

@@ -1,0 +1,256 @@
+//! Signals of the boards' telemetry over time, the newest of them in bounded memory.
+
+use shared::io::{AXES, MOTORS, SLIDES};
+use shared::protocol::{MotionSample, TrackerSample};
+use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
+use std::collections::VecDeque;
+
+/// Ticks that are kept of each board: 30 s.
+const KEPT: usize = 30_000;
+
+/// Part of a new relation of the clocks that counts, once a tick.
+const SMOOTHING: f64 = 1e-3;
+
+/// Unit of a signal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// mm
+    Mm,
+    /// degrees
+    Degrees,
+    /// µm
+    Um,
+    /// millidegrees
+    MilliDegrees,
+    /// m/min
+    MPerMin,
+    /// % of full scale
+    Percent,
+    /// 0 or 1
+    OnOff,
+}
+
+impl Unit {
+    /// As it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mm => "mm",
+            Self::Degrees => "°",
+            Self::Um => "µm",
+            Self::MilliDegrees => "m°",
+            Self::MPerMin => "m/min",
+            Self::Percent => "%",
+            Self::OnOff => "",
+        }
+    }
+}
+
+/// Something that the telemetry tells every tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Signal {
+    /// Speed along the path.
+    Speed,
+    /// Position of an axis.
+    Axis(usize),
+    /// Largest |following error| of a motor since the tick before.
+    FollowingError(usize),
+    /// Skew of the gantry.
+    Skew,
+    /// A beam.
+    Beam(usize),
+    /// Power of a beam.
+    Power(usize),
+    /// Position of a slide.
+    Slide(usize),
+    /// A slide's distance from its target.
+    SlideError(usize),
+}
+
+/// All signals, in the order in which they are offered.
+pub const SIGNALS: [Signal; 2 + AXES + MOTORS + 4 + 2 * SLIDES] = {
+    let mut all = [Signal::Speed; 2 + AXES + MOTORS + 4 + 2 * SLIDES];
+    all[1] = Signal::Skew;
+    let mut count = 2;
+    let mut i = 0;
+    while i < 2 {
+        all[count] = Signal::Beam(i);
+        all[count + 1] = Signal::Power(i);
+        count += 2;
+        i += 1;
+    }
+    i = 0;
+    while i < SLIDES {
+        all[count] = Signal::SlideError(i);
+        all[count + SLIDES] = Signal::Slide(i);
+        count += 1;
+        i += 1;
+    }
+    count += SLIDES;
+    i = 0;
+    while i < MOTORS {
+        all[count] = Signal::FollowingError(i);
+        count += 1;
+        i += 1;
+    }
+    i = 0;
+    while i < AXES {
+        all[count] = Signal::Axis(i);
+        count += 1;
+        i += 1;
+    }
+    all
+};
+
+impl Signal {
+    /// Its unit.
+    pub fn unit(self) -> Unit {
+        match self {
+            Self::Speed => Unit::MPerMin,
+            Self::Axis(0..=2) | Self::Slide(_) => Unit::Mm,
+            Self::Axis(_) => Unit::Degrees,
+            Self::FollowingError(0..=3) | Self::Skew | Self::SlideError(_) => Unit::Um,
+            Self::FollowingError(_) => Unit::MilliDegrees,
+            Self::Beam(_) => Unit::OnOff,
+            Self::Power(_) => Unit::Percent,
+        }
+    }
+
+    fn of_motion(self, sample: &MotionSample) -> Option<f64> {
+        Some(match self {
+            Self::Speed => sample.speed_mm_s / MM_S_PER_M_MIN,
+            Self::Axis(axis @ 0..=2) => sample.axes[axis],
+            Self::Axis(axis) => sample.axes[axis] * DEG_PER_RAD,
+            Self::FollowingError(motor @ 0..=3) => f64::from(sample.following_error[motor]) * 1e3,
+            Self::FollowingError(motor) => f64::from(sample.following_error[motor]) * DEG_PER_RAD * 1e3,
+            Self::Skew => f64::from(sample.skew_mm) * 1e3,
+            Self::Beam(side) => f64::from(u8::from(sample.beams[side])),
+            Self::Power(side) => f64::from(sample.levels[side]) * 100.0,
+            Self::Slide(_) | Self::SlideError(_) => return None,
+        })
+    }
+
+    fn of_tracker(self, sample: &TrackerSample) -> Option<f64> {
+        match self {
+            Self::Slide(slide) => Some(sample.slides_mm[slide]),
+            Self::SlideError(slide) => Some((sample.slides_mm[slide] - sample.target_mm[slide]) * 1e3),
+            _ => None,
+        }
+    }
+}
+
+/// The newest ticks of both boards.
+#[derive(Clone, Debug, Default)]
+pub struct Signals {
+    motion: VecDeque<MotionSample>,
+    tracker: VecDeque<TrackerSample>,
+    /// How far the tracker board's clock is ahead of the motion board's \[µs\].
+    tracker_ahead_us: Option<f64>,
+}
+
+impl Signals {
+    pub(super) fn motion(&mut self, sample: &MotionSample) {
+        keep(&mut self.motion, *sample);
+    }
+
+    pub(super) fn tracker(&mut self, sample: &TrackerSample) {
+        keep(&mut self.tracker, *sample);
+        if let Some(motion) = self.motion.back() {
+            let ahead = sample.time_us as f64 - motion.time_us as f64;
+            let known = *self.tracker_ahead_us.get_or_insert(ahead);
+            self.tracker_ahead_us = Some(known + SMOOTHING * (ahead - known));
+        }
+    }
+
+    /// The tracker board's time by the motion board's clock \[s\], to some milliseconds: by which of their ticks arrive together.
+    /// Reports have the exact relation.
+    fn motion_s(&self, tracker_us: u64) -> f64 {
+        (tracker_us as f64 - self.tracker_ahead_us.unwrap_or(0.0)) * 1e-6
+    }
+
+    /// Times \[s\], by the motion board's clock, and values of the newest `window_s` of `signal`, oldest first: extremes
+    /// of pieces, where there would be more than `most` of them.
+    pub fn course(&self, signal: Signal, window_s: f64, most: usize) -> Vec<[f64; 2]> {
+        let all: Vec<[f64; 2]> = match signal {
+            Signal::Slide(_) | Signal::SlideError(_) => {
+                let told = newest(&self.tracker, window_s, |sample| sample.time_us);
+                told.filter_map(|s| Some([self.motion_s(s.time_us), signal.of_tracker(s)?]))
+                    .collect()
+            }
+            _ => {
+                let told = newest(&self.motion, window_s, |sample| sample.time_us);
+                told.filter_map(|s| Some([s.time_us as f64 * 1e-6, signal.of_motion(s)?]))
+                    .collect()
+            }
+        };
+        extremes(&all, most)
+    }
+
+    /// Time of the newest tick of the motion board, by its clock \[s\].
+    pub fn newest_s(&self) -> f64 {
+        self.motion
+            .back()
+            .map_or(0.0, |newest| newest.time_us as f64 * 1e-6)
+    }
+
+    /// Whether nothing was told yet.
+    pub fn is_empty(&self) -> bool {
+        self.motion.is_empty()
+    }
+}
+
+fn keep<T>(samples: &mut VecDeque<T>, sample: T) {
+    if samples.len() == KEPT {
+        samples.pop_front();
+    }
+    samples.push_back(sample);
+}
+
+/// Samples of the newest `window_s`.
+fn newest<T>(samples: &VecDeque<T>, window_s: f64, time_us: impl Fn(&T) -> u64) -> impl Iterator<Item = &T> {
+    let end = samples.back().map_or(0, &time_us);
+    let begin = end.saturating_sub((window_s * 1e6) as u64);
+    let first = samples.partition_point(|sample| time_us(sample) < begin);
+    samples.range(first..)
+}
+
+/// At most `most` points: of equal pieces of `all` the least and the largest, in their order.
+fn extremes(all: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
+    if all.len() <= most {
+        return all.to_vec();
+    }
+    let piece = all.len().div_ceil(most.div_ceil(2));
+    let by_value = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
+    let ends = all.chunks(piece).flat_map(|piece| {
+        let least = piece.iter().min_by(by_value).copied();
+        let largest = piece.iter().max_by(by_value).copied();
+        let mut ends: Vec<[f64; 2]> = least.into_iter().chain(largest).collect();
+        ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        ends
+    });
+    ends.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_signal_is_offered_once() {
+        for (index, signal) in SIGNALS.iter().enumerate() {
+            assert!(!SIGNALS[..index].contains(signal), "{signal:?}");
+        }
+        assert!(SIGNALS.contains(&Signal::FollowingError(MOTORS - 1)));
+        assert!(SIGNALS.contains(&Signal::SlideError(SLIDES - 1)));
+        assert!(SIGNALS.contains(&Signal::Axis(AXES - 1)));
+    }
+
+    #[test]
+    fn a_course_of_few_points_keeps_its_peaks_where_they_were() {
+        let mut all: Vec<[f64; 2]> = (0..10_000).map(|k| [f64::from(k), 0.0]).collect();
+        (all[4321][1], all[777][1]) = (9.0, -5.0);
+        let few = extremes(&all, 100);
+        assert!(few.len() <= 102, "{}", few.len());
+        assert!(few.contains(&[4321.0, 9.0]) && few.contains(&[777.0, -5.0]));
+        assert!(few.is_sorted_by(|a, b| a[0] <= b[0]));
+    }
+}

@@ -1,0 +1,106 @@
+//! The operator's screen as a program.
+
+use anyhow::anyhow;
+use clap::Parser;
+use eframe::egui;
+use hmi::running::Place;
+use hmi::screen::{Look, Screen};
+use hmi::station::Station;
+use hmi::texts::Language;
+use plant_file::PlantChoice;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use world::BoardChoice;
+
+/// The operator's screen: load a program, weld, watch, and look at what came of it
+#[derive(Debug, Parser)]
+#[command(name = "seamwright-hmi", version)]
+struct Arguments {
+    /// NC program to load
+    program: Option<PathBuf>,
+    /// Machine file
+    #[arg(long)]
+    machine: PathBuf,
+    /// Folder of programs to choose from
+    #[arg(long, value_name = "DIR", default_value = "programs")]
+    programs: PathBuf,
+    /// simulated, emulated, or the addresses of real boards: MOTION,TRACKER, or MOTION without a tracker
+    #[arg(long, default_value = "simulated")]
+    boards: BoardChoice,
+    /// What is true of a simulated machine: a plant file, or draw:usual:SEED or draw:poor:SEED
+    #[arg(long, default_value_t)]
+    plant: PlantChoice,
+    /// How fast simulated boards are at most, in units of real time
+    #[arg(long, value_name = "RATE", default_value_t = 1.0, value_parser = pace)]
+    pace: f64,
+    /// Folder of the reports; each job makes one of its own in it
+    #[arg(long, value_name = "DIR", default_value = "reports")]
+    reports: PathBuf,
+    /// Language: en, zh-Hans or de
+    #[arg(long, default_value = "en", value_parser = language)]
+    language: Language,
+    /// The whole screen, without a frame
+    #[arg(long)]
+    fullscreen: bool,
+}
+
+fn pace(text: &str) -> Result<f64, &'static str> {
+    match text.parse() {
+        Ok(rate) if f64::is_finite(rate) && rate > 0.0 => Ok(rate),
+        _ => Err("must be a number above 0; 1 is real time"),
+    }
+}
+
+fn language(tag: &str) -> Result<Language, &'static str> {
+    let mut all = Language::ALL.into_iter();
+    all.find(|language| language.tag() == tag)
+        .ok_or("must be en, zh-Hans or de")
+}
+
+fn main() -> ExitCode {
+    match run(Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // There may be no reader.
+            let _ = std::io::Write::write_all(
+                &mut std::io::stderr(),
+                format!("seamwright-hmi: {error:#}\n").as_bytes(),
+            );
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> anyhow::Result<()> {
+    // What is wrong with it is said before a window opens.
+    config::machine::MachineFile::read(&arguments.machine)?;
+    let place = Place {
+        boards: arguments.boards,
+        plant: arguments.plant,
+        pace: arguments.pace,
+        pictures: true,
+        reports: arguments.reports,
+    };
+    let mut station = Station::new(arguments.machine, arguments.programs, place);
+    if let Some(program) = arguments.program {
+        station.load(program, None);
+    }
+    let look = Look {
+        language: arguments.language,
+        ..Look::default()
+    };
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("Seamwright")
+        .with_inner_size([1280.0, 800.0])
+        .with_min_inner_size([1280.0, 800.0])
+        .with_fullscreen(arguments.fullscreen);
+    let options = eframe::NativeOptions {
+        viewport,
+        ..Default::default()
+    };
+    let window = move |_: &eframe::CreationContext| -> Result<Box<dyn eframe::App>, _> {
+        Ok(Box::new(Screen::new(station, look)))
+    };
+    eframe::run_native("seamwright", options, Box::new(window))
+        .map_err(|error| anyhow!("cannot open a window ({error}); is there a display?"))
+}

@@ -1,0 +1,236 @@
+//! A job of what is loaded, on a thread of its own.
+
+use crate::loaded::Loaded;
+use anyhow::Context;
+use cam::path::Planner;
+use host_link::boards::Boards;
+use host_link::events::{Interest, Subscription};
+use host_link::spool::Spooling;
+use host_link::{Command, CommandError, Remote, control};
+use job::{ImageCameras, Job, Names, Work};
+use plant_file::PlantChoice;
+use report::{LogColumns, LogWriter, Report};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use world::simulated::SimulatedBoards;
+use world::{BoardChoice, BoardsError, CameraChoice, PictureChoice, Surroundings};
+
+/// Events that wait for the screen: some seconds of both boards. What comes beyond is lost for the screen, and only for it.
+const WAITING: usize = 4096;
+/// Events that wait for the disk: more than half a minute of both boards.
+const LOGGED: usize = 1 << 14;
+
+/// On what jobs run, and where their reports go.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// The boards.
+    pub boards: BoardChoice,
+    /// What is true of simulated and emulated ones.
+    pub plant: PlantChoice,
+    /// How fast simulated boards are at most, in units of the clock's time.
+    pub pace: f64,
+    /// Whether the seams are seen in pictures; else by geometry, on boards that are not real.
+    pub pictures: bool,
+    /// Folder of all reports; each job makes one of its own in it.
+    pub reports: PathBuf,
+}
+
+/// A job that runs.
+#[derive(Debug)]
+pub struct Running {
+    remote: Remote,
+    events: Subscription,
+    thread: JoinHandle<anyhow::Result<Outcome>>,
+}
+
+/// How a job ended.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Why it ended early, as a sentence.
+    pub error: Option<String>,
+    /// What came of it, where the machine moved along a path.
+    pub report: Option<Report>,
+    /// Where the report is, if there is one.
+    pub folder: Option<PathBuf>,
+}
+
+impl Running {
+    /// Begins the job of `loaded` at `place`; with `single_block` the machine waits after every block.
+    pub fn start(loaded: Arc<Loaded>, place: Place, single_block: bool) -> Self {
+        let (remote, control) = control();
+        let events = remote.subscribe(Interest::Pictures, WAITING);
+        // A state, which needs no room.
+        let _ = remote.send(Command::SingleBlock(single_block));
+        let own = remote.clone();
+        let thread = std::thread::spawn(move || run(&loaded, &place, &own, control));
+        Self {
+            remote,
+            events,
+            thread,
+        }
+    }
+
+    /// Sends `command` to the job.
+    ///
+    /// # Errors
+    /// [`CommandError`]: it has ended, or does not take commands as fast as they come.
+    pub fn send(&self, command: Command) -> Result<(), CommandError> {
+        self.remote.send(command)
+    }
+
+    /// What happened in it.
+    pub fn events(&self) -> &Subscription {
+        &self.events
+    }
+
+    /// Whether it has ended, with its report written.
+    pub fn is_over(&self) -> bool {
+        self.thread.is_finished()
+    }
+
+    /// How it ended; waits until it has.
+    ///
+    /// # Errors
+    /// A sentence: it could not begin, or its report could not be written.
+    pub fn outcome(self) -> anyhow::Result<Outcome> {
+        self.thread
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    }
+}
+
+fn run(
+    loaded: &Loaded,
+    place: &Place,
+    remote: &Remote,
+    mut control: host_link::Control,
+) -> anyhow::Result<Outcome> {
+    let folder = next_folder(&place.reports, &loaded.program_file)?;
+    let job = Job {
+        machine: &loaded.machine,
+        work: Work::Program(&loaded.program),
+        // Of a program that is begun in its middle a part can say nothing, but for seams.
+        part: loaded
+            .part
+            .as_ref()
+            .filter(|part| loaded.from_line.is_none() || part.t_seam().is_some()),
+        speed_m_per_min: None,
+        from_line: loaded.from_line,
+        surroundings: surroundings(loaded, place)?.into(),
+        spooling: Spooling::in_folder(&folder),
+        names: names(loaded, place),
+    };
+    // Boards are asked for nothing unless the machine can do all of it.
+    let planner = Planner::build(&loaded.machine)?;
+    job.plan(&loaded.program, &planner, &loaded.machine.planning.park_axes())?;
+    let mut boards = connect(loaded, place, remote)?;
+    let log = remote.subscribe(Interest::Samples, LOGGED);
+    let log = LogWriter::start(&folder, LogColumns::of(&loaded.machine), log)
+        .with_context(|| format!("cannot write the log in {}", folder.display()))?;
+    let record = job::run(boards.as_mut(), &job, &mut control);
+    // The log and the screen have everything that happened.
+    drop(control);
+    // It is written anew with what is known after the evaluation.
+    let _ = log.end();
+    let ended = report::ended(&job, record?);
+    let written = ended.began.then(|| report::write(&folder, &ended)).transpose()?;
+    Ok(Outcome {
+        error: ended.error.as_ref().map(ToString::to_string),
+        report: ended.began.then_some(ended.report),
+        folder: written.map(|_| folder),
+    })
+}
+
+fn connect(loaded: &Loaded, place: &Place, remote: &Remote) -> Result<Box<dyn Boards + Send>, BoardsError> {
+    let kinematics = loaded.machine.motion.kinematics.name();
+    let tracked = loaded.machine.tracking.is_some();
+    match place.boards {
+        BoardChoice::Simulated => {
+            let boards = SimulatedBoards::wired_to(&place.plant.of(kinematics)?);
+            Ok(Box::new(boards.at_pace(place.pace)))
+        }
+        _ => place
+            .boards
+            .connect(kinematics, &place.plant, tracked, remote.stop_flag()),
+    }
+}
+
+fn names(loaded: &Loaded, place: &Place) -> Names {
+    let program = loaded.program_file.display();
+    let plant = match &place.plant {
+        PlantChoice::Shipped => String::new(),
+        plant => format!(", {plant}"),
+    };
+    Names {
+        program: match loaded.from_line {
+            Some(line) => format!("{program} from line {line}"),
+            None => program.to_string(),
+        },
+        machine: loaded.machine_file.display().to_string(),
+        seam: loaded.seam.as_ref().map(|(file, _)| file.display().to_string()),
+        boards: format!("{}{plant}", place.boards.name()),
+    }
+}
+
+/// What is around the machine: real cameras beside real boards, else the simulated world of the program's seams.
+fn surroundings(loaded: &Loaded, place: &Place) -> anyhow::Result<Surroundings> {
+    let machine = &loaded.machine;
+    let is_real = matches!(place.boards, BoardChoice::At { .. });
+    let mut surroundings = Surroundings::default();
+    if !is_real {
+        surroundings.seam = loaded.seam.as_ref().map(|(_, seam)| Arc::clone(seam));
+        surroundings.mounts = place.plant.of(machine.motion.kinematics.name())?.cameras;
+    }
+    if let Some(unit) = machine.tracking.as_ref().filter(|_| is_real || place.pictures) {
+        let folder = loaded.machine_file.parent().unwrap_or(Path::new(""));
+        let images = ImageCameras {
+            calibrations: unit.cameras.calibrations(folder)?,
+            kept: None,
+            noted: None,
+        };
+        let source = if is_real {
+            PictureChoice::Real(camera::real(&unit.cameras)?)
+        } else {
+            PictureChoice::Rendered(Box::default())
+        };
+        surroundings.cameras = CameraChoice::Images(Box::new(images), source);
+    }
+    Ok(surroundings)
+}
+
+/// A new folder for the report of a job of `program`: `0001-NAME`, `0002-NAME` and so on.
+fn next_folder(reports: &Path, program: &Path) -> anyhow::Result<PathBuf> {
+    let cannot = || format!("cannot make a folder for the report in {}", reports.display());
+    std::fs::create_dir_all(reports).with_context(cannot)?;
+    let name = program.file_stem().unwrap_or_default().to_string_lossy();
+    let taken = std::fs::read_dir(reports).with_context(cannot)?;
+    let number = |entry: std::fs::DirEntry| {
+        entry
+            .file_name()
+            .to_string_lossy()
+            .split('-')
+            .next()?
+            .parse()
+            .ok()
+    };
+    let last: u32 = taken.flatten().filter_map(number).max().unwrap_or(0);
+    let folder = reports.join(format!("{:04}-{name}", last + 1));
+    std::fs::create_dir(&folder).with_context(cannot)?;
+    Ok(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reports_are_numbered_on_from_the_last_one() {
+        let reports = tempfile::tempdir().unwrap();
+        let next = || next_folder(reports.path(), Path::new("programs/t-seam.ngc")).unwrap();
+        assert!(next().ends_with("0001-t-seam"));
+        std::fs::create_dir(reports.path().join("0041-other")).unwrap();
+        std::fs::create_dir(reports.path().join("notes")).unwrap();
+        assert!(next().ends_with("0042-t-seam"));
+    }
+}

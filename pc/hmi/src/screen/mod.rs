@@ -1,0 +1,212 @@
+//! The pages, and what is always in sight around them.
+
+mod alarms;
+mod bar;
+mod plot;
+mod run;
+mod settings;
+mod theme;
+mod welds;
+
+pub use settings::Look;
+
+use crate::station::{Action, Station};
+use crate::texts::{Text, Words};
+use eframe::egui::{self, Key, Modifiers, Response, RichText, TextWrapMode, Ui};
+use host_link::Command;
+use std::time::{Duration, Instant};
+use theme::Theme;
+
+/// What a screen that shows something live waits before it is drawn anew: 20 times a second.
+const FRAME: Duration = Duration::from_millis(50);
+/// The same, where nothing happens.
+const IDLE: Duration = Duration::from_millis(250);
+/// Height of what is always in sight \[points\].
+const BAR: f32 = 76.0;
+/// Width of the list of pages \[points\].
+const RAIL: f32 = 124.0;
+
+/// A page.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Page {
+    /// The job.
+    #[default]
+    Run,
+    /// Signals of the boards over time.
+    Plot,
+    /// What went wrong, and what happened.
+    Alarms,
+    /// Past jobs.
+    Welds,
+    /// The screen itself.
+    Settings,
+}
+
+impl Page {
+    /// All pages, in the order of their keys.
+    pub const ALL: [Self; 5] = [Self::Run, Self::Plot, Self::Alarms, Self::Welds, Self::Settings];
+
+    /// Its name.
+    pub fn name(self) -> Text {
+        match self {
+            Self::Run => Text::Run,
+            Self::Plot => Text::LivePlot,
+            Self::Alarms => Text::Alarms,
+            Self::Welds => Text::Welds,
+            Self::Settings => Text::Settings,
+        }
+    }
+}
+
+/// The screen.
+pub struct Screen {
+    /// What it shows and commands.
+    pub station: Station,
+    /// How it looks.
+    pub look: Look,
+    page: Page,
+    run: run::RunPage,
+    plot: plot::PlotPage,
+    welds: welds::WeldsPage,
+    began: Instant,
+}
+
+/// What every page is given.
+struct View<'a> {
+    words: Words,
+    theme: &'a Theme,
+    now: Duration,
+}
+
+impl Screen {
+    /// A screen of `station`.
+    pub fn new(station: Station, look: Look) -> Self {
+        Self {
+            station,
+            look,
+            page: Page::default(),
+            run: run::RunPage::default(),
+            plot: plot::PlotPage::default(),
+            welds: welds::WeldsPage::default(),
+            began: Instant::now(),
+        }
+    }
+
+    /// Takes what has happened, and asks to be drawn again in time.
+    fn turn(&mut self, ctx: &egui::Context) {
+        self.station.turn(self.now());
+        self.plot.turn(&self.station.live.signals);
+        let live = self.station.is_running() || self.station.is_loading();
+        ctx.request_repaint_after(if live { FRAME } else { IDLE });
+    }
+
+    /// Draws everything, and does what is asked for.
+    fn show(&mut self, ui: &mut Ui) {
+        let theme = Theme::of(&self.look);
+        theme.apply(ui.ctx());
+        ui.ctx().set_zoom_factor(self.look.zoom);
+        let view = View {
+            words: Words(self.look.language),
+            theme: &theme,
+            now: self.now(),
+        };
+        self.keys(ui, view.now);
+        egui::Panel::top("bar").exact_size(BAR).show(ui, |ui| {
+            bar::show(ui, &view, &mut self.station, self.look.left_handed);
+        });
+        egui::Panel::left("pages")
+            .exact_size(RAIL)
+            .resizable(false)
+            .show(ui, |ui| {
+                self.rail(ui, &view);
+            });
+        egui::CentralPanel::default().show(ui, |ui| match self.page {
+            Page::Run => self.run.show(ui, &view, &mut self.station, self.look.left_handed),
+            Page::Plot => {
+                self.plot
+                    .show(ui, &view, &self.station.live.signals, &self.station.place.reports);
+            }
+            Page::Welds => self.welds.show(ui, &view, &self.station.place.reports),
+            Page::Alarms => alarms::show(ui, &view, &mut self.station.live.journal),
+            Page::Settings => settings::show(ui, &view, &mut self.look, &self.station),
+        });
+    }
+
+    /// Brings `page` in sight.
+    pub fn open(&mut self, page: Page) {
+        self.page = page;
+        if page == Page::Welds {
+            self.welds.open(&self.station.place.reports);
+        }
+    }
+
+    /// The screen's clock.
+    fn now(&self) -> Duration {
+        self.began.elapsed()
+    }
+
+    fn rail(&mut self, ui: &mut Ui, view: &View) {
+        ui.add_space(8.0);
+        for page in Page::ALL {
+            let open = self.station.live.journal.open_alarms().count();
+            let mut name = view.words.say(page.name()).to_owned();
+            if page == Page::Alarms && open > 0 {
+                name.push_str(&format!(" ({open})"));
+            }
+            let text = RichText::new(name).size(16.0);
+            let button = egui::Button::selectable(self.page == page, text).wrap_mode(TextWrapMode::Extend);
+            let button = button.min_size([RAIL - 16.0, 56.0].into());
+            if ui.add(button).clicked() {
+                self.open(page);
+            }
+        }
+    }
+
+    /// Keys that work on every page.
+    fn keys(&mut self, ui: &mut Ui, now: Duration) {
+        let pressed = |key| {
+            ui.ctx()
+                .input_mut(|input| input.consume_key(Modifiers::NONE, key))
+        };
+        let stop = self.station.may(Action::Stop, now);
+        // Esc also closes what is open over a page, where nothing runs.
+        if pressed(Key::F1) || (stop && pressed(Key::Escape)) {
+            self.station.send(Command::Stop, now);
+        }
+        if pressed(Key::F2) && self.station.may(Action::Hold, now) {
+            self.station.send(Command::Hold, now);
+        }
+        let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5];
+        for (key, page) in numbers.into_iter().zip(Page::ALL) {
+            if ui
+                .ctx()
+                .input_mut(|input| input.consume_key(Modifiers::CTRL, key))
+            {
+                self.open(page);
+            }
+        }
+    }
+}
+
+impl eframe::App for Screen {
+    /// Also where the window is hidden.
+    fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
+        self.turn(ctx);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}
+
+/// A small heading.
+fn title(ui: &mut Ui, view: &View, text: &str) -> Response {
+    ui.label(RichText::new(text).size(14.0).color(view.theme.faint))
+}
+
+/// What is said where there is nothing to show.
+fn nothing(ui: &mut Ui, view: &View, text: Text) {
+    ui.centered_and_justified(|ui| {
+        ui.label(RichText::new(view.words.say(text)).color(view.theme.faint));
+    });
+}

@@ -1,0 +1,72 @@
+//! How far both spots are beside their seams, along the weld, against the limit.
+
+use super::title;
+use crate::live::Deviations;
+use crate::screen::View;
+use crate::station::Station;
+use crate::texts::Text;
+use eframe::egui::{Color32, RichText, Ui};
+use egui_plot::{HLine, Line, LineStyle, Plot, PlotPoints, uniform_grid_spacer};
+use shared::io::{SLIDE_NAMES, SLIDES};
+
+/// mm to µm.
+const UM: f64 = 1e3;
+
+pub(super) fn show(ui: &mut Ui, view: &View, station: &Station) {
+    title(ui, view, view.words.say(Text::Deviation));
+    let deviations = &station.live.deviations;
+    let limit = station.loaded().and_then(|loaded| loaded.deviation_limit_mm());
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.spacing_mut().interact_size.y = 18.0;
+        for (slide, newest) in deviations.newest().into_iter().enumerate() {
+            let now = newest.map_or("–".to_owned(), |newest| format!("{:+.1}", newest * UM));
+            let worst =
+                deviations.worst()[slide].map_or("–".to_owned(), |worst| format!("{:.1}", worst * UM));
+            let text = format!("{} {now} ({worst})", SLIDE_NAMES[slide]);
+            ui.label(RichText::new(text).monospace().color(view.theme.slides[slide]));
+        }
+    });
+    let reach = limit.unwrap_or(0.05) * UM;
+    let length = station.loaded().map_or(100.0, |loaded| loaded.way.work_mm());
+    Plot::new("deviations")
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .y_grid_spacer(uniform_grid_spacer(move |_| [10.0 * reach, reach, reach / 5.0]))
+        .include_x(0.0)
+        .include_x(length)
+        .include_y(-1.2 * reach)
+        .include_y(1.2 * reach)
+        .show(ui, |plot| {
+            for slide in 0..SLIDES {
+                let points = curve(deviations, slide, UM);
+                let style = if slide % 2 == 0 {
+                    LineStyle::Solid
+                } else {
+                    LineStyle::dashed_dense()
+                };
+                plot.line(
+                    Line::new(SLIDE_NAMES[slide], points)
+                        .color(view.theme.slides[slide])
+                        .style(style),
+                );
+            }
+            if limit.is_some() {
+                for side in [-reach, reach] {
+                    let name = view.words.with(Text::Limit, &[&format!("{reach:.0}")]);
+                    let line = HLine::new(name, side).color(Color32::from_rgb(235, 70, 60));
+                    plot.hline(line.style(LineStyle::dashed_loose()));
+                }
+            }
+        });
+}
+
+/// The deviations of a slide along the work, times `scale`.
+pub(in crate::screen) fn curve(deviations: &Deviations, slide: usize, scale: f64) -> PlotPoints<'static> {
+    let ends = deviations
+        .bins()
+        .flat_map(|(at, bin)| [bin.least[slide], bin.largest[slide]].map(|value| [at, value * scale]));
+    ends.filter(|[_, value]| value.is_finite()).collect()
+}

@@ -1,0 +1,217 @@
+//! The station: what is loaded, the job that runs, and what may be asked of it now.
+
+use crate::live::{Journal, Live};
+use crate::loaded::Loaded;
+use crate::running::{Outcome, Place, Running};
+use cam::along::Along;
+use host_link::Command;
+use shared::state::State;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// Feed overrides that can be chosen, in percent; the boards take up to twice the programmed feed.
+pub const OVERRIDES: [f64; 5] = [25.0, 50.0, 75.0, 100.0, 120.0];
+/// Largest feed override \[%\].
+pub const LARGEST_OVERRIDE: f64 = 200.0;
+/// Events that are taken in one turn: what a screen that fell behind can catch up with.
+const A_TURN: usize = 4096;
+
+/// What an operator can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Another program.
+    Load,
+    /// The job of the loaded program.
+    Start,
+    /// Beams off, a stop on the path, the end of the job.
+    Stop,
+    /// Beams off, a stop on the path.
+    Hold,
+    /// On from where it waits.
+    Resume,
+    /// Back along the path, from a hold.
+    Back,
+    /// Another feed.
+    Override,
+}
+
+/// See the module.
+#[derive(Debug)]
+pub struct Station {
+    machine_file: PathBuf,
+    /// Where jobs run.
+    pub place: Place,
+    /// Folder of programs to choose from.
+    pub programs: PathBuf,
+    /// What is known of the job that runs, or of the last one.
+    pub live: Live,
+    /// The machine waits after every block.
+    pub single_block: bool,
+    /// Feed override that was asked for \[%\].
+    pub override_percent: f64,
+    loading: Option<JoinHandle<anyhow::Result<Loaded>>>,
+    loaded: Option<Arc<Loaded>>,
+    refused: Option<String>,
+    running: Option<Running>,
+    last: Option<Outcome>,
+}
+
+impl Station {
+    /// A station for the machine in `machine_file`, with nothing loaded.
+    pub fn new(machine_file: PathBuf, programs: PathBuf, place: Place) -> Self {
+        Self {
+            machine_file,
+            place,
+            programs,
+            live: Live::default(),
+            single_block: false,
+            override_percent: 100.0,
+            loading: None,
+            loaded: None,
+            refused: None,
+            running: None,
+            last: None,
+        }
+    }
+
+    /// The machine file.
+    pub fn machine_file(&self) -> &Path {
+        &self.machine_file
+    }
+
+    /// What is loaded.
+    pub fn loaded(&self) -> Option<&Arc<Loaded>> {
+        self.loaded.as_ref()
+    }
+
+    /// Why the last program was not loaded.
+    pub fn refused(&self) -> Option<&str> {
+        self.refused.as_deref()
+    }
+
+    /// Whether a program is being loaded.
+    pub fn is_loading(&self) -> bool {
+        self.loading.is_some()
+    }
+
+    /// Whether a job runs, or its report is being written.
+    pub fn is_running(&self) -> bool {
+        self.running.is_some()
+    }
+
+    /// How the last job ended.
+    pub fn last(&self) -> Option<&Outcome> {
+        self.last.as_ref()
+    }
+
+    /// Begins to load `program`, to be run from `from_line` on if that is told.
+    pub fn load(&mut self, program: PathBuf, from_line: Option<u32>) {
+        let machine = self.machine_file.clone();
+        self.refused = None;
+        self.loading = Some(std::thread::spawn(move || {
+            Loaded::read(&machine, &program, from_line)
+        }));
+    }
+
+    /// Whether `action` makes sense at `now` by the screen's clock. Without word from the boards nothing can be asked but a stop.
+    pub fn may(&self, action: Action, now: Duration) -> bool {
+        let (running, state) = (self.running.is_some() && !self.live.ended, self.live.state());
+        let heard = running && self.live.silent_for(now).is_none();
+        match action {
+            Action::Load => self.running.is_none() && self.loading.is_none(),
+            Action::Start => self.may(Action::Load, now) && self.loaded.is_some(),
+            Action::Stop => running,
+            Action::Hold => heard && state == Some(State::Running),
+            Action::Resume => heard && (state == Some(State::Holding) || self.live.question.is_some()),
+            Action::Back => heard && state == Some(State::Holding),
+            Action::Override => heard,
+        }
+    }
+
+    /// Begins the job of what is loaded, if it may.
+    pub fn start(&mut self, now: Duration) {
+        let Some(loaded) = self.loaded.clone().filter(|_| self.may(Action::Start, now)) else {
+            return;
+        };
+        let along = loaded.way.along.clone();
+        self.begin_record(along);
+        // A job begins at the programmed feed.
+        (self.override_percent, self.last) = (100.0, None);
+        self.running = Some(Running::start(loaded, self.place.clone(), self.single_block));
+    }
+
+    /// Sends `command` to the job that runs; one that is not taken is told.
+    pub fn send(&mut self, command: Command, now: Duration) {
+        if let Some(running) = &self.running
+            && let Err(error) = running.send(command)
+        {
+            self.live.journal.alarm(now, &error.to_string());
+        }
+    }
+
+    /// Asks for another feed \[%\].
+    pub fn set_override(&mut self, percent: f64, now: Duration) {
+        self.override_percent = percent.clamp(0.0, LARGEST_OVERRIDE);
+        self.send(Command::Override(self.override_percent / 100.0), now);
+    }
+
+    /// Takes what has happened since the last turn.
+    pub fn turn(&mut self, now: Duration) {
+        if let Some(loading) = self.loading.take_if(|loading| loading.is_finished()) {
+            self.take_loaded(loading);
+        }
+        if let Some(running) = &self.running {
+            for _ in 0..A_TURN {
+                let Ok(received) = running.events().receive(Duration::ZERO) else {
+                    break;
+                };
+                self.live.lost += received.lost;
+                self.live.take(&received.event, now);
+            }
+        }
+        if let Some(running) = self.running.take_if(|running| running.is_over()) {
+            // All that happened before it ended.
+            while let Ok(received) = running.events().receive(Duration::ZERO) {
+                self.live.take(&received.event, now);
+            }
+            match running.outcome() {
+                Ok(outcome) => self.last = Some(outcome),
+                Err(error) => self.live.journal.alarm(now, &format!("{error:#}")),
+            }
+            self.live.ended = true;
+        }
+    }
+
+    fn take_loaded(&mut self, loading: JoinHandle<anyhow::Result<Loaded>>) {
+        let read = loading
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        match read {
+            Ok(loaded) => {
+                self.begin_record(loaded.way.along.clone());
+                (self.loaded, self.last) = (Some(Arc::new(loaded)), None);
+            }
+            // What was loaded before stays.
+            Err(error) => self.refused = Some(format!("{error:#}")),
+        }
+    }
+
+    /// A new job is watched; what happened before stays on record.
+    fn begin_record(&mut self, along: Along) {
+        let journal: Journal = std::mem::take(&mut self.live.journal);
+        self.live = Live::new(along, journal);
+    }
+}
+
+/// Nothing moves on without its screen: a job that runs is stopped, and waited for.
+impl Drop for Station {
+    fn drop(&mut self) {
+        if let Some(running) = self.running.take() {
+            // A stop needs no room.
+            let _ = running.send(Command::Stop);
+            let _ = running.outcome();
+        }
+    }
+}

@@ -1,0 +1,336 @@
+//! Everything that the screen says, in every language: one table, in which no text can be missing.
+//!
+//! Sentences of the boards, of the planner and of the NC interpreter (faults, reasons for a refusal, notices) come as they are, in
+//! English: they name files, lines and values, and are the same in logs and reports.
+
+use host_link::events::{Next, Phase, Question};
+use shared::state::State;
+
+/// A language of the screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Language {
+    /// English.
+    #[default]
+    English,
+    /// Simplified Chinese.
+    Chinese,
+    /// German.
+    German,
+}
+
+impl Language {
+    /// All languages.
+    pub const ALL: [Self; 3] = [Self::English, Self::Chinese, Self::German];
+
+    /// Its own name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::English => "English",
+            Self::Chinese => "中文",
+            Self::German => "Deutsch",
+        }
+    }
+
+    /// Its tag after BCP 47.
+    pub fn tag(self) -> &'static str {
+        match self {
+            Self::English => "en",
+            Self::Chinese => "zh-Hans",
+            Self::German => "de",
+        }
+    }
+}
+
+/// Makes the table: a name, and the text in English, Chinese and German. `{}` stands for what is put in, in order.
+macro_rules! texts {
+    ($($name:ident: $english:literal, $chinese:literal, $german:literal;)*) => {
+        /// A text of the screen.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[allow(missing_docs, reason = "the texts say what they are")]
+        pub enum Text { $($name,)* }
+
+        impl Text {
+            /// All texts.
+            pub const ALL: &[Self] = &[$(Self::$name,)*];
+
+            /// The text in `language`.
+            pub fn in_language(self, language: Language) -> &'static str {
+                match (self, language) {
+                    $((Self::$name, Language::English) => $english,
+                      (Self::$name, Language::Chinese) => $chinese,
+                      (Self::$name, Language::German) => $german,)*
+                }
+            }
+        }
+    };
+}
+
+texts! {
+    // Pages
+    Run: "Run", "运行", "Lauf";
+    LivePlot: "Live plot", "实时曲线", "Messkurven";
+    Alarms: "Alarms", "报警", "Alarme";
+    Welds: "Welds", "焊缝记录", "Nähte";
+    Settings: "Screen", "屏幕", "Anzeige";
+    // Always in sight
+    Stop: "STOP", "停止", "STOPP";
+    StopHint: "F1 or Esc: beams off, stop on the path", "F1 或 Esc：关束并沿轨迹停止", "F1 oder Esc: Strahlen aus, Halt auf der Bahn";
+    NoJob: "no job", "无任务", "kein Auftrag";
+    NotConnected: "boards not connected", "控制板未连接", "keine Verbindung zu den Karten";
+    Silent: "No word from the boards for {} s", "控制板已 {} 秒无应答", "Seit {} s keine Antwort der Karten";
+    BeamOn: "BEAM ON", "光束开", "STRAHL AN";
+    // States of the motion board
+    StateOff: "drives off", "驱动关闭", "Antriebe aus";
+    StateHoming: "homing", "回参考点", "Referenzfahrt";
+    StateIdle: "at rest", "静止", "in Ruhe";
+    StateRunning: "moving", "运动中", "in Bewegung";
+    StateHolding: "held", "保持", "angehalten";
+    StateStopping: "stopping", "正在停止", "hält an";
+    StateFault: "fault", "故障", "Störung";
+    // Phases of a job
+    SettingUp: "setting up the boards", "设置控制板", "Karten einrichten";
+    SearchingMarks: "searching reference marks", "寻找参考标记", "Referenzmarken suchen";
+    RelatingClocks: "relating the clocks", "时钟对齐", "Uhren abgleichen";
+    Approaching: "approaching", "接近工件", "Anfahren";
+    RunningIn: "running in", "引入段", "Einlauf";
+    SearchingSeam: "searching the seam", "寻找焊缝", "Naht suchen";
+    Welding: "welding", "焊接中", "Schweißen";
+    MovingOn: "moving on", "移至下一段", "weiter";
+    Dwelling: "dwelling", "暂停计时", "Verweilen";
+    WaitingForInput: "waiting for input {} (line {})", "等待输入 {}（第 {} 行）", "wartet auf Eingang {} (Zeile {})";
+    AtLine: "line {}", "第 {} 行", "Zeile {}";
+    TeachingPoint: "teaching point {} of {}", "示教第 {} 点，共 {} 点", "Punkt {} von {} lernen";
+    TeachingSeam: "teaching point {}", "示教第 {} 点", "Punkt {} lernen";
+    Calibrating: "calibrating, place {} of {}", "标定第 {} 处，共 {} 处", "Kalibrieren, Stelle {} von {}";
+    Exciting: "exciting {}, {} of {}", "激励 {}，{}/{}", "{} anregen, {} von {}";
+    Parking: "parking", "回停放位", "Parken";
+    Stopping: "stopping", "正在停止", "hält an";
+    // What the machine waits for
+    GoOn: "Waiting before {}. Resume continues.", "在{}前等待。按“继续”。", "Wartet vor {}. „Weiter“ setzt fort.";
+    NextApproach: "the next move of the approach", "下一段接近", "der nächsten Anfahrt";
+    NextParking: "parking", "回停放位", "dem Parken";
+    NextLine: "line {}", "第 {} 行", "Zeile {}";
+    ProgramStop: "Line {}: stopped by {}{}. Resume continues.", "第 {} 行：{} 停止{}。按“继续”。", "Zeile {}: Halt durch {}{}. „Weiter“ setzt fort.";
+    ToolIn: "Line {}: put tool {} in{}, then Resume.", "第 {} 行：装入刀具 {}{}，然后按“继续”。", "Zeile {}: Werkzeug {} einsetzen{}, dann „Weiter“.";
+    ToolOut: "Line {}: take the tool out{}, then Resume.", "第 {} 行：取出刀具{}，然后按“继续”。", "Zeile {}: Werkzeug herausnehmen{}, dann „Weiter“.";
+    FeedTooLow: "Held: the feed is too low for the beam. Raise the override, then Resume.", "已保持：进给过低，不能开束。请提高倍率，然后按“继续”。", "Angehalten: Vorschub zu klein für den Strahl. Override erhöhen, dann „Weiter“.";
+    JogAsked: "The job asks where to jog.", "任务询问点动位置。", "Der Auftrag fragt nach einer Handfahrt.";
+    // Run page
+    Program: "Program", "程序", "Programm";
+    Load: "Load…", "载入…", "Laden…";
+    Loading: "Reading, planning and predicting…", "正在读取、规划并预测…", "Lesen, planen, vorhersagen…";
+    NoProgram: "No program is loaded. Load one to begin.", "未载入程序。请先载入程序。", "Kein Programm geladen. Zum Beginnen eines laden.";
+    ChooseProgram: "Programs in {}", "{} 中的程序", "Programme in {}";
+    NoPrograms: "There are no programs in this folder.", "此文件夹中没有程序。", "In diesem Ordner sind keine Programme.";
+    Cancel: "Cancel", "取消", "Abbrechen";
+    Start: "Start…", "启动…", "Start…";
+    StartNow: "Weld now", "现在焊接", "Jetzt schweißen";
+    StartTitle: "Ready to weld?", "准备焊接？", "Bereit zum Schweißen?";
+    StartWarning: "Drives go on, the axes search their marks, beams will be switched by the program. Is nobody in the cell?", "驱动将接通，各轴寻找参考标记，光束由程序控制。防护区内无人？", "Antriebe gehen an, Achsen suchen ihre Marken, das Programm schaltet die Strahlen. Ist niemand in der Zelle?";
+    FromLine: "from line {}", "从第 {} 行", "ab Zeile {}";
+    FromBeginning: "from the beginning", "从头开始", "von Anfang an";
+    FirstMove: "First it moves to {}", "首先移动到 {}", "Zuerst fährt sie nach {}";
+    Hold: "Hold", "保持", "Halt";
+    Resume: "Resume", "继续", "Weiter";
+    Back: "Back", "回退", "Zurück";
+    SingleBlock: "Single block", "单段", "Einzelsatz";
+    Override: "Feed override", "进给倍率", "Vorschub-Override";
+    Speed: "Speed", "速度", "Geschwindigkeit";
+    Power: "Power", "功率", "Leistung";
+    Remaining: "Remaining", "剩余", "Restzeit";
+    Predicted: "Predicted", "预计", "Vorhersage";
+    Along: "Along the seam", "沿焊缝", "Entlang der Naht";
+    Line: "Line", "行", "Zeile";
+    Way: "Path and tool", "轨迹与工具", "Bahn und Werkzeug";
+    Deviation: "Spot beside its seam, as the tracker goes by [µm]", "光斑相对焊缝的偏差（跟踪板依据）[µm]", "Spot neben der Naht, wonach der Tracker geht [µm]";
+    Limit: "limit ±{} µm", "限值 ±{} µm", "Grenze ±{} µm";
+    NoTracker: "This machine follows its program; it has no cameras.", "本机按程序运行，无摄像机。", "Diese Maschine folgt ihrem Programm; sie hat keine Kameras.";
+    Camera: "Camera {}", "摄像机 {}", "Kamera {}";
+    NoPicture: "no picture yet", "暂无图像", "noch kein Bild";
+    SeamSeen: "SEAM", "焊缝", "NAHT";
+    SeamNotSeen: "NO SEAM", "无焊缝", "KEINE NAHT";
+    Across: "across {} mm", "横向 {} mm", "quer {} mm";
+    Height: "height {} mm", "高度 {} mm", "Höhe {} mm";
+    Gap: "gap {} mm", "间隙 {} mm", "Spalt {} mm";
+    // The end of a job
+    Finished: "Finished: within all limits", "完成：全部在限值内", "Fertig: in allen Grenzen";
+    FinishedOutside: "Finished, OUTSIDE its limits", "完成，但超出限值", "Fertig, AUSSERHALB der Grenzen";
+    EndedEarly: "Ended early", "提前结束", "Vorzeitig beendet";
+    ReportIn: "Report in {}", "报告位于 {}", "Bericht in {}";
+    WrongFile: "Not loaded", "未载入", "Nicht geladen";
+    // Alarms
+    NoAlarms: "No alarms.", "无报警。", "Keine Alarme.";
+    Acknowledge: "Acknowledge", "确认", "Quittieren";
+    History: "What happened", "事件记录", "Verlauf";
+    Connected: "boards connected: {}", "控制板已连接：{}", "Karten verbunden: {}";
+    JobFinished: "job finished", "任务完成", "Auftrag fertig";
+    // Live plot
+    Freeze: "Freeze", "冻结", "Einfrieren";
+    Export: "Export CSV", "导出 CSV", "CSV ausgeben";
+    Exported: "Written to {}", "已写入 {}", "Geschrieben nach {}";
+    TriggerOn: "Freeze when", "触发条件：", "Einfrieren, wenn";
+    RisesAbove: "rises above", "升至高于", "steigt über";
+    Arm: "Arm", "准备触发", "Scharf";
+    CursorHint: "Tap the curves to set cursors A and B.", "点按曲线以放置光标 A 和 B。", "Kurven antippen, um Marken A und B zu setzen.";
+    NoSignals: "Signals appear once a job runs.", "任务运行后显示信号。", "Signale erscheinen, sobald ein Auftrag läuft.";
+    Signals: "Signals", "信号", "Signale";
+    Window: "Window", "时间窗", "Fenster";
+    Seconds: "{} s", "{} 秒", "{} s";
+    SignalSpeed: "path speed", "轨迹速度", "Bahngeschwindigkeit";
+    SignalSkew: "gantry skew", "龙门偏斜", "Gantry-Schieflage";
+    SignalBeam: "beam {}", "光束 {}", "Strahl {}";
+    SignalPower: "power {}", "功率 {}", "Leistung {}";
+    SignalSlide: "slide {}", "滑台 {}", "Schlitten {}";
+    SignalSlideError: "{} beside its target", "{} 偏离目标", "{} neben dem Ziel";
+    SignalFollowingError: "following error {}", "跟随误差 {}", "Schleppfehler {}";
+    SignalAxis: "axis {}", "轴 {}", "Achse {}";
+    // Welds
+    NoWelds: "There are no reports in {} yet.", "{} 中还没有报告。", "In {} sind noch keine Berichte.";
+    Figure: "Figure", "指标", "Größe";
+    Value: "Value", "数值", "Wert";
+    MayBe: "May be", "允许", "Erlaubt";
+    Compare: "Compare with", "对比", "Vergleichen mit";
+    Duration: "Duration", "用时", "Dauer";
+    TrueDeviation: "Spot beside its seam, in truth (only a simulated machine can know it) [µm]", "光斑相对焊缝的真实偏差（仅仿真机可知）[µm]", "Spot neben der Naht, in Wahrheit (nur eine simulierte Maschine weiß sie) [µm]";
+    Outside: "OUTSIDE", "超限", "ÜBER";
+    // The screen itself
+    LanguageChoice: "Language", "语言", "Sprache";
+    Contrast: "High contrast", "高对比度", "Hoher Kontrast";
+    LeftHanded: "Stop and controls on the left", "停止与控制在左侧", "Stopp und Bedienung links";
+    Size: "Size of everything", "整体大小", "Größe von allem";
+    Machine: "Machine", "机器", "Maschine";
+    Boards: "Boards", "控制板", "Karten";
+    Keys: "Keys: F1 or Esc stops, F2 holds, Tab and Enter reach every button, Ctrl+1 to 5 the pages", "按键：F1 或 Esc 停止，F2 保持，Tab 与回车可操作所有按钮，Ctrl+1 至 5 切换页面", "Tasten: F1 oder Esc stoppt, F2 hält an, Tab und Enter erreichen jede Taste, Strg+1 bis 5 die Seiten";
+    Version: "Version {}", "版本 {}", "Version {}";
+}
+
+/// A language, to say things in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Words(pub Language);
+
+impl Words {
+    /// A text.
+    pub fn say(self, text: Text) -> &'static str {
+        text.in_language(self.0)
+    }
+
+    /// A text with what is put in.
+    pub fn with(self, text: Text, put_in: &[&str]) -> String {
+        let mut put_in = put_in.iter();
+        let mut pieces = self.say(text).split("{}");
+        let mut said = pieces.next().unwrap_or_default().to_owned();
+        for piece in pieces {
+            said.push_str(put_in.next().copied().unwrap_or_default());
+            said.push_str(piece);
+        }
+        said
+    }
+
+    /// A part of a job.
+    pub fn phase(self, phase: Phase) -> String {
+        let text = match phase {
+            Phase::SettingUp => Text::SettingUp,
+            Phase::Homing => Text::SearchingMarks,
+            Phase::RelatingClocks => Text::RelatingClocks,
+            Phase::Approaching => Text::Approaching,
+            Phase::RunningIn => Text::RunningIn,
+            Phase::SearchingSeam => Text::SearchingSeam,
+            Phase::Welding => Text::Welding,
+            Phase::MovingOn => Text::MovingOn,
+            Phase::Dwelling => Text::Dwelling,
+            Phase::Parking => Text::Parking,
+            Phase::Stopping => Text::Stopping,
+            Phase::WaitingForInput { number, line } => {
+                return self.with(Text::WaitingForInput, &[&number.to_string(), &line.to_string()]);
+            }
+            Phase::Line(line) => return self.with(Text::AtLine, &[&line.to_string()]),
+            Phase::TeachingPoint { number, of } => {
+                return self.with(Text::TeachingPoint, &[&number.to_string(), &of.to_string()]);
+            }
+            Phase::TeachingSeam { number } => return self.with(Text::TeachingSeam, &[&number.to_string()]),
+            Phase::Calibrating { place, of } => {
+                return self.with(Text::Calibrating, &[&place.to_string(), &of.to_string()]);
+            }
+            Phase::Exciting { motor, number, of } => {
+                return self.with(Text::Exciting, &[motor, &number.to_string(), &of.to_string()]);
+            }
+        };
+        self.say(text).to_owned()
+    }
+
+    /// What the machine waits for.
+    pub fn question(self, question: &Question) -> String {
+        let said = |text: &Option<String>| {
+            text.as_ref()
+                .map_or_else(String::new, |text| format!(" ({text})"))
+        };
+        match question {
+            Question::GoOn { next } => {
+                let next = match next {
+                    Next::Line(line) => self.with(Text::NextLine, &[&line.to_string()]),
+                    Next::Approach => self.say(Text::NextApproach).to_owned(),
+                    Next::Parking => self.say(Text::NextParking).to_owned(),
+                };
+                self.with(Text::GoOn, &[&next])
+            }
+            Question::Stop { code, line, text } => {
+                self.with(Text::ProgramStop, &[&line.to_string(), code, &said(text)])
+            }
+            Question::Tool { tool: 0, line, text } => {
+                self.with(Text::ToolOut, &[&line.to_string(), &said(text)])
+            }
+            Question::Tool { tool, line, text } => {
+                self.with(Text::ToolIn, &[&line.to_string(), &tool.to_string(), &said(text)])
+            }
+            Question::FeedTooLow => self.say(Text::FeedTooLow).to_owned(),
+            Question::Jog => self.say(Text::JogAsked).to_owned(),
+        }
+    }
+
+    /// A state of the motion board.
+    pub fn state(self, state: State) -> &'static str {
+        self.say(match state {
+            State::Off => Text::StateOff,
+            State::Homing => Text::StateHoming,
+            State::Idle => Text::StateIdle,
+            State::Running => Text::StateRunning,
+            State::Holding => Text::StateHolding,
+            State::Stopping => Text::StateStopping,
+            State::Fault => Text::StateFault,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_text_is_there_in_every_language_and_takes_as_much_as_in_english() {
+        for text in Text::ALL {
+            let places = |language| text.in_language(language).matches("{}").count();
+            for language in Language::ALL {
+                assert!(
+                    !text.in_language(language).trim().is_empty(),
+                    "{text:?} in {language:?}"
+                );
+                assert_eq!(
+                    places(language),
+                    places(Language::English),
+                    "{text:?} in {language:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_put_in_comes_in_order() {
+        let words = Words(Language::German);
+        let phase = Phase::Exciting {
+            motor: "X1",
+            number: 2,
+            of: 7,
+        };
+        assert_eq!(words.phase(phase), "X1 anregen, 2 von 7");
+    }
+}

@@ -1,0 +1,149 @@
+//! A screen that is tapped and looked at.
+
+use eframe::egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use hmi::running::Place;
+use hmi::screen::{Look, Page, Screen};
+use hmi::station::Station;
+use hmi::texts::Language;
+use plant_file::PlantChoice;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use world::BoardChoice;
+
+/// The job of the dual-beam gantry.
+pub const PROGRAM: &str = "../../programs/t-seam-400.ngc";
+/// A panel of 1280 × 800.
+const SIZE: [f32; 2] = [1280.0, 800.0];
+/// Longest wait for anything.
+const PATIENCE: Duration = Duration::from_secs(240);
+/// Time of simulated boards in units of the clock's: more than they can.
+const PACE: f64 = 1e6;
+
+/// How often a picture is tried again.
+const TRIES: usize = 10;
+
+/// See the module.
+pub struct Bench {
+    pub harness: Harness<'static, Screen>,
+    /// Reports go here.
+    pub folder: tempfile::TempDir,
+}
+
+impl Bench {
+    /// Of the dual-beam gantry.
+    pub fn new() -> Self {
+        Self::of("dual-beam-gantry")
+    }
+
+    pub fn of(machine: &str) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = Place {
+            boards: BoardChoice::Simulated,
+            plant: PlantChoice::Shipped,
+            pace: PACE,
+            pictures: true,
+            reports: folder.path().to_owned(),
+        };
+        let machine = format!("../../machines/{machine}.toml");
+        let station = Station::new(machine.into(), "../../programs".into(), place);
+        let screen = Screen::new(station, Look::default());
+        let harness = Harness::builder()
+            .with_size(SIZE)
+            .wgpu()
+            .with_context_setup(|ctx| {
+                let fonts = egui_system_font_provider::SystemFontProvider::new();
+                ctx.add_font_provider(Arc::new(fonts.with_locale(Some("zh-Hans"))));
+            })
+            .build_eframe(|_| screen);
+        Self { harness, folder }
+    }
+
+    pub fn station(&mut self) -> &mut Station {
+        &mut self.harness.state_mut().station
+    }
+
+    pub fn load(&mut self, program: &str) {
+        self.station().load(program.into(), None);
+        self.until("the program is loaded", |station| !station.is_loading());
+        assert_eq!(self.station().refused(), None);
+    }
+
+    pub fn weld(&mut self, program: &str) {
+        self.open(Page::Run);
+        self.load(program);
+        self.tap("Start…");
+        self.tap("Weld now");
+    }
+
+    pub fn open(&mut self, page: Page) {
+        self.harness.state_mut().open(page);
+        self.harness.step();
+    }
+
+    /// Draws until `done`.
+    pub fn until(&mut self, what: &str, mut done: impl FnMut(&Station) -> bool) {
+        let end = Instant::now() + PATIENCE;
+        while !done(&self.harness.state().station) {
+            if Instant::now() > end {
+                let happened: Vec<_> = self.station().live.journal.entries().cloned().collect();
+                panic!("waited too long: {what}; {happened:#?}");
+            }
+            self.harness.step();
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        self.harness.step();
+    }
+
+    /// Taps what is called `label`.
+    pub fn tap(&mut self, label: &str) {
+        self.harness.get_by_label(label).click();
+        // Pressed in one frame, let go in the next, drawn in a third.
+        self.harness.run_steps(3);
+    }
+
+    /// Taps what has `part` in its name.
+    pub fn tap_containing(&mut self, part: &str) {
+        self.harness.get_by_label_contains(part).click();
+        self.harness.run_steps(3);
+    }
+
+    pub fn key(&mut self, key: Key) {
+        self.harness.key_press_modifiers(Modifiers::NONE, key);
+        self.harness.run_steps(2);
+    }
+
+    /// The screen as it is. Drawing it is given up by the library after some seconds, which a busy computer may take.
+    fn picture(&mut self) -> image::RgbaImage {
+        let mut tries = 0..TRIES;
+        loop {
+            match self.harness.render() {
+                Ok(picture) => return picture,
+                Err(error) => assert!(tries.next().is_some(), "no picture: {error}"),
+            }
+        }
+    }
+
+    /// Pictures called `name` in all languages, of what `open` brings in sight.
+    pub fn pictures(&mut self, name: &str, open: impl FnOnce(&mut Self)) {
+        self.pictures_in(name, &Language::ALL, open);
+    }
+
+    pub fn pictures_in(&mut self, name: &str, languages: &[Language], open: impl FnOnce(&mut Self)) {
+        open(self);
+        for language in languages {
+            self.harness.state_mut().look.language = *language;
+            // Sizes settle in the frame after the text has changed.
+            self.harness.run_steps(3);
+            let picture = self.picture();
+            let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hmi");
+            std::fs::create_dir_all(&folder).expect("a folder");
+            let file = folder.join(format!("{name}-{}.png", language.tag()));
+            picture.save(file).expect("written");
+        }
+        self.harness.state_mut().look.language = Language::English;
+        self.harness.run_steps(2);
+    }
+}

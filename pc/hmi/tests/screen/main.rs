@@ -1,0 +1,5 @@
+//! The screen without a window, on simulated boards that run as fast as they can.
+
+mod bench;
+mod day;
+mod pictures;
