@@ -20,9 +20,10 @@ impl ExecutionTime {
         Self { total: 0, longest: 0 }
     }
 
-    /// The task ran from cycle `begin` to `end`.
-    pub fn add(&mut self, begin: u32, end: u32) {
-        self.add_net(end.wrapping_sub(begin));
+    /// The task ran from cycle `begin` to `end`, and did what a real board does too from cycle `own` on.
+    pub fn add(&mut self, begin: u32, own: u32, end: u32) {
+        self.total = self.total.wrapping_add(end.wrapping_sub(begin));
+        self.longest = self.longest.max(end.wrapping_sub(own));
     }
 
     /// The task ran for so many cycles, without what interrupted it.
@@ -36,7 +37,7 @@ impl ExecutionTime {
         self.total.wrapping_sub(span.total)
     }
 
-    /// Cycles of the longest run since this was asked last.
+    /// Cycles of the longest run since this was asked last, without what only an emulated board does.
     pub fn take_longest(&mut self) -> u32 {
         core::mem::take(&mut self.longest)
     }
@@ -62,12 +63,21 @@ mod tests {
     #[test]
     fn an_interrupted_task_is_counted_without_what_interrupted_it_through_a_wrap() {
         let mut servo = ExecutionTime::new();
-        servo.add(100, 150);
+        servo.add(100, 100, 150);
         assert_eq!((servo.take_longest(), servo.take_longest()), (50, 0));
         let path = servo.span(u32::MAX - 9);
-        servo.add(u32::MAX - 4, 15);
-        servo.add(40, 50);
+        servo.add(u32::MAX - 4, u32::MAX - 4, 15);
+        servo.add(40, 40, 50);
         assert_eq!(servo.without(path, 90), 100 - 20 - 10);
         assert_eq!(servo.take_longest(), 20);
+    }
+
+    #[test]
+    fn what_only_an_emulated_board_does_interrupts_others_and_is_not_counted_as_the_task_s() {
+        let mut servo = ExecutionTime::new();
+        let path = servo.span(0);
+        servo.add(10, 40, 50);
+        assert_eq!(servo.without(path, 100), 60);
+        assert_eq!(servo.take_longest(), 10);
     }
 }

@@ -42,6 +42,7 @@ pub fn init(mut core: cortex_m::Peripherals) -> Board {
     let axes = Axes {
         plant: MotionPlant::new(&machine::wired()),
         command: MotionCommand::SAFE,
+        feedback: MotionFeedback::NONE,
     };
     let network = Network::start();
     let watchdog = Watchdog::new(&mut core.NVIC);
@@ -61,12 +62,18 @@ pub fn init(mut core: cortex_m::Peripherals) -> Board {
 pub struct Axes {
     plant: MotionPlant,
     command: MotionCommand,
+    feedback: MotionFeedback,
 }
 
 impl Axes {
-    /// Latches the inputs of a servo tick; the machine advances by that tick under the last command.
+    /// The machine goes on by a servo tick under the last command.
+    pub fn advance(&mut self) {
+        self.feedback = self.plant.advance(&self.command);
+    }
+
+    /// The inputs of a servo tick.
     pub fn read(&mut self) -> MotionFeedback {
-        self.plant.advance(&self.command)
+        self.feedback
     }
 
     /// Sets the outputs.

@@ -86,6 +86,9 @@ pub struct Axes {
 }
 
 impl Axes {
+    /// A real machine goes on by itself.
+    pub fn advance(&mut self) {}
+
     /// Latches the inputs of a servo tick. Once a converter has failed, every drive reports a fault.
     pub fn read(&mut self) -> MotionFeedback {
         let mut feedback = MotionFeedback::default();

@@ -16,7 +16,7 @@ pub struct Servo {
     pub loops: ServoLoops,
     /// Decides about the watchdog.
     pub alive: AliveSupervision<2>,
-    /// What the servo ticks take, on an emulated board with its machine.
+    /// What the servo ticks take, on an emulated board without its machine.
     pub time: ExecutionTime,
 }
 
@@ -40,6 +40,8 @@ pub fn tick(
     (began_us, elapsed): (u64, u32),
 ) {
     let begin = board::cycles();
+    axes.advance();
+    let own = board::cycles();
     let mut feedback = axes.read();
     lines.lock(|lines| lines.read(&mut feedback));
     let truth = axes.truth();
@@ -49,5 +51,5 @@ pub fn tick(
     if servo.alive.tick() {
         watchdog.feed();
     }
-    servo.time.add(begin, board::cycles());
+    servo.time.add(begin, own, board::cycles());
 }

@@ -13,7 +13,7 @@ pub struct Load {
     pub cycles_per_us: u16,
     /// Of the path ticks: interpolation, kinematics, filter.
     pub path_tick: ExecutionTimes,
-    /// Of the longest servo tick in each ms, on an emulated board with its share of the simulated machine.
+    /// Of the longest servo tick in each ms, on an emulated board without the simulated machine.
     pub servo_tick: ExecutionTimes,
     /// Of the turns of planning, one after each path tick.
     pub planning: ExecutionTimes,

@@ -167,6 +167,11 @@ const PATH_TICK: u32 = 12_000;
 /// The same of a turn of planning.
 const PLANNING: u32 = 60_000;
 
+/// Most of a millisecond that a board may be busy for \[%\], and the share of it in which an emulated one simulates a machine without
+/// errors, which is in no figure of its load.
+const BUSY: u32 = 75;
+const SIMULATES: u32 = 7;
+
 /// Checks that the motion board served every tick and every turn of planning in time: what it did in the worst millisecond leaves a
 /// quarter of it and, on an emulated board, no path tick and no turn of planning took more than it may.
 #[track_caller]
@@ -177,7 +182,12 @@ pub fn assert_served(report: &Report) {
     println!("planning {}, {} too late", load.planning, load.planning_missed);
     let servo_ticks = load.path_tick.period / load.servo_tick.period;
     let worst = load.path_tick.worst + load.planning.worst + servo_ticks * load.servo_tick.worst;
-    assert!(4 * worst <= 3 * load.path_tick.period, "{load:?}");
+    let busy = if Model::is_wanted() {
+        BUSY
+    } else {
+        BUSY - SIMULATES
+    };
+    assert!(100 * worst <= busy * load.path_tick.period, "{load:?}");
     assert_eq!(load.planning_missed, 0, "{load:?}");
     if !Model::is_wanted() {
         assert_eq!(load.cycles_per_us, INSTRUCTIONS_PER_US);
