@@ -205,7 +205,8 @@ impl State {
     }
 
     fn swing(&mut self, step: f64, acceleration: f64) {
-        for mode in &mut self.modes {
+        // The compiler does not know how many there are at most, and makes the loop ready for many.
+        for mode in self.modes.iter_mut().take(MODES) {
             mode.swing(step, acceleration);
         }
     }
@@ -219,12 +220,14 @@ impl State {
     fn motor_velocity(&self) -> f64 {
         self.modes
             .iter()
+            .take(MODES)
             .fold(self.velocity, |sum, mode| sum + mode.config.motor * mode.velocity)
     }
 
     fn at(&self, gain: impl Fn(&ModeConfig) -> f64) -> f64 {
         self.modes
             .iter()
+            .take(MODES)
             .fold(self.load, |sum, mode| sum + gain(&mode.config) * mode.deflection)
     }
 }
