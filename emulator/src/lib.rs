@@ -30,6 +30,6 @@ pub use pace::{BoardTime, Pace};
 #[cfg(target_os = "linux")]
 pub use qemu::{INSTRUCTIONS_PER_US, bound_to_parent};
 pub use session::{
-    Endpoint, JOB_VARIABLE, MACHINE_VARIABLE, PathStatesTo, SEAM_VARIABLE, SESSION_VARIABLE, Session,
-    SessionError,
+    Endpoint, JOB_VARIABLE, MACHINE_VARIABLE, PLANT_VARIABLE, PathStatesTo, SEAM_VARIABLE, SESSION_VARIABLE,
+    Session, SessionError,
 };

@@ -15,6 +15,9 @@ pub const JOB_VARIABLE: &str = "SEAMWRIGHT_JOB";
 /// Environment variable with the seam that seamwright uses if none is given.
 pub const SEAM_VARIABLE: &str = "SEAMWRIGHT_SEAM";
 
+/// Environment variable with the plant that seamwright uses if none is given, as `--plant` has it.
+pub const PLANT_VARIABLE: &str = "SEAMWRIGHT_PLANT";
+
 /// Where a board answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

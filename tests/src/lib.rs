@@ -14,7 +14,8 @@ mod words;
 pub use hold::assert_held_weld_goes_on;
 pub use operator::{NoOperator, Operator, Sleeper, TappedBoards, run};
 pub use pictures::{
-    assert_stops_in_the_dark, weld_before_a_sleeper, weld_disturbed, weld_disturbed_by, weld_through_pictures,
+    assert_stops_in_the_dark, weld_before_a_sleeper, weld_commissioned, weld_disturbed, weld_disturbed_by,
+    weld_through_pictures,
 };
 pub use references::RecordedBoards;
 pub use words::{OperatedWeld, WeldOutcome, meddled};
@@ -36,6 +37,8 @@ use world::Surroundings;
 pub const PROGRAM: &str = "programs/t-seam-400.ngc";
 /// The shipped machine.
 pub const MACHINE: &str = "machines/dual-beam-gantry.toml";
+/// The same as it was commissioned on [`plant_file::COMMISSIONED`].
+pub const COMMISSIONED_FILE: &str = "machines/commissioned/dual-beam-gantry.toml";
 /// The shipped deviation of the seams.
 pub const SEAM: &str = "programs/t-seam-400-deviation.csv";
 

@@ -1,14 +1,17 @@
 //! The shipped weld by what cameras see in rendered pictures.
 
 use crate::{
-    MACHINE, NoOperator, Sleeper, job, machine, prediction, program, shipped, shipped_seam, with_seam,
+    COMMISSIONED_FILE, MACHINE, NoOperator, Sleeper, job, machine, prediction, program, shipped,
+    shipped_seam, with_seam,
 };
 use config::machine::{JointForm, MachineFile};
 use host_link::boards::Boards;
 use job::{ImageCameras, Job, JobError};
+use plant_file::PlantFile;
 use report::Ended;
 use shared::io::SIDES;
 use shared::state::TrackerFault;
+use std::path::Path;
 use world::{CameraChoice, Dark, Deviation, PictureChoice, SceneFile, Surroundings};
 
 /// Noise of welds of which one is enough.
@@ -54,6 +57,26 @@ pub fn weld_through_pictures(
     through_pictures(joint, scene, shipped_seam(), speed_m_per_min, SEED, weld)
 }
 
+/// The same along a gap by the commissioned machine file, on boards that are wired to `plant`.
+pub fn weld_commissioned(boards: &mut dyn Boards, plant: &PlantFile, speed_m_per_min: f64) -> Ended {
+    let file = shipped(COMMISSIONED_FILE);
+    let machine = MachineFile::read(&file).unwrap_or_else(|error| panic!("{error}"));
+    let surroundings = Surroundings {
+        seed: SEED,
+        mounts: plant.cameras,
+        ..with_seam(Some(shipped_seam()))
+    };
+    let folder = file.parent().expect("a folder");
+    let weld = |job: &Job| prediction::run(boards, job);
+    by_pictures(
+        (&machine, folder),
+        SceneFile::default(),
+        surroundings,
+        speed_m_per_min,
+        weld,
+    )
+}
+
 /// The same along a gap, of which a subscriber of events gets each second one at most; and how many it lost.
 pub fn weld_before_a_sleeper(boards: &mut dyn Boards, speed_m_per_min: f64) -> (Ended, u64) {
     let mut sleeper = Sleeper::default();
@@ -78,20 +101,34 @@ pub(crate) fn through_pictures(
     seed: u64,
     weld: impl FnOnce(&Job) -> Ended,
 ) -> Ended {
-    let machine = machine_for(joint);
-    let cameras = &machine.tracking.as_ref().expect("a tracker").cameras;
-    let images = ImageCameras {
-        calibrations: std::array::from_fn(|side| cameras.nominal(side)),
-        kept: None,
-        noted: None,
-    };
-    let program = program();
     let surroundings = Surroundings {
-        cameras: CameraChoice::Images(Box::new(images), PictureChoice::Rendered(Box::new(scene))),
         seed,
         ..with_seam(Some(seam))
     };
-    weld(&job(&machine, &program, surroundings, Some(speed_m_per_min)))
+    let of = (&machine_for(joint), Path::new(""));
+    by_pictures(of, scene, surroundings, speed_m_per_min, weld)
+}
+
+/// Welds by pictures of `scene` in `surroundings` with a machine, whose cameras have their calibrations in `folder` if it has any.
+fn by_pictures(
+    (machine, folder): (&MachineFile, &Path),
+    scene: SceneFile,
+    surroundings: Surroundings,
+    speed_m_per_min: f64,
+    weld: impl FnOnce(&Job) -> Ended,
+) -> Ended {
+    let cameras = &machine.tracking.as_ref().expect("a tracker").cameras;
+    let calibrations = cameras.calibrations(folder);
+    let images = ImageCameras {
+        calibrations: calibrations.unwrap_or_else(|error| panic!("{error}")),
+        kept: None,
+        noted: None,
+    };
+    let surroundings = Surroundings {
+        cameras: CameraChoice::Images(Box::new(images), PictureChoice::Rendered(Box::new(scene))),
+        ..surroundings
+    };
+    weld(&job(machine, &program(), surroundings, Some(speed_m_per_min)))
 }
 
 /// The same with spatter, scratches, roll, lost and late pictures and a dark spell, as in the shipped scene.

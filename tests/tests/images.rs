@@ -1,10 +1,12 @@
 //! The shipped job through pictures, on simulated boards: accuracy, disturbances, a light that fails, the same bytes.
 
 use config::machine::JointForm;
+use plant_file::{COMMISSIONED, DEFAULT_MACHINE};
 use report::Ended;
 use system_tests::range::with_beam_on;
 use system_tests::{
-    assert_on_seam, assert_stops_in_the_dark, weld_disturbed, weld_disturbed_by, weld_through_pictures,
+    assert_on_seam, assert_stops_in_the_dark, weld_commissioned, weld_disturbed, weld_disturbed_by,
+    weld_through_pictures,
 };
 use world::SceneFile;
 use world::simulated::SimulatedBoards;
@@ -30,6 +32,15 @@ fn the_shipped_job_stays_on_both_seams_at_9_m_per_min_and_leaves_the_same_bytes_
     let second = weld(9.0);
     assert_eq!(first.report, second.report);
     assert!(first.evaluation == second.evaluation);
+}
+
+#[test]
+fn a_usual_machine_that_was_commissioned_stays_on_both_seams_at_5_and_9_m_per_min() {
+    let plant = COMMISSIONED.of(DEFAULT_MACHINE).expect("a plant");
+    for (speed_m_per_min, limit_mm) in [(5.0, 0.03), (9.0, 0.04)] {
+        let mut boards = SimulatedBoards::wired_to(&plant);
+        assert_on_seam(&weld_commissioned(&mut boards, &plant, speed_m_per_min), limit_mm);
+    }
 }
 
 #[test]

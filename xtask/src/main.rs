@@ -45,7 +45,8 @@ enum Task {
     /// `seamwright weld` with the flags given
     #[command(disable_help_flag = true)]
     Weld {
-        /// Flags of `seamwright weld`; the machine defaults to the dual-beam gantry, the job to that of the machine
+        /// Flags of `seamwright weld`; the machine defaults to the dual-beam gantry as it was commissioned on a simulated one with errors,
+        /// the job to that of the machine
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         flags: Vec<String>,
     },

@@ -9,10 +9,12 @@ use crate::machine;
 use crate::setup::{self, Tool};
 use crate::virtual_nucleo;
 use anyhow::{Context, Error, Result};
-use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE, SESSION_VARIABLE, bound_to_parent};
+use emulator::{
+    JOB_VARIABLE, MACHINE_VARIABLE, PLANT_VARIABLE, SEAM_VARIABLE, SESSION_VARIABLE, bound_to_parent,
+};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
-use plant_file::{DEFAULT_MACHINE, PlantChoice};
+use plant_file::{COMMISSIONED, DEFAULT_MACHINE, PlantChoice};
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ExitCode, ExitStatus};
@@ -29,6 +31,9 @@ const JOBS: [(&str, &str); 5] = [
 ];
 /// The real seams of the dual-beam gantry's job.
 pub const SEAM: &str = "programs/t-seam-400-deviation.csv";
+
+/// The machine file that was commissioned on [`COMMISSIONED`].
+const COMMISSIONED_FILE: &str = "machines/commissioned/dual-beam-gantry.toml";
 
 /// The shipped job of a machine.
 pub fn job_of(machine: &str) -> Option<&'static str> {
@@ -69,6 +74,7 @@ impl Running {
 /// Kinds of boards that are started here; others run already, or are seamwright's own.
 const EMULATED: &str = "emulated";
 const VIRTUAL: &str = "virtual-nucleo";
+const SIMULATED: &str = "simulated";
 
 /// Runs seamwright with `flags` and the defaults; gives back its exit code. `set_up` installs what is missing.
 pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) -> Result<ExitCode> {
@@ -189,23 +195,33 @@ impl BoardFlags {
         }
     }
 
-    /// What is true of the machine.
-    fn plant(&self) -> Result<PlantChoice> {
-        self.plant
-            .as_deref()
-            .map_or(Ok(PlantChoice::Shipped), |plant| {
-                plant.parse().map_err(Error::msg)
-            })
-            .context("--plant")
+    /// Whether the machine is the commissioned one: where it is simulated, and neither its file nor what is true of it is told.
+    fn is_commissioned(&self) -> bool {
+        let boards = self.boards.as_deref().unwrap_or(EMULATED);
+        [EMULATED, VIRTUAL, SIMULATED].contains(&boards) && self.machine.is_none() && self.plant.is_none()
     }
 
-    /// Defaults of seamwright's command line: the machine, and job and seam of that machine.
+    /// What is true of the machine.
+    fn plant(&self) -> Result<PlantChoice> {
+        match &self.plant {
+            Some(plant) => plant.parse().map_err(Error::msg).context("--plant"),
+            None if self.is_commissioned() => Ok(COMMISSIONED),
+            None => Ok(PlantChoice::Shipped),
+        }
+    }
+
+    /// Defaults of seamwright's command line: the machine, its plant if it is the commissioned one, and job and seam of that
+    /// machine.
     fn defaults(&self) -> Vec<(&'static str, String)> {
         let machine = self.machine_name().unwrap_or_else(|| DEFAULT_MACHINE.to_owned());
-        let mut defaults = vec![(
-            MACHINE_VARIABLE,
-            shipped(&format!("machines/{DEFAULT_MACHINE}.toml")),
-        )];
+        let mut defaults = Vec::new();
+        if self.is_commissioned() {
+            defaults.push((MACHINE_VARIABLE, shipped(COMMISSIONED_FILE)));
+            defaults.push((PLANT_VARIABLE, COMMISSIONED.to_string()));
+        } else {
+            let file = format!("machines/{DEFAULT_MACHINE}.toml");
+            defaults.push((MACHINE_VARIABLE, shipped(&file)));
+        }
         if let Some(job) = job_of(&machine) {
             defaults.push((JOB_VARIABLE, shipped(job)));
         }
@@ -235,14 +251,33 @@ mod tests {
     }
 
     #[test]
-    fn nothing_told_is_the_shipped_job_of_the_gantry_with_its_seam() {
-        let told = told("--speed 9");
-        assert_eq!((&told.boards, told.help), (&None, false));
-        let defaults = told.defaults();
-        let ends: Vec<_> = ["machines/dual-beam-gantry.toml", JOBS[0].1, SEAM].into();
-        assert_eq!(defaults.len(), 3);
-        for ((_, file), end) in defaults.iter().zip(ends) {
-            assert!(file.ends_with(end), "{file}");
+    fn nothing_told_is_the_shipped_job_on_the_commissioned_gantry_with_its_seam() {
+        for line in ["--speed 9", "--boards simulated", "--boards=virtual-nucleo"] {
+            let told = told(line);
+            assert!(!told.help);
+            assert_eq!(told.plant().expect("a plant"), COMMISSIONED);
+            let plant = COMMISSIONED.to_string();
+            assert_defaults(line, &[COMMISSIONED_FILE, &plant, JOBS[0].1, SEAM]);
+        }
+    }
+
+    #[test]
+    fn what_is_told_of_the_machine_and_real_boards_have_the_shipped_gantry_without_errors() {
+        let file = format!("machines/{DEFAULT_MACHINE}.toml");
+        let told_file = format!("--machine {}", root().join(&file).display());
+        for line in [&told_file, "--plant draw:poor:7", "--boards 10.0.0.1,10.0.0.2"] {
+            assert_defaults(line, &[&file, JOBS[0].1, SEAM]);
+        }
+        assert_eq!(told(&told_file).plant().expect("a plant"), PlantChoice::Shipped);
+        let poor = told("--plant draw:poor:7").plant().expect("a plant");
+        assert_eq!(poor.to_string(), "draw:poor:7");
+    }
+
+    fn assert_defaults(line: &str, ends: &[&str]) {
+        let defaults = told(line).defaults();
+        assert_eq!(defaults.len(), ends.len(), "{line}: {defaults:?}");
+        for ((_, value), end) in defaults.iter().zip(ends) {
+            assert!(value.ends_with(end), "{line}: {value}");
         }
     }
 

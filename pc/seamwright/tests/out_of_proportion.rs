@@ -35,6 +35,10 @@ impl Shipped {
             std::fs::create_dir_all(folder.join(part)).expect("a scratch folder");
             for file in std::fs::read_dir(root().join(part)).expect("a shipped folder") {
                 let path = file.expect("a file").path();
+                // Commissioned machines are read as the others are.
+                if path.is_dir() {
+                    continue;
+                }
                 let name = format!("{part}/{}", path.file_name().expect("a name").to_string_lossy());
                 let text = std::fs::read_to_string(&path).expect("a shipped file");
                 std::fs::write(folder.join(&name), &text).expect("written");

@@ -11,7 +11,7 @@ mod shipped;
 
 pub use draw::Quality;
 pub use read::PlantFileError;
-pub use shipped::{DEFAULT_MACHINE, names};
+pub use shipped::{COMMISSIONED, DEFAULT_MACHINE, names};
 
 use plant::{LONGEST, MotionPlant, PlantConfig, SlidePlant};
 use serde::Deserialize;

@@ -1,9 +1,15 @@
 //! The plants of the shipped machines.
 
-use crate::{PlantFile, PlantFileError};
+use crate::{PlantChoice, PlantFile, PlantFileError, Quality};
 
 /// The machine where none is named.
 pub const DEFAULT_MACHINE: &str = SHIPPED[0].0;
+
+/// The plant that `machines/commissioned` was commissioned on: a usual machine of the kind of [`DEFAULT_MACHINE`].
+pub const COMMISSIONED: PlantChoice = PlantChoice::Drawn {
+    quality: Quality::Usual,
+    seed: 401,
+};
 
 /// The plants, called as the kinematics of their machines are ([`shared::kinematics::KinematicsConfig::NAMES`]).
 const SHIPPED: [(&str, &str); 5] = [

@@ -5,7 +5,7 @@ use emulator::{
     BoardAction, INSTRUCTIONS_PER_US, Options, PROGRAM_VARIABLES, SESSION_VARIABLE, Session, bound_to_parent,
 };
 use host_link::boards::{Boards, NetworkBoards, Timeouts};
-use plant_file::DEFAULT_MACHINE;
+use plant_file::{DEFAULT_MACHINE, PlantChoice};
 use report::Report;
 use shared::protocol::{MotionStatus, Request, Response, Role, TrackerStatus};
 use shared::state::{State, TrackerState};
@@ -37,22 +37,33 @@ impl Pair {
 
     /// The same, wired to `machine`.
     pub fn boot_as(name: &str, machine: &str) -> Self {
-        Self::boot_at(name, machine, 1.0)
+        Self::boot_at(name, machine, &PlantChoice::Shipped, 1.0)
     }
 
     /// Boots boards that are wired to `machine`, for jobs that nothing from outside disturbs: they may run faster than real time,
     /// as they wait for the job, which handles all that they say.
     pub fn for_jobs(name: &str, machine: &str) -> Self {
-        Self::boot_at(name, machine, AT_MOST)
+        Self::for_jobs_on(&PlantChoice::Shipped, name, machine)
     }
 
-    fn boot_at(name: &str, machine: &str, rate: f64) -> Self {
+    /// The same, where `plant` is true of the machine.
+    pub fn for_jobs_on(plant: &PlantChoice, name: &str, machine: &str) -> Self {
+        Self::boot_at(name, machine, plant, AT_MOST)
+    }
+
+    fn boot_at(name: &str, machine: &str, plant: &PlantChoice, rate: f64) -> Self {
         if Model::is_wanted() {
-            return Self::of_model(name, |folder| Model::boot(folder, machine, &[]));
+            let told = plant.to_string();
+            let arguments = match plant {
+                PlantChoice::Shipped => &[][..],
+                _ => &["--plant", &told],
+            };
+            return Self::of_model(name, |folder| Model::boot(folder, machine, arguments));
         }
         let folder = scratch(name);
         let mut options = Options::from_environment(folder.clone()).expect("what to boot");
         options.machine = machine.to_owned();
+        options.plant = plant.clone();
         options.rate = rate;
         let boards = emulator::Boards::boot(&options).unwrap_or_else(|error| panic!("{error}"));
         boards

@@ -3,11 +3,11 @@
 use crate::pair::{Pair, assert_served};
 use config::machine::JointForm;
 use host_link::boards::Boards;
-use plant_file::DEFAULT_MACHINE;
+use plant_file::{COMMISSIONED, DEFAULT_MACHINE, PlantChoice};
 use report::Ended;
 use system_tests::{
     assert_held_weld_goes_on, assert_on_seam, assert_stops_in_the_dark, deviations, seam, short_lines, sines,
-    weld, weld_before_a_sleeper, weld_disturbed, weld_through_pictures,
+    weld, weld_before_a_sleeper, weld_commissioned, weld_disturbed, weld_through_pictures,
 };
 use world::SceneFile;
 use world::simulated::SimulatedBoards;
@@ -15,13 +15,25 @@ use world::simulated::SimulatedBoards;
 /// Does `job` on a pair of boards and on simulated ones: no spot is ever further than `limit_mm` from its seam, and both agree. The
 /// pair and how it ended there.
 fn assert_welds(name: &str, limit_mm: f64, job: impl Fn(&mut dyn Boards) -> Ended) -> (Pair, Ended) {
-    let mut pair = Pair::for_jobs(name, DEFAULT_MACHINE);
+    assert_welds_on(&PlantChoice::Shipped, name, limit_mm, job)
+}
+
+/// The same, where `plant` is true of the machine.
+fn assert_welds_on(
+    plant: &PlantChoice,
+    name: &str,
+    limit_mm: f64,
+    job: impl Fn(&mut dyn Boards) -> Ended,
+) -> (Pair, Ended) {
+    let file = plant.of(DEFAULT_MACHINE).expect("a plant");
+    let mut pair = Pair::for_jobs_on(plant, name, DEFAULT_MACHINE);
+    assert_eq!(pair.session().plant, plant.to_string());
     let ended = job(&mut pair.connect());
     assert_on_seam(&ended, limit_mm);
     assert_served(&ended.report);
     let figures = ended.report.seam.as_ref().expect("a tracker");
     assert_eq!(figures.measurements.given_up, 0);
-    let simulated = job(&mut SimulatedBoards::default());
+    let simulated = job(&mut SimulatedBoards::wired_to(&file));
     let both = deviations(&ended.report)
         .into_iter()
         .zip(deviations(&simulated.report));
@@ -54,6 +66,15 @@ fn the_shipped_job_at_9_m_per_min_and_again_before_a_subscriber_that_sleeps() {
         assert!((alone - watched).abs() < 0.003, "{alone} and {watched} mm");
     }
     pair.assert_off();
+}
+
+/// What `cargo xtask weld` does, at the highest speed.
+#[test]
+fn the_shipped_job_at_9_m_per_min_on_a_usual_machine_that_was_commissioned() {
+    let plant = COMMISSIONED.of(DEFAULT_MACHINE).expect("a plant");
+    assert_welds_on(&COMMISSIONED, "weld-commissioned", 0.04, |boards| {
+        weld_commissioned(boards, &plant, 9.0)
+    });
 }
 
 #[test]

@@ -158,6 +158,10 @@ fn every_machine_ships_with_a_file_called_as_it() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines");
     for entry in std::fs::read_dir(folder).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
+        // What is in it welds in the system tests.
+        if name == "commissioned" {
+            continue;
+        }
         let machine = name.trim_end_matches(".toml").trim_end_matches(".plant");
         assert!(
             KinematicsConfig::NAMES.contains(&machine),

@@ -5,6 +5,7 @@ use crate::terminal::{Operator, Terminal};
 use anyhow::{Context, bail};
 use clap::Args;
 use config::machine::MachineFile;
+use emulator::PLANT_VARIABLE;
 use host_link::events::Interest;
 use host_link::{Command, control};
 use job::{Job, JobError, Names, Work, run};
@@ -33,8 +34,8 @@ pub struct BoardArgs {
     #[arg(long = "boards", default_value = "emulated")]
     pub choice: BoardChoice,
     /// What is true of a simulated machine: a plant file, or draw:usual:SEED or draw:poor:SEED for one drawn at random
-    /// [default: as shipped, without errors]
-    #[arg(long)]
+    /// [default: as shipped, without errors; with `cargo xtask weld` and no --machine draw:usual:401]
+    #[arg(long, env = PLANT_VARIABLE, hide_env = true)]
     plant: Option<PlantChoice>,
 }
 
