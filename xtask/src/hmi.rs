@@ -1,11 +1,13 @@
-//! `seamwright-hmi`, the operator's screen. Its options are checked by itself; this adds only the machine and the folder
-//! of programs.
+//! `seamwright-hmi`, the operator's screen. Its options are checked by itself; this adds only the machine and the folder of programs.
 
 use crate::cargo::{self, target_directory};
-use crate::weld::shipped;
+use crate::weld::{BoardFlags, shipped};
 use anyhow::{Context, Result};
-use plant_file::DEFAULT_MACHINE;
+use plant_file::COMMISSIONED;
 use std::process::{Command, ExitCode};
+
+/// Kind of boards that the screen has of its own.
+const BOARDS: &str = "simulated";
 
 /// Builds and runs it with `flags`; gives back its exit code.
 pub fn run(flags: &[String]) -> Result<ExitCode> {
@@ -13,16 +15,51 @@ pub fn run(flags: &[String]) -> Result<ExitCode> {
     cargo::run(&["build", "--quiet", "--package", "seamwright-hmi", "--release"])?;
     let program = target_directory()?.join("release").join("seamwright-hmi");
     let mut command = Command::new(program);
-    let told = |name: &str| flags.iter().any(|flag| flag.split('=').next() == Some(name));
-    if !told("--machine") {
-        command.args(["--machine", &shipped(&format!("machines/{DEFAULT_MACHINE}.toml"))]);
-    }
-    if !told("--programs") {
-        command.args(["--programs", &shipped("programs")]);
-    }
-    let status = command.args(flags).status();
+    command.args(defaults(flags)).args(flags);
+    let status = command.status();
     let code = status.context("cannot run seamwright-hmi")?.code();
     Ok(ExitCode::from(
         code.and_then(|code| u8::try_from(code).ok()).unwrap_or(1),
     ))
+}
+
+/// What `flags` do not tell: the machine of `cargo xtask weld`, and the shipped programs.
+fn defaults(flags: &[String]) -> Vec<String> {
+    let told = BoardFlags::from(flags, BOARDS);
+    let mut defaults = Vec::new();
+    if told.machine.is_none() {
+        defaults.extend(["--machine".to_owned(), told.default_machine()]);
+    }
+    if told.is_commissioned() {
+        defaults.extend(["--plant".to_owned(), COMMISSIONED.to_string()]);
+    }
+    if !flags
+        .iter()
+        .any(|flag| flag.split('=').next() == Some("--programs"))
+    {
+        defaults.extend(["--programs".to_owned(), shipped("programs")]);
+    }
+    defaults
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(flags: &[&str]) -> Vec<String> {
+        let flags: Vec<String> = flags.iter().map(|flag| (*flag).to_owned()).collect();
+        defaults(&flags)
+    }
+
+    #[test]
+    fn what_is_told_is_not_told_again_and_a_machine_of_its_own_has_no_errors() {
+        let all = of(&[]);
+        assert!(all[1].ends_with("commissioned/dual-beam-gantry.toml"), "{all:?}");
+        assert_eq!(all[2..4], ["--plant".to_owned(), COMMISSIONED.to_string()]);
+        assert!(all[5].ends_with("programs"), "{all:?}");
+        assert_eq!(of(&["--machine", "m.toml", "--programs=x"]), Vec::<String>::new());
+        let real = of(&["--boards=192.168.7.10,192.168.7.11", "--programs=x"]);
+        assert!(real[1].ends_with("machines/dual-beam-gantry.toml"), "{real:?}");
+        assert_eq!(real.len(), 2);
+    }
 }

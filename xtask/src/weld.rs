@@ -78,9 +78,9 @@ const SIMULATED: &str = "simulated";
 
 /// Runs seamwright with `flags` and the defaults; gives back its exit code. `set_up` installs what is missing.
 pub fn run(flags: &[String], rate: f64, set_up: impl Fn(&[Tool]) -> Result<()>) -> Result<ExitCode> {
-    let told = BoardFlags::from(flags);
-    let boards = told.boards.as_deref().unwrap_or(EMULATED);
-    let (emulated, modelled) = (boards == EMULATED && !told.help, boards == VIRTUAL && !told.help);
+    let told = BoardFlags::from(flags, EMULATED);
+    let is = |boards: &str| told.boards == boards && !told.help;
+    let (emulated, modelled) = (is(EMULATED), is(VIRTUAL));
     if emulated {
         set_up(&setup::EMULATION)?;
     }
@@ -161,15 +161,17 @@ fn wait(child: &mut Child, interrupts: &Interrupts, mut running: Option<&mut Run
 
 /// What the command line says of the boards and their machine.
 #[derive(Debug, PartialEq, Eq)]
-struct BoardFlags {
-    machine: Option<String>,
+pub struct BoardFlags {
+    /// The machine file, if one is told.
+    pub machine: Option<String>,
     plant: Option<String>,
-    boards: Option<String>,
+    boards: String,
     help: bool,
 }
 
 impl BoardFlags {
-    fn from(flags: &[String]) -> Self {
+    /// Of `flags` of a program whose boards are `default_boards` unless they are told.
+    pub fn from(flags: &[String], default_boards: &str) -> Self {
         let value = |flag: &str| {
             let place = flags
                 .iter()
@@ -182,7 +184,7 @@ impl BoardFlags {
         Self {
             machine: value("--machine"),
             plant: value("--plant"),
-            boards: value("--boards"),
+            boards: value("--boards").unwrap_or_else(|| default_boards.to_owned()),
             help: flags.iter().any(|word| word == "-h" || word == "--help"),
         }
     }
@@ -196,9 +198,10 @@ impl BoardFlags {
     }
 
     /// Whether the machine is the commissioned one: where it is simulated, and neither its file nor what is true of it is told.
-    fn is_commissioned(&self) -> bool {
-        let boards = self.boards.as_deref().unwrap_or(EMULATED);
-        [EMULATED, VIRTUAL, SIMULATED].contains(&boards) && self.machine.is_none() && self.plant.is_none()
+    pub fn is_commissioned(&self) -> bool {
+        [EMULATED, VIRTUAL, SIMULATED].contains(&self.boards.as_str())
+            && self.machine.is_none()
+            && self.plant.is_none()
     }
 
     /// What is true of the machine.
@@ -210,17 +213,23 @@ impl BoardFlags {
         }
     }
 
+    /// The machine file where none is told.
+    pub fn default_machine(&self) -> String {
+        if self.is_commissioned() {
+            shipped(COMMISSIONED_FILE)
+        } else {
+            shipped(&format!("machines/{DEFAULT_MACHINE}.toml"))
+        }
+    }
+
     /// Defaults of seamwright's command line: the machine, its plant if it is the commissioned one, and job and seam of that
     /// machine.
     fn defaults(&self) -> Vec<(&'static str, String)> {
         let machine = self.machine_name().unwrap_or_else(|| DEFAULT_MACHINE.to_owned());
         let mut defaults = Vec::new();
+        defaults.push((MACHINE_VARIABLE, self.default_machine()));
         if self.is_commissioned() {
-            defaults.push((MACHINE_VARIABLE, shipped(COMMISSIONED_FILE)));
             defaults.push((PLANT_VARIABLE, COMMISSIONED.to_string()));
-        } else {
-            let file = format!("machines/{DEFAULT_MACHINE}.toml");
-            defaults.push((MACHINE_VARIABLE, shipped(&file)));
         }
         if let Some(job) = job_of(&machine) {
             defaults.push((JOB_VARIABLE, shipped(job)));
@@ -247,7 +256,7 @@ mod tests {
 
     fn told(line: &str) -> BoardFlags {
         let flags: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
-        BoardFlags::from(&flags)
+        BoardFlags::from(&flags, EMULATED)
     }
 
     #[test]
@@ -309,7 +318,7 @@ mod tests {
     #[test]
     fn what_is_told_is_found_wherever_it_stands() {
         let told = told("my.ngc --machine=m.toml --seam s.csv --boards 10.0.0.1,10.0.0.2 -h");
-        assert_eq!(told.boards.as_deref(), Some("10.0.0.1,10.0.0.2"));
+        assert_eq!(told.boards, "10.0.0.1,10.0.0.2");
         assert_eq!(told.machine.as_deref(), Some("m.toml"));
         assert_eq!(told.machine_name(), None, "there is no such file");
         assert!(told.help);

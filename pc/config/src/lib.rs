@@ -5,8 +5,10 @@ pub mod gige;
 pub mod machine;
 pub mod probe;
 mod range;
+mod sentence;
 pub mod table;
 pub mod toml_file;
 pub mod weld_data;
 
 pub use range::{RangeError, in_range};
+pub use sentence::sentence;

@@ -18,7 +18,7 @@ use std::sync::Arc;
 use world::Deviation;
 
 /// Places of the tip that are kept of a program to draw it.
-const DRAWN: usize = 2000;
+const DRAWN: usize = 600;
 
 /// A machine file and a program that it can run.
 #[derive(Debug)]

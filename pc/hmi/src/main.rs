@@ -28,8 +28,9 @@ struct Arguments {
     #[arg(long, default_value = "simulated")]
     boards: BoardChoice,
     /// What is true of a simulated machine: a plant file, or draw:usual:SEED or draw:poor:SEED
-    #[arg(long, default_value_t)]
-    plant: PlantChoice,
+    /// [default: as shipped, without errors]
+    #[arg(long)]
+    plant: Option<PlantChoice>,
     /// How fast simulated boards are at most, in units of real time
     #[arg(long, value_name = "RATE", default_value_t = 1.0, value_parser = pace)]
     pace: f64,
@@ -64,7 +65,7 @@ fn main() -> ExitCode {
             // There may be no reader.
             let _ = std::io::Write::write_all(
                 &mut std::io::stderr(),
-                format!("seamwright-hmi: {error:#}\n").as_bytes(),
+                format!("seamwright-hmi: {}\n", config::sentence(error.as_ref())).as_bytes(),
             );
             ExitCode::FAILURE
         }
@@ -76,7 +77,7 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
     config::machine::MachineFile::read(&arguments.machine)?;
     let place = Place {
         boards: arguments.boards,
-        plant: arguments.plant,
+        plant: arguments.plant.unwrap_or_default(),
         pace: arguments.pace,
         pictures: true,
         reports: arguments.reports,
@@ -96,6 +97,8 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
         .with_fullscreen(arguments.fullscreen);
     let options = eframe::NativeOptions {
         viewport,
+        // Graphics by software count every operation a pixel.
+        dithering: false,
         ..Default::default()
     };
     let window = move |_: &eframe::CreationContext| -> Result<Box<dyn eframe::App>, _> {
@@ -103,4 +106,21 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
     };
     eframe::run_native("seamwright", options, Box::new(window))
         .map_err(|error| anyhow!("cannot open a window ({error}); is there a display?"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_told_is_a_machine_without_errors_on_simulated_boards_in_real_time() {
+        let arguments = Arguments::try_parse_from(["seamwright-hmi", "--machine", "m.toml"]).unwrap();
+        assert_eq!(arguments.plant, None);
+        assert_eq!(arguments.boards, BoardChoice::Simulated);
+        assert_eq!(arguments.pace, 1.0);
+        for wrong in [["--pace", "0"], ["--language", "xx"], ["--boards", "simulatd"]] {
+            let told = ["seamwright-hmi", "--machine", "m.toml"].into_iter().chain(wrong);
+            assert!(Arguments::try_parse_from(told).is_err(), "{wrong:?}");
+        }
+    }
 }

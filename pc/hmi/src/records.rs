@@ -172,7 +172,7 @@ mod tests {
             record.figures.iter().filter(|figure| figure.is_outside()).count(),
             1
         );
-        assert_eq!(record.deviations.worst_at(0.5), Some(0.02));
+        assert_eq!(record.deviations.worst_between(0.5, 0.5), Some(0.02));
         std::fs::write(folder.join(REPORT), "{}").unwrap();
         let said = Record::read(&folder).unwrap_err().to_string();
         assert!(said.ends_with("is no report: it has no outcome"), "{said}");

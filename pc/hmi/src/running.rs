@@ -6,7 +6,7 @@ use cam::path::Planner;
 use host_link::boards::Boards;
 use host_link::events::{Interest, Subscription};
 use host_link::spool::Spooling;
-use host_link::{Command, CommandError, Remote, control};
+use host_link::{Command, CommandError, Control, Remote, control};
 use job::{ImageCameras, Job, Names, Work};
 use plant_file::PlantChoice;
 use report::{LogColumns, LogWriter, Report};
@@ -100,13 +100,24 @@ impl Running {
     }
 }
 
-fn run(
+fn run(loaded: &Loaded, place: &Place, remote: &Remote, control: Control) -> anyhow::Result<Outcome> {
+    let folder = next_folder(&place.reports, &loaded.program_file)?;
+    let outcome = run_in(&folder, loaded, place, remote, control);
+    if outcome.is_err() {
+        // A folder with nothing in it tells nothing.
+        let _ = std::fs::remove_dir(&folder);
+    }
+    outcome
+}
+
+/// The same with its report in `folder`.
+fn run_in(
+    folder: &Path,
     loaded: &Loaded,
     place: &Place,
     remote: &Remote,
-    mut control: host_link::Control,
+    mut control: Control,
 ) -> anyhow::Result<Outcome> {
-    let folder = next_folder(&place.reports, &loaded.program_file)?;
     let job = Job {
         machine: &loaded.machine,
         work: Work::Program(&loaded.program),
@@ -118,7 +129,7 @@ fn run(
         speed_m_per_min: None,
         from_line: loaded.from_line,
         surroundings: surroundings(loaded, place)?.into(),
-        spooling: Spooling::in_folder(&folder),
+        spooling: Spooling::in_folder(folder),
         names: names(loaded, place),
     };
     // Boards are asked for nothing unless the machine can do all of it.
@@ -126,7 +137,7 @@ fn run(
     job.plan(&loaded.program, &planner, &loaded.machine.planning.park_axes())?;
     let mut boards = connect(loaded, place, remote)?;
     let log = remote.subscribe(Interest::Samples, LOGGED);
-    let log = LogWriter::start(&folder, LogColumns::of(&loaded.machine), log)
+    let log = LogWriter::start(folder, LogColumns::of(&loaded.machine), log)
         .with_context(|| format!("cannot write the log in {}", folder.display()))?;
     let record = job::run(boards.as_mut(), &job, &mut control);
     // The log and the screen have everything that happened.
@@ -134,11 +145,11 @@ fn run(
     // It is written anew with what is known after the evaluation.
     let _ = log.end();
     let ended = report::ended(&job, record?);
-    let written = ended.began.then(|| report::write(&folder, &ended)).transpose()?;
+    let written = ended.began.then(|| report::write(folder, &ended)).transpose()?;
     Ok(Outcome {
         error: ended.error.as_ref().map(ToString::to_string),
         report: ended.began.then_some(ended.report),
-        folder: written.map(|_| folder),
+        folder: written.map(|()| folder.to_owned()),
     })
 }
 

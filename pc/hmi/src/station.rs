@@ -4,6 +4,7 @@ use crate::live::{Journal, Live};
 use crate::loaded::Loaded;
 use crate::running::{Outcome, Place, Running};
 use cam::along::Along;
+use config::sentence;
 use host_link::Command;
 use shared::state::State;
 use std::path::{Path, PathBuf};
@@ -178,7 +179,7 @@ impl Station {
             }
             match running.outcome() {
                 Ok(outcome) => self.last = Some(outcome),
-                Err(error) => self.live.journal.alarm(now, &format!("{error:#}")),
+                Err(error) => self.live.journal.alarm(now, &sentence(error.as_ref())),
             }
             self.live.ended = true;
         }
@@ -194,7 +195,7 @@ impl Station {
                 (self.loaded, self.last) = (Some(Arc::new(loaded)), None);
             }
             // What was loaded before stays.
-            Err(error) => self.refused = Some(format!("{error:#}")),
+            Err(error) => self.refused = Some(sentence(error.as_ref())),
         }
     }
 

@@ -120,10 +120,12 @@ impl Deviations {
             .map(move |(index, bin)| (middle(index), bin))
     }
 
-    /// Largest |deviation| near `along_mm` \[mm\]; `None` where no beam was on.
-    pub fn worst_at(&self, along_mm: f64) -> Option<f64> {
-        let index = (along_mm >= 0.0).then_some((along_mm / self.step_mm) as usize)?;
-        self.bins.get(index)?.worst_mm()
+    /// Largest |deviation| from `begin_mm` to `end_mm` \[mm\]; `None` where no beam was on.
+    pub fn worst_between(&self, begin_mm: f64, end_mm: f64) -> Option<f64> {
+        let index = |along_mm: f64| (along_mm.max(0.0) / self.step_mm) as usize;
+        let end = (index(end_mm) + 1).min(self.bins.len());
+        let bins = self.bins.get(index(begin_mm)..end)?;
+        bins.iter().filter_map(Bin::worst_mm).reduce(f64::max)
     }
 
     /// The latest of each slide \[mm\].
@@ -162,8 +164,8 @@ mod tests {
             seen.tick(f64::from(mm) + 0.05, [true, false], &sample(peak));
         }
         assert!(seen.bins.len() <= BINS);
-        assert!((seen.worst_at(43_210.0).unwrap() - 0.04).abs() < 1e-9);
-        assert!((seen.worst_at(50_000.0).unwrap() - 0.001).abs() < 1e-9);
+        assert!((seen.worst_between(43_210.0, 43_210.0).unwrap() - 0.04).abs() < 1e-9);
+        assert!((seen.worst_between(50_000.0, 50_000.0).unwrap() - 0.001).abs() < 1e-9);
         assert!((seen.worst()[0].unwrap() - 0.04).abs() < 1e-9);
         let (at, _) = seen.bins().find(|(_, bin)| bin.least[0] < -0.03).unwrap();
         assert!((at - 43_210.0).abs() <= seen.step_mm);
@@ -182,6 +184,6 @@ mod tests {
         seen.tick(2.0, [true, true], &idle);
         seen.tick(-1.0, [true, true], &sample(0.5));
         assert_eq!(seen.worst()[0], None);
-        assert_eq!(seen.worst_at(2.0), None);
+        assert_eq!(seen.worst_between(2.0, 2.0), None);
     }
 }

@@ -82,11 +82,11 @@ impl Live {
             Event::TrackerSamples(samples) => {
                 for sample in samples.iter() {
                     self.signals.tracker(sample);
-                    let at = self.newest.filter(|newest| newest.beams.contains(&true));
-                    if let Some(newest) = at
-                        && let Some(along_mm) = self.along.at(newest.path_id, newest.s_mm)
+                    let at = self.signals.motion_at(sample.time_us);
+                    if let Some(tick) = at.filter(|tick| tick.beams.contains(&true))
+                        && let Some(along_mm) = self.along.at(tick.path_id, tick.s_mm)
                     {
-                        self.deviations.tick(along_mm, newest.beams, sample);
+                        self.deviations.tick(along_mm, tick.beams, sample);
                     }
                 }
             }
@@ -140,5 +140,65 @@ impl Live {
     pub fn along_mm(&self) -> Option<f64> {
         let (path, s_mm) = self.place()?;
         self.along.at(path, s_mm)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::state::Fault;
+
+    fn at(ms: u64) -> Duration {
+        Duration::from_millis(ms)
+    }
+
+    fn connected() -> Event {
+        Event::Connected {
+            motion: None,
+            tracker: None,
+        }
+    }
+
+    #[test]
+    fn silent_boards_are_seen_within_half_a_second_and_only_while_there_is_a_job() {
+        let mut live = Live::default();
+        assert_eq!(live.silent_for(at(9000)), None);
+        live.take(&connected(), at(1000));
+        assert_eq!(live.silent_for(at(1500)), None);
+        assert_eq!(live.silent_for(at(1501)), Some(at(501)));
+        live.take(&Event::MotionSamples(Arc::new([])), at(1600));
+        assert_eq!(live.silent_for(at(2000)), None);
+        let end = Event::End {
+            error: None,
+            duration: at(1000),
+        };
+        live.take(&end, at(1700));
+        assert_eq!(live.silent_for(at(9000)), None);
+    }
+
+    #[test]
+    fn a_question_stands_until_the_job_goes_on() {
+        let mut live = Live::default();
+        live.take(&Event::Question(Question::FeedTooLow), at(0));
+        assert_eq!(live.question, Some(Question::FeedTooLow));
+        live.take(&Event::Phase(Phase::Welding), at(1));
+        assert_eq!(live.question, None);
+    }
+
+    #[test]
+    fn a_fault_is_one_alarm_until_it_is_acknowledged() {
+        let mut live = Live::default();
+        let fault = Fault::EmergencyStop;
+        live.take(&Event::MotionFault(fault), at(0));
+        let end = Event::End {
+            error: Some(format!("the motion board stopped: {fault}")),
+            duration: at(1),
+        };
+        live.take(&end, at(1));
+        assert_eq!(live.journal.open_alarms().count(), 1);
+        live.journal.acknowledge();
+        assert_eq!(live.journal.open_alarms().count(), 0);
+        live.take(&Event::MotionFault(fault), at(2));
+        assert_eq!(live.journal.open_alarms().count(), 1);
     }
 }

@@ -167,6 +167,15 @@ impl Signals {
         (tracker_us as f64 - self.tracker_ahead_us.unwrap_or(0.0)) * 1e-6
     }
 
+    /// The tick of the motion board at which the tracker board's clock was `tracker_us`, or the one before.
+    pub(super) fn motion_at(&self, tracker_us: u64) -> Option<&MotionSample> {
+        let time_us = tracker_us as f64 - self.tracker_ahead_us?;
+        let after = self
+            .motion
+            .partition_point(|sample| sample.time_us as f64 <= time_us);
+        self.motion.get(after.checked_sub(1)?)
+    }
+
     /// Times \[s\], by the motion board's clock, and values of the newest `window_s` of `signal`, oldest first: extremes
     /// of pieces, where there would be more than `most` of them.
     pub fn course(&self, signal: Signal, window_s: f64, most: usize) -> Vec<[f64; 2]> {

@@ -12,7 +12,7 @@ pub use settings::Look;
 
 use crate::station::{Action, Station};
 use crate::texts::{Text, Words};
-use eframe::egui::{self, Key, Modifiers, Response, RichText, TextWrapMode, Ui};
+use eframe::egui::{self, Key, Modifiers, Response, RichText, TextWrapMode, Ui, Visuals};
 use host_link::Command;
 use std::time::{Duration, Instant};
 use theme::Theme;
@@ -111,25 +111,27 @@ impl Screen {
             now: self.now(),
         };
         self.keys(ui, view.now);
-        egui::Panel::top("bar").exact_size(BAR).show(ui, |ui| {
+        bare(egui::Panel::top("bar")).exact_size(BAR).show(ui, |ui| {
             bar::show(ui, &view, &mut self.station, self.look.left_handed);
         });
-        egui::Panel::left("pages")
+        bare(egui::Panel::left("pages"))
             .exact_size(RAIL)
             .resizable(false)
             .show(ui, |ui| {
                 self.rail(ui, &view);
             });
-        egui::CentralPanel::default().show(ui, |ui| match self.page {
-            Page::Run => self.run.show(ui, &view, &mut self.station, self.look.left_handed),
-            Page::Plot => {
-                self.plot
-                    .show(ui, &view, &self.station.live.signals, &self.station.place.reports);
-            }
-            Page::Welds => self.welds.show(ui, &view, &self.station.place.reports),
-            Page::Alarms => alarms::show(ui, &view, &mut self.station.live.journal),
-            Page::Settings => settings::show(ui, &view, &mut self.look, &self.station),
-        });
+        egui::CentralPanel::default()
+            .frame(egui::Frame::new().inner_margin(8))
+            .show(ui, |ui| match self.page {
+                Page::Run => self.run.show(ui, &view, &mut self.station, self.look.left_handed),
+                Page::Plot => {
+                    self.plot
+                        .show(ui, &view, &self.station.live.signals, &self.station.place.reports);
+                }
+                Page::Welds => self.welds.show(ui, &view, &self.station.place.reports),
+                Page::Alarms => alarms::show(ui, &view, &mut self.station.live.journal),
+                Page::Settings => settings::show(ui, &view, &mut self.look, &self.station),
+            });
     }
 
     /// Brings `page` in sight.
@@ -197,6 +199,16 @@ impl eframe::App for Screen {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         self.show(ui);
     }
+
+    /// The ground of everything.
+    fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+}
+
+/// A panel without a ground of its own: where graphics are drawn by software every layer counts.
+fn bare(panel: egui::Panel) -> egui::Panel {
+    panel.frame(egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 2)))
 }
 
 /// A small heading.

@@ -1,9 +1,10 @@
 //! The page of live curves: any signals of the telemetry, a trigger, two cursors, export.
 
-use super::View;
+use super::{View, bare};
 use crate::live::{SIGNALS, Signal, Signals};
 use crate::texts::{Text, Words};
 use anyhow::Context;
+use config::sentence;
 use eframe::egui::{self, Button, Color32, ComboBox, DragValue, Grid, Label, RichText, ScrollArea, Ui};
 use egui_plot::{Corner, Legend, Line, Plot, PlotPoints, VLine};
 use shared::io::{AXIS_NAMES, MOTOR_NAMES, SLIDE_NAMES};
@@ -80,7 +81,7 @@ impl PlotPage {
     }
 
     pub fn show(&mut self, ui: &mut Ui, view: &View, signals: &Signals, folder: &Path) {
-        egui::Panel::left("signals")
+        bare(egui::Panel::left("signals"))
             .exact_size(LIST)
             .resizable(false)
             .show(ui, |ui| self.list(ui, view));
@@ -139,7 +140,7 @@ impl PlotPage {
             {
                 let shown = self.frozen.as_deref().unwrap_or(signals);
                 let written = write(folder, words, shown, &self.chosen, self.window_s);
-                self.told = Some(written.map_err(|error| format!("{error:#}")));
+                self.told = Some(written.map_err(|error| sentence(error.as_ref())));
             }
         });
         self.trigger.show(ui, words, signals);

@@ -1,8 +1,9 @@
 //! The page of past jobs: the reports of a folder, one beside another.
 
-use super::View;
+use super::{View, bare};
 use crate::records::{Judged, Record, folders};
 use crate::texts::Text;
+use config::sentence;
 use eframe::egui::{self, Button, Color32, Grid, Label, RichText, ScrollArea, TextWrapMode, Ui};
 use egui_plot::{Line, LineStyle, Plot, PlotPoints};
 use shared::io::{SLIDE_NAMES, SLIDES};
@@ -39,7 +40,7 @@ impl WeldsPage {
             ui.label(RichText::new(text).color(view.theme.faint));
             return;
         }
-        egui::Panel::left("reports")
+        bare(egui::Panel::left("reports"))
             .exact_size(LIST)
             .resizable(false)
             .show(ui, |ui| {
@@ -66,7 +67,7 @@ impl WeldsPage {
 fn read(folder: &Path) -> (PathBuf, Result<Record, String>) {
     (
         folder.to_owned(),
-        Record::read(folder).map_err(|error| format!("{error:#}")),
+        Record::read(folder).map_err(|error| sentence(error.as_ref())),
     )
 }
 

@@ -115,15 +115,25 @@ impl Bench {
         self.harness.run_steps(2);
     }
 
-    /// The screen as it is. Drawing it is given up by the library after some seconds, which a busy computer may take.
-    fn picture(&mut self) -> image::RgbaImage {
+    /// The screen as it is, on its ground. Drawing it is given up by the library after some seconds, which a busy computer may take.
+    fn picture(&mut self) -> image::RgbImage {
         let mut tries = 0..TRIES;
-        loop {
+        let drawn = loop {
             match self.harness.render() {
-                Ok(picture) => return picture,
+                Ok(picture) => break picture,
                 Err(error) => assert!(tries.next().is_some(), "no picture: {error}"),
             }
-        }
+        };
+        let [red, green, blue, _] = self.harness.ctx.global_style().visuals.panel_fill.to_array();
+        image::RgbImage::from_fn(drawn.width(), drawn.height(), |x, y| {
+            let [r, g, b, alpha] = drawn.get_pixel(x, y).0;
+            // Colours are multiplied by alpha already.
+            let on = |colour: u8, ground: u8| {
+                let below = u16::from(ground) * (255 - u16::from(alpha)) / 255;
+                u8::try_from(u16::from(colour) + below).unwrap_or(u8::MAX)
+            };
+            image::Rgb([on(r, red), on(g, green), on(b, blue)])
+        })
     }
 
     /// Pictures called `name` in all languages, of what `open` brings in sight.

@@ -1,6 +1,5 @@
 //! `seamwright measure`: the seam measured in pictures, or why it is not accepted.
 
-use super::sentence;
 use crate::console::{errln, out, outln};
 use anyhow::{Context, bail, ensure};
 use camera::Picture;
@@ -8,6 +7,7 @@ use camera::measure::{Measuring, Outcome, Record, Sheet, Summary, Table, Verdict
 use clap::Args;
 use config::calibration::Calibration;
 use config::machine::{JointForm, MachineFile};
+use config::sentence;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -280,7 +280,7 @@ impl Output<'_> {
     }
 
     fn fail(&mut self, error: &anyhow::Error) {
-        errln!("seamwright: {}", sentence(error));
+        errln!("seamwright: {}", sentence(error.as_ref()));
         self.failed += 1;
     }
 

@@ -2,13 +2,14 @@
 
 use super::boards::{BoardArgs, exit_code};
 use super::cameras::CameraArgs;
-use super::{OUTSIDE, machine_for, read_program, sentence, slower, waits};
+use super::{OUTSIDE, machine_for, read_program, slower, waits};
 use crate::console::{errln, out, outln};
 use crate::terminal::Operator;
 use anyhow::{Context, Error, bail};
 use cam::path::{Planner, check_constant_speed};
 use clap::Args;
 use config::machine::MachineFile;
+use config::sentence;
 use emulator::{JOB_VARIABLE, MACHINE_VARIABLE, SEAM_VARIABLE};
 use host_link::spool::Spooling;
 use job::{Job, JobError, Names, NoTeaching, Taught, Work, check_teaching};
@@ -178,7 +179,7 @@ impl Weld {
         }
         if let Err(unwritten) = written {
             if let Some(error) = ended.error {
-                errln!("seamwright: {}", sentence(&error.into()));
+                errln!("seamwright: {}", sentence(&error));
             }
             return Err(unwritten);
         }

@@ -24,7 +24,12 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &Station) {
             let worst =
                 deviations.worst()[slide].map_or("–".to_owned(), |worst| format!("{:.1}", worst * UM));
             let text = format!("{} {now} ({worst})", SLIDE_NAMES[slide]);
-            ui.label(RichText::new(text).monospace().color(view.theme.slides[slide]));
+            ui.label(
+                RichText::new(text)
+                    .monospace()
+                    .size(13.0)
+                    .color(view.theme.slides[slide]),
+            );
         }
     });
     let reach = limit.unwrap_or(0.05) * UM;

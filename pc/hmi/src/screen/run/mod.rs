@@ -8,7 +8,7 @@ mod loading;
 mod program;
 mod way;
 
-use super::{View, nothing, title};
+use super::{View, bare, nothing, title};
 
 use crate::station::Station;
 pub(super) use deviations::curve;
@@ -45,14 +45,14 @@ enum Over {
 impl RunPage {
     pub fn show(&mut self, ui: &mut Ui, view: &View, station: &mut Station, left_handed: bool) {
         let controls = if left_handed {
-            egui::Panel::left("controls")
+            bare(egui::Panel::left("controls"))
         } else {
-            egui::Panel::right("controls")
+            bare(egui::Panel::right("controls"))
         };
         controls.exact_size(CONTROLS).resizable(false).show(ui, |ui| {
             controls::show(ui, view, station, &mut self.over);
         });
-        egui::Panel::top("figures")
+        bare(egui::Panel::top("figures"))
             .exact_size(FIGURES)
             .show(ui, |ui| figures::show(ui, view, station));
         let tracked = station
@@ -60,17 +60,19 @@ impl RunPage {
             .is_some_and(|loaded| loaded.machine.tracking.is_some());
         if tracked {
             let height = ui.available_height() * (1.0 - UPPER);
-            egui::Panel::bottom("seam").exact_size(height).show(ui, |ui| {
-                egui::Panel::right("cameras")
-                    .exact_size(height * 1.5)
-                    .resizable(false)
-                    .show(ui, |ui| {
-                        self.cameras.show(ui, view, &station.live);
-                    });
-                deviations::show(ui, view, station);
-            });
+            bare(egui::Panel::bottom("seam"))
+                .exact_size(height)
+                .show(ui, |ui| {
+                    bare(egui::Panel::right("cameras"))
+                        .exact_size(height * 1.5)
+                        .resizable(false)
+                        .show(ui, |ui| {
+                            self.cameras.show(ui, view, &station.live);
+                        });
+                    deviations::show(ui, view, station);
+                });
         }
-        egui::Panel::left("program")
+        bare(egui::Panel::left("program"))
             .exact_size(PROGRAM)
             .resizable(false)
             .show(ui, |ui| {

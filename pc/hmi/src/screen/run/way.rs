@@ -120,8 +120,9 @@ fn path(painter: &Painter, view: &View, station: &Station, loaded: &Loaded, proj
             projection.at(&to.pose.position),
         ];
         let stroke = match (from.along_mm, to.along_mm) {
-            (Some(along), Some(_)) => {
-                let share = limit.and_then(|limit| Some(station.live.deviations.worst_at(along)? / limit));
+            (Some(along), Some(end)) => {
+                let share =
+                    limit.and_then(|limit| Some(station.live.deviations.worst_between(along, end)? / limit));
                 let colour = match share {
                     Some(share) => view.theme.share(share),
                     None if done.is_some_and(|done| along <= done) => view.theme.slides[1],
