@@ -29,7 +29,7 @@ pub enum Tool {
     Mutants,
     /// Another interpreter of NC programs, and the programs that come with it.
     LinuxCnc,
-    /// What draws the operator's screen, in a window or without one, and letters of every language that it speaks.
+    /// What draws the operator's screen, in a window or without one, letters of every language that it speaks, and a display for tests.
     Screen,
     /// What Unicorn, the core of the virtual NUCLEO, is built with.
     UnicornBuild,
@@ -105,6 +105,7 @@ pub fn run(wants: &[Tool]) -> Result<()> {
                     "libxkbcommon-x11-0",
                     "fontconfig",
                     "fonts-droid-fallback",
+                    "xvfb",
                 ],
                 has_screen,
                 "install drivers of Vulkan and OpenGL (Mesa's draw without a graphics card), and a font for Chinese, by hand",
@@ -119,7 +120,7 @@ pub fn run(wants: &[Tool]) -> Result<()> {
     Ok(())
 }
 
-/// Whether programs can draw, and have letters for Chinese.
+/// Whether programs can draw, have letters for Chinese (U+710A, to weld, among them), and a display for tests.
 fn has_screen() -> bool {
     let any = |folder: &str, ending: &str| {
         let files = fs::read_dir(folder).into_iter().flatten().flatten();
@@ -131,10 +132,11 @@ fn has_screen() -> bool {
         .iter()
         .any(|folder| any(folder, ".json"));
     let fonts = Command::new("fc-list")
-        .arg(":lang=zh-cn")
+        .arg(":charset=710a")
         .stderr(Stdio::null())
         .output();
-    vulkan && fonts.is_ok_and(|output| !output.stdout.is_empty())
+    let display = runs("Xvfb", &["-help"]);
+    vulkan && display && fonts.is_ok_and(|output| !output.stdout.is_empty())
 }
 
 /// Whether the generator of bindings finds libclang: where it is told, or where Debian puts it.

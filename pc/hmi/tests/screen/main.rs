@@ -3,3 +3,5 @@
 mod bench;
 mod day;
 mod pictures;
+#[cfg(target_os = "linux")]
+mod window;
