@@ -35,6 +35,8 @@ const FURTHEST_MM: f64 = 0.5;
 const LIMIT: Duration = Duration::from_secs(10);
 /// Time for the slides to come to rest \[s\].
 const SETTLE_S: f64 = 0.1;
+/// Time in which a picture comes, from the strobe to what was measured in it \[s\].
+const PICTURE_S: f64 = 0.05;
 
 /// Which pictures to take.
 #[derive(Debug)]
@@ -227,18 +229,20 @@ fn look(
         tracking.strobed = Some(Default::default());
     }
     run.queue.take();
+    // Pictures of simulated cameras are waited for until they are due, and may be there before: whichever it is, the first one is
+    // taken, at the same time.
+    session.dwell(PICTURE_S)?;
     let mut taken = None;
     let looked = session.wait_until("a picture of the seam", LIMIT, |session| {
         let strobed = session
             .tracking
             .as_ref()
             .and_then(|tracking| tracking.strobed.as_ref());
-        for picture in run.queue.take() {
-            if let Some(strobe) = strobed.and_then(|strobed| strobed.get(&picture.capture)) {
-                let slides = strobe.slides_mm;
-                taken = Some((picture, [slides[2 * run.side], slides[2 * run.side + 1]]));
-            }
-        }
+        let slides_of = |picture: &Picture| Some(strobed?.get(&picture.capture)?.slides_mm);
+        taken = run.queue.take().into_iter().find_map(|picture| {
+            let slides = slides_of(&picture)?;
+            Some((picture, [slides[2 * run.side], slides[2 * run.side + 1]]))
+        });
         Ok(taken.is_some())
     });
     if let Some(tracking) = &mut session.tracking {
