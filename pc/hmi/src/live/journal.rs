@@ -1,7 +1,9 @@
 //! What happened, for the operator: newest last, the oldest forgotten beyond a bound.
 
 use host_link::events::{Phase, Question};
+use job::JobError;
 use shared::protocol::Identity;
+use shared::state::{Fault, TrackerFault};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -43,8 +45,26 @@ pub enum What {
     Connected(Vec<String>),
     /// A job came to its end.
     Finished,
-    /// In words of the boards, of the job or of the program.
+    /// The motion board has stopped.
+    MotionFault(Fault),
+    /// The tracker board has stopped the weld.
+    TrackerFault(TrackerFault),
+    /// The operator has stopped the job.
+    Stopped,
+    /// In words of the job or of the program, in English.
     Said(String),
+}
+
+impl What {
+    /// In English, as the boards and the job say it.
+    fn said(&self) -> Option<String> {
+        match self {
+            Self::MotionFault(fault) => Some(fault.to_string()),
+            Self::TrackerFault(fault) => Some(fault.to_string()),
+            Self::Said(text) => Some(text.clone()),
+            _ => None,
+        }
+    }
 }
 
 /// All that happened.
@@ -82,29 +102,30 @@ impl Journal {
         self.add(at, Severity::Note, What::Said(text.to_owned()));
     }
 
-    pub(super) fn fault(&mut self, at: Duration, text: &str) {
-        self.alarm(at, text);
+    pub(super) fn motion_fault(&mut self, at: Duration, fault: Fault) {
+        self.add(at, Severity::Alarm, What::MotionFault(fault));
     }
 
-    /// Something is wrong that the operator has to know. What was said last is not said again.
+    pub(super) fn tracker_fault(&mut self, at: Duration, fault: TrackerFault) {
+        self.add(at, Severity::Alarm, What::TrackerFault(fault));
+    }
+
+    /// Something is wrong that the operator has to know. What an open alarm says already is not said again.
     pub fn alarm(&mut self, at: Duration, text: &str) {
-        let said = self
-            .0
-            .iter()
-            .rev()
-            .find(|entry| entry.severity == Severity::Alarm && !entry.acknowledged);
-        let again = said
-            .is_some_and(|entry| matches!(&entry.what, What::Said(said) if text.ends_with(said.as_str())));
-        if !again {
+        let again = |entry: &Entry| entry.what.said().is_some_and(|said| text.ends_with(&said));
+        if !self.open_alarms().any(again) {
             self.add(at, Severity::Alarm, What::Said(text.to_owned()));
         }
     }
 
     pub(super) fn end(&mut self, at: Duration, error: Option<&str>) {
         match error {
+            None => self.add(at, Severity::Note, What::Finished),
+            Some(error) if error == JobError::Interrupted.to_string() => {
+                self.add(at, Severity::Alarm, What::Stopped);
+            }
             // The job's sentence ends with the fault's, which is told already.
             Some(error) => self.alarm(at, error),
-            None => self.add(at, Severity::Note, What::Finished),
         }
     }
 

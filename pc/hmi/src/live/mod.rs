@@ -104,8 +104,8 @@ impl Live {
                 self.journal.question(now, question);
             }
             Event::Message(text) => self.journal.message(now, text),
-            Event::MotionFault(fault) => self.journal.fault(now, &fault.to_string()),
-            Event::TrackerFault(fault) => self.journal.fault(now, &fault.to_string()),
+            Event::MotionFault(fault) => self.journal.motion_fault(now, *fault),
+            Event::TrackerFault(fault) => self.journal.tracker_fault(now, *fault),
             Event::End { error, .. } => {
                 (self.ended, self.question) = (true, None);
                 self.journal.end(now, error.as_deref());

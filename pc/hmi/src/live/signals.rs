@@ -148,7 +148,7 @@ pub struct Signals {
 }
 
 impl Signals {
-    pub(super) fn motion(&mut self, sample: &MotionSample) {
+    pub(crate) fn motion(&mut self, sample: &MotionSample) {
         keep(&mut self.motion, *sample);
     }
 

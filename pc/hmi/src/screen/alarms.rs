@@ -54,12 +54,16 @@ pub(super) fn show(ui: &mut Ui, view: &View, journal: &mut Journal) {
     });
 }
 
-fn said(words: Words, what: &What) -> String {
+/// What happened, in words.
+pub(super) fn said(words: Words, what: &What) -> String {
     match what {
         What::Phase(phase) => words.phase(*phase),
         What::Question(question) => words.question(question),
         What::Connected(firmware) => words.with(Text::Connected, &[&firmware.join(", ")]),
         What::Finished => words.say(Text::JobFinished).to_owned(),
+        What::MotionFault(fault) => words.fault(fault),
+        What::TrackerFault(fault) => words.tracker_fault(fault),
+        What::Stopped => words.say(Text::StoppedByOperator).to_owned(),
         What::Said(text) => text.clone(),
     }
 }

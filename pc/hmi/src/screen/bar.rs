@@ -1,6 +1,7 @@
 //! What is always in sight: state, what the machine does and waits for, and Stop.
 
 use super::View;
+use super::alarms::said;
 use crate::station::{Action, Station};
 use crate::texts::Text;
 use eframe::egui::{Align, Button, Color32, Direction, Frame, Label, Layout, RichText, Ui, UiBuilder};
@@ -106,10 +107,8 @@ fn told(ui: &mut Ui, view: &View, station: &Station) {
         )
     } else if let Some(question) = &live.question {
         (words.question(question), view.theme.doubt)
-    } else if let Some(crate::live::What::Said(said)) =
-        live.journal.open_alarms().next_back().map(|entry| &entry.what)
-    {
-        (said.clone(), view.theme.bad)
+    } else if let Some(alarm) = live.journal.open_alarms().next_back() {
+        (said(words, &alarm.what), view.theme.bad)
     } else if station.is_loading() {
         (words.say(Text::Loading).to_owned(), view.theme.faint)
     } else if station.is_running() {

@@ -1,7 +1,9 @@
 //! Everything that the screen says, in every language: one table, in which no text can be missing.
 //!
-//! Sentences of the boards, of the planner and of the NC interpreter (faults, reasons for a refusal, notices) come as they are, in
+//! Sentences of the planner, of the NC interpreter and of reports (reasons for a refusal, notices, figures) come as they are, in
 //! English: they name files, lines and values, and are the same in logs and reports.
+
+mod faults;
 
 use host_link::events::{Next, Phase, Question};
 use shared::state::State;
@@ -116,7 +118,6 @@ texts! {
     FeedTooLow: "Held: the feed is too low for the beam. Raise the override, then Resume.", "已保持：进给过低，不能开束。请提高倍率，然后按“继续”。", "Angehalten: Vorschub zu klein für den Strahl. Override erhöhen, dann „Weiter“.";
     JogAsked: "The job asks where to jog.", "任务询问点动位置。", "Der Auftrag fragt nach einer Handfahrt.";
     // Run page
-    Program: "Program", "程序", "Programm";
     Load: "Load…", "载入…", "Laden…";
     Loading: "Reading, planning and predicting…", "正在读取、规划并预测…", "Lesen, planen, vorhersagen…";
     NoProgram: "No program is loaded. Load one to begin.", "未载入程序。请先载入程序。", "Kein Programm geladen. Zum Beginnen eines laden.";
@@ -144,7 +145,6 @@ texts! {
     Way: "Path and tool", "轨迹与工具", "Bahn und Werkzeug";
     Deviation: "Spot beside its seam, as the tracker goes by [µm]", "光斑相对焊缝的偏差（跟踪板依据）[µm]", "Spot neben der Naht, wonach der Tracker geht [µm]";
     Limit: "limit ±{} µm", "限值 ±{} µm", "Grenze ±{} µm";
-    NoTracker: "This machine follows its program; it has no cameras.", "本机按程序运行，无摄像机。", "Diese Maschine folgt ihrem Programm; sie hat keine Kameras.";
     Camera: "Camera {}", "摄像机 {}", "Kamera {}";
     NoPicture: "no picture yet", "暂无图像", "noch kein Bild";
     SeamSeen: "SEAM", "焊缝", "NAHT";
@@ -159,6 +159,7 @@ texts! {
     ReportIn: "Report in {}", "报告位于 {}", "Bericht in {}";
     WrongFile: "Not loaded", "未载入", "Nicht geladen";
     // Alarms
+    StoppedByOperator: "stopped by the operator; beams are off and the machine is at rest", "操作员已停止；光束关闭，机器静止", "vom Bediener gestoppt; die Strahlen sind aus, die Maschine steht";
     NoAlarms: "No alarms.", "无报警。", "Keine Alarme.";
     Acknowledge: "Acknowledge", "确认", "Quittieren";
     History: "What happened", "事件记录", "Verlauf";

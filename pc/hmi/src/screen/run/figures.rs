@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &Station) {
         ended(ui, view, last);
     } else {
         ui.columns_const(|columns: &mut [Ui; 5]| {
-            for (ui, (text, value)) in columns.iter_mut().zip(told(view, station, loaded)) {
+            for (ui, (text, value)) in columns.iter_mut().zip(told(station, loaded)) {
                 figure(ui, view, text, &value);
             }
         });
@@ -36,7 +36,7 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &Station) {
 }
 
 /// The figures of now.
-fn told(view: &View, station: &Station, loaded: &Loaded) -> [(Text, String); 5] {
+fn told(station: &Station, loaded: &Loaded) -> [(Text, String); 5] {
     let live = &station.live;
     let none = || "–".to_owned();
     let speed = live
@@ -55,7 +55,6 @@ fn told(view: &View, station: &Station, loaded: &Loaded) -> [(Text, String); 5] 
         ),
         None => (Text::Predicted, loaded.predicted.duration_s),
     };
-    let _ = view;
     [
         (Text::Speed, speed.unwrap_or_else(none)),
         (Text::Power, power(live, loaded).unwrap_or_else(none)),

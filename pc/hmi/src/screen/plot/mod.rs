@@ -1,16 +1,18 @@
 //! The page of live curves: any signals of the telemetry, a trigger, two cursors, export.
 
+mod export;
+mod trigger;
+
 use super::{View, bare};
 use crate::live::{SIGNALS, Signal, Signals};
 use crate::texts::{Text, Words};
-use anyhow::Context;
 use config::sentence;
-use eframe::egui::{self, Button, Color32, ComboBox, DragValue, Grid, Label, RichText, ScrollArea, Ui};
+use eframe::egui::{self, Button, Color32, Grid, Label, RichText, ScrollArea, Ui};
 use egui_plot::{Corner, Legend, Line, Plot, PlotPoints, VLine};
 use shared::io::{AXIS_NAMES, MOTOR_NAMES, SLIDE_NAMES};
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use trigger::Trigger;
 
 /// Width of the list of signals \[points\].
 const LIST: f32 = 270.0;
@@ -42,28 +44,13 @@ pub(super) struct PlotPage {
     told: Option<Result<PathBuf, String>>,
 }
 
-/// When to freeze.
-struct Trigger {
-    signal: Signal,
-    level: f64,
-    /// Crossings before this time do not count \[s\]; `None` where it is not armed.
-    armed: Option<f64>,
-    /// When the level was crossed \[s\].
-    crossed: Option<f64>,
-}
-
 impl Default for PlotPage {
     fn default() -> Self {
         Self {
             chosen: vec![Signal::Speed, Signal::SlideError(0), Signal::SlideError(2)],
             window_s: 5.0,
             frozen: None,
-            trigger: Trigger {
-                signal: Signal::Speed,
-                level: 1.0,
-                armed: None,
-                crossed: None,
-            },
+            trigger: Trigger::default(),
             cursors: [None; 2],
             told: None,
         }
@@ -73,10 +60,11 @@ impl Default for PlotPage {
 impl PlotPage {
     /// Looks for what the trigger waits for, also while another page is in sight.
     pub fn turn(&mut self, signals: &Signals) {
-        if self.frozen.is_none() && self.trigger.is_due(signals, self.window_s) {
+        if self.frozen.is_none()
+            && let Some(crossed_s) = self.trigger.due(signals, self.window_s)
+        {
             self.frozen = Some(Arc::new(signals.clone()));
-            self.cursors = [self.trigger.crossed.take(), None];
-            self.trigger.armed = None;
+            self.cursors = [Some(crossed_s), None];
         }
     }
 
@@ -139,7 +127,7 @@ impl PlotPage {
                 .clicked()
             {
                 let shown = self.frozen.as_deref().unwrap_or(signals);
-                let written = write(folder, words, shown, &self.chosen, self.window_s);
+                let written = export::write(folder, words, shown, &self.chosen, self.window_s);
                 self.told = Some(written.map_err(|error| sentence(error.as_ref())));
             }
         });
@@ -247,45 +235,6 @@ impl PlotPage {
     }
 }
 
-impl Trigger {
-    /// Whether its level was crossed upwards, and half a window has passed since.
-    fn is_due(&mut self, signals: &Signals, window_s: f64) -> bool {
-        let Some(armed) = self.armed else { return false };
-        if self.crossed.is_none() {
-            let course = signals.course(self.signal, window_s, usize::MAX);
-            let mut pairs = course.windows(2).filter(|pair| pair[1][0] > armed);
-            self.crossed = pairs
-                .find(|pair| pair[0][1] < self.level && pair[1][1] >= self.level)
-                .map(|pair| pair[1][0]);
-        }
-        self.crossed
-            .is_some_and(|crossed| signals.newest_s() > crossed + window_s / 2.0)
-    }
-
-    fn show(&mut self, ui: &mut Ui, words: Words, signals: &Signals) {
-        ui.horizontal_wrapped(|ui| {
-            ui.label(words.say(Text::TriggerOn));
-            let shown = name(words, self.signal);
-            ComboBox::new("trigger", "")
-                .selected_text(shown)
-                .width(220.0)
-                .show_ui(ui, |ui| {
-                    for signal in SIGNALS {
-                        ui.selectable_value(&mut self.signal, signal, name(words, signal));
-                    }
-                });
-            let above = ui.label(words.say(Text::RisesAbove));
-            let unit = format!(" {}", self.signal.unit().name());
-            ui.add(DragValue::new(&mut self.level).speed(0.1).suffix(unit))
-                .labelled_by(above.id);
-            let mut armed = self.armed.is_some();
-            if ui.toggle_value(&mut armed, words.say(Text::Arm)).changed() {
-                (self.armed, self.crossed) = (armed.then(|| signals.newest_s()), None);
-            }
-        });
-    }
-}
-
 /// Least and largest value.
 fn range(course: &[[f64; 2]]) -> (f64, f64) {
     let values = course.iter().map(|[_, value]| *value);
@@ -314,39 +263,6 @@ fn name(words: Words, signal: Signal) -> String {
         Signal::Slide(slide) => words.with(Text::SignalSlide, &[SLIDE_NAMES[slide]]),
         Signal::SlideError(slide) => words.with(Text::SignalSlideError, &[SLIDE_NAMES[slide]]),
     }
-}
-
-/// Writes every tick of the window into a new file in `folder`: a line for each, an own time for each signal.
-fn write(
-    folder: &Path,
-    words: Words,
-    shown: &Signals,
-    chosen: &[Signal],
-    window_s: f64,
-) -> anyhow::Result<PathBuf> {
-    let courses: Vec<_> = chosen
-        .iter()
-        .map(|signal| shown.course(*signal, window_s, usize::MAX))
-        .collect();
-    let headings = chosen.iter().map(|signal| {
-        let unit = signal.unit().name();
-        format!("time_s,\"{} [{unit}]\"", name(words, *signal))
-    });
-    let mut text = headings.collect::<Vec<_>>().join(",") + "\n";
-    for row in 0..courses.iter().map(Vec::len).max().unwrap_or(0) {
-        let values = courses.iter().map(|course| match course.get(row) {
-            Some([time, value]) => format!("{time:.6},{value:.6}"),
-            None => ",".to_owned(),
-        });
-        writeln!(text, "{}", values.collect::<Vec<_>>().join(","))?;
-    }
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot write in {}", folder.display()))?;
-    let free = (1..)
-        .map(|number| folder.join(format!("curves-{number:03}.csv")))
-        .find(|file| !file.exists());
-    let file = free.context("there is no free number")?;
-    std::fs::write(&file, text).with_context(|| format!("cannot write {}", file.display()))?;
-    Ok(file)
 }
 
 #[cfg(test)]
