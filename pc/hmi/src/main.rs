@@ -79,7 +79,6 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
         boards: arguments.boards,
         plant: arguments.plant.unwrap_or_default(),
         pace: arguments.pace,
-        pictures: true,
         reports: arguments.reports,
     };
     let mut station = Station::new(arguments.machine, arguments.programs, place);

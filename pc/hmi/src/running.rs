@@ -30,8 +30,6 @@ pub struct Place {
     pub plant: PlantChoice,
     /// How fast simulated boards are at most, in units of the clock's time.
     pub pace: f64,
-    /// Whether the seams are seen in pictures; else by geometry, on boards that are not real.
-    pub pictures: bool,
     /// Folder of all reports; each job makes one of its own in it.
     pub reports: PathBuf,
 }
@@ -193,7 +191,7 @@ fn surroundings(loaded: &Loaded, place: &Place) -> anyhow::Result<Surroundings> 
         surroundings.seam = loaded.seam.as_ref().map(|(_, seam)| Arc::clone(seam));
         surroundings.mounts = place.plant.of(machine.motion.kinematics.name())?.cameras;
     }
-    if let Some(unit) = machine.tracking.as_ref().filter(|_| is_real || place.pictures) {
+    if let Some(unit) = &machine.tracking {
         let folder = loaded.machine_file.parent().unwrap_or(Path::new(""));
         let images = ImageCameras {
             calibrations: unit.cameras.calibrations(folder)?,

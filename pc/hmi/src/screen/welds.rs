@@ -1,11 +1,12 @@
 //! The page of past jobs: the reports of a folder, one beside another.
 
+use super::run::line;
 use super::{View, bare};
 use crate::records::{Judged, Record, folders};
 use crate::texts::Text;
 use config::sentence;
 use eframe::egui::{self, Button, Color32, Grid, Label, RichText, ScrollArea, TextWrapMode, Ui};
-use egui_plot::{Line, LineStyle, Plot, PlotPoints};
+use egui_plot::Plot;
 use shared::io::{SLIDE_NAMES, SLIDES};
 use std::path::{Path, PathBuf};
 
@@ -13,8 +14,6 @@ use std::path::{Path, PathBuf};
 const LIST: f32 = 280.0;
 /// Height of a row that is tapped \[points\].
 const ROW: f32 = 40.0;
-/// mm to µm.
-const UM: f64 = 1e3;
 
 /// What the page has read. The folder is read again when the page is opened, and when a job has ended.
 #[derive(Default)]
@@ -129,27 +128,14 @@ fn curves(ui: &mut Ui, view: &View, record: &Record, other: Option<&Record>) {
     let plot = Plot::new("true deviations").height(200.0).allow_scroll(false);
     plot.show(ui, |plot| {
         for slide in 0..SLIDES {
-            let style = if slide % 2 == 0 {
-                LineStyle::Solid
-            } else {
-                LineStyle::dashed_dense()
-            };
+            let name = SLIDE_NAMES[slide];
             if let Some(other) = other {
-                let grey = Color32::from_gray(130);
-                let line = Line::new(
-                    format!("{} {}", other.name, SLIDE_NAMES[slide]),
-                    course(other, slide),
-                );
-                plot.line(line.color(grey).width(1.0).style(style));
+                let line = line(format!("{} {name}", other.name), &other.deviations, slide);
+                plot.line(line.color(Color32::from_gray(130)).width(1.0));
             }
-            let line = Line::new(SLIDE_NAMES[slide], course(record, slide));
-            plot.line(line.color(view.theme.slides[slide]).style(style));
+            plot.line(line(name, &record.deviations, slide).color(view.theme.slides[slide]));
         }
     });
-}
-
-fn course(record: &Record, slide: usize) -> PlotPoints<'static> {
-    super::run::curve(&record.deviations, slide, UM)
 }
 
 fn figures(ui: &mut Ui, view: &View, record: &Record, other: Option<&Record>) {

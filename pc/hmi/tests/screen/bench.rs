@@ -44,7 +44,6 @@ impl Bench {
             boards: BoardChoice::Simulated,
             plant: PlantChoice::Shipped,
             pace: PACE,
-            pictures: true,
             reports: folder.path().to_owned(),
         };
         let machine = format!("../../machines/{machine}.toml");

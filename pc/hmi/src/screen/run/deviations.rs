@@ -5,7 +5,7 @@ use crate::live::Deviations;
 use crate::screen::View;
 use crate::station::Station;
 use crate::texts::Text;
-use eframe::egui::{Color32, RichText, Ui};
+use eframe::egui::{RichText, Ui};
 use egui_plot::{HLine, Line, LineStyle, Plot, PlotPoints, uniform_grid_spacer};
 use shared::io::{SLIDE_NAMES, SLIDES};
 
@@ -46,32 +46,32 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &Station) {
         .include_y(1.2 * reach)
         .show(ui, |plot| {
             for slide in 0..SLIDES {
-                let points = curve(deviations, slide, UM);
-                let style = if slide % 2 == 0 {
-                    LineStyle::Solid
-                } else {
-                    LineStyle::dashed_dense()
-                };
-                plot.line(
-                    Line::new(SLIDE_NAMES[slide], points)
-                        .color(view.theme.slides[slide])
-                        .style(style),
-                );
+                plot.line(line(SLIDE_NAMES[slide], deviations, slide).color(view.theme.slides[slide]));
             }
             if limit.is_some() {
                 for side in [-reach, reach] {
                     let name = view.words.with(Text::Limit, &[&format!("{reach:.0}")]);
-                    let line = HLine::new(name, side).color(Color32::from_rgb(235, 70, 60));
-                    plot.hline(line.style(LineStyle::dashed_loose()));
+                    let limit = HLine::new(name, side).color(view.theme.bad);
+                    plot.hline(limit.style(LineStyle::dashed_loose()));
                 }
             }
         });
 }
 
-/// The deviations of a slide along the work, times `scale`.
-pub(in crate::screen) fn curve(deviations: &Deviations, slide: usize, scale: f64) -> PlotPoints<'static> {
+/// The deviation of a slide along the work \[µm\]: U solid, V dashed.
+pub(in crate::screen) fn line(
+    name: impl Into<String>,
+    deviations: &Deviations,
+    slide: usize,
+) -> Line<'static> {
     let ends = deviations
         .bins()
-        .flat_map(|(at, bin)| [bin.least[slide], bin.largest[slide]].map(|value| [at, value * scale]));
-    ends.filter(|[_, value]| value.is_finite()).collect()
+        .flat_map(|(at, bin)| [bin.least[slide], bin.largest[slide]].map(|value| [at, value * UM]));
+    let points: PlotPoints = ends.filter(|[_, value]| value.is_finite()).collect();
+    let style = if slide.is_multiple_of(2) {
+        LineStyle::Solid
+    } else {
+        LineStyle::dashed_dense()
+    };
+    Line::new(name, points).style(style)
 }

@@ -11,7 +11,7 @@ mod way;
 use super::{View, bare, nothing, title};
 
 use crate::station::Station;
-pub(super) use deviations::curve;
+pub(super) use deviations::line;
 use eframe::egui::{self, Frame, Ui};
 
 /// Width of the controls \[points\].
