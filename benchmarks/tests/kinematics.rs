@@ -59,6 +59,8 @@ fn every_machine_and_function_has_a_record() {
     let last: Vec<_> = lines.map(Record::parse).collect();
     assert!(matches!(last[..], [Some(Record::Checksum(_))]), "{last:?}");
     let mut all = KinematicsConfig::NAMES.to_vec();
+    // Of a list of joints there is no file; what it costs is in the mathematics.
+    all.retain(|name| *name != "serial-chain");
     all.sort_unstable();
     assert_eq!(machines, all);
 }

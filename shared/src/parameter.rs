@@ -148,6 +148,14 @@ const FIELDS: &[&str] = &[
     "min_speed_mm_s",
     "fitted",
     "home_sequence",
+    "slides",
+    "joints",
+    "direction",
+    "point_mm",
+    "tip_mm",
+    "tool_axis",
+    "tangent",
+    "work_mm",
     "o1_mm",
     "o2_mm",
     "o3_mm",
@@ -225,6 +233,7 @@ pub fn check(owner: &str, field: &str, value: f64, ok: impl Fn(f64) -> bool) -> 
 pub const LARGEST_MACHINE_MM: f64 = 1e5;
 
 /// `vector` \[mm\] if it is one of a machine: none of its numbers beyond [`LARGEST_MACHINE_MM`].
+#[inline(never)]
 pub fn length_of_machine(
     owner: &str,
     field: &str,

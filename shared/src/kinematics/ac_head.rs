@@ -8,7 +8,7 @@
 //! At the vertical itself C stays.
 
 use super::tool_axis::{POLE, Tilt, TiltMotion, axis_in_motion};
-use super::{AxisLimits, AxisMotion, Chain, KinematicsError};
+use super::{AxisLimits, AxisMotion, Chain, KinematicsError, xyz};
 use crate::geometry::{Pose, PoseMotion};
 use crate::io::AXES;
 use crate::parameter::{ParameterError, check, length_of_machine};
@@ -26,12 +26,19 @@ const C: usize = 5;
 #[serde(deny_unknown_fields)]
 pub struct AcHeadConfig {
     /// C axis to A axis, in the frame that turns with C.
+    #[serde(deserialize_with = "xyz")]
     pub o1_mm: [f64; 3],
     /// A axis to the focus, in the frame after A: z < 0.
+    #[serde(deserialize_with = "xyz")]
     pub o2_mm: [f64; 3],
 }
 
 impl AcHeadConfig {
+    /// Which of X Y Z A B C the machine has.
+    pub fn fitted(&self) -> [bool; AXES] {
+        [true, true, true, true, false, true]
+    }
+
     /// Checks the geometry: every number one of a machine, and the focus below the A axis. The travel of A and C in `limits`
     /// decides which solutions there are.
     pub fn build(&self, limits: &[AxisLimits; AXES]) -> Result<AcHead, ParameterError> {
@@ -190,8 +197,6 @@ impl AcHead {
 }
 
 impl Chain for AcHead {
-    const FITTED: [bool; AXES] = [true, true, true, true, false, true];
-
     /// T is the axis of A.
     fn forward(&self, q: &[f64; AXES]) -> Pose {
         let angles = Angles::of_axes(q[A], q[C]);

@@ -5,7 +5,7 @@
 //! Inside |B| ≤ 30° and |C| ≤ 90° the solution is unique and regular, so there is no branch to choose.
 
 use super::rpy::{RollPitchYaw, across_z};
-use super::{AxisLimits, AxisMotion, Chain, KinematicsError};
+use super::{AxisLimits, AxisMotion, Chain, KinematicsError, xyz};
 use crate::geometry::{Pose, PoseMotion};
 use crate::io::AXES;
 use crate::parameter::{ParameterError, check, length_of_machine};
@@ -18,14 +18,22 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct DualBeamConfig {
     /// C axis to B axis, in the frame that turns with C.
+    #[serde(deserialize_with = "xyz")]
     pub o1_mm: [f64; 3],
     /// B axis to A axis, in the frame after B.
+    #[serde(deserialize_with = "xyz")]
     pub o2_mm: [f64; 3],
     /// A axis to the virtual tip D, in the plate frame: (tx, ty, −L).
+    #[serde(deserialize_with = "xyz")]
     pub o3_mm: [f64; 3],
 }
 
 impl DualBeamConfig {
+    /// Which of X Y Z A B C the machine has.
+    pub fn fitted(&self) -> [bool; AXES] {
+        [true; AXES]
+    }
+
     /// Checks the geometry: every number one of a machine, and the tip below the A axis. The solution is unique within
     /// any travel, so the limits of the axes do not matter.
     pub fn build(&self, _limits: &[AxisLimits; AXES]) -> Result<DualBeam, ParameterError> {
@@ -100,8 +108,6 @@ impl DualBeam {
 }
 
 impl Chain for DualBeam {
-    const FITTED: [bool; AXES] = [true; AXES];
-
     /// Pose of the plate for axes `q` (mathematics 0.2).
     fn forward(&self, q: &[f64; AXES]) -> Pose {
         let turn = RollPitchYaw::of_angles(q[3], q[4], q[5]);

@@ -2,7 +2,7 @@
 //!
 //! One file a machine: its geometry as it stands in the machine file, and the [`Chain`] that is built of it.
 //! A machine becomes one of Seamwright's by its line in the list below; firmware, dry run and planners then
-//! know it as [`Kinematics`].
+//! know it as [`Kinematics`]. One that is a list of joints needs no line: [`SerialChain`] is made of its file alone.
 //!
 //! Every machine uses some of the axes X Y Z \[mm\] A B C \[rad\]. An axis that it does not have stands at 0.
 
@@ -14,6 +14,7 @@ mod dual_beam;
 mod limits;
 mod pipe_welder;
 mod rpy;
+mod serial_chain;
 mod stir_gantry;
 mod tool_axis;
 mod wire_arc;
@@ -23,6 +24,7 @@ pub use dual_beam::{DualBeam, DualBeamConfig};
 pub(crate) use limits::AXIS_OWNERS;
 pub use limits::{AXIS_UNIT, AxisConfig, AxisLimits, feed_limit, violations};
 pub use pipe_welder::{PipeWelder, PipeWelderConfig};
+pub use serial_chain::{Carried, JointAxis, JointConfig, SerialChain, SerialChainConfig};
 pub use stir_gantry::{StirGantry, StirGantryConfig, StirTilt};
 pub use wire_arc::{WireArc, WireArcConfig};
 
@@ -31,7 +33,7 @@ use crate::io::{AXES, AXIS_NAMES};
 use crate::parameter::ParameterError;
 use nalgebra::Vector3;
 use postcard_schema::Schema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use thiserror::Error;
 
 machines! {
@@ -45,6 +47,14 @@ machines! {
     "wire-arc" WireArc: WireArcConfig => WireArc,
     /// The friction-stir gantry: table X, then Y, Z, C, B.
     "stir-gantry" StirGantry: StirGantryConfig => StirGantry,
+    /// Any machine that is a list of joints.
+    "serial-chain" SerialChain: SerialChainConfig => SerialChain,
+}
+
+/// Three numbers. Once in the firmware, not once for each of the many fields.
+#[inline(never)]
+fn xyz<'de, D: Deserializer<'de>>(list: D) -> Result<[f64; 3], D::Error> {
+    Deserialize::deserialize(list)
 }
 
 /// Axes that realise a pose in motion (mm, rad, s).
@@ -91,9 +101,6 @@ impl AxisMotion {
 /// A [`Pose`] stands in the frame of the work. Machines whose tool is a body of revolution realise its
 /// position and its N; T is then free, and what they say of it is written at their `forward`.
 pub trait Chain {
-    /// Which of X Y Z A B C the machine has.
-    const FITTED: [bool; AXES];
-
     /// Pose of the tool for `axes`.
     fn forward(&self, axes: &[f64; AXES]) -> Pose;
 
@@ -165,4 +172,10 @@ pub enum KinematicsError {
         /// The axis.
         axis: usize,
     },
+    /// The machine has too few rotary axes for it.
+    #[error("no such attitude: the rotary axes of this machine do not bring the tool there")]
+    NoSuchAttitude,
+    /// The machine has too few axes for it, or its arms are too short.
+    #[error("out of reach: the axes of this machine do not bring the tip there")]
+    Unreachable,
 }

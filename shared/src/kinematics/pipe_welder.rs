@@ -31,6 +31,11 @@ pub struct PipeWelderConfig {
 }
 
 impl PipeWelderConfig {
+    /// Which of X Y Z A B C the machine has.
+    pub fn fitted(&self) -> [bool; AXES] {
+        [true, false, true, false, true, true]
+    }
+
     /// Checks the geometry. There is no branch to choose, so the limits of the axes do not matter.
     pub fn build(&self, _limits: &[AxisLimits; AXES]) -> Result<PipeWelder, ParameterError> {
         Ok(PipeWelder {
@@ -175,8 +180,6 @@ impl PipeWelder {
 }
 
 impl Chain for PipeWelder {
-    const FITTED: [bool; AXES] = [true, false, true, false, true, true];
-
     /// T is e_θ, the direction in which the waist turns.
     fn forward(&self, q: &[f64; AXES]) -> Pose {
         let (sin, cos) = libm::sincos(q[B]);

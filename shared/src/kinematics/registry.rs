@@ -5,6 +5,7 @@ macro_rules! machines {
     ($($(#[$doc:meta])* $key:literal $name:ident: $config:ty => $chain:ty,)+) => {
         /// Geometry of a machine, as it stands in the machine file.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+        #[expect(clippy::large_enum_variant, reason = "boards do not allocate; a machine has one")]
         pub enum KinematicsConfig {
             $($(#[$doc])* #[serde(rename = $key)] $name($config),)+
         }
@@ -23,11 +24,12 @@ macro_rules! machines {
             /// Which of X Y Z A B C the machine has.
             pub fn fitted(&self) -> [bool; AXES] {
                 match self {
-                    $(Self::$name(_) => <$chain as Chain>::FITTED,)+
+                    $(Self::$name(config) => config.fitted(),)+
                 }
             }
 
             /// Checks the geometry; `limits` are those of the axes, for machines whose branch depends on them.
+            #[cold]
             pub fn build(&self, limits: &[AxisLimits; AXES]) -> Result<Kinematics, ParameterError> {
                 Ok(match self {
                     $(Self::$name(config) => Kinematics::$name(config.build(limits)?),)+
@@ -37,6 +39,7 @@ macro_rules! machines {
 
         /// Kinematics of a machine, ready for the tick.
         #[derive(Clone, Debug, PartialEq)]
+        #[expect(clippy::large_enum_variant, reason = "boards do not allocate; a machine has one")]
         pub enum Kinematics {
             $($(#[$doc])* $name($chain),)+
         }

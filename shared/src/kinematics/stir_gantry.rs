@@ -45,6 +45,11 @@ pub enum StirTilt {
 }
 
 impl StirGantryConfig {
+    /// Which of X Y Z A B C the machine has.
+    pub fn fitted(&self) -> [bool; AXES] {
+        [true, true, true, false, true, true]
+    }
+
     /// Checks the geometry: the pin hangs. The travel of B in `limits` decides which tilts there are.
     pub fn build(&self, limits: &[AxisLimits; AXES]) -> Result<StirGantry, ParameterError> {
         Ok(StirGantry {
@@ -160,8 +165,6 @@ impl StirGantry {
 }
 
 impl Chain for StirGantry {
-    const FITTED: [bool; AXES] = [true, true, true, false, true, true];
-
     /// T is the heading with which the pin leans backwards.
     fn forward(&self, q: &[f64; AXES]) -> Pose {
         let angles = Angles::of_axes(q[B], q[C]);

@@ -30,7 +30,7 @@
 //! h is taken off: what remains is the motion of X Y Z.
 
 use super::rpy::RollPitchYaw;
-use super::{AxisLimits, AxisMotion, Chain, KinematicsError};
+use super::{AxisLimits, AxisMotion, Chain, KinematicsError, xyz};
 use crate::geometry::{Pose, PoseMotion};
 use crate::io::AXES;
 use crate::parameter::{ParameterError, check, length_of_machine};
@@ -46,14 +46,22 @@ const C: usize = 5;
 #[serde(deny_unknown_fields)]
 pub struct WireArcConfig {
     /// A axis to the tip of the wire, in the frame after A: z < 0.
+    #[serde(deserialize_with = "xyz")]
     pub torch_mm: [f64; 3],
     /// A point of the tilt axis B, in the machine frame.
+    #[serde(deserialize_with = "xyz")]
     pub tilt_axis_mm: [f64; 3],
     /// From that point to the centre of the turntable, in the frame after B.
+    #[serde(deserialize_with = "xyz")]
     pub turntable_mm: [f64; 3],
 }
 
 impl WireArcConfig {
+    /// Which of X Y Z A B C the machine has.
+    pub fn fitted(&self) -> [bool; AXES] {
+        [true; AXES]
+    }
+
     /// Checks the geometry: every number one of a machine, and the wire below the A axis. The solution is unique but for
     /// whole turns of C, so the limits of the axes do not matter.
     pub fn build(&self, _limits: &[AxisLimits; AXES]) -> Result<WireArc, ParameterError> {
@@ -165,8 +173,6 @@ impl Turning {
 }
 
 impl Chain for WireArc {
-    const FITTED: [bool; AXES] = [true; AXES];
-
     /// Pose of the torch in the part's frame.
     fn forward(&self, q: &[f64; AXES]) -> Pose {
         let torch = attitude(q);

@@ -23,10 +23,6 @@ pub const LOAD_EVENTS: usize = 32;
 
 /// What the PC may ask. A board answers [`Refusal::NotMine`] to what belongs to the other one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "boards do not allocate; one request exists at a time"
-)]
 pub enum Request {
     /// First request of every session; answered by [`Response::Identity`] even if the hash differs, after
     /// which a board refuses everything else.

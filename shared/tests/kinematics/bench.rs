@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use shared::geometry::{Pose, PoseMotion};
 use shared::io::AXES;
 use shared::kinematics::{
-    AcHeadConfig, AxisConfig, AxisLimits, DualBeamConfig, Kinematics, KinematicsConfig, PipeWelderConfig,
-    StirGantryConfig, StirTilt, WireArcConfig,
+    AcHeadConfig, AxisConfig, AxisLimits, Carried, DualBeamConfig, JointAxis, JointConfig, Kinematics,
+    KinematicsConfig, PipeWelderConfig, SerialChainConfig, StirGantryConfig, StirTilt, WireArcConfig,
 };
 
 /// A machine with the limits it was built with.
@@ -137,6 +137,161 @@ pub fn stir_gantry(tilt: StirTilt) -> Machine {
         Some((-180.0, 180.0)),
     ];
     machine(name, KinematicsConfig::StirGantry(config), travel, true)
+}
+
+/// Joints of a serial chain: axis, what it carries, direction, point.
+pub type Joints<'a> = &'a [(JointAxis, Carried, [f64; 3], [f64; 3])];
+
+pub fn chain_of(joints: Joints, tip_mm: [f64; 3], tool_axis: [f64; 3]) -> SerialChainConfig {
+    let joint =
+        |(axis, carries, direction, point_mm): &(JointAxis, Carried, [f64; 3], [f64; 3])| JointConfig {
+            axis: *axis,
+            carries: *carries,
+            direction: *direction,
+            point_mm: *point_mm,
+        };
+    SerialChainConfig {
+        joints: joints.iter().map(joint).collect(),
+        tip_mm,
+        tool_axis,
+        tangent: None,
+        work_mm: [0.0; 3],
+    }
+}
+
+const X_AXIS: [f64; 3] = [1.0, 0.0, 0.0];
+const Y_AXIS: [f64; 3] = [0.0, 1.0, 0.0];
+const Z_AXIS: [f64; 3] = [0.0, 0.0, 1.0];
+const ORIGIN: [f64; 3] = [0.0; 3];
+
+fn sum<const N: usize>(vectors: [[f64; 3]; N]) -> [f64; 3] {
+    std::array::from_fn(|i| vectors.iter().map(|v| v[i]).sum())
+}
+
+/// [`dual_beam`] as a list of joints.
+pub fn chain_dual_beam() -> Machine {
+    let o1 = [-22.7, 62.5, -22.2];
+    let o2 = sum([o1, [-37.8, 11.3, -58.8]]);
+    let config = chain_of(
+        &[
+            (JointAxis::X, Carried::Tool, X_AXIS, ORIGIN),
+            (JointAxis::Y, Carried::Tool, Y_AXIS, ORIGIN),
+            (JointAxis::Z, Carried::Tool, Z_AXIS, ORIGIN),
+            (JointAxis::C, Carried::Tool, Z_AXIS, ORIGIN),
+            (JointAxis::B, Carried::Tool, Y_AXIS, o1),
+            (JointAxis::A, Carried::Tool, X_AXIS, o2),
+        ],
+        sum([o2, [-0.18, -0.51, -615.6]]),
+        Z_AXIS,
+    );
+    same_as(dual_beam(), "chain: dual-beam gantry", config)
+}
+
+/// [`ac_head`] as a list of joints.
+pub fn chain_ac_head() -> Machine {
+    let o1 = [18.2, -40.1, 40.8];
+    let config = chain_of(
+        &[
+            (JointAxis::X, Carried::Tool, X_AXIS, ORIGIN),
+            (JointAxis::Y, Carried::Tool, Y_AXIS, ORIGIN),
+            (JointAxis::Z, Carried::Tool, Z_AXIS, ORIGIN),
+            (JointAxis::C, Carried::Tool, Z_AXIS, ORIGIN),
+            (JointAxis::A, Carried::Tool, X_AXIS, o1),
+        ],
+        sum([o1, [-19.0, -18.5, -236.4]]),
+        Z_AXIS,
+    );
+    same_as(ac_head(), "chain: A/C head", config)
+}
+
+/// [`wire_arc`] as a list of joints.
+pub fn chain_wire_arc() -> Machine {
+    let tilt = [612.3, 407.9, -151.2];
+    let table = sum([tilt, [-4.6, 12.8, 96.7]]);
+    let config = SerialChainConfig {
+        work_mm: table,
+        ..chain_of(
+            &[
+                (JointAxis::B, Carried::Work, Y_AXIS, tilt),
+                (JointAxis::C, Carried::Work, Z_AXIS, table),
+                (JointAxis::X, Carried::Tool, X_AXIS, ORIGIN),
+                (JointAxis::Y, Carried::Tool, Y_AXIS, ORIGIN),
+                (JointAxis::Z, Carried::Tool, Z_AXIS, ORIGIN),
+                (JointAxis::A, Carried::Tool, X_AXIS, ORIGIN),
+            ],
+            [3.1, -7.4, -310.5],
+            Z_AXIS,
+        )
+    };
+    same_as(wire_arc(), "chain: wire-arc robot", config)
+}
+
+/// [`stir_gantry`] as a list of joints; T follows the heading as there.
+pub fn chain_stir_gantry(tilt: StirTilt) -> Machine {
+    let (name, back) = match tilt {
+        StirTilt::Positive => ("chain: friction-stir gantry, B > 0", -1.0),
+        StirTilt::Negative => ("chain: friction-stir gantry, B < 0", 1.0),
+    };
+    let config = SerialChainConfig {
+        tangent: Some([back, 0.0, 0.0]),
+        work_mm: [0.0, 0.0, -305.0],
+        ..chain_of(
+            &[
+                (JointAxis::X, Carried::Work, X_AXIS, ORIGIN),
+                (JointAxis::Y, Carried::Tool, Y_AXIS, ORIGIN),
+                (JointAxis::Z, Carried::Tool, Z_AXIS, ORIGIN),
+                (JointAxis::C, Carried::Tool, Z_AXIS, ORIGIN),
+                (JointAxis::B, Carried::Tool, Y_AXIS, ORIGIN),
+            ],
+            [0.0, 0.0, -305.0],
+            Z_AXIS,
+        )
+    };
+    same_as(stir_gantry(tilt), name, config)
+}
+
+/// [`pipe_welder`] as a list of joints, two of them linear: the position has a say in C.
+pub fn chain_pipe_welder() -> Machine {
+    let config = chain_of(
+        &[
+            (JointAxis::C, Carried::Tool, Z_AXIS, ORIGIN),
+            (JointAxis::X, Carried::Tool, X_AXIS, ORIGIN),
+            (JointAxis::Z, Carried::Tool, Z_AXIS, ORIGIN),
+            (JointAxis::B, Carried::Tool, [0.0, -1.0, 0.0], ORIGIN),
+        ],
+        [-85.0, 0.0, 0.0],
+        X_AXIS,
+    );
+    same_as(pipe_welder(), "chain: pipe welder", config)
+}
+
+/// `machine` with other kinematics, which should be the same.
+fn same_as(machine: Machine, name: &'static str, config: SerialChainConfig) -> Machine {
+    Machine {
+        name,
+        kinematics: KinematicsConfig::SerialChain(config)
+            .build(&machine.limits)
+            .expect("a valid geometry"),
+        ..machine
+    }
+}
+
+/// Each machine that is a chain of joints, and that chain.
+pub fn pairs() -> Vec<(Machine, Machine)> {
+    vec![
+        (dual_beam(), chain_dual_beam()),
+        (ac_head(), chain_ac_head()),
+        (wire_arc(), chain_wire_arc()),
+        (
+            stir_gantry(StirTilt::Positive),
+            chain_stir_gantry(StirTilt::Positive),
+        ),
+        (
+            stir_gantry(StirTilt::Negative),
+            chain_stir_gantry(StirTilt::Negative),
+        ),
+        (pipe_welder(), chain_pipe_welder()),
+    ]
 }
 
 pub fn machines() -> Vec<Machine> {

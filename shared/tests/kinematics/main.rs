@@ -7,3 +7,4 @@ mod limits;
 mod poles;
 mod rates;
 mod round_trip;
+mod serial_chain;

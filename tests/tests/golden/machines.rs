@@ -92,7 +92,13 @@ fn ac_head_solution(
     let compensation = head.compensation([before[A], before[C]], [axes[A], axes[C]]);
     near_all(case, "comp", compensation.as_slice(), &out["comp"], mm);
     let seq = number(input, "seq") as u32;
-    let block = machine_block(seq, &axes, &AcHead::FITTED, limits, number(input, "feed"));
+    let block = machine_block(
+        seq,
+        &axes,
+        &[true, true, true, true, false, true],
+        limits,
+        number(input, "feed"),
+    );
     assert_eq!(
         block.expect("axes within the travel"),
         out["nc"].as_str().expect("nc"),

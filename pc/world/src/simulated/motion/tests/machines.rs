@@ -5,7 +5,7 @@ use cam::path::TOLERANCE;
 use nalgebra::Vector3;
 use shared::geometry::Pose;
 use shared::io::{AXES, DacCode, MOTOR_AXIS, MOTORS};
-use shared::kinematics::{AXIS_UNIT, KinematicsConfig};
+use shared::kinematics::AXIS_UNIT;
 use shared::protocol::{PathElement, PathLimits, Request};
 use shared::state::State;
 use shared::trajectory::{CHANNELS, Cubic, Element, Join, Knot, PathSpace, SHAPED, Shape};
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 
 #[test]
 fn every_machine_homes_and_commands_no_motor_it_does_not_have() {
-    for name in KinematicsConfig::NAMES {
+    for name in plant_file::names() {
         let motors = config_of(name).motors.map(|motor| motor.is_some());
         let mut bench = Bench::configured_as(name);
         bench.done(&Request::Home);
