@@ -1,5 +1,6 @@
 //! The real cameras of a machine.
 
+use crate::by_side::by_side;
 use serde::Deserialize;
 use shared::io::SIDES;
 
@@ -7,7 +8,8 @@ use shared::io::SIDES;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GigeConfig {
-    /// Name, serial number or address of camera 1 and 2, as Aravis finds them (`arv-tool-0.8` lists all).
+    /// Name, serial number or address of camera 1 and 2, as Aravis finds them (`arv-tool-0.8` lists all); one name on a machine with one side.
+    #[serde(deserialize_with = "by_side")]
     pub devices: [String; SIDES],
     /// How many pixels of the sensor a side make one of the picture; 1 if not given.
     #[serde(default = "one")]

@@ -1,5 +1,6 @@
 //! Files that describe a machine, and what all files have in common: problems are named by file, line and key.
 
+mod by_side;
 pub mod calibration;
 pub mod gige;
 pub mod machine;

@@ -86,6 +86,11 @@ impl Weld {
         let heads = tracking
             .map(|tracking| tracking.heads)
             .ok_or_else(|| wrong("the machine has no cameras".to_owned()))?;
+        if heads.sides().len() < SIDES {
+            return Err(wrong(
+                "the machine has one head, and marks are burnt with two".to_owned(),
+            ));
+        }
         let spots = [run.side, 1 - run.side].map(|side| (heads.spot(&pose, side), side));
         let [own, other] = spots.map(|(spot, side)| spot.point(0.0, 0.0, point.v_follow()[side]));
         let place = Place {

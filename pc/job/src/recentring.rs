@@ -9,8 +9,9 @@ use cam::along::Along;
 use config::machine::TrackingUnit;
 use host_link::boards::LinkError;
 use offset::{recentre, slides_after};
+use shared::config::SlideConfig;
 use shared::geometry::PoseOffset;
-use shared::io::{SLIDE_NAMES, SLIDES};
+use shared::io::{AXES, SLIDE_NAMES, SLIDES};
 use shared::parameter::ParameterError;
 use shared::protocol::{Request, Role};
 use shared::state::TrackerState;
@@ -31,6 +32,8 @@ const REACHED: f64 = 1e-6;
 /// Watches the slides of a job.
 pub(super) struct Recentring {
     heads: Heads,
+    /// How far the pose may turn about T \[rad\].
+    most_turn: f64,
     travel: [(f64, f64); SLIDES],
     path_id: u32,
     /// All slides were near since the last time.
@@ -42,12 +45,19 @@ pub(super) struct Recentring {
 }
 
 impl Recentring {
-    /// For a machine with a tracker.
-    pub fn new(unit: &TrackingUnit) -> Result<Self, ParameterError> {
+    /// For a machine with a tracker, and these axes.
+    pub fn new(unit: &TrackingUnit, fitted: [bool; AXES]) -> Result<Self, ParameterError> {
         let slides = &unit.board.slides;
+        let heads = unit.board.heads()?;
+        // A single head gains nothing by a turn, and with fewer rotary axes the machine has none.
+        let turns = heads.sides().len() > 1 && fitted[3..] == [true; 3];
         Ok(Self {
-            heads: unit.board.head.build()?,
-            travel: std::array::from_fn(|i| (slides[i].travel_min_mm, slides[i].travel_max_mm)),
+            heads,
+            most_turn: if turns { MOST_TURN } else { 0.0 },
+            travel: std::array::from_fn(|i| {
+                let of = |slide: &SlideConfig| (slide.travel_min_mm, slide.travel_max_mm);
+                slides.get(i).map_or((f64::NEG_INFINITY, f64::INFINITY), of)
+            }),
             path_id: 0,
             armed: true,
             offset: PoseOffset::NONE,
@@ -103,7 +113,8 @@ impl Recentring {
             return None;
         }
         let turned = self.offset.about_tangent_rad;
-        let move_on = recentre(&self.heads, slides, (-MOST_TURN - turned, MOST_TURN - turned))?;
+        let most = self.most_turn;
+        let move_on = recentre(&self.heads, slides, (-most - turned, most - turned))?;
         // Where slides pull against each other, the least sum of squares may send one of them to its end.
         let rest = self.all_used(&slides_after(&self.heads, slides, &move_on));
         let farthest = |used: [f64; SLIDES]| used.into_iter().fold(0.0, f64::max);
@@ -168,7 +179,8 @@ mod tests {
             "/../../machines/dual-beam-gantry.toml"
         );
         let machine = MachineFile::read(std::path::Path::new(file)).unwrap();
-        Recentring::new(&machine.tracking.unwrap()).unwrap()
+        let fitted = machine.motion.kinematics.fitted();
+        Recentring::new(&machine.tracking.unwrap(), fitted).unwrap()
     }
 
     #[test]

@@ -201,7 +201,9 @@ fn missing(session: &Session, held: bool) -> Option<(SeamSearchFigures, [bool; S
     }
     let near_mm = if held { search.lock_mm } else { search.soon_mm };
     let away = |slide: usize| (slides.target_mm[slide] - slides.slides_mm[slide]).abs() > near_mm;
-    let missing =
-        std::array::from_fn(|side| !tracking.in_sight(side) || away(2 * side) || away(2 * side + 1));
+    let missing = std::array::from_fn(|side| {
+        tracking.heads.sides().contains(&side)
+            && (!tracking.in_sight(side) || away(2 * side) || away(2 * side + 1))
+    });
     Some((search, missing))
 }

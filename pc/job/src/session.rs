@@ -81,7 +81,9 @@ impl<'a> Session<'a> {
             trouble: None,
             machine: geometry,
             tracking,
-            recentring: unit.map(Recentring::new).transpose()?,
+            recentring: unit
+                .map(|unit| Recentring::new(unit, machine.motion.kinematics.fitted()))
+                .transpose()?,
             record: Record::new(spooling),
             lost_before: lost(&motion),
             motion,

@@ -116,7 +116,7 @@ impl Tracking {
         spooling: &Spooling,
         control: &Control,
     ) -> Result<Self, JobError> {
-        let heads = unit.board.head.build()?;
+        let heads = unit.board.heads()?;
         let role = Role::Tracker;
         boards.identity(role).ok_or(LinkError::Absent { role })?;
         let status = of(boards.request(role, &Request::Status)?)?;

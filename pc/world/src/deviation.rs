@@ -3,8 +3,8 @@
 use crate::TrueSeams;
 use cam::path::PlannedPath;
 use config::machine::{MachineFile, TrackingUnit};
-use config::table::{self, TableError};
-use shared::io::{SIDES, SLIDE_NAMES, SLIDES};
+use config::table::{self, Row, TableError};
+use shared::io::{SLIDE_NAMES, SLIDES};
 use shared::protocol::{PathAction, PathEvent};
 use std::path::Path;
 use thiserror::Error;
@@ -93,14 +93,17 @@ impl Deviation {
         }
     }
 
-    /// Reads `s_mm,u1_mm,v1_mm,u2_mm,v2_mm` at `path`.
+    /// Reads `s_mm,u1_mm,v1_mm,u2_mm,v2_mm` at `path`, or `s_mm,u1_mm,v1_mm` of one side; the other one is as programmed then.
     pub fn read(path: &Path) -> Result<Self, TableError> {
         Self::parse(&path.display().to_string(), &table::read(path)?)
     }
 
     /// Understands `text`; `path` is used in messages only.
     pub fn parse(path: &str, text: &str) -> Result<Self, TableError> {
-        let rows = table::parse(path, text, ["s_mm", "u1_mm", "v1_mm", "u2_mm", "v2_mm"])?;
+        let rows = match table::parse(path, text, ["s_mm", "u1_mm", "v1_mm", "u2_mm", "v2_mm"]) {
+            Err(other @ TableError::Header { .. }) => one_side(path, text, other)?,
+            both => both?,
+        };
         let path = path.to_owned();
         if rows.len() < 2 {
             return Err(TableError::Short { path, wanted: 2 });
@@ -162,13 +165,29 @@ impl Deviation {
         for s in even.chain(rows) {
             let follow = knots.at(s).map_or([0.0; 2], |point| point.v_follow());
             let deviation = self.at(s - start);
-            for slide in 0..SLIDES {
+            for slide in 0..unit.board.slides.len() {
                 let planned = if slide % 2 == 1 { follow[slide / 2] } else { 0.0 };
                 reach(unit, slide, planned + deviation[slide], s - start, &mut worst);
             }
         }
         worst.map_or(Ok(()), |(_, error)| Err(error))
     }
+}
+
+/// The rows of a file of one side; it is of neither kind if there are `other` columns than those of two sides or of one.
+fn one_side(path: &str, text: &str, other: TableError) -> Result<Vec<Row<5>>, TableError> {
+    let rows = match table::parse(path, text, ["s_mm", "u1_mm", "v1_mm"]) {
+        Err(TableError::Header { .. }) => return Err(other),
+        rows => rows?,
+    };
+    let both = |Row {
+                    line,
+                    values: [s, u, v],
+                }| Row {
+        line,
+        values: [s, u, v, 0.0, 0.0],
+    };
+    Ok(rows.into_iter().map(both).collect())
 }
 
 /// Notes in `worst` if `slide` cannot reach `position` \[mm\] by more than what was noted before.
@@ -200,7 +219,7 @@ pub fn check_facing(seams: &TrueSeams, path: &PlannedPath, machine: &MachineFile
     for i in 0..=count {
         let along = (end - start) * i as f64 / count as f64;
         let pose = knots.at(start + along).and_then(|point| point.pose().ok());
-        for side in 0..SIDES {
+        for side in unit.board.sides() {
             let facing = pose.and_then(|pose| seams.facing(side, &seams.heads().spot(&pose, side), 0.0));
             let Some((_, crossing)) = facing else {
                 let (side, s) = (side + 1, along);

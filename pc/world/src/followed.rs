@@ -6,7 +6,7 @@
 use crate::{Deviation, TrueSeam};
 use cam::path::PlannedPath;
 use config::machine::{JointForm, MachineFile, TrackingUnit};
-use shared::io::{SIDES, SLIDE_NAMES};
+use shared::io::SLIDE_NAMES;
 use shared::parameter::ParameterError;
 use shared::protocol::{PathAction, PathEvent};
 use shared::ticks::TRACKER_PERIOD_S;
@@ -156,7 +156,7 @@ pub fn not_followed(
             weld: (start, end),
             speed: path.speeds().fastest_mm_s,
         };
-        for side in 0..SIDES {
+        for side in unit.board.sides() {
             found.extend(look.beside(side));
             found.extend(look.out_of_view(side));
             for slide in [2 * side, 2 * side + 1] {

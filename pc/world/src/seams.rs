@@ -116,8 +116,11 @@ impl TrueSeams {
     }
 
     /// The seam that the head of `side` faces in the plane `along` \[mm\] ahead of `frame`, the nearest of those that
-    /// go the same way, and where it passes through that plane.
+    /// go the same way, and where it passes through that plane. A side without a head faces none.
     pub fn facing(&self, side: usize, frame: &SpotFrame, along: f64) -> Option<(&TrueSeam, Crossing)> {
+        if !self.heads.sides().contains(&side) {
+            return None;
+        }
         let nearest = self
             .seams
             .iter()

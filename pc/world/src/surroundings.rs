@@ -122,7 +122,7 @@ impl World {
         let Some(unit) = &machine.tracking else {
             return Ok(None);
         };
-        let heads = unit.board.head.build()?;
+        let heads = unit.board.heads()?;
         let Some(deviation) = &self.settings.seam else {
             return Ok(Some(TrueSeams::none(heads)));
         };

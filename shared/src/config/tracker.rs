@@ -2,16 +2,18 @@
 
 use crate::control::HomeConfig;
 use crate::io::{SIDES, SLIDES};
+use core::ops::Range;
+use heapless::Vec;
 use postcard_schema::Schema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// Everything the tracker board needs to know of its machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct TrackerConfig {
     /// Where the two heads sit on the arc plate.
     pub head: HeadConfig,
-    /// U1, V1, U2, V2.
-    pub slides: [SlideConfig; SLIDES],
+    /// U1, V1, and on a machine with two sides U2, V2.
+    pub slides: Vec<SlideConfig, SLIDES>,
     /// Map and control law.
     pub tracking: TrackingConfig,
     /// From their enable on, drives take so long until they follow a command, brakes open and all \[ms\]; they are told 0 V until
@@ -19,15 +21,24 @@ pub struct TrackerConfig {
     pub drive_enable_ms: u32,
 }
 
-/// The two heads on the arc plate (mathematics 0.5–0.7).
+impl TrackerConfig {
+    /// The sides that have slides, from 0.
+    pub fn sides(&self) -> Range<usize> {
+        0..self.slides.len() / (SLIDES / SIDES)
+    }
+}
+
+/// The heads on the arc plate, one or two (mathematics 0.5–0.7).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 #[serde(deny_unknown_fields)]
 pub struct HeadConfig {
     /// Angle θ2 from beam 1 to beam 2 about the tangent T \[deg\], a constant of the machine:
-    /// N1 = Rot(T, −θ2/2)·N, N2 = Rot(T, +θ2/2)·N. Negative if seam 1 is on the right of travel.
+    /// N1 = Rot(T, −θ2/2)·N, N2 = Rot(T, +θ2/2)·N. Negative if seam 1 is on the right of travel; 0 for a single head along N.
     pub included_angle_deg: f64,
     /// Distance from D to each beam's working point along N_k with its V slide at zero \[mm\]: ℓ − f − z of
-    /// mathematics 0.6. The slide extension that keeps the defocus is this minus the distance of the seam.
+    /// mathematics 0.6. The slide extension that keeps the defocus is this minus the distance of the seam. In files one number
+    /// stands for all sides.
+    #[serde(deserialize_with = "by_side")]
     pub working_distance_mm: [f64; SIDES],
     /// Lead of the cameras before the beams, along T \[mm\].
     pub camera_lead_mm: f64,
@@ -97,4 +108,17 @@ pub struct TrackingConfig {
     pub max_seam_deviation_mm: f64,
     /// Steepest that a seam may lead away from its plan; what was measured on a steeper one is an outlier.
     pub max_seam_slope: f64,
+}
+
+/// A number for each side; in a file one stands for all.
+fn by_side<'de, D: Deserializer<'de>>(list: D) -> Result<[f64; SIDES], D::Error> {
+    if !list.is_human_readable() {
+        return <[f64; SIDES]>::deserialize(list);
+    }
+    let given: Vec<f64, SIDES> = Vec::deserialize(list)?;
+    match given[..] {
+        [all] => Ok([all; SIDES]),
+        [first, second] => Ok([first, second]),
+        _ => Err(serde::de::Error::custom("a number for each side is wanted")),
+    }
 }

@@ -311,8 +311,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     }
 
     fn read_slides(&mut self, parameters: &TrackerParameters) {
-        for (i, slide) in self.slides.iter_mut().enumerate() {
-            let measured = self.feedback.counts[i] as f64 / parameters.slides[i].counts_per_mm;
+        let counts = self.feedback.counts;
+        for ((slide, of), counts) in self.slides.iter_mut().zip(&parameters.slides).zip(counts) {
+            let measured = counts as f64 / of.counts_per_mm;
             slide.position = measured + slide.offset.unwrap_or(0.0);
         }
     }
@@ -329,7 +330,11 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             true => self.unattended_ticks.saturating_add(1),
             false => 0,
         };
-        if on && let Some(fault) = self.trip().or_else(|| self.supervise(parameters, periods)) {
+        if on
+            && let Some(fault) = self
+                .trip(parameters)
+                .or_else(|| self.supervise(parameters, periods))
+        {
             self.report(fault);
             self.state = TrackerState::Fault;
         }
@@ -342,7 +347,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
 
     /// A reason to switch the drives off. A limit switch is not one while homing, where it reverses the
     /// search.
-    fn trip(&self) -> Option<TrackerFault> {
+    fn trip(&self, parameters: &TrackerParameters) -> Option<TrackerFault> {
         let feedback = &self.feedback;
         if self.estop.is_pressed() {
             return Some(TrackerFault::EmergencyStop);
@@ -352,7 +357,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 seconds: UNATTENDED_S,
             });
         }
-        (0..SLIDES).find_map(|i| {
+        (0..parameters.slides.len()).find_map(|i| {
             let slide = i as u8;
             if feedback.drive_fault.get(i) {
                 return Some(TrackerFault::Drive { slide });
@@ -451,7 +456,8 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     }
 
     fn homed(&self) -> bool {
-        self.slides.iter().all(|slide| slide.offset.is_some())
+        let mut searched = self.slides.iter().zip(&self.searches);
+        !self.searches.is_empty() && searched.all(|(slide, _)| slide.offset.is_some())
     }
 
     fn sample(&self, input: &TickInput, command: &SlideCommand) -> TrackerSample {

@@ -1,10 +1,11 @@
 //! Frames of beams and cameras, and the position of a measurement on the path (mathematics 0.6, 0.7, 0.8.2).
 
-use crate::config::HeadConfig;
+use crate::config::{HeadConfig, TrackerConfig};
 use crate::geometry::Pose;
-use crate::io::SIDES;
+use crate::io::{SIDES, SLIDES};
 use crate::parameter::{ParameterError, check, positive};
 use crate::protocol::SideMeasurement;
+use core::ops::Range;
 use nalgebra::Vector3;
 
 /// Frame of one head's working point with its slides at zero, in the world (mathematics 0.7).
@@ -46,17 +47,32 @@ impl SpotFrame {
     }
 }
 
-/// The two heads on the arc plate, ready for use.
+/// The heads on the arc plate, ready for use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heads {
     /// Sine and cosine of each head's angle from N about T.
     angle: [(f64, f64); SIDES],
     working_distance: [f64; SIDES],
     camera_lead: f64,
+    sides: usize,
+}
+
+impl TrackerConfig {
+    /// The heads, as many as have slides; errors name the field.
+    pub fn heads(&self) -> Result<Heads, ParameterError> {
+        let slides = self.slides.len();
+        check("tracking", "slides", slides as f64, |_| {
+            slides > 0 && slides.is_multiple_of(SLIDES / SIDES)
+        })?;
+        Ok(Heads {
+            sides: self.sides().len(),
+            ..self.head.build()?
+        })
+    }
 }
 
 impl HeadConfig {
-    /// Checks and builds; errors name the field.
+    /// Checks and builds two heads; errors name the field.
     pub fn build(&self) -> Result<Heads, ParameterError> {
         let half =
             0.5 * check("head", "included_angle_deg", self.included_angle_deg, |a| {
@@ -71,11 +87,17 @@ impl HeadConfig {
             angle: [-half, half].map(|a| (libm::sin(a), libm::cos(a))),
             working_distance: self.working_distance_mm,
             camera_lead: positive("head", "camera_lead_mm", self.camera_lead_mm)?,
+            sides: SIDES,
         })
     }
 }
 
 impl Heads {
+    /// The sides that have a head, from 0.
+    pub fn sides(&self) -> Range<usize> {
+        0..self.sides
+    }
+
     /// Lead of the cameras before the beams, along T \[mm\].
     pub fn camera_lead(&self) -> f64 {
         self.camera_lead

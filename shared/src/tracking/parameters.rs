@@ -12,6 +12,7 @@ use crate::control::ReferenceSearch;
 use crate::io::{SLIDE_NAMES, SLIDES};
 use crate::parameter::{ParameterError, check, not_negative, positive};
 use crate::ticks::TRACKER_PERIOD_S;
+use heapless::Vec;
 
 /// What holds a slide is learnt in so many time constants of the loop that learns it, 2/kp.
 const LEARNING: f64 = 10.0;
@@ -23,8 +24,8 @@ const STEEPEST: f64 = 1.0;
 pub struct TrackerParameters {
     /// Where the heads sit.
     pub heads: Heads,
-    /// U1, V1, U2, V2.
-    pub slides: [SlideParameters; SLIDES],
+    /// U1, V1, and on a machine with two sides U2, V2.
+    pub slides: Vec<SlideParameters, SLIDES>,
     /// How the maps take and read samples.
     pub map: MapLaw,
     /// Limits of plausible datagrams.
@@ -87,17 +88,16 @@ impl TrackerConfig {
     /// Checks and builds; errors name the field as in the machine file.
     pub fn build(&self) -> Result<TrackerParameters, ParameterError> {
         let tracking = &self.tracking;
-        let heads = self.head.build()?;
+        let heads = self.heads()?;
         let window = positive("tracking", "window_mm", tracking.window_mm)?;
         let hold = not_negative("tracking", "hold_mm", tracking.hold_mm)?;
         let at_least_one = |field, value: u32| check("tracking", field, f64::from(value), |v| v >= 1.0);
         at_least_one("frame_period_ms", tracking.frame_period_ms)?;
         at_least_one("stale_path_ms", tracking.stale_path_ms)?;
         at_least_one("saturation_trip_ms", tracking.saturation_trip_ms)?;
-        let mut slides = [self.slides[0].build(0, tracking)?; SLIDES];
-        for (i, slide) in slides.iter_mut().enumerate().skip(1) {
-            *slide = self.slides[i].build(i, tracking)?;
-        }
+        let slides = self.slides.iter().enumerate();
+        let slides = slides.map(|(i, slide)| slide.build(i, tracking));
+        let slides: Vec<_, SLIDES> = slides.collect::<Result<_, _>>()?;
         let preview = positive("tracking", "preview_s", tracking.preview_s)?;
         // A sweep at the slides' full speed is as fast as it can be.
         let slowest = slides.iter().map(|slide| slide.law.max_velocity);

@@ -32,7 +32,7 @@ const EARLY: f64 = 5000.0;
 const TURNED: f64 = 0.5;
 
 impl TrackerParameters {
-    /// Whether the camera of `side` can have seen the seam there, with the slides at `slides` \[mm\] and the machine going
+    /// Whether there is a camera of `side`, and it can have seen the seam there, with the slides at `slides` \[mm\] and the machine going
     /// at `speed` \[mm/s\]. The mean of several pictures lies behind the last one, and means over more than the window
     /// would bend the seam.
     pub fn accepts(&self, side: usize, slides: &[f64; SLIDES], speed: f64, seen: &SideMeasurement) -> bool {
@@ -46,7 +46,8 @@ impl TrackerParameters {
             (min - self.plausible.gate..=max + self.plausible.gate).contains(&(slides[slide] + delta))
         };
         // Comparisons with what is not a number are false.
-        ahead <= self.plausible.along
+        self.heads.sides().contains(&side)
+            && ahead <= self.plausible.along
             && ahead >= -self.plausible.along - self.map.window
             && reaches(2 * side, seen.delta_u_mm)
             && reaches(2 * side + 1, seen.delta_v_mm)

@@ -44,7 +44,9 @@ pub fn config() -> TrackerConfig {
             working_distance_mm: [4.0, 4.0],
             camera_lead_mm: 10.0,
         },
-        slides: [slide(-5.0), slide(5.0), slide(5.0), slide(-5.0)],
+        slides: [slide(-5.0), slide(5.0), slide(5.0), slide(-5.0)]
+            .into_iter()
+            .collect(),
         tracking: TrackingConfig {
             kp: 40.0,
             ki: 0.0,

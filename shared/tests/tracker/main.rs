@@ -6,6 +6,7 @@ mod estop;
 mod following;
 mod forged;
 mod jog;
+mod one_side;
 mod parameters;
 mod permits;
 mod searching;

@@ -176,7 +176,7 @@ pub fn scene(text: &str) -> anyhow::Result<()> {
     let machine = shipped_machine("dual-beam-gantry");
     let unit = machine.tracking.expect("it has a tracker");
     let scene = SceneFile::parse("a.toml", text)?;
-    let world = RenderedWorld::new(&scene, &unit.cameras, &unit.board.head.build()?, 1);
+    let world = RenderedWorld::new(&scene, &unit.cameras, &unit.board.heads()?, 1);
     let (mut camera, tell) = world.camera(0);
     let form = ViewForm::Plate {
         pitch: 0.0,

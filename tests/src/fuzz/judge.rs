@@ -249,7 +249,7 @@ impl Judge {
             0..0
         };
         for slide in slides {
-            let config = self.tracker.as_ref().map(|config| &config.slides[slide]);
+            let config = self.tracker.as_ref().and_then(|config| config.slides.get(slide));
             let most = config.map_or(0.0, |config| {
                 config.max_velocity_mm_s / config.velocity_at_10v_mm_s.abs()
             });

@@ -195,7 +195,7 @@ impl World {
     /// A world with the cameras of `machine` before the seams that deviate from `program`, and the session's cameras.
     fn new(file: &MachineFile, program: &Program, wire: Wire) -> (Self, [Outside; SIDES]) {
         let unit = file.tracking.as_ref().unwrap();
-        let heads = unit.board.head.build().unwrap();
+        let heads = unit.board.heads().unwrap();
         let planner = Planner::build(file).unwrap();
         let paths = planner
             .program(program, &file.planning.park_axes(), None)

@@ -81,7 +81,9 @@ impl DriveLimits {
                 unit: AXIS_UNIT[i],
             },
             None => match &machine.tracking {
-                Some(unit) => Self::of_slide(&unit.board.slides[2 * (i - AXES) + 1]),
+                Some(unit) => {
+                    (unit.board.slides.get(2 * (i - AXES) + 1)).map_or(Self::NO_SLIDE, Self::of_slide)
+                }
                 None => Self::NO_SLIDE,
             },
         }))

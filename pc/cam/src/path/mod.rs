@@ -48,6 +48,7 @@ use shared::io::{AXES, SIDES};
 use shared::kinematics::{AXIS_UNIT, Kinematics};
 use shared::parameter::ParameterError;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 use targets::RestState;
 
@@ -79,6 +80,8 @@ pub struct Planner {
     spindle: Option<u8>,
     /// The machine has slides that follow the seam.
     tracks: bool,
+    /// The sides that have them.
+    sides: Range<usize>,
     planning: PlanningConfig,
     program: ProgramConfig,
     /// Lengths by number \[mm\].
@@ -104,6 +107,7 @@ impl Planner {
             input_names: machine.inputs.clone(),
             welding: Arc::new(machine.welding.clone()),
             tracks: machine.tracking.is_some(),
+            sides: machine.tracking.as_ref().map_or(0..0, |unit| unit.board.sides()),
             planning: machine.planning.clone(),
             program: machine.program.clone(),
             tools: machine.tools.clone(),

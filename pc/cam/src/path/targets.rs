@@ -77,7 +77,8 @@ impl Planner {
         let of_axes = target.way == Way::Axes;
         let axis = (0..AXES)
             .find(|&i| target.words.axes[i].is_some() && !self.fitted[i] && (of_axes || ROTARY.contains(&i)));
-        let slide = (0..SIDES).find(|&side| target.words.extension[side].is_some() && !self.tracks);
+        let slide =
+            (0..SIDES).find(|side| target.words.extension[*side].is_some() && !self.sides.contains(side));
         match axis
             .map(|i| AXIS_NAMES[i])
             .or(slide.map(|side| SLIDE_NAMES[side]))
@@ -95,7 +96,7 @@ impl Planner {
     fn fitted_words(&self) -> String {
         let axes = AXIS_NAMES.iter().zip(self.fitted);
         let axes = axes.filter_map(|(name, fitted)| fitted.then_some(*name));
-        let slides = SLIDE_NAMES.iter().filter(|_| self.tracks).copied();
+        let slides = self.sides.clone().map(|side| SLIDE_NAMES[side]);
         axes.chain(slides).collect::<Vec<_>>().join(" ")
     }
 }

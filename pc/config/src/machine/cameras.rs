@@ -1,5 +1,6 @@
 //! The cameras of a machine: what the drawing says of them, and where their calibrations are.
 
+use crate::by_side::{by_side, some_by_side};
 use crate::calibration::{Calibration, CalibrationError, OpticsTable, PhotonTransferTable};
 use crate::gige::GigeConfig;
 use serde::{Deserialize, Deserializer};
@@ -7,7 +8,7 @@ use shared::io::SIDES;
 use std::path::{Path, PathBuf};
 use vision::{Optics, PhotonTransfer};
 
-/// Both cameras; lead and frame period are parameters of the tracker board.
+/// The cameras; lead and frame period are parameters of the tracker board. Of lists in the file one value stands for both sides.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraConfig {
@@ -18,6 +19,7 @@ pub struct CameraConfig {
     /// What the joint looks like to them.
     pub joint: JointForm,
     /// How each camera is turned about T against its head: n = Rot(T, mount)·N_k \[°\].
+    #[serde(deserialize_with = "by_side")]
     pub mount_deg: [f64; SIDES],
     /// See [`CameraConfig::focus_above_mm`].
     focus_above_mm: Option<f64>,
@@ -28,6 +30,7 @@ pub struct CameraConfig {
     #[serde(deserialize_with = "photon_transfer")]
     pub photon_transfer: PhotonTransfer,
     /// Calibration files of camera 1 and 2, beside the machine file; without them both are as drawn.
+    #[serde(default, deserialize_with = "some_by_side")]
     pub calibration: Option<[PathBuf; SIDES]>,
     /// The real cameras, if they are GigE Vision.
     pub gige: Option<GigeConfig>,

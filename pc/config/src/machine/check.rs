@@ -2,7 +2,7 @@
 
 use super::{CameraConfig, MachineFile, Mistake, PlanningConfig, TrackingUnit, program};
 use crate::{RangeError, in_range};
-use shared::io::{AXES, AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES, MOTORS, SIDES};
+use shared::io::{AXES, AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use std::borrow::Cow;
 
 /// The second motor of X, which only a gantry has.
@@ -62,7 +62,7 @@ fn view(unit: &TrackingUnit) -> Result<(), Mistake> {
     let pixel = optics.object_pixel_mm();
     let across = optics.columns as f64 * pixel / 2.0;
     let up = optics.rows as f64 * pixel * optics.tilt_rad.sin() / 2.0;
-    for side in 0..SIDES {
+    for side in unit.board.sides() {
         let camera = unit.cameras.nominal(side);
         for v in [v, -v] {
             let [lateral, height] = camera.camera_step(u, v).map(f64::abs);

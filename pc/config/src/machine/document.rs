@@ -64,8 +64,8 @@ struct Motors {
 struct Slides {
     U1: SlideConfig,
     V1: SlideConfig,
-    U2: SlideConfig,
-    V2: SlideConfig,
+    U2: Option<SlideConfig>,
+    V2: Option<SlideConfig>,
 }
 
 #[derive(Deserialize)]
@@ -75,6 +75,21 @@ struct Sides<T> {
     first: Option<T>,
     #[serde(rename = "2")]
     second: Option<T>,
+}
+
+impl Slides {
+    /// Those of one side or of both.
+    fn into_list(self) -> Result<Vec<SlideConfig>, Mistake> {
+        let missing = |table| Mistake::TrackerIncomplete { table };
+        let second = match (self.U2, self.V2) {
+            (None, None) => None,
+            (Some(u), Some(v)) => Some([u, v]),
+            (None, Some(_)) => return Err(missing("slides.U2")),
+            (Some(_), None) => return Err(missing("slides.V2")),
+        };
+        let first = [self.U1, self.V1].into_iter();
+        Ok(first.chain(second.into_iter().flatten()).collect())
+    }
 }
 
 impl TryFrom<Document> for MachineFile {
@@ -135,7 +150,7 @@ fn tracking_unit(
     Ok(Some(TrackingUnit {
         board: TrackerConfig {
             head: head.ok_or(missing("head"))?,
-            slides: [slides.U1, slides.V1, slides.U2, slides.V2],
+            slides: slides.into_list()?.into_iter().collect(),
             tracking: tracking.ok_or(missing("tracking"))?,
             drive_enable_ms,
         },

@@ -90,7 +90,9 @@ pub(super) fn tasks(role: Role, machine: Option<&MachineFile>) -> Vec<Task> {
         Role::Tracker => {
             let unit = machine.and_then(|machine| machine.tracking.as_ref());
             for (number, name) in SLIDE_NAMES.into_iter().enumerate() {
-                let scale = unit.map(|unit| unit.board.slides[number].counts_per_mm);
+                let scale = unit
+                    .and_then(|unit| unit.board.slides.get(number))
+                    .map(|slide| slide.counts_per_mm);
                 tasks.push(drive(number, name, scale));
             }
         }

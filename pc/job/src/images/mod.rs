@@ -55,9 +55,9 @@ pub struct ImageCameras {
     pub noted: Option<(usize, SightingLog)>,
 }
 
-/// Both cameras.
+/// The cameras of all sides.
 pub struct Images {
-    sides: [Side; SIDES],
+    sides: Vec<Side>,
     cameras: CameraConfig,
     heads: Heads,
     calibrations: [Calibration; SIDES],
@@ -175,7 +175,7 @@ impl Images {
         };
         let mut begin = |side| begin(side).map_err(|source| ImagesError { side, source });
         Ok(Self {
-            sides: [begin(0)?, begin(1)?],
+            sides: heads.sides().map(&mut begin).collect::<Result<_, _>>()?,
             cameras: cameras.clone(),
             heads,
             calibrations: of.calibrations,
@@ -253,7 +253,7 @@ impl SeamCameras for Images {
     fn strobe(&mut self, capture: Capture, strobe_us: u64, pose: Option<Pose>) {
         let delay_s = self.calibrations.map(|calibration| calibration.delay_s());
         let before_us = self.last.as_ref().map(|(.., us)| *us);
-        for side in 0..SIDES {
+        for side in self.heads.sides() {
             let moved = pose.and_then(|pose| self.moved(side, &pose, &capture));
             let late = self.source.late_us(capture.number, side);
             let this = &mut self.sides[side];
@@ -316,16 +316,14 @@ impl SeamCameras for Images {
             }
             let numbers = self
                 .sides
-                .each_ref()
-                .map(|side| Some(side.held.as_ref()?.seen.capture));
-            let capture = match numbers {
-                // Numbers begin anew after 2³².
-                [Some(a), Some(b)] if (a.wrapping_sub(b) as i32) < 0 => a,
-                [_, Some(b)] => b,
-                [Some(a), None] => a,
-                [None, None] => return Ok(None),
+                .iter()
+                .filter_map(|side| Some(side.held.as_ref()?.seen.capture));
+            // Numbers begin anew after 2³².
+            let first = numbers.reduce(|a, b| if (a.wrapping_sub(b) as i32) < 0 { a } else { b });
+            let Some(capture) = first else {
+                return Ok(None);
             };
-            let held = self.sides.each_mut().map(|side| side.give(capture));
+            let held: [_; SIDES] = std::array::from_fn(|k| self.sides.get_mut(k)?.give(capture));
             let seen = held.each_ref().map(|held| Some(held.as_ref()?.seen));
             let sides = seen.map(|seen| seen?.measurement);
             if sides != [None; SIDES] {
@@ -344,7 +342,10 @@ impl SeamCameras for Images {
     }
 
     fn figures(&self) -> Option<[CameraFigures; SIDES]> {
-        Some(self.sides.each_ref().map(|side| side.figures))
+        let of = |side: &Side| side.figures;
+        Some(std::array::from_fn(|k| {
+            self.sides.get(k).map(of).unwrap_or_default()
+        }))
     }
 }
 

@@ -26,7 +26,7 @@ impl PictureSource for Blind {
 fn images() -> Images {
     let text = include_str!("../../../../machines/dual-beam-gantry.toml");
     let unit = MachineFile::parse("m.toml", text).unwrap().tracking.unwrap();
-    let heads = unit.board.head.build().unwrap();
+    let heads = unit.board.heads().unwrap();
     let of = ImageCameras {
         calibrations: std::array::from_fn(|side| unit.cameras.nominal(side)),
         kept: None,
@@ -144,7 +144,7 @@ fn view(capture: u32, height_mm: f64) -> FieldOfView {
 fn rendered(scene: &SceneFile) -> (TrackingUnit, RenderedCamera, Sender<FieldOfView>) {
     let text = include_str!("../../../../machines/dual-beam-gantry.toml");
     let unit = MachineFile::parse("m.toml", text).unwrap().tracking.unwrap();
-    let heads = unit.board.head.build().unwrap();
+    let heads = unit.board.heads().unwrap();
     let (camera, tell) = RenderedWorld::new(scene, &unit.cameras, &heads, 1).camera(0);
     (unit, camera, tell)
 }

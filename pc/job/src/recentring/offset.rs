@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix4x3, Vector2, Vector3, Vector4};
 use shared::geometry::{Pose, PoseOffset};
-use shared::io::{SIDES, SLIDES};
+use shared::io::SLIDES;
 use shared::tracking::frames::Heads;
 
 /// What the slides would have to move for the spots to stay, for each unit along M, along N and about T: the negative
@@ -10,7 +10,7 @@ use shared::tracking::frames::Heads;
 fn response(heads: &Heads, slides: &[f64; SLIDES]) -> Matrix4x3<f64> {
     let pose = tool();
     let mut rows = Matrix4x3::zeros();
-    for side in 0..SIDES {
+    for side in heads.sides() {
         let (u, v) = (2 * side, 2 * side + 1);
         let head = heads.spot(&pose, side);
         let spot = head.point(0.0, slides[u], slides[v]);
@@ -39,7 +39,7 @@ fn tool() -> Pose {
 pub(super) fn slides_after(heads: &Heads, slides: &[f64; SLIDES], offset: &PoseOffset) -> [f64; SLIDES] {
     let (before, after) = (tool(), offset.beside(&tool()));
     let mut moved = [0.0; SLIDES];
-    for side in 0..SIDES {
+    for side in heads.sides() {
         let (u, v) = (2 * side, 2 * side + 1);
         let spot = heads.spot(&before, side).point(0.0, slides[u], slides[v]);
         (_, moved[u], moved[v]) = heads.spot(&after, side).coordinates(&spot);
@@ -50,23 +50,26 @@ pub(super) fn slides_after(heads: &Heads, slides: &[f64; SLIDES], offset: &PoseO
 /// The move of the pose after which slides that stand at `slides` (U1, V1, U2, V2) \[mm\] and keep their spots are as
 /// near to zero as they can be: δ = argmin Σ(u² + v²), by the 3×3 normal equations. `turn` is how far it may turn
 /// about T \[rad\], lowest and highest: spots are near D, so that a turn moves them little, and the slides alone
-/// would ask for much of it.
+/// would ask for much of it. Of a single head, whose two slides do not tell a turn from shifts, both have to be equal.
 ///
 /// `None` where the heads leave a freedom without effect, or a number is not finite.
 pub(super) fn recentre(heads: &Heads, slides: &[f64; SLIDES], turn: (f64, f64)) -> Option<PoseOffset> {
     let response = response(heads, slides);
     let rest = Vector4::from_column_slice(slides);
-    let normal = response.tr_mul(&response);
-    let free = normal.try_inverse()? * -response.tr_mul(&rest);
-    let allowed = free.z.clamp(turn.0.min(turn.1), turn.1);
-    let mut best = free;
-    if allowed != free.z {
-        // On that bound, the best of the two shifts.
+    // The best of the two shifts beside a turn.
+    let beside = |turn: f64| {
         let shifts = response.fixed_columns::<2>(0);
-        let rest = rest + response.column(2) * allowed;
+        let rest = rest + response.column(2) * turn;
         let shift: Vector2<f64> = shifts.tr_mul(&shifts).try_inverse()? * -shifts.tr_mul(&rest);
-        best = Vector3::new(shift.x, shift.y, allowed);
-    }
+        Some(Vector3::new(shift.x, shift.y, turn))
+    };
+    let best = if turn.0 < turn.1 {
+        let free = response.tr_mul(&response).try_inverse()? * -response.tr_mul(&rest);
+        let allowed = free.z.clamp(turn.0, turn.1);
+        if allowed == free.z { free } else { beside(allowed)? }
+    } else {
+        beside(turn.1)?
+    };
     best.iter()
         .all(|x| x.is_finite())
         .then(|| PoseOffset::of([best.x, best.y, best.z]))
@@ -164,5 +167,30 @@ mod tests {
             );
         }
         assert_eq!(recentre(&heads(), &[f64::NAN; SLIDES], ANY), None);
+    }
+
+    #[test]
+    fn a_single_head_is_shifted_to_the_middle_of_its_slides() {
+        let mut board = shared::config::TrackerConfig {
+            head: HeadConfig {
+                included_angle_deg: 20.0,
+                working_distance_mm: [4.0; 2],
+                camera_lead_mm: 10.0,
+            },
+            ..shipped()
+        };
+        board.slides.truncate(2);
+        let heads = board.heads().unwrap();
+        let slides = [7.0, -2.0, 0.0, 0.0];
+        let best = recentre(&heads, &slides, (0.0, 0.0)).unwrap();
+        assert_eq!(best.about_tangent_rad, 0.0);
+        let rest = slides_after(&heads, &slides, &best);
+        assert!(rest.iter().all(|s| s.abs() < 1e-12), "{rest:?}");
+    }
+
+    fn shipped() -> shared::config::TrackerConfig {
+        let text = include_str!("../../../../machines/dual-beam-gantry.toml");
+        let machine = config::machine::MachineFile::parse("m.toml", text).unwrap();
+        machine.tracking.unwrap().board
     }
 }

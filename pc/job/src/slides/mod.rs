@@ -2,7 +2,7 @@
 
 use crate::JobError;
 use crate::session::Session;
-use shared::io::{SLIDE_NAMES, SLIDES};
+use shared::io::{SIDES, SLIDE_NAMES, SLIDES};
 use shared::protocol::{Request, Role};
 use std::time::Duration;
 
@@ -41,7 +41,11 @@ impl Session<'_> {
     /// The first slide that is not at its target, and how far it is off \[mm\].
     fn away(&self, target_mm: &[f64; SLIDES]) -> Option<(usize, f64)> {
         let at = self.slides_mm();
-        let away = (0..SLIDES).map(|slide| (slide, (at[slide] - target_mm[slide]).abs()));
+        let fitted = 2 * self
+            .tracking
+            .as_ref()
+            .map_or(SIDES, |tracking| tracking.heads.sides().len());
+        let away = (0..fitted).map(|slide| (slide, (at[slide] - target_mm[slide]).abs()));
         away.into_iter().find(|(_, away_mm)| *away_mm > THERE_MM)
     }
 }

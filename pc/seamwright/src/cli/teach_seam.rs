@@ -202,6 +202,10 @@ impl SeamArgs {
     fn prepare(&self, machine: &MachineFile, part: &PartFile) -> anyhow::Result<Lesson> {
         let unit = machine.tracking.as_ref();
         let unit = unit.context("the machine has no cameras to teach a seam with")?;
+        anyhow::ensure!(
+            unit.board.sides().len() == SIDES,
+            "the machine has one camera, and a seam is taught with two"
+        );
         let cameras = Cameras::of(unit)?;
         let drawn = part.drawn(machine)?;
         let (start, drawing) = self.start(machine, drawn.as_ref(), &cameras)?;

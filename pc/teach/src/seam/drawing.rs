@@ -3,6 +3,7 @@
 use super::Cameras;
 use config::machine::TrackingUnit;
 use nalgebra::Vector3;
+use shared::config::SlideConfig;
 use shared::parameter::ParameterError;
 
 /// What is drawn of the seam: the planes in which it begins and ends.
@@ -23,11 +24,11 @@ impl Cameras {
     /// Names the parameter of the heads that makes no sense.
     pub fn of(unit: &TrackingUnit) -> Result<Self, ParameterError> {
         Ok(Self {
-            heads: unit.board.head.build()?,
+            heads: unit.board.heads()?,
             mount: unit.cameras.mount_deg.map(f64::to_radians),
             travel_mm: std::array::from_fn(|i| {
-                let slide = &unit.board.slides[i];
-                (slide.travel_min_mm, slide.travel_max_mm)
+                let of = |slide: &SlideConfig| (slide.travel_min_mm, slide.travel_max_mm);
+                unit.board.slides.get(i).map_or((0.0, 0.0), of)
             }),
         })
     }

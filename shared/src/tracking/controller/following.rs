@@ -1,7 +1,7 @@
 //! Ready and tracking: where the slides should be, and one tick towards it.
 
 use super::TrackerController;
-use crate::io::{Command, DacCode, SIDES, SLIDES, SlideCommand};
+use crate::io::{Command, DacCode, SLIDES, SlideCommand};
 use crate::protocol::PERMIT_US;
 use crate::state::{TrackerFault, TrackerState};
 use crate::tracking::history::PathSnapshot;
@@ -67,7 +67,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         };
         let mut command = Command::SAFE;
         command.enable = true;
-        for (i, target) in targets.into_iter().enumerate() {
+        for (i, target) in targets.into_iter().take(parameters.slides.len()).enumerate() {
             command.dac[i] = self.drive(parameters, i, target);
         }
         command
@@ -85,7 +85,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         // Of the newest state as it was: an extrapolated pose would show a bend of the path as a deviation.
         let newest = self.history.newest();
         let mut targets = [None; SLIDES];
-        for side in 0..SIDES {
+        for side in parameters.heads.sides() {
             let (u, v) = (2 * side, 2 * side + 1);
             let head = newest
                 .as_ref()
