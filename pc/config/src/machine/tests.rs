@@ -149,7 +149,11 @@ fn a_value_that_makes_no_sense_is_named() {
 
 #[test]
 fn every_machine_ships_with_a_file_called_as_it() {
-    for name in KinematicsConfig::NAMES {
+    // A list of joints is any machine: none is called so.
+    for name in KinematicsConfig::NAMES
+        .iter()
+        .filter(|name| **name != "serial-chain")
+    {
         let machine = shipped(name);
         assert_eq!(machine.name, *name);
         assert_eq!(machine.motion.kinematics.name(), *name);
@@ -686,4 +690,46 @@ fn filters_that_are_none_are_told_with_key_and_range() {
         error.contains("invalid length 3") && error.contains("line "),
         "{error}"
     );
+}
+
+/// The machine of the guide, which is a list of joints with one side.
+fn guide_with(from: &str, to: &str) -> String {
+    let guide = include_str!("../../../../docs/new-machine.md");
+    let blocks = guide.split("```toml seam-welder.toml\n").skip(1);
+    let text: String = blocks.filter_map(|rest| rest.split("```").next()).collect();
+    assert!(text.contains(from), "{from}");
+    text.replacen(from, to, 1)
+}
+
+#[test]
+fn a_machine_may_be_a_list_of_joints_with_one_side() {
+    let machine = MachineFile::parse("m.toml", &guide_with("", "")).unwrap();
+    assert_eq!(
+        machine.motion.kinematics.fitted(),
+        [true, true, true, false, false, false]
+    );
+    let unit = machine.tracking.unwrap();
+    assert_eq!((unit.board.sides(), unit.board.slides.len()), (0..1, 2));
+    for (from, to, message) in [
+        ("axis = \"Y\"", "axis = \"U\"", "kinematics.serial-chain.joints"),
+        ("[1.0, 0.0, 0.0] }", "[1.0, 0.2, 0.0] }", "direction of axis X"),
+        (
+            "carries = \"tool\"",
+            "carries = \"part\"",
+            "kinematics.serial-chain.joints",
+        ),
+        ("tangent = [1.0", "tangent = [0.9", "tangent of kinematics is 0.9"),
+        (
+            "[motors.Y]",
+            "[motors.B]",
+            "motors.Y is missing; a serial-chain has that axis",
+        ),
+        ("[slides.V1]", "[slides.U2]", "V1"),
+        ("mount_deg = [0.0]", "mount_deg = []", "cameras.mount_deg"),
+    ] {
+        let error = error_of(&guide_with(from, to));
+        assert!(error.contains(message), "{error}, not {message}");
+        // What no board says names its line.
+        assert!(error.contains("line") || message.contains(" of "), "{error}");
+    }
 }

@@ -59,7 +59,7 @@ fn on_the_planned_path_both_spots_stay_on_their_seams() {
         let (start, end) = weld.weld().unwrap();
         assert!((end - start - 400.0).abs() < 0.5 && start > 50.0);
 
-        let heads = machine.tracking.as_ref().unwrap().board.head.build().unwrap();
+        let heads = machine.tracking.as_ref().unwrap().board.heads().unwrap();
         let first: Vec<Vector3<f64>> = main.iter().map(|p| p.position).collect();
         let seams = [
             SmoothSeam::through(&first).unwrap(),
@@ -189,7 +189,7 @@ fn on_the_pass_of_the_measuring_heads_the_cameras_are_on_both_seams_and_the_beam
         .iter()
         .max_by(|a, b| a.length_mm().total_cmp(&b.length_mm()))
         .unwrap();
-    let heads = machine.tracking.as_ref().unwrap().board.head.build().unwrap();
+    let heads = machine.tracking.as_ref().unwrap().board.heads().unwrap();
     let first: Vec<Vector3<f64>> = main.iter().map(|p| p.position).collect();
     let seams = [
         SmoothSeam::through(&first).unwrap(),
