@@ -32,7 +32,7 @@ impl PartialEq for ParameterError {
 
 /// What a parameter may be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
-enum Allowed {
+pub enum Allowed {
     /// Something else.
     Unsaid,
     /// Above 0.
@@ -213,6 +213,26 @@ impl ParameterError {
             value: value as f32,
             allowed: Allowed::Unsaid,
         }
+    }
+
+    /// Name of the part of the machine that it is of, such as "axis X".
+    pub fn owner(&self) -> Option<&'static str> {
+        OWNERS.get(usize::from(self.owner)).copied()
+    }
+
+    /// Its name, such as "home.velocity".
+    pub fn field(&self) -> Option<&'static str> {
+        FIELDS.get(usize::from(self.field)).copied()
+    }
+
+    /// What was given, as exact as an error keeps it.
+    pub fn value(&self) -> f32 {
+        self.value
+    }
+
+    /// What may be.
+    pub fn allowed(&self) -> Allowed {
+        self.allowed
     }
 
     fn allowing(self, allowed: Allowed) -> Self {

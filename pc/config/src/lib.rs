@@ -3,7 +3,9 @@
 mod by_side;
 pub mod calibration;
 pub mod gige;
+pub mod kept;
 pub mod machine;
+pub mod parameters;
 pub mod probe;
 mod range;
 mod sentence;

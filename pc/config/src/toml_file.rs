@@ -108,6 +108,6 @@ fn one_line(text: &str) -> String {
 }
 
 /// The line of the byte number `start`.
-fn line_at(text: &str, start: usize) -> usize {
+pub(crate) fn line_at(text: &str, start: usize) -> usize {
     1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count()
 }

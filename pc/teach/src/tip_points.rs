@@ -1,6 +1,7 @@
 //! The file of places to which the tip was led (CSV).
 
-use crate::kept::{free_name, replace};
+use crate::kept::free_name;
+use config::kept::replace;
 use config::table::{self, TableError};
 use nc::text::decimal;
 use std::path::{Path, PathBuf};

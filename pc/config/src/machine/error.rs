@@ -119,7 +119,7 @@ pub enum Mistake {
 
 impl Mistake {
     /// Dotted name of the key that it is about.
-    pub(super) fn key(&self) -> String {
+    pub(crate) fn key(&self) -> String {
         match self {
             Self::Value(error) => error.key.to_string(),
             Self::AxisMissing { key, .. } | Self::NoSuchAxis { key, .. } => key.clone(),

@@ -1,7 +1,8 @@
 //! The file of taught seams (CSV), complete after every point.
 
 use super::{MeasuredSeam, SeamEnd, SeamPoint};
-use crate::kept::{free_name, replace};
+use crate::kept::free_name;
+use config::kept::replace;
 use config::table::{self, TableError};
 use nalgebra::Vector3;
 use nc::text::decimal;

@@ -186,11 +186,7 @@ fn table(found: &CalibrationResult) -> String {
 
 /// Writes a file whole or not at all: beside it first, then in its place.
 fn write_whole(file: &Path, text: &str) -> anyhow::Result<()> {
-    let mut beside = file.as_os_str().to_owned();
-    beside.push(".new");
-    let beside = PathBuf::from(beside);
-    std::fs::write(&beside, text).with_context(|| format!("cannot write {}", beside.display()))?;
-    std::fs::rename(&beside, file).with_context(|| format!("cannot write {}", file.display()))
+    config::kept::replace(file, text).with_context(|| format!("cannot write {}", file.display()))
 }
 
 #[cfg(test)]

@@ -1,0 +1,44 @@
+//! What differs between two versions of a file.
+
+use super::list;
+use std::collections::BTreeMap;
+
+/// A value that differs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Change {
+    /// Dotted name of its key.
+    pub key: String,
+    /// What it was, as it was written; `None` where it was left out.
+    pub old: Option<String>,
+    /// What it is, or `None`.
+    pub new: Option<String>,
+}
+
+/// The values that differ between `old` and `new`, in the order of `old`; what only `new` has comes last. How they are laid out,
+/// and comments, are no matter.
+pub fn changes(old: &str, new: &str) -> Vec<Change> {
+    let values = |text: &str| -> Vec<(String, String)> {
+        let parameters = list(text).into_iter().flat_map(|table| table.parameters);
+        parameters.map(|one| (one.key, one.value)).collect()
+    };
+    let (old, new) = (values(old), values(new));
+    let mut news: BTreeMap<&str, &str> = new.iter().map(|(key, value)| (&**key, &**value)).collect();
+    let mut found = Vec::new();
+    for (key, before) in &old {
+        let after = news.remove(&**key);
+        if after != Some(before) {
+            found.push(Change {
+                key: key.clone(),
+                old: Some(before.clone()),
+                new: after.map(str::to_owned),
+            });
+        }
+    }
+    let added = new.iter().filter(|(key, _)| news.contains_key(&**key));
+    found.extend(added.map(|(key, value)| Change {
+        key: key.clone(),
+        old: None,
+        new: Some(value.clone()),
+    }));
+    found
+}
