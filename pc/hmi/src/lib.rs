@@ -6,6 +6,7 @@
 //! - [`loaded`]: a program that was read, planned and predicted for a machine, before anything moves.
 //! - [`running`]: its job, on a thread of its own.
 //! - [`live`]: what the screen knows of that job, folded from its events; bounded, however long the job.
+//! - [`parameters`]: the machine file while its parameters are changed.
 //! - [`records`]: reports of past jobs, read back.
 //! - [`texts`]: everything that the screen says, in every language.
 //! - [`station`]: what is loaded, the job that runs, and what may be asked of it now.
@@ -13,6 +14,7 @@
 
 pub mod live;
 pub mod loaded;
+pub mod parameters;
 pub mod records;
 pub mod running;
 pub mod screen;

@@ -2,7 +2,9 @@
 
 use crate::live::{Journal, Live};
 use crate::loaded::Loaded;
+use crate::parameters::Parameters;
 use crate::running::{Outcome, Place, Running};
+use anyhow::bail;
 use cam::along::Along;
 use config::sentence;
 use host_link::Command;
@@ -36,6 +38,8 @@ pub enum Action {
     Back,
     /// Another feed.
     Override,
+    /// Another machine file.
+    Write,
 }
 
 /// See the module.
@@ -121,7 +125,7 @@ impl Station {
         let (running, state) = (self.running.is_some() && !self.live.ended, self.live.state());
         let heard = running && self.live.silent_for(now).is_none();
         match action {
-            Action::Load => self.running.is_none() && self.loading.is_none(),
+            Action::Load | Action::Write => self.running.is_none() && self.loading.is_none(),
             Action::Start => self.may(Action::Load, now) && self.loaded.is_some(),
             Action::Stop => running,
             Action::Hold => heard && state == Some(State::Running),
@@ -141,6 +145,25 @@ impl Station {
         // A job begins at the programmed feed.
         (self.override_percent, self.last) = (100.0, None);
         self.running = Some(Running::start(loaded, self.place.clone(), self.single_block));
+    }
+
+    /// Writes what is changed of the machine file, if it may, has that on record, and reads the program anew for the machine. Until that
+    /// is done there is no program, and none afterwards if the machine cannot run it.
+    ///
+    /// # Errors
+    /// A sentence: why it is not written.
+    pub fn write(&mut self, parameters: &mut Parameters, now: Duration) -> anyhow::Result<()> {
+        if !self.may(Action::Write, now) {
+            bail!("a machine file is only written where no job runs");
+        }
+        let written = parameters.write()?;
+        let (file, version) = (parameters.file().display(), written.version.display());
+        let journal = &mut self.live.journal;
+        journal.written(now, &file.to_string(), &version.to_string(), &written.changes);
+        if let Some(loaded) = self.loaded.take() {
+            self.load(loaded.program_file.clone(), loaded.from_line);
+        }
+        Ok(())
     }
 
     /// Sends `command` to the job that runs; one that is not taken is told.

@@ -30,32 +30,30 @@ pub fn replace(text: &str, parameter: &Parameter, typed: &str) -> Result<String,
 
 /// What was typed, as it is written in a file.
 fn written(kind: Kind, typed: &str) -> Result<String, EditError> {
+    let as_in_file = kind_in_file(typed);
     match kind {
-        Kind::Float => match typed.parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(format!("{number:?}")),
+        Kind::Float => match typed.replace('_', "").parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(match as_in_file {
+                Some(Kind::Float) => typed.to_owned(),
+                _ => format!("{number:?}"),
+            }),
             _ => Err(EditError::NotANumber),
         },
-        Kind::Integer => match typed.parse::<i64>() {
-            Ok(number) => Ok(number.to_string()),
-            Err(_) => Err(EditError::NotWhole),
-        },
+        Kind::Integer if as_in_file == Some(Kind::Integer) => Ok(typed.to_owned()),
+        Kind::Integer => Err(EditError::NotWhole),
         // With its quotation marks or without.
-        Kind::Text => match as_in_file(typed) {
-            Some(true) => Ok(typed.to_owned()),
-            _ => Ok(toml::Value::from(typed).to_string()),
-        },
-        Kind::Other => match as_in_file(typed) {
-            Some(_) => Ok(typed.to_owned()),
-            None => Err(EditError::NotAValue),
-        },
+        Kind::Text if as_in_file == Some(Kind::Text) => Ok(typed.to_owned()),
+        Kind::Text => Ok(toml::Value::from(typed).to_string()),
+        Kind::Other if as_in_file.is_some() => Ok(typed.to_owned()),
+        Kind::Other => Err(EditError::NotAValue),
     }
 }
 
-/// Whether `typed` is a value as it is written in a file, and nothing else, not even a comment; and then, whether it is a text.
-fn as_in_file(typed: &str) -> Option<bool> {
+/// What `typed` is, where it is a value as it is written in a file, and nothing else, not even a comment.
+fn kind_in_file(typed: &str) -> Option<Kind> {
     let line = format!("value = {typed}");
     let document = DeTable::parse(&line).ok()?;
     let mut values = document.get_ref().iter();
     let (_, value) = values.next().filter(|_| values.next().is_none())?;
-    (line[value.span()] == *typed).then(|| value.get_ref().is_str())
+    (line[value.span()] == *typed).then(|| Kind::of(value.get_ref()))
 }

@@ -50,6 +50,17 @@ pub enum Kind {
     Other,
 }
 
+impl Kind {
+    pub(super) fn of(value: &DeValue) -> Self {
+        match value {
+            DeValue::Float(_) => Self::Float,
+            DeValue::Integer(_) => Self::Integer,
+            DeValue::String(_) => Self::Text,
+            _ => Self::Other,
+        }
+    }
+}
+
 /// All tables of `text` that have values, in its order; none of what is no TOML.
 pub fn list(text: &str) -> Vec<Table> {
     let Ok(document) = DeTable::parse(text) else {
@@ -119,24 +130,18 @@ impl Walk<'_> {
     }
 
     fn value(&mut self, key: &str, value: &DeValue, start: usize, span: Range<usize>, of: &Statement) {
-        let kind = match value {
-            DeValue::Table(inner) => {
-                for (name, value) in inner {
-                    let key = joined(key, name.get_ref());
-                    self.value(&key, value.get_ref(), name.span().start, value.span(), of);
-                }
-                return;
+        if let DeValue::Table(inner) = value {
+            for (name, value) in inner {
+                let key = joined(key, name.get_ref());
+                self.value(&key, value.get_ref(), name.span().start, value.span(), of);
             }
-            DeValue::Float(_) => Kind::Float,
-            DeValue::Integer(_) => Kind::Integer,
-            DeValue::String(_) => Kind::Text,
-            _ => Kind::Other,
-        };
+            return;
+        }
         let table = &mut self.tables[of.table];
         table.parameters.push(Parameter {
             name: key[table.name.len()..].trim_start_matches('.').to_owned(),
             value: self.text[span.clone()].to_owned(),
-            kind,
+            kind: Kind::of(value),
             unit: unit::unit(key),
             comment: of.comment.clone(),
             line: line_at(self.text, start),

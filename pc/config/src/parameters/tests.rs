@@ -76,8 +76,10 @@ fn a_value_is_replaced_and_nothing_else_of_the_text() {
         ("name", "a \"b\"", "'a \"b\"'"),
         ("name", "\"y\"", "\"y\""),
         ("axes.X.travel_min", " 7 ", "7.0"),
+        ("axes.X.travel_min", ".5", "0.5"),
+        ("axes.X.travel_min", "1_0.50", "1_0.50"),
         ("axes.X.travel_max", "-3", "-3"),
-        ("axes.Y.home.velocity", "2e-3", "0.002"),
+        ("axes.Y.home.velocity", "2e-3", "2e-3"),
         ("axes.Y.n", "[]", "[]"),
         ("axes.Y.z.0.f.g", "false", "false"),
     ] {

@@ -1,5 +1,6 @@
 //! What happened, for the operator: newest last, the oldest forgotten beyond a bound.
 
+use config::parameters::Change;
 use host_link::events::{Phase, Question};
 use job::JobError;
 use shared::protocol::Identity;
@@ -51,6 +52,10 @@ pub enum What {
     TrackerFault(TrackerFault),
     /// The operator has stopped the job.
     Stopped,
+    /// The machine file was written: its name, and where what was there before is kept.
+    FileWritten(String, String),
+    /// With another value of a parameter.
+    Parameter(Change),
     /// In words of the job or of the program, in English.
     Said(String),
 }
@@ -115,6 +120,15 @@ impl Journal {
         let again = |entry: &Entry| entry.what.said().is_some_and(|said| text.ends_with(&said));
         if !self.open_alarms().any(again) {
             self.add(at, Severity::Alarm, What::Said(text.to_owned()));
+        }
+    }
+
+    /// The machine `file` was written with `changes`; what was there before is in `version`.
+    pub fn written(&mut self, at: Duration, file: &str, version: &str, changes: &[Change]) {
+        let what = What::FileWritten(file.to_owned(), version.to_owned());
+        self.add(at, Severity::Note, what);
+        for change in changes {
+            self.add(at, Severity::Note, What::Parameter(change.clone()));
         }
     }
 

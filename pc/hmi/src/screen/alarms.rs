@@ -64,6 +64,8 @@ pub(super) fn said(words: Words, what: &What) -> String {
         What::MotionFault(fault) => words.fault(fault),
         What::TrackerFault(fault) => words.tracker_fault(fault),
         What::Stopped => words.say(Text::StoppedByOperator).to_owned(),
+        What::FileWritten(file, version) => words.with(Text::FileWritten, &[file, version]),
+        What::Parameter(change) => words.change(change),
         What::Said(text) => text.clone(),
     }
 }

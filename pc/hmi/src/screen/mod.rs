@@ -2,6 +2,7 @@
 
 mod alarms;
 mod bar;
+mod parameters;
 mod plot;
 mod run;
 mod settings;
@@ -38,13 +39,22 @@ pub enum Page {
     Alarms,
     /// Past jobs.
     Welds,
+    /// The machine file.
+    Parameters,
     /// The screen itself.
     Settings,
 }
 
 impl Page {
     /// All pages, in the order of their keys.
-    pub const ALL: [Self; 5] = [Self::Run, Self::Plot, Self::Alarms, Self::Welds, Self::Settings];
+    pub const ALL: [Self; 6] = [
+        Self::Run,
+        Self::Plot,
+        Self::Alarms,
+        Self::Welds,
+        Self::Parameters,
+        Self::Settings,
+    ];
 
     /// Its name.
     pub fn name(self) -> Text {
@@ -53,6 +63,7 @@ impl Page {
             Self::Plot => Text::LivePlot,
             Self::Alarms => Text::Alarms,
             Self::Welds => Text::Welds,
+            Self::Parameters => Text::Parameters,
             Self::Settings => Text::Settings,
         }
     }
@@ -68,6 +79,7 @@ pub struct Screen {
     run: run::RunPage,
     plot: plot::PlotPage,
     welds: welds::WeldsPage,
+    parameters: parameters::ParametersPage,
     began: Instant,
 }
 
@@ -88,6 +100,7 @@ impl Screen {
             run: run::RunPage::default(),
             plot: plot::PlotPage::default(),
             welds: welds::WeldsPage::default(),
+            parameters: parameters::ParametersPage::default(),
             began: Instant::now(),
         }
     }
@@ -129,6 +142,10 @@ impl Screen {
                         .show(ui, &view, &self.station.live.signals, &self.station.place.reports);
                 }
                 Page::Welds => self.welds.show(ui, &view, &self.station.place.reports),
+                Page::Parameters => {
+                    self.parameters
+                        .show(ui, &view, &mut self.station, self.look.left_handed);
+                }
                 Page::Alarms => alarms::show(ui, &view, &mut self.station.live.journal),
                 Page::Settings => settings::show(ui, &view, &mut self.look, &self.station),
             });
@@ -137,8 +154,10 @@ impl Screen {
     /// Brings `page` in sight.
     pub fn open(&mut self, page: Page) {
         self.page = page;
-        if page == Page::Welds {
-            self.welds.open(&self.station.place.reports);
+        match page {
+            Page::Welds => self.welds.open(&self.station.place.reports),
+            Page::Parameters => self.parameters.open(self.station.machine_file()),
+            _ => {}
         }
     }
 
@@ -178,7 +197,17 @@ impl Screen {
         if pressed(Key::F2) && self.station.may(Action::Hold, now) {
             self.station.send(Command::Hold, now);
         }
-        let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5];
+        let numbers = [
+            Key::Num1,
+            Key::Num2,
+            Key::Num3,
+            Key::Num4,
+            Key::Num5,
+            Key::Num6,
+            Key::Num7,
+            Key::Num8,
+            Key::Num9,
+        ];
         for (key, page) in numbers.into_iter().zip(Page::ALL) {
             if ui
                 .ctx()

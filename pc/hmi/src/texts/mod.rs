@@ -5,6 +5,7 @@
 
 mod faults;
 
+use config::parameters::Change;
 use host_link::events::{Next, Phase, Question};
 use shared::state::State;
 
@@ -74,6 +75,7 @@ texts! {
     Alarms: "Alarms", "报警", "Alarme";
     Welds: "Welds", "焊缝记录", "Nähte";
     Settings: "Screen", "屏幕", "Anzeige";
+    Parameters: "Parameters", "参数", "Parameter";
     // Always in sight
     Stop: "STOP", "停止", "STOPP";
     StopHint: "F1 or Esc: beams off, stop on the path", "F1 或 Esc：关束并沿轨迹停止", "F1 oder Esc: Strahlen aus, Halt auf der Bahn";
@@ -194,6 +196,46 @@ texts! {
     Duration: "Duration", "用时", "Dauer";
     TrueDeviation: "Spot beside its seam, in truth (only a simulated machine can know it) [µm]", "光斑相对焊缝的真实偏差（仅仿真机可知）[µm]", "Spot neben der Naht, in Wahrheit (nur eine simulierte Maschine weiß sie) [µm]";
     Outside: "OUTSIDE", "超限", "ÜBER";
+    // Parameters
+    Search: "Search", "搜索", "Suchen";
+    AllParameters: "All", "全部", "Alle";
+    ChangedParameters: "Changed ({})", "已更改（{}）", "Geändert ({})";
+    OtherThanShipped: "Other than shipped", "与出厂值不同", "Anders als ausgeliefert";
+    Unit: "Unit", "单位", "Einheit";
+    Shipped: "Shipped", "出厂值", "Ausgeliefert";
+    ParameterRange: "Range", "范围", "Bereich";
+    RangeUnsaid: "told when it is refused", "超出范围时提示", "wird bei Ablehnung genannt";
+    InFile: "In the file", "文件中的值", "In der Datei";
+    ChooseParameter: "Choose a parameter from the list to see and change it.", "请从列表中选择参数，以查看和更改。", "Einen Parameter aus der Liste wählen, um ihn zu sehen und zu ändern.";
+    NoParameters: "Nothing matches.", "没有匹配项。", "Nichts gefunden.";
+    SetValue: "Set", "设定", "Setzen";
+    TakeBack: "Take back", "撤回", "Zurücknehmen";
+    NotANumber: "Must be a number, such as 12.5", "必须是数字，例如 12.5", "Muss eine Zahl sein, etwa 12.5";
+    NotWhole: "Must be a whole number", "必须是整数", "Muss eine ganze Zahl sein";
+    NotAValue: "Must be written as in the file, such as true or [1.0, 2.0]", "须按文件中的格式书写，例如 true 或 [1.0, 2.0]", "Muss wie in der Datei geschrieben sein, etwa true oder [1.0, 2.0]";
+    Changes: "Changes, not written yet", "更改（尚未写入）", "Änderungen, noch nicht geschrieben";
+    NoChanges: "None.", "无。", "Keine.";
+    OnlyComments: "No value differs, only comments or layout.", "数值相同，仅注释或排版不同。", "Kein Wert ist anders, nur Kommentare oder Anordnung.";
+    ParameterChange: "{}: {} → {}", "{}：{} → {}", "{}: {} → {}";
+    LeftOut: "left out", "未给出", "weggelassen";
+    Refused: "Refused: {}", "被拒绝：{}", "Abgelehnt: {}";
+    Write: "Write…", "写入…", "Schreiben…";
+    WriteNow: "Write now", "立即写入", "Jetzt schreiben";
+    WriteTitle: "Write these changes to the machine file?", "将这些更改写入机器文件？", "Diese Änderungen in die Maschinendatei schreiben?";
+    WriteKeeps: "What is there now is kept as {}.", "当前内容将保存为 {}。", "Was jetzt darin steht, bleibt als {} erhalten.";
+    WriteThen: "The program is planned anew, and the next job runs with these values.", "程序将重新规划，下一个任务使用这些数值。", "Das Programm wird neu geplant, und der nächste Auftrag läuft mit diesen Werten.";
+    Weakened: "A protection becomes weaker: {}", "保护减弱：{}", "Ein Schutz wird schwächer: {}";
+    WriteAtRest: "A job runs or a program is being loaded: writing waits until then.", "任务正在运行或程序正在载入，结束后才能写入。", "Ein Auftrag läuft oder ein Programm wird geladen: Geschrieben wird erst danach.";
+    Discard: "Discard", "放弃", "Verwerfen";
+    StaleFile: "The file on the disk has changed since it was loaded. It is not written over.", "磁盘上的文件在载入后已被更改，不会被覆盖。", "Die Datei auf der Platte ist seit dem Laden geändert worden. Sie wird nicht überschrieben.";
+    LoadAnew: "Discard and load anew", "放弃更改并重新载入", "Verwerfen und neu laden";
+    Versions: "Backups…", "备份…", "Sicherungen…";
+    VersionsOf: "Backups of {}", "{} 的备份", "Sicherungen von {}";
+    VersionsHint: "The file as it was before each write, newest first. A tap lists what would change; nothing is written by it.", "每次写入前的文件，最新的在前。点按会列出更改，不会写入。", "Die Datei vor jedem Schreiben, die neueste zuerst. Antippen listet auf, was sich ändern würde; geschrieben wird dabei nichts.";
+    NoVersions: "There are none yet.", "尚无备份。", "Es gibt noch keine.";
+    VersionDiffers: "{}: {} other values", "{}：{} 个数值不同", "{}: {} andere Werte";
+    ChangesFirst: "Write or discard the changes first.", "请先写入或放弃更改。", "Zuerst die Änderungen schreiben oder verwerfen.";
+    FileWritten: "{} written; what was there before is in {}", "已写入 {}；原内容在 {}", "{} geschrieben; der vorige Inhalt ist in {}";
     // The screen itself
     LanguageChoice: "Language", "语言", "Sprache";
     Contrast: "High contrast", "高对比度", "Hoher Kontrast";
@@ -201,7 +243,7 @@ texts! {
     Size: "Size of everything", "整体大小", "Größe von allem";
     Machine: "Machine", "机器", "Maschine";
     Boards: "Boards", "控制板", "Karten";
-    Keys: "Keys: F1 or Esc stops, F2 holds, Tab and Enter reach every button, Ctrl+1 to 5 the pages", "按键：F1 或 Esc 停止，F2 保持，Tab 与回车可操作所有按钮，Ctrl+1 至 5 切换页面", "Tasten: F1 oder Esc stoppt, F2 hält an, Tab und Enter erreichen jede Taste, Strg+1 bis 5 die Seiten";
+    Keys: "Keys: F1 or Esc stops, F2 holds, Tab and Enter reach every button, Ctrl and a digit the pages", "按键：F1 或 Esc 停止，F2 保持，Tab 与回车可操作所有按钮，Ctrl+数字键切换页面", "Tasten: F1 oder Esc stoppt, F2 hält an, Tab und Enter erreichen jede Taste, Strg und eine Ziffer die Seiten";
     Version: "Version {}", "版本 {}", "Version {}";
 }
 
@@ -286,6 +328,17 @@ impl Words {
             Question::FeedTooLow => self.say(Text::FeedTooLow).to_owned(),
             Question::Jog => self.say(Text::JogAsked).to_owned(),
         }
+    }
+
+    /// Another value of a parameter.
+    pub fn change(self, change: &Change) -> String {
+        let value = |value: &Option<String>| {
+            value
+                .clone()
+                .unwrap_or_else(|| self.say(Text::LeftOut).to_owned())
+        };
+        let (old, new) = (value(&change.old), value(&change.new));
+        self.with(Text::ParameterChange, &[&change.key, &old, &new])
     }
 
     /// A state of the motion board.

@@ -1,6 +1,6 @@
 //! A screen that is tapped and looked at.
 
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use hmi::running::Place;
@@ -8,7 +8,7 @@ use hmi::screen::{Look, Page, Screen};
 use hmi::station::Station;
 use hmi::texts::Language;
 use plant_file::PlantChoice;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use world::BoardChoice;
@@ -40,14 +40,27 @@ impl Bench {
 
     pub fn of(machine: &str) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
+        Self::with(format!("../../machines/{machine}.toml").into(), folder)
+    }
+
+    /// Of the dual-beam gantry, with a machine file of its own, which is given back.
+    pub fn with_own_file() -> (Self, PathBuf) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let machines = folder.path().join("machine");
+        std::fs::create_dir(&machines).expect("a folder");
+        let file = machines.join("dual-beam-gantry.toml");
+        std::fs::copy("../../machines/dual-beam-gantry.toml", &file).expect("copied");
+        (Self::with(file.clone(), folder), file)
+    }
+
+    fn with(machine: PathBuf, folder: tempfile::TempDir) -> Self {
         let place = Place {
             boards: BoardChoice::Simulated,
             plant: PlantChoice::Shipped,
             pace: PACE,
             reports: folder.path().to_owned(),
         };
-        let machine = format!("../../machines/{machine}.toml");
-        let station = Station::new(machine.into(), "../../programs".into(), place);
+        let station = Station::new(machine, "../../programs".into(), place);
         let screen = Screen::new(station, Look::default());
         let harness = Harness::builder()
             .with_size(SIZE)
@@ -107,6 +120,23 @@ impl Bench {
     pub fn tap_containing(&mut self, part: &str) {
         self.harness.get_by_label_contains(part).click();
         self.harness.run_steps(3);
+    }
+
+    /// Types `text` into the field called `label`, in place of what is there.
+    pub fn type_in(&mut self, label: &str, text: &str) {
+        self.harness.get_by_role_and_label(Role::TextInput, label).focus();
+        self.harness.run_steps(2);
+        self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        self.harness.step();
+        self.harness
+            .get_by_role_and_label(Role::TextInput, label)
+            .type_text(text);
+        self.harness.run_steps(2);
+    }
+
+    /// Whether something is called `label`, or has it in its name.
+    pub fn says(&self, label: &str) -> bool {
+        self.harness.query_all_by_label_contains(label).next().is_some()
     }
 
     pub fn key(&mut self, key: Key) {

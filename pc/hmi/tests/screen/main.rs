@@ -2,6 +2,7 @@
 
 mod bench;
 mod day;
+mod parameters;
 mod pictures;
 #[cfg(target_os = "linux")]
 mod window;

@@ -30,6 +30,18 @@ fn every_page_in_every_language() {
     bench.tap("STOP");
     bench.until("the job is over", |station| !station.is_running());
     bench.pictures("alarms", |bench| bench.open(Page::Alarms));
+    bench.pictures("parameters", |bench| {
+        bench.open(Page::Parameters);
+        bench.type_in("Search", "axes");
+        for (key, value) in [("axes.X.max_jerk", "40000"), ("axes.X.max_velocity", "350")] {
+            bench.tap_containing(&format!("{key} ="));
+            bench.type_in("Value", value);
+            bench.key(eframe::egui::Key::Enter);
+        }
+    });
+    bench.pictures("write", |bench| bench.tap("Write…"));
+    bench.tap("Cancel");
+    bench.tap("Discard");
     bench.pictures("screen", |bench| bench.open(Page::Settings));
     bench.harness.state_mut().look.high_contrast = true;
     bench.harness.state_mut().look.left_handed = true;

@@ -1,0 +1,271 @@
+//! The machine file while its parameters are changed: changes are collected and checked, and written only when that is asked for.
+
+use anyhow::{Context, bail};
+use config::kept;
+use config::machine::{MachineError, MachineFile};
+use config::parameters::{
+    Change, EditError, Parameter, Range, Table, changes, is_about, list, ranges, replace, shipped,
+};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// See the module.
+#[derive(Debug)]
+pub struct Parameters {
+    file: PathBuf,
+    /// The text as it was loaded.
+    loaded: String,
+    /// The same with what was changed.
+    edited: String,
+    /// What is in `edited`.
+    tables: Vec<Table>,
+    changes: Vec<Change>,
+    refused: Option<MachineError>,
+    weakened: Vec<String>,
+    shipped: BTreeMap<String, String>,
+}
+
+/// What was written.
+#[derive(Debug)]
+pub struct Written {
+    /// The values.
+    pub changes: Vec<Change>,
+    /// Where what was there before is kept.
+    pub version: PathBuf,
+}
+
+/// A version of the file that is kept.
+#[derive(Debug)]
+pub struct Version {
+    /// Where it is.
+    pub file: PathBuf,
+    /// How many values are others in it.
+    pub differing: usize,
+}
+
+impl Parameters {
+    /// Those of the machine file at `file`.
+    ///
+    /// # Errors
+    /// A sentence: it cannot be read.
+    pub fn open(file: &Path) -> anyhow::Result<Self> {
+        // What is written takes the place of the file itself, not of a link to it.
+        let file = file.canonicalize().with_context(|| cannot("read", file))?;
+        let loaded = std::fs::read_to_string(&file).with_context(|| cannot("read", &file))?;
+        let mut parameters = Self {
+            file,
+            edited: String::new(),
+            tables: Vec::new(),
+            changes: Vec::new(),
+            refused: None,
+            weakened: Vec::new(),
+            shipped: shipped_beside(&loaded),
+            loaded: loaded.clone(),
+        };
+        parameters.take(loaded);
+        Ok(parameters)
+    }
+
+    /// The file.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// All parameters with the changes, in the order of the file.
+    pub fn tables(&self) -> &[Table] {
+        &self.tables
+    }
+
+    /// The parameter called `key`.
+    pub fn parameter(&self, key: &str) -> Option<&Parameter> {
+        let mut all = self.tables.iter().flat_map(|table| &table.parameters);
+        all.find(|parameter| parameter.key == key)
+    }
+
+    /// What is changed since the file was loaded.
+    pub fn changes(&self) -> &[Change] {
+        &self.changes
+    }
+
+    /// What is changed of the parameter called `key`.
+    pub fn change(&self, key: &str) -> Option<&Change> {
+        self.changes.iter().find(|change| change.key == key)
+    }
+
+    /// Whether anything is changed; that may be comments alone.
+    pub fn is_changed(&self) -> bool {
+        self.edited != self.loaded
+    }
+
+    /// Why the file cannot be used with the changes, by its reader.
+    pub fn refused(&self) -> Option<&MachineError> {
+        self.refused.as_ref()
+    }
+
+    /// Whether that is said of `parameter`.
+    pub fn is_refused_at(&self, parameter: &Parameter) -> bool {
+        self.refused
+            .as_ref()
+            .is_some_and(|error| is_about(error, parameter))
+    }
+
+    /// Protections that the changes make weaker than usual, a sentence each.
+    pub fn weakened(&self) -> &[String] {
+        &self.weakened
+    }
+
+    /// The value that the shipped file of the machine with the same kinematics has.
+    pub fn shipped(&self, key: &str) -> Option<&str> {
+        self.shipped.get(key).map(String::as_str)
+    }
+
+    /// Whether that is another one. What the shipped file has not is no other.
+    pub fn is_other_than_shipped(&self, parameter: &Parameter) -> bool {
+        let shipped = self.shipped(&parameter.key);
+        shipped.is_some_and(|shipped| !is_same(shipped, &parameter.value))
+    }
+
+    /// What the parameter called `key` may be, where all others are as they are.
+    pub fn ranges(&self, key: &str) -> Vec<Range> {
+        self.parameter(key)
+            .map_or_else(Vec::new, |parameter| ranges(&self.edited, parameter))
+    }
+
+    /// Has what was typed as the value of the parameter called `key`. Whether the machine can run with it is told by
+    /// [`Parameters::refused`].
+    ///
+    /// # Errors
+    /// It is no value of that kind.
+    pub fn set(&mut self, key: &str, typed: &str) -> Result<(), EditError> {
+        let Some(parameter) = self.parameter(key) else {
+            return Ok(());
+        };
+        // The same number is no change, however it is written.
+        let before = self
+            .change(key)
+            .map_or(Some(&parameter.value), |change| change.old.as_ref());
+        let typed = before.map_or(
+            typed,
+            |before| if is_same(before, typed) { before } else { typed },
+        );
+        let text = replace(&self.edited, parameter, typed)?;
+        self.take(text);
+        Ok(())
+    }
+
+    /// The parameter called `key` is as it was loaded.
+    pub fn take_back(&mut self, key: &str) {
+        if let Some(before) = self.change(key).and_then(|change| change.old.clone()) {
+            // As it is in the file.
+            let _ = self.set(key, &before);
+        }
+    }
+
+    /// All is as it was loaded.
+    pub fn discard(&mut self) {
+        self.take(self.loaded.clone());
+    }
+
+    /// Versions that are kept beside the file, newest first.
+    pub fn versions(&self) -> Vec<Version> {
+        let kept = kept::versions(&self.file).into_iter().rev();
+        kept.filter_map(|(_, file)| {
+            let text = std::fs::read_to_string(&file).ok()?;
+            Some(Version {
+                differing: changes(&self.loaded, &text).len(),
+                file,
+            })
+        })
+        .collect()
+    }
+
+    /// Has everything as it is in the version at `file`; what was changed otherwise is discarded. Nothing is written yet.
+    ///
+    /// # Errors
+    /// A sentence: it cannot be read.
+    pub fn restore(&mut self, file: &Path) -> anyhow::Result<()> {
+        let text = std::fs::read_to_string(file).with_context(|| cannot("read", file))?;
+        self.take(text);
+        Ok(())
+    }
+
+    /// Whether the file on the disk is another one than was loaded.
+    pub fn is_stale(&self) -> bool {
+        std::fs::read_to_string(&self.file).ok().as_ref() != Some(&self.loaded)
+    }
+
+    /// Where what is in the file now will be kept.
+    pub fn next_version(&self) -> PathBuf {
+        kept::next_version(&self.file)
+    }
+
+    /// Writes the changes: keeps what was there before as a version, and puts the new text in its place.
+    ///
+    /// # Errors
+    /// A sentence: nothing is changed, the machine cannot be run with it, or the file on the disk was changed or cannot be written.
+    pub fn write(&mut self) -> anyhow::Result<Written> {
+        if let Some(error) = &self.refused {
+            bail!("{error}");
+        }
+        if !self.is_changed() {
+            bail!("nothing is changed");
+        }
+        if self.is_stale() {
+            bail!(
+                "{} has changed since it was loaded; it is not written over",
+                self.file.display()
+            );
+        }
+        let version = kept::keep_version(&self.file, &self.loaded)
+            .with_context(|| format!("cannot keep a version of {}", self.file.display()))?;
+        kept::replace(&self.file, &self.edited).with_context(|| cannot("write", &self.file))?;
+        self.loaded.clone_from(&self.edited);
+        Ok(Written {
+            changes: std::mem::take(&mut self.changes),
+            version,
+        })
+    }
+
+    /// Has `text` as what is edited.
+    fn take(&mut self, text: String) {
+        let name = self.file.display().to_string();
+        let read = MachineFile::parse(&name, &text);
+        let weak = |machine: &MachineFile| -> Vec<String> {
+            let protections = machine.weak_protections();
+            protections.iter().map(ToString::to_string).collect()
+        };
+        self.weakened = read.as_ref().map_or_else(|_| Vec::new(), weak);
+        if let Ok(loaded) = MachineFile::parse(&name, &self.loaded) {
+            let before = weak(&loaded);
+            self.weakened.retain(|told| !before.contains(told));
+        }
+        self.refused = read.err();
+        self.tables = list(&text);
+        self.changes = changes(&self.loaded, &text);
+        self.edited = text;
+    }
+}
+
+/// The values of the shipped file of the machine with the same kinematics.
+fn shipped_beside(text: &str) -> BTreeMap<String, String> {
+    let tables = list(text);
+    let mut kinds = tables
+        .iter()
+        .filter_map(|table| table.name.strip_prefix("kinematics."));
+    let shipped = kinds.next().and_then(shipped).map_or_else(Vec::new, list);
+    let parameters = shipped.into_iter().flat_map(|table| table.parameters);
+    parameters.map(|one| (one.key, one.value)).collect()
+}
+
+/// Whether two values are the same, as they are written or as numbers.
+fn is_same(one: &str, other: &str) -> bool {
+    let number = |value: &str| value.trim().replace('_', "").parse::<f64>().ok();
+    one == other || number(one).is_some_and(|one| number(other) == Some(one))
+}
+
+fn cannot(what: &str, file: &Path) -> String {
+    format!("cannot {what} machine file {}", file.display())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,133 @@
+//! What opens over the page: the question before writing, and the versions that are kept.
+
+use super::changes::list;
+use super::{Over, ParametersPage};
+use crate::screen::View;
+use crate::station::{Action, Station};
+use crate::texts::Text;
+use config::sentence;
+use eframe::egui::{Button, Color32, Id, Label, Modal, RichText, ScrollArea, Ui};
+use std::path::Path;
+
+/// Size of a button \[points\].
+const BUTTON: [f32; 2] = [200.0, 60.0];
+/// Width of what opens \[points\].
+const WIDTH: f32 = 640.0;
+/// Height of a list in it \[points\].
+const LIST: f32 = 300.0;
+
+impl ParametersPage {
+    /// The question before writing: what will be another value, and what becomes weaker by it.
+    pub(super) fn ask_to_write(&mut self, ui: &mut Ui, view: &View, station: &mut Station) {
+        let words = view.words;
+        let may_write = station.may(Action::Write, view.now);
+        let Some(parameters) = self.opened.as_ref().filter(|_| may_write) else {
+            self.over = Over::Nothing;
+            return;
+        };
+        let (mut write, mut cancel) = (false, false);
+        let modal = Modal::new(Id::unique("write")).show(ui.ctx(), |ui| {
+            ui.set_width(WIDTH);
+            ui.heading(words.say(Text::WriteTitle));
+            ui.add(
+                Label::new(RichText::new(parameters.file().display().to_string()).color(view.theme.faint))
+                    .wrap(),
+            );
+            ScrollArea::vertical().max_height(LIST).show(ui, |ui| {
+                list(ui, view, self);
+                for weakened in parameters.weakened() {
+                    let text = words.with(Text::Weakened, &[weakened]);
+                    ui.add(Label::new(RichText::new(text).color(view.theme.doubt)).wrap());
+                }
+            });
+            ui.add_space(8.0);
+            let version = name(&parameters.next_version());
+            ui.add(Label::new(words.with(Text::WriteKeeps, &[&version])).wrap());
+            ui.add(Label::new(words.say(Text::WriteThen)).wrap());
+            ui.add_space(12.0);
+            ui.horizontal(|ui| {
+                let text = RichText::new(words.say(Text::WriteNow))
+                    .size(20.0)
+                    .color(Color32::BLACK);
+                let button = Button::new(text).fill(view.theme.doubt).min_size(BUTTON.into());
+                write = ui.add(button).clicked();
+                cancel = ui
+                    .add(Button::new(words.say(Text::Cancel)).min_size(BUTTON.into()))
+                    .clicked();
+            });
+        });
+        if write {
+            self.write(view, station);
+        }
+        if write || cancel || modal.should_close() {
+            self.over = Over::Nothing;
+        }
+    }
+
+    fn write(&mut self, view: &View, station: &mut Station) {
+        let Some(parameters) = &mut self.opened else {
+            return;
+        };
+        self.failed = station
+            .write(parameters, view.now)
+            .err()
+            .map(|error| sentence(error.as_ref()));
+        self.is_stale = parameters.is_stale();
+        self.choose_again();
+    }
+
+    /// The versions that are kept; one is looked at as changes.
+    pub(super) fn list_versions(&mut self, ui: &mut Ui, view: &View) {
+        let words = view.words;
+        let Some(parameters) = &self.opened else { return };
+        let is_free = !parameters.is_changed();
+        let (mut tapped, mut cancel) = (None, false);
+        let modal = Modal::new(Id::unique("versions")).show(ui.ctx(), |ui| {
+            ui.set_width(WIDTH);
+            ui.heading(words.with(Text::VersionsOf, &[&name(parameters.file())]));
+            ui.add(Label::new(RichText::new(words.say(Text::VersionsHint)).color(view.theme.faint)).wrap());
+            if !is_free {
+                let text = RichText::new(words.say(Text::ChangesFirst)).color(view.theme.doubt);
+                ui.add(Label::new(text).wrap());
+            }
+            if self.versions.is_empty() {
+                ui.label(words.say(Text::NoVersions));
+            }
+            ScrollArea::vertical().max_height(LIST).show(ui, |ui| {
+                for version in &self.versions {
+                    let differing = version.differing.to_string();
+                    let text = words.with(Text::VersionDiffers, &[&name(&version.file), &differing]);
+                    let button = Button::new(text).min_size([WIDTH - 20.0, 48.0].into());
+                    if ui.add_enabled(is_free, button).clicked() {
+                        tapped = Some(version.file.clone());
+                    }
+                }
+            });
+            cancel = ui
+                .add(Button::new(words.say(Text::Cancel)).min_size(BUTTON.into()))
+                .clicked();
+        });
+        if let Some(version) = &tapped {
+            self.restore(version);
+        }
+        if tapped.is_some() || cancel || modal.should_close() {
+            self.over = Over::Nothing;
+        }
+    }
+
+    fn restore(&mut self, version: &Path) {
+        if let Some(parameters) = &mut self.opened {
+            let restored = parameters.restore(version);
+            self.failed = restored.err().map(|error| sentence(error.as_ref()));
+        }
+        self.choose_again();
+    }
+}
+
+/// The name of a file without its folder.
+fn name(file: &Path) -> String {
+    file.file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}

@@ -1,0 +1,130 @@
+//! The page of parameters: all that the machine file has, changed one by one, written together.
+
+mod changes;
+mod detail;
+mod dialogs;
+mod rows;
+
+use super::{View, bare};
+use crate::parameters::{Parameters, Version};
+use crate::station::Station;
+use config::parameters::{EditError, Range};
+use config::sentence;
+use eframe::egui::{self, Label, RichText, Ui};
+use std::path::Path;
+
+/// Width of what is beside the list \[points\].
+const DETAIL: f32 = 430.0;
+/// Height of the list of changes with its buttons \[points\].
+const CHANGES: f32 = 300.0;
+
+/// What the page remembers between two frames.
+#[derive(Default)]
+pub(super) struct ParametersPage {
+    opened: Option<Parameters>,
+    /// Why there is none, or why it was not written.
+    failed: Option<String>,
+    /// The file on the disk was another one when that was asked last.
+    is_stale: bool,
+    search: String,
+    shown: Shown,
+    chosen: Option<Chosen>,
+    over: Over,
+    /// The versions, as they were when they were asked for.
+    versions: Vec<Version>,
+}
+
+/// Which parameters are listed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Shown {
+    #[default]
+    All,
+    Changed,
+    OtherThanShipped,
+}
+
+/// The parameter that is looked at.
+struct Chosen {
+    key: String,
+    /// What is typed as its value.
+    typed: String,
+    /// Why that is none.
+    error: Option<EditError>,
+    /// What it may be, of the changes so far.
+    ranges: Vec<Range>,
+}
+
+/// What is open over the page.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Over {
+    #[default]
+    Nothing,
+    /// The question before writing.
+    Write,
+    /// The versions that are kept.
+    Versions,
+}
+
+impl ParametersPage {
+    /// Reads the machine file anew, unless something is changed.
+    pub fn open(&mut self, file: &Path) {
+        match &self.opened {
+            Some(parameters) if parameters.is_changed() => self.is_stale = parameters.is_stale(),
+            _ => self.load(file),
+        }
+    }
+
+    /// Reads the machine file; what was changed is discarded.
+    fn load(&mut self, file: &Path) {
+        (self.opened, self.failed, self.is_stale) = match Parameters::open(file) {
+            Ok(parameters) => (Some(parameters), None, false),
+            Err(error) => (None, Some(sentence(error.as_ref())), false),
+        };
+        self.choose_again();
+    }
+
+    pub fn show(&mut self, ui: &mut Ui, view: &View, station: &mut Station, left_handed: bool) {
+        if self.opened.is_none() {
+            if let Some(failed) = &self.failed {
+                ui.add(Label::new(RichText::new(failed).color(view.theme.bad)).wrap());
+            }
+            return;
+        }
+        let beside = if left_handed {
+            bare(egui::Panel::left("parameter"))
+        } else {
+            bare(egui::Panel::right("parameter"))
+        };
+        beside.exact_size(DETAIL).resizable(false).show(ui, |ui| {
+            bare(egui::Panel::bottom("changes"))
+                .exact_size(CHANGES)
+                .resizable(false)
+                .show(ui, |ui| self.changes(ui, view, station));
+            self.detail(ui, view);
+        });
+        self.rows(ui, view);
+        match self.over {
+            Over::Nothing => {}
+            Over::Write => self.ask_to_write(ui, view, station),
+            Over::Versions => self.list_versions(ui, view),
+        }
+    }
+
+    /// Looks at the parameter called `key`.
+    fn choose(&mut self, key: &str) {
+        let Some(parameters) = &self.opened else { return };
+        self.chosen = parameters.parameter(key).map(|parameter| Chosen {
+            key: key.to_owned(),
+            typed: parameter.value.clone(),
+            error: None,
+            ranges: parameters.ranges(key),
+        });
+    }
+
+    /// Looks at the same parameter after the file has changed.
+    fn choose_again(&mut self) {
+        if let Some(chosen) = self.chosen.take() {
+            self.choose(&chosen.key);
+        }
+    }
+}
