@@ -14,8 +14,8 @@ pub struct Change {
     pub new: Option<String>,
 }
 
-/// The values that differ between `old` and `new`, in the order of `old`; what only `new` has comes last. How they are laid out,
-/// and comments, are no matter.
+/// The values that differ between `old` and `new`, in the order of `old`; what only `new` has comes last. How they are
+/// written, and comments, are no matter.
 pub fn changes(old: &str, new: &str) -> Vec<Change> {
     let values = |text: &str| -> Vec<(String, String)> {
         let parameters = list(text).into_iter().flat_map(|table| table.parameters);
@@ -26,7 +26,7 @@ pub fn changes(old: &str, new: &str) -> Vec<Change> {
     let mut found = Vec::new();
     for (key, before) in &old {
         let after = news.remove(&**key);
-        if after != Some(before) {
+        if !after.is_some_and(|after| is_same(before, after)) {
             found.push(Change {
                 key: key.clone(),
                 old: Some(before.clone()),
@@ -41,4 +41,10 @@ pub fn changes(old: &str, new: &str) -> Vec<Change> {
         new: Some(value.clone()),
     }));
     found
+}
+
+/// Whether two values are the same, as they are written or as numbers.
+pub fn is_same(one: &str, other: &str) -> bool {
+    let number = |value: &str| value.trim().replace('_', "").parse::<f64>().ok();
+    one == other || number(one).is_some_and(|one| number(other) == Some(one))
 }

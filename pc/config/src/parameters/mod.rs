@@ -11,11 +11,11 @@ mod range;
 mod shipped;
 mod unit;
 
-pub use change::{Change, changes};
+pub use change::{Change, changes, is_same};
 pub use edit::{EditError, replace};
 pub use list::{Kind, Parameter, Table, list};
 pub use range::{Range, is_about, ranges};
-pub use shipped::shipped;
+pub use shipped::{shipped, shipped_values};
 
 #[cfg(test)]
 mod tests;

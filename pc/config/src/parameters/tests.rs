@@ -211,7 +211,13 @@ fn changes_are_told_and_neither_layout_nor_comments_are_any() {
     ];
     assert_eq!(changes(FORMS, &new), expected);
     assert_eq!(
-        changes(FORMS, &FORMS.replace("# far", "").replace("\n\n", "\n")),
+        changes(
+            FORMS,
+            &FORMS
+                .replace("# far", "")
+                .replace("-1_5.0", "-15.0")
+                .replace("\n\n", "\n")
+        ),
         []
     );
 }
@@ -222,6 +228,7 @@ fn every_machine_has_its_shipped_file_here() {
         let text = shipped(name).unwrap_or_else(|| panic!("no {name}"));
         let machine = MachineFile::parse(name, text).unwrap();
         assert_eq!(machine.motion.kinematics.name(), *name);
+        assert_eq!(shipped_values(text)["name"], format!("\"{name}\""));
         // A table of every value that is read, and all of them can be written as they are.
         for one in list(text).into_iter().flat_map(|table| table.parameters) {
             let again =

@@ -4,7 +4,8 @@ use anyhow::{Context, bail};
 use config::kept;
 use config::machine::{MachineError, MachineFile};
 use config::parameters::{
-    Change, EditError, Parameter, Range, Table, changes, is_about, list, ranges, replace, shipped,
+    Change, EditError, Parameter, Range, Table, changes, is_about, is_same, list, ranges, replace,
+    shipped_values,
 };
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -59,7 +60,7 @@ impl Parameters {
             changes: Vec::new(),
             refused: None,
             weakened: Vec::new(),
-            shipped: shipped_beside(&loaded),
+            shipped: shipped_values(&loaded),
             loaded: loaded.clone(),
         };
         parameters.take(loaded);
@@ -228,7 +229,7 @@ impl Parameters {
 
     /// Has `text` as what is edited.
     fn take(&mut self, text: String) {
-        let name = self.file.display().to_string();
+        let name = self.file.file_name().unwrap_or_default().to_string_lossy();
         let read = MachineFile::parse(&name, &text);
         let weak = |machine: &MachineFile| -> Vec<String> {
             let protections = machine.weak_protections();
@@ -244,23 +245,6 @@ impl Parameters {
         self.changes = changes(&self.loaded, &text);
         self.edited = text;
     }
-}
-
-/// The values of the shipped file of the machine with the same kinematics.
-fn shipped_beside(text: &str) -> BTreeMap<String, String> {
-    let tables = list(text);
-    let mut kinds = tables
-        .iter()
-        .filter_map(|table| table.name.strip_prefix("kinematics."));
-    let shipped = kinds.next().and_then(shipped).map_or_else(Vec::new, list);
-    let parameters = shipped.into_iter().flat_map(|table| table.parameters);
-    parameters.map(|one| (one.key, one.value)).collect()
-}
-
-/// Whether two values are the same, as they are written or as numbers.
-fn is_same(one: &str, other: &str) -> bool {
-    let number = |value: &str| value.trim().replace('_', "").parse::<f64>().ok();
-    one == other || number(one).is_some_and(|one| number(other) == Some(one))
 }
 
 fn cannot(what: &str, file: &Path) -> String {

@@ -221,7 +221,7 @@ texts! {
     Refused: "Refused: {}", "被拒绝：{}", "Abgelehnt: {}";
     Write: "Write…", "写入…", "Schreiben…";
     WriteNow: "Write now", "立即写入", "Jetzt schreiben";
-    WriteTitle: "Write these changes to the machine file?", "将这些更改写入机器文件？", "Diese Änderungen in die Maschinendatei schreiben?";
+    WriteTitle: "Write these changes to {}?", "将这些更改写入 {}？", "Diese Änderungen in {} schreiben?";
     WriteKeeps: "What is there now is kept as {}.", "当前内容将保存为 {}。", "Was jetzt darin steht, bleibt als {} erhalten.";
     WriteThen: "The program is planned anew, and the next job runs with these values.", "程序将重新规划，下一个任务使用这些数值。", "Das Programm wird neu geplant, und der nächste Auftrag läuft mit diesen Werten.";
     Weakened: "A protection becomes weaker: {}", "保护减弱：{}", "Ein Schutz wird schwächer: {}";

@@ -2,6 +2,7 @@
 //! docs/images/hmi are. A letter that no font has and a button without a name fail here.
 
 use crate::bench::{Bench, PROGRAM};
+use eframe::egui::Key;
 use hmi::screen::Page;
 use hmi::texts::Language;
 
@@ -36,7 +37,7 @@ fn every_page_in_every_language() {
         for (key, value) in [("axes.X.max_jerk", "40000"), ("axes.X.max_velocity", "350")] {
             bench.tap_containing(&format!("{key} ="));
             bench.type_in("Value", value);
-            bench.key(eframe::egui::Key::Enter);
+            bench.key(Key::Enter);
         }
     });
     bench.pictures("write", |bench| bench.tap("Write…"));

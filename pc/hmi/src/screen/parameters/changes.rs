@@ -17,6 +17,7 @@ impl ParametersPage {
         let may_write =
             is_free && parameters.is_changed() && parameters.refused().is_none() && !self.is_stale;
         let may_discard = parameters.is_changed();
+        ui.add_space(4.0);
         title(ui, view, words.say(Text::Changes));
         let mut told: Vec<(String, Color32)> = Vec::new();
         if self.is_stale {
@@ -28,7 +29,7 @@ impl ParametersPage {
         if let Some(error) = parameters.refused() {
             told.push((words.with(Text::Refused, &[&error.to_string()]), view.theme.bad));
         }
-        if parameters.is_changed() && !is_free {
+        if !is_free {
             told.push((words.say(Text::WriteAtRest).to_owned(), view.theme.doubt));
         }
         let height = ui.available_height() - HEIGHT - 16.0;
@@ -51,7 +52,7 @@ impl ParametersPage {
                 &[
                     (Text::Write, may_write),
                     (Text::Discard, may_discard),
-                    (Text::Versions, true),
+                    (Text::Versions, is_free),
                 ]
             };
             for (text, enabled) in offered {

@@ -3,7 +3,7 @@
 use super::ParametersPage;
 use crate::screen::View;
 use crate::texts::Text;
-use config::parameters::{EditError, Range};
+use config::parameters::{EditError, Kind, Range};
 use eframe::egui::{Button, Grid, Key, Label, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 impl ParametersPage {
@@ -30,7 +30,10 @@ impl ParametersPage {
             ui.horizontal(|ui| {
                 let label = ui.label(words.say(Text::Value));
                 let field = TextEdit::singleline(&mut chosen.typed)
-                    .desired_width(150.0)
+                    .desired_width(match parameter.kind {
+                        Kind::Float | Kind::Integer => 150.0,
+                        Kind::Text | Kind::Other => 230.0,
+                    })
                     .margin(vec2(8.0, 8.0));
                 let field = ui.add(field).labelled_by(label.id);
                 ui.label(parameter.unit);
@@ -64,7 +67,8 @@ impl ParametersPage {
             };
             Grid::new("of the parameter")
                 .num_columns(2)
-                .spacing([16.0, 2.0])
+                .spacing([16.0, 4.0])
+                .min_row_height(22.0)
                 .show(ui, |ui| {
                     for (name, value) in [
                         (Text::ParameterRange, range),

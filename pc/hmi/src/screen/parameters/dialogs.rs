@@ -3,7 +3,7 @@
 use super::changes::list;
 use super::{Over, ParametersPage};
 use crate::screen::View;
-use crate::station::{Action, Station};
+use crate::station::Station;
 use crate::texts::Text;
 use config::sentence;
 use eframe::egui::{Button, Color32, Id, Label, Modal, RichText, ScrollArea, Ui};
@@ -20,19 +20,12 @@ impl ParametersPage {
     /// The question before writing: what will be another value, and what becomes weaker by it.
     pub(super) fn ask_to_write(&mut self, ui: &mut Ui, view: &View, station: &mut Station) {
         let words = view.words;
-        let may_write = station.may(Action::Write, view.now);
-        let Some(parameters) = self.opened.as_ref().filter(|_| may_write) else {
-            self.over = Over::Nothing;
-            return;
-        };
+        let Some(parameters) = &self.opened else { return };
         let (mut write, mut cancel) = (false, false);
         let modal = Modal::new(Id::unique("write")).show(ui.ctx(), |ui| {
             ui.set_width(WIDTH);
-            ui.heading(words.say(Text::WriteTitle));
-            ui.add(
-                Label::new(RichText::new(parameters.file().display().to_string()).color(view.theme.faint))
-                    .wrap(),
-            );
+            ui.heading(words.with(Text::WriteTitle, &[&name(parameters.file())]));
+            ui.add_space(8.0);
             ScrollArea::vertical().max_height(LIST).show(ui, |ui| {
                 list(ui, view, self);
                 for weakened in parameters.weakened() {

@@ -7,7 +7,7 @@ mod rows;
 
 use super::{View, bare};
 use crate::parameters::{Parameters, Version};
-use crate::station::Station;
+use crate::station::{Action, Station};
 use config::parameters::{EditError, Range};
 use config::sentence;
 use eframe::egui::{self, Label, RichText, Ui};
@@ -54,7 +54,7 @@ struct Chosen {
     ranges: Vec<Range>,
 }
 
-/// What is open over the page.
+/// What is open over the page; nothing is over Stop while a job runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Over {
     #[default]
@@ -96,13 +96,19 @@ impl ParametersPage {
             bare(egui::Panel::right("parameter"))
         };
         beside.exact_size(DETAIL).resizable(false).show(ui, |ui| {
-            bare(egui::Panel::bottom("changes"))
+            egui::Panel::bottom("changes")
+                .frame(egui::Frame::new())
                 .exact_size(CHANGES)
                 .resizable(false)
                 .show(ui, |ui| self.changes(ui, view, station));
             self.detail(ui, view);
         });
-        self.rows(ui, view);
+        egui::Frame::new()
+            .inner_margin(egui::Margin::symmetric(8, 0))
+            .show(ui, |ui| self.rows(ui, view));
+        if !station.may(Action::Write, view.now) {
+            self.over = Over::Nothing;
+        }
         match self.over {
             Over::Nothing => {}
             Over::Write => self.ask_to_write(ui, view, station),

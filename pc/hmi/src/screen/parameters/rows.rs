@@ -7,14 +7,14 @@ use crate::texts::Text;
 use config::parameters::{Parameter, Table};
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{
-    Align2, Color32, FontId, Rect, Response, RichText, Role, ScrollArea, Sense, TextEdit, TextStyle, Ui,
-    WidgetInfo, pos2, vec2,
+    Align2, Color32, FontId, Rect, Response, RichText, Role, ScrollArea, Sense, StrokeKind, TextEdit,
+    TextStyle, Ui, WidgetInfo, vec2,
 };
 
 /// Height of a row that is tapped \[points\].
 const ROW: f32 = 38.0;
-/// Where columns begin: the mark, name, value, unit, the shipped value \[points\]; and what the list is wide at least.
-const COLUMNS: [f32; 6] = [6.0, 26.0, 300.0, 440.0, 530.0, 660.0];
+/// Where columns begin: the mark, name, value, unit, the shipped value \[points\].
+const COLUMNS: [f32; 5] = [6.0, 26.0, 300.0, 440.0, 530.0];
 
 impl ParametersPage {
     pub(super) fn rows(&mut self, ui: &mut Ui, view: &View) {
@@ -111,23 +111,22 @@ fn head_of(ui: &mut Ui, view: &View, table: &Table) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
     if ui.is_rect_visible(rect) {
         let strong = ui.visuals().strong_text_color();
-        let name = cell(ui, rect, 0, &format!("[{}]", table.name), 16.0, strong);
+        let name = text_in(ui, rect, &format!("[{}]", table.name), 16.0, strong);
         let left = (name.right() + 10.0).max(rect.left() + COLUMNS[2]);
-        let room = Rect::from_min_max(pos2(left, rect.top()), rect.max);
-        text_in(ui, room, &table.comment, 14.0, view.theme.faint);
+        text_in(ui, rect.with_min_x(left), &table.comment, 14.0, view.theme.faint);
     }
 }
 
 /// A parameter: all of its row is tapped.
 fn row(ui: &mut Ui, view: &View, parameters: &Parameters, one: &Parameter, is_chosen: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
-    let is_changed = parameters.change(&one.key).is_some();
+    let text = ui.visuals().text_color();
     let (mark, colour) = if parameters.is_refused_at(one) {
         ("✖", view.theme.bad)
-    } else if is_changed {
+    } else if parameters.change(&one.key).is_some() {
         ("●", view.theme.doubt)
     } else {
-        ("", ui.visuals().text_color())
+        ("", text)
     };
     response.widget_info(|| {
         let label = format!("{mark} {} = {} {}", one.key, one.value, one.unit);
@@ -146,17 +145,15 @@ fn row(ui: &mut Ui, view: &View, parameters: &Parameters, one: &Parameter, is_ch
     }
     if response.has_focus() {
         let stroke = (2.0, ui.visuals().strong_text_color());
-        ui.painter()
-            .rect_stroke(around, 4, stroke, eframe::egui::StrokeKind::Inside);
+        ui.painter().rect_stroke(around, 4, stroke, StrokeKind::Inside);
     }
     cell(ui, rect, 0, mark, 16.0, colour);
-    cell(ui, rect, 1, &one.name, 16.0, ui.visuals().text_color());
+    cell(ui, rect, 1, &one.name, 16.0, text);
     cell(ui, rect, 2, &one.value, 16.0, colour);
     cell(ui, rect, 3, one.unit, 15.0, view.theme.faint);
     let shipped = parameters.shipped(&one.key).unwrap_or("–");
     if parameters.is_other_than_shipped(one) {
-        let text = format!("≠ {shipped}");
-        cell(ui, rect, 4, &text, 16.0, ui.visuals().text_color());
+        cell(ui, rect, 4, &format!("≠ {shipped}"), 16.0, text);
     } else {
         cell(ui, rect, 4, shipped, 16.0, view.theme.faint);
     }
@@ -164,18 +161,14 @@ fn row(ui: &mut Ui, view: &View, parameters: &Parameters, one: &Parameter, is_ch
 }
 
 /// Text in a column of a row; the last one has all the room that is left.
-fn cell(ui: &Ui, row: Rect, column: usize, text: &str, size: f32, colour: Color32) -> Rect {
-    let left = row.left() + COLUMNS[column];
-    let right = match column {
-        0 if text.len() > 3 => row.right(),
-        4 => row.right(),
-        _ => row.left() + COLUMNS[column + 1] - 8.0,
-    };
-    let room = Rect::from_min_max(pos2(left, row.top()), pos2(right, row.bottom()));
-    text_in(ui, room, text, size, colour)
+fn cell(ui: &Ui, row: Rect, column: usize, text: &str, size: f32, colour: Color32) {
+    let next = COLUMNS.get(column + 1);
+    let right = next.map_or(row.right(), |next| row.left() + next - 8.0);
+    let room = row.with_min_x(row.left() + COLUMNS[column]).with_max_x(right);
+    text_in(ui, room, text, size, colour);
 }
 
-/// Text in one line, shortened where there is no room.
+/// Text in one line, shortened where there is no room; gives where it is.
 fn text_in(ui: &Ui, room: Rect, text: &str, size: f32, colour: Color32) -> Rect {
     let family = TextStyle::Body.resolve(ui.style()).family;
     let mut job = LayoutJob::simple_singleline(text.to_owned(), FontId::new(size, family), colour);
