@@ -71,6 +71,16 @@ fn every_value_is_listed_in_order_with_its_table_line_and_comment() {
 }
 
 #[test]
+fn a_part_of_a_file_is_listed_or_not_but_never_a_panic() {
+    for end in (0..FORMS.len()).filter(|end| FORMS.is_char_boundary(*end)) {
+        for text in [&FORMS[..end], &FORMS[end..]] {
+            let all = list(text).into_iter().flat_map(|table| table.parameters);
+            assert!(all.into_iter().all(|one| text[one.span] == one.value), "{text}");
+        }
+    }
+}
+
+#[test]
 fn a_value_is_replaced_and_nothing_else_of_the_text() {
     for (key, typed, written) in [
         ("name", "a \"b\"", "'a \"b\"'"),

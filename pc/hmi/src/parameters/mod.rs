@@ -1,5 +1,9 @@
 //! The machine file while its parameters are changed: changes are collected and checked, and written only when that is asked for.
 
+mod versions;
+
+pub use versions::Version;
+
 use anyhow::{Context, bail};
 use config::kept;
 use config::machine::{MachineError, MachineFile};
@@ -16,6 +20,8 @@ pub struct Parameters {
     file: PathBuf,
     /// The text as it was loaded.
     loaded: String,
+    /// The machine that it is, if it is one.
+    machine: Option<MachineFile>,
     /// The same with what was changed.
     edited: String,
     /// What is in `edited`.
@@ -35,15 +41,6 @@ pub struct Written {
     pub version: PathBuf,
 }
 
-/// A version of the file that is kept.
-#[derive(Debug)]
-pub struct Version {
-    /// Where it is.
-    pub file: PathBuf,
-    /// How many values are others in it.
-    pub differing: usize,
-}
-
 impl Parameters {
     /// Those of the machine file at `file`.
     ///
@@ -55,6 +52,7 @@ impl Parameters {
         let loaded = std::fs::read_to_string(&file).with_context(|| cannot("read", &file))?;
         let mut parameters = Self {
             file,
+            machine: None,
             edited: String::new(),
             tables: Vec::new(),
             changes: Vec::new(),
@@ -64,6 +62,7 @@ impl Parameters {
             loaded: loaded.clone(),
         };
         parameters.take(loaded);
+        parameters.machine = MachineFile::parse(&parameters.name(), &parameters.loaded).ok();
         Ok(parameters)
     }
 
@@ -167,37 +166,20 @@ impl Parameters {
         self.take(self.loaded.clone());
     }
 
-    /// Versions that are kept beside the file, newest first.
-    pub fn versions(&self) -> Vec<Version> {
-        let kept = kept::versions(&self.file).into_iter().rev();
-        kept.filter_map(|(_, file)| {
-            let text = std::fs::read_to_string(&file).ok()?;
-            Some(Version {
-                differing: changes(&self.loaded, &text).len(),
-                file,
-            })
-        })
-        .collect()
-    }
-
-    /// Has everything as it is in the version at `file`; what was changed otherwise is discarded. Nothing is written yet.
-    ///
-    /// # Errors
-    /// A sentence: it cannot be read.
-    pub fn restore(&mut self, file: &Path) -> anyhow::Result<()> {
-        let text = std::fs::read_to_string(file).with_context(|| cannot("read", file))?;
-        self.take(text);
-        Ok(())
-    }
-
     /// Whether the file on the disk is another one than was loaded.
     pub fn is_stale(&self) -> bool {
         std::fs::read_to_string(&self.file).ok().as_ref() != Some(&self.loaded)
     }
 
-    /// Where what is in the file now will be kept.
-    pub fn next_version(&self) -> PathBuf {
-        kept::next_version(&self.file)
+    /// Whether `machine`, which a program was planned for, is that of the file as it was loaded; weld data are no matter.
+    pub fn is_of(&self, machine: &MachineFile) -> bool {
+        self.machine.as_ref().is_some_and(|own| {
+            let welding = machine.welding.clone();
+            MachineFile {
+                welding,
+                ..own.clone()
+            } == *machine
+        })
     }
 
     /// Writes the changes: keeps what was there before as a version, and puts the new text in its place.
@@ -221,25 +203,29 @@ impl Parameters {
             .with_context(|| format!("cannot keep a version of {}", self.file.display()))?;
         kept::replace(&self.file, &self.edited).with_context(|| cannot("write", &self.file))?;
         self.loaded.clone_from(&self.edited);
+        self.machine = MachineFile::parse(&self.name(), &self.loaded).ok();
         Ok(Written {
             changes: std::mem::take(&mut self.changes),
             version,
         })
     }
 
+    /// What messages call the file.
+    fn name(&self) -> String {
+        let name = self.file.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+
     /// Has `text` as what is edited.
     fn take(&mut self, text: String) {
-        let name = self.file.file_name().unwrap_or_default().to_string_lossy();
-        let read = MachineFile::parse(&name, &text);
+        let read = MachineFile::parse(&self.name(), &text);
         let weak = |machine: &MachineFile| -> Vec<String> {
             let protections = machine.weak_protections();
             protections.iter().map(ToString::to_string).collect()
         };
+        let before = self.machine.as_ref().map_or_else(Vec::new, weak);
         self.weakened = read.as_ref().map_or_else(|_| Vec::new(), weak);
-        if let Ok(loaded) = MachineFile::parse(&name, &self.loaded) {
-            let before = weak(&loaded);
-            self.weakened.retain(|told| !before.contains(told));
-        }
+        self.weakened.retain(|told| !before.contains(told));
         self.refused = read.err();
         self.tables = list(&text);
         self.changes = changes(&self.loaded, &text);

@@ -156,7 +156,7 @@ impl Screen {
         self.page = page;
         match page {
             Page::Welds => self.welds.open(&self.station.place.reports),
-            Page::Parameters => self.parameters.open(self.station.machine_file()),
+            Page::Parameters => self.parameters.open(&self.station),
             _ => {}
         }
     }

@@ -228,6 +228,7 @@ texts! {
     WriteAtRest: "A job runs or a program is being loaded: writing waits until then.", "任务正在运行或程序正在载入，结束后才能写入。", "Ein Auftrag läuft oder ein Programm wird geladen: Geschrieben wird erst danach.";
     Discard: "Discard", "放弃", "Verwerfen";
     StaleFile: "The file on the disk has changed since it was loaded. It is not written over.", "磁盘上的文件在载入后已被更改，不会被覆盖。", "Die Datei auf der Platte ist seit dem Laden geändert worden. Sie wird nicht überschrieben.";
+    OtherMachine: "The loaded program was planned before the file was changed on the disk. Load it again.", "已载入的程序是在磁盘文件更改之前规划的，请重新载入。", "Das geladene Programm ist geplant worden, bevor die Datei auf der Platte geändert wurde. Neu laden.";
     LoadAnew: "Discard and load anew", "放弃更改并重新载入", "Verwerfen und neu laden";
     Versions: "Backups…", "备份…", "Sicherungen…";
     VersionsOf: "Backups of {}", "{} 的备份", "Sicherungen von {}";

@@ -142,7 +142,10 @@ fn nothing_is_written_while_a_job_runs() {
 #[test]
 fn a_file_that_was_changed_on_the_disk_is_not_written_over() {
     let (mut bench, file) = Bench::with_own_file();
+    bench.load(PROGRAM);
     with_jerk(&mut bench, "40000");
+    let older = "The loaded program was planned before";
+    assert!(!bench.says(older));
     bench.tap("Write…");
     let theirs = text(&file).replacen("link_timeout_ms = 500", "link_timeout_ms = 600", 1);
     std::fs::write(&file, &theirs).expect("written");
@@ -155,6 +158,11 @@ fn a_file_that_was_changed_on_the_disk_is_not_written_over() {
     assert!(bench.says("None."));
     bench.type_in("Search", "link_timeout");
     assert!(bench.says("link_timeout_ms = 600 ms"));
+    // What a job would run with is not what is shown.
+    assert!(bench.says(older));
+    bench.load(PROGRAM);
+    bench.open(Page::Parameters);
+    assert!(!bench.says(older));
 }
 
 #[test]

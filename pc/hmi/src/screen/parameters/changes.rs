@@ -23,6 +23,9 @@ impl ParametersPage {
         if self.is_stale {
             told.push((words.say(Text::StaleFile).to_owned(), view.theme.bad));
         }
+        if self.is_other {
+            told.push((words.say(Text::OtherMachine).to_owned(), view.theme.doubt));
+        }
         if let Some(failed) = &self.failed {
             told.push((failed.clone(), view.theme.bad));
         }
@@ -62,7 +65,7 @@ impl ParametersPage {
             }
         });
         match asked {
-            Some(Text::LoadAnew) => self.load(station.machine_file()),
+            Some(Text::LoadAnew) => self.load(station),
             Some(Text::Write) => {
                 self.is_stale = parameters.is_stale();
                 self.over = if self.is_stale { Over::Nothing } else { Over::Write };

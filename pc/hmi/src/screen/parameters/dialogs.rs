@@ -66,6 +66,8 @@ impl ParametersPage {
             .err()
             .map(|error| sentence(error.as_ref()));
         self.is_stale = parameters.is_stale();
+        // A program that was loaded is planned anew.
+        self.is_other &= self.failed.is_some();
         self.choose_again();
     }
 

@@ -11,7 +11,6 @@ use crate::station::{Action, Station};
 use config::parameters::{EditError, Range};
 use config::sentence;
 use eframe::egui::{self, Label, RichText, Ui};
-use std::path::Path;
 
 /// Width of what is beside the list \[points\].
 const DETAIL: f32 = 430.0;
@@ -26,6 +25,8 @@ pub(super) struct ParametersPage {
     failed: Option<String>,
     /// The file on the disk was another one when that was asked last.
     is_stale: bool,
+    /// The loaded program was planned for another file than this one.
+    is_other: bool,
     search: String,
     shown: Shown,
     chosen: Option<Chosen>,
@@ -67,19 +68,21 @@ enum Over {
 
 impl ParametersPage {
     /// Reads the machine file anew, unless something is changed.
-    pub fn open(&mut self, file: &Path) {
+    pub fn open(&mut self, station: &Station) {
         match &self.opened {
             Some(parameters) if parameters.is_changed() => self.is_stale = parameters.is_stale(),
-            _ => self.load(file),
+            _ => self.load(station),
         }
     }
 
     /// Reads the machine file; what was changed is discarded.
-    fn load(&mut self, file: &Path) {
-        (self.opened, self.failed, self.is_stale) = match Parameters::open(file) {
+    fn load(&mut self, station: &Station) {
+        (self.opened, self.failed, self.is_stale) = match Parameters::open(station.machine_file()) {
             Ok(parameters) => (Some(parameters), None, false),
             Err(error) => (None, Some(sentence(error.as_ref())), false),
         };
+        let planned = station.loaded().zip(self.opened.as_ref());
+        self.is_other = planned.is_some_and(|(loaded, parameters)| !parameters.is_of(&loaded.machine));
         self.choose_again();
     }
 
