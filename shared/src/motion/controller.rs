@@ -395,6 +395,10 @@ impl MotionController {
                 limit_ms: self.stop_by.1,
             });
         }
+        if self.path.held_until.is_some_and(|until| self.tick > until) && self.state != State::Stopping {
+            // Whoever holds the machine to run has let go of it.
+            let _ = self.stop();
+        }
         let Some(machine) = &self.machine else { return };
         let placed = self.homed && self.enabled && self.homing.is_none();
         if let (true, Some(axis)) = (placed, machine.overrun(&self.measured)) {

@@ -90,6 +90,11 @@ impl HomingPlan {
         Ok(plan)
     }
 
+    /// Those that the machine has, one bit a motor.
+    pub fn motors(&self) -> u8 {
+        bits(|motor| self.fitted(motor))
+    }
+
     /// Whether the machine has `motor`.
     fn fitted(&self, motor: usize) -> bool {
         self.single[motor].is_some() || (motor <= X2 && self.gantry.is_some())
@@ -158,6 +163,23 @@ impl Homing {
         }
     }
 
+    /// Motors that have their reference, one bit each.
+    pub fn found(&self) -> u8 {
+        bits(|motor| self.found[motor] && self.plan.fitted(motor))
+    }
+
+    /// Motors that look for it now, one bit each.
+    pub fn searching(&self) -> u8 {
+        let now = self.turn();
+        bits(|motor| !self.found[motor] && now == Some(self.plan.sequence[motor]))
+    }
+
+    /// Whose turn it is: the lowest place in the sequence that is left.
+    fn turn(&self) -> Option<u8> {
+        let missing = (0..MOTORS).filter(|motor| !self.found[*motor]);
+        missing.map(|motor| self.plan.sequence[motor]).min()
+    }
+
     /// One path tick: moves `reference` on, from what the servo ticks reported.
     pub fn tick(
         &mut self,
@@ -166,14 +188,11 @@ impl Homing {
     ) -> Result<HomingStep, Fault> {
         let mut step = HomingStep::default();
         match &mut self.stage {
-            Stage::Searching => {
-                let missing = (0..MOTORS).filter(|motor| !self.found[*motor]);
-                match missing.map(|motor| self.plan.sequence[motor]).min() {
-                    Some(now) => self.search_all(now, report, reference, &mut step)?,
-                    // The new frame holds from this report on; square only now.
-                    None => self.stage = self.square(reference)?,
-                }
-            }
+            Stage::Searching => match self.turn() {
+                Some(now) => self.search_all(now, report, reference, &mut step)?,
+                // The new frame holds from this report on; square only now.
+                None => self.stage = self.square(reference)?,
+            },
             Stage::Squaring(squaring) => {
                 if squaring.tick(reference) {
                     self.stage = Stage::Done;
@@ -285,6 +304,11 @@ impl Homing {
         }
         Ok(())
     }
+}
+
+/// One bit each for those of which `is` holds.
+fn bits(is: impl Fn(usize) -> bool) -> u8 {
+    (0..MOTORS).fold(0, |bits, motor| bits | u8::from(is(motor)) << motor)
 }
 
 fn input(report: &ServoReport, motor: usize) -> SearchInput {

@@ -22,8 +22,8 @@ pub use excitation::{
 };
 pub use inputs::Inputs;
 pub use request::{
-    Channel, Identity, LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, MotionStatus, PathAction, PathEvent,
-    PathLimits, Refusal, Request, Response, Role, Room, TrackerStatus,
+    Channel, HOLD_TO_RUN_MS, Identity, LOAD_BATCH, LOAD_ELEMENTS, LOAD_EVENTS, MotionStatus, PathAction,
+    PathEvent, PathLimits, Refusal, Request, Response, Role, Room, TrackerStatus,
 };
 
 /// TCP port of the requests, on both boards.

@@ -20,6 +20,8 @@ pub const LOAD_BATCH: usize = 6;
 pub const LOAD_ELEMENTS: usize = 4;
 /// Most events in one [`Request::LoadEvents`].
 pub const LOAD_EVENTS: usize = 32;
+/// What moves by hold-to-run goes on for so long after it was last asked for \[ms\].
+pub const HOLD_TO_RUN_MS: u32 = 150;
 
 /// What the PC may ask. A board answers [`Refusal::NotMine`] to what belongs to the other one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
@@ -75,6 +77,9 @@ pub enum Request {
     MoveSlides {
         /// U1, V1, U2, V2, inside their travel \[mm\].
         target_mm: [f64; SLIDES],
+        /// By hold-to-run: for [`HOLD_TO_RUN_MS`] only, unless asked for again, and no faster than this \[mm/s\]. Then they come
+        /// to rest, and stay.
+        hold_to_run: Option<f64>,
     },
     /// Move the pose so far beside the planned one, slowly, for as long as the path asks for tracking; motion board,
     /// on a path that does. Takes the place of the last offset.
@@ -104,6 +109,9 @@ pub enum Request {
     /// Run the path from where it begins to the end of its last element; motion board, state idle. Where elements
     /// come too late, the machine waits on the path.
     Run,
+    /// Run the path, as [`Request::Run`] does, for [`HOLD_TO_RUN_MS`]; on a path that runs like that, for as long again from now
+    /// on. Where that does not come in time, as [`Request::Stop`].
+    HoldToRun,
     /// From now on go at this part of the programmed speed; motion board, at any time.
     Override {
         /// 0 to 2.
@@ -116,7 +124,8 @@ pub enum Request {
     /// Go on along the path after a hold. Where a beam was on, the machine first goes back, and the beam goes on
     /// somewhat before the place where it went off, at speed.
     Resume,
-    /// Beams off and controlled stop on the path; the path is given up. While homing: drives off.
+    /// Beams off and controlled stop on the path; the path is given up. While homing: drives off. Tracker board: slides that are moved
+    /// come to rest, and stay.
     Stop,
     /// Shake one motor where it stands and capture what it does; motion board, state idle, axes homed. Until it has ended the
     /// PC may be silent no longer than on a path, and nothing else moves.
@@ -346,6 +355,9 @@ pub enum Refusal {
         /// Travel.
         max_mm: f32,
     },
+    /// A speed that is not positive and finite.
+    #[error("a speed must be positive")]
+    BadSpeed,
     /// The path does not ask for tracking.
     #[error("the pose can be offset from the path only where the path has tracking on")]
     NotTracking,
@@ -501,6 +513,10 @@ pub struct MotionStatus {
     pub fault: Option<Fault>,
     /// All axes have their reference.
     pub homed: bool,
+    /// What has its reference, one bit a motor, the first one the lowest.
+    pub referenced: u8,
+    /// What looks for it now; the others wait for their turn.
+    pub searching: u8,
     /// Measured axis positions (mm, degrees).
     pub axes: [f64; AXES],
     /// Commanded axis positions (mm, degrees); as measured while the drives are off. A path starts here.
@@ -544,6 +560,8 @@ pub struct TrackerStatus {
     pub fault: Option<TrackerFault>,
     /// All slides have their reference.
     pub homed: bool,
+    /// Which of them have it, one bit a slide.
+    pub referenced: u8,
     /// Measured slide positions \[mm\].
     pub slides_mm: [f64; SLIDES],
     /// Number of the loaded path.

@@ -9,6 +9,7 @@
 
 mod captures;
 mod following;
+mod jog;
 mod permit;
 mod requests;
 mod strobes;
@@ -28,6 +29,7 @@ use crate::protocol::{BeamPermit, Capture, Datagram, PathState, Permit, TrackerS
 use crate::state::{TrackerFault, TrackerState};
 use crate::trajectory::Path;
 use heapless::Vec;
+use jog::Jog;
 use strobes::Strobes;
 
 /// Period of the control tick \[µs\].
@@ -84,7 +86,7 @@ pub struct TrackerController<const KNOTS: usize> {
     seam: Seam,
     seam_searches: [SeamSearch; SIDES],
     /// Where the PC wants the slides \[mm\].
-    jog: Option<[f64; SLIDES]>,
+    jog: Option<Jog>,
     /// The machine was on the loaded path at the last tick.
     on_path: bool,
     slides: [Slide; SLIDES],
@@ -193,6 +195,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             *seen = mark.or(*seen);
         }
         self.watch_estop(input.periods);
+        if let Some(jog) = &mut self.jog {
+            jog.pass(input.periods);
+        }
         let motion_now = self.clock.to_remote(input.now_us);
         let snapshot = motion_now.and_then(|now| self.snapshot(now));
         // Taken out for the tick, so that it can be read while the rest changes.
@@ -458,6 +463,14 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
     fn homed(&self) -> bool {
         let mut searched = self.slides.iter().zip(&self.searches);
         !self.searches.is_empty() && searched.all(|(slide, _)| slide.offset.is_some())
+    }
+
+    /// Slides that have their reference, one bit each.
+    fn referenced(&self) -> u8 {
+        let found = (0..).zip(&self.slides);
+        found.fold(0, |bits, (i, slide): (u32, _)| {
+            bits | u8::from(slide.offset.is_some()) << i
+        })
     }
 
     fn sample(&self, input: &TickInput, command: &SlideCommand) -> TrackerSample {

@@ -161,6 +161,11 @@ impl LawState {
         }
     }
 
+    /// No motion is commanded.
+    pub fn stands(&self) -> bool {
+        self.last_velocity == self.drift
+    }
+
     /// Starts from rest; what holds the slide there is still known.
     pub fn reset(&mut self) {
         *self = Self {

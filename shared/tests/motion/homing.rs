@@ -157,3 +157,28 @@ fn parameters_and_homing_within_one_tick_are_no_fault() {
     bench.until(State::Idle, 5000);
     assert_eq!(bench.fault(), None);
 }
+
+#[test]
+fn what_searches_and_what_has_its_reference_is_told() {
+    let mut bench = Bench::configured();
+    assert_eq!((bench.status().referenced, bench.status().searching), (0, 0));
+    bench.done(&Request::Home);
+    let (mut seen, mut found) = (0, 0);
+    while bench.status().state == State::Homing {
+        let status = bench.status();
+        assert_eq!(
+            status.searching & status.referenced,
+            0,
+            "nothing searches for what it has"
+        );
+        assert_eq!(status.referenced & found, found, "what is found stays found");
+        (seen, found) = (seen | status.searching, status.referenced);
+        bench.run_ms(1);
+    }
+    let status = bench.status();
+    // All seven motors.
+    assert_eq!(
+        (seen, found, status.referenced, status.searching),
+        (0x7f, 0x7f, 0x7f, 0)
+    );
+}

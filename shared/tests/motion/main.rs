@@ -4,6 +4,7 @@ mod bench;
 mod estop;
 mod excitation;
 mod filters;
+mod hold_to_run;
 mod holds;
 mod homing;
 mod inputs;

@@ -1,7 +1,7 @@
 //! Slides that the PC moves.
 
 use crate::bench::{Bench, PATH_ID, Shape, config};
-use shared::protocol::{Refusal, Request, Response};
+use shared::protocol::{HOLD_TO_RUN_MS, Refusal, Request, Response};
 use shared::state::TrackerState;
 use shared::trajectory::PathSpace;
 
@@ -15,7 +15,10 @@ fn ready() -> Bench {
 }
 
 fn move_to(target_mm: [f64; 4]) -> Request {
-    Request::MoveSlides { target_mm }
+    Request::MoveSlides {
+        target_mm,
+        hold_to_run: None,
+    }
 }
 
 #[track_caller]
@@ -167,4 +170,63 @@ fn slides_that_were_switched_off_on_the_way_start_from_rest() {
         "{:?}",
         told(&bench)
     );
+}
+
+/// By hold-to-run, at 4 mm/s.
+fn held_to(target_mm: [f64; 4]) -> Request {
+    Request::MoveSlides {
+        target_mm,
+        hold_to_run: Some(4.0),
+    }
+}
+
+#[test]
+fn slides_that_are_held_to_run_go_no_faster_and_stop_where_they_are_let_go_of() {
+    let mut bench = ready();
+    let travel = [11.0, 0.0, 0.0, -11.0];
+    let mut before = bench.plant.truth();
+    for _ in 0..20 {
+        bench.accept(held_to(travel));
+        for _ in 0..50 {
+            bench.tick();
+            let truth = bench.plant.truth();
+            assert!(
+                truth
+                    .iter()
+                    .zip(before)
+                    .all(|(now, before)| (now - before).abs() < 4.05e-3)
+            );
+            before = truth;
+        }
+    }
+    assert!(
+        (before[0] - 4.0).abs() < 0.2 && (before[3] + 4.0).abs() < 0.2,
+        "{before:?}"
+    );
+    // 100 ms are left of the last time, then they brake.
+    bench.run_ms(HOLD_TO_RUN_MS - 50 + 60);
+    let rest = bench.plant.truth();
+    assert!((rest[0] - before[0] - 0.4).abs() < 0.08, "{rest:?}");
+    bench.run_ms(500);
+    at(&bench, rest);
+    // They go on when they are held again.
+    bench.accept(held_to(travel));
+    bench.run_ms(100);
+    assert!(bench.plant.truth()[0] > rest[0] + 0.2);
+}
+
+#[test]
+fn a_speed_must_be_positive() {
+    let mut bench = ready();
+    for speed in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let request = Request::MoveSlides {
+            target_mm: PLACE,
+            hold_to_run: Some(speed),
+        };
+        assert_eq!(
+            bench.ask(request),
+            Response::Refused(Refusal::BadSpeed),
+            "{speed}"
+        );
+    }
 }

@@ -60,6 +60,22 @@ fn its_own_switches_still_trip() {
 }
 
 #[test]
+fn what_is_not_connected_does_not_keep_a_fault() {
+    let mut bench = Bench::new(Shape::Straight, |_, _| (0.0, 0.0));
+    bench.prepare_with(one_side());
+    bench.change_inputs = |feedback| {
+        unconnected(feedback);
+        feedback.limit_plus.set(1, true);
+    };
+    bench.run_ms(2);
+    assert_eq!(bench.status().state, TrackerState::Fault);
+    bench.change_inputs = unconnected;
+    bench.run_ms(2);
+    bench.accept(shared::protocol::Request::Reset);
+    assert_eq!(bench.status().state, TrackerState::Off);
+}
+
+#[test]
 fn half_a_side_is_refused() {
     for slides in [0, 1, 3] {
         let mut config = config();

@@ -151,6 +151,7 @@ fn an_encoder_that_dies_at_rest_trips_when_the_loop_has_sent_the_slide_on_for_ha
         let at = bench.status().slides_mm;
         bench.accept(Request::MoveSlides {
             target_mm: [at[0] + away, at[1], at[2], at[3]],
+            hold_to_run: None,
         });
         let gone = until_off(&mut bench, 2000).expect("no trip")[0];
         println!("sent {away} mm on: {gone:.2} mm");

@@ -165,6 +165,7 @@ pub fn seldom() -> Vec<Request> {
         Request::Disable,
         Request::Reset,
         Request::Run,
+        Request::HoldToRun,
         Request::Back,
         Request::Hold,
         Request::Resume,
@@ -174,6 +175,7 @@ pub fn seldom() -> Vec<Request> {
         Request::Override { factor: 1e-9 },
         Request::MoveSlides {
             target_mm: [1.0; SLIDES],
+            hold_to_run: Some(2.0),
         },
         Request::OffsetPose(PoseOffset::of([0.5, -0.5, 0.001])),
         Request::Excite(Excitation {

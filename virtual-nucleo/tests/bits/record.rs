@@ -123,14 +123,14 @@ impl Operator {
             motion.state == State::Idle && tracker.state == TrackerState::Ready
         });
         let target_mm = [4.0, -3.0, -4.0, 2.5];
-        self.done(1, &Request::MoveSlides { target_mm });
+        self.done(1, &Request::MoveSlides { target_mm, hold_to_run: None });
         for request in untracked(&self.motion()) {
             self.ask(0, &request);
         }
         self.done(0, &Request::Run);
         self.until("half of the path", |motion, _| motion.s_mm > 100.0);
         self.done(0, &Request::Override { factor: 0.6 });
-        self.done(1, &Request::MoveSlides { target_mm: ASIDE });
+        self.done(1, &Request::MoveSlides { target_mm: ASIDE, hold_to_run: None });
         self.until("its end", |motion, _| motion.state == State::Idle);
         self.done(0, &Request::Override { factor: 1.0 });
         let Some(Request::ConfigureTracker(config)) = parameters.get(1) else {

@@ -34,6 +34,8 @@ pub(super) struct LoadedPath {
     /// Beams that wait for their place after a hold.
     pub overlap: Option<Overlap>,
     pub resume: Resume,
+    /// Tick after which it is given up, unless hold-to-run is asked for again; `None` of a path that runs by itself.
+    pub held_until: Option<u64>,
 }
 
 /// How far a resume has come.
@@ -70,6 +72,7 @@ impl LoadedPath {
         resting: 0,
         overlap: None,
         resume: Resume::No,
+        held_until: None,
     };
 
     /// The machine will not run it any more.
@@ -77,6 +80,7 @@ impl LoadedPath {
         self.start = None;
         self.overlap = None;
         self.resume = Resume::No;
+        self.held_until = None;
         self.events.clear();
     }
 }

@@ -10,7 +10,8 @@ use crate::motion::excitation::{ExcitationOrder, Limits};
 use crate::motion::homing::Homing;
 use crate::motion::machine::Machine;
 use crate::protocol::{
-    Excitation, ExcitationEnd, LOAD_ELEMENTS, MotionStatus, PathElement, Refusal, Request, Response, Room,
+    Excitation, ExcitationEnd, HOLD_TO_RUN_MS, LOAD_ELEMENTS, MotionStatus, PathElement, Refusal, Request,
+    Response, Room,
 };
 use crate::state::{Event, State};
 use crate::units::DEG_PER_RAD;
@@ -85,7 +86,10 @@ impl MotionController {
     fn obey(&mut self, request: &Request, unsent: u32) -> Response {
         self.hear();
         if self.capturing.runs()
-            && matches!(request, Request::Home | Request::BeginPath { .. } | Request::Run)
+            && matches!(
+                request,
+                Request::Home | Request::BeginPath { .. } | Request::Run | Request::HoldToRun
+            )
         {
             return Response::Refused(Refusal::Exciting);
         }
@@ -107,6 +111,7 @@ impl MotionController {
                 return loaded.map_or_else(Response::Refused, |()| Response::Room(self.room()));
             }
             Request::Run => self.run(),
+            Request::HoldToRun => self.hold_to_run(),
             Request::Override { factor } => self.change_override(*factor),
             Request::Back => self.back(),
             Request::Hold => self.hold(),
@@ -192,6 +197,16 @@ impl MotionController {
         }
         self.state = state;
         self.set_off();
+        Ok(())
+    }
+
+    /// Runs the path for a while; on one that runs like that, renews it.
+    fn hold_to_run(&mut self) -> Result<(), Refusal> {
+        let renewed = self.path.held_until.is_some() && matches!(self.state, State::Running | State::Holding);
+        if !renewed {
+            self.run()?;
+        }
+        self.path.held_until = Some(self.tick + u64::from(HOLD_TO_RUN_MS));
         Ok(())
     }
 
@@ -296,6 +311,15 @@ impl MotionController {
         Ok(())
     }
 
+    /// What has its reference, one bit a motor.
+    fn referenced(&self) -> u8 {
+        match (&self.homing, &self.machine) {
+            (Some(homing), _) => homing.found(),
+            (None, Some(machine)) if self.homed => machine.homing.motors(),
+            _ => 0,
+        }
+    }
+
     fn status(&self, unsent: u32) -> MotionStatus {
         let (servo_ticks, servo_lost, servo_late) = self.servo_ticks;
         let people = |axes: &[f64; AXES]| core::array::from_fn(|axis| axes[axis] / AXIS_UNIT[axis]);
@@ -303,6 +327,8 @@ impl MotionController {
             state: self.state,
             fault: self.fault.or(self.pending),
             homed: self.homed,
+            referenced: self.referenced(),
+            searching: self.homing.as_ref().map_or(0, Homing::searching),
             axes: people(&self.measured),
             reference: people(&self.axes),
             path_id: self.path.id,

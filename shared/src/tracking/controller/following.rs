@@ -59,9 +59,9 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             TrackerState::Ready
         };
         let plan = on_path.and_then(|p| plan(parameters, &self.path, p.s, p.speed));
-        let targets = match (plan, on_path, self.jog) {
+        let targets = match (plan, on_path, self.jog_targets()) {
             (Some(plan), Some(snapshot), _) if tracking => self.seam_targets(parameters, snapshot, &plan),
-            (_, _, Some(jog)) => jog.map(|position| Some(SlideTarget::rest(position))),
+            (_, _, Some(jog)) => jog,
             (Some(plan), ..) => plan.map(Some),
             (None, ..) => self.slides.map(|slide| Some(SlideTarget::rest(slide.target))),
         };
@@ -256,7 +256,11 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         });
         slide.target = target.map_or(slide.position, |t| t.position);
         let at_the_end = beyond && libm::fabs(slide.position - slide.target) <= AT_THE_END;
-        let output = slide.law.step(&parameters.slides[i].law, target, slide.position);
+        let law = &parameters.slides[i].law;
+        let output = match &self.jog {
+            Some(jog) => slide.law.step(&jog.slowed(law), target, slide.position),
+            None => slide.law.step(law, target, slide.position),
+        };
         slide.saturated_ticks = match output.flag {
             LawFlag::Saturated => slide.saturated_ticks.saturating_add(1),
             LawFlag::Free | LawFlag::NoTarget | LawFlag::SoftLimit => 0,

@@ -37,7 +37,14 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
                 self.jog = None;
                 self.forget_seam();
             }),
-            Request::MoveSlides { target_mm } => self.move_slides(target_mm),
+            Request::MoveSlides {
+                target_mm,
+                hold_to_run,
+            } => self.move_slides(target_mm, *hold_to_run),
+            Request::Stop => {
+                self.let_go();
+                Ok(())
+            }
             Request::LoadKnots(knots) => self
                 .allow_all_but_tracking()
                 .and_then(|()| Ok(self.path.append(knots)?)),
@@ -50,11 +57,11 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             | Request::LoadElements { .. }
             | Request::LoadEvents(_)
             | Request::Run
+            | Request::HoldToRun
             | Request::Override { .. }
             | Request::Back
             | Request::Hold
             | Request::Resume
-            | Request::Stop
             | Request::OffsetPose(_)
             | Request::Excite(_)
             | Request::EndExcitation
@@ -84,28 +91,12 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         Ok(())
     }
 
-    fn move_slides(&mut self, target_mm: &[f64; SLIDES]) -> Result<(), Refusal> {
-        self.allow(&[TrackerState::Ready])?;
-        let parameters = self.parameters.as_ref().ok_or(Refusal::NotConfigured)?;
-        for (slide, (target, of)) in (0..).zip(target_mm.iter().zip(&parameters.slides)) {
-            let (min, max) = of.law.travel;
-            if !(min..=max).contains(target) {
-                return Err(Refusal::BeyondTravel {
-                    slide,
-                    target_mm: *target as f32,
-                    min_mm: min as f32,
-                    max_mm: max as f32,
-                });
-            }
-        }
-        self.jog = Some(*target_mm);
-        Ok(())
-    }
-
     /// Forgets the fault; a board in fault goes off if the cause is gone.
     fn reset(&mut self) -> Result<(), Refusal> {
         if self.state == TrackerState::Fault {
-            if self.estop.is_pressed() || self.feedback.drive_fault.any() {
+            let fitted = self.parameters.as_ref().map_or(0, |of| of.slides.len());
+            let faulty = (0..fitted).any(|slide| self.feedback.drive_fault.get(slide));
+            if self.estop.is_pressed() || faulty {
                 return Err(Refusal::CauseRemains);
             }
             if self.estop.stayed_closed().is_some() {
@@ -117,7 +108,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
         Ok(())
     }
 
-    fn allow(&self, states: &[TrackerState]) -> Result<(), Refusal> {
+    pub(super) fn allow(&self, states: &[TrackerState]) -> Result<(), Refusal> {
         if states.contains(&self.state) {
             Ok(())
         } else {
@@ -157,6 +148,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             state: self.state,
             fault: self.faults.first().copied(),
             homed: self.homed(),
+            referenced: self.referenced(),
             slides_mm: self.slides.map(|slide| slide.position),
             path_id: self.path.id(),
             knots: self.path.len() as u16,
