@@ -1,5 +1,6 @@
 //! How a job is driven and watched from outside: commands in, events out.
 
+use crate::ByHand;
 use crate::events::{Event, Events, Interest, Subscription};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -25,6 +26,8 @@ pub enum Command {
     Stop,
     /// Whether the machine waits after every block of the program.
     SingleBlock(bool),
+    /// What is asked for by hand.
+    ByHand(ByHand),
     /// A line for a lesson that is led by lines.
     Answer(String),
     /// There is no operator any more who could answer a question.
@@ -65,6 +68,7 @@ pub struct Control {
     /// Commands that have come and are not taken yet, by kind.
     orders: VecDeque<Command>,
     answers: VecDeque<String>,
+    by_hand: VecDeque<ByHand>,
     states: Arc<States>,
     events: Events,
 }
@@ -82,6 +86,7 @@ pub fn control() -> (Remote, Control) {
         commands: receiver,
         orders: VecDeque::new(),
         answers: VecDeque::new(),
+        by_hand: VecDeque::new(),
         states,
         events,
     };
@@ -164,11 +169,24 @@ impl Control {
         self.answers.pop_front()
     }
 
+    /// What waits that was asked for by hand; it stays there until it is [taken](Self::take_by_hand).
+    pub fn by_hand(&mut self) -> Option<&ByHand> {
+        self.sort();
+        self.by_hand.front()
+    }
+
+    /// The same, taken.
+    pub fn take_by_hand(&mut self) -> Option<ByHand> {
+        self.sort();
+        self.by_hand.pop_front()
+    }
+
     /// No more are taken than may wait, so that too many commands are an error for their sender.
     fn sort(&mut self) {
-        while self.orders.len().max(self.answers.len()) < WAITING {
+        while self.orders.len().max(self.answers.len()).max(self.by_hand.len()) < WAITING {
             match self.commands.try_recv() {
                 Ok(Command::Answer(text)) => self.answers.push_back(text),
+                Ok(Command::ByHand(asked)) => self.by_hand.push_back(asked),
                 Ok(order) => self.orders.push_back(order),
                 Err(_) => return,
             }

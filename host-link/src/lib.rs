@@ -32,6 +32,7 @@
 //! The examples `drive_weld` and `watch_weld` of the crate `seamwright` do that with a weld on simulated boards.
 
 pub mod boards;
+mod by_hand;
 pub mod clock;
 mod control;
 pub mod events;
@@ -39,4 +40,5 @@ pub mod geometry;
 pub mod record;
 pub mod spool;
 
+pub use by_hand::{ByHand, Jog, JogWay};
 pub use control::{Command, CommandError, Control, Remote, control};

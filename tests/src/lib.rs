@@ -1,6 +1,7 @@
 //! What whole-system runs share: the shipped jobs, other seams for them, and welds on any boards.
 
 pub mod bad_input;
+mod by_hand;
 pub mod fuzz;
 mod hold;
 mod operator;
@@ -11,6 +12,7 @@ mod references;
 pub mod weld_data;
 mod words;
 
+pub use by_hand::{Deed, Hands, Rest, Then};
 pub use hold::assert_held_weld_goes_on;
 pub use operator::{NoOperator, Operator, Sleeper, TappedBoards, run};
 pub use pictures::{

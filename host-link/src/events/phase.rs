@@ -60,6 +60,8 @@ pub enum Phase {
         /// How many there are.
         of: usize,
     },
+    /// The operator jogs the machine.
+    Jogging,
     /// The machine goes to its park position.
     Parking,
     /// A controlled stop, after a fault or a command.
@@ -86,6 +88,7 @@ impl fmt::Display for Phase {
             Self::Exciting { motor, number, of } => {
                 write!(f, "exciting {motor}, {number} of {of}")
             }
+            Self::Jogging => f.write_str("jogging"),
             Self::Parking => f.write_str("parking"),
             Self::Stopping => f.write_str("stopping"),
         }
@@ -120,6 +123,8 @@ pub enum Question {
     },
     /// The motion board holds it, since the feed is too low for the beam: raise the override, then resume.
     FeedTooLow,
+    /// What to do, by hand; [`crate::Command::ByHand`] says it.
+    ByHand,
     /// Where to jog, or what to teach; [`crate::Command::Answer`] says it.
     Jog,
 }

@@ -101,6 +101,7 @@ fn samples_that_the_disk_does_not_take_are_missing_and_told() {
     let mut record = Record::new(Spooling {
         folder: Some("/there/is/no/such/folder".into()),
         in_memory: 1000,
+        ..Spooling::default()
     });
     for tick in 1..=23_000 {
         record.add_motion(&[motion_sample(tick)]);

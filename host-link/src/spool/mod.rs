@@ -31,6 +31,8 @@ pub struct Spooling {
     pub folder: Option<PathBuf>,
     /// Records of a spool that memory holds at most.
     pub in_memory: usize,
+    /// Whether any are kept.
+    pub keeps: bool,
 }
 
 impl Default for Spooling {
@@ -39,11 +41,20 @@ impl Default for Spooling {
         Self {
             folder: None,
             in_memory: 1 << 16,
+            keeps: true,
         }
     }
 }
 
 impl Spooling {
+    /// Nothing is kept, for a job of any length that nobody evaluates.
+    pub fn nothing() -> Self {
+        Self {
+            keeps: false,
+            ..Self::default()
+        }
+    }
+
     /// With the files in `folder`, which has to be there when the first one is needed.
     pub fn in_folder(folder: impl Into<PathBuf>) -> Self {
         Self {
@@ -147,6 +158,9 @@ impl<T> Spool<T> {
 impl<T: Serialize + DeserializeOwned + Clone> Spool<T> {
     /// Puts a record at the end.
     pub fn push(&mut self, record: T) {
+        if !self.spooling.keeps {
+            return;
+        }
         self.newest.push(record);
         self.len += 1;
         if self.newest.len() >= BLOCK.min(self.spooling.in_memory.max(1)) {

@@ -73,6 +73,7 @@ fn what_has_no_place_is_counted_and_the_rest_stays() {
     let mut spool = Spool::new(Spooling {
         folder: Some("/there/is/no/such/folder".into()),
         in_memory: 10,
+        ..Spooling::default()
     });
     (0..100).for_each(|record: u32| spool.push(record));
     let error = spool.check().unwrap_err();

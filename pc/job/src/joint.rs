@@ -255,8 +255,8 @@ mod tests {
     #[test]
     fn a_long_record_leaves_memory_and_stays_in_order() {
         let mut record = JointRecord::new(Spooling {
-            folder: None,
             in_memory: 10,
+            ..Spooling::default()
         });
         for k in 0..3000 {
             let at = seen(0.0, None, Form::Gap);

@@ -2,7 +2,7 @@
 
 use crate::session::Session;
 use crate::{JobError, Weld};
-use cam::path::PathError;
+use cam::path::{PathError, PlannedPath, Planner};
 use host_link::events::{Event, Phase, Question};
 use nalgebra::Vector3;
 use nc::text::words;
@@ -43,6 +43,28 @@ impl Weld {
         self.taught.led = lead(&mut machine, &lesson.points)?;
         Ok(())
     }
+}
+
+/// Where the tip goes straight to.
+pub(crate) struct Straight {
+    pub position_mm: [f64; 3],
+    /// Axes that turn, and where to \[°\].
+    pub turned: Vec<(&'static str, f64)>,
+    /// \[mm/min\]; \[°/min\] where the tip stays.
+    pub feed: f64,
+}
+
+/// The paths from the axes `from` (mm, degrees), after the checks of a program.
+pub(crate) fn straight(
+    planner: &Planner,
+    from: &[f64; AXES],
+    to: &Straight,
+) -> Result<Vec<PlannedPath>, JobError> {
+    let place = AXIS_NAMES.into_iter().zip(to.position_mm);
+    let words = words(place.chain(to.turned.iter().copied()));
+    let text = format!("G21 G90 G94 G43.4 G61\nG1 {words} F{}\nM2\n", to.feed);
+    let program = interpret(&text, Options::default()).map_err(|error| JobError::Plan(error.to_string()))?;
+    planner.program(&program, from, None).map_err(refused)
 }
 
 /// A move that cannot be made. Where in a program it stands is left out: the operator wrote none.
@@ -92,18 +114,13 @@ impl LedMachine for Led<'_, '_, '_> {
                 (false, false) => return Err(JobError::Move(format!("it has no {name} axis"))),
             }
         }
-        let feed = if turned.is_empty() { MOVE } else { TURN };
-        let place = AXIS_NAMES.into_iter().zip(there.position_mm);
-        let text = format!(
-            "G21 G90 G94 G43.4 G61\nG1 {} F{feed}\nM2\n",
-            words(place.chain(turned))
-        );
-        let program =
-            interpret(&text, Options::default()).map_err(|error| JobError::Plan(error.to_string()))?;
+        let to = Straight {
+            position_mm: there.position_mm,
+            feed: if turned.is_empty() { MOVE } else { TURN },
+            turned,
+        };
         let number = self.count + 1;
-        let from = self.session.motion.reference;
-        let paths = self.weld.planner.program(&program, &from, None);
-        for path in paths.map_err(refused)? {
+        for path in straight(&self.weld.planner, &self.session.motion.reference, &to)? {
             self.weld
                 .path(self.session, path, Phase::TeachingSeam { number })?;
         }

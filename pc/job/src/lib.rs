@@ -1,5 +1,6 @@
 //! Jobs on boards: from drives off to the result, with the machine at rest at the end whatever happens.
 
+mod by_hand;
 mod calibrating;
 mod cameras;
 mod countdown;
@@ -38,7 +39,7 @@ pub use seam_teaching::{SeamLesson, TaughtSeam};
 pub use surroundings::{Surroundings, SurroundingsError};
 pub use teaching::{NoTeaching, RangingProbe, Taught, check_teaching};
 
-use cam::path::{FromLineError, PathError, PlannedPath, Planner};
+use cam::path::{FromLineError, JogError, PathError, PlannedPath, Planner};
 use config::machine::MachineFile;
 use feeding::Feeding;
 use following::follow;
@@ -108,6 +109,8 @@ pub enum Work<'a> {
     Lead(&'a LedLesson),
     /// To excite motors and capture what they do.
     Excite(&'a ExcitationRun),
+    /// What the operator asks for by hand; the machine stays where it is then.
+    ByHand,
 }
 
 impl Job<'_> {
@@ -242,6 +245,20 @@ pub enum JobError {
     /// A move that the operator asked for cannot be made; the machine has not moved.
     #[error("the machine does not go there: {0}")]
     Move(String),
+    /// A jog that cannot be made; the machine has not moved.
+    #[error(transparent)]
+    Jog(#[from] JogError),
+    /// A jog that was asked for too long ago to be begun now.
+    #[error(
+        "the jog was asked for {ms} ms ago, which is too long to begin it now; this PC is too busy: try again"
+    )]
+    Stale {
+        /// How long ago \[ms\].
+        ms: u128,
+    },
+    /// A block by hand that is none.
+    #[error("the block is not carried out: {0}")]
+    Block(String),
     /// The program cannot be started at a line.
     #[error(transparent)]
     FromLine(#[from] FromLineError),
@@ -293,7 +310,13 @@ impl JobError {
     /// A move that was asked for and refused: the machine has not moved, and can be asked for something else.
     fn is_refused_move(&self) -> bool {
         match self {
-            Self::Path(_) | Self::Teach(_) | Self::Move(_) => true,
+            Self::Path(_)
+            | Self::Teach(_)
+            | Self::Move(_)
+            | Self::Jog(_)
+            | Self::Stale { .. }
+            | Self::Block(_)
+            | Self::Surroundings(_) => true,
             Self::Link(LinkError::Refused { refusal, .. }) => matches!(refusal, Refusal::BeyondTravel { .. }),
             _ => false,
         }
@@ -351,6 +374,7 @@ impl Weld {
             Work::Teach => drop(self.teach(session, job)?),
             Work::TeachSeam(lesson) => self.teach_seam(session, job, lesson)?,
             Work::Lead(lesson) => self.lead(session, lesson)?,
+            Work::ByHand => return self.by_hand(session, job),
             Work::Excite(run) => self.taught.captured = self.excite(session, job, run)?,
             Work::TeachAndMake => {
                 let part = self.teach(session, job)?;
@@ -394,6 +418,17 @@ impl Weld {
     /// Loads and runs one path; the machine stands afterwards, on an error too.
     fn path(&mut self, session: &mut Session, path: PlannedPath, phase: Phase) -> Result<(), JobError> {
         self.wait_before(session, &path)?;
+        self.run(session, path, phase, follow)
+    }
+
+    /// Loads a path and has it run by `follow`, which is told its number.
+    fn run(
+        &mut self,
+        session: &mut Session,
+        path: PlannedPath,
+        phase: Phase,
+        follow: impl FnOnce(&mut Session, Feeding, &PlannedPath, u32) -> Result<(), JobError>,
+    ) -> Result<(), JobError> {
         let id = self.paths.len() as u32 + 1;
         let feeding = load(session, &path, id)?;
         if let Some(tracking) = &mut session.tracking {

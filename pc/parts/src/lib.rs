@@ -30,9 +30,12 @@ pub use stir::Stir;
 pub use t_seam::TSeam;
 pub use taught_seam::TaughtSeam;
 
+use anyhow::Context;
+use cam::path::{PlannedPath, Planner, check_constant_speed};
 use config::machine::MachineFile;
 use config::toml_file::{self, TomlError};
 use dual_beam::DualBeamPlan;
+use nc::{Options, interpret};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use teach::TaughtPoint;
@@ -227,6 +230,21 @@ impl PartFile {
         self.part.kind().plan(&self.context(machine, title))
     }
 
+    /// The same with its paths: the program has been read and checked as its run will be.
+    ///
+    /// # Errors
+    /// What cannot be planned, or not be done by the machine.
+    pub fn plan_checked(
+        &self,
+        machine: &MachineFile,
+        planner: &Planner,
+        title: &str,
+    ) -> anyhow::Result<(Plan, Vec<PlannedPath>)> {
+        let plan = self.plan(machine, title)?;
+        let paths = checked(&plan.program, planner, machine, self.keeps_feed())?;
+        Ok((plan, paths))
+    }
+
     /// Judges a run of the planned program.
     pub fn judge(&self, run: &Run) -> anyhow::Result<Judgement> {
         let kind = self.part.kind();
@@ -243,6 +261,25 @@ impl PartFile {
             title,
         }
     }
+}
+
+/// The paths of a planned program, read and checked as its run will be; with a beam on it `keeps_feed`.
+///
+/// # Errors
+/// What the machine cannot do.
+pub fn checked(
+    program: &str,
+    planner: &Planner,
+    machine: &MachineFile,
+    keeps_feed: bool,
+) -> anyhow::Result<Vec<PlannedPath>> {
+    let program = interpret(program, Options::default()).context("the planned program")?;
+    let from = machine.planning.park_axes();
+    let paths = planner
+        .program(&program, &from, None)
+        .context("the planned program")?;
+    check_constant_speed(&paths, keeps_feed).context("the planned program")?;
+    Ok(paths)
 }
 
 #[cfg(test)]

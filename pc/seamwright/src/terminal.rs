@@ -1,19 +1,22 @@
 //! The operator at a terminal: a bar on standard error, and lines on standard input.
 
 use crate::console::{errln, shown};
-use host_link::events::{Event, Interest, Question, Subscription};
-use host_link::{Command, Remote};
+use host_link::events::{Event, Interest, NoEvent, Question, Subscription};
+use host_link::{ByHand, Command, Jog, Remote};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::time::Duration;
 
 /// What may be said.
 const KEYS: &str = "Enter continues, h holds, b goes back, s switches single block on or off, a number from 0 to 200 is \
                     the feed in %, Ctrl-C stops the job";
+/// A jog is held to so often.
+const HELD: Duration = Duration::from_millis(50);
 /// Samples that wait to be shown.
 const SAMPLES: usize = 16;
 
 /// How the operator takes part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operator {
     /// They look on.
     LooksOn,
@@ -25,6 +28,8 @@ pub enum Operator {
         /// Whether the program stops.
         stops: bool,
     },
+    /// They hold to this jog, until the machine stands.
+    Jogs(Jog),
     /// They lead a job by lines, if standard input is a terminal; `always` wherever they come from.
     LeadsByLines {
         /// See there.
@@ -69,6 +74,10 @@ impl Terminal {
             }
             Operator::LeadsByLines { always } if always || is_terminal => {
                 std::thread::spawn(move || read_lines(&remote));
+            }
+            Operator::Jogs(jog) => {
+                let events = remote.subscribe(Interest::Milestones, SAMPLES);
+                std::thread::spawn(move || hold_to(&remote, &events, jog));
             }
             // Nobody is waited for.
             Operator::LooksOn | Operator::SaysWords { .. } | Operator::LeadsByLines { .. } => {
@@ -148,6 +157,7 @@ fn asked(question: &Question) -> String {
             "held: the feed is too low for the beam; raise it, then press Enter".to_owned()
         }
         Question::Jog => "jog: type a command".to_owned(),
+        Question::ByHand => "ready".to_owned(),
     }
 }
 
@@ -192,6 +202,26 @@ fn read_lines(remote: &Remote) {
         }
     }
     let _ = remote.send(Command::Unattended);
+}
+
+/// Holds to `jog` from when the machine is ready for it until it stands, and ends the job then.
+fn hold_to(remote: &Remote, events: &Subscription, jog: Jog) {
+    let mut asked = false;
+    loop {
+        let received = events.receive(HELD);
+        match received.as_ref().map(|received| &*received.event) {
+            // It is refused, or over.
+            Ok(Event::Message(_) | Event::Question(Question::ByHand)) if asked => break,
+            Ok(Event::Question(Question::ByHand)) => asked = true,
+            Ok(_) => continue,
+            Err(NoEvent::Timeout) if asked && jog.step.is_none() => {}
+            Err(NoEvent::Timeout) => continue,
+            Err(NoEvent::Ended) => return,
+        }
+        // One that has no room comes too fast, and the next one does as well.
+        let _ = remote.send(Command::ByHand(ByHand::Jog(jog.again())));
+    }
+    let _ = remote.send(Command::ByHand(ByHand::Off));
 }
 
 /// What `line` means, if anything.

@@ -77,7 +77,7 @@ impl BoardChoice {
 
     /// Connects; simulated boards become the machine whose kinematics are `wanted`, emulated ones must have been
     /// booted as it, and with the same `plant`. The tracker board is left alone unless the machine is `tracked`.
-    /// `interrupted` stops the machine.
+    /// The time of simulated ones does not run ahead of the clock's times `pace`, if that is told. `interrupted` stops the machine.
     ///
     /// # Errors
     /// [`BoardsError`]: there are none, they are another machine's, or they do not answer.
@@ -86,11 +86,18 @@ impl BoardChoice {
         wanted: &'static str,
         plant: &PlantChoice,
         tracked: bool,
+        pace: Option<f64>,
         interrupted: Arc<AtomicBool>,
     ) -> Result<Box<dyn Boards + Send>, BoardsError> {
         let patience = Timeouts::default();
         match self {
-            Self::Simulated => Ok(Box::new(SimulatedBoards::wired_to(&plant.of(wanted)?))),
+            Self::Simulated => {
+                let boards = SimulatedBoards::wired_to(&plant.of(wanted)?);
+                Ok(Box::new(match pace {
+                    Some(pace) => boards.at_pace(pace),
+                    None => boards,
+                }))
+            }
             Self::At { motion, tracker } => {
                 let motion = Endpoint::board(motion);
                 let tracker = tracker.as_deref().map(Endpoint::board);

@@ -2,6 +2,7 @@
 //! `--boards virtual-nucleo`, builds what they need and runs three at a time: a pair of boards keeps about one core busy in
 //! real time, and waits where a core is short.
 
+mod by_hand;
 mod machines;
 mod model;
 mod on_model;

@@ -129,22 +129,24 @@ impl Pair {
     /// `seamwright weld` with the shipped job on these boards. Its cameras see where the seam is: what is tried with it is not what
     /// pictures show, and they are most of its work.
     pub fn seamwright(&self, seam: Option<&Path>) -> Command {
-        let mut command = bound_to_parent(program(PROGRAM_VARIABLES[0]));
+        let mut command = self.program(["weld", "--camera", "geometric"]);
         command
-            .args([
-                "weld",
-                "--boards",
-                "emulated",
-                "--camera",
-                "geometric",
-                "--machine",
-            ])
+            .arg("--machine")
             .arg(shipped(MACHINE))
             .arg("--seam")
             .arg(seam.map_or_else(|| shipped(SEAM), Path::to_owned))
             .arg("--report")
             .arg(self.report())
-            .arg(shipped(PROGRAM))
+            .arg(shipped(PROGRAM));
+        command
+    }
+
+    /// `seamwright` with these arguments, on these boards.
+    pub fn program<const N: usize>(&self, arguments: [&str; N]) -> Command {
+        let mut command = bound_to_parent(program(PROGRAM_VARIABLES[0]));
+        command
+            .args(arguments)
+            .args(["--boards", "emulated"])
             .env(SESSION_VARIABLE, self.folder.join("session.toml"));
         command
     }

@@ -1,5 +1,6 @@
 //! Whole jobs on simulated boards, and what happens when something goes wrong in the middle of one.
 
+mod by_hand;
 mod changed;
 mod corners;
 mod drawing;

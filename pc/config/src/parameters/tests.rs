@@ -234,7 +234,11 @@ fn changes_are_told_and_neither_layout_nor_comments_are_any() {
 
 #[test]
 fn every_machine_has_its_shipped_file_here() {
-    for name in KinematicsConfig::NAMES {
+    // A chain of joints is whatever its file says.
+    let shipped_ones = KinematicsConfig::NAMES
+        .iter()
+        .filter(|name| **name != "serial-chain");
+    for name in shipped_ones {
         let text = shipped(name).unwrap_or_else(|| panic!("no {name}"));
         let machine = MachineFile::parse(name, text).unwrap();
         assert_eq!(machine.motion.kinematics.name(), *name);

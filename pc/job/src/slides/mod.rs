@@ -18,7 +18,13 @@ impl Session<'_> {
     /// # Errors
     /// [`JobError::SlideAway`]; [`JobError::Link`] of a target beyond the travel, which names the slide.
     pub fn move_slides(&mut self, target_mm: [f64; SLIDES]) -> Result<(), JobError> {
-        self.command(Role::Tracker, &Request::MoveSlides { target_mm })?;
+        self.command(
+            Role::Tracker,
+            &Request::MoveSlides {
+                target_mm,
+                hold_to_run: None,
+            },
+        )?;
         let moved = self.wait_until("a move of the slides", LIMIT, |session| {
             session.refresh()?;
             Ok(session.away(&target_mm).is_none())
@@ -39,7 +45,7 @@ impl Session<'_> {
     }
 
     /// The first slide that is not at its target, and how far it is off \[mm\].
-    fn away(&self, target_mm: &[f64; SLIDES]) -> Option<(usize, f64)> {
+    pub(crate) fn away(&self, target_mm: &[f64; SLIDES]) -> Option<(usize, f64)> {
         let at = self.slides_mm();
         let fitted = 2 * self
             .tracking

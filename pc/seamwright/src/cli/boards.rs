@@ -79,7 +79,9 @@ impl BoardArgs {
         let plant = self.plant();
         let tracked = job.machine.tracking.is_some();
         let stop = remote.stop_flag();
-        let connect = move || choice.connect(wanted, &plant, tracked, stop);
+        // Whoever holds to a machine does so in their own time.
+        let pace = matches!(operator, Operator::Jogs(_)).then_some(1.0);
+        let connect = move || choice.connect(wanted, &plant, tracked, pace, stop);
         let Some(mut boards) = unless_interrupted(connect, &remote.stop_flag())? else {
             errln!("seamwright: stopped by the operator; nothing was sent to the boards");
             return Ok(Err(ExitCode::from(INTERRUPTED)));

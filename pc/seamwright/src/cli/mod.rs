@@ -8,6 +8,7 @@ mod circle;
 mod commission;
 mod dry_run;
 mod explain;
+mod jog;
 mod measure;
 mod plan;
 mod probe;
@@ -46,6 +47,7 @@ enum Command {
     Circle(circle::Circle),
     Commission(commission::Commission),
     DryRun(dry_run::DryRun),
+    Jog(jog::JogCommand),
     Measure(measure::Measure),
     Plan(plan::Plan),
     Probe(probe::Probe),
@@ -62,6 +64,7 @@ impl Cli {
             Command::Circle(command) => command.run(),
             Command::Commission(command) => command.run(),
             Command::DryRun(command) => command.run(),
+            Command::Jog(command) => command.run(),
             Command::Measure(command) => command.run(),
             Command::Plan(command) => command.run().map(|()| ExitCode::SUCCESS),
             Command::Probe(command) => command.run(),

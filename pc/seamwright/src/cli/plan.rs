@@ -3,11 +3,9 @@
 use super::machine_for;
 use crate::console::outln;
 use anyhow::Context;
-use cam::path::{PlannedPath, Planner, check_constant_speed};
+use cam::path::{PlannedPath, Planner};
 use clap::Args;
-use config::machine::MachineFile;
-use nc::{Options, interpret};
-use parts::PartFile;
+use parts::{PartFile, checked};
 use std::path::{Path, PathBuf};
 
 /// Write the program of a part
@@ -61,8 +59,10 @@ impl Plan {
             part = part.with_taught_seams(taught)?;
         }
         let of_part = || format!("part {}", self.part.display());
-        let plan = part.plan(&machine, &title(&self.output)).with_context(of_part)?;
         let planner = Planner::build(&machine).with_context(|| self.machine.display().to_string())?;
+        let (plan, paths) = part
+            .plan_checked(&machine, &planner, &title(&self.output))
+            .with_context(of_part)?;
         let measuring = self.measuring_head.as_deref().map(|output| {
             let program = part
                 .plan_measuring(&machine, &title(output))
@@ -71,7 +71,6 @@ impl Plan {
             anyhow::Ok((output, program, paths))
         });
         let measuring = measuring.transpose()?;
-        let paths = checked(&plan.program, &planner, &machine, part.keeps_feed())?;
         write(&self.output, &plan.program)?;
         outln!("{}:", self.output.display());
         for note in &plan.notes {
@@ -101,22 +100,6 @@ impl Plan {
 fn title(output: &Path) -> String {
     let stem = output.file_stem().unwrap_or_default();
     stem.to_string_lossy().into_owned()
-}
-
-/// What is written has been read and checked as the weld will; with a beam on it `keeps_feed`.
-fn checked(
-    program: &str,
-    planner: &Planner,
-    machine: &MachineFile,
-    keeps_feed: bool,
-) -> anyhow::Result<Vec<PlannedPath>> {
-    let program = interpret(program, Options::default()).context("the planned program")?;
-    let from = machine.planning.park_axes();
-    let paths = planner
-        .program(&program, &from, None)
-        .context("the planned program")?;
-    check_constant_speed(&paths, keeps_feed).context("the planned program")?;
-    Ok(paths)
 }
 
 fn write(output: &Path, program: &str) -> anyhow::Result<()> {

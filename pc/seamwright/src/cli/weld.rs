@@ -280,7 +280,7 @@ impl Weld {
             (Work::Pictures(run), _) => run.program,
             (Work::Mark(run), _) => run.program,
             (Work::Teach | Work::TeachAndMake, None) => return Err(NoTeaching::Part.into()),
-            (Work::TeachSeam(_) | Work::Lead(_) | Work::Excite(_), _) => return Ok(()),
+            (Work::TeachSeam(_) | Work::Lead(_) | Work::Excite(_) | Work::ByHand, _) => return Ok(()),
         };
         let planned = job.plan(program, &planner, &job.machine.planning.park_axes());
         let around = match &planned {

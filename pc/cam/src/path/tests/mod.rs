@@ -5,6 +5,7 @@ mod blocks;
 mod control;
 mod directions;
 mod feeds;
+mod jog;
 mod machines;
 mod nurbs;
 mod outputs;
